@@ -1,0 +1,154 @@
+/* irradiance_cache.c: see irradiance_cache.h; the protocol is irradiance_slot.h's.
+ * Threads: any number ask at once; each has counters and scratch memory of its own. */
+#define _POSIX_C_SOURCE 200809L
+#include "irradiance_cache.h"
+
+#include "clock.h"
+#include "parallel_for.h"
+
+#include <sched.h>
+#include <stdlib.h>
+
+enum { PRECOMPUTE_BLOCK = 512 };
+
+ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
+                                  irradiance_cache *out_cache)
+{
+    irradiance_cache c = {.map = map, .mode = mode, .worker_count = worker_count};
+    c.counters = aligned_alloc(_Alignof(irradiance_counters), worker_count * sizeof *c.counters);
+    c.scratch = calloc(worker_count, sizeof *c.scratch);
+    bool is_complete = c.counters && c.scratch;
+    for (unsigned i = 0; is_complete && i < worker_count; i++) {
+        c.counters[i] = (irradiance_counters){0};
+        c.scratch[i] = malloc(photon_map_scratch_count(map) * sizeof **c.scratch);
+        is_complete = c.scratch[i] != NULL;
+    }
+    if (!is_complete) {
+        irradiance_cache_reset(&c);
+        return AG_ERROR_MEMORY;
+    }
+    c.ready_before = irradiance_cache_distinct(&c);
+    *out_cache = c;
+    return AG_OK;
+}
+
+void irradiance_cache_reset(irradiance_cache *cache)
+{
+    for (unsigned i = 0; cache->scratch && i < cache->worker_count; i++)
+        free(cache->scratch[i]);
+    free(cache->scratch);
+    free(cache->counters);
+    *cache = (irradiance_cache){0};
+}
+
+static rgb estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
+{
+    double begin = clock_seconds();
+    rgb irradiance = photon_map_irradiance_estimate(cache->map, position, normal, cache->scratch[worker_index]);
+    cache->counters[worker_index].estimate_seconds += clock_seconds() - begin;
+    return irradiance;
+}
+
+/* Computes and publishes what the worker has claimed; gives the slot's word. */
+static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker_index)
+{
+    photon *p = &cache->map->set.photons[index];
+    rgb irradiance = estimate(cache, (vec3){p->position[0], p->position[1], p->position[2]},
+                              direction_decode(p->normal), worker_index);
+    uint32_t value = photon_map_encode_irradiance(cache->map, irradiance, index);
+    if (irradiance_slot_publish(&p->slot, worker_index, value))
+        cache->counters[worker_index].computed++;
+    else
+        cache->counters[worker_index].duplicated++;
+    return irradiance_word(IRRADIANCE_READY, value);
+}
+
+static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker_index)
+{
+    (void)block;
+    irradiance_cache *cache = user;
+    for (uint64_t i = begin; i < end; i++) {
+        uint32_t word;
+        if (irradiance_slot_try_claim(&cache->map->set.photons[i].slot, worker_index, &word))
+            compute(cache, (uint32_t)i, worker_index);
+    }
+}
+
+ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run)
+{
+    return parallel_for(run, cache->map->set.count, PRECOMPUTE_BLOCK, precompute_block, cache, AG_PHASE_PRECOMPUTE, 0.0,
+                        1.0);
+}
+
+static void fulfil(const irradiance_cache *cache, uint32_t word, irradiance_request *request)
+{
+    request->photon = PHOTON_NONE;
+    request->irradiance = photon_map_decode_irradiance(cache->map, word & IRRADIANCE_VALUE_MASK);
+}
+
+void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
+                          irradiance_request *out_request)
+{
+    irradiance_counters *counters = &cache->counters[worker_index];
+    counters->requests++;
+    out_request->photon = PHOTON_NONE;
+    uint32_t index = cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
+    if (index == PHOTON_NONE) {
+        out_request->irradiance = irradiance_cache_estimate(cache, position, normal, worker_index);
+        return;
+    }
+    irradiance_slot *slot = &cache->map->set.photons[index].slot;
+    uint32_t word = irradiance_slot_read(slot);
+    if (irradiance_word_state(word) == IRRADIANCE_EMPTY && irradiance_slot_try_claim(slot, worker_index, &word))
+        word = compute(cache, index, worker_index);
+    if (irradiance_word_state(word) == IRRADIANCE_READY) {
+        fulfil(cache, word, out_request);
+        return;
+    }
+    counters->deferred++;
+    out_request->photon = index;
+    out_request->irradiance = rgb_gray(0.0f);
+}
+
+void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index)
+{
+    const irradiance_slot *slot = &cache->map->set.photons[request->photon].slot;
+    uint32_t word = irradiance_slot_read(slot);
+    if (irradiance_word_state(word) != IRRADIANCE_READY)
+        cache->counters[worker_index].waited++;
+    while (irradiance_word_state(word) != IRRADIANCE_READY) {
+        sched_yield(); /* the claimer may need this processor */
+        word = irradiance_slot_read(slot);
+    }
+    fulfil(cache, word, request);
+}
+
+rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
+{
+    cache->counters[worker_index].uncached++;
+    return estimate(cache, position, normal, worker_index);
+}
+
+irradiance_counters irradiance_cache_counters(const irradiance_cache *cache)
+{
+    irradiance_counters sum = {0};
+    for (unsigned i = 0; i < cache->worker_count; i++) {
+        const irradiance_counters *c = &cache->counters[i];
+        sum.requests += c->requests;
+        sum.computed += c->computed;
+        sum.deferred += c->deferred;
+        sum.waited += c->waited;
+        sum.duplicated += c->duplicated;
+        sum.uncached += c->uncached;
+        sum.estimate_seconds += c->estimate_seconds;
+    }
+    return sum;
+}
+
+uint64_t irradiance_cache_distinct(const irradiance_cache *cache)
+{
+    uint64_t ready = 0;
+    for (uint32_t i = 0; i < cache->map->set.count; i++)
+        ready += irradiance_word_state(irradiance_slot_read(&cache->map->set.photons[i].slot)) == IRRADIANCE_READY;
+    return ready - cache->ready_before;
+}

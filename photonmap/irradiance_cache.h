@@ -1,0 +1,70 @@
+/* irradiance_cache.h: the irradiance at a place, from the photon nearest to it, computed at most once per photon.
+ * Rests on: Neilson, Yang, TR 04-21, 2004 (on demand); Christensen 1999 (precomputed, and the nearest-photon lookup).
+ * Flow: final gathering asks; the photon map's estimates answer. Threads: any number ask at once.
+ *
+ * A value is a pure function of the finished map and the photon's index, and all threads use what the slot's bits decode
+ * to: so neither the mode nor who computed it, nor when, can reach the picture. */
+#ifndef AFTERGLOW_IRRADIANCE_CACHE_H
+#define AFTERGLOW_IRRADIANCE_CACHE_H
+
+#include "photon_map.h"
+
+typedef enum irradiance_cache_mode {
+    IRRADIANCE_ON_DEMAND,  /* the first to ask computes */
+    IRRADIANCE_PRECOMPUTE, /* all are computed beforehand */
+    IRRADIANCE_UNCACHED    /* an estimate at every place asked for: another estimator, without the mosaic */
+} irradiance_cache_mode;
+
+/* Of one worker; summed when all is done. Padded apart: they change all the time. */
+typedef struct irradiance_counters {
+    _Alignas(64) uint64_t requests; /* places asked for */
+    uint64_t computed;   /* estimates at photons, published */
+    uint64_t deferred;   /* requests that met a claim of another thread and were set aside */
+    uint64_t waited;     /* of those, the ones that had to wait in the end */
+    uint64_t duplicated; /* estimates computed although another had been published: 0 */
+    uint64_t uncached;   /* estimates at the place itself */
+    double estimate_seconds; /* spent in all estimates */
+} irradiance_counters;
+
+typedef struct irradiance_cache {
+    photon_map *map; /* borrowed; only its slots change */
+    irradiance_cache_mode mode;
+    unsigned worker_count;
+    irradiance_counters *counters; /* [worker_count] */
+    photon_neighbor **scratch;     /* [worker_count] */
+    uint64_t ready_before;         /* photons that were ready when the cache was created */
+} irradiance_cache;
+
+/* Borrows the map. Errors: AG_ERROR_MEMORY. */
+ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
+                                  irradiance_cache *out_cache);
+void irradiance_cache_reset(irradiance_cache *cache);
+
+/* Computes what is not ready yet, at every photon. Errors: AG_CANCELLED. */
+ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run);
+
+typedef struct irradiance_request {
+    uint32_t photon; /* PHOTON_NONE: irradiance is there already */
+    rgb irradiance;  /* W/m^2 */
+} irradiance_request;
+
+/* Asks for the irradiance at a place, on the side of the unit normal. Either it is there (request->photon is
+ * PHOTON_NONE), or another thread is computing it: then it is to be asked for again with irradiance_cache_retry, after
+ * the caller's other work. */
+void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
+                          irradiance_request *out_request);
+
+/* Comes back to a request that was set aside; waits for the claimer where it still computes. Afterwards the irradiance is
+ * there. The claimer holds its claim only while computing, and takes no other meanwhile: so this ends. */
+void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index);
+
+/* An estimate at the place itself, not kept. */
+rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index);
+
+/* The counters of all workers. */
+irradiance_counters irradiance_cache_counters(const irradiance_cache *cache);
+
+/* Photons whose slots are ready now, less those that were so at creation: counted by looking at them. */
+uint64_t irradiance_cache_distinct(const irradiance_cache *cache);
+
+#endif

@@ -1,0 +1,60 @@
+/* irradiance_slot.h: one atomic word per photon: who computes its irradiance, and then the irradiance. The lock-free core.
+ * Rests on: Neilson, Yang, TR 04-21, 2004 (on demand, with a flag at the photon); the compare-and-swap makes it safe for threads.
+ * Modelled in tests/irradiance_slot.pml.
+ *
+ *            try_claim (CAS on the flags)           publish (CAS)
+ *   EMPTY ─────────────────────────────────▶ CLAIMED ─────────────▶ READY  (final)
+ *          exactly one thread wins            computes the estimate  everyone reads
+ *
+ *   state    the other 30 bits          who may change the word
+ *   EMPTY    0                          anybody: to CLAIMED, naming itself
+ *   CLAIMED  the claimer's number       the claimer alone: to READY
+ *   READY    exponent, mantissas        nobody
+ *
+ * State and value are one word, so nobody can see half of a result, and zeroed memory is a valid empty cache.
+ * Threads: any, at any time. */
+#ifndef AFTERGLOW_IRRADIANCE_SLOT_H
+#define AFTERGLOW_IRRADIANCE_SLOT_H
+
+#include "atomics.h"
+
+typedef atomic_u32 irradiance_slot;
+
+typedef enum irradiance_state { IRRADIANCE_EMPTY = 0, IRRADIANCE_CLAIMED = 1, IRRADIANCE_READY = 2 } irradiance_state;
+
+#define IRRADIANCE_STATE_SHIFT 30
+#define IRRADIANCE_VALUE_MASK  0x3fffffffu
+
+static inline irradiance_state irradiance_word_state(uint32_t word)
+{
+    return (irradiance_state)(word >> IRRADIANCE_STATE_SHIFT);
+}
+
+static inline uint32_t irradiance_word(irradiance_state state, uint32_t value)
+{
+    return (uint32_t)state << IRRADIANCE_STATE_SHIFT | (value & IRRADIANCE_VALUE_MASK);
+}
+
+/* Acquire: pairs with publish. The word is all there is to see, but whoever reads READY may also rely on what the
+ * claimer did before. */
+static inline uint32_t irradiance_slot_read(const irradiance_slot *slot) { return load_acquire_u32(slot); }
+
+/* Takes an empty slot for the claimer (any number below 2^30). At most one caller ever gets true. Acquire: pairs with
+ * publish when it loses and finds READY. *out_word: what is there now. */
+static inline bool irradiance_slot_try_claim(irradiance_slot *slot, uint32_t claimer, uint32_t *out_word)
+{
+    uint32_t found = 0, claimed = irradiance_word(IRRADIANCE_CLAIMED, claimer);
+    bool won = cas_acquire_u32(slot, &found, claimed);
+    *out_word = won ? claimed : found;
+    return won;
+}
+
+/* Makes the claimer's value (30 bits) final. Release: pairs with read. False when the claim was not the claimer's any
+ * more: somebody else computed it too, which never happens while a claim is held by one thread. */
+static inline bool irradiance_slot_publish(irradiance_slot *slot, uint32_t claimer, uint32_t value)
+{
+    uint32_t expected = irradiance_word(IRRADIANCE_CLAIMED, claimer);
+    return cas_release_u32(slot, &expected, irradiance_word(IRRADIANCE_READY, value));
+}
+
+#endif

@@ -1,0 +1,95 @@
+/* photon.h: the photon, 24 bytes, and how its parts are packed.
+ * Rests on: Neilson, Yang, "Beyond Faster Photon Map Global Illumination", TR 04-21, 2004 (the 24-byte photon with its
+ * irradiance); Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, ch. 6; Ward, "Real Pixels", 1991 (shared
+ * exponents); Meyer et al., "On Floating-Point Normal Vectors", 2010 (octahedral directions).
+ * Flow: photon_tracing makes them, the map keeps them. Threads: all but the slot is read-only once the map stands. */
+#ifndef AFTERGLOW_PHOTON_H
+#define AFTERGLOW_PHOTON_H
+
+#include "irradiance_slot.h"
+#include "math/rng.h"
+#include "math/vec3.h"
+
+#include <stdint.h>
+
+#define PHOTON_NONE UINT32_MAX
+
+typedef struct photon {
+    float position[3];     /* world */
+    uint32_t flux;         /* W per emitted path's share (times the number of paths emitted), shared exponent */
+    uint16_t direction;    /* the way the light goes, octahedral */
+    uint16_t normal;       /* geometric, on the side it arrived at, octahedral */
+    irradiance_slot slot;  /* the irradiance here, once someone has asked for it */
+} photon;
+
+_Static_assert(sizeof(photon) == 24, "a photon is 24 bytes, as in the paper");
+
+/* --- shared exponents: value = mantissa 2^exponent, mantissas of 8 bits --- */
+
+/* Picks the exponent so that the largest mantissa is in [127.5, 255]. */
+static inline int shared_exponent_of(float largest)
+{
+    int exponent;
+    float fraction = frexpf(largest, &exponent); /* largest = fraction 2^exponent, fraction in [0.5, 1) */
+    return exponent - 8 + (fraction * 256.0f > 255.0f ? 1 : 0);
+}
+
+/* Rounds up with probability equal to the fraction, so that the mean over many photons is right also on the weak
+ * channels of a saturated colour; each channel has 21 of the random bits. */
+static inline uint32_t shared_mantissas(rgb value, int exponent, uint64_t bits)
+{
+    float scale = ldexpf(1.0f, -exponent);
+    float u[3] = {(float)(bits & 0x1fffff) * 0x1p-21f, (float)(bits >> 21 & 0x1fffff) * 0x1p-21f,
+                  (float)(bits >> 42 & 0x1fffff) * 0x1p-21f};
+    uint32_t r = (uint32_t)(value.r * scale + u[0]), g = (uint32_t)(value.g * scale + u[1]),
+             b = (uint32_t)(value.b * scale + u[2]);
+    return (r > 255 ? 255 : r) << 16 | (g > 255 ? 255 : g) << 8 | (b > 255 ? 255 : b);
+}
+
+/* --- flux: exponent in the top byte, biased by 128 --- */
+
+/* Flux is >= 0; key is the photon's own number: it decides the rounding. */
+static inline uint32_t flux_encode(rgb flux, uint64_t key)
+{
+    float largest = rgb_max(flux);
+    if (!(largest > 0x1p-110f))
+        return 0;
+    int exponent = shared_exponent_of(largest);
+    if (exponent > 127)
+        return UINT32_MAX;
+    return (uint32_t)(exponent + 128) << 24 | shared_mantissas(flux, exponent, hash_mix64(key));
+}
+
+static inline int flux_exponent(uint32_t code) { return (int)(code >> 24) - 128; }
+
+static inline rgb flux_decode(uint32_t code)
+{
+    float scale = ldexpf(1.0f, flux_exponent(code));
+    return (rgb){(float)(code >> 16 & 255) * scale, (float)(code >> 8 & 255) * scale, (float)(code & 255) * scale};
+}
+
+/* --- directions: octahedral, 8 + 8 bits; within 1 degree --- */
+
+static inline uint16_t direction_encode(vec3 d)
+{
+    float sum = fabsf(d.x) + fabsf(d.y) + fabsf(d.z), x = d.x / sum, y = d.y / sum;
+    if (d.z < 0.0f) {
+        float folded = (1.0f - fabsf(y)) * copysignf(1.0f, x);
+        y = (1.0f - fabsf(x)) * copysignf(1.0f, y);
+        x = folded;
+    }
+    /* 255 steps from -1 to 1, so that the axes are met exactly */
+    uint32_t i = (uint32_t)(x * 127.0f + 127.5f), j = (uint32_t)(y * 127.0f + 127.5f);
+    return (uint16_t)(i << 8 | j);
+}
+
+static inline vec3 direction_decode(uint16_t code)
+{
+    float x = ((float)(code >> 8) - 127.0f) * (1.0f / 127.0f), y = ((float)(code & 255) - 127.0f) * (1.0f / 127.0f);
+    float z = 1.0f - fabsf(x) - fabsf(y), fold = fmaxf(-z, 0.0f);
+    x -= copysignf(fold, x);
+    y -= copysignf(fold, y);
+    return vec3_normalize((vec3){x, y, z});
+}
+
+#endif

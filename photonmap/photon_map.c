@@ -1,0 +1,122 @@
+/* photon_map.c: see photon_map.h.
+ * The flux of an estimate is summed in fixed point, so its bits do not depend on the order in which photons are found.
+ * Threads: see photon_map.h. */
+#include "photon_map.h"
+
+#include "parallel_for.h"
+
+#include <stdlib.h>
+
+/* The automatic radius: this many times what an estimate needs where the light is spread evenly. Darker places then
+ * take the photons of the whole disc, which is right, only noisier. */
+static const float RADIUS_FACTOR = 4.0f;
+/* No estimate divides by less than the disc of this share of the largest radius. */
+static const float MIN_RADIUS_SHARE = 0x1p-10f;
+
+ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
+                            double progress_begin, double progress_end, photon_map *out_map)
+{
+    photon_map map = {.set = *set, .nearest = settings->nearest};
+    *set = (photon_set){0};
+    *out_map = (photon_map){0};
+    float density = settings->surface_area > 0.0f ? (float)map.set.count / settings->surface_area : 0.0f;
+    map.mean_radius = density > 0.0f ? sqrtf((float)map.nearest / (AG_PI * density)) : 0.0f;
+    map.max_radius = settings->max_radius > 0.0f ? settings->max_radius : RADIUS_FACTOR * map.mean_radius;
+    if (map.mean_radius > map.max_radius)
+        map.mean_radius = map.max_radius;
+    float min_radius = map.max_radius * MIN_RADIUS_SHARE;
+    map.min_radius_squared = min_radius * min_radius;
+    if (map.set.count == 0) {
+        *out_map = map;
+        return AG_OK;
+    }
+    ag_status status =
+        photon_tree_build(run, map.set.photons, map.set.count, progress_begin, progress_end, &map.tree);
+    if (status != AG_OK) {
+        photon_set_reset(&map.set);
+        return status;
+    }
+    map.flux_exponent_max = -128;
+    for (uint32_t i = 0; i < map.set.count; i++) {
+        int exponent = flux_exponent(map.set.photons[i].flux);
+        if (map.set.photons[i].flux != 0 && exponent > map.flux_exponent_max)
+            map.flux_exponent_max = exponent;
+    }
+    /* The largest estimate: all k photons of the largest flux on the smallest disc; its mantissa's exponent is 63's.
+     * 64 octaves below that lie a thousandth of a photon on the largest disc, for k up to a million. */
+    double largest = 255.0 * ldexp(1.0, map.flux_exponent_max) * (map.nearest + 1.0) /
+                     ((double)map.set.emitted_paths * (double)AG_PI * (double)map.min_radius_squared);
+    map.irradiance_bias = shared_exponent_of((float)fmin(largest, 1e38)) - 63;
+    *out_map = map;
+    return AG_OK;
+}
+
+void photon_map_reset(photon_map *map)
+{
+    photon_tree_reset(&map->tree);
+    photon_set_reset(&map->set);
+}
+
+uint64_t photon_map_bytes(const photon_map *map)
+{
+    return (uint64_t)map->set.count * sizeof(photon) + photon_tree_bytes(&map->tree);
+}
+
+uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbors_capacity(map->nearest + 1); }
+
+/* One channel of a photon in units of 2^(flux_exponent_max - 32). */
+static int64_t fixed_flux(uint32_t mantissa, int shift) { return shift < 63 ? ((int64_t)mantissa << 32) >> shift : 0; }
+
+rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
+{
+    if (map->set.count == 0)
+        return rgb_gray(0.0f);
+    uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
+                                           map->nearest + 1, scratch);
+    float radius_squared = map->max_radius * map->max_radius;
+    uint32_t count = found;
+    if (found == map->nearest + 1) {
+        count = map->nearest;
+        radius_squared = scratch[count].distance_squared;
+    }
+    int64_t sum[3] = {0, 0, 0};
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t code = map->set.photons[scratch[i].index].flux;
+        int shift = map->flux_exponent_max - flux_exponent(code);
+        sum[0] += fixed_flux(code >> 16 & 255, shift);
+        sum[1] += fixed_flux(code >> 8 & 255, shift);
+        sum[2] += fixed_flux(code & 255, shift);
+    }
+    double area = (double)AG_PI * fmax((double)radius_squared, (double)map->min_radius_squared);
+    double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
+    return (rgb){(float)((double)sum[0] * scale), (float)((double)sum[1] * scale), (float)((double)sum[2] * scale)};
+}
+
+uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
+{
+    float distance_squared;
+    if (map->set.count == 0)
+        return PHOTON_NONE;
+    return photon_tree_nearest(&map->tree, position, normal, PHOTON_NEAREST_MIN_COS, map->mean_radius,
+                               &distance_squared);
+}
+
+uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key)
+{
+    float largest = rgb_max(irradiance);
+    if (!(largest > 0.0f))
+        return 0;
+    int exponent = shared_exponent_of(largest) - map->irradiance_bias;
+    if (exponent < 0)
+        exponent = 0;
+    if (exponent > 63)
+        exponent = 63;
+    return (uint32_t)exponent << 24 |
+           shared_mantissas(irradiance, exponent + map->irradiance_bias, hash_mix64(key ^ 0x69727261u));
+}
+
+rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value)
+{
+    float scale = ldexpf(1.0f, (int)(value >> 24 & 63) + map->irradiance_bias);
+    return (rgb){(float)(value >> 16 & 255) * scale, (float)(value >> 8 & 255) * scale, (float)(value & 255) * scale};
+}

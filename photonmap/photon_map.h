@@ -1,0 +1,58 @@
+/* photon_map.h: photons, their tree, and what they say of the light at a place.
+ * Rests on: Jensen 2001, ch. 6, 7 (density estimates); Neilson, Yang, TR 04-21, 2004; Christensen, "Faster Photon Map
+ * Global Illumination", 1999 (irradiance at the photons).
+ * Flow: photon_tracing, photon_tree -> [here] -> irradiance_cache, caustics. Threads: built by one caller on the run's
+ * workers; then read-only, but for the photons' slots. */
+#ifndef AFTERGLOW_PHOTON_MAP_H
+#define AFTERGLOW_PHOTON_MAP_H
+
+#include "photon_tracing.h"
+#include "photon_tree.h"
+
+typedef struct photon_map_settings {
+    uint32_t nearest;    /* photons of an estimate, >= 1; the paper: 300 */
+    float max_radius;    /* of an estimate, scene units; the paper: 3.0; 0: from the density of the map */
+    float surface_area;  /* of the scene, m^2: for the automatic radius */
+} photon_map_settings;
+
+typedef struct photon_map {
+    photon_set set; /* owned */
+    photon_tree tree;
+    uint32_t nearest;
+    float max_radius;
+    float min_radius_squared; /* coincident photons have no area of their own: the estimate's area is at least this disc's */
+    float mean_radius;     /* of an estimate, were the photons spread evenly */
+    int flux_exponent_max; /* the largest of the photons' exponents: the sums' unit */
+    int irradiance_bias;   /* added to a slot's 6-bit exponent */
+} photon_map;
+
+/* Takes the set's photons over (and frees them on failure). A map without photons is valid: it says 0 everywhere.
+ * Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
+                            double progress_begin, double progress_end, photon_map *out_map);
+void photon_map_reset(photon_map *map);
+
+/* Photons and tree, all told. */
+uint64_t photon_map_bytes(const photon_map *map);
+
+/* Room for one worker's neighbours: photon_map_scratch_count(map) of them. */
+uint32_t photon_map_scratch_count(const photon_map *map);
+
+/* How similar two normals must be: photons of an estimate lie within 60 degrees, so that on a convex surface the chord
+ * of the search can grow to the radius of curvature, and no photon of a wall at a right angle counts; the photon whose
+ * irradiance stands for a place lies within 25 degrees. Cosines. */
+#define PHOTON_ESTIMATE_MIN_COS 0.5f
+#define PHOTON_NEAREST_MIN_COS  0.9f
+
+/* Irradiance [W/m^2] on the side of `normal` (unit), from the k nearest photons: their flux over the area out to the next
+ * one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Does not fail, does not allocate. */
+rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch);
+
+/* The photon whose irradiance stands for the place; PHOTON_NONE where none with a like normal is near enough. */
+uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal);
+
+/* Irradiance as a slot's 30 bits. key decides the rounding: the photon's index. */
+uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);
+rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value);
+
+#endif

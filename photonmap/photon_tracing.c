@@ -1,0 +1,256 @@
+/* photon_tracing.c: see photon_tracing.h.
+ * Paths are traced in rounds of blocks; how many blocks a round has depends on the counts so far alone.
+ * Threads: blocks by the run's workers, each into its own buffer; merged by the caller. */
+#include "photon_tracing.h"
+
+#include "bsdf.h"
+#include "parallel_for.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A path ends here at the latest; what it still carries is booked as truncated. */
+enum { SCATTERING_CAP = 100 };
+enum { PATHS_PER_BLOCK = 1024, BLOCKS_PER_ROUND_MAX = 256 };
+/* Tracing gives up when this many paths have stored fewer than one photon in a thousand and twenty-four. */
+static const uint64_t GIVE_UP_PATHS = 1u << 20;
+/* Random streams, apart from those of the eye. */
+enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2 };
+
+typedef struct block {
+    photon *photons;
+    uint32_t count, capacity;
+    uint64_t paths, rays;
+    photon_books books;
+    bool out_of_memory;
+} block;
+
+typedef struct tracer {
+    const scene *s;
+    const photon_tracing_settings *settings;
+    block *out;
+    uint32_t limit; /* photons to store at most; paths begun are finished for the books */
+} tracer;
+
+static void book(double entry[3], rgb flux)
+{
+    entry[0] += (double)flux.r;
+    entry[1] += (double)flux.g;
+    entry[2] += (double)flux.b;
+}
+
+static void store(tracer *t, const surface_hit *hit, const bsdf *b, vec3 direction, rgb flux, uint64_t key)
+{
+    block *out = t->out;
+    flux = rgb_scale(flux, bsdf_arrival_correction(b, vec3_negate(direction)));
+    book(out->books.arrived, flux);
+    if (out->count == t->limit) {
+        book(out->books.cut, flux);
+        return;
+    }
+    if (out->count == out->capacity) {
+        uint32_t capacity = out->capacity ? 2 * out->capacity : 2 * PATHS_PER_BLOCK;
+        photon *larger = realloc(out->photons, capacity * sizeof *larger);
+        if (!larger) {
+            out->out_of_memory = true;
+            return;
+        }
+        out->photons = larger;
+        out->capacity = capacity;
+    }
+    photon *p = &out->photons[out->count++];
+    memset(p, 0, sizeof *p);
+    p->position[0] = hit->position.x;
+    p->position[1] = hit->position.y;
+    p->position[2] = hit->position.z;
+    p->flux = flux_encode(flux, key);
+    p->direction = direction_encode(direction);
+    p->normal = direction_encode(vec3_face_forward(hit->geometric_normal, vec3_negate(direction)));
+    book(out->books.stored, flux_decode(p->flux));
+}
+
+static void trace_path(tracer *t, uint64_t path)
+{
+    const scene *s = t->s;
+    const photon_tracing_settings *settings = t->settings;
+    photon_books *books = &t->out->books;
+    rng random = rng_make(settings->seed, settings->kind == PHOTON_GLOBAL ? STREAM_GLOBAL : STREAM_CAUSTIC, path);
+    uint64_t key = hash_combine(random.state, 0x70686f746f6eu);
+
+    /* leave a lamp, picked by its power */
+    float probability;
+    const light *lamp = &s->lights[scene_pick_light(s, rng_float(&random), &probability)];
+    light_emission start;
+    if (!(probability > 0.0f) || !light_sample_emission(s, lamp, &random, &start))
+        return;
+    vec3 origin = start.origin, direction = start.direction;
+    rgb flux = rgb_scale(start.flux, 1.0f / probability);
+    book(books->emitted, flux);
+
+    for (int scatterings = 0;; scatterings++) {
+        surface_hit hit;
+        t->out->rays++;
+        if (!scene_intersect(s, origin, direction, INFINITY, &hit)) {
+            book(books->escaped, flux);
+            return;
+        }
+        vec3 back = vec3_negate(direction);
+        bsdf b = bsdf_create(&s->materials[s->shapes[hit.shape_index].material_index], &hit);
+
+        /* store at gathered lobes */
+        if (bsdf_has(&b, BSDF_GATHERED)) {
+            if (settings->kind == PHOTON_GLOBAL || scatterings > 0)
+                store(t, &hit, &b, direction, flux, hash_combine(key, (uint64_t)scatterings));
+        }
+        if (scatterings >= settings->max_scatterings || scatterings >= SCATTERING_CAP) {
+            book(books->truncated, flux);
+            return;
+        }
+
+        /* scatter; a caustic map follows traced lobes alone */
+        bsdf_lobes lobes = settings->kind == PHOTON_GLOBAL ? BSDF_ALL : BSDF_TRACED;
+        if (!bsdf_has(&b, lobes)) {
+            book(books->lost, flux);
+            return;
+        }
+        float u_lobe = rng_float(&random), u_roulette = rng_float(&random);
+        vec2 u = rng_vec2(&random);
+        bsdf_sample next;
+        if (!bsdf_sample_direction(&b, lobes, BSDF_FLUX, back, u_lobe, u, &next)) {
+            book(books->absorbed, flux);
+            return;
+        }
+        rgb scattered = rgb_mul(flux, next.weight);
+        book(books->absorbed, rgb_sub(flux, scattered));
+
+        /* roulette keeps the flux of the survivors about what it was */
+        float survival = fminf(1.0f, rgb_max(scattered) / rgb_max(flux));
+        if (u_roulette >= survival) {
+            book(books->lost, scattered);
+            return;
+        }
+        flux = rgb_scale(scattered, 1.0f / survival);
+        book(books->gained, rgb_sub(flux, scattered));
+        origin = surface_ray_origin(&hit, direction, next.direction);
+        direction = next.direction;
+    }
+}
+
+typedef struct round_job {
+    const scene *s;
+    const photon_tracing_settings *settings;
+    block *blocks;
+    uint64_t first_path;
+    run_context *run;
+} round_job;
+
+static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block_index, unsigned worker)
+{
+    (void)worker;
+    round_job *job = user;
+    tracer t = {job->s, job->settings, &job->blocks[block_index], UINT32_MAX};
+    for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
+        trace_path(&t, job->first_path + i);
+    t.out->paths = end - begin;
+}
+
+static void add_books(photon_books *sum, const photon_books *part)
+{
+    double *a = (double *)sum;
+    const double *b = (const double *)part;
+    for (size_t i = 0; i < sizeof *sum / sizeof *a; i++)
+        a[i] += b[i];
+}
+
+/* Appends a block; where it overfills the set, its paths are traced again up to the one that fills it, so that the
+ * books tell of whole paths and of those alone. */
+static ag_status merge_block(round_job *job, photon_set *set, uint64_t first_path, block *b)
+{
+    uint32_t room = job->settings->wanted - set->count;
+    if (b->out_of_memory)
+        return AG_ERROR_MEMORY;
+    if (b->count >= room) {
+        *b = (block){.photons = b->photons, .capacity = b->capacity};
+        tracer t = {job->s, job->settings, b, room};
+        while (b->count < room)
+            trace_path(&t, first_path + b->paths++);
+    }
+    if (b->count > 0)
+        memcpy(set->photons + set->count, b->photons, b->count * sizeof *b->photons);
+    set->count += b->count;
+    set->emitted_paths += b->paths;
+    set->rays += b->rays;
+    add_books(&set->books, &b->books);
+    return AG_OK;
+}
+
+static void explain_shortage(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
+{
+    const photon_books *b = &set->books;
+    double emitted = b->emitted[0] + b->emitted[1] + b->emitted[2];
+    double escaped = b->escaped[0] + b->escaped[1] + b->escaped[2];
+    log_message(run->log, AG_LOG_WARNING,
+                "%s photon map: %u of %u photons stored after %llu paths: %.1f %% of the emitted light leaves the scene%s",
+                settings->kind == PHOTON_GLOBAL ? "global" : "caustic", set->count, settings->wanted,
+                (unsigned long long)set->emitted_paths, emitted > 0.0 ? 100.0 * escaped / emitted : 0.0,
+                settings->kind == PHOTON_GLOBAL ? ", and little else meets a diffuse surface"
+                                                : ", and little else meets a diffuse surface by way of a specular one");
+}
+
+ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,
+                             photon_set *out_set)
+{
+    photon_set set = {0};
+    *out_set = set;
+    if (s->light_count == 0 || !(rgb_max(s->light_power) > 0.0f)) {
+        log_once(run->log, AG_LOG_WARNING, "no light", "the scene has no light that emits: there are no photons");
+        return AG_OK;
+    }
+    block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
+    set.photons = malloc((size_t)settings->wanted * sizeof *set.photons);
+    ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
+    uint64_t next_path = 0, block_count = 8;
+    while (status == AG_OK && set.count < settings->wanted) {
+        round_job job = {s, settings, blocks, next_path, run};
+        status = parallel_for(run, block_count * PATHS_PER_BLOCK, PATHS_PER_BLOCK, trace_block, &job, AG_PHASE_PHOTONS,
+                              0.0, 0.0);
+        for (uint64_t i = 0; i < block_count; i++) {
+            if (status == AG_OK && set.count < settings->wanted)
+                status = merge_block(&job, &set, next_path + i * PATHS_PER_BLOCK, &blocks[i]);
+            blocks[i] = (block){.photons = blocks[i].photons, .capacity = blocks[i].capacity};
+        }
+        next_path += block_count * PATHS_PER_BLOCK;
+
+        if (set.emitted_paths >= GIVE_UP_PATHS && set.count < set.emitted_paths / 1024 && set.count < settings->wanted) {
+            explain_shortage(run, settings, &set);
+            break;
+        }
+        /* as many blocks as the yield so far lets expect are needed, and one to spare */
+        double needed = set.count > 0 ? (double)(settings->wanted - set.count) * (double)set.emitted_paths / set.count
+                                      : 1e18;
+        double wanted_blocks = needed / PATHS_PER_BLOCK + 1.0;
+        block_count = wanted_blocks < BLOCKS_PER_ROUND_MAX ? (uint64_t)wanted_blocks : BLOCKS_PER_ROUND_MAX;
+        run_progress(run, AG_PHASE_PHOTONS,
+                     settings->progress_begin + (settings->progress_end - settings->progress_begin) *
+                                                    ((double)set.count / settings->wanted));
+    }
+    for (int i = 0; blocks && i < BLOCKS_PER_ROUND_MAX; i++)
+        free(blocks[i].photons);
+    free(blocks);
+    if (status != AG_OK) {
+        photon_set_reset(&set);
+        return status;
+    }
+    /* the books so far are sums over paths that each stand for all the light */
+    double share = set.emitted_paths > 0 ? 1.0 / (double)set.emitted_paths : 0.0;
+    for (size_t i = 0; i < sizeof set.books / sizeof(double); i++)
+        ((double *)&set.books)[i] *= share;
+    *out_set = set;
+    return AG_OK;
+}
+
+void photon_set_reset(photon_set *set)
+{
+    free(set->photons);
+    *set = (photon_set){0};
+}

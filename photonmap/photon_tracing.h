@@ -1,0 +1,54 @@
+/* photon_tracing.h: light from the lamps through the scene, into arrays of photons, with the books kept.
+ * Rests on: Jensen, "Global Illumination using Photon Maps", 1996; Jensen 2001, ch. 5 (emission, roulette).
+ * Flow: scene -> [here] -> photon_map. Threads: paths are traced in blocks by the run's workers; the photons are the same
+ * for any number of them: each path has its own random numbers, blocks are merged in their order, and the array is cut at
+ * a prefix.
+ *
+ * Global map: every arrival at a gathered lobe, caustic paths included: L(S|D)*D. Caustic map: arrivals that came from
+ * the lamp by way of traced lobes alone, at least one: LS+D, from an emission of its own. */
+#ifndef AFTERGLOW_PHOTON_TRACING_H
+#define AFTERGLOW_PHOTON_TRACING_H
+
+#include "photon.h"
+#include "run_context.h"
+#include "scene.h"
+
+typedef enum photon_kind { PHOTON_GLOBAL, PHOTON_CAUSTIC } photon_kind;
+
+/* Where the flux went, W, for the whole of the emitted paths.
+ * emitted + gained = absorbed + escaped + lost + truncated;  arrived = stored + cut. */
+typedef struct photon_books {
+    double emitted[3];   /* at the lamps */
+    double gained[3];    /* by the survivors of roulette */
+    double absorbed[3];  /* by surfaces */
+    double escaped[3];   /* out of the scene */
+    double lost[3];      /* by the victims of roulette; and paths that a caustic map has no use for */
+    double truncated[3]; /* at the cap of path length */
+    double arrived[3];   /* at gathered lobes where this map stores */
+    double stored[3];    /* in photons, as rounded to their shared exponents */
+    double cut[3];       /* arrived on the last path after the map was full */
+} photon_books;
+
+typedef struct photon_set {
+    photon *photons;       /* owned */
+    uint32_t count;
+    uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
+    uint64_t rays;
+    photon_books books;
+} photon_set;
+
+typedef struct photon_tracing_settings {
+    photon_kind kind;
+    uint32_t wanted;     /* photons to store, > 0 */
+    int max_scatterings; /* arrivals after more scatterings than this are not stored; >= 0 */
+    uint64_t seed;
+    double progress_begin, progress_end; /* of AG_PHASE_PHOTONS */
+} photon_tracing_settings;
+
+/* Stores exactly `wanted` photons wherever light can reach that many; else fewer, and says why in a warning. A scene
+ * without light gives an empty set. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,
+                             photon_set *out_set);
+void photon_set_reset(photon_set *set);
+
+#endif

@@ -1,0 +1,319 @@
+/* photon_tree.c: see photon_tree.h.
+ * Building: the upper levels node by node with all threads at once, then the subtrees each by one.
+ * Searching: depth first, near side first; a stack entry carries its box's offset from the query along each axis.
+ * Threads: build by the run's workers; searches read only. */
+#include "photon_tree.h"
+
+#include "parallel_for.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+enum { LEAF_MAX = 16, DEPTH_MAX = 32, PARALLEL_LEVELS = 9 };
+
+/* --- build --- */
+
+typedef struct range {
+    uint32_t low, high;
+} range;
+
+static uint32_t range_middle(range r) { return r.low + (r.high - r.low) / 2; }
+
+/* The range of the node at that place of its level, from the root down. */
+static range node_range(uint32_t count, uint32_t level, uint32_t place)
+{
+    range r = {0, count};
+    for (uint32_t bit = level; bit-- > 0;) {
+        uint32_t middle = range_middle(r);
+        if (place >> bit & 1)
+            r.low = middle;
+        else
+            r.high = middle;
+    }
+    return r;
+}
+
+static void swap_photons(photon *a, photon *b)
+{
+    /* the slots are all empty while the tree is built; copied like the rest */
+    unsigned char hold[sizeof(photon)];
+    __builtin_memcpy(hold, a, sizeof hold);
+    __builtin_memcpy(a, b, sizeof hold);
+    __builtin_memcpy(b, hold, sizeof hold);
+}
+
+/* Hoare's quickselect (1961): afterwards nothing before `middle` is greater than it along the axis, and nothing after is
+ * less. Equal keys are swapped too, which keeps the halves even when all photons coincide. */
+static void select_middle(photon *p, range r, int64_t middle, uint32_t axis)
+{
+    int64_t low = r.low, high = (int64_t)r.high - 1;
+    uint64_t pick = (uint64_t)r.low << 32 | r.high;
+    while (low < high) {
+        /* the median of three places that depend on the range alone */
+        uint64_t span = (uint64_t)(high - low + 1);
+        float k[3];
+        for (int i = 0; i < 3; i++) {
+            pick = hash_mix64(pick + 0x9e3779b97f4a7c15u);
+            k[i] = p[low + (int64_t)((pick >> 32) * span >> 32)].position[axis];
+        }
+        float pivot = fmaxf(fminf(k[0], k[1]), fminf(fmaxf(k[0], k[1]), k[2]));
+        int64_t i = low, j = high;
+        while (i <= j) {
+            while (p[i].position[axis] < pivot)
+                i++;
+            while (p[j].position[axis] > pivot)
+                j--;
+            if (i <= j)
+                swap_photons(&p[i++], &p[j--]);
+        }
+        /* [low, j] <= pivot, [i, high] >= pivot, and what is between equals it */
+        if (middle <= j)
+            high = j;
+        else if (middle >= i)
+            low = i;
+        else
+            return;
+    }
+}
+
+static void split_node(photon_tree *tree, uint32_t node, range r)
+{
+    photon *p = tree->photons;
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = r.low; i < r.high; i++)
+        for (int a = 0; a < 3; a++) {
+            low[a] = fminf(low[a], p[i].position[a]);
+            high[a] = fmaxf(high[a], p[i].position[a]);
+        }
+    uint32_t axis = 0;
+    for (uint32_t a = 1; a < 3; a++)
+        if (high[a] - low[a] > high[axis] - low[axis])
+            axis = a;
+    uint32_t middle = range_middle(r);
+    select_middle(p, r, middle, axis);
+    tree->nodes[node] = (photon_tree_node){p[middle].position[axis], axis};
+}
+
+static void split_subtree(photon_tree *tree, uint32_t node, uint32_t level, range r)
+{
+    if (level == tree->depth)
+        return;
+    split_node(tree, node, r);
+    uint32_t middle = range_middle(r);
+    split_subtree(tree, 2 * node + 1, level + 1, (range){r.low, middle});
+    split_subtree(tree, 2 * node + 2, level + 1, (range){middle, r.high});
+}
+
+typedef struct level_job {
+    photon_tree *tree;
+    uint32_t level;
+    bool whole_subtrees;
+} level_job;
+
+static void split_level_block(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
+{
+    (void)block, (void)worker;
+    const level_job *job = user;
+    for (uint64_t place = begin; place < end; place++) {
+        range r = node_range(job->tree->count, job->level, (uint32_t)place);
+        uint32_t node = (1u << job->level) - 1 + (uint32_t)place;
+        if (job->whole_subtrees)
+            split_subtree(job->tree, node, job->level, r);
+        else
+            split_node(job->tree, node, r);
+    }
+}
+
+ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, double progress_begin,
+                            double progress_end, photon_tree *out_tree)
+{
+    photon_tree tree = {.photons = photons, .count = count};
+    while (tree.depth < DEPTH_MAX - 1 && (count >> tree.depth) >= LEAF_MAX)
+        tree.depth++;
+    if (tree.depth > 0) {
+        tree.nodes = malloc(((1u << tree.depth) - 1) * sizeof *tree.nodes);
+        if (!tree.nodes)
+            return AG_ERROR_MEMORY;
+    }
+    /* each level costs about the same */
+    double step = tree.depth ? (progress_end - progress_begin) / tree.depth : 0.0;
+    uint32_t parallel_levels = tree.depth < PARALLEL_LEVELS ? tree.depth : PARALLEL_LEVELS;
+    ag_status status = AG_OK;
+    for (uint32_t level = 0; level <= parallel_levels && status == AG_OK; level++) {
+        level_job job = {&tree, level, level == parallel_levels};
+        double begin = progress_begin + step * level;
+        status = parallel_for(run, (uint64_t)1 << level, 1, split_level_block, &job, AG_PHASE_MAP, begin,
+                              job.whole_subtrees ? progress_end : begin + step);
+    }
+    if (status != AG_OK) {
+        photon_tree_reset(&tree);
+        return status;
+    }
+    *out_tree = tree;
+    return AG_OK;
+}
+
+void photon_tree_reset(photon_tree *tree)
+{
+    free(tree->nodes);
+    *tree = (photon_tree){0};
+}
+
+uint64_t photon_tree_bytes(const photon_tree *tree)
+{
+    return tree->depth ? (((uint64_t)1 << tree->depth) - 1) * sizeof(photon_tree_node) : 0;
+}
+
+/* --- search --- */
+
+/* A part of the tree still to visit: its range, and how far the query is outside its box along each axis. */
+typedef struct visit {
+    uint32_t node, level;
+    range r;
+    float offset[3];
+    float distance_squared;
+} visit;
+
+typedef struct query {
+    const photon_tree *tree;
+    float position[3];
+    vec3 normal;
+    float min_cos;
+} query;
+
+/* Goes down to the leaf on the query's side, leaving on the stack the other sides that are within the limit. */
+static range descend(const query *q, visit v, float limit, visit *stack, uint32_t *stack_count)
+{
+    while (v.level < q->tree->depth) {
+        photon_tree_node n = q->tree->nodes[v.node];
+        uint32_t middle = range_middle(v.r);
+        float from_plane = q->position[n.axis] - n.split;
+        visit far = v;
+        far.distance_squared = v.distance_squared - v.offset[n.axis] * v.offset[n.axis] + from_plane * from_plane;
+        far.offset[n.axis] = from_plane;
+        far.level = ++v.level;
+        if (from_plane < 0.0f) {
+            far.node = 2 * v.node + 2;
+            far.r.low = middle;
+            v.node = 2 * v.node + 1;
+            v.r.high = middle;
+        } else {
+            far.node = 2 * v.node + 1;
+            far.r.high = middle;
+            v.node = 2 * v.node + 2;
+            v.r.low = middle;
+        }
+        /* rounding may make a box seem farther than its photons: visit what is within a hair of the limit */
+        if (far.distance_squared <= limit * 1.00001f)
+            stack[(*stack_count)++] = far;
+    }
+    return v.r;
+}
+
+static float photon_distance_squared(const query *q, const photon *p)
+{
+    float x = p->position[0] - q->position[0], y = p->position[1] - q->position[1], z = p->position[2] - q->position[2];
+    return x * x + y * y + z * z;
+}
+
+static bool has_similar_normal(const query *q, const photon *p)
+{
+    return vec3_dot(direction_decode(p->normal), q->normal) > q->min_cos;
+}
+
+uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                             float *out_distance_squared)
+{
+    query q = {tree, {position.x, position.y, position.z}, normal, min_cos};
+    float best = radius * radius;
+    uint32_t found = PHOTON_NONE;
+    visit stack[DEPTH_MAX];
+    uint32_t stack_count = 1;
+    stack[0] = (visit){.r = {0, tree->count}};
+    while (stack_count > 0) {
+        visit v = stack[--stack_count];
+        if (v.distance_squared > best * 1.00001f)
+            continue;
+        range leaf = descend(&q, v, best, stack, &stack_count);
+        for (uint32_t i = leaf.low; i < leaf.high; i++) {
+            float d = photon_distance_squared(&q, &tree->photons[i]);
+            if (d < best || (d == best && i < found)) {
+                if (!has_similar_normal(&q, &tree->photons[i]))
+                    continue;
+                best = d;
+                found = i;
+            }
+        }
+    }
+    *out_distance_squared = best;
+    return found;
+}
+
+static bool is_nearer(photon_neighbor a, photon_neighbor b)
+{
+    return a.distance_squared < b.distance_squared || (a.distance_squared == b.distance_squared && a.index < b.index);
+}
+
+/* Quickselect over (distance squared, index), which are all different: the `wanted` nearest come first, the farthest of
+ * them at wanted - 1. */
+static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted)
+{
+    int64_t low = 0, high = (int64_t)count - 1, target = (int64_t)wanted - 1;
+    while (low < high) {
+        photon_neighbor a = n[low], b = n[low + (high - low) / 2], c = n[high];
+        photon_neighbor pivot = is_nearer(a, b) ? (is_nearer(b, c) ? b : (is_nearer(a, c) ? c : a))
+                                                : (is_nearer(a, c) ? a : (is_nearer(b, c) ? c : b));
+        int64_t i = low, j = high;
+        while (i <= j) {
+            while (is_nearer(n[i], pivot))
+                i++;
+            while (is_nearer(pivot, n[j]))
+                j--;
+            if (i <= j) {
+                photon_neighbor hold = n[i];
+                n[i++] = n[j];
+                n[j--] = hold;
+            }
+        }
+        if (target <= j)
+            high = j;
+        else if (target >= i)
+            low = i;
+        else
+            return;
+    }
+}
+
+uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                               uint32_t wanted, photon_neighbor *neighbors)
+{
+    query q = {tree, {position.x, position.y, position.z}, normal, min_cos};
+    uint32_t capacity = photon_neighbors_capacity(wanted), count = 0;
+    float limit = radius * radius;
+    visit stack[DEPTH_MAX];
+    uint32_t stack_count = 1;
+    stack[0] = (visit){.r = {0, tree->count}};
+    while (stack_count > 0) {
+        visit v = stack[--stack_count];
+        if (v.distance_squared > limit * 1.00001f)
+            continue;
+        range leaf = descend(&q, v, limit, stack, &stack_count);
+        for (uint32_t i = leaf.low; i < leaf.high; i++) {
+            float d = photon_distance_squared(&q, &tree->photons[i]);
+            if (d > limit || !has_similar_normal(&q, &tree->photons[i]))
+                continue;
+            neighbors[count++] = (photon_neighbor){d, i};
+            if (count == capacity) {
+                /* full: keep the nearest, and look no farther than they reach */
+                select_nearest(neighbors, count, wanted);
+                count = wanted;
+                limit = neighbors[wanted - 1].distance_squared;
+            }
+        }
+    }
+    if (count >= wanted) {
+        select_nearest(neighbors, count, wanted);
+        count = wanted;
+    }
+    return count;
+}

@@ -1,0 +1,52 @@
+/* photon_tree.h: a kd-tree over photons, in place: the array is put in order, and a node holds no more than its plane.
+ * Rests on: Bentley, "Multidimensional Binary Search Trees Used for Associative Searching", 1975; Arya, Mount, "Algorithms
+ * for Fast Vector Quantization", 1993 (distances kept up to date on the way down).
+ * Every node's range is split at its middle, so the ranges need not be stored: 8 bytes for each 8 to 16 photons.
+ * Flow: photon_tracing -> [here] -> photon_map. Threads: built by the run's workers; then read-only.
+ *
+ * Only photons whose normal is similar count, and that is tested inside the search: a test afterwards would let photons on
+ * the other side of a thin wall use up the search. Ties go by (distance squared, index), so a result does not depend on
+ * the way it was found. */
+#ifndef AFTERGLOW_PHOTON_TREE_H
+#define AFTERGLOW_PHOTON_TREE_H
+
+#include "photon.h"
+#include "run_context.h"
+
+typedef struct photon_tree_node {
+    float split;
+    uint32_t axis;
+} photon_tree_node;
+
+typedef struct photon_tree {
+    photon *photons;         /* borrowed; ordered by the tree */
+    uint32_t count;          /* below PHOTON_NONE */
+    uint32_t depth;          /* all leaves are at this depth; 2^depth - 1 nodes */
+    photon_tree_node *nodes; /* children of i at 2 i + 1 and 2 i + 2 */
+} photon_tree;
+
+/* Puts photons in order, so their indices change. Deterministic: equal input gives equal order for any number of
+ * threads. Errors: AG_ERROR_MEMORY, AG_CANCELLED. phase and progress as in parallel_for. */
+ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, double progress_begin,
+                            double progress_end, photon_tree *out_tree);
+void photon_tree_reset(photon_tree *tree);
+uint64_t photon_tree_bytes(const photon_tree *tree); /* of the nodes */
+
+/* The nearest photon within radius (inclusive) whose normal has a dot product above min_cos with `normal`;
+ * PHOTON_NONE where there is none. */
+uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                             float *out_distance_squared);
+
+typedef struct photon_neighbor {
+    float distance_squared;
+    uint32_t index;
+} photon_neighbor;
+
+/* The `wanted` nearest photons within radius, in no order, but with the farthest of them last when all were found.
+ * neighbors: room for photon_neighbors_capacity(wanted). Returns how many were found. */
+uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                               uint32_t wanted, photon_neighbor *neighbors);
+
+static inline uint32_t photon_neighbors_capacity(uint32_t wanted) { return 2 * wanted + 64; }
+
+#endif

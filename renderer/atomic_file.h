@@ -1,0 +1,31 @@
+/* atomic_file.h: a file is there whole, or it is as it was before. Also for the program that is ended half-way.
+ * Flow: bytes (a picture, statistics) -> [here] -> disk. Threads: any, each with its own path. */
+#ifndef AFTERGLOW_ATOMIC_FILE_H
+#define AFTERGLOW_ATOMIC_FILE_H
+
+#include "afterglow/base.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Writes a temporary file ".NAME.XXXXXX" in the folder of path, fsync, rename over path, fsync of the folder. An
+ * existing file keeps its permissions; a new one gets 0666 less the umask. A symbolic link stays, what it points to is
+ * replaced. Where path is no regular file (a FIFO, a device) or names an open descriptor (/dev/stdout, /dev/fd/N), the
+ * bytes are written to it directly. On failure nothing is left behind. Errors: AG_ERROR_OUTPUT, with path and reason in
+ * message (always terminated). */
+ag_status atomic_file_write(const char *path, const void *bytes, size_t size, char *message, size_t message_size);
+
+/* Whether atomic_file_write could begin now; found out by creating the temporary file and removing it. */
+ag_status atomic_file_check(const char *path, char *message, size_t message_size);
+
+/* Removes the temporary files that are being written at this moment (of the first 8 writers). Async-signal-safe: for
+ * the handler of a signal that ends the process. A write that goes on after it fails. */
+void atomic_file_unlink_pending(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

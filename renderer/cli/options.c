@@ -1,0 +1,317 @@
+/* options.c: see options.h. One table makes both the parser and the help. */
+#define _GNU_SOURCE
+#include "options.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    OPT_SEED = 256,
+    OPT_SPP,
+    OPT_SIZE,
+    OPT_CROP,
+    OPT_INTEGRATOR,
+    OPT_CACHE,
+    OPT_ONLY,
+    OPT_PHOTONS,
+    OPT_CAUSTIC_PHOTONS,
+    OPT_NEAREST,
+    OPT_RADIUS,
+    OPT_GATHER,
+    OPT_MAX_DEPTH,
+    OPT_TYPE,
+    OPT_OCIO,
+    OPT_DISPLAY,
+    OPT_VIEW,
+    OPT_STATS,
+    OPT_PROGRESS,
+    OPT_ISA,
+    OPT_HELP,
+    OPT_VERSION
+};
+
+typedef struct option_line {
+    int code;
+    const char *name, *argument; /* NULL: takes none */
+    const char *help;            /* lines after the first are indented by the printer */
+} option_line;
+
+static const option_line LINES[] = {
+    {'o', "outfile", "FILE", "write the picture to FILE; may be repeated; .exr is scene-linear,\n.png, .tif and .jpg go through a display and view"},
+    {'t', "nthreads", "N", "threads (default: what affinity mask and cgroup quota allow)"},
+    {OPT_SEED, "seed", "N", "seed of all random numbers (default 0)"},
+    {OPT_SPP, "spp", "N", "samples per pixel"},
+    {OPT_SIZE, "size", "WxH", "size of the full picture in pixels"},
+    {OPT_CROP, "cropwindow", "X0,X1,Y0,Y1", "part of the picture to render, each in [0, 1]"},
+    {OPT_INTEGRATOR, "integrator", "NAME", "photonmap (default) or path"},
+    {OPT_CACHE, "cache", "MODE", "irradiance at the photons: on-demand (default), precompute, or off"},
+    {OPT_ONLY, "only", "indirect", "leave out emission, and direct light at the first non-specular hit"},
+    {OPT_PHOTONS, "photons", "N", "photons to store in the global map"},
+    {OPT_CAUSTIC_PHOTONS, "caustic-photons", "N", "photons to store in the caustic map"},
+    {OPT_NEAREST, "nearest", "K", "photons of an irradiance estimate"},
+    {OPT_RADIUS, "radius", "R", "largest radius of an estimate, scene units; 0: from the photons' density"},
+    {OPT_GATHER, "gather-samples", "N", "gather rays for each camera sample"},
+    {OPT_MAX_DEPTH, "max-depth", "N", "scatterings between lamp and eye at most, up to 100 (default: roulette)"},
+    {OPT_TYPE, "type", "NAME", "stored samples: half, float, uint8 or uint16"},
+    {OPT_OCIO, "ocio", "FILE", "OpenColorIO config (default: $OCIO, else the one built in)"},
+    {OPT_DISPLAY, "display", "NAME", "display of the config"},
+    {OPT_VIEW, "view", "NAME", "view of the display"},
+    {OPT_STATS, "stats", "FILE", "write statistics as JSON"},
+    {OPT_PROGRESS, "progress", "STYLE", "auto (default), bar, plain, json or none"},
+    {OPT_ISA, "isa", "NAME", "widest instruction set of ray traversal: sse2, sse4.2, avx, avx2\n(default), avx512; another one may give other bits"},
+    {'q', "quiet", NULL, "errors only"},
+    {'v', "verbose", NULL, "say more; twice: everything"},
+    {OPT_HELP, "help", NULL, "this text"},
+    {OPT_VERSION, "version", NULL, "the program's version"},
+};
+enum { LINE_COUNT = sizeof LINES / sizeof *LINES };
+
+static void print_help(void)
+{
+    printf("usage: afterglow [options] SCENE\n"
+           "Renders a scene (pbrt-v4 text, plain or gzip; - is standard input) with photon mapping and final gathering.\n"
+           "Values that are not given come from the scene, else from defaults.\n\n");
+    for (int i = 0; i < LINE_COUNT; i++) {
+        char left[64];
+        int at = LINES[i].code < 256 ? snprintf(left, sizeof left, "-%c, ", LINES[i].code) : snprintf(left, sizeof left, "    ");
+        snprintf(left + at, sizeof left - (size_t)at, "--%s%s%s", LINES[i].name, LINES[i].argument ? " " : "",
+                 LINES[i].argument ? LINES[i].argument : "");
+        printf("  %-32s", left);
+        for (const char *c = LINES[i].help; *c; c++) {
+            putchar(*c);
+            if (*c == '\n')
+                printf("%34s", "");
+        }
+        putchar('\n');
+    }
+    printf("\nExit status: 0 every file is complete on disk; 1 scene or input error; 2 usage; 3 system;\n"
+           "128 + n ended by signal n.\n");
+}
+
+static bool parse_integer(const char *text, long long least, long long most, long long *out_value)
+{
+    char *end;
+    errno = 0;
+    long long value = strtoll(text, &end, 10);
+    if (end == text || *end || errno || value < least || value > most)
+        return false;
+    *out_value = value;
+    return true;
+}
+
+static bool parse_int(const char *text, int least, int most, int *out_value)
+{
+    long long value;
+    if (!parse_integer(text, least, most, &value))
+        return false;
+    *out_value = (int)value;
+    return true;
+}
+
+/* Seeds may be given as any unsigned 64-bit number. */
+static bool parse_unsigned(const char *text, uint64_t most, uint64_t *out_value)
+{
+    char *end;
+    errno = 0;
+    unsigned long long value = strtoull(text, &end, 10);
+    if (text[0] < '0' || text[0] > '9' || *end || errno || value > most)
+        return false;
+    *out_value = value;
+    return true;
+}
+
+/* Photon counts also as 2e6. */
+static bool parse_count(const char *text, uint64_t least, uint64_t *out_value)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end || !(value >= (double)least) || value > 4294967294.0 || value != floor(value))
+        return false;
+    *out_value = (uint64_t)value;
+    return true;
+}
+
+static bool parse_size(const char *text, int *out_width, int *out_height)
+{
+    int used = 0;
+    return sscanf(text, "%6dx%6d%n", out_width, out_height, &used) == 2 && text[used] == '\0' && *out_width >= 1 &&
+           *out_height >= 1 && *out_width <= 65536 && *out_height <= 65536;
+}
+
+static bool parse_crop(const char *text, double crop[4])
+{
+    int used = 0;
+    return sscanf(text, "%lf,%lf,%lf,%lf%n", &crop[0], &crop[1], &crop[2], &crop[3], &used) == 4 && text[used] == '\0' &&
+           crop[0] >= 0.0 && crop[0] < crop[1] && crop[1] <= 1.0 && crop[2] >= 0.0 && crop[2] < crop[3] && crop[3] <= 1.0;
+}
+
+/* The place of a word in a list, -1 where it is not in it. */
+static int word_index(const char *text, const char *const *words, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (strcmp(text, words[i]) == 0)
+            return i;
+    return -1;
+}
+
+static bool parse_word(const char *text, const char *const *words, int count, int *out_index)
+{
+    *out_index = word_index(text, words, count);
+    return *out_index >= 0;
+}
+
+#define WORDS(...) (const char *const[]){__VA_ARGS__}, (int)(sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
+
+/* One option; false when its argument is not valid. */
+static bool take_option(int code, const char *value, options *o)
+{
+    ag_render_settings *r = &o->render;
+    int word = 0;
+    bool is_valid = true;
+    switch (code) {
+    case 'o': o->outfiles[o->outfile_count++] = value; break;
+    case 't': {
+        int threads;
+        is_valid = parse_int(value, 1, 4096, &threads);
+        o->context.thread_count = is_valid ? (unsigned)threads : 0;
+        break;
+    }
+    case OPT_SEED: is_valid = o->has_seed = parse_unsigned(value, UINT64_MAX, &r->seed); break;
+    case OPT_SPP: is_valid = o->has_spp = parse_int(value, 1, 1 << 20, &r->samples_per_pixel); break;
+    case OPT_SIZE: is_valid = o->has_size = parse_size(value, &r->width, &r->height); break;
+    case OPT_CROP: is_valid = o->has_crop = parse_crop(value, r->crop_window); break;
+    case OPT_INTEGRATOR:
+        is_valid = o->has_integrator = parse_word(value, WORDS("photonmap", "path"), &word);
+        r->integrator = (ag_integrator)word;
+        break;
+    case OPT_CACHE:
+        is_valid = parse_word(value, WORDS("on-demand", "precompute", "off"), &word);
+        r->cache = (ag_cache_mode)word;
+        break;
+    case OPT_ONLY:
+        is_valid = parse_word(value, WORDS("indirect"), &word);
+        r->only = AG_ONLY_INDIRECT;
+        break;
+    case OPT_PHOTONS: is_valid = o->has_photons = parse_count(value, 1, &r->photon_count); break;
+    case OPT_CAUSTIC_PHOTONS:
+        is_valid = o->has_caustic_photons = parse_count(value, 0, &r->caustic_photon_count);
+        break;
+    case OPT_NEAREST: is_valid = o->has_nearest = parse_int(value, 1, 65536, &r->nearest); break;
+    case OPT_RADIUS: {
+        char *end;
+        r->radius = strtof(value, &end);
+        is_valid = o->has_radius = end != value && !*end && r->radius >= 0.0f && !isinf(r->radius);
+        break;
+    }
+    case OPT_GATHER: is_valid = o->has_gather_samples = parse_int(value, 1, 65536, &r->gather_samples); break;
+    case OPT_MAX_DEPTH: is_valid = o->has_max_depth = parse_int(value, 0, 100, &r->max_depth); break;
+    case OPT_TYPE:
+        is_valid = parse_word(value, WORDS("default", "uint8", "uint16", "half", "float"), &word);
+        o->output.type = (ag_sample_type)word;
+        break;
+    case OPT_OCIO: o->output.color_config = value; break;
+    case OPT_DISPLAY: o->output.display = value; break;
+    case OPT_VIEW: o->output.view = value; break;
+    case OPT_STATS: o->stats = value; break;
+    case OPT_PROGRESS:
+        is_valid = parse_word(value, WORDS("auto", "bar", "plain", "json", "none"), &word);
+        o->progress = (progress_style)word;
+        break;
+    case OPT_ISA:
+        is_valid = parse_word(value, WORDS("sse2", "sse4.2", "avx", "avx2", "avx512"), &word);
+        o->context.isa = value;
+        break;
+    case 'q': o->verbosity = -1; break;
+    case 'v': o->verbosity = o->verbosity < 0 ? 1 : o->verbosity + 1; break;
+    default: break;
+    }
+    return is_valid;
+}
+
+static const char *option_name(int code)
+{
+    for (int i = 0; i < LINE_COUNT; i++)
+        if (LINES[i].code == code)
+            return LINES[i].name;
+    return "?";
+}
+
+options_result options_parse(int argc, char **argv, options *out_options)
+{
+    struct option longs[LINE_COUNT + 1];
+    for (int i = 0; i < LINE_COUNT; i++)
+        longs[i] = (struct option){LINES[i].name, LINES[i].argument ? required_argument : no_argument, NULL, LINES[i].code};
+    longs[LINE_COUNT] = (struct option){0};
+
+    options o = {.context = ag_default_context_settings(), .output = ag_default_output_settings()};
+    o.outfiles = calloc((size_t)argc + 1, sizeof *o.outfiles);
+    if (!o.outfiles)
+        return OPTIONS_EXIT_USAGE;
+    options_result result = OPTIONS_RUN;
+    int code;
+    while (result == OPTIONS_RUN && (code = getopt_long(argc, argv, "o:t:qv", longs, NULL)) != -1) {
+        if (code == '?') {
+            result = OPTIONS_EXIT_USAGE; /* getopt has said what is wrong */
+        } else if (code == OPT_HELP) {
+            print_help();
+            result = OPTIONS_EXIT_OK;
+        } else if (code == OPT_VERSION) {
+            printf("afterglow %s\n", ag_version());
+            result = OPTIONS_EXIT_OK;
+        } else if (!take_option(code, optarg, &o)) {
+            fprintf(stderr, "afterglow: --%s: '%s' is not valid\n", option_name(code), optarg);
+            result = OPTIONS_EXIT_USAGE;
+        }
+    }
+    if (result == OPTIONS_RUN && optind != argc - 1) {
+        fprintf(stderr, optind < argc ? "afterglow: one scene at a time: '%s' is one too many\n" : "afterglow: no scene given%s\n",
+                optind < argc ? argv[optind + 1] : "");
+        result = OPTIONS_EXIT_USAGE;
+    }
+    if (result == OPTIONS_EXIT_USAGE)
+        fprintf(stderr, "Try 'afterglow --help'.\n");
+    if (result != OPTIONS_RUN) {
+        options_reset(&o);
+        return result;
+    }
+    o.scene = argv[optind];
+    *out_options = o;
+    return OPTIONS_RUN;
+}
+
+void options_reset(options *o)
+{
+    free(o->outfiles);
+    *o = (options){0};
+}
+
+void options_override(const options *o, ag_render_settings *settings)
+{
+    const ag_render_settings *r = &o->render;
+    settings->cache = r->cache;
+    settings->only = r->only;
+    settings->integrator = r->integrator;
+    settings->seed = r->seed;
+    if (o->has_size)
+        settings->width = r->width, settings->height = r->height;
+    if (o->has_crop)
+        memcpy(settings->crop_window, r->crop_window, sizeof settings->crop_window);
+    if (o->has_photons)
+        settings->photon_count = r->photon_count;
+    if (o->has_caustic_photons)
+        settings->caustic_photon_count = r->caustic_photon_count;
+    if (o->has_nearest)
+        settings->nearest = r->nearest;
+    if (o->has_radius)
+        settings->radius = r->radius;
+    if (o->has_max_depth)
+        settings->max_depth = r->max_depth;
+    if (o->has_spp)
+        settings->samples_per_pixel = r->samples_per_pixel;
+    if (o->has_gather_samples)
+        settings->gather_samples = r->gather_samples;
+}

@@ -1,0 +1,34 @@
+/* options.h: the program's command line.
+ * Flow: argv -> [here] -> main. Threads: main's. */
+#ifndef AFTERGLOW_OPTIONS_H
+#define AFTERGLOW_OPTIONS_H
+
+#include "afterglow/afterglow.h"
+
+typedef enum progress_style { PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_PLAIN, PROGRESS_JSON, PROGRESS_NONE } progress_style;
+
+/* What the scene says holds where a value was not given. */
+typedef struct options {
+    const char *scene;
+    const char **outfiles; /* owned array, the strings are argv's */
+    int outfile_count;
+    const char *stats;
+    progress_style progress;
+    int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
+    ag_context_settings context;
+    ag_output_settings output;
+    ag_render_settings render; /* fields are valid where has_… is set */
+    bool has_seed, has_spp, has_size, has_crop, has_integrator, has_photons, has_caustic_photons, has_nearest,
+        has_radius, has_gather_samples, has_max_depth;
+} options;
+
+typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE } options_result;
+
+/* Prints help or version to standard output, mistakes to standard error. */
+options_result options_parse(int argc, char **argv, options *out_options);
+void options_reset(options *o);
+
+/* Puts what was given on the command line over the scene's settings. */
+void options_override(const options *o, ag_render_settings *settings);
+
+#endif

@@ -1,0 +1,29 @@
+/* progress.h: how far the work is, for a person, a farm, or a program.
+ * Threads: the callback's calls are serialised by the library; messages go through the same lock. */
+#ifndef AFTERGLOW_PROGRESS_H
+#define AFTERGLOW_PROGRESS_H
+
+#include "options.h"
+
+#include <stdbool.h>
+
+typedef struct progress {
+    progress_style style; /* never PROGRESS_AUTO */
+    int verbosity;
+    bool bar_is_shown;
+    int told_percent;     /* the last one told, -1 before the first */
+    bool has_precompute;  /* its share of the work */
+    bool is_path;
+} progress;
+
+/* Settles AUTO: a bar on a terminal, whole lines elsewhere; nothing when quiet. */
+void progress_init(progress *p, const options *o);
+
+/* For ag_context_settings, with a progress as user. Messages go to standard error. */
+void progress_tell(void *user, ag_phase phase, double fraction);
+void progress_log(void *user, ag_log_level level, const char *message);
+
+/* Takes the bar away. */
+void progress_finish(progress *p);
+
+#endif

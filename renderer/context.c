@@ -1,0 +1,133 @@
+/* context.c: creating and destroying the public objects, and loading a scene.
+ * Threads: as in afterglow.h. */
+#include "context.h"
+
+#include "bvh.h"
+#include "clock.h"
+#include "pbrt_parser.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+ag_context_settings ag_default_context_settings(void) { return (ag_context_settings){0}; }
+
+ag_status ag_context_create(const ag_context_settings *settings, ag_context **out_context)
+{
+    static const char *const known_isas[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
+    ag_context_settings defaults = ag_default_context_settings();
+    if (!settings)
+        settings = &defaults;
+    const char *isa = settings->isa ? settings->isa : "avx2";
+    bool is_known = false;
+    for (size_t i = 0; i < sizeof known_isas / sizeof *known_isas; i++)
+        is_known = is_known || strcmp(isa, known_isas[i]) == 0;
+    if (!out_context || !is_known)
+        return AG_ERROR_ARGUMENT;
+    ag_context *c = calloc(1, sizeof *c);
+    if (!c)
+        return AG_ERROR_MEMORY;
+    c->created_at = clock_seconds();
+    snprintf(c->isa, sizeof c->isa, "%s", isa);
+    ag_status status = AG_ERROR_MEMORY;
+    c->log = log_create(settings->log, settings->user);
+    if (c->log)
+        status = thread_pool_create(settings->thread_count, &c->pool);
+    if (status != AG_OK) {
+        log_destroy(c->log);
+        free(c);
+        return status;
+    }
+    run_context_init(&c->run, c->pool, c->log, settings->progress, settings->user);
+    c->statistics.threads = thread_pool_worker_count(c->pool);
+    *out_context = c;
+    return AG_OK;
+}
+
+void ag_context_destroy(ag_context *context)
+{
+    if (!context)
+        return;
+    run_context_reset(&context->run);
+    thread_pool_destroy(context->pool);
+    log_destroy(context->log);
+    free(context);
+}
+
+unsigned ag_context_thread_count(const ag_context *context) { return thread_pool_worker_count(context->pool); }
+
+void ag_context_cancel(ag_context *context) { run_cancel(&context->run); }
+
+void context_end_phase(ag_context *context, ag_phase phase, double begin)
+{
+    double seconds = clock_seconds() - begin;
+    context->statistics.time_s[phase] += seconds;
+    log_message(context->log, AG_LOG_INFO, "%-10s %9.3f s", ag_phase_name(phase), seconds);
+}
+
+ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_scene)
+{
+    if (!context || !path || !out_scene)
+        return AG_ERROR_ARGUMENT;
+    ag_scene *loaded = calloc(1, sizeof *loaded);
+    scene *s = scene_create();
+    ag_status status = loaded && s ? AG_OK : AG_ERROR_MEMORY;
+    double begin = clock_seconds();
+    if (status == AG_OK)
+        status = pbrt_parse_file(&context->run, path, s);
+    if (status == AG_OK) {
+        context_end_phase(context, AG_PHASE_LOAD, begin);
+        begin = clock_seconds();
+        status = scene_commit(s, &context->run, context->isa);
+    }
+    if (status == AG_OK) {
+        context_end_phase(context, AG_PHASE_BVH, begin);
+        log_message(context->log, AG_LOG_INFO, "%u shapes, %u lights, %u materials; %.1f MB in the BVH (%s)",
+                    s->shape_count, s->light_count, s->material_count, (double)bvh_memory_bytes(s->bvh) / 1e6,
+                    bvh_isa(s->bvh));
+        loaded->s = s;
+        *out_scene = loaded;
+        return AG_OK;
+    }
+    scene_destroy(s);
+    free(loaded);
+    return status;
+}
+
+void ag_scene_destroy(ag_scene *scene_to_destroy)
+{
+    if (!scene_to_destroy)
+        return;
+    scene_destroy(scene_to_destroy->s);
+    free(scene_to_destroy);
+}
+
+const char *ag_scene_film_file_name(const ag_scene *loaded)
+{
+    const parameter *name = parameter_list_find(&loaded->s->film, "filename");
+    return name && name->type == PARAMETER_STRING && name->count == 1 ? name->strings[0] : NULL;
+}
+
+void ag_film_destroy(ag_film *film)
+{
+    if (!film)
+        return;
+    free(film->pixels);
+    free(film);
+}
+
+const float *ag_film_pixels(const ag_film *film, int *out_width, int *out_height)
+{
+    *out_width = film->width;
+    *out_height = film->height;
+    return film->pixels;
+}
+
+ag_statistics ag_context_statistics(const ag_context *context)
+{
+    ag_statistics s = context->statistics;
+    s.time_total_s = clock_seconds() - context->created_at;
+    s.cpu_s = clock_process_cpu_seconds();
+    s.memory_peak_bytes = peak_memory_bytes();
+    return s;
+}

@@ -1,0 +1,76 @@
+/* direct_lighting.c: see direct_lighting.h. */
+#include "direct_lighting.h"
+
+#include "math/sampling.h"
+
+rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
+                           vec2 u, int lamp_count, int scatter_count)
+{
+    const rgb none = rgb_gray(0.0f);
+    if (!t->has_lights)
+        return none;
+    float probability;
+    const light *lamp = &t->s->lights[scene_pick_light(t->s, u_pick, &probability)];
+    light_sample sample;
+    if (!(probability > 0.0f) || !light_sample_from_point(t->s, lamp, v->hit.position, u, &sample))
+        return none;
+    vec3 back = vec3_negate(v->arrival);
+    rgb reflected = rgb_mul(bsdf_evaluate(&v->scattering, lobes, BSDF_RADIANCE, back, sample.direction), sample.radiance);
+    if (rgb_is_black(reflected))
+        return none;
+
+    vec3 origin = surface_ray_origin(&v->hit, v->arrival, sample.direction);
+    worker->rays_shadow++;
+    bool is_shadowed = lamp->kind == LIGHT_DISTANT ? scene_occluded_direction(t->s, origin, sample.direction)
+                                                   : scene_occluded(t->s, origin, sample.shadow_target);
+    if (is_shadowed)
+        return none;
+    float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
+    if (!sample.is_delta && scatter_count > 0)
+        weight = mis_power((float)lamp_count, pdf, (float)scatter_count,
+                           bsdf_pdf(&v->scattering, lobes, back, sample.direction));
+    return rgb_scale(reflected, weight / pdf);
+}
+
+float direct_light_scatter_weight(const transport *t, vec3 from, const vertex *on_lamp, float pdf_solid_angle,
+                                  int lamp_count, int scatter_count)
+{
+    float pick = t->s->light_probability[on_lamp->lamp - t->s->lights];
+    float pdf = pick * light_pdf_from_point(t->s, on_lamp->lamp, from, on_lamp->hit.position, on_lamp->hit.geometric_normal);
+    return mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count, pdf);
+}
+
+rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex)
+{
+    rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f);
+    if (!t->has_lights)
+        return from_lamps;
+    int lamp_count = t->light_samples, scatter_count = t->scatter_samples;
+    for (int i = 0; i < lamp_count; i++) {
+        uint32_t index = where->sample * (uint32_t)lamp_count + (uint32_t)i;
+        float u_pick = sampler_2d_at(where, SAMPLE_LIGHT_PICK, path_vertex, index).x;
+        vec2 u = sampler_2d_at(where, SAMPLE_LIGHT, path_vertex, index);
+        from_lamps = rgb_add(from_lamps, direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, lamp_count,
+                                                                scatter_count));
+    }
+    for (int i = 0; i < scatter_count; i++) {
+        vec2 u = sampler_2d_at(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex,
+                               where->sample * (uint32_t)scatter_count + (uint32_t)i);
+        bsdf_sample scattered;
+        if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, vec3_negate(v->arrival), 0.0f, u,
+                                   &scattered))
+            continue;
+        vertex met;
+        worker->rays_shadow++;
+        if (!transport_trace(t, surface_ray_origin(&v->hit, v->arrival, scattered.direction), scattered.direction, &met))
+            continue;
+        rgb emitted = transport_emission(&met);
+        if (rgb_is_black(emitted))
+            continue;
+        float weight = direct_light_scatter_weight(t, v->hit.position, &met, scattered.pdf_solid_angle, lamp_count,
+                                                   scatter_count);
+        by_scattering = rgb_add(by_scattering, rgb_scale(rgb_mul(emitted, scattered.weight), weight));
+    }
+    rgb sum = rgb_scale(from_lamps, 1.0f / (float)lamp_count);
+    return scatter_count > 0 ? rgb_add(sum, rgb_scale(by_scattering, 1.0f / (float)scatter_count)) : sum;
+}

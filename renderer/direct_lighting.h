@@ -1,0 +1,22 @@
+/* direct_lighting.h: light that comes straight from the lamps, by shadow rays and by scattering, weighted against
+ * each other.
+ * Rests on: Veach, Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995.
+ * Threads: pure but for the worker's counters. */
+#ifndef AFTERGLOW_DIRECT_LIGHTING_H
+#define AFTERGLOW_DIRECT_LIGHTING_H
+
+#include "transport.h"
+
+/* One sample towards a lamp picked by its power: reflected radiance. lamp_count and scatter_count: how many samples the
+ * caller takes of either technique; it divides by lamp_count itself. scatter_count 0: this technique alone. */
+rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
+                           vec2 u, int lamp_count, int scatter_count);
+
+/* The weight of radiance met on a lamp by a ray scattered at `from` with the given density. */
+float direct_light_scatter_weight(const transport *t, vec3 from, const vertex *on_lamp, float pdf_solid_angle,
+                                  int lamp_count, int scatter_count);
+
+/* All of the direct light at a diffuse place: t->light_samples and t->scatter_samples samples. */
+rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex);
+
+#endif

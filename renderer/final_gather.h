@@ -1,0 +1,14 @@
+/* final_gather.h: indirect light at a diffuse place, by rays over its hemisphere that read the irradiance cache where
+ * they end.
+ * Rests on: Jensen 1996, 2001 ch. 8; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
+ * Threads: any number gather at once. A ray whose photon another thread is computing is set aside; its contribution has a
+ * place of its own, and all are summed in ray order once the last is back: so being set aside cannot reach the picture. */
+#ifndef AFTERGLOW_FINAL_GATHER_H
+#define AFTERGLOW_FINAL_GATHER_H
+
+#include "transport.h"
+
+/* Reflected radiance of light that met at least two surfaces, the last of them diffuse, before it came here. */
+rgb final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex);
+
+#endif

@@ -1,0 +1,162 @@
+/* afterglow.h: the public interface of Afterglow, a photon-mapping global illumination renderer.
+ * Four objects, in the order in which the data moves: context, scene, film, file.
+ *
+ *     ag_context_create -> ag_scene_load -> ag_render -> ag_film_write
+ *
+ * Threads: a context and what was made with it belong to one thread at a time, but for ag_context_cancel, which any
+ * thread and any signal handler may call. Several contexts may work side by side.
+ * Errors: what can fail returns ag_status and writes its out-parameters on AG_OK alone; the text goes to the log. */
+#ifndef AFTERGLOW_AFTERGLOW_H
+#define AFTERGLOW_AFTERGLOW_H
+
+#include "afterglow/base.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* --- context: threads, log, progress --- */
+
+typedef struct ag_context ag_context;
+
+typedef struct ag_context_settings {
+    unsigned thread_count;     /* 0: as many as the affinity mask and the cgroup's quota allow; default 0 */
+    const char *isa;           /* widest instruction set of ray traversal: "sse2", "sse4.2", "avx", "avx2", "avx512";
+                                  NULL: "avx2". Another set may give other bits. */
+    ag_log_fn *log;            /* NULL: messages are dropped */
+    ag_progress_fn *progress;  /* or NULL */
+    void *user;                /* handed to both */
+} ag_context_settings;
+
+AG_API ag_context_settings ag_default_context_settings(void);
+/* Copies the settings; NULL for the defaults. */
+AG_API ag_status ag_context_create(const ag_context_settings *settings, ag_context **out_context);
+AG_API void ag_context_destroy(ag_context *context); /* after all that was made with it; NULL is fine */
+AG_API unsigned ag_context_thread_count(const ag_context *context);
+/* The work under way returns AG_CANCELLED, within 50 ms; so does all later work with this context. Safe in a signal
+ * handler. */
+AG_API void ag_context_cancel(ag_context *context);
+
+/* --- scene --- */
+
+typedef struct ag_scene ag_scene;
+
+/* Reads a scene in the pbrt-v4 text format (plain or gzip; "-" is standard input) and builds what rays need. */
+AG_API ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_scene);
+AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
+
+/* The Film directive's "filename", NULL where there is none. Lives as long as the scene. */
+AG_API const char *ag_scene_film_file_name(const ag_scene *scene);
+
+/* --- rendering --- */
+
+typedef enum ag_integrator { AG_INTEGRATOR_PHOTONMAP, AG_INTEGRATOR_PATH } ag_integrator;
+
+typedef enum ag_cache_mode {
+    AG_CACHE_ON_DEMAND,  /* irradiance at a photon is computed when it is first asked for */
+    AG_CACHE_PRECOMPUTE, /* at every photon, before rendering; the picture is the same, bit for bit */
+    AG_CACHE_OFF         /* an estimate at every gather hit: another estimator */
+} ag_cache_mode;
+
+typedef enum ag_only { AG_ONLY_ALL, AG_ONLY_INDIRECT } ag_only;
+
+typedef struct ag_render_settings {
+    ag_integrator integrator; /* default: photonmap */
+    ag_cache_mode cache;      /* default: on demand */
+    ag_only only;             /* AG_ONLY_INDIRECT: less emission and direct light at the first non-specular hit */
+    uint64_t seed;            /* default 0 */
+
+    int width, height;        /* pixels of the full picture, [1, 65536] */
+    double crop_window[4];    /* x0, x1, y0, y1 in [0, 1]: the part to render, from the left and from the top, as
+                                 pbrt's cropwindow: pixels from ceil(x0 width) up to ceil(x1 width) - 1; default 0 1 0 1 */
+    int samples_per_pixel;    /* [1, 2^20] */
+    int max_depth;            /* scatterings between lamp and eye, [0, 100]; 100: roulette alone ends paths */
+
+    uint64_t photon_count;         /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t caustic_photon_count; /* photons to store in the caustic map; only where there is specular matter; [0, …] */
+    int nearest;                   /* photons of an estimate, [1, 65536] */
+    float radius;                  /* largest radius of an estimate, scene units; 0: from the photons' density */
+    int gather_samples;            /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
+                                      gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
+} ag_render_settings;
+
+/* The scene's own settings, and our defaults for what it leaves open; says in the log what it makes of another
+ * renderer's Integrator. Errors: AG_ERROR_SCENE (a value out of range, with file, line and column). */
+AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *scene,
+                                               ag_render_settings *out_settings);
+
+#define AG_DEFAULT_GATHER_RAYS_PER_PIXEL 256
+
+typedef struct ag_film ag_film;
+
+/* Traces photons, builds the maps, renders. The picture depends on scene, settings and seed alone.
+ * Errors: AG_ERROR_ARGUMENT (settings out of range), AG_ERROR_SCENE (no camera), AG_ERROR_MEMORY, AG_CANCELLED. */
+AG_API ag_status ag_render(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
+                           ag_film **out_film);
+AG_API void ag_film_destroy(ag_film *film); /* NULL is fine */
+
+/* The pixels rendered (the crop), linear RGB with Rec. 709 primaries, top row first, 3 floats a pixel. The film's. */
+AG_API const float *ag_film_pixels(const ag_film *film, int *out_width, int *out_height);
+
+/* --- files --- */
+
+typedef enum ag_sample_type { AG_SAMPLE_DEFAULT, AG_SAMPLE_UINT8, AG_SAMPLE_UINT16, AG_SAMPLE_HALF, AG_SAMPLE_FLOAT } ag_sample_type;
+
+typedef struct ag_output_settings {
+    const char *color_config; /* an OpenColorIO config; NULL: $OCIO, else the one compiled in */
+    const char *display;      /* NULL: the config's default */
+    const char *view;         /* NULL: the display's default */
+    ag_sample_type type;      /* default: half for EXR, 8 bit for the others */
+} ag_output_settings;
+
+AG_API ag_output_settings ag_default_output_settings(void);
+
+/* Whether a file of that name could be written with these settings: the extension is known, the folder there, the
+ * colour config usable. To be asked before a long render. Errors: AG_ERROR_ARGUMENT (extension or type),
+ * AG_ERROR_OUTPUT, AG_ERROR_COLOR. */
+AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *settings, const char *path);
+
+/* Writes the film: scene-linear for .exr; through display and view for .png, .tif, .jpg. The file appears complete or
+ * not at all. settings NULL: the defaults. */
+AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
+                               const char *path);
+
+/* Removes the temporary files of writes under way, in any context. For the handler of a signal that ends the process at
+ * once: safe in it. */
+AG_API void ag_abandon_files(void);
+
+/* --- what was done --- */
+
+typedef struct ag_statistics {
+    unsigned threads;
+    uint64_t photons_emitted, photons_stored_global, photons_stored_caustic, photon_bytes;
+    /* requests: places asked for; computed: estimates at photons; distinct: photons found ready afterwards that were not
+     * before, counted by looking; deferred: set aside because another thread was computing; waited: had to wait in the end;
+     * duplicated: computed twice, 0; uncached: estimates at places themselves */
+    uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
+        irradiance_duplicated, irradiance_uncached;
+    double irradiance_estimate_s; /* seconds spent in estimates, summed over threads */
+    uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path;
+    uint64_t samples_not_finite; /* camera samples dropped because they were not numbers: 0 */
+    double time_s[AG_PHASE_COUNT];
+    double time_total_s; /* since the context was created */
+    double cpu_s;        /* user + system of the whole process */
+    uint64_t memory_peak_bytes;
+} ag_statistics;
+
+AG_API ag_statistics ag_context_statistics(const ag_context *context);
+
+/* Whether statistics could be written there. To be asked before a long render. */
+AG_API ag_status ag_statistics_check(ag_context *context, const char *path);
+
+/* The statistics as JSON, with the settings of the last ag_render; written atomically. */
+AG_API ag_status ag_statistics_write(ag_context *context, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,66 @@
+/* path_tracing.c: see path_tracing.h. */
+#include "path_tracing.h"
+
+#include "direct_lighting.h"
+
+enum { ROULETTE_AFTER = 3 };
+
+rgb path_tracing_radiance(const transport *t, eye_worker *worker, vec3 origin, vec3 direction, const sampler *where)
+{
+    const ag_render_settings *settings = t->settings;
+    bool is_whole = settings->only == AG_ONLY_ALL;
+    rgb radiance = rgb_gray(0.0f), throughput = rgb_gray(1.0f);
+    vec3 scattered_from = origin;
+    float scattered_pdf = 0.0f;       /* 0: the eye or a smooth lobe */
+    bool has_met_diffuse = false;     /* a gathered lobe, before this vertex */
+    bool left_first_diffuse = false;  /* the vertex before was the first of them */
+
+    for (int path_vertex = 0;; path_vertex++) {
+        vertex v;
+        if (path_vertex == 0)
+            worker->rays_camera++;
+        else
+            worker->rays_path++;
+        if (!transport_trace(t, origin, direction, &v))
+            return radiance;
+
+        /* emitted light; indirect light alone leaves out what is seen, and what falls straight on the first diffuse place */
+        rgb emitted = transport_emission(&v);
+        if (!rgb_is_black(emitted) && (is_whole || (has_met_diffuse && !left_first_diffuse))) {
+            float weight = scattered_pdf > 0.0f
+                               ? direct_light_scatter_weight(t, scattered_from, &v, scattered_pdf, 1, 1)
+                               : 1.0f;
+            radiance = rgb_add(radiance, rgb_scale(rgb_mul(throughput, emitted), weight));
+        }
+        if (path_vertex >= settings->max_depth)
+            return radiance;
+
+        /* next-event estimation */
+        if ((is_whole || has_met_diffuse) && bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL)) {
+            float u_pick = sampler_2d(where, SAMPLE_LIGHT_PICK, path_vertex).x;
+            rgb direct = direct_light_from_lamp(t, worker, &v, BSDF_ALL, u_pick,
+                                                sampler_2d(where, SAMPLE_LIGHT, path_vertex), 1, 1);
+            radiance = rgb_add(radiance, rgb_mul(throughput, direct));
+        }
+
+        /* go on */
+        bsdf_sample next;
+        if (!bsdf_sample_direction(&v.scattering, BSDF_ALL, BSDF_RADIANCE, vec3_negate(direction),
+                                   sampler_2d(where, SAMPLE_LOBE, path_vertex).x,
+                                   sampler_2d(where, SAMPLE_SCATTER, path_vertex), &next))
+            return radiance;
+        throughput = rgb_mul(throughput, next.weight);
+        if (path_vertex >= ROULETTE_AFTER) {
+            float survival = fminf(1.0f, rgb_max(throughput));
+            if (sampler_2d(where, SAMPLE_ROULETTE, path_vertex).x >= survival)
+                return radiance;
+            throughput = rgb_scale(throughput, 1.0f / survival);
+        }
+        left_first_diffuse = !has_met_diffuse && bsdf_has(&v.scattering, BSDF_GATHERED);
+        has_met_diffuse = has_met_diffuse || left_first_diffuse;
+        scattered_from = v.hit.position;
+        scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
+        origin = surface_ray_origin(&v.hit, direction, next.direction);
+        direction = next.direction;
+    }
+}

@@ -1,0 +1,180 @@
+/* render_settings.c: the renderer's settings, from the scene's Integrator, Sampler and Film and from our defaults.
+ * Rests on: pbrt-v2's "photonmap" integrator (its parameter names); the pbrt-v4 file format (Film, Sampler).
+ * Flow: scene -> [here] -> render. Threads: as in afterglow.h. */
+#include "context.h"
+
+#include <string.h>
+
+/* Enough for a clean interior; with 50 nearest the loss along edges stays below a hundredth of a room's light. */
+static const ag_render_settings DEFAULTS = {
+    .width = 1280,
+    .height = 720,
+    .crop_window = {0.0, 1.0, 0.0, 1.0},
+    .samples_per_pixel = 16,
+    .max_depth = 100,
+    .photon_count = 1000000,
+    .caustic_photon_count = 500000,
+    .nearest = 50,
+};
+
+/* An integer parameter within a range; `least` also is what must not be gone below. */
+static ag_status get_count(parameter_list *list, log_sink *log, const char *name, int64_t least, int64_t most,
+                           int64_t *in_out_value)
+{
+    int64_t value = *in_out_value;
+    ag_status status = parameter_get_int(list, log, name, &value);
+    if (status != AG_OK)
+        return status;
+    if (value < least || value > most) {
+        const parameter *p = parameter_list_find(list, name);
+        log_at(log, AG_LOG_ERROR, p->where, "%s: \"%s\" is %lld, it must be from %lld to %lld", list->directive, name,
+               (long long)value, (long long)least, (long long)most);
+        return AG_ERROR_SCENE;
+    }
+    *in_out_value = value;
+    return AG_OK;
+}
+
+static ag_status get_int(parameter_list *list, log_sink *log, const char *name, int least, int most, int *in_out_value)
+{
+    int64_t value = *in_out_value;
+    ag_status status = get_count(list, log, name, least, most, &value);
+    *in_out_value = (int)value;
+    return status;
+}
+
+static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settings *out)
+{
+    if (!film->name)
+        return AG_OK;
+    if (strcmp(film->name, "rgb") != 0)
+        log_at_once(log, AG_LOG_WARNING, film->where, "film", "Film \"%s\" is not supported yet; \"rgb\" stands in",
+                    film->name);
+    const char *file_name = NULL;
+    const double *crop = NULL, *bounds = NULL;
+    size_t crop_count = 0, bounds_count = 0;
+    float diagonal;
+    ag_status status = get_int(film, log, "xresolution", 1, 65536, &out->width);
+    if (status == AG_OK)
+        status = get_int(film, log, "yresolution", 1, 65536, &out->height);
+    if (status == AG_OK)
+        status = parameter_get_string(film, log, "filename", &file_name);
+    if (status == AG_OK)
+        status = parameter_get_float(film, log, "diagonal", &diagonal); /* of the sensor: a realistic camera's concern */
+    if (status == AG_OK)
+        status = parameter_get_numbers(film, log, "cropwindow", PARAMETER_FLOAT, &crop, &crop_count);
+    if (status == AG_OK)
+        status = parameter_get_numbers(film, log, "pixelbounds", PARAMETER_INTEGER, &bounds, &bounds_count);
+    if (status != AG_OK)
+        return status;
+    if ((crop && crop_count != 4) || (bounds && bounds_count != 4)) {
+        log_at(log, AG_LOG_ERROR, film->where, "Film: \"%s\" takes four numbers", crop ? "cropwindow" : "pixelbounds");
+        return AG_ERROR_SCENE;
+    }
+    for (int i = 0; i < 4; i++) {
+        if (crop)
+            out->crop_window[i] = crop[i];
+        else if (bounds)
+            out->crop_window[i] = bounds[i] / (i < 2 ? out->width : out->height);
+    }
+    parameter_list_warn_unused(film, log);
+    return AG_OK;
+}
+
+static ag_status read_sampler(parameter_list *sampler, log_sink *log, ag_render_settings *out)
+{
+    if (!sampler->name)
+        return AG_OK;
+    if (strcmp(sampler->name, "stratified") != 0)
+        return get_int(sampler, log, "pixelsamples", 1, 1 << 20, &out->samples_per_pixel);
+    int x = 4, y = 4;
+    ag_status status = get_int(sampler, log, "xsamples", 1, 1 << 10, &x);
+    if (status == AG_OK)
+        status = get_int(sampler, log, "ysamples", 1, 1 << 10, &y);
+    out->samples_per_pixel = x * y;
+    return status;
+}
+
+static ag_status read_photonmap(parameter_list *list, log_sink *log, ag_render_settings *out)
+{
+    int64_t photons = (int64_t)out->photon_count, caustics = (int64_t)out->caustic_photon_count;
+    bool final_gather = true;
+    ag_status status = get_count(list, log, "indirectphotons", 1, UINT32_MAX - 1, &photons);
+    if (status == AG_OK)
+        status = get_count(list, log, "causticphotons", 0, UINT32_MAX - 1, &caustics);
+    if (status == AG_OK)
+        status = get_int(list, log, "nused", 1, 65536, &out->nearest);
+    if (status == AG_OK)
+        status = parameter_get_float(list, log, "maxdist", &out->radius);
+    if (status == AG_OK)
+        status = get_int(list, log, "finalgathersamples", 1, 65536, &out->gather_samples);
+    if (status == AG_OK)
+        status = get_int(list, log, "maxdepth", 0, 100, &out->max_depth);
+    if (status == AG_OK)
+        status = parameter_get_bool(list, log, "finalgather", &final_gather);
+    if (status != AG_OK)
+        return status;
+    if (!(out->radius >= 0.0f)) {
+        log_at(log, AG_LOG_ERROR, list->where, "Integrator: \"maxdist\" must not be negative");
+        return AG_ERROR_SCENE;
+    }
+    if (!final_gather)
+        log_at_once(log, AG_LOG_WARNING, list->where, "finalgather",
+                    "Integrator \"photonmap\": \"finalgather\" false is not supported; indirect light is gathered");
+    out->photon_count = (uint64_t)photons;
+    out->caustic_photon_count = (uint64_t)caustics;
+    parameter_list_warn_unused(list, log);
+    return AG_OK;
+}
+
+ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loaded, ag_render_settings *out_settings)
+{
+    if (!context || !loaded || !out_settings)
+        return AG_ERROR_ARGUMENT;
+    scene *s = loaded->s; /* parameters are marked as looked up; nothing else changes */
+    ag_render_settings settings = DEFAULTS;
+    ag_status status = read_film(&s->film, context->log, &settings);
+    if (status == AG_OK)
+        status = read_sampler(&s->sampler, context->log, &settings);
+    if (status != AG_OK)
+        return status;
+    if (s->integrator.name && strcmp(s->integrator.name, "photonmap") == 0) {
+        status = read_photonmap(&s->integrator, context->log, &settings);
+        if (status != AG_OK)
+            return status;
+    } else if (s->integrator.name) {
+        const parameter *depth = parameter_list_find(&s->integrator, "maxdepth");
+        log_at_once(context->log, AG_LOG_WARNING, s->integrator.where, "integrator",
+                    "Integrator \"%s\" is another renderer's: rendering with our own defaults%s", s->integrator.name,
+                    depth ? "; its \"maxdepth\" is ignored, paths end by roulette" : "");
+    }
+    *out_settings = settings;
+    return AG_OK;
+}
+
+ag_status render_settings_check(ag_context *context, const ag_render_settings *s)
+{
+    const char *wrong = NULL;
+    const double *crop = s->crop_window;
+    if (s->width < 1 || s->width > 65536 || s->height < 1 || s->height > 65536)
+        wrong = "size must be from 1 to 65536 pixels along each edge";
+    else if (!(crop[0] >= 0.0 && crop[0] < crop[1] && crop[1] <= 1.0 && crop[2] >= 0.0 && crop[2] < crop[3] &&
+               crop[3] <= 1.0))
+        wrong = "crop window must satisfy 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1";
+    else if (s->samples_per_pixel < 1 || s->samples_per_pixel > 1 << 20)
+        wrong = "samples per pixel must be from 1 to 1048576";
+    else if (s->gather_samples < 0 || s->gather_samples > 65536)
+        wrong = "gather rays must be from 0 (automatic) to 65536";
+    else if (s->max_depth < 0 || s->max_depth > 100)
+        wrong = "depth must be from 0 to 100";
+    else if (s->photon_count < 1 || s->photon_count > UINT32_MAX - 1 || s->caustic_photon_count > UINT32_MAX - 1)
+        wrong = "photons must be from 1 to 4294967294";
+    else if (s->nearest < 1 || s->nearest > 65536)
+        wrong = "nearest photons must be from 1 to 65536";
+    else if (!(s->radius >= 0.0f) || isinf(s->radius))
+        wrong = "radius must be finite and not negative";
+    if (!wrong)
+        return AG_OK;
+    log_message(context->log, AG_LOG_ERROR, "%s", wrong);
+    return AG_ERROR_ARGUMENT;
+}

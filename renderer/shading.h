@@ -1,0 +1,11 @@
+/* shading.h: radiance along a camera ray with the photon map, as Jensen splits it.
+ * Rests on: Jensen 1996; Jensen 2001, ch. 8: emitted + direct + caustics + specular and glossy traced on + final gather.
+ * Threads: pure but for the worker's counters and the irradiance slots. */
+#ifndef AFTERGLOW_SHADING_H
+#define AFTERGLOW_SHADING_H
+
+#include "transport.h"
+
+rgb shading_radiance(const transport *t, eye_worker *worker, vec3 origin, vec3 direction, const sampler *where);
+
+#endif

@@ -1,0 +1,30 @@
+/* transport.c: see transport.h. */
+#include "transport.h"
+
+bool transport_trace(const transport *t, vec3 origin, vec3 direction, vertex *out_vertex)
+{
+    const scene *s = t->s;
+    if (!scene_intersect(s, origin, direction, INFINITY, &out_vertex->hit))
+        return false;
+    const shape *where = &s->shapes[out_vertex->hit.shape_index];
+    out_vertex->arrival = direction;
+    out_vertex->scattering = bsdf_create(&s->materials[where->material_index], &out_vertex->hit);
+    out_vertex->lamp = where->light_index == SHAPE_NO_LIGHT ? NULL : &s->lights[where->light_index];
+    return true;
+}
+
+rgb transport_emission(const vertex *v)
+{
+    if (!v->lamp)
+        return rgb_gray(0.0f);
+    return light_emitted_radiance(v->lamp, v->hit.geometric_normal, vec3_negate(v->arrival));
+}
+
+rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
+{
+    if (!t->caustic || t->caustic->set.count == 0)
+        return rgb_gray(0.0f);
+    vec3 normal = vec3_face_forward(v->hit.geometric_normal, vec3_negate(v->arrival));
+    rgb irradiance = photon_map_irradiance_estimate(t->caustic, v->hit.position, normal, worker->caustic_scratch);
+    return rgb_scale(rgb_mul(bsdf_gathered_albedo(&v->scattering), irradiance), AG_INV_PI);
+}

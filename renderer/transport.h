@@ -1,0 +1,57 @@
+/* transport.h: what the eye's side reads while tiles are rendered, and what each worker has of its own.
+ * Flow: render.c fills it; shading, final gather, direct lighting and path tracing read it.
+ * Threads: a transport is read-only while tiles run, but for the slots behind the irradiance cache; an eye_worker belongs
+ * to one worker. */
+#ifndef AFTERGLOW_TRANSPORT_H
+#define AFTERGLOW_TRANSPORT_H
+
+#include "afterglow/afterglow.h"
+#include "bsdf.h"
+#include "irradiance_cache.h"
+#include "sampler.h"
+
+typedef struct transport {
+    const scene *s;
+    const photon_map *caustic;  /* may be empty */
+    irradiance_cache *cache;    /* over the global map; NULL for path tracing */
+    const ag_render_settings *settings;
+    bool has_lights;            /* any with power */
+    bool has_area_lights;       /* that scattered rays can meet */
+    int light_samples;          /* for direct light at a diffuse place, towards lamps */
+    int scatter_samples;        /* and by scattering, 0 where that cannot meet a lamp */
+    float gather_min_distance;  /* a gather ray that hits nearer than this does not use the cache, scene units */
+} transport;
+
+/* A gather ray's contribution, known + weight irradiance, in a place of its own until all are back. */
+typedef struct gather_ray {
+    rgb known;  /* radiance, W/m^2/sr */
+    rgb weight; /* 1/sr */
+    irradiance_request request;
+} gather_ray;
+
+typedef struct eye_worker {
+    _Alignas(64) unsigned index; /* the worker's */
+    uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
+    uint64_t samples_not_finite;
+    gather_ray *gather_rays;          /* [settings->gather_samples] */
+    photon_neighbor *caustic_scratch; /* for estimates in the caustic map */
+} eye_worker;
+
+/* A place where a camera path or gather ray met a surface. */
+typedef struct vertex {
+    surface_hit hit;
+    bsdf scattering;
+    vec3 arrival; /* the way the ray went, unit */
+    const light *lamp; /* the area light that shines there, or NULL */
+} vertex;
+
+/* Follows a ray to its first surface. */
+bool transport_trace(const transport *t, vec3 origin, vec3 direction, vertex *out_vertex);
+
+/* Radiance that the place itself sends back along the ray. */
+rgb transport_emission(const vertex *v);
+
+/* The caustic map's light at a diffuse place: reflected radiance. */
+rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);
+
+#endif

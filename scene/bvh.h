@@ -1,0 +1,66 @@
+/* bvh.h: casting rays into the scene; bvh_embree.c is the only file that knows how.
+ * Flow: scene_commit builds it; photon tracing and rendering cast rays.
+ * Threads: built by the run's workers; then any number cast rays at once. */
+#ifndef AFTERGLOW_BVH_H
+#define AFTERGLOW_BVH_H
+
+#include "scene.h"
+
+typedef struct bvh bvh;
+
+/* See scene_commit for isa and errors. The scene's shapes must stay where they are while the bvh lives: meshes are
+ * shared with Embree, not copied. */
+ag_status bvh_create(const scene *s, run_context *run, const char *isa, bvh **out_bvh);
+void bvh_destroy(bvh *b); /* NULL is fine */
+
+/* Bytes that Embree holds for it, buffers of ours that it shares not counted. */
+uint64_t bvh_memory_bytes(const bvh *b);
+
+/* "avx2", ...: what the kernels were limited to. */
+const char *bvh_isa(const bvh *b);
+
+/* Where a ray met a surface, recomputed from the primitive in plain IEEE steps rather than from the ray's length. */
+typedef struct surface_hit {
+    vec3 position;
+    vec3 geometric_normal; /* unit, to the shape's outside */
+    vec3 shading_normal;   /* unit, on the geometric normal's side */
+    vec2 uv;
+    float distance;        /* along the ray, for a unit direction in scene units */
+    float epsilon;         /* how far off the surface a new ray must start so as not to meet it again, scene units */
+    uint32_t shape_index;
+    uint32_t primitive_index; /* triangle of a mesh */
+} surface_hit;
+
+/* The nearest surface along the ray, from its origin to max_distance (in lengths of direction, INFINITY is fine). */
+bool scene_intersect(const scene *s, vec3 origin, vec3 direction, float max_distance, surface_hit *out_hit);
+
+/* Whether anything stands between two points that lie off all surfaces. */
+bool scene_occluded(const scene *s, vec3 from, vec3 to);
+/* Whether anything lies that way. */
+bool scene_occluded_direction(const scene *s, vec3 from, vec3 direction);
+
+/* A start off the surface for a ray into `direction`, after arriving along `arrival` (unit). Moving also against (or,
+ * when passing through, along) the way of arrival keeps starts in the corners of closed rooms inside. */
+vec3 surface_ray_origin(const surface_hit *hit, vec3 arrival, vec3 direction);
+
+/* A random place on a shape, in proportion to area. pdf_area: 1/m^2. */
+typedef struct surface_sample {
+    vec3 position;
+    vec3 geometric_normal; /* unit, outside */
+    float pdf_area;
+    float epsilon; /* as in surface_hit */
+} surface_sample;
+surface_sample shape_sample_area(const shape *s, vec2 u);
+/* The density of shape_sample_area at a place on the shape with that geometric normal. */
+float shape_pdf_area(const shape *s, vec3 geometric_normal);
+
+/* shape.c's side of an intersection, for bvh_embree.c: fills in everything but distance and indices. u, v: Embree's
+ * barycentrics for meshes; for the others `position` comes in as the ray's point and is put onto the surface. */
+void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, surface_hit *out_hit);
+/* Nearest hit of a disk or an ellipsoid in (t_min, t_max); false where there is none. */
+bool shape_intersect_quadric(const shape *s, vec3 origin, vec3 direction, float t_min, float t_max, float *out_t);
+void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
+/* Fills in what scene_commit sets: centers, areas; area_cdf when it shines. Errors: AG_ERROR_MEMORY. */
+ag_status shape_commit(shape *s);
+
+#endif

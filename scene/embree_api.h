@@ -1,0 +1,33 @@
+/* embree_api.h: what differs between Embree 3 and 4, for bvh_embree.c alone.
+ * Rests on Embree's CHANGELOG and api.md. Threads: none of its own. */
+#ifndef AFTERGLOW_EMBREE_API_H
+#define AFTERGLOW_EMBREE_API_H
+
+#if defined(__has_include) && __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#if RTC_VERSION_MAJOR >= 4
+static inline void embree_intersect(RTCScene world, struct RTCRayHit *ray_hit) { rtcIntersect1(world, ray_hit, NULL); }
+static inline void embree_occluded(RTCScene world, struct RTCRay *ray) { rtcOccluded1(world, ray, NULL); }
+/* A user geometry of Embree 4 must say whether it was hit. */
+#define EMBREE_REPORT(arguments, was_hit) ((arguments)->valid[0] = (was_hit) ? -1 : 0)
+#else
+static inline void embree_intersect(RTCScene world, struct RTCRayHit *ray_hit)
+{
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(world, &context, ray_hit);
+}
+static inline void embree_occluded(RTCScene world, struct RTCRay *ray)
+{
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(world, &context, ray);
+}
+#define EMBREE_REPORT(arguments, was_hit) ((void)0)
+#endif
+
+#endif

@@ -1,0 +1,193 @@
+/* light.c: see light.h.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 12 and 6.2.4; Jensen 2001, ch. 5.
+ * Threads: read-only. */
+#include "light.h"
+
+#include "bvh.h"
+#include "math/rng.h"
+#include "math/sampling.h"
+
+/* 1 inside cos_falloff_start, 0 outside cos_total_width, smoothstep in the cosine between, as pbrt-v4. */
+static float spot_falloff(const light *l, float cos_theta)
+{
+    float width = l->cos_falloff_start - l->cos_total_width;
+    if (cos_theta >= l->cos_falloff_start)
+        return 1.0f;
+    if (cos_theta <= l->cos_total_width || width <= 0.0f)
+        return 0.0f;
+    float x = (cos_theta - l->cos_total_width) / width;
+    return x * x * (3.0f - 2.0f * x);
+}
+
+rgb light_power(const scene *s, const light *l)
+{
+    float scale = 0.0f;
+    switch (l->kind) {
+    case LIGHT_POINT: return rgb_scale(l->intensity, 4.0f * AG_PI);
+    case LIGHT_SPOT:
+        /* smoothstep has mean 1/2 over its ramp */
+        scale = 2.0f * AG_PI *
+                ((1.0f - l->cos_falloff_start) + 0.5f * (l->cos_falloff_start - l->cos_total_width));
+        return rgb_scale(l->intensity, scale);
+    case LIGHT_DISTANT: return rgb_scale(l->radiance, AG_PI * s->bounding_radius * s->bounding_radius);
+    case LIGHT_AREA: return rgb_scale(l->radiance, AG_PI * s->shapes[l->shape_index].area * (l->two_sided ? 2.0f : 1.0f));
+    }
+    return rgb_gray(0.0f);
+}
+
+rgb light_emitted_radiance(const light *l, vec3 emitter_normal, vec3 direction)
+{
+    if (l->kind != LIGHT_AREA || (!l->two_sided && vec3_dot(emitter_normal, direction) <= 0.0f))
+        return rgb_gray(0.0f);
+    return l->radiance;
+}
+
+/* The cone under which a sphere is seen from a point outside it: true, and 1 - cos of its half angle; false when the
+ * point is inside or too close for the cone to be precise. */
+static bool sphere_cone(const shape *s, vec3 point, float *out_one_minus_cos)
+{
+    if (s->kind != SHAPE_SPHERE || s->as.quadric.uniform_radius <= 0.0f)
+        return false;
+    float r = s->as.quadric.uniform_radius;
+    float distance_squared = vec3_distance_squared(point, s->as.quadric.center);
+    if (distance_squared <= r * r * 1.0001f)
+        return false;
+    float sin2 = r * r / distance_squared;
+    *out_one_minus_cos = sin2 / (1.0f + sqrtf(fmaxf(0.0f, 1.0f - sin2))); /* 1 - sqrt(1 - x), without cancellation */
+    return true;
+}
+
+static bool sample_area(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
+{
+    const shape *lamp = &s->shapes[l->shape_index];
+    vec3 position, normal;
+    float epsilon, one_minus_cos, pdf;
+    if (sphere_cone(lamp, point, &one_minus_cos)) {
+        /* a direction in the cone, then the near intersection by plane geometry */
+        vec3 to_center = vec3_sub(lamp->as.quadric.center, point);
+        float distance = vec3_length(to_center), r = lamp->as.quadric.uniform_radius;
+        frame f = frame_from_z(vec3_scale(to_center, 1.0f / distance));
+        vec3 local = sample_uniform_cone(u, one_minus_cos);
+        float sin2 = fmaxf(0.0f, local.x * local.x + local.y * local.y);
+        float along = distance * local.z - sqrtf(fmaxf(0.0f, r * r - distance * distance * sin2));
+        vec3 n = vec3_normalize(vec3_sub(vec3_add_scaled(point, frame_to_world(&f, local), along), lamp->as.quadric.center));
+        position = vec3_add_scaled(lamp->as.quadric.center, n, r);
+        normal = lamp->flip_normal ? vec3_negate(n) : n;
+        epsilon = (vec3_max_abs(lamp->as.quadric.center) + r) * 0x1p-16f;
+        pdf = 1.0f / (2.0f * AG_PI * one_minus_cos);
+    } else {
+        surface_sample at = shape_sample_area(lamp, u);
+        position = at.position;
+        normal = at.geometric_normal;
+        epsilon = at.epsilon;
+        pdf = at.pdf_area; /* made solid angle below */
+    }
+    vec3 to_lamp = vec3_sub(position, point);
+    float distance_squared = vec3_length_squared(to_lamp);
+    if (!(distance_squared > 0.0f))
+        return false;
+    out->distance = sqrtf(distance_squared);
+    out->direction = vec3_scale(to_lamp, 1.0f / out->distance);
+    out->radiance = light_emitted_radiance(l, normal, vec3_negate(out->direction));
+    float cos_lamp = fabsf(vec3_dot(normal, out->direction));
+    if (rgb_is_black(out->radiance) || cos_lamp <= 1e-6f)
+        return false;
+    out->pdf_solid_angle = sphere_cone(lamp, point, &one_minus_cos) ? pdf : pdf * distance_squared / cos_lamp;
+    out->shadow_target = vec3_add_scaled(position, vec3_face_forward(normal, vec3_negate(out->direction)), epsilon);
+    out->is_delta = false;
+    return true;
+}
+
+bool light_sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample)
+{
+    if (l->kind == LIGHT_AREA)
+        return sample_area(s, l, point, u, out_sample);
+    out_sample->is_delta = true;
+    out_sample->pdf_solid_angle = 1.0f;
+    if (l->kind == LIGHT_DISTANT) {
+        out_sample->direction = vec3_negate(l->direction);
+        out_sample->distance = INFINITY;
+        out_sample->shadow_target = point;
+        out_sample->radiance = l->radiance;
+        return true;
+    }
+    vec3 to_light = vec3_sub(l->position, point);
+    float distance_squared = vec3_length_squared(to_light);
+    if (!(distance_squared > 0.0f))
+        return false;
+    out_sample->distance = sqrtf(distance_squared);
+    out_sample->direction = vec3_scale(to_light, 1.0f / out_sample->distance);
+    out_sample->shadow_target = l->position;
+    float falloff = l->kind == LIGHT_SPOT ? spot_falloff(l, -vec3_dot(l->direction, out_sample->direction)) : 1.0f;
+    out_sample->radiance = rgb_scale(l->intensity, falloff / distance_squared);
+    return falloff > 0.0f;
+}
+
+float light_pdf_from_point(const scene *s, const light *l, vec3 point, vec3 hit_position, vec3 hit_geometric_normal)
+{
+    if (l->kind != LIGHT_AREA)
+        return 0.0f;
+    const shape *lamp = &s->shapes[l->shape_index];
+    float one_minus_cos;
+    if (sphere_cone(lamp, point, &one_minus_cos))
+        return 1.0f / (2.0f * AG_PI * one_minus_cos);
+    vec3 to_lamp = vec3_sub(hit_position, point);
+    float distance_squared = vec3_length_squared(to_lamp);
+    float cos_lamp = fabsf(vec3_dot(hit_geometric_normal, to_lamp)) / sqrtf(distance_squared);
+    return cos_lamp > 0.0f ? shape_pdf_area(lamp, hit_geometric_normal) * distance_squared / cos_lamp : 0.0f;
+}
+
+static bool emit_area(const scene *s, const light *l, rng *random, light_emission *out)
+{
+    surface_sample at = shape_sample_area(&s->shapes[l->shape_index], rng_vec2(random));
+    vec3 n = at.geometric_normal;
+    if (l->two_sided && rng_float(random) < 0.5f)
+        n = vec3_negate(n);
+    frame f = frame_from_z(n);
+    out->direction = frame_to_world(&f, sample_cosine_hemisphere(rng_vec2(random)));
+    out->origin = vec3_add_scaled(at.position, n, at.epsilon);
+    /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids */
+    out->flux = rgb_scale(l->radiance, AG_PI * (l->two_sided ? 2.0f : 1.0f) / at.pdf_area);
+    return true;
+}
+
+bool light_sample_emission(const scene *s, const light *l, rng *random, light_emission *out_emission)
+{
+    light_emission *out = out_emission;
+    switch (l->kind) {
+    case LIGHT_AREA: return emit_area(s, l, random, out);
+    case LIGHT_POINT:
+        out->origin = l->position;
+        out->direction = sample_uniform_sphere(rng_vec2(random));
+        out->flux = l->power;
+        return true;
+    case LIGHT_SPOT: {
+        /* uniform in the cone, thinned by the falloff, so that all photons are equal; at least half are accepted on
+         * average, and after 64 trials one in 2^64 starts fails: such a start goes along the axis */
+        frame f = frame_from_z(l->direction);
+        vec3 local = {0.0f, 0.0f, 1.0f};
+        for (int trial = 0; trial < 64; trial++) {
+            vec3 candidate = sample_uniform_cone(rng_vec2(random), 1.0f - l->cos_total_width);
+            if (rng_float(random) < spot_falloff(l, candidate.z)) {
+                local = candidate;
+                break;
+            }
+        }
+        out->origin = l->position;
+        out->direction = frame_to_world(&f, local);
+        out->flux = l->power;
+        return true;
+    }
+    case LIGHT_DISTANT: {
+        frame f = frame_from_z(l->direction);
+        vec2 d = sample_disk_concentric(rng_vec2(random));
+        float r = s->bounding_radius;
+        vec3 start = frame_to_world(&f, (vec3){d.x * r, d.y * r, -1.01f * r});
+        out->origin = vec3_add(s->bounding_center, start);
+        out->direction = l->direction;
+        out->flux = l->power;
+        return true;
+    }
+    }
+    return false;
+}

@@ -1,0 +1,63 @@
+/* light.h: where light comes from: sampling it from a lit point, and sampling rays that leave it.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 12 (light sources), 6.2.4
+ * (sampling spheres by their cone); Jensen 2001, ch. 5 (photon emission).
+ * Flow: the scene file makes lights; scene_commit gives them power; direct lighting and photon emission sample them.
+ * Threads: read-only once the scene is committed. */
+#ifndef AFTERGLOW_LIGHT_H
+#define AFTERGLOW_LIGHT_H
+
+#include "math/vec3.h"
+
+#include <stdint.h>
+
+struct scene;
+struct rng;
+
+typedef enum light_kind { LIGHT_POINT, LIGHT_SPOT, LIGHT_DISTANT, LIGHT_AREA } light_kind;
+
+typedef struct light {
+    light_kind kind;
+    vec3 position;        /* point, spot: world space */
+    vec3 direction;       /* spot, distant: the way the light goes, unit */
+    rgb intensity;        /* point, spot: W/sr along the axis */
+    rgb radiance;         /* area: W/m^2/sr; distant: irradiance on a surface facing it, W/m^2 */
+    float cos_falloff_start, cos_total_width; /* spot: full inside the first, none outside the second, smoothstep between */
+    uint32_t shape_index; /* area: the shape that shines */
+    bool two_sided;       /* area */
+    rgb power;            /* W; set by scene_commit. Distant: through the disc of the scene's bounding sphere */
+} light;
+
+/* Light arriving at a point. */
+typedef struct light_sample {
+    vec3 direction;         /* towards the light, unit */
+    float distance;         /* INFINITY for a distant light */
+    vec3 shadow_target;     /* where a shadow ray ends (just before the lamp's surface); unused for distant lights */
+    rgb radiance;           /* area: W/m^2/sr; delta lights: irradiance perpendicular to direction, W/m^2 */
+    float pdf_solid_angle;  /* 1 for delta lights */
+    bool is_delta;          /* cannot be hit by a scattered ray: no MIS */
+} light_sample;
+
+/* The light's whole power, W (distant: through the disc of the scene's bounding sphere). Areas and bounds are set. */
+rgb light_power(const struct scene *s, const light *l);
+
+/* u in [0,1)^2. Returns false when no light can come from there. */
+bool light_sample_from_point(const struct scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample);
+
+/* The density with which light_sample_from_point picks the direction from point to a place hit on the light's shape. */
+float light_pdf_from_point(const struct scene *s, const light *l, vec3 point, vec3 hit_position,
+                           vec3 hit_geometric_normal);
+
+/* Radiance that an area light sends from a place on it into direction (away from it, unit). */
+rgb light_emitted_radiance(const light *l, vec3 emitter_normal, vec3 direction);
+
+/* A photon's start. */
+typedef struct light_emission {
+    vec3 origin;    /* off the lamp's own surface */
+    vec3 direction; /* unit */
+    rgb flux;       /* W, carried by a single photon that stands for the whole light */
+} light_emission;
+
+/* Random numbers come from the path's own stream (math/rng.h). Returns false when the sample carries nothing. */
+bool light_sample_emission(const struct scene *s, const light *l, struct rng *random, light_emission *out_emission);
+
+#endif

@@ -1,0 +1,47 @@
+/* rng.h: random numbers as a pure function of (seed, stream, index, dimension).
+ * Rests on: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", 2014 (SplitMix64 and its finaliser).
+ * A stream belongs to one photon path or one pixel sample, never to a thread or tile: so the order of work cannot
+ * reach the picture. Threads: a stream belongs to one thread. */
+#ifndef AFTERGLOW_RNG_H
+#define AFTERGLOW_RNG_H
+
+#include "vec3.h"
+
+#include <stdint.h>
+
+typedef struct rng {
+    uint64_t state;
+} rng;
+
+/* A bijection of 64 bits in which every input bit reaches every output bit. */
+static inline uint64_t hash_mix64(uint64_t z)
+{
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+static inline uint64_t hash_combine(uint64_t a, uint64_t b) { return hash_mix64(a * 0x9e3779b97f4a7c15u + b); }
+
+/* stream: one of a few purposes; index: the path or pixel sample. */
+static inline rng rng_make(uint64_t seed, uint64_t stream, uint64_t index)
+{
+    return (rng){hash_combine(hash_combine(hash_mix64(seed + 0x632be59bd9b4e019u), stream), index)};
+}
+
+static inline uint64_t rng_next(rng *random)
+{
+    random->state += 0x9e3779b97f4a7c15u;
+    return hash_mix64(random->state);
+}
+
+/* Uniform in [0, 1), on a grid of 2^-24. */
+static inline float rng_float(rng *random) { return (float)(rng_next(random) >> 40) * 0x1p-24f; }
+
+static inline vec2 rng_vec2(rng *random)
+{
+    uint64_t bits = rng_next(random);
+    return (vec2){(float)(bits >> 40) * 0x1p-24f, (float)((uint32_t)bits >> 8) * 0x1p-24f};
+}
+
+#endif

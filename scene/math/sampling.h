@@ -1,0 +1,93 @@
+/* sampling.h: warps from the unit square to directions and surfaces, with their densities.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, appendix A.5; Shirley, Chiu,
+ * "A Low Distortion Map Between Disk and Square", 1997.
+ * Sine and cosine are our own polynomials: libm's have variants per instruction set that differ in the last bit.
+ * Threads: pure functions. */
+#ifndef AFTERGLOW_SAMPLING_H
+#define AFTERGLOW_SAMPLING_H
+
+#include "vec3.h"
+
+/* Sine and cosine of 2 pi u, u in [-1, 1]; right to float precision. Taylor series about the nearest quarter turn. */
+static inline void sincos_turns(float u, float *out_sin, float *out_cos)
+{
+    double quarter = floor((double)u * 4.0 + 0.5);
+    double x = ((double)u - quarter * 0.25) * 6.283185307179586477;
+    double x2 = x * x;
+    double s = x * (1.0 + x2 * (-1.0 / 6 + x2 * (1.0 / 120 + x2 * (-1.0 / 5040 + x2 * (1.0 / 362880)))));
+    double c = 1.0 + x2 * (-0.5 + x2 * (1.0 / 24 + x2 * (-1.0 / 720 + x2 * (1.0 / 40320))));
+    switch ((int)quarter & 3) {
+    case 0: *out_sin = (float)s, *out_cos = (float)c; break;
+    case 1: *out_sin = (float)c, *out_cos = (float)-s; break;
+    case 2: *out_sin = (float)-s, *out_cos = (float)-c; break;
+    default: *out_sin = (float)-c, *out_cos = (float)s; break;
+    }
+}
+
+/* Uniform in the unit disk; density 1 / pi. */
+static inline vec2 sample_disk_concentric(vec2 u)
+{
+    float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f, s, c;
+    if (x == 0.0f && y == 0.0f)
+        return (vec2){0.0f, 0.0f};
+    float r;
+    if (fabsf(x) > fabsf(y)) {
+        r = x;
+        sincos_turns(y / x * 0.125f, &s, &c);
+    } else {
+        r = y;
+        sincos_turns(0.25f - x / y * 0.125f, &s, &c);
+    }
+    return (vec2){r * c, r * s};
+}
+
+/* Cosine-distributed around +z; density cos / pi per solid angle. */
+static inline vec3 sample_cosine_hemisphere(vec2 u)
+{
+    vec2 d = sample_disk_concentric(u);
+    return (vec3){d.x, d.y, sqrtf(fmaxf(1e-12f, 1.0f - d.x * d.x - d.y * d.y))};
+}
+
+/* Uniform on the unit sphere; density 1 / (4 pi). */
+static inline vec3 sample_uniform_sphere(vec2 u)
+{
+    float z = 1.0f - 2.0f * u.x, r = sqrtf(fmaxf(0.0f, 1.0f - z * z)), s, c;
+    sincos_turns(u.y, &s, &c);
+    return (vec3){r * c, r * s, z};
+}
+
+/* Uniform in the cone around +z with 1 - cos_max = one_minus_cos_max; density 1 / (2 pi one_minus_cos_max). */
+static inline vec3 sample_uniform_cone(vec2 u, float one_minus_cos_max)
+{
+    float h = u.x * one_minus_cos_max; /* 1 - cos, so that thin cones keep their precision */
+    float r = sqrtf(fmaxf(0.0f, h * (2.0f - h))), s, c;
+    sincos_turns(u.y, &s, &c);
+    return (vec3){r * c, r * s, 1.0f - h};
+}
+
+/* Barycentrics of vertices 1 and 2, uniform over the triangle; Heitz, "A Low-Distortion Map Between Triangle and
+ * Square", 2019. */
+static inline vec2 sample_triangle(vec2 u)
+{
+    if (u.y > u.x) {
+        u.x *= 0.5f;
+        u.y -= u.x;
+    } else {
+        u.y *= 0.5f;
+        u.x -= u.y;
+    }
+    return u;
+}
+
+/* Veach and Guibas, "Optimally Combining Sampling Techniques", 1995: the power heuristic, exponent 2, for a sample drawn
+ * by the first of two techniques with count_a and count_b samples. */
+static inline float mis_power(float count_a, float pdf_a, float count_b, float pdf_b)
+{
+    float a = count_a * pdf_a, b = count_b * pdf_b;
+    if (isinf(a))
+        return 1.0f;
+    float a2 = a * a, b2 = b * b;
+    return a2 > 0.0f ? a2 / (a2 + b2) : 0.0f;
+}
+
+#endif

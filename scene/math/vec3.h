@@ -1,0 +1,84 @@
+/* vec3.h: points, directions and linear RGB as value types.
+ * Plain IEEE steps in a fixed order (the build turns contraction off), so results do not depend on the compiler's mood.
+ * Threads: pure functions. */
+#ifndef AFTERGLOW_VEC3_H
+#define AFTERGLOW_VEC3_H
+
+#include <math.h>
+#include <stdbool.h>
+
+#define AG_PI     3.14159265358979323846f
+#define AG_INV_PI 0.31830988618379067154f
+
+typedef struct vec2 {
+    float x, y;
+} vec2;
+
+typedef struct vec3 {
+    float x, y, z;
+} vec3;
+
+/* Linear RGB; the unit is the quantity's (W, W/m^2, W/m^2/sr, or none for a reflectance). */
+typedef struct rgb {
+    float r, g, b;
+} rgb;
+
+static inline vec3 vec3_make(float x, float y, float z) { return (vec3){x, y, z}; }
+static inline vec3 vec3_add(vec3 a, vec3 b) { return (vec3){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static inline vec3 vec3_sub(vec3 a, vec3 b) { return (vec3){a.x - b.x, a.y - b.y, a.z - b.z}; }
+static inline vec3 vec3_mul(vec3 a, vec3 b) { return (vec3){a.x * b.x, a.y * b.y, a.z * b.z}; }
+static inline vec3 vec3_scale(vec3 a, float s) { return (vec3){a.x * s, a.y * s, a.z * s}; }
+static inline vec3 vec3_negate(vec3 a) { return (vec3){-a.x, -a.y, -a.z}; }
+/* a + b s */
+static inline vec3 vec3_add_scaled(vec3 a, vec3 b, float s) { return (vec3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s}; }
+static inline float vec3_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline vec3 vec3_cross(vec3 a, vec3 b)
+{
+    return (vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+static inline float vec3_length_squared(vec3 a) { return vec3_dot(a, a); }
+static inline float vec3_length(vec3 a) { return sqrtf(vec3_dot(a, a)); }
+static inline float vec3_distance_squared(vec3 a, vec3 b) { return vec3_length_squared(vec3_sub(a, b)); }
+static inline vec3 vec3_normalize(vec3 a) { return vec3_scale(a, 1.0f / vec3_length(a)); }
+static inline vec3 vec3_min(vec3 a, vec3 b) { return (vec3){fminf(a.x, b.x), fminf(a.y, b.y), fminf(a.z, b.z)}; }
+static inline vec3 vec3_max(vec3 a, vec3 b) { return (vec3){fmaxf(a.x, b.x), fmaxf(a.y, b.y), fmaxf(a.z, b.z)}; }
+static inline float vec3_max_abs(vec3 a) { return fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z))); }
+static inline bool vec3_is_finite(vec3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
+/* n or -n, whichever lies on the side of v */
+static inline vec3 vec3_face_forward(vec3 n, vec3 v) { return vec3_dot(n, v) < 0.0f ? vec3_negate(n) : n; }
+
+static inline rgb rgb_make(float r, float g, float b) { return (rgb){r, g, b}; }
+static inline rgb rgb_gray(float v) { return (rgb){v, v, v}; }
+static inline rgb rgb_add(rgb a, rgb b) { return (rgb){a.r + b.r, a.g + b.g, a.b + b.b}; }
+static inline rgb rgb_sub(rgb a, rgb b) { return (rgb){a.r - b.r, a.g - b.g, a.b - b.b}; }
+static inline rgb rgb_mul(rgb a, rgb b) { return (rgb){a.r * b.r, a.g * b.g, a.b * b.b}; }
+static inline rgb rgb_scale(rgb a, float s) { return (rgb){a.r * s, a.g * s, a.b * s}; }
+static inline float rgb_max(rgb a) { return fmaxf(a.r, fmaxf(a.g, a.b)); }
+static inline bool rgb_is_black(rgb a) { return a.r == 0.0f && a.g == 0.0f && a.b == 0.0f; }
+static inline bool rgb_is_finite(rgb a) { return isfinite(a.r) && isfinite(a.g) && isfinite(a.b); }
+/* Relative luminance, Rec. 709 primaries (ITU-R BT.709-6). */
+static inline float rgb_luminance(rgb a) { return 0.2126f * a.r + 0.7152f * a.g + 0.0722f * a.b; }
+
+/* An orthonormal frame around a unit z axis. */
+typedef struct frame {
+    vec3 x, y, z;
+} frame;
+
+/* Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017. */
+static inline frame frame_from_z(vec3 z)
+{
+    float sign = copysignf(1.0f, z.z);
+    float a = -1.0f / (sign + z.z);
+    float b = z.x * z.y * a;
+    return (frame){{1.0f + sign * (z.x * z.x) * a, sign * b, -sign * z.x}, {b, sign + (z.y * z.y) * a, -z.y}, z};
+}
+static inline vec3 frame_to_world(const frame *f, vec3 v)
+{
+    return vec3_add_scaled(vec3_add_scaled(vec3_scale(f->x, v.x), f->y, v.y), f->z, v.z);
+}
+static inline vec3 frame_to_local(const frame *f, vec3 v)
+{
+    return (vec3){vec3_dot(f->x, v), vec3_dot(f->y, v), vec3_dot(f->z, v)};
+}
+
+#endif

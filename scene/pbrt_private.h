@@ -1,0 +1,178 @@
+/* pbrt_private.h: what the files of the pbrt-v4 reader share: the stack of files, the graphics state, and the
+ * interpreters of directives.
+ * Rests on the format's description, pbrt.org/fileformat-v4. Names and defaults are pbrt-v4's.
+ * Flow: pbrt_parser dispatches directives; pbrt_files gives tokens; pbrt_parameters reads parameter lists;
+ * pbrt_transforms, pbrt_shapes, pbrt_materials, pbrt_lights and pbrt_camera interpret. Threads: one per scene. */
+#ifndef AFTERGLOW_PBRT_PRIVATE_H
+#define AFTERGLOW_PBRT_PRIVATE_H
+
+#include "name_table.h"
+#include "pbrt_lexer.h"
+#include "scene.h"
+#include "text_file.h"
+
+/* Passes a failure on. */
+#define PBRT_TRY(call)                                                                                                 \
+    do {                                                                                                               \
+        ag_status try_status = (call);                                                                                 \
+        if (try_status)                                                                                                \
+            return try_status;                                                                                         \
+    } while (0)
+
+/* World coordinates beyond this would overflow a float when squared. */
+#define PBRT_MAX_COORDINATE 1e18f
+
+enum { PBRT_MAX_DEPTH = 32 };         /* of files that include one another */
+enum { PBRT_MAX_PARAMETERS = 1000 };  /* of one directive */
+enum { PBRT_MAX_INCLUDES = 1000000 }; /* in all: files that include others twice multiply */
+
+typedef struct pbrt_file {
+    text_file file;
+    pbrt_lexer lexer;
+    file_location included_at; /* the Include; zeroed for the first file */
+} pbrt_file;
+
+/* AreaLightSource: what the shapes that follow emit. */
+typedef struct pbrt_area_light {
+    bool is_set;
+    rgb radiance; /* "L" times "scale" */
+    float power;  /* W, as pbrt's "power": above 0 the radiance is multiplied until a lamp of radiance 1 has it */
+    bool two_sided;
+    file_location where;
+} pbrt_area_light;
+
+/* What AttributeBegin saves and AttributeEnd brings back. */
+typedef struct pbrt_state {
+    transform world_from_object; /* before WorldBegin: camera_from_world */
+    bool start_is_active;        /* whether transforms apply to the start of the shutter, the only time there is yet */
+    bool reverse_orientation;
+    uint32_t material_index;
+    bool has_no_surface; /* the material is "interface" */
+    pbrt_area_light area_light;
+} pbrt_state;
+
+typedef struct pbrt_saved_state {
+    pbrt_state state;
+    file_location where; /* of the Begin */
+    bool is_object;      /* ObjectBegin, not AttributeBegin */
+} pbrt_saved_state;
+
+typedef struct pbrt_named_material {
+    char *name;
+    uint32_t index; /* in the scene; filled in when MakeNamedMaterial comes, which may be after its use */
+    bool is_defined, has_no_surface;
+    file_location where; /* of its definition, or until then of its first use */
+} pbrt_named_material;
+
+typedef struct pbrt_parser {
+    run_context *run;
+    log_sink *log;
+    scene *scene;
+
+    pbrt_file files[PBRT_MAX_DEPTH]; /* the innermost last */
+    int file_count, include_count;
+    char *top_directory; /* of the first file, with its slash, or "" */
+    pbrt_token peeked;
+    bool has_peeked;
+    size_t told_bytes; /* of the first file, at the last progress */
+
+    bool in_world, in_object;
+    pbrt_state state;
+    pbrt_saved_state *saved;
+    size_t saved_count, saved_capacity;
+    transform *coordinate_systems;
+    size_t coordinate_system_count;
+    name_table coordinate_system_names;
+    pbrt_named_material *named_materials;
+    size_t named_material_count;
+    name_table material_names;
+} pbrt_parser;
+
+/* Every handler of a directive: where is the directive's place; its name has been read, nothing behind it. */
+typedef ag_status pbrt_handler(pbrt_parser *parser, file_location where);
+
+/* pbrt_files.c: the stack of files and their tokens. */
+
+/* Opens a file as the innermost. name is as the user wrote it, where the place of the Include (zeroed for none). */
+ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location where, size_t width);
+ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size);
+void pbrt_pop_file(pbrt_parser *parser);
+/* The next token; where an included file ends, the one that included it goes on. */
+ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);
+ag_status pbrt_peek(pbrt_parser *parser, pbrt_token *out_token);
+/* Tells the error with the line it is in and a mark below; always returns AG_ERROR_SCENE. */
+ag_status pbrt_error(pbrt_parser *parser, file_location where, size_t width, const char *format, ...) AG_PRINTF(4, 5);
+/* Error "DIRECTIVE expects WHAT, not TOKEN". */
+ag_status pbrt_unexpected(pbrt_parser *parser, const pbrt_token *token, const char *directive, const char *expected);
+/* A quoted string, copied: *out_text is to be freed. Errors say "DIRECTIVE expects WHAT". */
+ag_status pbrt_read_string(pbrt_parser *parser, const char *directive, const char *expected, char **out_text,
+                           file_location *out_where);
+ag_status pbrt_read_numbers(pbrt_parser *parser, const char *directive, size_t count, double *out_values);
+/* Tells progress by the bytes of the first file; AG_CANCELLED when the run is cancelled. */
+ag_status pbrt_tell_progress(pbrt_parser *parser);
+
+/* pbrt_parameters.c: "DIRECTIVE name parameters". On failure the list is reset. */
+ag_status pbrt_read_parameters(pbrt_parser *parser, const char *directive, file_location where,
+                               parameter_list *out_list);
+/* The same, with the quoted name before them. */
+ag_status pbrt_read_named_parameters(pbrt_parser *parser, const char *directive, const char *expected,
+                                     file_location where, parameter_list *out_list);
+
+/* As pbrt_error, at the parameter of that name, or where there is none at the directive. */
+ag_status pbrt_refuse(pbrt_parser *parser, const parameter_list *list, const char *name, const char *format, ...)
+    AG_PRINTF(4, 5);
+
+/* pbrt_state.c: what Begin saves and End brings back. */
+pbrt_handler pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin, pbrt_attribute_end, pbrt_transform_begin,
+    pbrt_transform_end, pbrt_object_begin, pbrt_object_end, pbrt_object_instance, pbrt_reverse_orientation;
+/* Error where a Begin has no End. end: the place of the end of the first file. */
+ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end);
+
+/* pbrt_transforms.c */
+pbrt_handler pbrt_identity, pbrt_translate, pbrt_scale, pbrt_rotate, pbrt_look_at, pbrt_transform,
+    pbrt_concat_transform, pbrt_coordinate_system, pbrt_coord_sys_transform, pbrt_active_transform,
+    pbrt_transform_times;
+ag_status pbrt_name_coordinate_system(pbrt_parser *parser, const char *name, const transform *world_from_system);
+
+/* pbrt_materials.c */
+pbrt_handler pbrt_material, pbrt_make_named_material, pbrt_use_named_material;
+ag_status pbrt_add_default_material(pbrt_parser *parser);
+/* Error where a material was used and never made. */
+ag_status pbrt_check_named_materials(pbrt_parser *parser);
+
+/* pbrt_lights.c */
+pbrt_handler pbrt_light_source, pbrt_area_light_source;
+/* Makes the shape shine if AreaLightSource says so. */
+ag_status pbrt_add_area_light(pbrt_parser *parser, uint32_t shape_index, file_location where);
+
+/* pbrt_camera.c */
+pbrt_handler pbrt_camera;
+
+/* pbrt_shapes.c */
+pbrt_handler pbrt_shape;
+/* Adds the shape with the current material and area light. A mesh's arrays pass to the scene, also on failure. */
+ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape *s);
+
+/* pbrt_meshes.c, pbrt_patches.c: Shape "trianglemesh" and Shape "bilinearmesh". */
+ag_status pbrt_triangle_mesh(pbrt_parser *parser, parameter_list *list);
+ag_status pbrt_bilinear_mesh(pbrt_parser *parser, parameter_list *list);
+
+/* A mesh in object space as the file has it. */
+typedef struct pbrt_mesh {
+    const double *positions; /* 3 per vertex */
+    const double *normals;   /* 3 per vertex, or NULL */
+    const double *uvs;       /* 2 per vertex, or NULL */
+    size_t vertex_count;
+    uint32_t *indices; /* 3 per triangle, each < vertex_count; from malloc */
+    size_t triangle_count;
+    bool expects_degenerate; /* triangles without area are no fault of the file's */
+} pbrt_mesh;
+
+/* Adds it to the scene in world space, less the triangles without area. Takes source->indices, also on failure. */
+ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source);
+/* The arrays that meshes have in common, all but triangle_count. There are *out_index_count indices, a multiple of
+ * corners, from malloc: those of the file, or 0, 1, 2, ... where it has none and the vertices are just one face. */
+ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_t corners, pbrt_mesh *out_mesh,
+                                size_t *out_index_count);
+
+#endif

@@ -1,0 +1,119 @@
+/* pbrt_state.c: the blocks of a pbrt-v4 scene, which save the graphics state and bring it back.
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Attributes".
+ * Flow: pbrt_parser -> [here]. Threads: one per scene. */
+#include "pbrt_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+ag_status pbrt_world_begin(pbrt_parser *parser, file_location where)
+{
+    (void)where;
+    parser->in_world = true;
+    parser->state.world_from_object = transform_identity();
+    parser->state.start_is_active = true;
+    return pbrt_name_coordinate_system(parser, "world", &parser->state.world_from_object);
+}
+
+ag_status pbrt_world_end(pbrt_parser *parser, file_location where)
+{
+    log_at_once(parser->log, AG_LOG_WARNING, where, "WorldEnd", "WorldEnd is not part of pbrt-v4 and is ignored");
+    return AG_OK;
+}
+
+static ag_status save_state(pbrt_parser *parser, file_location where, bool is_object)
+{
+    if (parser->saved_count == parser->saved_capacity) {
+        size_t capacity = parser->saved_capacity ? 2 * parser->saved_capacity : 16;
+        pbrt_saved_state *larger = realloc(parser->saved, capacity * sizeof *larger);
+        if (!larger)
+            return AG_ERROR_MEMORY;
+        parser->saved = larger;
+        parser->saved_capacity = capacity;
+    }
+    parser->saved[parser->saved_count++] = (pbrt_saved_state){parser->state, where, is_object};
+    return AG_OK;
+}
+
+static ag_status restore_state(pbrt_parser *parser, file_location where, const char *directive, bool is_object)
+{
+    const char *begin = is_object ? "ObjectBegin" : "AttributeBegin",
+               *other = is_object ? "AttributeBegin" : "ObjectBegin";
+    if (parser->saved_count == 0)
+        return pbrt_error(parser, where, strlen(directive), "%s without %s", directive, begin);
+    const pbrt_saved_state *saved = &parser->saved[parser->saved_count - 1];
+    if (saved->is_object != is_object)
+        return pbrt_error(parser, where, strlen(directive), "%s, but %s at %s:%d:%d is still open", directive, other,
+                          saved->where.file, saved->where.line, saved->where.column);
+    parser->state = saved->state;
+    parser->saved_count--;
+    return AG_OK;
+}
+
+ag_status pbrt_attribute_begin(pbrt_parser *parser, file_location where) { return save_state(parser, where, false); }
+
+ag_status pbrt_attribute_end(pbrt_parser *parser, file_location where)
+{
+    return restore_state(parser, where, "AttributeEnd", false);
+}
+
+ag_status pbrt_transform_begin(pbrt_parser *parser, file_location where)
+{
+    log_at_once(
+        parser->log, AG_LOG_WARNING, where, "TransformBegin",
+        "TransformBegin and TransformEnd are deprecated and taken, as in pbrt-v4, for AttributeBegin and AttributeEnd");
+    return save_state(parser, where, false);
+}
+
+ag_status pbrt_transform_end(pbrt_parser *parser, file_location where)
+{
+    return restore_state(parser, where, "TransformEnd", false);
+}
+
+ag_status pbrt_reverse_orientation(pbrt_parser *parser, file_location where)
+{
+    (void)where;
+    parser->state.reverse_orientation = !parser->state.reverse_orientation;
+    return AG_OK;
+}
+
+ag_status pbrt_object_begin(pbrt_parser *parser, file_location where)
+{
+    char *name;
+    PBRT_TRY(pbrt_read_string(parser, "ObjectBegin", "a quoted name", &name, NULL));
+    free(name);
+    if (parser->in_object)
+        return pbrt_error(parser, where, strlen("ObjectBegin"), "ObjectBegin within another object");
+    PBRT_TRY(save_state(parser, where, true));
+    parser->in_object = true;
+    return AG_OK;
+}
+
+ag_status pbrt_object_end(pbrt_parser *parser, file_location where)
+{
+    PBRT_TRY(restore_state(parser, where, "ObjectEnd", true));
+    parser->in_object = false;
+    return AG_OK;
+}
+
+ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
+{
+    char *name;
+    PBRT_TRY(pbrt_read_string(parser, "ObjectInstance", "a quoted name", &name, NULL));
+    log_at_once(parser->log, AG_LOG_WARNING, where, "ObjectInstance",
+                "object instances are not supported yet: ObjectInstance \"%s\" is left out, as are any others", name);
+    free(name);
+    if (parser->in_object)
+        return pbrt_error(parser, where, strlen("ObjectInstance"), "ObjectInstance within an object");
+    return AG_OK;
+}
+
+ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end)
+{
+    if (parser->saved_count == 0)
+        return AG_OK;
+    const pbrt_saved_state *saved = &parser->saved[parser->saved_count - 1];
+    return pbrt_error(parser, end, 1, "the file ends, but %s at %s:%d:%d is still open",
+                      saved->is_object ? "ObjectBegin" : "AttributeBegin", saved->where.file, saved->where.line,
+                      saved->where.column);
+}

@@ -1,0 +1,175 @@
+/* pbrt_transforms.c: the directives of a pbrt-v4 scene that change or name the current transform.
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Transformations"; matrices there are column by column.
+ * Flow: pbrt_parser -> [here] -> the graphics state. Threads: one per scene. */
+#include "pbrt_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The current transform becomes base times t. What can be undone piece by piece may still overflow as a whole. */
+static ag_status apply(pbrt_parser *parser, file_location where, const char *directive, const transform *base,
+                       const transform *t)
+{
+    if (!parser->state.start_is_active)
+        return AG_OK;
+    transform product = transform_multiply(base, t);
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            if (!isfinite(product.m[i][j]) || !isfinite(product.inverse[i][j]))
+                return pbrt_error(parser, where, strlen(directive),
+                                  "%s makes a transform that is too large or too small", directive);
+    parser->state.world_from_object = product;
+    return AG_OK;
+}
+
+ag_status pbrt_identity(pbrt_parser *parser, file_location where)
+{
+    transform t = transform_identity();
+    return apply(parser, where, "Identity", &t, &t);
+}
+
+ag_status pbrt_translate(pbrt_parser *parser, file_location where)
+{
+    double v[3];
+    PBRT_TRY(pbrt_read_numbers(parser, "Translate", 3, v));
+    transform t = transform_translate(v[0], v[1], v[2]);
+    return apply(parser, where, "Translate", &parser->state.world_from_object, &t);
+}
+
+ag_status pbrt_scale(pbrt_parser *parser, file_location where)
+{
+    double v[3];
+    transform t;
+    PBRT_TRY(pbrt_read_numbers(parser, "Scale", 3, v));
+    if (!transform_scale(v[0], v[1], v[2], &t))
+        return pbrt_error(parser, where, 5, "Scale %g %g %g cannot be undone", v[0], v[1], v[2]);
+    return apply(parser, where, "Scale", &parser->state.world_from_object, &t);
+}
+
+ag_status pbrt_rotate(pbrt_parser *parser, file_location where)
+{
+    double v[4];
+    transform t;
+    PBRT_TRY(pbrt_read_numbers(parser, "Rotate", 4, v));
+    if (!transform_rotate(v[0], v[1], v[2], v[3], &t))
+        return pbrt_error(parser, where, 6, "Rotate has no axis: %g %g %g", v[1], v[2], v[3]);
+    return apply(parser, where, "Rotate", &parser->state.world_from_object, &t);
+}
+
+ag_status pbrt_look_at(pbrt_parser *parser, file_location where)
+{
+    double v[9];
+    transform t;
+    PBRT_TRY(pbrt_read_numbers(parser, "LookAt", 9, v));
+    if (!transform_look_at(v, v + 3, v + 6, &t))
+        return pbrt_error(parser, where, 6,
+                          v[0] == v[3] && v[1] == v[4] && v[2] == v[5]
+                              ? "LookAt looks at the eye itself"
+                              : "LookAt has an up vector that is zero or along the view");
+    return apply(parser, where, "LookAt", &parser->state.world_from_object, &t);
+}
+
+/* [ 16 numbers ], column by column. */
+static ag_status read_matrix(pbrt_parser *parser, file_location where, const char *directive, transform *out_transform)
+{
+    double v[16], m[4][4];
+    pbrt_token token;
+    PBRT_TRY(pbrt_next(parser, &token));
+    if (token.kind != PBRT_TOKEN_OPEN)
+        return pbrt_unexpected(parser, &token, directive, "[");
+    PBRT_TRY(pbrt_read_numbers(parser, directive, 16, v));
+    PBRT_TRY(pbrt_next(parser, &token));
+    if (token.kind != PBRT_TOKEN_CLOSE)
+        return pbrt_unexpected(parser, &token, directive, "] after 16 numbers");
+    for (int column = 0; column < 4; column++)
+        for (int row = 0; row < 4; row++)
+            m[row][column] = v[4 * column + row];
+    if (!transform_from_matrix((const double(*)[4])m, out_transform))
+        return pbrt_error(parser, where, strlen(directive), "%s has a matrix that cannot be undone (it is singular)",
+                          directive);
+    return AG_OK;
+}
+
+ag_status pbrt_transform(pbrt_parser *parser, file_location where)
+{
+    transform t, identity = transform_identity();
+    PBRT_TRY(read_matrix(parser, where, "Transform", &t));
+    return apply(parser, where, "Transform", &identity, &t);
+}
+
+ag_status pbrt_concat_transform(pbrt_parser *parser, file_location where)
+{
+    transform t;
+    PBRT_TRY(read_matrix(parser, where, "ConcatTransform", &t));
+    return apply(parser, where, "ConcatTransform", &parser->state.world_from_object, &t);
+}
+
+ag_status pbrt_name_coordinate_system(pbrt_parser *parser, const char *name, const transform *world_from_system)
+{
+    uint32_t index;
+    if (!name_table_find(&parser->coordinate_system_names, name, &index)) {
+        size_t count = parser->coordinate_system_count;
+        if ((count & (count - 1)) == 0) { /* room has doubled at every power of two */
+            size_t capacity = count ? 2 * count : 4;
+            transform *larger = realloc(parser->coordinate_systems, capacity * sizeof *larger);
+            if (!larger || count > UINT32_MAX / 2) {
+                parser->coordinate_systems = larger ? larger : parser->coordinate_systems;
+                return AG_ERROR_MEMORY;
+            }
+            parser->coordinate_systems = larger;
+        }
+        index = (uint32_t)count;
+        PBRT_TRY(name_table_set(&parser->coordinate_system_names, name, index));
+        parser->coordinate_system_count++;
+    }
+    parser->coordinate_systems[index] = *world_from_system;
+    return AG_OK;
+}
+
+ag_status pbrt_coordinate_system(pbrt_parser *parser, file_location where)
+{
+    char *name;
+    (void)where;
+    PBRT_TRY(pbrt_read_string(parser, "CoordinateSystem", "a quoted name", &name, NULL));
+    ag_status status = pbrt_name_coordinate_system(parser, name, &parser->state.world_from_object);
+    free(name);
+    return status;
+}
+
+ag_status pbrt_coord_sys_transform(pbrt_parser *parser, file_location where)
+{
+    char *name;
+    uint32_t index;
+    PBRT_TRY(pbrt_read_string(parser, "CoordSysTransform", "a quoted name", &name, NULL));
+    if (name_table_find(&parser->coordinate_system_names, name, &index))
+        parser->state.world_from_object = parser->coordinate_systems[index];
+    else
+        log_at(parser->log, AG_LOG_WARNING, where, "no coordinate system is named \"%s\": CoordSysTransform is ignored",
+               name);
+    free(name);
+    return AG_OK;
+}
+
+ag_status pbrt_active_transform(pbrt_parser *parser, file_location where)
+{
+    pbrt_token token;
+    PBRT_TRY(pbrt_next(parser, &token));
+    bool is_start = pbrt_token_is(&token, PBRT_TOKEN_WORD, "StartTime");
+    bool is_end = pbrt_token_is(&token, PBRT_TOKEN_WORD, "EndTime");
+    if (!is_start && !is_end && !pbrt_token_is(&token, PBRT_TOKEN_WORD, "All"))
+        return pbrt_unexpected(parser, &token, "ActiveTransform", "StartTime, EndTime or All");
+    if (is_start || is_end)
+        log_at_once(parser->log, AG_LOG_WARNING, where, "ActiveTransform",
+                    "ActiveTransform: motion is not supported yet, everything stands as it does at the start time");
+    parser->state.start_is_active = !is_end;
+    return AG_OK;
+}
+
+ag_status pbrt_transform_times(pbrt_parser *parser, file_location where)
+{
+    double times[2];
+    PBRT_TRY(pbrt_read_numbers(parser, "TransformTimes", 2, times));
+    log_at_once(parser->log, AG_LOG_WARNING, where, "TransformTimes",
+                "TransformTimes: motion is not supported yet, everything stands as it does at the start time");
+    return AG_OK;
+}

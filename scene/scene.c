@@ -1,0 +1,192 @@
+/* scene.c: owning, growing and committing a scene.
+ * Threads: one builds it; committed, it is read-only. */
+#define _POSIX_C_SOURCE 200809L
+#include "scene.h"
+
+#include "bsdf.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+scene *scene_create(void)
+{
+    scene *s = calloc(1, sizeof *s);
+    if (s) {
+        s->bounds_min = (vec3){INFINITY, INFINITY, INFINITY};
+        s->bounds_max = (vec3){-INFINITY, -INFINITY, -INFINITY};
+    }
+    return s;
+}
+
+static void shape_free_arrays(shape *s)
+{
+    if (s->kind != SHAPE_MESH)
+        return;
+    free(s->as.mesh.positions);
+    free(s->as.mesh.normals);
+    free(s->as.mesh.uvs);
+    free(s->as.mesh.indices);
+    free(s->as.mesh.area_cdf);
+}
+
+void scene_destroy(scene *s)
+{
+    if (!s)
+        return;
+    bvh_destroy(s->bvh);
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        shape_free_arrays(&s->shapes[i]);
+    for (uint32_t i = 0; i < s->file_name_count; i++)
+        free(s->file_names[i]);
+    parameter_list_reset(&s->integrator);
+    parameter_list_reset(&s->sampler);
+    parameter_list_reset(&s->film);
+    parameter_list_reset(&s->pixel_filter);
+    free(s->file_names);
+    free(s->shapes);
+    free(s->materials);
+    free(s->lights);
+    free(s->light_cdf);
+    free(s->light_probability);
+    free(s);
+}
+
+/* Makes room for one more item in an array that has doubled whenever its count reached a power of two. */
+static bool grow(void **items, uint32_t count, size_t item_bytes)
+{
+    if (count & (count - 1))
+        return true;
+    if (count > UINT32_MAX / 4)
+        return false;
+    size_t capacity = count ? 2 * (size_t)count : 1;
+    void *larger = realloc(*items, capacity * item_bytes);
+    if (!larger)
+        return false;
+    *items = larger;
+    return true;
+}
+
+const char *scene_intern_file_name(scene *s, const char *name)
+{
+    for (uint32_t i = 0; i < s->file_name_count; i++)
+        if (strcmp(s->file_names[i], name) == 0)
+            return s->file_names[i];
+    char *copy = strdup(name);
+    if (!copy || !grow((void **)&s->file_names, s->file_name_count, sizeof *s->file_names)) {
+        free(copy);
+        return NULL;
+    }
+    return s->file_names[s->file_name_count++] = copy;
+}
+
+ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index)
+{
+    if (!grow((void **)&s->materials, s->material_count, sizeof *s->materials))
+        return AG_ERROR_MEMORY;
+    *out_index = s->material_count;
+    material *m = &s->materials[s->material_count++];
+    *m = *item;
+    /* rough along one axis only: the other must not divide by zero */
+    if (m->alpha_u >= BSDF_SMOOTH_ALPHA || m->alpha_v >= BSDF_SMOOTH_ALPHA) {
+        m->alpha_u = fmaxf(m->alpha_u, 1e-4f);
+        m->alpha_v = fmaxf(m->alpha_v, 1e-4f);
+    }
+    return AG_OK;
+}
+
+ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index)
+{
+    shape copy = *item;
+    if (!grow((void **)&s->shapes, s->shape_count, sizeof *s->shapes)) {
+        shape_free_arrays(&copy);
+        return AG_ERROR_MEMORY;
+    }
+    copy.light_index = SHAPE_NO_LIGHT;
+    *out_index = s->shape_count;
+    s->shapes[s->shape_count++] = copy;
+    return AG_OK;
+}
+
+ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
+{
+    if (!grow((void **)&s->lights, s->light_count, sizeof *s->lights))
+        return AG_ERROR_MEMORY;
+    *out_index = s->light_count;
+    if (item->kind == LIGHT_AREA)
+        s->shapes[item->shape_index].light_index = s->light_count;
+    s->lights[s->light_count++] = *item;
+    return AG_OK;
+}
+
+static void find_bounds(scene *s)
+{
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        vec3 low, high;
+        shape_bounds(&s->shapes[i], &low, &high);
+        s->bounds_min = vec3_min(s->bounds_min, low);
+        s->bounds_max = vec3_max(s->bounds_max, high);
+    }
+    if (s->bounds_min.x > s->bounds_max.x) {
+        s->bounding_radius = 1.0f;
+        return;
+    }
+    s->bounding_center = vec3_scale(vec3_add(s->bounds_min, s->bounds_max), 0.5f);
+    s->bounding_radius = vec3_length(vec3_sub(s->bounds_max, s->bounding_center)) * 1.00001f;
+}
+
+/* The shares by which lights are picked: their luminous power, or where all that is 0, none. */
+static ag_status weigh_lights(scene *s)
+{
+    if (s->light_count == 0)
+        return AG_OK;
+    s->light_cdf = malloc(s->light_count * sizeof *s->light_cdf);
+    s->light_probability = malloc(s->light_count * sizeof *s->light_probability);
+    if (!s->light_cdf || !s->light_probability)
+        return AG_ERROR_MEMORY;
+    double total = 0.0, sum = 0.0;
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        s->lights[i].power = light_power(s, &s->lights[i]);
+        s->light_power = rgb_add(s->light_power, s->lights[i].power);
+        /* by the mean of the channels: luminance would all but leave out blue lamps */
+        total += (double)s->lights[i].power.r + s->lights[i].power.g + s->lights[i].power.b;
+    }
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        double share = (double)s->lights[i].power.r + s->lights[i].power.g + s->lights[i].power.b;
+        sum += share;
+        s->light_probability[i] = total > 0.0 ? (float)(share / total) : 0.0f;
+        s->light_cdf[i] = total > 0.0 ? (float)(sum / total) : 0.0f;
+    }
+    return AG_OK;
+}
+
+ag_status scene_commit(scene *s, run_context *run, const char *isa)
+{
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        ag_status status = shape_commit(&s->shapes[i]);
+        if (status != AG_OK)
+            return status;
+        s->surface_area += s->shapes[i].area;
+    }
+    find_bounds(s);
+    s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
+    ag_status status = weigh_lights(s);
+    if (status != AG_OK)
+        return status;
+    return bvh_create(s, run, isa, &s->bvh);
+}
+
+uint32_t scene_pick_light(const scene *s, float u, float *out_probability)
+{
+    uint32_t low = 0, high = s->light_count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (s->light_cdf[middle] > u)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    while (low > 0 && s->light_probability[low] == 0.0f) /* u beyond the last rounded sum */
+        low--;
+    *out_probability = s->light_probability[low];
+    return low;
+}

@@ -1,0 +1,68 @@
+/* scene.h: the owner of what there is: shapes, materials, lights, camera, and the words of the file that the renderer
+ * reads. Built piece by piece (scene_add_…), then committed; read-only from then on.
+ * Flow: scene file -> [here] -> bvh_embree -> photon map, renderer.
+ * Threads: one builds; any number read once committed. */
+#ifndef AFTERGLOW_SCENE_H
+#define AFTERGLOW_SCENE_H
+
+#include "camera.h"
+#include "light.h"
+#include "material.h"
+#include "parameter_list.h"
+#include "run_context.h"
+#include "shape.h"
+
+struct bvh;
+
+typedef struct scene {
+    material *materials;
+    uint32_t material_count;
+    shape *shapes;
+    uint32_t shape_count;
+    light *lights;
+    uint32_t light_count;
+    camera camera;
+    bool has_camera;
+
+    /* Directives that the renderer interprets; .name is NULL where the file has none. */
+    parameter_list integrator, sampler, film, pixel_filter;
+
+    char **file_names; /* interned, for file_location.file */
+    uint32_t file_name_count;
+
+    /* set by scene_commit */
+    vec3 bounds_min, bounds_max; /* of all shapes; min > max when there is none */
+    vec3 bounding_center;
+    float bounding_radius;
+    float surface_area;       /* m^2, of all shapes */
+    rgb light_power;          /* W, of all lights */
+    float *light_cdf;         /* [light_count], running sum of the lights' luminous powers over their total */
+    float *light_probability; /* [light_count], the share of each: with which light_pick picks it */
+    struct bvh *bvh;
+} scene;
+
+scene *scene_create(void);         /* NULL when out of memory */
+void scene_destroy(scene *s);      /* NULL is fine */
+
+/* The interned copy of a file name; NULL when out of memory. */
+const char *scene_intern_file_name(scene *s, const char *name);
+
+/* Each adds a copy of *item and gives its index. A mesh's arrays pass into the scene's ownership, on failure too
+ * (they are then freed). Errors: AG_ERROR_MEMORY. */
+ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index);
+ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
+/* An area light's shape must be there already; its light_index is set here. */
+ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
+
+/* Areas, powers, bounds and the BVH (built by the run's threads and no others). isa: Embree's name of the widest
+ * instruction set to use ("sse2", "sse4.2", "avx", "avx2", "avx512"), NULL for "avx2".
+ * A scene without shapes is valid. Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING, AG_ERROR_SCENE, AG_CANCELLED. */
+ag_status scene_commit(scene *s, run_context *run, const char *isa);
+
+/* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
+float shape_area(const shape *s);
+
+/* Picks a light in proportion to its power; u in [0, 1). The scene has at least one light with power. */
+uint32_t scene_pick_light(const scene *s, float u, float *out_probability);
+
+#endif

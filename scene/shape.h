@@ -1,0 +1,50 @@
+/* shape.h: surfaces in world space: triangle meshes, spheres and disks.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6; orientation follows pbrt's:
+ * a shape's outside is where its geometric normal points, ReverseOrientation turns it over.
+ * Flow: the scene file makes shapes; bvh_embree casts rays at them; lights sample points on them.
+ * Threads: read-only once the scene is committed. */
+#ifndef AFTERGLOW_SHAPE_H
+#define AFTERGLOW_SHAPE_H
+
+#include "math/transform.h"
+
+#include <stdint.h>
+
+#define SHAPE_NO_LIGHT UINT32_MAX
+
+typedef enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_DISK } shape_kind;
+
+/* World space. Arrays are owned by the shape, which is owned by the scene. Positions have room for one more vertex, so
+ * that Embree may read 16 bytes at the last one. */
+typedef struct mesh {
+    uint32_t vertex_count, triangle_count;
+    vec3 *positions;
+    vec3 *normals;     /* unit shading normals, or NULL */
+    vec2 *uvs;         /* or NULL */
+    uint32_t *indices; /* 3 per triangle, each < vertex_count */
+    float *area_cdf;   /* of emissive meshes, else NULL: [triangle_count], running sum of areas over the total */
+} mesh;
+
+/* Sphere: the unit sphere times object radius, under any affine map; disk: z = height, inner to outer radius. */
+typedef struct quadric {
+    transform world_from_object;
+    float radius;
+    float inner_radius, height; /* disk only */
+    /* set by scene_commit */
+    vec3 center;          /* world */
+    float uniform_radius; /* world radius of a sphere that is still a sphere, else 0 (then it is an ellipsoid) */
+} quadric;
+
+typedef struct shape {
+    shape_kind kind;
+    bool flip_normal; /* ReverseOrientation, and for meshes also a transform that swaps handedness (not both) */
+    uint32_t material_index;
+    uint32_t light_index; /* SHAPE_NO_LIGHT where it does not shine */
+    union {
+        mesh mesh;
+        quadric quadric;
+    } as;
+    float area; /* m^2, world; set by scene_commit */
+} shape;
+
+#endif

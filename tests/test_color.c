@@ -1,0 +1,372 @@
+/* test_color.c: the colour bridge against known values, other people's kinds of config, and oiiotool.
+ * Flow: tests of renderer/color_ocio.cpp and renderer/config.ocio. Threads: one. */
+#define _GNU_SOURCE
+#include "color.h"
+#include "color_builtin_config.h"
+#include "image_file.h"
+#include "temporary_folder.h"
+
+#include <math.h>
+
+/* How the configs of the first profile version begin; and the rows of a matrix. */
+#define VERSION_1 "ocio_profile_version: 1\nstrictparsing: false\nluma: [0.2126, 0.7152, 0.0722]\n"
+#define ACESCG_FROM_REC709                                                                                             \
+    "[0.613097402, 0.339523146, 0.047379451, 0, 0.070193822, 0.916353879, 0.013452399, 0, "                            \
+    "0.020615593, 0.109569773, 0.869814635, 0, 0, 0, 0, 1]"
+
+static void write_text(const char *name, const char *text)
+{
+    FILE *file = fopen(in_folder(name), "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* A config that multiplies by factor, so that it can be told which one was used. */
+static void write_scaling_config(const char *name, double factor)
+{
+    char text[1024];
+    snprintf(text, sizeof text,
+             VERSION_1
+             "roles:\n  scene_linear: Linear\ndisplays:\n  Screen:\n"
+             "    - !<View> {name: Scaled, colorspace: scaled}\ncolorspaces:\n"
+             "  - !<ColorSpace>\n    name: Linear\n"
+             "  - !<ColorSpace>\n    name: scaled\n"
+             "    from_reference: !<MatrixTransform> {matrix: [%g, 0, 0, 0, 0, %g, 0, 0, 0, 0, %g, 0, 0, 0, 0, 1]}\n",
+             factor, factor, factor);
+    write_text(name, text);
+}
+
+static color_config *open_config(const char *path)
+{
+    color_config *config = NULL;
+    const ag_status status = color_config_create(path, message, sizeof message, &config);
+    if (status != AG_OK)
+        print_error("%s\n", message);
+    assert_int_equal(status, AG_OK);
+    assert_non_null(config);
+    return config;
+}
+
+static color_config *open_config_file(const char *name) { return open_config(in_folder(name)); }
+
+static color_processor *open_processor(const color_config *config, const char *display, const char *view)
+{
+    color_processor *processor = NULL;
+    const ag_status status = color_processor_create(config, display, view, message, sizeof message, &processor);
+    if (status != AG_OK)
+        print_error("%s\n", message);
+    assert_int_equal(status, AG_OK);
+    return processor;
+}
+
+static void apply(const color_config *config, const char *display, const char *view, float *rgb, size_t count)
+{
+    color_processor *processor = open_processor(config, display, view);
+    assert_int_equal(color_processor_apply(processor, rgb, count, message, sizeof message), AG_OK);
+    color_processor_destroy(processor);
+}
+
+static void assert_near(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance))
+        print_error("%.7f is not within %g of %.7f\n", value, tolerance, expected);
+    assert_true(fabs(value - expected) <= tolerance);
+}
+
+static void assert_rgb(const float *rgb, double red, double green, double blue, double tolerance)
+{
+    assert_near(rgb[0], red, tolerance);
+    assert_near(rgb[1], green, tolerance);
+    assert_near(rgb[2], blue, tolerance);
+}
+
+static void expect_grey(const color_config *config, const char *display, const char *view, float in, double out,
+                        double tolerance)
+{
+    float rgb[3] = {in, in, in};
+    apply(config, display, view, rgb, 1);
+    assert_rgb(rgb, out, out, out, tolerance);
+}
+
+static void known_values(void **state)
+{
+    (void)state;
+    color_config *config = open_config(NULL);
+    const double srgb_grey = 1.055 * pow(0.18, 1.0 / 2.4) - 0.055;
+    expect_grey(config, "sRGB - Display", "Un-tone-mapped", 0.18f, srgb_grey, 2e-5);
+    expect_grey(config, "sRGB - Display", "ACES 1.0 - SDR Video", 0.18f, 0.355954, 5e-5);
+    expect_grey(config, "sRGB - Display", "ACES 1.0 - SDR Video", 1.0f, 0.811971, 5e-5);
+    expect_grey(config, "sRGB - Display", "ACES 1.0 - SDR Video", 16.0f, 0.9997, 1e-4);
+    expect_grey(config, "Rec.1886 Rec.709 - Display", "ACES 1.0 - SDR Video", 0.18f, 0.389530, 5e-5);
+    expect_grey(config, "sRGB - Display", "Raw", 0.18f, 0.18, 1e-7);
+
+    float red[3] = {1.0f, 0.0f, 0.0f};
+    apply(config, "Display P3 - Display", "Un-tone-mapped", red, 1);
+    assert_rgb(red, 0.9175, 0.2003, 0.1386, 1e-4);
+
+    /* The same light on the P3-D65 display, whose curve is a plain power of 2.6. */
+    float projected[3] = {1.0f, 0.0f, 0.0f};
+    apply(config, "P3-D65 - Display", "Un-tone-mapped", projected, 1);
+    for (int c = 0; c < 3; c++)
+        assert_near(pow(projected[c], 2.6), pow((red[c] + 0.055) / 1.055, 2.4), 2e-4);
+    color_config_destroy(config);
+}
+
+static void defaults_and_names(void **state)
+{
+    (void)state;
+    color_config *config = open_config(NULL);
+    assert_string_equal(color_config_input_space(config), "Linear Rec.709 (sRGB)");
+    assert_true(strlen(color_config_name(config)) > 0);
+    assert_true(strlen(color_config_hash(config)) >= 16);
+
+    color_config *again = open_config(NULL);
+    assert_string_equal(color_config_hash(again), color_config_hash(config));
+    write_scaling_config("hash.ocio", 3.0);
+    color_config *other = open_config_file("hash.ocio");
+    assert_string_not_equal(color_config_hash(other), color_config_hash(config));
+    color_config_destroy(other);
+    color_config_destroy(again);
+
+    expect_grey(config, NULL, NULL, 0.18f, 0.355954, 5e-5); /* sRGB - Display, ACES 1.0 - SDR Video */
+    expect_grey(config, "srgb - display", "un-tone-mapped", 0.18f, 0.461356, 5e-5); /* in any case */
+    color_config_destroy(config);
+    color_config_destroy(NULL);
+    color_processor_destroy(NULL);
+}
+
+static void path_beats_environment_beats_builtin(void **state)
+{
+    (void)state;
+    write_scaling_config("two.ocio", 2.0);
+    write_scaling_config("four.ocio", 4.0);
+    setenv("OCIO", in_folder("four.ocio"), 1);
+    color_config *config = open_config_file("two.ocio");
+    expect_grey(config, NULL, NULL, 0.25f, 0.5, 1e-6);
+    assert_non_null(strstr(color_config_name(config), "two.ocio"));
+    color_config_destroy(config);
+
+    config = open_config(NULL);
+    expect_grey(config, NULL, NULL, 0.25f, 1.0, 1e-6);
+    assert_non_null(strstr(color_config_name(config), "four.ocio"));
+    color_config_destroy(config);
+
+    setenv("OCIO", "", 1);
+    config = open_config(NULL);
+    expect_grey(config, "sRGB - Display", "Un-tone-mapped", 0.18f, 0.461356, 5e-5);
+    color_config_destroy(config);
+    unsetenv("OCIO");
+}
+
+static void expect_bad_config(const char *path, const char *text, const char *more_text)
+{
+    color_config *config = (color_config *)(void *)message;
+    assert_int_equal(color_config_create(path, message, sizeof message, &config), AG_ERROR_COLOR);
+    assert_null(config);
+    assert_non_null(strstr(message, text));
+    assert_non_null(strstr(message, more_text));
+}
+
+static void bad_configs_say_why(void **state)
+{
+    (void)state;
+    const char *path = in_folder("missing.ocio");
+    expect_bad_config(path, "missing.ocio", "could not");
+    setenv("OCIO", path, 1); /* no silent fallback */
+    expect_bad_config(NULL, "$OCIO", "missing.ocio");
+    unsetenv("OCIO");
+
+    write_text("broken.ocio", "ocio_profile_version: 1\nroles: [\n");
+    path = in_folder("broken.ocio");
+    expect_bad_config(path, "broken.ocio", "line");
+
+    write_text("later.ocio", "ocio_profile_version: 2.9\n");
+    path = in_folder("later.ocio");
+    expect_bad_config(path, "later.ocio", "version");
+
+    write_text("not_linear.ocio",
+               VERSION_1 "displays:\n  Screen:\n    - !<View> {name: Plain, colorspace: lut}\ncolorspaces:\n"
+                         "  - !<ColorSpace>\n    name: lut\n");
+    path = in_folder("not_linear.ocio");
+    expect_bad_config(path, "scene-linear", "");
+
+    /* The message is cut, not overrun. */
+    char small[8];
+    color_config *config;
+    assert_int_equal(color_config_create(path, small, sizeof small, &config), AG_ERROR_COLOR);
+    assert_int_equal(strlen(small), sizeof small - 1);
+}
+
+static void unknown_names_list_the_known(void **state)
+{
+    (void)state;
+    color_config *config = open_config(NULL);
+    color_processor *processor = NULL;
+    assert_int_equal(color_processor_create(config, "Cinema", NULL, message, sizeof message, &processor),
+                     AG_ERROR_COLOR);
+    assert_null(processor);
+    assert_non_null(strstr(message, "'Cinema'"));
+    assert_non_null(strstr(message, "'sRGB - Display'"));
+    assert_non_null(strstr(message, "'P3-D65 - Display'"));
+
+    assert_int_equal(color_processor_create(config, NULL, "Filmic", message, sizeof message, &processor),
+                     AG_ERROR_COLOR);
+    assert_non_null(strstr(message, "'Filmic'"));
+    assert_non_null(strstr(message, "'Un-tone-mapped'"));
+    assert_non_null(strstr(message, "'ACES 1.0 - SDR Video'"));
+    assert_null(strstr(message, "P3 lim")); /* a view of other displays */
+    color_config_destroy(config);
+}
+
+/* Blender before 4.0: the reference space is linear Rec. 709 and is called "Linear". */
+static void config_of_blender_kind(void **state)
+{
+    (void)state;
+    write_text("blender.ocio", VERSION_1 "roles:\n  scene_linear: Linear\n  default: Linear\ndisplays:\n  sRGB:\n"
+                                         "    - !<View> {name: Standard, colorspace: Square}\ncolorspaces:\n"
+                                         "  - !<ColorSpace>\n    name: Linear\n    bitdepth: 32f\n"
+                                         "  - !<ColorSpace>\n    name: Square\n"
+                                         "    from_reference: !<ExponentTransform> {value: [2, 2, 2, 1]}\n");
+    color_config *config = open_config_file("blender.ocio");
+    assert_string_equal(color_config_input_space(config), "Linear");
+    float rgb[3] = {0.5f, 0.25f, 0.125f};
+    apply(config, "sRGB", "Standard", rgb, 1);
+    assert_rgb(rgb, 0.25, 0.0625, 0.015625, 1e-5);
+    color_config_destroy(config);
+}
+
+/* The view hands out ACEScg values, so Rec. 709 red must come out as the first column of the matrix. */
+static void expect_red_in_acescg(const char *name, const char *text, const char *input_space)
+{
+    write_text(name, text);
+    color_config *config = open_config_file(name);
+    assert_string_equal(color_config_input_space(config), input_space);
+    float rgb[3] = {1.0f, 0.0f, 0.0f};
+    apply(config, NULL, NULL, rgb, 1);
+    assert_rgb(rgb, 0.613097, 0.070194, 0.020616, 2e-5);
+    color_config_destroy(config);
+}
+
+static void configs_of_aces_kind(void **state)
+{
+    (void)state;
+    /* 1.x: scene_linear is ACEScg, and Rec. 709 has a name. */
+    expect_red_in_acescg("aces1.ocio",
+                         VERSION_1 "roles:\n  scene_linear: ACES - ACEScg\n  rendering: ACES - ACEScg\ndisplays:\n"
+                                   "  ACES:\n    - !<View> {name: Plain, colorspace: ACES - ACEScg}\ncolorspaces:\n"
+                                   "  - !<ColorSpace>\n    name: ACES - ACEScg\n"
+                                   "  - !<ColorSpace>\n    name: Utility - Linear - sRGB\n"
+                                   "    to_reference: !<MatrixTransform> {matrix: " ACESCG_FROM_REC709 "}\n",
+                         "Utility - Linear - sRGB");
+    /* 2.x without a Rec. 709 space: by way of the interchange role. */
+    expect_red_in_acescg("aces2.ocio",
+                         "ocio_profile_version: 2\nfile_rules:\n  - !<Rule> {name: Default, colorspace: ACEScg}\n"
+                         "roles:\n  scene_linear: ACEScg\n  aces_interchange: ACES2065-1\ndisplays:\n"
+                         "  ACES:\n    - !<View> {name: Plain, colorspace: ACEScg}\ncolorspaces:\n"
+                         "  - !<ColorSpace>\n    name: ACES2065-1\n"
+                         "  - !<ColorSpace>\n    name: ACEScg\n"
+                         "    to_scene_reference: !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}\n",
+                         "ACES2065-1");
+}
+
+/* Neither a known name nor an interchange space: the role is all there is. */
+static void falls_back_to_the_role(void **state)
+{
+    (void)state;
+    write_text("role.ocio", VERSION_1 "roles:\n  scene_linear: scene\ndisplays:\n  Screen:\n"
+                                      "    - !<View> {name: Plain, colorspace: scene}\ncolorspaces:\n"
+                                      "  - !<ColorSpace>\n    name: scene\n");
+    color_config *config = open_config_file("role.ocio");
+    assert_string_equal(color_config_input_space(config), "scene");
+    expect_grey(config, NULL, NULL, 0.3f, 0.3, 1e-6);
+    color_config_destroy(config);
+}
+
+static void bands_have_the_same_bits(void **state)
+{
+    (void)state;
+    enum { COUNT = 5000 };
+    float *whole = malloc(3 * COUNT * sizeof(float));
+    float *bands = malloc(3 * COUNT * sizeof(float));
+    assert_true(whole && bands);
+    for (int i = 0; i < 3 * COUNT; i++)
+        whole[i] = bands[i] = exp2f((float)(i * 7919 % 4001) / 250.0f - 10.0f);
+    color_config *config = open_config(NULL);
+    color_processor *processor = open_processor(config, NULL, NULL);
+    assert_int_equal(color_processor_apply(processor, whole, COUNT, message, sizeof message), AG_OK);
+    static const size_t sizes[] = {1, 2, 3, 1023, 1025, 7, 1024, 400, 0};
+    size_t done = 0;
+    for (size_t i = 0; done < COUNT; i++) {
+        size_t size = sizes[i % (sizeof sizes / sizeof *sizes)];
+        if (size > COUNT - done)
+            size = COUNT - done;
+        assert_int_equal(color_processor_apply(processor, bands + 3 * done, size, message, sizeof message), AG_OK);
+        done += size;
+    }
+    assert_memory_equal(whole, bands, 3 * COUNT * sizeof(float));
+    color_processor_destroy(processor);
+    color_config_destroy(config);
+    free(whole);
+    free(bands);
+}
+
+static void agrees_with_oiiotool(void **state)
+{
+    (void)state;
+    if (system("command -v oiiotool >/dev/null 2>&1") != 0) {
+        print_message("oiiotool is not installed: no comparison with it\n");
+        skip();
+    }
+    char text[16384], command[1024];
+    assert_true(color_builtin_config_size < sizeof text);
+    memcpy(text, color_builtin_config, color_builtin_config_size);
+    text[color_builtin_config_size] = '\0';
+    write_text("builtin.ocio", text);
+    snprintf(
+        command, sizeof command,
+        "cd '%s' && oiiotool --colorconfig builtin.ocio --pattern "
+        "fill:topleft=0,0.1,0.2:topright=1,0.5,0.1:bottomleft=0.05,2,0.3:bottomright=4,3,6 32x16 3 "
+        "-d float -o in.tif --ociodisplay:from=lin_rec709 'sRGB - Display' 'ACES 1.0 - SDR Video' -d float -o out.tif",
+        folder);
+    assert_int_equal(system(command), 0);
+
+    int width, height, channel_count;
+    float *ours, *theirs;
+    assert_int_equal(
+        image_file_read(in_folder("in.tif"), &width, &height, &channel_count, &ours, message, sizeof message), AG_OK);
+    assert_int_equal(
+        image_file_read(in_folder("out.tif"), &width, &height, &channel_count, &theirs, message, sizeof message),
+        AG_OK);
+    assert_int_equal(width * height * channel_count, 32 * 16 * 3);
+    color_config *config = open_config(NULL);
+    apply(config, "sRGB - Display", "ACES 1.0 - SDR Video", ours, 32 * 16);
+    for (int i = 0; i < 32 * 16 * 3; i++)
+        assert_near(ours[i], theirs[i], 2e-6);
+    color_config_destroy(config);
+    free(ours);
+    free(theirs);
+}
+
+static int make_folder_without_environment(void **state)
+{
+    unsetenv("OCIO");
+    return make_folder(state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(known_values),
+        cmocka_unit_test(defaults_and_names),
+        cmocka_unit_test(path_beats_environment_beats_builtin),
+        cmocka_unit_test(bad_configs_say_why),
+        cmocka_unit_test(unknown_names_list_the_known),
+        cmocka_unit_test(config_of_blender_kind),
+        cmocka_unit_test(configs_of_aces_kind),
+        cmocka_unit_test(falls_back_to_the_role),
+        cmocka_unit_test(bands_have_the_same_bits),
+        cmocka_unit_test(agrees_with_oiiotool),
+    };
+    return cmocka_run_group_tests(tests, make_folder_without_environment, remove_folder);
+}

@@ -1,0 +1,37 @@
+/* atomics.h: C11 atomics under names that carry the memory order, so that every ordering decision can be read at its call.
+ * Each use says with whom it pairs. Threads: any. */
+#ifndef AFTERGLOW_ATOMICS_H
+#define AFTERGLOW_ATOMICS_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef _Atomic uint32_t atomic_u32;
+typedef _Atomic uint64_t atomic_u64;
+
+static inline uint32_t load_relaxed_u32(const atomic_u32 *a) { return atomic_load_explicit(a, memory_order_relaxed); }
+static inline uint32_t load_acquire_u32(const atomic_u32 *a) { return atomic_load_explicit(a, memory_order_acquire); }
+static inline void store_relaxed_u32(atomic_u32 *a, uint32_t v) { atomic_store_explicit(a, v, memory_order_relaxed); }
+static inline void store_release_u32(atomic_u32 *a, uint32_t v) { atomic_store_explicit(a, v, memory_order_release); }
+
+/* Strong compare-and-swap; acquire both ways. On failure *expected holds what was found. */
+static inline bool cas_acquire_u32(atomic_u32 *a, uint32_t *expected, uint32_t desired)
+{
+    return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_acquire, memory_order_acquire);
+}
+
+/* The same with release on success: what was written before is seen by whoever acquires the new value. */
+static inline bool cas_release_u32(atomic_u32 *a, uint32_t *expected, uint32_t desired)
+{
+    return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_release, memory_order_relaxed);
+}
+
+static inline uint64_t load_relaxed_u64(const atomic_u64 *a) { return atomic_load_explicit(a, memory_order_relaxed); }
+static inline void store_relaxed_u64(atomic_u64 *a, uint64_t v) { atomic_store_explicit(a, v, memory_order_relaxed); }
+static inline uint64_t fetch_add_relaxed_u64(atomic_u64 *a, uint64_t v)
+{
+    return atomic_fetch_add_explicit(a, v, memory_order_relaxed);
+}
+
+#endif

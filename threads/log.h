@@ -1,0 +1,22 @@
+/* log.h: one serialised way out for messages, behind the caller's callback.
+ * Threads: every function may be called from any thread. */
+#ifndef AFTERGLOW_LOG_H
+#define AFTERGLOW_LOG_H
+
+#include "afterglow/base.h"
+
+#include <stdbool.h>
+
+typedef struct log_sink log_sink;
+
+/* fn NULL: messages are dropped. Returns NULL when out of memory. */
+log_sink *log_create(ag_log_fn *fn, void *user);
+void log_destroy(log_sink *log); /* NULL is fine */
+
+/* log NULL is fine: the message is dropped. Line ends at the end are cut. fn must not log to the same sink. */
+void log_message(log_sink *log, ag_log_level level, const char *format, ...) AG_PRINTF(3, 4);
+
+/* As log_message, but each distinct key speaks once in the life of the sink. Returns whether it spoke. */
+bool log_once(log_sink *log, ag_log_level level, const char *key, const char *format, ...) AG_PRINTF(4, 5);
+
+#endif
