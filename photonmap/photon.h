@@ -83,13 +83,16 @@ static inline uint16_t direction_encode(vec3 d)
     return (uint16_t)(i << 8 | j);
 }
 
-static inline vec3 direction_decode(uint16_t code)
+/* Of any length from 0.57 to 1: enough to compare angles with. */
+static inline vec3 direction_decode_unnormalized(uint16_t code)
 {
     float x = ((float)(code >> 8) - 127.0f) * (1.0f / 127.0f), y = ((float)(code & 255) - 127.0f) * (1.0f / 127.0f);
     float z = 1.0f - fabsf(x) - fabsf(y), fold = fmaxf(-z, 0.0f);
     x -= copysignf(fold, x);
     y -= copysignf(fold, y);
-    return vec3_normalize((vec3){x, y, z});
+    return (vec3){x, y, z};
 }
+
+static inline vec3 direction_decode(uint16_t code) { return vec3_normalize(direction_decode_unnormalized(code)); }
 
 #endif

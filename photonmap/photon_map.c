@@ -77,11 +77,11 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
     uint32_t count = found;
     if (found == map->nearest + 1) {
         count = map->nearest;
-        radius_squared = scratch[count].distance_squared;
+        radius_squared = photon_neighbor_distance_squared(scratch[count]);
     }
     int64_t sum[3] = {0, 0, 0};
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t code = map->set.photons[scratch[i].index].flux;
+        uint32_t code = map->set.photons[photon_neighbor_index(scratch[i])].flux;
         int shift = map->flux_exponent_max - flux_exponent(code);
         sum[0] += fixed_flux(code >> 16 & 255, shift);
         sum[1] += fixed_flux(code >> 8 & 255, shift);

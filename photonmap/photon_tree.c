@@ -179,7 +179,10 @@ typedef struct query {
     float position[3];
     vec3 normal;
     float min_cos;
+    uint32_t similar_code, other_code; /* normals, as photons have them, that were last found similar and not */
 } query;
+
+#define NO_CODE UINT32_MAX
 
 /* Goes down to the leaf on the query's side, leaving on the stack the other sides that are within the limit. */
 static range descend(const query *q, visit v, float limit, visit *stack, uint32_t *stack_count)
@@ -216,15 +219,43 @@ static float photon_distance_squared(const query *q, const photon *p)
     return x * x + y * y + z * z;
 }
 
-static bool has_similar_normal(const query *q, const photon *p)
+/* The cosine against min_cos >= 0, without a square root. */
+static bool is_similar_code(const query *q, uint16_t code)
 {
-    return vec3_dot(direction_decode(p->normal), q->normal) > q->min_cos;
+    vec3 n = direction_decode_unnormalized(code);
+    float d = vec3_dot(n, q->normal);
+    return d > 0.0f && d * d > q->min_cos * q->min_cos * vec3_length_squared(n);
+}
+
+/* Neighbours mostly share a normal: the last answers are kept. */
+static inline bool has_similar_normal(query *q, const photon *p)
+{
+    if (p->normal == q->similar_code)
+        return true;
+    if (p->normal == q->other_code)
+        return false;
+    bool is_similar = is_similar_code(q, p->normal);
+    if (is_similar)
+        q->similar_code = p->normal;
+    else
+        q->other_code = p->normal;
+    return is_similar;
+}
+
+static query make_query(const photon_tree *tree, vec3 position, vec3 normal, float min_cos)
+{
+    return (query){.tree = tree,
+                   .position = {position.x, position.y, position.z},
+                   .normal = normal,
+                   .min_cos = min_cos,
+                   .similar_code = NO_CODE,
+                   .other_code = NO_CODE};
 }
 
 uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared)
 {
-    query q = {tree, {position.x, position.y, position.z}, normal, min_cos};
+    query q = make_query(tree, position, normal, min_cos);
     float best = radius * radius;
     uint32_t found = PHOTON_NONE;
     visit stack[DEPTH_MAX];
@@ -249,25 +280,19 @@ uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal
     return found;
 }
 
-static bool is_nearer(photon_neighbor a, photon_neighbor b)
-{
-    return a.distance_squared < b.distance_squared || (a.distance_squared == b.distance_squared && a.index < b.index);
-}
-
-/* Quickselect over (distance squared, index), which are all different: the `wanted` nearest come first, the farthest of
+/* Quickselect over neighbours, which are all different: the `wanted` nearest come first, the farthest of
  * them at wanted - 1. */
 static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted)
 {
     int64_t low = 0, high = (int64_t)count - 1, target = (int64_t)wanted - 1;
     while (low < high) {
         photon_neighbor a = n[low], b = n[low + (high - low) / 2], c = n[high];
-        photon_neighbor pivot = is_nearer(a, b) ? (is_nearer(b, c) ? b : (is_nearer(a, c) ? c : a))
-                                                : (is_nearer(a, c) ? a : (is_nearer(b, c) ? c : b));
+        photon_neighbor pivot = a < b ? (b < c ? b : (a < c ? c : a)) : (a < c ? a : (b < c ? c : b));
         int64_t i = low, j = high;
         while (i <= j) {
-            while (is_nearer(n[i], pivot))
+            while (n[i] < pivot)
                 i++;
-            while (is_nearer(pivot, n[j]))
+            while (n[j] > pivot)
                 j--;
             if (i <= j) {
                 photon_neighbor hold = n[i];
@@ -284,12 +309,11 @@ static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted)
     }
 }
 
-uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
-                               uint32_t wanted, photon_neighbor *neighbors)
+/* Those of the `wanted` nearest that lie within the limit. */
+static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_neighbor *neighbors)
 {
-    query q = {tree, {position.x, position.y, position.z}, normal, min_cos};
+    const photon_tree *tree = q->tree;
     uint32_t capacity = photon_neighbors_capacity(wanted), count = 0;
-    float limit = radius * radius;
     visit stack[DEPTH_MAX];
     uint32_t stack_count = 1;
     stack[0] = (visit){.r = {0, tree->count}};
@@ -297,17 +321,17 @@ uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 norm
         visit v = stack[--stack_count];
         if (v.distance_squared > limit * 1.00001f)
             continue;
-        range leaf = descend(&q, v, limit, stack, &stack_count);
+        range leaf = descend(q, v, limit, stack, &stack_count);
         for (uint32_t i = leaf.low; i < leaf.high; i++) {
-            float d = photon_distance_squared(&q, &tree->photons[i]);
-            if (d > limit || !has_similar_normal(&q, &tree->photons[i]))
+            float d = photon_distance_squared(q, &tree->photons[i]);
+            if (d > limit || !has_similar_normal(q, &tree->photons[i]))
                 continue;
-            neighbors[count++] = (photon_neighbor){d, i};
+            neighbors[count++] = photon_neighbor_make(d, i);
             if (count == capacity) {
                 /* full: keep the nearest, and look no farther than they reach */
                 select_nearest(neighbors, count, wanted);
                 count = wanted;
-                limit = neighbors[wanted - 1].distance_squared;
+                limit = photon_neighbor_distance_squared(neighbors[wanted - 1]);
             }
         }
     }
@@ -316,4 +340,38 @@ uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 norm
         count = wanted;
     }
     return count;
+}
+
+/* A first radius squared, within which the wanted photons may be expected: the leaf around the query tells how dense they
+ * lie there. A function of the tree and the query alone. */
+static float guess_radius_squared(query *q, uint32_t wanted, float largest)
+{
+    visit stack[DEPTH_MAX];
+    uint32_t stack_count = 0, similar = 0;
+    range leaf = descend(q, (visit){.r = {0, q->tree->count}}, -1.0f, stack, &stack_count);
+    float reach = 0.0f;
+    for (uint32_t i = leaf.low; i < leaf.high; i++) {
+        if (!has_similar_normal(q, &q->tree->photons[i]))
+            continue;
+        reach = fmaxf(reach, photon_distance_squared(q, &q->tree->photons[i]));
+        similar++;
+    }
+    if (similar < 4)
+        return largest;
+    float guess = reach * (float)wanted / (float)similar;
+    return guess > 0.0f ? fminf(guess, largest) : largest;
+}
+
+uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                               uint32_t wanted, photon_neighbor *neighbors)
+{
+    query q = make_query(tree, position, normal, min_cos);
+    float largest = radius * radius, limit = guess_radius_squared(&q, wanted, largest);
+    for (;;) {
+        uint32_t count = collect_nearest(&q, limit, wanted, neighbors);
+        if (count == wanted || limit >= largest)
+            return count;
+        /* too few: by how many tells how much farther to look */
+        limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(count + 1)), largest);
+    }
 }

@@ -37,10 +37,24 @@ uint64_t photon_tree_bytes(const photon_tree *tree); /* of the nodes */
 uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared);
 
-typedef struct photon_neighbor {
+/* A photon found: its squared distance as the high half, its index as the low half. Distances are not negative, so their bits
+ * order as integers do: comparing two neighbours compares (distance squared, index). */
+typedef uint64_t photon_neighbor;
+
+static inline photon_neighbor photon_neighbor_make(float distance_squared, uint32_t index)
+{
+    uint32_t bits;
+    __builtin_memcpy(&bits, &distance_squared, sizeof bits);
+    return (uint64_t)bits << 32 | index;
+}
+static inline uint32_t photon_neighbor_index(photon_neighbor n) { return (uint32_t)n; }
+static inline float photon_neighbor_distance_squared(photon_neighbor n)
+{
+    uint32_t bits = (uint32_t)(n >> 32);
     float distance_squared;
-    uint32_t index;
-} photon_neighbor;
+    __builtin_memcpy(&distance_squared, &bits, sizeof bits);
+    return distance_squared;
+}
 
 /* The `wanted` nearest photons within radius, in no order, but with the farthest of them last when all were found.
  * neighbors: room for photon_neighbors_capacity(wanted). Returns how many were found. */

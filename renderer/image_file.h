@@ -66,14 +66,6 @@ ag_status image_file_check_target(const char *path, char *message, size_t messag
 ag_status image_file_read(const char *path, int *out_width, int *out_height, int *out_channel_count, float **out_pixels,
                           char *message, size_t message_size);
 
-/* Opens the module from another thread beforehand, so that its start-up overlaps with rendering. Optional. Whoever
- * calls it calls image_module_release before the process ends: a library that is still being opened must not meet
- * exit(). */
-void image_module_preload(void);
-
-/* Waits for the thread of image_module_preload, if there is one; the module stays open. May be called at any time. */
-void image_module_release(void);
-
 #ifdef __cplusplus
 }
 #endif

@@ -1,6 +1,5 @@
-/* image_module_loader.c: dlopen of the image module, on the caller's thread or ahead of time on one of its own.
- * Flow: image_file.c -> [here] -> image_oiio.cpp. Threads: any; one mutex, held while the module is being opened. Only
- * its holder starts or joins the helper thread, so joining is what hands over the result. */
+/* image_module_loader.c: dlopen of the image module.
+ * Flow: image_file.c -> [here] -> image_oiio.cpp. Threads: any; one mutex, held while the module is being opened. */
 #define _GNU_SOURCE /* dladdr1, secure_getenv */
 #include "image_module_loader.h"
 
@@ -20,9 +19,6 @@ enum { FOLDER_LIMIT = 4, MESSAGE_SIZE = 2048 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static const image_module *module;
-static bool helper_started;
-static pthread_t helper;
-static const image_module *helper_result;
 
 /* Cuts what does not fit. */
 static void append(char *text, size_t size, const char *addition)
@@ -132,47 +128,13 @@ static const image_module *open_anywhere(char *message, size_t message_size)
     return image_module_open_from(folders, count, message, message_size);
 }
 
-static void *helper_main(void *unused)
-{
-    char message[MESSAGE_SIZE];
-    (void)unused;
-    helper_result = open_anywhere(message, sizeof message); /* on failure the next use tries again, and tells */
-    return NULL;
-}
-
-/* The lock is held. */
-static void join_helper(void)
-{
-    if (helper_started) {
-        pthread_join(helper, NULL);
-        helper_started = false;
-        module = helper_result;
-    }
-}
-
 const image_module *image_module_get(char *message, size_t message_size)
 {
     snprintf(message, message_size, "%s", "");
     pthread_mutex_lock(&lock);
-    join_helper();
     if (!module)
         module = open_anywhere(message, message_size);
     const image_module *result = module;
     pthread_mutex_unlock(&lock);
     return result;
-}
-
-void image_module_preload(void)
-{
-    pthread_mutex_lock(&lock);
-    if (!module && !helper_started)
-        helper_started = pthread_create(&helper, NULL, helper_main, NULL) == 0; /* else: opened at first use */
-    pthread_mutex_unlock(&lock);
-}
-
-void image_module_release(void)
-{
-    pthread_mutex_lock(&lock);
-    join_helper();
-    pthread_mutex_unlock(&lock);
 }

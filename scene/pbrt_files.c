@@ -62,6 +62,8 @@ static char *resolve(const pbrt_parser *parser, const char *name)
 {
     if (name[0] == '/')
         return strdup(name);
+    if (strcmp(name, "-") == 0)
+        name = "./-"; /* a file: only the user may name standard input */
     char *path = join(parser->top_directory, name);
     char *directory = directory_of(parser->files[parser->file_count - 1].lexer.file);
     if (path && directory && access(path, F_OK) != 0) {
@@ -77,7 +79,7 @@ static char *resolve(const pbrt_parser *parser, const char *name)
     return path;
 }
 
-/* The files that are open, innermost first: "a.pbrt:3, included at b.pbrt:7, ..." */
+/* The files that are open, innermost first: "a.pbrt:3 < b.pbrt:7 < ..." */
 static void describe_chain(const pbrt_parser *parser, file_location where, char *out_text, size_t size)
 {
     size_t used = (size_t)snprintf(out_text, size, "%s:%d", where.file, where.line);

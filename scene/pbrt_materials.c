@@ -155,33 +155,31 @@ ag_status pbrt_material(pbrt_parser *parser, file_location where)
     return status;
 }
 
-/* The named material, made as a place to be filled where it is not there yet. */
-static ag_status find_named_material(pbrt_parser *parser, const char *name, file_location where,
-                                     pbrt_named_material **out_named)
+static pbrt_named_material *find_named_material(pbrt_parser *parser, const char *name)
 {
     uint32_t found;
-    if (!name_table_find(&parser->material_names, name, &found)) {
-        size_t count = parser->named_material_count;
-        if ((count & (count - 1)) == 0) { /* room has doubled at every power of two */
-            size_t capacity = count ? 2 * count : 16;
-            pbrt_named_material *larger =
-                count < UINT32_MAX / 2 ? realloc(parser->named_materials, capacity * sizeof *larger) : NULL;
-            if (!larger)
-                return AG_ERROR_MEMORY;
-            parser->named_materials = larger;
-        }
-        pbrt_named_material added = {.name = strdup(name), .where = where};
-        material place = default_material();
-        found = (uint32_t)count;
-        if (!added.name || name_table_set(&parser->material_names, name, found) ||
-            scene_add_material(parser->scene, &place, &added.index)) {
-            free(added.name);
+    return name_table_find(&parser->material_names, name, &found) ? &parser->named_materials[found] : NULL;
+}
+
+/* Adds a name that is not there yet, for the scene's material of that index. */
+static ag_status add_named_material(pbrt_parser *parser, const char *name, pbrt_named_material added)
+{
+    size_t count = parser->named_material_count;
+    if ((count & (count - 1)) == 0) { /* room has doubled at every power of two */
+        size_t capacity = count ? 2 * count : 16;
+        pbrt_named_material *larger =
+            count < UINT32_MAX / 2 ? realloc(parser->named_materials, capacity * sizeof *larger) : NULL;
+        if (!larger)
             return AG_ERROR_MEMORY;
-        }
-        parser->named_materials[count] = added;
-        parser->named_material_count++;
+        parser->named_materials = larger;
     }
-    *out_named = &parser->named_materials[found];
+    added.name = strdup(name);
+    if (!added.name || name_table_set(&parser->material_names, name, (uint32_t)count)) {
+        free(added.name);
+        return AG_ERROR_MEMORY;
+    }
+    parser->named_materials[count] = added;
+    parser->named_material_count++;
     return AG_OK;
 }
 
@@ -189,22 +187,29 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
 {
     const char *type = NULL;
     material m;
-    bool has_no_surface;
-    pbrt_named_material *named;
+    pbrt_named_material made = {.is_defined = true, .where = list->where};
     PBRT_TRY(parameter_get_string(list, parser->log, "type", &type));
     if (!type)
         return pbrt_error(parser, list->where, strlen("MakeNamedMaterial"),
                           "MakeNamedMaterial \"%s\" has no \"string type\"", list->name);
-    PBRT_TRY(find_named_material(parser, list->name, list->where, &named));
-    if (named->is_defined)
+    pbrt_named_material *named = find_named_material(parser, list->name);
+    if (named && named->is_defined)
         return pbrt_error(parser, list->where, strlen("MakeNamedMaterial"),
                           "material \"%s\" is made twice, first at %s:%d:%d", list->name, named->where.file,
                           named->where.line, named->where.column);
-    PBRT_TRY(read_material(parser, list, type, &m, &has_no_surface));
-    parser->scene->materials[named->index] = m;
+    PBRT_TRY(read_material(parser, list, type, &m, &made.has_no_surface));
+    PBRT_TRY(scene_add_material(parser->scene, &m, &made.index));
+    if (!named)
+        return add_named_material(parser, list->name, made);
+    /* it has been used before: fill the place that was made for it then */
+    if (made.has_no_surface)
+        log_at(parser->log, AG_LOG_WARNING, list->where,
+               "material \"%s\" has no surface, but is made after its first use: \"diffuse\" stands in until here",
+               list->name);
+    parser->scene->materials[named->index] = parser->scene->materials[made.index];
     named->is_defined = true;
-    named->has_no_surface = has_no_surface;
-    named->where = list->where;
+    named->has_no_surface = made.has_no_surface;
+    named->where = made.where;
     return AG_OK;
 }
 
@@ -217,17 +222,27 @@ ag_status pbrt_make_named_material(pbrt_parser *parser, file_location where)
     return status;
 }
 
+static ag_status use_named(pbrt_parser *parser, const char *name, file_location where)
+{
+    const pbrt_named_material *named = find_named_material(parser, name);
+    if (!named) { /* it may still be made, as in pbrt: keep a place for it */
+        pbrt_named_material used = {.where = where};
+        material place = default_material();
+        PBRT_TRY(scene_add_material(parser->scene, &place, &used.index));
+        PBRT_TRY(add_named_material(parser, name, used));
+        named = find_named_material(parser, name);
+    }
+    parser->state.material_index = named->index;
+    parser->state.has_no_surface = named->has_no_surface;
+    return AG_OK;
+}
+
 ag_status pbrt_use_named_material(pbrt_parser *parser, file_location where)
 {
     char *name;
-    pbrt_named_material *named;
     PBRT_TRY(pbrt_read_string(parser, "NamedMaterial", "a quoted name", &name, NULL));
-    ag_status status = find_named_material(parser, name, where, &named);
+    ag_status status = use_named(parser, name, where);
     free(name);
-    if (!status) {
-        parser->state.material_index = named->index;
-        parser->state.has_no_surface = named->has_no_surface;
-    }
     return status;
 }
 

@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+
 #include <cmocka.h>
 
 #include <stdio.h>
@@ -51,8 +52,8 @@ static void tokens_have_places(void **state)
 {
     (void)state;
     CHECK_TOKENS("Shape \"sphere\"\n  \"float radius\"[ 1.5 ]", {PBRT_TOKEN_WORD, 1, 1, "Shape"},
-                 {PBRT_TOKEN_STRING, 1, 7, "sphere"}, {PBRT_TOKEN_STRING, 2, 3, "float radius"}, {PBRT_TOKEN_OPEN, 2, 17, "["},
-                 {PBRT_TOKEN_WORD, 2, 19, "1.5"}, {PBRT_TOKEN_CLOSE, 2, 23, "]"});
+                 {PBRT_TOKEN_STRING, 1, 7, "sphere"}, {PBRT_TOKEN_STRING, 2, 3, "float radius"},
+                 {PBRT_TOKEN_OPEN, 2, 17, "["}, {PBRT_TOKEN_WORD, 2, 19, "1.5"}, {PBRT_TOKEN_CLOSE, 2, 23, "]"});
     /* nothing needs blanks between it but words */
     CHECK_TOKENS("a\"b\"c[d]e#f\ng", {PBRT_TOKEN_WORD, 1, 1, "a"}, {PBRT_TOKEN_STRING, 1, 2, "b"},
                  {PBRT_TOKEN_WORD, 1, 5, "c"}, {PBRT_TOKEN_OPEN, 1, 6, "["}, {PBRT_TOKEN_WORD, 1, 7, "d"},
@@ -71,8 +72,9 @@ static void blanks_and_comments_are_skipped(void **state)
 static void strings_have_escapes(void **state)
 {
     (void)state;
-    CHECK_TOKENS("\"a\\\"b\\\\c\\n\\t\\r\\b\\f\\'\" \"\" \"\xc3\xa4#[]\"", {PBRT_TOKEN_STRING, 1, 1, "a\"b\\c\n\t\r\b\f'"},
-                 {PBRT_TOKEN_STRING, 1, 23, ""}, {PBRT_TOKEN_STRING, 1, 26, "\xc3\xa4#[]"});
+    CHECK_TOKENS("\"a\\\"b\\\\c\\n\\t\\r\\b\\f\\'\" \"\" \"\xc3\xa4#[]\"",
+                 {PBRT_TOKEN_STRING, 1, 1, "a\"b\\c\n\t\r\b\f'"}, {PBRT_TOKEN_STRING, 1, 23, ""},
+                 {PBRT_TOKEN_STRING, 1, 26, "\xc3\xa4#[]"});
 }
 
 static void bad_text_is_refused(void **state)
@@ -95,7 +97,9 @@ static void bad_text_is_refused(void **state)
         {"# \0", 3, 1, 3, "NUL byte: this is not a text file"},
         {" \x7f", 2, 1, 2, "unexpected byte 0x7f"},
         {" \xc3\xa4", 3, 1, 2, "unexpected byte 0xc3"},
-        {"\xff\xfe" "a\0", 4, 1, 1, "the file is UTF-16; only ASCII and UTF-8 can be read"},
+        {"\xff\xfe"
+         "a\0",
+         4, 1, 1, "the file is UTF-16; only ASCII and UTF-8 can be read"},
         {"\xfe\xff\0a", 4, 1, 1, "the file is UTF-16; only ASCII and UTF-8 can be read"},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
@@ -176,13 +180,38 @@ static void check_decimal(const char *text)
 static void decimals_are_rounded_correctly(void **state)
 {
     (void)state;
-    static const char *const HARD[] = {
-        "0", "-0", "1", ".5", "5.", "+3", "0.1", "0.30000000000000004", "9007199254740993", "9007199254740992.5",
-        "9007199254740993.0000000000000000000000001", "1e22", "1e23", "8.5e22", "123456789012345678e5", "4.9e-324",
-        "2.4703282292062327e-324", "2.4703282292062328e-324", "2.2250738585072011e-308", "1.7976931348623157e308",
-        "1.7976931348623159e308", "1e400", "1e-400", "0.0000000000000000000000000000000000001e40", "9999999999999999999",
-        "18446744073709551616", "1.00000000000000011102230246251565", "1.00000000000000011102230246251566e-3",
-        "6929495644600919.5", "0e999999999999999999", "1e-99999999999999999999", "3.5184372088831999999e13"};
+    static const char *const HARD[] = {"0",
+                                       "-0",
+                                       "1",
+                                       ".5",
+                                       "5.",
+                                       "+3",
+                                       "0.1",
+                                       "0.30000000000000004",
+                                       "9007199254740993",
+                                       "9007199254740992.5",
+                                       "9007199254740993.0000000000000000000000001",
+                                       "1e22",
+                                       "1e23",
+                                       "8.5e22",
+                                       "123456789012345678e5",
+                                       "4.9e-324",
+                                       "2.4703282292062327e-324",
+                                       "2.4703282292062328e-324",
+                                       "2.2250738585072011e-308",
+                                       "1.7976931348623157e308",
+                                       "1.7976931348623159e308",
+                                       "1e400",
+                                       "1e-400",
+                                       "0.0000000000000000000000000000000000001e40",
+                                       "9999999999999999999",
+                                       "18446744073709551616",
+                                       "1.00000000000000011102230246251565",
+                                       "1.00000000000000011102230246251566e-3",
+                                       "6929495644600919.5",
+                                       "0e999999999999999999",
+                                       "1e-99999999999999999999",
+                                       "3.5184372088831999999e13"};
     for (size_t i = 0; i < sizeof HARD / sizeof *HARD; i++)
         check_decimal(HARD[i]);
     uint64_t random = 12345;
@@ -225,7 +254,8 @@ static void what_is_no_decimal_is_refused(void **state)
     double value;
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++)
         assert_null(decimal_parse(WRONG[i], &value));
-    static const char *const PARTLY[] = {"1e", "1e+", "0x10", "1.2.3", "1e5e5", "1-2"}; /* a number with more behind it */
+    static const char *const PARTLY[] = {"1e",    "1e+",   "0x10",
+                                         "1.2.3", "1e5e5", "1-2"}; /* a number with more behind it */
     for (size_t i = 0; i < sizeof PARTLY / sizeof *PARTLY; i++) {
         const char *behind = decimal_parse(PARTLY[i], &value);
         assert_non_null(behind);

@@ -1,0 +1,52 @@
+#!/bin/bash
+# The irradiance slot's protocol, checked exhaustively by spin; and that spin catches it when it is broken.
+# Exit 77 (skipped) where spin is not installed.
+set -u
+model=$(cd "$(dirname "$0")" && pwd)/irradiance_slot.pml
+command -v spin >/dev/null || { echo "spin is not installed: skipped"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failures=0
+
+# check NAME EXPECTED(holds|fails) COMPILE_FLAGS RUN_FLAGS [SPIN_FLAGS...]: pan says "errors: 0" where all holds;
+# a search that was cut short does not count.
+check() {
+    local name=$1 expected=$2 compile=$3 run=$4
+    shift 4
+    if ! spin -a "$@" "$model" >spin.log 2>&1 || ! ${CC:-cc} -O2 -w $compile -DMEMLIM=1024 pan.c -o pan >>spin.log 2>&1; then
+        echo "FAILED: $name: the model does not build"
+        cat spin.log
+        failures=$((failures + 1))
+        return
+    fi
+    # shellcheck disable=SC2086
+    ./pan -m100000 $run >pan.log 2>&1
+    local outcome=unclear
+    if grep -q "errors: 0" pan.log; then
+        outcome=holds
+    elif grep -q "errors: [1-9]" pan.log; then
+        outcome=fails
+    fi
+    grep -Eq "max search depth too small|Search not completed|out of memory|aborted" pan.log && [ $outcome = holds ] && outcome=incomplete
+    if [ $outcome = "$expected" ]; then
+        echo "ok: $name $outcome ($(grep -Eo '[0-9.e+]+ states, stored' pan.log | head -1))"
+    else
+        echo "FAILED: $name: expected that it $expected, but: $outcome"
+        cat pan.log
+        failures=$((failures + 1))
+    fi
+}
+
+safety="-DSAFETY -DNOCLAIM"
+liveness="-DNFAIR=3"
+
+check "no assertion fails, no deadlock" holds "$safety" ""
+check "every request ends" holds "$liveness" "-a -f -N every_request_ends"
+check "what is ready stays ready" holds "" "-a -N ready_is_final"
+
+check "a claim that is not atomic: safety" fails "$safety" "" -DBROKEN_CLAIM
+check "a claim that is never released: liveness" fails "$liveness" "-a -f -N every_request_ends" -DBROKEN_RELEASE
+check "a claim held while waiting: liveness" fails "$liveness" "-a -f -N every_request_ends" -DBROKEN_NESTING
+
+[ $failures -eq 0 ]

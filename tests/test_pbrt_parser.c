@@ -1,0 +1,657 @@
+/* test_pbrt_parser.c: every error of the pbrt reader by its message and place, every warning once, blocks, transforms,
+ * files that include one another.
+ * Threads: one. */
+#define _POSIX_C_SOURCE 200809L
+#include "pbrt_fixture.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+static void errors_name_place_and_reason(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *place, *message;
+    } CASES[] = {
+        {"Translate 1 2 3", "1:16", "the file ends without WorldBegin"},
+        {"WorldBegin Shape \"sphere", "1:18", "unterminated string"},
+        {"WorldBegin Shape \"sphere\n\"", "1:18", "unterminated string"},
+        {"WorldBegin \"a\\q\"", "1:14", "unknown escape in a string"},
+        {"Bogus 1 2", "1:1", "unknown directive Bogus"},
+        {"WorldBegin 12 3", "1:12", "a directive should stand here, not 12"},
+        {"WorldBegin \"sphere\"", "1:12", "a directive should stand here, not \"sphere\""},
+        {"WorldBegin ]", "1:12", "a directive should stand here, not ]"},
+        {"WorldBegin Translate 1 2", "1:25", "Translate expects 3 numbers, but the file ends"},
+        {"WorldBegin Translate 1 2 x", "1:26", "Translate expects 3 numbers, not x"},
+        {"WorldBegin Translate 1 2 1e999", "1:26", "the number is too large"},
+        {"WorldBegin Translate 1 2 \"3\"", "1:26", "Translate expects 3 numbers, not \"3\""},
+        {"WorldBegin Scale 0 1 1", "1:12", "Scale 0 1 1 cannot be undone"},
+        {"Rotate 30 0 0 0", "1:1", "Rotate has no axis: 0 0 0"},
+        {"LookAt 1 2 3 1 2 3 0 1 0", "1:1", "LookAt looks at the eye itself"},
+        {"LookAt 0 0 0 0 1 0 0 1 0", "1:1", "LookAt has an up vector that is zero or along the view"},
+        {"Transform 1 2 3", "1:11", "Transform expects [, not 1"},
+        {"Transform [ 1 2 3 ]", "1:19", "Transform expects 16 numbers, not ]"},
+        {"Transform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 1 ]", "1:45", "Transform expects ] after 16 numbers, not 1"},
+        {"Transform [ 1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1 ]", "1:1",
+         "Transform has a matrix that cannot be undone (it is singular)"},
+        {"WorldBegin Scale 1e200 1 1 Scale 1e200 1 1", "1:28",
+         "Scale makes a transform that is too large or too small"},
+        {"Camera perspective", "1:8", "Camera expects a quoted type, not perspective"},
+        {"Shape \"sphere\"", "1:1", "Shape may only stand after WorldBegin"},
+        {"WorldBegin Camera \"perspective\"", "1:12", "Camera may only stand before WorldBegin"},
+        {"WorldBegin WorldBegin", "1:12", "WorldBegin may only stand once"},
+        {"WorldBegin AttributeEnd", "1:12", "AttributeEnd without AttributeBegin"},
+        {"WorldBegin AttributeBegin\n AttributeBegin AttributeEnd", "2:29",
+         "the file ends, but AttributeBegin at t:1:12 is still open"},
+        {"WorldBegin\nAttributeBegin ObjectEnd", "2:16", "ObjectEnd, but AttributeBegin at t:2:1 is still open"},
+        {"WorldBegin ObjectBegin \"a\" AttributeEnd", "1:28", "AttributeEnd, but ObjectBegin at t:1:12 is still open"},
+        {"WorldBegin ObjectBegin \"a\" ObjectBegin \"b\"", "1:28", "ObjectBegin within another object"},
+        {"WorldBegin ObjectBegin \"a\"", "1:27", "the file ends, but ObjectBegin at t:1:12 is still open"},
+        {"WorldBegin ObjectBegin \"a\" ObjectInstance \"b\"", "1:28", "ObjectInstance within an object"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" [ 1", "1:45",
+         "\"float radius\" expects numbers, but the file ends"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" [ 1 2 ]", "1:27",
+         "\"float radius\" should have 1 value, but has 2"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" [ ]", "1:27", "\"float radius\" should have 1 value, but has 0"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" \"big\"", "1:42",
+         "\"float radius\" expects numbers, not \"big\""},
+        {"WorldBegin Shape \"sphere\" \"float radius\" 5x", "1:42", "\"float radius\" expects numbers, not 5x"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" 1e400", "1:42", "the number is too large"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" 1e300", "1:27", "\"float radius\": 1e+300 is too large"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" nan", "1:42", "\"float radius\" expects numbers, not nan"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" [ [ 1 ] ]", "1:44", "\"float radius\" expects numbers, not ["},
+        {"WorldBegin Shape \"sphere\" \"float radius\" -1", "1:27", "\"radius\" should be above 0"},
+        {"WorldBegin Shape \"sphere\" \"radius\" 1", "1:27", "\"radius\" should be a parameter's \"type name\""},
+        {"WorldBegin Shape \"sphere\" \"double radius\" 1", "1:27", "\"double radius\": unknown parameter type"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" 1 \"float radius\" 2", "1:44",
+         "\"radius\" is given twice, first at 1:27"},
+        {"WorldBegin Shape \"sphere\" \"integer radius\" 1", "1:27", "\"integer radius\" should be \"float radius\""},
+        {"WorldBegin Shape \"sphere\" \"integer radius\" 1.5", "1:27",
+         "\"integer radius\": 1.5 (value 1) is not an integer of 32 bits"},
+        {"WorldBegin Shape \"sphere\" \"integer radius\" 3000000000", "1:27",
+         "\"integer radius\": 3e+09 (value 1) is not an integer of 32 bits"},
+        {"WorldBegin Shape \"sphere\" \"bool radius\" 1", "1:41", "\"bool radius\" expects true or false, not 1"},
+        {"WorldBegin Shape \"sphere\" \"string radius\" 1", "1:43", "\"string radius\" expects quoted strings, not 1"},
+        {"WorldBegin Shape \"sphere\" \"spectrum radius\" [ true ]", "1:47",
+         "\"spectrum radius\" expects a name or numbers, not true"},
+        {"WorldBegin Shape \"sphere\" \"spectrum radius\" [ 1 \"a\" ]", "1:49",
+         "\"spectrum radius\" expects numbers, not \"a\""},
+        {"WorldBegin Shape \"sphere\" \"spectrum radius\" [ 1 2 3 ]", "1:27",
+         "\"spectrum radius\" has 3 numbers, which is no multiple of 2"},
+        {"WorldBegin Shape \"sphere\" \"rgb c\" [ 1 2 ]", "1:27", "\"rgb c\" has 2 numbers, which is no multiple of 3"},
+        {"WorldBegin Shape \"disk\" \"float innerradius\" 1", "1:25",
+         "\"innerradius\" should be from 0 to below \"radius\""},
+        {"WorldBegin Shape \"disk\" \"float radius\" 0", "1:25", "\"radius\" should be above 0"},
+        {"WorldBegin Translate 1e19 0 0 Shape \"sphere\"", "1:31", "it reaches beyond 1e18 units in world space"},
+        {"WorldBegin Shape \"spehre\"", "1:12", "unknown shape \"spehre\""},
+        {"WorldBegin Shape \"trianglemesh\"", "1:12", "\"point3 P\" is missing"},
+        {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ]", "1:33",
+         "\"integer indices\" is missing (of 4 vertices; only 3 can do without)"},
+        {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 ]", "1:33",
+         "\"point3 P\" has 11 numbers, which is no multiple of 3"},
+        {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 ]", "1:66",
+         "\"indices\" has 2 values, which is no multiple of 3"},
+        {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 3 ]", "1:66",
+         "index 3 (value 3 of \"indices\") is out of range, there are 3 vertices"},
+        {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 -1 2 ]", "1:66",
+         "index -1 (value 2 of \"indices\") is out of range, there are 3 vertices"},
+        {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 2e18 0 ]", "1:33",
+         "a vertex lies beyond 1e18 units in world space"},
+        {"WorldBegin Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ]", "1:33",
+         "\"integer indices\" is missing (of 3 vertices; only 4 can do without)"},
+        {"WorldBegin MakeNamedMaterial \"a\" \"rgb reflectance\" [ 1 1 1 ]", "1:12",
+         "MakeNamedMaterial \"a\" has no \"string type\""},
+        {"WorldBegin MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string type\" "
+         "\"diffuse\"",
+         "2:1", "material \"a\" is made twice, first at t:1:12"},
+        {"WorldBegin\n  NamedMaterial \"nope\" NamedMaterial \"nope\"", "2:3", "no material is named \"nope\""},
+        {"WorldBegin Material \"diffuse\" \"rgb reflectance\" [ -1 0 0 ]", "1:31",
+         "\"rgb reflectance\" has a negative component, -1"},
+        {"WorldBegin Material \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"rgb k\" [ 1 1 1 ]", "1:33",
+         "\"reflectance\" and \"eta\" or \"k\" cannot both be given to a conductor"},
+        {"WorldBegin Material \"conductor\" \"rgb eta\" [ 0 1 1 ]", "1:33", "\"eta\" should be above 0"},
+        {"WorldBegin Material \"conductor\" \"float roughness\" -1", "1:33", "\"roughness\" should not be negative"},
+        {"WorldBegin Material \"dielectric\" \"float eta\" 0", "1:34", "\"eta\" should be above 0"},
+        {"WorldBegin Material \"dielectric\" \"float vroughness\" -1", "1:34", "\"vroughness\" should not be negative"},
+        {"WorldBegin LightSource \"foo\"", "1:12", "unknown light \"foo\""},
+        {"WorldBegin LightSource \"point\" \"float scale\" -1", "1:32", "\"scale\" should not be negative"},
+        {"WorldBegin LightSource \"point\" \"rgb I\" [ -1 0 0 ]", "1:32", "\"rgb I\" has a negative component, -1"},
+        {"WorldBegin LightSource \"point\" \"blackbody I\" 10", "1:32",
+         "\"blackbody I\": 10 is not a temperature from 500 to 1e+06 kelvin"},
+        {"WorldBegin LightSource \"point\" \"blackbody I\" [ 5000 2 ]", "1:32",
+         "\"blackbody I\" should have 1 value, but has 2"},
+        {"WorldBegin LightSource \"point\" \"rgb I\" [ 1e30 0 0 ] \"float scale\" 1e30", "1:53",
+         "the light is too bright for a float"},
+        {"WorldBegin LightSource \"spot\" \"float coneangle\" 0", "1:31",
+         "\"coneangle\" should be within (0, 180] degrees"},
+        {"WorldBegin LightSource \"spot\" \"float conedeltaangle\" 90", "1:31",
+         "\"conedeltaangle\" should be from 0 to twice \"coneangle\""},
+        {"WorldBegin LightSource \"spot\" \"point3 to\" [ 0 0 0 ]", "1:31", "\"from\" and \"to\" give no direction"},
+        {"WorldBegin LightSource \"distant\" \"point3 from\" [ 0 0 1 ]", "1:12",
+         "\"from\" and \"to\" give no direction"},
+        {"WorldBegin AreaLightSource \"area\"", "1:12", "unknown area light \"area\""},
+        {"Camera \"foo\"", "1:1", "unknown camera \"foo\""},
+        {"Camera \"perspective\" \"float fov\" 180", "1:22", "the field of view should be within (0, 180) degrees"},
+        {"Camera \"perspective\" \"float fov\" 0", "1:22", "the field of view should be within (0, 180) degrees"},
+        {"Camera \"perspective\" \"float halffov\" 95", "1:22", "the field of view should be within (0, 180) degrees"},
+        {"Camera \"perspective\" \"float lensradius\" -1", "1:22", "\"lensradius\" should not be negative"},
+        {"Camera \"perspective\" \"float focaldistance\" 0", "1:22", "\"focaldistance\" should be above 0"},
+        {"Camera \"perspective\" \"float frameaspectratio\" 0", "1:22", "\"frameaspectratio\" should be above 0"},
+        {"Camera \"perspective\" \"float screenwindow\" [ 1 0 0 1 ]", "1:22",
+         "\"screenwindow\" should be x0 x1 y0 y1, with x0 < x1 and y0 < y1"},
+        {"ColorSpace \"foo\"", "1:1", "unknown colour space \"foo\""},
+        {"ActiveTransform Foo", "1:17", "ActiveTransform expects StartTime, EndTime or All, not Foo"},
+        {"Option \"a\" [", "1:12", "Option expects a value, not ["},
+        {"Include foo", "1:9", "Include expects a quoted file name, not foo"},
+        {"WorldBegin Texture \"a\" b", "1:24", "Texture expects a quoted type after its name, not b"},
+        {"WorldBegin Shape \"sphere\" \"float radius\" true", "1:42", "\"float radius\" expects numbers, not true"},
+        {"WorldBegin Shape sphere", "1:18", "Shape expects a quoted type, not sphere"},
+        {"Integrator", "1:11", "Integrator expects a quoted type, but the file ends"},
+        {"WorldBegin Shape \"sphere\" \"point3 c\" [ 1 2 3 \"a\" ]", "1:46", "\"point3 c\" expects numbers, not \"a\""},
+        {"WorldBegin Shape \"sphere\" \"bool b\" \"maybe\"", "1:36", "\"bool b\" expects true or false, not \"maybe\""},
+        {"WorldBegin LightSource \"point\" \"float from\" [ 1 2 3 ]", "1:32",
+         "\"float from\" should be \"point3 from\""},
+        {"WorldBegin Shape \"trianglemesh\" \"float P\" [ 1 2 3 ]", "1:33", "\"float P\" should be \"point3 P\""},
+        {"WorldBegin AreaLightSource \"diffuse\" \"bool twosided\" [ true false ]", "1:38",
+         "\"bool twosided\" should have 1 value, but has 2"},
+        {"WorldBegin AreaLightSource \"diffuse\" \"float power\" 1e30 \"float scale\" 1e30 Scale 1e-8 1e-8 1e-8 "
+         "Shape \"sphere\"",
+         "1:97", "AreaLightSource \"diffuse\": the light is too bright for a float"},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char expected[256];
+        snprintf(expected, sizeof expected, "t:%s: error: %s\n", CASES[i].place, CASES[i].message);
+        reading r = reading_create(NULL, CASES[i].text, strlen(CASES[i].text));
+        if (r.status != AG_ERROR_SCENE || r.count[AG_LOG_ERROR] != 1 ||
+            strncmp(r.said[AG_LOG_ERROR], expected, strlen(expected)) != 0)
+            fail_msg("%s\n    should say: %s    but says: %s", CASES[i].text, expected,
+                     r.said[AG_LOG_ERROR] ? r.said[AG_LOG_ERROR] : "nothing\n");
+        reading_destroy(&r);
+    }
+}
+
+static void check_error(const char *text, const char *expected)
+{
+    reading r = reading_create(NULL, text, strlen(text));
+    assert_int_equal(r.status, AG_ERROR_SCENE);
+    assert_string_equal(r.said[AG_LOG_ERROR], expected);
+    reading_destroy(&r);
+}
+
+static void errors_show_their_line(void **state)
+{
+    (void)state;
+    check_error("WorldBegin\n\tShape \"sphere\" \"float radius\" five\r\n",
+                "t:2:32: error: \"float radius\" expects numbers, not five\n"
+                "     Shape \"sphere\" \"float radius\" five\n"
+                "                                   ^~~~\n");
+    check_error("WorldBegin Shape \"sphere\" \"float radius\" -1",
+                "t:1:27: error: \"radius\" should be above 0\n"
+                "    WorldBegin Shape \"sphere\" \"float radius\" -1\n"
+                "                              ^~~~~~~~~~~~~~\n");
+    check_error("", "t:1:1: error: the file ends without WorldBegin\n    \n    ^\n");
+}
+
+static void parameters_are_limited(void **state)
+{
+    (void)state;
+    char *text = malloc(100000);
+    assert_non_null(text);
+    size_t used = (size_t)sprintf(text, "Film \"rgb\"");
+    for (int i = 0; i <= 1000; i++)
+        used += (size_t)sprintf(text + used, "\n\"float p%d\" 1", i);
+    check_error(text,
+                "t:1002:1: error: Film has more than 1000 parameters\n    \"float p1000\" 1\n    ^~~~~~~~~~~~~\n");
+    free(text);
+}
+
+/* Each text, said twice, warns once. */
+static void warnings_are_given_once(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *warning;
+    } CASES[] = {
+        {"Shape \"plymesh\" \"string filename\" \"a.ply\"", "Shape \"plymesh\" is not supported yet and is left out"},
+        {"Shape \"cylinder\"", "Shape \"cylinder\" is not supported yet and is left out"},
+        {"Shape \"curve\"", "Shape \"curve\" is not supported yet and is left out"},
+        {"Shape \"loopsubdiv\"", "Shape \"loopsubdiv\" is not supported yet and is left out"},
+        {"Shape \"sphere\" \"float phimax\" 90", "partial shapes are not supported yet: a whole \"sphere\" is used"},
+        {"Shape \"sphere\" \"float zmin\" -0.5", "partial shapes are not supported yet: a whole \"sphere\" is used"},
+        {"Shape \"disk\" \"float phimax\" 90", "partial shapes are not supported yet: a whole \"disk\" is used"},
+        {"Shape \"sphere\" \"float alpha\" 0.5",
+         "Shape \"sphere\": \"float alpha\" is not known, or not supported yet, and is ignored"},
+        {"Material \"measured\" \"string filename\" \"a\"",
+         "material \"measured\" is not known, or not supported yet: \"diffuse\" with a reflectance of 0.5 stands in"},
+        {"Material \"coateddiffuse\"",
+         "material \"coateddiffuse\" is not supported yet: \"diffuse\" of the same reflectance stands in"},
+        {"Material \"diffuse\" \"texture reflectance\" \"wood\"",
+         "textures are not supported yet: \"texture reflectance\" is ignored and the default is used"},
+        {"Material \"diffuse\" \"spectrum reflectance\" [ 400 1 700 1 ]",
+         "spectra given by their values are not supported yet: \"spectrum reflectance\" is ignored and the default is "
+         "used"},
+        {"Material \"conductor\" \"spectrum eta\" \"metal-Xx-eta\"",
+         "the spectrum \"metal-Xx-eta\" is not known, or not supported yet: the default of \"eta\" is used"},
+        {"LightSource \"point\" \"point from\" [ 0 0 1 ]",
+         "the parameter type \"point\" is called \"point3\" in pbrt-v4 and is read as that"},
+        {"Material \"interface\" Shape \"sphere\"",
+         "shapes with the material \"interface\" have no surface and are left out; media are not supported yet"},
+        {"LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]",
+         "LightSource \"infinite\" is not supported yet and is left out"},
+        {"LightSource \"goniometric\"", "LightSource \"goniometric\" is not supported yet and is left out"},
+        {"LightSource \"projection\"", "LightSource \"projection\" is not supported yet and is left out"},
+        {"AreaLightSource \"diffuse\" \"string filename\" \"a.exr\"",
+         "AreaLightSource \"diffuse\": \"string filename\" is not known, or not supported yet, and is ignored"},
+        {"Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"",
+         "Texture \"a\" of class \"imagemap\": textures are not supported yet"},
+        {"MediumInterface \"fog\"",
+         "media are not supported yet: MediumInterface \"fog\" is ignored, as are any others"},
+        {"MediumInterface \"\" \"fog\" MediumInterface \"\"",
+         "media are not supported yet: MediumInterface \"\" is ignored, as are any others"},
+        {"MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"",
+         "media are not supported yet: MakeNamedMedium \"fog\" is ignored, as are any others"},
+        {"Attribute \"shape\" \"float radius\" 2",
+         "Attribute \"shape\" is not supported yet: its parameters are ignored, as are those of any others"},
+        {"ColorSpace \"rec2020\"", "ColorSpace \"rec2020\" is not supported yet: rgb values are taken for sRGB's"},
+        {"ActiveTransform EndTime Translate 1 0 0 ActiveTransform All",
+         "ActiveTransform: motion is not supported yet, everything stands as it does at the start time"},
+        {"ObjectBegin \"a\" Shape \"sphere\" ObjectEnd",
+         "object instances are not supported yet: shapes between ObjectBegin and ObjectEnd are left out"},
+        {"ObjectInstance \"a\"",
+         "object instances are not supported yet: ObjectInstance \"a\" is left out, as are any others"},
+        {"TransformBegin TransformEnd", "TransformBegin and TransformEnd are deprecated and taken, as in pbrt-v4, for "
+                                        "AttributeBegin and AttributeEnd"},
+        {"WorldEnd", "WorldEnd is not part of pbrt-v4 and is ignored"},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char text[512], expected[512];
+        size_t length = (size_t)snprintf(text, sizeof text, "WorldBegin\n%s\n%s\n", CASES[i].text, CASES[i].text);
+        reading r = reading_create(NULL, text, length);
+        assert_int_equal(r.status, AG_OK);
+        if (r.count[AG_LOG_WARNING] != 1)
+            fail_msg("%s: %d warnings", CASES[i].text, r.count[AG_LOG_WARNING]);
+        int line, column;
+        assert_int_equal(sscanf(r.said[AG_LOG_WARNING], "t:%d:%d: ", &line, &column), 2);
+        assert_int_equal(line, 2);
+        snprintf(expected, sizeof expected, "warning: %s\n", CASES[i].warning);
+        assert_string_equal(strstr(r.said[AG_LOG_WARNING], "warning: "), expected);
+        reading_destroy(&r);
+    }
+}
+
+static void options_warn_where_they_matter(void **state)
+{
+    (void)state;
+    const char *text =
+        "Option \"seed\" 7 Option \"seed\" 8 Option \"rendercoordsys\" \"world\" Option \"wavefront\" true\n"
+        "TransformTimes 0 1 WorldBegin\nImport \"a.pbrt\" CoordSysTransform \"nowhere\"";
+    reading r = reading_create(NULL, text, strlen(text));
+    assert_int_equal(r.status, AG_OK);
+    assert_string_equal(r.said[AG_LOG_WARNING],
+                        "t:1:1: warning: Option \"seed\" is not known, or not supported yet, and is ignored\n"
+                        "t:2:1: warning: TransformTimes: motion is not supported yet, everything stands as it does at "
+                        "the start time\n"
+                        "t:3:1: warning: Import is not supported yet: \"a.pbrt\" is left out\n"
+                        "t:3:17: warning: no coordinate system is named \"nowhere\": CoordSysTransform is ignored\n");
+    reading_destroy(&r);
+}
+
+static void words_for_the_renderer_are_kept(void **state)
+{
+    (void)state;
+    reading r = reading_of("Integrator \"photonmap\" \"integer nused\" [ 300 ] \"float maxdist\" 3 \"bool b\" true\n"
+                           "\"bool c\" [ \"false\" ] \"string s\" [ \"x\" \"y\" ] \"integer empty\" [ ]\n"
+                           "Sampler \"halton\" Sampler \"sobol\" \"integer pixelsamples\" 16\n"
+                           "Film \"rgb\" \"string filename\" \"a.exr\" PixelFilter \"box\" Accelerator \"bvh\"\n"
+                           "\"integer maxnodeprims\" 4 ColorSpace \"srgb\" WorldBegin");
+    parameter_list *list = &r.scene->integrator;
+    assert_string_equal(list->directive, "Integrator");
+    assert_string_equal(list->name, "photonmap");
+    assert_int_equal(list->count, 6);
+    assert_int_equal(list->where.line, 1);
+    assert_int_equal(list->where.column, 1);
+    int64_t nused = 0;
+    float maxdist = 0.0f;
+    bool b = false, c = true;
+    assert_int_equal(parameter_get_int(list, NULL, "nused", &nused), AG_OK);
+    assert_int_equal(parameter_get_float(list, NULL, "maxdist", &maxdist), AG_OK);
+    assert_int_equal(parameter_get_bool(list, NULL, "b", &b), AG_OK);
+    assert_int_equal(parameter_get_bool(list, NULL, "c", &c), AG_OK);
+    assert_true(nused == 300 && maxdist == 3.0f && b && !c);
+    assert_int_equal(parameter_list_find(list, "s")->count, 2);
+    assert_int_equal(parameter_list_find(list, "empty")->count, 0);
+    assert_null(parameter_list_find(list, "nothing"));
+    assert_string_equal(r.scene->sampler.name, "sobol");
+    assert_string_equal(r.scene->film.name, "rgb");
+    assert_string_equal(r.scene->pixel_filter.name, "box");
+    assert_false(r.scene->has_camera);
+    reading_destroy(&r);
+}
+
+/* Where the origin of the only sphere comes to lie. */
+static void check_origin(const char *text, double x, double y, double z)
+{
+    reading r = reading_of(text);
+    assert_int_equal(r.scene->shape_count, 1);
+    assert_vec3(transform_point(&r.scene->shapes[0].as.quadric.world_from_object, vec3_make(0, 0, 0)), x, y, z, 1e-6);
+    reading_destroy(&r);
+}
+
+static void transforms_compose_as_in_pbrt(void **state)
+{
+    (void)state;
+    check_origin("WorldBegin Translate 1 2 3 Scale 2 2 2 Translate 1 0 0 Shape \"sphere\"", 3, 2, 3);
+    check_origin("WorldBegin Rotate 90 0 0 2 Translate 1 0 0 Shape \"sphere\"", 0, 1, 0);
+    check_origin("WorldBegin Translate 9 9 9 Transform [ 1 0 0 0  0 1 0 0  0 0 1 0  4 5 6 1 ] Shape \"sphere\"", 4, 5,
+                 6);
+    check_origin("WorldBegin Translate 1 0 0 ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 4 5 6 1 ] Shape \"sphere\"", 5,
+                 5, 6);
+    check_origin("WorldBegin Translate 1 0 0 Identity Shape \"sphere\"", 0, 0, 0);
+    check_origin("Translate 5 0 0 WorldBegin Shape \"sphere\"", 0, 0, 0);
+    check_origin("WorldBegin Translate 1 0 0 AttributeBegin Translate 1 0 0 AttributeEnd Shape \"sphere\"", 1, 0, 0);
+    check_origin("WorldBegin Translate 1 0 0 CoordinateSystem \"a\" Translate 1 0 0 CoordinateSystem \"b\"\n"
+                 "CoordSysTransform \"a\" Translate 0 1 0 Shape \"sphere\"",
+                 1, 1, 0);
+    check_origin("WorldBegin Translate 1 0 0 CoordSysTransform \"world\" Shape \"sphere\"", 0, 0, 0);
+    /* what is placed in "camera" moves with it: one unit before an eye at 0 0 5 that looks down */
+    check_origin("LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" WorldBegin CoordSysTransform \"camera\"\n"
+                 "Translate 0 0 1 Shape \"sphere\"",
+                 0, 0, 4);
+    check_origin(
+        "Scale -1 1 1 LookAt 1 2 3 4 2 3 0 0 1 Camera \"perspective\" WorldBegin CoordSysTransform \"camera\"\n"
+        "Translate 0 0 1 Shape \"sphere\"",
+        2, 2, 3);
+}
+
+static void end_time_leaves_the_start_alone(void **state)
+{
+    (void)state;
+    const char *text = "WorldBegin ActiveTransform EndTime Translate 5 0 0 ActiveTransform StartTime Translate 1 0 0\n"
+                       "ActiveTransform All Translate 0 1 0 Shape \"sphere\"";
+    reading r = reading_create(NULL, text, strlen(text));
+    assert_int_equal(r.status, AG_OK);
+    assert_vec3(transform_point(&r.scene->shapes[0].as.quadric.world_from_object, vec3_make(0, 0, 0)), 1, 1, 0, 0);
+    reading_destroy(&r);
+}
+
+static void attributes_are_brought_back(void **state)
+{
+    (void)state;
+    reading r = reading_of("WorldBegin Material \"diffuse\" \"rgb reflectance\" [ .1 .1 .1 ]\n"
+                           "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [ .2 .2 .2 ] ReverseOrientation\n"
+                           "AreaLightSource \"diffuse\" Shape \"sphere\" Shape \"disk\" AttributeEnd Shape \"sphere\"");
+    const scene *s = r.scene;
+    assert_int_equal(s->shape_count, 3);
+    assert_int_equal(s->light_count, 2);
+    assert_rgb(s->materials[s->shapes[0].material_index].reflectance, .2, .2, .2, 1e-7);
+    assert_rgb(s->materials[s->shapes[2].material_index].reflectance, .1, .1, .1, 1e-7);
+    assert_true(s->shapes[0].flip_normal && s->shapes[1].flip_normal && !s->shapes[2].flip_normal);
+    assert_int_equal(s->shapes[0].light_index, 0);
+    assert_int_equal(s->shapes[1].light_index, 1);
+    assert_int_equal(s->lights[1].shape_index, 1);
+    assert_int_equal(s->shapes[2].light_index, SHAPE_NO_LIGHT);
+    reading_destroy(&r);
+}
+
+/* Files */
+
+static char directory[] = "/tmp/ag_pbrt_parser_XXXXXX";
+
+static const char *path_of(const char *name)
+{
+    static char path[128];
+    snprintf(path, sizeof path, "%s/%s", directory, name);
+    return path;
+}
+
+static void write_file(const char *name, const char *text)
+{
+    FILE *f = fopen(path_of(name), "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
+    assert_int_equal(fclose(f), 0);
+}
+
+static void check_file(const char *name, uint32_t shape_count)
+{
+    reading r = reading_create(path_of(name), NULL, 0);
+    if (r.said[AG_LOG_ERROR])
+        print_error("%s", r.said[AG_LOG_ERROR]);
+    assert_int_equal(r.status, AG_OK);
+    assert_int_equal(r.scene->shape_count, shape_count);
+    reading_destroy(&r);
+}
+
+/* expected: the message with % where the directory stands. */
+static void check_file_error(const char *name, ag_status status, const char *expected)
+{
+    char text[4096] = "";
+    for (const char *p = expected; *p; p++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), *p == '%' ? "%s" : "%.1s", *p == '%' ? directory : p);
+    reading r = reading_create(path_of(name), NULL, 0);
+    assert_int_equal(r.status, status);
+    assert_string_equal(r.said[AG_LOG_ERROR], text);
+    reading_destroy(&r);
+}
+
+static void included_files_are_found(void **state)
+{
+    (void)state;
+    write_file("top.pbrt", "WorldBegin Include \"parts/a.pbrt\" Shape \"sphere\" Include \"parts/b.pbrt\"");
+    /* a: beside itself and from the top; the transform and an open parameter list go on behind its end */
+    write_file("parts/a.pbrt", "Translate 1 0 0 Include \"b.pbrt\" Include \"parts/b.pbrt\" Shape \"sphere\"");
+    write_file("parts/b.pbrt", "Shape \"disk\" # no line end");
+    reading r = reading_create(path_of("top.pbrt"), NULL, 0);
+    assert_int_equal(r.status, AG_OK);
+    assert_int_equal(r.scene->shape_count, 5);
+    assert_int_equal(r.scene->shapes[4].kind, SHAPE_DISK);
+    assert_vec3(transform_point(&r.scene->shapes[3].as.quadric.world_from_object, vec3_make(0, 0, 0)), 1, 0, 0, 0);
+    reading_destroy(&r);
+    /* a parameter list may go on in the file that included its beginning */
+    write_file("open.pbrt", "WorldBegin Include \"begin.pbrt\" 7 ]");
+    write_file("begin.pbrt", "Shape \"sphere\" \"float radius\" [");
+    r = reading_create(path_of("open.pbrt"), NULL, 0);
+    assert_int_equal(r.status, AG_OK);
+    assert_near(r.scene->shapes[0].as.quadric.radius, 7, 0);
+    reading_destroy(&r);
+}
+
+static void included_files_are_told(void **state)
+{
+    (void)state;
+    write_file("missing.pbrt", "WorldBegin\nInclude \"none.pbrt\"");
+    check_file_error("missing.pbrt", AG_ERROR_INPUT,
+                     "%/missing.pbrt:2:9: error: cannot read the file \"none.pbrt\": No such file or directory\n"
+                     "    Include \"none.pbrt\"\n            ^~~~~~~~~~~\n");
+    write_file("cycle.pbrt", "WorldBegin\nInclude \"cycle2.pbrt\"");
+    write_file("cycle2.pbrt", "\n Include \"cycle.pbrt\"");
+    check_file_error("cycle.pbrt", AG_ERROR_SCENE,
+                     "%/cycle2.pbrt:2:10: error: \"cycle.pbrt\" includes itself: %/cycle2.pbrt:2 < %/cycle.pbrt:2\n"
+                     "     Include \"cycle.pbrt\"\n             ^~~~~~~~~~~~\n");
+    write_file("outer.pbrt", "WorldBegin\nInclude \"inner.pbrt\"");
+    write_file("inner.pbrt", "\nShape \"none\"\n");
+    check_file_error("outer.pbrt", AG_ERROR_SCENE, "%/inner.pbrt:2:1: error: unknown shape \"none\"\n");
+    write_file("inner.pbrt", "\nShape \"none\" Identity\n");
+    check_file_error("outer.pbrt", AG_ERROR_SCENE,
+                     "%/inner.pbrt:2:1: error: unknown shape \"none\"\n    Shape \"none\" Identity\n    ^~~~~\n");
+    check_file_error("none.pbrt", AG_ERROR_INPUT,
+                     "%/none.pbrt: error: cannot read the file: No such file or directory\n");
+}
+
+static void deep_includes_are_refused(void **state)
+{
+    (void)state;
+    char name[32], text[64];
+    for (int i = 0; i < 40; i++) {
+        snprintf(name, sizeof name, "deep%d.pbrt", i);
+        snprintf(text, sizeof text, "Include \"deep%d.pbrt\"", i + 1);
+        write_file(name, text);
+    }
+    reading r = reading_create(path_of("deep0.pbrt"), NULL, 0);
+    assert_int_equal(r.status, AG_ERROR_SCENE);
+    assert_non_null(strstr(r.said[AG_LOG_ERROR], "deep31.pbrt:1:9: error: too many files include one another: "));
+    assert_non_null(strstr(r.said[AG_LOG_ERROR], "deep31.pbrt:1 < "));
+    reading_destroy(&r);
+    for (int i = 0; i < 40; i++) {
+        snprintf(name, sizeof name, "deep%d.pbrt", i);
+        remove(path_of(name));
+    }
+}
+
+static void packed_files_and_standard_input_are_read(void **state)
+{
+    (void)state;
+    const char *text = "WorldBegin Shape \"sphere\" Include \"parts/b.pbrt\"";
+    write_file("parts/b.pbrt", "Shape \"disk\"");
+    gzFile f = gzopen(path_of("packed.pbrt.gz"), "wb");
+    assert_non_null(f);
+    assert_int_equal(gzputs(f, text), (int)strlen(text));
+    assert_int_equal(gzclose(f), Z_OK);
+    check_file("packed.pbrt.gz", 2);
+    assert_int_equal(truncate(path_of("packed.pbrt.gz"), 30), 0);
+    check_file_error("packed.pbrt.gz", AG_ERROR_INPUT,
+                     "%/packed.pbrt.gz: error: cannot read the file: the gzip file is cut short\n");
+
+    write_file("stdin.pbrt", "WorldBegin Shape \"sphere\"\nBogus");
+    int saved = dup(STDIN_FILENO), replaced = open(path_of("stdin.pbrt"), O_RDONLY);
+    assert_true(saved >= 0 && replaced >= 0);
+    dup2(replaced, STDIN_FILENO);
+    reading r = reading_create("-", NULL, 0);
+    dup2(saved, STDIN_FILENO);
+    close(saved);
+    close(replaced);
+    assert_int_equal(r.status, AG_ERROR_SCENE);
+    assert_int_equal(r.scene->shape_count, 1);
+    assert_string_equal(r.said[AG_LOG_ERROR], "<stdin>:2:1: error: unknown directive Bogus\n    Bogus\n    ^~~~~\n");
+    reading_destroy(&r);
+}
+
+typedef struct progress_log {
+    run_context *run;
+    int calls;
+    double last;
+    bool cancel;
+} progress_log;
+
+static void hear_progress(void *user, ag_phase phase, double fraction)
+{
+    progress_log *p = user;
+    assert_int_equal(phase, AG_PHASE_LOAD);
+    assert_true(fraction >= p->last && fraction <= 1.0);
+    p->last = fraction;
+    p->calls++;
+    if (p->cancel)
+        run_cancel(p->run);
+}
+
+static void progress_is_told_and_cancelling_heeded(void **state)
+{
+    (void)state;
+    for (int cancel = 0; cancel < 2; cancel++) {
+        run_context run;
+        progress_log p = {.run = &run, .cancel = cancel};
+        run_context_init(&run, NULL, NULL, hear_progress, &p);
+        scene *s = scene_create();
+        const char *text = "WorldBegin Shape \"sphere\"";
+        assert_int_equal(pbrt_parse_text(&run, "t", text, strlen(text), s), cancel ? AG_CANCELLED : AG_OK);
+        assert_true(p.calls > 0);
+        assert_near(p.last, cancel ? 0.0 : 1.0, 0.0);
+        scene_destroy(s);
+        run_context_reset(&run);
+    }
+}
+
+/* Every beginning of a scene that has a bit of everything, and the scene with each byte changed: anything may be said,
+ * nothing may crash or leak. */
+static void damaged_scenes_are_survived(void **state)
+{
+    (void)state;
+    static const char TEXT[] =
+        "LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" [ 40 ] Film \"rgb\" \"string filename\" [ \"a\" "
+        "]\n"
+        "WorldBegin MakeNamedMaterial \"m\" \"string type\" \"conductor\" \"rgb k\" [ 1 2 3 ] # comment\n"
+        "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] \"bool twosided\" true NamedMaterial \"m\"\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 1 ] \"integer indices\" [ 0 1 2 3 ] AttributeEnd\n"
+        "Texture \"t\" \"float\" \"scale\" \"float v\" 2 ObjectBegin \"o\" Shape \"disk\" ObjectEnd Include \"/none\"";
+    static const unsigned char BYTES[] = {0, '"', '[', ']', '#', '\\', '\n', '-', '9', 'e', 'x', 0xff};
+    size_t size = sizeof TEXT - 1;
+    char *copy = malloc(size);
+    assert_non_null(copy);
+    for (size_t length = 0; length <= size; length++) {
+        memcpy(copy, TEXT, size);
+        reading r = reading_create(NULL, copy, length);
+        assert_int_equal(r.status != AG_OK, r.count[AG_LOG_ERROR] == 1);
+        reading_destroy(&r);
+    }
+    for (size_t i = 0; i < size; i++) {
+        memcpy(copy, TEXT, size);
+        for (size_t b = 0; b < sizeof BYTES; b++) {
+            copy[i] = (char)BYTES[b];
+            reading r = reading_create(NULL, copy, size);
+            assert_int_equal(r.status != AG_OK, r.count[AG_LOG_ERROR] == 1);
+            reading_destroy(&r);
+        }
+    }
+    free(copy);
+}
+
+static void cornell_box_is_read_without_a_word(void **state)
+{
+    (void)state;
+    const char *path = AG_SOURCE_DIR "/../shared/scenes/cornell-box/scene.pbrt";
+    if (access(path, R_OK) != 0) {
+        print_message("%s is not there\n", path);
+        skip();
+    }
+    reading r = reading_create(path, NULL, 0);
+    assert_int_equal(r.status, AG_OK);
+    assert_int_equal(r.count[AG_LOG_WARNING], 0);
+    assert_int_equal(r.scene->shape_count, 8);
+    assert_int_equal(r.scene->light_count, 1);
+    assert_true(r.scene->has_camera);
+    assert_string_equal(r.scene->integrator.name, "path");
+    reading_destroy(&r);
+}
+
+static int make_directory(void **state)
+{
+    (void)state;
+    return mkdtemp(directory) && mkdir(path_of("parts"), 0700) == 0 ? 0 : -1;
+}
+
+static int remove_directory(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"top.pbrt",   "parts/a.pbrt", "parts/b.pbrt",   "open.pbrt",
+                                        "begin.pbrt", "missing.pbrt", "cycle.pbrt",     "cycle2.pbrt",
+                                        "outer.pbrt", "inner.pbrt",   "packed.pbrt.gz", "stdin.pbrt"};
+    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
+        remove(path_of(NAMES[i]));
+    rmdir(path_of("parts"));
+    return rmdir(directory);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_name_place_and_reason),
+        cmocka_unit_test(errors_show_their_line),
+        cmocka_unit_test(parameters_are_limited),
+        cmocka_unit_test(warnings_are_given_once),
+        cmocka_unit_test(options_warn_where_they_matter),
+        cmocka_unit_test(words_for_the_renderer_are_kept),
+        cmocka_unit_test(transforms_compose_as_in_pbrt),
+        cmocka_unit_test(end_time_leaves_the_start_alone),
+        cmocka_unit_test(attributes_are_brought_back),
+        cmocka_unit_test(included_files_are_found),
+        cmocka_unit_test(included_files_are_told),
+        cmocka_unit_test(deep_includes_are_refused),
+        cmocka_unit_test(packed_files_and_standard_input_are_read),
+        cmocka_unit_test(progress_is_told_and_cancelling_heeded),
+        cmocka_unit_test(damaged_scenes_are_survived),
+        cmocka_unit_test(cornell_box_is_read_without_a_word),
+    };
+    return cmocka_run_group_tests(tests, make_directory, remove_directory);
+}
