@@ -59,7 +59,8 @@ static void follow_gather_ray(const transport *t, eye_worker *worker, vec3 origi
 rgb final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex)
 {
     uint32_t count = (uint32_t)t->settings->gather_samples;
-    gather_ray *rays = worker->gather_rays;
+    arena_mark mark = arena_save(worker->scratch);
+    gather_ray *rays = arena_alloc(worker->scratch, count * sizeof *rays);
     vec3 back = vec3_negate(v->arrival);
 
     /* send all rays; those that meet a claim of another thread stay open */
@@ -85,5 +86,6 @@ rgb final_gather(const transport *t, eye_worker *worker, const vertex *v, const 
             irradiance_cache_retry(t->cache, &rays[i].request, worker->index);
     for (uint32_t i = 0; i < count; i++)
         sum = rgb_add(sum, rgb_add(rays[i].known, rgb_mul(rays[i].weight, rays[i].request.irradiance)));
+    arena_restore(worker->scratch, mark);
     return rgb_scale(sum, 1.0f / (float)count);
 }

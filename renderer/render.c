@@ -11,7 +11,7 @@
 
 #include <stdlib.h>
 
-enum { TILE_SIZE = 32 };
+enum { TILE_SIZE = 32, ARENA_BLOCK_BYTES = 1 << 16 };
 /* Direct light takes one sample for so many gather rays, so that neither is much noisier than the other. */
 enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
 /* A gather ray shorter than this many mean radii of an estimate does not use the cache. */
@@ -178,11 +178,23 @@ static void render_tiles(void *user, unsigned worker_index)
 
 static void eye_workers_destroy(eye_worker *workers, unsigned count)
 {
-    for (unsigned i = 0; workers && i < count; i++) {
-        free(workers[i].gather_rays);
-        free(workers[i].caustic_scratch);
-    }
+    for (unsigned i = 0; workers && i < count; i++)
+        arena_destroy(workers[i].scratch);
     free(workers);
+}
+
+/* The most that a worker has in use at once: a gather's rays, and an estimate's neighbours within it. Tried out here, so
+ * that nothing can fail while tiles run. */
+static bool eye_worker_reserve(eye_worker *worker, const transport *t)
+{
+    worker->scratch = arena_create(ARENA_BLOCK_BYTES);
+    if (!worker->scratch)
+        return false;
+    arena_mark mark = arena_save(worker->scratch);
+    bool fits = arena_alloc(worker->scratch, (size_t)t->settings->gather_samples * sizeof(gather_ray)) &&
+                arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
+    arena_restore(worker->scratch, mark);
+    return fits;
 }
 
 static eye_worker *eye_workers_create(const transport *t, unsigned count)
@@ -192,14 +204,11 @@ static eye_worker *eye_workers_create(const transport *t, unsigned count)
         return NULL;
     for (unsigned i = 0; i < count; i++)
         workers[i] = (eye_worker){.index = i};
-    for (unsigned i = 0; t->cache && i < count; i++) {
-        workers[i].gather_rays = malloc((size_t)t->settings->gather_samples * sizeof(gather_ray));
-        workers[i].caustic_scratch = malloc(photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
-        if (!workers[i].gather_rays || !workers[i].caustic_scratch) {
+    for (unsigned i = 0; t->cache && i < count; i++)
+        if (!eye_worker_reserve(&workers[i], t)) {
             eye_workers_destroy(workers, count);
             return NULL;
         }
-    }
     return workers;
 }
 

@@ -25,6 +25,10 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
     if (!t->caustic || t->caustic->set.count == 0)
         return rgb_gray(0.0f);
     vec3 normal = vec3_face_forward(v->hit.geometric_normal, vec3_negate(v->arrival));
-    rgb irradiance = photon_map_irradiance_estimate(t->caustic, v->hit.position, normal, worker->caustic_scratch);
+    arena_mark mark = arena_save(worker->scratch);
+    photon_neighbor *neighbors =
+        arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
+    rgb irradiance = photon_map_irradiance_estimate(t->caustic, v->hit.position, normal, neighbors);
+    arena_restore(worker->scratch, mark);
     return rgb_scale(rgb_mul(bsdf_gathered_albedo(&v->scattering), irradiance), AG_INV_PI);
 }

@@ -6,6 +6,7 @@
 #define AFTERGLOW_TRANSPORT_H
 
 #include "afterglow/afterglow.h"
+#include "arena.h"
 #include "bsdf.h"
 #include "irradiance_cache.h"
 #include "sampler.h"
@@ -33,8 +34,7 @@ typedef struct eye_worker {
     _Alignas(64) unsigned index; /* the worker's */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
     uint64_t samples_not_finite;
-    gather_ray *gather_rays;          /* [settings->gather_samples] */
-    photon_neighbor *caustic_scratch; /* for estimates in the caustic map */
+    arena *scratch; /* for gather rays and neighbours; what render.c has tried out beforehand always fits */
 } eye_worker;
 
 /* A place where a camera path or gather ray met a surface. */

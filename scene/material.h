@@ -11,7 +11,7 @@ typedef enum material_kind { MATERIAL_DIFFUSE, MATERIAL_CONDUCTOR, MATERIAL_DIEL
 typedef struct material {
     material_kind kind;
     rgb reflectance;   /* diffuse: albedo, [0, 1] */
-    rgb eta, k;        /* conductor: index of refraction and absorption, each > 0 */
+    rgb eta, k;        /* conductor: index of refraction (> 0) and absorption (>= 0) */
     float ior;         /* dielectric: inside over outside, > 0 */
     float alpha_u, alpha_v; /* GGX roughness after remapping, >= 0; below BSDF_SMOOTH_ALPHA the surface is smooth */
 } material;

@@ -1,0 +1,126 @@
+#!/usr/bin/env bash
+# The installed tree works by itself, from another place than it was configured for: program, library, image module,
+# headers, man page, and pkg-config for users in C and in C++.
+# ctest: install
+set -euo pipefail
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+unset AFTERGLOW_MODULE_DIR LD_LIBRARY_PATH OCIO
+cd "$folder"
+
+fail() {
+    echo "FAILED: $*"
+    exit 1
+}
+
+cat >room.pbrt <<'SCENE'
+Film "rgb" "integer xresolution" 16 "integer yresolution" 12
+Sampler "independent" "integer pixelsamples" 1
+Camera "perspective" "float fov" 90
+WorldBegin
+LightSource "point" "point3 from" [0 0.2 0] "rgb I" [1 1 1]
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+ReverseOrientation
+Shape "sphere" "float radius" 2
+SCENE
+
+# Two ways there: another prefix, and a staging folder as packagers use it.
+cmake --install "$AFTERGLOW_BUILD_DIR" --prefix "$folder/elsewhere" >install.log || fail "cmake --install: $(<install.log)"
+DESTDIR=$folder/staging cmake --install "$AFTERGLOW_BUILD_DIR" >staging.log || fail "DESTDIR: $(<staging.log)"
+staged=$(find "$folder/staging" -name afterglow -path '*/bin/*' -printf '%h\n')
+mv elsewhere moved # no path of the place of installation is built in
+prefix=$folder/moved
+
+check_render() { # PROGRAM
+    "$1" --version >version
+    grep -Eqx 'afterglow [0-9]+\.[0-9]+\.[0-9]+' version || fail "--version says: $(<version)"
+    # which files are opened: ours from this tree, none from the build
+    LD_DEBUG=files LD_DEBUG_OUTPUT=$folder/opened "$1" -q --photons 1000 -o room.exr -o room.png room.pbrt
+    cat opened.* >opened && rm opened.*
+    [[ $(od -An -tx1 -N4 room.exr | tr -d ' ') == 762f3101 ]] || fail "room.exr is no OpenEXR file"
+    [[ $(od -An -tx1 -N4 room.png | tr -d ' ') == 89504e47 ]] || fail "room.png is no PNG file"
+    rm room.exr room.png
+    local tree
+    tree=$(realpath "$(dirname "$1")/..")
+    grep -oE '/[^ ]*/(libafterglow\.so|afterglow_image\.so)[.0-9]*' opened | xargs -n1 realpath | sort -u >ours
+    [[ $(wc -l <ours) -eq 2 ]] || fail "expected library and module, but these were opened: $(<ours)"
+    ! grep -qv "^$tree/" ours || fail "opened from elsewhere: $(<ours)"
+}
+
+for program in "$prefix/bin/afterglow" "$staged/afterglow"; do
+    check_render "$program"
+    echo "ok: $(realpath --relative-to="$folder" "$program")"
+done
+
+[[ -s $(find "$prefix" -path '*/man/man1/afterglow.1') ]] || fail "no man page"
+pc=$(find "$prefix" -name afterglow.pc)
+[[ -s $pc ]] || fail "no pkg-config file"
+export PKG_CONFIG_PATH=${pc%/*}
+[[ "afterglow $(pkg-config --modversion afterglow)" == "$(<version)" ]] || fail "pkg-config knows another version"
+read -ra flags <<<"$(pkg-config --cflags --libs afterglow)"
+library_folder=$(pkg-config --variable=libdir afterglow)
+library=$(readlink -f "$library_folder/libafterglow.so")
+soname=$(readelf -d "$library" | sed -nE 's/.*SONAME.*\[(.*)\]/\1/p')
+[[ $soname =~ ^libafterglow\.so\.[0-9]+$ && -e $library_folder/$soname ]] || fail "soname is '$soname'"
+
+cat >use.c <<'SOURCE'
+#include <afterglow/afterglow.h>
+
+#include <stdio.h>
+
+static void say(void *user, ag_log_level level, const char *message)
+{
+    (void)user;
+    if (level <= AG_LOG_WARNING)
+        fprintf(stderr, "%s\n", message);
+}
+
+int main(void)
+{
+    ag_context_settings settings = ag_default_context_settings();
+    settings.log = say;
+    ag_context *context = NULL;
+    ag_scene *scene = NULL;
+    ag_film *film = NULL;
+    ag_render_settings render;
+    ag_status status = ag_context_create(&settings, &context);
+    if (status == AG_OK)
+        status = ag_scene_load(context, "room.pbrt", &scene);
+    if (status == AG_OK)
+        status = ag_render_settings_from_scene(context, scene, &render);
+    if (status == AG_OK) {
+        render.photon_count = 1000;
+        status = ag_render(context, scene, &render, &film);
+    }
+    if (status == AG_OK)
+        status = ag_film_write(context, film, NULL, "from_c.exr");
+    ag_film_destroy(film);
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+    printf("%s %s\n", ag_status_text(status), ag_version());
+    return status != AG_OK;
+}
+SOURCE
+cat >use.cpp <<'SOURCE'
+#include <afterglow/afterglow.h>
+
+#include <iostream>
+
+int main()
+{
+    ag_context *context = nullptr;
+    const ag_status status = ag_context_create(nullptr, &context);
+    std::cout << ag_status_text(status) << ' ' << ag_version() << '\n';
+    ag_context_destroy(context);
+    return status != AG_OK;
+}
+SOURCE
+"$CC" -std=c17 -Wall -Wextra -pedantic -Werror use.c -o use_c "${flags[@]}"
+"$CXX" -std=c++17 -Wall -Wextra -pedantic -Werror use.cpp -o use_cpp "${flags[@]}"
+for user in use_c use_cpp; do
+    said=$(LD_LIBRARY_PATH=$library_folder ./$user)
+    [[ "afterglow ${said#success }" == "$(<version)" ]] || fail "$user says: $said"
+    echo "ok: $user"
+done
+[[ -s from_c.exr ]] || fail "the C program wrote no picture"
