@@ -280,9 +280,9 @@ uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal
     return found;
 }
 
-/* Quickselect over neighbours, which are all different: the `wanted` nearest come first, the farthest of
- * them at wanted - 1. */
-static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted)
+/* Quickselect over neighbours, which are all different: the `wanted` nearest come first, the farthest of them at
+ * wanted - 1. */
+static void quickselect(photon_neighbor *n, uint32_t count, uint32_t wanted)
 {
     int64_t low = 0, high = (int64_t)count - 1, target = (int64_t)wanted - 1;
     while (low < high) {
@@ -309,6 +309,37 @@ static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted)
     }
 }
 
+/* The same, for neighbours within the limit. On a surface the squared distances are spread evenly, so a histogram of them
+ * leaves only a few to be compared; all else moves without a branch to be mispredicted. */
+static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, float limit)
+{
+    enum { BINS = 256, BIN_MAX = 64 };
+    uint32_t histogram[BINS] = {0};
+    float scale = limit > 0.0f ? (float)(BINS - 1) / limit : 0.0f;
+    for (uint32_t i = 0; i < count; i++)
+        histogram[(uint32_t)(photon_neighbor_distance_squared(n[i]) * scale)]++;
+    uint32_t before = 0, bin = 0; /* the bin of the last one wanted, and how many lie in those before it */
+    while (before + histogram[bin] < wanted)
+        before += histogram[bin++];
+    if (histogram[bin] > BIN_MAX) {
+        quickselect(n, count, wanted);
+        return;
+    }
+    photon_neighbor in_bin[BIN_MAX + 1];
+    uint32_t kept = 0, in_bin_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        photon_neighbor x = n[i];
+        uint32_t its_bin = (uint32_t)(photon_neighbor_distance_squared(x) * scale);
+        n[kept] = x;
+        kept += its_bin < bin;
+        in_bin[in_bin_count] = x;
+        in_bin_count += its_bin == bin;
+    }
+    quickselect(in_bin, in_bin_count, wanted - kept);
+    for (uint32_t i = 0; kept < wanted; i++)
+        n[kept++] = in_bin[i];
+}
+
 /* Those of the `wanted` nearest that lie within the limit. */
 static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_neighbor *neighbors)
 {
@@ -329,14 +360,14 @@ static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_n
             neighbors[count++] = photon_neighbor_make(d, i);
             if (count == capacity) {
                 /* full: keep the nearest, and look no farther than they reach */
-                select_nearest(neighbors, count, wanted);
+                select_nearest(neighbors, count, wanted, limit);
                 count = wanted;
                 limit = photon_neighbor_distance_squared(neighbors[wanted - 1]);
             }
         }
     }
     if (count >= wanted) {
-        select_nearest(neighbors, count, wanted);
+        select_nearest(neighbors, count, wanted, limit);
         count = wanted;
     }
     return count;

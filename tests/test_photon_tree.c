@@ -1,0 +1,246 @@
+/* test_photon_tree.c: the kd-tree against brute force, and the same tree for any number of threads.
+ * Threads: the build's. */
+#include "photon_tree.h"
+
+#include "test_scene.h"
+
+typedef enum cloud { RANDOM, COPLANAR, COLLINEAR, COINCIDENT, GRID, TWO_CLUSTERS, CLOUD_KINDS } cloud;
+
+/* Photons that carry their number as flux, so that they can be told apart. One normal in three points another way. */
+static photon *make_photons(cloud kind, uint32_t count, uint64_t seed)
+{
+    photon *p = calloc(count + 1, sizeof *p);
+    assert_non_null(p);
+    rng random = test_random(seed);
+    for (uint32_t i = 0; i < count; i++) {
+        vec3 at = random_in_box(&random, (vec3){-1.0f, -1.0f, -1.0f}, (vec3){1.0f, 1.0f, 1.0f});
+        switch (kind) {
+        case COPLANAR: at.y = 0.25f; break;
+        case COLLINEAR: at = vec3_scale((vec3){1.0f, 0.5f, -0.25f}, at.x); break;
+        case COINCIDENT: at = (vec3){0.5f, 0.5f, 0.5f}; break;
+        case GRID: at = (vec3){(float)(i % 7) * 0.25f, (float)(i / 7 % 7) * 0.25f, (float)(i / 49) * 0.25f}; break;
+        case TWO_CLUSTERS: at = vec3_add_scaled((vec3){i % 2 ? 50.0f : -50.0f, 0.0f, 0.0f}, at, 0.001f); break;
+        default: break;
+        }
+        p[i].position[0] = at.x, p[i].position[1] = at.y, p[i].position[2] = at.z;
+        p[i].flux = i;
+        vec3 normal = rng_float(&random) < 0.67f ? (vec3){0.0f, 1.0f, 0.0f} : random_direction(&random);
+        p[i].normal = direction_encode(normal);
+    }
+    return p;
+}
+
+static bool is_before(photon_neighbor a, photon_neighbor b)
+{
+    return a.distance_squared < b.distance_squared || (a.distance_squared == b.distance_squared && a.index < b.index);
+}
+
+static int compare_neighbors(const void *a, const void *b)
+{
+    const photon_neighbor *x = a, *y = b;
+    return is_before(*x, *y) ? -1 : is_before(*y, *x) ? 1 : 0;
+}
+
+/* All photons within the radius with a like normal, nearest first. */
+static uint32_t brute_force(const photon_tree *tree, vec3 at, vec3 normal, float min_cos, float radius,
+                            photon_neighbor *out)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < tree->count; i++) {
+        const photon *p = &tree->photons[i];
+        float x = p->position[0] - at.x, y = p->position[1] - at.y, z = p->position[2] - at.z;
+        float d = x * x + y * y + z * z;
+        if (d <= radius * radius && vec3_dot(direction_decode(p->normal), normal) > min_cos)
+            out[count++] = (photon_neighbor){d, i};
+    }
+    if (count > 0)
+        qsort(out, count, sizeof *out, compare_neighbors);
+    return count;
+}
+
+static void check_query(const photon_tree *tree, vec3 at, vec3 normal, float min_cos, float radius, uint32_t wanted,
+                        photon_neighbor *expected, photon_neighbor *found)
+{
+    uint32_t all = brute_force(tree, at, normal, min_cos, radius, expected);
+    float d;
+    uint32_t nearest = photon_tree_nearest(tree, at, normal, min_cos, radius, &d);
+    assert_int_equal(nearest, all > 0 ? expected[0].index : PHOTON_NONE);
+    if (all > 0)
+        assert_true(d == expected[0].distance_squared);
+
+    uint32_t count = photon_tree_k_nearest(tree, at, normal, min_cos, radius, wanted, found);
+    assert_int_equal(count, all < wanted ? all : wanted);
+    photon_neighbor last = found[count > 0 ? count - 1 : 0];
+    if (count > 0)
+        qsort(found, count, sizeof *found, compare_neighbors);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(found[i].index, expected[i].index);
+        assert_true(found[i].distance_squared == expected[i].distance_squared);
+    }
+    if (count == wanted)
+        assert_int_equal(last.index, expected[wanted - 1].index);
+}
+
+static void searches_find_what_brute_force_finds(void **state)
+{
+    (void)state;
+    static const uint32_t COUNTS[] = {0, 1, 2, 3, 15, 16, 17, 31, 33, 100, 343, 1500};
+    static const uint32_t WANTED[] = {1, 2, 20, 51, 2000};
+    static const float RADII[] = {0.0f, 0.1f, 0.25f, 0.7f, 200.0f, INFINITY};
+    test_run r;
+    test_run_init(&r, 2);
+    photon_neighbor *expected = malloc(2000 * sizeof *expected);
+    photon_neighbor *found = malloc(photon_neighbors_capacity(2000) * sizeof *found);
+    assert_true(expected && found);
+    for (int kind = 0; kind < CLOUD_KINDS; kind++)
+        for (size_t c = 0; c < sizeof COUNTS / sizeof *COUNTS; c++) {
+            uint32_t count = COUNTS[c];
+            photon *photons = make_photons((cloud)kind, count, 100 * (uint64_t)kind + c);
+            photon_tree tree;
+            assert_int_equal(photon_tree_build(&r.run, photons, count, 0.0, 1.0, &tree), AG_OK);
+            rng random = test_random(900 + 100 * (uint64_t)kind + c);
+            int queries = 96 / (FEWER > 1 ? 4 : 1);
+            for (int q = 0; q < queries; q++) {
+                vec3 at = random_in_box(&random, (vec3){-1.2f, -1.2f, -1.2f}, (vec3){1.2f, 1.2f, 1.2f});
+                if (count > 0 && q % 2 == 0) { /* at a photon, or half-way between two */
+                    const float *a = photons[rng_next(&random) % count].position;
+                    const float *b = photons[q % 4 ? rng_next(&random) % count : 0].position;
+                    at = (vec3){a[0], a[1], a[2]};
+                    if (q % 4)
+                        at = vec3_scale(vec3_add(at, (vec3){b[0], b[1], b[2]}), 0.5f);
+                }
+                vec3 normal = q % 3 == 0 ? random_direction(&random) : (vec3){0.0f, 1.0f, 0.0f};
+                check_query(&tree, at, normal, q % 5 == 0 ? -2.0f : 0.5f, RADII[q % 6], WANTED[q / 2 % 5], expected,
+                            found);
+            }
+            photon_tree_reset(&tree);
+            free(photons);
+        }
+    free(expected);
+    free(found);
+    test_run_reset(&r);
+}
+
+static void the_radius_is_inclusive(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    photon p[1];
+    memset(p, 0, sizeof p);
+    p[0].position[0] = 3.0f, p[0].position[1] = 4.0f;
+    p[0].normal = direction_encode((vec3){0.0f, 0.0f, 1.0f});
+    photon_tree tree;
+    assert_int_equal(photon_tree_build(&r.run, p, 1, 0.0, 1.0, &tree), AG_OK);
+    vec3 origin = {0.0f, 0.0f, 0.0f}, up = {0.0f, 0.0f, 1.0f};
+    float d;
+    photon_neighbor n[80];
+    assert_int_equal(photon_tree_nearest(&tree, origin, up, 0.5f, 5.0f, &d), 0);
+    assert_int_equal(photon_tree_nearest(&tree, origin, up, 0.5f, 4.999f, &d), PHOTON_NONE);
+    assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 5.0f, 5, n), 1);
+    assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 4.999f, 5, n), 0);
+    /* and the cosine is not */
+    assert_int_equal(photon_tree_nearest(&tree, origin, up, 1.0f, 5.0f, &d), PHOTON_NONE);
+    photon_tree_reset(&tree);
+    test_run_reset(&r);
+}
+
+/* A thin wall: the photons of the far side are nearer, and many, and must not use up the search. */
+static void normals_are_tested_inside_the_search(void **state)
+{
+    (void)state;
+    enum { EACH = 1000 };
+    test_run r;
+    test_run_init(&r, 2);
+    photon *p = calloc(2 * EACH, sizeof *p);
+    assert_non_null(p);
+    rng random = test_random(5);
+    for (uint32_t i = 0; i < 2 * EACH; i++) {
+        bool front = i < EACH;
+        p[i].position[0] = rng_float(&random) * (front ? 1.0f : 0.1f);
+        p[i].position[1] = rng_float(&random) * (front ? 1.0f : 0.1f);
+        p[i].position[2] = front ? 0.01f : 0.0f;
+        p[i].normal = direction_encode((vec3){0.0f, 0.0f, front ? 1.0f : -1.0f});
+    }
+    photon_tree tree;
+    assert_int_equal(photon_tree_build(&r.run, p, 2 * EACH, 0.0, 1.0, &tree), AG_OK);
+    photon_neighbor n[2 * 50 + 64];
+    vec3 up = {0.0f, 0.0f, 1.0f};
+    uint32_t count = photon_tree_k_nearest(&tree, (vec3){0.05f, 0.05f, 0.0f}, up, 0.5f, 1.0f, 50, n);
+    assert_int_equal(count, 50);
+    for (uint32_t i = 0; i < count; i++)
+        assert_true(p[n[i].index].position[2] > 0.0f);
+    float d;
+    uint32_t nearest = photon_tree_nearest(&tree, (vec3){0.05f, 0.05f, 0.0f}, up, 0.9f, 1.0f, &d);
+    assert_true(nearest != PHOTON_NONE && p[nearest].position[2] > 0.0f);
+    photon_tree_reset(&tree);
+    free(p);
+    test_run_reset(&r);
+}
+
+static int compare_flux(const void *a, const void *b)
+{
+    uint32_t x = ((const photon *)a)->flux, y = ((const photon *)b)->flux;
+    return x < y ? -1 : x > y;
+}
+
+static void any_number_of_threads_builds_the_same_tree(void **state)
+{
+    (void)state;
+    static const unsigned WORKERS[] = {1, 2, 3, 8};
+    enum { COUNT = 20000 };
+    for (int kind = 0; kind < CLOUD_KINDS; kind++) {
+        photon *input = make_photons((cloud)kind, COUNT, (uint64_t)kind), *first = NULL;
+        photon_tree first_tree = {0};
+        for (size_t w = 0; w < sizeof WORKERS / sizeof *WORKERS; w++) {
+            test_run r;
+            test_run_init(&r, WORKERS[w]);
+            photon *p = make_photons((cloud)kind, COUNT, (uint64_t)kind);
+            photon_tree tree;
+            assert_int_equal(photon_tree_build(&r.run, p, COUNT, 0.0, 1.0, &tree), AG_OK);
+            test_run_reset(&r);
+            assert_true(photon_tree_bytes(&tree) <= COUNT); /* 8 bytes for 8 photons or more */
+            if (w == 0) {
+                first = p;
+                first_tree = tree;
+                continue;
+            }
+            assert_int_equal(tree.depth, first_tree.depth);
+            assert_memory_equal(tree.nodes, first_tree.nodes, photon_tree_bytes(&tree));
+            assert_memory_equal(p, first, COUNT * sizeof *p);
+            photon_tree_reset(&tree);
+            free(p);
+        }
+        /* the same photons as were given, in another order */
+        qsort(first, COUNT, sizeof *first, compare_flux);
+        assert_memory_equal(first, input, COUNT * sizeof *first);
+        photon_tree_reset(&first_tree);
+        free(first);
+        free(input);
+    }
+}
+
+static void a_cancelled_build_says_so(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    photon *p = make_photons(RANDOM, 1000, 1);
+    photon_tree tree;
+    run_cancel(&r.run);
+    assert_int_equal(photon_tree_build(&r.run, p, 1000, 0.0, 1.0, &tree), AG_CANCELLED);
+    free(p);
+    test_run_reset(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(searches_find_what_brute_force_finds),
+        cmocka_unit_test(the_radius_is_inclusive),
+        cmocka_unit_test(normals_are_tested_inside_the_search),
+        cmocka_unit_test(any_number_of_threads_builds_the_same_tree),
+        cmocka_unit_test(a_cancelled_build_says_so),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
