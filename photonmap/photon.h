@@ -48,6 +48,8 @@ static inline uint32_t shared_mantissas(rgb value, int exponent, uint64_t bits)
 
 /* --- flux: exponent in the top byte, biased by 128 --- */
 
+#define FLUX_EXPONENT_MIN (-128)
+
 /* Flux is >= 0; key is the photon's own number: it decides the rounding. */
 static inline uint32_t flux_encode(rgb flux, uint64_t key)
 {

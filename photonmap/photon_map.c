@@ -36,8 +36,12 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
         photon_set_reset(&map.set);
         return status;
     }
-    map.flux_exponent_max = -128;
+    map.flux_exponent_max = FLUX_EXPONENT_MIN;
     for (uint32_t i = 0; i < map.set.count; i++) {
+        if ((i & 0xffff) == 0 && run_is_cancelled(run)) {
+            photon_map_reset(&map);
+            return AG_CANCELLED;
+        }
         int exponent = flux_exponent(map.set.photons[i].flux);
         if (map.set.photons[i].flux != 0 && exponent > map.flux_exponent_max)
             map.flux_exponent_max = exponent;

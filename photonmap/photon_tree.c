@@ -10,6 +10,8 @@
 #include <stdlib.h>
 
 enum { LEAF_MAX = 16, DEPTH_MAX = 32, PARALLEL_LEVELS = 9 };
+/* How often long loops look whether to stop: every 65,536 photons, some tenths of a millisecond. */
+enum { CANCEL_MASK = 0xffff };
 
 /* --- build --- */
 
@@ -44,7 +46,7 @@ static void swap_photons(photon *a, photon *b)
 
 /* Hoare's quickselect (1961): afterwards nothing before `middle` is greater than it along the axis, and nothing after is
  * less. Equal keys are swapped too, which keeps the halves even when all photons coincide. */
-static void select_middle(photon *p, range r, int64_t middle, uint32_t axis)
+static void select_middle(const run_context *run, photon *p, range r, int64_t middle, uint32_t axis)
 {
     int64_t low = r.low, high = (int64_t)r.high - 1;
     uint64_t pick = (uint64_t)r.low << 32 | r.high;
@@ -65,6 +67,8 @@ static void select_middle(photon *p, range r, int64_t middle, uint32_t axis)
                 j--;
             if (i <= j)
                 swap_photons(&p[i++], &p[j--]);
+            if ((i & CANCEL_MASK) == 0 && run_is_cancelled(run))
+                return;
         }
         /* [low, j] <= pivot, [i, high] >= pivot, and what is between equals it */
         if (middle <= j)
@@ -76,35 +80,39 @@ static void select_middle(photon *p, range r, int64_t middle, uint32_t axis)
     }
 }
 
-static void split_node(photon_tree *tree, uint32_t node, range r)
+static void split_node(const run_context *run, photon_tree *tree, uint32_t node, range r)
 {
     photon *p = tree->photons;
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (uint32_t i = r.low; i < r.high; i++)
+    for (uint32_t i = r.low; i < r.high; i++) {
+        if ((i & CANCEL_MASK) == 0 && run_is_cancelled(run))
+            return;
         for (int a = 0; a < 3; a++) {
             low[a] = fminf(low[a], p[i].position[a]);
             high[a] = fmaxf(high[a], p[i].position[a]);
         }
+    }
     uint32_t axis = 0;
     for (uint32_t a = 1; a < 3; a++)
         if (high[a] - low[a] > high[axis] - low[axis])
             axis = a;
     uint32_t middle = range_middle(r);
-    select_middle(p, r, middle, axis);
+    select_middle(run, p, r, middle, axis);
     tree->nodes[node] = (photon_tree_node){p[middle].position[axis], axis};
 }
 
-static void split_subtree(photon_tree *tree, uint32_t node, uint32_t level, range r)
+static void split_subtree(const run_context *run, photon_tree *tree, uint32_t node, uint32_t level, range r)
 {
-    if (level == tree->depth)
+    if (level == tree->depth || run_is_cancelled(run))
         return;
-    split_node(tree, node, r);
+    split_node(run, tree, node, r);
     uint32_t middle = range_middle(r);
-    split_subtree(tree, 2 * node + 1, level + 1, (range){r.low, middle});
-    split_subtree(tree, 2 * node + 2, level + 1, (range){middle, r.high});
+    split_subtree(run, tree, 2 * node + 1, level + 1, (range){r.low, middle});
+    split_subtree(run, tree, 2 * node + 2, level + 1, (range){middle, r.high});
 }
 
 typedef struct level_job {
+    const run_context *run;
     photon_tree *tree;
     uint32_t level;
     bool whole_subtrees;
@@ -118,9 +126,9 @@ static void split_level_block(void *user, uint64_t begin, uint64_t end, uint64_t
         range r = node_range(job->tree->count, job->level, (uint32_t)place);
         uint32_t node = (1u << job->level) - 1 + (uint32_t)place;
         if (job->whole_subtrees)
-            split_subtree(job->tree, node, job->level, r);
+            split_subtree(job->run, job->tree, node, job->level, r);
         else
-            split_node(job->tree, node, r);
+            split_node(job->run, job->tree, node, r);
     }
 }
 
@@ -140,11 +148,13 @@ ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, d
     uint32_t parallel_levels = tree.depth < PARALLEL_LEVELS ? tree.depth : PARALLEL_LEVELS;
     ag_status status = AG_OK;
     for (uint32_t level = 0; level <= parallel_levels && status == AG_OK; level++) {
-        level_job job = {&tree, level, level == parallel_levels};
+        level_job job = {run, &tree, level, level == parallel_levels};
         double begin = progress_begin + step * level;
         status = parallel_for(run, (uint64_t)1 << level, 1, split_level_block, &job, AG_PHASE_MAP, begin,
                               job.whole_subtrees ? progress_end : begin + step);
     }
+    if (status == AG_OK && run_is_cancelled(run))
+        status = AG_CANCELLED; /* the last nodes may have been left undone */
     if (status != AG_OK) {
         photon_tree_reset(&tree);
         return status;
