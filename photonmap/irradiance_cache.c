@@ -10,6 +10,8 @@
 #include <stdlib.h>
 
 enum { PRECOMPUTE_BLOCK = 512 };
+/* Asking for a thread's CPU time is a system call: of every so many estimates, one is timed. */
+enum { TIMED_EVERY = 16 };
 
 ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
                                   irradiance_cache *out_cache)
@@ -43,9 +45,14 @@ void irradiance_cache_reset(irradiance_cache *cache)
 
 static rgb estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
 {
-    double begin = clock_seconds();
-    rgb irradiance = photon_map_irradiance_estimate(cache->map, position, normal, cache->scratch[worker_index]);
-    cache->counters[worker_index].estimate_seconds += clock_seconds() - begin;
+    irradiance_counters *counters = &cache->counters[worker_index];
+    photon_neighbor *scratch = cache->scratch[worker_index];
+    if ((counters->computed + counters->uncached) % TIMED_EVERY != 0)
+        return photon_map_irradiance_estimate(cache->map, position, normal, scratch);
+    double begin = clock_thread_cpu_seconds();
+    rgb irradiance = photon_map_irradiance_estimate(cache->map, position, normal, scratch);
+    counters->timed_seconds += clock_thread_cpu_seconds() - begin;
+    counters->timed++;
     return irradiance;
 }
 
@@ -125,8 +132,9 @@ void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request
 
 rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
 {
+    rgb irradiance = estimate(cache, position, normal, worker_index);
     cache->counters[worker_index].uncached++;
-    return estimate(cache, position, normal, worker_index);
+    return irradiance;
 }
 
 irradiance_counters irradiance_cache_counters(const irradiance_cache *cache)
@@ -140,9 +148,16 @@ irradiance_counters irradiance_cache_counters(const irradiance_cache *cache)
         sum.waited += c->waited;
         sum.duplicated += c->duplicated;
         sum.uncached += c->uncached;
-        sum.estimate_seconds += c->estimate_seconds;
+        sum.timed += c->timed;
+        sum.timed_seconds += c->timed_seconds;
     }
     return sum;
+}
+
+double irradiance_counters_estimate_seconds(const irradiance_counters *counters)
+{
+    double estimates = (double)(counters->computed + counters->duplicated + counters->uncached);
+    return counters->timed > 0 ? counters->timed_seconds * estimates / (double)counters->timed : 0.0;
 }
 
 uint64_t irradiance_cache_distinct(const irradiance_cache *cache)

@@ -23,7 +23,8 @@ typedef struct irradiance_counters {
     uint64_t waited;     /* of those, the ones that had to wait in the end */
     uint64_t duplicated; /* estimates computed although another had been published: 0 */
     uint64_t uncached;   /* estimates at the place itself */
-    double estimate_seconds; /* spent in all estimates */
+    uint64_t timed;      /* estimates whose time was taken */
+    double timed_seconds; /* CPU time of those */
 } irradiance_counters;
 
 typedef struct irradiance_cache {
@@ -63,6 +64,9 @@ rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 norma
 
 /* The counters of all workers. */
 irradiance_counters irradiance_cache_counters(const irradiance_cache *cache);
+
+/* CPU seconds spent in all estimates, from those whose time was taken. */
+double irradiance_counters_estimate_seconds(const irradiance_counters *counters);
 
 /* Photons whose slots are ready now, less those that were so at creation: counted by looking at them. */
 uint64_t irradiance_cache_distinct(const irradiance_cache *cache);

@@ -293,7 +293,7 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
     statistics->irradiance_waited += c.waited;
     statistics->irradiance_duplicated += c.duplicated;
     statistics->irradiance_uncached += c.uncached;
-    statistics->irradiance_estimate_s += c.estimate_seconds;
+    statistics->irradiance_estimate_s += irradiance_counters_estimate_seconds(&c);
 }
 
 ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render_settings *wanted, ag_film **out_film)

@@ -139,7 +139,7 @@ typedef struct ag_statistics {
      * duplicated: computed twice, 0; uncached: estimates at places themselves */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
         irradiance_duplicated, irradiance_uncached;
-    double irradiance_estimate_s; /* seconds spent in estimates, summed over threads */
+    double irradiance_estimate_s; /* CPU seconds spent in estimates, all threads; from a sixteenth of them */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path;
     uint64_t samples_not_finite; /* camera samples dropped because they were not numbers: 0 */
     double time_s[AG_PHASE_COUNT];
