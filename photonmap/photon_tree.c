@@ -325,7 +325,7 @@ static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, 
 {
     enum { BINS = 256, BIN_MAX = 64 };
     uint32_t histogram[BINS] = {0};
-    float scale = limit > 0.0f ? (float)(BINS - 1) / limit : 0.0f;
+    float scale = limit > 0x1p-100f ? (float)(BINS - 1) / limit : 0.0f; /* smaller ones share a bin: no overflow */
     for (uint32_t i = 0; i < count; i++)
         histogram[(uint32_t)(photon_neighbor_distance_squared(n[i]) * scale)]++;
     uint32_t before = 0, bin = 0; /* the bin of the last one wanted, and how many lie in those before it */

@@ -32,7 +32,7 @@ ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, d
 void photon_tree_reset(photon_tree *tree);
 uint64_t photon_tree_bytes(const photon_tree *tree); /* of the nodes */
 
-/* The nearest photon within radius (inclusive) whose normal has a dot product above min_cos with `normal`;
+/* The nearest photon within radius (inclusive) whose normal has a dot product above min_cos (>= 0) with `normal`;
  * PHOTON_NONE where there is none. */
 uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared);

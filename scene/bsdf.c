@@ -109,7 +109,9 @@ static vec3 reflect(vec3 v, vec3 n) { return vec3_sub(vec3_scale(n, 2.0f * vec3_
 bsdf bsdf_create(const material *matter, const surface_hit *hit)
 {
     bsdf b = {frame_from_z(hit->shading_normal), hit->geometric_normal, matter, false};
-    b.is_smooth = matter->alpha_u < BSDF_SMOOTH_ALPHA && matter->alpha_v < BSDF_SMOOTH_ALPHA;
+    /* where the index does not change nothing is bent, however rough: half vectors do not exist there */
+    b.is_smooth = (matter->alpha_u < BSDF_SMOOTH_ALPHA && matter->alpha_v < BSDF_SMOOTH_ALPHA) ||
+                  (matter->kind == MATERIAL_DIELECTRIC && matter->ior == 1.0f);
     return b;
 }
 
@@ -287,11 +289,15 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
         float side = o.z >= 0.0f ? 1.0f : -1.0f;
         vec3 upper = vec3_scale(o, side);
         vec3 h = ggx_sample_visible(m, upper, u);
-        if (m->kind == MATERIAL_CONDUCTOR ||
-            u_lobe < fresnel_dielectric(fabsf(vec3_dot(upper, h)), side > 0.0f ? m->ior : 1.0f / m->ior))
+        float eta = side > 0.0f ? m->ior : 1.0f / m->ior;
+        bool is_reflection =
+            m->kind == MATERIAL_CONDUCTOR || u_lobe < fresnel_dielectric(fabsf(vec3_dot(upper, h)), eta);
+        if (is_reflection)
             i = reflect(upper, h);
-        else if (!refract(upper, h, side > 0.0f ? m->ior : 1.0f / m->ior, &i))
+        else if (!refract(upper, h, eta, &i))
             return false;
+        if (is_reflection != (i.z > 0.0f))
+            return false; /* the facet sends it to the wrong side of the surface, where another facet would meet it */
         i = vec3_scale(i, side);
     }
     out_sample->direction = vec3_normalize(frame_to_world(&b->shading, i));

@@ -14,7 +14,8 @@ failures=0
 check() {
     local name=$1 expected=$2 compile=$3 run=$4
     shift 4
-    if ! spin -a "$@" "$model" >spin.log 2>&1 || ! ${CC:-cc} -O2 -w $compile -DMEMLIM=1024 pan.c -o pan >>spin.log 2>&1; then
+    # shellcheck disable=SC2086
+    if ! { spin -a "$@" "$model" && ${CC:-cc} -O2 -w $compile -DMEMLIM=1024 pan.c -o pan; } >spin.log 2>&1; then
         echo "FAILED: $name: the model does not build"
         cat spin.log
         failures=$((failures + 1))
@@ -28,7 +29,9 @@ check() {
     elif grep -q "errors: [1-9]" pan.log; then
         outcome=fails
     fi
-    grep -Eq "max search depth too small|Search not completed|out of memory|aborted" pan.log && [ $outcome = holds ] && outcome=incomplete
+    if [ $outcome = holds ] && grep -Eq "max search depth too small|Search not completed|out of memory" pan.log; then
+        outcome=incomplete
+    fi
     if [ $outcome = "$expected" ]; then
         echo "ok: $name $outcome ($(grep -Eo '[0-9.e+]+ states, stored' pan.log | head -1))"
     else

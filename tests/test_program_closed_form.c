@@ -12,8 +12,10 @@ static const double PI = 3.14159265358979323846;
 static const char *const INTEGRATORS[] = {"photonmap", "path"};
 enum { INTEGRATOR_COUNT = 2, BLOCK = 8 };
 
-/* Samples that give each integrator a thousandth or so in the mean. */
-static const char *spp_of(int integrator) { return integrator == 0 ? "4" : "256"; }
+/* Samples that leave a few thousandths of noise in the mean. */
+static const char *spp_of(int integrator) { return integrator == 0 ? "2" : "96"; }
+/* Paths, and so independent photons, are 1 - rho of the photons stored. */
+static const char *photons_of(double rho) { return rho > 0.6 ? "--photons=600000" : "--photons=200000"; }
 
 static const char *reflectance_text(double rho)
 {
@@ -36,7 +38,7 @@ static void test_light_in_the_middle(void **state)
         for (int k = 0; k < INTEGRATOR_COUNT; k++) {
             double rho = REFLECTANCES[i];
             const char *scene = SCENE_WITH("sphere.pbrt", HALF, reflectance_text(rho));
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", spp_of(k));
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(rho), "--spp", spp_of(k));
             expect_uniform(INTEGRATORS[k], &p, rho / PI * SPHERE_DIRECT / (1.0 - rho), 0.01, BLOCK, 0.03);
             picture_reset(&p);
         }
@@ -50,7 +52,7 @@ static void test_light_off_the_middle(void **state)
             double rho = REFLECTANCES[i];
             const char *scene = SCENE_WITH("sphere.pbrt", HALF, reflectance_text(rho), "\"point3 from\" [0 0 0]",
                                            "\"point3 from\" [0.9 -0.6 0.7]");
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", spp_of(k), "--only", "indirect");
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(rho), "--spp", spp_of(k), "--only", "indirect");
             expect_uniform(INTEGRATORS[k], &p, rho / PI * SPHERE_DIRECT * rho / (1.0 - rho), 0.01, BLOCK, 0.04);
             picture_reset(&p);
         }
@@ -63,7 +65,7 @@ static void test_spot_in_the_sphere(void **state)
     double power = 2.0 * PI * 100.0 * ((1.0 - a) + (a - b) / 2.0);
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
         picture p = RENDER(PROGRAM_SCENES "sphere_spot.pbrt", "--integrator", INTEGRATORS[k], "--spp",
-                           k == 0 ? "4" : "2048", "--only", "indirect");
+                           k == 0 ? "2" : "512", photons_of(0.5), "--only", "indirect");
         expect_uniform(INTEGRATORS[k], &p, 0.5 / PI * power / (16.0 * PI), 0.01, BLOCK, 0.05);
         picture_reset(&p);
     }
@@ -101,7 +103,7 @@ static void test_sphere_of_triangles(void **state)
     write_sphere_mesh(file, 2.0);
     assert_int_equal(fclose(file), 0);
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", spp_of(k));
+        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(0.5), "--spp", spp_of(k));
         expect_uniform(INTEGRATORS[k], &p, 0.5 / PI * SPHERE_DIRECT / 0.5, 0.01, BLOCK, 0.03);
         picture_reset(&p);
     }
@@ -120,7 +122,7 @@ static void test_depth(void **state)
             for (int n = 0; n < DEPTHS[i]; n++)
                 sum += pow(rho, n);
             const char *scene = SCENE_WITH("sphere.pbrt", HALF, reflectance_text(rho));
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", spp_of(k), "--max-depth", depth);
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(rho), "--spp", spp_of(k), "--max-depth", depth);
             expect_uniform(INTEGRATORS[k], &p, rho / PI * SPHERE_DIRECT * sum, 0.01, BLOCK, 0.03);
             picture_reset(&p);
         }
@@ -134,7 +136,7 @@ static void test_furnace(void **state)
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < INTEGRATOR_COUNT; k++) {
             const char *scene = SCENE_WITH("furnace.pbrt", HALF, reflectance_text(REFLECTANCES[i]));
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", spp_of(k));
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(REFLECTANCES[i]), "--spp", spp_of(k));
             expect_uniform(INTEGRATORS[k], &p, 1.0 / (1.0 - REFLECTANCES[i]), 0.01, BLOCK, 0.03);
             picture_reset(&p);
         }
@@ -147,7 +149,7 @@ static void test_glass_cannot_be_seen(void **state)
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < INTEGRATOR_COUNT; k++) {
             const char *scene = SCENE_WITH("glass_in_furnace.pbrt", HALF, reflectance_text(0.0), INDICES[0], INDICES[i]);
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "256");
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "64", "--photons=1000", "--caustic-photons=1000");
             expect_uniform(INTEGRATORS[k], &p, 1.0, 0.002, BLOCK, 0.02);
             picture_reset(&p);
         }
@@ -159,7 +161,7 @@ static void test_glass_in_furnace(void **state)
     (void)state;
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
         picture p = RENDER(PROGRAM_SCENES "glass_in_furnace.pbrt", "--integrator", INTEGRATORS[k], "--spp",
-                           k == 0 ? "16" : "256");
+                           k == 0 ? "4" : "128", photons_of(0.5), "--caustic-photons=50000");
         expect_uniform(INTEGRATORS[k], &p, 2.0, 0.01, BLOCK, 0.03);
         picture_reset(&p);
     }
@@ -170,7 +172,7 @@ static void test_eye_in_the_glass(void **state)
     (void)state;
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
         const char *scene = SCENE_WITH("glass_in_furnace.pbrt", HALF, reflectance_text(0.0), "LookAt 0 0 -1.5", "LookAt 0 0 -0.001");
-        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "64");
+        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "64", "--photons=1000", "--caustic-photons=1000");
         expect_uniform(INTEGRATORS[k], &p, 1.5 * 1.5, 0.002, BLOCK, 0.02);
         picture_reset(&p);
     }
@@ -277,8 +279,8 @@ static void test_lamps_over_a_floor(void **state)
             char scene[512];
             snprintf(scene, sizeof scene, PROGRAM_SCENES "%s.pbrt", LAMPS[i].scene);
             /* with all depths there is no more light than with one */
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "64", "--photons", "10000",
-                               "--gather-samples", "8", k == 0 ? "--max-depth=1" : "--max-depth=4");
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "16", "--photons", "10000",
+                               "--gather-samples", "16", k == 0 ? "--max-depth=1" : "--max-depth=4");
             expect_floor(LAMPS[i].scene, &p, LAMPS[i].irradiance, 0.003, 0.02);
             picture_reset(&p);
         }
@@ -309,7 +311,7 @@ static void test_mirror(void **state)
     (void)state;
     static const double ETA[3] = {0.2, 0.92, 1.1}, K[3] = {3.9, 2.45, 2.1};
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(PROGRAM_SCENES "mirror.pbrt", "--integrator", INTEGRATORS[k], "--spp", "16", "--photons", "1000");
+        picture p = RENDER(PROGRAM_SCENES "mirror.pbrt", "--integrator", INTEGRATORS[k], "--spp", "16", "--photons=1000", "--caustic-photons=1000");
         for (int y = 0; y < p.height; y += 4)
             for (int x = 0; x < p.width; x += 4)
                 for (int c = 0; c < 3; c++) {
@@ -330,7 +332,7 @@ static void test_mirror_of_given_reflectance(void **state)
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
         const char *scene = SCENE_WITH("mirror.pbrt", "\"rgb eta\" [0.2 0.92 1.1] \"rgb k\" [3.9 2.45 2.1]", "\"rgb reflectance\" [0.9 0.5 0.1]",
                                        "LookAt 0 0 1  1 0 0", "LookAt 0 0 1  0.0001 0 0", "\"float fov\" 60", "\"float fov\" 1");
-        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "16", "--photons", "1000");
+        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "16", "--photons=1000", "--caustic-photons=1000");
         static const double EXPECTED[3] = {1.8, 1.0, 0.2};
         for (int c = 0; c < 3; c++)
             expect_near(INTEGRATORS[k], picture_mean(&p, c), EXPECTED[c], 0.002);
@@ -343,7 +345,7 @@ static void test_floor_beside_a_mirror(void **state)
 {
     (void)state;
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(PROGRAM_SCENES "mirror_wall.pbrt", "--integrator", INTEGRATORS[k], "--spp", k == 0 ? "64" : "1024");
+        picture p = RENDER(PROGRAM_SCENES "mirror_wall.pbrt", "--integrator", INTEGRATORS[k], "--spp", k == 0 ? "16" : "512", "--photons=20000", "--caustic-photons=100000");
         expect_floor(INTEGRATORS[k], &p, beside_mirror, 0.01, 0.04);
         picture_reset(&p);
     }

@@ -1,0 +1,414 @@
+/* test_light.c: light towards a point is sampled with the density that is said; light that leaves carries the lamp's
+ * power, in the right directions. Threads: one. */
+#include "test_scene.h"
+
+enum { SAMPLES = 100000 / FEWER };
+
+/* --- towards a point --- */
+
+typedef struct view {
+    const scene *s;
+    vec3 point;
+    bool sees_lamp[BIN_COUNT], sees_none[BIN_COUNT];
+} view;
+
+static double lamp_density(const view *v, vec3 d)
+{
+    const light *l = &v->s->lights[0];
+    surface_hit hit;
+    if (!scene_intersect(v->s, v->point, d, INFINITY, &hit) ||
+        rgb_is_black(light_emitted_radiance(l, hit.geometric_normal, vec3_negate(d))))
+        return 0.0;
+    return light_pdf_from_point(v->s, l, v->point, hit.position, hit.geometric_normal);
+}
+
+static double density(void *user, vec3 d)
+{
+    view *v = user;
+    double value = lamp_density(v, d);
+    *(value > 0.0 ? &v->sees_lamp[direction_bin(d)] : &v->sees_none[direction_bin(d)]) = true;
+    return value;
+}
+
+/* A scene of one lamp that hides no part of itself but by facing away. solid_angle: of what is seen of it, where there
+ * is a closed form, else 0. */
+static void check_lamp(const char *world, vec3 point, double solid_angle)
+{
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, world);
+    const light *l = &s->lights[0];
+    static view v;
+    v = (view){.s = s, .point = point};
+    static uint32_t counts[BIN_COUNT];
+    static double bins[BIN_COUNT];
+    memset(counts, 0, sizeof counts);
+    rng random = test_random(1);
+    uint32_t sampled = 0, missed = 0;
+    double sum = 0.0, square = 0.0;
+    for (int i = 0; i < SAMPLES; i++) {
+        light_sample at;
+        if (!light_sample_from_point(s, l, point, rng_vec2(&random), &at))
+            continue;
+        sampled++;
+        counts[direction_bin(at.direction)]++;
+        assert_false(at.is_delta);
+        assert_close(vec3_length(at.direction), 1.0, 1e-5);
+        assert_memory_equal(&at.radiance, &l->radiance, sizeof(rgb));
+        double inverse = 1.0 / (double)at.pdf_solid_angle;
+        sum += inverse / SAMPLES, square += inverse * inverse / SAMPLES;
+        assert_false(scene_occluded(s, point, at.shadow_target));
+        if (i % 10)
+            continue;
+        /* a ray that way meets the lamp there, and its density is the same */
+        surface_hit hit;
+        if (!scene_intersect(s, point, at.direction, INFINITY, &hit)) {
+            missed++; /* past the very edge */
+            continue;
+        }
+        float pdf = light_pdf_from_point(s, l, point, hit.position, hit.geometric_normal);
+        if (fabsf(vec3_dot(hit.geometric_normal, at.direction)) < 0.03f)
+            continue; /* nearly along the surface: rounding moves the place */
+        assert_relative(hit.distance, at.distance, 1e-3);
+        assert_relative(pdf, at.pdf_solid_angle, 5e-3);
+    }
+    assert_true(missed <= 1 + sampled / 5000);
+    double whole = integrate_bins(density, &v, 16, bins);
+    assert_close(whole, (double)sampled / SAMPLES, 0.015 * WIDER);
+    for (int i = 0; i < BIN_COUNT; i++)
+        if (v.sees_lamp[i] && v.sees_none[i]) /* the outline runs through it, where densities may be infinite */
+            bins[i] = counts[i] = 0;
+    assert_chi_square(counts, bins, SAMPLES, 0.01 * WIDER);
+    if (solid_angle > 0.0)
+        assert_close(sum, solid_angle, 5.0 * sqrt(fmax(0.0, square - sum * sum) / SAMPLES) + 1e-4 * solid_angle);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+#define LAMP "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1] "
+
+static double cone(double radius, double distance)
+{
+    return 2.0 * PI * (1.0 - sqrt(1.0 - radius * radius / distance / distance));
+}
+
+static void a_sphere_from_outside_and_inside(void **state)
+{
+    (void)state;
+    vec3 origin = {0.0f, 0.0f, 0.0f};
+    check_lamp("Translate 1 2 0.5 " LAMP "Shape \"sphere\" \"float radius\" [2]", origin, cone(2.0, sqrt(5.25)));
+    check_lamp("Translate -3 1 2 Scale 0.5 0.5 0.5 " LAMP "Shape \"sphere\" \"float radius\" [2]", origin,
+               cone(1.0, sqrt(14.0)));
+    check_lamp("Translate 0.3 0.4 0.5 ReverseOrientation " LAMP "Shape \"sphere\" \"float radius\" [2]", origin,
+               4.0 * PI);
+    check_lamp("Translate 0.3 0.4 0.5 " LAMP "\"bool twosided\" true Shape \"sphere\" \"float radius\" [2]", origin,
+               4.0 * PI);
+}
+
+static void an_ellipsoid_from_outside_and_inside(void **state)
+{
+    (void)state;
+    vec3 origin = {0.0f, 0.0f, 0.0f};
+    check_lamp("Translate 1.5 2 0.5 Rotate 30 1 1 0 Scale 1 2 0.4 " LAMP "Shape \"sphere\"", origin, 0.0);
+    check_lamp("Translate 0.3 0.2 0.1 Rotate 30 1 1 0 Scale -1 2 0.7 ReverseOrientation " LAMP "Shape \"sphere\"",
+               origin, 4.0 * PI);
+}
+
+/* Van Oosterom, Strackee, "The Solid Angle of a Plane Triangle", 1983. */
+static double triangle_solid_angle(vec3 a, vec3 b, vec3 c)
+{
+    double la = vec3_length(a), lb = vec3_length(b), lc = vec3_length(c);
+    double above = vec3_dot(a, vec3_cross(b, c));
+    double below =
+        la * lb * lc + (double)vec3_dot(a, b) * lc + (double)vec3_dot(a, c) * lb + (double)vec3_dot(b, c) * la;
+    return 2.0 * atan2(fabs(above), below);
+}
+
+static void meshes(void **state)
+{
+    (void)state;
+    vec3 origin = {0.0f, 0.0f, 0.0f}, p[4] = {{-1, -1, 1}, {2, -1, 1.5f}, {-1, 1, 1}, {0, 3, 0.5f}};
+    double angle = triangle_solid_angle(p[0], p[2], p[1]) + triangle_solid_angle(p[1], p[2], p[3]);
+    static const char *const POINTS = "\"point3 P\" [-1 -1 1  2 -1 1.5  -1 1 1  0 3 0.5]";
+    char text[512];
+    snprintf(text, sizeof text, LAMP "Shape \"trianglemesh\" \"integer indices\" [0 2 1 1 2 3] %s", POINTS);
+    check_lamp(text, origin, angle);
+    snprintf(text, sizeof text,
+             LAMP "\"bool twosided\" true Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 2 3] %s", POINTS);
+    check_lamp(text, origin, angle);
+    /* a closed box, seen from outside */
+    check_lamp("Translate 2 3 1 " LAMP "Shape \"trianglemesh\" \"integer indices\" [0 3 1 0 2 3 4 5 7 4 7 6 0 1 5 0 5 "
+               "4 2 7 3 2 6 7 0 6 2 0 4 6 1 7 5 1 3 7]\n"
+               "\"point3 P\" [-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1]",
+               origin, 0.0);
+}
+
+static void disks(void **state)
+{
+    (void)state;
+    vec3 origin = {0.0f, 0.0f, 0.0f};
+    /* on the axis, facing it */
+    check_lamp("Translate 0 0 1.5 ReverseOrientation " LAMP
+               "Shape \"disk\" \"float radius\" [2] \"float innerradius\" [0.5]",
+               origin, 2.0 * PI * 1.5 * (1.0 / sqrt(1.5 * 1.5 + 0.25) - 1.0 / sqrt(1.5 * 1.5 + 4.0)));
+    check_lamp("Rotate 50 1 2 3 Translate 0.7 0.3 1 Scale 2 1 1 " LAMP
+               "\"bool twosided\" true Shape \"disk\" \"float radius\" [1]",
+               origin, 0.0);
+}
+
+static void a_lamp_is_dark_from_behind(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, "Translate 0 0 2 " LAMP "Shape \"disk\"");
+    rng random = test_random(2);
+    for (int i = 0; i < 1000; i++) {
+        light_sample at;
+        assert_false(light_sample_from_point(s, &s->lights[0], (vec3){0.0f, 0.0f, 0.0f}, rng_vec2(&random), &at));
+        assert_true(light_sample_from_point(s, &s->lights[0], (vec3){0.0f, 0.0f, 4.0f}, rng_vec2(&random), &at));
+    }
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+static const char *const SPOT =
+    "LightSource \"spot\" \"rgb I\" [3 2 1] \"point3 from\" [1 2 3] \"point3 to\" [1 2 13]\n"
+    "\"float coneangle\" [50] \"float conedeltaangle\" [20]\nShape \"sphere\" \"float radius\" [9]";
+
+static void lamps_without_extent(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    light_sample at;
+    scene *s = test_scene_create(&r, "LightSource \"point\" \"rgb I\" [8 4 2] \"point3 from\" [0 0 2]");
+    assert_true(light_sample_from_point(s, &s->lights[0], (vec3){0.0f, 0.0f, 0.0f}, (vec2){0.5f, 0.5f}, &at));
+    assert_true(at.is_delta && at.pdf_solid_angle == 1.0f && at.distance == 2.0f);
+    assert_relative(at.radiance.r, 2.0, 1e-6);
+    assert_true(light_pdf_from_point(s, &s->lights[0], (vec3){0, 0, 0}, (vec3){0, 0, 2}, (vec3){0, 0, 1}) == 0.0f);
+    assert_false(light_sample_from_point(s, &s->lights[0], (vec3){0.0f, 0.0f, 2.0f}, (vec2){0.5f, 0.5f}, &at));
+    scene_destroy(s);
+
+    s = test_scene_create(&r,
+                          "LightSource \"distant\" \"rgb L\" [8 4 2] \"point3 from\" [0 0 0] \"point3 to\" [0 3 0]");
+    assert_true(light_sample_from_point(s, &s->lights[0], (vec3){5.0f, 6.0f, 7.0f}, (vec2){0.5f, 0.5f}, &at));
+    assert_true(at.is_delta && isinf(at.distance) && at.direction.y == -1.0f);
+    assert_true(at.radiance.r == 8.0f);
+    scene_destroy(s);
+
+    /* along the axis, half-way down the ramp of the cosine, outside */
+    s = test_scene_create(&r, SPOT);
+    double inner = cos(30.0 * PI / 180.0), outer = cos(50.0 * PI / 180.0);
+    for (double c = 0.5; c <= 1.0; c += 0.01) {
+        vec3 point = {1.0f + 2.0f * (float)sqrt(1.0 - c * c), 2.0f, 3.0f + 2.0f * (float)c};
+        bool is_lit = light_sample_from_point(s, &s->lights[0], point, (vec2){0.5f, 0.5f}, &at);
+        double x = fmin(fmax((c - outer) / (inner - outer), 0.0), 1.0);
+        assert_true(is_lit == (x > 0.0));
+        if (is_lit)
+            assert_close(at.radiance.g, 2.0 / 4.0 * x * x * (3.0 - 2.0 * x), 1e-4);
+    }
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+/* --- light that leaves --- */
+
+/* Means over many photons' starts. */
+typedef struct emission {
+    double flux[3];
+    double mean_cos; /* to the lamp's normal or axis */
+    double direction[3];
+} emission;
+
+typedef vec3 axis_fn(const scene *s, const light_emission *e);
+
+static emission emit(const char *world, axis_fn *axis, uint32_t counts[BIN_COUNT])
+{
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, world);
+    const light *l = &s->lights[0];
+    emission sum = {0};
+    rng random = test_random(3);
+    for (int i = 0; i < SAMPLES; i++) {
+        light_emission e;
+        assert_true(light_sample_emission(s, l, &random, &e));
+        assert_close(vec3_length(e.direction), 1.0, 1e-5);
+        sum.flux[0] += (double)e.flux.r / SAMPLES, sum.flux[1] += (double)e.flux.g / SAMPLES;
+        sum.flux[2] += (double)e.flux.b / SAMPLES;
+        sum.mean_cos += (double)vec3_dot(e.direction, axis(s, &e)) / SAMPLES;
+        sum.direction[0] += (double)e.direction.x / SAMPLES, sum.direction[1] += (double)e.direction.y / SAMPLES;
+        sum.direction[2] += (double)e.direction.z / SAMPLES;
+        if (counts)
+            counts[direction_bin(e.direction)]++;
+    }
+    /* the mean photon carries the lamp's power, in its colour */
+    double tolerance = l->kind == LIGHT_AREA ? 5.0 / sqrt(SAMPLES) : 1e-6;
+    assert_relative(sum.flux[0], l->power.r, tolerance);
+    assert_relative(sum.flux[1], l->power.g, tolerance);
+    assert_relative(sum.flux[2], l->power.b, tolerance);
+    assert_relative(s->light_power.g, l->power.g, 1e-6);
+    scene_destroy(s);
+    test_run_reset(&r);
+    return sum;
+}
+
+/* The outward normal of the lamp where the photon starts, found by looking back. */
+static vec3 lamp_normal(const scene *s, const light_emission *e)
+{
+    const shape *lamp = &s->shapes[0];
+    if (lamp->kind == SHAPE_SPHERE) {
+        surface_hit hit;
+        shape_surface_at(lamp, 0, 0.0f, 0.0f, e->origin, &hit);
+        return hit.geometric_normal;
+    }
+    surface_hit hit; /* flat lamps */
+    shape_surface_at(lamp, 0, 0.3f, 0.3f, e->origin, &hit);
+    return hit.geometric_normal;
+}
+
+static vec3 z_axis(const scene *s, const light_emission *e) { return (void)s, (void)e, (vec3){0.0f, 0.0f, 1.0f}; }
+
+static void area_lights_emit_by_the_cosine(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *world;
+        double area;
+    } LAMPS[] = {
+        {LAMP "Shape \"sphere\" \"float radius\" [2]", 4.0 * PI * 4.0},
+        {"Rotate 40 1 2 3 " LAMP "Shape \"disk\" \"float radius\" [2] \"float innerradius\" [1]", PI * 3.0},
+        {"Translate 3 4 5 " LAMP
+         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] \"point3 P\" [0 0 0 2 0 0 0 3 0 2 3 0]",
+         6.0},
+        {LAMP "ReverseOrientation Shape \"sphere\" \"float radius\" [0.5]", 4.0 * PI * 0.25},
+        {"Scale 1 3 1 " LAMP "Shape \"sphere\"", 0.0},
+    };
+    for (size_t i = 0; i < sizeof LAMPS / sizeof *LAMPS; i++) {
+        emission e = emit(LAMPS[i].world, lamp_normal, NULL);
+        if (LAMPS[i].area > 0.0) {
+            assert_relative(e.flux[0], 3.0 * PI * LAMPS[i].area, 1e-4);
+            assert_close(e.mean_cos, 2.0 / 3.0, 5.0 * sqrt(1.0 / 18.0 / SAMPLES) + 1e-5);
+        }
+    }
+    /* both sides: as much to each, and twice the power */
+    emission both = emit(LAMP "\"bool twosided\" true Shape \"disk\" \"float radius\" [2]", z_axis, NULL);
+    assert_relative(both.flux[0], 3.0 * PI * 2.0 * PI * 4.0, 1e-4);
+    assert_close(both.mean_cos, 0.0, 5.0 * sqrt(0.5 / SAMPLES));
+}
+
+static double lambertian(void *user, vec3 d) { return (void)user, d.z > 0.0f ? (double)d.z / PI : 0.0; }
+static double uniform(void *user, vec3 d) { return (void)user, (void)d, 1.0 / (4.0 * PI); }
+
+static double spot_intensity(double c)
+{
+    double inner = cos(30.0 * PI / 180.0), outer = cos(50.0 * PI / 180.0);
+    double x = fmin(fmax((c - outer) / (inner - outer), 0.0), 1.0);
+    return x * x * (3.0 - 2.0 * x);
+}
+
+static double spot(void *user, vec3 d) { return spot_intensity((double)d.z) / *(double *)user; }
+
+static void directions_are_spread_as_they_should(void **state)
+{
+    (void)state;
+    static uint32_t counts[BIN_COUNT];
+    static double bins[BIN_COUNT];
+    memset(counts, 0, sizeof counts);
+    emit(LAMP "Shape \"disk\" \"float radius\" [2]", z_axis, counts);
+    integrate_bins(lambertian, NULL, 4, bins);
+    assert_chi_square(counts, bins, SAMPLES, 1e-3);
+
+    memset(counts, 0, sizeof counts);
+    emission e = emit("LightSource \"point\" \"rgb I\" [3 2 1]", z_axis, counts);
+    assert_relative(e.flux[1], 4.0 * PI * 2.0, 1e-6);
+    integrate_bins(uniform, NULL, 1, bins);
+    assert_chi_square(counts, bins, SAMPLES, 0.0);
+
+    memset(counts, 0, sizeof counts);
+    e = emit(SPOT, z_axis, counts);
+    double measure = 0.0, mean_cos = 0.0;
+    for (int i = 0; i < 100000; i++) {
+        double c = (i + 0.5) / 100000.0, share = 2.0 * PI * spot_intensity(c) / 100000.0;
+        measure += share, mean_cos += share * c;
+    }
+    assert_relative(e.flux[0], 3.0 * measure, 1e-5);
+    assert_close(e.mean_cos, mean_cos / measure, 5.0 * 0.1 / sqrt(SAMPLES));
+    integrate_bins(spot, &measure, 16, bins);
+    assert_chi_square(counts, bins, SAMPLES, 2e-3);
+}
+
+static void distant_light_fills_the_disc_around_the_scene(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(
+        &r, "LightSource \"distant\" \"rgb L\" [3 2 1] \"point3 from\" [0 0 0] \"point3 to\" [1 2 2]\n"
+            "Translate 5 6 7 Shape \"sphere\" \"float radius\" [2]");
+    const light *l = &s->lights[0];
+    double radius = s->bounding_radius, mean_square = 0.0;
+    assert_relative(l->power.r, 3.0 * PI * radius * radius, 1e-5);
+    rng random = test_random(4);
+    uint32_t hits = 0;
+    for (int i = 0; i < SAMPLES; i++) {
+        light_emission e;
+        surface_hit hit;
+        assert_true(light_sample_emission(s, l, &random, &e));
+        assert_close(vec3_dot(e.direction, l->direction), 1.0, 1e-6);
+        vec3 off = vec3_sub(e.origin, s->bounding_center);
+        double along = vec3_dot(off, e.direction), square = vec3_length_squared(off) - along * along;
+        assert_true(along <= -radius && square <= radius * radius * 1.0001);
+        mean_square += square / SAMPLES;
+        hits += scene_intersect(s, e.origin, e.direction, INFINITY, &hit);
+    }
+    assert_relative(mean_square, radius * radius / 2.0, 5.0 / sqrt(SAMPLES));
+    /* what reaches the sphere is what its disc takes of it */
+    assert_close((double)hits / SAMPLES, 4.0 / (radius * radius), 5.0 * 0.5 / sqrt(SAMPLES));
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+/* Lamps are picked by their power, and no lamp without power is picked. */
+static void lamps_are_picked_by_power(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s =
+        test_scene_create(&r, "LightSource \"point\" \"rgb I\" [1 0 0]\nLightSource \"point\" \"rgb I\" [0 0 0]\n"
+                              "LightSource \"point\" \"rgb I\" [0 0 3]\nLightSource \"point\" \"rgb I\" [0 0 0]");
+    uint32_t counts[4] = {0};
+    for (int i = 0; i < 10000; i++) {
+        float probability;
+        uint32_t index = scene_pick_light(s, ((float)i + 0.5f) / 10000.0f, &probability);
+        assert_true(index < 4);
+        assert_relative(probability, index == 0 ? 0.25 : 0.75, 1e-6);
+        counts[index]++;
+    }
+    assert_int_equal(counts[1] + counts[3], 0);
+    assert_close(counts[0], 2500, 1);
+    float probability;
+    assert_int_equal(scene_pick_light(s, 0x1.fffffep-1f, &probability), 2);
+    assert_int_equal(scene_pick_light(s, 0.0f, &probability), 0);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sphere_from_outside_and_inside),
+        cmocka_unit_test(an_ellipsoid_from_outside_and_inside),
+        cmocka_unit_test(meshes),
+        cmocka_unit_test(disks),
+        cmocka_unit_test(a_lamp_is_dark_from_behind),
+        cmocka_unit_test(lamps_without_extent),
+        cmocka_unit_test(area_lights_emit_by_the_cosine),
+        cmocka_unit_test(directions_are_spread_as_they_should),
+        cmocka_unit_test(distant_light_fills_the_disc_around_the_scene),
+        cmocka_unit_test(lamps_are_picked_by_power),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
