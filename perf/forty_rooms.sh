@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # forty_rooms.sh: builds the renderer, measures the paper's forty rooms, and draws the figures.
 # Use: perf/forty_rooms.sh [--out DIR] [--quick] [other options of afterglow-forty-rooms, see its --help]
-# The build goes to $AG_BUILD_DIR (build/), the results to DIR (build/forty_rooms/). Exit code 1 when a check fails.
+# The build goes to $AG_BUILD_DIR (build/release/), the results to DIR (forty_rooms/ in it). Exit code 1 when a check fails.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build=${AG_BUILD_DIR:-$root/build}
+build=${AG_BUILD_DIR:-$root/build/release}
 out=$build/forty_rooms
 arguments=()
 draw=yes

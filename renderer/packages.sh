@@ -1,4 +1,5 @@
 # packages.sh: Debian packages for renderer/quickstart.sh and tests/run.sh, which source it.
+# shellcheck shell=bash disable=SC2034
 
 BUILD_PACKAGES=(build-essential cmake ninja-build pkg-config
     libembree-dev libopenimageio-dev libopencolorio-dev libjansson-dev zlib1g-dev)

@@ -17,16 +17,16 @@ static const ag_render_settings DEFAULTS = {
     .nearest = 50,
 };
 
-/* An integer parameter within a range; `least` also is what must not be gone below. */
+/* An integer parameter within a range. */
 static ag_status get_count(parameter_list *list, log_sink *log, const char *name, int64_t least, int64_t most,
                            int64_t *in_out_value)
 {
     int64_t value = *in_out_value;
+    const parameter *p = parameter_list_find(list, name);
     ag_status status = parameter_get_int(list, log, name, &value);
-    if (status != AG_OK)
-        return status;
+    if (status != AG_OK || !p)
+        return status; /* where it is absent the default stays, which may be outside the range: "automatic" */
     if (value < least || value > most) {
-        const parameter *p = parameter_list_find(list, name);
         log_at(log, AG_LOG_ERROR, p->where, "%s: \"%s\" is %lld, it must be from %lld to %lld", list->directive, name,
                (long long)value, (long long)least, (long long)most);
         return AG_ERROR_SCENE;
