@@ -4,7 +4,7 @@
 #define _DEFAULT_SOURCE /* wait4 */
 #include "renderer_run.h"
 
-#include "image_file.h"
+#include "image_reader.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -156,9 +156,12 @@ static ag_status read_statistics(const char *path, result_row *row)
 static ag_status read_picture(const char *path, renderer_picture *out_picture)
 {
     char message[512] = "";
-    const ag_status status =
-        image_file_read(path, &out_picture->width, &out_picture->height, &out_picture->channel_count,
-                        &out_picture->pixels, message, sizeof message);
+    image read;
+    const ag_status status = image_read(path, &read, message, sizeof message);
+    out_picture->width = read.width;
+    out_picture->height = read.height;
+    out_picture->channel_count = read.channel_count;
+    out_picture->pixels = read.pixels;
     if (status != AG_OK) {
         fprintf(stderr, "%s: error: %s\n", path, message);
         return AG_ERROR_INPUT;

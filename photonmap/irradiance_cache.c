@@ -29,7 +29,9 @@ ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, u
         irradiance_cache_reset(&c);
         return AG_ERROR_MEMORY;
     }
-    c.ready_before = irradiance_cache_distinct(&c);
+    if (map->has_been_cached)
+        c.ready_before = irradiance_cache_distinct(&c);
+    map->has_been_cached = true;
     *out_cache = c;
     return AG_OK;
 }
@@ -70,11 +72,17 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker
     return irradiance_word(IRRADIANCE_READY, value);
 }
 
+typedef struct precompute_job {
+    irradiance_cache *cache;
+    const run_context *run;
+} precompute_job;
+
 static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker_index)
 {
     (void)block;
-    irradiance_cache *cache = user;
-    for (uint64_t i = begin; i < end; i++) {
+    const precompute_job *job = user;
+    irradiance_cache *cache = job->cache;
+    for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++) {
         uint32_t word;
         if (irradiance_slot_try_claim(&cache->map->set.photons[i].slot, worker_index, &word))
             compute(cache, (uint32_t)i, worker_index);
@@ -83,8 +91,10 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
 
 ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run)
 {
-    return parallel_for(run, cache->map->set.count, PRECOMPUTE_BLOCK, precompute_block, cache, AG_PHASE_PRECOMPUTE, 0.0,
-                        1.0);
+    precompute_job job = {cache, run};
+    ag_status status = parallel_for(run, cache->map->set.count, PRECOMPUTE_BLOCK, precompute_block, &job,
+                                    AG_PHASE_PRECOMPUTE, 0.0, 1.0);
+    return status == AG_OK && run_is_cancelled(run) ? AG_CANCELLED : status;
 }
 
 static void fulfil(const irradiance_cache *cache, uint32_t word, irradiance_request *request)

@@ -22,6 +22,8 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
     float density = settings->surface_area > 0.0f ? (float)map.set.count / settings->surface_area : 0.0f;
     map.mean_radius = density > 0.0f ? sqrtf((float)map.nearest / (AG_PI * density)) : 0.0f;
     map.max_radius = settings->max_radius > 0.0f ? settings->max_radius : RADIUS_FACTOR * map.mean_radius;
+    if (settings->max_radius == 0.0f && settings->radius_bound > 0.0f)
+        map.max_radius = fminf(map.max_radius, settings->radius_bound);
     if (map.mean_radius > map.max_radius)
         map.mean_radius = map.max_radius;
     float min_radius = map.max_radius * MIN_RADIUS_SHARE;

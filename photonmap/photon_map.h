@@ -13,6 +13,7 @@ typedef struct photon_map_settings {
     uint32_t nearest;    /* photons of an estimate, >= 1; the paper: 300 */
     float max_radius;    /* of an estimate, scene units; the paper: 3.0; 0: from the density of the map */
     float surface_area;  /* of the scene, m^2: for the automatic radius */
+    float radius_bound;  /* the automatic radius is no larger; 0: no bound */
 } photon_map_settings;
 
 typedef struct photon_map {
@@ -24,6 +25,7 @@ typedef struct photon_map {
     float mean_radius;     /* of an estimate, were the photons spread evenly */
     int flux_exponent_max; /* the largest of the photons' exponents: the sums' unit */
     int irradiance_bias;   /* added to a slot's 6-bit exponent */
+    bool has_been_cached;  /* a cache has been made over it: some slots may be ready */
 } photon_map;
 
 /* Takes the set's photons over (and frees them on failure). A map without photons is valid: it says 0 everywhere.

@@ -12,8 +12,8 @@
 /* A path ends here at the latest; what it still carries is booked as truncated. */
 enum { SCATTERING_CAP = 100 };
 enum { PATHS_PER_BLOCK = 1024, BLOCKS_PER_ROUND_MAX = 256 };
-/* Tracing gives up when this many paths have stored fewer than one photon in a thousand and twenty-four. */
-static const uint64_t GIVE_UP_PATHS = 1u << 20;
+/* Tracing gives up after so many paths for each photon wanted, and at once when so many have stored none at all. */
+static const uint64_t PATHS_PER_PHOTON_MAX = 16, PATHS_WITHOUT_PHOTON_MAX = 1u << 20;
 /* Random streams, apart from those of the eye. */
 enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2 };
 
@@ -42,7 +42,7 @@ static void book(double entry[3], rgb flux)
 static void store(tracer *t, const surface_hit *hit, const bsdf *b, vec3 direction, rgb flux, uint64_t key)
 {
     block *out = t->out;
-    flux = rgb_scale(flux, bsdf_arrival_correction(b, vec3_negate(direction)));
+    flux = rgb_scale(flux, bsdf_arrival_factor(b));
     book(out->books.arrived, flux);
     if (out->count == t->limit) {
         book(out->books.cut, flux);
@@ -95,7 +95,7 @@ static void trace_path(tracer *t, uint64_t path)
             return;
         }
         vec3 back = vec3_negate(direction);
-        bsdf b = bsdf_create(&s->materials[s->shapes[hit.shape_index].material_index], &hit);
+        bsdf b = bsdf_create(s, &hit, back);
 
         /* store at gathered lobes */
         if (bsdf_has(&b, BSDF_GATHERED)) {
@@ -116,7 +116,7 @@ static void trace_path(tracer *t, uint64_t path)
         float u_lobe = rng_float(&random), u_roulette = rng_float(&random);
         vec2 u = rng_vec2(&random);
         bsdf_sample next;
-        if (!bsdf_sample_direction(&b, lobes, BSDF_FLUX, back, u_lobe, u, &next)) {
+        if (!bsdf_sample_direction(&b, lobes, BSDF_FLUX, u_lobe, u, &next)) {
             book(books->absorbed, flux);
             return;
         }
@@ -124,7 +124,7 @@ static void trace_path(tracer *t, uint64_t path)
         book(books->absorbed, rgb_sub(flux, scattered));
 
         /* roulette keeps the flux of the survivors about what it was */
-        float survival = fminf(1.0f, rgb_max(scattered) / rgb_max(flux));
+        float survival = rgb_max(scattered) > 0.0f ? fminf(1.0f, rgb_max(scattered) / rgb_max(flux)) : 0.0f;
         if (u_roulette >= survival) {
             book(books->lost, scattered);
             return;
@@ -206,6 +206,8 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         log_once(run->log, AG_LOG_WARNING, "no light", "the scene has no light that emits: there are no photons");
         return AG_OK;
     }
+    if (s->shape_count == 0 && s->infinite_light_count > 0)
+        return AG_OK; /* a sky alone, which the eye sees without photons */
     block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
     set.photons = malloc((size_t)settings->wanted * sizeof *set.photons);
     ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
@@ -221,7 +223,9 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         }
         next_path += block_count * PATHS_PER_BLOCK;
 
-        if (set.emitted_paths >= GIVE_UP_PATHS && set.count < set.emitted_paths / 1024 && set.count < settings->wanted) {
+        bool is_hopeless = set.emitted_paths >= PATHS_WITHOUT_PHOTON_MAX &&
+                           (set.count == 0 || set.emitted_paths / PATHS_PER_PHOTON_MAX >= settings->wanted);
+        if (set.count < settings->wanted && is_hopeless) {
             explain_shortage(run, settings, &set);
             break;
         }

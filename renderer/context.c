@@ -4,6 +4,7 @@
 
 #include "bvh.h"
 #include "clock.h"
+#include "floating_point.h"
 #include "pbrt_parser.h"
 
 #include <stdio.h>
@@ -69,6 +70,7 @@ ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_sc
 {
     if (!context || !path || !out_scene)
         return AG_ERROR_ARGUMENT;
+    unsigned callers_arithmetic = floating_point_enter();
     ag_scene *loaded = calloc(1, sizeof *loaded);
     scene *s = scene_create();
     ag_status status = loaded && s ? AG_OK : AG_ERROR_MEMORY;
@@ -87,10 +89,11 @@ ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_sc
                     bvh_isa(s->bvh));
         loaded->s = s;
         *out_scene = loaded;
-        return AG_OK;
+    } else {
+        scene_destroy(s);
+        free(loaded);
     }
-    scene_destroy(s);
-    free(loaded);
+    floating_point_leave(callers_arithmetic);
     return status;
 }
 

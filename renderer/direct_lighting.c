@@ -1,6 +1,7 @@
 /* direct_lighting.c: see direct_lighting.h. */
 #include "direct_lighting.h"
 
+#include "environment.h"
 #include "math/sampling.h"
 
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
@@ -14,21 +15,20 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
     light_sample sample;
     if (!(probability > 0.0f) || !light_sample_from_point(t->s, lamp, v->hit.position, u, &sample))
         return none;
-    vec3 back = vec3_negate(v->arrival);
-    rgb reflected = rgb_mul(bsdf_evaluate(&v->scattering, lobes, BSDF_RADIANCE, back, sample.direction), sample.radiance);
+    rgb reflected = rgb_mul(bsdf_evaluate(&v->scattering, lobes, BSDF_RADIANCE, sample.direction), sample.radiance);
     if (rgb_is_black(reflected))
         return none;
 
     vec3 origin = surface_ray_origin(&v->hit, v->arrival, sample.direction);
     worker->rays_shadow++;
-    bool is_shadowed = lamp->kind == LIGHT_DISTANT ? scene_occluded_direction(t->s, origin, sample.direction)
-                                                   : scene_occluded(t->s, origin, sample.shadow_target);
+    bool is_shadowed = isinf(sample.distance) ? scene_occluded_direction(t->s, origin, sample.direction)
+                                              : scene_occluded(t->s, origin, sample.shadow_target);
     if (is_shadowed)
         return none;
     float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
     if (!sample.is_delta && scatter_count > 0)
         weight = mis_power((float)lamp_count, pdf, (float)scatter_count,
-                           bsdf_pdf(&v->scattering, lobes, back, sample.direction));
+                           bsdf_pdf(&v->scattering, lobes, sample.direction));
     return rgb_scale(reflected, weight / pdf);
 }
 
@@ -38,6 +38,22 @@ float direct_light_scatter_weight(const transport *t, vec3 from, const vertex *o
     float pick = t->s->light_probability[on_lamp->lamp - t->s->lights];
     float pdf = pick * light_pdf_from_point(t->s, on_lamp->lamp, from, on_lamp->hit.position, on_lamp->hit.geometric_normal);
     return mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count, pdf);
+}
+
+rgb direct_light_escaped(const transport *t, vec3 direction, float pdf_solid_angle, int lamp_count, int scatter_count)
+{
+    const scene *s = t->s;
+    rgb sum = rgb_gray(0.0f);
+    for (uint32_t i = 0; i < s->infinite_light_count; i++) {
+        uint32_t index = s->infinite_lights[i];
+        const light *l = &s->lights[index];
+        float weight = 1.0f;
+        if (pdf_solid_angle > 0.0f)
+            weight = mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count,
+                               s->light_probability[index] * environment_pdf(l, direction));
+        sum = rgb_add(sum, rgb_scale(environment_radiance(l, direction), weight));
+    }
+    return sum;
 }
 
 rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex)
@@ -54,16 +70,21 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
                                                                 scatter_count));
     }
     for (int i = 0; i < scatter_count; i++) {
-        vec2 u = sampler_2d_at(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex,
-                               where->sample * (uint32_t)scatter_count + (uint32_t)i);
+        uint32_t index = where->sample * (uint32_t)scatter_count + (uint32_t)i;
+        float u_lobe = sampler_2d_at(where, SAMPLE_LOBE, path_vertex, index).y; /* x is for the way on */
+        vec2 u = sampler_2d_at(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex, index);
         bsdf_sample scattered;
-        if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, vec3_negate(v->arrival), 0.0f, u,
-                                   &scattered))
+        if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, u_lobe, u, &scattered))
             continue;
         vertex met;
         worker->rays_shadow++;
-        if (!transport_trace(t, surface_ray_origin(&v->hit, v->arrival, scattered.direction), scattered.direction, &met))
+        if (!transport_trace(t, surface_ray_origin(&v->hit, v->arrival, scattered.direction), scattered.direction,
+                             &met)) {
+            rgb escaped =
+                direct_light_escaped(t, scattered.direction, scattered.pdf_solid_angle, lamp_count, scatter_count);
+            by_scattering = rgb_add(by_scattering, rgb_mul(escaped, scattered.weight));
             continue;
+        }
         rgb emitted = transport_emission(&met);
         if (rgb_is_black(emitted))
             continue;

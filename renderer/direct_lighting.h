@@ -16,6 +16,10 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
 float direct_light_scatter_weight(const transport *t, vec3 from, const vertex *on_lamp, float pdf_solid_angle,
                                   int lamp_count, int scatter_count);
 
+/* Radiance of the infinite lights that a ray brings which meets nothing, weighted like that. pdf_solid_angle: with which
+ * it was scattered, or 0 where no sample towards a lamp could stand for it (the eye, smooth lobes): weight 1. */
+rgb direct_light_escaped(const transport *t, vec3 direction, float pdf_solid_angle, int lamp_count, int scatter_count);
+
 /* All of the direct light at a diffuse place: t->light_samples and t->scatter_samples samples. */
 rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex);
 

@@ -8,7 +8,10 @@
 
 #include "transport.h"
 
-/* Reflected radiance of light that met at least two surfaces, the last of them diffuse, before it came here. */
-rgb final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex);
+/* Radiance, from this place, of light that met at least two surfaces before the eye, the last but one of them diffuse.
+ * scatterings_left: how many there may be between here and the lamp, this one included; >= 2. Those of the photons
+ * themselves are bounded where they are traced. */
+rgb final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
+                 int scatterings_left);
 
 #endif

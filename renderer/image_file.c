@@ -126,19 +126,3 @@ ag_status image_file_check_target(const char *path, char *message, size_t messag
         return unknown_extension(path, message, message_size);
     return atomic_file_check(path, message, message_size);
 }
-
-ag_status image_file_read(const char *path, int *out_width, int *out_height, int *out_channel_count, float **out_pixels,
-                          char *message, size_t message_size)
-{
-    *out_width = *out_height = *out_channel_count = 0;
-    *out_pixels = NULL;
-    const image_module *module = image_module_get(message, message_size);
-    if (!module)
-        return AG_ERROR_SYSTEM;
-    char reason[1024];
-    const ag_status status =
-        module->decode(path, out_width, out_height, out_channel_count, out_pixels, reason, sizeof reason);
-    if (status != AG_OK)
-        snprintf(message, message_size, "cannot read '%s': %s", path, reason);
-    return status;
-}

@@ -137,6 +137,8 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
         return AG_ERROR_ARGUMENT;
     if (!settings)
         settings = &defaults;
+    if (run_is_cancelled(&context->run))
+        return AG_CANCELLED;
     double begin = clock_seconds();
     const image_format *format;
     ag_status status = find_format(context, settings, path, &format);

@@ -12,8 +12,8 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, vec3 origin, v
     rgb radiance = rgb_gray(0.0f), throughput = rgb_gray(1.0f);
     vec3 scattered_from = origin;
     float scattered_pdf = 0.0f;       /* 0: the eye or a smooth lobe */
-    bool has_met_diffuse = false;     /* a gathered lobe, before this vertex */
-    bool left_first_diffuse = false;  /* the vertex before was the first of them */
+    bool has_met_diffuse = false;     /* the path has been scattered by a gathered lobe */
+    bool left_first_diffuse = false;  /* at the vertex before, for the first time */
 
     for (int path_vertex = 0;; path_vertex++) {
         vertex v;
@@ -21,12 +21,16 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, vec3 origin, v
             worker->rays_camera++;
         else
             worker->rays_path++;
-        if (!transport_trace(t, origin, direction, &v))
-            return radiance;
-
         /* emitted light; indirect light alone leaves out what is seen, and what falls straight on the first diffuse place */
+        bool counts_emission = is_whole || (has_met_diffuse && !left_first_diffuse);
+        if (!transport_trace(t, origin, direction, &v)) {
+            if (counts_emission)
+                radiance =
+                    rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, direction, scattered_pdf, 1, 1)));
+            return radiance;
+        }
         rgb emitted = transport_emission(&v);
-        if (!rgb_is_black(emitted) && (is_whole || (has_met_diffuse && !left_first_diffuse))) {
+        if (!rgb_is_black(emitted) && counts_emission) {
             float weight = scattered_pdf > 0.0f
                                ? direct_light_scatter_weight(t, scattered_from, &v, scattered_pdf, 1, 1)
                                : 1.0f;
@@ -45,7 +49,7 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, vec3 origin, v
 
         /* go on */
         bsdf_sample next;
-        if (!bsdf_sample_direction(&v.scattering, BSDF_ALL, BSDF_RADIANCE, vec3_negate(direction),
+        if (!bsdf_sample_direction(&v.scattering, BSDF_ALL, BSDF_RADIANCE,
                                    sampler_2d(where, SAMPLE_LOBE, path_vertex).x,
                                    sampler_2d(where, SAMPLE_SCATTER, path_vertex), &next))
             return radiance;
@@ -56,7 +60,7 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, vec3 origin, v
                 return radiance;
             throughput = rgb_scale(throughput, 1.0f / survival);
         }
-        left_first_diffuse = !has_met_diffuse && bsdf_has(&v.scattering, BSDF_GATHERED);
+        left_first_diffuse = !has_met_diffuse && next.group == BSDF_GATHERED;
         has_met_diffuse = has_met_diffuse || left_first_diffuse;
         scattered_from = v.hit.position;
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;

@@ -17,7 +17,8 @@ static double filter_value(filter_kind kind, double x, double radius, double sig
     return 0.0;
 }
 
-static void tabulate(filter_kind kind, float radius, float sigma, float *cdf)
+/* false: the filter is nothing but rounding at this resolution. */
+static bool tabulate(filter_kind kind, float radius, float sigma, float *cdf)
 {
     double sum = 0.0, step = 2.0 * (double)radius / PIXEL_FILTER_STEPS, running[PIXEL_FILTER_STEPS + 1];
     running[0] = 0.0;
@@ -27,6 +28,7 @@ static void tabulate(filter_kind kind, float radius, float sigma, float *cdf)
     }
     for (int i = 0; i <= PIXEL_FILTER_STEPS; i++)
         cdf[i] = (float)(running[i] / sum);
+    return sum > 0.0;
 }
 
 ag_status pixel_filter_create(parameter_list *directive, log_sink *log, pixel_filter *out_filter)
@@ -61,7 +63,10 @@ ag_status pixel_filter_create(parameter_list *directive, log_sink *log, pixel_fi
     }
     for (int axis = 0; axis < 2; axis++) {
         out_filter->radius[axis] = radius[axis];
-        tabulate(kind, radius[axis], sigma, out_filter->cdf[axis]);
+        if (!tabulate(kind, radius[axis], sigma, out_filter->cdf[axis])) {
+            log_at(log, AG_LOG_ERROR, directive->where, "PixelFilter: \"sigma\" is too small for the radius");
+            return AG_ERROR_SCENE;
+        }
     }
     return AG_OK;
 }

@@ -4,6 +4,7 @@
 #include "context.h"
 
 #include "clock.h"
+#include "floating_point.h"
 #include "path_tracing.h"
 #include "pixel_filter.h"
 #include "shading.h"
@@ -35,7 +36,7 @@ static void maps_reset(maps *m)
 static bool has_traced_matter(const scene *s)
 {
     for (uint32_t i = 0; i < s->shape_count; i++)
-        if (s->materials[s->shapes[i].material_index].kind != MATERIAL_DIFFUSE)
+        if (material_is_traced(s, s->shapes[i].material_index))
             return true;
     return false;
 }
@@ -82,8 +83,11 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
         log_message(context->log, AG_LOG_INFO, "photons: %u in the global map, %u in the caustic map, %llu paths",
                     global.count, caustic.count, (unsigned long long)(global.emitted_paths + caustic.emitted_paths));
         begin = clock_seconds();
-        photon_map_settings map_settings = {(uint32_t)settings->nearest, settings->radius, s->surface_area};
+        photon_map_settings map_settings = {
+            .nearest = (uint32_t)settings->nearest, .max_radius = settings->radius, .surface_area = s->surface_area};
         status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, &out_maps->global);
+        /* caustics gather in places: how many of their photons there are does not tell how far apart they lie */
+        map_settings.radius_bound = out_maps->global.max_radius;
         if (status == AG_OK)
             status = photon_map_create(&context->run, &caustic, &map_settings, 0.7, 1.0, &out_maps->caustic);
     }
@@ -223,6 +227,7 @@ static ag_status render_film(ag_context *context, const transport *t, const pixe
                                              TILE_SIZE, statistics->threads, &job.tiles);
     if (status == AG_OK) {
         double begin = clock_seconds();
+        run_progress(&context->run, AG_PHASE_RENDER, 0.0); /* the first pixels may take long */
         thread_pool_run(context->pool, render_tiles, &job);
         status = run_is_cancelled(&context->run) ? AG_CANCELLED : AG_OK;
         context_end_phase(context, AG_PHASE_RENDER, begin);
@@ -267,11 +272,11 @@ static ag_film *film_create(const ag_render_settings *settings)
     return film;
 }
 
-static transport make_transport(const scene *s, const ag_render_settings *settings, maps *m)
+static transport make_transport(const ag_context *context, const scene *s, const ag_render_settings *settings, maps *m)
 {
-    transport t = {.s = s, .settings = settings, .has_lights = rgb_max(s->light_power) > 0.0f};
+    transport t = {.s = s, .run = &context->run, .settings = settings, .has_lights = rgb_max(s->light_power) > 0.0f};
     for (uint32_t i = 0; i < s->light_count; i++)
-        t.has_area_lights = t.has_area_lights || s->lights[i].kind == LIGHT_AREA;
+        t.has_area_lights = t.has_area_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
     t.light_samples = (settings->gather_samples + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE;
     if (t.has_area_lights)
         t.scatter_samples = (t.light_samples + LIGHT_SAMPLES_PER_SCATTER_SAMPLE - 1) / LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
@@ -296,35 +301,27 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
     statistics->irradiance_estimate_s += irradiance_counters_estimate_seconds(&c);
 }
 
-ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render_settings *wanted, ag_film **out_film)
+/* Settings with nothing left open. */
+static ag_status settle_settings(ag_context *context, const ag_scene *loaded, const ag_render_settings *wanted)
 {
-    if (!context || !loaded || !wanted || !out_film)
-        return AG_ERROR_ARGUMENT;
-    context->rendered = *wanted;
     ag_render_settings *settings = &context->rendered;
+    *settings = *wanted;
     if (settings->gather_samples == 0 && settings->samples_per_pixel > 0) {
         int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / settings->samples_per_pixel;
         settings->gather_samples = rays > 0 ? rays : 1;
     }
-    const scene *s = loaded->s;
-    if (!s->has_camera) {
-        log_message(context->log, AG_LOG_ERROR, "the scene has no Camera");
-        return AG_ERROR_SCENE;
-    }
-    ag_status status = render_settings_check(context, settings);
-    pixel_filter filter;
-    if (status == AG_OK)
-        status = pixel_filter_create(&loaded->s->pixel_filter, context->log, &filter);
-    if (status != AG_OK)
-        return status;
-    ag_film *film = film_create(settings);
-    if (!film)
-        return AG_ERROR_MEMORY;
-    if (film->width == 0) {
-        log_message(context->log, AG_LOG_ERROR, "the crop window holds no pixel");
-        ag_film_destroy(film);
-        return AG_ERROR_ARGUMENT;
-    }
+    if (loaded->s->has_camera)
+        return render_settings_check(context, settings);
+    log_message(context->log, AG_LOG_ERROR, "the scene has no Camera");
+    return AG_ERROR_SCENE;
+}
+
+static ag_status render_into(ag_context *context, const scene *s, const pixel_filter *filter, ag_film *film)
+{
+    const ag_render_settings *settings = &context->rendered;
+    ag_status status = AG_OK;
+    if (!(rgb_max(s->light_power) > 0.0f))
+        log_once(context->log, AG_LOG_WARNING, "no light", "the scene has no light that emits: the picture is black");
 
     /* light's side: lamps -> photons -> maps -> cache */
     maps m = {0};
@@ -333,19 +330,45 @@ ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render
 
     /* the eye's side: tiles -> film */
     if (status == AG_OK) {
-        transport t = make_transport(s, settings, &m);
-        status = render_film(context, &t, &filter, film);
-        if (t.cache)
+        transport t = make_transport(context, s, settings, &m);
+        status = render_film(context, &t, filter, film);
+        if (t.cache && status == AG_OK)
             count_irradiance(&context->statistics, t.cache);
     }
     maps_reset(&m);
+    return status;
+}
+
+ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings, ag_film **out_film)
+{
+    if (!context || !loaded || !settings || !out_film)
+        return AG_ERROR_ARGUMENT;
+    unsigned callers_arithmetic = floating_point_enter();
+    uint64_t not_finite_before = context->statistics.samples_not_finite;
+    ag_film *film = NULL;
+    pixel_filter filter;
+    ag_status status = settle_settings(context, loaded, settings);
+    if (status == AG_OK)
+        status = pixel_filter_create(&loaded->s->pixel_filter, context->log, &filter);
+    if (status == AG_OK) {
+        film = film_create(&context->rendered);
+        status = film ? AG_OK : AG_ERROR_MEMORY;
+    }
+    if (status == AG_OK && film->width == 0) {
+        log_message(context->log, AG_LOG_ERROR, "the crop window holds no pixel");
+        status = AG_ERROR_ARGUMENT;
+    }
+    if (status == AG_OK)
+        status = render_into(context, loaded->s, &filter, film);
+    floating_point_leave(callers_arithmetic);
     if (status != AG_OK) {
         ag_film_destroy(film);
         return status;
     }
-    if (context->statistics.samples_not_finite > 0)
+    uint64_t not_finite = context->statistics.samples_not_finite - not_finite_before;
+    if (not_finite > 0)
         log_message(context->log, AG_LOG_WARNING, "%llu camera samples were not finite and count as black",
-                    (unsigned long long)context->statistics.samples_not_finite);
+                    (unsigned long long)not_finite);
     *out_film = film;
     return AG_OK;
 }

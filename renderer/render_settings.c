@@ -74,8 +74,14 @@ static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settin
     for (int i = 0; i < 4; i++) {
         if (crop)
             out->crop_window[i] = crop[i];
-        else if (bounds)
-            out->crop_window[i] = bounds[i] / (i < 2 ? out->width : out->height);
+        else if (bounds) /* beyond the picture is nothing, as in pbrt */
+            out->crop_window[i] = fmin(fmax(bounds[i] / (i < 2 ? out->width : out->height), 0.0), 1.0);
+    }
+    const double *window = out->crop_window;
+    if (!(window[0] >= 0.0 && window[0] < window[1] && window[1] <= 1.0 && window[2] >= 0.0 && window[2] < window[3] &&
+          window[3] <= 1.0)) {
+        log_at(log, AG_LOG_ERROR, film->where, "Film: \"%s\" leaves no part of the picture", crop ? "cropwindow" : "pixelbounds");
+        return AG_ERROR_SCENE;
     }
     parameter_list_warn_unused(film, log);
     return AG_OK;
@@ -114,8 +120,8 @@ static ag_status read_photonmap(parameter_list *list, log_sink *log, ag_render_s
         status = parameter_get_bool(list, log, "finalgather", &final_gather);
     if (status != AG_OK)
         return status;
-    if (!(out->radius >= 0.0f)) {
-        log_at(log, AG_LOG_ERROR, list->where, "Integrator: \"maxdist\" must not be negative");
+    if (!(out->radius >= 0.0f) || isinf(out->radius)) {
+        log_at(log, AG_LOG_ERROR, list->where, "Integrator: \"maxdist\" must be finite and not negative");
         return AG_ERROR_SCENE;
     }
     if (!final_gather)
@@ -165,6 +171,8 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "samples per pixel must be from 1 to 1048576";
     else if (s->gather_samples < 0 || s->gather_samples > 65536)
         wrong = "gather rays must be from 0 (automatic) to 65536";
+    else if ((int64_t)s->samples_per_pixel * (s->gather_samples > 0 ? s->gather_samples : 1) > UINT32_MAX)
+        wrong = "samples per pixel times gather rays must stay below 2^32";
     else if (s->max_depth < 0 || s->max_depth > 100)
         wrong = "depth must be from 0 to 100";
     else if (s->photon_count < 1 || s->photon_count > UINT32_MAX - 1 || s->caustic_photon_count > UINT32_MAX - 1)

@@ -19,15 +19,22 @@ static rgb diffuse_radiance(const transport *t, eye_worker *worker, const vertex
     if (scatterings_left < 1)
         return sum;
     if (is_whole && path_vertex > 0 && contribution < LOW_CONTRIBUTION) {
-        vec3 normal = vec3_face_forward(v->hit.geometric_normal, vec3_negate(v->arrival));
-        rgb irradiance = irradiance_cache_estimate(t->cache, v->hit.position, normal, worker->index);
-        return rgb_scale(rgb_mul(bsdf_gathered_albedo(&v->scattering), irradiance), AG_INV_PI);
+        vec3 normal = transport_facing_normal(v);
+        rgb transmitted = bsdf_gathered_transmission(&v->scattering);
+        sum = rgb_mul(bsdf_gathered_reflection(&v->scattering),
+                      irradiance_cache_estimate(t->cache, v->hit.position, normal, worker->index));
+        if (!rgb_is_black(transmitted)) {
+            normal = vec3_negate(normal);
+            rgb behind = irradiance_cache_estimate(t->cache, v->hit.position, normal, worker->index);
+            sum = rgb_add(sum, rgb_mul(transmitted, behind));
+        }
+        return rgb_scale(sum, AG_INV_PI);
     }
     if (is_whole)
         sum = direct_light_gathered(t, worker, v, where, path_vertex);
     sum = rgb_add(sum, transport_caustics(t, worker, v));
     if (scatterings_left >= 2)
-        sum = rgb_add(sum, final_gather(t, worker, v, where, path_vertex));
+        sum = rgb_add(sum, final_gather(t, worker, v, where, path_vertex, scatterings_left));
     return sum;
 }
 
@@ -45,8 +52,12 @@ rgb shading_radiance(const transport *t, eye_worker *worker, vec3 origin, vec3 d
             worker->rays_camera++;
         else
             worker->rays_path++;
-        if (!transport_trace(t, origin, direction, &v))
+        if (!transport_trace(t, origin, direction, &v)) {
+            if (is_whole)
+                radiance =
+                    rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, direction, scattered_pdf, 1, 1)));
             return radiance;
+        }
 
         /* emitted light, shared with the shadow rays of the vertex before where that had any */
         rgb emitted = transport_emission(&v);
@@ -73,7 +84,7 @@ rgb shading_radiance(const transport *t, eye_worker *worker, vec3 origin, vec3 d
             radiance = rgb_add(radiance, rgb_mul(throughput, direct));
         }
         bsdf_sample next;
-        if (!bsdf_sample_direction(&v.scattering, BSDF_TRACED, BSDF_RADIANCE, vec3_negate(direction),
+        if (!bsdf_sample_direction(&v.scattering, BSDF_TRACED, BSDF_RADIANCE,
                                    sampler_2d(where, SAMPLE_LOBE, path_vertex).x,
                                    sampler_2d(where, SAMPLE_SCATTER, path_vertex), &next))
             return radiance;

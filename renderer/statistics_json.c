@@ -48,6 +48,8 @@ ag_status ag_statistics_write(ag_context *context, const char *path)
 {
     if (!context || !path)
         return AG_ERROR_ARGUMENT;
+    if (run_is_cancelled(&context->run))
+        return AG_CANCELLED;
     ag_statistics statistics = ag_context_statistics(context);
     json_t *json = statistics_to_json(&statistics, &context->rendered, context->isa);
     char *text = json ? json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;

@@ -8,7 +8,7 @@ bool transport_trace(const transport *t, vec3 origin, vec3 direction, vertex *ou
         return false;
     const shape *where = &s->shapes[out_vertex->hit.shape_index];
     out_vertex->arrival = direction;
-    out_vertex->scattering = bsdf_create(&s->materials[where->material_index], &out_vertex->hit);
+    out_vertex->scattering = bsdf_create(s, &out_vertex->hit, vec3_negate(direction));
     out_vertex->lamp = where->light_index == SHAPE_NO_LIGHT ? NULL : &s->lights[where->light_index];
     return true;
 }
@@ -20,15 +20,25 @@ rgb transport_emission(const vertex *v)
     return light_emitted_radiance(v->lamp, v->hit.geometric_normal, vec3_negate(v->arrival));
 }
 
+vec3 transport_facing_normal(const vertex *v)
+{
+    return vec3_face_forward(v->hit.geometric_normal, v->scattering.out);
+}
+
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
 {
     if (!t->caustic || t->caustic->set.count == 0)
         return rgb_gray(0.0f);
-    vec3 normal = vec3_face_forward(v->hit.geometric_normal, vec3_negate(v->arrival));
+    vec3 normal = transport_facing_normal(v);
     arena_mark mark = arena_save(worker->scratch);
     photon_neighbor *neighbors =
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
-    rgb irradiance = photon_map_irradiance_estimate(t->caustic, v->hit.position, normal, neighbors);
+    rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
+    rgb sum = rgb_mul(reflected, photon_map_irradiance_estimate(t->caustic, v->hit.position, normal, neighbors));
+    if (!rgb_is_black(transmitted)) {
+        rgb behind = photon_map_irradiance_estimate(t->caustic, v->hit.position, vec3_negate(normal), neighbors);
+        sum = rgb_add(sum, rgb_mul(transmitted, behind));
+    }
     arena_restore(worker->scratch, mark);
-    return rgb_scale(rgb_mul(bsdf_gathered_albedo(&v->scattering), irradiance), AG_INV_PI);
+    return rgb_scale(sum, AG_INV_PI);
 }

@@ -13,11 +13,12 @@
 
 typedef struct transport {
     const scene *s;
+    const run_context *run;     /* whether to stop */
     const photon_map *caustic;  /* may be empty */
     irradiance_cache *cache;    /* over the global map; NULL for path tracing */
     const ag_render_settings *settings;
     bool has_lights;            /* any with power */
-    bool has_area_lights;       /* that scattered rays can meet */
+    bool has_area_lights;       /* or infinite ones: lights that scattered rays can meet */
     int light_samples;          /* for direct light at a diffuse place, towards lamps */
     int scatter_samples;        /* and by scattering, 0 where that cannot meet a lamp */
     float gather_min_distance;  /* a gather ray that hits nearer than this does not use the cache, scene units */
@@ -50,6 +51,9 @@ bool transport_trace(const transport *t, vec3 origin, vec3 direction, vertex *ou
 
 /* Radiance that the place itself sends back along the ray. */
 rgb transport_emission(const vertex *v);
+
+/* The geometric normal on the side that the ray came from. */
+vec3 transport_facing_normal(const vertex *v);
 
 /* The caustic map's light at a diffuse place: reflected radiance. */
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);

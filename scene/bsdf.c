@@ -1,155 +1,281 @@
 /* bsdf.c: see bsdf.h. Directions are in the shading frame, z up to the outside.
- * Rests on: Walter et al. 2007; Heitz 2018; Pharr, Jakob, Humphreys, 4th ed., 2023, ch. 9 (Fresnel terms, refraction).
  * Threads: pure functions. */
 #include "bsdf.h"
 
-#include "math/sampling.h"
+#include "fresnel.h"
+#include "math/rng.h"
+#include "microfacet.h"
+#include "scene.h"
+
+#include <string.h>
 
 /* The largest factor that shading normals may add to a photon: beyond it lie grazing silhouettes only. */
 static const float CORRECTION_MAX = 8.0f;
+/* No lobe of two is picked more rarely. */
+static const float PROBABILITY_MIN = 0.1f;
 
-/* --- Fresnel --- */
+/* --- materials --- */
 
-/* Unpolarised reflectance of a dielectric; eta: index on the far side over the near one. */
-static float fresnel_dielectric(float cos_in, float eta)
+static void make_rough_on_both_axes(float *alpha_u, float *alpha_v)
 {
-    float sin2_through = (1.0f - cos_in * cos_in) / (eta * eta);
-    if (sin2_through >= 1.0f)
-        return 1.0f;
-    float cos_through = sqrtf(1.0f - sin2_through);
-    float parallel = (eta * cos_in - cos_through) / (eta * cos_in + cos_through);
-    float perpendicular = (cos_in - eta * cos_through) / (cos_in + eta * cos_through);
-    return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+    /* rough along one axis only: the other must not divide by zero */
+    if (*alpha_u >= MATERIAL_SMOOTH_ALPHA || *alpha_v >= MATERIAL_SMOOTH_ALPHA) {
+        *alpha_u = fmaxf(*alpha_u, 1e-4f);
+        *alpha_v = fmaxf(*alpha_v, 1e-4f);
+    }
 }
 
-/* Unpolarised reflectance of a conductor from air (Born, Wolf, "Principles of Optics", 14.2), written without complex
- * numbers. */
-static float fresnel_conductor_channel(float cos_in, float eta, float k)
+void material_prepare(material *m)
 {
-    float c2 = cos_in * cos_in, s2 = 1.0f - c2;
-    float t0 = eta * eta - k * k - s2;
-    float a2b2 = sqrtf(t0 * t0 + 4.0f * eta * eta * k * k);
-    float a = sqrtf(fmaxf(0.0f, 0.5f * (a2b2 + t0)));
-    float t1 = a2b2 + c2, t2 = 2.0f * a * cos_in;
-    float perpendicular = (t1 - t2) / (t1 + t2);
-    float t3 = c2 * a2b2 + s2 * s2, t4 = t2 * s2;
-    float parallel = perpendicular * (t3 - t4) / (t3 + t4);
-    return 0.5f * (parallel + perpendicular);
+    make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
+    make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
+    /* getting out of the coat is getting in, by reciprocity, over the square of the index */
+    m->coat_escape = m->ior > 0.0f ? (1.0f - fresnel_dielectric_diffuse(m->ior)) / (m->ior * m->ior) : 1.0f;
 }
 
-static rgb fresnel_conductor(float cos_in, const material *m)
+static bool is_smooth(float alpha_u, float alpha_v)
 {
-    return (rgb){fresnel_conductor_channel(cos_in, m->eta.r, m->k.r), fresnel_conductor_channel(cos_in, m->eta.g, m->k.g),
-                 fresnel_conductor_channel(cos_in, m->eta.b, m->k.b)};
+    return alpha_u < MATERIAL_SMOOTH_ALPHA && alpha_v < MATERIAL_SMOOTH_ALPHA;
 }
 
-/* --- GGX --- */
-
-static float ggx_density(const material *m, vec3 n)
+bool material_is_traced(const scene *s, uint32_t material_index)
 {
-    float x = n.x / m->alpha_u, y = n.y / m->alpha_v, t = x * x + y * y + n.z * n.z;
-    return 1.0f / (AG_PI * m->alpha_u * m->alpha_v * t * t);
+    const material *m = &s->materials[material_index];
+    if (m->kind == MATERIAL_MIX)
+        return material_is_traced(s, m->mixed[0]) || material_is_traced(s, m->mixed[1]);
+    return m->kind != MATERIAL_DIFFUSE && m->kind != MATERIAL_DIFFUSE_TRANSMISSION;
 }
 
-/* Smith's Lambda: masked over visible microsurface. */
-static float ggx_lambda(const material *m, vec3 v)
+static ggx interface_of(const material *m) { return (ggx){m->alpha_u, m->alpha_v}; }
+
+/* A mix picks one of its two by place alone, as pbrt-v4 does: the same for all rays, so photons and eye agree. */
+static const material *resolve_mix(const scene *s, const material *m, const surface_hit *hit)
 {
-    if (v.z == 0.0f)
-        return INFINITY;
-    float x = m->alpha_u * v.x, y = m->alpha_v * v.y;
-    return 0.5f * (sqrtf(1.0f + (x * x + y * y) / (v.z * v.z)) - 1.0f);
+    uint32_t bits[3];
+    memcpy(bits, &hit->position, sizeof bits);
+    uint64_t hash = hash_combine(hash_combine(bits[0], bits[1]), bits[2]);
+    while (m->kind == MATERIAL_MIX) {
+        hash = hash_mix64(hash + 0x9e3779b97f4a7c15u);
+        float u = (float)(hash >> 40) * 0x1p-24f;
+        float amount = m->is_textured ? texture_evaluate_float(s, m->mix_amount_texture, hit) : m->mix_amount;
+        m = &s->materials[m->mixed[u < amount ? 1 : 0]];
+    }
+    return m;
 }
 
-static float ggx_masking(const material *m, vec3 v) { return 1.0f / (1.0f + ggx_lambda(m, v)); }
-static float ggx_masking_shadowing(const material *m, vec3 a, vec3 b)
+static rgb clamp_to_unit(rgb v)
 {
-    return 1.0f / (1.0f + ggx_lambda(m, a) + ggx_lambda(m, b));
+    return (rgb){fminf(fmaxf(v.r, 0.0f), 1.0f), fminf(fmaxf(v.g, 0.0f), 1.0f), fminf(fmaxf(v.b, 0.0f), 1.0f)};
 }
 
-/* Density of the normals that are visible from v. */
-static float ggx_visible_density(const material *m, vec3 v, vec3 n)
+/* The material as it is at a place. */
+static void look_up_textures(const scene *s, const surface_hit *hit, material *m)
 {
-    return ggx_masking(m, v) / fabsf(v.z) * ggx_density(m, n) * fabsf(vec3_dot(v, n));
+    if (m->reflectance_texture != SCENE_NO_TEXTURE) {
+        m->reflectance = clamp_to_unit(texture_evaluate_rgb(s, m->reflectance_texture, hit));
+        rgb r = m->reflectance;
+        float relative = m->kind == MATERIAL_COATED_CONDUCTOR ? 1.0f / m->ior : 1.0f;
+        if (m->kind == MATERIAL_CONDUCTOR || m->kind == MATERIAL_COATED_CONDUCTOR) {
+            m->eta = rgb_gray(relative);
+            m->k = rgb_scale((rgb){material_k_from_reflectance(r.r), material_k_from_reflectance(r.g),
+                                   material_k_from_reflectance(r.b)},
+                             relative);
+        }
+    }
+    if (m->transmittance_texture != SCENE_NO_TEXTURE)
+        m->transmittance = clamp_to_unit(texture_evaluate_rgb(s, m->transmittance_texture, hit));
+    if (m->kind == MATERIAL_DIFFUSE_TRANSMISSION) {
+        float sum = rgb_max(rgb_add(m->reflectance, m->transmittance));
+        if (sum > 1.0f) {
+            m->reflectance = rgb_scale(m->reflectance, 1.0f / sum);
+            m->transmittance = rgb_scale(m->transmittance, 1.0f / sum);
+        }
+    }
+    const uint32_t alpha_textures[2] = {m->alpha_u_texture, m->alpha_v_texture};
+    float *const alphas[2] = {&m->alpha_u, &m->alpha_v};
+    for (int i = 0; i < 2; i++)
+        if (alpha_textures[i] != SCENE_NO_TEXTURE) {
+            float value = fmaxf(0.0f, texture_evaluate_float(s, alpha_textures[i], hit));
+            *alphas[i] = m->remaps_roughness ? sqrtf(value) : value;
+        }
+    make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
 }
 
-/* A visible normal, in the upper half; Heitz 2018. */
-static vec3 ggx_sample_visible(const material *m, vec3 v, vec2 u)
+/* --- lobes --- */
+
+/* What a coat lets through; 1 where there is none. */
+static float coat_transmittance(const material *m, float cos_theta)
 {
-    vec3 vh = vec3_normalize((vec3){m->alpha_u * v.x, m->alpha_v * v.y, v.z});
-    if (vh.z < 0.0f)
-        vh = vec3_negate(vh);
-    float square = vh.x * vh.x + vh.y * vh.y;
-    vec3 t1 = square > 0.0f ? vec3_scale((vec3){-vh.y, vh.x, 0.0f}, 1.0f / sqrtf(square)) : (vec3){1.0f, 0.0f, 0.0f};
-    vec3 t2 = vec3_cross(vh, t1);
-    float r = sqrtf(u.x), sine, cosine;
-    sincos_turns(u.y, &sine, &cosine);
-    float p1 = r * cosine, p2 = r * sine, blend = 0.5f * (1.0f + vh.z);
-    p2 = (1.0f - blend) * sqrtf(fmaxf(0.0f, 1.0f - p1 * p1)) + blend * p2;
-    float p3 = sqrtf(fmaxf(0.0f, 1.0f - p1 * p1 - p2 * p2));
-    vec3 nh = vec3_add(vec3_add(vec3_scale(t1, p1), vec3_scale(t2, p2)), vec3_scale(vh, p3));
-    return vec3_normalize((vec3){m->alpha_u * nh.x, m->alpha_v * nh.y, fmaxf(1e-6f, nh.z)});
+    return m->kind == MATERIAL_COATED_DIFFUSE ? 1.0f - fresnel_dielectric(fabsf(cos_theta), m->ior) : 1.0f;
 }
 
-/* Through an interface with normal n on the side of v; eta: far over near index. false: total reflection. */
-static bool refract(vec3 v, vec3 n, float eta, vec3 *out_through)
+/* A of the diffuse reflection. Under a coat: light goes to and fro between base and coat, and what gets out is spread over
+ * a wider solid angle (the squared index). */
+static rgb diffuse_albedo(const material *m)
 {
-    float cos_in = vec3_dot(v, n);
-    float sin2_through = fmaxf(0.0f, 1.0f - cos_in * cos_in) / (eta * eta);
-    if (sin2_through >= 1.0f)
-        return false;
-    float cos_through = sqrtf(1.0f - sin2_through);
-    *out_through = vec3_add(vec3_scale(v, -1.0f / eta), vec3_scale(n, cos_in / eta - cos_through));
-    return true;
+    if (m->kind != MATERIAL_COATED_DIFFUSE)
+        return m->reflectance;
+    float back = 1.0f - m->coat_escape, widened = m->ior * m->ior;
+    rgb r = m->reflectance;
+    return (rgb){r.r / ((1.0f - r.r * back) * widened), r.g / ((1.0f - r.g * back) * widened),
+                 r.b / ((1.0f - r.b * back) * widened)};
 }
 
-static vec3 reflect(vec3 v, vec3 n) { return vec3_sub(vec3_scale(n, 2.0f * vec3_dot(v, n)), v); }
-
-/* --- the whole --- */
-
-bsdf bsdf_create(const material *matter, const surface_hit *hit)
+static void add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_delta, float share)
 {
-    bsdf b = {frame_from_z(hit->shading_normal), hit->geometric_normal, matter, false};
-    /* where the index does not change nothing is bent, however rough: half vectors do not exist there */
-    b.is_smooth = (matter->alpha_u < BSDF_SMOOTH_ALPHA && matter->alpha_v < BSDF_SMOOTH_ALPHA) ||
-                  (matter->kind == MATERIAL_DIELECTRIC && matter->ior == 1.0f);
+    b->lobes[b->lobe_count++] = (bsdf_lobe){kind, group, is_delta, share};
+}
+
+/* Shares become probabilities; a lobe that carries anything is not neglected. */
+static void normalize_probabilities(bsdf *b)
+{
+    if (b->lobe_count == 1) {
+        b->lobes[0].probability = 1.0f;
+        return;
+    }
+    float a = b->lobes[0].probability, sum = a + b->lobes[1].probability;
+    float p = sum > 0.0f ? a / sum : 0.5f;
+    if (p > 0.0f && p < 1.0f)
+        p = fminf(fmaxf(p, PROBABILITY_MIN), 1.0f - PROBABILITY_MIN);
+    b->lobes[0].probability = p;
+    b->lobes[1].probability = 1.0f - p;
+}
+
+static void add_lobes(bsdf *b)
+{
+    const material *m = &b->matter;
+    bool smooth = is_smooth(m->alpha_u, m->alpha_v);
+    float coat = m->kind == MATERIAL_COATED_DIFFUSE || m->kind == MATERIAL_COATED_CONDUCTOR
+                     ? fresnel_dielectric(fabsf(vec3_dot(b->out, b->shading.z)), m->ior)
+                     : 0.0f;
+    switch (m->kind) {
+    case MATERIAL_MIX: /* resolved before */
+    case MATERIAL_DIFFUSE: add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, 1.0f); break;
+    case MATERIAL_DIFFUSE_TRANSMISSION:
+        add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, rgb_max(m->reflectance));
+        add_lobe(b, LOBE_DIFFUSE_THROUGH, BSDF_GATHERED, false, rgb_max(m->transmittance));
+        break;
+    case MATERIAL_CONDUCTOR: add_lobe(b, LOBE_CONDUCTOR, BSDF_TRACED, smooth, 1.0f); break;
+    case MATERIAL_DIELECTRIC:
+        /* where the index does not change nothing is bent, however rough: half vectors do not exist there */
+        add_lobe(b, LOBE_DIELECTRIC, BSDF_TRACED, smooth || m->ior == 1.0f, 1.0f);
+        break;
+    case MATERIAL_THIN_DIELECTRIC: add_lobe(b, LOBE_THIN_DIELECTRIC, BSDF_TRACED, true, 1.0f); break;
+    case MATERIAL_COATED_DIFFUSE:
+        add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, (1.0f - coat) * rgb_max(m->reflectance));
+        add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
+        break;
+    case MATERIAL_COATED_CONDUCTOR:
+        add_lobe(b, LOBE_CONDUCTOR_UNDER_COAT, BSDF_TRACED, is_smooth(m->base_alpha_u, m->base_alpha_v), 1.0f - coat);
+        add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
+        break;
+    }
+    normalize_probabilities(b);
+}
+
+bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out)
+{
+    bsdf b;
+    b.shading = frame_from_z(hit->shading_normal);
+    b.geometric_normal = hit->geometric_normal;
+    b.out = out;
+    b.matter = *matter;
+    b.lobe_count = 0;
+    add_lobes(&b);
     return b;
+}
+
+bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out)
+{
+    const material *m = &s->materials[s->shapes[hit->shape_index].material_index];
+    if (m->kind == MATERIAL_MIX)
+        m = resolve_mix(s, m, hit);
+    if (!m->is_textured)
+        return bsdf_create_of(m, hit, out);
+    material here = *m;
+    look_up_textures(s, hit, &here);
+    return bsdf_create_of(&here, hit, out);
 }
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes)
 {
-    return (lobes & (b->matter->kind == MATERIAL_DIFFUSE ? BSDF_GATHERED : BSDF_TRACED)) != 0;
+    for (int i = 0; i < b->lobe_count; i++)
+        if (b->lobes[i].group & lobes)
+            return true;
+    return false;
 }
 
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
 {
-    return bsdf_has(b, lobes) && (b->matter->kind == MATERIAL_DIFFUSE || !b->is_smooth);
+    for (int i = 0; i < b->lobe_count; i++)
+        if ((b->lobes[i].group & lobes) && !b->lobes[i].is_delta)
+            return true;
+    return false;
 }
 
-rgb bsdf_gathered_albedo(const bsdf *b)
+float bsdf_probability(const bsdf *b, bsdf_lobes lobes)
 {
-    return b->matter->kind == MATERIAL_DIFFUSE ? b->matter->reflectance : rgb_gray(0.0f);
+    float sum = 0.0f;
+    for (int i = 0; i < b->lobe_count; i++)
+        if (b->lobes[i].group & lobes)
+            sum += b->lobes[i].probability;
+    return sum;
+}
+
+/* --- diffuse light and its shading normals --- */
+
+/* Judged by the geometry, which alone cannot leak. */
+static bool is_same_side(const bsdf *b, vec3 direction)
+{
+    return vec3_dot(b->out, b->geometric_normal) * vec3_dot(direction, b->geometric_normal) > 0.0f;
+}
+
+/* The cosine of a direction to the shading normal on the side of the surface that its lobe is on, 0 beyond the horizon of
+ * either normal. i: the direction in the shading frame. */
+static float diffuse_cosine(const bsdf *b, bsdf_lobe_kind kind, vec3 direction, vec3 i)
+{
+    bool is_through = kind == LOBE_DIFFUSE_THROUGH;
+    if (is_same_side(b, direction) == is_through)
+        return 0.0f;
+    float side = (vec3_dot(b->out, b->geometric_normal) < 0.0f) != is_through ? -1.0f : 1.0f;
+    return fmaxf(0.0f, side * i.z);
+}
+
+rgb bsdf_gathered_reflection(const bsdf *b)
+{
+    const material *m = &b->matter;
+    switch (m->kind) {
+    case MATERIAL_DIFFUSE:
+    case MATERIAL_DIFFUSE_TRANSMISSION: return m->reflectance;
+    case MATERIAL_COATED_DIFFUSE:
+        return rgb_scale(diffuse_albedo(m), coat_transmittance(m, vec3_dot(b->out, b->shading.z)));
+    default: return rgb_gray(0.0f);
+    }
+}
+
+rgb bsdf_gathered_transmission(const bsdf *b)
+{
+    return b->matter.kind == MATERIAL_DIFFUSE_TRANSMISSION ? b->matter.transmittance : rgb_gray(0.0f);
 }
 
 /* Shading normals bend the cosine of flux (Veach 1997, 5.3.2): the factor for flux that came from `out` and goes on to
  * `direction`. */
-static float flux_correction(const bsdf *b, vec3 out, vec3 direction)
+static float flux_correction(const bsdf *b, vec3 direction)
 {
-    float numerator = fabsf(vec3_dot(out, b->shading.z) * vec3_dot(direction, b->geometric_normal));
-    float denominator = fabsf(vec3_dot(out, b->geometric_normal) * vec3_dot(direction, b->shading.z));
+    float numerator = fabsf(vec3_dot(b->out, b->shading.z) * vec3_dot(direction, b->geometric_normal));
+    float denominator = fabsf(vec3_dot(b->out, b->geometric_normal) * vec3_dot(direction, b->shading.z));
     return denominator > 0.0f ? fminf(numerator / denominator, CORRECTION_MAX) : 0.0f;
 }
 
-float bsdf_arrival_correction(const bsdf *b, vec3 direction)
+float bsdf_arrival_factor(const bsdf *b)
 {
-    float geometric = fabsf(vec3_dot(direction, b->geometric_normal));
-    return geometric > 0.0f ? fminf(fabsf(vec3_dot(direction, b->shading.z)) / geometric, CORRECTION_MAX) : 1.0f;
+    float shading = vec3_dot(b->out, b->shading.z), geometric = vec3_dot(b->out, b->geometric_normal);
+    if (shading * geometric <= 0.0f)
+        return 0.0f; /* behind the horizon of one of the normals: no light by either reckoning */
+    return fminf(shading / geometric, CORRECTION_MAX) * coat_transmittance(&b->matter, shading);
 }
 
-/* Diffuse: light stays on the side it came from, judged by the geometry, which alone cannot leak. */
-static bool is_same_side(const bsdf *b, vec3 out, vec3 direction)
-{
-    return vec3_dot(out, b->geometric_normal) * vec3_dot(direction, b->geometric_normal) > 0.0f;
-}
+/* --- microfacet lobes --- */
 
 /* Rough dielectric, one way: value (f |cos|) and density of scattering from o to i. Walter 2007, eq. 20, 21; the
  * density's factors follow Pharr et al., 9.7. */
@@ -157,7 +283,7 @@ static void rough_dielectric(const material *m, bsdf_transport transport, vec3 o
                              float *out_pdf)
 {
     bool is_reflection = o.z * i.z > 0.0f;
-    float eta = is_reflection ? 1.0f : (o.z > 0.0f ? m->ior : 1.0f / m->ior);
+    float relative = o.z > 0.0f ? m->ior : 1.0f / m->ior, eta = is_reflection ? 1.0f : relative;
     vec3 h = vec3_add(vec3_scale(i, eta), o);
     *out_value = *out_pdf = 0.0f;
     float square = vec3_length_squared(h);
@@ -169,142 +295,257 @@ static void rough_dielectric(const material *m, bsdf_transport transport, vec3 o
     float oh = vec3_dot(o, h), ih = vec3_dot(i, h);
     if (ih * i.z < 0.0f || oh * o.z < 0.0f)
         return; /* a back-facing microfacet */
-    float relative = o.z > 0.0f ? m->ior : 1.0f / m->ior;
     float reflectance = fresnel_dielectric(fabsf(oh), relative);
-    float density = ggx_density(m, h), g = ggx_masking_shadowing(m, o, i);
-    vec3 upper = o.z > 0.0f ? o : vec3_negate(o);
-    float visible = ggx_visible_density(m, upper, h);
+    ggx facets = interface_of(m);
     if (is_reflection) {
-        *out_value = density * g * reflectance / (4.0f * fabsf(o.z));
-        *out_pdf = visible / (4.0f * fabsf(oh)) * reflectance;
+        *out_value = ggx_reflection(facets, o, i, h) * reflectance;
+        *out_pdf = ggx_reflection_pdf(facets, o, h) * reflectance;
         return;
     }
+    vec3 upper = o.z > 0.0f ? o : vec3_negate(o);
     float sum = ih + oh / eta, jacobian = fabsf(ih) / (sum * sum);
-    *out_value = density * (1.0f - reflectance) * g * fabsf(ih * oh / (o.z * sum * sum));
+    *out_value = ggx_density(facets, h) * (1.0f - reflectance) * ggx_masking_shadowing(facets, o, i) *
+                 fabsf(ih * oh / (o.z * sum * sum));
     if (transport == BSDF_RADIANCE)
         *out_value /= eta * eta;
-    *out_pdf = visible * jacobian * (1.0f - reflectance);
+    *out_pdf = ggx_visible_density(facets, upper, h) * jacobian * (1.0f - reflectance);
 }
 
-rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 out, vec3 direction)
+/* A direction refracted into the coat, on the same side of the base as it was. */
+static vec3 into_coat(const material *m, vec3 v)
 {
-    const material *m = b->matter;
-    if (!bsdf_is_sampled_from_light(b, lobes))
-        return rgb_gray(0.0f);
-    vec3 o = frame_to_local(&b->shading, out), i = frame_to_local(&b->shading, direction);
-    rgb value = rgb_gray(0.0f);
-    switch (m->kind) {
-    case MATERIAL_DIFFUSE:
-        if (is_same_side(b, out, direction))
-            value = rgb_scale(m->reflectance, AG_INV_PI * fabsf(i.z));
-        break;
-    case MATERIAL_CONDUCTOR:
-        if (is_same_side(b, out, direction) && o.z * i.z > 0.0f) {
-            vec3 h = vec3_normalize(vec3_add(o, i));
-            float scale = ggx_density(m, h) * ggx_masking_shadowing(m, o, i) / (4.0f * fabsf(o.z));
-            value = rgb_scale(fresnel_conductor(fabsf(vec3_dot(o, h)), m), scale);
-        }
-        break;
-    case MATERIAL_DIELECTRIC: {
-        float scale, pdf;
-        rough_dielectric(m, transport, o, i, &scale, &pdf);
-        value = rgb_gray(scale);
-        break;
-    }
-    }
-    return transport == BSDF_FLUX ? rgb_scale(value, flux_correction(b, out, direction)) : value;
+    float sin2 = fmaxf(0.0f, 1.0f - v.z * v.z) / (m->ior * m->ior);
+    return (vec3){v.x / m->ior, v.y / m->ior, copysignf(sqrtf(fmaxf(0.0f, 1.0f - sin2)), v.z)};
 }
 
-float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 out, vec3 direction)
+/* In through the coat, to and fro between conductor and coat, and out again: a geometric series. Of the coat's two
+ * reflectances the lesser keeps light in, so that both ways are the same and no more leaves than got in. */
+static rgb coat_series(rgb metal, float coat_o, float coat_i)
 {
-    const material *m = b->matter;
-    if (!bsdf_is_sampled_from_light(b, lobes))
-        return 0.0f;
-    vec3 o = frame_to_local(&b->shading, out), i = frame_to_local(&b->shading, direction);
-    switch (m->kind) {
-    case MATERIAL_DIFFUSE: return is_same_side(b, out, direction) ? AG_INV_PI * fabsf(i.z) : 0.0f;
-    case MATERIAL_CONDUCTOR: {
-        if (!is_same_side(b, out, direction) || o.z * i.z <= 0.0f)
-            return 0.0f;
-        vec3 h = vec3_normalize(vec3_add(o, i));
-        if (h.z < 0.0f)
-            h = vec3_negate(h), o = vec3_negate(o);
-        return ggx_visible_density(m, o, h) / (4.0f * fabsf(vec3_dot(o, h)));
-    }
-    case MATERIAL_DIELECTRIC: {
-        float value, pdf;
-        rough_dielectric(m, BSDF_FLUX, o, i, &value, &pdf);
-        return pdf;
-    }
-    }
-    return 0.0f;
+    float through = (1.0f - coat_o) * (1.0f - coat_i), back = fminf(coat_o, coat_i);
+    if (!(through > 0.0f))
+        return rgb_gray(0.0f); /* total reflection, by a coat of a lesser index than what is around */
+    return (rgb){through * metal.r / (1.0f - metal.r * back), through * metal.g / (1.0f - metal.g * back),
+                 through * metal.b / (1.0f - metal.b * back)};
 }
 
-static bool sample_smooth(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
-                          rgb *out_weight)
+/* Under a smooth coat: the conductor's value between the refracted directions; the squared index is the change of solid
+ * angles. */
+static void conductor_under_coat(const material *m, vec3 o, vec3 i, rgb *out_value, float *out_pdf)
 {
-    const material *m = b->matter;
+    vec3 oc = into_coat(m, o), ic = into_coat(m, i);
+    if (oc.z == 0.0f || ic.z == 0.0f)
+        return; /* beyond total reflection, as above */
+    vec3 h = ggx_half_vector(oc, ic);
+    ggx facets = {m->base_alpha_u, m->base_alpha_v};
+    rgb metal = fresnel_conductor(fabsf(vec3_dot(oc, h)), m->eta, m->k);
+    rgb series = coat_series(metal, fresnel_dielectric(fabsf(o.z), m->ior), fresnel_dielectric(fabsf(i.z), m->ior));
+    /* f |cos i|: reflection's value has |cos ic| in it */
+    float cosines = fabsf(i.z / ic.z) / (m->ior * m->ior);
+    *out_value = rgb_scale(series, ggx_reflection(facets, oc, ic, h) * cosines);
+    *out_pdf = ggx_reflection_pdf(facets, oc, h) * cosines;
+}
+
+/* Value (f |cos|) and density of one lobe that is not smooth. */
+static void evaluate_lobe(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
+                          rgb *out_value, float *out_pdf)
+{
+    const material *m = &b->matter;
+    *out_value = rgb_gray(0.0f);
+    *out_pdf = 0.0f;
+    switch (lobe->kind) {
+    case LOBE_DIFFUSE:
+    case LOBE_DIFFUSE_THROUGH: {
+        float cosine = diffuse_cosine(b, lobe->kind, direction, i) * AG_INV_PI;
+        rgb albedo = lobe->kind == LOBE_DIFFUSE ? diffuse_albedo(m) : m->transmittance;
+        *out_pdf = cosine;
+        *out_value = rgb_scale(albedo, cosine * coat_transmittance(m, o.z) * coat_transmittance(m, i.z));
+        return;
+    }
+    case LOBE_DIELECTRIC: {
+        float value;
+        rough_dielectric(m, transport, o, i, &value, out_pdf);
+        *out_value = rgb_gray(value);
+        return;
+    }
+    case LOBE_CONDUCTOR:
+    case LOBE_COAT: {
+        if (!is_same_side(b, direction) || o.z * i.z <= 0.0f)
+            return;
+        ggx facets = interface_of(m);
+        vec3 h = ggx_half_vector(o, i);
+        float cosine = fabsf(vec3_dot(o, h));
+        rgb reflected = lobe->kind == LOBE_CONDUCTOR ? fresnel_conductor(cosine, m->eta, m->k)
+                                                     : rgb_gray(fresnel_dielectric(cosine, m->ior));
+        *out_value = rgb_scale(reflected, ggx_reflection(facets, o, i, h));
+        *out_pdf = ggx_reflection_pdf(facets, o, h);
+        return;
+    }
+    case LOBE_CONDUCTOR_UNDER_COAT:
+        if (is_same_side(b, direction) && o.z * i.z > 0.0f)
+            conductor_under_coat(m, o, i, out_value, out_pdf);
+        return;
+    case LOBE_THIN_DIELECTRIC: return; /* always smooth */
+    }
+}
+
+rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)
+{
+    vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
+    rgb sum = rgb_gray(0.0f);
+    for (int k = 0; k < b->lobe_count; k++) {
+        rgb value;
+        float pdf;
+        if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
+            continue;
+        evaluate_lobe(b, &b->lobes[k], transport, direction, o, i, &value, &pdf);
+        sum = rgb_add(sum, value);
+    }
+    return transport == BSDF_FLUX ? rgb_scale(sum, flux_correction(b, direction)) : sum;
+}
+
+float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 direction)
+{
+    vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
+    float sum = 0.0f;
+    for (int k = 0; k < b->lobe_count; k++) {
+        rgb value;
+        float pdf;
+        if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
+            continue;
+        evaluate_lobe(b, &b->lobes[k], BSDF_FLUX, direction, o, i, &value, &pdf);
+        sum += pdf * b->lobes[k].probability;
+    }
+    return sum > 0.0f ? sum / bsdf_probability(b, lobes) : 0.0f;
+}
+
+/* --- sampling --- */
+
+/* A smooth lobe's one direction, and its weight once it has been picked. */
+static bool sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, float u_lobe,
+                          vec3 *out_local, rgb *out_weight)
+{
+    const material *m = &b->matter;
     vec3 n = {0.0f, 0.0f, o.z >= 0.0f ? 1.0f : -1.0f};
-    *out_local = reflect(o, n);
-    if (m->kind == MATERIAL_CONDUCTOR) {
-        *out_weight = fresnel_conductor(fabsf(o.z), m);
+    float cosine = fabsf(o.z), eta = o.z >= 0.0f ? m->ior : 1.0f / m->ior;
+    *out_local = reflect_about(o, n);
+    *out_weight = rgb_gray(1.0f); /* reflection and refraction are picked by their own shares */
+    switch (kind) {
+    case LOBE_CONDUCTOR: *out_weight = fresnel_conductor(cosine, m->eta, m->k); return true;
+    case LOBE_COAT: *out_weight = rgb_gray(fresnel_dielectric(cosine, m->ior)); return true;
+    case LOBE_CONDUCTOR_UNDER_COAT: {
+        rgb metal = fresnel_conductor(fabsf(into_coat(m, o).z), m->eta, m->k);
+        float reflected = fresnel_dielectric(cosine, m->ior);
+        *out_weight = coat_series(metal, reflected, reflected);
         return true;
     }
-    float eta = o.z >= 0.0f ? m->ior : 1.0f / m->ior;
-    *out_weight = rgb_gray(1.0f); /* reflection and refraction are picked by their own shares */
-    if (u_lobe < fresnel_dielectric(fabsf(o.z), eta))
+    case LOBE_THIN_DIELECTRIC: {
+        /* to and fro between the two faces: a geometric series */
+        float r = fresnel_dielectric(cosine, m->ior);
+        if (r < 1.0f)
+            r += (1.0f - r) * (1.0f - r) * r / (1.0f - r * r);
+        if (u_lobe >= r)
+            *out_local = vec3_negate(o);
         return true;
-    if (!refract(o, n, eta, out_local))
+    }
+    default: break;
+    }
+    if (u_lobe < fresnel_dielectric(cosine, eta))
+        return true;
+    if (!refract_through(o, n, eta, out_local))
         return false;
     if (transport == BSDF_RADIANCE)
         *out_weight = rgb_gray(1.0f / (eta * eta));
     return true;
 }
 
-bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 out, float u_lobe, vec2 u,
-                           bsdf_sample *out_sample)
+/* A direction of a lobe that is not smooth, in the shading frame. */
+static bool sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
-    const material *m = b->matter;
-    if (!bsdf_has(b, lobes))
-        return false;
-    vec3 o = frame_to_local(&b->shading, out), i;
-    out_sample->is_delta = m->kind != MATERIAL_DIFFUSE && b->is_smooth;
-    if (out_sample->is_delta) {
-        if (!sample_smooth(b, transport, o, u_lobe, &i, &out_sample->weight))
-            return false;
-        out_sample->direction = vec3_normalize(frame_to_world(&b->shading, i));
-        out_sample->pdf_solid_angle = 0.0f;
-        /* a shading normal may send it through the surface, or not: the geometry decides */
-        if (is_same_side(b, out, out_sample->direction) != (i.z * o.z > 0.0f))
-            return false;
-        if (transport == BSDF_FLUX)
-            out_sample->weight = rgb_scale(out_sample->weight, flux_correction(b, out, out_sample->direction));
+    const material *m = &b->matter;
+    if (kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH) {
+        *out_local = sample_cosine_hemisphere(u);
+        if ((vec3_dot(b->out, b->geometric_normal) < 0.0f) != (kind == LOBE_DIFFUSE_THROUGH))
+            out_local->z = -out_local->z;
         return true;
     }
-    if (m->kind == MATERIAL_DIFFUSE) {
-        i = sample_cosine_hemisphere(u);
-        if (vec3_dot(out, b->geometric_normal) < 0.0f)
-            i.z = -i.z;
-    } else {
-        float side = o.z >= 0.0f ? 1.0f : -1.0f;
-        vec3 upper = vec3_scale(o, side);
-        vec3 h = ggx_sample_visible(m, upper, u);
-        float eta = side > 0.0f ? m->ior : 1.0f / m->ior;
-        bool is_reflection =
-            m->kind == MATERIAL_CONDUCTOR || u_lobe < fresnel_dielectric(fabsf(vec3_dot(upper, h)), eta);
-        if (is_reflection)
-            i = reflect(upper, h);
-        else if (!refract(upper, h, eta, &i))
-            return false;
-        if (is_reflection != (i.z > 0.0f))
-            return false; /* the facet sends it to the wrong side of the surface, where another facet would meet it */
-        i = vec3_scale(i, side);
+    float side = o.z >= 0.0f ? 1.0f : -1.0f;
+    vec3 upper = vec3_scale(o, side), i;
+    if (kind == LOBE_CONDUCTOR_UNDER_COAT) {
+        vec3 oc = into_coat(m, upper);
+        vec3 ic = reflect_about(oc, ggx_sample_visible((ggx){m->base_alpha_u, m->base_alpha_v}, oc, u));
+        float sin2 = (1.0f - ic.z * ic.z) * m->ior * m->ior;
+        if (ic.z <= 0.0f || sin2 >= 1.0f)
+            return false; /* kept in by the coat */
+        i = (vec3){ic.x * m->ior, ic.y * m->ior, sqrtf(1.0f - sin2)};
+        *out_local = vec3_scale(i, side);
+        return true;
     }
-    out_sample->direction = vec3_normalize(frame_to_world(&b->shading, i));
-    out_sample->pdf_solid_angle = bsdf_pdf(b, lobes, out, out_sample->direction);
-    if (!(out_sample->pdf_solid_angle > 0.0f))
+    vec3 h = ggx_sample_visible(interface_of(m), upper, u);
+    float eta = side > 0.0f ? m->ior : 1.0f / m->ior;
+    bool is_reflection = kind != LOBE_DIELECTRIC || u_lobe < fresnel_dielectric(fabsf(vec3_dot(upper, h)), eta);
+    if (is_reflection)
+        i = reflect_about(upper, h);
+    else if (!refract_through(upper, h, eta, &i))
         return false;
-    out_sample->weight = rgb_scale(bsdf_evaluate(b, lobes, transport, out, out_sample->direction),
-                                   1.0f / out_sample->pdf_solid_angle);
-    return rgb_is_finite(out_sample->weight);
+    if (is_reflection != (i.z > 0.0f))
+        return false; /* the facet sends it to the wrong side of the surface, where another facet would meet it */
+    *out_local = vec3_scale(i, side);
+    return true;
+}
+
+/* Picks among the lobes asked for, and makes the random number fresh again. */
+static const bsdf_lobe *pick_lobe(const bsdf *b, bsdf_lobes lobes, float *in_out_u, float *out_probability)
+{
+    float total = bsdf_probability(b, lobes), before = 0.0f;
+    const bsdf_lobe *last = NULL;
+    for (int k = 0; k < b->lobe_count; k++) {
+        float p = b->lobes[k].probability / total;
+        if (!(b->lobes[k].group & lobes) || p <= 0.0f)
+            continue;
+        last = &b->lobes[k];
+        *out_probability = p;
+        if (*in_out_u < before + p) {
+            *in_out_u = fminf((*in_out_u - before) / p, 0x1.fffffep-1f);
+            return last;
+        }
+        before += p;
+    }
+    return last;
+}
+
+bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, float u_lobe, vec2 u,
+                           bsdf_sample *out_sample)
+{
+    float probability;
+    if (!(bsdf_probability(b, lobes) > 0.0f))
+        return false;
+    const bsdf_lobe *lobe = pick_lobe(b, lobes, &u_lobe, &probability);
+    if (!lobe)
+        return false;
+    vec3 o = frame_to_local(&b->shading, b->out), i;
+    bsdf_sample *out = out_sample;
+    out->group = lobe->group;
+    out->is_delta = lobe->is_delta;
+    if (lobe->is_delta) {
+        if (!sample_smooth(b, lobe->kind, transport, o, u_lobe, &i, &out->weight))
+            return false;
+        out->direction = vec3_normalize(frame_to_world(&b->shading, i));
+        out->pdf_solid_angle = 0.0f;
+        /* a shading normal may send it through the surface, or not: the geometry decides */
+        if (is_same_side(b, out->direction) != (i.z * o.z > 0.0f))
+            return false;
+        out->weight = rgb_scale(out->weight, 1.0f / probability);
+        if (transport == BSDF_FLUX)
+            out->weight = rgb_scale(out->weight, flux_correction(b, out->direction));
+        return true;
+    }
+    if (!sample_rough(b, lobe->kind, o, u_lobe, u, &i))
+        return false;
+    out->direction = vec3_normalize(frame_to_world(&b->shading, i));
+    out->pdf_solid_angle = bsdf_pdf(b, lobes, out->direction);
+    if (!(out->pdf_solid_angle > 0.0f))
+        return false;
+    out->weight = rgb_scale(bsdf_evaluate(b, lobes, transport, out->direction), 1.0f / out->pdf_solid_angle);
+    return rgb_is_finite(out->weight);
 }

@@ -1,60 +1,95 @@
 /* bsdf.h: scattering at a surface: evaluating, sampling and its density, lobe by lobe.
  * Rests on: Lambert; Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007 (GGX); Heitz,
- * "Sampling the GGX Distribution of Visible Normals", 2018; Pharr, Jakob, Humphreys, 4th ed., 2023, ch. 9.
+ * "Sampling the GGX Distribution of Visible Normals", 2018; Pharr, Jakob, Humphreys, 4th ed., 2023, ch. 9; for coats,
+ * Weidlich, Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", 2007.
  * Flow: material + surface hit -> [here] -> photon tracing, shading, path tracing.
  * Threads: pure functions.
  *
- * One predicate splits the lobes, for photons and for the eye alike: GATHERED lobes (Lambertian ones) store photons and
- * look up irradiance; all others, rough or smooth, are TRACED on. The S of the path notation is every traced lobe. */
+ * One predicate splits the lobes, for photons and for the eye alike: GATHERED lobes (diffuse ones) store photons and look up
+ * irradiance; all others, rough or smooth, are TRACED on. The S of the path notation is every traced lobe.
+ * A gathered lobe is a product t(in) A t(out) / pi, where t is 1 but under a coat, which lets through 1 - Fresnel: photons
+ * carry t(in), so that irradiance times A t(out) / pi is the radiance that leaves. */
 #ifndef AFTERGLOW_BSDF_H
 #define AFTERGLOW_BSDF_H
 
 #include "bvh.h"
 #include "material.h"
 
-/* Below this GGX alpha a surface is perfectly smooth (pbrt-v4 draws the same line). */
-#define BSDF_SMOOTH_ALPHA 1e-3f
-
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
 
 /* What travels: radiance is scaled by the square of the relative index when it enters another medium, flux is not. */
 typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
 
+typedef enum bsdf_lobe_kind {
+    LOBE_DIFFUSE,             /* to the side it came from, perhaps through a coat */
+    LOBE_DIFFUSE_THROUGH,     /* to the other side */
+    LOBE_CONDUCTOR,
+    LOBE_DIELECTRIC,          /* reflection and refraction */
+    LOBE_THIN_DIELECTRIC,     /* a pane: reflection, and straight through */
+    LOBE_COAT,                /* reflection by a dielectric coat */
+    LOBE_CONDUCTOR_UNDER_COAT /* refracted in, reflected by the conductor, refracted out */
+} bsdf_lobe_kind;
+
+typedef struct bsdf_lobe {
+    bsdf_lobe_kind kind;
+    bsdf_lobes group;
+    bool is_delta;
+    float probability; /* of being picked among all lobes; they sum to 1 */
+} bsdf_lobe;
+
+enum { BSDF_LOBES_MAX = 2 };
+
 typedef struct bsdf {
     frame shading;         /* z: shading normal, to the outside */
     vec3 geometric_normal; /* to the outside */
-    const material *matter;
-    bool is_smooth;
+    vec3 out;              /* back along the ray that arrived, unit */
+    material matter;       /* as it is at this place */
+    int lobe_count;
+    bsdf_lobe lobes[BSDF_LOBES_MAX];
 } bsdf;
 
 typedef struct bsdf_sample {
-    vec3 direction;       /* unit, away from the surface */
-    rgb weight;           /* f |cos| / pdf, shading-normal correction of flux included */
-    float pdf_solid_angle; /* meaningless where is_delta */
+    vec3 direction;        /* unit, away from the surface */
+    rgb weight;            /* f |cos| / pdf, shading-normal correction of flux included */
+    float pdf_solid_angle; /* of all lobes asked for together; meaningless where is_delta */
     bool is_delta;
+    bsdf_lobes group;      /* of the lobe that was picked */
 } bsdf_sample;
 
-bsdf bsdf_create(const material *matter, const surface_hit *hit);
+/* out: back along the ray that met the place, unit. */
+bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out);
+/* The same of a material that is no mix, and has been prepared. */
+bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out);
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
 
 /* Whether light can find these lobes by sampling a lamp: they are not all perfectly smooth. */
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);
 
-/* Reflectance of the gathered lobes, [0, 1]. */
-rgb bsdf_gathered_albedo(const bsdf *b);
+/* With which probability bsdf_sample_direction, asked for all, picks one of these. */
+float bsdf_probability(const bsdf *b, bsdf_lobes lobes);
 
-/* f |cos(direction, shading normal)| for light from `direction` leaving to `out` (both unit, away from the surface);
- * smooth lobes count as 0. */
-rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 out, vec3 direction);
-float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 out, vec3 direction);
+/* The factor A t(out), of irradiance on out's side and on the other, each to be divided by pi: what leaves as radiance. */
+rgb bsdf_gathered_reflection(const bsdf *b);
+rgb bsdf_gathered_transmission(const bsdf *b);
 
-/* Samples the way on: `out` is where the path came from. false: absorbed. */
-bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 out, float u_lobe, vec2 u,
+/* f |cos(direction, shading normal)| for light from `direction` (unit, away from the surface) leaving to out; smooth lobes
+ * count as 0. */
+rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction);
+float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 direction);
+
+/* Samples the way on. false: absorbed. */
+bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, float u_lobe, vec2 u,
                            bsdf_sample *out_sample);
 
-/* Flux arriving from `direction` per flux on the shading surface: |cos to shading normal| / |cos to geometric normal|;
- * stored photons carry it so that irradiance is that of the shading surface (Veach 1997, 5.3). 1 without shading normals. */
-float bsdf_arrival_correction(const bsdf *b, vec3 direction);
+/* What arriving flux, from out, is multiplied by when it is stored: t(in), and |cos to shading normal| / |cos to geometric
+ * normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
+float bsdf_arrival_factor(const bsdf *b);
+
+/* Whether the material has, or may pick, lobes that are traced. */
+bool material_is_traced(const scene *s, uint32_t material_index);
+
+/* For scene_add_material: what of a material can be worked out beforehand. */
+void material_prepare(material *m);
 
 #endif

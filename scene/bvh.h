@@ -24,9 +24,10 @@ typedef struct surface_hit {
     vec3 position;
     vec3 geometric_normal; /* unit, to the shape's outside */
     vec3 shading_normal;   /* unit, on the geometric normal's side */
-    vec2 uv;
+    vec2 uv;               /* pbrt's, in [0, 1] on quadrics; a mesh's own, or barycentrics where it has none */
     float distance;        /* along the ray, for a unit direction in scene units */
     float epsilon;         /* how far off the surface a new ray must start so as not to meet it again, scene units */
+    bool is_flat;          /* part of a mesh, whose corners a start must stay out of: see surface_ray_origin */
     uint32_t shape_index;
     uint32_t primitive_index; /* triangle of a mesh */
 } surface_hit;
@@ -39,8 +40,9 @@ bool scene_occluded(const scene *s, vec3 from, vec3 to);
 /* Whether anything lies that way. */
 bool scene_occluded_direction(const scene *s, vec3 from, vec3 direction);
 
-/* A start off the surface for a ray into `direction`, after arriving along `arrival` (unit). Moving also against (or,
- * when passing through, along) the way of arrival keeps starts in the corners of closed rooms inside. */
+/* A start off the surface for a ray into `direction`, after arriving along `arrival` (unit). On meshes, moving also
+ * against (or, when passing through, along) the way of arrival keeps starts in the corners of closed rooms inside. On
+ * round surfaces it would turn the path a little each time, and let out light that is trapped in glass. */
 vec3 surface_ray_origin(const surface_hit *hit, vec3 arrival, vec3 direction);
 
 /* A random place on a shape, in proportion to area. pdf_area: 1/m^2. */
@@ -57,7 +59,7 @@ float shape_pdf_area(const shape *s, vec3 geometric_normal);
 /* shape.c's side of an intersection, for bvh_embree.c: fills in everything but distance and indices. u, v: Embree's
  * barycentrics for meshes; for the others `position` comes in as the ray's point and is put onto the surface. */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, surface_hit *out_hit);
-/* Nearest hit of a disk or an ellipsoid in (t_min, t_max); false where there is none. */
+/* Nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */
 bool shape_intersect_quadric(const shape *s, vec3 origin, vec3 direction, float t_min, float t_max, float *out_t);
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
 /* Fills in what scene_commit sets: centers, areas; area_cdf when it shines. Errors: AG_ERROR_MEMORY. */

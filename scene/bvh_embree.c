@@ -261,5 +261,7 @@ vec3 surface_ray_origin(const surface_hit *hit, vec3 arrival, vec3 direction)
     vec3 n = vec3_face_forward(hit->geometric_normal, direction);
     bool passes_through = vec3_dot(arrival, n) > 0.0f;
     vec3 off = vec3_add_scaled(hit->position, n, hit->epsilon);
+    if (!hit->is_flat)
+        return off;
     return vec3_add_scaled(off, arrival, passes_through ? hit->epsilon : -hit->epsilon);
 }

@@ -4,6 +4,7 @@
 #include "light.h"
 
 #include "bvh.h"
+#include "environment.h"
 #include "math/rng.h"
 #include "math/sampling.h"
 
@@ -31,6 +32,7 @@ rgb light_power(const scene *s, const light *l)
         return rgb_scale(l->intensity, scale);
     case LIGHT_DISTANT: return rgb_scale(l->radiance, AG_PI * s->bounding_radius * s->bounding_radius);
     case LIGHT_AREA: return rgb_scale(l->radiance, AG_PI * s->shapes[l->shape_index].area * (l->two_sided ? 2.0f : 1.0f));
+    case LIGHT_INFINITE: return rgb_scale(environment_integral(l), AG_PI * s->bounding_radius * s->bounding_radius);
     }
     return rgb_gray(0.0f);
 }
@@ -102,6 +104,12 @@ bool light_sample_from_point(const scene *s, const light *l, vec3 point, vec2 u,
 {
     if (l->kind == LIGHT_AREA)
         return sample_area(s, l, point, u, out_sample);
+    if (l->kind == LIGHT_INFINITE) {
+        out_sample->is_delta = false;
+        out_sample->distance = INFINITY;
+        out_sample->shadow_target = point;
+        return environment_sample(l, u, &out_sample->direction, &out_sample->radiance, &out_sample->pdf_solid_angle);
+    }
     out_sample->is_delta = true;
     out_sample->pdf_solid_angle = 1.0f;
     if (l->kind == LIGHT_DISTANT) {
@@ -151,6 +159,15 @@ static bool emit_area(const scene *s, const light *l, rng *random, light_emissio
     return true;
 }
 
+/* A start outside all there is, on the disc of the scene's bounding sphere that faces the way the light goes. */
+static vec3 start_from_afar(const scene *s, vec3 direction, rng *random)
+{
+    frame f = frame_from_z(direction);
+    vec2 d = sample_disk_concentric(rng_vec2(random));
+    float r = s->bounding_radius;
+    return vec3_add(s->bounding_center, frame_to_world(&f, (vec3){d.x * r, d.y * r, -1.01f * r}));
+}
+
 bool light_sample_emission(const scene *s, const light *l, rng *random, light_emission *out_emission)
 {
     light_emission *out = out_emission;
@@ -178,14 +195,20 @@ bool light_sample_emission(const scene *s, const light *l, rng *random, light_em
         out->flux = l->power;
         return true;
     }
-    case LIGHT_DISTANT: {
-        frame f = frame_from_z(l->direction);
-        vec2 d = sample_disk_concentric(rng_vec2(random));
-        float r = s->bounding_radius;
-        vec3 start = frame_to_world(&f, (vec3){d.x * r, d.y * r, -1.01f * r});
-        out->origin = vec3_add(s->bounding_center, start);
+    case LIGHT_DISTANT:
+        out->origin = start_from_afar(s, l->direction, random);
         out->direction = l->direction;
         out->flux = l->power;
+        return true;
+    case LIGHT_INFINITE: {
+        vec3 to_light;
+        rgb radiance;
+        float pdf;
+        if (!environment_sample(l, rng_vec2(random), &to_light, &radiance, &pdf))
+            return false;
+        out->direction = vec3_negate(to_light);
+        out->origin = start_from_afar(s, out->direction, random);
+        out->flux = rgb_scale(radiance, AG_PI * s->bounding_radius * s->bounding_radius / pdf);
         return true;
     }
     }

@@ -12,38 +12,44 @@
 
 struct scene;
 struct rng;
+struct environment;
 
-typedef enum light_kind { LIGHT_POINT, LIGHT_SPOT, LIGHT_DISTANT, LIGHT_AREA } light_kind;
+typedef enum light_kind { LIGHT_POINT, LIGHT_SPOT, LIGHT_DISTANT, LIGHT_AREA, LIGHT_INFINITE } light_kind;
 
 typedef struct light {
     light_kind kind;
     vec3 position;        /* point, spot: world space */
     vec3 direction;       /* spot, distant: the way the light goes, unit */
     rgb intensity;        /* point, spot: W/sr along the axis */
-    rgb radiance;         /* area: W/m^2/sr; distant: irradiance on a surface facing it, W/m^2 */
+    rgb radiance;         /* area: W/m^2/sr; distant: irradiance on a surface facing it, W/m^2; infinite: W/m^2/sr, or
+                           * what its picture is multiplied by */
     float cos_falloff_start, cos_total_width; /* spot: full inside the first, none outside the second, smoothstep between */
     uint32_t shape_index; /* area: the shape that shines */
     bool two_sided;       /* area */
-    rgb power;            /* W; set by scene_commit. Distant: through the disc of the scene's bounding sphere */
+    struct environment *environment; /* infinite: its picture, the scene's; NULL: the same from everywhere */
+    frame world_from_light;          /* infinite, with a picture: a rotation or reflection */
+    rgb power; /* W; set by scene_commit. Distant, infinite: through the disc of the scene's bounding sphere */
 } light;
 
 /* Light arriving at a point. */
 typedef struct light_sample {
     vec3 direction;         /* towards the light, unit */
-    float distance;         /* INFINITY for a distant light */
-    vec3 shadow_target;     /* where a shadow ray ends (just before the lamp's surface); unused for distant lights */
-    rgb radiance;           /* area: W/m^2/sr; delta lights: irradiance perpendicular to direction, W/m^2 */
+    float distance;         /* INFINITY for distant and infinite lights */
+    vec3 shadow_target;     /* where a shadow ray ends (just before the lamp's surface); unused for those */
+    rgb radiance;           /* area, infinite: W/m^2/sr; delta lights: irradiance perpendicular to direction, W/m^2 */
     float pdf_solid_angle;  /* 1 for delta lights */
     bool is_delta;          /* cannot be hit by a scattered ray: no MIS */
 } light_sample;
 
-/* The light's whole power, W (distant: through the disc of the scene's bounding sphere). Areas and bounds are set. */
+/* The light's whole power, W (distant, infinite: through the disc of the scene's bounding sphere). Areas and bounds are
+ * set. */
 rgb light_power(const struct scene *s, const light *l);
 
 /* u in [0,1)^2. Returns false when no light can come from there. */
 bool light_sample_from_point(const struct scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample);
 
-/* The density with which light_sample_from_point picks the direction from point to a place hit on the light's shape. */
+/* The density with which light_sample_from_point picks the direction from point to a place hit on the light's
+ * shape. For lights of kind LIGHT_INFINITE see environment_pdf. */
 float light_pdf_from_point(const struct scene *s, const light *l, vec3 point, vec3 hit_position,
                            vec3 hit_geometric_normal);
 

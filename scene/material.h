@@ -6,14 +6,45 @@
 
 #include "math/vec3.h"
 
-typedef enum material_kind { MATERIAL_DIFFUSE, MATERIAL_CONDUCTOR, MATERIAL_DIELECTRIC } material_kind;
+#include <stdint.h>
+
+/* Below this GGX alpha a surface is perfectly smooth (pbrt-v4 draws the same line). */
+#define MATERIAL_SMOOTH_ALPHA 1e-3f
+
+typedef enum material_kind {
+    MATERIAL_DIFFUSE,
+    MATERIAL_DIFFUSE_TRANSMISSION,
+    MATERIAL_CONDUCTOR,
+    MATERIAL_DIELECTRIC,
+    MATERIAL_THIN_DIELECTRIC,
+    MATERIAL_COATED_DIFFUSE,   /* a dielectric coat on a diffuse base */
+    MATERIAL_COATED_CONDUCTOR, /* a dielectric coat on a conductor */
+    MATERIAL_MIX               /* one of two others, picked by place */
+} material_kind;
 
 typedef struct material {
     material_kind kind;
-    rgb reflectance;   /* diffuse: albedo, [0, 1] */
-    rgb eta, k;        /* conductor: index of refraction (> 0) and absorption (>= 0) */
-    float ior;         /* dielectric: inside over outside, > 0 */
-    float alpha_u, alpha_v; /* GGX roughness after remapping, >= 0; below BSDF_SMOOTH_ALPHA the surface is smooth */
+    rgb reflectance;        /* of the diffuse base, [0, 1] */
+    rgb transmittance;      /* diffuse transmission: to the other side, [0, 1] */
+    rgb eta, k;             /* conductor: index of refraction (> 0) and absorption (>= 0), from air or from the coat */
+    float ior;              /* dielectric or coat: inside over outside, > 0 */
+    float alpha_u, alpha_v; /* GGX roughness after remapping, >= 0, of the outer interface */
+    float base_alpha_u, base_alpha_v; /* of the conductor under a coat */
+    float coat_escape;      /* of diffuse light inside the coat, the share that gets out; set by scene_add_material */
+    uint32_t mixed[2];      /* mix: indices of materials made before */
+    float mix_amount;       /* mix: the share of the second, [0, 1] */
+
+    /* Values that vary over the surface, in place of those above; read only where is_textured. */
+    bool is_textured;
+    bool remaps_roughness; /* alpha is the square root of the texture's value */
+    uint32_t reflectance_texture, transmittance_texture, alpha_u_texture, alpha_v_texture, mix_amount_texture;
 } material;
+
+/* The k with which a conductor of index 1 reflects r at normal incidence, as pbrt-v4 has it. */
+static inline float material_k_from_reflectance(float r)
+{
+    float clamped = fminf(fmaxf(r, 0.0f), 0.9999f);
+    return 2.0f * sqrtf(clamped) / sqrtf(1.0f - clamped);
+}
 
 #endif

@@ -109,7 +109,7 @@ static ag_status look_up(parameter_list *list, log_sink *log, const char *name, 
         char key[160];
         snprintf(key, sizeof key, "texture parameter:%s", name);
         log_at_once(log, AG_LOG_WARNING, p->where, key,
-                    "textures are not supported yet: \"texture %s\" is ignored and the default is used", name);
+                    "\"texture %s\" is not supported here: it is ignored and the default is used", name);
         return AG_OK;
     }
     if (p->type != type) {
@@ -178,6 +178,17 @@ ag_status parameter_get_string(parameter_list *list, log_sink *log, const char *
     ag_status status = look_up_counted(list, log, name, PARAMETER_STRING, 1, &p);
     if (!status && p)
         *out_value = p->strings[0];
+    return status;
+}
+
+ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char *name, const char **out_texture_name)
+{
+    const parameter *p = parameter_list_find(list, name);
+    if (!p || p->type != PARAMETER_TEXTURE)
+        return AG_OK;
+    ag_status status = look_up_counted(list, log, name, PARAMETER_TEXTURE, 1, &p);
+    if (!status)
+        *out_texture_name = p->strings[0];
     return status;
 }
 

@@ -74,6 +74,8 @@ ag_status parameter_get_float(parameter_list *list, log_sink *log, const char *n
 ag_status parameter_get_int(parameter_list *list, log_sink *log, const char *name, int64_t *out_value);
 ag_status parameter_get_bool(parameter_list *list, log_sink *log, const char *name, bool *out_value);
 ag_status parameter_get_string(parameter_list *list, log_sink *log, const char *name, const char **out_value);
+/* The name of a texture; also left alone, and not marked as looked up, where the parameter is of another type. */
+ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char *name, const char **out_texture_name);
 ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *name, parameter_type type,
                              vec3 *out_value);
 /* rgb; or a spectrum or blackbody where that is supported, else a warning that names it and *out left alone */

@@ -56,9 +56,7 @@ static char *join(const char *directory, const char *name)
     return path;
 }
 
-/* Where an included file is: as pbrt has it, below the first file's directory; where there is none, below that of the
- * file that includes it. NULL when out of memory. */
-static char *resolve(const pbrt_parser *parser, const char *name)
+char *pbrt_find_file(const pbrt_parser *parser, const char *name)
 {
     if (name[0] == '/')
         return strdup(name);
@@ -121,7 +119,7 @@ ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location wh
         describe_chain(parser, where, chain, sizeof chain);
         return pbrt_error(parser, where, width, "too many files include one another: %s", chain);
     }
-    char *path = resolve(parser, name);
+    char *path = pbrt_find_file(parser, name);
     ag_status status = path ? text_file_read(path, error, sizeof error, &file) : AG_ERROR_MEMORY;
     if (status == AG_ERROR_INPUT)
         pbrt_error(parser, where, width, "cannot read the file \"%s\": %s", name, error);

@@ -114,7 +114,7 @@ static ag_status read_distant(pbrt_parser *parser, parameter_list *list, light *
 
 static ag_status add_light(pbrt_parser *parser, parameter_list *list)
 {
-    static const char *const UNSUPPORTED[] = {"infinite", "goniometric", "projection"};
+    static const char *const UNSUPPORTED[] = {"goniometric", "projection"};
     uint32_t index;
     light l;
     memset(&l, 0, sizeof l);
@@ -132,10 +132,13 @@ static ag_status add_light(pbrt_parser *parser, parameter_list *list)
         PBRT_TRY(read_spot(parser, list, &l));
     else if (strcmp(list->name, "distant") == 0)
         PBRT_TRY(read_distant(parser, list, &l));
+    else if (strcmp(list->name, "infinite") == 0)
+        PBRT_TRY(pbrt_infinite_light(parser, list, &l));
     else
         return pbrt_error(parser, list->where, strlen("LightSource"), "unknown light \"%s\"", list->name);
     parameter_list_warn_unused(list, parser->log);
-    tell_dark(parser, list->where, "LightSource", list->name, l.kind == LIGHT_DISTANT ? l.radiance : l.intensity);
+    bool has_radiance = l.kind == LIGHT_DISTANT || l.kind == LIGHT_INFINITE;
+    tell_dark(parser, list->where, "LightSource", list->name, has_radiance ? l.radiance : l.intensity);
     return scene_add_light(parser->scene, &l, &index);
 }
 

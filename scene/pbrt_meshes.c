@@ -1,7 +1,7 @@
 /* pbrt_meshes.c: Shape "trianglemesh" of a pbrt-v4 scene, and what all meshes have in common.
  * Rests on the format's description, pbrt.org/fileformat-v4, "Shapes"; and for which side is outside on Pharr, Jakob,
  * Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6.5.
- * Flow: pbrt_shapes, pbrt_patches -> [here] -> scene.shapes. Threads: one per scene. */
+ * Flow: pbrt_shapes, pbrt_patches, pbrt_ply, pbrt_subdivision -> [here] -> scene.shapes. Threads: one per scene. */
 #include "pbrt_private.h"
 
 #include <stdlib.h>
@@ -17,18 +17,28 @@ static bool has_area(const vec3 *positions, const uint32_t *corners)
 
 /* Unit length in world space, on the outside that the file and ReverseOrientation give; zero stays zero, and the
  * triangle's own normal is then used. A mirror does not turn them over (as in pbrt). */
-static vec3 world_normal(const transform *t, bool reverse, const double *n)
+static vec3 world_normal(const transform *t, bool reverse, vec3 n)
 {
-    double w[3], square = 0.0, largest = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
+    double w[3], square = 0.0, largest = (double)vec3_max_abs(n);
     if (!(largest > 0.0))
         return (vec3){0.0f, 0.0f, 0.0f};
     for (int i = 0; i < 3; i++) {
-        w[i] = (t->inverse[0][i] * n[0] + t->inverse[1][i] * n[1] + t->inverse[2][i] * n[2]) / largest;
+        w[i] = (t->inverse[0][i] * (double)n.x + t->inverse[1][i] * (double)n.y + t->inverse[2][i] * (double)n.z) /
+               largest;
         square += w[i] * w[i];
     }
     double inverse = (reverse ? -1.0 : 1.0) / sqrt(square);
     vec3 unit = {(float)(w[0] * inverse), (float)(w[1] * inverse), (float)(w[2] * inverse)};
     return vec3_is_finite(unit) ? unit : (vec3){0.0f, 0.0f, 0.0f};
+}
+
+/* Any length will do, but those of a double may be none of a float. */
+static vec3 float_normal(const double *n)
+{
+    double largest = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
+    if (!(largest > 0.0))
+        return (vec3){0.0f, 0.0f, 0.0f};
+    return (vec3){(float)(n[0] / largest), (float)(n[1] / largest), (float)(n[2] / largest)};
 }
 
 static bool allocate_arrays(const pbrt_mesh *source, mesh *m)
@@ -49,23 +59,33 @@ static void free_arrays(mesh *m)
     free(m->indices);
 }
 
-/* Fills the mesh's vertices; false where one of them is out of reach. */
-static bool transform_vertices(const pbrt_state *state, const pbrt_mesh *source, mesh *m)
+static void copy_vertices(const pbrt_mesh *source, mesh *m)
 {
-    const transform *t = &state->world_from_object;
     for (size_t i = 0; i < source->vertex_count; i++) {
         const double *p = source->positions + 3 * i;
-        vec3 world = transform_point(t, vec3_make((float)p[0], (float)p[1], (float)p[2]));
+        m->positions[i] = (vec3){(float)p[0], (float)p[1], (float)p[2]};
+    }
+    if (m->normals)
+        for (size_t i = 0; i < source->vertex_count; i++)
+            m->normals[i] = float_normal(source->normals + 3 * i);
+    if (m->uvs)
+        for (size_t i = 0; i < source->vertex_count; i++)
+            m->uvs[i] = (vec2){(float)source->uvs[2 * i], (float)source->uvs[2 * i + 1]};
+}
+
+/* From object to world space; false where a vertex is out of reach. */
+static bool transform_vertices(const pbrt_state *state, mesh *m)
+{
+    const transform *t = &state->world_from_object;
+    for (uint32_t i = 0; i < m->vertex_count; i++) {
+        vec3 world = transform_point(t, m->positions[i]);
         if (!(vec3_max_abs(world) <= PBRT_MAX_COORDINATE) || !vec3_is_finite(world))
             return false;
         m->positions[i] = world;
     }
     if (m->normals)
-        for (size_t i = 0; i < source->vertex_count; i++)
-            m->normals[i] = world_normal(t, state->reverse_orientation, source->normals + 3 * i);
-    if (m->uvs)
-        for (size_t i = 0; i < source->vertex_count; i++)
-            m->uvs[i] = (vec2){(float)source->uvs[2 * i], (float)source->uvs[2 * i + 1]};
+        for (uint32_t i = 0; i < m->vertex_count; i++)
+            m->normals[i] = world_normal(t, state->reverse_orientation, m->normals[i]);
     return true;
 }
 
@@ -81,42 +101,49 @@ static size_t drop_degenerate(const vec3 *positions, uint32_t *indices, size_t t
     return kept;
 }
 
-ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source)
+ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
+                               bool expects_degenerate)
 {
     const pbrt_state *state = &parser->state;
     shape s;
     memset(&s, 0, sizeof s);
     s.kind = SHAPE_MESH;
     s.flip_normal = state->reverse_orientation != transform_swaps_handedness(&state->world_from_object);
+    s.as.mesh = *object_mesh;
     mesh *m = &s.as.mesh;
-    m->indices = source->indices;
-    if (source->vertex_count >= UINT32_MAX / 4 || source->triangle_count >= UINT32_MAX / 4) {
-        free_arrays(m);
-        return pbrt_refuse(parser, list, "P", "the mesh is too large");
-    }
-    if (!allocate_arrays(source, m)) {
-        free_arrays(m);
-        return AG_ERROR_MEMORY;
-    }
-    if (!transform_vertices(state, source, m)) {
+    if (!transform_vertices(state, m)) {
         free_arrays(m);
         return pbrt_refuse(parser, list, "P", "a vertex lies beyond 1e18 units in world space");
     }
-    size_t kept = drop_degenerate(m->positions, m->indices, source->triangle_count);
-    size_t dropped = source->triangle_count - kept;
-    if (dropped > 0 && !source->expects_degenerate)
+    size_t count = m->triangle_count + dropped, kept = drop_degenerate(m->positions, m->indices, m->triangle_count);
+    if (kept < count && !expects_degenerate)
         log_at(parser->log, AG_LOG_WARNING, list->where,
-               "Shape \"%s\": %zu of %zu triangles have no area and are left out", list->name, dropped,
-               source->triangle_count);
+               "Shape \"%s\": %zu of %zu triangles have no area and are left out", list->name, count - kept, count);
     if (kept == 0) {
         log_at(parser->log, AG_LOG_WARNING, list->where, "Shape \"%s\" is empty and is left out%s", list->name,
                state->area_light.is_set ? ", and its area light with it" : "");
         free_arrays(m);
         return AG_OK;
     }
-    m->vertex_count = (uint32_t)source->vertex_count;
     m->triangle_count = (uint32_t)kept;
     return pbrt_add_shape(parser, list, &s);
+}
+
+ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source)
+{
+    mesh m = {.indices = source->indices};
+    if (source->vertex_count >= UINT32_MAX / 4 || source->triangle_count >= UINT32_MAX / 4) {
+        free_arrays(&m);
+        return pbrt_refuse(parser, list, "P", "the mesh is too large");
+    }
+    if (!allocate_arrays(source, &m)) {
+        free_arrays(&m);
+        return AG_ERROR_MEMORY;
+    }
+    m.vertex_count = (uint32_t)source->vertex_count;
+    m.triangle_count = (uint32_t)source->triangle_count;
+    copy_vertices(source, &m);
+    return pbrt_add_object_mesh(parser, list, &m, 0, source->expects_degenerate);
 }
 
 /* Vertex data other than the positions: there is as much of it as there are positions, or it is dropped as in pbrt. */

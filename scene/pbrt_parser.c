@@ -1,8 +1,8 @@
 /* pbrt_parser.c: the directives of a pbrt-v4 scene file: which there are and where they may stand.
  * Rests on the format's description, pbrt.org/fileformat-v4. What is not supported yet is read to its end, named in a
  * warning and left out.
- * Flow: pbrt_files -> [here] -> pbrt_state, pbrt_transforms, pbrt_shapes, pbrt_materials, pbrt_lights, pbrt_camera ->
- * scene. Threads: one per scene. */
+ * Flow: pbrt_files -> [here] -> pbrt_state, pbrt_transforms, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights,
+ * pbrt_camera -> scene. Threads: one per scene. */
 #include "pbrt_parser.h"
 
 #include "pbrt_private.h"
@@ -122,25 +122,6 @@ static ag_status attribute(pbrt_parser *parser, file_location where)
     return AG_OK;
 }
 
-static ag_status texture(pbrt_parser *parser, file_location where)
-{
-    char *name, *type = NULL, key[64];
-    parameter_list list;
-    PBRT_TRY(pbrt_read_string(parser, "Texture", "a quoted name", &name, NULL));
-    ag_status status = pbrt_read_string(parser, "Texture", "a quoted type after its name", &type, NULL);
-    if (!status)
-        status = pbrt_read_named_parameters(parser, "Texture", "a quoted class after its type", where, &list);
-    if (!status) {
-        snprintf(key, sizeof key, "texture:%.50s", list.name);
-        log_at_once(parser->log, AG_LOG_WARNING, where, key,
-                    "Texture \"%s\" of class \"%s\": textures are not supported yet", name, list.name);
-        parameter_list_reset(&list);
-    }
-    free(name);
-    free(type);
-    return status;
-}
-
 static ag_status make_named_medium(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
@@ -201,7 +182,7 @@ static const struct {
     {"ObjectBegin", IN_WORLD, pbrt_object_begin},
     {"ObjectEnd", IN_WORLD, pbrt_object_end},
     {"ObjectInstance", IN_WORLD, pbrt_object_instance},
-    {"Texture", IN_WORLD, texture},
+    {"Texture", IN_WORLD, pbrt_texture},
     {"Import", IN_WORLD, import},
     {"Include", ANYWHERE, include},
     {"Attribute", ANYWHERE, attribute},
@@ -292,6 +273,8 @@ static void parser_destroy(pbrt_parser *parser)
     for (size_t i = 0; i < parser->named_material_count; i++)
         free(parser->named_materials[i].name);
     name_table_reset(&parser->material_names);
+    name_table_reset(&parser->float_texture_names);
+    name_table_reset(&parser->spectrum_texture_names);
     name_table_reset(&parser->coordinate_system_names);
     free(parser->named_materials);
     free(parser->coordinate_systems);

@@ -2,7 +2,7 @@
  * interpreters of directives.
  * Rests on the format's description, pbrt.org/fileformat-v4. Names and defaults are pbrt-v4's.
  * Flow: pbrt_parser dispatches directives; pbrt_files gives tokens; pbrt_parameters reads parameter lists;
- * pbrt_transforms, pbrt_shapes, pbrt_materials, pbrt_lights and pbrt_camera interpret. Threads: one per scene. */
+ * pbrt_transforms, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights and pbrt_camera interpret. Threads: one per scene. */
 #ifndef AFTERGLOW_PBRT_PRIVATE_H
 #define AFTERGLOW_PBRT_PRIVATE_H
 
@@ -86,6 +86,7 @@ typedef struct pbrt_parser {
     pbrt_named_material *named_materials;
     size_t named_material_count;
     name_table material_names;
+    name_table float_texture_names, spectrum_texture_names; /* to indices of the scene's */
 } pbrt_parser;
 
 /* Every handler of a directive: where is the directive's place; its name has been read, nothing behind it. */
@@ -97,6 +98,9 @@ typedef ag_status pbrt_handler(pbrt_parser *parser, file_location where);
 ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location where, size_t width);
 ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size);
 void pbrt_pop_file(pbrt_parser *parser);
+/* Where a file that the scene names is: as pbrt has it, below the first file's directory; where there is none, below that
+ * of the file that names it. To be freed; NULL when out of memory. */
+char *pbrt_find_file(const pbrt_parser *parser, const char *name);
 /* The next token; where an included file ends, the one that included it goes on. */
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);
 ag_status pbrt_peek(pbrt_parser *parser, pbrt_token *out_token);
@@ -140,10 +144,23 @@ ag_status pbrt_add_default_material(pbrt_parser *parser);
 /* Error where a material was used and never made. */
 ag_status pbrt_check_named_materials(pbrt_parser *parser);
 
+/* pbrt_textures.c */
+pbrt_handler pbrt_texture;
+/* A parameter that may be a texture. *out_texture_index is the texture's, or SCENE_NO_TEXTURE; *out_constant is written
+ * where the parameter stands and has the same value everywhere (a constant texture has), else left alone.
+ * Errors: as of parameter_get_rgb and parameter_get_float, and where no such texture of the wanted type is there. */
+ag_status pbrt_get_rgb_texture(pbrt_parser *parser, parameter_list *list, const char *name, rgb *out_constant,
+                               uint32_t *out_texture_index);
+ag_status pbrt_get_float_texture(pbrt_parser *parser, parameter_list *list, const char *name, float *out_constant,
+                                 uint32_t *out_texture_index);
+
 /* pbrt_lights.c */
 pbrt_handler pbrt_light_source, pbrt_area_light_source;
 /* Makes the shape shine if AreaLightSource says so. */
 ag_status pbrt_add_area_light(pbrt_parser *parser, uint32_t shape_index, file_location where);
+
+/* pbrt_environments.c: LightSource "infinite". out_light is zeroed before; its environment is the caller's. */
+ag_status pbrt_infinite_light(pbrt_parser *parser, parameter_list *list, light *out_light);
 
 /* pbrt_camera.c */
 pbrt_handler pbrt_camera;
@@ -153,9 +170,12 @@ pbrt_handler pbrt_shape;
 /* Adds the shape with the current material and area light. A mesh's arrays pass to the scene, also on failure. */
 ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape *s);
 
-/* pbrt_meshes.c, pbrt_patches.c: Shape "trianglemesh" and Shape "bilinearmesh". */
+/* pbrt_meshes.c, pbrt_patches.c, pbrt_ply.c, pbrt_subdivision.c: Shape "trianglemesh", "bilinearmesh", "plymesh" and
+ * "loopsubdiv". */
 ag_status pbrt_triangle_mesh(pbrt_parser *parser, parameter_list *list);
 ag_status pbrt_bilinear_mesh(pbrt_parser *parser, parameter_list *list);
+ag_status pbrt_ply_mesh(pbrt_parser *parser, parameter_list *list);
+ag_status pbrt_loop_subdivision(pbrt_parser *parser, parameter_list *list);
 
 /* A mesh in object space as the file has it. */
 typedef struct pbrt_mesh {
@@ -170,6 +190,10 @@ typedef struct pbrt_mesh {
 
 /* Adds it to the scene in world space, less the triangles without area. Takes source->indices, also on failure. */
 ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source);
+/* The same of a mesh whose arrays, in object space, are the scene's own already: they are transformed where they are and
+ * taken, also on failure. dropped: triangles that were left out before, for the warning. */
+ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
+                               bool expects_degenerate);
 /* The arrays that meshes have in common, all but triangle_count. There are *out_index_count indices, a multiple of
  * corners, from malloc: those of the file, or 0, 1, 2, ... where it has none and the vertices are just one face. */
 ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_t corners, pbrt_mesh *out_mesh,

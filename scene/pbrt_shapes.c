@@ -4,7 +4,6 @@
  * Flow: pbrt_parser -> [here] -> scene.shapes. Threads: one per scene. */
 #include "pbrt_private.h"
 
-#include <stdio.h>
 #include <string.h>
 
 ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape *s)
@@ -22,6 +21,7 @@ static ag_status add_quadric(pbrt_parser *parser, parameter_list *list, shape *s
     q->world_from_object = parser->state.world_from_object;
     s->flip_normal = parser->state.reverse_orientation; /* the outward normal, transformed, is outward in any mirror */
     double reach = fmax((double)q->radius, fabs((double)q->height));
+    reach = fmax(reach, fmax(fabs((double)q->z_min), fabs((double)q->z_max)));
     for (int i = 0; i < 3; i++) {
         double sum = fabs(q->world_from_object.m[i][3]);
         for (int j = 0; j < 3; j++)
@@ -32,12 +32,29 @@ static ag_status add_quadric(pbrt_parser *parser, parameter_list *list, shape *s
     return pbrt_add_shape(parser, list, s);
 }
 
-static void warn_partial(pbrt_parser *parser, const parameter_list *list)
+/* "radius", and "phimax" as a part of a turn; as in pbrt what is above 360 degrees is a whole one. */
+static ag_status read_round(pbrt_parser *parser, parameter_list *list, quadric *q)
 {
-    char key[32];
-    snprintf(key, sizeof key, "partial %.16s", list->name);
-    log_at_once(parser->log, AG_LOG_WARNING, list->where, key,
-                "partial shapes are not supported yet: a whole \"%s\" is used", list->name);
+    float phi_max = 360.0f;
+    q->radius = 1.0f;
+    PBRT_TRY(parameter_get_float(list, parser->log, "radius", &q->radius));
+    PBRT_TRY(parameter_get_float(list, parser->log, "phimax", &phi_max));
+    if (!(q->radius > 0.0f))
+        return pbrt_refuse(parser, list, "radius", "\"radius\" should be above 0");
+    if (!(phi_max > 0.0f))
+        return pbrt_refuse(parser, list, "phimax", "\"phimax\" should be above 0");
+    q->turn = fminf(phi_max / 360.0f, 1.0f);
+    return AG_OK;
+}
+
+/* "zmin" and "zmax", which as in pbrt may be the wrong way round. */
+static ag_status read_heights(pbrt_parser *parser, parameter_list *list, float z_min, float z_max, quadric *q)
+{
+    PBRT_TRY(parameter_get_float(list, parser->log, "zmin", &z_min));
+    PBRT_TRY(parameter_get_float(list, parser->log, "zmax", &z_max));
+    q->z_min = fminf(z_min, z_max);
+    q->z_max = fmaxf(z_min, z_max);
+    return AG_OK;
 }
 
 static ag_status read_sphere(pbrt_parser *parser, parameter_list *list)
@@ -45,18 +62,28 @@ static ag_status read_sphere(pbrt_parser *parser, parameter_list *list)
     shape s;
     memset(&s, 0, sizeof s);
     s.kind = SHAPE_SPHERE;
-    float radius = 1.0f, phi_max = 360.0f;
-    PBRT_TRY(parameter_get_float(list, parser->log, "radius", &radius));
-    if (!(radius > 0.0f))
-        return pbrt_refuse(parser, list, "radius", "\"radius\" should be above 0");
-    float z_min = -radius, z_max = radius;
-    PBRT_TRY(parameter_get_float(list, parser->log, "zmin", &z_min));
-    PBRT_TRY(parameter_get_float(list, parser->log, "zmax", &z_max));
-    PBRT_TRY(parameter_get_float(list, parser->log, "phimax", &phi_max));
-    if (z_min > -radius || z_max < radius || phi_max < 360.0f)
-        warn_partial(parser, list);
+    quadric *q = &s.as.quadric;
+    PBRT_TRY(read_round(parser, list, q));
+    PBRT_TRY(read_heights(parser, list, -q->radius, q->radius, q));
+    q->z_min = fmaxf(q->z_min, -q->radius);
+    q->z_max = fminf(q->z_max, q->radius);
+    if (!(q->z_min < q->z_max))
+        return pbrt_refuse(parser, list, "zmin", "nothing of the sphere lies between \"zmin\" and \"zmax\"");
     parameter_list_warn_unused(list, parser->log);
-    s.as.quadric.radius = radius;
+    return add_quadric(parser, list, &s);
+}
+
+static ag_status read_cylinder(pbrt_parser *parser, parameter_list *list)
+{
+    shape s;
+    memset(&s, 0, sizeof s);
+    s.kind = SHAPE_CYLINDER;
+    quadric *q = &s.as.quadric;
+    PBRT_TRY(read_round(parser, list, q));
+    PBRT_TRY(read_heights(parser, list, -1.0f, 1.0f, q));
+    if (!(q->z_min < q->z_max))
+        return pbrt_refuse(parser, list, "zmin", "\"zmin\" should differ from \"zmax\"");
+    parameter_list_warn_unused(list, parser->log);
     return add_quadric(parser, list, &s);
 }
 
@@ -66,18 +93,11 @@ static ag_status read_disk(pbrt_parser *parser, parameter_list *list)
     memset(&s, 0, sizeof s);
     s.kind = SHAPE_DISK;
     quadric *q = &s.as.quadric;
-    float phi_max = 360.0f;
-    q->radius = 1.0f;
-    PBRT_TRY(parameter_get_float(list, parser->log, "radius", &q->radius));
+    PBRT_TRY(read_round(parser, list, q));
     PBRT_TRY(parameter_get_float(list, parser->log, "innerradius", &q->inner_radius));
     PBRT_TRY(parameter_get_float(list, parser->log, "height", &q->height));
-    PBRT_TRY(parameter_get_float(list, parser->log, "phimax", &phi_max));
-    if (!(q->radius > 0.0f))
-        return pbrt_refuse(parser, list, "radius", "\"radius\" should be above 0");
     if (!(q->inner_radius >= 0.0f && q->inner_radius < q->radius))
         return pbrt_refuse(parser, list, "innerradius", "\"innerradius\" should be from 0 to below \"radius\"");
-    if (phi_max < 360.0f)
-        warn_partial(parser, list);
     parameter_list_warn_unused(list, parser->log);
     return add_quadric(parser, list, &s);
 }
@@ -94,13 +114,16 @@ static const char *why_left_out(const pbrt_parser *parser)
 
 static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
 {
-    static const char *const UNSUPPORTED[] = {"cylinder", "curve", "loopsubdiv", "plymesh"};
+    static const char *const UNSUPPORTED[] = {"curve"};
     typedef ag_status reader(pbrt_parser *, parameter_list *);
     static const struct {
         const char *name;
         reader *read;
     } READERS[] = {{"sphere", read_sphere},
+                   {"cylinder", read_cylinder},
                    {"disk", read_disk},
+                   {"plymesh", pbrt_ply_mesh},
+                   {"loopsubdiv", pbrt_loop_subdivision},
                    {"trianglemesh", pbrt_triangle_mesh},
                    {"bilinearmesh", pbrt_bilinear_mesh}};
     const char *left_out = why_left_out(parser);

@@ -4,6 +4,7 @@
 #include "scene.h"
 
 #include "bsdf.h"
+#include "environment.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -36,6 +37,10 @@ void scene_destroy(scene *s)
     bvh_destroy(s->bvh);
     for (uint32_t i = 0; i < s->shape_count; i++)
         shape_free_arrays(&s->shapes[i]);
+    for (uint32_t i = 0; i < s->light_count; i++)
+        environment_destroy(s->lights[i].environment);
+    for (uint32_t i = 0; i < s->texture_image_count; i++)
+        texture_image_destroy(s->texture_images[i]);
     for (uint32_t i = 0; i < s->file_name_count; i++)
         free(s->file_names[i]);
     parameter_list_reset(&s->integrator);
@@ -45,9 +50,12 @@ void scene_destroy(scene *s)
     free(s->file_names);
     free(s->shapes);
     free(s->materials);
+    free(s->textures);
+    free(s->texture_images);
     free(s->lights);
     free(s->light_cdf);
     free(s->light_probability);
+    free(s->infinite_lights);
     free(s);
 }
 
@@ -86,11 +94,34 @@ ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index
     *out_index = s->material_count;
     material *m = &s->materials[s->material_count++];
     *m = *item;
-    /* rough along one axis only: the other must not divide by zero */
-    if (m->alpha_u >= BSDF_SMOOTH_ALPHA || m->alpha_v >= BSDF_SMOOTH_ALPHA) {
-        m->alpha_u = fmaxf(m->alpha_u, 1e-4f);
-        m->alpha_v = fmaxf(m->alpha_v, 1e-4f);
+    material_prepare(m);
+    return AG_OK;
+}
+
+ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index)
+{
+    uint32_t cost = 1;
+    for (size_t i = 0; i < sizeof item->inputs / sizeof *item->inputs; i++)
+        if (item->inputs[i].texture_index != SCENE_NO_TEXTURE)
+            cost += s->textures[item->inputs[i].texture_index].cost; /* each is at most TEXTURE_MAX_COST */
+    if (cost > TEXTURE_MAX_COST)
+        return AG_ERROR_SCENE;
+    if (!grow((void **)&s->textures, s->texture_count, sizeof *s->textures))
+        return AG_ERROR_MEMORY;
+    *out_index = s->texture_count;
+    s->textures[s->texture_count] = *item;
+    s->textures[s->texture_count++].cost = cost;
+    return AG_OK;
+}
+
+ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index)
+{
+    if (!grow((void **)&s->texture_images, s->texture_image_count, sizeof *s->texture_images)) {
+        texture_image_destroy(item);
+        return AG_ERROR_MEMORY;
     }
+    *out_index = s->texture_image_count;
+    s->texture_images[s->texture_image_count++] = item;
     return AG_OK;
 }
 
@@ -109,8 +140,10 @@ ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index)
 
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
 {
-    if (!grow((void **)&s->lights, s->light_count, sizeof *s->lights))
+    if (!grow((void **)&s->lights, s->light_count, sizeof *s->lights)) {
+        environment_destroy(item->environment);
         return AG_ERROR_MEMORY;
+    }
     *out_index = s->light_count;
     if (item->kind == LIGHT_AREA)
         s->shapes[item->shape_index].light_index = s->light_count;
@@ -141,10 +174,13 @@ static ag_status weigh_lights(scene *s)
         return AG_OK;
     s->light_cdf = malloc(s->light_count * sizeof *s->light_cdf);
     s->light_probability = malloc(s->light_count * sizeof *s->light_probability);
-    if (!s->light_cdf || !s->light_probability)
+    s->infinite_lights = malloc(s->light_count * sizeof *s->infinite_lights);
+    if (!s->light_cdf || !s->light_probability || !s->infinite_lights)
         return AG_ERROR_MEMORY;
     double total = 0.0, sum = 0.0;
     for (uint32_t i = 0; i < s->light_count; i++) {
+        if (s->lights[i].kind == LIGHT_INFINITE)
+            s->infinite_lights[s->infinite_light_count++] = i;
         s->lights[i].power = light_power(s, &s->lights[i]);
         s->light_power = rgb_add(s->light_power, s->lights[i].power);
         /* by the mean of the channels: luminance would all but leave out blue lamps */

@@ -11,12 +11,17 @@
 #include "parameter_list.h"
 #include "run_context.h"
 #include "shape.h"
+#include "texture.h"
 
 struct bvh;
 
 typedef struct scene {
     material *materials;
     uint32_t material_count;
+    texture *textures;
+    uint32_t texture_count;
+    texture_image **texture_images; /* those that textures refer to, each file and encoding once */
+    uint32_t texture_image_count;
     shape *shapes;
     uint32_t shape_count;
     light *lights;
@@ -38,6 +43,8 @@ typedef struct scene {
     rgb light_power;          /* W, of all lights */
     float *light_cdf;         /* [light_count], running sum of the lights' luminous powers over their total */
     float *light_probability; /* [light_count], the share of each: with which light_pick picks it */
+    uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
+    uint32_t infinite_light_count;
     struct bvh *bvh;
 } scene;
 
@@ -50,8 +57,14 @@ const char *scene_intern_file_name(scene *s, const char *name);
 /* Each adds a copy of *item and gives its index. A mesh's arrays pass into the scene's ownership, on failure too
  * (they are then freed). Errors: AG_ERROR_MEMORY. */
 ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index);
+/* A texture's inputs must be there already. Errors also: AG_ERROR_SCENE (it costs more than TEXTURE_MAX_COST). */
+ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index);
+/* For texture_image_load, which looks first whether it is there. The scene takes the picture, on failure too (it is then
+ * destroyed). */
+ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
-/* An area light's shape must be there already; its light_index is set here. */
+/* An area light's shape must be there already; its light_index is set here. An environment passes into the scene's
+ * ownership, on failure too (it is then destroyed). */
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
 
 /* Areas, powers, bounds and the BVH (built by the run's threads and no others). isa: Embree's name of the widest

@@ -1,4 +1,4 @@
-/* shape.h: surfaces in world space: triangle meshes, spheres and disks.
+/* shape.h: surfaces in world space: triangle meshes, spheres, cylinders and disks.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6; orientation follows pbrt's:
  * a shape's outside is where its geometric normal points, ReverseOrientation turns it over.
  * Flow: the scene file makes shapes; bvh_embree casts rays at them; lights sample points on them.
@@ -12,7 +12,11 @@
 
 #define SHAPE_NO_LIGHT UINT32_MAX
 
-typedef enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_DISK } shape_kind;
+/* Rays start this far off a surface, relative to the largest coordinate at hand: some 128 units in the last place of a
+ * float, a few times what the traversal's arithmetic loses. */
+#define SHAPE_EPSILON_RELATIVE 0x1p-16f
+
+typedef enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_CYLINDER, SHAPE_DISK } shape_kind;
 
 /* World space. Arrays are owned by the shape, which is owned by the scene. Positions have room for one more vertex, so
  * that Embree may read 16 bytes at the last one. */
@@ -25,14 +29,21 @@ typedef struct mesh {
     float *area_cdf;   /* of emissive meshes, else NULL: [triangle_count], running sum of areas over the total */
 } mesh;
 
-/* Sphere: the unit sphere times object radius, under any affine map; disk: z = height, inner to outer radius. */
+/* Sphere and cylinder around the z axis, of which z_min to z_max is there; disk: z = height, inner to outer radius. All
+ * from the x axis so far round the z axis as `turn` says. Under any affine map. */
 typedef struct quadric {
     transform world_from_object;
     float radius;
     float inner_radius, height; /* disk only */
+    float z_min, z_max;         /* sphere, within +-radius, and cylinder; z_min < z_max */
+    float turn;                 /* phimax / 360 degrees, in (0, 1] */
     /* set by scene_commit */
     vec3 center;          /* world */
-    float uniform_radius; /* world radius of a sphere that is still a sphere, else 0 (then it is an ellipsoid) */
+    float uniform_radius; /* world radius of a whole sphere that is still a sphere, else 0 */
+    float epsilon;        /* as in surface_hit */
+    float turn_sin, turn_cos;
+    double theta_min, theta_max; /* sphere: the angles from the z axis at z_min and z_max, in turns */
+    bool has_even_area;          /* object area and world area have one ratio everywhere */
 } quadric;
 
 typedef struct shape {

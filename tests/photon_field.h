@@ -64,7 +64,7 @@ static inline photon_set field_photons(field_kind kind, uint32_t count, uint64_t
 static inline photon_map field_map(test_run *r, photon_set *set, uint32_t nearest, float max_radius)
 {
     photon_map map;
-    photon_map_settings settings = {nearest, max_radius, 4.0f * AG_PI};
+    photon_map_settings settings = {.nearest = nearest, .max_radius = max_radius, .surface_area = 4.0f * AG_PI};
     assert_int_equal(photon_map_create(&r->run, set, &settings, 0.0, 1.0, &map), AG_OK);
     return map;
 }

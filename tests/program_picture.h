@@ -3,7 +3,7 @@
 #ifndef AFTERGLOW_PROGRAM_PICTURE_H
 #define AFTERGLOW_PROGRAM_PICTURE_H
 
-#include "image_file.h"
+#include "image_reader.h"
 #include "program_run.h"
 
 #include <math.h>
@@ -15,12 +15,11 @@ typedef struct picture {
 
 static inline picture picture_read(const char *path)
 {
-    picture p;
-    int channel_count;
-    if (image_file_read(path, &p.width, &p.height, &channel_count, &p.pixels, message, sizeof message) != AG_OK)
+    image read;
+    if (image_read(path, &read, message, sizeof message) != AG_OK)
         fail_msg("%s", message);
-    assert_int_equal(channel_count, 3);
-    return p;
+    assert_int_equal(read.channel_count, 3);
+    return (picture){read.width, read.height, read.pixels};
 }
 
 static inline void picture_reset(picture *p)

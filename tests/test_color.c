@@ -1,9 +1,9 @@
 /* test_color.c: the colour bridge against known values, other people's kinds of config, and oiiotool.
- * Flow: tests of renderer/color_ocio.cpp and renderer/config.ocio. Threads: one. */
+ * Flow: tests of scene/color_ocio.cpp and scene/config.ocio. Threads: one. */
 #define _GNU_SOURCE
 #include "color.h"
 #include "color_builtin_config.h"
-#include "image_file.h"
+#include "image_reader.h"
 #include "temporary_folder.h"
 
 #include <math.h>
@@ -331,21 +331,44 @@ static void agrees_with_oiiotool(void **state)
         folder);
     assert_int_equal(system(command), 0);
 
-    int width, height, channel_count;
-    float *ours, *theirs;
-    assert_int_equal(
-        image_file_read(in_folder("in.tif"), &width, &height, &channel_count, &ours, message, sizeof message), AG_OK);
-    assert_int_equal(
-        image_file_read(in_folder("out.tif"), &width, &height, &channel_count, &theirs, message, sizeof message),
-        AG_OK);
-    assert_int_equal(width * height * channel_count, 32 * 16 * 3);
+    image ours, theirs;
+    assert_int_equal(image_read(in_folder("in.tif"), &ours, message, sizeof message), AG_OK);
+    assert_int_equal(image_read(in_folder("out.tif"), &theirs, message, sizeof message), AG_OK);
+    assert_int_equal(theirs.width * theirs.height * theirs.channel_count, 32 * 16 * 3);
     color_config *config = open_config(NULL);
-    apply(config, "sRGB - Display", "ACES 1.0 - SDR Video", ours, 32 * 16);
+    apply(config, "sRGB - Display", "ACES 1.0 - SDR Video", ours.pixels, 32 * 16);
     for (int i = 0; i < 32 * 16 * 3; i++)
-        assert_near(ours[i], theirs[i], 2e-6);
+        assert_near(ours.pixels[i], theirs.pixels[i], 2e-6);
     color_config_destroy(config);
-    free(ours);
-    free(theirs);
+    image_reset(&ours);
+    image_reset(&theirs);
+}
+
+/* What textures rest on: the sRGB curve of IEC 61966-2-1, one value after another. */
+static void decodes_srgb(void **state)
+{
+    (void)state;
+    setenv("OCIO", "/nowhere/config.ocio", 1);
+    color_config *config = NULL;
+    assert_int_equal(color_config_create_builtin(message, sizeof message, &config), AG_OK);
+    unsetenv("OCIO");
+    color_processor *processor = NULL;
+    expect_failure(color_decoder_create(config, "no such space", message, sizeof message, &processor), AG_ERROR_COLOR,
+                   "no such space");
+    assert_null(processor);
+    assert_int_equal(color_decoder_create(config, "sRGB - Texture", message, sizeof message, &processor), AG_OK);
+    float pixels[256 * 3];
+    for (int i = 0; i < 256; i++)
+        for (int c = 0; c < 3; c++)
+            pixels[3 * i + c] = (float)((i + 85 * c) % 256) / 255.0f;
+    assert_int_equal(color_processor_apply(processor, pixels, 256, message, sizeof message), AG_OK);
+    for (int i = 0; i < 256; i++)
+        for (int c = 0; c < 3; c++) {
+            double v = (i + 85 * c) % 256 / 255.0;
+            assert_near(pixels[3 * i + c], v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4), 1e-6);
+        }
+    color_processor_destroy(processor);
+    color_config_destroy(config);
 }
 
 static int make_folder_without_environment(void **state)
@@ -367,6 +390,7 @@ int main(void)
         cmocka_unit_test(falls_back_to_the_role),
         cmocka_unit_test(bands_have_the_same_bits),
         cmocka_unit_test(agrees_with_oiiotool),
+        cmocka_unit_test(decodes_srgb),
     };
     return cmocka_run_group_tests(tests, make_folder_without_environment, remove_folder);
 }

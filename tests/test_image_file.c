@@ -1,9 +1,10 @@
 /* test_image_file.c: pictures to disk and back, what their headers say, and what is left behind when writing fails.
- * Flow: tests of renderer/image_file.c, image_oiio.cpp, image_module_loader.c. Threads: one. */
+ * Flow: tests of renderer/image_file.c, and of scene/image_reader.c, image_oiio.cpp, image_module_loader.c. Threads: one. */
 #define _GNU_SOURCE
 #include "atomic_file.h"
 #include "image_file.h"
 #include "image_module_loader.h"
+#include "image_reader.h"
 #include "temporary_folder.h"
 
 #include <dirent.h>
@@ -55,17 +56,15 @@ static void write_picture(const char *path, const image_description *description
 
 static float *read_picture(const char *path, int width, int height, int channel_count)
 {
-    int read_width, read_height, read_channel_count;
-    float *pixels;
-    const ag_status status =
-        image_file_read(path, &read_width, &read_height, &read_channel_count, &pixels, message, sizeof message);
+    image read;
+    const ag_status status = image_read(path, &read, message, sizeof message);
     if (status != AG_OK)
         print_error("%s\n", message);
     assert_int_equal(status, AG_OK);
-    assert_int_equal(read_width, width);
-    assert_int_equal(read_height, height);
-    assert_int_equal(read_channel_count, channel_count);
-    return pixels;
+    assert_int_equal(read.width, width);
+    assert_int_equal(read.height, height);
+    assert_int_equal(read.channel_count, channel_count);
+    return read.pixels;
 }
 
 /* The value of an attribute in an EXR header, or NULL. */
@@ -374,22 +373,67 @@ static void equal_pictures_give_equal_bytes(void **state)
 static void broken_pictures_are_errors(void **state)
 {
     (void)state;
-    int width, height, channel_count;
-    float *back;
+    image back;
     float pixels[WIDTH * HEIGHT * 3];
     fill(pixels, 3);
-    expect_failure(
-        image_file_read(in_folder("none.exr"), &width, &height, &channel_count, &back, message, sizeof message),
-        AG_ERROR_INPUT, "none.exr");
-    assert_null(back);
+    expect_failure(image_read(in_folder("none.exr"), &back, message, sizeof message), AG_ERROR_INPUT, "none.exr");
+    assert_null(back.pixels);
     const image_description description = describe(3, IMAGE_FLOAT);
     write_picture(in_folder("x.exr"), &description, pixels);
     struct stat status;
     assert_int_equal(stat(in_folder("x.exr"), &status), 0);
     assert_int_equal(truncate(in_folder("x.exr"), status.st_size / 2), 0);
-    expect_failure(image_file_read(in_folder("x.exr"), &width, &height, &channel_count, &back, message, sizeof message),
-                   AG_ERROR_INPUT, "x.exr");
-    assert_null(back);
+    expect_failure(image_read(in_folder("x.exr"), &back, message, sizeof message), AG_ERROR_INPUT, "x.exr");
+    assert_null(back.pixels);
+    expect_failure(image_read_compact(in_folder("x.exr"), &back, message, sizeof message), AG_ERROR_INPUT, "x.exr");
+    assert_null(back.bytes);
+}
+
+/* What a file holds is told, bytes stay bytes where that is wished, and alpha is not multiplied in. */
+static void values_are_as_stored(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        image_sample_type type;
+    } kinds[] = {{"a.png", IMAGE_UINT8}, {"b.png", IMAGE_UINT16}, {"c.exr", IMAGE_HALF}, {"d.exr", IMAGE_FLOAT}};
+    static const float pixels[4 * 4] = {1.0f, 0.4f, 0.0f, 1.0f, 0.2f, 0.4f, 0.6f, 1.0f,
+                                        0.0f, 1.0f, 0.8f, 1.0f, 0.8f, 0.6f, 0.2f, 1.0f};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        image_description description = describe(4, kinds[k].type);
+        description.width = description.full_width = 4;
+        description.height = description.full_height = 1;
+        write_picture(in_folder(kinds[k].name), &description, pixels);
+        for (int compact = 0; compact < 2; compact++) {
+            image read;
+            assert_int_equal((compact ? image_read_compact : image_read)(in_folder(kinds[k].name), &read, message,
+                                                                         sizeof message),
+                             AG_OK);
+            assert_int_equal(read.type, kinds[k].type);
+            const bool is_bytes = compact && kinds[k].type == IMAGE_UINT8;
+            assert_int_equal(read.bytes != NULL, is_bytes);
+            assert_int_equal(read.pixels != NULL, !is_bytes);
+            for (int i = 0; i < 16; i++) {
+                const float value = is_bytes ? (float)read.bytes[i] / 255.0f : read.pixels[i];
+                assert_true(fabsf(value - pixels[i]) < (kinds[k].type == IMAGE_HALF ? 5e-4f : 1e-6f));
+            }
+            image_reset(&read);
+            assert_null(read.bytes);
+        }
+    }
+    /* a colour that is there where alpha is 0 */
+    char command[512];
+    snprintf(command, sizeof command,
+             "cd '%s' && oiiotool --no-autopremult --create 1x1 4 --fill:color=1,0.501961,0,0 1x1 -d uint8 "
+             "--attrib oiio:UnassociatedAlpha 1 -o alpha.png",
+             folder);
+    assert_int_equal(system(command), 0);
+    image read;
+    assert_int_equal(image_read_compact(in_folder("alpha.png"), &read, message, sizeof message), AG_OK);
+    const unsigned char expected[] = {255, 128, 0, 0};
+    assert_int_equal(read.channel_count, 4);
+    assert_memory_equal(read.bytes, expected, sizeof expected);
+    image_reset(&read);
 }
 
 /* ---- the module ---- */
@@ -562,6 +606,7 @@ int main(void)
         TEST_IN_FOLDER(jpeg_keeps_all_colour),
         TEST_IN_FOLDER(equal_pictures_give_equal_bytes),
         TEST_IN_FOLDER(broken_pictures_are_errors),
+        TEST_IN_FOLDER(values_are_as_stored),
         TEST_IN_FOLDER(missing_module_names_the_places),
         TEST_IN_FOLDER(full_disk_through_a_device),
         TEST_IN_FOLDER(failed_writes_leave_all_as_it_was),

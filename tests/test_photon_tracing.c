@@ -233,7 +233,7 @@ static void expect_shortage(const char *world, photon_kind kind, uint32_t at_mos
     test_run r;
     test_run_init(&r, 2);
     scene *s = test_scene_create(&r, world);
-    photon_set set = trace(&r, s, kind, 1000000, 100);
+    photon_set set = trace(&r, s, kind, 10000, 100);
     assert_true(set.count <= at_most);
     assert_int_equal(r.warning_count, 1);
     assert_non_null(strstr(r.said, said));
@@ -247,12 +247,12 @@ static void a_shortage_is_explained(void **state)
     (void)state;
     static const char *const FAR_DISK =
         "LightSource \"point\"\nTranslate 0 0 1000 Shape \"disk\" \"float radius\" [10]\n";
-    expect_shortage(FAR_DISK, PHOTON_GLOBAL, 200, "1000000 photons stored");
+    expect_shortage(FAR_DISK, PHOTON_GLOBAL, 200, "of 10000 photons stored");
     expect_shortage("LightSource \"point\"\n", PHOTON_GLOBAL, 0, "100.0 % of the emitted light leaves the scene");
     /* nothing specular: no caustics */
     char text[512];
     snprintf(text, sizeof text, SPHERE, 0.5, 0.5, 0.5);
-    expect_shortage(text, PHOTON_CAUSTIC, 0, "caustic photon map: 0 of 1000000");
+    expect_shortage(text, PHOTON_CAUSTIC, 0, "caustic photon map: 0 of 10000");
     /* nothing diffuse: a room of black mirrors */
     expect_shortage("LightSource \"point\"\nMaterial \"conductor\" \"rgb reflectance\" [0.02 0.02 0.02]\n"
                     "Shape \"sphere\"\n",

@@ -6,6 +6,7 @@
 #include "thread_pool.h"
 
 #include "cpu_count.h"
+#include "floating_point.h"
 
 #include <assert.h>
 #include <pthread.h>
@@ -14,9 +15,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
 
 typedef struct worker {
     thread_pool *pool;
@@ -36,19 +34,11 @@ struct thread_pool {
     bool busy, stopping;
 };
 
-/* Floating point state is set as a whole, not only its two bits: rounding and masks inherited from a foreign caller
- * would make the result depend on who asks. */
-static void call_with_flushed_denormals(thread_pool_fn *fn, void *user, unsigned worker_index)
+static void call_in_our_arithmetic(thread_pool_fn *fn, void *user, unsigned worker_index)
 {
-#if defined(__SSE__)
-    enum { ALL_EXCEPTIONS_MASKED = 0x1f80, FLUSH_TO_ZERO = 0x8000, DENORMALS_ARE_ZERO = 0x0040 };
-    unsigned callers = _mm_getcsr();
-    _mm_setcsr(ALL_EXCEPTIONS_MASKED | FLUSH_TO_ZERO | DENORMALS_ARE_ZERO);
+    unsigned callers = floating_point_enter();
     fn(user, worker_index);
-    _mm_setcsr(callers);
-#else
-    fn(user, worker_index);
-#endif
+    floating_point_leave(callers);
 }
 
 static void *worker_main(void *argument)
@@ -70,7 +60,7 @@ static void *worker_main(void *argument)
         thread_pool_fn *fn = pool->fn;
         void *user = pool->user;
         pthread_mutex_unlock(&pool->mutex);
-        call_with_flushed_denormals(fn, user, self->index);
+        call_in_our_arithmetic(fn, user, self->index);
         pthread_mutex_lock(&pool->mutex);
         if (--pool->running_count == 0)
             pthread_cond_signal(&pool->job_done);
@@ -163,7 +153,7 @@ void thread_pool_run(thread_pool *pool, thread_pool_fn *fn, void *user)
         pthread_cond_broadcast(&pool->job_given);
     pthread_mutex_unlock(&pool->mutex);
 
-    call_with_flushed_denormals(fn, user, 0);
+    call_in_our_arithmetic(fn, user, 0);
 
     pthread_mutex_lock(&pool->mutex);
     while (pool->running_count > 0)

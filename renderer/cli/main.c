@@ -13,6 +13,8 @@
 static ag_context *signalled_context;
 static volatile sig_atomic_t caught_signal;
 
+static const int CAUGHT[] = {SIGINT, SIGTERM, SIGHUP};
+
 /* The first signal lets the work end in order, the second ends the process at once. */
 static void on_signal(int number)
 {
@@ -27,13 +29,25 @@ static void on_signal(int number)
 static void catch_signals(ag_context *context)
 {
     signalled_context = context;
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    sigaction(SIGHUP, &action, NULL);
+    for (size_t i = 0; i < sizeof CAUGHT / sizeof *CAUGHT; i++) {
+        struct sigaction before, action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+        /* what nohup or a shell's & have set to be ignored stays so */
+        if (sigaction(CAUGHT[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(CAUGHT[i], &action, NULL);
+    }
     /* a limit on file size is an error of the write, not the end */
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
+}
+
+/* From here on there is no context to cancel. */
+static void release_signals(void)
+{
+    sigset_t caught;
+    sigemptyset(&caught);
+    for (size_t i = 0; i < sizeof CAUGHT / sizeof *CAUGHT; i++)
+        sigaddset(&caught, CAUGHT[i]);
+    sigprocmask(SIG_BLOCK, &caught, NULL);
 }
 
 static int exit_code(ag_status status)
@@ -90,6 +104,8 @@ static ag_status run(ag_context *context, options *o)
         name_default_output(o, scene, default_name, sizeof default_name);
         o->outfiles[o->outfile_count++] = default_name;
         status = ag_output_check(context, &o->output, default_name);
+        if (status == AG_ERROR_ARGUMENT)
+            status = AG_ERROR_SCENE; /* the name is the scene's, not the command line's */
     }
     if (status == AG_OK)
         status = ag_render_settings_from_scene(context, scene, &settings);
@@ -132,6 +148,7 @@ int main(int argc, char **argv)
     progress_finish(&told);
     if (status == AG_ERROR_MEMORY || status == AG_ERROR_SYSTEM)
         fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
+    release_signals();
     ag_context_destroy(context);
     options_reset(&o);
     return exit_code(status);

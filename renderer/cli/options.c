@@ -112,7 +112,7 @@ static bool parse_int(const char *text, int least, int most, int *out_value)
     return true;
 }
 
-/* Seeds may be given as any unsigned 64-bit number. */
+/* Seeds: what JSON can hold as an integer. */
 static bool parse_unsigned(const char *text, uint64_t most, uint64_t *out_value)
 {
     char *end;
@@ -180,7 +180,7 @@ static bool take_option(int code, const char *value, options *o)
         o->context.thread_count = is_valid ? (unsigned)threads : 0;
         break;
     }
-    case OPT_SEED: is_valid = o->has_seed = parse_unsigned(value, UINT64_MAX, &r->seed); break;
+    case OPT_SEED: is_valid = o->has_seed = parse_unsigned(value, INT64_MAX, &r->seed); break;
     case OPT_SPP: is_valid = o->has_spp = parse_int(value, 1, 1 << 20, &r->samples_per_pixel); break;
     case OPT_SIZE: is_valid = o->has_size = parse_size(value, &r->width, &r->height); break;
     case OPT_CROP: is_valid = o->has_crop = parse_crop(value, r->crop_window); break;

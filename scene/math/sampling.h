@@ -84,10 +84,10 @@ static inline vec2 sample_triangle(vec2 u)
 static inline float mis_power(float count_a, float pdf_a, float count_b, float pdf_b)
 {
     float a = count_a * pdf_a, b = count_b * pdf_b;
-    if (isinf(a))
-        return 1.0f;
-    float a2 = a * a, b2 = b * b;
-    return a2 > 0.0f ? a2 / (a2 + b2) : 0.0f;
+    if (!(a > 0.0f))
+        return 0.0f;
+    float ratio = isinf(a) ? 0.0f : b / a; /* of finite squares only: they would overflow first */
+    return 1.0f / (1.0f + ratio * ratio);
 }
 
 #endif

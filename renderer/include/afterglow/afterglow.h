@@ -68,13 +68,16 @@ typedef struct ag_render_settings {
     ag_integrator integrator; /* default: photonmap */
     ag_cache_mode cache;      /* default: on demand */
     ag_only only;             /* AG_ONLY_INDIRECT: less emission and direct light at the first non-specular hit */
-    uint64_t seed;            /* default 0 */
+    uint64_t seed;            /* default 0; statistics show it as a signed number */
 
     int width, height;        /* pixels of the full picture, [1, 65536] */
     double crop_window[4];    /* x0, x1, y0, y1 in [0, 1]: the part to render, from the left and from the top, as
                                  pbrt's cropwindow: pixels from ceil(x0 width) up to ceil(x1 width) - 1; default 0 1 0 1 */
     int samples_per_pixel;    /* [1, 2^20] */
-    int max_depth;            /* scatterings between lamp and eye, [0, 100]; 100: roulette alone ends paths */
+    int max_depth;            /* scatterings between lamp and eye, [0, 100]; 100: roulette alone ends paths. Path tracing
+                                 keeps it exactly. The photon map bounds light's part (to max_depth - 2 before a
+                                 gather ray ends, max_depth - 1 before a caustic) and the eye's part apart: behind
+                                 mirrors and glass there may be some more. */
 
     uint64_t photon_count;         /* photons to store in the global map, [1, 2^32 - 2] */
     uint64_t caustic_photon_count; /* photons to store in the caustic map; only where there is specular matter; [0, …] */

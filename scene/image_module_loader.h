@@ -1,5 +1,5 @@
 /* image_module_loader.h: finds and opens the image module, once.
- * Flow: image_file.c -> [here] -> image_oiio.cpp. Threads: any. */
+ * Flow: image_reader.c, image_file.c (renderer) -> [here] -> image_oiio.cpp. Threads: any. */
 #ifndef AFTERGLOW_IMAGE_MODULE_LOADER_H
 #define AFTERGLOW_IMAGE_MODULE_LOADER_H
 

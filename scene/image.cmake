@@ -1,4 +1,4 @@
-# The image and colour bridges; included by CMakeLists.txt after add_library(ag_renderer).
+# The image and colour bridges; included by CMakeLists.txt after add_library(ag_scene).
 
 # config.ocio becomes C, so that the program needs no file beside it.
 set(color_config_source ${CMAKE_CURRENT_BINARY_DIR}/color_builtin_config.c)
@@ -10,19 +10,19 @@ add_custom_command(
   DEPENDS config.ocio embed_file.cmake
   COMMENT "Turning config.ocio into C"
   VERBATIM)
-target_sources(ag_renderer PRIVATE ${color_config_source})
-target_include_directories(ag_renderer PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+target_sources(ag_scene PRIVATE ${color_config_source})
 
-# OpenImageIO brings 261 libraries: in a module of its own, which is opened when the first picture is written.
+# OpenImageIO brings 261 libraries: in a module of its own, which is opened when the first picture is read
+# or written.
 add_library(afterglow_image MODULE image_oiio.cpp)
 target_include_directories(afterglow_image PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/threads/include)
 target_link_libraries(afterglow_image PRIVATE PkgConfig::OIIO PkgConfig::IMATH)
 set_target_properties(afterglow_image PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/afterglow)
 install(TARGETS afterglow_image LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/afterglow)
 
-# Whoever builds the renderer builds the module too.
-add_dependencies(ag_renderer afterglow_image)
+# Whoever builds the scene builds the module too.
+add_dependencies(ag_scene afterglow_image)
 set_property(SOURCE image_module_loader.c APPEND PROPERTY
              COMPILE_DEFINITIONS AG_MODULE_INSTALL_DIR="${CMAKE_INSTALL_FULL_LIBDIR}/afterglow")
 # The loader guards the floating-point mode (libm) and opens on a thread of its own.
-target_link_libraries(ag_renderer PRIVATE ${CMAKE_DL_LIBS} Threads::Threads m)
+target_link_libraries(ag_scene PRIVATE ${CMAKE_DL_LIBS} Threads::Threads m)

@@ -1,6 +1,6 @@
-/* image_oiio.cpp: the only file that knows OpenImageIO; a module of its own, opened when the first picture is written.
- * Its exceptions end here, as a status and a text.
- * Flow: image_file.c -> [here] -> bytes in memory. Threads: any; OpenImageIO itself is told to use none of its own. */
+/* image_oiio.cpp: the only file that knows OpenImageIO; a module of its own, opened when the first picture is read or
+ * written. Its exceptions end here, as a status and a text. Flow: file -> [here] -> image_reader.c; image_file.c
+ * (renderer) -> [here] -> bytes in memory. Threads: any; OpenImageIO itself is told to use none of its own. */
 #include "image_module.h"
 
 #include <OpenImageIO/Imath.h>
@@ -54,14 +54,10 @@ ag_status guarded(ag_status failure, char *message, size_t message_size, Work &&
 OIIO::TypeDesc stored_type(image_sample_type type)
 {
     switch (type) {
-    case IMAGE_UINT8:
-        return OIIO::TypeUInt8;
-    case IMAGE_UINT16:
-        return OIIO::TypeUInt16;
-    case IMAGE_HALF:
-        return OIIO::TypeHalf;
-    case IMAGE_FLOAT:
-        break;
+    case IMAGE_UINT8: return OIIO::TypeUInt8;
+    case IMAGE_UINT16: return OIIO::TypeUInt16;
+    case IMAGE_HALF: return OIIO::TypeHalf;
+    case IMAGE_FLOAT: break;
     }
     return OIIO::TypeFloat;
 }
@@ -180,34 +176,57 @@ ag_status encode(const char *extension, const image_description *description, co
     });
 }
 
-ag_status decode(const char *path, int *out_width, int *out_height, int *out_channel_count, float **out_pixels,
-                 char *message, size_t message_size) noexcept
+image_sample_type sample_type_of(OIIO::TypeDesc format)
 {
-    *out_pixels = nullptr;
+    switch (format.basetype) {
+    case OIIO::TypeDesc::UINT8:
+    case OIIO::TypeDesc::INT8: return IMAGE_UINT8;
+    case OIIO::TypeDesc::UINT16:
+    case OIIO::TypeDesc::INT16: return IMAGE_UINT16;
+    case OIIO::TypeDesc::HALF: return IMAGE_HALF;
+    default: return IMAGE_FLOAT;
+    }
+}
+
+template <typename Value>
+Value *read_values(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, OIIO::TypeDesc type)
+{
+    const std::uint64_t count = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height) *
+                                static_cast<std::uint64_t>(spec.nchannels);
+    if (count > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(Value))
+        throw std::bad_alloc();
+    std::unique_ptr<Value, decltype(&std::free)> values(static_cast<Value *>(std::malloc(count * sizeof(Value))),
+                                                        &std::free);
+    if (!values)
+        throw std::bad_alloc();
+    if (!input.read_image(0, 0, 0, spec.nchannels, type, values.get()))
+        fail("OpenImageIO cannot decode it", input.geterror());
+    return values.release();
+}
+
+ag_status decode(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size) noexcept
+{
+    *out_image = image();
     return guarded(AG_ERROR_INPUT, message, message_size, [=] {
-        const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+        OIIO::ImageSpec wishes;
+        wishes.attribute("oiio:UnassociatedAlpha", 1); /* colours as stored, not multiplied by alpha */
+        const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes);
         if (!input)
             fail("OpenImageIO cannot open it", OIIO::geterror());
         input->threads(1);
-        const OIIO::ImageSpec &spec = input->spec();
+        const OIIO::ImageSpec spec = input->spec();
         if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
             throw std::runtime_error("it is not a flat picture");
-        const std::uint64_t value_count = static_cast<std::uint64_t>(spec.width) *
-                                          static_cast<std::uint64_t>(spec.height) *
-                                          static_cast<std::uint64_t>(spec.nchannels);
-        if (value_count > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(float))
-            throw std::bad_alloc();
-        std::unique_ptr<float, decltype(&std::free)> pixels(
-            static_cast<float *>(std::malloc(value_count * sizeof(float))), &std::free);
-        if (!pixels)
-            throw std::bad_alloc();
-        const int width = spec.width, height = spec.height, channel_count = spec.nchannels;
-        if (!input->read_image(0, 0, 0, channel_count, OIIO::TypeFloat, pixels.get()))
-            fail("OpenImageIO cannot decode it", input->geterror());
-        *out_width = width;
-        *out_height = height;
-        *out_channel_count = channel_count;
-        *out_pixels = pixels.release();
+        image read = image();
+        read.width = spec.width;
+        read.height = spec.height;
+        read.channel_count = spec.nchannels;
+        read.type = sample_type_of(spec.format);
+        if (keep_bytes && read.type == IMAGE_UINT8)
+            read.bytes = read_values<unsigned char>(*input, spec, OIIO::TypeUInt8);
+        else
+            read.pixels = read_values<float>(*input, spec, OIIO::TypeFloat);
+        *out_image = read;
     });
 }
 

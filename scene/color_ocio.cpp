@@ -1,5 +1,6 @@
 /* color_ocio.cpp: the only file that knows OpenColorIO. Its exceptions end here, as a status and a text.
- * Flow: film -> [here] -> image file. Threads: see color.h; OpenColorIO's const objects may be shared. */
+ * Flow: image file -> [here] -> texture; film -> [here] -> image file. Threads: see color.h; OpenColorIO's const
+ * objects may be shared. */
 #include "color.h"
 #include "color_builtin_config.h"
 
@@ -147,6 +148,22 @@ std::vector<std::string> all_views(const OCIO::ConstConfigRcPtr &config, const c
     return names;
 }
 
+/* ACES2065-1 from linear Rec. 709, or back: what the interchange role of a config that has no Rec. 709 space leaves to
+ * us. */
+OCIO::GroupTransformRcPtr aces_from_rec709(OCIO::TransformDirection direction)
+{
+    const OCIO::BuiltinTransformRcPtr acescg_from_rec709 = OCIO::BuiltinTransform::Create();
+    acescg_from_rec709->setStyle("UTILITY - ACES-AP1_to_LINEAR-REC709_BFD");
+    acescg_from_rec709->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
+    const OCIO::BuiltinTransformRcPtr aces_from_acescg = OCIO::BuiltinTransform::Create();
+    aces_from_acescg->setStyle("ACEScg_to_ACES2065-1");
+    const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    group->appendTransform(acescg_from_rec709);
+    group->appendTransform(aces_from_acescg);
+    group->setDirection(direction);
+    return group;
+}
+
 /* A display and a view, never a bare hop between colour spaces: the view carries the tone curve. */
 OCIO::ConstTransformRcPtr display_transform(const color_config *self, const char *display, const char *view)
 {
@@ -156,23 +173,36 @@ OCIO::ConstTransformRcPtr display_transform(const color_config *self, const char
     to_display->setView(view);
     if (!self->input_by_interchange)
         return to_display;
-
-    const OCIO::BuiltinTransformRcPtr acescg_from_rec709 = OCIO::BuiltinTransform::Create();
-    acescg_from_rec709->setStyle("UTILITY - ACES-AP1_to_LINEAR-REC709_BFD");
-    acescg_from_rec709->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
-    const OCIO::BuiltinTransformRcPtr aces_from_acescg = OCIO::BuiltinTransform::Create();
-    aces_from_acescg->setStyle("ACEScg_to_ACES2065-1");
     const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
-    group->appendTransform(acescg_from_rec709);
-    group->appendTransform(aces_from_acescg);
+    group->appendTransform(aces_from_rec709(OCIO::TRANSFORM_DIR_FORWARD));
     group->appendTransform(to_display);
     return group;
 }
 
-} // namespace
+/* Out of a colour space into linear Rec. 709. */
+OCIO::ConstTransformRcPtr decoding_transform(const color_config *self, const char *space)
+{
+    const OCIO::ColorSpaceTransformRcPtr out_of_space = OCIO::ColorSpaceTransform::Create();
+    out_of_space->setSrc(space);
+    out_of_space->setDst(self->input_space.c_str());
+    if (!self->input_by_interchange)
+        return out_of_space;
+    const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    group->appendTransform(out_of_space);
+    group->appendTransform(aces_from_rec709(OCIO::TRANSFORM_DIR_INVERSE));
+    return group;
+}
 
-extern "C" ag_status color_config_create(const char *path, char *message, size_t message_size,
-                                         color_config **out_config)
+OCIO::ConstConfigRcPtr builtin_config()
+{
+    std::istringstream text(
+        std::string(reinterpret_cast<const char *>(color_builtin_config), color_builtin_config_size));
+    return OCIO::Config::CreateFromStream(text);
+}
+
+/* Makes a config of what load gives, under the name that load puts into it. */
+template <typename Load>
+ag_status create_config(char *message, size_t message_size, color_config **out_config, Load &&load) noexcept
 {
     *out_config = nullptr;
     color_config *self = new (std::nothrow) color_config();
@@ -180,20 +210,8 @@ extern "C" ag_status color_config_create(const char *path, char *message, size_t
         put_message(message, message_size, ag_status_text(AG_ERROR_MEMORY));
         return AG_ERROR_MEMORY;
     }
-    const ag_status status = guarded(message, message_size, [self, path] {
-        const char *environment = std::getenv("OCIO");
-        if (path) {
-            self->config = config_from_file(path, "given");
-            self->name = path;
-        } else if (environment && environment[0] != '\0') { /* set but empty counts as unset */
-            self->config = config_from_file(environment, "from $OCIO");
-            self->name = environment;
-        } else {
-            std::istringstream text(
-                std::string(reinterpret_cast<const char *>(color_builtin_config), color_builtin_config_size));
-            self->config = OCIO::Config::CreateFromStream(text);
-            self->name = "built-in";
-        }
+    const ag_status status = guarded(message, message_size, [self, &load] {
+        load(*self);
         if (self->config->getName()[0] != '\0')
             self->name = self->config->getName();
         /* Without a context: of the config's text alone, hence the same on every machine. */
@@ -207,6 +225,52 @@ extern "C" ag_status color_config_create(const char *path, char *message, size_t
     return status;
 }
 
+/* Makes a processor of what the work puts into it. */
+template <typename Work>
+ag_status create_processor(char *message, size_t message_size, color_processor **out_processor, Work &&work) noexcept
+{
+    *out_processor = nullptr;
+    color_processor *self = new (std::nothrow) color_processor();
+    if (!self) {
+        put_message(message, message_size, ag_status_text(AG_ERROR_MEMORY));
+        return AG_ERROR_MEMORY;
+    }
+    const ag_status status = guarded(message, message_size, [self, &work] { work(*self); });
+    if (status == AG_OK)
+        *out_processor = self;
+    else
+        delete self;
+    return status;
+}
+
+} // namespace
+
+extern "C" ag_status color_config_create(const char *path, char *message, size_t message_size,
+                                         color_config **out_config)
+{
+    return create_config(message, message_size, out_config, [path](color_config &self) {
+        const char *environment = std::getenv("OCIO");
+        if (path) {
+            self.config = config_from_file(path, "given");
+            self.name = path;
+        } else if (environment && environment[0] != '\0') { /* set but empty counts as unset */
+            self.config = config_from_file(environment, "from $OCIO");
+            self.name = environment;
+        } else {
+            self.config = builtin_config();
+            self.name = "built-in";
+        }
+    });
+}
+
+extern "C" ag_status color_config_create_builtin(char *message, size_t message_size, color_config **out_config)
+{
+    return create_config(message, message_size, out_config, [](color_config &self) {
+        self.config = builtin_config();
+        self.name = "built-in";
+    });
+}
+
 extern "C" void color_config_destroy(color_config *config) { delete config; }
 
 extern "C" const char *color_config_name(const color_config *config) { return config->name.c_str(); }
@@ -218,13 +282,7 @@ extern "C" const char *color_config_input_space(const color_config *config) { re
 extern "C" ag_status color_processor_create(const color_config *config, const char *display, const char *view,
                                             char *message, size_t message_size, color_processor **out_processor)
 {
-    *out_processor = nullptr;
-    color_processor *self = new (std::nothrow) color_processor();
-    if (!self) {
-        put_message(message, message_size, ag_status_text(AG_ERROR_MEMORY));
-        return AG_ERROR_MEMORY;
-    }
-    const ag_status status = guarded(message, message_size, [self, config, display, view] {
+    return create_processor(message, message_size, out_processor, [config, display, view](color_processor &self) {
         const OCIO::ConstConfigRcPtr &ocio = config->config;
         const std::vector<std::string> displays = all_displays(ocio);
         const std::string display_name = chosen("display", display ? display : ocio->getDefaultDisplay(), displays);
@@ -232,13 +290,17 @@ extern "C" ag_status color_processor_create(const color_config *config, const ch
         const std::string view_name = chosen(("view of display '" + display_name + "'").c_str(),
                                              view ? view : default_view.c_str(), all_views(ocio, display_name.c_str()));
         const OCIO::ConstTransformRcPtr transform = display_transform(config, display_name.c_str(), view_name.c_str());
-        self->cpu = ocio->getProcessor(transform)->getDefaultCPUProcessor();
+        self.cpu = ocio->getProcessor(transform)->getDefaultCPUProcessor();
     });
-    if (status == AG_OK)
-        *out_processor = self;
-    else
-        delete self;
-    return status;
+}
+
+extern "C" ag_status color_decoder_create(const color_config *config, const char *space, char *message,
+                                          size_t message_size, color_processor **out_processor)
+{
+    return create_processor(message, message_size, out_processor, [config, space](color_processor &self) {
+        const OCIO::ConstTransformRcPtr transform = decoding_transform(config, space);
+        self.cpu = config->config->getProcessor(transform)->getOptimizedCPUProcessor(OCIO::OPTIMIZATION_LOSSLESS);
+    });
 }
 
 extern "C" void color_processor_destroy(color_processor *processor) { delete processor; }

@@ -1,5 +1,6 @@
 /* image_module_loader.c: dlopen of the image module.
- * Flow: image_file.c -> [here] -> image_oiio.cpp. Threads: any; one mutex, held while the module is being opened. */
+ * Flow: image_reader.c, image_file.c (renderer) -> [here] -> image_oiio.cpp.
+ * Threads: any; one mutex, held while the module is being opened. */
 #define _GNU_SOURCE /* dladdr1, secure_getenv */
 #include "image_module_loader.h"
 

@@ -1,10 +1,15 @@
 /* image_module.h: the one table between the program and the module that knows OpenImageIO. Private; both sides are
- * built together. Flow: image_file.c -> [here] -> image_oiio.cpp. Threads: the functions may be called from many at
- * once. */
+ * built together.
+ * Flow: image_reader.c, image_file.c (renderer) -> [here] -> image_oiio.cpp.
+ * Threads: the functions may be called from many at once. */
 #ifndef AFTERGLOW_IMAGE_MODULE_H
 #define AFTERGLOW_IMAGE_MODULE_H
 
-#include "image_file.h"
+#include "afterglow/base.h"
+#include "image.h"
+
+#include <stdbool.h>
+#include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -13,8 +18,8 @@ extern "C" {
 #define IMAGE_MODULE_FILE_NAME  "afterglow_image.so"
 #define IMAGE_MODULE_ENTRY_NAME "afterglow_image_module"
 
-/* Raised whenever this file or image_description changes. */
-enum { IMAGE_MODULE_INTERFACE = 1 };
+/* Raised whenever this file or image.h changes. */
+enum { IMAGE_MODULE_INTERFACE = 2 };
 
 typedef struct image_module {
     int interface_number; /* IMAGE_MODULE_INTERFACE of the module */
@@ -24,9 +29,8 @@ typedef struct image_module {
     ag_status (*encode)(const char *extension, const image_description *description, const float *pixels,
                         unsigned char **out_bytes, size_t *out_size, char *message, size_t message_size);
 
-    /* As image_file_read. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
-    ag_status (*decode)(const char *path, int *out_width, int *out_height, int *out_channel_count, float **out_pixels,
-                        char *message, size_t message_size);
+    /* As image_read, or where keep_bytes is set as image_read_compact. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
+    ag_status (*decode)(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size);
 } image_module;
 
 /* The module's only symbol. NULL where OpenImageIO cannot be set up. */

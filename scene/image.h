@@ -1,0 +1,46 @@
+/* image.h: what a picture is, as it is read and as it is written.
+ * Flow: image_reader, image_file (renderer) -> image_module. Declarations only. */
+#ifndef AFTERGLOW_IMAGE_H
+#define AFTERGLOW_IMAGE_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How a file stores a value. */
+typedef enum image_sample_type { IMAGE_UINT8, IMAGE_UINT16, IMAGE_HALF, IMAGE_FLOAT } image_sample_type;
+
+/* A picture that was read: packed per pixel, top row first, just one of the two arrays. Integers become floats as parts
+ * of the largest there is, 0 to 1; no curve is taken out, no alpha multiplied in. */
+typedef struct image {
+    int width, height; /* of the data window */
+    int channel_count;
+    image_sample_type type; /* of the file; what is neither 8-bit, 16-bit nor half counts as float */
+    float *pixels;
+    unsigned char *bytes; /* of 8-bit files, where they were asked for */
+} image;
+
+typedef struct image_attribute {
+    const char *name;
+    const char *text;     /* a string attribute, or NULL: numbers */
+    const float *numbers; /* float attribute, count 1 or an array */
+    int number_count;
+} image_attribute;
+
+/* What to write: float channels, packed per pixel, top row first. */
+typedef struct image_description {
+    int width, height;           /* of the pixels given (the data window) */
+    int x, y;                    /* of its top left corner in the full picture */
+    int full_width, full_height; /* the full picture (the display window), from (0, 0) */
+    int channel_count;           /* 3 or 4, or more for EXR */
+    const char *const *channel_names;
+    image_sample_type type;  /* as stored; a format that cannot hold it is an error */
+    const char *color_space; /* oiio:ColorSpace, or NULL */
+    const image_attribute *attributes;
+    int attribute_count;
+} image_description;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,190 @@
+/* texture_image.c: see texture_image.h. Threads: one loads; then any number look up. */
+#define _POSIX_C_SOURCE 200809L
+#include "texture_image.h"
+
+#include "image_reader.h"
+#include "scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Loading */
+
+/* Keeps the first `kept` of the channels, in place; gives the array, which may have moved. */
+static void *keep_channels(void *values, size_t value_size, size_t pixel_count, size_t channel_count, size_t kept)
+{
+    if (kept == channel_count)
+        return values;
+    char *bytes = values;
+    for (size_t pixel = 0; pixel < pixel_count; pixel++)
+        memmove(bytes + pixel * kept * value_size, bytes + pixel * channel_count * value_size, kept * value_size);
+    void *smaller = realloc(values, pixel_count * kept * value_size);
+    return smaller ? smaller : values;
+}
+
+/* Takes the picture's pixels. */
+static ag_status take_pixels(texture_image *i, image *picture, char *message, size_t message_size)
+{
+    const size_t channel_count = (size_t)picture->channel_count, kept = channel_count >= 3 ? 3 : 1;
+    const size_t pixel_count = (size_t)picture->width * (size_t)picture->height;
+    i->width = (uint32_t)picture->width;
+    i->height = (uint32_t)picture->height;
+    i->channel_count = (uint32_t)kept;
+    if (picture->bytes) {
+        i->bytes = keep_channels(picture->bytes, 1, pixel_count, channel_count, kept);
+        picture->bytes = NULL;
+        return image_encoding_table(i->encoding, 256, i->table, message, message_size);
+    }
+    picture->pixels = keep_channels(picture->pixels, sizeof *picture->pixels, pixel_count, channel_count, kept);
+    picture->channel_count = (int)kept;
+    const ag_status status = image_linearize(picture, i->encoding, message, message_size);
+    i->values = picture->pixels;
+    picture->pixels = NULL;
+    for (size_t k = 0; k < pixel_count * kept; k++)
+        if (!isfinite(i->values[k])) {
+            i->values[k] = 0.0f;
+            i->bad_count++;
+        }
+    return status;
+}
+
+static ag_status read_image(texture_image *i, const char *path, char *message, size_t message_size)
+{
+    i->path = strdup(path);
+    if (!i->path)
+        return AG_ERROR_MEMORY;
+    image picture;
+    ag_status status = image_read_compact(path, &picture, message, message_size);
+    if (!status)
+        status = take_pixels(i, &picture, message, message_size);
+    image_reset(&picture);
+    return status;
+}
+
+ag_status texture_image_load(struct scene *s, const char *path, image_encoding encoding, uint32_t *out_index,
+                             char *message, size_t message_size)
+{
+    for (uint32_t k = 0; k < s->texture_image_count; k++)
+        if (image_encoding_equal(s->texture_images[k]->encoding, encoding) &&
+            strcmp(s->texture_images[k]->path, path) == 0) {
+            *out_index = k;
+            return AG_OK;
+        }
+    texture_image *i = calloc(1, sizeof *i);
+    if (!i)
+        return AG_ERROR_MEMORY;
+    i->encoding = encoding;
+    ag_status status = read_image(i, path, message, message_size);
+    if (status)
+        texture_image_destroy(i);
+    return status ? status : scene_add_texture_image(s, i, out_index);
+}
+
+void texture_image_destroy(texture_image *i)
+{
+    if (!i)
+        return;
+    free(i->path);
+    free(i->bytes);
+    free(i->values);
+    free(i);
+}
+
+/* Looking up */
+
+/* Pixels that have a part in a value. */
+typedef struct footprint {
+    int count;
+    size_t offset[4]; /* of the pixel's first value */
+    float weight[4];
+} footprint;
+
+/* A coordinate brought to where all neighbours are at most one pixel beyond an edge, or where all is black. */
+static float tame(texture_wrap wrap, float x)
+{
+    switch (wrap) {
+    case TEXTURE_WRAP_REPEAT: return fabsf(x) < 1e9f ? x - floorf(x) : 0.0f;
+    case TEXTURE_WRAP_BLACK: return fminf(fmaxf(x, -1.0f), 2.0f);
+    default: return fminf(fmaxf(x, 0.0f), 1.0f);
+    }
+}
+
+/* Brings pixel (x, y) into the picture; false where it is black. */
+static bool wrap_pixel(const texture_image *i, texture_wrap wrap, int64_t *x, int64_t *y)
+{
+    const int64_t width = i->width, height = i->height;
+    const bool beyond_x = *x < 0 || *x >= width, beyond_y = *y < 0 || *y >= height;
+    if (!beyond_x && !beyond_y)
+        return true;
+    switch (wrap) {
+    case TEXTURE_WRAP_REPEAT:
+        *x = *x < 0 ? *x + width : *x >= width ? *x - width : *x;
+        *y = *y < 0 ? *y + height : *y >= height ? *y - height : *y;
+        return true;
+    case TEXTURE_WRAP_BLACK: return false;
+    case TEXTURE_WRAP_OCTAHEDRAL:
+        if (beyond_x) {
+            *x = *x < 0 ? 0 : width - 1;
+            *y = height - 1 - *y;
+        }
+        if (*y < 0 || *y >= height) {
+            *y = *y < 0 ? 0 : height - 1;
+            *x = width - 1 - *x;
+        }
+        return true;
+    default:
+        *x = *x < 0 ? 0 : *x >= width ? width - 1 : *x;
+        *y = *y < 0 ? 0 : *y >= height ? height - 1 : *y;
+        return true;
+    }
+}
+
+static void add_pixel(const texture_image *i, texture_wrap wrap, int64_t x, int64_t y, float weight, footprint *f)
+{
+    if (!wrap_pixel(i, wrap, &x, &y))
+        return;
+    f->offset[f->count] = ((size_t)y * i->width + (size_t)x) * i->channel_count;
+    f->weight[f->count++] = weight;
+}
+
+static footprint find_pixels(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t)
+{
+    footprint f;
+    f.count = 0;
+    float x = tame(wrap, s) * (float)i->width, y = tame(wrap, t) * (float)i->height;
+    if (filter == TEXTURE_FILTER_POINT) {
+        add_pixel(i, wrap, (int64_t)floorf(x), (int64_t)floorf(y), 1.0f, &f);
+        return f;
+    }
+    x -= 0.5f;
+    y -= 0.5f;
+    const float left = floorf(x), top = floorf(y), u = x - left, v = y - top;
+    const int64_t x0 = (int64_t)left, y0 = (int64_t)top;
+    add_pixel(i, wrap, x0, y0, (1.0f - u) * (1.0f - v), &f);
+    add_pixel(i, wrap, x0 + 1, y0, u * (1.0f - v), &f);
+    add_pixel(i, wrap, x0, y0 + 1, (1.0f - u) * v, &f);
+    add_pixel(i, wrap, x0 + 1, y0 + 1, u * v, &f);
+    return f;
+}
+
+static float sum_channel(const texture_image *i, const footprint *f, size_t channel)
+{
+    float sum = 0.0f;
+    for (int k = 0; k < f->count; k++)
+        sum +=
+            f->weight[k] * (i->bytes ? i->table[i->bytes[f->offset[k] + channel]] : i->values[f->offset[k] + channel]);
+    return sum;
+}
+
+rgb texture_image_rgb(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t)
+{
+    const footprint f = find_pixels(i, wrap, filter, s, t);
+    const float first = sum_channel(i, &f, 0);
+    return i->channel_count == 1 ? rgb_gray(first) : rgb_make(first, sum_channel(i, &f, 1), sum_channel(i, &f, 2));
+}
+
+float texture_image_float(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t)
+{
+    const footprint f = find_pixels(i, wrap, filter, s, t);
+    return sum_channel(i, &f, 0);
+}

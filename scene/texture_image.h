@@ -1,0 +1,48 @@
+/* texture_image.h: pictures as textures look them up: linear values between the middles of pixels. Pixels of 8 bits
+ * stay bytes, and are decoded by a table of 256. Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th
+ * ed., 2023, 10.4 (image texture). Flow: image_reader, image_encoding -> [here] -> texture. Threads: one loads; then
+ * any number look up. */
+#ifndef AFTERGLOW_TEXTURE_IMAGE_H
+#define AFTERGLOW_TEXTURE_IMAGE_H
+
+#include "image_encoding.h"
+#include "math/vec3.h"
+
+#include <stdint.h>
+
+struct scene;
+
+/* What lies beyond the picture's edges. */
+typedef enum texture_wrap {
+    TEXTURE_WRAP_REPEAT,
+    TEXTURE_WRAP_BLACK,
+    TEXTURE_WRAP_CLAMP,
+    TEXTURE_WRAP_OCTAHEDRAL /* the other half of the same edge: a sphere unfolded onto a square */
+} texture_wrap;
+
+typedef enum texture_filter { TEXTURE_FILTER_BILINEAR, TEXTURE_FILTER_POINT } texture_filter;
+
+typedef struct texture_image {
+    char *path;
+    image_encoding encoding;
+    uint32_t width, height;
+    uint32_t channel_count; /* 1 or 3 */
+    unsigned char *bytes;   /* packed, top row first; or NULL: values */
+    float *values;          /* linear */
+    float table[256];       /* linear values of the bytes */
+    uint64_t bad_count;     /* values that were not finite, and are 0 now */
+} texture_image;
+
+/* Loads a picture into the scene's ownership, once for each path and encoding. Three channels or more are taken for
+ * red, green, blue and what is left out; one or two for grey and what is left out. Errors: as of image_read,
+ * AG_ERROR_COLOR; text in message. */
+ag_status texture_image_load(struct scene *s, const char *path, image_encoding encoding, uint32_t *out_index,
+                             char *message, size_t message_size);
+void texture_image_destroy(texture_image *i); /* NULL is fine */
+
+/* s to the right, t down, from the top left corner (0, 0) to the bottom right one (1, 1). */
+rgb texture_image_rgb(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t);
+/* The first channel. */
+float texture_image_float(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t);
+
+#endif
