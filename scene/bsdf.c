@@ -29,8 +29,8 @@ void material_prepare(material *m)
 {
     make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
     make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
-    /* getting out of the coat is getting in, by reciprocity, over the square of the index */
-    m->coat_escape = m->ior > 0.0f ? (1.0f - fresnel_dielectric_diffuse(m->ior)) / (m->ior * m->ior) : 1.0f;
+    if (m->kind == MATERIAL_COATED_DIFFUSE)
+        m->coat_return = fresnel_dielectric_diffuse(1.0f / m->ior, m->coat_thickness);
 }
 
 static bool is_smooth(float alpha_u, float alpha_v)
@@ -103,22 +103,40 @@ static void look_up_textures(const scene *s, const surface_hit *hit, material *m
 
 /* --- lobes --- */
 
-/* What a coat lets through; 1 where there is none. */
-static float coat_transmittance(const material *m, float cos_theta)
+/* A direction refracted into the coat, on the same side of the base as it was. */
+static vec3 into_coat(const material *m, vec3 v)
 {
-    return m->kind == MATERIAL_COATED_DIFFUSE ? 1.0f - fresnel_dielectric(fabsf(cos_theta), m->ior) : 1.0f;
+    float sin2 = fmaxf(0.0f, 1.0f - v.z * v.z) / (m->ior * m->ior);
+    return (vec3){v.x / m->ior, v.y / m->ior, copysignf(sqrtf(fmaxf(0.0f, 1.0f - sin2)), v.z)};
 }
 
-/* A of the diffuse reflection. Under a coat: light goes to and fro between base and coat, and what gets out is spread over
- * a wider solid angle (the squared index). */
+/* What a coat lets through, once, of light at that cosine outside; 1 where there is none. */
+static float coat_transmittance(const material *m, float cos_theta)
+{
+    if (m->kind != MATERIAL_COATED_DIFFUSE && m->kind != MATERIAL_COATED_CONDUCTOR)
+        return 1.0f;
+    float through = 1.0f - fresnel_dielectric(fabsf(cos_theta), m->ior);
+    if (m->coat_thickness > 0.0f && through > 0.0f)
+        through *= attenuation(m->coat_thickness / fabsf(into_coat(m, (vec3){0.0f, 0.0f, cos_theta}).z));
+    return through;
+}
+
+/* r + r (r back) + r (r back)^2 + …: light that goes to and fro between base and coat. */
+static float coat_sum(const material *m, float r)
+{
+    float again = r * m->coat_return, lost = 1.0f;
+    for (int i = 0; i < m->coat_bounces; i++)
+        lost *= again;
+    return r * (m->coat_bounces > 0 ? 1.0f - lost : 1.0f) / (1.0f - again);
+}
+
+/* A of the diffuse reflection. What gets out of a coat is spread over a wider solid angle: the squared index. */
 static rgb diffuse_albedo(const material *m)
 {
     if (m->kind != MATERIAL_COATED_DIFFUSE)
         return m->reflectance;
-    float back = 1.0f - m->coat_escape, widened = m->ior * m->ior;
     rgb r = m->reflectance;
-    return (rgb){r.r / ((1.0f - r.r * back) * widened), r.g / ((1.0f - r.g * back) * widened),
-                 r.b / ((1.0f - r.b * back) * widened)};
+    return rgb_scale((rgb){coat_sum(m, r.r), coat_sum(m, r.g), coat_sum(m, r.b)}, 1.0f / (m->ior * m->ior));
 }
 
 static void add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_delta, float share)
@@ -311,20 +329,14 @@ static void rough_dielectric(const material *m, bsdf_transport transport, vec3 o
     *out_pdf = ggx_visible_density(facets, upper, h) * jacobian * (1.0f - reflectance);
 }
 
-/* A direction refracted into the coat, on the same side of the base as it was. */
-static vec3 into_coat(const material *m, vec3 v)
-{
-    float sin2 = fmaxf(0.0f, 1.0f - v.z * v.z) / (m->ior * m->ior);
-    return (vec3){v.x / m->ior, v.y / m->ior, copysignf(sqrtf(fmaxf(0.0f, 1.0f - sin2)), v.z)};
-}
-
 /* In through the coat, to and fro between conductor and coat, and out again: a geometric series. Of the coat's two
  * reflectances the lesser keeps light in, so that both ways are the same and no more leaves than got in. */
-static rgb coat_series(rgb metal, float coat_o, float coat_i)
+static rgb coat_series(const material *m, rgb metal, float cos_o, float cos_i)
 {
-    float through = (1.0f - coat_o) * (1.0f - coat_i), back = fminf(coat_o, coat_i);
+    float through = coat_transmittance(m, cos_o) * coat_transmittance(m, cos_i);
     if (!(through > 0.0f))
         return rgb_gray(0.0f); /* total reflection, by a coat of a lesser index than what is around */
+    float back = fminf(fresnel_dielectric(fabsf(cos_o), m->ior), fresnel_dielectric(fabsf(cos_i), m->ior));
     return (rgb){through * metal.r / (1.0f - metal.r * back), through * metal.g / (1.0f - metal.g * back),
                  through * metal.b / (1.0f - metal.b * back)};
 }
@@ -339,7 +351,7 @@ static void conductor_under_coat(const material *m, vec3 o, vec3 i, rgb *out_val
     vec3 h = ggx_half_vector(oc, ic);
     ggx facets = {m->base_alpha_u, m->base_alpha_v};
     rgb metal = fresnel_conductor(fabsf(vec3_dot(oc, h)), m->eta, m->k);
-    rgb series = coat_series(metal, fresnel_dielectric(fabsf(o.z), m->ior), fresnel_dielectric(fabsf(i.z), m->ior));
+    rgb series = coat_series(m, metal, o.z, i.z);
     /* f |cos i|: reflection's value has |cos ic| in it */
     float cosines = fabsf(i.z / ic.z) / (m->ior * m->ior);
     *out_value = rgb_scale(series, ggx_reflection(facets, oc, ic, h) * cosines);
@@ -435,8 +447,7 @@ static bool sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport tra
     case LOBE_COAT: *out_weight = rgb_gray(fresnel_dielectric(cosine, m->ior)); return true;
     case LOBE_CONDUCTOR_UNDER_COAT: {
         rgb metal = fresnel_conductor(fabsf(into_coat(m, o).z), m->eta, m->k);
-        float reflected = fresnel_dielectric(cosine, m->ior);
-        *out_weight = coat_series(metal, reflected, reflected);
+        *out_weight = coat_series(m, metal, o.z, o.z);
         return true;
     }
     case LOBE_THIN_DIELECTRIC: {

@@ -30,7 +30,9 @@ typedef struct material {
     float ior;              /* dielectric or coat: inside over outside, > 0 */
     float alpha_u, alpha_v; /* GGX roughness after remapping, >= 0, of the outer interface */
     float base_alpha_u, base_alpha_v; /* of the conductor under a coat */
-    float coat_escape;      /* of diffuse light inside the coat, the share that gets out; set by scene_add_material */
+    float coat_thickness;   /* in mean free paths of the coat's stuff, which absorbs; >= 0 */
+    int coat_bounces;       /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
+    float coat_return;      /* of diffuse light from the base, the share that the coat sends back; set by scene_add_material */
     uint32_t mixed[2];      /* mix: indices of materials made before */
     float mix_amount;       /* mix: the share of the second, [0, 1] */
 

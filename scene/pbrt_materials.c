@@ -119,20 +119,27 @@ static ag_status read_thin_dielectric(pbrt_parser *parser, parameter_list *list,
     return read_index(parser, list, "eta", &m->ior);
 }
 
-/* What pbrt's random walk in a coat is told, and ours, which is a closed form of clear coats, has no need of. */
-static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list)
+/* pbrt's random walk in a coat: ours is a closed form of it. Its stuff absorbs even where its albedo is 0, and the walk ends
+ * after "maxdepth" steps: both darken, so both are kept. */
+static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, material *m)
 {
-    float thickness = 0.01f, g = 0.0f;
+    float g = 0.0f;
+    m->coat_thickness = 0.01f;
     int64_t depth = 10, samples = 1;
     rgb albedo = rgb_gray(0.0f);
-    PBRT_TRY(parameter_get_float(list, parser->log, "thickness", &thickness));
+    PBRT_TRY(parameter_get_float(list, parser->log, "thickness", &m->coat_thickness));
     PBRT_TRY(parameter_get_float(list, parser->log, "g", &g));
     PBRT_TRY(parameter_get_int(list, parser->log, "maxdepth", &depth));
     PBRT_TRY(parameter_get_int(list, parser->log, "nsamples", &samples));
     PBRT_TRY(parameter_get_rgb(list, parser->log, "albedo", &albedo));
+    if (m->coat_thickness < 0.0f)
+        return pbrt_refuse(parser, list, "thickness", "\"thickness\" should not be negative");
+    if (depth < 1 || depth > 1000)
+        return pbrt_refuse(parser, list, "maxdepth", "\"maxdepth\" should be from 1 to 1000");
+    m->coat_bounces = (int)(depth + 1) / 2; /* every other step of the walk meets the base */
     if (!rgb_is_black(albedo))
         log_at_once(parser->log, AG_LOG_WARNING, list->where, "coat albedo",
-                    "a coat with scattering inside (\"albedo\") is not supported: a clear coat stands in");
+                    "a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in");
     return AG_OK;
 }
 
@@ -140,7 +147,7 @@ static ag_status read_coated_diffuse(pbrt_parser *parser, parameter_list *list, 
 {
     PBRT_TRY(read_reflectance(parser, list, m));
     PBRT_TRY(read_index(parser, list, "eta", &m->ior));
-    PBRT_TRY(read_coat_walk(parser, list));
+    PBRT_TRY(read_coat_walk(parser, list, m));
     return read_roughness(parser, list, "", m);
 }
 
@@ -148,7 +155,7 @@ static ag_status read_coated_conductor(pbrt_parser *parser, parameter_list *list
 {
     PBRT_TRY(read_metal(parser, list, "conductor.", m));
     PBRT_TRY(read_index(parser, list, "interface.eta", &m->ior));
-    PBRT_TRY(read_coat_walk(parser, list));
+    PBRT_TRY(read_coat_walk(parser, list, m));
     PBRT_TRY(read_roughness(parser, list, "conductor.", m));
     if (m->alpha_u_texture != SCENE_NO_TEXTURE || m->alpha_v_texture != SCENE_NO_TEXTURE)
         log_at_once(parser->log, AG_LOG_WARNING, list->where, "base roughness",

@@ -228,6 +228,35 @@ static inline const char *write_text(const char *name, const char *text)
     return path;
 }
 
+static inline int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* What is in the folder of the test: names in order, a blank between. */
+static inline void expect_listing(const char *expected)
+{
+    enum { NAMES_MAX = 64 };
+    char *names[NAMES_MAX], listing[2048] = "";
+    int count = 0;
+    DIR *directory = opendir(folder);
+    assert_non_null(directory);
+    for (const struct dirent *entry = readdir(directory); entry; entry = readdir(directory))
+        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0) {
+            assert_true(count < NAMES_MAX);
+            names[count] = strdup(entry->d_name);
+            assert_non_null(names[count++]);
+        }
+    closedir(directory);
+    qsort(names, (size_t)count, sizeof *names, compare_names);
+    for (int i = 0; i < count; i++) {
+        size_t length = strlen(listing);
+        snprintf(listing + length, sizeof listing - length, "%s%s", i > 0 ? " " : "", names[i]);
+        free(names[i]);
+    }
+    assert_string_equal(listing, expected);
+}
+
 /* Statistics: a path of keys, "irradiance.computed". */
 static inline json_t *stats_read(const char *path)
 {
