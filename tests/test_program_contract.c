@@ -134,7 +134,7 @@ static void test_scene_errors_name_the_place(void **state)
         program_run_reset(&run);
         run = RUN("-o", "a.exr", direct, QUIET[i]);
         expect_exit(&run, 1);
-        expect_said(&run, "direct.pbrt:3:44: error: ");
+        expect_said(&run, "direct.pbrt:3:45: error: ");
         expect_said(&run, "oops");
         program_run_reset(&run);
         run = RUN("-o", "a.exr", "late.pbrt", QUIET[i]);
@@ -146,7 +146,7 @@ static void test_scene_errors_name_the_place(void **state)
     const program_setting piped = {.input = direct};
     program_run run = program_execute(&piped, ARGUMENTS("-q", "-o", "a.exr", "-"));
     expect_exit(&run, 1);
-    expect_said(&run, ":3:44: error: ");
+    expect_said(&run, ":3:45: error: ");
     program_run_reset(&run);
     expect_listing("direct.pbrt inner.pbrt late.pbrt outer.pbrt");
 }
@@ -224,7 +224,7 @@ static void test_other_integrators(void **state)
                               "a.exr", scene);
         expect_exit(&run, 0);
         assert_int_equal(line_count(run.err), 1);
-        expect_said(&run, "sphere.pbrt:11:1: warning: ");
+        expect_said(&run, "sphere.pbrt:10:1: warning: ");
         expect_said(&run, "volpath");
         expect_said(&run, "maxdepth");
         program_run_reset(&run);

@@ -1,0 +1,127 @@
+/* test_program_signals.c: a signal ends the program with 128 + its number, in whatever phase it comes, and leaves no file.
+ * ctest: sanitize
+ * Flow: tests of the whole program. Threads: the program's. */
+#define _GNU_SOURCE
+#include "program_run.h"
+
+#define BOX PROGRAM_SCENES "box_with_blocks.pbrt"
+
+/* Sends the signal as soon as the phase is told of, in a run that would take minutes. */
+static void expect_end(const char *phase, int number, const char *const *arguments)
+{
+    char told[64];
+    const program_setting usual = {0};
+    program_process process = program_start(&usual, arguments);
+    snprintf(told, sizeof told, "\"phase\": \"%s\"", phase);
+    program_wait_for(&process, told);
+    assert_int_equal(kill(process.id, number), 0);
+    program_run run = program_finish(&process);
+    expect_exit(&run, 128 + number);
+    program_run_reset(&run);
+}
+
+#define LONG "--progress=json", "-o", "a.exr", "-o", "a.png", "--stats=a.json"
+
+static void test_every_signal(void **state)
+{
+    (void)state;
+    static const int NUMBERS[] = {SIGINT, SIGTERM, SIGHUP};
+    for (int i = 0; i < 3; i++)
+        expect_end("render", NUMBERS[i], ARGUMENTS(LONG, "--integrator=path", "--spp=100000", BOX));
+    expect_listing("");
+}
+
+static void test_every_phase(void **state)
+{
+    (void)state;
+    expect_end("photons", SIGINT, ARGUMENTS(LONG, "--photons=2e7", "--spp=100000", BOX));
+    expect_end("map", SIGINT, ARGUMENTS(LONG, "--photons=1e6", "--spp=100000", BOX));
+    expect_end("precompute", SIGINT, ARGUMENTS(LONG, "--photons=1e6", "--nearest=3000", "--cache=precompute", BOX));
+    /* seconds of rays within one sample */
+    expect_end("render", SIGTERM, ARGUMENTS(LONG, "--photons=1e6", "--nearest=3000", "--gather-samples=50000", BOX));
+    expect_listing("");
+}
+
+/* A mesh that takes a while to read and to sort. */
+static void test_loading(void **state)
+{
+    (void)state;
+    enum { SIDE = 400 };
+    const char *path = write_text("mesh.pbrt", "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\nShape \"trianglemesh\" \"point3 P\" [\n");
+    FILE *file = fopen(path, "a");
+    assert_non_null(file);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        fprintf(file, "%d %d %d\n", i % SIDE, i / SIDE, i % 7);
+    fprintf(file, "] \"integer indices\" [\n");
+    for (int i = 0; i + SIDE + 1 < SIDE * SIDE; i++)
+        fprintf(file, "%d %d %d\n", i, i + 1, i + SIDE);
+    fprintf(file, "]\n");
+    assert_int_equal(fclose(file), 0);
+    expect_end("load", SIGINT, ARGUMENTS(LONG, "--spp=100000", path));
+    expect_end("bvh", SIGTERM, ARGUMENTS(LONG, "--spp=100000", path));
+    expect_listing("mesh.pbrt");
+}
+
+/* While files are written the program may as well end in order: then all of them are there. */
+static void test_writing(void **state)
+{
+    (void)state;
+    const program_setting usual = {0};
+    program_process process = program_start(&usual, ARGUMENTS("--progress=json", "-o", "a.png", "-o", "b.png", "--integrator=path", "--max-depth=0", "--spp=1",
+                                                              "--size=1200x1200", BOX));
+    program_wait_for(&process, "\"phase\": \"write\"");
+    assert_int_equal(kill(process.id, SIGTERM), 0);
+    program_run run = program_finish(&process);
+    if (run.exit_code == 0)
+        expect_listing("a.png b.png");
+    else {
+        expect_exit(&run, 128 + SIGTERM);
+        /* the first may be complete, none is in part */
+        expect_listing(access(in_folder("a.png"), F_OK) == 0 ? "a.png" : "");
+    }
+    program_run_reset(&run);
+}
+
+/* A second signal ends it at once; here it waits for a scene that does not come. */
+static void test_second_signal(void **state)
+{
+    (void)state;
+    assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
+    int writer = open(in_folder("pipe"), O_RDWR);
+    assert_true(writer >= 0);
+    const program_setting piped = {.input = in_folder("pipe")};
+    program_process process = program_start(&piped, ARGUMENTS(LONG, "-"));
+    program_wait_for(&process, "\"phase\": \"load\"");
+    assert_int_equal(kill(process.id, SIGINT), 0);
+    program_pause();
+    assert_int_equal(kill(process.id, SIGTERM), 0);
+    program_run run = program_finish(&process);
+    if (run.exit_code != 128 + SIGINT)
+        expect_exit(&run, 128 + SIGTERM);
+    program_run_reset(&run);
+    close(writer);
+    expect_listing("pipe");
+}
+
+/* What nohup has set to be ignored stays so. */
+static void test_ignored_signal(void **state)
+{
+    (void)state;
+    assert_int_equal(setenv("AFTERGLOW_SCENE", PROGRAM_SCENES "sphere.pbrt", 1), 0);
+    char command[1024];
+    snprintf(command, sizeof command,
+             "cd '%s' && trap '' HUP && '%s' -q --photons=200000 --size=64x64 -o a.exr \"$AFTERGLOW_SCENE\" & child=$!; "
+             "sleep 0.2; kill -HUP $child; wait $child",
+             folder, program_path());
+    assert_int_equal(system(command), 0);
+    expect_listing("a.exr");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_every_signal), TEST_IN_FOLDER(test_every_phase),   TEST_IN_FOLDER(test_loading),
+        TEST_IN_FOLDER(test_writing),      TEST_IN_FOLDER(test_second_signal), TEST_IN_FOLDER(test_ignored_signal),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
