@@ -27,6 +27,7 @@ typedef struct block {
 
 typedef struct tracer {
     const scene *s;
+    const light_target *target; /* of a caustic map: what its paths must meet first; else NULL */
     const photon_tracing_settings *settings;
     block *out;
     uint32_t limit; /* photons to store at most; paths begun are finished for the books */
@@ -81,7 +82,7 @@ static void trace_path(tracer *t, uint64_t path)
     float probability;
     const light *lamp = &s->lights[scene_pick_light(s, rng_float(&random), &probability)];
     light_emission start;
-    if (!(probability > 0.0f) || !light_sample_emission(s, lamp, &random, &start))
+    if (!(probability > 0.0f) || !light_sample_emission(s, lamp, t->target, &random, &start))
         return;
     vec3 origin = start.origin, direction = start.direction;
     rgb flux = rgb_scale(start.flux, 1.0f / probability);
@@ -138,6 +139,7 @@ static void trace_path(tracer *t, uint64_t path)
 
 typedef struct round_job {
     const scene *s;
+    const light_target *target;
     const photon_tracing_settings *settings;
     block *blocks;
     uint64_t first_path;
@@ -148,7 +150,7 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
 {
     (void)worker;
     round_job *job = user;
-    tracer t = {job->s, job->settings, &job->blocks[block_index], UINT32_MAX};
+    tracer t = {job->s, job->target, job->settings, &job->blocks[block_index], UINT32_MAX};
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
         trace_path(&t, job->first_path + i);
     t.out->paths = end - begin;
@@ -171,7 +173,7 @@ static ag_status merge_block(round_job *job, photon_set *set, uint64_t first_pat
         return AG_ERROR_MEMORY;
     if (b->count >= room) {
         *b = (block){.photons = b->photons, .capacity = b->capacity};
-        tracer t = {job->s, job->settings, b, room};
+        tracer t = {job->s, job->target, job->settings, b, room};
         while (b->count < room)
             trace_path(&t, first_path + b->paths++);
     }
@@ -182,6 +184,25 @@ static ag_status merge_block(round_job *job, photon_set *set, uint64_t first_pat
     set->rays += b->rays;
     add_books(&set->books, &b->books);
     return AG_OK;
+}
+
+/* A ball around all shapes that have traced lobes; false where there is none. */
+static bool find_traced_matter(const scene *s, light_target *out_target)
+{
+    vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        vec3 shape_low, shape_high;
+        if (!material_is_traced(s, s->shapes[i].material_index))
+            continue;
+        shape_bounds(&s->shapes[i], &shape_low, &shape_high);
+        low = vec3_min(low, shape_low);
+        high = vec3_max(high, shape_high);
+    }
+    if (low.x > high.x)
+        return false;
+    out_target->center = vec3_scale(vec3_add(low, high), 0.5f);
+    out_target->radius = vec3_length(vec3_sub(high, out_target->center)) * 1.0001f;
+    return out_target->radius > 0.0f;
 }
 
 static void explain_shortage(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
@@ -208,12 +229,16 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
     }
     if (s->shape_count == 0 && s->infinite_light_count > 0)
         return AG_OK; /* a sky alone, which the eye sees without photons */
+    light_target traced_matter;
+    const light_target *caustic_target = NULL;
+    if (settings->kind == PHOTON_CAUSTIC && find_traced_matter(s, &traced_matter))
+        caustic_target = &traced_matter;
     block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
     set.photons = malloc((size_t)settings->wanted * sizeof *set.photons);
     ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
     uint64_t next_path = 0, block_count = 8;
     while (status == AG_OK && set.count < settings->wanted) {
-        round_job job = {s, settings, blocks, next_path, run};
+        round_job job = {s, caustic_target, settings, blocks, next_path, run};
         status = parallel_for(run, block_count * PATHS_PER_BLOCK, PATHS_PER_BLOCK, trace_block, &job, AG_PHASE_PHOTONS,
                               0.0, 0.0);
         for (uint64_t i = 0; i < block_count; i++) {

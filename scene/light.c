@@ -145,42 +145,87 @@ float light_pdf_from_point(const scene *s, const light *l, vec3 point, vec3 hit_
     return cos_lamp > 0.0f ? shape_pdf_area(lamp, hit_geometric_normal) * distance_squared / cos_lamp : 0.0f;
 }
 
-static bool emit_area(const scene *s, const light *l, rng *random, light_emission *out)
+/* Beyond this, 1 - cos of its half angle, a cone to the target is hardly better than sampling the light's own way. */
+static const float TARGET_CONE_MAX = 0.5f;
+
+/* A direction from a place uniformly in the cone to the target; false where all directions are as good. */
+static bool aim_at(const light_target *target, vec3 origin, rng *random, vec3 *out_direction, float *out_pdf)
 {
-    surface_sample at = shape_sample_area(&s->shapes[l->shape_index], rng_vec2(random));
-    vec3 n = at.geometric_normal;
-    if (l->two_sided && rng_float(random) < 0.5f)
-        n = vec3_negate(n);
-    frame f = frame_from_z(n);
-    out->direction = frame_to_world(&f, sample_cosine_hemisphere(rng_vec2(random)));
-    out->origin = vec3_add_scaled(at.position, n, at.epsilon);
-    /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids */
-    out->flux = rgb_scale(l->radiance, AG_PI * (l->two_sided ? 2.0f : 1.0f) / at.pdf_area);
+    if (!target)
+        return false;
+    vec3 to_center = vec3_sub(target->center, origin);
+    float distance_squared = vec3_length_squared(to_center), r2 = target->radius * target->radius;
+    if (distance_squared <= r2 * 1.0001f)
+        return false;
+    float sin2 = r2 / distance_squared, one_minus_cos = sin2 / (1.0f + sqrtf(fmaxf(0.0f, 1.0f - sin2)));
+    if (one_minus_cos > TARGET_CONE_MAX)
+        return false;
+    frame f = frame_from_z(vec3_scale(to_center, 1.0f / sqrtf(distance_squared)));
+    *out_direction = frame_to_world(&f, sample_uniform_cone(rng_vec2(random), one_minus_cos));
+    *out_pdf = 1.0f / (2.0f * AG_PI * one_minus_cos);
     return true;
 }
 
-/* A start outside all there is, on the disc of the scene's bounding sphere that faces the way the light goes. */
-static vec3 start_from_afar(const scene *s, vec3 direction, rng *random)
+static bool emit_area(const scene *s, const light *l, const light_target *target, rng *random, light_emission *out)
+{
+    surface_sample at = shape_sample_area(&s->shapes[l->shape_index], rng_vec2(random));
+    vec3 n = at.geometric_normal;
+    float pdf;
+    if (aim_at(target, at.position, random, &out->direction, &pdf)) {
+        float cosine = vec3_dot(n, out->direction);
+        if (l->two_sided && cosine < 0.0f) {
+            n = vec3_negate(n);
+            cosine = -cosine;
+        }
+        out->flux = rgb_scale(l->radiance, fmaxf(cosine, 0.0f) / (at.pdf_area * pdf));
+    } else {
+        if (l->two_sided && rng_float(random) < 0.5f)
+            n = vec3_negate(n);
+        frame f = frame_from_z(n);
+        out->direction = frame_to_world(&f, sample_cosine_hemisphere(rng_vec2(random)));
+        /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids */
+        out->flux = rgb_scale(l->radiance, AG_PI * (l->two_sided ? 2.0f : 1.0f) / at.pdf_area);
+    }
+    out->origin = vec3_add_scaled(at.position, n, at.epsilon);
+    return !rgb_is_black(out->flux);
+}
+
+/* A start outside all there is, on the disc of the ball that faces the way the light goes. */
+static vec3 start_from_afar(const scene *s, const light_target *ball, vec3 direction, rng *random)
 {
     frame f = frame_from_z(direction);
     vec2 d = sample_disk_concentric(rng_vec2(random));
-    float r = s->bounding_radius;
-    return vec3_add(s->bounding_center, frame_to_world(&f, (vec3){d.x * r, d.y * r, -1.01f * r}));
+    /* the plane that touches the scene's own ball from behind */
+    float behind = vec3_dot(vec3_sub(ball->center, s->bounding_center), direction) + 1.01f * s->bounding_radius;
+    return vec3_add(ball->center, frame_to_world(&f, (vec3){d.x * ball->radius, d.y * ball->radius, -behind}));
 }
 
-bool light_sample_emission(const scene *s, const light *l, rng *random, light_emission *out_emission)
+bool light_sample_emission(const scene *s, const light *l, const light_target *target, rng *random,
+                           light_emission *out_emission)
 {
     light_emission *out = out_emission;
+    light_target whole = {s->bounding_center, s->bounding_radius};
+    const light_target *ball = target && target->radius < whole.radius ? target : &whole;
+    float disc = AG_PI * ball->radius * ball->radius, pdf;
     switch (l->kind) {
-    case LIGHT_AREA: return emit_area(s, l, random, out);
+    case LIGHT_AREA: return emit_area(s, l, target, random, out);
     case LIGHT_POINT:
         out->origin = l->position;
+        if (aim_at(target, l->position, random, &out->direction, &pdf)) {
+            out->flux = rgb_scale(l->intensity, 1.0f / pdf);
+            return true;
+        }
         out->direction = sample_uniform_sphere(rng_vec2(random));
         out->flux = l->power;
         return true;
     case LIGHT_SPOT: {
-        /* uniform in the cone, thinned by the falloff, so that all photons are equal; at least half are accepted on
-         * average, and after 64 trials one in 2^64 starts fails: such a start goes along the axis */
+        out->origin = l->position;
+        if (aim_at(target, l->position, random, &out->direction, &pdf)) {
+            out->flux = rgb_scale(l->intensity, spot_falloff(l, vec3_dot(out->direction, l->direction)) / pdf);
+            return !rgb_is_black(out->flux);
+        }
+        /* uniform in the cone, thinned by the falloff, so that all photons are equal; in a cone no wider than a half space
+         * at least half are accepted on average, and what 64 trials refuse goes along the axis */
         frame f = frame_from_z(l->direction);
         vec3 local = {0.0f, 0.0f, 1.0f};
         for (int trial = 0; trial < 64; trial++) {
@@ -190,25 +235,23 @@ bool light_sample_emission(const scene *s, const light *l, rng *random, light_em
                 break;
             }
         }
-        out->origin = l->position;
         out->direction = frame_to_world(&f, local);
         out->flux = l->power;
         return true;
     }
     case LIGHT_DISTANT:
-        out->origin = start_from_afar(s, l->direction, random);
+        out->origin = start_from_afar(s, ball, l->direction, random);
         out->direction = l->direction;
-        out->flux = l->power;
+        out->flux = rgb_scale(l->radiance, disc);
         return true;
     case LIGHT_INFINITE: {
         vec3 to_light;
         rgb radiance;
-        float pdf;
         if (!environment_sample(l, rng_vec2(random), &to_light, &radiance, &pdf))
             return false;
         out->direction = vec3_negate(to_light);
-        out->origin = start_from_afar(s, out->direction, random);
-        out->flux = rgb_scale(radiance, AG_PI * s->bounding_radius * s->bounding_radius / pdf);
+        out->origin = start_from_afar(s, ball, out->direction, random);
+        out->flux = rgb_scale(radiance, disc / pdf);
         return true;
     }
     }

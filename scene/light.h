@@ -63,7 +63,16 @@ typedef struct light_emission {
     rgb flux;       /* W, carried by a single photon that stands for the whole light */
 } light_emission;
 
-/* Random numbers come from the path's own stream (math/rng.h). Returns false when the sample carries nothing. */
-bool light_sample_emission(const struct scene *s, const light *l, struct rng *random, light_emission *out_emission);
+/* A ball outside of which a ray's first hit is of no use. */
+typedef struct light_target {
+    vec3 center;
+    float radius; /* > 0 */
+} light_target;
+
+/* target NULL: all of the light. Else only that part of it is sampled, as far as is known beforehand, whose rays meet the
+ * ball: every ray that does is, with the right share of the whole (Jensen 1996: projection maps).
+ * Random numbers come from the path's own stream (math/rng.h). Returns false when the sample carries nothing. */
+bool light_sample_emission(const struct scene *s, const light *l, const light_target *target, struct rng *random,
+                           light_emission *out_emission);
 
 #endif

@@ -336,7 +336,7 @@ static void photons_fill_the_bounding_sphere_evenly(void **state)
         memset(counts, 0, sizeof counts);
         for (int i = 0; i < SAMPLES; i++) {
             light_emission e;
-            assert_true(light_sample_emission(s, l, &random, &e));
+            assert_true(light_sample_emission(s, l, NULL, &random, &e));
             assert_close(vec3_length(e.direction), 1.0, 1e-6);
             assert_true(vec3_distance_squared(e.origin, s->bounding_center) >= R * R);
             counts[direction_bin(e.direction)]++;
@@ -368,7 +368,7 @@ static void a_black_picture_sends_nothing(void **state)
     light_sample at;
     light_emission start;
     assert_false(light_sample_from_point(s, &s->lights[0], vec3_make(0.0f, 0.0f, 0.0f), (vec2){0.5f, 0.5f}, &at));
-    assert_false(light_sample_emission(s, &s->lights[0], &random, &start));
+    assert_false(light_sample_emission(s, &s->lights[0], NULL, &random, &start));
     assert_true(environment_pdf(&s->lights[0], vec3_make(0.0f, 0.0f, 1.0f)) == 0.0f);
     assert_true(rgb_is_black(s->light_power));
     scene_destroy(s);

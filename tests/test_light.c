@@ -233,7 +233,7 @@ static emission emit(const char *world, axis_fn *axis, uint32_t counts[BIN_COUNT
     rng random = test_random(3);
     for (int i = 0; i < SAMPLES; i++) {
         light_emission e;
-        assert_true(light_sample_emission(s, l, &random, &e));
+        assert_true(light_sample_emission(s, l, NULL, &random, &e));
         assert_close(vec3_length(e.direction), 1.0, 1e-5);
         sum.flux[0] += (double)e.flux.r / SAMPLES, sum.flux[1] += (double)e.flux.g / SAMPLES;
         sum.flux[2] += (double)e.flux.b / SAMPLES;
@@ -355,7 +355,7 @@ static void distant_light_fills_the_disc_around_the_scene(void **state)
     for (int i = 0; i < SAMPLES; i++) {
         light_emission e;
         surface_hit hit;
-        assert_true(light_sample_emission(s, l, &random, &e));
+        assert_true(light_sample_emission(s, l, NULL, &random, &e));
         assert_close(vec3_dot(e.direction, l->direction), 1.0, 1e-6);
         vec3 off = vec3_sub(e.origin, s->bounding_center);
         double along = vec3_dot(off, e.direction), square = vec3_length_squared(off) - along * along;
@@ -396,6 +396,64 @@ static void lamps_are_picked_by_power(void **state)
     test_run_reset(&r);
 }
 
+/* --- light aimed at a ball --- */
+
+static bool meets_ball(const light_emission *e, const light_target *ball)
+{
+    vec3 to_center = vec3_sub(ball->center, e->origin);
+    float along = vec3_dot(to_center, e->direction);
+    return along > 0.0f && vec3_length_squared(to_center) - along * along <= ball->radius * ball->radius;
+}
+
+/* The flux through the ball is the same whether all of the light is sampled, or only what goes there; and what is aimed
+ * carries it in far fewer photons. */
+static void expect_aimed_flux(const char *world, light_target ball)
+{
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, world);
+    const light *l = &s->lights[0];
+    double flux[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
+    uint32_t met[2] = {0, 0};
+    enum { COUNT = 400000 / FEWER };
+    for (int aimed = 0; aimed < 2; aimed++) {
+        rng random = test_random(7);
+        for (int i = 0; i < COUNT; i++) {
+            light_emission e;
+            if (!light_sample_emission(s, l, aimed ? &ball : NULL, &random, &e) || !meets_ball(&e, &ball))
+                continue;
+            met[aimed]++;
+            flux[aimed] += (double)e.flux.g / COUNT;
+            square[aimed] += (double)e.flux.g * (double)e.flux.g / COUNT;
+        }
+    }
+    double variance = (square[0] - flux[0] * flux[0] + square[1] - flux[1] * flux[1]) / COUNT;
+    assert_true(met[1] > 5 * met[0]);
+    assert_close(flux[0], flux[1], 5.0 * sqrt(variance));
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+static void aimed_light_carries_the_same_flux(void **state)
+{
+    (void)state;
+    const light_target small = {{0.5f, 2.0f, 3.0f}, 0.4f};
+    static const char GROUND[] = "Shape \"disk\" \"float radius\" [20]\n";
+    char text[1024];
+    static const char *const LIGHTS[] = {
+        "LightSource \"point\" \"rgb I\" [3 2 1]\n",
+        "LightSource \"spot\" \"point3 to\" [0 1 3] \"float coneangle\" [50] \"float conedeltaangle\" [30]\n",
+        "LightSource \"distant\" \"point3 from\" [0 0 10] \"point3 to\" [1 1 0]\n",
+        "LightSource \"infinite\" \"rgb L\" [1 2 3]\n",
+        "AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"disk\" \"float radius\" [0.7]\n",
+        "AreaLightSource \"diffuse\" Shape \"sphere\" \"float radius\" [0.7]\n",
+    };
+    for (size_t i = 0; i < sizeof LIGHTS / sizeof *LIGHTS; i++) {
+        snprintf(text, sizeof text, "AttributeBegin %s AttributeEnd\nTranslate 0 0 -5 %s", LIGHTS[i], GROUND);
+        expect_aimed_flux(text, small);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -408,6 +466,7 @@ int main(void)
         cmocka_unit_test(area_lights_emit_by_the_cosine),
         cmocka_unit_test(directions_are_spread_as_they_should),
         cmocka_unit_test(distant_light_fills_the_disc_around_the_scene),
+        cmocka_unit_test(aimed_light_carries_the_same_flux),
         cmocka_unit_test(lamps_are_picked_by_power),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -312,9 +312,9 @@ static void warnings_are_given_once(void **state)
         const char *text, *warning;
     } CASES[] = {
         {"Material \"coateddiffuse\" \"rgb albedo\" [ .1 .2 .3 ]",
-         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: a clear coat stands in\n"},
+         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in\n"},
         {"Material \"coatedconductor\" \"rgb albedo\" [ .1 .2 .3 ]",
-         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: a clear coat stands in\n"},
+         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in\n"},
         {"Material \"coateddiffuse\" \"float conductor.roughness\" .5",
          "t:2:26: warning: Material \"coateddiffuse\": \"float conductor.roughness\" is not known, or not supported "
          "yet, and is ignored\n"},

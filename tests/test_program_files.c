@@ -180,7 +180,7 @@ static void test_file_that_grows_too_large(void **state)
     static const char *const NAMES[] = {"a.exr", "a.png", "a.tif", "a.jpg"};
     for (int i = 0; i < 4; i++) {
         write_text(NAMES[i], "what was there");
-        const program_setting limited = {.file_size_limit = 1024};
+        const program_setting limited = {.file_size_limit = 512};
         program_run run = program_execute(&limited, ARGUMENTS("-q", "--photons=300", "--spp=1", "--size=64x64", "-o", NAMES[i], SPHERE));
         expect_exit(&run, 3);
         expect_said(&run, "error: ");
