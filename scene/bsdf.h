@@ -86,10 +86,4 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
  * normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
 float bsdf_arrival_factor(const bsdf *b);
 
-/* Whether the material has, or may pick, lobes that are traced. */
-bool material_is_traced(const scene *s, uint32_t material_index);
-
-/* For scene_add_material: what of a material can be worked out beforehand. */
-void material_prepare(material *m);
-
 #endif

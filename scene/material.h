@@ -49,4 +49,21 @@ static inline float material_k_from_reflectance(float r)
     return 2.0f * sqrtf(clamped) / sqrtf(1.0f - clamped);
 }
 
+static inline bool material_is_smooth(float alpha_u, float alpha_v)
+{
+    return alpha_u < MATERIAL_SMOOTH_ALPHA && alpha_v < MATERIAL_SMOOTH_ALPHA;
+}
+
+struct scene;
+struct surface_hit;
+
+/* Works out what can be beforehand; scene_add_material calls it. */
+void material_prepare(material *m);
+
+/* Whether the material has, or may pick, lobes that are traced (bsdf.h). */
+bool material_is_traced(const struct scene *s, uint32_t material_index);
+
+/* The material at a place: mixes picked, textures looked up. */
+void material_at(const struct scene *s, const struct surface_hit *hit, material *out_material);
+
 #endif

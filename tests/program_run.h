@@ -172,7 +172,7 @@ static inline program_run program_execute(const program_setting *setting, const 
 }
 
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
-#define RUN(...) program_execute(NULL, ARGUMENTS(__VA_ARGS__))
+#define RUN(...)       program_execute(NULL, ARGUMENTS(__VA_ARGS__))
 
 /* Ends with this code; what was said is shown where not. */
 static inline void expect_exit(const program_run *run, int code)
@@ -228,10 +228,7 @@ static inline const char *write_text(const char *name, const char *text)
     return path;
 }
 
-static inline int compare_names(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
+static inline int compare_names(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
 
 /* What is in the folder of the test: names in order, a blank between. */
 static inline void expect_listing(const char *expected)

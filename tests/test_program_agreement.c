@@ -1,5 +1,5 @@
-/* test_program_agreement.c: photon map and path tracer show the same light in three rooms without a closed form: diffuse
- * blocks; glass, rough metal and a mirror; a room lit through an opening. All light, and indirect light alone.
+/* test_program_agreement.c: photon map and path tracer show the same light in three rooms without a closed form:
+ * diffuse blocks; glass, rough metal and a mirror; a room lit through an opening. All light, and indirect light alone.
  * Each picture is made twice, with two seeds: how much those differ is its noise, the photons' share of it included.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
@@ -87,7 +87,8 @@ static void compare(const char *name, const char *path_samples, bool is_all_indi
     expect_agreement(what, &map, &path);
     if (is_all_indirect)
         return;
-    map = estimate_of(scene, ARGUMENTS("--photons=2e6", "--nearest=30", "--spp=8", "--gather-samples=16", "--only=indirect"));
+    map = estimate_of(scene,
+                      ARGUMENTS("--photons=2e6", "--nearest=30", "--spp=8", "--gather-samples=16", "--only=indirect"));
     path = estimate_of(scene, ARGUMENTS("--integrator=path", path_samples, "--only=indirect"));
     snprintf(what, sizeof what, "%s, indirect light", name);
     expect_agreement(what, &map, &path);

@@ -1,8 +1,7 @@
-/* test_program_closed_form.c: pictures whose answer is known without rendering: light in a sphere, furnaces, lamps over a
- * floor, a mirror, glass. Each scene of tests/scenes derives its answer in its head; both integrators must give it.
- * Rests on: Pharr, Jakob, Humphreys, 4th ed., 2023, 4.2 (sphere and furnace tests); Hottel, 1954, and Howell's catalogue of
- * configuration factors (disk and rectangle).
- * Flow: tests of the whole program. Threads: the program's. */
+/* test_program_closed_form.c: pictures whose answer is known without rendering: light in a sphere, furnaces, lamps over
+ * a floor, a mirror, glass. Each scene of tests/scenes derives its answer in its head; both integrators must give it.
+ * Rests on: Pharr, Jakob, Humphreys, 4th ed., 2023, 4.2 (sphere and furnace tests); Hottel, 1954, and Howell's
+ * catalogue of configuration factors (disk and rectangle). Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 
@@ -52,7 +51,8 @@ static void test_light_off_the_middle(void **state)
             double rho = REFLECTANCES[i];
             const char *scene = SCENE_WITH("sphere.pbrt", HALF, reflectance_text(rho), "\"point3 from\" [0 0 0]",
                                            "\"point3 from\" [0.9 -0.6 0.7]");
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(rho), "--spp", spp_of(k), "--only", "indirect");
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(rho), "--spp", spp_of(k), "--only",
+                               "indirect");
             expect_uniform(INTEGRATORS[k], &p, rho / PI * SPHERE_DIRECT * rho / (1.0 - rho), 0.01, BLOCK, 0.04);
             picture_reset(&p);
         }
@@ -122,7 +122,8 @@ static void test_depth(void **state)
             for (int n = 0; n < DEPTHS[i]; n++)
                 sum += pow(rho, n);
             const char *scene = SCENE_WITH("sphere.pbrt", HALF, reflectance_text(rho));
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(rho), "--spp", spp_of(k), "--max-depth", depth);
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(rho), "--spp", spp_of(k),
+                               "--max-depth", depth);
             expect_uniform(INTEGRATORS[k], &p, rho / PI * SPHERE_DIRECT * sum, 0.01, BLOCK, 0.03);
             picture_reset(&p);
         }
@@ -145,11 +146,14 @@ static void test_furnace(void **state)
 static void test_glass_cannot_be_seen(void **state)
 {
     (void)state;
-    static const char *const INDICES[] = {"\"float eta\" 1.5", "\"float eta\" 1.1", "\"float eta\" 2.4", "\"float eta\" 0.7"};
+    static const char *const INDICES[] = {"\"float eta\" 1.5", "\"float eta\" 1.1", "\"float eta\" 2.4",
+                                          "\"float eta\" 0.7"};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-            const char *scene = SCENE_WITH("glass_in_furnace.pbrt", HALF, reflectance_text(0.0), INDICES[0], INDICES[i]);
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "64", "--photons=1000", "--caustic-photons=1000");
+            const char *scene =
+                SCENE_WITH("glass_in_furnace.pbrt", HALF, reflectance_text(0.0), INDICES[0], INDICES[i]);
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "64", "--photons=1000",
+                               "--caustic-photons=1000");
             expect_uniform(INTEGRATORS[k], &p, 1.0, 0.002, BLOCK, 0.02);
             picture_reset(&p);
         }
@@ -171,8 +175,10 @@ static void test_eye_in_the_glass(void **state)
 {
     (void)state;
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        const char *scene = SCENE_WITH("glass_in_furnace.pbrt", HALF, reflectance_text(0.0), "LookAt 0 0 -1.5", "LookAt 0 0 -0.001");
-        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "64", "--photons=1000", "--caustic-photons=1000");
+        const char *scene =
+            SCENE_WITH("glass_in_furnace.pbrt", HALF, reflectance_text(0.0), "LookAt 0 0 -1.5", "LookAt 0 0 -0.001");
+        picture p =
+            RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "64", "--photons=1000", "--caustic-photons=1000");
         expect_uniform(INTEGRATORS[k], &p, 1.5 * 1.5, 0.002, BLOCK, 0.02);
         picture_reset(&p);
     }
@@ -198,7 +204,9 @@ static double corner_form_factor(double a, double b)
 static double rectangle_irradiance(double x, double y, double x0, double x1, double y0, double y1, double h)
 {
     x0 = (x0 - x) / h, x1 = (x1 - x) / h, y0 = (y0 - y) / h, y1 = (y1 - y) / h;
-    return PI * 5.0 * (corner_form_factor(x1, y1) - corner_form_factor(x0, y1) - corner_form_factor(x1, y0) + corner_form_factor(x0, y0));
+    return PI * 5.0 *
+           (corner_form_factor(x1, y1) - corner_form_factor(x0, y1) - corner_form_factor(x1, y0) +
+            corner_form_factor(x0, y0));
 }
 
 static double under_rectangle(double x, double y) { return rectangle_irradiance(x, y, -0.2, 0.8, -0.5, 0.3, 1.5); }
@@ -237,11 +245,12 @@ static double under_distant(double x, double y)
 
 static double beside_mirror(double x, double y)
 {
-    return rectangle_irradiance(x, y, 0.6, 1.4, -0.5, 0.3, 1.5) + 0.9999 * rectangle_irradiance(x, y, -3.8, -3.0, -0.5, 0.3, 1.5);
+    return rectangle_irradiance(x, y, 0.6, 1.4, -0.5, 0.3, 1.5) +
+           0.9999 * rectangle_irradiance(x, y, -3.8, -3.0, -0.5, 0.3, 1.5);
 }
 
-/* The mean over a block, from 8 x 8 points of each of its pixels; (x, y) as the camera of floor.pbrt has them: the world's x
- * runs to the left, from 1 to -1. */
+/* The mean over a block, from 8 x 8 points of each of its pixels; (x, y) as the camera of floor.pbrt has them: the
+ * world's x runs to the left, from 1 to -1. */
 static double floor_block(irradiance_fn *irradiance, const picture *p, int left, int top, int size)
 {
     enum { POINTS = 8 };
@@ -249,7 +258,8 @@ static double floor_block(irradiance_fn *irradiance, const picture *p, int left,
     int count = size * POINTS;
     for (int j = 0; j < count; j++)
         for (int i = 0; i < count; i++)
-            sum += irradiance(1.0 - 2.0 * (left + (i + 0.5) / POINTS) / p->width, 1.0 - 2.0 * (top + (j + 0.5) / POINTS) / p->height);
+            sum += irradiance(1.0 - 2.0 * (left + (i + 0.5) / POINTS) / p->width,
+                              1.0 - 2.0 * (top + (j + 0.5) / POINTS) / p->height);
     return sum / ((double)count * count);
 }
 
@@ -288,7 +298,10 @@ static void test_lamps_over_a_floor(void **state)
 
 /* ---- a mirror ---- */
 
-static double fresnel_conductor_squared(double complex amplitude) { return creal(amplitude) * creal(amplitude) + cimag(amplitude) * cimag(amplitude); }
+static double fresnel_conductor_squared(double complex amplitude)
+{
+    return creal(amplitude) * creal(amplitude) + cimag(amplitude) * cimag(amplitude);
+}
 
 /* Fresnel's formulas in complex numbers. */
 static double mirror_reflectance(double cosine, double eta, double k)
@@ -311,14 +324,17 @@ static void test_mirror(void **state)
     (void)state;
     static const double ETA[3] = {0.2, 0.92, 1.1}, K[3] = {3.9, 2.45, 2.1};
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(PROGRAM_SCENES "mirror.pbrt", "--integrator", INTEGRATORS[k], "--spp", "16", "--photons=1000", "--caustic-photons=1000");
+        picture p = RENDER(PROGRAM_SCENES "mirror.pbrt", "--integrator", INTEGRATORS[k], "--spp", "16",
+                           "--photons=1000", "--caustic-photons=1000");
         for (int y = 0; y < p.height; y += 4)
             for (int x = 0; x < p.width; x += 4)
                 for (int c = 0; c < 3; c++) {
                     double expected = 0.0;
                     for (int j = 0; j < 16; j++)
                         for (int i = 0; i < 16; i++)
-                            expected += mirror_reflectance(mirror_cosine((x + (i + 0.5) / 4.0) / p.width, (y + (j + 0.5) / 4.0) / p.height), ETA[c], K[c]);
+                            expected += mirror_reflectance(
+                                mirror_cosine((x + (i + 0.5) / 4.0) / p.width, (y + (j + 0.5) / 4.0) / p.height),
+                                ETA[c], K[c]);
                     expect_near(INTEGRATORS[k], picture_block(&p, x, y, 4, c), 2.0 * expected / 256.0, 0.005);
                 }
         picture_reset(&p);
@@ -330,9 +346,11 @@ static void test_mirror_of_given_reflectance(void **state)
 {
     (void)state;
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        const char *scene = SCENE_WITH("mirror.pbrt", "\"rgb eta\" [0.2 0.92 1.1] \"rgb k\" [3.9 2.45 2.1]", "\"rgb reflectance\" [0.9 0.5 0.1]",
-                                       "LookAt 0 0 1  1 0 0", "LookAt 0 0 1  0.0001 0 0", "\"float fov\" 60", "\"float fov\" 1");
-        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "16", "--photons=1000", "--caustic-photons=1000");
+        const char *scene = SCENE_WITH("mirror.pbrt", "\"rgb eta\" [0.2 0.92 1.1] \"rgb k\" [3.9 2.45 2.1]",
+                                       "\"rgb reflectance\" [0.9 0.5 0.1]", "LookAt 0 0 1  1 0 0",
+                                       "LookAt 0 0 1  0.0001 0 0", "\"float fov\" 60", "\"float fov\" 1");
+        picture p =
+            RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", "16", "--photons=1000", "--caustic-photons=1000");
         static const double EXPECTED[3] = {1.8, 1.0, 0.2};
         for (int c = 0; c < 3; c++)
             expect_near(INTEGRATORS[k], picture_mean(&p, c), EXPECTED[c], 0.002);
@@ -345,7 +363,8 @@ static void test_floor_beside_a_mirror(void **state)
 {
     (void)state;
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(PROGRAM_SCENES "mirror_wall.pbrt", "--integrator", INTEGRATORS[k], "--spp", k == 0 ? "16" : "512", "--photons=20000", "--caustic-photons=100000");
+        picture p = RENDER(PROGRAM_SCENES "mirror_wall.pbrt", "--integrator", INTEGRATORS[k], "--spp",
+                           k == 0 ? "16" : "512", "--photons=20000", "--caustic-photons=100000");
         expect_floor(INTEGRATORS[k], &p, beside_mirror, 0.01, 0.04);
         picture_reset(&p);
     }

@@ -1,7 +1,5 @@
-/* test_program_contract.c: what the program promises to who calls it: exit codes, what is said where and how, and that a run
- * that fails leaves nothing behind.
- * ctest: sanitize
- * Flow: tests of the whole program. Threads: the program's. */
+/* test_program_contract.c: what the program promises to who calls it: exit codes, what is said where and how, and that
+ * a run that fails leaves nothing behind. ctest: sanitize Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 
@@ -87,12 +85,31 @@ static void test_usage(void **state)
 static void test_help_and_version(void **state)
 {
     (void)state;
-    static const char *const OPTIONS[] = {"-o, --outfile",      "-t, --nthreads", "--seed",    "--spp",     "--size",
-                                          "--cropwindow",       "--integrator",   "--cache",   "--only",    "--photons",
-                                          "--caustic-photons",  "--nearest",      "--radius",  "--gather-samples",
-                                          "--max-depth",        "--ocio",         "--display", "--view",    "--stats",
-                                          "--progress",         "--isa",          "-q, --quiet", "-v, --verbose",
-                                          "--help",             "--version"};
+    static const char *const OPTIONS[] = {"-o, --outfile",
+                                          "-t, --nthreads",
+                                          "--seed",
+                                          "--spp",
+                                          "--size",
+                                          "--cropwindow",
+                                          "--integrator",
+                                          "--cache",
+                                          "--only",
+                                          "--photons",
+                                          "--caustic-photons",
+                                          "--nearest",
+                                          "--radius",
+                                          "--gather-samples",
+                                          "--max-depth",
+                                          "--ocio",
+                                          "--display",
+                                          "--view",
+                                          "--stats",
+                                          "--progress",
+                                          "--isa",
+                                          "-q, --quiet",
+                                          "-v, --verbose",
+                                          "--help",
+                                          "--version"};
     program_run run = RUN("--help");
     expect_exit(&run, 0);
     assert_string_equal(run.err, "");
@@ -122,7 +139,9 @@ static void test_scene_errors_name_the_place(void **state)
     (void)state;
     write_text("inner.pbrt", "# a comment\n\n    Shape \"banana\"\n");
     const char *outer = write_text("outer.pbrt", "Camera \"perspective\"\nWorldBegin\nInclude \"inner.pbrt\"\n");
-    const char *direct = write_text("direct.pbrt", "Camera \"perspective\"\nWorldBegin\n  Material \"diffuse\" \"rgb reflectance\" [0.1 oops 0.3]\n");
+    const char *direct =
+        write_text("direct.pbrt",
+                   "Camera \"perspective\"\nWorldBegin\n  Material \"diffuse\" \"rgb reflectance\" [0.1 oops 0.3]\n");
     write_text("late.pbrt", "Film \"rgb\" \"integer xresolution\" 0\nCamera \"perspective\"\nWorldBegin\n");
     static const char *const QUIET[] = {NULL, "-q"};
     for (int i = 0; i < 2; i++) {
@@ -182,7 +201,8 @@ static void test_scene_without_camera(void **state)
 static void test_scene_without_light(void **state)
 {
     (void)state;
-    const char *scene = write_text("scene.pbrt", "Camera \"perspective\"\nWorldBegin\nTranslate 0 0 3\nShape \"sphere\"\n");
+    const char *scene =
+        write_text("scene.pbrt", "Camera \"perspective\"\nWorldBegin\nTranslate 0 0 3\nShape \"sphere\"\n");
     static const char *const INTEGRATORS[] = {"--integrator=photonmap", "--integrator=path"};
     for (int k = 0; k < 2; k++) {
         program_run run = RUN(QUICK, "--progress=none", INTEGRATORS[k], "-o", "a.exr", "--stats=a.json", scene);
@@ -220,8 +240,8 @@ static void test_other_integrators(void **state)
     const char *scene = SCENE_WITH("sphere.pbrt", "Camera ", "Integrator \"volpath\" \"integer maxdepth\" 1\nCamera ");
     static const char *const INTEGRATORS[] = {"photonmap", "path"};
     for (int k = 0; k < 2; k++) {
-        program_run run = RUN("--photons=2000", "--spp=16", "--size=8x8", "--progress=none", "--integrator", INTEGRATORS[k], "-o",
-                              "a.exr", scene);
+        program_run run = RUN("--photons=2000", "--spp=16", "--size=8x8", "--progress=none", "--integrator",
+                              INTEGRATORS[k], "-o", "a.exr", scene);
         expect_exit(&run, 0);
         assert_int_equal(line_count(run.err), 1);
         expect_said(&run, "sphere.pbrt:10:1: warning: ");
@@ -239,9 +259,10 @@ static void test_other_integrators(void **state)
 static void test_own_integrator(void **state)
 {
     (void)state;
-    const char *scene = SCENE_WITH("sphere.pbrt", "Camera ", "Integrator \"photonmap\" \"integer indirectphotons\" 700 \"integer nused\" 20"
-                                                             " \"integer finalgathersamples\" 3 \"integer maxdepth\" 4\n"
-                                                             "Sampler \"independent\" \"integer pixelsamples\" 5\nCamera ");
+    const char *scene = SCENE_WITH("sphere.pbrt", "Camera ",
+                                   "Integrator \"photonmap\" \"integer indirectphotons\" 700 \"integer nused\" 20"
+                                   " \"integer finalgathersamples\" 3 \"integer maxdepth\" 4\n"
+                                   "Sampler \"independent\" \"integer pixelsamples\" 5\nCamera ");
     program_run run = RUN("--progress=none", "--size=4x4", "-o", "a.exr", "--stats=a.json", scene);
     expect_exit(&run, 0);
     assert_string_equal(run.err, "");

@@ -1,13 +1,13 @@
-/* test_program_files.c: the files that the program writes: names, formats, sizes, parts of pictures; and that on a full disk
- * or in a closed folder it fails with 3, and leaves what was there.
- * Flow: tests of the whole program. Threads: the program's. */
+/* test_program_files.c: the files that the program writes: names, formats, sizes, parts of pictures; and that on a full
+ * disk or in a closed folder it fails with 3, and leaves what was there. Flow: tests of the whole program. Threads: the
+ * program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 
 #include <zlib.h>
 
 #define SPHERE PROGRAM_SCENES "sphere.pbrt"
-#define QUICK "--photons=300", "--spp=1", "--gather-samples=2", "--size=8x6"
+#define QUICK  "--photons=300", "--spp=1", "--gather-samples=2", "--size=8x6"
 
 static void expect_begins(const char *name, const char *bytes, size_t count)
 {
@@ -33,7 +33,8 @@ static void exr_window(const char *name, const char *window, int out_window[4])
 static void test_every_format_at_once(void **state)
 {
     (void)state;
-    program_run run = RUN("-q", QUICK, "-o", "a.exr", "-o", "b.png", "--outfile=c.tif", "-o", "d.jpg", "-o", "E.EXR", "--stats=f.json", SPHERE);
+    program_run run = RUN("-q", QUICK, "-o", "a.exr", "-o", "b.png", "--outfile=c.tif", "-o", "d.jpg", "-o", "E.EXR",
+                          "--stats=f.json", SPHERE);
     expect_exit(&run, 0);
     assert_string_equal(run.out, "");
     assert_string_equal(run.err, "");
@@ -66,7 +67,8 @@ static void test_types(void **state)
     for (int i = 0; i < 3 * 8 * 6; i++)
         expect_near("half", (double)as_half.pixels[i], (double)as_float.pixels[i], 0.0005);
     size_t sizes[2];
-    unsigned char *files[2] = {read_bytes(in_folder("half.exr"), &sizes[0]), read_bytes(in_folder("again.exr"), &sizes[1])};
+    unsigned char *files[2] = {read_bytes(in_folder("half.exr"), &sizes[0]),
+                               read_bytes(in_folder("again.exr"), &sizes[1])};
     assert_int_equal(sizes[0], sizes[1]);
     assert_memory_equal(files[0], files[1], sizes[0]);
     free(files[0]);
@@ -133,8 +135,8 @@ static void test_size_and_crop(void **state)
     (void)state;
     static const char *const INTEGRATORS[] = {"--integrator=photonmap", "--integrator=path"};
     for (int k = 0; k < 2; k++) {
-        program_run run = RUN("-q", "--photons=300", "--spp=1", INTEGRATORS[k], "--size=50x40", "--cropwindow=0.11,0.5,0.25,0.9", "-o",
-                              "a.exr", "-o", "a.png", "--stats=a.json", SPHERE);
+        program_run run = RUN("-q", "--photons=300", "--spp=1", INTEGRATORS[k], "--size=50x40",
+                              "--cropwindow=0.11,0.5,0.25,0.9", "-o", "a.exr", "-o", "a.png", "--stats=a.json", SPHERE);
         expect_exit(&run, 0);
         program_run_reset(&run);
         int data[4], display[4];
@@ -181,7 +183,8 @@ static void test_file_that_grows_too_large(void **state)
     for (int i = 0; i < 4; i++) {
         write_text(NAMES[i], "what was there");
         const program_setting limited = {.file_size_limit = 512};
-        program_run run = program_execute(&limited, ARGUMENTS("-q", "--photons=300", "--spp=1", "--size=64x64", "-o", NAMES[i], SPHERE));
+        program_run run = program_execute(
+            &limited, ARGUMENTS("-q", "--photons=300", "--spp=1", "--size=64x64", "-o", NAMES[i], SPHERE));
         expect_exit(&run, 3);
         expect_said(&run, "error: ");
         expect_said(&run, NAMES[i]);
@@ -198,7 +201,11 @@ static void test_folder_that_is_closed(void **state)
     write_text("closed/a.exr", "what was there");
     assert_int_equal(chmod(in_folder("closed"), 0555), 0);
     const program_setting nobody = {.is_nobody = true};
-    static const char *const WHERE[][2] = {{"-o", "closed/a.exr"}, {"-o", "closed/b.exr"}, {"-o", "none/a.exr"}, {"-o", "."}, {"--stats", "closed/a.json"}};
+    static const char *const WHERE[][2] = {{"-o", "closed/a.exr"},
+                                           {"-o", "closed/b.exr"},
+                                           {"-o", "none/a.exr"},
+                                           {"-o", "."},
+                                           {"--stats", "closed/a.json"}};
     for (int i = 0; i < 5; i++) {
         /* checked before the work: this would take hours */
         program_run run = program_execute(&nobody, ARGUMENTS("-q", "--spp=1000000", WHERE[i][0], WHERE[i][1], SPHERE));

@@ -1,13 +1,13 @@
-/* test_program_reference.c: a public scene, the Cornell box of Bitterli's collection, against the reference picture that
- * comes with it, by the comparison that stands beside it. Skipped where the scenes are not beside the repository.
+/* test_program_reference.c: a public scene, the Cornell box of Bitterli's collection, against the reference picture
+ * that comes with it, by the comparison that stands beside it. Skipped where the scenes are not beside the repository.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_run.h"
 
-#define SHARED AG_SOURCE_DIR "/../shared/scenes/"
-#define SCENE SHARED "cornell-box/scene.pbrt"
+#define SHARED    AG_SOURCE_DIR "/../shared/scenes/"
+#define SCENE     SHARED "cornell-box/scene.pbrt"
 #define REFERENCE SHARED "cornell-box/reference.exr"
-#define COMPARE SHARED "compare.py"
+#define COMPARE   SHARED "compare.py"
 
 /* mean: ratio of the mean luminances. median: over blocks, relative; noise: the reference's own part of it. */
 static void compare_with_reference(double *out_mean, double *out_median, double *out_noise)
@@ -20,7 +20,8 @@ static void compare_with_reference(double *out_mean, double *out_median, double 
     assert_int_equal(pclose(answer), 0);
     assert_non_null(got);
     print_message("%s", line);
-    assert_int_equal(sscanf(line, "mean %lf median %lf p90 %*f colour %*f noise %lf", out_mean, out_median, out_noise), 3);
+    assert_int_equal(sscanf(line, "mean %lf median %lf p90 %*f colour %*f noise %lf", out_mean, out_median, out_noise),
+                     3);
 }
 
 static void expect_reference(const char *const *arguments)

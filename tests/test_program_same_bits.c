@@ -1,7 +1,6 @@
-/* test_program_same_bits.c: the same picture, bit for bit, whatever the number of threads, on demand and precomputed, twice
- * each; in a plain room and in one full of coincidences. And in every run no irradiance is computed twice.
- * ctest: sanitize
- * Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
+/* test_program_same_bits.c: the same picture, bit for bit, whatever the number of threads, on demand and precomputed,
+ * twice each; in a plain room and in one full of coincidences. And in every run no irradiance is computed twice. ctest:
+ * sanitize Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 
@@ -20,11 +19,11 @@
 enum { RUNS_EACH = IS_SANITIZED ? 1 : 2 };
 static const char *const THREADS[] = {"--nthreads=1", "--nthreads=2", "--nthreads=3", "--nthreads=8", "--nthreads=64"};
 enum { THREADS_COUNT = sizeof THREADS / sizeof *THREADS };
-#define SIZE (IS_SANITIZED ? "--size=24x24" : "--size=48x48")
+#define SIZE    (IS_SANITIZED ? "--size=24x24" : "--size=48x48")
 #define PHOTONS (IS_SANITIZED ? "--photons=5000" : "--photons=20000")
 static const long long PHOTON_COUNT = IS_SANITIZED ? 5000 : 20000;
 
-#define BOX PROGRAM_SCENES "box_with_blocks.pbrt"
+#define BOX          PROGRAM_SCENES "box_with_blocks.pbrt"
 #define COINCIDENCES PROGRAM_SCENES "coincidences.pbrt"
 
 static void expect_same(const char *what, const picture *p, const picture *reference)
@@ -41,7 +40,8 @@ static void expect_same(const char *what, const picture *p, const picture *refer
 static void expect_books(const char *stats_file, long long photons)
 {
     json_t *stats = stats_read(in_folder(stats_file));
-    long long global = stats_integer(stats, "photons.stored_global"), caustic = stats_integer(stats, "photons.stored_caustic");
+    long long global = stats_integer(stats, "photons.stored_global"),
+              caustic = stats_integer(stats, "photons.stored_caustic");
     long long computed = stats_integer(stats, "irradiance.computed");
     assert_int_equal(global, photons);
     assert_true(stats_integer(stats, "photons.bytes") <= 28 * (global + caustic));
@@ -140,13 +140,13 @@ static void test_crop(void **state)
     static const char *const INTEGRATORS[] = {"--integrator=photonmap", "--integrator=path"};
     for (int k = 0; k < 2; k++) {
         picture whole = render_map(COINCIDENCES, INTEGRATORS[k], "--cache=on-demand", NULL);
-        picture part = render_map(COINCIDENCES, INTEGRATORS[k], "--cache=on-demand", "--cropwindow=0.25,0.75,0.5,0.625");
+        picture part =
+            render_map(COINCIDENCES, INTEGRATORS[k], "--cache=on-demand", "--cropwindow=0.25,0.75,0.5,0.625");
         int size = whole.width;
         assert_int_equal(part.width, size / 2);
         assert_int_equal(part.height, size / 8);
         for (int y = 0; y < part.height; y++)
-            assert_memory_equal(part.pixels + 3 * y * part.width,
-                                whole.pixels + 3 * ((y + size / 2) * size + size / 4),
+            assert_memory_equal(part.pixels + 3 * y * part.width, whole.pixels + 3 * ((y + size / 2) * size + size / 4),
                                 3 * (size_t)part.width * sizeof *part.pixels);
         picture_reset(&part);
         picture_reset(&whole);
@@ -158,7 +158,8 @@ static void test_seed(void **state)
     (void)state;
     static const char *const INTEGRATORS[] = {"--integrator=photonmap", "--integrator=path"};
     for (int k = 0; k < 2; k++) {
-        picture a = render_map(BOX, INTEGRATORS[k], "--seed=0", NULL), b = render_map(BOX, INTEGRATORS[k], "--seed=1", NULL);
+        picture a = render_map(BOX, INTEGRATORS[k], "--seed=0", NULL),
+                b = render_map(BOX, INTEGRATORS[k], "--seed=1", NULL);
         int different = 0;
         for (int i = 0; i < 3 * a.width * a.height; i++)
             different += a.pixels[i] != b.pixels[i];

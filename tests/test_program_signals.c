@@ -1,6 +1,5 @@
-/* test_program_signals.c: a signal ends the program with 128 + its number, in whatever phase it comes, and leaves no file.
- * ctest: sanitize
- * Flow: tests of the whole program. Threads: the program's. */
+/* test_program_signals.c: a signal ends the program with 128 + its number, in whatever phase it comes, and leaves no
+ * file. ctest: sanitize Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_run.h"
 
@@ -47,7 +46,9 @@ static void test_loading(void **state)
 {
     (void)state;
     enum { SIDE = 400 };
-    const char *path = write_text("mesh.pbrt", "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\nShape \"trianglemesh\" \"point3 P\" [\n");
+    const char *path = write_text(
+        "mesh.pbrt",
+        "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\nShape \"trianglemesh\" \"point3 P\" [\n");
     FILE *file = fopen(path, "a");
     assert_non_null(file);
     for (int i = 0; i < SIDE * SIDE; i++)
@@ -67,8 +68,9 @@ static void test_writing(void **state)
 {
     (void)state;
     const program_setting usual = {0};
-    program_process process = program_start(&usual, ARGUMENTS("--progress=json", "-o", "a.png", "-o", "b.png", "--integrator=path", "--max-depth=0", "--spp=1",
-                                                              "--size=1200x1200", BOX));
+    program_process process =
+        program_start(&usual, ARGUMENTS("--progress=json", "-o", "a.png", "-o", "b.png", "--integrator=path",
+                                        "--max-depth=0", "--spp=1", "--size=1200x1200", BOX));
     program_wait_for(&process, "\"phase\": \"write\"");
     assert_int_equal(kill(process.id, SIGTERM), 0);
     program_run run = program_finish(&process);
@@ -125,10 +127,11 @@ static void test_ignored_signal(void **state)
     (void)state;
     assert_int_equal(setenv("AFTERGLOW_SCENE", PROGRAM_SCENES "sphere.pbrt", 1), 0);
     char command[1024];
-    snprintf(command, sizeof command,
-             "cd '%s' && trap '' HUP && '%s' -q --photons=200000 --size=64x64 -o a.exr \"$AFTERGLOW_SCENE\" & child=$!; "
-             "sleep 0.2; kill -HUP $child; wait $child",
-             folder, program_path());
+    snprintf(
+        command, sizeof command,
+        "cd '%s' && trap '' HUP && '%s' -q --photons=200000 --size=64x64 -o a.exr \"$AFTERGLOW_SCENE\" & child=$!; "
+        "sleep 0.2; kill -HUP $child; wait $child",
+        folder, program_path());
     assert_int_equal(system(command), 0);
     expect_listing("a.exr");
 }

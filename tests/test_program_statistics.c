@@ -1,9 +1,9 @@
-/* test_program_statistics.c: what the program tells of its work: statistics as JSON, progress in every style, and silence.
- * Flow: tests of the whole program. Threads: the program's. */
+/* test_program_statistics.c: what the program tells of its work: statistics as JSON, progress in every style, and
+ * silence. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 
-#define BOX PROGRAM_SCENES "box_with_blocks.pbrt"
+#define BOX   PROGRAM_SCENES "box_with_blocks.pbrt"
 #define GLASS PROGRAM_SCENES "glass_and_metal.pbrt"
 #define QUICK "--photons=3000", "--caustic-photons=500", "--spp=2", "--gather-samples=4", "--size=20x10"
 
@@ -18,13 +18,29 @@ static double stats_number(const json_t *stats, const char *keys)
 
 static void expect_keys(const json_t *stats)
 {
-    static const char *const INTEGERS[] = {
-        "threads", "seed", "image.width", "image.height", "image.samples_per_pixel", "photons.emitted", "photons.stored_global",
-        "photons.stored_caustic", "photons.bytes", "irradiance.requests", "irradiance.computed", "irradiance.distinct",
-        "irradiance.deferred", "irradiance.waited", "irradiance.duplicated", "rays.camera", "rays.shadow", "rays.gather",
-        "rays.photon", "memory.peak_bytes"};
-    static const char *const SECONDS[] = {"time_s.load", "time_s.bvh", "time_s.photons", "time_s.map", "time_s.precompute",
-                                          "time_s.render", "time_s.write", "time_s.total", "cpu_s"};
+    static const char *const INTEGERS[] = {"threads",
+                                           "seed",
+                                           "image.width",
+                                           "image.height",
+                                           "image.samples_per_pixel",
+                                           "photons.emitted",
+                                           "photons.stored_global",
+                                           "photons.stored_caustic",
+                                           "photons.bytes",
+                                           "irradiance.requests",
+                                           "irradiance.computed",
+                                           "irradiance.distinct",
+                                           "irradiance.deferred",
+                                           "irradiance.waited",
+                                           "irradiance.duplicated",
+                                           "rays.camera",
+                                           "rays.shadow",
+                                           "rays.gather",
+                                           "rays.photon",
+                                           "memory.peak_bytes"};
+    static const char *const SECONDS[] = {"time_s.load",  "time_s.bvh",        "time_s.photons",
+                                          "time_s.map",   "time_s.precompute", "time_s.render",
+                                          "time_s.write", "time_s.total",      "cpu_s"};
     for (size_t i = 0; i < sizeof INTEGERS / sizeof *INTEGERS; i++)
         assert_true(stats_integer(stats, INTEGERS[i]) >= 0);
     for (size_t i = 0; i < sizeof SECONDS / sizeof *SECONDS; i++)
@@ -45,7 +61,8 @@ static void test_photon_map(void **state)
     (void)state;
     static const char *const CACHES[] = {"on-demand", "precompute", "off"};
     for (int i = 0; i < 3; i++) {
-        json_t *stats = stats_of(GLASS, ARGUMENTS(QUICK, "--nthreads=3", "--seed=77", "--cache", CACHES[i], "--stats=a.json"));
+        json_t *stats =
+            stats_of(GLASS, ARGUMENTS(QUICK, "--nthreads=3", "--seed=77", "--cache", CACHES[i], "--stats=a.json"));
         assert_int_equal(stats_integer(stats, "threads"), 3);
         assert_int_equal(stats_integer(stats, "seed"), 77);
         assert_string_equal(json_string_value(stats_find(stats, "integrator")), "photonmap");
@@ -81,8 +98,14 @@ static void test_path_tracer(void **state)
     (void)state;
     json_t *stats = stats_of(BOX, ARGUMENTS(QUICK, "--integrator=path", "--stats=a.json"));
     assert_string_equal(json_string_value(stats_find(stats, "integrator")), "path");
-    static const char *const NONE[] = {"photons.emitted", "photons.stored_global", "photons.stored_caustic", "photons.bytes",
-                                       "irradiance.requests", "irradiance.computed", "rays.gather", "rays.photon"};
+    static const char *const NONE[] = {"photons.emitted",
+                                       "photons.stored_global",
+                                       "photons.stored_caustic",
+                                       "photons.bytes",
+                                       "irradiance.requests",
+                                       "irradiance.computed",
+                                       "rays.gather",
+                                       "rays.photon"};
     for (size_t i = 0; i < sizeof NONE / sizeof *NONE; i++)
         assert_int_equal(stats_integer(stats, NONE[i]), 0);
     assert_int_equal(stats_integer(stats, "rays.camera"), 20 * 10 * 2);
@@ -97,9 +120,8 @@ static void test_times(void **state)
     double sum = 0.0;
     const char *phase;
     const json_t *seconds;
-    json_object_foreach((json_t *)(uintptr_t)stats_find(stats, "time_s"), phase, seconds)
-        if (strcmp(phase, "total") != 0)
-            sum += json_number_value(seconds);
+    json_object_foreach((json_t *)(uintptr_t)stats_find(stats, "time_s"), phase,
+                        seconds) if (strcmp(phase, "total") != 0) sum += json_number_value(seconds);
     assert_true(sum > 0.0);
     assert_true(sum <= stats_number(stats, "time_s.total"));
     assert_true(stats_number(stats, "cpu_s") > 0.0);
@@ -223,7 +245,8 @@ static void test_silence(void **state)
         program_run_reset(&run);
     }
     /* -q takes warnings away, not errors */
-    const char *scene = write_text("scene.pbrt", "Integrator \"bdpt\"\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
+    const char *scene =
+        write_text("scene.pbrt", "Integrator \"bdpt\"\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
     program_run run = RUN(QUICK, "-q", "-o", "a.exr", scene);
     expect_exit(&run, 0);
     assert_string_equal(run.err, "");
@@ -243,10 +266,11 @@ static void test_verbose(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_photon_map), TEST_IN_FOLDER(test_path_tracer), TEST_IN_FOLDER(test_times),
-        TEST_IN_FOLDER(test_photons_that_cannot_be_had),
-        TEST_IN_FOLDER(test_plain),      TEST_IN_FOLDER(test_json),        TEST_IN_FOLDER(test_bar),
-        TEST_IN_FOLDER(test_silence),    TEST_IN_FOLDER(test_verbose),
+        TEST_IN_FOLDER(test_photon_map), TEST_IN_FOLDER(test_path_tracer),
+        TEST_IN_FOLDER(test_times),      TEST_IN_FOLDER(test_photons_that_cannot_be_had),
+        TEST_IN_FOLDER(test_plain),      TEST_IN_FOLDER(test_json),
+        TEST_IN_FOLDER(test_bar),        TEST_IN_FOLDER(test_silence),
+        TEST_IN_FOLDER(test_verbose),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

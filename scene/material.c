@@ -1,0 +1,97 @@
+/* material.c: what of a material can be worked out beforehand, and what it is at a place.
+ * Threads: material_prepare while the scene is built; the rest read only. */
+#include "material.h"
+
+#include "bvh.h"
+#include "fresnel.h"
+#include "math/rng.h"
+
+#include <string.h>
+
+static void make_rough_on_both_axes(float *alpha_u, float *alpha_v)
+{
+    /* rough along one axis only: the other must not divide by zero */
+    if (*alpha_u >= MATERIAL_SMOOTH_ALPHA || *alpha_v >= MATERIAL_SMOOTH_ALPHA) {
+        *alpha_u = fmaxf(*alpha_u, 1e-4f);
+        *alpha_v = fmaxf(*alpha_v, 1e-4f);
+    }
+}
+
+void material_prepare(material *m)
+{
+    make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
+    make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
+    if (m->kind == MATERIAL_COATED_DIFFUSE)
+        m->coat_return = fresnel_dielectric_diffuse(1.0f / m->ior, m->coat_thickness);
+}
+
+bool material_is_traced(const scene *s, uint32_t material_index)
+{
+    const material *m = &s->materials[material_index];
+    if (m->kind == MATERIAL_MIX)
+        return material_is_traced(s, m->mixed[0]) || material_is_traced(s, m->mixed[1]);
+    return m->kind != MATERIAL_DIFFUSE && m->kind != MATERIAL_DIFFUSE_TRANSMISSION;
+}
+
+/* A mix picks one of its two by place alone, as pbrt-v4 does: the same for all rays, so photons and eye agree. */
+static const material *resolve_mix(const scene *s, const material *m, const surface_hit *hit)
+{
+    uint32_t bits[3];
+    memcpy(bits, &hit->position, sizeof bits);
+    uint64_t hash = hash_combine(hash_combine(bits[0], bits[1]), bits[2]);
+    while (m->kind == MATERIAL_MIX) {
+        hash = hash_mix64(hash + 0x9e3779b97f4a7c15u);
+        float u = (float)(hash >> 40) * 0x1p-24f;
+        float amount = m->is_textured ? texture_evaluate_float(s, m->mix_amount_texture, hit) : m->mix_amount;
+        m = &s->materials[m->mixed[u < amount ? 1 : 0]];
+    }
+    return m;
+}
+
+static rgb clamp_to_unit(rgb v)
+{
+    return (rgb){fminf(fmaxf(v.r, 0.0f), 1.0f), fminf(fmaxf(v.g, 0.0f), 1.0f), fminf(fmaxf(v.b, 0.0f), 1.0f)};
+}
+
+/* The material as it is at a place. */
+static void look_up_textures(const scene *s, const surface_hit *hit, material *m)
+{
+    if (m->reflectance_texture != SCENE_NO_TEXTURE) {
+        m->reflectance = clamp_to_unit(texture_evaluate_rgb(s, m->reflectance_texture, hit));
+        rgb r = m->reflectance;
+        float relative = m->kind == MATERIAL_COATED_CONDUCTOR ? 1.0f / m->ior : 1.0f;
+        if (m->kind == MATERIAL_CONDUCTOR || m->kind == MATERIAL_COATED_CONDUCTOR) {
+            m->eta = rgb_gray(relative);
+            m->k = rgb_scale((rgb){material_k_from_reflectance(r.r), material_k_from_reflectance(r.g),
+                                   material_k_from_reflectance(r.b)},
+                             relative);
+        }
+    }
+    if (m->transmittance_texture != SCENE_NO_TEXTURE)
+        m->transmittance = clamp_to_unit(texture_evaluate_rgb(s, m->transmittance_texture, hit));
+    if (m->kind == MATERIAL_DIFFUSE_TRANSMISSION) {
+        float sum = rgb_max(rgb_add(m->reflectance, m->transmittance));
+        if (sum > 1.0f) {
+            m->reflectance = rgb_scale(m->reflectance, 1.0f / sum);
+            m->transmittance = rgb_scale(m->transmittance, 1.0f / sum);
+        }
+    }
+    const uint32_t alpha_textures[2] = {m->alpha_u_texture, m->alpha_v_texture};
+    float *const alphas[2] = {&m->alpha_u, &m->alpha_v};
+    for (int i = 0; i < 2; i++)
+        if (alpha_textures[i] != SCENE_NO_TEXTURE) {
+            float value = fmaxf(0.0f, texture_evaluate_float(s, alpha_textures[i], hit));
+            *alphas[i] = m->remaps_roughness ? sqrtf(value) : value;
+        }
+    make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
+}
+
+void material_at(const scene *s, const surface_hit *hit, material *out_material)
+{
+    const material *m = &s->materials[s->shapes[hit->shape_index].material_index];
+    if (m->kind == MATERIAL_MIX)
+        m = resolve_mix(s, m, hit);
+    *out_material = *m;
+    if (m->is_textured)
+        look_up_textures(s, hit, out_material);
+}
