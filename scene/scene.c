@@ -167,8 +167,8 @@ static void find_bounds(scene *s)
     s->bounding_radius = vec3_length(vec3_sub(s->bounds_max, s->bounding_center)) * 1.00001f;
 }
 
-/* The shares by which lights are picked: their luminous power, or where all that is 0, none. */
-static ag_status weigh_lights(scene *s)
+/* The shares by which lights are picked: their power, or where all that is 0, none. */
+static ag_status weigh_lights(scene *s, log_sink *log)
 {
     if (s->light_count == 0)
         return AG_OK;
@@ -185,6 +185,10 @@ static ag_status weigh_lights(scene *s)
         s->light_power = rgb_add(s->light_power, s->lights[i].power);
         /* by the mean of the channels: luminance would all but leave out blue lamps */
         total += (double)s->lights[i].power.r + s->lights[i].power.g + s->lights[i].power.b;
+    }
+    if (!rgb_is_finite(s->light_power)) {
+        log_message(log, AG_LOG_ERROR, "the lights' power together is beyond what a float holds");
+        return AG_ERROR_SCENE;
     }
     for (uint32_t i = 0; i < s->light_count; i++) {
         double share = (double)s->lights[i].power.r + s->lights[i].power.g + s->lights[i].power.b;
@@ -205,7 +209,7 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
     }
     find_bounds(s);
     s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
-    ag_status status = weigh_lights(s);
+    ag_status status = weigh_lights(s, run->log);
     if (status != AG_OK)
         return status;
     return bvh_create(s, run, isa, &s->bvh);

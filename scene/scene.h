@@ -41,8 +41,9 @@ typedef struct scene {
     float bounding_radius;
     float surface_area;       /* m^2, of all shapes */
     rgb light_power;          /* W, of all lights */
-    float *light_cdf;         /* [light_count], running sum of the lights' luminous powers over their total */
-    float *light_probability; /* [light_count], the share of each: with which light_pick picks it */
+    float *light_cdf;         /* [light_count], running sum of light_probability */
+    float *light_probability; /* [light_count], each one's share of the power, as the mean of the channels: with which
+                               * scene_pick_light picks it */
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     struct bvh *bvh;
