@@ -223,7 +223,7 @@ static void warnings_are_given_once(void **state)
         {"Material \"subsurface\" \"float eta\" 1.3",
          "material \"subsurface\" is not known, or not supported yet: \"diffuse\" with a reflectance of 0.5 stands in"},
         {"Material \"coateddiffuse\" \"rgb albedo\" [ 1 1 1 ]",
-         "a coat with scattering inside (\"albedo\") is not supported: a clear coat stands in"},
+         "a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in"},
         {"Shape \"sphere\" \"texture radius\" \"wood\"",
          "\"texture radius\" is not supported here: it is ignored and the default is used"},
         {"Material \"diffuse\" \"spectrum reflectance\" [ 400 1 700 1 ]",
