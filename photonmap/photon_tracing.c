@@ -211,11 +211,11 @@ static void explain_shortage(run_context *run, const photon_tracing_settings *se
     double emitted = b->emitted[0] + b->emitted[1] + b->emitted[2];
     double escaped = b->escaped[0] + b->escaped[1] + b->escaped[2];
     log_message(run->log, AG_LOG_WARNING,
-                "%s photon map: %u of %u photons stored after %llu paths: %.1f %% of the emitted light leaves the scene%s",
+                "%s photon map: %u of %u photons stored after %llu paths, of which too few meet a diffuse surface%s (%.1f %% of "
+                "the emitted light leaves the scene): the light is right, its detail coarser",
                 settings->kind == PHOTON_GLOBAL ? "global" : "caustic", set->count, settings->wanted,
-                (unsigned long long)set->emitted_paths, emitted > 0.0 ? 100.0 * escaped / emitted : 0.0,
-                settings->kind == PHOTON_GLOBAL ? ", and little else meets a diffuse surface"
-                                                : ", and little else meets a diffuse surface by way of a specular one");
+                (unsigned long long)set->emitted_paths, settings->kind == PHOTON_GLOBAL ? "" : " by way of a specular one",
+                emitted > 0.0 ? 100.0 * escaped / emitted : 0.0);
 }
 
 ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,

@@ -248,7 +248,7 @@ static void a_shortage_is_explained(void **state)
     static const char *const FAR_DISK =
         "LightSource \"point\"\nTranslate 0 0 1000 Shape \"disk\" \"float radius\" [10]\n";
     expect_shortage(FAR_DISK, PHOTON_GLOBAL, 200, "of 10000 photons stored");
-    expect_shortage("LightSource \"point\"\n", PHOTON_GLOBAL, 0, "100.0 % of the emitted light leaves the scene");
+    expect_shortage("LightSource \"point\"\n", PHOTON_GLOBAL, 0, "(100.0 % of the emitted light leaves the scene)");
     /* nothing specular: no caustics */
     char text[512];
     snprintf(text, sizeof text, SPHERE, 0.5, 0.5, 0.5);
@@ -256,7 +256,7 @@ static void a_shortage_is_explained(void **state)
     /* nothing diffuse: a room of black mirrors */
     expect_shortage("LightSource \"point\"\nMaterial \"conductor\" \"rgb reflectance\" [0.02 0.02 0.02]\n"
                     "Shape \"sphere\"\n",
-                    PHOTON_GLOBAL, 0, "little else meets a diffuse surface");
+                    PHOTON_GLOBAL, 0, "too few meet a diffuse surface");
 }
 
 static void a_scene_without_light_has_no_photons(void **state)

@@ -1,7 +1,10 @@
 /* test_program_closed_form.c: pictures whose answer is known without rendering: light in a sphere, furnaces, lamps over
  * a floor, a mirror, glass. Each scene of tests/scenes derives its answer in its head; both integrators must give it.
- * Rests on: Pharr, Jakob, Humphreys, 4th ed., 2023, 4.2 (sphere and furnace tests); Hottel, 1954, and Howell's
- * catalogue of configuration factors (disk and rectangle). Flow: tests of the whole program. Threads: the program's. */
+ *
+ * Rests on: Pharr, Jakob, Humphreys, 4th ed., 2023, 4.2 (sphere and furnace tests); Howell, "A Catalog of Radiation
+ * Configuration Factors", 1982 (disk and rectangle).
+ *
+ * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 

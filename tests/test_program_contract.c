@@ -1,5 +1,8 @@
 /* test_program_contract.c: what the program promises to who calls it: exit codes, what is said where and how, and that
- * a run that fails leaves nothing behind. ctest: sanitize Flow: tests of the whole program. Threads: the program's. */
+ * a run that fails leaves nothing behind.
+ *
+ * Flow: tests of the whole program. Threads: the program's. */
+/* ctest: sanitize */
 #define _GNU_SOURCE
 #include "program_picture.h"
 

@@ -1,6 +1,7 @@
 /* test_program_files.c: the files that the program writes: names, formats, sizes, parts of pictures; and that on a full
- * disk or in a closed folder it fails with 3, and leaves what was there. Flow: tests of the whole program. Threads: the
- * program's. */
+ * disk or in a closed folder it fails with 3, and leaves what was there.
+ *
+ * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 

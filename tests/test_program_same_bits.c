@@ -1,6 +1,8 @@
 /* test_program_same_bits.c: the same picture, bit for bit, whatever the number of threads, on demand and precomputed,
- * twice each; in a plain room and in one full of coincidences. And in every run no irradiance is computed twice. ctest:
- * sanitize Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
+ * twice each, in a plain room and in one full of coincidences; and in no run is an irradiance computed twice.
+ *
+ * Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
+/* ctest: sanitize */
 #define _GNU_SOURCE
 #include "program_picture.h"
 

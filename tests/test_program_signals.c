@@ -1,5 +1,8 @@
 /* test_program_signals.c: a signal ends the program with 128 + its number, in whatever phase it comes, and leaves no
- * file. ctest: sanitize Flow: tests of the whole program. Threads: the program's. */
+ * file.
+ *
+ * Flow: tests of the whole program. Threads: the program's. */
+/* ctest: sanitize */
 #define _GNU_SOURCE
 #include "program_run.h"
 

@@ -1,5 +1,6 @@
-/* test_program_statistics.c: what the program tells of its work: statistics as JSON, progress in every style, and
- * silence. Flow: tests of the whole program. Threads: the program's. */
+/* test_program_statistics.c: what the program tells of its work: statistics as JSON, progress in every style, silence.
+ *
+ * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 

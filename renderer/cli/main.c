@@ -146,6 +146,8 @@ int main(int argc, char **argv)
     catch_signals(context);
     status = run(context, &o);
     progress_finish(&told);
+    if (status == AG_CANCELLED && o.verbosity >= 0)
+        fprintf(stderr, "afterglow: interrupted: no picture was written\n");
     if (status == AG_ERROR_MEMORY || status == AG_ERROR_SYSTEM)
         fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
     release_signals();

@@ -41,20 +41,20 @@ typedef struct option_line {
 } option_line;
 
 static const option_line LINES[] = {
-    {'o', "outfile", "FILE", "write the picture to FILE; may be repeated; .exr is scene-linear,\n.png, .tif and .jpg go through a display and view"},
+    {'o', "outfile", "FILE", "write the picture to FILE; may be repeated; .exr is scene-linear,\n.png, .tif and .jpg go through a display and view (default: the Film's\nfilename, else SCENE.exr)"},
     {'t', "nthreads", "N", "threads (default: what affinity mask and cgroup quota allow)"},
     {OPT_SEED, "seed", "N", "seed of all random numbers (default 0)"},
-    {OPT_SPP, "spp", "N", "samples per pixel"},
+    {OPT_SPP, "spp", "N", "samples per pixel (default: the scene's, else 16)"},
     {OPT_SIZE, "size", "WxH", "size of the full picture in pixels"},
     {OPT_CROP, "cropwindow", "X0,X1,Y0,Y1", "part of the picture to render, each in [0, 1]"},
     {OPT_INTEGRATOR, "integrator", "NAME", "photonmap (default) or path"},
     {OPT_CACHE, "cache", "MODE", "irradiance at the photons: on-demand (default), precompute, or off"},
     {OPT_ONLY, "only", "indirect", "leave out emission, and direct light at the first non-specular hit"},
-    {OPT_PHOTONS, "photons", "N", "photons to store in the global map"},
-    {OPT_CAUSTIC_PHOTONS, "caustic-photons", "N", "photons to store in the caustic map"},
-    {OPT_NEAREST, "nearest", "K", "photons of an irradiance estimate"},
+    {OPT_PHOTONS, "photons", "N", "photons to store in the global map (default 1000000)"},
+    {OPT_CAUSTIC_PHOTONS, "caustic-photons", "N", "photons to store in the caustic map (default 500000, where there is\nspecular matter)"},
+    {OPT_NEAREST, "nearest", "K", "photons of an irradiance estimate (default 50)"},
     {OPT_RADIUS, "radius", "R", "largest radius of an estimate, scene units; 0: from the photons' density"},
-    {OPT_GATHER, "gather-samples", "N", "gather rays for each camera sample"},
+    {OPT_GATHER, "gather-samples", "N", "gather rays for each camera sample (default: 256 a pixel in all)"},
     {OPT_MAX_DEPTH, "max-depth", "N", "scatterings between lamp and eye at most, up to 100 (default: roulette)"},
     {OPT_TYPE, "type", "NAME", "stored samples: half, float, uint8 or uint16"},
     {OPT_OCIO, "ocio", "FILE", "OpenColorIO config (default: $OCIO, else the one built in)"},
@@ -64,7 +64,7 @@ static const option_line LINES[] = {
     {OPT_PROGRESS, "progress", "STYLE", "auto (default), bar, plain, json or none"},
     {OPT_ISA, "isa", "NAME", "widest instruction set of ray traversal: sse2, sse4.2, avx, avx2\n(default), avx512; another one may give other bits"},
     {'q', "quiet", NULL, "errors only"},
-    {'v', "verbose", NULL, "say more; twice: everything"},
+    {'v', "verbose", NULL, "also say what was done; twice: also what is harmless in the scene"},
     {OPT_HELP, "help", NULL, "this text"},
     {OPT_VERSION, "version", NULL, "the program's version"},
 };
@@ -232,12 +232,27 @@ static bool take_option(int code, const char *value, options *o)
     return is_valid;
 }
 
-static const char *option_name(int code)
+static const option_line *option_line_of(int code)
 {
-    for (int i = 0; i < LINE_COUNT; i++)
-        if (LINES[i].code == code)
-            return LINES[i].name;
-    return "?";
+    int i = 0;
+    while (LINES[i].code != code)
+        i++;
+    return &LINES[i];
+}
+
+/* One file cannot hold two things. */
+static bool has_file_twice(const options *o)
+{
+    for (int i = 0; i < o->outfile_count; i++) {
+        bool is_twice = o->stats && strcmp(o->stats, o->outfiles[i]) == 0;
+        for (int k = 0; k < i; k++)
+            is_twice = is_twice || strcmp(o->outfiles[k], o->outfiles[i]) == 0;
+        if (is_twice) {
+            fprintf(stderr, "afterglow: '%s' is to be written twice\n", o->outfiles[i]);
+            return true;
+        }
+    }
+    return false;
 }
 
 options_result options_parse(int argc, char **argv, options *out_options)
@@ -263,7 +278,9 @@ options_result options_parse(int argc, char **argv, options *out_options)
             printf("afterglow %s\n", ag_version());
             result = OPTIONS_EXIT_OK;
         } else if (!take_option(code, optarg, &o)) {
-            fprintf(stderr, "afterglow: --%s: '%s' is not valid\n", option_name(code), optarg);
+            const option_line *line = option_line_of(code);
+            fprintf(stderr, "afterglow: --%s: '%s' is not valid: %s %s: %s\n", line->name, optarg, line->name, line->argument,
+                    line->help);
             result = OPTIONS_EXIT_USAGE;
         }
     }
@@ -272,6 +289,8 @@ options_result options_parse(int argc, char **argv, options *out_options)
                 optind < argc ? argv[optind + 1] : "");
         result = OPTIONS_EXIT_USAGE;
     }
+    if (result == OPTIONS_RUN && has_file_twice(&o))
+        result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
         fprintf(stderr, "Try 'afterglow --help'.\n");
     if (result != OPTIONS_RUN) {
