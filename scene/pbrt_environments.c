@@ -3,6 +3,7 @@
  * pbrt-v4 wants them; those twice as wide as high, which it refuses, are latitude-longitude, as pbrt-v3 had them.
  * Flow: pbrt_lights -> [here] -> environment, scene. Threads: one per scene. */
 #include "environment.h"
+#include "image_encoding.h"
 #include "image_reader.h"
 #include "pbrt_private.h"
 
@@ -44,14 +45,10 @@ static ag_status set_frame(pbrt_parser *parser, const parameter_list *list, ligh
     return AG_OK;
 }
 
-/* IEC 61966-2-1, from coded to linear. */
-static float srgb_decode(float v) { return v <= 0.04045f ? v / 12.92f : (float)pow(((double)v + 0.055) / 1.055, 2.4); }
-
-/* Linear RGB of what was read, finite and not negative; NULL when out of memory. */
-static rgb *linear_pixels(const image *picture, size_t *out_bad_count)
+/* RGB of what was read, finite and not negative; NULL when out of memory. */
+static rgb *finite_pixels(const image *picture, size_t *out_bad_count)
 {
     size_t count = (size_t)picture->width * (size_t)picture->height, channels = (size_t)picture->channel_count;
-    bool is_coded = picture->type == IMAGE_UINT8 || picture->type == IMAGE_UINT16;
     rgb *pixels = malloc(count * sizeof *pixels);
     *out_bad_count = 0;
     for (size_t i = 0; pixels && i < count; i++) {
@@ -63,7 +60,7 @@ static rgb *linear_pixels(const image *picture, size_t *out_bad_count)
                 is_bad = true;
                 v = 0.0f;
             }
-            c[k] = is_coded ? srgb_decode(v) : v;
+            c[k] = v;
         }
         *out_bad_count += is_bad;
         pixels[i] = rgb_make(c[0], c[1], c[2]);
@@ -83,7 +80,7 @@ static ag_status create_environment(pbrt_parser *parser, const parameter_list *l
             "as high (latitude-longitude)",
             name, width, height);
     size_t bad_count;
-    rgb *pixels = linear_pixels(picture, &bad_count);
+    rgb *pixels = finite_pixels(picture, &bad_count);
     image_reset(picture);
     if (!pixels)
         return AG_ERROR_MEMORY;
@@ -102,6 +99,10 @@ static ag_status read_picture(pbrt_parser *parser, const parameter_list *list, c
     char *path = pbrt_find_file(parser, name);
     ag_status status = path ? image_read(path, &picture, message, sizeof message) : AG_ERROR_MEMORY;
     free(path);
+    if (status == AG_OK)
+        status = image_linearize(&picture, (image_encoding){0}, message, sizeof message);
+    if (status == AG_ERROR_COLOR)
+        pbrt_refuse(parser, list, "filename", "cannot decode the picture \"%s\": %s", name, message);
     if (status == AG_ERROR_INPUT || status == AG_ERROR_SYSTEM)
         pbrt_refuse(parser, list, "filename", "cannot read the picture \"%s\": %s", name, message);
     if (status == AG_OK)

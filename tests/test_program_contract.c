@@ -240,14 +240,15 @@ static void test_empty_scene(void **state)
 static void test_other_integrators(void **state)
 {
     (void)state;
-    const char *scene = SCENE_WITH("sphere.pbrt", "Camera ", "Integrator \"volpath\" \"integer maxdepth\" 1\nCamera ");
+    const char *scene =
+        write_text("scene.pbrt", "Integrator \"volpath\" \"integer maxdepth\" 1\nInclude \"" SPHERE "\"\n");
     static const char *const INTEGRATORS[] = {"photonmap", "path"};
     for (int k = 0; k < 2; k++) {
         program_run run = RUN("--photons=2000", "--spp=16", "--size=8x8", "--progress=none", "--integrator",
                               INTEGRATORS[k], "-o", "a.exr", scene);
         expect_exit(&run, 0);
         assert_int_equal(line_count(run.err), 1);
-        expect_said(&run, "sphere.pbrt:10:1: warning: ");
+        expect_said(&run, "scene.pbrt:1:1: warning: ");
         expect_said(&run, "volpath");
         expect_said(&run, "maxdepth");
         program_run_reset(&run);
