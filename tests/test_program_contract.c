@@ -70,6 +70,8 @@ static void test_usage(void **state)
         {"-o", "picture", SPHERE},
         {"-o", "", SPHERE},
         {"--outfile=picture.png", "--type=half", SPHERE},
+        {"-osame.png", "-osame.png", SPHERE},
+        {"-osame.png", "--stats=same.png", SPHERE},
     };
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++) {
         program_run run = program_execute(&USUAL, ARGUMENTS(WRONG[i][0], WRONG[i][1], WRONG[i][2]));
