@@ -43,6 +43,12 @@ static ag_status get_int(parameter_list *list, log_sink *log, const char *name, 
     return status;
 }
 
+static bool is_crop_window(const double window[4])
+{
+    return window[0] >= 0.0 && window[0] < window[1] && window[1] <= 1.0 && window[2] >= 0.0 &&
+           window[2] < window[3] && window[3] <= 1.0;
+}
+
 static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settings *out)
 {
     if (!film->name)
@@ -77,9 +83,7 @@ static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settin
         else if (bounds) /* beyond the picture is nothing, as in pbrt */
             out->crop_window[i] = fmin(fmax(bounds[i] / (i < 2 ? out->width : out->height), 0.0), 1.0);
     }
-    const double *window = out->crop_window;
-    if (!(window[0] >= 0.0 && window[0] < window[1] && window[1] <= 1.0 && window[2] >= 0.0 && window[2] < window[3] &&
-          window[3] <= 1.0)) {
+    if (!is_crop_window(out->crop_window)) {
         log_at(log, AG_LOG_ERROR, film->where, "Film: \"%s\" leaves no part of the picture", crop ? "cropwindow" : "pixelbounds");
         return AG_ERROR_SCENE;
     }
@@ -161,11 +165,9 @@ ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loa
 ag_status render_settings_check(ag_context *context, const ag_render_settings *s)
 {
     const char *wrong = NULL;
-    const double *crop = s->crop_window;
     if (s->width < 1 || s->width > 65536 || s->height < 1 || s->height > 65536)
         wrong = "size must be from 1 to 65536 pixels along each edge";
-    else if (!(crop[0] >= 0.0 && crop[0] < crop[1] && crop[1] <= 1.0 && crop[2] >= 0.0 && crop[2] < crop[3] &&
-               crop[3] <= 1.0))
+    else if (!is_crop_window(s->crop_window))
         wrong = "crop window must satisfy 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1";
     else if (s->samples_per_pixel < 1 || s->samples_per_pixel > 1 << 20)
         wrong = "samples per pixel must be from 1 to 1048576";

@@ -44,19 +44,24 @@ rgb light_emitted_radiance(const light *l, vec3 emitter_normal, vec3 direction)
     return l->radiance;
 }
 
-/* The cone under which a sphere is seen from a point outside it: true, and 1 - cos of its half angle; false when the
- * point is inside or too close for the cone to be precise. */
+/* The cone under which a ball is seen from a point outside it: true, and 1 - cos of its half angle; false when the point is
+ * inside or too close for the cone to be precise. */
+static bool ball_cone(vec3 center, float radius, vec3 point, float *out_one_minus_cos)
+{
+    float r2 = radius * radius, distance_squared = vec3_distance_squared(point, center);
+    if (distance_squared <= r2 * 1.0001f)
+        return false;
+    float sin2 = r2 / distance_squared;
+    *out_one_minus_cos = sin2 / (1.0f + sqrtf(fmaxf(0.0f, 1.0f - sin2))); /* 1 - sqrt(1 - x), without cancellation */
+    return true;
+}
+
+/* The same of a lamp that is a whole sphere. */
 static bool sphere_cone(const shape *s, vec3 point, float *out_one_minus_cos)
 {
     if (s->kind != SHAPE_SPHERE || s->as.quadric.uniform_radius <= 0.0f)
         return false;
-    float r = s->as.quadric.uniform_radius;
-    float distance_squared = vec3_distance_squared(point, s->as.quadric.center);
-    if (distance_squared <= r * r * 1.0001f)
-        return false;
-    float sin2 = r * r / distance_squared;
-    *out_one_minus_cos = sin2 / (1.0f + sqrtf(fmaxf(0.0f, 1.0f - sin2))); /* 1 - sqrt(1 - x), without cancellation */
-    return true;
+    return ball_cone(s->as.quadric.center, s->as.quadric.uniform_radius, point, out_one_minus_cos);
 }
 
 static bool sample_area(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
@@ -64,7 +69,8 @@ static bool sample_area(const scene *s, const light *l, vec3 point, vec2 u, ligh
     const shape *lamp = &s->shapes[l->shape_index];
     vec3 position, normal;
     float epsilon, one_minus_cos, pdf;
-    if (sphere_cone(lamp, point, &one_minus_cos)) {
+    bool is_cone = sphere_cone(lamp, point, &one_minus_cos);
+    if (is_cone) {
         /* a direction in the cone, then the near intersection by plane geometry */
         vec3 to_center = vec3_sub(lamp->as.quadric.center, point);
         float distance = vec3_length(to_center), r = lamp->as.quadric.uniform_radius;
@@ -75,7 +81,7 @@ static bool sample_area(const scene *s, const light *l, vec3 point, vec2 u, ligh
         vec3 n = vec3_normalize(vec3_sub(vec3_add_scaled(point, frame_to_world(&f, local), along), lamp->as.quadric.center));
         position = vec3_add_scaled(lamp->as.quadric.center, n, r);
         normal = lamp->flip_normal ? vec3_negate(n) : n;
-        epsilon = (vec3_max_abs(lamp->as.quadric.center) + r) * 0x1p-16f;
+        epsilon = (vec3_max_abs(lamp->as.quadric.center) + r) * SHAPE_EPSILON_RELATIVE;
         pdf = 1.0f / (2.0f * AG_PI * one_minus_cos);
     } else {
         surface_sample at = shape_sample_area(lamp, u);
@@ -94,7 +100,7 @@ static bool sample_area(const scene *s, const light *l, vec3 point, vec2 u, ligh
     float cos_lamp = fabsf(vec3_dot(normal, out->direction));
     if (rgb_is_black(out->radiance) || cos_lamp <= 1e-6f)
         return false;
-    out->pdf_solid_angle = sphere_cone(lamp, point, &one_minus_cos) ? pdf : pdf * distance_squared / cos_lamp;
+    out->pdf_solid_angle = is_cone ? pdf : pdf * distance_squared / cos_lamp;
     out->shadow_target = vec3_add_scaled(position, vec3_face_forward(normal, vec3_negate(out->direction)), epsilon);
     out->is_delta = false;
     return true;
@@ -153,14 +159,11 @@ static bool aim_at(const light_target *target, vec3 origin, rng *random, vec3 *o
 {
     if (!target)
         return false;
+    float one_minus_cos;
+    if (!ball_cone(target->center, target->radius, origin, &one_minus_cos) || one_minus_cos > TARGET_CONE_MAX)
+        return false;
     vec3 to_center = vec3_sub(target->center, origin);
-    float distance_squared = vec3_length_squared(to_center), r2 = target->radius * target->radius;
-    if (distance_squared <= r2 * 1.0001f)
-        return false;
-    float sin2 = r2 / distance_squared, one_minus_cos = sin2 / (1.0f + sqrtf(fmaxf(0.0f, 1.0f - sin2)));
-    if (one_minus_cos > TARGET_CONE_MAX)
-        return false;
-    frame f = frame_from_z(vec3_scale(to_center, 1.0f / sqrtf(distance_squared)));
+    frame f = frame_from_z(vec3_scale(to_center, 1.0f / vec3_length(to_center)));
     *out_direction = frame_to_world(&f, sample_uniform_cone(rng_vec2(random), one_minus_cos));
     *out_pdf = 1.0f / (2.0f * AG_PI * one_minus_cos);
     return true;
