@@ -84,24 +84,23 @@ static void trace_path(tracer *t, uint64_t path)
     light_emission start;
     if (!(probability > 0.0f) || !light_sample_emission(s, lamp, t->target, &random, &start))
         return;
-    vec3 origin = start.origin, direction = start.direction;
+    scene_ray ray = scene_ray_make(start.origin, start.direction);
     rgb flux = rgb_scale(start.flux, 1.0f / probability);
     book(books->emitted, flux);
 
     for (int scatterings = 0;; scatterings++) {
         surface_hit hit;
         t->out->rays++;
-        if (!scene_intersect(s, origin, direction, INFINITY, &hit)) {
+        if (!scene_intersect(s, ray, INFINITY, &hit)) {
             book(books->escaped, flux);
             return;
         }
-        vec3 back = vec3_negate(direction);
-        bsdf b = bsdf_create(s, &hit, back);
+        bsdf b = bsdf_create(s, &hit, vec3_negate(ray.direction));
 
         /* store at gathered lobes */
         if (bsdf_has(&b, BSDF_GATHERED)) {
             if (settings->kind == PHOTON_GLOBAL || scatterings > 0)
-                store(t, &hit, &b, direction, flux, hash_combine(key, (uint64_t)scatterings));
+                store(t, &hit, &b, ray.direction, flux, hash_combine(key, (uint64_t)scatterings));
         }
         if (scatterings >= settings->max_scatterings || scatterings >= SCATTERING_CAP) {
             book(books->truncated, flux);
@@ -132,8 +131,7 @@ static void trace_path(tracer *t, uint64_t path)
         }
         flux = rgb_scale(scattered, 1.0f / survival);
         book(books->gained, rgb_sub(flux, scattered));
-        origin = surface_ray_origin(&hit, direction, next.direction);
-        direction = next.direction;
+        ray = surface_ray(&hit, ray, next.direction);
     }
 }
 

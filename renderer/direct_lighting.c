@@ -19,11 +19,14 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
     if (rgb_is_black(reflected))
         return none;
 
-    vec3 origin = surface_ray_origin(&v->hit, v->arrival, sample.direction);
+    scene_ray shadow = surface_ray(&v->hit, v->arrived, sample.direction);
+    float reach = INFINITY;
+    if (!isinf(sample.distance)) {
+        shadow.direction = vec3_sub(sample.shadow_target, shadow.origin);
+        reach = 1.0f;
+    }
     worker->rays_shadow++;
-    bool is_shadowed = isinf(sample.distance) ? scene_occluded_direction(t->s, origin, sample.direction)
-                                              : scene_occluded(t->s, origin, sample.shadow_target);
-    if (is_shadowed)
+    if (scene_occluded(t->s, shadow, reach))
         return none;
     float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
     if (!sample.is_delta && scatter_count > 0)
@@ -78,8 +81,7 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
             continue;
         vertex met;
         worker->rays_shadow++;
-        if (!transport_trace(t, surface_ray_origin(&v->hit, v->arrival, scattered.direction), scattered.direction,
-                             &met)) {
+        if (!transport_trace(t, surface_ray(&v->hit, v->arrived, scattered.direction), &met)) {
             rgb escaped =
                 direct_light_escaped(t, scattered.direction, scattered.pdf_solid_angle, lamp_count, scatter_count);
             by_scattering = rgb_add(by_scattering, rgb_mul(escaped, scattered.weight));

@@ -27,7 +27,7 @@ static void read_cache(const transport *t, eye_worker *worker, const vertex *v, 
 
 /* What is behind one gather ray. Lamps and environments add nothing: light straight from them is direct light, light from
  * them by way of traced lobes is in the caustic map. */
-static void follow_gather_ray(const transport *t, eye_worker *worker, vec3 origin, vec3 direction, int scatterings_left,
+static void follow_gather_ray(const transport *t, eye_worker *worker, scene_ray ray, int scatterings_left,
                               rng *random, gather_ray *out)
 {
     rgb throughput = rgb_gray(1.0f);
@@ -36,7 +36,7 @@ static void follow_gather_ray(const transport *t, eye_worker *worker, vec3 origi
     for (int depth = 0; depth < scatterings_left; depth++) {
         vertex v;
         worker->rays_gather++;
-        if (!transport_trace(t, origin, direction, &v))
+        if (!transport_trace(t, ray, &v))
             return;
         travelled += v.hit.distance;
         float u_lobe = rng_float(random), u_group = rng_float(random);
@@ -70,8 +70,7 @@ static void follow_gather_ray(const transport *t, eye_worker *worker, vec3 origi
                 return;
             throughput = rgb_scale(throughput, 1.0f / survival);
         }
-        origin = surface_ray_origin(&v.hit, direction, next.direction);
-        direction = next.direction;
+        ray = surface_ray(&v.hit, ray, next.direction);
     }
 }
 
@@ -96,8 +95,8 @@ rgb final_gather(const transport *t, eye_worker *worker, const vertex *v, const 
         float u_lobe = rng_float(&random);
         if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, u_lobe, u, &first))
             continue;
-        follow_gather_ray(t, worker, surface_ray_origin(&v->hit, v->arrival, first.direction), first.direction,
-                          scatterings_left - 1, &random, ray);
+        follow_gather_ray(t, worker, surface_ray(&v->hit, v->arrived, first.direction), scatterings_left - 1, &random,
+                          ray);
         ray->known = rgb_mul(ray->known, first.weight);
         ray->weight = rgb_mul(ray->weight, first.weight);
     }

@@ -5,12 +5,12 @@
 
 enum { ROULETTE_AFTER = 3 };
 
-rgb path_tracing_radiance(const transport *t, eye_worker *worker, vec3 origin, vec3 direction, const sampler *where)
+rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where)
 {
     const ag_render_settings *settings = t->settings;
     bool is_whole = settings->only == AG_ONLY_ALL;
     rgb radiance = rgb_gray(0.0f), throughput = rgb_gray(1.0f);
-    vec3 scattered_from = origin;
+    vec3 scattered_from = ray.origin;
     float scattered_pdf = 0.0f;       /* 0: the eye or a smooth lobe */
     bool has_met_diffuse = false;     /* the path has been scattered by a gathered lobe */
     bool left_first_diffuse = false;  /* at the vertex before, for the first time */
@@ -23,10 +23,10 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, vec3 origin, v
             worker->rays_path++;
         /* emitted light; indirect light alone leaves out what is seen, and what falls straight on the first diffuse place */
         bool counts_emission = is_whole || (has_met_diffuse && !left_first_diffuse);
-        if (!transport_trace(t, origin, direction, &v)) {
+        if (!transport_trace(t, ray, &v)) {
             if (counts_emission)
                 radiance =
-                    rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, direction, scattered_pdf, 1, 1)));
+                    rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, ray.direction, scattered_pdf, 1, 1)));
             return radiance;
         }
         rgb emitted = transport_emission(&v);
@@ -64,7 +64,6 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, vec3 origin, v
         has_met_diffuse = has_met_diffuse || left_first_diffuse;
         scattered_from = v.hit.position;
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
-        origin = surface_ray_origin(&v.hit, direction, next.direction);
-        direction = next.direction;
+        ray = surface_ray(&v.hit, ray, next.direction);
     }
 }

@@ -6,6 +6,6 @@
 
 #include "transport.h"
 
-rgb path_tracing_radiance(const transport *t, eye_worker *worker, vec3 origin, vec3 direction, const sampler *where);
+rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where);
 
 #endif

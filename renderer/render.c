@@ -132,12 +132,12 @@ static rgb render_sample(const tile_job *job, eye_worker *worker, int x, int y, 
     sampler where = sampler_make(settings->seed, x, y, index);
     vec2 offset = pixel_filter_sample(job->filter, sampler_2d(&where, SAMPLE_PIXEL, 0));
     float width = (float)settings->width, height = (float)settings->height;
-    camera_ray ray = camera_generate_ray(&t->s->camera, ((float)x + 0.5f + offset.x) / width,
+    scene_ray ray = camera_generate_ray(&t->s->camera, ((float)x + 0.5f + offset.x) / width,
                                          ((float)y + 0.5f + offset.y) / height, width / height,
                                          sampler_2d(&where, SAMPLE_LENS, 0));
     rgb radiance = settings->integrator == AG_INTEGRATOR_PATH
-                       ? path_tracing_radiance(t, worker, ray.origin, ray.direction, &where)
-                       : shading_radiance(t, worker, ray.origin, ray.direction, &where);
+                       ? path_tracing_radiance(t, worker, ray, &where)
+                       : shading_radiance(t, worker, ray, &where);
     if (rgb_is_finite(radiance))
         return radiance;
     worker->samples_not_finite++;

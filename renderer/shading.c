@@ -38,12 +38,12 @@ static rgb diffuse_radiance(const transport *t, eye_worker *worker, const vertex
     return sum;
 }
 
-rgb shading_radiance(const transport *t, eye_worker *worker, vec3 origin, vec3 direction, const sampler *where)
+rgb shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where)
 {
     const ag_render_settings *settings = t->settings;
     bool is_whole = settings->only == AG_ONLY_ALL;
     rgb radiance = rgb_gray(0.0f), throughput = rgb_gray(1.0f);
-    vec3 scattered_from = origin;
+    vec3 scattered_from = ray.origin;
     float scattered_pdf = 0.0f; /* of a rough traced lobe; 0: the eye or a smooth one, which no shadow ray can serve */
 
     for (int path_vertex = 0;; path_vertex++) {
@@ -52,10 +52,10 @@ rgb shading_radiance(const transport *t, eye_worker *worker, vec3 origin, vec3 d
             worker->rays_camera++;
         else
             worker->rays_path++;
-        if (!transport_trace(t, origin, direction, &v)) {
+        if (!transport_trace(t, ray, &v)) {
             if (is_whole)
                 radiance =
-                    rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, direction, scattered_pdf, 1, 1)));
+                    rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, ray.direction, scattered_pdf, 1, 1)));
             return radiance;
         }
 
@@ -97,7 +97,6 @@ rgb shading_radiance(const transport *t, eye_worker *worker, vec3 origin, vec3 d
         }
         scattered_from = v.hit.position;
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
-        origin = surface_ray_origin(&v.hit, direction, next.direction);
-        direction = next.direction;
+        ray = surface_ray(&v.hit, ray, next.direction);
     }
 }

@@ -1,14 +1,14 @@
 /* transport.c: see transport.h. */
 #include "transport.h"
 
-bool transport_trace(const transport *t, vec3 origin, vec3 direction, vertex *out_vertex)
+bool transport_trace(const transport *t, scene_ray ray, vertex *out_vertex)
 {
     const scene *s = t->s;
-    if (!scene_intersect(s, origin, direction, INFINITY, &out_vertex->hit))
+    if (!scene_intersect(s, ray, INFINITY, &out_vertex->hit))
         return false;
     const shape *where = &s->shapes[out_vertex->hit.shape_index];
-    out_vertex->arrival = direction;
-    out_vertex->scattering = bsdf_create(s, &out_vertex->hit, vec3_negate(direction));
+    out_vertex->arrived = ray;
+    out_vertex->scattering = bsdf_create(s, &out_vertex->hit, vec3_negate(ray.direction));
     out_vertex->lamp = where->light_index == SHAPE_NO_LIGHT ? NULL : &s->lights[where->light_index];
     return true;
 }
@@ -17,7 +17,7 @@ rgb transport_emission(const vertex *v)
 {
     if (!v->lamp)
         return rgb_gray(0.0f);
-    return light_emitted_radiance(v->lamp, v->hit.geometric_normal, vec3_negate(v->arrival));
+    return light_emitted_radiance(v->lamp, v->hit.geometric_normal, vec3_negate(v->arrived.direction));
 }
 
 vec3 transport_facing_normal(const vertex *v)

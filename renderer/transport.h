@@ -42,12 +42,12 @@ typedef struct eye_worker {
 typedef struct vertex {
     surface_hit hit;
     bsdf scattering;
-    vec3 arrival; /* the way the ray went, unit */
+    scene_ray arrived; /* of unit direction */
     const light *lamp; /* the area light that shines there, or NULL */
 } vertex;
 
-/* Follows a ray to its first surface. */
-bool transport_trace(const transport *t, vec3 origin, vec3 direction, vertex *out_vertex);
+/* Follows a ray of unit direction to its first surface. */
+bool transport_trace(const transport *t, scene_ray ray, vertex *out_vertex);
 
 /* Radiance that the place itself sends back along the ray. */
 rgb transport_emission(const vertex *v);

@@ -4,6 +4,7 @@
 #ifndef AFTERGLOW_BVH_H
 #define AFTERGLOW_BVH_H
 
+#include "ray.h"
 #include "scene.h"
 
 typedef struct bvh bvh;
@@ -27,23 +28,22 @@ typedef struct surface_hit {
     vec2 uv;               /* pbrt's, in [0, 1] on quadrics; a mesh's own, or barycentrics where it has none */
     float distance;        /* along the ray, for a unit direction in scene units */
     float epsilon;         /* how far off the surface a new ray must start so as not to meet it again, scene units */
-    bool is_flat;          /* part of a mesh, whose corners a start must stay out of: see surface_ray_origin */
+    bool is_flat;          /* part of a mesh, whose corners a start must stay out of: see surface_ray */
     uint32_t shape_index;
     uint32_t primitive_index; /* triangle of a mesh */
 } surface_hit;
 
 /* The nearest surface along the ray, from its origin to max_distance (in lengths of direction, INFINITY is fine). */
-bool scene_intersect(const scene *s, vec3 origin, vec3 direction, float max_distance, surface_hit *out_hit);
+bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 
-/* Whether anything stands between two points that lie off all surfaces. */
-bool scene_occluded(const scene *s, vec3 from, vec3 to);
-/* Whether anything lies that way. */
-bool scene_occluded_direction(const scene *s, vec3 from, vec3 direction);
+/* Whether anything stands along the ray up to max_distance (as above). */
+bool scene_occluded(const scene *s, scene_ray ray, float max_distance);
 
-/* A start off the surface for a ray into `direction`, after arriving along `arrival` (unit). On meshes, moving also
- * against (or, when passing through, along) the way of arrival keeps starts in the corners of closed rooms inside. On
- * round surfaces it would turn the path a little each time, and let out light that is trapped in glass. */
-vec3 surface_ray_origin(const surface_hit *hit, vec3 arrival, vec3 direction);
+/* The ray that leaves a surface into `direction`, after arriving along `arrived` (of unit direction). It starts off the
+ * surface. On meshes, moving also against (or, when passing through, along) the way of arrival keeps starts in the corners
+ * of closed rooms inside. On round surfaces it would turn the path a little each time, and let out light that is trapped
+ * in glass. */
+scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction);
 
 /* A random place on a shape, in proportion to area. pdf_area: 1/m^2. */
 typedef struct surface_sample {

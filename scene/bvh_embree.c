@@ -217,18 +217,18 @@ const char *bvh_isa(const bvh *b) { return b->isa; }
 
 /* --- rays --- */
 
-static struct RTCRay make_ray(vec3 origin, vec3 direction, float max_distance)
+static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
 {
-    struct RTCRay ray = {.org_x = origin.x, .org_y = origin.y, .org_z = origin.z, .tnear = 0.0f,
-                         .dir_x = direction.x, .dir_y = direction.y, .dir_z = direction.z, .time = 0.0f,
+    struct RTCRay ray = {.org_x = r->origin.x, .org_y = r->origin.y, .org_z = r->origin.z, .tnear = 0.0f,
+                         .dir_x = r->direction.x, .dir_y = r->direction.y, .dir_z = r->direction.z, .time = r->time,
                          .tfar = max_distance, .mask = 0xffffffffu, .id = 0, .flags = 0};
     return ray;
 }
 
-bool scene_intersect(const scene *s, vec3 origin, vec3 direction, float max_distance, surface_hit *out_hit)
+bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
 {
     struct RTCRayHit ray_hit;
-    ray_hit.ray = make_ray(origin, direction, max_distance);
+    ray_hit.ray = embree_ray(&ray, max_distance);
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     embree_intersect(s->bvh->scene, &ray_hit);
@@ -238,30 +238,25 @@ bool scene_intersect(const scene *s, vec3 origin, vec3 direction, float max_dist
     out_hit->shape_index = ray_hit.hit.geomID;
     out_hit->primitive_index = ray_hit.hit.primID;
     shape_surface_at(&s->shapes[ray_hit.hit.geomID], ray_hit.hit.primID, ray_hit.hit.u, ray_hit.hit.v,
-                     vec3_add_scaled(origin, direction, ray_hit.ray.tfar), out_hit);
+                     vec3_add_scaled(ray.origin, ray.direction, ray_hit.ray.tfar), out_hit);
     return true;
 }
 
-static bool is_blocked(const scene *s, vec3 origin, vec3 direction, float max_distance)
+bool scene_occluded(const scene *s, scene_ray ray, float max_distance)
 {
-    struct RTCRay ray = make_ray(origin, direction, max_distance);
-    embree_occluded(s->bvh->scene, &ray);
-    return ray.tfar < 0.0f;
+    struct RTCRay cast = embree_ray(&ray, max_distance);
+    embree_occluded(s->bvh->scene, &cast);
+    return cast.tfar < 0.0f;
 }
 
-bool scene_occluded(const scene *s, vec3 from, vec3 to) { return is_blocked(s, from, vec3_sub(to, from), 1.0f); }
-
-bool scene_occluded_direction(const scene *s, vec3 from, vec3 direction)
-{
-    return is_blocked(s, from, direction, INFINITY);
-}
-
-vec3 surface_ray_origin(const surface_hit *hit, vec3 arrival, vec3 direction)
+scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction)
 {
     vec3 n = vec3_face_forward(hit->geometric_normal, direction);
-    bool passes_through = vec3_dot(arrival, n) > 0.0f;
-    vec3 off = vec3_add_scaled(hit->position, n, hit->epsilon);
-    if (!hit->is_flat)
-        return off;
-    return vec3_add_scaled(off, arrival, passes_through ? hit->epsilon : -hit->epsilon);
+    bool passes_through = vec3_dot(arrived.direction, n) > 0.0f;
+    scene_ray next = arrived;
+    next.origin = vec3_add_scaled(hit->position, n, hit->epsilon);
+    next.direction = direction;
+    if (hit->is_flat)
+        next.origin = vec3_add_scaled(next.origin, arrived.direction, passes_through ? hit->epsilon : -hit->epsilon);
+    return next;
 }

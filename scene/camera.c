@@ -5,7 +5,7 @@
 
 #include "math/sampling.h"
 
-camera_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u)
+scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u)
 {
     /* the screen at distance 1: the shorter axis spans [-1, 1] times tan(fov / 2) */
     float frame_aspect = c->frame_aspect_ratio > 0.0f ? c->frame_aspect_ratio : aspect;
@@ -26,7 +26,6 @@ camera_ray camera_generate_ray(const camera *c, float film_x, float film_y, floa
         origin = (vec3){lens.x * c->lens_radius, lens.y * c->lens_radius, 0.0f};
         direction = vec3_sub(focus, origin);
     }
-    camera_ray ray = {transform_point(&c->world_from_camera, origin),
-                      vec3_normalize(transform_vector(&c->world_from_camera, direction))};
-    return ray;
+    return scene_ray_make(transform_point(&c->world_from_camera, origin),
+                          vec3_normalize(transform_vector(&c->world_from_camera, direction)));
 }

@@ -5,6 +5,7 @@
 #define AFTERGLOW_CAMERA_H
 
 #include "math/transform.h"
+#include "ray.h"
 
 typedef struct camera {
     transform world_from_camera;
@@ -17,12 +18,8 @@ typedef struct camera {
     float tan_half_fov;        /* set by scene_commit */
 } camera;
 
-typedef struct camera_ray {
-    vec3 origin, direction; /* world space; direction is unit */
-} camera_ray;
-
 /* film_x, film_y: in [0, 1] from the left and from the top of the full image; aspect: its width / height;
- * lens_u in [0,1)^2 picks the place on the lens. */
-camera_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u);
+ * lens_u in [0,1)^2 picks the place on the lens. The direction is unit. */
+scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u);
 
 #endif

@@ -50,23 +50,23 @@ static void the_nearest_shape_is_met(void **state)
     surface_hit hit;
     for (uint32_t i = 0; i < 4; i++) {
         from.z = STARTS[i];
-        assert_true(scene_intersect(s, from, z, INFINITY, &hit));
+        assert_true(scene_intersect(s, scene_ray_make(from, z), INFINITY, &hit));
         assert_int_equal(hit.shape_index, i);
         assert_close(hit.position.z, AT[i + 1], 0.03);
         assert_close(hit.distance, hit.position.z - from.z, 1e-5);
         assert_int_equal(hit.primitive_index, i == 3 ? 1 : 0);
         /* a ray that ends before it, and one that ends behind */
-        assert_false(scene_intersect(s, from, z, hit.distance * 0.999f, &hit));
-        assert_true(scene_intersect(s, from, z, hit.distance * 1.001f, &hit));
+        assert_false(scene_intersect(s, scene_ray_make(from, z), hit.distance * 0.999f, &hit));
+        assert_true(scene_intersect(s, scene_ray_make(from, z), hit.distance * 1.001f, &hit));
     }
     from.z = STARTS[4];
-    assert_false(scene_intersect(s, from, z, INFINITY, &hit));
+    assert_false(scene_intersect(s, scene_ray_make(from, z), INFINITY, &hit));
     /* the other way round, from the far end; a direction of length 2 counts in its own lengths */
-    assert_true(scene_intersect(s, from, (vec3){0.0f, 0.0f, -2.0f}, INFINITY, &hit));
+    assert_true(scene_intersect(s, scene_ray_make(from, (vec3){0.0f, 0.0f, -2.0f}), INFINITY, &hit));
     assert_int_equal(hit.shape_index, 3);
     assert_close(hit.distance, 0.25, 1e-6);
     /* the two triangles of the mesh */
-    assert_true(scene_intersect(s, (vec3){8.0f, 8.0f, 19.0f}, z, INFINITY, &hit));
+    assert_true(scene_intersect(s, scene_ray_make((vec3){8.0f, 8.0f, 19.0f}, z), INFINITY, &hit));
     assert_int_equal(hit.primitive_index, 0);
     scene_destroy(s);
     test_run_reset(&r);
@@ -81,13 +81,13 @@ static void each_kind_of_shape_occludes(void **state)
     static const float BEFORE[] = {-1.0f, 3.0f, 7.0f, 19.0f}, BEHIND[] = {1.0f, 7.0f, 13.0f, 21.0f};
     for (int i = 0; i < 4; i++) {
         vec3 a = {0.2f, 0.1f, BEFORE[i]}, b = {0.2f, 0.1f, BEHIND[i]}, beside = {-30.0f, 0.1f, BEHIND[i]};
-        assert_true(scene_occluded(s, a, b));
-        assert_true(scene_occluded(s, b, a));
-        assert_false(scene_occluded(s, a, (vec3){a.x, a.y, a.z + 0.9f}));
-        assert_false(scene_occluded(s, b, (vec3){b.x, b.y, b.z - 0.9f}));
-        assert_false(scene_occluded(s, b, beside));
-        assert_true(scene_occluded_direction(s, a, (vec3){0.0f, 0.0f, 1.0f}));
-        assert_false(scene_occluded_direction(s, a, (vec3){-1.0f, 0.0f, 0.0f}));
+        assert_true(is_blocked_between(s, a, b));
+        assert_true(is_blocked_between(s, b, a));
+        assert_false(is_blocked_between(s, a, (vec3){a.x, a.y, a.z + 0.9f}));
+        assert_false(is_blocked_between(s, b, (vec3){b.x, b.y, b.z - 0.9f}));
+        assert_false(is_blocked_between(s, b, beside));
+        assert_true(scene_occluded(s, scene_ray_make(a, (vec3){0.0f, 0.0f, 1.0f}), INFINITY));
+        assert_false(scene_occluded(s, scene_ray_make(a, (vec3){-1.0f, 0.0f, 0.0f}), INFINITY));
     }
     scene_destroy(s);
     test_run_reset(&r);
@@ -101,9 +101,9 @@ static void an_empty_scene_is_met_by_nothing(void **state)
     scene *s = test_scene_create(&r, "");
     surface_hit hit;
     vec3 origin = {0.0f, 0.0f, 0.0f}, z = {0.0f, 0.0f, 1.0f};
-    assert_false(scene_intersect(s, origin, z, INFINITY, &hit));
-    assert_false(scene_occluded(s, origin, z));
-    assert_false(scene_occluded_direction(s, origin, z));
+    assert_false(scene_intersect(s, scene_ray_make(origin, z), INFINITY, &hit));
+    assert_false(is_blocked_between(s, origin, z));
+    assert_false(scene_occluded(s, scene_ray_make(origin, z), INFINITY));
     scene_destroy(s);
     test_run_reset(&r);
 }
@@ -133,8 +133,8 @@ static void closed_surfaces_let_nothing_through(void **state)
                 direction = vec3_normalize(vec3_sub(i % 3 == 0 ? beside : on_edge, from));
             }
             surface_hit hit;
-            assert_true(scene_intersect(s, from, direction, INFINITY, &hit));
-            assert_true(scene_occluded_direction(s, from, direction));
+            assert_true(scene_intersect(s, scene_ray_make(from, direction), INFINITY, &hit));
+            assert_true(scene_occluded(s, scene_ray_make(from, direction), INFINITY));
         }
         scene_destroy(s);
     }
@@ -170,7 +170,7 @@ static void any_number_of_builders_gives_the_same_hits(void **state)
         for (uint32_t i = 0; i < RAYS; i++) {
             vec3 from = vec3_add_scaled(s->bounding_center, random_direction(&random), 4.0f);
             vec3 to = vec3_add_scaled(s->bounding_center, random_direction(&random), 1.1f);
-            met += scene_intersect(s, from, vec3_normalize(vec3_sub(to, from)), INFINITY, &hits[i]);
+            met += scene_intersect(s, scene_ray_make(from, vec3_normalize(vec3_sub(to, from))), INFINITY, &hits[i]);
         }
         assert_true(met > RAYS / 2 && met < RAYS);
         if (w == 0)
@@ -206,7 +206,7 @@ static void the_instruction_set_can_be_chosen(void **state)
     assert_int_equal(scene_commit(s, &r.run, "sse2"), AG_OK);
     assert_string_equal(bvh_isa(s->bvh), "sse2");
     surface_hit hit;
-    assert_true(scene_intersect(s, (vec3){0.0f, 0.0f, -3.0f}, (vec3){0.0f, 0.0f, 1.0f}, INFINITY, &hit));
+    assert_true(scene_intersect(s, scene_ray_make((vec3){0.0f, 0.0f, -3.0f}, (vec3){0.0f, 0.0f, 1.0f}), INFINITY, &hit));
     assert_close(hit.distance, 2.0, 1e-5);
     scene_destroy(s);
     test_run_reset(&r);

@@ -16,7 +16,7 @@ static double lamp_density(const view *v, vec3 d)
 {
     const light *l = &v->s->lights[0];
     surface_hit hit;
-    if (!scene_intersect(v->s, v->point, d, INFINITY, &hit) ||
+    if (!scene_intersect(v->s, scene_ray_make(v->point, d), INFINITY, &hit) ||
         rgb_is_black(light_emitted_radiance(l, hit.geometric_normal, vec3_negate(d))))
         return 0.0;
     return light_pdf_from_point(v->s, l, v->point, hit.position, hit.geometric_normal);
@@ -57,12 +57,12 @@ static void check_lamp(const char *world, vec3 point, double solid_angle)
         assert_memory_equal(&at.radiance, &l->radiance, sizeof(rgb));
         double inverse = 1.0 / (double)at.pdf_solid_angle;
         sum += inverse / SAMPLES, square += inverse * inverse / SAMPLES;
-        assert_false(scene_occluded(s, point, at.shadow_target));
+        assert_false(is_blocked_between(s, point, at.shadow_target));
         if (i % 10)
             continue;
         /* a ray that way meets the lamp there, and its density is the same */
         surface_hit hit;
-        if (!scene_intersect(s, point, at.direction, INFINITY, &hit)) {
+        if (!scene_intersect(s, scene_ray_make(point, at.direction), INFINITY, &hit)) {
             missed++; /* past the very edge */
             continue;
         }
@@ -361,7 +361,7 @@ static void distant_light_fills_the_disc_around_the_scene(void **state)
         double along = vec3_dot(off, e.direction), square = vec3_length_squared(off) - along * along;
         assert_true(along <= -radius && square <= radius * radius * 1.0001);
         mean_square += square / SAMPLES;
-        hits += scene_intersect(s, e.origin, e.direction, INFINITY, &hit);
+        hits += scene_intersect(s, scene_ray_make(e.origin, e.direction), INFINITY, &hit);
     }
     assert_relative(mean_square, radius * radius / 2.0, 5.0 / sqrt(SAMPLES));
     /* what reaches the sphere is what its disc takes of it */

@@ -185,7 +185,7 @@ static void rays_meet_every_point_with_its_uv(void **state)
                 n = vec3_normalize(transform_normal(world, n));
                 vec3 from = vec3_add_scaled(p, n, 0.3f);
                 surface_hit hit;
-                if (!scene_intersect(s, from, vec3_negate(n), INFINITY, &hit))
+                if (!scene_intersect(s, scene_ray_make(from, vec3_negate(n)), INFINITY, &hit))
                     fail_msg("%s%s is not met at %g, %g", PLACES[place], SHAPES[k], u, v);
                 double scale = s->bounding_radius + vec3_max_abs(s->bounding_center);
                 assert_close(hit.distance, 0.3, 1e-5 * scale);
@@ -196,9 +196,9 @@ static void rays_meet_every_point_with_its_uv(void **state)
                 assert_close(hit.uv.y, v, 2e-4);
                 /* the same from behind; the normal stays */
                 from = vec3_add_scaled(p, n, -0.05f);
-                assert_true(scene_intersect(s, from, n, 0.1f, &hit));
+                assert_true(scene_intersect(s, scene_ray_make(from, n), 0.1f, &hit));
                 assert_true(vec3_dot(hit.geometric_normal, n) > 0.9999f);
-                assert_true(scene_occluded(s, from, vec3_add_scaled(p, n, 0.05f)));
+                assert_true(is_blocked_between(s, from, vec3_add_scaled(p, n, 0.05f)));
             }
             scene_destroy(s);
         }
@@ -223,16 +223,16 @@ static void rays_meet_the_part_alone(void **state)
                 vec3 to = vec3_add_scaled(s->bounding_center, random_direction(&random), 0.8f * s->bounding_radius);
                 vec3 direction = vec3_normalize(vec3_sub(to, from));
                 surface_hit hit, next;
-                bool is_hit = scene_intersect(s, from, direction, INFINITY, &hit);
-                assert_int_equal(is_hit, scene_occluded_direction(s, from, direction));
+                bool is_hit = scene_intersect(s, scene_ray_make(from, direction), INFINITY, &hit);
+                assert_int_equal(is_hit, scene_occluded(s, scene_ray_make(from, direction), INFINITY));
                 if (!is_hit)
                     continue;
                 hits++;
                 assert_true(is_on_part(it, to_object(it, hit.position), 1e-5 * scale));
                 assert_true(hit.uv.x >= 0.0f && hit.uv.x <= 1.0f && hit.uv.y >= 0.0f && hit.uv.y <= 1.0f);
                 /* going on, it never meets the same place again */
-                vec3 out = surface_ray_origin(&hit, direction, direction);
-                if (scene_intersect(s, out, direction, INFINITY, &next)) {
+                vec3 out = surface_ray(&hit, scene_ray_make(hit.position, direction), direction).origin;
+                if (scene_intersect(s, scene_ray_make(out, direction), INFINITY, &next)) {
                     through++;
                     assert_true(next.distance > 0.0f);
                     assert_true(is_on_part(it, to_object(it, next.position), 1e-5 * scale));
@@ -254,19 +254,19 @@ static void what_is_cut_away_is_not_met(void **state)
     scene *s = test_scene_create(&r, "Shape \"cylinder\" \"float phimax\" [180]");
     surface_hit hit;
     vec3 x = {1.0f, 0.0f, 0.0f}, y = {0.0f, 1.0f, 0.0f}, z = {0.0f, 0.0f, 1.0f};
-    assert_false(scene_intersect(s, vec3_make(0.2f, 0.3f, -5.0f), z, INFINITY, &hit));
-    assert_false(scene_intersect(s, vec3_make(-5.0f, 0.5f, 1.1f), x, INFINITY, &hit));
-    assert_false(scene_intersect(s, vec3_make(-5.0f, -0.5f, 0.5f), x, INFINITY, &hit));
-    assert_true(scene_intersect(s, vec3_make(0.0f, -5.0f, 0.5f), y, INFINITY, &hit));
+    assert_false(scene_intersect(s, scene_ray_make(vec3_make(0.2f, 0.3f, -5.0f), z), INFINITY, &hit));
+    assert_false(scene_intersect(s, scene_ray_make(vec3_make(-5.0f, 0.5f, 1.1f), x), INFINITY, &hit));
+    assert_false(scene_intersect(s, scene_ray_make(vec3_make(-5.0f, -0.5f, 0.5f), x), INFINITY, &hit));
+    assert_true(scene_intersect(s, scene_ray_make(vec3_make(0.0f, -5.0f, 0.5f), y), INFINITY, &hit));
     assert_close(hit.distance, 6.0, 1e-5);
     assert_close(hit.uv.x, 0.5, 1e-6);
     assert_close(hit.uv.y, 0.75, 1e-6);
     assert_close(hit.geometric_normal.y, 1.0, 1e-6);
-    assert_false(scene_occluded(s, vec3_make(0.0f, -5.0f, 0.5f), vec3_make(0.0f, 0.9f, 0.5f)));
-    assert_true(scene_occluded(s, vec3_make(0.0f, -5.0f, 0.5f), vec3_make(0.0f, 1.1f, 0.5f)));
+    assert_false(is_blocked_between(s, vec3_make(0.0f, -5.0f, 0.5f), vec3_make(0.0f, 0.9f, 0.5f)));
+    assert_true(is_blocked_between(s, vec3_make(0.0f, -5.0f, 0.5f), vec3_make(0.0f, 1.1f, 0.5f)));
     scene_destroy(s);
     s = test_scene_create(&r, "ReverseOrientation Shape \"sphere\" \"float zmax\" [0]");
-    assert_true(scene_intersect(s, vec3_make(0.0f, 0.0f, 5.0f), vec3_negate(z), INFINITY, &hit));
+    assert_true(scene_intersect(s, scene_ray_make(vec3_make(0.0f, 0.0f, 5.0f), vec3_negate(z)), INFINITY, &hit));
     assert_close(hit.distance, 6.0, 1e-5);
     assert_close(hit.uv.y, 0.0, 1e-3);
     assert_close(hit.geometric_normal.z, 1.0, 1e-6); /* outside is below, turned over */
@@ -311,7 +311,7 @@ static void samples_are_even_over_the_part(void **state)
                     halves[1] += p.z < 0.5f * (q->z_min + q->z_max);
                 /* the light that is there reaches what is before it */
                 vec3 target = vec3_add_scaled(at.position, at.geometric_normal, at.epsilon);
-                assert_false(scene_occluded(s, vec3_add_scaled(at.position, at.geometric_normal, 0.1f), target));
+                assert_false(is_blocked_between(s, vec3_add_scaled(at.position, at.geometric_normal, 0.1f), target));
             }
             /* the mean of the density's inverse is the area; halves in object space are halves of what is drawn */
             assert_close(inverse, it->area,
@@ -341,12 +341,12 @@ static void lamps_shine_as_they_are_seen(void **state)
             for (int i = 0; i < count; i++) {
                 light_sample at;
                 if (light_sample_from_point(s, lamp, point, rng_vec2(&random), &at) &&
-                    !scene_occluded(s, point, at.shadow_target)) {
+                    !is_blocked_between(s, point, at.shadow_target)) {
                     double value = (double)at.radiance.r / (double)at.pdf_solid_angle;
                     sampled += value / count;
                     squares += value * value / count;
                     surface_hit hit;
-                    if (scene_intersect(s, point, at.direction, INFINITY, &hit) &&
+                    if (scene_intersect(s, scene_ray_make(point, at.direction), INFINITY, &hit) &&
                         fabsf(vec3_dot(hit.geometric_normal, at.direction)) > 0.05f) /* flatter ones lose digits */
                         assert_relative(light_pdf_from_point(s, lamp, point, hit.position, hit.geometric_normal),
                                         at.pdf_solid_angle, 0.02);
@@ -356,7 +356,7 @@ static void lamps_shine_as_they_are_seen(void **state)
                 frame f = frame_from_z(vec3_negate(away));
                 vec3 direction = frame_to_world(&f, local);
                 surface_hit hit;
-                if (scene_intersect(s, point, direction, INFINITY, &hit))
+                if (scene_intersect(s, scene_ray_make(point, direction), INFINITY, &hit))
                     seen += (double)light_emitted_radiance(lamp, hit.geometric_normal, vec3_negate(direction)).r * PI /
                             count;
             }

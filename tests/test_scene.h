@@ -172,4 +172,10 @@ static inline void assert_chi_square(const uint32_t counts[BIN_COUNT], const dou
         fail_msg("chi-square %g, with %d bins: above %g", chi, degrees, limit);
 }
 
+/* Whether anything stands between two points that lie off all surfaces. */
+static inline bool is_blocked_between(const scene *s, vec3 from, vec3 to)
+{
+    return scene_occluded(s, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
+}
+
 #endif

@@ -106,7 +106,7 @@ static void check_samples(const char *world)
         /* a ray straight at it meets it there, from the same side */
         surface_hit hit;
         vec3 from = vec3_add_scaled(at.position, at.geometric_normal, 0.5f);
-        bool was_hit = scene_intersect(s, from, vec3_negate(at.geometric_normal), INFINITY, &hit);
+        bool was_hit = scene_intersect(s, scene_ray_make(from, vec3_negate(at.geometric_normal)), INFINITY, &hit);
         if (!was_hit)
             continue; /* at the very edge of a disk or triangle */
         assert_true(vec3_distance_squared(hit.position, at.position) < 4.0f * at.epsilon * at.epsilon);
@@ -164,7 +164,7 @@ static vec3 normal_seen(const char *world, vec3 from, vec3 direction)
     test_run_init(&r, 1);
     scene *s = test_scene_create(&r, world);
     surface_hit hit;
-    assert_true(scene_intersect(s, from, direction, INFINITY, &hit));
+    assert_true(scene_intersect(s, scene_ray_make(from, direction), INFINITY, &hit));
     assert_true(vec3_dot(hit.geometric_normal, hit.shading_normal) > 0.0f);
     scene_destroy(s);
     test_run_reset(&r);
@@ -212,7 +212,7 @@ static void hits_lie_on_the_ray_and_on_the_surface(void **state)
             vec3 to = vec3_add_scaled(s->bounding_center, random_direction(&random), 0.8f * s->bounding_radius);
             vec3 direction = vec3_normalize(vec3_sub(to, from));
             surface_hit hit;
-            if (!scene_intersect(s, from, direction, INFINITY, &hit))
+            if (!scene_intersect(s, scene_ray_make(from, direction), INFINITY, &hit))
                 continue;
             hits++;
             double scale = s->bounding_radius + vec3_max_abs(s->bounding_center);
@@ -248,15 +248,15 @@ static void rays_from_a_surface_do_not_hit_it_again(void **state)
             surface_hit hit, next;
             vec3 from = random_around(&random, s, i % 2 ? 2.0f : 10.0f);
             vec3 direction = vec3_normalize(vec3_sub(random_around(&random, s, 0.9f), from));
-            if (!scene_intersect(s, from, direction, INFINITY, &hit))
+            if (!scene_intersect(s, scene_ray_make(from, direction), INFINITY, &hit))
                 continue;
             vec3 away = vec3_face_forward(random_direction(&random), vec3_negate(direction));
             away = vec3_face_forward(away, vec3_face_forward(hit.geometric_normal, vec3_negate(direction)));
-            vec3 out = surface_ray_origin(&hit, direction, away);
-            assert_false(scene_intersect(s, out, away, INFINITY, &next));
-            assert_false(scene_occluded_direction(s, out, away));
-            vec3 in = surface_ray_origin(&hit, direction, vec3_negate(away));
-            bool is_met = scene_intersect(s, in, vec3_negate(away), INFINITY, &next);
+            vec3 out = surface_ray(&hit, scene_ray_make(hit.position, direction), away).origin;
+            assert_false(scene_intersect(s, scene_ray_make(out, away), INFINITY, &next));
+            assert_false(scene_occluded(s, scene_ray_make(out, away), INFINITY));
+            vec3 in = surface_ray(&hit, scene_ray_make(hit.position, direction), vec3_negate(away)).origin;
+            bool is_met = scene_intersect(s, scene_ray_make(in, vec3_negate(away)), INFINITY, &next);
             if (k >= CLOSED_COUNT)
                 assert_false(is_met);
             else if (fabsf(vec3_dot(away, hit.geometric_normal)) > 0.02f)
@@ -286,7 +286,7 @@ static void native_spheres_and_quadrics_agree(void **state)
                 inside ? random_direction(&random) : vec3_normalize(vec3_sub(random_around(&random, s, 0.8f), from));
             surface_hit hit;
             float t;
-            bool a = scene_intersect(s, from, direction, INFINITY, &hit);
+            bool a = scene_intersect(s, scene_ray_make(from, direction), INFINITY, &hit);
             bool b = shape_intersect_quadric(it, from, direction, 0.0f, INFINITY, &t);
             differ += a != b; /* at the very silhouette */
             if (!a || !b)

@@ -1,0 +1,25 @@
+/* ray.h: a ray through the scene, with what it carries along.
+ * Flow: the camera, lamps and surfaces start them; bvh_embree casts them. Threads: plain values. */
+#ifndef AFTERGLOW_RAY_H
+#define AFTERGLOW_RAY_H
+
+#include "math/vec3.h"
+
+#include <stdint.h>
+
+#define SCENE_NO_MEDIUM UINT32_MAX
+
+/* Named so, for a ray is what variables are called. */
+typedef struct scene_ray {
+    vec3 origin, direction; /* world; whoever wants the direction unit says so */
+    float time;             /* of the shutter, [0, 1] from its opening to its closing */
+    uint32_t medium;        /* that it starts in; SCENE_NO_MEDIUM: nothing that absorbs */
+} scene_ray;
+
+/* When the shutter opens, in nothing. */
+static inline scene_ray scene_ray_make(vec3 origin, vec3 direction)
+{
+    return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM};
+}
+
+#endif
