@@ -1,13 +1,15 @@
 /* camera.c: see camera.h.
- * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 5.2.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 5.2 and 5.3; Clarberg, "Fast
+ * Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008.
  * Threads: read-only. */
 #include "camera.h"
 
+#include "environment.h"
 #include "math/sampling.h"
 
-scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u)
+/* The place on the screen: its shorter axis spans [-1, 1], unless a window says otherwise. */
+static vec2 screen_place(const camera *c, float film_x, float film_y, float aspect)
 {
-    /* the screen at distance 1: the shorter axis spans [-1, 1] times tan(fov / 2) */
     float frame_aspect = c->frame_aspect_ratio > 0.0f ? c->frame_aspect_ratio : aspect;
     float x0 = -1.0f, x1 = 1.0f, y0 = -1.0f, y1 = 1.0f;
     if (c->has_screen_window)
@@ -16,16 +18,60 @@ scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float
         x0 = -frame_aspect, x1 = frame_aspect;
     else
         y0 = -1.0f / frame_aspect, y1 = 1.0f / frame_aspect;
-    vec3 origin = {0.0f, 0.0f, 0.0f};
-    vec3 direction = {(x0 + film_x * (x1 - x0)) * c->tan_half_fov, (y1 + film_y * (y0 - y1)) * c->tan_half_fov, 1.0f};
+    return (vec2){x0 + film_x * (x1 - x0), y1 + film_y * (y0 - y1)};
+}
+
+/* In camera space; the direction need not be unit. */
+static void projective_ray(const camera *c, vec2 screen, vec2 lens_u, vec3 *out_origin, vec3 *out_direction)
+{
+    bool is_perspective = c->kind == CAMERA_PERSPECTIVE;
+    vec3 origin = {0.0f, 0.0f, 0.0f}, direction = {0.0f, 0.0f, 1.0f};
+    if (is_perspective) /* the screen at distance 1 */
+        direction = (vec3){screen.x * c->tan_half_fov, screen.y * c->tan_half_fov, 1.0f};
+    else
+        origin = (vec3){screen.x, screen.y, 0.0f};
 
     /* thin lens: all rays through one point of the film meet on the plane in focus */
     if (c->lens_radius > 0.0f) {
         vec2 lens = sample_disk_concentric(lens_u);
-        vec3 focus = vec3_scale(direction, c->focal_distance);
+        vec3 focus = is_perspective ? vec3_scale(direction, c->focal_distance)
+                                    : (vec3){screen.x, screen.y, c->focal_distance};
         origin = (vec3){lens.x * c->lens_radius, lens.y * c->lens_radius, 0.0f};
         direction = vec3_sub(focus, origin);
     }
+    *out_origin = origin;
+    *out_direction = direction;
+}
+
+/* Both maps have their pole at z, the camera's is y. */
+static vec3 spherical_direction(camera_kind kind, double x, double y)
+{
+    if (kind == CAMERA_EQUIRECTANGULAR) {
+        float s, z, sin_phi, cos_phi;
+        sincos_turns((float)(0.5 * y), &s, &z);
+        sincos_turns((float)(x - floor(x)), &sin_phi, &cos_phi);
+        return (vec3){s * cos_phi, z, s * sin_phi};
+    }
+    /* beyond an edge of the square the map goes on from that edge's other half */
+    if (x < 0.0 || x > 1.0) {
+        x = x < 0.0 ? -x : 2.0 - x;
+        y = 1.0 - y;
+    }
+    if (y < 0.0 || y > 1.0) {
+        y = y < 0.0 ? -y : 2.0 - y;
+        x = 1.0 - x;
+    }
+    vec3 d = environment_octahedral_direction(fmin(fmax(x, 0.0), 1.0), fmin(fmax(y, 0.0), 1.0));
+    return (vec3){d.x, d.z, d.y};
+}
+
+scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u)
+{
+    vec3 origin = {0.0f, 0.0f, 0.0f}, direction;
+    if (c->kind == CAMERA_PERSPECTIVE || c->kind == CAMERA_ORTHOGRAPHIC)
+        projective_ray(c, screen_place(c, film_x, film_y, aspect), lens_u, &origin, &direction);
+    else
+        direction = spherical_direction(c->kind, (double)film_x, (double)film_y);
     return scene_ray_make(transform_point(&c->world_from_camera, origin),
                           vec3_normalize(transform_vector(&c->world_from_camera, direction)));
 }

@@ -11,7 +11,7 @@ static const double TWO_PI = 6.283185307179586477;
 
 /* --- the square: Clarberg's map, equal in area everywhere --- */
 
-static vec3 octahedral_direction(double x, double y)
+vec3 environment_octahedral_direction(double x, double y)
 {
     double u = 2.0 * x - 1.0, v = 2.0 * y - 1.0;
     /* the upper half of the sphere is |u| + |v| < 1; the lower one is folded out over its edges */
@@ -96,7 +96,7 @@ void environment_pixel_at(const environment *e, vec3 direction, uint32_t *out_x,
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within)
 {
     if (e->mapping == ENVIRONMENT_OCTAHEDRAL)
-        return octahedral_direction((x + (double)within.x) / e->width, (y + (double)within.y) / e->height);
+        return environment_octahedral_direction((x + (double)within.x) / e->width, (y + (double)within.y) / e->height);
     return spherical_direction(e, x, y, within);
 }
 

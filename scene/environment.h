@@ -31,6 +31,8 @@ ag_status environment_create(environment_mapping mapping, uint32_t width, uint32
                              environment **out_environment);
 void environment_destroy(environment *e); /* NULL is fine */
 
+/* The direction of a place of [0,1]^2 on a picture that is octahedral. */
+vec3 environment_octahedral_direction(double x, double y);
 /* The solid angle of each pixel of a row, sr. */
 double environment_pixel_solid_angle(const environment *e, uint32_t y);
 /* The pixel that a unit direction of the light's space falls into. */

@@ -2,8 +2,6 @@
  * Threads: one at a time. */
 #include "parameter_list.h"
 
-#include "spectra.h"
-
 #include <float.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -69,22 +67,72 @@ const char *parameter_type_name(parameter_type type)
     return NAMES[type];
 }
 
+void parameter_reset(parameter *p)
+{
+    if (p->strings)
+        for (size_t i = 0; i < p->count; i++)
+            free(p->strings[i]);
+    free(p->strings);
+    free(p->numbers);
+    free(p->bools);
+    free(p->name);
+    memset(p, 0, sizeof *p);
+}
+
 void parameter_list_reset(parameter_list *list)
 {
-    for (size_t i = 0; i < list->count; i++) {
-        parameter *p = &list->items[i];
-        if (p->strings)
-            for (size_t j = 0; j < p->count; j++)
-                free(p->strings[j]);
-        free(p->strings);
-        free(p->numbers);
-        free(p->bools);
-        free(p->name);
-    }
+    for (size_t i = 0; i < list->count; i++)
+        parameter_reset(&list->items[i]);
     free(list->items);
     free(list->directive);
     free(list->name);
     memset(list, 0, sizeof *list);
+}
+
+/* NULL where there is nothing to copy, which is no failure. */
+static void *copy_values(const void *values, size_t bytes, bool *in_out_is_good)
+{
+    if (!values)
+        return NULL;
+    void *copy = malloc(bytes ? bytes : 1);
+    if (copy)
+        memcpy(copy, values, bytes);
+    *in_out_is_good = *in_out_is_good && copy;
+    return copy;
+}
+
+bool parameter_copy(const parameter *p, parameter *out_copy)
+{
+    bool is_good = true;
+    *out_copy = *p;
+    out_copy->name = copy_values(p->name, strlen(p->name) + 1, &is_good);
+    out_copy->numbers = copy_values(p->numbers, p->count * sizeof *p->numbers, &is_good);
+    out_copy->bools = copy_values(p->bools, p->count, &is_good);
+    out_copy->strings = p->strings ? calloc(p->count + 1, sizeof *p->strings) : NULL;
+    is_good = is_good && (out_copy->strings || !p->strings);
+    for (size_t i = 0; out_copy->strings && i < p->count; i++)
+        out_copy->strings[i] = copy_values(p->strings[i], strlen(p->strings[i]) + 1, &is_good);
+    if (!is_good)
+        parameter_reset(out_copy);
+    return is_good;
+}
+
+/* Tells the error with the line that the parameter is in; always returns AG_ERROR_SCENE. */
+static ag_status refuse(const parameter_list *list, log_sink *log, const parameter *p, const char *format, ...)
+    AG_PRINTF(4, 5);
+static ag_status refuse(const parameter_list *list, log_sink *log, const parameter *p, const char *format, ...)
+{
+    char fixed[512], *heap, excerpt[320] = "";
+    va_list arguments;
+    va_start(arguments, format);
+    const char *text = format_text(fixed, sizeof fixed, format, arguments, &heap);
+    va_end(arguments);
+    if (list->source)
+        list->source->excerpt(list->source->user, p->where,
+                              strlen(parameter_type_name(p->type)) + strlen(p->name) + 3, excerpt, sizeof excerpt);
+    log_at(log, AG_LOG_ERROR, p->where, "%s%s", text, excerpt);
+    free(heap);
+    return AG_ERROR_SCENE;
 }
 
 const parameter *parameter_list_find(const parameter_list *list, const char *name)
@@ -112,11 +160,9 @@ static ag_status look_up(parameter_list *list, log_sink *log, const char *name, 
                     "\"texture %s\" is not supported here: it is ignored and the default is used", name);
         return AG_OK;
     }
-    if (p->type != type) {
-        log_at(log, AG_LOG_ERROR, p->where, "\"%s %s\" should be \"%s %s\"", parameter_type_name(p->type), name,
-               parameter_type_name(type), name);
-        return AG_ERROR_SCENE;
-    }
+    if (p->type != type)
+        return refuse(list, log, p, "\"%s %s\" should be \"%s %s\"", parameter_type_name(p->type), name,
+                      parameter_type_name(type), name);
     *out_parameter = p;
     return AG_OK;
 }
@@ -127,19 +173,16 @@ static ag_status look_up_counted(parameter_list *list, log_sink *log, const char
     ag_status status = look_up(list, log, name, type, out_parameter);
     if (status || !*out_parameter || (*out_parameter)->count == count)
         return status;
-    log_at(log, AG_LOG_ERROR, (*out_parameter)->where, "\"%s %s\" should have %zu value%s, but has %zu",
-           parameter_type_name(type), name, count, count == 1 ? "" : "s", (*out_parameter)->count);
-    return AG_ERROR_SCENE;
+    return refuse(list, log, *out_parameter, "\"%s %s\" should have %zu value%s, but has %zu",
+                  parameter_type_name(type), name, count, count == 1 ? "" : "s", (*out_parameter)->count);
 }
 
-static ag_status check_float(log_sink *log, const parameter *p)
+static ag_status check_float(const parameter_list *list, log_sink *log, const parameter *p)
 {
     for (size_t i = 0; i < p->count; i++)
-        if (!(fabs(p->numbers[i]) <= (double)FLT_MAX)) {
-            log_at(log, AG_LOG_ERROR, p->where, "\"%s %s\": %g is too large", parameter_type_name(p->type), p->name,
-                   p->numbers[i]);
-            return AG_ERROR_SCENE;
-        }
+        if (!(fabs(p->numbers[i]) <= (double)FLT_MAX))
+            return refuse(list, log, p, "\"%s %s\": %g is too large", parameter_type_name(p->type), p->name,
+                          p->numbers[i]);
     return AG_OK;
 }
 
@@ -148,7 +191,7 @@ ag_status parameter_get_float(parameter_list *list, log_sink *log, const char *n
     const parameter *p;
     ag_status status = look_up_counted(list, log, name, PARAMETER_FLOAT, 1, &p);
     if (!status && p)
-        status = check_float(log, p);
+        status = check_float(list, log, p);
     if (!status && p)
         *out_value = (float)p->numbers[0];
     return status;
@@ -198,15 +241,33 @@ ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *na
     const parameter *p;
     ag_status status = look_up_counted(list, log, name, type, 3, &p);
     if (!status && p)
-        status = check_float(log, p);
+        status = check_float(list, log, p);
     if (!status && p)
         *out_value = vec3_make((float)p->numbers[0], (float)p->numbers[1], (float)p->numbers[2]);
     return status;
 }
 
-static ag_status get_spectrum(log_sink *log, const parameter *p, rgb *out_value)
+spectrum_use parameter_spectrum_use(const char *name)
 {
-    if (p->strings && p->count == 1) {
+    static const char *const EMITTED[] = {"L", "I", "Le"};
+    static const char *const INDICES[] = {"eta", "k", "conductor.eta", "conductor.k", "interface.eta",
+                                          "sigma_a", "sigma_s", "mfp"};
+    for (size_t i = 0; i < sizeof EMITTED / sizeof *EMITTED; i++)
+        if (strcmp(name, EMITTED[i]) == 0)
+            return SPECTRUM_LIGHT;
+    for (size_t i = 0; i < sizeof INDICES / sizeof *INDICES; i++)
+        if (strcmp(name, INDICES[i]) == 0)
+            return SPECTRUM_INDEX;
+    return SPECTRUM_REFLECTANCE;
+}
+
+/* The reader has looked into the files of those that have no name of pbrt's. */
+static ag_status get_spectrum(const parameter_list *list, log_sink *log, const parameter *p, rgb *out_value)
+{
+    if (p->count == 0 || (p->strings && p->count != 1))
+        return refuse(list, log, p, "\"spectrum %s\" should have %s", p->name,
+                      p->count == 0 ? "values" : "one name, or numbers");
+    if (p->strings) {
         if (!spectra_find_named(p->strings[0], out_value)) {
             char key[160];
             snprintf(key, sizeof key, "named spectrum:%s", p->strings[0]);
@@ -216,13 +277,17 @@ static ag_status get_spectrum(log_sink *log, const parameter *p, rgb *out_value)
         }
         return AG_OK;
     }
-    char key[160];
-    snprintf(key, sizeof key, "spectrum parameter:%s", p->name);
-    log_at_once(
-        log, AG_LOG_WARNING, p->where, key,
-        "spectra given by their values are not supported yet: \"spectrum %s\" is ignored and the default is used",
-        p->name);
-    return AG_OK;
+    for (size_t i = 0; i < p->count; i += 2) {
+        if (i > 0 && !(p->numbers[i] > p->numbers[i - 2]))
+            return refuse(list, log, p, "\"spectrum %s\": the wavelengths should increase, but %g follows %g", p->name,
+                          p->numbers[i], p->numbers[i - 2]);
+        if (!(p->numbers[i + 1] >= 0.0))
+            return refuse(list, log, p, "\"spectrum %s\" has a negative value, %g", p->name, p->numbers[i + 1]);
+    }
+    ag_status status = check_float(list, log, p);
+    if (!status)
+        *out_value = spectra_sampled(p->numbers, p->count / 2, parameter_spectrum_use(p->name));
+    return status;
 }
 
 static ag_status get_blackbody(parameter_list *list, log_sink *log, const char *name, rgb *out_value)
@@ -232,11 +297,9 @@ static ag_status get_blackbody(parameter_list *list, log_sink *log, const char *
     if (status || !p)
         return status;
     double kelvin = p->numbers[0];
-    if (!(kelvin >= SPECTRA_MIN_KELVIN && kelvin <= SPECTRA_MAX_KELVIN)) {
-        log_at(log, AG_LOG_ERROR, p->where, "\"blackbody %s\": %g is not a temperature from %g to %g kelvin", name,
-               kelvin, SPECTRA_MIN_KELVIN, SPECTRA_MAX_KELVIN);
-        return AG_ERROR_SCENE;
-    }
+    if (!(kelvin >= SPECTRA_MIN_KELVIN && kelvin <= SPECTRA_MAX_KELVIN))
+        return refuse(list, log, p, "\"blackbody %s\": %g is not a temperature from %g to %g kelvin", name, kelvin,
+                      SPECTRA_MIN_KELVIN, SPECTRA_MAX_KELVIN);
     *out_value = spectra_blackbody(kelvin);
     return AG_OK;
 }
@@ -246,21 +309,19 @@ ag_status parameter_get_rgb(parameter_list *list, log_sink *log, const char *nam
     parameter *found = (parameter *)parameter_list_find(list, name);
     if (found && found->type == PARAMETER_SPECTRUM) {
         found->looked_up = true;
-        return get_spectrum(log, found, out_value);
+        return get_spectrum(list, log, found, out_value);
     }
     if (found && found->type == PARAMETER_BLACKBODY)
         return get_blackbody(list, log, name, out_value);
     const parameter *p;
     ag_status status = look_up_counted(list, log, name, PARAMETER_RGB, 3, &p);
     if (!status && p)
-        status = check_float(log, p);
+        status = check_float(list, log, p);
     if (status || !p)
         return status;
     for (int i = 0; i < 3; i++)
-        if (p->numbers[i] < 0.0) {
-            log_at(log, AG_LOG_ERROR, p->where, "\"rgb %s\" has a negative component, %g", name, p->numbers[i]);
-            return AG_ERROR_SCENE;
-        }
+        if (p->numbers[i] < 0.0)
+            return refuse(list, log, p, "\"rgb %s\" has a negative component, %g", name, p->numbers[i]);
     *out_value = rgb_make((float)p->numbers[0], (float)p->numbers[1], (float)p->numbers[2]);
     return AG_OK;
 }
@@ -273,7 +334,7 @@ ag_status parameter_get_numbers(parameter_list *list, log_sink *log, const char 
     *out_count = 0;
     ag_status status = look_up(list, log, name, type, &p);
     if (!status && p)
-        status = check_float(log, p);
+        status = check_float(list, log, p);
     if (!status && p) {
         *out_values = p->numbers;
         *out_count = p->count;
@@ -295,7 +356,7 @@ void parameter_list_warn_unused(const parameter_list *list, log_sink *log)
     const char *kind = kind_of(list);
     for (size_t i = 0; i < list->count; i++) {
         const parameter *p = &list->items[i];
-        if (p->looked_up)
+        if (p->looked_up || p->may_be_unused)
             continue;
         char key[160];
         snprintf(key, sizeof key, "unused parameter:%s:%s:%s", list->directive, kind, p->name);

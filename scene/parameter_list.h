@@ -8,6 +8,7 @@
 
 #include "log.h"
 #include "math/vec3.h"
+#include "spectra.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -52,7 +53,15 @@ typedef struct parameter {
     char **strings;      /* strings, texture names, spectrum names */
     unsigned char *bools;
     bool looked_up;
+    bool may_be_unused; /* it is for whom it may concern: an Attribute's */
 } parameter;
+
+/* Where the text of parameters is, for messages that show it. */
+typedef struct parameter_source {
+    /* Writes a line of text with a mark below it ("\n    line\n    ^~~"), or nothing where it is no longer there. */
+    void (*excerpt)(const void *user, file_location where, size_t width, char *out_text, size_t size);
+    const void *user;
+} parameter_source;
 
 typedef struct parameter_list {
     parameter *items;
@@ -60,9 +69,13 @@ typedef struct parameter_list {
     file_location where; /* of the directive */
     char *directive;     /* "Shape", "Integrator", ... */
     char *name;          /* "sphere", "photonmap", ... */
+    const parameter_source *source; /* borrowed; NULL: errors show no text */
 } parameter_list;
 
 void parameter_list_reset(parameter_list *list); /* frees what it holds; leaves it zeroed */
+/* A copy of all that it holds; false, and *out_copy zeroed, when out of memory. */
+bool parameter_copy(const parameter *p, parameter *out_copy);
+void parameter_reset(parameter *p); /* frees what it holds; leaves it zeroed */
 
 /* The parameter of that name, whatever its type, NULL where there is none. Does not mark it as looked up. */
 const parameter *parameter_list_find(const parameter_list *list, const char *name);
@@ -78,7 +91,11 @@ ag_status parameter_get_string(parameter_list *list, log_sink *log, const char *
 ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char *name, const char **out_texture_name);
 ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *name, parameter_type type,
                              vec3 *out_value);
-/* rgb; or a spectrum or blackbody where that is supported, else a warning that names it and *out left alone */
+/* Whether a colour of that name is emitted ("L", "I", "Le"), refracts or absorbs ("eta", "k", "sigma_a", "mfp", ...), or
+ * reflects or transmits: all others. */
+spectrum_use parameter_spectrum_use(const char *name);
+/* rgb, spectrum or blackbody; a warning that names it, and *out left alone, where the spectrum is one of pbrt's that we
+ * have not. */
 ag_status parameter_get_rgb(parameter_list *list, log_sink *log, const char *name, rgb *out_value);
 /* Arrays: *out_values stays the list's; *out_count counts numbers (3 per point3), 0 where absent. */
 ag_status parameter_get_numbers(parameter_list *list, log_sink *log, const char *name, parameter_type type,

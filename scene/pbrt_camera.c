@@ -21,24 +21,26 @@ static ag_status read_screen_window(pbrt_parser *parser, parameter_list *list, c
     return AG_OK;
 }
 
-static ag_status read_camera(pbrt_parser *parser, parameter_list *list, camera *c)
+/* The shutter: how long it is open is how bright the picture is. As nothing moves, when is not seen. */
+static ag_status read_shutter(pbrt_parser *parser, parameter_list *list, camera *c)
+{
+    float open = 0.0f, close = 1.0f;
+    PBRT_TRY(parameter_get_float(list, parser->log, "shutteropen", &open));
+    PBRT_TRY(parameter_get_float(list, parser->log, "shutterclose", &close));
+    c->exposure = close - open;
+    if (!(c->exposure > 0.0f && isfinite(c->exposure)))
+        return pbrt_refuse(parser, list, parameter_list_find(list, "shutterclose") ? "shutterclose" : "shutteropen",
+                           "the shutter should close after it opens, at %g", (double)open);
+    return AG_OK;
+}
+
+static ag_status read_screen(pbrt_parser *parser, parameter_list *list, camera *c)
 {
     log_sink *log = parser->log;
-    float half_fov = -1.0f, shutter_open = 0.0f, shutter_close = 1.0f;
-    PBRT_TRY(parameter_get_float(list, log, "fov", &c->fov_degrees));
-    PBRT_TRY(parameter_get_float(list, log, "halffov", &half_fov));
     PBRT_TRY(parameter_get_float(list, log, "frameaspectratio", &c->frame_aspect_ratio));
     PBRT_TRY(parameter_get_float(list, log, "lensradius", &c->lens_radius));
     PBRT_TRY(parameter_get_float(list, log, "focaldistance", &c->focal_distance));
-    /* as nothing moves, what the shutter does is not seen */
-    PBRT_TRY(parameter_get_float(list, log, "shutteropen", &shutter_open));
-    PBRT_TRY(parameter_get_float(list, log, "shutterclose", &shutter_close));
     PBRT_TRY(read_screen_window(parser, list, c));
-    if (half_fov > 0.0f)
-        c->fov_degrees = 2.0f * half_fov;
-    if (!(c->fov_degrees > 0.0f && c->fov_degrees < 180.0f))
-        return pbrt_refuse(parser, list, half_fov > 0.0f ? "halffov" : "fov",
-                           "the field of view should be within (0, 180) degrees");
     if (parameter_list_find(list, "frameaspectratio") && !(c->frame_aspect_ratio > 0.0f))
         return pbrt_refuse(parser, list, "frameaspectratio", "\"frameaspectratio\" should be above 0");
     if (!(c->lens_radius >= 0.0f))
@@ -48,6 +50,59 @@ static ag_status read_camera(pbrt_parser *parser, parameter_list *list, camera *
     return AG_OK;
 }
 
+static ag_status read_perspective(pbrt_parser *parser, parameter_list *list, camera *c)
+{
+    float half_fov = -1.0f;
+    PBRT_TRY(parameter_get_float(list, parser->log, "fov", &c->fov_degrees));
+    PBRT_TRY(parameter_get_float(list, parser->log, "halffov", &half_fov));
+    PBRT_TRY(read_screen(parser, list, c));
+    if (half_fov > 0.0f)
+        c->fov_degrees = 2.0f * half_fov;
+    if (!(c->fov_degrees > 0.0f && c->fov_degrees < 180.0f))
+        return pbrt_refuse(parser, list, half_fov > 0.0f ? "halffov" : "fov",
+                           "the field of view should be within (0, 180) degrees");
+    return AG_OK;
+}
+
+static ag_status read_orthographic(pbrt_parser *parser, parameter_list *list, camera *c)
+{
+    c->kind = CAMERA_ORTHOGRAPHIC;
+    return read_screen(parser, list, c);
+}
+
+/* Screen and lens are read, as pbrt does, and mean nothing. */
+static ag_status read_spherical(pbrt_parser *parser, parameter_list *list, camera *c)
+{
+    const char *mapping = "equalarea";
+    PBRT_TRY(read_screen(parser, list, c));
+    PBRT_TRY(parameter_get_string(list, parser->log, "mapping", &mapping));
+    if (strcmp(mapping, "equalarea") != 0 && strcmp(mapping, "equirectangular") != 0)
+        return pbrt_refuse(parser, list, "mapping", "unknown mapping \"%s\"; known are equalarea and equirectangular",
+                           mapping);
+    c->kind = strcmp(mapping, "equalarea") == 0 ? CAMERA_EQUAL_AREA : CAMERA_EQUIRECTANGULAR;
+    return AG_OK;
+}
+
+static const struct {
+    const char *name;
+    ag_status (*read)(pbrt_parser *parser, parameter_list *list, camera *c);
+} READERS[] = {
+    {"perspective", read_perspective},
+    {"orthographic", read_orthographic},
+    {"spherical", read_spherical},
+    {"realistic", pbrt_read_realistic},
+};
+
+static ag_status read_camera(pbrt_parser *parser, parameter_list *list, camera *c)
+{
+    PBRT_TRY(read_shutter(parser, list, c));
+    parser->film_distance = 0.0;
+    for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
+        if (strcmp(list->name, READERS[i].name) == 0)
+            return READERS[i].read(parser, list, c);
+    return pbrt_error(parser, list->where, strlen("Camera"), "unknown camera \"%s\"", list->name);
+}
+
 ag_status pbrt_camera(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
@@ -55,19 +110,7 @@ ag_status pbrt_camera(pbrt_parser *parser, file_location where)
     camera c = {.world_from_camera = transform_invert(&parser->state.world_from_object),
                 .fov_degrees = 90.0f,
                 .focal_distance = 1e6f};
-    static const char *const OTHERS[] = {"orthographic", "spherical", "realistic"};
-    bool is_known = strcmp(list.name, "perspective") == 0;
-    ag_status status = AG_OK;
-    for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++)
-        if (strcmp(list.name, OTHERS[i]) == 0) {
-            is_known = true;
-            log_at(parser->log, AG_LOG_WARNING, where,
-                   "Camera \"%s\" is not supported yet: it is rendered as \"perspective\"", list.name);
-        }
-    if (!is_known)
-        status = pbrt_error(parser, where, strlen("Camera"), "unknown camera \"%s\"", list.name);
-    if (!status)
-        status = read_camera(parser, &list, &c);
+    ag_status status = read_camera(parser, &list, &c);
     if (!status)
         status = pbrt_name_coordinate_system(parser, "camera", &c.world_from_camera);
     if (!status) {

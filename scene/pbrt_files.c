@@ -11,6 +11,16 @@
 
 static const size_t PROGRESS_BYTES = (size_t)1 << 16;
 
+void pbrt_excerpt(const void *user, file_location where, size_t width, char *out_text, size_t size)
+{
+    const pbrt_parser *parser = user;
+    for (int i = parser->file_count - 1; i >= 0; i--)
+        if (parser->files[i].lexer.file == where.file) {
+            pbrt_lexer_excerpt(&parser->files[i].lexer, where, width, out_text, size);
+            break;
+        }
+}
+
 ag_status pbrt_error(pbrt_parser *parser, file_location where, size_t width, const char *format, ...)
 {
     char message[1024], excerpt[320] = "";
@@ -18,11 +28,7 @@ ag_status pbrt_error(pbrt_parser *parser, file_location where, size_t width, con
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    for (int i = parser->file_count - 1; i >= 0; i--)
-        if (parser->files[i].lexer.file == where.file) {
-            pbrt_lexer_excerpt(&parser->files[i].lexer, where, width, excerpt, sizeof excerpt);
-            break;
-        }
+    pbrt_excerpt(parser, where, width, excerpt, sizeof excerpt);
     log_at(parser->log, AG_LOG_ERROR, where, "%s%s", message, excerpt);
     return AG_ERROR_SCENE;
 }
@@ -95,6 +101,7 @@ static ag_status push(pbrt_parser *parser, const char *name, text_file *file, fi
         return AG_ERROR_MEMORY;
     }
     pbrt_file *top = &parser->files[parser->file_count++];
+    memset(top, 0, sizeof *top);
     top->file = *file;
     top->included_at = where;
     pbrt_lexer_init(&top->lexer, interned, file->text, file->size);
@@ -159,6 +166,8 @@ ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text
 void pbrt_pop_file(pbrt_parser *parser)
 {
     pbrt_file *top = &parser->files[--parser->file_count];
+    free(top->coordinate_systems);
+    name_table_reset(&top->coordinate_system_names);
     pbrt_lexer_reset(&top->lexer);
     text_file_reset(&top->file);
 }
@@ -175,7 +184,8 @@ ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
         ag_status status = pbrt_lexer_next(lexer, out_token);
         if (status == AG_ERROR_SCENE)
             return pbrt_error(parser, out_token->where, out_token->width, "%s", lexer->error);
-        if (status || out_token->kind != PBRT_TOKEN_END || parser->file_count == 1)
+        if (status || out_token->kind != PBRT_TOKEN_END || parser->file_count == 1 ||
+            parser->files[parser->file_count - 1].is_import)
             return status;
         pbrt_pop_file(parser);
     }

@@ -221,7 +221,8 @@ static ag_status read_parameter(pbrt_parser *parser, parameter_list *list)
             return pbrt_error(parser, token.where, token.width, "\"%s\" is given twice, first at %d:%d", b.p->name,
                               list->items[i].where.line, list->items[i].where.column);
     PBRT_TRY(read_values(parser, &b));
-    return check_values(parser, &b, token.width);
+    PBRT_TRY(check_values(parser, &b, token.width));
+    return pbrt_settle_color(parser, b.p, token.width);
 }
 
 static ag_status read_all(pbrt_parser *parser, parameter_list *list)
@@ -248,12 +249,15 @@ static ag_status read_list(pbrt_parser *parser, const char *directive, const cha
 {
     memset(out_list, 0, sizeof *out_list);
     out_list->where = where;
+    out_list->source = &parser->source;
     out_list->directive = strdup(directive);
     ag_status status = out_list->directive ? AG_OK : AG_ERROR_MEMORY;
     if (!status && expected)
         status = pbrt_read_string(parser, directive, expected, &out_list->name, NULL);
     if (!status)
         status = read_all(parser, out_list);
+    if (!status)
+        status = pbrt_append_attributes(parser, out_list);
     if (status)
         parameter_list_reset(out_list);
     return status;

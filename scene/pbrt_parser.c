@@ -19,6 +19,7 @@ static ag_status keep_parameters(pbrt_parser *parser, file_location where, const
     PBRT_TRY(pbrt_read_named_parameters(parser, directive, "a quoted type", where, &list));
     parameter_list_reset(kept); /* the last one counts */
     *kept = list;
+    kept->source = NULL; /* it outlives the text */
     return AG_OK;
 }
 
@@ -51,44 +52,6 @@ static ag_status accelerator(pbrt_parser *parser, file_location where)
     return AG_OK;
 }
 
-static ag_status color_space(pbrt_parser *parser, file_location where)
-{
-    static const char *const OTHERS[] = {"aces2065-1", "rec2020", "dci-p3"};
-    char *name;
-    PBRT_TRY(pbrt_read_string(parser, "ColorSpace", "a quoted name", &name, NULL));
-    bool is_known = strcmp(name, "srgb") == 0;
-    for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++)
-        if (strcmp(name, OTHERS[i]) == 0) {
-            is_known = true;
-            log_at_once(parser->log, AG_LOG_WARNING, where, OTHERS[i],
-                        "ColorSpace \"%s\" is not supported yet: rgb values are taken for sRGB's", name);
-        }
-    ag_status status =
-        is_known ? AG_OK : pbrt_error(parser, where, strlen("ColorSpace"), "unknown colour space \"%s\"", name);
-    free(name);
-    return status;
-}
-
-static ag_status option(pbrt_parser *parser, file_location where)
-{
-    static const char *const NO_CONCERN[] = {"disablewavelengthjitter", "rendercoordsys", "wavefront", "quiet"};
-    char *name, key[64];
-    pbrt_token value;
-    PBRT_TRY(pbrt_read_string(parser, "Option", "a quoted name", &name, NULL));
-    bool concerns_us = true;
-    for (size_t i = 0; i < sizeof NO_CONCERN / sizeof *NO_CONCERN; i++)
-        concerns_us = concerns_us && strcmp(name, NO_CONCERN[i]) != 0;
-    ag_status status = pbrt_next(parser, &value);
-    if (!status && value.kind != PBRT_TOKEN_WORD && value.kind != PBRT_TOKEN_STRING)
-        status = pbrt_unexpected(parser, &value, "Option", "a value");
-    snprintf(key, sizeof key, "option:%.50s", name);
-    if (!status && concerns_us)
-        log_at_once(parser->log, AG_LOG_WARNING, where, key,
-                    "Option \"%s\" is not known, or not supported yet, and is ignored", name);
-    free(name);
-    return status;
-}
-
 static ag_status include(pbrt_parser *parser, file_location where)
 {
     char *name;
@@ -101,26 +64,6 @@ static ag_status include(pbrt_parser *parser, file_location where)
 }
 
 /* What is not supported yet */
-
-static ag_status import(pbrt_parser *parser, file_location where)
-{
-    char *name;
-    PBRT_TRY(pbrt_read_string(parser, "Import", "a quoted file name", &name, NULL));
-    log_at(parser->log, AG_LOG_WARNING, where, "Import is not supported yet: \"%s\" is left out", name);
-    free(name);
-    return AG_OK;
-}
-
-static ag_status attribute(pbrt_parser *parser, file_location where)
-{
-    parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "Attribute", "a quoted target", where, &list));
-    log_at_once(parser->log, AG_LOG_WARNING, where, "Attribute",
-                "Attribute \"%s\" is not supported yet: its parameters are ignored, as are those of any others",
-                list.name);
-    parameter_list_reset(&list);
-    return AG_OK;
-}
 
 static ag_status make_named_medium(pbrt_parser *parser, file_location where)
 {
@@ -183,10 +126,10 @@ static const struct {
     {"ObjectEnd", IN_WORLD, pbrt_object_end},
     {"ObjectInstance", IN_WORLD, pbrt_object_instance},
     {"Texture", IN_WORLD, pbrt_texture},
-    {"Import", IN_WORLD, import},
+    {"Import", IN_WORLD, pbrt_import},
     {"Include", ANYWHERE, include},
-    {"Attribute", ANYWHERE, attribute},
-    {"ColorSpace", ANYWHERE, color_space},
+    {"Attribute", ANYWHERE, pbrt_attribute_directive},
+    {"ColorSpace", ANYWHERE, pbrt_color_space},
     {"MakeNamedMedium", ANYWHERE, make_named_medium},
     {"MediumInterface", ANYWHERE, medium_interface},
     {"Camera", BEFORE_WORLD, pbrt_camera},
@@ -195,7 +138,7 @@ static const struct {
     {"Film", BEFORE_WORLD, film},
     {"PixelFilter", BEFORE_WORLD, pixel_filter},
     {"Accelerator", BEFORE_WORLD, accelerator},
-    {"Option", BEFORE_WORLD, option},
+    {"Option", BEFORE_WORLD, pbrt_option},
     {"WorldBegin", BEFORE_WORLD, pbrt_world_begin},
     {"WorldEnd", IN_WORLD, pbrt_world_end},
 };
@@ -243,6 +186,10 @@ static ag_status parse(pbrt_parser *parser)
         pbrt_token token;
         PBRT_TRY(pbrt_tell_progress(parser));
         PBRT_TRY(pbrt_next(parser, &token));
+        if (token.kind == PBRT_TOKEN_END && parser->files[parser->file_count - 1].is_import) {
+            PBRT_TRY(pbrt_end_import(parser, token.where));
+            continue;
+        }
         if (token.kind == PBRT_TOKEN_END) {
             PBRT_TRY(check_end(parser, token.where));
             break;
@@ -262,6 +209,7 @@ static pbrt_parser *parser_create(run_context *run, scene *out_scene)
         parser->scene = out_scene;
         parser->state.world_from_object = transform_identity();
         parser->state.start_is_active = true;
+        parser->source = (parameter_source){pbrt_excerpt, parser};
     }
     return parser;
 }
@@ -276,6 +224,7 @@ static void parser_destroy(pbrt_parser *parser)
     name_table_reset(&parser->float_texture_names);
     name_table_reset(&parser->spectrum_texture_names);
     name_table_reset(&parser->coordinate_system_names);
+    pbrt_free_attributes(parser);
     free(parser->named_materials);
     free(parser->coordinate_systems);
     free(parser->saved);

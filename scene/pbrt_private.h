@@ -2,10 +2,11 @@
  * interpreters of directives.
  * Rests on the format's description, pbrt.org/fileformat-v4. Names and defaults are pbrt-v4's.
  * Flow: pbrt_parser dispatches directives; pbrt_files gives tokens; pbrt_parameters reads parameter lists;
- * pbrt_transforms, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights and pbrt_camera interpret. Threads: one per scene. */
+ * pbrt_transforms, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights, pbrt_camera, ... interpret. Threads: one per scene. */
 #ifndef AFTERGLOW_PBRT_PRIVATE_H
 #define AFTERGLOW_PBRT_PRIVATE_H
 
+#include "color_space.h"
 #include "name_table.h"
 #include "pbrt_lexer.h"
 #include "scene.h"
@@ -29,8 +30,30 @@ enum { PBRT_MAX_INCLUDES = 1000000 }; /* in all: files that include others twice
 typedef struct pbrt_file {
     text_file file;
     pbrt_lexer lexer;
-    file_location included_at; /* the Include; zeroed for the first file */
+    file_location included_at; /* the Include or Import; zeroed for the first file */
+
+    bool is_import; /* its end is told to who reads, who then ends it; the rest is for what it found: */
+    transform *coordinate_systems;
+    size_t coordinate_system_count;
+    name_table coordinate_system_names;
 } pbrt_file;
+
+/* What Attribute speaks to. */
+typedef enum pbrt_target {
+    PBRT_TARGET_SHAPE,
+    PBRT_TARGET_LIGHT,
+    PBRT_TARGET_MATERIAL,
+    PBRT_TARGET_MEDIUM,
+    PBRT_TARGET_TEXTURE,
+    PBRT_TARGET_COUNT
+} pbrt_target;
+
+/* One parameter of an Attribute. The parser owns all; the graphics state says which are in force. */
+typedef struct pbrt_attribute {
+    parameter item;
+    struct pbrt_attribute *older;        /* of the same target, in force with it */
+    struct pbrt_attribute *older_of_all; /* for the owner */
+} pbrt_attribute;
 
 /* AreaLightSource: what the shapes that follow emit. */
 typedef struct pbrt_area_light {
@@ -49,12 +72,15 @@ typedef struct pbrt_state {
     uint32_t material_index;
     bool has_no_surface; /* the material is "interface" */
     pbrt_area_light area_light;
+    color_space rgb_space;                        /* of rgb parameters */
+    pbrt_attribute *attributes[PBRT_TARGET_COUNT]; /* the newest of each, or NULL */
 } pbrt_state;
 
 typedef struct pbrt_saved_state {
     pbrt_state state;
     file_location where; /* of the Begin */
     bool is_object;      /* ObjectBegin, not AttributeBegin */
+    bool is_import;      /* Import: neither */
 } pbrt_saved_state;
 
 typedef struct pbrt_named_material {
@@ -76,6 +102,11 @@ typedef struct pbrt_parser {
     bool has_peeked;
     size_t told_bytes; /* of the first file, at the last progress */
 
+    parameter_source source; /* of the lists that are read */
+    pbrt_attribute *attributes; /* all there have been, the newest first */
+
+    double film_distance; /* m, from the lens of a realistic camera; 0: there is none */
+
     bool in_world, in_object;
     pbrt_state state;
     pbrt_saved_state *saved;
@@ -92,7 +123,8 @@ typedef struct pbrt_parser {
 /* Every handler of a directive: where is the directive's place; its name has been read, nothing behind it. */
 typedef ag_status pbrt_handler(pbrt_parser *parser, file_location where);
 
-/* pbrt_files.c: the stack of files and their tokens. */
+/* pbrt_files.c: the stack of files and their tokens. The text of places: parser->source. */
+void pbrt_excerpt(const void *parser, file_location where, size_t width, char *out_text, size_t size);
 
 /* Opens a file as the innermost. name is as the user wrote it, where the place of the Include (zeroed for none). */
 ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location where, size_t width);
@@ -101,7 +133,8 @@ void pbrt_pop_file(pbrt_parser *parser);
 /* Where a file that the scene names is: as pbrt has it, below the first file's directory; where there is none, below that
  * of the file that names it. To be freed; NULL when out of memory. */
 char *pbrt_find_file(const pbrt_parser *parser, const char *name);
-/* The next token; where an included file ends, the one that included it goes on. */
+/* The next token; where an included file ends, the one that included it goes on. The end of an imported file is told, as
+ * often as is asked, until it is popped. */
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);
 ag_status pbrt_peek(pbrt_parser *parser, pbrt_token *out_token);
 /* Tells the error with the line it is in and a mark below; always returns AG_ERROR_SCENE. */
@@ -122,15 +155,37 @@ ag_status pbrt_read_parameters(pbrt_parser *parser, const char *directive, file_
 ag_status pbrt_read_named_parameters(pbrt_parser *parser, const char *directive, const char *expected,
                                      file_location where, parameter_list *out_list);
 
+/* pbrt_colors.c */
+pbrt_handler pbrt_color_space;
+/* Makes rgb parameters Rec. 709's and reads the files of spectra. width: of the quoted "type name". Errors:
+ * AG_ERROR_SCENE, AG_ERROR_INPUT (a file cannot be read), AG_ERROR_MEMORY. */
+ag_status pbrt_settle_color(pbrt_parser *parser, parameter *p, size_t width);
+/* A text file of nothing but numbers and comments, named at that place; hint ends the message where it cannot be read.
+ * *out_numbers is to be freed. Errors: as above. */
+ag_status pbrt_read_number_file(pbrt_parser *parser, const char *name, file_location where, size_t width,
+                                const char *hint, double **out_numbers, size_t *out_count);
+
+/* pbrt_attributes.c */
+pbrt_handler pbrt_attribute_directive;
+/* Adds those in force for the list's directive, less those that it says itself. Errors: AG_ERROR_MEMORY. */
+ag_status pbrt_append_attributes(pbrt_parser *parser, parameter_list *list);
+void pbrt_free_attributes(pbrt_parser *parser);
+
+/* pbrt_options.c */
+pbrt_handler pbrt_option;
+
 /* As pbrt_error, at the parameter of that name, or where there is none at the directive. */
 ag_status pbrt_refuse(pbrt_parser *parser, const parameter_list *list, const char *name, const char *format, ...)
     AG_PRINTF(4, 5);
 
 /* pbrt_state.c: what Begin saves and End brings back. */
-pbrt_handler pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin, pbrt_attribute_end, pbrt_transform_begin,
+pbrt_handler pbrt_import, pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin, pbrt_attribute_end, pbrt_transform_begin,
     pbrt_transform_end, pbrt_object_begin, pbrt_object_end, pbrt_object_instance, pbrt_reverse_orientation;
-/* Error where a Begin has no End. end: the place of the end of the first file. */
+/* Error where a Begin of the file that ends at that place has no End there. */
 ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end);
+/* At the end of an imported file: what is open is an error, else the state that it began with is brought back and the file
+ * popped. */
+ag_status pbrt_end_import(pbrt_parser *parser, file_location end);
 
 /* pbrt_transforms.c */
 pbrt_handler pbrt_identity, pbrt_translate, pbrt_scale, pbrt_rotate, pbrt_look_at, pbrt_transform,
@@ -164,6 +219,10 @@ ag_status pbrt_infinite_light(pbrt_parser *parser, parameter_list *list, light *
 
 /* pbrt_camera.c */
 pbrt_handler pbrt_camera;
+
+/* pbrt_realistic.c: Camera "realistic"; and what is known of it when the Film is. */
+ag_status pbrt_read_realistic(pbrt_parser *parser, parameter_list *list, camera *c);
+ag_status pbrt_settle_realistic(pbrt_parser *parser);
 
 /* pbrt_shapes.c */
 pbrt_handler pbrt_shape;

@@ -9,6 +9,7 @@
 ag_status pbrt_world_begin(pbrt_parser *parser, file_location where)
 {
     (void)where;
+    PBRT_TRY(pbrt_settle_realistic(parser));
     parser->in_world = true;
     parser->state.world_from_object = transform_identity();
     parser->state.start_is_active = true;
@@ -21,7 +22,7 @@ ag_status pbrt_world_end(pbrt_parser *parser, file_location where)
     return AG_OK;
 }
 
-static ag_status save_state(pbrt_parser *parser, file_location where, bool is_object)
+static ag_status save_state(pbrt_parser *parser, file_location where, bool is_object, bool is_import)
 {
     if (parser->saved_count == parser->saved_capacity) {
         size_t capacity = parser->saved_capacity ? 2 * parser->saved_capacity : 16;
@@ -31,7 +32,7 @@ static ag_status save_state(pbrt_parser *parser, file_location where, bool is_ob
         parser->saved = larger;
         parser->saved_capacity = capacity;
     }
-    parser->saved[parser->saved_count++] = (pbrt_saved_state){parser->state, where, is_object};
+    parser->saved[parser->saved_count++] = (pbrt_saved_state){parser->state, where, is_object, is_import};
     return AG_OK;
 }
 
@@ -39,7 +40,7 @@ static ag_status restore_state(pbrt_parser *parser, file_location where, const c
 {
     const char *begin = is_object ? "ObjectBegin" : "AttributeBegin",
                *other = is_object ? "AttributeBegin" : "ObjectBegin";
-    if (parser->saved_count == 0)
+    if (parser->saved_count == 0 || parser->saved[parser->saved_count - 1].is_import)
         return pbrt_error(parser, where, strlen(directive), "%s without %s", directive, begin);
     const pbrt_saved_state *saved = &parser->saved[parser->saved_count - 1];
     if (saved->is_object != is_object)
@@ -50,7 +51,7 @@ static ag_status restore_state(pbrt_parser *parser, file_location where, const c
     return AG_OK;
 }
 
-ag_status pbrt_attribute_begin(pbrt_parser *parser, file_location where) { return save_state(parser, where, false); }
+ag_status pbrt_attribute_begin(pbrt_parser *parser, file_location where) { return save_state(parser, where, false, false); }
 
 ag_status pbrt_attribute_end(pbrt_parser *parser, file_location where)
 {
@@ -62,7 +63,7 @@ ag_status pbrt_transform_begin(pbrt_parser *parser, file_location where)
     log_at_once(
         parser->log, AG_LOG_WARNING, where, "TransformBegin",
         "TransformBegin and TransformEnd are deprecated and taken, as in pbrt-v4, for AttributeBegin and AttributeEnd");
-    return save_state(parser, where, false);
+    return save_state(parser, where, false, false);
 }
 
 ag_status pbrt_transform_end(pbrt_parser *parser, file_location where)
@@ -84,7 +85,7 @@ ag_status pbrt_object_begin(pbrt_parser *parser, file_location where)
     free(name);
     if (parser->in_object)
         return pbrt_error(parser, where, strlen("ObjectBegin"), "ObjectBegin within another object");
-    PBRT_TRY(save_state(parser, where, true));
+    PBRT_TRY(save_state(parser, where, true, false));
     parser->in_object = true;
     return AG_OK;
 }
@@ -110,10 +111,50 @@ ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
 
 ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end)
 {
-    if (parser->saved_count == 0)
+    if (parser->saved_count == 0 || parser->saved[parser->saved_count - 1].is_import)
         return AG_OK;
     const pbrt_saved_state *saved = &parser->saved[parser->saved_count - 1];
     return pbrt_error(parser, end, 1, "the file ends, but %s at %s:%d:%d is still open",
                       saved->is_object ? "ObjectBegin" : "AttributeBegin", saved->where.file, saved->where.line,
                       saved->where.column);
+}
+
+/* The imported file begins with a copy of the state, and without named coordinate systems, as pbrt has it: there, it may
+ * be read beside the other. What it names otherwise, materials and textures, is everybody's. */
+ag_status pbrt_import(pbrt_parser *parser, file_location where)
+{
+    char *name;
+    file_location name_where;
+    PBRT_TRY(pbrt_read_string(parser, "Import", "a quoted file name", &name, &name_where));
+    ag_status status = pbrt_push_file(parser, name, name_where, strlen(name) + 2);
+    free(name);
+    if (!status)
+        status = save_state(parser, where, false, true);
+    if (status)
+        return status;
+    pbrt_file *top = &parser->files[parser->file_count - 1];
+    top->is_import = true;
+    top->coordinate_systems = parser->coordinate_systems;
+    top->coordinate_system_count = parser->coordinate_system_count;
+    top->coordinate_system_names = parser->coordinate_system_names;
+    parser->coordinate_systems = NULL;
+    parser->coordinate_system_count = 0;
+    parser->coordinate_system_names = (name_table){0};
+    return AG_OK;
+}
+
+ag_status pbrt_end_import(pbrt_parser *parser, file_location end)
+{
+    PBRT_TRY(pbrt_check_blocks(parser, end));
+    parser->state = parser->saved[--parser->saved_count].state;
+    pbrt_file *top = &parser->files[parser->file_count - 1];
+    free(parser->coordinate_systems);
+    name_table_reset(&parser->coordinate_system_names);
+    parser->coordinate_systems = top->coordinate_systems;
+    parser->coordinate_system_count = top->coordinate_system_count;
+    parser->coordinate_system_names = top->coordinate_system_names;
+    top->coordinate_systems = NULL;
+    top->coordinate_system_names = (name_table){0};
+    pbrt_pop_file(parser);
+    return AG_OK;
 }

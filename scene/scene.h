@@ -15,6 +15,13 @@
 
 struct bvh;
 
+/* What the file's Option directives say that the renderer heeds. */
+typedef struct scene_options {
+    bool has_seed;
+    int64_t seed;              /* of 32 bits */
+    bool disable_pixel_jitter; /* samples in the middle of pixel and lens */
+} scene_options;
+
 typedef struct scene {
     material *materials;
     uint32_t material_count;
@@ -31,6 +38,7 @@ typedef struct scene {
 
     /* Directives that the renderer interprets; .name is NULL where the file has none. */
     parameter_list integrator, sampler, film, pixel_filter;
+    scene_options options;
 
     char **file_names; /* interned, for file_location.file */
     uint32_t file_name_count;

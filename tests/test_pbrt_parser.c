@@ -142,9 +142,33 @@ static void errors_name_place_and_reason(void **state)
         {"Camera \"perspective\" \"float frameaspectratio\" 0", "1:22", "\"frameaspectratio\" should be above 0"},
         {"Camera \"perspective\" \"float screenwindow\" [ 1 0 0 1 ]", "1:22",
          "\"screenwindow\" should be x0 x1 y0 y1, with x0 < x1 and y0 < y1"},
-        {"ColorSpace \"foo\"", "1:1", "unknown colour space \"foo\""},
+        {"ColorSpace \"foo\"", "1:1", "unknown colour space \"foo\"; known are srgb, dci-p3, rec2020 and aces2065-1"},
         {"ActiveTransform Foo", "1:17", "ActiveTransform expects StartTime, EndTime or All, not Foo"},
-        {"Option \"a\" [", "1:12", "Option expects a value, not ["},
+        {"Option \"a\" 1", "1:8", "unknown option \"a\""},
+        {"Option \"seed\" [", "1:15", "Option expects a value, not ["},
+        {"Option \"seed\" x", "1:15", "Option expects a number, not x"},
+        {"Option \"seed\" 1.5", "1:15", "the seed should be an integer of 32 bits"},
+        {"Option \"Disable-Pixel_Jitter\" 1", "1:31", "Option expects true or false, not 1"},
+        {"WorldBegin Attribute \"film\" \"float a\" 1", "1:12",
+         "unknown target \"film\"; known are shape, light, material, medium and texture"},
+        {"WorldBegin Attribute \"shape\" \"float radius\" -1 Shape \"sphere\"", "1:30",
+         "\"radius\" should be above 0"},
+        {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [ 500 1 400 1 ]", "1:31",
+         "\"spectrum reflectance\": the wavelengths should increase, but 400 follows 500"},
+        {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [ 400 1 500 -2 ]", "1:31",
+         "\"spectrum reflectance\" has a negative value, -2"},
+        {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [ 400 1e60 ]", "1:31",
+         "\"spectrum reflectance\": 1e+60 is too large"},
+        {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [ ]", "1:31",
+         "\"spectrum reflectance\" should have values"},
+        {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [ \"glass-BK7\" \"glass-F5\" ]", "1:31",
+         "\"spectrum reflectance\" should have one name, or numbers"},
+        {"ColorSpace \"rec2020\" WorldBegin Material \"diffuse\" \"rgb reflectance\" [ 0 -1 0 ]", "1:52",
+         "\"rgb reflectance\" has a negative component"},
+        {"Camera \"perspective\" \"float shutterclose\" 0", "1:22", "the shutter should close after it opens, at 0"},
+        {"Camera \"spherical\" \"string mapping\" \"cube\"", "1:20",
+         "unknown mapping \"cube\"; known are equalarea and equirectangular"},
+        {"Camera \"realistic\"", "1:1", "Camera \"realistic\" has no \"string lensfile\""},
         {"Include foo", "1:9", "Include expects a quoted file name, not foo"},
         {"WorldBegin Texture \"a\" b", "1:24", "Texture expects a quoted type after its name, not b"},
         {"WorldBegin Shape \"sphere\" \"float radius\" true", "1:42", "\"float radius\" expects numbers, not true"},
@@ -192,6 +216,10 @@ static void errors_show_their_line(void **state)
                 "t:1:27: error: \"radius\" should be above 0\n"
                 "    WorldBegin Shape \"sphere\" \"float radius\" -1\n"
                 "                              ^~~~~~~~~~~~~~\n");
+    check_error("WorldBegin\n  Shape \"sphere\" \"integer radius\" 1",
+                "t:2:18: error: \"integer radius\" should be \"float radius\"\n"
+                "      Shape \"sphere\" \"integer radius\" 1\n"
+                "                     ^~~~~~~~~~~~~~~~\n");
     check_error("", "t:1:1: error: the file ends without WorldBegin\n    \n    ^\n");
 }
 
@@ -226,11 +254,8 @@ static void warnings_are_given_once(void **state)
          "a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in"},
         {"Shape \"sphere\" \"texture radius\" \"wood\"",
          "\"texture radius\" is not supported here: it is ignored and the default is used"},
-        {"Material \"diffuse\" \"spectrum reflectance\" [ 400 1 700 1 ]",
-         "spectra given by their values are not supported yet: \"spectrum reflectance\" is ignored and the default is "
-         "used"},
-        {"Material \"conductor\" \"spectrum eta\" \"metal-Xx-eta\"",
-         "the spectrum \"metal-Xx-eta\" is not known, or not supported yet: the default of \"eta\" is used"},
+        {"Material \"conductor\" \"spectrum eta\" \"nikon_d850_r\"",
+         "the spectrum \"nikon_d850_r\" is not known, or not supported yet: the default of \"eta\" is used"},
         {"LightSource \"point\" \"point from\" [ 0 0 1 ]",
          "the parameter type \"point\" is called \"point3\" in pbrt-v4 and is read as that"},
         {"Material \"interface\" Shape \"sphere\"",
@@ -245,9 +270,8 @@ static void warnings_are_given_once(void **state)
          "media are not supported yet: MediumInterface \"\" is ignored, as are any others"},
         {"MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"",
          "media are not supported yet: MakeNamedMedium \"fog\" is ignored, as are any others"},
-        {"Attribute \"shape\" \"float radius\" 2",
-         "Attribute \"shape\" is not supported yet: its parameters are ignored, as are those of any others"},
-        {"ColorSpace \"rec2020\"", "ColorSpace \"rec2020\" is not supported yet: rgb values are taken for sRGB's"},
+        {"ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [ 0 1 0 ]",
+         "\"rgb reflectance\" is outside the colours of Rec. 709: it is clipped, as are any others"},
         {"ActiveTransform EndTime Translate 1 0 0 ActiveTransform All",
          "ActiveTransform: motion is not supported yet, everything stands as it does at the start time"},
         {"ObjectBegin \"a\" Shape \"sphere\" ObjectEnd",
@@ -278,16 +302,17 @@ static void options_warn_where_they_matter(void **state)
 {
     (void)state;
     const char *text =
-        "Option \"seed\" 7 Option \"seed\" 8 Option \"rendercoordsys\" \"world\" Option \"wavefront\" true\n"
-        "TransformTimes 0 1 WorldBegin\nImport \"a.pbrt\" CoordSysTransform \"nowhere\"";
+        "Option \"seed\" 7 Option \"Seed\" -8 Option \"rendercoordsys\" \"world\" Option \"wavefront\" true\n"
+        "Option \"force-diffuse\" true Option \"pixelstats\" false Option \"disable_pixel_jitter\" true\n"
+        "TransformTimes 0 1 WorldBegin\nCoordSysTransform \"nowhere\"";
     reading r = reading_create(NULL, text, strlen(text));
     assert_int_equal(r.status, AG_OK);
+    assert_true(r.scene->options.has_seed && r.scene->options.seed == -8 && r.scene->options.disable_pixel_jitter);
     assert_string_equal(r.said[AG_LOG_WARNING],
-                        "t:1:1: warning: Option \"seed\" is not known, or not supported yet, and is ignored\n"
-                        "t:2:1: warning: TransformTimes: motion is not supported yet, everything stands as it does at "
+                        "t:2:1: warning: Option \"forcediffuse\" is not supported: materials stay as they are\n"
+                        "t:3:1: warning: TransformTimes: motion is not supported yet, everything stands as it does at "
                         "the start time\n"
-                        "t:3:1: warning: Import is not supported yet: \"a.pbrt\" is left out\n"
-                        "t:3:17: warning: no coordinate system is named \"nowhere\": CoordSysTransform is ignored\n");
+                        "t:4:1: warning: no coordinate system is named \"nowhere\": CoordSysTransform is ignored\n");
     reading_destroy(&r);
 }
 
@@ -473,6 +498,127 @@ static void included_files_are_told(void **state)
                      "%/none.pbrt: error: cannot read the file: No such file or directory\n");
 }
 
+static void imported_files_have_a_state_of_their_own(void **state)
+{
+    (void)state;
+    write_file("top.pbrt", "WorldBegin Translate 0 3 0 CoordinateSystem \"up\" Attribute \"shape\" \"float radius\" 2\n"
+                           "Import \"parts/a.pbrt\" Shape \"sphere\" NamedMaterial \"m\" Shape \"disk\"\n"
+                           "CoordSysTransform \"up\" Shape \"disk\"");
+    /* the last parameter list ends with the file; what is named is everybody's, but for coordinate systems */
+    write_file("parts/a.pbrt", "Translate 1 0 0 Shape \"sphere\" CoordinateSystem \"up\" ReverseOrientation\n"
+                               "MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Include \"b.pbrt\" ColorSpace \"rec2020\"\n"
+                               "Attribute \"shape\" \"float radius\" 5 Shape \"sphere\" \"float zmax\" 1");
+    write_file("parts/b.pbrt", "Translate 1 0 0");
+    reading r = reading_create(path_of("top.pbrt"), NULL, 0);
+    if (r.said[AG_LOG_ERROR])
+        print_error("%s", r.said[AG_LOG_ERROR]);
+    assert_int_equal(r.status, AG_OK);
+    assert_int_equal(r.count[AG_LOG_WARNING], 0);
+    const shape *shapes = r.scene->shapes;
+    assert_int_equal(r.scene->shape_count, 5);
+    static const double X[] = {1, 2, 0, 0, 0}, RADIUS[] = {2, 5, 2, 2, 2};
+    for (int i = 0; i < 5; i++) {
+        assert_vec3(transform_point(&shapes[i].as.quadric.world_from_object, vec3_make(0, 0, 0)), X[i], 3, 0, 1e-6);
+        assert_near(shapes[i].as.quadric.radius, RADIUS[i], 0);
+    }
+    assert_true(shapes[1].flip_normal && !shapes[2].flip_normal);
+    assert_true(shapes[3].material_index != shapes[2].material_index);
+    reading_destroy(&r);
+
+    write_file("outer.pbrt", "WorldBegin AttributeBegin\nImport \"inner.pbrt\" AttributeEnd");
+    write_file("inner.pbrt", "AttributeBegin\n");
+    check_file_error("outer.pbrt", AG_ERROR_SCENE,
+                     "%/inner.pbrt:2:1: error: the file ends, but AttributeBegin at %/inner.pbrt:1:1 is still open\n"
+                     "    \n    ^\n");
+    write_file("inner.pbrt", "AttributeEnd\n");
+    check_file_error("outer.pbrt", AG_ERROR_SCENE,
+                     "%/inner.pbrt:1:1: error: AttributeEnd without AttributeBegin\n    AttributeEnd\n    ^~~~~~~~~~~~\n");
+    write_file("inner.pbrt", "Shape \"sphere\" \"float radius\" [ 1");
+    check_file_error("outer.pbrt", AG_ERROR_SCENE,
+                     "%/inner.pbrt:1:34: error: \"float radius\" expects numbers, but the file ends\n"
+                     "    Shape \"sphere\" \"float radius\" [ 1\n                                     ^\n");
+    write_file("inner.pbrt", "Import \"outer.pbrt\"");
+    check_file_error("outer.pbrt", AG_ERROR_SCENE,
+                     "%/inner.pbrt:1:8: error: \"outer.pbrt\" includes itself: %/inner.pbrt:1 < %/outer.pbrt:2\n"
+                     "    Import \"outer.pbrt\"\n           ^~~~~~~~~~~~\n");
+    write_file("inner.pbrt", "Camera \"perspective\"");
+    check_file_error("outer.pbrt", AG_ERROR_SCENE,
+                     "%/inner.pbrt:1:1: error: Camera may only stand before WorldBegin\n"
+                     "    Camera \"perspective\"\n    ^~~~~~\n");
+}
+
+static void attributes_speak_to_what_follows(void **state)
+{
+    (void)state;
+    reading r = reading_of(
+        "WorldBegin Attribute \"shape\" \"float radius\" 2 \"float nobody\" 1\n"
+        "Attribute \"light\" \"float scale\" 3 \"rgb L\" [ 1 2 3 ] \"string meant\" \"for others\"\n"
+        "AttributeBegin Attribute \"shape\" \"float radius\" 4 Shape \"sphere\" Shape \"sphere\" \"float radius\" 5\n"
+        "AttributeEnd Shape \"disk\" ColorSpace \"aces2065-1\" Attribute \"material\" \"rgb reflectance\" [ .5 .5 .5 ]\n"
+        "ColorSpace \"srgb\" Material \"diffuse\" AreaLightSource \"diffuse\" Shape \"sphere\"\n"
+        "Attribute \"texture\" \"float value\" .25 Texture \"t\" \"float\" \"constant\"");
+    static const double RADIUS[] = {4, 5, 2, 2};
+    for (int i = 0; i < 4; i++)
+        assert_near(r.scene->shapes[i].as.quadric.radius, RADIUS[i], 0);
+    assert_rgb(r.scene->materials[r.scene->shapes[3].material_index].reflectance, .5, .5, .5, 1e-6);
+    assert_int_equal(r.scene->light_count, 1);
+    assert_rgb(r.scene->lights[0].radiance, 3, 6, 9, 1e-6);
+    assert_near(r.scene->textures[0].inputs[0].value.r, .25, 0);
+    reading_destroy(&r);
+}
+
+static void colour_spaces_are_part_of_the_state(void **state)
+{
+    (void)state;
+    reading r = reading_of("ColorSpace \"ACES2065-1\" WorldBegin AttributeBegin ColorSpace \"srgb\"\n"
+                           "Material \"diffuse\" \"rgb reflectance\" [ .2 .4 .6 ] Shape \"sphere\" AttributeEnd\n"
+                           "Material \"diffuse\" \"rgb reflectance\" [ .5 .4 .3 ] Shape \"sphere\"\n"
+                           "LightSource \"point\" \"rgb I\" [ 1 1 1 ]\n"
+                           "Material \"conductor\" \"rgb eta\" [ 2 2 2 ] \"rgb k\" [ 3 3 3 ] Shape \"sphere\"");
+    const scene *s = r.scene;
+    assert_rgb(s->materials[s->shapes[0].material_index].reflectance, .2, .4, .6, 1e-7);
+    assert_rgb(s->materials[s->shapes[1].material_index].reflectance, 2.52169 * .5 - 1.13413 * .4 - .38756 * .3,
+               -.27648 * .5 + 1.37272 * .4 - .09624 * .3, -.01538 * .5 - .15298 * .4 + 1.16835 * .3, 1e-5);
+    assert_rgb(s->materials[s->shapes[2].material_index].eta, 2, 2, 2, 1e-5);
+    rgb white;
+    assert_true(spectra_find_named("illum-acesD60", &white));
+    assert_rgb(s->lights[0].intensity, white.r, white.g, white.b, 1e-6);
+    reading_destroy(&r);
+}
+
+static void spectra_are_read_from_files(void **state)
+{
+    (void)state;
+    write_file("parts/glass.spd", "# wavelength value\n400 1.5\n700\t1.5 # end");
+    write_file("top.pbrt", "WorldBegin Material \"dielectric\" \"spectrum eta\" \"parts/glass.spd\" Shape \"sphere\"\n"
+                           "LightSource \"point\" \"spectrum I\" [ 300 2 900 2 ] \"float scale\" 3\n"
+                           "Material \"diffuse\" \"spectrum reflectance\" [ 400 .3 700 .3 ] Shape \"sphere\"\n"
+                           "LightSource \"point\" \"spectrum I\" \"stdillum-D65\"");
+    reading r = reading_create(path_of("top.pbrt"), NULL, 0);
+    assert_int_equal(r.status, AG_OK);
+    assert_int_equal(r.count[AG_LOG_WARNING], 0);
+    const scene *s = r.scene;
+    assert_near(s->materials[s->shapes[0].material_index].ior, 1.5, 1e-6);
+    assert_rgb(s->materials[s->shapes[1].material_index].reflectance, .3, .3, .3, 1e-6);
+    assert_near(rgb_luminance(s->lights[0].intensity), 3, 1e-3);
+    assert_rgb(s->lights[1].intensity, 1, 1, 1, 0);
+    reading_destroy(&r);
+    write_file("parts/glass.spd", "400 1.5\n700 x");
+    check_file_error("top.pbrt", AG_ERROR_SCENE,
+                     "%/parts/glass.spd:2:5: error: a number should stand here\n    700 x\n        ^\n");
+    write_file("parts/glass.spd", "400 1.5 700");
+    write_file("top.pbrt", "WorldBegin Material \"dielectric\" \"spectrum eta\" \"parts/glass.spd\"");
+    check_file_error("top.pbrt", AG_ERROR_SCENE,
+                     "%/top.pbrt:1:34: error: the file \"parts/glass.spd\" has 3 numbers: it should have wavelengths and "
+                     "values\n    WorldBegin Material \"dielectric\" \"spectrum eta\" \"parts/glass.spd\"\n"
+                     "                                     ^~~~~~~~~~~~~~\n");
+    write_file("top.pbrt", "WorldBegin Material \"dielectric\" \"spectrum eta\" \"glass-none\"");
+    check_file_error("top.pbrt", AG_ERROR_INPUT,
+                     "%/top.pbrt:1:34: error: cannot read the file \"glass-none\": No such file or directory; nor has pbrt a "
+                     "spectrum of that name\n    WorldBegin Material \"dielectric\" \"spectrum eta\" \"glass-none\"\n"
+                     "                                     ^~~~~~~~~~~~~~\n");
+}
+
 static void deep_includes_are_refused(void **state)
 {
     (void)state;
@@ -567,7 +713,8 @@ static void damaged_scenes_are_survived(void **state)
         "WorldBegin MakeNamedMaterial \"m\" \"string type\" \"conductor\" \"rgb k\" [ 1 2 3 ] # comment\n"
         "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] \"bool twosided\" true NamedMaterial \"m\"\n"
         "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 1 ] \"integer indices\" [ 0 1 2 3 ] AttributeEnd\n"
-        "Texture \"t\" \"float\" \"scale\" \"float v\" 2 ObjectBegin \"o\" Shape \"disk\" ObjectEnd Include \"/none\"";
+        "Texture \"t\" \"float\" \"scale\" \"float v\" 2 ObjectBegin \"o\" Shape \"disk\" ObjectEnd ColorSpace \"rec2020\"\n"
+        "Attribute \"shape\" \"float radius\" 1 Material \"diffuse\" \"spectrum reflectance\" [ 400 1 ] Import \"/none\"";
     static const unsigned char BYTES[] = {0, '"', '[', ']', '#', '\\', '\n', '-', '9', 'e', 'x', 0xff};
     size_t size = sizeof TEXT - 1;
     char *copy = malloc(size);
@@ -620,7 +767,8 @@ static int remove_directory(void **state)
     (void)state;
     static const char *const NAMES[] = {"top.pbrt",   "parts/a.pbrt", "parts/b.pbrt",   "open.pbrt",
                                         "begin.pbrt", "missing.pbrt", "cycle.pbrt",     "cycle2.pbrt",
-                                        "outer.pbrt", "inner.pbrt",   "packed.pbrt.gz", "stdin.pbrt"};
+                                        "outer.pbrt", "inner.pbrt",   "packed.pbrt.gz", "stdin.pbrt",
+                                        "parts/glass.spd"};
     for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
         remove(path_of(NAMES[i]));
     rmdir(path_of("parts"));
@@ -641,6 +789,10 @@ int main(void)
         cmocka_unit_test(attributes_are_brought_back),
         cmocka_unit_test(included_files_are_found),
         cmocka_unit_test(included_files_are_told),
+        cmocka_unit_test(imported_files_have_a_state_of_their_own),
+        cmocka_unit_test(attributes_speak_to_what_follows),
+        cmocka_unit_test(colour_spaces_are_part_of_the_state),
+        cmocka_unit_test(spectra_are_read_from_files),
         cmocka_unit_test(deep_includes_are_refused),
         cmocka_unit_test(packed_files_and_standard_input_are_read),
         cmocka_unit_test(progress_is_told_and_cancelling_heeded),
