@@ -159,6 +159,9 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
     if (status == AG_OK) {
         static const char *const names[3] = {"R", "G", "B"};
         static const image_attribute attributes[] = {{.name = "Software", .text = "Afterglow"}};
+        ag_sample_type type = settings->type;
+        if (type == AG_SAMPLE_DEFAULT && film->float_samples && format->scene_linear)
+            type = AG_SAMPLE_FLOAT;
         image_description description = {.width = film->width,
                                          .height = film->height,
                                          .x = film->x0,
@@ -167,7 +170,7 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
                                          .full_height = film->full_height,
                                          .channel_count = 3,
                                          .channel_names = names,
-                                         .type = stored_type(format, settings->type),
+                                         .type = stored_type(format, type),
                                          .color_space = format->scene_linear ? "Linear" : NULL,
                                          .attributes = attributes,
                                          .attribute_count = sizeof attributes / sizeof *attributes};

@@ -4,6 +4,7 @@
 #include "context.h"
 
 #include "clock.h"
+#include "film_response.h"
 #include "floating_point.h"
 #include "path_tracing.h"
 #include "pixel_filter.h"
@@ -119,48 +120,62 @@ typedef struct tile_job {
     ag_context *context;
     const transport *t;
     const pixel_filter *filter;
+    film_response response;
     tile_scheduler *tiles;
     eye_worker *workers;
     ag_film *film;
     atomic_u64 pixels_done; /* for the progress alone: relaxed */
 } tile_job;
 
-static rgb render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index)
+static rgb render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index, int *out_sign)
 {
     const transport *t = job->t;
     const ag_render_settings *settings = t->settings;
     sampler where = sampler_make(settings->seed, x, y, index);
-    vec2 offset = pixel_filter_sample(job->filter, sampler_2d(&where, SAMPLE_PIXEL, 0));
+    vec2 offset = pixel_filter_sample(job->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), out_sign);
+    vec2 lens = t->s->options.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
     float width = (float)settings->width, height = (float)settings->height;
     scene_ray ray = camera_generate_ray(&t->s->camera, ((float)x + 0.5f + offset.x) / width,
                                          ((float)y + 0.5f + offset.y) / height, width / height,
-                                         sampler_2d(&where, SAMPLE_LENS, 0));
+                                         lens);
     rgb radiance = settings->integrator == AG_INTEGRATOR_PATH
                        ? path_tracing_radiance(t, worker, ray, &where)
                        : shading_radiance(t, worker, ray, &where);
     if (rgb_is_finite(radiance))
-        return radiance;
+        return job->response.is_bounded ? film_response_bound(&job->response, radiance) : radiance;
     worker->samples_not_finite++;
     return rgb_gray(0.0f);
 }
 
-/* A pixel is the mean of its samples, summed in their order by the one thread that has its tile. */
+/* A pixel is the mean of its samples (of filters with negative lobes: their mean with signs), summed in their order by the
+ * one thread that has its tile. */
 static void render_pixel(const tile_job *job, eye_worker *worker, int x, int y)
 {
     uint32_t count = (uint32_t)job->t->settings->samples_per_pixel;
-    double sum[3] = {0.0, 0.0, 0.0};
+    pixel_sum sum = {0};
     for (uint32_t i = 0; i < count; i++) {
         if (run_is_cancelled(&job->context->run))
             return;
-        rgb sample = render_sample(job, worker, x, y, i);
-        sum[0] += (double)sample.r;
-        sum[1] += (double)sample.g;
-        sum[2] += (double)sample.b;
+        int sign;
+        rgb sample = render_sample(job, worker, x, y, i, &sign);
+        double *signed_sum = sign > 0 ? sum.positive : sum.negative;
+        signed_sum[0] += (double)sample.r;
+        signed_sum[1] += (double)sample.g;
+        signed_sum[2] += (double)sample.b;
+        if (sign > 0)
+            sum.positive_count++;
+        else
+            sum.negative_count++;
     }
+    double mean[3] = {sum.positive[0] / count, sum.positive[1] / count, sum.positive[2] / count};
+    if (job->filter->has_signs)
+        pixel_filter_resolve(job->filter, &sum, mean);
+    if (!job->response.is_plain)
+        film_response_develop(&job->response, mean);
     float *pixel = job->film->pixels +
                    3 * ((size_t)(y - job->film->y0) * (size_t)job->film->width + (size_t)(x - job->film->x0));
     for (int c = 0; c < 3; c++)
-        pixel[c] = (float)(sum[c] / count);
+        pixel[c] = (float)mean[c];
 }
 
 static void render_tiles(void *user, unsigned worker_index)
@@ -220,6 +235,7 @@ static ag_status render_film(ag_context *context, const transport *t, const pixe
 {
     ag_statistics *statistics = &context->statistics;
     tile_job job = {.context = context, .t = t, .filter = filter, .film = film};
+    job.response = film_response_make(t->settings);
     job.workers = eye_workers_create(t, statistics->threads);
     if (!job.workers)
         return AG_ERROR_MEMORY;
@@ -262,6 +278,7 @@ static ag_film *film_create(const ag_render_settings *settings)
     film->height = edges[3] - edges[2];
     film->full_width = settings->width;
     film->full_height = settings->height;
+    film->float_samples = settings->float_samples;
     if (film->width < 1 || film->height < 1)
         film->width = film->height = 0;
     film->pixels = calloc((size_t)film->width * (size_t)film->height + 1, 3 * sizeof *film->pixels);
@@ -349,7 +366,8 @@ ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render
     pixel_filter filter;
     ag_status status = settle_settings(context, loaded, settings);
     if (status == AG_OK)
-        status = pixel_filter_create(&loaded->s->pixel_filter, context->log, &filter);
+        status = pixel_filter_create(&loaded->s->pixel_filter, loaded->s->options.disable_pixel_jitter, context->log,
+                                     &filter);
     if (status == AG_OK) {
         film = film_create(&context->rendered);
         status = film ? AG_OK : AG_ERROR_MEMORY;

@@ -3,6 +3,7 @@
  * Flow: scene -> [here] -> render. Threads: as in afterglow.h. */
 #include "context.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Enough for a clean interior; with 50 nearest the loss along edges stays below a hundredth of a room's light. */
@@ -11,6 +12,7 @@ static const ag_render_settings DEFAULTS = {
     .height = 720,
     .crop_window = {0.0, 1.0, 0.0, 1.0},
     .samples_per_pixel = 16,
+    .exposure = 1.0f,
     .max_depth = 100,
     .photon_count = 1000000,
     .caustic_photon_count = 500000,
@@ -49,22 +51,88 @@ static bool is_crop_window(const double window[4])
            window[2] < window[3] && window[3] <= 1.0;
 }
 
+/* The film's kind, and the parameters of kinds that are not written. */
+static ag_status read_film_kind(parameter_list *film, log_sink *log)
+{
+    const char *system;
+    float wavelength;
+    int64_t count;
+    ag_status status = AG_OK;
+    if (strcmp(film->name, "rgb") == 0)
+        return AG_OK;
+    if (strcmp(film->name, "gbuffer") == 0) {
+        log_at_once(log, AG_LOG_WARNING, film->where, "film",
+                    "Film \"gbuffer\": R, G and B are written alone; its channels for albedo, position, normals, texture "
+                    "coordinates, depth slopes and variance are left out");
+        return parameter_get_string(film, log, "coordinatesystem", &system);
+    }
+    log_at_once(log, AG_LOG_WARNING, film->where, "film", "Film \"%s\" is not supported; \"rgb\" stands in", film->name);
+    if (strcmp(film->name, "spectral") == 0) {
+        status = parameter_get_float(film, log, "lambdamin", &wavelength);
+        if (status == AG_OK)
+            status = parameter_get_float(film, log, "lambdamax", &wavelength);
+        if (status == AG_OK)
+            status = parameter_get_int(film, log, "nbuckets", &count);
+    }
+    return status;
+}
+
+/* pbrt-v4's PixelSensor. Only cie1931 is there, which sees as our RGB does. */
+static ag_status read_sensor(parameter_list *film, log_sink *log, ag_render_settings *out)
+{
+    const char *sensor = "cie1931";
+    float iso = 100.0f;
+    out->max_component = INFINITY;
+    ag_status status = parameter_get_float(film, log, "iso", &iso);
+    if (status == AG_OK)
+        status = parameter_get_float(film, log, "whitebalance", &out->white_balance);
+    if (status == AG_OK)
+        status = parameter_get_float(film, log, "maxcomponentvalue", &out->max_component);
+    if (status == AG_OK)
+        status = parameter_get_string(film, log, "sensor", &sensor);
+    if (status != AG_OK)
+        return status;
+    const parameter *wrong = NULL;
+    if (!(iso > 0.0f))
+        wrong = parameter_list_find(film, "iso");
+    else if (!(out->max_component > 0.0f))
+        wrong = parameter_list_find(film, "maxcomponentvalue");
+    else if (out->white_balance != 0.0f && !(out->white_balance >= 1000.0f && out->white_balance <= 25000.0f))
+        wrong = parameter_list_find(film, "whitebalance");
+    if (wrong) {
+        log_at(log, AG_LOG_ERROR, wrong->where, "Film: \"%s\" is %g, it must be %s", wrong->name, wrong->numbers[0],
+               strcmp(wrong->name, "whitebalance") == 0 ? "from 1000 to 25000 kelvin, or 0" : "above 0");
+        return AG_ERROR_SCENE;
+    }
+    if (isinf(out->max_component))
+        out->max_component = 0.0f;
+    if (strcmp(sensor, "cie1931") != 0) /* pbrt balances the others to 6500 K, which is our white */
+        log_at_once(log, AG_LOG_WARNING, film->where, "sensor", "Film: the sensor \"%s\" is %s; \"cie1931\" stands in",
+                    sensor, spectra_is_sensor(sensor, strlen(sensor)) ? "not supported" : "not known");
+    out->exposure *= iso / 100.0f;
+    return AG_OK;
+}
+
 static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settings *out)
 {
     if (!film->name)
         return AG_OK;
-    if (strcmp(film->name, "rgb") != 0)
-        log_at_once(log, AG_LOG_WARNING, film->where, "film", "Film \"%s\" is not supported yet; \"rgb\" stands in",
-                    film->name);
     const char *file_name = NULL;
     const double *crop = NULL, *bounds = NULL;
     size_t crop_count = 0, bounds_count = 0;
     float diagonal;
-    ag_status status = get_int(film, log, "xresolution", 1, 65536, &out->width);
+    bool is_half = true;
+    ag_status status = read_film_kind(film, log);
+    if (status == AG_OK)
+        status = read_sensor(film, log, out);
+    if (status == AG_OK)
+        status = get_int(film, log, "xresolution", 1, 65536, &out->width);
     if (status == AG_OK)
         status = get_int(film, log, "yresolution", 1, 65536, &out->height);
     if (status == AG_OK)
         status = parameter_get_string(film, log, "filename", &file_name);
+    if (status == AG_OK)
+        status = parameter_get_bool(film, log, "savefp16", &is_half);
     if (status == AG_OK)
         status = parameter_get_float(film, log, "diagonal", &diagonal); /* of the sensor: a realistic camera's concern */
     if (status == AG_OK)
@@ -74,12 +142,17 @@ static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settin
     if (status != AG_OK)
         return status;
     if ((crop && crop_count != 4) || (bounds && bounds_count != 4)) {
-        log_at(log, AG_LOG_ERROR, film->where, "Film: \"%s\" takes four numbers", crop ? "cropwindow" : "pixelbounds");
+        log_at(log, AG_LOG_ERROR, film->where, "Film: \"%s\" takes four numbers",
+               crop && crop_count != 4 ? "cropwindow" : "pixelbounds");
         return AG_ERROR_SCENE;
     }
+    if (crop && bounds)
+        log_at_once(log, AG_LOG_WARNING, film->where, "cropwindow",
+                    "Film: \"pixelbounds\" is ignored, as there is a \"cropwindow\"");
     for (int i = 0; i < 4; i++) {
-        if (crop)
-            out->crop_window[i] = crop[i];
+        if (crop) /* in any order, and clipped, as in pbrt */
+            out->crop_window[i] =
+                fmin(fmax(i % 2 ? fmax(crop[i - 1], crop[i]) : fmin(crop[i], crop[i + 1]), 0.0), 1.0);
         else if (bounds) /* beyond the picture is nothing, as in pbrt */
             out->crop_window[i] = fmin(fmax(bounds[i] / (i < 2 ? out->width : out->height), 0.0), 1.0);
     }
@@ -87,21 +160,49 @@ static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settin
         log_at(log, AG_LOG_ERROR, film->where, "Film: \"%s\" leaves no part of the picture", crop ? "cropwindow" : "pixelbounds");
         return AG_ERROR_SCENE;
     }
+    out->float_samples = !is_half;
     parameter_list_warn_unused(film, log);
     return AG_OK;
 }
 
+/* All of pbrt's samplers have ours standing in for them, whatever way they are randomised: it is not seen but in the
+ * noise. */
 static ag_status read_sampler(parameter_list *sampler, log_sink *log, ag_render_settings *out)
 {
+    static const char *const NAMES[] = {"halton",  "sobol",       "paddedsobol", "zsobol",
+                                        "pmj02bn", "independent", "stratified"};
+    const char *randomization;
+    bool jitter, is_known = false;
+    int64_t seed = 0;
     if (!sampler->name)
         return AG_OK;
-    if (strcmp(sampler->name, "stratified") != 0)
-        return get_int(sampler, log, "pixelsamples", 1, 1 << 20, &out->samples_per_pixel);
-    int x = 4, y = 4;
-    ag_status status = get_int(sampler, log, "xsamples", 1, 1 << 10, &x);
+    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
+        is_known = is_known || strcmp(sampler->name, NAMES[i]) == 0;
+    if (!is_known)
+        log_at_once(log, AG_LOG_WARNING, sampler->where, "sampler", "Sampler \"%s\" is not known; our own stands in",
+                    sampler->name);
+    ag_status status = parameter_get_int(sampler, log, "seed", &seed);
     if (status == AG_OK)
-        status = get_int(sampler, log, "ysamples", 1, 1 << 10, &y);
-    out->samples_per_pixel = x * y;
+        status = parameter_get_string(sampler, log, "randomization", &randomization);
+    if (status != AG_OK)
+        return status;
+    if (parameter_list_find(sampler, "seed"))
+        out->seed = (uint64_t)seed;
+    if (strcmp(sampler->name, "stratified") == 0) {
+        int x = 4, y = 4;
+        status = get_int(sampler, log, "xsamples", 1, 1 << 10, &x);
+        if (status == AG_OK)
+            status = get_int(sampler, log, "ysamples", 1, 1 << 10, &y);
+        if (status == AG_OK)
+            status = parameter_get_bool(sampler, log, "jitter", &jitter);
+        out->samples_per_pixel = x * y;
+    } else {
+        if (strcmp(sampler->name, "independent") == 0)
+            out->samples_per_pixel = 4; /* pbrt's default for it alone */
+        status = get_int(sampler, log, "pixelsamples", 1, 1 << 20, &out->samples_per_pixel);
+    }
+    if (status == AG_OK)
+        parameter_list_warn_unused(sampler, log);
     return status;
 }
 
@@ -137,12 +238,31 @@ static ag_status read_photonmap(parameter_list *list, log_sink *log, ag_render_s
     return AG_OK;
 }
 
+/* Another renderer's integrator, with all that it says. */
+static void name_ignored(const parameter_list *integrator, log_sink *log)
+{
+    char names[256] = "";
+    for (size_t i = 0; i < integrator->count; i++) {
+        size_t used = strlen(names);
+        const char *gap = i == 0 ? "" : i + 1 == integrator->count ? " and " : ", ";
+        snprintf(names + used, sizeof names - used, "%s\"%.40s\"", gap, integrator->items[i].name);
+    }
+    log_at_once(log, AG_LOG_WARNING, integrator->where, "integrator",
+                "Integrator \"%s\" is another renderer's: rendering with our own defaults%s%s%s%s", integrator->name,
+                names[0] ? "; its " : "", names, names[0] ? integrator->count > 1 ? " are ignored" : " is ignored" : "",
+                parameter_list_find(integrator, "maxdepth") ? ", paths end by roulette" : "");
+}
+
 ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loaded, ag_render_settings *out_settings)
 {
     if (!context || !loaded || !out_settings)
         return AG_ERROR_ARGUMENT;
     scene *s = loaded->s; /* parameters are marked as looked up; nothing else changes */
     ag_render_settings settings = DEFAULTS;
+    if (s->options.has_seed)
+        settings.seed = (uint64_t)s->options.seed;
+    if (s->camera.exposure > 0.0f)
+        settings.exposure = s->camera.exposure;
     ag_status status = read_film(&s->film, context->log, &settings);
     if (status == AG_OK)
         status = read_sampler(&s->sampler, context->log, &settings);
@@ -153,10 +273,7 @@ ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loa
         if (status != AG_OK)
             return status;
     } else if (s->integrator.name) {
-        const parameter *depth = parameter_list_find(&s->integrator, "maxdepth");
-        log_at_once(context->log, AG_LOG_WARNING, s->integrator.where, "integrator",
-                    "Integrator \"%s\" is another renderer's: rendering with our own defaults%s", s->integrator.name,
-                    depth ? "; its \"maxdepth\" is ignored, paths end by roulette" : "");
+        name_ignored(&s->integrator, context->log);
     }
     *out_settings = settings;
     return AG_OK;
@@ -171,6 +288,12 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "crop window must satisfy 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1";
     else if (s->samples_per_pixel < 1 || s->samples_per_pixel > 1 << 20)
         wrong = "samples per pixel must be from 1 to 1048576";
+    else if (!(s->exposure > 0.0f) || isinf(s->exposure))
+        wrong = "exposure must be finite and above 0";
+    else if (!(s->max_component >= 0.0f))
+        wrong = "the largest component must not be negative";
+    else if (s->white_balance != 0.0f && !(s->white_balance >= 1000.0f && s->white_balance <= 25000.0f))
+        wrong = "white balance must be 0 or from 1000 to 25000 kelvin";
     else if (s->gather_samples < 0 || s->gather_samples > 65536)
         wrong = "gather rays must be from 0 (automatic) to 65536";
     else if ((int64_t)s->samples_per_pixel * (s->gather_samples > 0 ? s->gather_samples : 1) > UINT32_MAX)

@@ -43,7 +43,7 @@ typedef struct option_line {
 static const option_line LINES[] = {
     {'o', "outfile", "FILE", "write the picture to FILE; may be repeated; .exr is scene-linear,\n.png, .tif and .jpg go through a display and view (default: the Film's\nfilename, else SCENE.exr)"},
     {'t', "nthreads", "N", "threads (default: what affinity mask and cgroup quota allow)"},
-    {OPT_SEED, "seed", "N", "seed of all random numbers (default 0)"},
+    {OPT_SEED, "seed", "N", "seed of all random numbers (default: the scene's, else 0)"},
     {OPT_SPP, "spp", "N", "samples per pixel (default: the scene's, else 16)"},
     {OPT_SIZE, "size", "WxH", "size of the full picture in pixels"},
     {OPT_CROP, "cropwindow", "X0,X1,Y0,Y1", "part of the picture to render, each in [0, 1]"},
@@ -314,7 +314,8 @@ void options_override(const options *o, ag_render_settings *settings)
     settings->cache = r->cache;
     settings->only = r->only;
     settings->integrator = r->integrator;
-    settings->seed = r->seed;
+    if (o->has_seed)
+        settings->seed = r->seed;
     if (o->has_size)
         settings->width = r->width, settings->height = r->height;
     if (o->has_crop)

@@ -74,6 +74,13 @@ typedef struct ag_render_settings {
     double crop_window[4];    /* x0, x1, y0, y1 in [0, 1]: the part to render, from the left and from the top, as
                                  pbrt's cropwindow: pixels from ceil(x0 width) up to ceil(x1 width) - 1; default 0 1 0 1 */
     int samples_per_pixel;    /* [1, 2^20] */
+    float exposure;           /* pixels are the radiance times this: pbrt's imaging ratio, the shutter's time * iso / 100;
+                                 > 0, default 1 */
+    float max_component;      /* no component of a sample in CIE XYZ, which is pbrt's sensor, is above it: brighter samples
+                                 are scaled down; 0: unbounded, the default */
+    float white_balance;      /* K, [1000, 25000]: daylight of this temperature (below 4000: a black body) becomes white;
+                                 0: none, the default */
+    bool float_samples;       /* EXR files of the film hold floats where ag_output_settings leaves it open; default half */
     int max_depth;            /* scatterings between lamp and eye, [0, 100]; 100: roulette alone ends paths. Path tracing
                                  keeps it exactly. The photon map bounds light's part (to max_depth - 2 before a
                                  gather ray ends, max_depth - 1 before a caustic) and the eye's part apart: behind
