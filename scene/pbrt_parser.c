@@ -35,6 +35,9 @@ static ag_status sampler(pbrt_parser *parser, file_location where)
 
 static ag_status film(pbrt_parser *parser, file_location where)
 {
+    if (parser->state.rgb_space != COLOR_SPACE_SRGB) /* pbrt writes the picture in it */
+        log_at_once(parser->log, AG_LOG_WARNING, where, "film colours",
+                    "the ColorSpace is not that of the picture: it is written in linear Rec. 709");
     return keep_parameters(parser, where, "Film", &parser->scene->film);
 }
 

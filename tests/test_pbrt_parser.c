@@ -580,6 +580,12 @@ static void colour_spaces_are_part_of_the_state(void **state)
     assert_rgb(s->materials[s->shapes[1].material_index].reflectance, 2.52169 * .5 - 1.13413 * .4 - .38756 * .3,
                -.27648 * .5 + 1.37272 * .4 - .09624 * .3, -.01538 * .5 - .15298 * .4 + 1.16835 * .3, 1e-5);
     assert_rgb(s->materials[s->shapes[2].material_index].eta, 2, 2, 2, 1e-5);
+    const char *film = "ColorSpace \"rec2020\" Film \"rgb\" WorldBegin";
+    reading pictured = reading_create(NULL, film, strlen(film));
+    assert_int_equal(pictured.status, AG_OK);
+    assert_string_equal(pictured.said[AG_LOG_WARNING], "t:1:22: warning: the ColorSpace is not that of the picture: it is "
+                                                       "written in linear Rec. 709\n");
+    reading_destroy(&pictured);
     rgb white;
     assert_true(spectra_find_named("illum-acesD60", &white));
     assert_rgb(s->lights[0].intensity, white.r, white.g, white.b, 1e-6);
