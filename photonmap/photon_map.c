@@ -4,6 +4,7 @@
 #include "photon_map.h"
 
 #include "parallel_for.h"
+#include "surface_region.h"
 
 #include <stdlib.h>
 
@@ -16,7 +17,7 @@ static const float MIN_RADIUS_SHARE = 0x1p-10f;
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
                             double progress_begin, double progress_end, photon_map *out_map)
 {
-    photon_map map = {.set = *set, .nearest = settings->nearest};
+    photon_map map = {.set = *set, .nearest = settings->nearest, .surfaces = settings->surfaces};
     *set = (photon_set){0};
     *out_map = (photon_map){0};
     float density = settings->surface_area > 0.0f ? (float)map.set.count / settings->surface_area : 0.0f;
@@ -73,17 +74,60 @@ uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbo
 /* One channel of a photon in units of 2^(flux_exponent_max - 32). */
 static int64_t fixed_flux(uint32_t mantissa, int shift) { return shift < 63 ? ((int64_t)mantissa << 32) >> shift : 0; }
 
+/* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */
+static const float LOPSIDED = 0.15f;
+
+/* By whole numbers, so that the order in which photons were found does not matter. */
+static bool is_lopsided(const photon_map *map, vec3 position, const photon_neighbor *n, uint32_t count, float radius)
+{
+    int64_t sum[3] = {0, 0, 0};
+    float scale = 0x1p20f / radius;
+    for (uint32_t i = 0; i < count; i++) {
+        const float *p = map->set.photons[photon_neighbor_index(n[i])].position;
+        sum[0] += (int64_t)((p[0] - position.x) * scale);
+        sum[1] += (int64_t)((p[1] - position.y) * scale);
+        sum[2] += (int64_t)((p[2] - position.z) * scale);
+    }
+    double share = 0.0;
+    for (int i = 0; i < 3; i++)
+        share += (double)sum[i] * 0x1p-20 * ((double)sum[i] * 0x1p-20);
+    return share > (double)LOPSIDED * (double)LOPSIDED * count * count;
+}
+
+/* Keeps the photons of the disc that are in the region, in their order. */
+static uint32_t keep_in_region(const photon_map *map, const surface_region *region, photon_neighbor *n, uint32_t count)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const float *p = map->set.photons[photon_neighbor_index(n[i])].position;
+        if (surface_region_contains(region, (vec3){p[0], p[1], p[2]}))
+            n[kept++] = n[i];
+    }
+    return kept;
+}
+
 rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
 {
     if (map->set.count == 0)
         return rgb_gray(0.0f);
+    float other_squared;
     uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
-                                           map->nearest + 1, scratch);
+                                           map->nearest + 1, scratch, &other_squared);
     float radius_squared = map->max_radius * map->max_radius;
     uint32_t count = found;
     if (found == map->nearest + 1) {
         count = map->nearest;
         radius_squared = photon_neighbor_distance_squared(scratch[count]);
+    }
+    radius_squared = fmaxf(radius_squared, map->min_radius_squared);
+    float radius = sqrtf(radius_squared);
+    double area = (double)AG_PI * (double)radius_squared;
+    surface_region region;
+    if (map->surfaces && count > 0 &&
+        (other_squared <= radius_squared || is_lopsided(map, position, scratch, count, radius)) &&
+        surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, &region)) {
+        count = keep_in_region(map, &region, scratch, count);
+        area = surface_region_area(&region, radius);
     }
     int64_t sum[3] = {0, 0, 0};
     for (uint32_t i = 0; i < count; i++) {
@@ -93,7 +137,6 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
         sum[1] += fixed_flux(code >> 8 & 255, shift);
         sum[2] += fixed_flux(code & 255, shift);
     }
-    double area = (double)AG_PI * fmax((double)radius_squared, (double)map->min_radius_squared);
     double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
     return (rgb){(float)((double)sum[0] * scale), (float)((double)sum[1] * scale), (float)((double)sum[2] * scale)};
 }

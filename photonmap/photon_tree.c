@@ -190,6 +190,7 @@ typedef struct query {
     vec3 normal;
     float min_cos;
     uint32_t similar_code, other_code; /* normals, as photons have them, that were last found similar and not */
+    bool other_is_behind;              /* that other one is turned by more than 120 degrees */
 } query;
 
 #define NO_CODE UINT32_MAX
@@ -229,13 +230,6 @@ static float photon_distance_squared(const query *q, const photon *p)
     return x * x + y * y + z * z;
 }
 
-/* The cosine against min_cos >= 0, without a square root. */
-static bool is_similar_code(const query *q, uint16_t code)
-{
-    vec3 n = direction_decode_unnormalized(code);
-    float d = vec3_dot(n, q->normal);
-    return d > 0.0f && d * d > q->min_cos * q->min_cos * vec3_length_squared(n);
-}
 
 /* Neighbours mostly share a normal: the last answers are kept. */
 static inline bool has_similar_normal(query *q, const photon *p)
@@ -244,12 +238,16 @@ static inline bool has_similar_normal(query *q, const photon *p)
         return true;
     if (p->normal == q->other_code)
         return false;
-    bool is_similar = is_similar_code(q, p->normal);
-    if (is_similar)
+    /* the cosine against min_cos >= 0, without a square root */
+    vec3 n = direction_decode_unnormalized(p->normal);
+    float d = vec3_dot(n, q->normal), square = vec3_length_squared(n);
+    if (d > 0.0f && d * d > q->min_cos * q->min_cos * square) {
         q->similar_code = p->normal;
-    else
-        q->other_code = p->normal;
-    return is_similar;
+        return true;
+    }
+    q->other_code = p->normal;
+    q->other_is_behind = d < 0.0f && d * d > 0.25f * square;
+    return false;
 }
 
 static query make_query(const photon_tree *tree, vec3 position, vec3 normal, float min_cos)
@@ -351,10 +349,12 @@ static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, 
 }
 
 /* Those of the `wanted` nearest that lie within the limit. */
-static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_neighbor *neighbors)
+static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_neighbor *neighbors,
+                                float *out_other_squared)
 {
     const photon_tree *tree = q->tree;
     uint32_t capacity = photon_neighbors_capacity(wanted), count = 0;
+    float other = INFINITY;
     visit stack[DEPTH_MAX];
     uint32_t stack_count = 1;
     stack[0] = (visit){.r = {0, tree->count}};
@@ -365,8 +365,13 @@ static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_n
         range leaf = descend(q, v, limit, stack, &stack_count);
         for (uint32_t i = leaf.low; i < leaf.high; i++) {
             float d = photon_distance_squared(q, &tree->photons[i]);
-            if (d > limit || !has_similar_normal(q, &tree->photons[i]))
+            if (d > limit)
                 continue;
+            if (!has_similar_normal(q, &tree->photons[i])) {
+                if (!q->other_is_behind)
+                    other = fminf(other, d);
+                continue;
+            }
             neighbors[count++] = photon_neighbor_make(d, i);
             if (count == capacity) {
                 /* full: keep the nearest, and look no farther than they reach */
@@ -380,6 +385,7 @@ static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_n
         select_nearest(neighbors, count, wanted, limit);
         count = wanted;
     }
+    *out_other_squared = other;
     return count;
 }
 
@@ -404,12 +410,12 @@ static float guess_radius_squared(query *q, uint32_t wanted, float largest)
 }
 
 uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
-                               uint32_t wanted, photon_neighbor *neighbors)
+                               uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
 {
     query q = make_query(tree, position, normal, min_cos);
     float largest = radius * radius, limit = guess_radius_squared(&q, wanted, largest);
     for (;;) {
-        uint32_t count = collect_nearest(&q, limit, wanted, neighbors);
+        uint32_t count = collect_nearest(&q, limit, wanted, neighbors, out_other_squared);
         if (count == wanted || limit >= largest)
             return count;
         /* too few: by how many tells how much farther to look */

@@ -57,9 +57,11 @@ static inline float photon_neighbor_distance_squared(photon_neighbor n)
 }
 
 /* The `wanted` nearest photons within radius, in no order, but with the farthest of them last when all were found.
- * neighbors: room for photon_neighbors_capacity(wanted). Returns how many were found. */
+ * neighbors: room for photon_neighbors_capacity(wanted). *out_other_squared: how far, squared, the nearest
+ * photon is that has another normal, yet no opposite one (beyond 120 degrees), if that is no farther than the photons found
+ * or the radius; else more than that. Returns how many were found. */
 uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
-                               uint32_t wanted, photon_neighbor *neighbors);
+                               uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared);
 
 static inline uint32_t photon_neighbors_capacity(uint32_t wanted) { return 2 * wanted + 64; }
 

@@ -85,7 +85,7 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
                     global.count, caustic.count, (unsigned long long)(global.emitted_paths + caustic.emitted_paths));
         begin = clock_seconds();
         photon_map_settings map_settings = {
-            .nearest = (uint32_t)settings->nearest, .max_radius = settings->radius, .surface_area = s->surface_area};
+            .nearest = (uint32_t)settings->nearest, .max_radius = settings->radius, .surface_area = s->surface_area, .surfaces = s};
         status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, &out_maps->global);
         /* caustics gather in places: how many of their photons there are does not tell how far apart they lie */
         map_settings.radius_bound = out_maps->global.max_radius;

@@ -56,6 +56,20 @@ static uint32_t brute_force(const photon_tree *tree, vec3 at, vec3 normal, float
     return count;
 }
 
+/* The squared distance of the nearest photon that is neither like the normal nor its opposite. */
+static float other_by_brute_force(const photon_tree *tree, vec3 at, vec3 normal, float min_cos)
+{
+    float nearest = INFINITY;
+    for (uint32_t i = 0; i < tree->count; i++) {
+        const photon *p = &tree->photons[i];
+        float x = p->position[0] - at.x, y = p->position[1] - at.y, z = p->position[2] - at.z;
+        float cosine = vec3_dot(direction_decode(p->normal), normal);
+        if (cosine <= min_cos && cosine > -0.5f)
+            nearest = fminf(nearest, x * x + y * y + z * z);
+    }
+    return nearest;
+}
+
 static void check_query(const photon_tree *tree, vec3 at, vec3 normal, float min_cos, float radius, uint32_t wanted,
                         photon_neighbor *expected, photon_neighbor *found)
 {
@@ -66,9 +80,15 @@ static void check_query(const photon_tree *tree, vec3 at, vec3 normal, float min
     if (all > 0)
         assert_true(d == photon_neighbor_distance_squared(expected[0]));
 
-    uint32_t count = photon_tree_k_nearest(tree, at, normal, min_cos, radius, wanted, found);
+    float other, nearest_other = other_by_brute_force(tree, at, normal, min_cos);
+    uint32_t count = photon_tree_k_nearest(tree, at, normal, min_cos, radius, wanted, found, &other);
     assert_int_equal(count, all < wanted ? all : wanted);
     photon_neighbor last = found[count > 0 ? count - 1 : 0];
+    float searched = count < wanted ? radius * radius : photon_neighbor_distance_squared(last);
+    if (nearest_other <= searched)
+        assert_true(other == nearest_other);
+    else
+        assert_true(other > searched);
     if (count > 0)
         qsort(found, count, sizeof *found, compare_neighbors);
     for (uint32_t i = 0; i < count; i++)
@@ -133,8 +153,8 @@ static void the_radius_is_inclusive(void **state)
     photon_neighbor n[80];
     assert_int_equal(photon_tree_nearest(&tree, origin, up, 0.5f, 5.0f, &d), 0);
     assert_int_equal(photon_tree_nearest(&tree, origin, up, 0.5f, 4.999f, &d), PHOTON_NONE);
-    assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 5.0f, 5, n), 1);
-    assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 4.999f, 5, n), 0);
+    assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 5.0f, 5, n, &d), 1);
+    assert_int_equal(photon_tree_k_nearest(&tree, origin, up, 0.5f, 4.999f, 5, n, &d), 0);
     /* and the cosine is not */
     assert_int_equal(photon_tree_nearest(&tree, origin, up, 1.0f, 5.0f, &d), PHOTON_NONE);
     photon_tree_reset(&tree);
@@ -162,8 +182,10 @@ static void normals_are_tested_inside_the_search(void **state)
     assert_int_equal(photon_tree_build(&r.run, p, 2 * EACH, 0.0, 1.0, &tree), AG_OK);
     photon_neighbor n[2 * 50 + 64];
     vec3 up = {0.0f, 0.0f, 1.0f};
-    uint32_t count = photon_tree_k_nearest(&tree, (vec3){0.05f, 0.05f, 0.0f}, up, 0.5f, 1.0f, 50, n);
+    float other;
+    uint32_t count = photon_tree_k_nearest(&tree, (vec3){0.05f, 0.05f, 0.0f}, up, 0.5f, 1.0f, 50, n, &other);
     assert_int_equal(count, 50);
+    assert_true(isinf(other)); /* what faces away is no edge */
     for (uint32_t i = 0; i < count; i++)
         assert_true(p[photon_neighbor_index(n[i])].position[2] > 0.0f);
     float d;

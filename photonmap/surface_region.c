@@ -1,0 +1,152 @@
+/* surface_region.c: see surface_region.h.
+ * Threads: pure functions. */
+#include "surface_region.h"
+
+#include "bvh.h"
+#include "math/rng.h"
+#include "math/sampling.h"
+
+#include <string.h>
+
+/* Rays along the surface run this far above it, as a share of the radius: a photon's normal is good to a degree, and
+ * what is lower than that (a carpet, a skirting) is no wall. */
+static const float LIFT = 1.0f / 32.0f;
+/* Where nothing stands in the way the surface is looked for this far out; beyond lie 2 % of the disc at most. */
+static const float PROBE_AT = 0.9f;
+enum { BISECTIONS = 5, FOOT_TRIALS = 3 };
+/* Lateral distances are no shorter than this share of the radius. */
+static const float SHORTEST = 0x1p-6f;
+
+/* The bounds of the octants, counter-clockwise, with the first again at the end. */
+#define DIAGONAL 0.70710678f
+static const float UNIT[SURFACE_REGION_SECTORS + 1][2] = {
+    {1.0f, 0.0f},   {DIAGONAL, DIAGONAL},   {0.0f, 1.0f},  {-DIAGONAL, DIAGONAL}, {-1.0f, 0.0f},
+    {-DIAGONAL, -DIAGONAL}, {0.0f, -1.0f}, {DIAGONAL, -DIAGONAL}, {1.0f, 0.0f}};
+
+static bool is_alike(const surface_hit *hit, vec3 normal, vec3 arrival, float min_cos)
+{
+    return vec3_dot(vec3_face_forward(hit->geometric_normal, vec3_negate(arrival)), normal) > min_cos;
+}
+
+/* The surface at the place itself, from above: its normal, and a start above it. A narrow corner may have no room for the
+ * full lift. */
+static bool find_foot(const scene *s, vec3 position, vec3 normal, float radius, vec3 *out_normal, float *out_lift)
+{
+    vec3 down = vec3_negate(normal);
+    float lift = radius * LIFT;
+    for (int trial = 0; trial < FOOT_TRIALS; trial++, lift *= 0.125f) {
+        surface_hit hit;
+        scene_ray ray = scene_ray_make(vec3_add_scaled(position, normal, lift), down);
+        if (!scene_intersect(s, ray, 2.0f * lift, &hit) || !is_alike(&hit, normal, down, 0.9f))
+            continue;
+        if (vec3_distance_squared(hit.position, position) > hit.epsilon * hit.epsilon + 0.01f * lift * lift)
+            continue; /* another surface, between */
+        *out_normal = vec3_face_forward(hit.geometric_normal, normal);
+        *out_lift = lift;
+        return lift > 2.0f * hit.epsilon;
+    }
+    return false;
+}
+
+/* Whether the surface is there at that place of the plane: as deep as photons within the radius may lie. */
+static bool has_surface_below(const scene *s, vec3 above, vec3 normal, float lift, float lateral, float radius,
+                              float min_cos)
+{
+    surface_hit hit;
+    vec3 down = vec3_negate(normal);
+    float depth = sqrtf(fmaxf(0.0f, radius * radius - lateral * lateral));
+    return scene_intersect(s, scene_ray_make(above, down), lift + depth, &hit) && is_alike(&hit, normal, down, min_cos);
+}
+
+/* How far the surface goes along a unit tangent; radius where nothing ends it. */
+static float find_extent(const scene *s, vec3 above, vec3 normal, float lift, vec3 tangent, float radius, float min_cos)
+{
+    surface_hit hit;
+    if (scene_intersect(s, scene_ray_make(above, tangent), radius, &hit))
+        return is_alike(&hit, normal, tangent, min_cos) ? radius : hit.distance;
+    float high = PROBE_AT * radius, low = 0.0f;
+    if (has_surface_below(s, vec3_add_scaled(above, tangent, high), normal, lift, high, radius, min_cos))
+        return radius;
+    for (int i = 0; i < BISECTIONS; i++) {
+        float middle = 0.5f * (low + high);
+        if (has_surface_below(s, vec3_add_scaled(above, tangent, middle), normal, lift, middle, radius, min_cos))
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
+                         surface_region *out_region)
+{
+    float lift, extent[SURFACE_REGION_SECTORS + 1];
+    vec3 n;
+    if (!find_foot(s, position, normal, radius, &n, &lift))
+        return false;
+
+    /* turned at random by the place, so that no direction is favoured */
+    surface_region *r = out_region;
+    uint32_t bits[3];
+    memcpy(bits, &position, sizeof bits);
+    float turn = (float)(hash_combine(hash_combine(bits[0], bits[1]), bits[2]) >> 40) * 0x1p-24f, sine, cosine;
+    sincos_turns(turn, &sine, &cosine);
+    frame f = frame_from_z(n);
+    r->center = position;
+    r->x = vec3_add_scaled(vec3_scale(f.x, cosine), f.y, sine);
+    r->y = vec3_add_scaled(vec3_scale(f.y, cosine), f.x, -sine);
+
+    vec3 above = vec3_add_scaled(position, n, lift);
+    bool is_bounded = false;
+    for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
+        vec3 tangent = vec3_add_scaled(vec3_scale(r->x, UNIT[i][0]), r->y, UNIT[i][1]);
+        extent[i] = find_extent(s, above, n, lift, tangent, radius, min_cos);
+        is_bounded = is_bounded || extent[i] < radius;
+        extent[i] = fmaxf(extent[i], SHORTEST * radius);
+    }
+    if (!is_bounded)
+        return false;
+    extent[SURFACE_REGION_SECTORS] = extent[0];
+    for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
+        r->line[i][0] = r->line[i][1] = 0.0f;
+        if (extent[i] >= radius && extent[i + 1] >= radius)
+            continue;
+        /* the line with line . p = 1 at both ends */
+        float ax = UNIT[i][0] * extent[i], ay = UNIT[i][1] * extent[i];
+        float bx = UNIT[i + 1][0] * extent[i + 1], by = UNIT[i + 1][1] * extent[i + 1];
+        float inverse = 1.0f / (ax * by - ay * bx);
+        r->line[i][0] = (by - ay) * inverse;
+        r->line[i][1] = (ax - bx) * inverse;
+    }
+    return true;
+}
+
+bool surface_region_contains(const surface_region *region, vec3 position)
+{
+    static const unsigned char OCTANT[8] = {0, 1, 3, 2, 7, 6, 4, 5}; /* by y < 0, x < 0, |y| > |x| */
+    vec3 offset = vec3_sub(position, region->center);
+    float x = vec3_dot(offset, region->x), y = vec3_dot(offset, region->y);
+    const float *line = region->line[OCTANT[(y < 0.0f) * 4 + (x < 0.0f) * 2 + (fabsf(y) > fabsf(x))]];
+    return line[0] * x + line[1] * y <= 1.0f;
+}
+
+double surface_region_area(const surface_region *region, float radius)
+{
+    /* the middles of eight parts of an octant, by cosine and sine */
+    enum { PARTS = 8 };
+    static const float PART[PARTS][2] = {{0.99879546f, 0.04906767f}, {0.98917651f, 0.14673047f},
+                                         {0.97003125f, 0.24298018f}, {0.94154407f, 0.33688985f},
+                                         {0.90398929f, 0.42755509f}, {0.85772861f, 0.51410274f},
+                                         {0.80320753f, 0.59569930f}, {0.74095113f, 0.67155895f}};
+    double sum = 0.0;
+    for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
+        float a = region->line[i][0], b = region->line[i][1], ux = UNIT[i][0], uy = UNIT[i][1];
+        float along = a * ux + b * uy, across = b * ux - a * uy;
+        for (int k = 0; k < PARTS; k++) {
+            float nearness = along * PART[k][0] + across * PART[k][1]; /* one over the distance of the chord */
+            float reach = nearness * radius > 1.0f ? 1.0f / nearness : radius;
+            sum += (double)reach * (double)reach;
+        }
+    }
+    return sum * (double)AG_PI / (SURFACE_REGION_SECTORS * PARTS);
+}

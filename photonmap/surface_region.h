@@ -1,0 +1,31 @@
+/* surface_region.h: which part of an estimate's disc is surface: a wall, the edge of a table or a thin partition ends it.
+ * A disc that reaches past an edge loses light (about 0.21 of its radius along the edge); one that reaches through a wall
+ * finds the next room's. A few short rays along the surface, and down onto it, tell how far it goes each way; photons and
+ * area are then counted inside that region alone, so the estimate is right wherever the region is whole surface.
+ * Rests on: Jensen 2001, 7.2 (boundary bias); the rays are an alternative to his convex hull, which takes shadows for edges.
+ * Flow: photon_map asks, where the photons found hint at an edge. Threads: pure functions of the scene and the place. */
+#ifndef AFTERGLOW_SURFACE_REGION_H
+#define AFTERGLOW_SURFACE_REGION_H
+
+#include "scene.h"
+
+enum { SURFACE_REGION_SECTORS = 8 };
+
+/* In the tangent plane: around the centre, in each octant of the frame x, y, what lies on the near side of a chord,
+ * line[0] x + line[1] y <= 1; a line of zeros bounds nothing. */
+typedef struct surface_region {
+    vec3 center, x, y;
+    float line[SURFACE_REGION_SECTORS][2];
+} surface_region;
+
+/* min_cos: normals more alike than this belong to the surface, as for photons. Returns false where nothing ends it within
+ * radius of the place, and where there is no surface at the place. */
+bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
+                         surface_region *out_region);
+
+bool surface_region_contains(const surface_region *region, vec3 position);
+
+/* m^2, of what is within radius of the centre. */
+double surface_region_area(const surface_region *region, float radius);
+
+#endif
