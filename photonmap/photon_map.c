@@ -3,6 +3,7 @@
  * Threads: see photon_map.h. */
 #include "photon_map.h"
 
+#include "bvh.h"
 #include "parallel_for.h"
 #include "surface_region.h"
 
@@ -141,13 +142,29 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
     return (rgb){(float)((double)sum[0] * scale), (float)((double)sum[1] * scale), (float)((double)sum[2] * scale)};
 }
 
+/* In a dark room the nearest photon is the bright next room's. A photon farther away than this many mean spacings must be
+ * in sight: of evenly spread ones 1 in 7 is so far, and what still leaks through a partition goes down with the square. */
+static const float FAR_SPACINGS = 1.4f;
+
+static bool is_behind_wall(const photon_map *map, vec3 position, vec3 normal, const photon *p)
+{
+    vec3 at = {p->position[0], p->position[1], p->position[2]};
+    float lift = sqrtf(vec3_distance_squared(position, at)) * (1.0f / 32.0f);
+    vec3 from = vec3_add_scaled(position, normal, lift), to = vec3_add_scaled(at, direction_decode(p->normal), lift);
+    return scene_occluded(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
+}
+
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
 {
     float distance_squared;
     if (map->set.count == 0)
         return PHOTON_NONE;
-    return photon_tree_nearest(&map->tree, position, normal, PHOTON_NEAREST_MIN_COS, map->mean_radius,
-                               &distance_squared);
+    uint32_t found = photon_tree_nearest(&map->tree, position, normal, PHOTON_NEAREST_MIN_COS, map->mean_radius,
+                                         &distance_squared);
+    float spacing_squared = map->mean_radius * map->mean_radius / (float)map->nearest;
+    if (found == PHOTON_NONE || !map->surfaces || distance_squared <= FAR_SPACINGS * FAR_SPACINGS * spacing_squared)
+        return found;
+    return is_behind_wall(map, position, normal, &map->set.photons[found]) ? PHOTON_NONE : found;
 }
 
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key)

@@ -53,7 +53,8 @@ uint32_t photon_map_scratch_count(const photon_map *map);
  * is surface. Does not fail, does not allocate. */
 rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch);
 
-/* The photon whose irradiance stands for the place; PHOTON_NONE where none with a like normal is near enough. */
+/* The photon whose irradiance stands for the place; PHOTON_NONE where none with a like normal is near enough,
+ * or the one that is stands behind a wall. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal);
 
 /* Irradiance as a slot's 30 bits. key decides the rounding: the photon's index. */

@@ -13,15 +13,15 @@
 static const float LIFT = 1.0f / 32.0f;
 /* Where nothing stands in the way the surface is looked for this far out; beyond lie 2 % of the disc at most. */
 static const float PROBE_AT = 0.9f;
-enum { BISECTIONS = 5, FOOT_TRIALS = 3 };
+enum { BISECTIONS = 7, FOOT_TRIALS = 3 };
 /* Lateral distances are no shorter than this share of the radius. */
-static const float SHORTEST = 0x1p-6f;
+static const float SHORTEST = 0x1p-10f;
 
-/* The bounds of the octants, counter-clockwise, with the first again at the end. */
+/* The bounds of the octants, counter-clockwise. */
 #define DIAGONAL 0.70710678f
-static const float UNIT[SURFACE_REGION_SECTORS + 1][2] = {
-    {1.0f, 0.0f},   {DIAGONAL, DIAGONAL},   {0.0f, 1.0f},  {-DIAGONAL, DIAGONAL}, {-1.0f, 0.0f},
-    {-DIAGONAL, -DIAGONAL}, {0.0f, -1.0f}, {DIAGONAL, -DIAGONAL}, {1.0f, 0.0f}};
+static const float UNIT[SURFACE_REGION_SECTORS][2] = {
+    {1.0f, 0.0f},  {DIAGONAL, DIAGONAL},   {0.0f, 1.0f},  {-DIAGONAL, DIAGONAL},
+    {-1.0f, 0.0f}, {-DIAGONAL, -DIAGONAL}, {0.0f, -1.0f}, {DIAGONAL, -DIAGONAL}};
 
 static bool is_alike(const surface_hit *hit, vec3 normal, vec3 arrival, float min_cos)
 {
@@ -77,10 +77,43 @@ static float find_extent(const scene *s, vec3 above, vec3 normal, float lift, ve
     return low;
 }
 
+/* The line with line . p = 1 at both the ends of two neighbouring directions. */
+static void line_through(const float *extent, int first, float *out_line)
+{
+    int second = (first + 1) % SURFACE_REGION_SECTORS;
+    float ax = UNIT[first][0] * extent[first], ay = UNIT[first][1] * extent[first];
+    float bx = UNIT[second][0] * extent[second], by = UNIT[second][1] * extent[second];
+    float inverse = 1.0f / (ax * by - ay * bx);
+    out_line[0] = (by - ay) * inverse;
+    out_line[1] = (ax - bx) * inverse;
+}
+
+/* Between two ends the chord: straight walls and edges are met exactly. Where an edge runs out of the disc between two
+ * directions it goes on straight; where that is not known, a chord to the rim leaves some surface out, but takes in none
+ * that is not there. */
+static void bound_sector(const float *extent, float radius, int i, float *out_line)
+{
+    enum { COUNT = SURFACE_REGION_SECTORS };
+    int next = (i + 1) % COUNT, before = (i + COUNT - 1) % COUNT, after = (i + 2) % COUNT;
+    bool is_open = extent[i] >= radius, next_is_open = extent[next] >= radius;
+    out_line[0] = out_line[1] = 0.0f;
+    if (is_open && next_is_open)
+        return;
+    if (is_open != next_is_open) {
+        int neighbor = is_open ? after : before, open = is_open ? i : next;
+        if (extent[neighbor] < radius) {
+            line_through(extent, is_open ? next : before, out_line);
+            if (radius * (out_line[0] * UNIT[open][0] + out_line[1] * UNIT[open][1]) <= 1.0f)
+                return;
+        }
+    }
+    line_through(extent, i, out_line);
+}
+
 bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
                          surface_region *out_region)
 {
-    float lift, extent[SURFACE_REGION_SECTORS + 1];
+    float lift, extent[SURFACE_REGION_SECTORS];
     vec3 n;
     if (!find_foot(s, position, normal, radius, &n, &lift))
         return false;
@@ -106,18 +139,8 @@ bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_c
     }
     if (!is_bounded)
         return false;
-    extent[SURFACE_REGION_SECTORS] = extent[0];
-    for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
-        r->line[i][0] = r->line[i][1] = 0.0f;
-        if (extent[i] >= radius && extent[i + 1] >= radius)
-            continue;
-        /* the line with line . p = 1 at both ends */
-        float ax = UNIT[i][0] * extent[i], ay = UNIT[i][1] * extent[i];
-        float bx = UNIT[i + 1][0] * extent[i + 1], by = UNIT[i + 1][1] * extent[i + 1];
-        float inverse = 1.0f / (ax * by - ay * bx);
-        r->line[i][0] = (by - ay) * inverse;
-        r->line[i][1] = (ax - bx) * inverse;
-    }
+    for (int i = 0; i < SURFACE_REGION_SECTORS; i++)
+        bound_sector(extent, radius, i, r->line[i]);
     return true;
 }
 
