@@ -61,11 +61,11 @@ static rgb estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigne
 /* Computes and publishes what the worker has claimed; gives the slot's word. */
 static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker_index)
 {
-    photon *p = &cache->map->set.photons[index];
-    rgb irradiance = estimate(cache, (vec3){p->position[0], p->position[1], p->position[2]},
-                              direction_decode(p->normal), worker_index);
+    photon_block *blocks = cache->map->blocks;
+    rgb irradiance = estimate(cache, photon_block_position(blocks, index),
+                              direction_decode(photon_block_normal(blocks, index)), worker_index);
     uint32_t value = photon_map_encode_irradiance(cache->map, irradiance, index);
-    if (irradiance_slot_publish(&p->slot, worker_index, value))
+    if (irradiance_slot_publish(photon_block_slot(blocks, index), worker_index, value))
         cache->counters[worker_index].computed++;
     else
         cache->counters[worker_index].duplicated++;
@@ -84,7 +84,7 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
     irradiance_cache *cache = job->cache;
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++) {
         uint32_t word;
-        if (irradiance_slot_try_claim(&cache->map->set.photons[i].slot, worker_index, &word))
+        if (irradiance_slot_try_claim(photon_block_slot(cache->map->blocks, (uint32_t)i), worker_index, &word))
             compute(cache, (uint32_t)i, worker_index);
     }
 }
@@ -114,7 +114,7 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
         out_request->irradiance = irradiance_cache_estimate(cache, position, normal, worker_index);
         return;
     }
-    irradiance_slot *slot = &cache->map->set.photons[index].slot;
+    irradiance_slot *slot = photon_block_slot(cache->map->blocks, index);
     uint32_t word = irradiance_slot_read(slot);
     if (irradiance_word_state(word) == IRRADIANCE_EMPTY && irradiance_slot_try_claim(slot, worker_index, &word))
         word = compute(cache, index, worker_index);
@@ -129,7 +129,7 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
 
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index)
 {
-    const irradiance_slot *slot = &cache->map->set.photons[request->photon].slot;
+    const irradiance_slot *slot = photon_block_slot(cache->map->blocks, request->photon);
     uint32_t word = irradiance_slot_read(slot);
     if (irradiance_word_state(word) != IRRADIANCE_READY)
         cache->counters[worker_index].waited++;
@@ -174,6 +174,6 @@ uint64_t irradiance_cache_distinct(const irradiance_cache *cache)
 {
     uint64_t ready = 0;
     for (uint32_t i = 0; i < cache->map->set.count; i++)
-        ready += irradiance_word_state(irradiance_slot_read(&cache->map->set.photons[i].slot)) == IRRADIANCE_READY;
+        ready += irradiance_word_state(irradiance_slot_read(photon_block_slot(cache->map->blocks, (uint32_t)i))) == IRRADIANCE_READY;
     return ready - cache->ready_before;
 }

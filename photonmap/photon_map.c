@@ -34,10 +34,12 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
         *out_map = map;
         return AG_OK;
     }
-    ag_status status =
-        photon_tree_build(run, map.set.photons, map.set.count, progress_begin, progress_end, &map.tree);
+    photon *records = map.set.photons;
+    map.set.photons = NULL;
+    map.blocks = (photon_block *)(void *)records;
+    ag_status status = photon_tree_build(run, records, map.set.count, progress_begin, progress_end, &map.tree);
     if (status != AG_OK) {
-        photon_set_reset(&map.set);
+        photon_map_reset(&map);
         return status;
     }
     map.flux_exponent_max = FLUX_EXPONENT_MIN;
@@ -46,8 +48,9 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
             photon_map_reset(&map);
             return AG_CANCELLED;
         }
-        int exponent = flux_exponent(map.set.photons[i].flux);
-        if (map.set.photons[i].flux != 0 && exponent > map.flux_exponent_max)
+        uint32_t code = photon_block_flux(map.blocks, i);
+        int exponent = flux_exponent(code);
+        if (code != 0 && exponent > map.flux_exponent_max)
             map.flux_exponent_max = exponent;
     }
     /* The largest estimate: all k photons of the largest flux on the smallest disc; its mantissa's exponent is 63's.
@@ -62,12 +65,14 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
 void photon_map_reset(photon_map *map)
 {
     photon_tree_reset(&map->tree);
+    free(map->blocks);
+    map->blocks = NULL;
     photon_set_reset(&map->set);
 }
 
 uint64_t photon_map_bytes(const photon_map *map)
 {
-    return (uint64_t)map->set.count * sizeof(photon) + photon_tree_bytes(&map->tree);
+    return photon_block_count(map->set.count) * sizeof(photon_block) + photon_tree_bytes(&map->tree);
 }
 
 uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbors_capacity(map->nearest + 1); }
@@ -84,10 +89,10 @@ static bool is_lopsided(const photon_map *map, vec3 position, const photon_neigh
     int64_t sum[3] = {0, 0, 0};
     float scale = 0x1p20f / radius;
     for (uint32_t i = 0; i < count; i++) {
-        const float *p = map->set.photons[photon_neighbor_index(n[i])].position;
-        sum[0] += (int64_t)((p[0] - position.x) * scale);
-        sum[1] += (int64_t)((p[1] - position.y) * scale);
-        sum[2] += (int64_t)((p[2] - position.z) * scale);
+        vec3 offset = vec3_sub(photon_block_position(map->blocks, photon_neighbor_index(n[i])), position);
+        sum[0] += (int64_t)(offset.x * scale);
+        sum[1] += (int64_t)(offset.y * scale);
+        sum[2] += (int64_t)(offset.z * scale);
     }
     double share = 0.0;
     for (int i = 0; i < 3; i++)
@@ -99,11 +104,9 @@ static bool is_lopsided(const photon_map *map, vec3 position, const photon_neigh
 static uint32_t keep_in_region(const photon_map *map, const surface_region *region, photon_neighbor *n, uint32_t count)
 {
     uint32_t kept = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        const float *p = map->set.photons[photon_neighbor_index(n[i])].position;
-        if (surface_region_contains(region, (vec3){p[0], p[1], p[2]}))
+    for (uint32_t i = 0; i < count; i++)
+        if (surface_region_contains(region, photon_block_position(map->blocks, photon_neighbor_index(n[i]))))
             n[kept++] = n[i];
-    }
     return kept;
 }
 
@@ -132,7 +135,7 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
     }
     int64_t sum[3] = {0, 0, 0};
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t code = map->set.photons[photon_neighbor_index(scratch[i])].flux;
+        uint32_t code = photon_block_flux(map->blocks, photon_neighbor_index(scratch[i]));
         int shift = map->flux_exponent_max - flux_exponent(code);
         sum[0] += fixed_flux(code >> 16 & 255, shift);
         sum[1] += fixed_flux(code >> 8 & 255, shift);
@@ -146,11 +149,11 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
  * in sight: of evenly spread ones 1 in 7 is so far, and what still leaks through a partition goes down with the square. */
 static const float FAR_SPACINGS = 1.4f;
 
-static bool is_behind_wall(const photon_map *map, vec3 position, vec3 normal, const photon *p)
+static bool is_behind_wall(const photon_map *map, vec3 position, vec3 normal, uint32_t index)
 {
-    vec3 at = {p->position[0], p->position[1], p->position[2]};
+    vec3 at = photon_block_position(map->blocks, index);
     float lift = sqrtf(vec3_distance_squared(position, at)) * (1.0f / 32.0f);
-    vec3 from = vec3_add_scaled(position, normal, lift), to = vec3_add_scaled(at, direction_decode(p->normal), lift);
+    vec3 from = vec3_add_scaled(position, normal, lift), to = vec3_add_scaled(at, direction_decode(photon_block_normal(map->blocks, index)), lift);
     return scene_occluded(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
@@ -164,7 +167,7 @@ uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
     float spacing_squared = map->mean_radius * map->mean_radius / (float)map->nearest;
     if (found == PHOTON_NONE || !map->surfaces || distance_squared <= FAR_SPACINGS * FAR_SPACINGS * spacing_squared)
         return found;
-    return is_behind_wall(map, position, normal, &map->set.photons[found]) ? PHOTON_NONE : found;
+    return is_behind_wall(map, position, normal, found) ? PHOTON_NONE : found;
 }
 
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key)

@@ -18,8 +18,9 @@ typedef struct photon_map_settings {
 } photon_map_settings;
 
 typedef struct photon_map {
-    photon_set set; /* owned */
-    photon_tree tree;
+    photon_set set;       /* without its records, which have become: */
+    photon_block *blocks; /* owned; NULL where there is no photon */
+    photon_tree tree;     /* over the blocks */
     uint32_t nearest;
     float max_radius;
     float min_radius_squared; /* coincident photons have no area of their own: the estimate's area is at least this disc's */

@@ -232,7 +232,7 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
     if (settings->kind == PHOTON_CAUSTIC && find_traced_matter(s, &traced_matter))
         caustic_target = &traced_matter;
     block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
-    set.photons = malloc((size_t)settings->wanted * sizeof *set.photons);
+    set.photons = photon_records_create(settings->wanted);
     ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
     uint64_t next_path = 0, block_count = 8;
     while (status == AG_OK && set.count < settings->wanted) {

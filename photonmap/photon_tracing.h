@@ -9,7 +9,7 @@
 #ifndef AFTERGLOW_PHOTON_TRACING_H
 #define AFTERGLOW_PHOTON_TRACING_H
 
-#include "photon.h"
+#include "photon_block.h"
 #include "run_context.h"
 #include "scene.h"
 
@@ -30,7 +30,7 @@ typedef struct photon_books {
 } photon_books;
 
 typedef struct photon_set {
-    photon *photons;       /* owned */
+    photon *photons;       /* owned, from photon_records_create */
     uint32_t count;
     uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
     uint64_t rays;

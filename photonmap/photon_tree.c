@@ -9,30 +9,22 @@
 #include <assert.h>
 #include <stdlib.h>
 
-enum { LEAF_MAX = 16, DEPTH_MAX = 32, PARALLEL_LEVELS = 9 };
+enum { DEPTH_MAX = 32, PARALLEL_LEVELS = 9 };
 /* How often long loops look whether to stop: every 65,536 photons, some tenths of a millisecond. */
 enum { CANCEL_MASK = 0xffff };
 
 /* --- build --- */
 
 typedef struct range {
-    uint32_t low, high;
+    uint32_t low, high; /* photons */
 } range;
 
-static uint32_t range_middle(range r) { return r.low + (r.high - r.low) / 2; }
-
-/* The range of the node at that place of its level, from the root down. */
-static range node_range(uint32_t count, uint32_t level, uint32_t place)
+/* The photons below the node at that place of its level: those of the blocks that are its leaves, as far as there are any. */
+static range node_range(const photon_tree *tree, uint32_t level, uint64_t place)
 {
-    range r = {0, count};
-    for (uint32_t bit = level; bit-- > 0;) {
-        uint32_t middle = range_middle(r);
-        if (place >> bit & 1)
-            r.low = middle;
-        else
-            r.high = middle;
-    }
-    return r;
+    uint64_t each = (uint64_t)PHOTON_BLOCK_LANES << (tree->depth - level);
+    uint64_t low = place * each, high = low + each, count = tree->count;
+    return (range){(uint32_t)(low < count ? low : count), (uint32_t)(high < count ? high : count)};
 }
 
 static void swap_photons(photon *a, photon *b)
@@ -80,9 +72,14 @@ static void select_middle(const run_context *run, photon *p, range r, int64_t mi
     }
 }
 
-static void split_node(const run_context *run, photon_tree *tree, uint32_t node, range r)
+static void split_node(const run_context *run, photon_tree *tree, photon *p, uint32_t level, uint64_t place)
 {
-    photon *p = tree->photons;
+    range r = node_range(tree, level, place);
+    uint32_t node = (1u << level) - 1 + (uint32_t)place, middle = node_range(tree, level + 1, 2 * place).high;
+    if (middle >= r.high) { /* all is on the left */
+        tree->nodes[node] = (photon_tree_node){INFINITY, 0};
+        return;
+    }
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t i = r.low; i < r.high; i++) {
         if ((i & CANCEL_MASK) == 0 && run_is_cancelled(run))
@@ -96,24 +93,28 @@ static void split_node(const run_context *run, photon_tree *tree, uint32_t node,
     for (uint32_t a = 1; a < 3; a++)
         if (high[a] - low[a] > high[axis] - low[axis])
             axis = a;
-    uint32_t middle = range_middle(r);
     select_middle(run, p, r, middle, axis);
     tree->nodes[node] = (photon_tree_node){p[middle].position[axis], axis};
 }
 
-static void split_subtree(const run_context *run, photon_tree *tree, uint32_t node, uint32_t level, range r)
+static void split_subtree(const run_context *run, photon_tree *tree, photon *p, uint32_t level, uint64_t place)
 {
-    if (level == tree->depth || run_is_cancelled(run))
+    range r = node_range(tree, level, place);
+    if (r.low == r.high || run_is_cancelled(run))
         return;
-    split_node(run, tree, node, r);
-    uint32_t middle = range_middle(r);
-    split_subtree(run, tree, 2 * node + 1, level + 1, (range){r.low, middle});
-    split_subtree(run, tree, 2 * node + 2, level + 1, (range){middle, r.high});
+    if (level == tree->depth) {
+        photon_block_from_records(&tree->blocks[place], r.high - r.low);
+        return;
+    }
+    split_node(run, tree, p, level, place);
+    split_subtree(run, tree, p, level + 1, 2 * place);
+    split_subtree(run, tree, p, level + 1, 2 * place + 1);
 }
 
 typedef struct level_job {
     const run_context *run;
     photon_tree *tree;
+    photon *photons;
     uint32_t level;
     bool whole_subtrees;
 } level_job;
@@ -122,33 +123,31 @@ static void split_level_block(void *user, uint64_t begin, uint64_t end, uint64_t
 {
     (void)block, (void)worker;
     const level_job *job = user;
-    for (uint64_t place = begin; place < end; place++) {
-        range r = node_range(job->tree->count, job->level, (uint32_t)place);
-        uint32_t node = (1u << job->level) - 1 + (uint32_t)place;
+    for (uint64_t place = begin; place < end; place++)
         if (job->whole_subtrees)
-            split_subtree(job->run, job->tree, node, job->level, r);
+            split_subtree(job->run, job->tree, job->photons, job->level, place);
         else
-            split_node(job->run, job->tree, node, r);
-    }
+            split_node(job->run, job->tree, job->photons, job->level, place);
 }
 
 ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, double progress_begin,
                             double progress_end, photon_tree *out_tree)
 {
-    photon_tree tree = {.photons = photons, .count = count};
-    while (tree.depth < DEPTH_MAX - 1 && (count >> tree.depth) >= LEAF_MAX)
+    photon_tree tree = {.blocks = (photon_block *)(void *)photons, .count = count};
+    while (((uint64_t)1 << tree.depth) < photon_block_count(count))
         tree.depth++;
+    assert(tree.depth < DEPTH_MAX);
     if (tree.depth > 0) {
-        tree.nodes = malloc(((1u << tree.depth) - 1) * sizeof *tree.nodes);
+        tree.nodes = calloc(((size_t)1 << tree.depth) - 1, sizeof *tree.nodes); /* zeros where nothing is below */
         if (!tree.nodes)
             return AG_ERROR_MEMORY;
     }
     /* each level costs about the same */
-    double step = tree.depth ? (progress_end - progress_begin) / tree.depth : 0.0;
+    double step = (progress_end - progress_begin) / (tree.depth + 1);
     uint32_t parallel_levels = tree.depth < PARALLEL_LEVELS ? tree.depth : PARALLEL_LEVELS;
     ag_status status = AG_OK;
     for (uint32_t level = 0; level <= parallel_levels && status == AG_OK; level++) {
-        level_job job = {run, &tree, level, level == parallel_levels};
+        level_job job = {run, &tree, photons, level, level == parallel_levels};
         double begin = progress_begin + step * level;
         status = parallel_for(run, (uint64_t)1 << level, 1, split_level_block, &job, AG_PHASE_MAP, begin,
                               job.whole_subtrees ? progress_end : begin + step);
@@ -176,12 +175,11 @@ uint64_t photon_tree_bytes(const photon_tree *tree)
 
 /* --- search --- */
 
-/* A part of the tree still to visit: its range, and how far the query is outside its box along each axis. */
+/* A part of the tree still to visit: how far the query is outside its box, along each axis and in all. */
 typedef struct visit {
-    uint32_t node, level;
-    range r;
     float offset[3];
     float distance_squared;
+    uint32_t node;
 } visit;
 
 typedef struct query {
@@ -191,96 +189,112 @@ typedef struct query {
     float min_cos;
     uint32_t similar_code, other_code; /* normals, as photons have them, that were last found similar and not */
     bool other_is_behind;              /* that other one is turned by more than 120 degrees */
+    uint32_t visits;                   /* on the stack */
+    visit stack[DEPTH_MAX];
 } query;
 
 #define NO_CODE UINT32_MAX
 
-/* Goes down to the leaf on the query's side, leaving on the stack the other sides that are within the limit. */
-static range descend(const query *q, visit v, float limit, visit *stack, uint32_t *stack_count)
+/* Rounding may make a box seem farther than its photons: what is within a hair of the limit is visited. */
+static float hair_beyond(float limit) { return limit * 1.00001f; }
+
+/* Goes down to the leaf on the query's side, leaving on the stack the other sides that are within the limit. Returns the
+ * leaf's block. */
+static uint32_t descend(query *q, visit v, float limit)
 {
-    while (v.level < q->tree->depth) {
-        photon_tree_node n = q->tree->nodes[v.node];
-        uint32_t middle = range_middle(v.r);
-        float from_plane = q->position[n.axis] - n.split;
-        visit far = v;
-        far.distance_squared = v.distance_squared - v.offset[n.axis] * v.offset[n.axis] + from_plane * from_plane;
-        far.offset[n.axis] = from_plane;
-        far.level = ++v.level;
-        if (from_plane < 0.0f) {
-            far.node = 2 * v.node + 2;
-            far.r.low = middle;
-            v.node = 2 * v.node + 1;
-            v.r.high = middle;
-        } else {
-            far.node = 2 * v.node + 1;
-            far.r.high = middle;
-            v.node = 2 * v.node + 2;
-            v.r.low = middle;
+    uint32_t leaf_base = (1u << q->tree->depth) - 1, node = v.node;
+    float most = hair_beyond(limit);
+    while (node < leaf_base) {
+        photon_tree_node n = q->tree->nodes[node];
+        float from_plane = q->position[n.axis] - n.split, offset = v.offset[n.axis];
+        uint32_t is_right = from_plane >= 0.0f;
+        float beyond = v.distance_squared - offset * offset + from_plane * from_plane;
+        if (beyond <= most && beyond < INFINITY) { /* beyond a plane at infinity there is nothing */
+            visit *far = &q->stack[q->visits++];
+            *far = v;
+            far->offset[n.axis] = from_plane;
+            far->distance_squared = beyond;
+            far->node = 2 * node + 2 - is_right;
         }
-        /* rounding may make a box seem farther than its photons: visit what is within a hair of the limit */
-        if (far.distance_squared <= limit * 1.00001f)
-            stack[(*stack_count)++] = far;
+        node = 2 * node + 1 + is_right;
     }
-    return v.r;
+    return node - leaf_base;
 }
 
-static float photon_distance_squared(const query *q, const photon *p)
+/* Takes the next visit from the stack and goes down to its leaf; false when nothing within the limit is left. */
+static bool next_leaf(query *q, float limit, uint32_t *out_block)
 {
-    float x = p->position[0] - q->position[0], y = p->position[1] - q->position[1], z = p->position[2] - q->position[2];
-    return x * x + y * y + z * z;
+    float most = hair_beyond(limit);
+    while (q->visits > 0) {
+        visit v = q->stack[--q->visits];
+        if (v.distance_squared > most)
+            continue;
+        *out_block = descend(q, v, limit);
+        return true;
+    }
+    return false;
 }
 
+static void start_at_root(query *q)
+{
+    q->stack[0] = (visit){.node = 0};
+    q->visits = q->tree->count > 0;
+}
 
 /* Neighbours mostly share a normal: the last answers are kept. */
-static inline bool has_similar_normal(query *q, const photon *p)
+static inline bool has_similar_normal(query *q, uint16_t code)
 {
-    if (p->normal == q->similar_code)
+    if (code == q->similar_code)
         return true;
-    if (p->normal == q->other_code)
+    if (code == q->other_code)
         return false;
     /* the cosine against min_cos >= 0, without a square root */
-    vec3 n = direction_decode_unnormalized(p->normal);
+    vec3 n = direction_decode_unnormalized(code);
     float d = vec3_dot(n, q->normal), square = vec3_length_squared(n);
     if (d > 0.0f && d * d > q->min_cos * q->min_cos * square) {
-        q->similar_code = p->normal;
+        q->similar_code = code;
         return true;
     }
-    q->other_code = p->normal;
+    q->other_code = code;
     q->other_is_behind = d < 0.0f && d * d > 0.25f * square;
     return false;
 }
 
-static query make_query(const photon_tree *tree, vec3 position, vec3 normal, float min_cos)
+static void query_init(query *q, const photon_tree *tree, vec3 position, vec3 normal, float min_cos)
 {
-    return (query){.tree = tree,
-                   .position = {position.x, position.y, position.z},
-                   .normal = normal,
-                   .min_cos = min_cos,
-                   .similar_code = NO_CODE,
-                   .other_code = NO_CODE};
+    q->tree = tree;
+    q->position[0] = position.x, q->position[1] = position.y, q->position[2] = position.z;
+    q->normal = normal;
+    q->min_cos = min_cos;
+    q->similar_code = q->other_code = NO_CODE;
+    q->other_is_behind = false;
+}
+
+/* The lowest set bit of a mask that is not 0, which is taken out. */
+static inline uint32_t take_lane(uint32_t *mask)
+{
+    uint32_t lane = (uint32_t)__builtin_ctz(*mask);
+    *mask &= *mask - 1;
+    return lane;
 }
 
 uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared)
 {
-    query q = make_query(tree, position, normal, min_cos);
+    query q;
+    query_init(&q, tree, position, normal, min_cos);
+    start_at_root(&q);
     float best = radius * radius;
-    uint32_t found = PHOTON_NONE;
-    visit stack[DEPTH_MAX];
-    uint32_t stack_count = 1;
-    stack[0] = (visit){.r = {0, tree->count}};
-    while (stack_count > 0) {
-        visit v = stack[--stack_count];
-        if (v.distance_squared > best * 1.00001f)
-            continue;
-        range leaf = descend(&q, v, best, stack, &stack_count);
-        for (uint32_t i = leaf.low; i < leaf.high; i++) {
-            float d = photon_distance_squared(&q, &tree->photons[i]);
-            if (d < best || (d == best && i < found)) {
-                if (!has_similar_normal(&q, &tree->photons[i]))
-                    continue;
-                best = d;
-                found = i;
+    uint32_t found = PHOTON_NONE, block;
+    while (next_leaf(&q, best, &block)) {
+        const photon_block *b = &tree->blocks[block];
+        _Alignas(16) float d[PHOTON_BLOCK_LANES];
+        uint32_t within = photon_block_within(b, q.position, best, d);
+        while (within) {
+            uint32_t lane = take_lane(&within), index = block * PHOTON_BLOCK_LANES + lane;
+            if ((d[lane] < best || (d[lane] == best && index < found)) && has_similar_normal(&q, b->normal[lane])) {
+                best = d[lane];
+                found = index;
             }
         }
     }
@@ -352,33 +366,25 @@ static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, 
 static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_neighbor *neighbors,
                                 float *out_other_squared)
 {
-    const photon_tree *tree = q->tree;
-    uint32_t capacity = photon_neighbors_capacity(wanted), count = 0;
+    uint32_t capacity = photon_neighbors_capacity(wanted), count = 0, block;
     float other = INFINITY;
-    visit stack[DEPTH_MAX];
-    uint32_t stack_count = 1;
-    stack[0] = (visit){.r = {0, tree->count}};
-    while (stack_count > 0) {
-        visit v = stack[--stack_count];
-        if (v.distance_squared > limit * 1.00001f)
-            continue;
-        range leaf = descend(q, v, limit, stack, &stack_count);
-        for (uint32_t i = leaf.low; i < leaf.high; i++) {
-            float d = photon_distance_squared(q, &tree->photons[i]);
-            if (d > limit)
-                continue;
-            if (!has_similar_normal(q, &tree->photons[i])) {
-                if (!q->other_is_behind)
-                    other = fminf(other, d);
-                continue;
-            }
-            neighbors[count++] = photon_neighbor_make(d, i);
-            if (count == capacity) {
-                /* full: keep the nearest, and look no farther than they reach */
-                select_nearest(neighbors, count, wanted, limit);
-                count = wanted;
-                limit = photon_neighbor_distance_squared(neighbors[wanted - 1]);
-            }
+    start_at_root(q);
+    while (next_leaf(q, limit, &block)) {
+        const photon_block *b = &q->tree->blocks[block];
+        _Alignas(16) float d[PHOTON_BLOCK_LANES];
+        uint32_t within = photon_block_within(b, q->position, limit, d);
+        while (within) {
+            uint32_t lane = take_lane(&within);
+            if (has_similar_normal(q, b->normal[lane]))
+                neighbors[count++] = photon_neighbor_make(d[lane], block * PHOTON_BLOCK_LANES + lane);
+            else if (!q->other_is_behind)
+                other = fminf(other, d[lane]);
+        }
+        if (count + PHOTON_BLOCK_LANES > capacity) {
+            /* full: keep the nearest, and look no farther than they reach */
+            select_nearest(neighbors, count, wanted, limit);
+            count = wanted;
+            limit = photon_neighbor_distance_squared(neighbors[wanted - 1]);
         }
     }
     if (count >= wanted) {
@@ -393,14 +399,19 @@ static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_n
  * lie there. A function of the tree and the query alone. */
 static float guess_radius_squared(query *q, uint32_t wanted, float largest)
 {
-    visit stack[DEPTH_MAX];
-    uint32_t stack_count = 0, similar = 0;
-    range leaf = descend(q, (visit){.r = {0, q->tree->count}}, -1.0f, stack, &stack_count);
+    uint32_t similar = 0;
+    q->visits = 0;
+    if (q->tree->count == 0)
+        return largest;
+    const photon_block *b = &q->tree->blocks[descend(q, (visit){.node = 0}, -1.0f)];
+    _Alignas(16) float d[PHOTON_BLOCK_LANES];
+    uint32_t all = photon_block_within(b, q->position, INFINITY, d);
     float reach = 0.0f;
-    for (uint32_t i = leaf.low; i < leaf.high; i++) {
-        if (!has_similar_normal(q, &q->tree->photons[i]))
+    while (all) {
+        uint32_t lane = take_lane(&all);
+        if (!has_similar_normal(q, b->normal[lane]))
             continue;
-        reach = fmaxf(reach, photon_distance_squared(q, &q->tree->photons[i]));
+        reach = fmaxf(reach, d[lane]);
         similar++;
     }
     if (similar < 4)
@@ -412,7 +423,8 @@ static float guess_radius_squared(query *q, uint32_t wanted, float largest)
 uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                                uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
 {
-    query q = make_query(tree, position, normal, min_cos);
+    query q;
+    query_init(&q, tree, position, normal, min_cos);
     float largest = radius * radius, limit = guess_radius_squared(&q, wanted, largest);
     for (;;) {
         uint32_t count = collect_nearest(&q, limit, wanted, neighbors, out_other_squared);

@@ -1,7 +1,7 @@
-/* photon_tree.h: a kd-tree over photons, in place: the array is put in order, and a node holds no more than its plane.
+/* photon_tree.h: a kd-tree over photons, in place: the records are put in order and become blocks.
  * Rests on: Bentley, "Multidimensional Binary Search Trees Used for Associative Searching", 1975; Arya, Mount, "Algorithms
  * for Fast Vector Quantization", 1993 (distances kept up to date on the way down).
- * Every node's range is split at its middle, so the ranges need not be stored: 8 bytes for each 8 to 16 photons.
+ * A leaf is a block of sixteen photons, and leaf i of the perfect tree is block i: a node holds no more than its plane.
  * Flow: photon_tracing -> [here] -> photon_map. Threads: built by the run's workers; then read-only.
  *
  * Only photons whose normal is similar count, and that is tested inside the search: a test afterwards would let photons on
@@ -10,7 +10,7 @@
 #ifndef AFTERGLOW_PHOTON_TREE_H
 #define AFTERGLOW_PHOTON_TREE_H
 
-#include "photon.h"
+#include "photon_block.h"
 #include "run_context.h"
 
 typedef struct photon_tree_node {
@@ -19,13 +19,14 @@ typedef struct photon_tree_node {
 } photon_tree_node;
 
 typedef struct photon_tree {
-    photon *photons;         /* borrowed; ordered by the tree */
-    uint32_t count;          /* below PHOTON_NONE */
-    uint32_t depth;          /* all leaves are at this depth; 2^depth - 1 nodes */
+    photon_block *blocks;    /* borrowed */
+    uint32_t count;          /* of photons, below PHOTON_NONE */
+    uint32_t depth;          /* all leaves are at this depth; 2^depth - 1 nodes, some with nothing on their right */
     photon_tree_node *nodes; /* children of i at 2 i + 1 and 2 i + 2 */
 } photon_tree;
 
-/* Puts photons in order, so their indices change. Deterministic: equal input gives equal order for any number of
+/* Puts the records, from photon_records_create, in order, so their indices change, and turns them into the tree's blocks
+ * where they lie; on failure they are lost. Deterministic: equal input gives equal order for any number of
  * threads. Errors: AG_ERROR_MEMORY, AG_CANCELLED. phase and progress as in parallel_for. */
 ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, double progress_begin,
                             double progress_end, photon_tree *out_tree);

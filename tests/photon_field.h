@@ -39,12 +39,19 @@ static inline void field_add(photon_set *set, vec3 position, vec3 normal, uint32
     p->flux = flux;
 }
 
+/* Where a photon of a finished map is. */
+static inline field_place field_photon(const photon_map *map, uint32_t index)
+{
+    return (field_place){photon_block_position(map->blocks, index),
+                         direction_decode(photon_block_normal(map->blocks, index))};
+}
+
 /* count photons on the surface proper, one for each path; a plane has some more beyond its edges. */
 static inline photon_set field_photons(field_kind kind, uint32_t count, uint64_t seed)
 {
     const float beyond = 0.15f;
     photon_set set = {.emitted_paths = count};
-    set.photons = malloc(((size_t)count * 2 + 4096) * sizeof *set.photons);
+    set.photons = photon_records_create(count * 2 + 4096);
     assert_non_null(set.photons);
     rng random = test_random(seed);
     for (uint32_t i = 0; i < count; i++) {

@@ -29,8 +29,6 @@ static void fixture_reset(fixture *f)
     test_run_reset(&f->r);
 }
 
-static vec3 photon_position(const photon *p) { return (vec3){p->position[0], p->position[1], p->position[2]}; }
-
 /* --- alone --- */
 
 static void the_second_request_finds_it_ready(void **state)
@@ -38,18 +36,18 @@ static void the_second_request_finds_it_ready(void **state)
     (void)state;
     fixture f;
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 1);
-    const photon *p = &f.map.set.photons[123];
+    field_place p = field_photon(&f.map, 123);
     irradiance_request a, b;
-    irradiance_cache_get(&f.cache, photon_position(p), direction_decode(p->normal), 0, &a);
-    irradiance_cache_get(&f.cache, photon_position(p), direction_decode(p->normal), 0, &b);
+    irradiance_cache_get(&f.cache, p.position, p.normal, 0, &a);
+    irradiance_cache_get(&f.cache, p.position, p.normal, 0, &b);
     assert_int_equal(a.photon, PHOTON_NONE);
     assert_memory_equal(&a, &b, sizeof a);
     /* the answer is what the slot holds, not what was computed */
-    uint32_t word = irradiance_slot_read(&p->slot);
+    uint32_t word = irradiance_slot_read(photon_block_slot(f.map.blocks, 123));
     assert_int_equal(irradiance_word_state(word), IRRADIANCE_READY);
     rgb kept = photon_map_decode_irradiance(&f.map, word & IRRADIANCE_VALUE_MASK);
     assert_memory_equal(&a.irradiance, &kept, sizeof kept);
-    rgb full = irradiance_cache_estimate(&f.cache, photon_position(p), direction_decode(p->normal), 0);
+    rgb full = irradiance_cache_estimate(&f.cache, p.position, p.normal, 0);
     assert_relative(kept.r, full.r, 1 / 127.0);
 
     irradiance_counters c = irradiance_cache_counters(&f.cache);
@@ -122,24 +120,25 @@ static void a_request_set_aside_comes_back(void **state)
     (void)state;
     fixture f;
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 2);
-    photon *p = &f.map.set.photons[PHOTONS / 2];
+    field_place p = field_photon(&f.map, PHOTONS / 2);
+    irradiance_slot *slot = photon_block_slot(f.map.blocks, PHOTONS / 2);
     uint32_t word;
-    assert_true(irradiance_slot_try_claim(&p->slot, 7, &word)); /* somebody else is at it */
+    assert_true(irradiance_slot_try_claim(slot, 7, &word)); /* somebody else is at it */
     irradiance_request request, other;
-    irradiance_cache_get(&f.cache, photon_position(p), direction_decode(p->normal), 1, &request);
+    irradiance_cache_get(&f.cache, p.position, p.normal, 1, &request);
     assert_int_equal(request.photon, PHOTONS / 2);
     assert_int_equal(irradiance_cache_counters(&f.cache).deferred, 1);
 
     /* meanwhile others are served */
-    const photon *q = &f.map.set.photons[1];
-    irradiance_cache_get(&f.cache, photon_position(q), direction_decode(q->normal), 1, &other);
+    field_place q = field_photon(&f.map, 1);
+    irradiance_cache_get(&f.cache, q.position, q.normal, 1, &other);
     assert_int_equal(other.photon, PHOTON_NONE);
 
     /* it comes back, without waiting where it is ready, and after waiting where it is not */
     uint32_t value = photon_map_encode_irradiance(&f.map, rgb_gray(3.0f), 0);
     rgb expected = photon_map_decode_irradiance(&f.map, value);
     atomic_u32 go = 0;
-    late_claimer late = {&p->slot, value, &go};
+    late_claimer late = {slot, value, &go};
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, publish_late, &late), 0);
     irradiance_request copy = request;
@@ -166,10 +165,10 @@ static void a_second_computation_would_be_counted(void **state)
     fixture f;
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 1);
     uint32_t word;
-    assert_true(irradiance_slot_try_claim(&f.map.set.photons[5].slot, 9, &word));
-    assert_false(irradiance_slot_publish(&f.map.set.photons[5].slot, 0, 1));
+    assert_true(irradiance_slot_try_claim(photon_block_slot(f.map.blocks, 5), 9, &word));
+    assert_false(irradiance_slot_publish(photon_block_slot(f.map.blocks, 5), 0, 1));
     assert_int_equal(irradiance_cache_distinct(&f.cache), 0);
-    assert_true(irradiance_slot_publish(&f.map.set.photons[5].slot, 9, 1));
+    assert_true(irradiance_slot_publish(photon_block_slot(f.map.blocks, 5), 9, 1));
     assert_int_equal(irradiance_cache_distinct(&f.cache), 1); /* counted by looking, though this cache computed none */
     assert_int_equal(irradiance_cache_counters(&f.cache).computed, 0);
     fixture_reset(&f);
@@ -181,7 +180,7 @@ enum { FEW = 24, ROUNDS = 40, RAYS = 64 };
 
 typedef struct crowd {
     fixture *f;
-    const photon *few[FEW];
+    field_place few[FEW];
     rgb expected[FEW]; /* from another map, precomputed */
     uint32_t wrong[64];
     uint32_t open[64]; /* set aside, by worker */
@@ -194,8 +193,8 @@ static void demand(void *user, unsigned worker)
     irradiance_request requests[RAYS];
     for (uint32_t round = 0; round < ROUNDS; round++) {
         for (uint32_t i = 0; i < RAYS; i++) {
-            const photon *p = all->few[(i + round) % FEW];
-            irradiance_cache_get(&all->f->cache, photon_position(p), direction_decode(p->normal), worker, &requests[i]);
+            field_place p = all->few[(i + round) % FEW];
+            irradiance_cache_get(&all->f->cache, p.position, p.normal, worker, &requests[i]);
         }
         for (uint32_t i = 0; i < RAYS; i++)
             if (requests[i].photon != PHOTON_NONE) {
@@ -225,11 +224,11 @@ static void many_threads_demand_the_same_few_photons(void **state)
             all = (crowd){.f = &f};
             for (uint32_t i = 0; i < FEW; i++) {
                 uint32_t index = i * (PHOTONS / FEW);
-                all.few[i] = &f.map.set.photons[index];
-                const photon *same = &reference.map.set.photons[index];
-                assert_memory_equal(all.few[i], same, offsetof(photon, slot));
-                all.expected[i] = photon_map_decode_irradiance(&reference.map, irradiance_slot_read(&same->slot) &
-                                                                                   IRRADIANCE_VALUE_MASK);
+                all.few[i] = field_photon(&f.map, index);
+                field_place same = field_photon(&reference.map, index);
+                assert_memory_equal(&all.few[i], &same, sizeof same);
+                uint32_t word = irradiance_slot_read(photon_block_slot(reference.map.blocks, index));
+                all.expected[i] = photon_map_decode_irradiance(&reference.map, word & IRRADIANCE_VALUE_MASK);
             }
             thread_pool_run(f.r.pool, demand, &all);
             irradiance_counters c = irradiance_cache_counters(&f.cache);
@@ -257,9 +256,9 @@ static void ask_all(void *user, unsigned worker)
     fixture *f = user;
     unsigned workers = thread_pool_worker_count(f->r.pool);
     for (uint32_t i = 0; i < PHOTONS; i++) { /* each from another end, so that they meet */
-        const photon *p = &f->map.set.photons[(i + worker * (PHOTONS / workers)) % PHOTONS];
+        field_place p = field_photon(&f->map, (i + worker * (PHOTONS / workers)) % PHOTONS);
         irradiance_request request;
-        irradiance_cache_get(&f->cache, photon_position(p), direction_decode(p->normal), worker, &request);
+        irradiance_cache_get(&f->cache, p.position, p.normal, worker, &request);
         if (request.photon != PHOTON_NONE)
             irradiance_cache_retry(&f->cache, &request, worker);
     }
@@ -278,9 +277,9 @@ static void on_demand_and_precomputed_slots_are_the_same(void **state)
     assert_true(c.computed > PHOTONS * 9 / 10 && c.computed <= PHOTONS);
     assert_int_equal(c.duplicated, 0);
     for (uint32_t i = 0; i < PHOTONS; i++) {
-        uint32_t word = irradiance_slot_read(&a.map.set.photons[i].slot);
+        uint32_t word = irradiance_slot_read(photon_block_slot(a.map.blocks, i));
         if (word != 0) /* a photon that coincides with another, by normal too, may not be anybody's nearest */
-            assert_int_equal(word, irradiance_slot_read(&b.map.set.photons[i].slot));
+            assert_int_equal(word, irradiance_slot_read(photon_block_slot(b.map.blocks, i)));
     }
     fixture_reset(&a);
     fixture_reset(&b);
@@ -293,8 +292,8 @@ static void a_second_cache_sees_what_was_ready(void **state)
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 2);
     irradiance_request request;
     for (uint32_t i = 0; i < 50; i++) {
-        const photon *p = &f.map.set.photons[i];
-        irradiance_cache_get(&f.cache, photon_position(p), direction_decode(p->normal), i % 2, &request);
+        field_place p = field_photon(&f.map, i);
+        irradiance_cache_get(&f.cache, p.position, p.normal, i % 2, &request);
     }
     assert_int_equal(irradiance_cache_distinct(&f.cache), 50);
     irradiance_cache second;
@@ -302,8 +301,8 @@ static void a_second_cache_sees_what_was_ready(void **state)
     assert_int_equal(second.ready_before, 50);
     assert_int_equal(irradiance_cache_distinct(&second), 0);
     for (uint32_t i = 40; i < 60; i++) {
-        const photon *p = &f.map.set.photons[i];
-        irradiance_cache_get(&second, photon_position(p), direction_decode(p->normal), i % 2, &request);
+        field_place p = field_photon(&f.map, i);
+        irradiance_cache_get(&second, p.position, p.normal, i % 2, &request);
     }
     assert_int_equal(irradiance_cache_counters(&second).requests, 20);
     assert_int_equal(irradiance_cache_counters(&second).computed, 10);

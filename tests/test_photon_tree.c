@@ -9,8 +9,9 @@ typedef enum cloud { RANDOM, COPLANAR, COLLINEAR, COINCIDENT, GRID, TWO_CLUSTERS
 /* Photons that carry their number as flux, so that they can be told apart. One normal in three points another way. */
 static photon *make_photons(cloud kind, uint32_t count, uint64_t seed)
 {
-    photon *p = calloc(count + 1, sizeof *p);
+    photon *p = photon_records_create(count);
     assert_non_null(p);
+    memset(p, 0, count * sizeof *p);
     rng random = test_random(seed);
     for (uint32_t i = 0; i < count; i++) {
         vec3 at = random_in_box(&random, (vec3){-1.0f, -1.0f, -1.0f}, (vec3){1.0f, 1.0f, 1.0f});
@@ -45,10 +46,10 @@ static uint32_t brute_force(const photon_tree *tree, vec3 at, vec3 normal, float
 {
     uint32_t count = 0;
     for (uint32_t i = 0; i < tree->count; i++) {
-        const photon *p = &tree->photons[i];
-        float x = p->position[0] - at.x, y = p->position[1] - at.y, z = p->position[2] - at.z;
+        vec3 p = photon_block_position(tree->blocks, i);
+        float x = p.x - at.x, y = p.y - at.y, z = p.z - at.z;
         float d = x * x + y * y + z * z;
-        if (d <= radius * radius && vec3_dot(direction_decode(p->normal), normal) > min_cos)
+        if (d <= radius * radius && vec3_dot(direction_decode(photon_block_normal(tree->blocks, i)), normal) > min_cos)
             out[count++] = photon_neighbor_make(d, i);
     }
     if (count > 0)
@@ -61,9 +62,9 @@ static float other_by_brute_force(const photon_tree *tree, vec3 at, vec3 normal,
 {
     float nearest = INFINITY;
     for (uint32_t i = 0; i < tree->count; i++) {
-        const photon *p = &tree->photons[i];
-        float x = p->position[0] - at.x, y = p->position[1] - at.y, z = p->position[2] - at.z;
-        float cosine = vec3_dot(direction_decode(p->normal), normal);
+        vec3 p = photon_block_position(tree->blocks, i);
+        float x = p.x - at.x, y = p.y - at.y, z = p.z - at.z;
+        float cosine = vec3_dot(direction_decode(photon_block_normal(tree->blocks, i)), normal);
         if (cosine <= min_cos && cosine > -0.5f)
             nearest = fminf(nearest, x * x + y * y + z * z);
     }
@@ -119,11 +120,10 @@ static void searches_find_what_brute_force_finds(void **state)
             for (int q = 0; q < queries; q++) {
                 vec3 at = random_in_box(&random, (vec3){-1.2f, -1.2f, -1.2f}, (vec3){1.2f, 1.2f, 1.2f});
                 if (count > 0 && q % 2 == 0) { /* at a photon, or half-way between two */
-                    const float *a = photons[rng_next(&random) % count].position;
-                    const float *b = photons[q % 4 ? rng_next(&random) % count : 0].position;
-                    at = (vec3){a[0], a[1], a[2]};
+                    at = photon_block_position(tree.blocks, (uint32_t)(rng_next(&random) % count));
                     if (q % 4)
-                        at = vec3_scale(vec3_add(at, (vec3){b[0], b[1], b[2]}), 0.5f);
+                        at = vec3_scale(vec3_add(at, photon_block_position(
+                                                         tree.blocks, (uint32_t)(rng_next(&random) % count))), 0.5f);
                 }
                 vec3 normal = q % 3 == 0 ? random_direction(&random) : (vec3){0.0f, 1.0f, 0.0f};
                 check_query(&tree, at, normal, q % 5 == 0 ? 0.0f : 0.5f, RADII[q % 6], WANTED[q / 2 % 5], expected,
@@ -142,8 +142,9 @@ static void the_radius_is_inclusive(void **state)
     (void)state;
     test_run r;
     test_run_init(&r, 1);
-    photon p[1];
-    memset(p, 0, sizeof p);
+    photon *p = photon_records_create(1);
+    assert_non_null(p);
+    memset(p, 0, sizeof *p);
     p[0].position[0] = 3.0f, p[0].position[1] = 4.0f;
     p[0].normal = direction_encode((vec3){0.0f, 0.0f, 1.0f});
     photon_tree tree;
@@ -158,6 +159,7 @@ static void the_radius_is_inclusive(void **state)
     /* and the cosine is not */
     assert_int_equal(photon_tree_nearest(&tree, origin, up, 1.0f, 5.0f, &d), PHOTON_NONE);
     photon_tree_reset(&tree);
+    free(p);
     test_run_reset(&r);
 }
 
@@ -168,8 +170,9 @@ static void normals_are_tested_inside_the_search(void **state)
     enum { EACH = 1000 };
     test_run r;
     test_run_init(&r, 2);
-    photon *p = calloc(2 * EACH, sizeof *p);
+    photon *p = photon_records_create(2 * EACH);
     assert_non_null(p);
+    memset(p, 0, 2 * EACH * sizeof *p);
     rng random = test_random(5);
     for (uint32_t i = 0; i < 2 * EACH; i++) {
         bool front = i < EACH;
@@ -187,19 +190,13 @@ static void normals_are_tested_inside_the_search(void **state)
     assert_int_equal(count, 50);
     assert_true(isinf(other)); /* what faces away is no edge */
     for (uint32_t i = 0; i < count; i++)
-        assert_true(p[photon_neighbor_index(n[i])].position[2] > 0.0f);
+        assert_true(photon_block_position(tree.blocks, photon_neighbor_index(n[i])).z > 0.0f);
     float d;
     uint32_t nearest = photon_tree_nearest(&tree, (vec3){0.05f, 0.05f, 0.0f}, up, 0.9f, 1.0f, &d);
-    assert_true(nearest != PHOTON_NONE && p[nearest].position[2] > 0.0f);
+    assert_true(nearest != PHOTON_NONE && photon_block_position(tree.blocks, nearest).z > 0.0f);
     photon_tree_reset(&tree);
     free(p);
     test_run_reset(&r);
-}
-
-static int compare_flux(const void *a, const void *b)
-{
-    uint32_t x = ((const photon *)a)->flux, y = ((const photon *)b)->flux;
-    return x < y ? -1 : x > y;
 }
 
 static void any_number_of_threads_builds_the_same_tree(void **state)
@@ -217,7 +214,7 @@ static void any_number_of_threads_builds_the_same_tree(void **state)
             photon_tree tree;
             assert_int_equal(photon_tree_build(&r.run, p, COUNT, 0.0, 1.0, &tree), AG_OK);
             test_run_reset(&r);
-            assert_true(photon_tree_bytes(&tree) <= COUNT); /* 8 bytes for 8 photons or more */
+            assert_true(photon_tree_bytes(&tree) <= COUNT); /* 8 bytes for each block and at most another */
             if (w == 0) {
                 first = p;
                 first_tree = tree;
@@ -229,9 +226,17 @@ static void any_number_of_threads_builds_the_same_tree(void **state)
             photon_tree_reset(&tree);
             free(p);
         }
-        /* the same photons as were given, in another order */
-        qsort(first, COUNT, sizeof *first, compare_flux);
-        assert_memory_equal(first, input, COUNT * sizeof *first);
+        /* the same photons as were given, in another order: their flux is their number */
+        uint64_t sum = 0;
+        for (uint32_t i = 0; i < COUNT; i++) {
+            uint32_t number = photon_block_flux(first_tree.blocks, i);
+            vec3 at = photon_block_position(first_tree.blocks, i);
+            assert_true(number < COUNT);
+            assert_memory_equal(&at, input[number].position, sizeof at);
+            assert_int_equal(photon_block_normal(first_tree.blocks, i), input[number].normal);
+            sum += number;
+        }
+        assert_int_equal(sum, (uint64_t)COUNT * (COUNT - 1) / 2);
         photon_tree_reset(&first_tree);
         free(first);
         free(input);

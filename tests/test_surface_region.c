@@ -131,8 +131,9 @@ static void estimates_hold_up_to_the_edge(void **state)
     double mean[2];
     for (int knows = 0; knows < 2; knows++) {
         photon_set set = {.count = PHOTONS, .emitted_paths = PHOTONS};
-        set.photons = calloc(PHOTONS, sizeof *set.photons);
+        set.photons = photon_records_create(PHOTONS);
         assert_non_null(set.photons);
+        memset(set.photons, 0, PHOTONS * sizeof *set.photons);
         rng random = test_random(6);
         for (uint32_t i = 0; i < PHOTONS; i++) {
             photon *p = &set.photons[i];
@@ -149,7 +150,7 @@ static void estimates_hold_up_to_the_edge(void **state)
         assert_non_null(scratch);
         double sum = 0.0, strip = 2.0 * (double)map.mean_radius, there = 0.0;
         for (uint32_t i = 0; i < PHOTONS; i++)
-            there += (double)map.set.photons[i].position[0] < strip;
+            there += (double)photon_block_position(map.blocks, i).x < strip;
         there /= strip * PHOTONS;
         for (int i = 0; i < QUERIES; i++) {
             vec3 at = {rng_float(&random) * (float)strip, 0.0f, rng_float(&random)};
