@@ -170,6 +170,11 @@ uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
     return is_behind_wall(map, position, normal, found) ? PHOTON_NONE : found;
 }
 
+uint32_t photon_map_place(const photon_map *map, vec3 position)
+{
+    return map->set.count > 0 ? photon_tree_leaf(&map->tree, position) : 0;
+}
+
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key)
 {
     float largest = rgb_max(irradiance);

@@ -58,6 +58,9 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
  * or the one that is stands behind a wall. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal);
 
+/* Where in the map's order a place is: lookups at places with like numbers touch the same memory. */
+uint32_t photon_map_place(const photon_map *map, vec3 position);
+
 /* Irradiance as a slot's 30 bits. key decides the rounding: the photon's index. */
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);
 rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value);

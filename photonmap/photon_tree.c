@@ -270,6 +270,17 @@ static void query_init(query *q, const photon_tree *tree, vec3 position, vec3 no
     q->other_is_behind = false;
 }
 
+uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position)
+{
+    const float at[3] = {position.x, position.y, position.z};
+    uint32_t leaf_base = (1u << tree->depth) - 1, node = 0;
+    while (node < leaf_base) {
+        photon_tree_node n = tree->nodes[node];
+        node = 2 * node + 1 + (at[n.axis] >= n.split);
+    }
+    return node - leaf_base;
+}
+
 /* The lowest set bit of a mask that is not 0, which is taken out. */
 static inline uint32_t take_lane(uint32_t *mask)
 {

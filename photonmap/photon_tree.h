@@ -38,6 +38,9 @@ uint64_t photon_tree_bytes(const photon_tree *tree); /* of the nodes */
 uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared);
 
+/* The block of the leaf that a place falls into; of a tree that is not empty. */
+uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
+
 /* A photon found: its squared distance as the high half, its index as the low half. Distances are not negative, so their bits
  * order as integers do: comparing two neighbours compares (distance squared, index). */
 typedef uint64_t photon_neighbor;

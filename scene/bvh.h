@@ -36,6 +36,10 @@ typedef struct surface_hit {
 /* The nearest surface along the ray, from its origin to max_distance (in lengths of direction, INFINITY is fine). */
 bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 
+/* How far along the ray the nearest surface is, INFINITY where there is none: traversal alone, without looking at what was
+ * hit, which is the physical limit that benchmarks compare with. */
+float scene_first_distance(const scene *s, scene_ray ray);
+
 /* Whether anything stands along the ray up to max_distance (as above). */
 bool scene_occluded(const scene *s, scene_ray ray, float max_distance);
 

@@ -242,6 +242,16 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
     return true;
 }
 
+float scene_first_distance(const scene *s, scene_ray ray)
+{
+    struct RTCRayHit ray_hit;
+    ray_hit.ray = embree_ray(&ray, INFINITY);
+    ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    embree_intersect(s->bvh->scene, &ray_hit);
+    return ray_hit.ray.tfar;
+}
+
 bool scene_occluded(const scene *s, scene_ray ray, float max_distance)
 {
     struct RTCRay cast = embree_ray(&ray, max_distance);

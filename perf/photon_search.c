@@ -1,0 +1,302 @@
+/* photon_search.c: the program afterglow-photon-search: what the photon map's two searches cost, against nanoflann's
+ * kd-tree and against Embree's rays, on the photons of one of the forty rooms. All take turns in one process on one
+ * thread; medians; ratios are what counts.
+ *   estimate   irradiance from the 300 nearest of 500,000 photons within 3.0, at photon positions: in random order, and in
+ *              the order in which the map keeps them (neighbours one after the other)
+ *   nearest    the nearest photon with a similar normal, at what gather rays hit: ray after ray as they come, and sorted
+ *   ray        the gather rays themselves, by Embree alone
+ * The rival finds neighbours by distance alone, without normals or a radius: less work than ours.
+ * Use: afterglow-photon-search [SCENE.pbrt]. Flow: [here]. Threads: one. */
+#define _GNU_SOURCE
+#include "bvh.h"
+#include "clock.h"
+#include "floating_point.h"
+#include "math/sampling.h"
+#include "nanoflann_rival.h"
+#include "pbrt_parser.h"
+#include "photon_map.h"
+#include "room_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { QUERIES = 20000, RAYS = 200000, ROUNDS = 7, NEAREST = 300, ROOM = 20 };
+static const float RADIUS = 3.0f;
+
+typedef struct ray_hit {
+    scene_ray ray;
+    vec3 position, normal;
+    uint64_t order;
+} ray_hit;
+
+typedef struct bench {
+    scene *s;
+    photon_map map;
+    nanoflann_tree *rival;
+    float *points;                       /* [3 count], in the map's order */
+    uint32_t *random_order, *map_order;  /* [QUERIES], photons */
+    ray_hit *hits, *sorted_hits;         /* [hit_count] */
+    uint32_t hit_count;
+    photon_neighbor *scratch;
+    double sink; /* keeps the work from being optimised away */
+} bench;
+
+static void say(void *user, ag_log_level level, const char *message)
+{
+    (void)user;
+    if (level <= AG_LOG_WARNING)
+        fprintf(stderr, "%s\n", message);
+}
+
+/* --- what is measured: each gives the number of operations --- */
+
+static uint32_t estimates(bench *b, const uint32_t *order)
+{
+    for (uint32_t i = 0; i < QUERIES; i++) {
+        vec3 at = photon_block_position(b->map.blocks, order[i]);
+        vec3 normal = direction_decode(photon_block_normal(b->map.blocks, order[i]));
+        b->sink += (double)photon_map_irradiance_estimate(&b->map, at, normal, b->scratch).g;
+    }
+    return QUERIES;
+}
+
+static uint32_t rival_estimates(bench *b, const uint32_t *order)
+{
+    uint32_t indices[NEAREST + 1];
+    float distances[NEAREST + 1];
+    for (uint32_t i = 0; i < QUERIES; i++) {
+        size_t found = nanoflann_tree_nearest(b->rival, b->points + 3 * (size_t)order[i], NEAREST + 1, indices, distances);
+        rgb sum = rgb_gray(0.0f);
+        for (size_t k = 0; k < found; k++)
+            sum = rgb_add(sum, flux_decode(photon_block_flux(b->map.blocks, indices[k])));
+        b->sink += (double)sum.g;
+    }
+    return QUERIES;
+}
+
+static uint32_t estimate_random(bench *b) { return estimates(b, b->random_order); }
+static uint32_t estimate_ordered(bench *b) { return estimates(b, b->map_order); }
+static uint32_t rival_estimate_random(bench *b) { return rival_estimates(b, b->random_order); }
+static uint32_t rival_estimate_ordered(bench *b) { return rival_estimates(b, b->map_order); }
+
+static uint32_t nearests(bench *b, const ray_hit *hits)
+{
+    for (uint32_t i = 0; i < b->hit_count; i++)
+        b->sink += (double)photon_map_nearest(&b->map, hits[i].position, hits[i].normal);
+    return b->hit_count;
+}
+
+static uint32_t rival_nearests(bench *b, const ray_hit *hits)
+{
+    for (uint32_t i = 0; i < b->hit_count; i++) {
+        uint32_t index;
+        float distance, at[3] = {hits[i].position.x, hits[i].position.y, hits[i].position.z};
+        nanoflann_tree_nearest(b->rival, at, 1, &index, &distance);
+        b->sink += (double)index;
+    }
+    return b->hit_count;
+}
+
+static uint32_t nearest_as_they_come(bench *b) { return nearests(b, b->hits); }
+static uint32_t nearest_sorted(bench *b) { return nearests(b, b->sorted_hits); }
+static uint32_t rival_nearest_as_they_come(bench *b) { return rival_nearests(b, b->hits); }
+static uint32_t rival_nearest_sorted(bench *b) { return rival_nearests(b, b->sorted_hits); }
+
+static uint32_t rays(bench *b)
+{
+    for (uint32_t i = 0; i < b->hit_count; i++)
+        b->sink += (double)scene_first_distance(b->s, b->hits[i].ray);
+    return b->hit_count;
+}
+
+typedef struct measurement {
+    const char *name;
+    uint32_t (*run)(bench *b);
+    const char *rival; /* what it is held against, or NULL */
+    double wanted;     /* at most this share of it */
+    double us[ROUNDS];
+} measurement;
+
+static measurement measurements[] = {
+    {"nanoflann: estimate, random order", rival_estimate_random, NULL, 0.0, {0}},
+    {"estimate, random order", estimate_random, "nanoflann: estimate, random order", 1.0 / 5, {0}},
+    {"nanoflann: estimate, map's order", rival_estimate_ordered, NULL, 0.0, {0}},
+    {"estimate, map's order", estimate_ordered, "nanoflann: estimate, map's order", 1.0 / 3, {0}},
+    {"Embree: gather rays", rays, NULL, 0.0, {0}},
+    {"nanoflann: nearest, as they come", rival_nearest_as_they_come, NULL, 0.0, {0}},
+    {"nearest, as they come", nearest_as_they_come, "nanoflann: nearest, as they come", 1.0 / 3, {0}},
+    {"nanoflann: nearest, sorted", rival_nearest_sorted, NULL, 0.0, {0}},
+    {"nearest, sorted", nearest_sorted, "nanoflann: nearest, sorted", 1.0 / 3, {0}},
+    {"nearest, sorted (against the ray)", nearest_sorted, "Embree: gather rays", 1.0, {0}},
+};
+enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
+
+/* --- what they work on --- */
+
+static int by_order(const void *a, const void *b)
+{
+    uint64_t x = ((const ray_hit *)a)->order, y = ((const ray_hit *)b)->order;
+    return x < y ? -1 : x > y;
+}
+
+/* Gather rays from photon positions, as a picture's are: 64 from each place; a tile is 1,024 places' worth. */
+static void make_rays(bench *b, rng *random)
+{
+    enum { FROM_EACH = 64, TILE = 65536 };
+    uint32_t start = 0;
+    for (uint32_t i = 0; i < RAYS; i++) {
+        if (i % FROM_EACH == 0)
+            start = (uint32_t)(rng_next(random) % b->map.set.count);
+        vec3 normal = direction_decode(photon_block_normal(b->map.blocks, start));
+        frame f = frame_from_z(normal);
+        ray_hit h;
+        vec3 from = vec3_add_scaled(photon_block_position(b->map.blocks, start), normal, 1e-3f);
+        h.ray = scene_ray_make(from, frame_to_world(&f, sample_cosine_hemisphere(rng_vec2(random))));
+        surface_hit hit;
+        if (!scene_intersect(b->s, h.ray, INFINITY, &hit))
+            continue;
+        h.position = hit.position;
+        h.normal = vec3_face_forward(hit.geometric_normal, vec3_negate(h.ray.direction));
+        h.order = (uint64_t)(i / TILE) << 32 | photon_map_place(&b->map, h.position);
+        b->hits[b->hit_count++] = h;
+    }
+    memcpy(b->sorted_hits, b->hits, b->hit_count * sizeof *b->hits);
+    qsort(b->sorted_hits, b->hit_count, sizeof *b->hits, by_order);
+}
+
+static bool make_orders(bench *b)
+{
+    uint32_t count = b->map.set.count;
+    b->points = malloc(3 * (size_t)count * sizeof *b->points);
+    b->random_order = malloc(QUERIES * sizeof *b->random_order);
+    b->map_order = malloc(QUERIES * sizeof *b->map_order);
+    b->hits = malloc(RAYS * sizeof *b->hits);
+    b->sorted_hits = malloc(RAYS * sizeof *b->sorted_hits);
+    b->scratch = malloc(photon_map_scratch_count(&b->map) * sizeof *b->scratch);
+    if (!b->points || !b->random_order || !b->map_order || !b->hits || !b->sorted_hits || !b->scratch)
+        return false;
+    rng random = rng_make(1, 2, 3);
+    for (uint32_t i = 0; i < count; i++) {
+        vec3 p = photon_block_position(b->map.blocks, i);
+        memcpy(b->points + 3 * (size_t)i, &p, sizeof p);
+    }
+    for (uint32_t i = 0; i < QUERIES; i++) {
+        b->random_order[i] = (uint32_t)(rng_next(&random) % count);
+        b->map_order[i] = count / 3 + i;
+    }
+    make_rays(b, &random);
+    b->rival = nanoflann_tree_create(b->points, count);
+    return b->rival != NULL;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static double median(const double *values)
+{
+    double sorted[ROUNDS];
+    memcpy(sorted, values, sizeof sorted);
+    qsort(sorted, ROUNDS, sizeof *sorted, by_value);
+    return sorted[ROUNDS / 2];
+}
+
+/* The median of the rounds' ratios: both halves of a ratio have seen the same noise. */
+static void report(void)
+{
+    printf("%-36s %10s  %s\n", "", "us each", "share of (at most)");
+    for (int i = 0; i < MEASUREMENTS; i++) {
+        measurement *m = &measurements[i];
+        printf("%-36s %10.3f", m->name, median(m->us));
+        for (int k = 0; m->rival && k < MEASUREMENTS; k++) {
+            if (strcmp(measurements[k].name, m->rival) != 0)
+                continue;
+            double ratio[ROUNDS];
+            for (int r = 0; r < ROUNDS; r++)
+                ratio[r] = m->us[r] / measurements[k].us[r];
+            printf("  %.3f of %s (%.3f)%s", median(ratio), m->rival, m->wanted, median(ratio) <= m->wanted ? "" : " MISSED");
+        }
+        printf("\n");
+    }
+}
+
+static ag_status load(bench *b, run_context *run, const char *path)
+{
+    char room[] = "/tmp/afterglow-room-XXXXXX";
+    room_sphere spheres[ROOM_COUNT];
+    if (!path) {
+        int file = mkstemp(room);
+        if (file < 0)
+            return AG_ERROR_OUTPUT;
+        close(file);
+        ag_status status = room_layout_place(ROOM_SEED, spheres);
+        if (status == AG_OK)
+            status = room_file_write(room, spheres, ROOM, 64);
+        if (status != AG_OK)
+            return status;
+    }
+    b->s = scene_create();
+    ag_status status = b->s ? pbrt_parse_file(run, path ? path : room, b->s) : AG_ERROR_MEMORY;
+    if (!path)
+        unlink(room);
+    return status == AG_OK ? scene_commit(b->s, run, NULL) : status;
+}
+
+static ag_status make_map(bench *b, run_context *run)
+{
+    photon_set set = {0};
+    photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL, .wanted = ROOM_PHOTON_COUNT, .max_scatterings = 98};
+    ag_status status = photon_tracing_run(b->s, run, &tracing, &set);
+    photon_map_settings settings = {
+        .nearest = NEAREST, .max_radius = RADIUS, .surface_area = b->s->surface_area, .surfaces = b->s};
+    return status == AG_OK ? photon_map_create(run, &set, &settings, 0.0, 1.0, &b->map) : status;
+}
+
+int main(int argc, char **argv)
+{
+    bench b = {0};
+    thread_pool *pool = NULL;
+    run_context run;
+    log_sink *log = log_create(say, NULL);
+    ag_status status = log ? thread_pool_create(1, &pool) : AG_ERROR_MEMORY;
+    if (status == AG_OK) {
+        run_context_init(&run, pool, log, NULL, NULL);
+        status = load(&b, &run, argc > 1 ? argv[1] : NULL);
+        if (status == AG_OK)
+            status = make_map(&b, &run);
+        if (status == AG_OK && !make_orders(&b))
+            status = AG_ERROR_MEMORY;
+    }
+    if (status != AG_OK) {
+        fprintf(stderr, "afterglow-photon-search: %s\n", ag_status_text(status));
+        return 1;
+    }
+    unsigned arithmetic = floating_point_enter();
+    for (int round = 0; round < ROUNDS; round++)
+        for (int i = 0; i < MEASUREMENTS; i++) {
+            double begin = clock_thread_cpu_seconds();
+            uint32_t count = measurements[i].run(&b);
+            measurements[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
+        }
+    floating_point_leave(arithmetic);
+    printf("%u photons, %u estimates, %u rays, %d rounds (checksum %g)\n", b.map.set.count, (unsigned)QUERIES, b.hit_count,
+           ROUNDS, b.sink);
+    report();
+    nanoflann_tree_destroy(b.rival);
+    photon_map_reset(&b.map);
+    scene_destroy(b.s);
+    free(b.points);
+    free(b.random_order);
+    free(b.map_order);
+    free(b.hits);
+    free(b.sorted_hits);
+    free(b.scratch);
+    run_context_reset(&run);
+    thread_pool_destroy(pool);
+    log_destroy(log);
+    return 0;
+}
