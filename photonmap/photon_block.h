@@ -87,6 +87,17 @@ static inline uint32_t photon_block_within(const photon_block *b, const float po
     return within;
 }
 
+/* The nearest of the lanes in the mask, which is not 0; of equally near ones the first. */
+static inline uint32_t photon_block_nearest_lane(const float distance_squared[PHOTON_BLOCK_LANES], uint32_t mask)
+{
+    uint32_t best = (uint32_t)__builtin_ctz(mask);
+    for (mask &= mask - 1; mask; mask &= mask - 1) {
+        uint32_t lane = (uint32_t)__builtin_ctz(mask);
+        best = distance_squared[lane] < distance_squared[best] ? lane : best;
+    }
+    return best;
+}
+
 /* As bits, which lanes have just that normal. */
 static inline uint32_t photon_block_with_normal(const photon_block *b, uint16_t normal)
 {

@@ -175,6 +175,17 @@ uint64_t photon_tree_bytes(const photon_tree *tree)
 
 /* --- search --- */
 
+uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position)
+{
+    const float at[3] = {position.x, position.y, position.z};
+    uint32_t leaf_base = (1u << tree->depth) - 1, node = 0;
+    while (node < leaf_base) {
+        photon_tree_node n = tree->nodes[node];
+        node = 2 * node + 1 + (at[n.axis] >= n.split);
+    }
+    return node - leaf_base;
+}
+
 /* A part of the tree still to visit: how far the query is outside its box, along each axis and in all. */
 typedef struct visit {
     float offset[3];
@@ -235,10 +246,29 @@ static bool next_leaf(query *q, float limit, uint32_t *out_block)
     return false;
 }
 
-static void start_at_root(query *q)
+/* The leaf that the query is in. The way down is not kept: what has been found there tells which other sides matter. */
+static uint32_t first_leaf(const query *q)
 {
-    q->stack[0] = (visit){.node = 0};
-    q->visits = q->tree->count > 0;
+    return photon_tree_leaf(q->tree, (vec3){q->position[0], q->position[1], q->position[2]});
+}
+
+/* Puts on the stack the sides that the way to the first leaf left aside, as far as they are within the limit; the nearest
+ * to the leaf on top. By the offset from their plane alone, which may be too little, and is never too much. */
+static void stack_other_sides(query *q, uint32_t first_block, float limit)
+{
+    uint32_t leaf = (1u << q->tree->depth) - 1 + first_block;
+    float most = hair_beyond(limit);
+    q->visits = 0;
+    for (uint32_t up = q->tree->depth; up > 0; up--) { /* the heap's order: the ancestor `up` levels above the leaf */
+        uint32_t node = ((leaf + 1) >> up) - 1, child = ((leaf + 1) >> (up - 1)) - 1;
+        photon_tree_node n = q->tree->nodes[node];
+        float from_plane = q->position[n.axis] - n.split, beyond = from_plane * from_plane;
+        if (beyond > most || !(beyond < INFINITY))
+            continue;
+        visit *far = &q->stack[q->visits++];
+        *far = (visit){.distance_squared = beyond, .node = ((child + 1) ^ 1) - 1};
+        far->offset[n.axis] = from_plane;
+    }
 }
 
 /* Neighbours mostly share a normal: the last answers are kept. */
@@ -270,23 +300,27 @@ static void query_init(query *q, const photon_tree *tree, vec3 position, vec3 no
     q->other_is_behind = false;
 }
 
-uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position)
-{
-    const float at[3] = {position.x, position.y, position.z};
-    uint32_t leaf_base = (1u << tree->depth) - 1, node = 0;
-    while (node < leaf_base) {
-        photon_tree_node n = tree->nodes[node];
-        node = 2 * node + 1 + (at[n.axis] >= n.split);
-    }
-    return node - leaf_base;
-}
+/* The nearest so far. */
+typedef struct nearest {
+    float distance_squared;
+    uint32_t index;
+} nearest;
 
-/* The lowest set bit of a mask that is not 0, which is taken out. */
-static inline uint32_t take_lane(uint32_t *mask)
+static void scan_for_nearest(query *q, uint32_t block, nearest *best)
 {
-    uint32_t lane = (uint32_t)__builtin_ctz(*mask);
-    *mask &= *mask - 1;
-    return lane;
+    const photon_block *b = &q->tree->blocks[block];
+    _Alignas(16) float d[PHOTON_BLOCK_LANES];
+    uint32_t within = photon_block_within(b, q->position, best->distance_squared, d);
+    while (within) {
+        uint32_t lane = photon_block_nearest_lane(d, within), index = block * PHOTON_BLOCK_LANES + lane;
+        uint16_t code = b->normal[lane];
+        if (has_similar_normal(q, code)) {
+            if (d[lane] < best->distance_squared || index < best->index)
+                *best = (nearest){d[lane], index};
+            return;
+        }
+        within &= ~photon_block_with_normal(b, code);
+    }
 }
 
 uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
@@ -294,23 +328,16 @@ uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal
 {
     query q;
     query_init(&q, tree, position, normal, min_cos);
-    start_at_root(&q);
-    float best = radius * radius;
-    uint32_t found = PHOTON_NONE, block;
-    while (next_leaf(&q, best, &block)) {
-        const photon_block *b = &tree->blocks[block];
-        _Alignas(16) float d[PHOTON_BLOCK_LANES];
-        uint32_t within = photon_block_within(b, q.position, best, d);
-        while (within) {
-            uint32_t lane = take_lane(&within), index = block * PHOTON_BLOCK_LANES + lane;
-            if ((d[lane] < best || (d[lane] == best && index < found)) && has_similar_normal(&q, b->normal[lane])) {
-                best = d[lane];
-                found = index;
-            }
-        }
+    nearest best = {radius * radius, PHOTON_NONE};
+    if (tree->count > 0) {
+        uint32_t block = first_leaf(&q);
+        scan_for_nearest(&q, block, &best);
+        stack_other_sides(&q, block, best.distance_squared);
+        while (next_leaf(&q, best.distance_squared, &block))
+            scan_for_nearest(&q, block, &best);
     }
-    *out_distance_squared = best;
-    return found;
+    *out_distance_squared = best.distance_squared;
+    return best.index;
 }
 
 /* Quickselect over neighbours, which are all different: the `wanted` nearest come first, the farthest of them at
@@ -373,53 +400,71 @@ static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, 
         n[kept++] = in_bin[i];
 }
 
-/* Those of the `wanted` nearest that lie within the limit. */
-static uint32_t collect_nearest(query *q, float limit, uint32_t wanted, photon_neighbor *neighbors,
-                                float *out_other_squared)
+/* What has been collected: those of the `wanted` nearest that lie within the limit, which shrinks. */
+typedef struct collection {
+    photon_neighbor *neighbors;
+    uint32_t count, wanted, capacity;
+    float limit;
+    float other; /* squared distance of the nearest photon with another normal, but none about the opposite */
+} collection;
+
+static void keep_nearest(collection *c)
 {
-    uint32_t capacity = photon_neighbors_capacity(wanted), count = 0, block;
-    float other = INFINITY;
-    start_at_root(q);
-    while (next_leaf(q, limit, &block)) {
-        const photon_block *b = &q->tree->blocks[block];
-        _Alignas(16) float d[PHOTON_BLOCK_LANES];
-        uint32_t within = photon_block_within(b, q->position, limit, d);
-        while (within) {
-            uint32_t lane = take_lane(&within);
-            if (has_similar_normal(q, b->normal[lane]))
-                neighbors[count++] = photon_neighbor_make(d[lane], block * PHOTON_BLOCK_LANES + lane);
-            else if (!q->other_is_behind)
-                other = fminf(other, d[lane]);
-        }
-        if (count + PHOTON_BLOCK_LANES > capacity) {
-            /* full: keep the nearest, and look no farther than they reach */
-            select_nearest(neighbors, count, wanted, limit);
-            count = wanted;
-            limit = photon_neighbor_distance_squared(neighbors[wanted - 1]);
-        }
+    select_nearest(c->neighbors, c->count, c->wanted, c->limit);
+    c->count = c->wanted;
+}
+
+static void scan_for_all(query *q, uint32_t block, collection *c)
+{
+    const photon_block *b = &q->tree->blocks[block];
+    _Alignas(16) float d[PHOTON_BLOCK_LANES];
+    uint32_t within = photon_block_within(b, q->position, c->limit, d);
+    uint32_t similar = q->similar_code == NO_CODE ? 0 : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
+    uint32_t rest = within & ~similar;
+    while (rest) {
+        uint32_t lane = (uint32_t)__builtin_ctz(rest);
+        rest &= rest - 1;
+        if (has_similar_normal(q, b->normal[lane]))
+            similar |= 1u << lane;
+        else if (!q->other_is_behind)
+            c->other = fminf(c->other, d[lane]);
     }
-    if (count >= wanted) {
-        select_nearest(neighbors, count, wanted, limit);
-        count = wanted;
+    photon_neighbor *end = c->neighbors + c->count;
+    for (; similar; similar &= similar - 1) {
+        uint32_t lane = (uint32_t)__builtin_ctz(similar);
+        *end++ = photon_neighbor_make(d[lane], block * PHOTON_BLOCK_LANES + lane);
     }
-    *out_other_squared = other;
-    return count;
+    c->count = (uint32_t)(end - c->neighbors);
+    if (c->count + PHOTON_BLOCK_LANES > c->capacity) {
+        /* full: keep the nearest, and look no farther than they reach */
+        keep_nearest(c);
+        c->limit = photon_neighbor_distance_squared(c->neighbors[c->wanted - 1]);
+    }
+}
+
+static void collect(query *q, uint32_t first_block, collection *c)
+{
+    uint32_t block;
+    c->count = 0;
+    c->other = INFINITY;
+    scan_for_all(q, first_block, c);
+    stack_other_sides(q, first_block, c->limit);
+    while (next_leaf(q, c->limit, &block))
+        scan_for_all(q, block, c);
+    if (c->count >= c->wanted)
+        keep_nearest(c);
 }
 
 /* A first radius squared, within which the wanted photons may be expected: the leaf around the query tells how dense they
  * lie there. A function of the tree and the query alone. */
-static float guess_radius_squared(query *q, uint32_t wanted, float largest)
+static float guess_radius_squared(query *q, uint32_t first_block, uint32_t wanted, float largest)
 {
-    uint32_t similar = 0;
-    q->visits = 0;
-    if (q->tree->count == 0)
-        return largest;
-    const photon_block *b = &q->tree->blocks[descend(q, (visit){.node = 0}, -1.0f)];
+    const photon_block *b = &q->tree->blocks[first_block];
     _Alignas(16) float d[PHOTON_BLOCK_LANES];
-    uint32_t all = photon_block_within(b, q->position, INFINITY, d);
     float reach = 0.0f;
-    while (all) {
-        uint32_t lane = take_lane(&all);
+    uint32_t similar = 0;
+    for (uint32_t all = photon_block_within(b, q->position, INFINITY, d); all; all &= all - 1) {
+        uint32_t lane = (uint32_t)__builtin_ctz(all);
         if (!has_similar_normal(q, b->normal[lane]))
             continue;
         reach = fmaxf(reach, d[lane]);
@@ -434,14 +479,20 @@ static float guess_radius_squared(query *q, uint32_t wanted, float largest)
 uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                                uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
 {
+    *out_other_squared = INFINITY;
+    if (tree->count == 0)
+        return 0;
     query q;
     query_init(&q, tree, position, normal, min_cos);
-    float largest = radius * radius, limit = guess_radius_squared(&q, wanted, largest);
+    uint32_t block = first_leaf(&q);
+    float largest = radius * radius, limit = guess_radius_squared(&q, block, wanted, largest);
     for (;;) {
-        uint32_t count = collect_nearest(&q, limit, wanted, neighbors, out_other_squared);
-        if (count == wanted || limit >= largest)
-            return count;
+        collection c = {.neighbors = neighbors, .wanted = wanted, .capacity = photon_neighbors_capacity(wanted), .limit = limit};
+        collect(&q, block, &c);
+        *out_other_squared = c.other;
+        if (c.count == wanted || limit >= largest)
+            return c.count;
         /* too few: by how many tells how much farther to look */
-        limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(count + 1)), largest);
+        limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(c.count + 1)), largest);
     }
 }
