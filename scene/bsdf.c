@@ -19,6 +19,8 @@ static void add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_del
 /* Shares become probabilities; a lobe that carries anything is not neglected. */
 static void normalize_probabilities(bsdf *b)
 {
+    if (b->lobe_count == 0)
+        return;
     if (b->lobe_count == 1) {
         b->lobes[0].probability = 1.0f;
         return;
@@ -39,6 +41,7 @@ static void add_lobes(bsdf *b)
                      ? fresnel_dielectric(fabsf(vec3_dot(b->out, b->shading.z)), m->ior)
                      : 0.0f;
     switch (m->kind) {
+    case MATERIAL_INTERFACE: break; /* none: rays do not stop here */
     case MATERIAL_MIX: /* resolved before */
     case MATERIAL_DIFFUSE: add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, 1.0f); break;
     case MATERIAL_DIFFUSE_TRANSMISSION:

@@ -29,6 +29,8 @@ typedef struct surface_hit {
     float distance;        /* along the ray, for a unit direction in scene units */
     float epsilon;         /* how far off the surface a new ray must start so as not to meet it again, scene units */
     bool is_flat;          /* part of a mesh, whose corners a start must stay out of: see surface_ray */
+    bool has_medium_interface;              /* the shape's, for surface_ray */
+    uint32_t medium_inside, medium_outside; /* likewise */
     uint32_t shape_index;
     uint32_t primitive_index; /* triangle of a mesh */
 } surface_hit;
@@ -43,10 +45,11 @@ float scene_first_distance(const scene *s, scene_ray ray);
 /* Whether anything stands along the ray up to max_distance (as above). */
 bool scene_occluded(const scene *s, scene_ray ray, float max_distance);
 
-/* The ray that leaves a surface into `direction`, after arriving along `arrived` (of unit direction). It starts off the
- * surface. On meshes, moving also against (or, when passing through, along) the way of arrival keeps starts in the corners
- * of closed rooms inside. On round surfaces it would turn the path a little each time, and let out light that is trapped
- * in glass. */
+/* The ray that leaves a surface into `direction`, after arriving along `arrived` (of unit direction, and in the medium
+ * of its last stretch). It is in the medium of its side where the surface parts two, else in that of `arrived`; and it
+ * starts off the surface. On meshes, moving also against (or, when passing through, along) the way of arrival keeps
+ * starts in the corners of closed rooms inside. On round surfaces it would turn the path a little each time, and let
+ * out light that is trapped in glass. */
 scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction);
 
 /* A random place on a shape, in proportion to area. pdf_area: 1/m^2. */

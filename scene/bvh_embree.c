@@ -266,6 +266,8 @@ scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction)
     scene_ray next = arrived;
     next.origin = vec3_add_scaled(hit->position, n, hit->epsilon);
     next.direction = direction;
+    if (hit->has_medium_interface)
+        next.medium = vec3_dot(hit->geometric_normal, direction) > 0.0f ? hit->medium_outside : hit->medium_inside;
     if (hit->is_flat)
         next.origin = vec3_add_scaled(next.origin, arrived.direction, passes_through ? hit->epsilon : -hit->epsilon);
     return next;

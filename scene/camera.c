@@ -72,6 +72,8 @@ scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float
         projective_ray(c, screen_place(c, film_x, film_y, aspect), lens_u, &origin, &direction);
     else
         direction = spherical_direction(c->kind, (double)film_x, (double)film_y);
-    return scene_ray_make(transform_point(&c->world_from_camera, origin),
-                          vec3_normalize(transform_vector(&c->world_from_camera, direction)));
+    scene_ray ray = scene_ray_make(transform_point(&c->world_from_camera, origin),
+                                   vec3_normalize(transform_vector(&c->world_from_camera, direction)));
+    ray.medium = c->medium;
+    return ray;
 }

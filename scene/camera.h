@@ -27,6 +27,7 @@ typedef struct camera {
     float focal_distance;      /* scene units, > 0 */
     float exposure;            /* what pixels are of the radiance: the shutter's time, times what a lens leaves; 0: 1 */
     float tan_half_fov;        /* set by scene_commit */
+    uint32_t medium;           /* that the eye is in; set by scene_commit, from scene.camera_medium */
 } camera;
 
 /* film_x, film_y: in [0, 1] from the left and from the top of the full image, and a filter's radius beyond; aspect: its

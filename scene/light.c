@@ -171,7 +171,8 @@ static bool aim_at(const light_target *target, vec3 origin, rng *random, vec3 *o
 
 static bool emit_area(const scene *s, const light *l, const light_target *target, rng *random, light_emission *out)
 {
-    surface_sample at = shape_sample_area(&s->shapes[l->shape_index], rng_vec2(random));
+    const shape *lamp = &s->shapes[l->shape_index];
+    surface_sample at = shape_sample_area(lamp, rng_vec2(random));
     vec3 n = at.geometric_normal;
     float pdf;
     if (aim_at(target, at.position, random, &out->direction, &pdf)) {
@@ -190,6 +191,7 @@ static bool emit_area(const scene *s, const light *l, const light_target *target
         out->flux = rgb_scale(l->radiance, AG_PI * (l->two_sided ? 2.0f : 1.0f) / at.pdf_area);
     }
     out->origin = vec3_add_scaled(at.position, n, at.epsilon);
+    out->medium = vec3_dot(n, at.geometric_normal) > 0.0f ? lamp->medium_outside : lamp->medium_inside;
     return !rgb_is_black(out->flux);
 }
 
@@ -203,6 +205,21 @@ static vec3 start_from_afar(const scene *s, const light_target *ball, vec3 direc
     return vec3_add(ball->center, frame_to_world(&f, (vec3){d.x * ball->radius, d.y * ball->radius, -behind}));
 }
 
+/* Light from infinitely far has lost in a medium that absorbs whatever that takes. The first interface that it meets
+ * says what lies before it, as for shadow rays that go the other way; where there is none, the light's own medium
+ * counts. */
+static bool come_through_space(const scene *s, const light *l, light_emission *out)
+{
+    surface_hit hit;
+    if (l->medium >= s->medium_count)
+        return true;
+    if (scene_intersect(s, scene_ray_make(out->origin, out->direction), INFINITY, &hit) && hit.has_medium_interface)
+        out->medium = vec3_dot(hit.geometric_normal, out->direction) < 0.0f ? hit.medium_outside : hit.medium_inside;
+    if (out->medium < s->medium_count)
+        out->flux = rgb_mul(out->flux, medium_transmittance(&s->media[out->medium], INFINITY));
+    return !rgb_is_black(out->flux);
+}
+
 bool light_sample_emission(const scene *s, const light *l, const light_target *target, rng *random,
                            light_emission *out_emission)
 {
@@ -210,6 +227,7 @@ bool light_sample_emission(const scene *s, const light *l, const light_target *t
     light_target whole = {s->bounding_center, s->bounding_radius};
     const light_target *ball = target && target->radius < whole.radius ? target : &whole;
     float disc = AG_PI * ball->radius * ball->radius, pdf;
+    out->medium = l->medium; /* of area lights: by the side, below */
     switch (l->kind) {
     case LIGHT_AREA: return emit_area(s, l, target, random, out);
     case LIGHT_POINT:
@@ -246,7 +264,7 @@ bool light_sample_emission(const scene *s, const light *l, const light_target *t
         out->origin = start_from_afar(s, ball, l->direction, random);
         out->direction = l->direction;
         out->flux = rgb_scale(l->radiance, disc);
-        return true;
+        return come_through_space(s, l, out);
     case LIGHT_INFINITE: {
         vec3 to_light;
         rgb radiance;
@@ -255,7 +273,7 @@ bool light_sample_emission(const scene *s, const light *l, const light_target *t
         out->direction = vec3_negate(to_light);
         out->origin = start_from_afar(s, ball, out->direction, random);
         out->flux = rgb_scale(radiance, disc / pdf);
-        return true;
+        return come_through_space(s, l, out);
     }
     }
     return false;

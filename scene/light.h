@@ -26,6 +26,7 @@ typedef struct light {
     float cos_falloff_start, cos_total_width; /* spot: full inside the first, none outside the second, smoothstep between */
     uint32_t shape_index; /* area: the shape that shines */
     bool two_sided;       /* area */
+    uint32_t medium;      /* all but area lights: that their light starts in; SCENE_NO_MEDIUM: none */
     struct environment *environment; /* infinite: its picture, the scene's; NULL: the same from everywhere */
     frame world_from_light;          /* infinite, with a picture: a rotation or reflection */
     rgb power; /* W; set by scene_commit. Distant, infinite: through the disc of the scene's bounding sphere */
@@ -61,6 +62,7 @@ typedef struct light_emission {
     vec3 origin;    /* off the lamp's own surface */
     vec3 direction; /* unit */
     rgb flux;       /* W, carried by a single photon that stands for the whole light */
+    uint32_t medium; /* that it starts in, SCENE_NO_MEDIUM: none; what it took before, from infinitely far, is off */
 } light_emission;
 
 /* A ball outside of which a ray's first hit is of no use. */

@@ -30,7 +30,7 @@ bool material_is_traced(const scene *s, uint32_t material_index)
     const material *m = &s->materials[material_index];
     if (m->kind == MATERIAL_MIX)
         return material_is_traced(s, m->mixed[0]) || material_is_traced(s, m->mixed[1]);
-    return m->kind != MATERIAL_DIFFUSE && m->kind != MATERIAL_DIFFUSE_TRANSMISSION;
+    return m->kind != MATERIAL_DIFFUSE && m->kind != MATERIAL_DIFFUSE_TRANSMISSION && m->kind != MATERIAL_INTERFACE;
 }
 
 /* A mix picks one of its two by place alone, as pbrt-v4 does: the same for all rays, so photons and eye agree. */
@@ -46,6 +46,22 @@ static const material *resolve_mix(const scene *s, const material *m, const surf
         m = &s->materials[m->mixed[u < amount ? 1 : 0]];
     }
     return m;
+}
+
+bool material_is_interface(const scene *s, const surface_hit *hit)
+{
+    const material *m = &s->materials[s->shapes[hit->shape_index].material_index];
+    if (m->kind == MATERIAL_MIX)
+        m = resolve_mix(s, m, hit);
+    return m->kind == MATERIAL_INTERFACE;
+}
+
+bool material_may_be_interface(const scene *s, uint32_t material_index)
+{
+    const material *m = &s->materials[material_index];
+    if (m->kind == MATERIAL_MIX)
+        return material_may_be_interface(s, m->mixed[0]) || material_may_be_interface(s, m->mixed[1]);
+    return m->kind == MATERIAL_INTERFACE;
 }
 
 static rgb clamp_to_unit(rgb v)

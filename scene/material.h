@@ -17,6 +17,7 @@ typedef enum material_kind {
     MATERIAL_CONDUCTOR,
     MATERIAL_DIELECTRIC,
     MATERIAL_THIN_DIELECTRIC,
+    MATERIAL_INTERFACE,        /* no surface: light passes unbent (passage.h), perhaps from one medium to another */
     MATERIAL_COATED_DIFFUSE,   /* a dielectric coat on a diffuse base */
     MATERIAL_COATED_CONDUCTOR, /* a dielectric coat on a conductor */
     MATERIAL_MIX               /* one of two others, picked by place */
@@ -62,6 +63,12 @@ void material_prepare(material *m);
 
 /* Whether the material has, or may pick, lobes that are traced (bsdf.h). */
 bool material_is_traced(const struct scene *s, uint32_t material_index);
+
+/* Whether rays pass the place unbent. */
+bool material_is_interface(const struct scene *s, const struct surface_hit *hit);
+
+/* Whether that is so anywhere on surfaces of the material. */
+bool material_may_be_interface(const struct scene *s, uint32_t material_index);
 
 /* The material at a place: mixes picked, textures looked up. */
 void material_at(const struct scene *s, const struct surface_hit *hit, material *out_material);

@@ -15,6 +15,7 @@ scene *scene_create(void)
     if (s) {
         s->bounds_min = (vec3){INFINITY, INFINITY, INFINITY};
         s->bounds_max = (vec3){-INFINITY, -INFINITY, -INFINITY};
+        s->camera_medium = SCENE_NO_MEDIUM;
     }
     return s;
 }
@@ -50,6 +51,7 @@ void scene_destroy(scene *s)
     free(s->file_names);
     free(s->shapes);
     free(s->materials);
+    free(s->media);
     free(s->textures);
     free(s->texture_images);
     free(s->lights);
@@ -122,6 +124,15 @@ ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_i
     }
     *out_index = s->texture_image_count;
     s->texture_images[s->texture_image_count++] = item;
+    return AG_OK;
+}
+
+ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index)
+{
+    if (!grow((void **)&s->media, s->medium_count, sizeof *s->media))
+        return AG_ERROR_MEMORY;
+    *out_index = s->medium_count;
+    s->media[s->medium_count++] = *item;
     return AG_OK;
 }
 
@@ -205,9 +216,12 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
         ag_status status = shape_commit(&s->shapes[i]);
         if (status != AG_OK)
             return status;
-        s->surface_area += s->shapes[i].area;
+        s->has_interfaces = s->has_interfaces || material_may_be_interface(s, s->shapes[i].material_index);
+        if (s->materials[s->shapes[i].material_index].kind != MATERIAL_INTERFACE)
+            s->surface_area += s->shapes[i].area;
     }
     find_bounds(s);
+    s->camera.medium = s->camera_medium;
     s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
     ag_status status = weigh_lights(s, run->log);
     if (status != AG_OK)

@@ -8,6 +8,7 @@
 #include "camera.h"
 #include "light.h"
 #include "material.h"
+#include "medium.h"
 #include "parameter_list.h"
 #include "run_context.h"
 #include "shape.h"
@@ -33,6 +34,9 @@ typedef struct scene {
     uint32_t shape_count;
     light *lights;
     uint32_t light_count;
+    medium *media;
+    uint32_t medium_count;
+    uint32_t camera_medium; /* that the eye is in, SCENE_NO_MEDIUM: none */
     camera camera;
     bool has_camera;
 
@@ -47,13 +51,14 @@ typedef struct scene {
     vec3 bounds_min, bounds_max; /* of all shapes; min > max when there is none */
     vec3 bounding_center;
     float bounding_radius;
-    float surface_area;       /* m^2, of all shapes */
+    float surface_area;       /* m^2, of all shapes but interfaces */
     rgb light_power;          /* W, of all lights */
     float *light_cdf;         /* [light_count], running sum of light_probability */
     float *light_probability; /* [light_count], each one's share of the power, as the mean of the channels: with which
                                * scene_pick_light picks it */
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
+    bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */
     struct bvh *bvh;
 } scene;
 
@@ -71,6 +76,7 @@ ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index);
 /* For texture_image_load, which looks first whether it is there. The scene takes the picture, on failure too (it is then
  * destroyed). */
 ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index);
+ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
 /* An area light's shape must be there already; its light_index is set here. An environment passes into the scene's
  * ownership, on failure too (it is then destroyed). */

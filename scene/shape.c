@@ -152,4 +152,7 @@ void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v
         mesh_surface_at(s, primitive_index, u, v, out_hit);
     else
         quadric_surface_at(s, position, out_hit);
+    out_hit->has_medium_interface = s->has_medium_interface;
+    out_hit->medium_inside = s->medium_inside;
+    out_hit->medium_outside = s->medium_outside;
 }

@@ -49,6 +49,9 @@ typedef struct quadric {
 typedef struct shape {
     shape_kind kind;
     bool flip_normal; /* ReverseOrientation, and for meshes also a transform that swaps handedness (not both) */
+    bool has_medium_interface;              /* the two below differ: a ray that leaves it is in that of its side */
+    uint32_t medium_inside, medium_outside; /* of the scene's, or SCENE_NO_MEDIUM; without an interface only of use to
+                                             * light that starts here */
     uint32_t material_index;
     uint32_t light_index; /* SHAPE_NO_LIGHT where it does not shine */
     union {

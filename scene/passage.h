@@ -1,0 +1,28 @@
+/* passage.h: the way of light between two places that scatter it: through media, which absorb, and across interfaces,
+ * which it passes unbent. All rays of photon tracing and rendering are cast here.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 11.4 and 14.2 (medium interfaces).
+ * Flow: transport, direct lighting, photon tracing -> [here] -> bvh.h. A scene without media and interfaces needs no more.
+ * Threads: pure but for the caller's counter. */
+#ifndef AFTERGLOW_PASSAGE_H
+#define AFTERGLOW_PASSAGE_H
+
+#include "bvh.h"
+
+/* A way ends at this many interfaces, dark; it is counted in *in_out_cut. */
+enum { PASSAGE_CROSSINGS_MAX = 256 };
+
+/* The nearest surface that scatters, along a ray of unit direction. ray->medium becomes that in which it arrives there.
+ * *out_transmittance: the share of light that is left, on the way to the surface or, where there is none, to infinity.
+ * out_hit->distance is the whole way's. False also where nothing is left of the light. */
+bool passage_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, surface_hit *out_hit,
+                       rgb *out_transmittance);
+
+/* The share of light that is left on a ray's way up to reach (in lengths of its direction, INFINITY is fine); 0 where a
+ * surface stands in it. */
+rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
+
+/* As scene_intersect and scene_occluded, but interfaces are not there: for what asks about surfaces, not about light. */
+bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
+bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance);
+
+#endif
