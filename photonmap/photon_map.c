@@ -3,8 +3,8 @@
  * Threads: see photon_map.h. */
 #include "photon_map.h"
 
-#include "bvh.h"
 #include "parallel_for.h"
+#include "passage.h"
 #include "surface_region.h"
 
 #include <stdlib.h>
@@ -154,7 +154,7 @@ static bool is_behind_wall(const photon_map *map, vec3 position, vec3 normal, ui
     vec3 at = photon_block_position(map->blocks, index);
     float lift = sqrtf(vec3_distance_squared(position, at)) * (1.0f / 32.0f);
     vec3 from = vec3_add_scaled(position, normal, lift), to = vec3_add_scaled(at, direction_decode(photon_block_normal(map->blocks, index)), lift);
-    return scene_occluded(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
+    return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)

@@ -5,6 +5,7 @@
 
 #include "bsdf.h"
 #include "parallel_for.h"
+#include "passage.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +21,7 @@ enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2 };
 typedef struct block {
     photon *photons;
     uint32_t count, capacity;
-    uint64_t paths, rays;
+    uint64_t paths, rays, passages_cut;
     photon_books books;
     bool out_of_memory;
 } block;
@@ -70,6 +71,26 @@ static void store(tracer *t, const surface_hit *hit, const bsdf *b, vec3 directi
     book(out->books.stored, flux_decode(p->flux));
 }
 
+/* Media take their share of a path's flux; roulette then keeps what it carries about as it was, so that no photons are
+ * spent on light that hardly matters. False: the path ends here. No random number is drawn where nothing is taken. */
+static bool pass_media(photon_books *books, rgb transmittance, rng *random, rgb *in_out_flux)
+{
+    if (transmittance.r == 1.0f && transmittance.g == 1.0f && transmittance.b == 1.0f)
+        return true;
+    rgb flux = *in_out_flux, left = rgb_mul(flux, transmittance);
+    book(books->absorbed, rgb_sub(flux, left));
+    if (rgb_is_black(left))
+        return false;
+    float survival = fminf(1.0f, rgb_max(left) / rgb_max(flux));
+    if (rng_float(random) >= survival) {
+        book(books->lost, left);
+        return false;
+    }
+    *in_out_flux = rgb_scale(left, 1.0f / survival);
+    book(books->gained, rgb_sub(*in_out_flux, left));
+    return true;
+}
+
 static void trace_path(tracer *t, uint64_t path)
 {
     const scene *s = t->s;
@@ -85,13 +106,18 @@ static void trace_path(tracer *t, uint64_t path)
     if (!(probability > 0.0f) || !light_sample_emission(s, lamp, t->target, &random, &start))
         return;
     scene_ray ray = scene_ray_make(start.origin, start.direction);
+    ray.medium = start.medium;
     rgb flux = rgb_scale(start.flux, 1.0f / probability);
     book(books->emitted, flux);
 
     for (int scatterings = 0;; scatterings++) {
         surface_hit hit;
+        rgb transmittance;
         t->out->rays++;
-        if (!scene_intersect(s, ray, INFINITY, &hit)) {
+        bool is_met = passage_intersect(s, &ray, &t->out->passages_cut, &hit, &transmittance);
+        if (!pass_media(books, transmittance, &random, &flux))
+            return;
+        if (!is_met) {
             book(books->escaped, flux);
             return;
         }
@@ -180,6 +206,7 @@ static ag_status merge_block(round_job *job, photon_set *set, uint64_t first_pat
     set->count += b->count;
     set->emitted_paths += b->paths;
     set->rays += b->rays;
+    set->passages_cut += b->passages_cut;
     add_books(&set->books, &b->books);
     return AG_OK;
 }

@@ -20,7 +20,7 @@ typedef enum photon_kind { PHOTON_GLOBAL, PHOTON_CAUSTIC } photon_kind;
 typedef struct photon_books {
     double emitted[3];   /* at the lamps */
     double gained[3];    /* by the survivors of roulette */
-    double absorbed[3];  /* by surfaces */
+    double absorbed[3];  /* by surfaces and media */
     double escaped[3];   /* out of the scene */
     double lost[3];      /* by the victims of roulette; and paths that a caustic map has no use for */
     double truncated[3]; /* at the cap of path length */
@@ -34,6 +34,7 @@ typedef struct photon_set {
     uint32_t count;
     uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
     uint64_t rays;
+    uint64_t passages_cut; /* ways across more interfaces than scene/passage.h follows: absorbed */
     photon_books books;
 } photon_set;
 

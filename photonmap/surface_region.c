@@ -2,9 +2,9 @@
  * Threads: pure functions. */
 #include "surface_region.h"
 
-#include "bvh.h"
 #include "math/rng.h"
 #include "math/sampling.h"
+#include "passage.h"
 
 #include <string.h>
 
@@ -37,7 +37,7 @@ static bool find_foot(const scene *s, vec3 position, vec3 normal, float radius, 
     for (int trial = 0; trial < FOOT_TRIALS; trial++, lift *= 0.125f) {
         surface_hit hit;
         scene_ray ray = scene_ray_make(vec3_add_scaled(position, normal, lift), down);
-        if (!scene_intersect(s, ray, 2.0f * lift, &hit) || !is_alike(&hit, normal, down, 0.9f))
+        if (!passage_find_surface(s, ray, 2.0f * lift, &hit) || !is_alike(&hit, normal, down, 0.9f))
             continue;
         if (vec3_distance_squared(hit.position, position) > hit.epsilon * hit.epsilon + 0.01f * lift * lift)
             continue; /* another surface, between */
@@ -55,14 +55,14 @@ static bool has_surface_below(const scene *s, vec3 above, vec3 normal, float lif
     surface_hit hit;
     vec3 down = vec3_negate(normal);
     float depth = sqrtf(fmaxf(0.0f, radius * radius - lateral * lateral));
-    return scene_intersect(s, scene_ray_make(above, down), lift + depth, &hit) && is_alike(&hit, normal, down, min_cos);
+    return passage_find_surface(s, scene_ray_make(above, down), lift + depth, &hit) && is_alike(&hit, normal, down, min_cos);
 }
 
 /* How far the surface goes along a unit tangent; radius where nothing ends it. */
 static float find_extent(const scene *s, vec3 above, vec3 normal, float lift, vec3 tangent, float radius, float min_cos)
 {
     surface_hit hit;
-    if (scene_intersect(s, scene_ray_make(above, tangent), radius, &hit))
+    if (passage_find_surface(s, scene_ray_make(above, tangent), radius, &hit))
         return is_alike(&hit, normal, tangent, min_cos) ? radius : hit.distance;
     float high = PROBE_AT * radius, low = 0.0f;
     if (has_surface_below(s, vec3_add_scaled(above, tangent, high), normal, lift, high, radius, min_cos))

@@ -3,6 +3,7 @@
 
 #include "environment.h"
 #include "math/sampling.h"
+#include "passage.h"
 
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
                            vec2 u, int lamp_count, int scatter_count)
@@ -26,13 +27,14 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
         reach = 1.0f;
     }
     worker->rays_shadow++;
-    if (scene_occluded(t->s, shadow, reach))
+    rgb transmittance = passage_transmittance(t->s, shadow, reach, &worker->passages_cut);
+    if (rgb_is_black(transmittance))
         return none;
     float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
     if (!sample.is_delta && scatter_count > 0)
         weight = mis_power((float)lamp_count, pdf, (float)scatter_count,
                            bsdf_pdf(&v->scattering, lobes, sample.direction));
-    return rgb_scale(reflected, weight / pdf);
+    return rgb_scale(rgb_mul(reflected, transmittance), weight / pdf);
 }
 
 float direct_light_scatter_weight(const transport *t, vec3 from, const vertex *on_lamp, float pdf_solid_angle,
@@ -81,13 +83,13 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
             continue;
         vertex met;
         worker->rays_shadow++;
-        if (!transport_trace(t, surface_ray(&v->hit, v->arrived, scattered.direction), &met)) {
+        if (!transport_trace(t, worker, surface_ray(&v->hit, v->arrived, scattered.direction), &met)) {
             rgb escaped =
                 direct_light_escaped(t, scattered.direction, scattered.pdf_solid_angle, lamp_count, scatter_count);
-            by_scattering = rgb_add(by_scattering, rgb_mul(escaped, scattered.weight));
+            by_scattering = rgb_add(by_scattering, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
             continue;
         }
-        rgb emitted = transport_emission(&met);
+        rgb emitted = rgb_mul(transport_emission(&met), met.transmittance);
         if (rgb_is_black(emitted))
             continue;
         float weight = direct_light_scatter_weight(t, v->hit.position, &met, scattered.pdf_solid_angle, lamp_count,

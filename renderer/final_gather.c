@@ -36,8 +36,9 @@ static void follow_gather_ray(const transport *t, eye_worker *worker, scene_ray 
     for (int depth = 0; depth < scatterings_left; depth++) {
         vertex v;
         worker->rays_gather++;
-        if (!transport_trace(t, ray, &v))
+        if (!transport_trace(t, worker, ray, &v))
             return;
+        throughput = rgb_mul(throughput, v.transmittance);
         travelled += v.hit.distance;
         float u_lobe = rng_float(random), u_group = rng_float(random);
         vec2 u = rng_vec2(random);
@@ -70,7 +71,7 @@ static void follow_gather_ray(const transport *t, eye_worker *worker, scene_ray 
                 return;
             throughput = rgb_scale(throughput, 1.0f / survival);
         }
-        ray = surface_ray(&v.hit, ray, next.direction);
+        ray = surface_ray(&v.hit, v.arrived, next.direction);
     }
 }
 

@@ -23,7 +23,9 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray,
             worker->rays_path++;
         /* emitted light; indirect light alone leaves out what is seen, and what falls straight on the first diffuse place */
         bool counts_emission = is_whole || (has_met_diffuse && !left_first_diffuse);
-        if (!transport_trace(t, ray, &v)) {
+        bool is_met = transport_trace(t, worker, ray, &v);
+        throughput = rgb_mul(throughput, v.transmittance);
+        if (!is_met) {
             if (counts_emission)
                 radiance =
                     rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, ray.direction, scattered_pdf, 1, 1)));
@@ -64,6 +66,6 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray,
         has_met_diffuse = has_met_diffuse || left_first_diffuse;
         scattered_from = v.hit.position;
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
-        ray = surface_ray(&v.hit, ray, next.direction);
+        ray = surface_ray(&v.hit, v.arrived, next.direction);
     }
 }

@@ -6,6 +6,7 @@
 #include "clock.h"
 #include "film_response.h"
 #include "floating_point.h"
+#include "passage.h"
 #include "path_tracing.h"
 #include "pixel_filter.h"
 #include "shading.h"
@@ -69,6 +70,13 @@ static ag_status trace_photons(ag_context *context, const scene *s, const ag_ren
     return status;
 }
 
+static void warn_of_cut_passages(const ag_context *context, uint64_t count)
+{
+    if (count > 0)
+        log_message(context->log, AG_LOG_WARNING, "%llu rays would cross more than %d interfaces: they end there, dark",
+                    (unsigned long long)count, PASSAGE_CROSSINGS_MAX);
+}
+
 static ag_status build_maps(ag_context *context, const scene *s, const ag_render_settings *settings, maps *out_maps)
 {
     ag_statistics *statistics = &context->statistics;
@@ -81,6 +89,7 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
         statistics->photons_stored_global += global.count;
         statistics->photons_stored_caustic += caustic.count;
         statistics->rays_photon += global.rays + caustic.rays;
+        warn_of_cut_passages(context, global.passages_cut + caustic.passages_cut);
         log_message(context->log, AG_LOG_INFO, "photons: %u in the global map, %u in the caustic map, %llu paths",
                     global.count, caustic.count, (unsigned long long)(global.emitted_paths + caustic.emitted_paths));
         begin = clock_seconds();
@@ -248,13 +257,16 @@ static ag_status render_film(ag_context *context, const transport *t, const pixe
         status = run_is_cancelled(&context->run) ? AG_CANCELLED : AG_OK;
         context_end_phase(context, AG_PHASE_RENDER, begin);
     }
+    uint64_t cut = 0;
     for (unsigned i = 0; i < statistics->threads; i++) {
         statistics->rays_camera += job.workers[i].rays_camera;
         statistics->rays_shadow += job.workers[i].rays_shadow;
         statistics->rays_gather += job.workers[i].rays_gather;
         statistics->rays_path += job.workers[i].rays_path;
         statistics->samples_not_finite += job.workers[i].samples_not_finite;
+        cut += job.workers[i].passages_cut;
     }
+    warn_of_cut_passages(context, cut);
     tile_scheduler_destroy(job.tiles);
     eye_workers_destroy(job.workers, statistics->threads);
     return status;

@@ -52,7 +52,9 @@ rgb shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, cons
             worker->rays_camera++;
         else
             worker->rays_path++;
-        if (!transport_trace(t, ray, &v)) {
+        bool is_met = transport_trace(t, worker, ray, &v);
+        throughput = rgb_mul(throughput, v.transmittance);
+        if (!is_met) {
             if (is_whole)
                 radiance =
                     rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, ray.direction, scattered_pdf, 1, 1)));
@@ -97,6 +99,6 @@ rgb shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, cons
         }
         scattered_from = v.hit.position;
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
-        ray = surface_ray(&v.hit, ray, next.direction);
+        ray = surface_ray(&v.hit, v.arrived, next.direction);
     }
 }

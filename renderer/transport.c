@@ -1,10 +1,12 @@
 /* transport.c: see transport.h. */
 #include "transport.h"
 
-bool transport_trace(const transport *t, scene_ray ray, vertex *out_vertex)
+#include "passage.h"
+
+bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
 {
     const scene *s = t->s;
-    if (!scene_intersect(s, ray, INFINITY, &out_vertex->hit))
+    if (!passage_intersect(s, &ray, &worker->passages_cut, &out_vertex->hit, &out_vertex->transmittance))
         return false;
     const shape *where = &s->shapes[out_vertex->hit.shape_index];
     out_vertex->arrived = ray;

@@ -34,7 +34,7 @@ typedef struct gather_ray {
 typedef struct eye_worker {
     _Alignas(64) unsigned index; /* the worker's */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
-    uint64_t samples_not_finite;
+    uint64_t samples_not_finite, passages_cut; /* the latter: ways across more interfaces than passage.h follows */
     arena *scratch; /* for gather rays and neighbours; what render.c has tried out beforehand always fits */
 } eye_worker;
 
@@ -42,12 +42,13 @@ typedef struct eye_worker {
 typedef struct vertex {
     surface_hit hit;
     bsdf scattering;
-    scene_ray arrived; /* of unit direction */
+    scene_ray arrived; /* of unit direction, in the medium of its last stretch */
+    rgb transmittance; /* of the way here: set also where the ray escapes, and then nothing else is */
     const light *lamp; /* the area light that shines there, or NULL */
 } vertex;
 
-/* Follows a ray of unit direction to its first surface. */
-bool transport_trace(const transport *t, scene_ray ray, vertex *out_vertex);
+/* Follows a ray of unit direction to the first surface that scatters. */
+bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 
 /* Radiance that the place itself sends back along the ray. */
 rgb transport_emission(const vertex *v);
