@@ -342,11 +342,12 @@ ag_status parameter_get_numbers(parameter_list *list, log_sink *log, const char 
     return status;
 }
 
-/* "sphere", "diffuse", ...: a named material says it by a parameter, its name is the user's own. */
+/* "sphere", "diffuse", ...: named materials and media say it by a parameter, their name is the user's own. */
 static const char *kind_of(const parameter_list *list)
 {
     const parameter *type = parameter_list_find(list, "type");
-    if (strcmp(list->directive, "MakeNamedMaterial") == 0 && type && type->type == PARAMETER_STRING && type->count == 1)
+    if (strncmp(list->directive, "MakeNamed", strlen("MakeNamed")) == 0 && type && type->type == PARAMETER_STRING &&
+        type->count == 1)
         return type->strings[0];
     return list->name ? list->name : "";
 }

@@ -116,6 +116,7 @@ ag_status pbrt_camera(pbrt_parser *parser, file_location where)
     if (!status) {
         parameter_list_warn_unused(&list, parser->log);
         parser->scene->camera = c;
+        parser->scene->camera_medium = pbrt_use_medium(parser, parser->state.medium_outside);
         parser->scene->has_camera = true;
     }
     parameter_list_reset(&list);

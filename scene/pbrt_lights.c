@@ -137,6 +137,7 @@ static ag_status add_light(pbrt_parser *parser, parameter_list *list)
     else
         return pbrt_error(parser, list->where, strlen("LightSource"), "unknown light \"%s\"", list->name);
     parameter_list_warn_unused(list, parser->log);
+    l.medium = pbrt_use_medium(parser, parser->state.medium_outside);
     bool has_radiance = l.kind == LIGHT_DISTANT || l.kind == LIGHT_INFINITE;
     tell_dark(parser, list->where, "LightSource", list->name, has_radiance ? l.radiance : l.intensity);
     return scene_add_light(parser->scene, &l, &index);
@@ -180,6 +181,11 @@ ag_status pbrt_add_area_light(pbrt_parser *parser, uint32_t shape_index, file_lo
     const pbrt_area_light *source = &parser->state.area_light;
     if (!source->is_set)
         return AG_OK;
+    if (parser->state.has_no_surface) {
+        log_at(parser->log, AG_LOG_WARNING, where,
+               "a shape with the material \"interface\" cannot shine: its area light is left out");
+        return AG_OK;
+    }
     float area = shape_area(&parser->scene->shapes[shape_index]);
     if (!(area > 0.0f && isfinite(area))) {
         log_at(parser->log, AG_LOG_WARNING, where, "the area light has a shape of area %g and is left out",

@@ -169,6 +169,13 @@ static ag_status read_coated_conductor(pbrt_parser *parser, parameter_list *list
     return AG_OK;
 }
 
+/* It has no parameters. */
+static ag_status read_interface(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    (void)parser, (void)list, (void)m;
+    return AG_OK;
+}
+
 static ag_status read_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
 {
     return read_reflectance(parser, list, m);
@@ -238,6 +245,9 @@ static const material_reader READERS[] = {
     {"coateddiffuse", MATERIAL_COATED_DIFFUSE, read_coated_diffuse},
     {"coatedconductor", MATERIAL_COATED_CONDUCTOR, read_coated_conductor},
     {"mix", MATERIAL_MIX, read_mix},
+    {"interface", MATERIAL_INTERFACE, read_interface},
+    {"none", MATERIAL_INTERFACE, read_interface},
+    {"", MATERIAL_INTERFACE, read_interface},
 };
 
 /* What is not supported yet gets the nearest plain thing. Its parameters go unread with it. */
@@ -250,11 +260,9 @@ static void name_stand_in(pbrt_parser *parser, const parameter_list *list, const
                 type);
 }
 
-static ag_status read_material(pbrt_parser *parser, parameter_list *list, const char *type, material *out_material,
-                               bool *out_has_no_surface)
+static ag_status read_material(pbrt_parser *parser, parameter_list *list, const char *type, material *out_material)
 {
     *out_material = default_material();
-    *out_has_no_surface = strcmp(type, "interface") == 0 || strcmp(type, "none") == 0 || type[0] == '\0';
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(type, READERS[i].name) == 0) {
             out_material->kind = READERS[i].kind;
@@ -263,10 +271,7 @@ static ag_status read_material(pbrt_parser *parser, parameter_list *list, const 
             parameter_list_warn_unused(list, parser->log);
             return AG_OK;
         }
-    if (*out_has_no_surface)
-        parameter_list_warn_unused(list, parser->log);
-    else
-        name_stand_in(parser, list, type);
+    name_stand_in(parser, list, type);
     return AG_OK;
 }
 
@@ -280,13 +285,12 @@ ag_status pbrt_material(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
     material m;
-    bool has_no_surface;
     PBRT_TRY(pbrt_read_named_parameters(parser, "Material", "a quoted type", where, &list));
-    ag_status status = read_material(parser, &list, list.name, &m, &has_no_surface);
+    ag_status status = read_material(parser, &list, list.name, &m);
     parameter_list_reset(&list);
     if (!status)
         status = scene_add_material(parser->scene, &m, &parser->state.material_index);
-    parser->state.has_no_surface = has_no_surface;
+    parser->state.has_no_surface = m.kind == MATERIAL_INTERFACE;
     return status;
 }
 
@@ -332,19 +336,14 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
         return pbrt_error(parser, list->where, strlen("MakeNamedMaterial"),
                           "material \"%s\" is made twice, first at %s:%d:%d", list->name, named->where.file,
                           named->where.line, named->where.column);
-    PBRT_TRY(read_material(parser, list, type, &m, &made.has_no_surface));
+    PBRT_TRY(read_material(parser, list, type, &m));
     PBRT_TRY(scene_add_material(parser->scene, &m, &made.index));
     named = find_named_material(parser, list->name); /* anew: a mix may have kept places for others, or for itself */
     if (!named)
         return add_named_material(parser, list->name, made);
     /* it has been used before: fill the place that was made for it then */
-    if (made.has_no_surface)
-        log_at(parser->log, AG_LOG_WARNING, list->where,
-               "material \"%s\" has no surface, but is made after its first use: \"diffuse\" stands in until here",
-               list->name);
     parser->scene->materials[named->index] = parser->scene->materials[made.index];
     named->is_defined = true;
-    named->has_no_surface = made.has_no_surface;
     named->where = made.where;
     return AG_OK;
 }
@@ -376,7 +375,7 @@ static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_
 static ag_status use_named(pbrt_parser *parser, const char *name, file_location where)
 {
     PBRT_TRY(find_or_keep_place(parser, name, where, &parser->state.material_index));
-    parser->state.has_no_surface = find_named_material(parser, name)->has_no_surface;
+    parser->state.has_no_surface = parser->scene->materials[parser->state.material_index].kind == MATERIAL_INTERFACE;
     return AG_OK;
 }
 
@@ -418,6 +417,22 @@ static ag_status check_mixes(pbrt_parser *parser)
     return AG_ERROR_SCENE;
 }
 
+/* Interfaces do not shine: lamps of a material that turned out to be one, after they were made, go dark. */
+static void put_out_interfaces(pbrt_parser *parser)
+{
+    scene *s = parser->scene;
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        shape *lamp = &s->shapes[i];
+        if (lamp->light_index == SHAPE_NO_LIGHT || s->materials[lamp->material_index].kind != MATERIAL_INTERFACE)
+            continue;
+        s->lights[lamp->light_index].radiance = rgb_gray(0.0f);
+        lamp->light_index = SHAPE_NO_LIGHT;
+        log_once(parser->log, AG_LOG_WARNING, "interface made late",
+                 "%s: warning: shapes with the material \"interface\" cannot shine: their area lights are left out",
+                 s->file_names[0]);
+    }
+}
+
 ag_status pbrt_check_named_materials(pbrt_parser *parser)
 {
     for (size_t i = 0; i < parser->named_material_count; i++) {
@@ -426,5 +441,6 @@ ag_status pbrt_check_named_materials(pbrt_parser *parser)
             return pbrt_error(parser, named->where, strlen("NamedMaterial"), "no material is named \"%s\"",
                               named->name);
     }
+    put_out_interfaces(parser);
     return check_mixes(parser);
 }

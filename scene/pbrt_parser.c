@@ -1,8 +1,8 @@
 /* pbrt_parser.c: the directives of a pbrt-v4 scene file: which there are and where they may stand.
  * Rests on the format's description, pbrt.org/fileformat-v4. What is not supported yet is read to its end, named in a
  * warning and left out.
- * Flow: pbrt_files -> [here] -> pbrt_state, pbrt_transforms, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights,
- * pbrt_camera -> scene. Threads: one per scene. */
+ * Flow: pbrt_files -> [here] -> pbrt_state, pbrt_transforms, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_media,
+ * pbrt_lights, pbrt_camera -> scene. Threads: one per scene. */
 #include "pbrt_parser.h"
 
 #include "pbrt_private.h"
@@ -66,34 +66,6 @@ static ag_status include(pbrt_parser *parser, file_location where)
     return status;
 }
 
-/* What is not supported yet */
-
-static ag_status make_named_medium(pbrt_parser *parser, file_location where)
-{
-    parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "MakeNamedMedium", "a quoted name", where, &list));
-    log_at_once(parser->log, AG_LOG_WARNING, where, "MakeNamedMedium",
-                "media are not supported yet: MakeNamedMedium \"%s\" is ignored, as are any others", list.name);
-    parameter_list_reset(&list);
-    return AG_OK;
-}
-
-static ag_status medium_interface(pbrt_parser *parser, file_location where)
-{
-    char *inside, *outside = NULL;
-    pbrt_token second;
-    PBRT_TRY(pbrt_read_string(parser, "MediumInterface", "a quoted name", &inside, NULL));
-    ag_status status = pbrt_peek(parser, &second);
-    if (!status && second.kind == PBRT_TOKEN_STRING)
-        status = pbrt_read_string(parser, "MediumInterface", "a quoted name", &outside, NULL);
-    if (!status && (inside[0] || (outside && outside[0])))
-        log_at_once(parser->log, AG_LOG_WARNING, where, "MediumInterface",
-                    "media are not supported yet: MediumInterface \"%s\" is ignored, as are any others", inside);
-    free(inside);
-    free(outside);
-    return status;
-}
-
 /* The table of directives */
 
 typedef enum place { ANYWHERE, BEFORE_WORLD, IN_WORLD } place;
@@ -133,8 +105,8 @@ static const struct {
     {"Include", ANYWHERE, include},
     {"Attribute", ANYWHERE, pbrt_attribute_directive},
     {"ColorSpace", ANYWHERE, pbrt_color_space},
-    {"MakeNamedMedium", ANYWHERE, make_named_medium},
-    {"MediumInterface", ANYWHERE, medium_interface},
+    {"MakeNamedMedium", ANYWHERE, pbrt_make_named_medium},
+    {"MediumInterface", ANYWHERE, pbrt_medium_interface},
     {"Camera", BEFORE_WORLD, pbrt_camera},
     {"Sampler", BEFORE_WORLD, sampler},
     {"Integrator", BEFORE_WORLD, integrator},
@@ -178,6 +150,7 @@ static ag_status check_end(pbrt_parser *parser, file_location end)
     if (!parser->in_world)
         return pbrt_error(parser, end, 1, "the file ends without WorldBegin");
     PBRT_TRY(pbrt_check_blocks(parser, end));
+    PBRT_TRY(pbrt_check_named_media(parser));
     return pbrt_check_named_materials(parser);
 }
 
@@ -213,6 +186,7 @@ static pbrt_parser *parser_create(run_context *run, scene *out_scene)
         parser->state.world_from_object = transform_identity();
         parser->state.start_is_active = true;
         parser->source = (parameter_source){pbrt_excerpt, parser};
+        parser->state.medium_inside = parser->state.medium_outside = PBRT_NO_MEDIUM;
     }
     return parser;
 }
@@ -223,12 +197,16 @@ static void parser_destroy(pbrt_parser *parser)
         pbrt_pop_file(parser);
     for (size_t i = 0; i < parser->named_material_count; i++)
         free(parser->named_materials[i].name);
+    for (size_t i = 0; i < parser->named_medium_count; i++)
+        free(parser->named_media[i].name);
     name_table_reset(&parser->material_names);
+    name_table_reset(&parser->medium_names);
     name_table_reset(&parser->float_texture_names);
     name_table_reset(&parser->spectrum_texture_names);
     name_table_reset(&parser->coordinate_system_names);
     pbrt_free_attributes(parser);
     free(parser->named_materials);
+    free(parser->named_media);
     free(parser->coordinate_systems);
     free(parser->saved);
     free(parser->top_directory);

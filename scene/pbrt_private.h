@@ -23,6 +23,8 @@
 /* World coordinates beyond this would overflow a float when squared. */
 #define PBRT_MAX_COORDINATE 1e18f
 
+#define PBRT_NO_MEDIUM SIZE_MAX
+
 enum { PBRT_MAX_DEPTH = 32 };         /* of files that include one another */
 enum { PBRT_MAX_PARAMETERS = 1000 };  /* of one directive */
 enum { PBRT_MAX_INCLUDES = 1000000 }; /* in all: files that include others twice multiply */
@@ -70,7 +72,8 @@ typedef struct pbrt_state {
     bool start_is_active;        /* whether transforms apply to the start of the shutter, the only time there is yet */
     bool reverse_orientation;
     uint32_t material_index;
-    bool has_no_surface; /* the material is "interface" */
+    bool has_no_surface;                  /* the material is known to be "interface" */
+    size_t medium_inside, medium_outside; /* MediumInterface: of pbrt_parser.named_media, or PBRT_NO_MEDIUM */
     pbrt_area_light area_light;
     color_space rgb_space;                        /* of rgb parameters */
     pbrt_attribute *attributes[PBRT_TARGET_COUNT]; /* the newest of each, or NULL */
@@ -86,9 +89,16 @@ typedef struct pbrt_saved_state {
 typedef struct pbrt_named_material {
     char *name;
     uint32_t index; /* in the scene; filled in when MakeNamedMaterial comes, which may be after its use */
-    bool is_defined, has_no_surface;
+    bool is_defined;
     file_location where; /* of its definition, or until then of its first use */
 } pbrt_named_material;
+
+typedef struct pbrt_named_medium {
+    char *name;
+    uint32_t index; /* in the scene, where it absorbs nothing until MakeNamedMedium comes, which may be after its use */
+    bool is_defined, is_used;
+    file_location where; /* of its definition, or until then of the first MediumInterface that names it */
+} pbrt_named_medium;
 
 typedef struct pbrt_parser {
     run_context *run;
@@ -117,6 +127,9 @@ typedef struct pbrt_parser {
     pbrt_named_material *named_materials;
     size_t named_material_count;
     name_table material_names;
+    pbrt_named_medium *named_media;
+    size_t named_medium_count;
+    name_table medium_names;
     name_table float_texture_names, spectrum_texture_names; /* to indices of the scene's */
 } pbrt_parser;
 
@@ -198,6 +211,13 @@ pbrt_handler pbrt_material, pbrt_make_named_material, pbrt_use_named_material;
 ag_status pbrt_add_default_material(pbrt_parser *parser);
 /* Error where a material was used and never made. */
 ag_status pbrt_check_named_materials(pbrt_parser *parser);
+
+/* pbrt_media.c */
+pbrt_handler pbrt_make_named_medium, pbrt_medium_interface;
+/* The scene's medium for one of the state's, which something is in now. */
+uint32_t pbrt_use_medium(pbrt_parser *parser, size_t named);
+/* Error where a medium was used and never made. */
+ag_status pbrt_check_named_media(pbrt_parser *parser);
 
 /* pbrt_textures.c */
 pbrt_handler pbrt_texture;

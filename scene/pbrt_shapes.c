@@ -9,6 +9,9 @@
 ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape *s)
 {
     uint32_t index;
+    s->medium_inside = pbrt_use_medium(parser, parser->state.medium_inside);
+    s->medium_outside = pbrt_use_medium(parser, parser->state.medium_outside);
+    s->has_medium_interface = s->medium_inside != s->medium_outside;
     s->material_index = parser->state.material_index;
     s->light_index = SHAPE_NO_LIGHT;
     PBRT_TRY(scene_add_shape(parser->scene, s, &index));
@@ -107,9 +110,14 @@ static const char *why_left_out(const pbrt_parser *parser)
 {
     if (parser->in_object)
         return "object instances are not supported yet: shapes between ObjectBegin and ObjectEnd are left out";
-    if (parser->state.has_no_surface)
-        return "shapes with the material \"interface\" have no surface and are left out; media are not supported yet";
     return NULL;
+}
+
+/* An interface with the same on both sides can be neither seen nor felt. */
+static bool is_nothing(const pbrt_parser *parser)
+{
+    return parser->state.has_no_surface && !parser->state.area_light.is_set &&
+           parser->state.medium_inside == parser->state.medium_outside;
 }
 
 static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
@@ -129,6 +137,8 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
     const char *left_out = why_left_out(parser);
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(list->name, READERS[i].name) == 0) {
+            if (is_nothing(parser))
+                return AG_OK;
             if (!left_out)
                 return READERS[i].read(parser, list);
             log_at_once(parser->log, AG_LOG_WARNING, list->where, left_out, "%s", left_out);
