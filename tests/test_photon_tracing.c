@@ -151,6 +151,87 @@ static void a_closed_sphere_stores_flux_over_one_minus_rho(void **state)
     test_run_reset(&r);
 }
 
+/* A lamp in the middle of a sphere full of a medium: what of its light arrives at the wall, and of what the wall sends
+ * on; the mean of e^-sd over the chords d, of density d / (2 R^2). A ball within, of the same medium, is not to be
+ * felt. */
+static void media_take_their_share(void **state)
+{
+    (void)state;
+    static const char *const BALLS[] = {
+        "", "Material \"interface\" MediumInterface \"m\" Shape \"sphere\" \"float radius\" 0.5\n",
+        "Material \"interface\" MediumInterface \"m\" \"n\" Shape \"sphere\" \"float radius\" 0.5\n"
+        "MakeNamedMedium \"n\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 0 0]\n"
+        "\"rgb sigma_a\" [0.2 1 0.4]\n"};
+    static const double SIGMA[3] = {0.2, 1.0, 0.4};
+    for (int i = 0; i < 3; i++) {
+        char text[1024];
+        snprintf(
+            text, sizeof text,
+            "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 0 0] \"rgb sigma_a\" [0.2 1 "
+            "0.4]\n"
+            "MediumInterface \"\" \"m\" LightSource \"point\" \"rgb I\" [1 1 1]\n"
+            "MediumInterface \"m\" \"\" Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8] Shape \"sphere\"\n%s",
+            BALLS[i]);
+        test_run r;
+        test_run_init(&r, 2);
+        scene *s = test_scene_create(&r, text);
+        photon_set set = trace(&r, s, PHOTON_GLOBAL, 200000 / FEWER, 100);
+        expect_balance(&set);
+        for (int c = 0; c < 3; c++) {
+            double sigma = SIGMA[c], power = 4.0 * PI;
+            double t = (1.0 - exp(-2.0 * sigma) * (1.0 + 2.0 * sigma)) / (2.0 * sigma * sigma);
+            double arrived = power * exp(-sigma) / (1.0 - 0.8 * t);
+            assert_relative(set.books.arrived[c], arrived, 0.02 * WIDER);
+            /* the wall takes a fifth, the medium all the rest; roulette is even */
+            assert_relative(set.books.absorbed[c] + set.books.lost[c] - set.books.gained[c], power, 1e-6);
+            assert_close(set.books.gained[c], set.books.lost[c], 0.03 * WIDER * arrived);
+            assert_true(set.books.escaped[c] == 0.0);
+        }
+        assert_int_equal(set.passages_cut, 0);
+        photon_set_reset(&set);
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
+}
+
+/* Of light from infinitely far nothing comes through a medium without bound; where the first interface that it meets
+ * says that there is none outside, all of it comes, whatever medium the light was declared in. */
+static void light_from_afar_comes_through_what_is_outside(void **state)
+{
+    (void)state;
+    static const char *const LIGHTS[] = {"LightSource \"distant\" \"rgb L\" [1 1 1]\n",
+                                         "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"};
+    static const struct {
+        const char *sphere;
+        double share[3]; /* of the light that goes into the scene's ball, of which the sphere takes up a third */
+    } CASES[] = {
+        {"Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\" \"float radius\" 3\n",
+         {1.0 / 3.0, 1.0 / 3.0, 1.0}},
+        {"Material \"interface\" MediumInterface \"\" \"m\" Shape \"sphere\" \"float radius\" 3\n", {0.0, 0.0, 1.0}},
+        {"Material \"diffuse\" Shape \"sphere\" \"float radius\" 3\n", {0.0, 0.0, 1.0}}};
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 3; k++) {
+            char text[1024];
+            snprintf(text, sizeof text,
+                     "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 0 0] \"rgb sigma_a\" "
+                     "[0.2 1 0]\n"
+                     "MediumInterface \"\" \"m\" %s%s"
+                     "MediumInterface \"\" \"\" Material \"diffuse\" Shape \"sphere\"\n",
+                     LIGHTS[i], CASES[k].sphere);
+            test_run r;
+            test_run_init(&r, 2);
+            scene *s = test_scene_create(&r, text);
+            photon_set set = trace(&r, s, PHOTON_GLOBAL, 20000 / FEWER, 100);
+            const double power[3] = {s->light_power.r, s->light_power.g, s->light_power.b};
+            for (int c = 0; c < 3; c++)
+                assert_close(set.books.emitted[c], CASES[k].share[c] * power[c],
+                             0.05 * WIDER * CASES[k].share[c] * power[c]);
+            photon_set_reset(&set);
+            scene_destroy(s);
+            test_run_reset(&r);
+        }
+}
+
 static void depth_limits_what_is_stored(void **state)
 {
     (void)state;
@@ -349,6 +430,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(books_balance_in_a_room_of_everything),
         cmocka_unit_test(a_closed_sphere_stores_flux_over_one_minus_rho),
+        cmocka_unit_test(media_take_their_share),
+        cmocka_unit_test(light_from_afar_comes_through_what_is_outside),
         cmocka_unit_test(depth_limits_what_is_stored),
         cmocka_unit_test(any_number_of_threads_traces_the_same_photons),
         cmocka_unit_test(seeds_and_counts_make_a_difference),

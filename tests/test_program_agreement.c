@@ -1,6 +1,7 @@
-/* test_program_agreement.c: photon map and path tracer show the same light in three rooms without a closed form:
- * diffuse blocks; glass, rough metal and a mirror; a room lit through an opening. All light, and indirect light alone.
- * Each picture is made twice, with two seeds: how much those differ is its noise, the photons' share of it included.
+/* test_program_agreement.c: photon map and path tracer show the same light in four rooms without a closed form:
+ * diffuse blocks; glass, rough metal and a mirror; a room lit through an opening; media in glass and behind interfaces.
+ * All light, and indirect light alone. Each picture is made twice, with two seeds: how much those differ is its noise, the
+ * photons' share of it included.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
@@ -112,12 +113,19 @@ static void test_next_room(void **state)
     compare("next_room", "--spp=512", true);
 }
 
+static void test_tea_in_glass(void **state)
+{
+    (void)state;
+    compare("tea_in_glass", "--spp=512", false);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_box_with_blocks),
         TEST_IN_FOLDER(test_glass_and_metal),
         TEST_IN_FOLDER(test_next_room),
+        TEST_IN_FOLDER(test_tea_in_glass),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
