@@ -55,7 +55,8 @@ static bool has_surface_below(const scene *s, vec3 above, vec3 normal, float lif
     surface_hit hit;
     vec3 down = vec3_negate(normal);
     float depth = sqrtf(fmaxf(0.0f, radius * radius - lateral * lateral));
-    return passage_find_surface(s, scene_ray_make(above, down), lift + depth, &hit) && is_alike(&hit, normal, down, min_cos);
+    return passage_find_surface(s, scene_ray_make(above, down), lift + depth, &hit) &&
+           is_alike(&hit, normal, down, min_cos);
 }
 
 /* How far the surface goes along a unit tangent; radius where nothing ends it. */

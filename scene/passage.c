@@ -30,9 +30,9 @@ static scene_ray pass_on(const surface_hit *hit, const scene_ray *ray)
 
 static float distance_between(vec3 a, vec3 b) { return sqrtf(vec3_distance_squared(a, b)); }
 
-/* Follows a ray of unit direction up to `length` and across interfaces, to the first surface that stays. *ray becomes its
- * last stretch. in_out_left, which may be NULL, is multiplied by what media leave of light; where that is nothing, or there
- * are too many interfaces, the way ends in the dark: false. */
+/* Follows a ray of unit direction up to `length` and across interfaces, to the first surface that stays. *ray becomes
+ * its last stretch. in_out_left, which may be NULL, is multiplied by what media leave of light; where that is nothing,
+ * or there are too many interfaces, the way ends in the dark: false. */
 static bool follow(const scene *s, scene_ray *ray, float length, uint64_t *in_out_cut, surface_hit *out_hit,
                    rgb *in_out_left)
 {

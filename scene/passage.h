@@ -1,7 +1,7 @@
 /* passage.h: the way of light between two places that scatter it: through media, which absorb, and across interfaces,
  * which it passes unbent. All rays of photon tracing and rendering are cast here.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 11.4 and 14.2 (medium interfaces).
- * Flow: transport, direct lighting, photon tracing -> [here] -> bvh.h. A scene without media and interfaces needs no more.
+ * Flow: transport, direct lighting, photon tracing -> [here] -> bvh.h. That is all where there is neither of them.
  * Threads: pure but for the caller's counter. */
 #ifndef AFTERGLOW_PASSAGE_H
 #define AFTERGLOW_PASSAGE_H
@@ -21,7 +21,7 @@ bool passage_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, sur
  * surface stands in it. */
 rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
 
-/* As scene_intersect and scene_occluded, but interfaces are not there: for what asks about surfaces, not about light. */
+/* As scene_intersect and scene_occluded, but interfaces are not there: for those who ask about surfaces, not light. */
 bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance);
 

@@ -1,7 +1,7 @@
 /* test_program_agreement.c: photon map and path tracer show the same light in four rooms without a closed form:
  * diffuse blocks; glass, rough metal and a mirror; a room lit through an opening; media in glass and behind interfaces.
- * All light, and indirect light alone. Each picture is made twice, with two seeds: how much those differ is its noise, the
- * photons' share of it included.
+ * All light, and indirect light alone. Each picture is made twice, with two seeds: how much those differ is its noise,
+ * the photons' share of it included.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
