@@ -142,7 +142,8 @@ static void test_photons_that_cannot_be_had(void **state)
     program_run_reset(&run);
     json_t *stats = stats_read(in_folder("a.json"));
     assert_true(stats_integer(stats, "photons.stored_global") < 3000);
-    assert_true(stats_integer(stats, "photons.bytes") <= 28 * stats_integer(stats, "photons.stored_global"));
+    /* a last block that is not full, and a node for each */
+    assert_true(stats_integer(stats, "photons.bytes") <= 28 * stats_integer(stats, "photons.stored_global") + 1024);
     json_decref(stats);
 }
 
