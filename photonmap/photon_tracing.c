@@ -101,7 +101,7 @@ static void trace_path(tracer *t, uint64_t path)
 
     /* leave a lamp, picked by its power */
     float probability;
-    const light *lamp = &s->lights[scene_pick_light(s, rng_float(&random), &probability)];
+    const light *lamp = &s->lights[scene_pick_light_by_power(s, rng_float(&random), &probability)];
     light_emission start;
     if (!(probability > 0.0f) || !light_sample_emission(s, lamp, t->target, &random, &start))
         return;
@@ -252,6 +252,8 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         log_once(run->log, AG_LOG_WARNING, "no light", "the scene has no light that emits: there are no photons");
         return AG_OK;
     }
+    if (!scene_sends_photons(s))
+        return AG_OK; /* as the file wants it */
     if (s->shape_count == 0 && s->infinite_light_count > 0)
         return AG_OK; /* a sky alone, which the eye sees without photons */
     light_target traced_matter;

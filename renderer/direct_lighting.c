@@ -5,6 +5,11 @@
 #include "math/sampling.h"
 #include "passage.h"
 
+vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes)
+{
+    return bsdf_scatters_through(&v->scattering, lobes) ? vec3_make(0.0f, 0.0f, 0.0f) : transport_facing_normal(v);
+}
+
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
                            vec2 u, int lamp_count, int scatter_count)
 {
@@ -12,9 +17,9 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
     if (!t->has_lights)
         return none;
     float probability;
-    const light *lamp = &t->s->lights[scene_pick_light(t->s, u_pick, &probability)];
+    uint32_t lamp = scene_pick_light(t->s, v->hit.position, direct_light_normal(v, lobes), u_pick, &probability);
     light_sample sample;
-    if (!(probability > 0.0f) || !light_sample_from_point(t->s, lamp, v->hit.position, u, &sample))
+    if (!(probability > 0.0f) || !light_sample_from_point(t->s, &t->s->lights[lamp], v->hit.position, u, &sample))
         return none;
     rgb reflected = rgb_mul(bsdf_evaluate(&v->scattering, lobes, BSDF_RADIANCE, sample.direction), sample.radiance);
     if (rgb_is_black(reflected))
@@ -37,26 +42,30 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
     return rgb_scale(rgb_mul(reflected, transmittance), weight / pdf);
 }
 
-float direct_light_scatter_weight(const transport *t, vec3 from, const vertex *on_lamp, float pdf_solid_angle,
-                                  int lamp_count, int scatter_count)
+float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
+                                  float pdf_solid_angle, int lamp_count, int scatter_count)
 {
-    float pick = t->s->light_probability[on_lamp->lamp - t->s->lights];
-    float pdf = pick * light_pdf_from_point(t->s, on_lamp->lamp, from, on_lamp->hit.position, on_lamp->hit.geometric_normal);
+    float pick = scene_light_probability(t->s, (uint32_t)(on_lamp->lamp - t->s->lights), from, normal);
+    float pdf = pick * light_pdf_from_point(t->s, on_lamp->lamp, from, &on_lamp->hit);
     return mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count, pdf);
 }
 
-rgb direct_light_escaped(const transport *t, vec3 direction, float pdf_solid_angle, int lamp_count, int scatter_count)
+rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
+                         int lamp_count, int scatter_count)
 {
     const scene *s = t->s;
     rgb sum = rgb_gray(0.0f);
     for (uint32_t i = 0; i < s->infinite_light_count; i++) {
         uint32_t index = s->infinite_lights[i];
         const light *l = &s->lights[index];
+        rgb radiance = environment_radiance(l, from, direction);
+        if (rgb_is_black(radiance))
+            continue;
         float weight = 1.0f;
         if (pdf_solid_angle > 0.0f)
             weight = mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count,
-                               s->light_probability[index] * environment_pdf(l, direction));
-        sum = rgb_add(sum, rgb_scale(environment_radiance(l, direction), weight));
+                               scene_light_probability(s, index, from, normal) * environment_pdf(l, from, direction));
+        sum = rgb_add(sum, rgb_scale(radiance, weight));
     }
     return sum;
 }
@@ -67,6 +76,7 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
     if (!t->has_lights)
         return from_lamps;
     int lamp_count = t->light_samples, scatter_count = t->scatter_samples;
+    vec3 from = v->hit.position, normal = direct_light_normal(v, BSDF_GATHERED);
     for (int i = 0; i < lamp_count; i++) {
         uint32_t index = where->sample * (uint32_t)lamp_count + (uint32_t)i;
         float u_pick = sampler_2d_at(where, SAMPLE_LIGHT_PICK, path_vertex, index).x;
@@ -84,15 +94,15 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
         vertex met;
         worker->rays_shadow++;
         if (!transport_trace(t, worker, surface_ray(&v->hit, v->arrived, scattered.direction), &met)) {
-            rgb escaped =
-                direct_light_escaped(t, scattered.direction, scattered.pdf_solid_angle, lamp_count, scatter_count);
+            rgb escaped = direct_light_escaped(t, from, normal, scattered.direction, scattered.pdf_solid_angle,
+                                               lamp_count, scatter_count);
             by_scattering = rgb_add(by_scattering, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
             continue;
         }
-        rgb emitted = rgb_mul(transport_emission(&met), met.transmittance);
+        rgb emitted = rgb_mul(transport_emission(t, &met), met.transmittance);
         if (rgb_is_black(emitted))
             continue;
-        float weight = direct_light_scatter_weight(t, v->hit.position, &met, scattered.pdf_solid_angle, lamp_count,
+        float weight = direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, lamp_count,
                                                    scatter_count);
         by_scattering = rgb_add(by_scattering, rgb_scale(rgb_mul(emitted, scattered.weight), weight));
     }

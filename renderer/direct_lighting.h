@@ -7,18 +7,23 @@
 
 #include "transport.h"
 
-/* One sample towards a lamp picked by its power: reflected radiance. lamp_count and scatter_count: how many samples the
+/* What picking a lamp for these lobes knows of how the surface lies: see scene_pick_light. */
+vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes);
+
+/* One sample towards a lamp picked for the place: reflected radiance. lamp_count and scatter_count: how many samples the
  * caller takes of either technique; it divides by lamp_count itself. scatter_count 0: this technique alone. */
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
                            vec2 u, int lamp_count, int scatter_count);
 
-/* The weight of radiance met on a lamp by a ray scattered at `from` with the given density. */
-float direct_light_scatter_weight(const transport *t, vec3 from, const vertex *on_lamp, float pdf_solid_angle,
-                                  int lamp_count, int scatter_count);
+/* The weight of radiance met on a lamp by a ray scattered with the given density at `from`, of direct_light_normal
+ * `normal` there. */
+float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
+                                  float pdf_solid_angle, int lamp_count, int scatter_count);
 
-/* Radiance of the infinite lights that a ray brings which meets nothing, weighted like that. pdf_solid_angle: with which
- * it was scattered, or 0 where no sample towards a lamp could stand for it (the eye, smooth lobes): weight 1. */
-rgb direct_light_escaped(const transport *t, vec3 direction, float pdf_solid_angle, int lamp_count, int scatter_count);
+/* Radiance of the infinite lights that a ray from there brings which meets nothing, weighted like that. pdf_solid_angle:
+ * with which it was scattered, or 0 where no sample towards a lamp could stand for it (the eye, smooth lobes): weight 1. */
+rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
+                         int lamp_count, int scatter_count);
 
 /* All of the direct light at a diffuse place: t->light_samples and t->scatter_samples samples. */
 rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex);

@@ -10,7 +10,7 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray,
     const ag_render_settings *settings = t->settings;
     bool is_whole = settings->only == AG_ONLY_ALL;
     rgb radiance = rgb_gray(0.0f), throughput = rgb_gray(1.0f);
-    vec3 scattered_from = ray.origin;
+    vec3 scattered_from = ray.origin, scattered_normal = {0.0f, 0.0f, 0.0f};
     float scattered_pdf = 0.0f;       /* 0: the eye or a smooth lobe */
     bool has_met_diffuse = false;     /* the path has been scattered by a gathered lobe */
     bool left_first_diffuse = false;  /* at the vertex before, for the first time */
@@ -27,14 +27,14 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray,
         throughput = rgb_mul(throughput, v.transmittance);
         if (!is_met) {
             if (counts_emission)
-                radiance =
-                    rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, ray.direction, scattered_pdf, 1, 1)));
+                radiance = rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, scattered_from, scattered_normal,
+                                                                                     ray.direction, scattered_pdf, 1, 1)));
             return radiance;
         }
-        rgb emitted = transport_emission(&v);
+        rgb emitted = transport_emission(t, &v);
         if (!rgb_is_black(emitted) && counts_emission) {
             float weight = scattered_pdf > 0.0f
-                               ? direct_light_scatter_weight(t, scattered_from, &v, scattered_pdf, 1, 1)
+                               ? direct_light_scatter_weight(t, scattered_from, scattered_normal, &v, scattered_pdf, 1, 1)
                                : 1.0f;
             radiance = rgb_add(radiance, rgb_scale(rgb_mul(throughput, emitted), weight));
         }
@@ -65,6 +65,7 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray,
         left_first_diffuse = !has_met_diffuse && next.group == BSDF_GATHERED;
         has_met_diffuse = has_met_diffuse || left_first_diffuse;
         scattered_from = v.hit.position;
+        scattered_normal = direct_light_normal(&v, BSDF_ALL);
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
         ray = surface_ray(&v.hit, v.arrived, next.direction);
     }

@@ -305,9 +305,9 @@ static transport make_transport(const ag_context *context, const scene *s, const
 {
     transport t = {.s = s, .run = &context->run, .settings = settings, .has_lights = rgb_max(s->light_power) > 0.0f};
     for (uint32_t i = 0; i < s->light_count; i++)
-        t.has_area_lights = t.has_area_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
+        t.can_meet_lights = t.can_meet_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
     t.light_samples = (settings->gather_samples + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE;
-    if (t.has_area_lights)
+    if (t.can_meet_lights)
         t.scatter_samples = (t.light_samples + LIGHT_SAMPLES_PER_SCATTER_SAMPLE - 1) / LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
     if (settings->integrator == AG_INTEGRATOR_PHOTONMAP) {
         t.caustic = &m->caustic;

@@ -43,7 +43,7 @@ rgb shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, cons
     const ag_render_settings *settings = t->settings;
     bool is_whole = settings->only == AG_ONLY_ALL;
     rgb radiance = rgb_gray(0.0f), throughput = rgb_gray(1.0f);
-    vec3 scattered_from = ray.origin;
+    vec3 scattered_from = ray.origin, scattered_normal = {0.0f, 0.0f, 0.0f};
     float scattered_pdf = 0.0f; /* of a rough traced lobe; 0: the eye or a smooth one, which no shadow ray can serve */
 
     for (int path_vertex = 0;; path_vertex++) {
@@ -56,16 +56,16 @@ rgb shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, cons
         throughput = rgb_mul(throughput, v.transmittance);
         if (!is_met) {
             if (is_whole)
-                radiance =
-                    rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, ray.direction, scattered_pdf, 1, 1)));
+                radiance = rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, scattered_from, scattered_normal,
+                                                                                     ray.direction, scattered_pdf, 1, 1)));
             return radiance;
         }
 
         /* emitted light, shared with the shadow rays of the vertex before where that had any */
-        rgb emitted = transport_emission(&v);
+        rgb emitted = transport_emission(t, &v);
         if (is_whole && !rgb_is_black(emitted)) {
             float weight = scattered_pdf > 0.0f
-                               ? direct_light_scatter_weight(t, scattered_from, &v, scattered_pdf, 1, 1)
+                               ? direct_light_scatter_weight(t, scattered_from, scattered_normal, &v, scattered_pdf, 1, 1)
                                : 1.0f;
             radiance = rgb_add(radiance, rgb_scale(rgb_mul(throughput, emitted), weight));
         }
@@ -98,6 +98,7 @@ rgb shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, cons
             throughput = rgb_scale(throughput, 1.0f / survival);
         }
         scattered_from = v.hit.position;
+        scattered_normal = direct_light_normal(&v, BSDF_TRACED);
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
         ray = surface_ray(&v.hit, v.arrived, next.direction);
     }

@@ -15,11 +15,11 @@ bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vert
     return true;
 }
 
-rgb transport_emission(const vertex *v)
+rgb transport_emission(const transport *t, const vertex *v)
 {
     if (!v->lamp)
         return rgb_gray(0.0f);
-    return light_emitted_radiance(v->lamp, v->hit.geometric_normal, vec3_negate(v->arrived.direction));
+    return light_emitted_radiance(t->s, v->lamp, &v->hit, vec3_negate(v->arrived.direction));
 }
 
 vec3 transport_facing_normal(const vertex *v)

@@ -18,7 +18,7 @@ typedef struct transport {
     irradiance_cache *cache;    /* over the global map; NULL for path tracing */
     const ag_render_settings *settings;
     bool has_lights;            /* any with power */
-    bool has_area_lights;       /* or infinite ones: lights that scattered rays can meet */
+    bool can_meet_lights;       /* area or infinite ones: those that scattered rays find */
     int light_samples;          /* for direct light at a diffuse place, towards lamps */
     int scatter_samples;        /* and by scattering, 0 where that cannot meet a lamp */
     float gather_min_distance;  /* a gather ray that hits nearer than this does not use the cache, scene units */
@@ -51,7 +51,7 @@ typedef struct vertex {
 bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 
 /* Radiance that the place itself sends back along the ray. */
-rgb transport_emission(const vertex *v);
+rgb transport_emission(const transport *t, const vertex *v);
 
 /* The geometric normal on the side that the ray came from. */
 vec3 transport_facing_normal(const vertex *v);

@@ -101,6 +101,22 @@ bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
     return false;
 }
 
+bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
+{
+    for (int i = 0; i < b->lobe_count; i++) {
+        if (!(b->lobes[i].group & lobes) || b->lobes[i].is_delta)
+            continue;
+        switch (b->lobes[i].kind) {
+        case LOBE_DIFFUSE:
+        case LOBE_CONDUCTOR:
+        case LOBE_COAT:
+        case LOBE_CONDUCTOR_UNDER_COAT: break;
+        default: return true;
+        }
+    }
+    return false;
+}
+
 float bsdf_probability(const bsdf *b, bsdf_lobes lobes)
 {
     float sum = 0.0f;

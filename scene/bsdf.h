@@ -66,6 +66,9 @@ bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
 /* Whether light can find these lobes by sampling a lamp: they are not all perfectly smooth. */
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);
 
+/* Whether any of these that a lamp can find scatter light that comes from behind the surface, as `out` sees it. */
+bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes);
+
 /* With which probability bsdf_sample_direction, asked for all, picks one of these. */
 float bsdf_probability(const bsdf *b, bsdf_lobes lobes);
 

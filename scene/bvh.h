@@ -58,8 +58,14 @@ typedef struct surface_sample {
     vec3 geometric_normal; /* unit, outside */
     float pdf_area;
     float epsilon; /* as in surface_hit */
+    uint32_t primitive_index;
+    vec2 barycentrics; /* of meshes: of the triangle's second and third corner */
 } surface_sample;
 surface_sample shape_sample_area(const shape *s, vec2 u);
+/* All that there is to know of a sampled place; distance is 0. */
+void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit);
+/* Back from a place to the random numbers that pick it. false for shapes that are no mesh. */
+bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u);
 /* The density of shape_sample_area at a place on the shape with that geometric normal. */
 float shape_pdf_area(const shape *s, vec3 geometric_normal);
 

@@ -4,6 +4,7 @@
 
 #include "math/angle.h"
 #include "math/sampling.h"
+#include "portal.h"
 
 #include <stdlib.h>
 
@@ -151,27 +152,21 @@ static float pixel_pdf(const environment *e, float probability, uint32_t y)
     return (float)((double)probability / environment_pixel_solid_angle(e, y));
 }
 
-rgb environment_radiance(const light *l, vec3 direction)
+/* What the picture is multiplied by. */
+static rgb factor_of(const light *l) { return l->kind == LIGHT_INFINITE ? l->radiance : l->intensity; }
+
+rgb environment_whole_radiance(const light *l, vec3 direction)
 {
     const environment *e = l->environment;
     uint32_t x, y;
     if (!e)
         return l->radiance;
     environment_pixel_at(e, frame_to_local(&l->world_from_light, direction), &x, &y);
-    return rgb_mul(l->radiance, e->pixels[(size_t)y * e->width + x]);
+    return rgb_mul(factor_of(l), e->pixels[(size_t)y * e->width + x]);
 }
 
-float environment_pdf(const light *l, vec3 direction)
-{
-    const environment *e = l->environment;
-    uint32_t x, y;
-    if (!e)
-        return 0.25f * AG_INV_PI;
-    environment_pixel_at(e, frame_to_local(&l->world_from_light, direction), &x, &y);
-    return pixel_pdf(e, distribution_2d_probability(&e->picks, x, y), y);
-}
-
-bool environment_sample(const light *l, vec2 u, vec3 *out_direction, rgb *out_radiance, float *out_pdf_solid_angle)
+bool environment_sample_whole(const light *l, vec2 u, vec3 *out_direction, rgb *out_radiance,
+                              float *out_pdf_solid_angle)
 {
     const environment *e = l->environment;
     if (!e) {
@@ -185,12 +180,42 @@ bool environment_sample(const light *l, vec2 u, vec3 *out_direction, rgb *out_ra
         return false;
     vec3 direction = environment_direction(e, pick.x, pick.y, pick.within);
     *out_direction = vec3_normalize(frame_to_world(&l->world_from_light, direction));
-    *out_radiance = rgb_mul(l->radiance, e->pixels[(size_t)pick.y * e->width + pick.x]);
+    *out_radiance = rgb_mul(factor_of(l), e->pixels[(size_t)pick.y * e->width + pick.x]);
     *out_pdf_solid_angle = pixel_pdf(e, pick.probability, pick.y);
     return true;
 }
 
 rgb environment_integral(const light *l)
 {
-    return l->environment ? rgb_mul(l->radiance, l->environment->integral) : rgb_scale(l->radiance, 4.0f * AG_PI);
+    return l->environment ? rgb_mul(factor_of(l), l->environment->integral) : rgb_scale(l->radiance, 4.0f * AG_PI);
+}
+
+rgb environment_radiance(const light *l, vec3 point, vec3 direction)
+{
+    if (l->portal && !portal_is_crossed(l->portal, point, direction))
+        return rgb_gray(0.0f);
+    return environment_whole_radiance(l, direction);
+}
+
+float environment_pdf(const light *l, vec3 point, vec3 direction)
+{
+    const environment *e = l->environment;
+    uint32_t x, y;
+    if (l->portal)
+        return portal_pdf(l->portal, point, direction);
+    if (!e)
+        return 0.25f * AG_INV_PI;
+    environment_pixel_at(e, frame_to_local(&l->world_from_light, direction), &x, &y);
+    return pixel_pdf(e, distribution_2d_probability(&e->picks, x, y), y);
+}
+
+bool environment_sample(const light *l, vec3 point, vec2 u, vec3 *out_direction, rgb *out_radiance,
+                        float *out_pdf_solid_angle)
+{
+    if (!l->portal)
+        return environment_sample_whole(l, u, out_direction, out_radiance, out_pdf_solid_angle);
+    if (!portal_sample(l->portal, point, u, out_direction, out_pdf_solid_angle))
+        return false;
+    *out_radiance = environment_whole_radiance(l, *out_direction);
+    return !rgb_is_black(*out_radiance);
 }

@@ -40,15 +40,22 @@ void environment_pixel_at(const environment *e, vec3 direction, uint32_t *out_x,
 /* A direction in the light's space, even in solid angle over each pixel for places within it in [0,1]^2. */
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within);
 
-/* The rest asks a light of kind LIGHT_INFINITE. Directions are in world space, unit, towards the light. */
+/* The rest asks a light of kind LIGHT_INFINITE, from a point of the scene: light that comes through a portal reaches but
+ * what sees through that. Directions are in world space, unit, towards the light. */
 
 /* W/m^2/sr. */
-rgb environment_radiance(const light *l, vec3 direction);
+rgb environment_radiance(const light *l, vec3 point, vec3 direction);
 /* The density with which environment_sample picks the direction, 1/sr. */
-float environment_pdf(const light *l, vec3 direction);
+float environment_pdf(const light *l, vec3 point, vec3 direction);
 /* u in [0,1)^2. false where no light comes from anywhere. */
-bool environment_sample(const light *l, vec2 u, vec3 *out_direction, rgb *out_radiance, float *out_pdf_solid_angle);
-/* Of radiance over the sphere of directions, W/m^2. */
+bool environment_sample(const light *l, vec3 point, vec2 u, vec3 *out_direction, rgb *out_radiance,
+                        float *out_pdf_solid_angle);
+
+/* These know of no portal. They serve LIGHT_GONIOMETRIC too: intensity, W/sr, by directions that leave the light. */
+rgb environment_whole_radiance(const light *l, vec3 direction);
+bool environment_sample_whole(const light *l, vec2 u, vec3 *out_direction, rgb *out_radiance,
+                              float *out_pdf_solid_angle);
+/* Over the sphere of directions, W/m^2. */
 rgb environment_integral(const light *l);
 
 #endif

@@ -6,31 +6,57 @@
 #ifndef AFTERGLOW_LIGHT_H
 #define AFTERGLOW_LIGHT_H
 
+#include "afterglow/base.h"
 #include "math/vec3.h"
 
 #include <stdint.h>
 
 struct scene;
 struct rng;
+struct surface_hit;
 struct environment;
+struct projection;
+struct portal;
+struct radiance_map;
 
-typedef enum light_kind { LIGHT_POINT, LIGHT_SPOT, LIGHT_DISTANT, LIGHT_AREA, LIGHT_INFINITE } light_kind;
+typedef enum light_kind {
+    LIGHT_POINT,
+    LIGHT_SPOT,
+    LIGHT_GONIOMETRIC, /* a point whose intensity is a picture over all directions */
+    LIGHT_PROJECTION,  /* a point that throws a picture */
+    LIGHT_DISTANT,
+    LIGHT_AREA,
+    LIGHT_INFINITE
+} light_kind;
 
 typedef struct light {
     light_kind kind;
-    vec3 position;        /* point, spot: world space */
-    vec3 direction;       /* spot, distant: the way the light goes, unit */
-    rgb intensity;        /* point, spot: W/sr along the axis */
-    rgb radiance;         /* area: W/m^2/sr; distant: irradiance on a surface facing it, W/m^2; infinite: W/m^2/sr, or
-                           * what its picture is multiplied by */
-    float cos_falloff_start, cos_total_width; /* spot: full inside the first, none outside the second, smoothstep between */
-    uint32_t shape_index; /* area: the shape that shines */
-    bool two_sided;       /* area */
-    uint32_t medium;      /* all but area lights: that their light starts in; SCENE_NO_MEDIUM: none */
-    struct environment *environment; /* infinite: its picture, the scene's; NULL: the same from everywhere */
-    frame world_from_light;          /* infinite, with a picture: a rotation or reflection */
-    rgb power; /* W; set by scene_commit. Distant, infinite: through the disc of the scene's bounding sphere */
+    vec3 position;  /* of all points: world space */
+    vec3 direction; /* spot, projection, distant: the way the light goes, unit */
+    rgb intensity;  /* point: W/sr; spot: along the axis; goniometric, projection: what the picture is multiplied by */
+    rgb radiance;   /* area: W/m^2/sr; distant: irradiance on a surface facing it, W/m^2; infinite: W/m^2/sr, or what its
+                     * picture is multiplied by */
+    float falloff_start, falloff_end; /* spot: 1 - cos of the angles inside of which it is full and outside of which there
+                                       * is nothing; smoothstep in the cosine between */
+    uint32_t shape_index;             /* area: the shape that shines */
+    bool two_sided;                   /* area */
+    uint32_t radiance_texture;        /* area: multiplies radiance from place to place; SCENE_NO_TEXTURE: nowhere */
+    float photons;                    /* multiplies its share of the photons; 0: it sends none */
+    uint32_t medium;                  /* all but area lights: that their light starts in; SCENE_NO_MEDIUM: none */
+    frame world_from_light;           /* of those with a picture: a rotation or reflection */
+    /* The scene's, or NULL. */
+    struct environment *environment;   /* infinite: its picture, NULL: the same from everywhere; goniometric */
+    struct projection *projection;     /* projection */
+    struct portal *portal;             /* infinite: through which alone its light comes, NULL: from everywhere */
+    struct radiance_map *radiance_map; /* area, with a texture; set by scene_commit */
+    rgb power; /* W; set by scene_commit. Distant, infinite: through the disc of the scene's bounding sphere; through a
+                * portal: what enters there */
 } light;
+
+/* A light of that kind, of no power, with everything that has one at its default. */
+light light_make(light_kind kind);
+/* Frees the pictures and tables. */
+void light_reset(light *l);
 
 /* Light arriving at a point. */
 typedef struct light_sample {
@@ -42,20 +68,28 @@ typedef struct light_sample {
     bool is_delta;          /* cannot be hit by a scattered ray: no MIS */
 } light_sample;
 
-/* The light's whole power, W (distant, infinite: through the disc of the scene's bounding sphere). Areas and bounds are
- * set. */
-rgb light_power(const struct scene *s, const light *l);
+/* What scene_commit sets, areas and bounds being there. Errors: AG_ERROR_MEMORY. */
+ag_status light_commit(const struct scene *s, light *l);
 
 /* u in [0,1)^2. Returns false when no light can come from there. */
 bool light_sample_from_point(const struct scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample);
 
 /* The density with which light_sample_from_point picks the direction from point to a place hit on the light's
  * shape. For lights of kind LIGHT_INFINITE see environment_pdf. */
-float light_pdf_from_point(const struct scene *s, const light *l, vec3 point, vec3 hit_position,
-                           vec3 hit_geometric_normal);
+float light_pdf_from_point(const struct scene *s, const light *l, vec3 point, const struct surface_hit *hit);
 
 /* Radiance that an area light sends from a place on it into direction (away from it, unit). */
-rgb light_emitted_radiance(const light *l, vec3 emitter_normal, vec3 direction);
+rgb light_emitted_radiance(const struct scene *s, const light *l, const struct surface_hit *hit, vec3 direction);
+
+/* The texture's part in that, not negative; 1 where there is none. */
+rgb light_texture_value(const struct scene *s, const light *l, const struct surface_hit *hit);
+
+/* Of the lights that are points: W/sr into direction (away from it, unit). */
+rgb light_intensity(const light *l, vec3 direction);
+
+/* The cone under which a ball is seen from a point outside it: true, and 1 - cos of its half angle; false when the point is
+ * inside or too close for the cone to be precise. */
+bool light_ball_cone(vec3 center, float radius, vec3 point, float *out_one_minus_cos);
 
 /* A photon's start. */
 typedef struct light_emission {

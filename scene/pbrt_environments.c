@@ -1,115 +1,12 @@
 /* pbrt_environments.c: LightSource "infinite" of a pbrt-v4 scene.
  * Rests on the format's description, pbrt.org/fileformat-v4, "Lights". Square pictures are equal-area octahedral, as
  * pbrt-v4 wants them; those twice as wide as high, which it refuses, are latitude-longitude, as pbrt-v3 had them.
- * Flow: pbrt_lights -> [here] -> environment, scene. Threads: one per scene. */
+ * Flow: pbrt_lights -> [here] -> environment, portal, scene. Threads: one per scene. */
 #include "environment.h"
-#include "image_encoding.h"
-#include "image_reader.h"
 #include "pbrt_private.h"
-
-#include <stdlib.h>
-#include <string.h>
+#include "portal.h"
 
 static const double PI = 3.14159265358979323846;
-
-/* The axes of the light's space in the world. What is no rotation, reflection or scaling keeps its z axis, and x as far
- * as it can. */
-static ag_status set_frame(pbrt_parser *parser, const parameter_list *list, light *l)
-{
-    const transform *t = &parser->state.world_from_object;
-    if (!(transform_uniform_scale(t) > 0.0))
-        log_at(parser->log, AG_LOG_WARNING, list->where,
-               "LightSource \"infinite\": the transform is not a rotation, reflection or scaling: the picture is not "
-               "bent, just turned");
-    double z[3], x[3], length = 0.0, along = 0.0;
-    for (int i = 0; i < 3; i++)
-        length += t->m[i][2] * t->m[i][2];
-    length = sqrt(length);
-    for (int i = 0; i < 3; i++) {
-        z[i] = t->m[i][2] / length;
-        along += z[i] * t->m[i][0];
-    }
-    length = 0.0;
-    for (int i = 0; i < 3; i++) {
-        x[i] = t->m[i][0] - along * z[i];
-        length += x[i] * x[i];
-    }
-    length = sqrt(length);
-    l->world_from_light.z = vec3_make((float)z[0], (float)z[1], (float)z[2]);
-    l->world_from_light.x = vec3_make((float)(x[0] / length), (float)(x[1] / length), (float)(x[2] / length));
-    vec3 y = vec3_cross(l->world_from_light.z, l->world_from_light.x);
-    l->world_from_light.y = transform_swaps_handedness(t) ? vec3_negate(y) : y;
-    const frame *f = &l->world_from_light;
-    if (!vec3_is_finite(f->x) || !vec3_is_finite(f->y) || !vec3_is_finite(f->z))
-        return pbrt_refuse(parser, list, "filename", "the transform leaves no direction");
-    return AG_OK;
-}
-
-/* RGB of what was read, finite and not negative; NULL when out of memory. */
-static rgb *finite_pixels(const image *picture, size_t *out_bad_count)
-{
-    size_t count = (size_t)picture->width * (size_t)picture->height, channels = (size_t)picture->channel_count;
-    rgb *pixels = malloc(count * sizeof *pixels);
-    *out_bad_count = 0;
-    for (size_t i = 0; pixels && i < count; i++) {
-        float c[3];
-        bool is_bad = false;
-        for (size_t k = 0; k < 3; k++) {
-            float v = picture->pixels[i * channels + (channels >= 3 ? k : 0)];
-            if (!(v >= 0.0f && isfinite(v))) {
-                is_bad = true;
-                v = 0.0f;
-            }
-            c[k] = v;
-        }
-        *out_bad_count += is_bad;
-        pixels[i] = rgb_make(c[0], c[1], c[2]);
-    }
-    return pixels;
-}
-
-/* Frees the picture as soon as it can: large ones are a gigabyte. */
-static ag_status create_environment(pbrt_parser *parser, const parameter_list *list, const char *name, image *picture,
-                                    environment **out_environment)
-{
-    int width = picture->width, height = picture->height;
-    if (width < 1 || height < 1 || width > ENVIRONMENT_MAX_SIZE || (width != height && width != 2 * height))
-        return pbrt_refuse(
-            parser, list, "filename",
-            "\"%s\" is %d x %d: the picture of an infinite light is square (octahedral) or twice as wide "
-            "as high (latitude-longitude)",
-            name, width, height);
-    size_t bad_count;
-    rgb *pixels = finite_pixels(picture, &bad_count);
-    image_reset(picture);
-    if (!pixels)
-        return AG_ERROR_MEMORY;
-    if (bad_count > 0)
-        log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, "filename")->where,
-               "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0", name, bad_count);
-    return environment_create(width == height ? ENVIRONMENT_OCTAHEDRAL : ENVIRONMENT_LATITUDE_LONGITUDE,
-                              (uint32_t)width, (uint32_t)height, pixels, out_environment);
-}
-
-static ag_status read_picture(pbrt_parser *parser, const parameter_list *list, const char *name,
-                              environment **out_environment)
-{
-    char message[512];
-    image picture = {0};
-    char *path = pbrt_find_file(parser, name);
-    ag_status status = path ? image_read(path, &picture, message, sizeof message) : AG_ERROR_MEMORY;
-    free(path);
-    if (status == AG_OK)
-        status = image_linearize(&picture, (image_encoding){0}, message, sizeof message);
-    if (status == AG_ERROR_COLOR)
-        pbrt_refuse(parser, list, "filename", "cannot decode the picture \"%s\": %s", name, message);
-    if (status == AG_ERROR_INPUT || status == AG_ERROR_SYSTEM)
-        pbrt_refuse(parser, list, "filename", "cannot read the picture \"%s\": %s", name, message);
-    if (status == AG_OK)
-        status = create_environment(parser, list, name, &picture, out_environment);
-    image_reset(&picture); /* where it is not empty yet */
-    return status;
-}
 
 /* The measure of "illuminance" for a picture: what reaches a surface that faces the light's z, but half of it: pbrt
  * counts each pixel as 2 pi / count, and scenes are lit by what comes of that. */
@@ -128,13 +25,40 @@ static double picture_illuminance(const environment *e)
     return sum;
 }
 
+/* "portal": four corners, in world space whatever the transform. *out_is_given: whether it stands there. */
+static ag_status read_portal(pbrt_parser *parser, parameter_list *list, bool *out_is_given, portal *out_portal)
+{
+    const double *numbers;
+    size_t count;
+    vec3 corners[4];
+    PBRT_TRY(parameter_get_numbers(list, parser->log, "portal", PARAMETER_POINT3, &numbers, &count));
+    *out_is_given = count > 0;
+    if (count == 0)
+        return AG_OK;
+    if (count != 12)
+        return pbrt_refuse(parser, list, "portal", "\"portal\" has four corners, not %zu", count / 3);
+    for (int i = 0; i < 4; i++)
+        corners[i] = vec3_make((float)numbers[3 * i], (float)numbers[3 * i + 1], (float)numbers[3 * i + 2]);
+    if (!portal_place(corners, out_portal))
+        return pbrt_refuse(parser, list, "portal", "\"portal\" is not a rectangle, corner by corner");
+    return AG_OK;
+}
+
+/* What of the light makes "illuminance" 1. With a portal a constant light is, to pbrt, a picture of one pixel. */
+static double find_measure(const light *l, bool has_portal)
+{
+    if (l->environment)
+        return picture_illuminance(l->environment);
+    return has_portal ? 2.0 * PI * (double)rgb_luminance(l->radiance) : PI;
+}
+
 static ag_status read_infinite(pbrt_parser *parser, parameter_list *list, light *l)
 {
     log_sink *log = parser->log;
     const char *name = "";
-    const double *portal;
-    size_t portal_count;
     float scale = 1.0f, illuminance = -1.0f;
+    bool has_portal;
+    portal placed;
     l->kind = LIGHT_INFINITE;
     l->radiance = rgb_gray(1.0f);
     PBRT_TRY(parameter_get_string(list, log, "filename", &name));
@@ -143,21 +67,17 @@ static ag_status read_infinite(pbrt_parser *parser, parameter_list *list, light 
     PBRT_TRY(parameter_get_rgb(list, log, "L", &l->radiance));
     PBRT_TRY(parameter_get_float(list, log, "scale", &scale));
     PBRT_TRY(parameter_get_float(list, log, "illuminance", &illuminance));
-    PBRT_TRY(parameter_get_numbers(list, log, "portal", PARAMETER_POINT3, &portal, &portal_count));
+    PBRT_TRY(read_portal(parser, list, &has_portal, &placed));
     if (scale < 0.0f)
         return pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
-    if (portal_count > 0)
-        log_at_once(log, AG_LOG_WARNING, parameter_list_find(list, "portal")->where, "infinite portal",
-                    "LightSource \"infinite\": \"portal\" is not supported yet: light comes from everywhere");
 
-    double factor = scale, measure = PI;
+    double factor = scale;
     if (name[0]) {
-        PBRT_TRY(set_frame(parser, list, l));
-        PBRT_TRY(read_picture(parser, list, name, &l->environment));
-        if (illuminance > 0.0f)
-            measure = picture_illuminance(l->environment);
+        PBRT_TRY(pbrt_set_light_frame(parser, list, false, l));
+        PBRT_TRY(pbrt_read_environment(parser, list, name, false, &l->environment));
     }
     if (illuminance > 0.0f) {
+        double measure = find_measure(l, has_portal);
         if (!(measure > 0.0))
             return pbrt_refuse(parser, list, "illuminance", "no light comes from the upper half of the picture");
         factor *= illuminance / measure;
@@ -166,15 +86,13 @@ static ag_status read_infinite(pbrt_parser *parser, parameter_list *list, light 
     l->radiance = rgb_make((float)(c.r * factor), (float)(c.g * factor), (float)(c.b * factor));
     if (!rgb_is_finite(environment_integral(l)))
         return pbrt_refuse(parser, list, "scale", "the light is too bright for a float");
-    return AG_OK;
+    return has_portal ? portal_create(&placed, l, &l->portal) : AG_OK;
 }
 
 ag_status pbrt_infinite_light(pbrt_parser *parser, parameter_list *list, light *out_light)
 {
     ag_status status = read_infinite(parser, list, out_light);
-    if (status != AG_OK) {
-        environment_destroy(out_light->environment);
-        out_light->environment = NULL;
-    }
+    if (status != AG_OK)
+        light_reset(out_light);
     return status;
 }

@@ -4,7 +4,6 @@
  * Flow: pbrt_parser -> [here] -> scene. Threads: one per scene. */
 #include "pbrt_private.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* What all lights have. */
@@ -79,6 +78,13 @@ static ag_status read_point(pbrt_parser *parser, parameter_list *list, light *l)
     return scale_color(parser, list, c.color, factor, &l->intensity);
 }
 
+/* Without the cancellation that narrow cones would suffer from. */
+static double one_minus_cos(double degrees)
+{
+    double sine = sin(0.5 * degrees * PI / 180.0);
+    return 2.0 * sine * sine;
+}
+
 static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
 {
     light_common c;
@@ -94,10 +100,10 @@ static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
     if (!(delta >= 0.0f && delta <= 2.0f * cone)) /* beyond the axis pbrt counts on at the other side */
         return pbrt_refuse(parser, list, "conedeltaangle",
                            "\"conedeltaangle\" should be from 0 to twice \"coneangle\"");
-    double cos_end = cos((double)cone * PI / 180.0), cos_start = cos(((double)cone - delta) * PI / 180.0);
-    l->cos_total_width = (float)cos_end;
-    l->cos_falloff_start = (float)cos_start;
-    double cone_measure = 2.0 * PI * ((1.0 - cos_start) + (cos_start - cos_end) / 2.0);
+    double end = one_minus_cos(cone), start = one_minus_cos((double)cone - delta);
+    l->falloff_start = (float)start;
+    l->falloff_end = (float)end;
+    double cone_measure = PI * (start + end); /* the ramp is half of its height, on average */
     double factor = c.power > 0.0f ? c.scale * (c.power / cone_measure) : c.scale;
     return scale_color(parser, list, c.color, factor, &l->intensity);
 }
@@ -112,30 +118,42 @@ static ag_status read_distant(pbrt_parser *parser, parameter_list *list, light *
     return scale_color(parser, list, c.color, factor, &l->radiance);
 }
 
+/* "photons", which pbrt does not have: multiplies the light's share of them. */
+static ag_status read_photons(pbrt_parser *parser, parameter_list *list, float *out_photons)
+{
+    PBRT_TRY(parameter_get_float(list, parser->log, "photons", out_photons));
+    if (!(*out_photons >= 0.0f))
+        return pbrt_refuse(parser, list, "photons", "\"photons\" should not be negative");
+    if (*out_photons == 0.0f)
+        log_at(parser->log, AG_LOG_INFO, list->where,
+               "the light sends no photons: its indirect light and caustics are missing from the photon map");
+    return AG_OK;
+}
+
+static ag_status read_light(pbrt_parser *parser, parameter_list *list, light *l)
+{
+    typedef ag_status reader(pbrt_parser *, parameter_list *, light *);
+    static const struct {
+        const char *name;
+        reader *read;
+    } READERS[] = {{"point", read_point},
+                   {"spot", read_spot},
+                   {"distant", read_distant},
+                   {"infinite", pbrt_infinite_light},
+                   {"goniometric", pbrt_goniometric_light},
+                   {"projection", pbrt_projection_light}};
+    PBRT_TRY(read_photons(parser, list, &l->photons));
+    for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
+        if (strcmp(list->name, READERS[i].name) == 0)
+            return READERS[i].read(parser, list, l);
+    return pbrt_error(parser, list->where, strlen("LightSource"), "unknown light \"%s\"", list->name);
+}
+
 static ag_status add_light(pbrt_parser *parser, parameter_list *list)
 {
-    static const char *const UNSUPPORTED[] = {"goniometric", "projection"};
     uint32_t index;
-    light l;
-    memset(&l, 0, sizeof l);
-    for (size_t i = 0; i < sizeof UNSUPPORTED / sizeof *UNSUPPORTED; i++)
-        if (strcmp(list->name, UNSUPPORTED[i]) == 0) {
-            char key[64];
-            snprintf(key, sizeof key, "light:%s", list->name);
-            log_at_once(parser->log, AG_LOG_WARNING, list->where, key,
-                        "LightSource \"%s\" is not supported yet and is left out", list->name);
-            return AG_OK;
-        }
-    if (strcmp(list->name, "point") == 0)
-        PBRT_TRY(read_point(parser, list, &l));
-    else if (strcmp(list->name, "spot") == 0)
-        PBRT_TRY(read_spot(parser, list, &l));
-    else if (strcmp(list->name, "distant") == 0)
-        PBRT_TRY(read_distant(parser, list, &l));
-    else if (strcmp(list->name, "infinite") == 0)
-        PBRT_TRY(pbrt_infinite_light(parser, list, &l));
-    else
-        return pbrt_error(parser, list->where, strlen("LightSource"), "unknown light \"%s\"", list->name);
+    light l = light_make(LIGHT_POINT);
+    PBRT_TRY(read_light(parser, list, &l));
     parameter_list_warn_unused(list, parser->log);
     l.medium = pbrt_use_medium(parser, parser->state.medium_outside);
     bool has_radiance = l.kind == LIGHT_DISTANT || l.kind == LIGHT_INFINITE;
@@ -152,16 +170,59 @@ ag_status pbrt_light_source(pbrt_parser *parser, file_location where)
     return status;
 }
 
+static double mean_luminance(const texture_image *i)
+{
+    double sum = 0.0;
+    for (uint32_t y = 0; y < i->height; y++)
+        for (uint32_t x = 0; x < i->width; x++)
+            sum += (double)rgb_luminance(texture_image_rgb(i, TEXTURE_WRAP_CLAMP, TEXTURE_FILTER_POINT,
+                                                           ((float)x + 0.5f) / (float)i->width,
+                                                           ((float)y + 0.5f) / (float)i->height));
+    return sum / ((double)i->width * i->height);
+}
+
+/* "filename": radiance by the surface's own u and v. */
+static ag_status read_area_picture(pbrt_parser *parser, parameter_list *list, pbrt_area_light *l)
+{
+    const char *name = "";
+    PBRT_TRY(parameter_get_string(list, parser->log, "filename", &name));
+    if (!name[0])
+        return AG_OK;
+    if (parameter_list_find(list, "L"))
+        return pbrt_refuse(parser, list, "L", "an area light has \"L\" or \"filename\", not both");
+    texture t = {.kind = TEXTURE_IMAGE,
+                 .is_spectrum = true,
+                 .mapping = {.kind = TEXTURE_MAPPING_UV, .scale = {1.0f, 1.0f}},
+                 .wrap = TEXTURE_WRAP_CLAMP,
+                 .filter = TEXTURE_FILTER_BILINEAR,
+                 .scale = 1.0f};
+    for (size_t i = 0; i < sizeof t.inputs / sizeof *t.inputs; i++)
+        t.inputs[i].texture_index = SCENE_NO_TEXTURE;
+    PBRT_TRY(pbrt_load_image(parser, list, name, (image_encoding){0}, &t));
+    PBRT_TRY(scene_add_texture(parser->scene, &t, &l->radiance_texture));
+    if (l->power > 0.0f)
+        l->mean_luminance = mean_luminance(parser->scene->texture_images[t.image_index]);
+    if (!(l->mean_luminance > 0.0))
+        return pbrt_refuse(parser, list, "power", "the picture is black");
+    return AG_OK;
+}
+
 static ag_status read_area_light(pbrt_parser *parser, parameter_list *list, pbrt_area_light *out_light)
 {
-    light_common c;
-    pbrt_area_light l = {.is_set = true, .where = list->where};
+    light_common c = {0};
+    pbrt_area_light l = {.is_set = true,
+                         .photons = 1.0f,
+                         .radiance_texture = SCENE_NO_TEXTURE,
+                         .mean_luminance = 1.0,
+                         .where = list->where};
     if (strcmp(list->name, "diffuse") != 0)
         return pbrt_error(parser, list->where, strlen("AreaLightSource"), "unknown area light \"%s\"", list->name);
     PBRT_TRY(read_common(parser, list, "L", "power", &c));
     PBRT_TRY(parameter_get_bool(list, parser->log, "twosided", &l.two_sided));
     PBRT_TRY(scale_color(parser, list, c.color, c.scale, &l.radiance));
     l.power = c.power;
+    PBRT_TRY(read_photons(parser, list, &l.photons));
+    PBRT_TRY(read_area_picture(parser, list, &l));
     parameter_list_warn_unused(list, parser->log);
     *out_light = l;
     return AG_OK;
@@ -192,15 +253,16 @@ ag_status pbrt_add_area_light(pbrt_parser *parser, uint32_t shape_index, file_lo
                (double)area);
         return AG_OK;
     }
-    light l;
-    memset(&l, 0, sizeof l);
-    l.kind = LIGHT_AREA;
+    light l = light_make(LIGHT_AREA);
     l.shape_index = shape_index;
     l.two_sided = source->two_sided;
     l.radiance = source->radiance;
+    l.radiance_texture = source->radiance_texture;
+    l.photons = source->photons;
     if (source->power > 0.0f) {
         /* of a lamp with radiance 1 */
-        double power = PI * (double)area * (source->two_sided ? 2.0 : 1.0), factor = source->power / power;
+        double power = PI * (double)area * (source->two_sided ? 2.0 : 1.0) * source->mean_luminance;
+        double factor = source->power / power;
         l.radiance =
             rgb_make((float)(l.radiance.r * factor), (float)(l.radiance.g * factor), (float)(l.radiance.b * factor));
         if (!rgb_is_finite(l.radiance)) {

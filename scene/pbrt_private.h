@@ -63,6 +63,9 @@ typedef struct pbrt_area_light {
     rgb radiance; /* "L" times "scale" */
     float power;  /* W, as pbrt's "power": above 0 the radiance is multiplied until a lamp of radiance 1 has it */
     bool two_sided;
+    float photons;
+    uint32_t radiance_texture; /* of its picture, or SCENE_NO_TEXTURE */
+    double mean_luminance;     /* of that picture; else 1 */
     file_location where;
 } pbrt_area_light;
 
@@ -229,13 +232,27 @@ ag_status pbrt_get_rgb_texture(pbrt_parser *parser, parameter_list *list, const 
 ag_status pbrt_get_float_texture(pbrt_parser *parser, parameter_list *list, const char *name, float *out_constant,
                                  uint32_t *out_texture_index);
 
+/* Loads the picture called name, "filename" of the list, and sets t->image_index. */
+ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *name, image_encoding encoding,
+                          texture *t);
+
 /* pbrt_lights.c */
 pbrt_handler pbrt_light_source, pbrt_area_light_source;
 /* Makes the shape shine if AreaLightSource says so. */
 ag_status pbrt_add_area_light(pbrt_parser *parser, uint32_t shape_index, file_location where);
 
-/* pbrt_environments.c: LightSource "infinite". out_light is zeroed before; its environment is the caller's. */
+/* Each comes as light_make leaves it; its pictures are the caller's. */
+/* pbrt_environments.c: LightSource "infinite". */
 ag_status pbrt_infinite_light(pbrt_parser *parser, parameter_list *list, light *out_light);
+/* pbrt_light_pictures.c: LightSource "goniometric" and "projection". */
+ag_status pbrt_goniometric_light(pbrt_parser *parser, parameter_list *list, light *out_light);
+ag_status pbrt_projection_light(pbrt_parser *parser, parameter_list *list, light *out_light);
+/* world_from_light: the axes of the current transform, or with swaps_yz the light's y and z along its z and y. What is no
+ * rotation, reflection or scaling keeps the light's z axis, and x as far as it can. */
+ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, bool swaps_yz, light *l);
+/* The picture called name, "filename" of the list; its colours averaged where is_gray. */
+ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
+                                struct environment **out_environment);
 
 /* pbrt_camera.c */
 pbrt_handler pbrt_camera;

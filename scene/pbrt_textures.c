@@ -231,8 +231,8 @@ static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, image_
     return AG_OK;
 }
 
-static ag_status load_image(pbrt_parser *parser, parameter_list *list, const char *name, image_encoding encoding,
-                            texture *t)
+ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *name, image_encoding encoding,
+                          texture *t)
 {
     char message[1024] = "";
     scene *s = parser->scene;
@@ -273,7 +273,7 @@ static ag_status read_image(pbrt_parser *parser, parameter_list *list, texture *
                           "Texture \"imagemap\" has no \"string filename\"");
     t->wrap = (texture_wrap)wrap;
     t->filter = filter == 1 ? TEXTURE_FILTER_POINT : TEXTURE_FILTER_BILINEAR;
-    return load_image(parser, list, name, encoding, t);
+    return pbrt_load_image(parser, list, name, encoding, t);
 }
 
 static ag_status read_octaves(pbrt_parser *parser, parameter_list *list, texture *t)

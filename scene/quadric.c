@@ -160,7 +160,7 @@ surface_sample quadric_sample_area(const shape *s, vec2 u)
         normal = (vec3){ring * cosine, ring * sine, z};
         point = vec3_scale(normal, q->radius);
     }
-    surface_sample sample;
+    surface_sample sample = {0};
     sample.position = transform_point(&q->world_from_object, point);
     sample.geometric_normal = world_normal(s, normal);
     sample.epsilon = q->epsilon;

@@ -4,7 +4,7 @@
 #include "scene.h"
 
 #include "bsdf.h"
-#include "environment.h"
+#include "light_pick.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,7 +39,7 @@ void scene_destroy(scene *s)
     for (uint32_t i = 0; i < s->shape_count; i++)
         shape_free_arrays(&s->shapes[i]);
     for (uint32_t i = 0; i < s->light_count; i++)
-        environment_destroy(s->lights[i].environment);
+        light_reset(&s->lights[i]);
     for (uint32_t i = 0; i < s->texture_image_count; i++)
         texture_image_destroy(s->texture_images[i]);
     for (uint32_t i = 0; i < s->file_name_count; i++)
@@ -55,9 +55,7 @@ void scene_destroy(scene *s)
     free(s->textures);
     free(s->texture_images);
     free(s->lights);
-    free(s->light_cdf);
-    free(s->light_probability);
-    free(s->infinite_lights);
+    light_pick_reset(s);
     free(s);
 }
 
@@ -152,7 +150,8 @@ ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index)
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
 {
     if (!grow((void **)&s->lights, s->light_count, sizeof *s->lights)) {
-        environment_destroy(item->environment);
+        light copy = *item;
+        light_reset(&copy);
         return AG_ERROR_MEMORY;
     }
     *out_index = s->light_count;
@@ -178,38 +177,6 @@ static void find_bounds(scene *s)
     s->bounding_radius = vec3_length(vec3_sub(s->bounds_max, s->bounding_center)) * 1.00001f;
 }
 
-/* The shares by which lights are picked: their power, or where all that is 0, none. */
-static ag_status weigh_lights(scene *s, log_sink *log)
-{
-    if (s->light_count == 0)
-        return AG_OK;
-    s->light_cdf = malloc(s->light_count * sizeof *s->light_cdf);
-    s->light_probability = malloc(s->light_count * sizeof *s->light_probability);
-    s->infinite_lights = malloc(s->light_count * sizeof *s->infinite_lights);
-    if (!s->light_cdf || !s->light_probability || !s->infinite_lights)
-        return AG_ERROR_MEMORY;
-    double total = 0.0, sum = 0.0;
-    for (uint32_t i = 0; i < s->light_count; i++) {
-        if (s->lights[i].kind == LIGHT_INFINITE)
-            s->infinite_lights[s->infinite_light_count++] = i;
-        s->lights[i].power = light_power(s, &s->lights[i]);
-        s->light_power = rgb_add(s->light_power, s->lights[i].power);
-        /* by the mean of the channels: luminance would all but leave out blue lamps */
-        total += (double)s->lights[i].power.r + s->lights[i].power.g + s->lights[i].power.b;
-    }
-    if (!rgb_is_finite(s->light_power)) {
-        log_message(log, AG_LOG_ERROR, "the lights' power together is beyond what a float holds");
-        return AG_ERROR_SCENE;
-    }
-    for (uint32_t i = 0; i < s->light_count; i++) {
-        double share = (double)s->lights[i].power.r + s->lights[i].power.g + s->lights[i].power.b;
-        sum += share;
-        s->light_probability[i] = total > 0.0 ? (float)(share / total) : 0.0f;
-        s->light_cdf[i] = total > 0.0 ? (float)(sum / total) : 0.0f;
-    }
-    return AG_OK;
-}
-
 ag_status scene_commit(scene *s, run_context *run, const char *isa)
 {
     for (uint32_t i = 0; i < s->shape_count; i++) {
@@ -223,24 +190,8 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
     find_bounds(s);
     s->camera.medium = s->camera_medium;
     s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
-    ag_status status = weigh_lights(s, run->log);
+    ag_status status = light_pick_commit(s, run->log);
     if (status != AG_OK)
         return status;
     return bvh_create(s, run, isa, &s->bvh);
-}
-
-uint32_t scene_pick_light(const scene *s, float u, float *out_probability)
-{
-    uint32_t low = 0, high = s->light_count - 1;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (s->light_cdf[middle] > u)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    while (low > 0 && s->light_probability[low] == 0.0f) /* u beyond the last rounded sum */
-        low--;
-    *out_probability = s->light_probability[low];
-    return low;
 }

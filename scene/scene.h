@@ -15,6 +15,7 @@
 #include "texture.h"
 
 struct bvh;
+struct light_tree;
 
 /* What the file's Option directives say that the renderer heeds. */
 typedef struct scene_options {
@@ -53,12 +54,17 @@ typedef struct scene {
     float bounding_radius;
     float surface_area;       /* m^2, of all shapes but interfaces */
     rgb light_power;          /* W, of all lights */
-    float *light_cdf;         /* [light_count], running sum of light_probability */
-    float *light_probability; /* [light_count], each one's share of the power, as the mean of the channels: with which
-                               * scene_pick_light picks it */
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */
+    /* How lights are picked, see light_pick.c */
+    uint32_t lit_count;            /* lights with power */
+    uint32_t only_light;           /* where there is but one of them, that one */
+    uint32_t *everywhere_lights;   /* [everywhere_count], indices of distant and infinite ones with power */
+    uint32_t everywhere_count;
+    struct light_tree *light_tree; /* over the others with power; NULL where there is none */
+    float *photon_cdf;             /* [light_count], running sum of photon_probability */
+    float *photon_probability;     /* [light_count], with which scene_pick_light_by_power picks it */
     struct bvh *bvh;
 } scene;
 
@@ -78,8 +84,8 @@ ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index);
 ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index);
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
-/* An area light's shape must be there already; its light_index is set here. An environment passes into the scene's
- * ownership, on failure too (it is then destroyed). */
+/* An area light's shape must be there already; its light_index is set here. Pictures and tables of a light pass into the
+ * scene's ownership, on failure too (they are then destroyed). */
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
 
 /* Areas, powers, bounds and the BVH (built by the run's threads and no others). isa: Embree's name of the widest
@@ -90,7 +96,17 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa);
 /* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
 float shape_area(const shape *s);
 
-/* Picks a light in proportion to its power; u in [0, 1). The scene has at least one light with power. */
-uint32_t scene_pick_light(const scene *s, float u, float *out_probability);
+/* For shading: picks one of the lights that may shine at a place, about in proportion to what it may bring; u in [0, 1).
+ * normal: unit, of a surface that scatters only what comes from the side it points to; zero: light from all sides counts.
+ * Gives its index, and the probability with which this one is picked: 0 where no light reaches the place, and the index is
+ * of no use. The scene has at least one light with power. */
+uint32_t scene_pick_light(const scene *s, vec3 point, vec3 normal, float u, float *out_probability);
+/* The probability with which scene_pick_light picks that one there. */
+float scene_light_probability(const scene *s, uint32_t light_index, vec3 point, vec3 normal);
+
+/* For photons: picks a light by its power, but none so rarely that its light would be a few bright specks, and each as often
+ * as its `photons` says. Probability 0: no light sends photons. */
+uint32_t scene_pick_light_by_power(const scene *s, float u, float *out_probability);
+bool scene_sends_photons(const scene *s);
 
 #endif

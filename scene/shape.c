@@ -101,12 +101,37 @@ static surface_sample mesh_sample_area(const shape *s, vec2 u)
     vec2 b = sample_triangle(u);
     surface_hit hit;
     shape_surface_at(s, low, b.x, b.y, (vec3){0.0f, 0.0f, 0.0f}, &hit);
-    return (surface_sample){hit.position, hit.geometric_normal, 1.0f / s->area, hit.epsilon};
+    return (surface_sample){hit.position, hit.geometric_normal, 1.0f / s->area, hit.epsilon, low, b};
+}
+
+bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u)
+{
+    if (s->kind != SHAPE_MESH)
+        return false;
+    const mesh *m = &s->as.mesh;
+    uint32_t i = hit->primitive_index;
+    vec3 corner = mesh_vertex(m, i, 0), p = vec3_sub(hit->position, corner);
+    vec3 e1 = vec3_sub(mesh_vertex(m, i, 1), corner), e2 = vec3_sub(mesh_vertex(m, i, 2), corner);
+    double a = vec3_dot(e1, e1), b = vec3_dot(e1, e2), c = vec3_dot(e2, e2), p1 = vec3_dot(p, e1), p2 = vec3_dot(p, e2);
+    double determinant = a * c - b * b, inverse = determinant > 0.0 ? 1.0 / determinant : 0.0;
+    float before = i > 0 ? m->area_cdf[i - 1] : 0.0f, share = m->area_cdf[i] - before;
+    vec2 u = sample_triangle_inverse((vec2){(float)((c * p1 - b * p2) * inverse), (float)((a * p2 - b * p1) * inverse)});
+    *out_u = (vec2){before + share * u.x, u.y};
+    return true;
 }
 
 surface_sample shape_sample_area(const shape *s, vec2 u)
 {
     return s->kind == SHAPE_MESH ? mesh_sample_area(s, u) : quadric_sample_area(s, u);
+}
+
+void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit)
+{
+    shape_surface_at(s, sample->primitive_index, sample->barycentrics.x, sample->barycentrics.y, sample->position,
+                     out_hit);
+    out_hit->distance = 0.0f;
+    out_hit->shape_index = shape_index;
+    out_hit->primitive_index = sample->primitive_index;
 }
 
 float shape_pdf_area(const shape *s, vec3 geometric_normal)
