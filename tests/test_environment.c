@@ -219,7 +219,9 @@ static scene *lit_scene_create(test_run *r, environment *e, rgb radiance)
     scene *s = scene_create();
     assert_non_null(s);
     assert_int_equal(pbrt_parse_text(&r->run, "scene", TEXT, strlen(TEXT), s), AG_OK);
-    light l = {.kind = LIGHT_INFINITE, .radiance = radiance, .environment = e};
+    light l = light_make(LIGHT_INFINITE);
+    l.radiance = radiance;
+    l.environment = e;
     l.world_from_light = frame_from_z(vec3_normalize(vec3_make(1.0f, -2.0f, 0.5f)));
     l.world_from_light.y = vec3_negate(l.world_from_light.y); /* a reflection too */
     uint32_t index;
@@ -229,8 +231,8 @@ static scene *lit_scene_create(test_run *r, environment *e, rgb radiance)
     return s;
 }
 
-static double density(void *user, vec3 d) { return environment_pdf(user, d); }
-static double density_of_photons(void *user, vec3 d) { return environment_pdf(user, vec3_negate(d)); }
+static double density(void *user, vec3 d) { return environment_pdf(user, (vec3){0.0f, 0.0f, 0.0f}, d); }
+static double density_of_photons(void *user, vec3 d) { return environment_pdf(user, (vec3){0.0f, 0.0f, 0.0f}, vec3_negate(d)); }
 
 static environment *environment_for(int k)
 {
@@ -258,10 +260,10 @@ static void directions_are_sampled_by_their_density(void **state)
             assert_false(at.is_delta);
             assert_true(isinf(at.distance));
             assert_close(vec3_length(at.direction), 1.0, 1e-6);
-            rgb seen = environment_radiance(l, at.direction);
+            rgb seen = environment_radiance(l, point, at.direction);
             /* but for rounding at the borders of pixels, what is sampled is what is seen */
             strangers +=
-                environment_pdf(l, at.direction) != at.pdf_solid_angle || memcmp(&seen, &at.radiance, sizeof seen);
+                environment_pdf(l, point, at.direction) != at.pdf_solid_angle || memcmp(&seen, &at.radiance, sizeof seen);
             double inverse = 1.0 / (double)at.pdf_solid_angle / SAMPLES;
             integral[0] += (double)at.radiance.r * inverse, integral[1] += (double)at.radiance.g * inverse;
             integral[2] += (double)at.radiance.b * inverse;
@@ -295,7 +297,7 @@ static void power_is_what_enters_the_bounding_sphere(void **state)
         double sum = 0.0;
         enum { STEPS = 600 };
         for (int i = 0; i < STEPS * STEPS; i++)
-            sum += (double)environment_radiance(l, sample_uniform_sphere((vec2){((float)(i / STEPS) + 0.5f) / STEPS,
+            sum += (double)environment_whole_radiance(l, sample_uniform_sphere((vec2){((float)(i / STEPS) + 0.5f) / STEPS,
                                                                                 ((float)(i % STEPS) + 0.5f) / STEPS}))
                        .r;
         double integral = sum * 4.0 * PI / (STEPS * STEPS), radius = s->bounding_radius;
@@ -369,7 +371,7 @@ static void a_black_picture_sends_nothing(void **state)
     light_emission start;
     assert_false(light_sample_from_point(s, &s->lights[0], vec3_make(0.0f, 0.0f, 0.0f), (vec2){0.5f, 0.5f}, &at));
     assert_false(light_sample_emission(s, &s->lights[0], NULL, &random, &start));
-    assert_true(environment_pdf(&s->lights[0], vec3_make(0.0f, 0.0f, 1.0f)) == 0.0f);
+    assert_true(environment_pdf(&s->lights[0], vec3_make(0.0f, 0.0f, 0.0f), vec3_make(0.0f, 0.0f, 1.0f)) == 0.0f);
     assert_true(rgb_is_black(s->light_power));
     scene_destroy(s);
     test_run_reset(&r);

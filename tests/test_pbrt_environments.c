@@ -59,12 +59,12 @@ static void pictures(void **state)
     for (int i = 0; i < SIZE * SIZE; i++)
         assert_rgb(e->pixels[i], 3 * i, 3 * i + 1, 3 * i + 2, 0);
     /* +x, -x, +y, -y, +z, -z of the light are the right, left, bottom, top edges', the middle's and the corner's */
-    assert_true(environment_radiance(l, vec3_make(0.999f, 0.04f, 0.02f)).r == 2.0f * pixels[3 * (4 * SIZE + 7)]);
-    assert_true(environment_radiance(l, vec3_make(-0.999f, 0.04f, 0.02f)).r == 2.0f * pixels[3 * (4 * SIZE + 0)]);
-    assert_true(environment_radiance(l, vec3_make(0.04f, 0.999f, 0.02f)).r == 2.0f * pixels[3 * (7 * SIZE + 4)]);
-    assert_true(environment_radiance(l, vec3_make(0.04f, -0.999f, 0.02f)).r == 2.0f * pixels[3 * (0 * SIZE + 4)]);
-    assert_true(environment_radiance(l, vec3_make(0.01f, 0.01f, 1.0f)).r == 2.0f * pixels[3 * (4 * SIZE + 4)]);
-    assert_true(environment_radiance(l, vec3_make(0.01f, 0.01f, -1.0f)).r == 2.0f * pixels[3 * (7 * SIZE + 7)]);
+    assert_true(environment_whole_radiance(l, vec3_make(0.999f, 0.04f, 0.02f)).r == 2.0f * pixels[3 * (4 * SIZE + 7)]);
+    assert_true(environment_whole_radiance(l, vec3_make(-0.999f, 0.04f, 0.02f)).r == 2.0f * pixels[3 * (4 * SIZE + 0)]);
+    assert_true(environment_whole_radiance(l, vec3_make(0.04f, 0.999f, 0.02f)).r == 2.0f * pixels[3 * (7 * SIZE + 4)]);
+    assert_true(environment_whole_radiance(l, vec3_make(0.04f, -0.999f, 0.02f)).r == 2.0f * pixels[3 * (0 * SIZE + 4)]);
+    assert_true(environment_whole_radiance(l, vec3_make(0.01f, 0.01f, 1.0f)).r == 2.0f * pixels[3 * (4 * SIZE + 4)]);
+    assert_true(environment_whole_radiance(l, vec3_make(0.01f, 0.01f, -1.0f)).r == 2.0f * pixels[3 * (7 * SIZE + 7)]);
     reading_destroy(&r);
 
     const char *wide = write_environment("wide.exr", 4, 2, IMAGE_HALF, pixels);
@@ -165,7 +165,7 @@ static void errors(void **state)
     const struct {
         const char *parameters, *error;
     } cases[] = {
-        {parameters[0], "is 3 x 2: the picture of an infinite light is square (octahedral) or twice as wide as high"},
+        {parameters[0], "is 3 x 2: the picture of such a light is square (octahedral) or twice as wide as high"},
         {parameters[1], "no light comes from the upper half of the picture"},
         {parameters[2], "an infinite light has \"L\" or \"filename\", not both"},
         {parameters[3], "none.exr\": "},

@@ -45,8 +45,8 @@ static void spot_lights(void **state)
     assert_int_equal(l->kind, LIGHT_SPOT);
     assert_rgb(l->intensity, 1, 1, 1, 0);
     assert_vec3(l->direction, 1, 0, 0, 1e-6);
-    assert_near(l->cos_total_width, cos(30 * PI / 180), 1e-6);
-    assert_near(l->cos_falloff_start, cos(25 * PI / 180), 1e-6);
+    assert_near(l->falloff_end, 1 - cos(30 * PI / 180), 1e-7);
+    assert_near(l->falloff_start, 1 - cos(25 * PI / 180), 1e-7);
     reading_destroy(&r);
     r = reading_of(
         "WorldBegin LightSource \"spot\" \"point3 from\" [ 1 1 1 ] \"point3 to\" [ 1 -4 1 ] \"float coneangle\" 60\n"
@@ -59,7 +59,7 @@ static void spot_lights(void **state)
     reading_destroy(&r);
     /* a cone narrower than the default penumbra: pbrt counts on beyond the axis */
     r = reading_of("WorldBegin LightSource \"spot\" \"float coneangle\" 3");
-    assert_near(only_light(&r)->cos_falloff_start, cos(2 * PI / 180), 1e-6);
+    assert_near(only_light(&r)->falloff_start, 1 - cos(2 * PI / 180), 1e-9);
     reading_destroy(&r);
 }
 

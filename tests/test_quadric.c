@@ -348,7 +348,7 @@ static void lamps_shine_as_they_are_seen(void **state)
                     surface_hit hit;
                     if (scene_intersect(s, scene_ray_make(point, at.direction), INFINITY, &hit) &&
                         fabsf(vec3_dot(hit.geometric_normal, at.direction)) > 0.05f) /* flatter ones lose digits */
-                        assert_relative(light_pdf_from_point(s, lamp, point, hit.position, hit.geometric_normal),
+                        assert_relative(light_pdf_from_point(s, lamp, point, &hit),
                                         at.pdf_solid_angle, 0.02);
                 }
                 /* a cone of a third of a turn holds the scene: its sine is at most 2/3 */
@@ -357,8 +357,7 @@ static void lamps_shine_as_they_are_seen(void **state)
                 vec3 direction = frame_to_world(&f, local);
                 surface_hit hit;
                 if (scene_intersect(s, scene_ray_make(point, direction), INFINITY, &hit))
-                    seen += (double)light_emitted_radiance(lamp, hit.geometric_normal, vec3_negate(direction)).r * PI /
-                            count;
+                    seen += (double)light_emitted_radiance(s, lamp, &hit, vec3_negate(direction)).r * PI / count;
             }
             double share = fmin(1.0, seen / PI / (double)lamp->radiance.r);
             double seen_error = PI * (double)lamp->radiance.r * sqrt(share * (1.0 - share) / count);
