@@ -41,6 +41,11 @@ typedef struct material {
     bool is_textured;
     bool remaps_roughness; /* alpha is the square root of the texture's value */
     uint32_t reflectance_texture, transmittance_texture, alpha_u_texture, alpha_v_texture, mix_amount_texture;
+
+    /* What tilts the shading normal, SCENE_NO_TEXTURE: nothing; of a mix those of the one picked (shading_frame.h). */
+    uint32_t displacement_texture; /* a float: how far the surface seems raised, along its normal */
+    uint32_t normal_map_texture;   /* a colour: 2 c - 1 is the normal along dp/du, dp/dv and the shading normal */
+    float normal_scale;            /* what its first two components are multiplied by; 1 */
 } material;
 
 /* The k with which a conductor of index 1 reflects r at normal incidence, as pbrt-v4 has it. */

@@ -16,6 +16,8 @@ static material default_material(void)
     m.kind = MATERIAL_DIFFUSE;
     m.reflectance = rgb_gray(0.5f);
     m.ior = 1.5f;
+    m.normal_scale = 1.0f;
+    m.displacement_texture = m.normal_map_texture = SCENE_NO_TEXTURE;
     m.reflectance_texture = m.transmittance_texture = m.alpha_u_texture = m.alpha_v_texture = m.mix_amount_texture =
         SCENE_NO_TEXTURE;
     return m;

@@ -105,9 +105,7 @@ ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, 
                                bool expects_degenerate)
 {
     const pbrt_state *state = &parser->state;
-    shape s;
-    memset(&s, 0, sizeof s);
-    s.kind = SHAPE_MESH;
+    shape s = shape_make(SHAPE_MESH);
     s.flip_normal = state->reverse_orientation != transform_swaps_handedness(&state->world_from_object);
     s.as.mesh = *object_mesh;
     mesh *m = &s.as.mesh;

@@ -62,9 +62,7 @@ static ag_status read_heights(pbrt_parser *parser, parameter_list *list, float z
 
 static ag_status read_sphere(pbrt_parser *parser, parameter_list *list)
 {
-    shape s;
-    memset(&s, 0, sizeof s);
-    s.kind = SHAPE_SPHERE;
+    shape s = shape_make(SHAPE_SPHERE);
     quadric *q = &s.as.quadric;
     PBRT_TRY(read_round(parser, list, q));
     PBRT_TRY(read_heights(parser, list, -q->radius, q->radius, q));
@@ -78,9 +76,7 @@ static ag_status read_sphere(pbrt_parser *parser, parameter_list *list)
 
 static ag_status read_cylinder(pbrt_parser *parser, parameter_list *list)
 {
-    shape s;
-    memset(&s, 0, sizeof s);
-    s.kind = SHAPE_CYLINDER;
+    shape s = shape_make(SHAPE_CYLINDER);
     quadric *q = &s.as.quadric;
     PBRT_TRY(read_round(parser, list, q));
     PBRT_TRY(read_heights(parser, list, -1.0f, 1.0f, q));
@@ -92,9 +88,7 @@ static ag_status read_cylinder(pbrt_parser *parser, parameter_list *list)
 
 static ag_status read_disk(pbrt_parser *parser, parameter_list *list)
 {
-    shape s;
-    memset(&s, 0, sizeof s);
-    s.kind = SHAPE_DISK;
+    shape s = shape_make(SHAPE_DISK);
     quadric *q = &s.as.quadric;
     PBRT_TRY(read_round(parser, list, q));
     PBRT_TRY(parameter_get_float(list, parser->log, "innerradius", &q->inner_radius));

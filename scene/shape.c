@@ -3,8 +3,21 @@
  * Threads: shape_commit by one thread; the rest read only. */
 #include "math/sampling.h"
 #include "quadric.h"
+#include "texture.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+shape shape_make(shape_kind kind)
+{
+    shape s;
+    memset(&s, 0, sizeof s);
+    s.kind = kind;
+    s.light_index = SHAPE_NO_LIGHT;
+    s.alpha = 1.0f;
+    s.alpha_texture = SCENE_NO_TEXTURE;
+    return s;
+}
 
 static vec3 mesh_vertex(const mesh *m, uint32_t triangle, int corner)
 {

@@ -54,11 +54,17 @@ typedef struct shape {
                                              * light that starts here */
     uint32_t material_index;
     uint32_t light_index; /* SHAPE_NO_LIGHT where it does not shine */
+    float alpha;            /* the share of it that is there, [0, 1]: rays pass through the rest (alpha.h) */
+    uint32_t alpha_texture; /* a float texture in place of alpha; SCENE_NO_TEXTURE: none */
+    float alpha_cutoff;     /* above 0: a place is there, wholly, where alpha is at least that */
     union {
         mesh mesh;
         quadric quadric;
     } as;
     float area; /* m^2, world; set by scene_commit */
 } shape;
+
+/* A shape with nothing in it yet: opaque, dark, of the scene's first material. */
+shape shape_make(shape_kind kind);
 
 #endif
