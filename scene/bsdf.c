@@ -5,6 +5,7 @@
 #include "bsdf_lobe.h"
 #include "fresnel.h"
 #include "scene.h"
+#include "shading_frame.h"
 
 /* The largest factor that shading normals may add to a photon: beyond it lie grazing silhouettes only. */
 static const float CORRECTION_MAX = 8.0f;
@@ -66,10 +67,10 @@ static void add_lobes(bsdf *b)
     normalize_probabilities(b);
 }
 
-bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out)
+static bsdf create_in_frame(const material *matter, frame shading, const surface_hit *hit, vec3 out)
 {
     bsdf b;
-    b.shading = frame_from_z(hit->shading_normal);
+    b.shading = shading;
     b.geometric_normal = hit->geometric_normal;
     b.out = out;
     b.matter = *matter;
@@ -78,11 +79,16 @@ bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out)
     return b;
 }
 
+bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out)
+{
+    return create_in_frame(matter, frame_from_z(hit->shading_normal), hit, out);
+}
+
 bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out)
 {
     material here;
     material_at(s, hit, &here);
-    return bsdf_create_of(&here, hit, out);
+    return create_in_frame(&here, shading_frame_at(s, hit, &here), hit, out);
 }
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes)

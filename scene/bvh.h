@@ -25,7 +25,7 @@ typedef struct surface_hit {
     vec3 position;
     vec3 geometric_normal; /* unit, to the shape's outside */
     vec3 shading_normal;   /* unit, on the geometric normal's side */
-    vec2 uv;               /* pbrt's, in [0, 1] on quadrics; a mesh's own, or barycentrics where it has none */
+    vec2 uv;               /* pbrt's, in [0, 1] on quadrics; a mesh's own, or (0, 0), (1, 0), (1, 1) on each triangle */
     float distance;        /* along the ray, for a unit direction in scene units */
     float epsilon;         /* how far off the surface a new ray must start so as not to meet it again, scene units */
     bool is_flat;          /* part of a mesh, whose corners a start must stay out of: see surface_ray */
@@ -51,6 +51,10 @@ bool scene_occluded(const scene *s, scene_ray ray, float max_distance);
  * starts in the corners of closed rooms inside. On round surfaces it would turn the path a little each time, and let
  * out light that is trapped in glass. */
 scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction);
+
+/* Along which the surface's u and v grow there, in world space, unless it is a mesh with tangents of its own: those, and
+ * across them on v's side. Worked out anew at each call. Where there are none, any that lie in the surface. */
+void surface_tangents(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec3 *out_dpdv);
 
 /* A random place on a shape, in proportion to area. pdf_area: 1/m^2. */
 typedef struct surface_sample {

@@ -27,6 +27,7 @@ static void shape_free_arrays(shape *s)
     free(s->as.mesh.positions);
     free(s->as.mesh.normals);
     free(s->as.mesh.uvs);
+    free(s->as.mesh.tangents);
     free(s->as.mesh.indices);
     free(s->as.mesh.area_cdf);
 }
@@ -98,18 +99,37 @@ ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index
     return AG_OK;
 }
 
+/* Half a pixel of a picture that lies on uv; of others what pbrt takes where it knows no better. */
+static float own_step(const scene *s, const texture *t)
+{
+    static const float STEP = 0.0005f, STEP_MIN = 1e-5f, STEP_MAX = 0.25f;
+    if (t->kind == TEXTURE_CONSTANT || t->kind == TEXTURE_SCALE || t->kind == TEXTURE_MIX)
+        return STEP_MAX; /* no finer than their inputs */
+    if (t->kind != TEXTURE_IMAGE || t->mapping.kind != TEXTURE_MAPPING_UV)
+        return STEP;
+    const texture_image *picture = s->texture_images[t->image_index];
+    float pixels = fmaxf(fabsf(t->mapping.scale.x) * (float)picture->width,
+                         fabsf(t->mapping.scale.y) * (float)picture->height);
+    return pixels > 0.0f ? fminf(fmaxf(0.5f / pixels, STEP_MIN), STEP_MAX) : STEP_MAX;
+}
+
 ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index)
 {
     uint32_t cost = 1;
+    float step = own_step(s, item);
     for (size_t i = 0; i < sizeof item->inputs / sizeof *item->inputs; i++)
-        if (item->inputs[i].texture_index != SCENE_NO_TEXTURE)
-            cost += s->textures[item->inputs[i].texture_index].cost; /* each is at most TEXTURE_MAX_COST */
+        if (item->inputs[i].texture_index != SCENE_NO_TEXTURE) {
+            const texture *input = &s->textures[item->inputs[i].texture_index];
+            cost += input->cost; /* each is at most TEXTURE_MAX_COST */
+            step = fminf(step, input->step);
+        }
     if (cost > TEXTURE_MAX_COST)
         return AG_ERROR_SCENE;
     if (!grow((void **)&s->textures, s->texture_count, sizeof *s->textures))
         return AG_ERROR_MEMORY;
     *out_index = s->texture_count;
     s->textures[s->texture_count] = *item;
+    s->textures[s->texture_count].step = step;
     s->textures[s->texture_count++].cost = cost;
     return AG_OK;
 }

@@ -154,7 +154,7 @@ float shape_pdf_area(const shape *s, vec3 geometric_normal)
 
 static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, float v, surface_hit *h)
 {
-    h->uv = (vec2){u, v};
+    h->uv = (vec2){u + v, v}; /* as pbrt: (0, 0), (1, 0), (1, 1) */
     const mesh *m = &s->as.mesh;
     const uint32_t *index = m->indices + 3 * (size_t)primitive_index;
     vec3 p0 = m->positions[index[0]], p1 = m->positions[index[1]], p2 = m->positions[index[2]];

@@ -25,6 +25,7 @@ typedef struct mesh {
     vec3 *positions;
     vec3 *normals;     /* unit shading normals, or NULL */
     vec2 *uvs;         /* or NULL */
+    vec3 *tangents;    /* of any length, for the shading frame alone, or NULL: then uvs say which way they go */
     uint32_t *indices; /* 3 per triangle, each < vertex_count */
     float *area_cdf;   /* of emissive meshes, else NULL: [triangle_count], running sum of areas over the total */
 } mesh;

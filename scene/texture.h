@@ -55,6 +55,7 @@ typedef struct texture {
     float roughness; /* the same: of an octave over the one before */
     float variation; /* marble */
     uint32_t cost;   /* set by scene_add_texture */
+    float step;      /* likewise: of u and v, over which its slope is to be taken */
 } texture;
 
 /* The value at a hit. Of a float texture all components are the same. */
