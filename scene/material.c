@@ -17,8 +17,44 @@ static void make_rough_on_both_axes(float *alpha_u, float *alpha_v)
     }
 }
 
+material material_make(material_kind kind)
+{
+    material m;
+    memset(&m, 0, sizeof m);
+    m.kind = kind;
+    m.reflectance = rgb_gray(0.5f);
+    m.ior = 1.5f;
+    m.specular_color = rgb_gray(1.0f);
+    m.specular = m.metallic = m.roughness = 1.0f;
+    m.is_thin = true;
+    if (kind == MATERIAL_PRINCIPLED)
+        m.reflectance = rgb_gray(1.0f);
+    if (kind == MATERIAL_DIFFUSE_TRANSMISSION)
+        m.reflectance = m.transmittance = rgb_gray(0.25f);
+    m.mix_amount = 0.5f;
+    m.reflectance_texture = m.transmittance_texture = m.alpha_u_texture = m.alpha_v_texture = m.mix_amount_texture =
+        m.metallic_texture = m.roughness_texture = m.transmission_texture = m.specular_texture =
+            m.specular_color_texture = m.clearcoat_texture = m.clearcoat_roughness_texture = SCENE_NO_TEXTURE;
+    m.displacement_texture = m.normal_map_texture = SCENE_NO_TEXTURE;
+    m.normal_scale = 1.0f;
+    return m;
+}
+
+static bool has_textures(const material *m)
+{
+    const uint32_t textures[] = {m->reflectance_texture,    m->transmittance_texture, m->alpha_u_texture,
+                                 m->alpha_v_texture,        m->mix_amount_texture,    m->metallic_texture,
+                                 m->roughness_texture,      m->transmission_texture,  m->specular_texture,
+                                 m->specular_color_texture, m->clearcoat_texture,     m->clearcoat_roughness_texture};
+    for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
+        if (textures[i] != SCENE_NO_TEXTURE)
+            return true;
+    return false;
+}
+
 void material_prepare(material *m)
 {
+    m->is_textured = has_textures(m);
     make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
     make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
     if (m->kind == MATERIAL_COATED_DIFFUSE)
@@ -42,7 +78,9 @@ static const material *resolve_mix(const scene *s, const material *m, const surf
     while (m->kind == MATERIAL_MIX) {
         hash = hash_mix64(hash + 0x9e3779b97f4a7c15u);
         float u = (float)(hash >> 40) * 0x1p-24f;
-        float amount = m->is_textured ? texture_evaluate_float(s, m->mix_amount_texture, hit) : m->mix_amount;
+        float amount = m->mix_amount;
+        if (m->mix_amount_texture != SCENE_NO_TEXTURE)
+            amount = texture_evaluate_float(s, m->mix_amount_texture, hit);
         m = &s->materials[m->mixed[u < amount ? 1 : 0]];
     }
     return m;

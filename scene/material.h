@@ -1,5 +1,6 @@
 /* material.h: what a surface is made of, as the scene file says it; bsdf.h makes scattering of it.
- * The parameters and their defaults are pbrt-v4's (pbrt.org/fileformat-v4, "Materials").
+ * The parameters and their defaults are pbrt-v4's (pbrt.org/fileformat-v4, "Materials"), those of MATERIAL_PRINCIPLED
+ * glTF's (Khronos, "glTF 2.0 Specification", appendix B; KHR_materials_transmission, _ior, _specular, _clearcoat).
  * Threads: read-only once the scene is committed. */
 #ifndef AFTERGLOW_MATERIAL_H
 #define AFTERGLOW_MATERIAL_H
@@ -20,6 +21,7 @@ typedef enum material_kind {
     MATERIAL_INTERFACE,        /* no surface: light passes unbent (passage.h), perhaps from one medium to another */
     MATERIAL_COATED_DIFFUSE,   /* a dielectric coat on a diffuse base */
     MATERIAL_COATED_CONDUCTOR, /* a dielectric coat on a conductor */
+    MATERIAL_PRINCIPLED,       /* glTF 2.0's metallic-roughness, with transmission, ior, specular and clearcoat */
     MATERIAL_MIX               /* one of two others, picked by place */
 } material_kind;
 
@@ -37,15 +39,28 @@ typedef struct material {
     uint32_t mixed[2];      /* mix: indices of materials made before */
     float mix_amount;       /* mix: the share of the second, [0, 1] */
 
-    /* Values that vary over the surface, in place of those above; read only where is_textured. */
-    bool is_textured;
+    /* principled; reflectance is the base colour, ior >= 1 or 0 (infinite) */
+    float metallic;     /* [0, 1] */
+    float roughness;    /* as it is perceived, [0, 1]; alpha_u and alpha_v are set to its square */
+    float transmission; /* share of what enters a dielectric that goes through, [0, 1] */
+    float specular;     /* of the dielectric's reflection, [0, 1] */
+    rgb specular_color; /* of the same at normal incidence, >= 0 */
+    float clearcoat;    /* [0, 1] */
+    float clearcoat_roughness; /* as it is perceived, [0, 1] */
+    bool is_thin;       /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
+
+    /* Values that vary over the surface, in place of those above, or of MATERIAL_PRINCIPLED: which they are multiplied
+     * by. Each is SCENE_NO_TEXTURE where there is none; read only where is_textured. */
+    bool is_textured; /* set by scene_add_material */
     bool remaps_roughness; /* alpha is the square root of the texture's value */
     uint32_t reflectance_texture, transmittance_texture, alpha_u_texture, alpha_v_texture, mix_amount_texture;
+    uint32_t metallic_texture, roughness_texture, transmission_texture, specular_texture, specular_color_texture,
+        clearcoat_texture, clearcoat_roughness_texture; /* principled */
 
     /* What tilts the shading normal, SCENE_NO_TEXTURE: nothing; of a mix those of the one picked (shading_frame.h). */
     uint32_t displacement_texture; /* a float: how far the surface seems raised, along its normal */
     uint32_t normal_map_texture;   /* a colour: 2 c - 1 is the normal along dp/du, dp/dv and the shading normal */
-    float normal_scale;            /* what its first two components are multiplied by; 1 */
+    float normal_scale;            /* what its first two components are multiplied by, mostly 1 */
 } material;
 
 /* The k with which a conductor of index 1 reflects r at normal incidence, as pbrt-v4 has it. */
@@ -62,6 +77,10 @@ static inline bool material_is_smooth(float alpha_u, float alpha_v)
 
 struct scene;
 struct surface_hit;
+
+/* A material without textures, all values as pbrt-v4, or of MATERIAL_PRINCIPLED glTF, has them by default: white, metallic,
+ * rough, a thin wall. A conductor's eta and k are 0, and are to be set. */
+material material_make(material_kind kind);
 
 /* Works out what can be beforehand; scene_add_material calls it. */
 void material_prepare(material *m);

@@ -9,20 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static material default_material(void)
-{
-    material m;
-    memset(&m, 0, sizeof m);
-    m.kind = MATERIAL_DIFFUSE;
-    m.reflectance = rgb_gray(0.5f);
-    m.ior = 1.5f;
-    m.normal_scale = 1.0f;
-    m.displacement_texture = m.normal_map_texture = SCENE_NO_TEXTURE;
-    m.reflectance_texture = m.transmittance_texture = m.alpha_u_texture = m.alpha_v_texture = m.mix_amount_texture =
-        SCENE_NO_TEXTURE;
-    return m;
-}
-
 static ag_status read_reflectance(pbrt_parser *parser, parameter_list *list, material *m)
 {
     rgb *r = &m->reflectance;
@@ -186,7 +172,6 @@ static ag_status read_diffuse(pbrt_parser *parser, parameter_list *list, materia
 static ag_status read_diffuse_transmission(pbrt_parser *parser, parameter_list *list, material *m)
 {
     float scale = 1.0f;
-    m->reflectance = m->transmittance = rgb_gray(0.25f);
     PBRT_TRY(pbrt_get_rgb_texture(parser, list, "reflectance", &m->reflectance, &m->reflectance_texture));
     PBRT_TRY(pbrt_get_rgb_texture(parser, list, "transmittance", &m->transmittance, &m->transmittance_texture));
     PBRT_TRY(parameter_get_float(list, parser->log, "scale", &scale));
@@ -214,7 +199,6 @@ static ag_status read_mix(pbrt_parser *parser, parameter_list *list, material *m
 {
     const parameter *names = parameter_list_find(list, "materials");
     const char *ignored;
-    m->mix_amount = 0.5f;
     PBRT_TRY(pbrt_get_float_texture(parser, list, "amount", &m->mix_amount, &m->mix_amount_texture));
     if (!names || names->type != PARAMETER_STRING || names->count != 2)
         return pbrt_refuse(parser, list, "materials", "\"mix\" needs \"string materials\" with two names");
@@ -222,14 +206,6 @@ static ag_status read_mix(pbrt_parser *parser, parameter_list *list, material *m
     for (int i = 0; i < 2; i++)
         PBRT_TRY(find_or_keep_place(parser, names->strings[i], names->where, &m->mixed[i]));
     return AG_OK;
-}
-
-static void mark_textured(material *m)
-{
-    const uint32_t textures[] = {m->reflectance_texture, m->transmittance_texture, m->alpha_u_texture,
-                                 m->alpha_v_texture, m->mix_amount_texture};
-    for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
-        m->is_textured = m->is_textured || textures[i] != SCENE_NO_TEXTURE;
 }
 
 typedef struct material_reader {
@@ -264,12 +240,11 @@ static void name_stand_in(pbrt_parser *parser, const parameter_list *list, const
 
 static ag_status read_material(pbrt_parser *parser, parameter_list *list, const char *type, material *out_material)
 {
-    *out_material = default_material();
+    *out_material = material_make(MATERIAL_DIFFUSE);
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(type, READERS[i].name) == 0) {
-            out_material->kind = READERS[i].kind;
+            *out_material = material_make(READERS[i].kind);
             PBRT_TRY(READERS[i].read(parser, list, out_material));
-            mark_textured(out_material);
             parameter_list_warn_unused(list, parser->log);
             return AG_OK;
         }
@@ -279,7 +254,7 @@ static ag_status read_material(pbrt_parser *parser, parameter_list *list, const 
 
 ag_status pbrt_add_default_material(pbrt_parser *parser)
 {
-    material m = default_material();
+    material m = material_make(MATERIAL_DIFFUSE);
     return scene_add_material(parser->scene, &m, &parser->state.material_index);
 }
 
@@ -365,7 +340,7 @@ static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_
     const pbrt_named_material *named = find_named_material(parser, name);
     if (!named) {
         pbrt_named_material used = {.where = where};
-        material place = default_material();
+        material place = material_make(MATERIAL_DIFFUSE);
         PBRT_TRY(scene_add_material(parser->scene, &place, &used.index));
         PBRT_TRY(add_named_material(parser, name, used));
         named = find_named_material(parser, name);

@@ -48,7 +48,7 @@ static rgb image_value(const scene *s, const texture *t, const surface_hit *hit)
     const texture_image *picture = s->texture_images[t->image_index];
     vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
     if (!t->is_spectrum) {
-        float value = t->scale * texture_image_float(picture, t->wrap, t->filter, st.x, 1.0f - st.y);
+        float value = t->scale * texture_image_float(picture, t->channel, t->wrap, t->filter, st.x, 1.0f - st.y);
         return rgb_gray(t->invert ? fmaxf(0.0f, 1.0f - value) : value);
     }
     rgb value = rgb_scale(texture_image_rgb(picture, t->wrap, t->filter, st.x, 1.0f - st.y), t->scale);

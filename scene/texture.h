@@ -47,6 +47,7 @@ typedef struct texture {
     texture_input inputs[4];
     vec3 direction; /* direction mix: unit, world */
     uint32_t image_index;
+    texture_channel channel; /* image, float textures: which of the picture's */
     texture_wrap wrap;
     texture_filter filter;
     bool invert;     /* image: 1 - value, after scale */

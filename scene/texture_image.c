@@ -22,6 +22,37 @@ static void *keep_channels(void *values, size_t value_size, size_t pixel_count, 
     return smaller ? smaller : values;
 }
 
+/* Alpha as a plane of its own, which look-ups of colours step over; none where it is 1 everywhere. */
+static ag_status take_alpha(texture_image *i, const image *picture, size_t pixel_count)
+{
+    const size_t channel_count = (size_t)picture->channel_count, alpha = channel_count >= 3 ? 3 : 1;
+    bool is_opaque = true;
+    if (channel_count <= alpha)
+        return AG_OK;
+    for (size_t k = 0; k < pixel_count && is_opaque; k++)
+        is_opaque = picture->bytes ? picture->bytes[k * channel_count + alpha] == 255
+                                   : picture->pixels[k * channel_count + alpha] == 1.0f;
+    if (is_opaque)
+        return AG_OK;
+    if (picture->bytes)
+        i->alpha_bytes = malloc(pixel_count);
+    else
+        i->alpha_values = malloc(pixel_count * sizeof *i->alpha_values);
+    if (!i->alpha_bytes && !i->alpha_values)
+        return AG_ERROR_MEMORY;
+    for (size_t k = 0; k < pixel_count; k++) {
+        if (picture->bytes) {
+            i->alpha_bytes[k] = picture->bytes[k * channel_count + alpha];
+            continue;
+        }
+        const float value = picture->pixels[k * channel_count + alpha];
+        const bool is_good = isfinite(value);
+        i->bad_count += is_good ? 0 : 1;
+        i->alpha_values[k] = is_good ? value : 0.0f;
+    }
+    return AG_OK;
+}
+
 /* Takes the picture's pixels. */
 static ag_status take_pixels(texture_image *i, image *picture, char *message, size_t message_size)
 {
@@ -30,6 +61,9 @@ static ag_status take_pixels(texture_image *i, image *picture, char *message, si
     i->width = (uint32_t)picture->width;
     i->height = (uint32_t)picture->height;
     i->channel_count = (uint32_t)kept;
+    ag_status status = take_alpha(i, picture, pixel_count);
+    if (status)
+        return status;
     if (picture->bytes) {
         i->bytes = keep_channels(picture->bytes, 1, pixel_count, channel_count, kept);
         picture->bytes = NULL;
@@ -37,7 +71,7 @@ static ag_status take_pixels(texture_image *i, image *picture, char *message, si
     }
     picture->pixels = keep_channels(picture->pixels, sizeof *picture->pixels, pixel_count, channel_count, kept);
     picture->channel_count = (int)kept;
-    const ag_status status = image_linearize(picture, i->encoding, message, message_size);
+    status = image_linearize(picture, i->encoding, message, message_size);
     i->values = picture->pixels;
     picture->pixels = NULL;
     for (size_t k = 0; k < pixel_count * kept; k++)
@@ -87,6 +121,8 @@ void texture_image_destroy(texture_image *i)
     free(i->path);
     free(i->bytes);
     free(i->values);
+    free(i->alpha_bytes);
+    free(i->alpha_values);
     free(i);
 }
 
@@ -183,8 +219,25 @@ rgb texture_image_rgb(const texture_image *i, texture_wrap wrap, texture_filter 
     return i->channel_count == 1 ? rgb_gray(first) : rgb_make(first, sum_channel(i, &f, 1), sum_channel(i, &f, 2));
 }
 
-float texture_image_float(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t)
+static float sum_alpha(const texture_image *i, const footprint *f)
+{
+    float sum = 0.0f;
+    for (int k = 0; k < f->count; k++) {
+        const size_t pixel = f->offset[k] / i->channel_count;
+        const float alpha = i->alpha_bytes    ? (float)i->alpha_bytes[pixel] * (1.0f / 255.0f)
+                            : i->alpha_values ? i->alpha_values[pixel]
+                                              : 1.0f;
+        sum += f->weight[k] * alpha;
+    }
+    return sum;
+}
+
+float texture_image_float(const texture_image *i, texture_channel channel, texture_wrap wrap, texture_filter filter,
+                          float s, float t)
 {
     const footprint f = find_pixels(i, wrap, filter, s, t);
-    return sum_channel(i, &f, 0);
+    if (channel == TEXTURE_CHANNEL_A)
+        return sum_alpha(i, &f);
+    const bool is_first = i->channel_count == 1 || channel == TEXTURE_CHANNEL_ALL;
+    return sum_channel(i, &f, is_first ? 0 : (size_t)(channel - TEXTURE_CHANNEL_R));
 }

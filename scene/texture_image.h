@@ -22,6 +22,15 @@ typedef enum texture_wrap {
 
 typedef enum texture_filter { TEXTURE_FILTER_BILINEAR, TEXTURE_FILTER_POINT } texture_filter;
 
+/* Of a grey picture all three colours are the same; alpha is 1 where it has none. */
+typedef enum texture_channel {
+    TEXTURE_CHANNEL_ALL, /* the first */
+    TEXTURE_CHANNEL_R,
+    TEXTURE_CHANNEL_G,
+    TEXTURE_CHANNEL_B,
+    TEXTURE_CHANNEL_A /* never encoded */
+} texture_channel;
+
 typedef struct texture_image {
     char *path;
     image_encoding encoding;
@@ -30,11 +39,13 @@ typedef struct texture_image {
     unsigned char *bytes;   /* packed, top row first; or NULL: values */
     float *values;          /* linear */
     float table[256];       /* linear values of the bytes */
+    unsigned char *alpha_bytes; /* with bytes, or NULL: 1 everywhere */
+    float *alpha_values;        /* the same with values */
     uint64_t bad_count;     /* values that were not finite, and are 0 now */
 } texture_image;
 
 /* Loads a picture into the scene's ownership, once for each path and encoding. Three channels or more are taken for
- * red, green, blue and what is left out; one or two for grey and what is left out. Errors: as of image_read,
+ * red, green, blue and alpha, one or two for grey and alpha; what is beyond is left out. Errors: as of image_read,
  * AG_ERROR_COLOR; text in message. */
 ag_status texture_image_load(struct scene *s, const char *path, image_encoding encoding, uint32_t *out_index,
                              char *message, size_t message_size);
@@ -42,7 +53,7 @@ void texture_image_destroy(texture_image *i); /* NULL is fine */
 
 /* s to the right, t down, from the top left corner (0, 0) to the bottom right one (1, 1). */
 rgb texture_image_rgb(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t);
-/* The first channel. */
-float texture_image_float(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t);
+float texture_image_float(const texture_image *i, texture_channel channel, texture_wrap wrap, texture_filter filter,
+                          float s, float t);
 
 #endif

@@ -452,6 +452,60 @@ static void channels_and_sharing(void **state)
     reading_destroy(&r);
 }
 
+/* The picture's channels as four float textures, and as the first; in that order A, R, G, B, all. */
+static void assert_channels(const char *name, const char *encoding, const double expected[5])
+{
+    char world[512];
+    snprintf(world, sizeof world,
+             "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"%s\" \"string encoding\" \"%s\"", name,
+             encoding);
+    static const texture_channel CHANNELS[5] = {TEXTURE_CHANNEL_A, TEXTURE_CHANNEL_R, TEXTURE_CHANNEL_G,
+                                                TEXTURE_CHANNEL_B, TEXTURE_CHANNEL_ALL};
+    reading r = good_world(world);
+    for (int c = 0; c < 5; c++) {
+        r.scene->textures[0].channel = CHANNELS[c];
+        assert_near(last_float(&r, hit_at(0.1f, 0.9f, 0, 0, 0)), expected[c], 2e-5);
+    }
+    reading_destroy(&r);
+}
+
+static void float_textures_read_one_channel(void **state)
+{
+    (void)state;
+    static const float pixel[4] = {1.0f, 1.0f / 3, 2.0f / 3, 0.6f}, opaque[4] = {0.4f, 0.2f, 0.6f, 1.0f}, bad[4] = {1, 1, 1, NAN};
+    static const float multiplied[4] = {0.6f, 0.2f, 0.4f, 0.6f}; /* PNG files are written divided by alpha */
+    write_image("rgba.png", 1, 1, 4, IMAGE_UINT8, multiplied);
+    write_image("rgba16.png", 1, 1, 4, IMAGE_UINT16, multiplied);
+    write_image("rgba.exr", 1, 1, 4, IMAGE_FLOAT, pixel);
+    write_image("opaque.png", 1, 1, 4, IMAGE_UINT8, opaque);
+    write_image("bad.exr", 1, 1, 4, IMAGE_FLOAT, bad);
+    write_image("grey.png", 1, 1, 1, IMAGE_UINT8, opaque + 1);
+    /* colours are decoded, alpha is as it stands */
+    const double decoded[5] = {0.6, 1.0, srgb(1.0 / 3), srgb(2.0 / 3), 1.0}, raw[5] = {0.6, 1.0, 1.0 / 3, 2.0 / 3, 1.0};
+    assert_channels("rgba.png", "sRGB", decoded);
+    assert_channels("rgba.png", "linear", raw);
+    assert_channels("rgba16.png", "sRGB", decoded);
+    assert_channels("rgba.exr", "linear", raw);
+    assert_channels("opaque.png", "linear", (const double[5]){1.0, 0.4, 0.2, 0.6, 0.4});
+    assert_channels("grey.png", "linear", (const double[5]){1.0, 0.2, 0.2, 0.2, 0.2});
+
+    /* between two pixels */
+    static const float two[8] = {0.1f, 0.2f, 0.3f, 0.0f, 0.4f, 0.5f, 0.6f, 1.0f};
+    write_image("two.exr", 2, 1, 4, IMAGE_FLOAT, two);
+    reading r = good_world("Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"two.exr\"");
+    r.scene->textures[0].channel = TEXTURE_CHANNEL_A;
+    assert_near(last_float(&r, hit_at(0.375f, 0.5f, 0, 0, 0)), 0.25, 1e-6);
+    r.scene->textures[0].channel = TEXTURE_CHANNEL_B;
+    assert_near(last_float(&r, hit_at(0.375f, 0.5f, 0, 0, 0)), 0.375, 1e-6);
+    reading_destroy(&r);
+
+    r = read_world("Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"bad.exr\"");
+    assert_int_equal(r.count[AG_LOG_WARNING], 1); /* says that a value is not finite */
+    r.scene->textures[0].channel = TEXTURE_CHANNEL_A;
+    assert_near(last_float(&r, hit_at(0.5f, 0.5f, 0, 0, 0)), 0.0, 0.0);
+    reading_destroy(&r);
+}
+
 /* ---- the reader ---- */
 
 static void wrong_textures_say_why(void **state)
@@ -652,6 +706,7 @@ int main(void)
         TEST_IN_FOLDER(scale_and_invert),
         TEST_IN_FOLDER(encodings),
         TEST_IN_FOLDER(channels_and_sharing),
+        TEST_IN_FOLDER(float_textures_read_one_channel),
         TEST_IN_FOLDER(wrong_textures_say_why),
         TEST_IN_FOLDER(bad_values_are_told),
         TEST_IN_FOLDER(doubtful_textures_are_warned_of),
