@@ -8,6 +8,9 @@
 
 #include <string.h>
 
+/* Of an index of refraction out of a texture, which may be black. */
+#define ETA_MIN 1e-3f
+
 static void make_rough_on_both_axes(float *alpha_u, float *alpha_v)
 {
     /* rough along one axis only: the other must not divide by zero */
@@ -35,6 +38,7 @@ material material_make(material_kind kind)
     m.reflectance_texture = m.transmittance_texture = m.alpha_u_texture = m.alpha_v_texture = m.mix_amount_texture =
         m.metallic_texture = m.roughness_texture = m.transmission_texture = m.specular_texture =
             m.specular_color_texture = m.clearcoat_texture = m.clearcoat_roughness_texture = SCENE_NO_TEXTURE;
+    m.eta_texture = m.k_texture = m.base_alpha_u_texture = m.base_alpha_v_texture = SCENE_NO_TEXTURE;
     m.displacement_texture = m.normal_map_texture = SCENE_NO_TEXTURE;
     m.normal_scale = 1.0f;
     return m;
@@ -45,7 +49,9 @@ static bool has_textures(const material *m)
     const uint32_t textures[] = {m->reflectance_texture,    m->transmittance_texture, m->alpha_u_texture,
                                  m->alpha_v_texture,        m->mix_amount_texture,    m->metallic_texture,
                                  m->roughness_texture,      m->transmission_texture,  m->specular_texture,
-                                 m->specular_color_texture, m->clearcoat_texture,     m->clearcoat_roughness_texture};
+                                 m->specular_color_texture, m->clearcoat_texture,     m->clearcoat_roughness_texture,
+                                 m->eta_texture,            m->k_texture,             m->base_alpha_u_texture,
+                                 m->base_alpha_v_texture};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         if (textures[i] != SCENE_NO_TEXTURE)
             return true;
@@ -130,14 +136,25 @@ static void look_up_textures(const scene *s, const surface_hit *hit, material *m
             m->transmittance = rgb_scale(m->transmittance, 1.0f / sum);
         }
     }
-    const uint32_t alpha_textures[2] = {m->alpha_u_texture, m->alpha_v_texture};
-    float *const alphas[2] = {&m->alpha_u, &m->alpha_v};
-    for (int i = 0; i < 2; i++)
+    float to_air = m->kind == MATERIAL_COATED_CONDUCTOR ? 1.0f / m->ior : 1.0f;
+    if (m->eta_texture != SCENE_NO_TEXTURE) {
+        rgb eta = texture_evaluate_rgb(s, m->eta_texture, hit);
+        m->eta = rgb_scale(rgb_make(fmaxf(eta.r, ETA_MIN), fmaxf(eta.g, ETA_MIN), fmaxf(eta.b, ETA_MIN)), to_air);
+    }
+    if (m->k_texture != SCENE_NO_TEXTURE) {
+        rgb k = texture_evaluate_rgb(s, m->k_texture, hit);
+        m->k = rgb_scale(rgb_make(fmaxf(k.r, 0.0f), fmaxf(k.g, 0.0f), fmaxf(k.b, 0.0f)), to_air);
+    }
+    const uint32_t alpha_textures[] = {m->alpha_u_texture, m->alpha_v_texture, m->base_alpha_u_texture,
+                                       m->base_alpha_v_texture};
+    float *const alphas[] = {&m->alpha_u, &m->alpha_v, &m->base_alpha_u, &m->base_alpha_v};
+    for (int i = 0; i < 4; i++)
         if (alpha_textures[i] != SCENE_NO_TEXTURE) {
             float value = fmaxf(0.0f, texture_evaluate_float(s, alpha_textures[i], hit));
             *alphas[i] = m->remaps_roughness ? sqrtf(value) : value;
         }
     make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
+    make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
 }
 
 void material_at(const scene *s, const surface_hit *hit, material *out_material)

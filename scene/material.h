@@ -54,6 +54,8 @@ typedef struct material {
     bool is_textured; /* set by scene_add_material */
     bool remaps_roughness; /* alpha is the square root of the texture's value */
     uint32_t reflectance_texture, transmittance_texture, alpha_u_texture, alpha_v_texture, mix_amount_texture;
+    uint32_t eta_texture, k_texture;                       /* conductor, from air */
+    uint32_t base_alpha_u_texture, base_alpha_v_texture;
     uint32_t metallic_texture, roughness_texture, transmission_texture, specular_texture, specular_color_texture,
         clearcoat_texture, clearcoat_roughness_texture; /* principled */
 

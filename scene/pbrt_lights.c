@@ -198,7 +198,7 @@ static ag_status read_area_picture(pbrt_parser *parser, parameter_list *list, pb
                  .scale = 1.0f};
     for (size_t i = 0; i < sizeof t.inputs / sizeof *t.inputs; i++)
         t.inputs[i].texture_index = SCENE_NO_TEXTURE;
-    PBRT_TRY(pbrt_load_image(parser, list, name, (image_encoding){0}, &t));
+    PBRT_TRY(pbrt_load_image(parser, list, "filename", name, (image_encoding){0}, &t));
     PBRT_TRY(scene_add_texture(parser->scene, &t, &l->radiance_texture));
     if (l->power > 0.0f)
         l->mean_luminance = mean_luminance(parser->scene->texture_images[t.image_index]);

@@ -3,195 +3,9 @@
  * Flow: pbrt_parser -> [here] -> scene.materials. Threads: one per scene. */
 #define _POSIX_C_SOURCE 200809L
 #include "pbrt_private.h"
-#include "spectra.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static ag_status read_reflectance(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    rgb *r = &m->reflectance;
-    PBRT_TRY(pbrt_get_rgb_texture(parser, list, "reflectance", r, &m->reflectance_texture));
-    if (rgb_max(*r) > 1.0f) {
-        const parameter *p = parameter_list_find(list, "reflectance");
-        log_at(parser->log, AG_LOG_WARNING, p->where, "\"reflectance\" is above 1: 1 is used");
-        *r = rgb_make(fminf(r->r, 1.0f), fminf(r->g, 1.0f), fminf(r->b, 1.0f));
-    }
-    return AG_OK;
-}
-
-/* "roughness" and its two axes, of the outer interface; prefix: of the parts of a coated conductor. */
-static ag_status read_roughness(pbrt_parser *parser, parameter_list *list, const char *prefix, material *m)
-{
-    float *const out_alpha[2] = {&m->alpha_u, &m->alpha_v};
-    uint32_t *const out_texture[2] = {&m->alpha_u_texture, &m->alpha_v_texture};
-    static const char *const AXES[2] = {"uroughness", "vroughness"};
-    char name[48];
-    float roughness = 0.0f;
-    uint32_t texture_index = SCENE_NO_TEXTURE;
-    bool remap = true;
-    snprintf(name, sizeof name, "%sroughness", prefix);
-    PBRT_TRY(pbrt_get_float_texture(parser, list, name, &roughness, &texture_index));
-    PBRT_TRY(parameter_get_bool(list, parser->log, "remaproughness", &remap));
-    if (roughness < 0.0f)
-        return pbrt_refuse(parser, list, name, "\"%s\" should not be negative", name);
-    for (int i = 0; i < 2; i++) {
-        float value = roughness;
-        snprintf(name, sizeof name, "%s%s", prefix, AXES[i]);
-        *out_texture[i] = parameter_list_find(list, name) ? SCENE_NO_TEXTURE : texture_index;
-        PBRT_TRY(pbrt_get_float_texture(parser, list, name, &value, out_texture[i]));
-        if (value < 0.0f)
-            return pbrt_refuse(parser, list, name, "\"%s\" should not be negative", name);
-        *out_alpha[i] = remap ? sqrtf(value) : value;
-    }
-    m->remaps_roughness = remap;
-    return AG_OK;
-}
-
-/* eta and k of a conductor, or those that give its reflectance; prefix as for read_roughness. */
-static ag_status read_metal(pbrt_parser *parser, parameter_list *list, const char *prefix, material *m)
-{
-    char eta[32], k[32];
-    snprintf(eta, sizeof eta, "%seta", prefix);
-    snprintf(k, sizeof k, "%sk", prefix);
-    spectra_find_named("metal-Cu-eta", &m->eta);
-    spectra_find_named("metal-Cu-k", &m->k);
-    if (!parameter_list_find(list, "reflectance")) {
-        PBRT_TRY(parameter_get_rgb(list, parser->log, eta, &m->eta));
-        PBRT_TRY(parameter_get_rgb(list, parser->log, k, &m->k));
-        if (!(m->eta.r > 0.0f && m->eta.g > 0.0f && m->eta.b > 0.0f))
-            return pbrt_refuse(parser, list, eta, "\"%s\" should be above 0", eta);
-        return AG_OK;
-    }
-    if (parameter_list_find(list, eta) || parameter_list_find(list, k))
-        return pbrt_refuse(parser, list, "reflectance",
-                           "\"reflectance\" and \"%s\" or \"%s\" cannot both be given to a conductor", eta, k);
-    PBRT_TRY(read_reflectance(parser, list, m));
-    rgb r = m->reflectance;
-    m->eta = rgb_gray(1.0f);
-    m->k = rgb_make(material_k_from_reflectance(r.r), material_k_from_reflectance(r.g), material_k_from_reflectance(r.b));
-    return AG_OK;
-}
-
-/* One index for all light: dispersion is not simulated. */
-static ag_status read_index(pbrt_parser *parser, parameter_list *list, const char *name, float *ior)
-{
-    const parameter *eta = parameter_list_find(list, name);
-    if (eta && eta->type == PARAMETER_SPECTRUM) {
-        rgb value = rgb_gray(*ior);
-        PBRT_TRY(parameter_get_rgb(list, parser->log, name, &value));
-        *ior = value.g;
-    } else {
-        PBRT_TRY(parameter_get_float(list, parser->log, name, ior));
-    }
-    if (!(*ior > 0.0f))
-        return pbrt_refuse(parser, list, name, "\"%s\" should be above 0", name);
-    return AG_OK;
-}
-
-static ag_status read_conductor(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    PBRT_TRY(read_metal(parser, list, "", m));
-    return read_roughness(parser, list, "", m);
-}
-
-static ag_status read_dielectric(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    PBRT_TRY(read_index(parser, list, "eta", &m->ior));
-    return read_roughness(parser, list, "", m);
-}
-
-static ag_status read_thin_dielectric(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    return read_index(parser, list, "eta", &m->ior);
-}
-
-/* pbrt's random walk in a coat: ours is a closed form of it. Its stuff absorbs even where its albedo is 0, and the walk ends
- * after "maxdepth" steps: both darken, so both are kept. */
-static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    float g = 0.0f;
-    m->coat_thickness = 0.01f;
-    int64_t depth = 10, samples = 1;
-    rgb albedo = rgb_gray(0.0f);
-    PBRT_TRY(parameter_get_float(list, parser->log, "thickness", &m->coat_thickness));
-    PBRT_TRY(parameter_get_float(list, parser->log, "g", &g));
-    PBRT_TRY(parameter_get_int(list, parser->log, "maxdepth", &depth));
-    PBRT_TRY(parameter_get_int(list, parser->log, "nsamples", &samples));
-    PBRT_TRY(parameter_get_rgb(list, parser->log, "albedo", &albedo));
-    if (m->coat_thickness < 0.0f)
-        return pbrt_refuse(parser, list, "thickness", "\"thickness\" should not be negative");
-    if (depth < 1 || depth > 1000)
-        return pbrt_refuse(parser, list, "maxdepth", "\"maxdepth\" should be from 1 to 1000");
-    m->coat_bounces = (int)(depth + 1) / 2; /* every other step of the walk meets the base */
-    if (!rgb_is_black(albedo))
-        log_at_once(parser->log, AG_LOG_WARNING, list->where, "coat albedo",
-                    "a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in");
-    return AG_OK;
-}
-
-static ag_status read_coated_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    PBRT_TRY(read_reflectance(parser, list, m));
-    PBRT_TRY(read_index(parser, list, "eta", &m->ior));
-    PBRT_TRY(read_coat_walk(parser, list, m));
-    return read_roughness(parser, list, "", m);
-}
-
-static ag_status read_coated_conductor(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    PBRT_TRY(read_metal(parser, list, "conductor.", m));
-    PBRT_TRY(read_index(parser, list, "interface.eta", &m->ior));
-    PBRT_TRY(read_coat_walk(parser, list, m));
-    PBRT_TRY(read_roughness(parser, list, "conductor.", m));
-    if (m->alpha_u_texture != SCENE_NO_TEXTURE || m->alpha_v_texture != SCENE_NO_TEXTURE)
-        log_at_once(parser->log, AG_LOG_WARNING, list->where, "base roughness",
-                    "a texture for \"conductor.roughness\" is not supported: a smooth conductor stands in");
-    m->base_alpha_u = m->alpha_u;
-    m->base_alpha_v = m->alpha_v;
-    PBRT_TRY(read_roughness(parser, list, "interface.", m));
-    /* the conductor's index is relative to air; under the coat it is relative to the coat */
-    m->eta = rgb_scale(m->eta, 1.0f / m->ior);
-    m->k = rgb_scale(m->k, 1.0f / m->ior);
-    return AG_OK;
-}
-
-/* It has no parameters. */
-static ag_status read_interface(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    (void)parser, (void)list, (void)m;
-    return AG_OK;
-}
-
-static ag_status read_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    return read_reflectance(parser, list, m);
-}
-
-static ag_status read_diffuse_transmission(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    float scale = 1.0f;
-    PBRT_TRY(pbrt_get_rgb_texture(parser, list, "reflectance", &m->reflectance, &m->reflectance_texture));
-    PBRT_TRY(pbrt_get_rgb_texture(parser, list, "transmittance", &m->transmittance, &m->transmittance_texture));
-    PBRT_TRY(parameter_get_float(list, parser->log, "scale", &scale));
-    if (scale < 0.0f)
-        return pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
-    m->reflectance = rgb_scale(m->reflectance, scale);
-    m->transmittance = rgb_scale(m->transmittance, scale);
-    if (scale != 1.0f &&
-        (m->reflectance_texture != SCENE_NO_TEXTURE || m->transmittance_texture != SCENE_NO_TEXTURE))
-        log_at_once(parser->log, AG_LOG_WARNING, list->where, "transmission scale",
-                    "\"scale\" is not applied to textures of \"diffusetransmission\"");
-    rgb sum = rgb_add(m->reflectance, m->transmittance);
-    if (rgb_max(sum) > 1.0f) {
-        log_at(parser->log, AG_LOG_WARNING, list->where,
-               "\"reflectance\" and \"transmittance\" are above 1 together: both are scaled down");
-        m->reflectance = rgb_scale(m->reflectance, 1.0f / rgb_max(sum));
-        m->transmittance = rgb_scale(m->transmittance, 1.0f / rgb_max(sum));
-    }
-    return AG_OK;
-}
 
 static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_index);
 
@@ -208,47 +22,50 @@ static ag_status read_mix(pbrt_parser *parser, parameter_list *list, material *m
     return AG_OK;
 }
 
+/* It has no parameters. */
+static ag_status read_interface(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    (void)parser, (void)list, (void)m;
+    return AG_OK;
+}
+
 typedef struct material_reader {
     const char *name;
     material_kind kind;
-    ag_status (*read)(pbrt_parser *parser, parameter_list *list, material *m);
+    pbrt_material_reader *read;
 } material_reader;
 
 static const material_reader READERS[] = {
-    {"diffuse", MATERIAL_DIFFUSE, read_diffuse},
-    {"diffusetransmission", MATERIAL_DIFFUSE_TRANSMISSION, read_diffuse_transmission},
-    {"conductor", MATERIAL_CONDUCTOR, read_conductor},
-    {"dielectric", MATERIAL_DIELECTRIC, read_dielectric},
-    {"thindielectric", MATERIAL_THIN_DIELECTRIC, read_thin_dielectric},
-    {"coateddiffuse", MATERIAL_COATED_DIFFUSE, read_coated_diffuse},
-    {"coatedconductor", MATERIAL_COATED_CONDUCTOR, read_coated_conductor},
+    {"diffuse", MATERIAL_DIFFUSE, pbrt_read_diffuse},
+    {"diffusetransmission", MATERIAL_DIFFUSE_TRANSMISSION, pbrt_read_diffuse_transmission},
+    {"conductor", MATERIAL_CONDUCTOR, pbrt_read_conductor},
+    {"dielectric", MATERIAL_DIELECTRIC, pbrt_read_dielectric},
+    {"thindielectric", MATERIAL_THIN_DIELECTRIC, pbrt_read_thin_dielectric},
+    {"coateddiffuse", MATERIAL_COATED_DIFFUSE, pbrt_read_coated_diffuse},
+    {"coatedconductor", MATERIAL_COATED_CONDUCTOR, pbrt_read_coated_conductor},
     {"mix", MATERIAL_MIX, read_mix},
     {"interface", MATERIAL_INTERFACE, read_interface},
     {"none", MATERIAL_INTERFACE, read_interface},
     {"", MATERIAL_INTERFACE, read_interface},
+    {"hair", MATERIAL_DIFFUSE, pbrt_read_hair},
+    {"subsurface", MATERIAL_COATED_DIFFUSE, pbrt_read_subsurface},
+    {"measured", MATERIAL_DIFFUSE, pbrt_read_measured},
 };
-
-/* What is not supported yet gets the nearest plain thing. Its parameters go unread with it. */
-static void name_stand_in(pbrt_parser *parser, const parameter_list *list, const char *type)
-{
-    char key[96];
-    snprintf(key, sizeof key, "material:%s", type);
-    log_at_once(parser->log, AG_LOG_WARNING, list->where, key,
-                "material \"%s\" is not known, or not supported yet: \"diffuse\" with a reflectance of 0.5 stands in",
-                type);
-}
+static const material_reader UNKNOWN = {"", MATERIAL_DIFFUSE, pbrt_read_unknown};
 
 static ag_status read_material(pbrt_parser *parser, parameter_list *list, const char *type, material *out_material)
 {
+    const material_reader *reader = &UNKNOWN;
     *out_material = material_make(MATERIAL_DIFFUSE);
+    PBRT_TRY(pbrt_upgrade_material(parser, list, &type));
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
-        if (strcmp(type, READERS[i].name) == 0) {
-            *out_material = material_make(READERS[i].kind);
-            PBRT_TRY(READERS[i].read(parser, list, out_material));
-            parameter_list_warn_unused(list, parser->log);
-            return AG_OK;
-        }
-    name_stand_in(parser, list, type);
+        if (strcmp(type, READERS[i].name) == 0)
+            reader = &READERS[i];
+    *out_material = material_make(reader->kind);
+    PBRT_TRY(reader->read(parser, list, out_material));
+    if (reader->kind != MATERIAL_MIX && reader->kind != MATERIAL_INTERFACE) /* mixes have those of the two they mix */
+        PBRT_TRY(pbrt_read_maps(parser, list, out_material));
+    parameter_list_warn_unused(list, parser->log);
     return AG_OK;
 }
 

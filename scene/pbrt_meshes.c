@@ -33,7 +33,7 @@ static vec3 world_normal(const transform *t, bool reverse, vec3 n)
 }
 
 /* Any length will do, but those of a double may be none of a float. */
-static vec3 float_normal(const double *n)
+static vec3 float_direction(const double *n)
 {
     double largest = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
     if (!(largest > 0.0))
@@ -48,7 +48,10 @@ static bool allocate_arrays(const pbrt_mesh *source, mesh *m)
         m->normals = malloc(source->vertex_count * sizeof *m->normals);
     if (source->uvs)
         m->uvs = malloc(source->vertex_count * sizeof *m->uvs);
-    return m->positions && (!source->normals || m->normals) && (!source->uvs || m->uvs);
+    if (source->tangents)
+        m->tangents = malloc(source->vertex_count * sizeof *m->tangents);
+    return m->positions && (!source->normals || m->normals) && (!source->uvs || m->uvs) &&
+           (!source->tangents || m->tangents);
 }
 
 static void free_arrays(mesh *m)
@@ -56,6 +59,7 @@ static void free_arrays(mesh *m)
     free(m->positions);
     free(m->normals);
     free(m->uvs);
+    free(m->tangents);
     free(m->indices);
 }
 
@@ -67,10 +71,13 @@ static void copy_vertices(const pbrt_mesh *source, mesh *m)
     }
     if (m->normals)
         for (size_t i = 0; i < source->vertex_count; i++)
-            m->normals[i] = float_normal(source->normals + 3 * i);
+            m->normals[i] = float_direction(source->normals + 3 * i);
     if (m->uvs)
         for (size_t i = 0; i < source->vertex_count; i++)
             m->uvs[i] = (vec2){(float)source->uvs[2 * i], (float)source->uvs[2 * i + 1]};
+    if (m->tangents)
+        for (size_t i = 0; i < source->vertex_count; i++)
+            m->tangents[i] = float_direction(source->tangents + 3 * i);
 }
 
 /* From object to world space; false where a vertex is out of reach. */
@@ -86,6 +93,11 @@ static bool transform_vertices(const pbrt_state *state, mesh *m)
     if (m->normals)
         for (uint32_t i = 0; i < m->vertex_count; i++)
             m->normals[i] = world_normal(t, state->reverse_orientation, m->normals[i]);
+    if (m->tangents)
+        for (uint32_t i = 0; i < m->vertex_count; i++) {
+            vec3 along = transform_vector(t, m->tangents[i]);
+            m->tangents[i] = vec3_is_finite(along) ? along : (vec3){0.0f, 0.0f, 0.0f};
+        }
     return true;
 }
 
@@ -186,6 +198,8 @@ ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_
     size_t vertex_count = out_mesh->vertex_count = position_count / 3;
     PBRT_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, 3 * vertex_count, &out_mesh->normals));
     PBRT_TRY(read_vertex_data(parser, list, "uv", PARAMETER_POINT2, 2 * vertex_count, &out_mesh->uvs));
+    if (corners == 3) /* patches have none */
+        PBRT_TRY(read_vertex_data(parser, list, "S", PARAMETER_VECTOR3, 3 * vertex_count, &out_mesh->tangents));
     /* face numbers serve Ptex only */
     PBRT_TRY(parameter_get_numbers(list, parser->log, "faceIndices", PARAMETER_INTEGER, &unused, &unused_count));
     PBRT_TRY(parameter_get_numbers(list, parser->log, "indices", PARAMETER_INTEGER, &numbers, &number_count));
@@ -217,11 +231,7 @@ ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_
 ag_status pbrt_triangle_mesh(pbrt_parser *parser, parameter_list *list)
 {
     pbrt_mesh source;
-    const double *tangents;
-    size_t index_count, tangent_count;
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "S", PARAMETER_VECTOR3, &tangents, &tangent_count));
-    if (tangents)
-        log_at(parser->log, AG_LOG_DEBUG, list->where, "Shape \"trianglemesh\": \"vector3 S\" is not used");
+    size_t index_count;
     PBRT_TRY(pbrt_read_mesh_arrays(parser, list, 3, &source, &index_count));
     source.triangle_count = index_count / 3;
     parameter_list_warn_unused(list, parser->log);

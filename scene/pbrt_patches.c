@@ -178,17 +178,45 @@ static ag_status cut_into_grids(const pbrt_mesh *source, size_t patch_count, siz
     return AG_OK;
 }
 
-ag_status pbrt_bilinear_mesh(pbrt_parser *parser, parameter_list *list)
+/* The values of the patches' corners, each patch with corners of its own; NULL when out of memory. */
+static double *unshare(const double *values, size_t width, const uint32_t *indices, size_t corner_count)
 {
-    pbrt_mesh source;
-    size_t index_count;
-    PBRT_TRY(pbrt_read_mesh_arrays(parser, list, 4, &source, &index_count));
-    parameter_list_warn_unused(list, parser->log);
-    source.expects_degenerate = true; /* a patch may well have two corners in one place */
-    size_t patch_count = index_count / 4, steps = count_steps(&source, patch_count);
+    double *own = malloc(corner_count * width * sizeof *own + 1);
+    for (size_t i = 0; own && i < corner_count; i++)
+        memcpy(own + width * i, values + width * indices[i], width * sizeof *own);
+    return own;
+}
+
+/* Where the file has no uvs, (0, 0), (1, 0), (0, 1), (1, 1) on every patch. out_arrays: to be freed, on failure too. */
+static ag_status give_uvs(pbrt_mesh *m, size_t patch_count, double *out_arrays[3])
+{
+    static const double UVS[8] = {0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0};
+    if (m->uvs)
+        return AG_OK;
+    out_arrays[0] = unshare(m->positions, 3, m->indices, 4 * patch_count);
+    out_arrays[1] = m->normals ? unshare(m->normals, 3, m->indices, 4 * patch_count) : NULL;
+    out_arrays[2] = malloc(patch_count * sizeof UVS + 1);
+    if (!out_arrays[0] || (m->normals && !out_arrays[1]) || !out_arrays[2])
+        return AG_ERROR_MEMORY;
+    for (size_t i = 0; i < patch_count; i++) {
+        memcpy(out_arrays[2] + 8 * i, UVS, sizeof UVS);
+        for (size_t c = 4 * i; c < 4 * i + 4; c++)
+            m->indices[c] = (uint32_t)c;
+    }
+    m->positions = out_arrays[0];
+    m->normals = out_arrays[1];
+    m->uvs = out_arrays[2];
+    m->vertex_count = 4 * patch_count;
+    return AG_OK;
+}
+
+/* Adds the patches, steps x steps cells of each; source->indices are freed or the scene's afterwards. */
+static ag_status add_patches(pbrt_parser *parser, parameter_list *list, pbrt_mesh *source, size_t patch_count,
+                             size_t steps)
+{
     if (steps == 1) {
-        ag_status status = split_flat(&source, patch_count);
-        return status ? status : pbrt_add_mesh(parser, list, &source);
+        ag_status status = split_flat(source, patch_count);
+        return status ? status : pbrt_add_mesh(parser, list, source);
     }
     log_at(parser->log, AG_LOG_INFO, list->where,
            "Shape \"bilinearmesh\": %zu curved patch%s cut into %zu x %zu cells each", patch_count,
@@ -196,13 +224,32 @@ ag_status pbrt_bilinear_mesh(pbrt_parser *parser, parameter_list *list)
     pbrt_mesh grid;
     double *arrays[3] = {NULL, NULL, NULL};
     memset(&grid, 0, sizeof grid);
-    ag_status status = cut_into_grids(&source, patch_count, steps, &grid, arrays);
+    ag_status status = cut_into_grids(source, patch_count, steps, &grid, arrays);
     if (status)
         free(grid.indices);
     else
         status = pbrt_add_mesh(parser, list, &grid);
     for (int i = 0; i < 3; i++)
         free(arrays[i]);
-    free(source.indices);
+    free(source->indices);
+    return status;
+}
+
+ag_status pbrt_bilinear_mesh(pbrt_parser *parser, parameter_list *list)
+{
+    pbrt_mesh source;
+    size_t index_count;
+    double *arrays[3] = {NULL, NULL, NULL};
+    PBRT_TRY(pbrt_read_mesh_arrays(parser, list, 4, &source, &index_count));
+    parameter_list_warn_unused(list, parser->log);
+    source.expects_degenerate = true; /* a patch may well have two corners in one place */
+    size_t patch_count = index_count / 4, steps = count_steps(&source, patch_count);
+    ag_status status = give_uvs(&source, patch_count, arrays);
+    if (status)
+        free(source.indices);
+    else
+        status = add_patches(parser, list, &source, patch_count, steps);
+    for (int i = 0; i < 3; i++)
+        free(arrays[i]);
     return status;
 }

@@ -222,8 +222,23 @@ uint32_t pbrt_use_medium(pbrt_parser *parser, size_t named);
 /* Error where a medium was used and never made. */
 ag_status pbrt_check_named_media(pbrt_parser *parser);
 
+/* pbrt_material_kinds.c: each reads its parameters into *m, which is made of its kind. The last are stand-ins for what is
+ * not supported, the last for any name. */
+typedef ag_status pbrt_material_reader(pbrt_parser *parser, parameter_list *list, material *m);
+pbrt_material_reader pbrt_read_diffuse, pbrt_read_diffuse_transmission, pbrt_read_conductor, pbrt_read_dielectric,
+    pbrt_read_thin_dielectric, pbrt_read_coated_diffuse, pbrt_read_coated_conductor, pbrt_read_hair,
+    pbrt_read_subsurface, pbrt_read_measured, pbrt_read_unknown;
+/* "displacement" and "normalmap", of all kinds but mixes. */
+pbrt_material_reader pbrt_read_maps;
+
+/* pbrt_old_materials.c: where *type is one of pbrt-v3's names, makes it pbrt-v4's, and the list's parameters with it. */
+ag_status pbrt_upgrade_material(pbrt_parser *parser, parameter_list *list, const char **type);
+
 /* pbrt_textures.c */
 pbrt_handler pbrt_texture;
+/* Loads the picture that the parameter names, and sets t->image_index. */
+ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *parameter_name,
+                          const char *file_name, image_encoding encoding, texture *t);
 /* A parameter that may be a texture. *out_texture_index is the texture's, or SCENE_NO_TEXTURE; *out_constant is written
  * where the parameter stands and has the same value everywhere (a constant texture has), else left alone.
  * Errors: as of parameter_get_rgb and parameter_get_float, and where no such texture of the wanted type is there. */
@@ -231,10 +246,6 @@ ag_status pbrt_get_rgb_texture(pbrt_parser *parser, parameter_list *list, const 
                                uint32_t *out_texture_index);
 ag_status pbrt_get_float_texture(pbrt_parser *parser, parameter_list *list, const char *name, float *out_constant,
                                  uint32_t *out_texture_index);
-
-/* Loads the picture called name, "filename" of the list, and sets t->image_index. */
-ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *name, image_encoding encoding,
-                          texture *t);
 
 /* pbrt_lights.c */
 pbrt_handler pbrt_light_source, pbrt_area_light_source;
@@ -278,6 +289,7 @@ typedef struct pbrt_mesh {
     const double *positions; /* 3 per vertex */
     const double *normals;   /* 3 per vertex, or NULL */
     const double *uvs;       /* 2 per vertex, or NULL */
+    const double *tangents;  /* 3 per vertex, or NULL */
     size_t vertex_count;
     uint32_t *indices; /* 3 per triangle, each < vertex_count; from malloc */
     size_t triangle_count;

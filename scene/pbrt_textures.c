@@ -231,21 +231,21 @@ static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, image_
     return AG_OK;
 }
 
-ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *name, image_encoding encoding,
-                          texture *t)
+ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *parameter_name,
+                          const char *file_name, image_encoding encoding, texture *t)
 {
     char message[1024] = "";
     scene *s = parser->scene;
     uint32_t known_count = s->texture_image_count;
-    char *path = pbrt_find_file(parser, name);
+    char *path = pbrt_find_file(parser, file_name);
     ag_status status =
         path ? texture_image_load(s, path, encoding, &t->image_index, message, sizeof message) : AG_ERROR_MEMORY;
     free(path);
     if (status && status != AG_ERROR_MEMORY)
-        pbrt_refuse(parser, list, "filename", "%s", message);
+        pbrt_refuse(parser, list, parameter_name, "%s", message);
     if (!status && t->image_index >= known_count && s->texture_images[t->image_index]->bad_count > 0)
-        log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, "filename")->where,
-               "\"%s\": %llu values are infinite or not a number, and count as 0", name,
+        log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, parameter_name)->where,
+               "\"%s\": %llu values are infinite or not a number, and count as 0", file_name,
                (unsigned long long)s->texture_images[t->image_index]->bad_count);
     return status;
 }
@@ -273,7 +273,7 @@ static ag_status read_image(pbrt_parser *parser, parameter_list *list, texture *
                           "Texture \"imagemap\" has no \"string filename\"");
     t->wrap = (texture_wrap)wrap;
     t->filter = filter == 1 ? TEXTURE_FILTER_POINT : TEXTURE_FILTER_BILINEAR;
-    return pbrt_load_image(parser, list, name, encoding, t);
+    return pbrt_load_image(parser, list, "filename", name, encoding, t);
 }
 
 static ag_status read_octaves(pbrt_parser *parser, parameter_list *list, texture *t)
