@@ -4,7 +4,7 @@
  * asked otherwise: wider ones give other bits and no more speed for single rays.
  * Threads: the build is joined by the run's workers and no thread is created; rays may be cast from any. */
 #define _GNU_SOURCE
-#include "bvh.h"
+#include "alpha.h"
 #include "cpu_count.h"
 
 #include "embree_api.h"
@@ -13,7 +13,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What Embree gives back to our functions. */
+typedef struct attached {
+    const scene *s;
+    const shape *shape;
+} attached;
+
 struct bvh {
+    attached *attached; /* [shape_count] */
     RTCDevice device;
     RTCScene scene;
     char isa[16];
@@ -46,16 +53,24 @@ static void log_embree_error(void *user, enum RTCError code, const char *text)
 static void quadric_bounds(const struct RTCBoundsFunctionArguments *arguments)
 {
     vec3 low, high;
-    shape_bounds(arguments->geometryUserPtr, &low, &high);
+    shape_bounds(((const attached *)arguments->geometryUserPtr)->shape, &low, &high);
     struct RTCBounds *b = arguments->bounds_o;
     b->lower_x = low.x, b->lower_y = low.y, b->lower_z = low.z;
     b->upper_x = high.x, b->upper_y = high.y, b->upper_z = high.z;
 }
 
-static bool quadric_hit(const void *shape_pointer, const struct RTCRay *ray, float *out_t)
+static bool quadric_hit(const void *user, const struct RTCRay *ray, float *out_t)
 {
-    return shape_intersect_quadric(shape_pointer, (vec3){ray->org_x, ray->org_y, ray->org_z},
-                                   (vec3){ray->dir_x, ray->dir_y, ray->dir_z}, ray->tnear, ray->tfar, out_t);
+    const attached *a = user;
+    vec3 origin = {ray->org_x, ray->org_y, ray->org_z}, direction = {ray->dir_x, ray->dir_y, ray->dir_z};
+    float from = ray->tnear;
+    for (uint32_t crossing = 0; shape_intersect_quadric(a->shape, origin, direction, from, ray->tfar, out_t); crossing++) {
+        if (shape_is_opaque(a->shape) ||
+            alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction, *out_t))
+            return true;
+        from = *out_t;
+    }
+    return false;
 }
 
 /* Only rtcIntersect1 and rtcOccluded1 are used, so N is 1 in both. */
@@ -89,11 +104,28 @@ static void quadric_occluded(const struct RTCOccludedFunctionNArguments *argumen
     EMBREE_REPORT(arguments, was_hit);
 }
 
+/* --- triangles that are not wholly there --- */
+
+/* N is 1 here too. Embree has put the hit's distance into the ray. */
+static void filter_triangle(const struct RTCFilterFunctionNArguments *arguments)
+{
+    const attached *a = arguments->geometryUserPtr;
+    const struct RTCRay *ray = (const struct RTCRay *)(const void *)arguments->ray;
+    const struct RTCHit *hit = (const struct RTCHit *)(const void *)arguments->hit;
+    if (arguments->valid[0] &&
+        !alpha_stops_ray(a->s, a->shape, hit->primID, hit->u, hit->v, 0, (vec3){ray->org_x, ray->org_y, ray->org_z},
+                         (vec3){ray->dir_x, ray->dir_y, ray->dir_z}, ray->tfar))
+        arguments->valid[0] = 0;
+}
+
 /* --- build --- */
 
-static bool attach_shape(bvh *b, const shape *s, uint32_t index)
+static bool attach_shape(bvh *b, attached *user, uint32_t index)
 {
+    const shape *s = user->shape;
     RTCGeometry geometry;
+    if (shape_is_invisible(s))
+        return true;
     if (s->kind == SHAPE_MESH) {
         const mesh *m = &s->as.mesh;
         if (m->triangle_count == 0)
@@ -103,7 +135,11 @@ static bool attach_shape(bvh *b, const shape *s, uint32_t index)
                                    m->vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m->indices, 0,
                                    3 * sizeof(uint32_t), m->triangle_count);
-    } else if (s->as.quadric.uniform_radius > 0.0f) {
+        if (!shape_is_opaque(s)) {
+            rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
+            rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
+        }
+    } else if (s->as.quadric.uniform_radius > 0.0f && shape_is_opaque(s)) {
         geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
         float *sphere = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                                                 4 * sizeof(float), 1);
@@ -116,11 +152,11 @@ static bool attach_shape(bvh *b, const shape *s, uint32_t index)
     } else {
         geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER);
         rtcSetGeometryUserPrimitiveCount(geometry, 1);
-        rtcSetGeometryUserData(geometry, (void *)(uintptr_t)s);
         rtcSetGeometryBoundsFunction(geometry, quadric_bounds, NULL);
         rtcSetGeometryIntersectFunction(geometry, quadric_intersect);
         rtcSetGeometryOccludedFunction(geometry, quadric_occluded);
     }
+    rtcSetGeometryUserData(geometry, user);
     rtcSetGeometryMask(geometry, 0xffffffffu); /* Embree 4's default would be bit 0 alone */
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(b->scene, geometry, index);
@@ -145,6 +181,13 @@ ag_status bvh_create(const scene *s, run_context *run, const char *isa, bvh **ou
     bvh *b = calloc(1, sizeof *b);
     if (!b)
         return AG_ERROR_MEMORY;
+    b->attached = malloc(((size_t)s->shape_count + 1) * sizeof *b->attached);
+    if (!b->attached) {
+        free(b);
+        return AG_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        b->attached[i] = (attached){s, &s->shapes[i]};
     snprintf(b->isa, sizeof b->isa, "%s", isa ? isa : "avx2");
 
     /* Embree caps its threads at the affinity mask; more joiners than that would wait for a place. */
@@ -168,7 +211,7 @@ ag_status bvh_create(const scene *s, run_context *run, const char *isa, bvh **ou
     rtcSetSceneBuildQuality(b->scene, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneProgressMonitorFunction(b->scene, report_progress, run);
     for (uint32_t i = 0; i < s->shape_count; i++)
-        if (!attach_shape(b, &s->shapes[i], i))
+        if (!attach_shape(b, &b->attached[i], i))
             goto fail;
 
     if (joiners == 1)
@@ -204,6 +247,7 @@ void bvh_destroy(bvh *b)
         rtcReleaseScene(b->scene);
     if (b->device)
         rtcReleaseDevice(b->device);
+    free(b->attached);
     free(b);
 }
 

@@ -134,6 +134,8 @@ typedef struct pbrt_parser {
     size_t named_medium_count;
     name_table medium_names;
     name_table float_texture_names, spectrum_texture_names; /* to indices of the scene's */
+    float alpha;            /* of the shape being read */
+    uint32_t alpha_texture; /* likewise */
 } pbrt_parser;
 
 /* Every handler of a directive: where is the directive's place; its name has been read, nothing behind it. */

@@ -12,6 +12,8 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     s->medium_inside = pbrt_use_medium(parser, parser->state.medium_inside);
     s->medium_outside = pbrt_use_medium(parser, parser->state.medium_outside);
     s->has_medium_interface = s->medium_inside != s->medium_outside;
+    s->alpha = parser->alpha;
+    s->alpha_texture = parser->alpha_texture;
     s->material_index = parser->state.material_index;
     s->light_index = SHAPE_NO_LIGHT;
     PBRT_TRY(scene_add_shape(parser->scene, s, &index));
@@ -114,6 +116,15 @@ static bool is_nothing(const pbrt_parser *parser)
            parser->state.medium_inside == parser->state.medium_outside;
 }
 
+/* Of the shape that is read next. */
+static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
+{
+    float alpha = 1.0f;
+    PBRT_TRY(pbrt_get_float_texture(parser, list, "alpha", &alpha, &parser->alpha_texture));
+    parser->alpha = fminf(fmaxf(alpha, 0.0f), 1.0f);
+    return AG_OK;
+}
+
 static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
 {
     static const char *const UNSUPPORTED[] = {"curve"};
@@ -129,6 +140,7 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
                    {"trianglemesh", pbrt_triangle_mesh},
                    {"bilinearmesh", pbrt_bilinear_mesh}};
     const char *left_out = why_left_out(parser);
+    PBRT_TRY(read_alpha(parser, list));
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(list->name, READERS[i].name) == 0) {
             if (is_nothing(parser))

@@ -56,7 +56,7 @@ typedef struct shape {
     uint32_t material_index;
     uint32_t light_index; /* SHAPE_NO_LIGHT where it does not shine */
     float alpha;            /* the share of it that is there, [0, 1]: rays pass through the rest (alpha.h) */
-    uint32_t alpha_texture; /* a float texture in place of alpha; SCENE_NO_TEXTURE: none */
+    uint32_t alpha_texture; /* a float texture that multiplies it; SCENE_NO_TEXTURE: none */
     float alpha_cutoff;     /* above 0: a place is there, wholly, where alpha is at least that */
     union {
         mesh mesh;
