@@ -3,6 +3,7 @@
  * Threads: blocks by the run's workers, each into its own buffer; merged by the caller. */
 #include "photon_tracing.h"
 
+#include "alpha.h"
 #include "bsdf.h"
 #include "parallel_for.h"
 #include "passage.h"
@@ -44,7 +45,8 @@ static void book(double entry[3], rgb flux)
 static void store(tracer *t, const surface_hit *hit, const bsdf *b, vec3 direction, rgb flux, uint64_t key)
 {
     block *out = t->out;
-    flux = rgb_scale(flux, bsdf_arrival_factor(b));
+    float alpha = alpha_at_hit(t->s, hit);
+    flux = rgb_scale(flux, alpha > 0.0f ? bsdf_arrival_factor(b) / alpha : 0.0f);
     book(out->books.arrived, flux);
     if (out->count == t->limit) {
         book(out->books.cut, flux);

@@ -15,6 +15,12 @@ float alpha_at(const scene *s, const shape *at, const surface_hit *hit)
     return fminf(fmaxf(alpha, 0.0f), 1.0f);
 }
 
+float alpha_at_hit(const scene *s, const surface_hit *hit)
+{
+    const shape *at = &s->shapes[hit->shape_index];
+    return shape_is_opaque(at) ? 1.0f : alpha_at(s, at, hit);
+}
+
 /* Uniform in [0, 1), another number for every ray and surface. */
 static float hash_of_ray(uint32_t shape_index, uint32_t primitive_index, uint32_t crossing, vec3 origin, vec3 direction)
 {

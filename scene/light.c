@@ -3,7 +3,7 @@
  * Threads: read-only. */
 #include "light.h"
 
-#include "bvh.h"
+#include "alpha.h"
 #include "environment.h"
 #include "math/sampling.h"
 #include "portal.h"
@@ -174,7 +174,7 @@ static bool sample_area(const scene *s, const light *l, vec3 point, vec2 u, ligh
         is_cone ? 1.0f / (2.0f * AG_PI * cone) : at.pdf_area * density * distance_squared / cos_lamp;
     out->shadow_target =
         vec3_add_scaled(at.position, vec3_face_forward(at.geometric_normal, vec3_negate(out->direction)), at.epsilon);
-    out->is_delta = false;
+    out->is_delta = shape_is_invisible(lamp); /* then shadow rays alone find it */
     return true;
 }
 
