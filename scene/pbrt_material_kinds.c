@@ -45,8 +45,9 @@ static ag_status read_roughness(pbrt_parser *parser, parameter_list *list, const
     for (int i = 0; i < 2; i++) {
         float value = roughness;
         snprintf(name, sizeof name, "%s%s", prefix, AXES[i]);
-        *out_texture[i] = parameter_list_find(list, name) ? SCENE_NO_TEXTURE : texture_index;
-        PBRT_TRY(pbrt_get_float_texture(parser, list, name, &value, out_texture[i]));
+        *out_texture[i] = texture_index;
+        if (parameter_list_find(list, name))
+            PBRT_TRY(pbrt_get_float_texture(parser, list, name, &value, out_texture[i]));
         if (value < 0.0f)
             return pbrt_refuse(parser, list, name, "\"%s\" should not be negative", name);
         *out_alpha[i] = remap ? sqrtf(value) : value;

@@ -244,12 +244,13 @@ static void warnings_are_given_once(void **state)
         const char *text, *warning;
     } CASES[] = {
         {"Shape \"curve\"", "Shape \"curve\" is not supported yet and is left out"},
-        {"Shape \"sphere\" \"float alpha\" 0.5",
-         "Shape \"sphere\": \"float alpha\" is not known, or not supported yet, and is ignored"},
+        {"Shape \"sphere\" \"float shadowalpha\" 0.5",
+         "Shape \"sphere\": \"float shadowalpha\" is not known, or not supported yet, and is ignored"},
         {"Material \"measured\" \"string filename\" \"a\"",
-         "material \"measured\" is not known, or not supported yet: \"diffuse\" with a reflectance of 0.5 stands in"},
+         "material \"measured\" is not supported: \"diffuse\" with a reflectance of 0.5 stands in"},
         {"Material \"subsurface\" \"float eta\" 1.3",
-         "material \"subsurface\" is not known, or not supported yet: \"diffuse\" with a reflectance of 0.5 stands in"},
+         "material \"subsurface\" is not supported: \"coateddiffuse\" of its diffuse reflectance, which lets no light "
+         "travel inside, stands in"},
         {"Material \"coateddiffuse\" \"rgb albedo\" [ 1 1 1 ]",
          "a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in"},
         {"Shape \"sphere\" \"texture radius\" \"wood\"",
