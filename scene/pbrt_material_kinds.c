@@ -1,9 +1,8 @@
 /* pbrt_material_kinds.c: what each kind of material of a pbrt-v4 scene is made of.
- * Rests on the format's description, pbrt.org/fileformat-v4, "Materials"; for what stands in for hair and flesh on Chiang
- * et al., "A Practical and Controllable Hair and Fur Model for Production Path Tracing", 2016 (eq. 9), d'Eon et al., "An
- * Energy-Conserving Hair Reflectance Model", 2011, and Jensen et al., "A Practical Model for Subsurface Light Transport",
- * 2001 (the diffuse reflectance).
- * Flow: pbrt_materials -> [here] -> material. Threads: one per scene. */
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Materials"; for what stands in for hair and flesh on
+ * Chiang et al., "A Practical and Controllable Hair and Fur Model for Production Path Tracing", 2016 (eq. 9), d'Eon et
+ * al., "An Energy-Conserving Hair Reflectance Model", 2011, and Jensen et al., "A Practical Model for Subsurface Light
+ * Transport", 2001 (the diffuse reflectance). Flow: pbrt_materials -> [here] -> material. Threads: one per scene. */
 #include "pbrt_private.h"
 #include "spectra.h"
 
@@ -77,7 +76,8 @@ static ag_status read_metal(pbrt_parser *parser, parameter_list *list, const cha
     PBRT_TRY(read_reflectance(parser, list, m));
     rgb r = m->reflectance;
     m->eta = rgb_gray(1.0f);
-    m->k = rgb_make(material_k_from_reflectance(r.r), material_k_from_reflectance(r.g), material_k_from_reflectance(r.b));
+    m->k =
+        rgb_make(material_k_from_reflectance(r.r), material_k_from_reflectance(r.g), material_k_from_reflectance(r.b));
     return AG_OK;
 }
 
@@ -114,8 +114,8 @@ ag_status pbrt_read_thin_dielectric(pbrt_parser *parser, parameter_list *list, m
     return read_index(parser, list, "eta", &m->ior);
 }
 
-/* pbrt's random walk in a coat: ours is a closed form of it. Its stuff absorbs even where its albedo is 0, and the walk ends
- * after "maxdepth" steps: both darken, so both are kept. */
+/* pbrt's random walk in a coat: ours is a closed form of it. Its stuff absorbs even where its albedo is 0, and the walk
+ * ends after "maxdepth" steps: both darken, so both are kept. */
 static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, material *m)
 {
     float g = 0.0f;
@@ -182,8 +182,9 @@ static ag_status scale_texture(pbrt_parser *parser, const parameter_list *list, 
     t.inputs[0].texture_index = *texture_index;
     t.inputs[1].value = rgb_gray(scale);
     ag_status status = scene_add_texture(parser->scene, &t, texture_index);
-    return status == AG_ERROR_SCENE ? pbrt_refuse(parser, list, "scale", "the texture to be scaled is made of too many others")
-                                    : status;
+    return status == AG_ERROR_SCENE
+               ? pbrt_refuse(parser, list, "scale", "the texture to be scaled is made of too many others")
+               : status;
 }
 
 ag_status pbrt_read_diffuse_transmission(pbrt_parser *parser, parameter_list *list, material *m)
@@ -209,7 +210,6 @@ ag_status pbrt_read_diffuse_transmission(pbrt_parser *parser, parameter_list *li
     }
     return AG_OK;
 }
-
 
 /* Stand-ins. Each says once what it does. */
 
@@ -280,7 +280,8 @@ ag_status pbrt_read_subsurface(pbrt_parser *parser, parameter_list *list, materi
     static const char *const UNUSED[] = {"name", "mfp", "g", "scale", "sigma_a", "sigma_s"};
     float g = 0.0f;
     m->ior = 1.33f;
-    tell_stand_in(parser, list, "subsurface", "\"coateddiffuse\" of its diffuse reflectance, which lets no light travel inside,");
+    tell_stand_in(parser, list, "subsurface",
+                  "\"coateddiffuse\" of its diffuse reflectance, which lets no light travel inside,");
     PBRT_TRY(read_index(parser, list, "eta", &m->ior));
     PBRT_TRY(read_roughness(parser, list, "", m));
     if (parameter_list_find(list, "reflectance")) {
@@ -295,8 +296,8 @@ ag_status pbrt_read_subsurface(pbrt_parser *parser, parameter_list *list, materi
                         "\"name\" of \"subsurface\" is not supported: pbrt's default coefficients are used");
         float s = 1.0f - fminf(fmaxf(g, -1.0f), 1.0f);
         m->reflectance = clamp_color(rgb_make(half_space_reflectance(sigma_a.r, s * sigma_s.r),
-                                                  half_space_reflectance(sigma_a.g, s * sigma_s.g),
-                                                  half_space_reflectance(sigma_a.b, s * sigma_s.b)));
+                                              half_space_reflectance(sigma_a.g, s * sigma_s.g),
+                                              half_space_reflectance(sigma_a.b, s * sigma_s.b)));
     }
     pass_over(list, UNUSED, sizeof UNUSED / sizeof *UNUSED);
     return AG_OK;

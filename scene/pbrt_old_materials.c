@@ -35,8 +35,8 @@ static bool is_constant(const parameter *p, double value)
     return true;
 }
 
-/* Passes a parameter over that the new material does not have, and says so unless it has the value that changes nothing.
- * Whether it has. */
+/* Passes a parameter over that the new material does not have, and says so unless it has the value that changes
+ * nothing. Whether it has. */
 static bool drop(pbrt_parser *parser, parameter_list *list, const char *type, const char *name, double without_effect)
 {
     parameter *p = find(list, name);
@@ -47,7 +47,8 @@ static bool drop(pbrt_parser *parser, parameter_list *list, const char *type, co
     snprintf(key, sizeof key, "dropped:%s:%s", type, name);
     p->looked_up = true;
     if (!is_silent)
-        log_at_once(parser->log, AG_LOG_WARNING, p->where, key, "\"%s\" of pbrt-v3's material \"%s\" is not used", name, type);
+        log_at_once(parser->log, AG_LOG_WARNING, p->where, key, "\"%s\" of pbrt-v3's material \"%s\" is not used", name,
+                    type);
     return is_silent;
 }
 
@@ -89,7 +90,8 @@ static const char *plastic_kind(pbrt_parser *parser, parameter_list *list, const
 /* The amount was that of the first. */
 static ag_status upgrade_mix(pbrt_parser *parser, parameter_list *list)
 {
-    parameter *first = find(list, "namedmaterial1"), *second = find(list, "namedmaterial2"), *amount = find(list, "amount");
+    parameter *first = find(list, "namedmaterial1"), *second = find(list, "namedmaterial2"),
+              *amount = find(list, "amount");
     if (amount && amount->type == PARAMETER_RGB && amount->count == 3) {
         if (amount->numbers[0] != amount->numbers[1] || amount->numbers[1] != amount->numbers[2])
             log_at_once(parser->log, AG_LOG_WARNING, amount->where, "mix amount",

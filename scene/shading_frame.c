@@ -4,8 +4,8 @@
 #include "scene.h"
 #include "tangents.h"
 
-/* A tilted normal stays this far above the surface's own horizon, as a cosine: light that is on its side of the surface is
- * then, all but at the very edge, on that of the normal too. */
+/* A tilted normal stays this far above the surface's own horizon, as a cosine: light that is on its side of the surface
+ * is then, all but at the very edge, on that of the normal too. */
 static const float COSINE_MIN = 0.02f;
 
 static bool has_maps(const material *m)
@@ -13,10 +13,7 @@ static bool has_maps(const material *m)
     return m->normal_map_texture != SCENE_NO_TEXTURE || m->displacement_texture != SCENE_NO_TEXTURE;
 }
 
-static bool has_grain(const material *m)
-{
-    return m->alpha_u != m->alpha_v || m->base_alpha_u != m->base_alpha_v;
-}
+static bool has_grain(const material *m) { return m->alpha_u != m->alpha_v || m->base_alpha_u != m->base_alpha_v; }
 
 /* x along a tangent as far as it goes across z; any where it does not. */
 static frame frame_along(vec3 z, vec3 tangent)
@@ -29,8 +26,8 @@ static frame frame_along(vec3 z, vec3 tangent)
     return (frame){x, vec3_cross(z, x), z};
 }
 
-/* 2 c - 1 along dp/du, across it towards dp/dv, and along the normal. pbrt goes always counterclockwise from dp/du; here
- * mirrored uvs mirror the relief with them, as glTF's tangents do. */
+/* 2 c - 1 along dp/du, across it towards dp/dv, and along the normal. pbrt goes always counterclockwise from dp/du;
+ * here mirrored uvs mirror the relief with them, as glTF's tangents do. */
 static vec3 map_normal(const scene *s, const surface_hit *hit, const material *m)
 {
     vec3 dpdu, dpdv;
@@ -64,7 +61,8 @@ static vec3 bump_normal(const scene *s, const surface_hit *hit, const material *
     rise_u = displacement_beside(s, hit, &d, index, step, 0.0f) - displacement_beside(s, hit, &d, index, -step, 0.0f);
     rise_v = displacement_beside(s, hit, &d, index, 0.0f, step) - displacement_beside(s, hit, &d, index, 0.0f, -step);
     /* the shading normal's own tangents, as pbrt has it: a smooth mesh stays smooth where nothing is raised */
-    vec3 dpdu = vec3_add_scaled(d.dpdu, n, -vec3_dot(d.dpdu, n)), dpdv = vec3_add_scaled(d.dpdv, n, -vec3_dot(d.dpdv, n));
+    vec3 dpdu = vec3_add_scaled(d.dpdu, n, -vec3_dot(d.dpdu, n)),
+         dpdv = vec3_add_scaled(d.dpdv, n, -vec3_dot(d.dpdv, n));
     dpdu = vec3_add_scaled(vec3_add_scaled(dpdu, n, rise_u / (2.0f * step)), d.dndu, height);
     dpdv = vec3_add_scaled(vec3_add_scaled(dpdv, n, rise_v / (2.0f * step)), d.dndv, height);
     return vec3_face_forward(vec3_cross(dpdu, dpdv), n);

@@ -1,9 +1,7 @@
-/* shading_frame.h: the frame that a surface scatters in: along its tangents where its roughness has a grain, tilted where
- * a bump or normal map says so.
- * Rests on: Blinn, "Simulation of Wrinkled Surfaces", 1978; Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th
- * ed., 2023, 10.5.3 (bump and normal maps).
- * Flow: surface hit, material -> [here] -> bsdf. A function of the place alone, so that photons and eye agree.
- * Threads: pure functions. */
+/* shading_frame.h: the frame that a surface scatters in: along its tangents where its roughness has a grain, tilted
+ * where a bump or normal map says so. Rests on: Blinn, "Simulation of Wrinkled Surfaces", 1978; Pharr, Jakob,
+ * Humphreys, "Physically Based Rendering", 4th ed., 2023, 10.5.3 (bump and normal maps). Flow: surface hit, material ->
+ * [here] -> bsdf. A function of the place alone, so that photons and eye agree. Threads: pure functions. */
 #ifndef AFTERGLOW_SHADING_FRAME_H
 #define AFTERGLOW_SHADING_FRAME_H
 

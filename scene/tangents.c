@@ -107,8 +107,7 @@ static surface_differentials quadric_differentials(const shape *s, const surface
 surface_differentials surface_differentials_at(const scene *s, const surface_hit *hit)
 {
     const shape *at = &s->shapes[hit->shape_index];
-    surface_differentials d =
-        at->kind == SHAPE_MESH ? mesh_differentials(at, hit) : quadric_differentials(at, hit);
+    surface_differentials d = at->kind == SHAPE_MESH ? mesh_differentials(at, hit) : quadric_differentials(at, hit);
     float area = vec3_length_squared(vec3_cross(d.dpdu, d.dpdv));
     if (!(area > 0.0f && isfinite(area))) {
         frame any = frame_from_z(hit->geometric_normal);
@@ -129,8 +128,8 @@ static bool mesh_tangent(const shape *s, const surface_hit *hit, vec3 *out_tange
     double b1, b2;
     find_barycentrics(triangle_edge(m->positions, index, 1), triangle_edge(m->positions, index, 2),
                       vec3_sub(hit->position, m->positions[index[0]]), &b1, &b2);
-    vec3 t = vec3_add(m->tangents[index[0]], combine(triangle_edge(m->tangents, index, 1), b1,
-                                                     triangle_edge(m->tangents, index, 2), b2));
+    vec3 t = vec3_add(m->tangents[index[0]],
+                      combine(triangle_edge(m->tangents, index, 1), b1, triangle_edge(m->tangents, index, 2), b2));
     *out_tangent = t;
     return vec3_length_squared(vec3_cross(hit->shading_normal, t)) > 0.0f;
 }

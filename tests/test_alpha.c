@@ -24,7 +24,8 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define SQUARE "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 1 1 0 -1 1 0 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n"
+#define SQUARE                                                                                                         \
+    "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 1 1 0 -1 1 0 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n"
 #define WITH_UV "\"point2 uv\" [ 0 0 1 0 1 1 0 1 ]\n"
 
 /* Downwards from a place above a point of the square |x|, |y| < 1. */
@@ -66,15 +67,20 @@ static void a_share_of_the_rays_is_stopped(void **state)
     assert_share(share_stopped(SQUARE "\"float alpha\" 0.3", 1.0f, 1), 0.3);
     assert_share(share_stopped(SQUARE "\"float alpha\" 0.93", 0.0f, 2), 0.93);
     /* one after the other, each anew */
-    assert_share(share_stopped(SQUARE "\"float alpha\" 0.3 Translate 0 0 -1 Scale 2 2 1 " SQUARE "\"float alpha\" 0.5", 1.0f, 3),
-                 1.0 - 0.7 * 0.5);
+    assert_share(
+        share_stopped(SQUARE "\"float alpha\" 0.3 Translate 0 0 -1 Scale 2 2 1 " SQUARE "\"float alpha\" 0.5", 1.0f, 3),
+        1.0 - 0.7 * 0.5);
     /* quadrics: a disk's one crossing, two of all others; a whole sphere, a partial one, one that is none any more */
     assert_share(share_stopped("Shape \"disk\" \"float radius\" 2 \"float alpha\" 0.3", 1.0f, 4), 0.3);
     assert_share(share_stopped("Shape \"sphere\" \"float radius\" 2 \"float alpha\" 0.3", 1.0f, 5), 0.51);
-    assert_share(share_stopped("Shape \"sphere\" \"float radius\" 2 \"float zmax\" 1 \"float alpha\" 0.3", 0.0f, 6), 0.3);
+    assert_share(share_stopped("Shape \"sphere\" \"float radius\" 2 \"float zmax\" 1 \"float alpha\" 0.3", 0.0f, 6),
+                 0.3);
     assert_share(share_stopped("Scale 1 1.3 1 Shape \"sphere\" \"float radius\" 2 \"float alpha\" 0.6", 1.0f, 7), 0.84);
-    assert_share(share_stopped("Rotate 90 1 0 0 Shape \"cylinder\" \"float radius\" 2 \"float zmin\" -2 \"float zmax\" 2 "
-                               "\"float alpha\" 0.3", 0.0f, 8), 0.51);
+    assert_share(
+        share_stopped("Rotate 90 1 0 0 Shape \"cylinder\" \"float radius\" 2 \"float zmin\" -2 \"float zmax\" 2 "
+                      "\"float alpha\" 0.3",
+                      0.0f, 8),
+        0.51);
     /* all and nothing */
     assert_true(share_stopped(SQUARE "\"float alpha\" 1", 1.0f, 9) == 1.0);
     assert_true(share_stopped(SQUARE "\"float alpha\" 7", 1.0f, 9) == 1.0);
@@ -99,8 +105,9 @@ static void what_is_behind_is_met(void **state)
     scene_destroy(s);
 }
 
-#define HOLES "Texture \"holes\" \"float\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 4 " \
-              "\"float tex1\" 1 \"float tex2\" 0\n"
+#define HOLES                                                                                                          \
+    "Texture \"holes\" \"float\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 4 "                              \
+    "\"float tex1\" 1 \"float tex2\" 0\n"
 
 static bool is_in_hole(float u, float v) { return ((int)floorf(4.0f * u) + (int)floorf(4.0f * v)) % 2 != 0; }
 
@@ -145,9 +152,10 @@ static void holes_are_where_the_texture_has_them(void **state)
 static void cutoffs_make_masks(void **state)
 {
     (void)state;
-    scene *s = test_scene_create(&run,
-                                 "Texture \"ramp\" \"float\" \"bilerp\" \"float v00\" 0 \"float v01\" 0 \"float v10\" 1 \"float v11\" 1\n"
-                                 SQUARE WITH_UV "\"texture alpha\" \"ramp\"");
+    scene *s = test_scene_create(
+        &run,
+        "Texture \"ramp\" \"float\" \"bilerp\" \"float v00\" 0 \"float v01\" 0 \"float v10\" 1 \"float v11\" 1\n" SQUARE
+            WITH_UV "\"texture alpha\" \"ramp\"");
     shape *square = &s->shapes[0];
     surface_hit hit = {.uv = {0.7f, 0.5f}};
     assert_close((double)alpha_at(s, square, &hit), 0.7, 1e-6);
@@ -188,8 +196,10 @@ static void invisible_lamps_shine(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_share_of_the_rays_is_stopped), cmocka_unit_test(what_is_behind_is_met),
-        cmocka_unit_test(holes_are_where_the_texture_has_them), cmocka_unit_test(cutoffs_make_masks),
+        cmocka_unit_test(a_share_of_the_rays_is_stopped),
+        cmocka_unit_test(what_is_behind_is_met),
+        cmocka_unit_test(holes_are_where_the_texture_has_them),
+        cmocka_unit_test(cutoffs_make_masks),
         cmocka_unit_test(invisible_lamps_shine),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

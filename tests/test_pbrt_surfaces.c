@@ -1,6 +1,6 @@
-/* test_pbrt_surfaces.c: surface detail as the pbrt reader makes it: alpha, bump and normal maps, textures of a metal, of its
- * roughness and of what a sheet transmits; pbrt-v3's materials and those that are not supported, with what stands in.
- * Threads: one. */
+/* test_pbrt_surfaces.c: surface detail as the pbrt reader makes it: alpha, bump and normal maps, textures of a metal,
+ * of its roughness and of what a sheet transmits; pbrt-v3's materials and those that are not supported, with what
+ * stands in. Threads: one. */
 #define _GNU_SOURCE
 #include "pbrt_fixture.h"
 
@@ -81,14 +81,19 @@ static void alpha_of_every_shape(void **state)
 {
     (void)state;
     static const char *const SHAPES[] = {
-        "\"sphere\"", "\"disk\"", "\"cylinder\"", "\"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ]",
+        "\"sphere\"",
+        "\"disk\"",
+        "\"cylinder\"",
+        "\"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ]",
         "\"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ]",
         "\"loopsubdiv\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]"};
     for (size_t i = 0; i < sizeof SHAPES / sizeof *SHAPES; i++) {
         char text[1024];
         snprintf(text, sizeof text,
-                 FLOATS "Shape %s Shape %s \"float alpha\" 0.5 Shape %s \"texture alpha\" \"f\" Shape %s \"texture alpha\" "
-                        "\"c\" Shape %s", SHAPES[i], SHAPES[i], SHAPES[i], SHAPES[i], SHAPES[i]);
+                 FLOATS
+                 "Shape %s Shape %s \"float alpha\" 0.5 Shape %s \"texture alpha\" \"f\" Shape %s \"texture alpha\" "
+                 "\"c\" Shape %s",
+                 SHAPES[i], SHAPES[i], SHAPES[i], SHAPES[i], SHAPES[i]);
         reading r = read_world(text);
         expect_silence(&r);
         const shape *s = r.scene->shapes;
@@ -108,7 +113,7 @@ static void alpha_of_every_shape(void **state)
 static void displacement(void **state)
 {
     (void)state;
-    static const char *const KINDS[] = {"diffuse", "coateddiffuse", "coatedconductor", "diffusetransmission",
+    static const char *const KINDS[] = {"diffuse",    "coateddiffuse",  "coatedconductor", "diffusetransmission",
                                         "dielectric", "thindielectric", "conductor"};
     for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
         char text[256];
@@ -132,8 +137,10 @@ static void normal_maps(void **state)
     static const char *const Y[1] = {"Y"};
     char text[512];
     const char *path = write_environment("normals.png", 2, 1, IMAGE_UINT8, PIXELS);
-    snprintf(text, sizeof text, FLOATS "Material \"conductor\" \"string normalmap\" \"%s\"\n"
-                                "Material \"diffuse\" \"string normalmap\" \"%s\"", path, path);
+    snprintf(text, sizeof text,
+             FLOATS "Material \"conductor\" \"string normalmap\" \"%s\"\n"
+                    "Material \"diffuse\" \"string normalmap\" \"%s\"",
+             path, path);
     reading r = read_world(text);
     expect_silence(&r);
     material m = last_material(&r);
@@ -144,12 +151,18 @@ static void normal_maps(void **state)
     hit.uv.x = 1.75f; /* it repeats */
     assert_rgb(texture_evaluate_rgb(r.scene, m.normal_map_texture, &hit), 191 / 255.0, 128 / 255.0, 230 / 255.0, 1e-6);
     reading_destroy(&r);
-    snprintf(text, sizeof text, FLOATS "Material \"diffuse\" \"string normalmap\" \"%s\" \"texture displacement\" \"f\"", path);
+    snprintf(text, sizeof text,
+             FLOATS "Material \"diffuse\" \"string normalmap\" \"%s\" \"texture displacement\" \"f\"", path);
     m = warned_material(text, "of \"displacement\" and \"normalmap\" together only the latter is used\n");
     assert_true(m.normal_map_texture != SCENE_NO_TEXTURE);
 
-    const image_description description = {.width = 3, .height = 1, .full_width = 3, .full_height = 1,
-                                           .channel_count = 1, .channel_names = Y, .type = IMAGE_UINT8};
+    const image_description description = {.width = 3,
+                                           .height = 1,
+                                           .full_width = 3,
+                                           .full_height = 1,
+                                           .channel_count = 1,
+                                           .channel_names = Y,
+                                           .type = IMAGE_UINT8};
     const char *grey = in_folder("grey.png");
     if (image_file_write(grey, &description, GREY, message, sizeof message) != AG_OK)
         fail_msg("%s", message);
@@ -170,7 +183,8 @@ static void slopes_are_as_fine_as_pictures(void **state)
              "Texture \"i\" \"float\" \"imagemap\" \"string filename\" \"%s\" \"float uscale\" 2\n"
              "Texture \"s\" \"float\" \"scale\" \"texture tex\" \"i\" \"float scale\" 0.1\n"
              "Texture \"n\" \"float\" \"fbm\"\n"
-             "Texture \"m\" \"float\" \"mix\" \"texture tex1\" \"s\" \"texture tex2\" \"n\"", path);
+             "Texture \"m\" \"float\" \"mix\" \"texture tex1\" \"s\" \"texture tex2\" \"n\"",
+             path);
     reading r = read_world(text);
     assert_near(r.scene->textures[0].step, 0.5 / 16, 1e-7);
     assert_near(r.scene->textures[1].step, 0.5 / 16, 1e-7);
@@ -183,14 +197,16 @@ static void slopes_are_as_fine_as_pictures(void **state)
 static void metals_from_textures(void **state)
 {
     (void)state;
-    const char *const colors = "Texture \"e\" \"spectrum\" \"bilerp\" \"rgb v00\" [ .2 .4 .6 ] \"rgb v01\" [ .2 .4 .6 ]\n"
-                               "\"rgb v10\" [ 2 3 4 ] \"rgb v11\" [ 2 3 4 ]\n"
-                               "Texture \"r\" \"float\" \"bilerp\" \"float v00\" .04 \"float v01\" .04 \"float v10\" .16 "
-                               "\"float v11\" .16\n";
+    const char *const colors =
+        "Texture \"e\" \"spectrum\" \"bilerp\" \"rgb v00\" [ .2 .4 .6 ] \"rgb v01\" [ .2 .4 .6 ]\n"
+        "\"rgb v10\" [ 2 3 4 ] \"rgb v11\" [ 2 3 4 ]\n"
+        "Texture \"r\" \"float\" \"bilerp\" \"float v00\" .04 \"float v01\" .04 \"float v10\" .16 "
+        "\"float v11\" .16\n";
     char text[1024];
     surface_hit hit = {.uv = {0.0f, 0.5f}};
     material m;
-    snprintf(text, sizeof text, "%s Material \"conductor\" \"texture eta\" \"e\" \"texture k\" \"e\" Shape \"sphere\"", colors);
+    snprintf(text, sizeof text, "%s Material \"conductor\" \"texture eta\" \"e\" \"texture k\" \"e\" Shape \"sphere\"",
+             colors);
     reading r = read_world(text);
     expect_silence(&r);
     material_at(r.scene, &hit, &m);
@@ -198,9 +214,11 @@ static void metals_from_textures(void **state)
     assert_rgb(m.k, .2, .4, .6, 1e-6);
     reading_destroy(&r);
     /* relative to the coat; the base's roughness is its own */
-    snprintf(text, sizeof text,
-             "%s Material \"coatedconductor\" \"texture conductor.eta\" \"e\" \"float interface.eta\" 2 \"rgb conductor.k\" "
-             "[ 3 3 3 ]\n\"texture conductor.roughness\" \"r\" \"float interface.roughness\" .09 Shape \"sphere\"", colors);
+    snprintf(
+        text, sizeof text,
+        "%s Material \"coatedconductor\" \"texture conductor.eta\" \"e\" \"float interface.eta\" 2 \"rgb conductor.k\" "
+        "[ 3 3 3 ]\n\"texture conductor.roughness\" \"r\" \"float interface.roughness\" .09 Shape \"sphere\"",
+        colors);
     r = read_world(text);
     expect_silence(&r);
     hit.uv.x = 1.0f;
@@ -247,7 +265,7 @@ static void transmission_is_scaled_in_textures(void **state)
 
 /* ---- pbrt-v3's ---- */
 
-#define READ_AS(old, new) \
+#define READ_AS(old, new)                                                                                              \
     "material \"" old "\" is pbrt-v3's: it is read as \"" new "\", as pbrt-v4's \"--upgrade\" does\n"
 #define UNUSED(name, old) "\"" name "\" of pbrt-v3's material \"" old "\" is not used\n"
 
@@ -267,14 +285,16 @@ static void old_plastics(void **state)
     assert_int_equal(m.kind, MATERIAL_COATED_DIFFUSE);
     assert_rgb(m.reflectance, .1, .2, .3, 1e-7);
     assert_near(m.alpha_u, .2, 1e-6);
-    m = warned_material("Material \"plastic\" \"rgb Ks\" [ 0 0 0 ] \"float roughness\" .04", READ_AS("plastic", "diffuse"));
+    m = warned_material("Material \"plastic\" \"rgb Ks\" [ 0 0 0 ] \"float roughness\" .04",
+                        READ_AS("plastic", "diffuse"));
     assert_int_equal(m.kind, MATERIAL_DIFFUSE);
     m = warned_material("Material \"plastic\" \"rgb Ks\" [ .3 .3 .3 ]",
                         UNUSED("Ks", "plastic") READ_AS("plastic", "coateddiffuse"));
     assert_int_equal(m.kind, MATERIAL_COATED_DIFFUSE);
-    m = warned_material("Material \"uber\" \"rgb Kd\" [ .1 .2 .3 ] \"rgb Kr\" [ 0 0 0 ] \"rgb Kt\" [ .5 0 0 ] \"rgb opacity\" "
-                        "[ 1 1 1 ] \"float index\" 1.3",
-                        UNUSED("Kt", "uber") READ_AS("uber", "coateddiffuse"));
+    m = warned_material(
+        "Material \"uber\" \"rgb Kd\" [ .1 .2 .3 ] \"rgb Kr\" [ 0 0 0 ] \"rgb Kt\" [ .5 0 0 ] \"rgb opacity\" "
+        "[ 1 1 1 ] \"float index\" 1.3",
+        UNUSED("Kt", "uber") READ_AS("uber", "coateddiffuse"));
     assert_near(m.ior, 1.3, 1e-6);
     assert_rgb(m.reflectance, .1, .2, .3, 1e-7);
     m = warned_material("Material \"substrate\" \"rgb Kd\" [ .1 .2 .3 ] \"rgb Ks\" [ 1 1 1 ] \"float uroughness\" .01 "
@@ -287,7 +307,8 @@ static void old_plastics(void **state)
 static void old_glass_and_metal(void **state)
 {
     (void)state;
-    material m = warned_material("Material \"glass\" \"float index\" 1.7 \"rgb Kr\" [ 1 1 1 ]", READ_AS("glass", "dielectric"));
+    material m =
+        warned_material("Material \"glass\" \"float index\" 1.7 \"rgb Kr\" [ 1 1 1 ]", READ_AS("glass", "dielectric"));
     assert_int_equal(m.kind, MATERIAL_DIELECTRIC);
     assert_near(m.ior, 1.7, 1e-6);
     m = warned_material("Material \"mirror\"", READ_AS("mirror", "conductor"));
@@ -295,13 +316,15 @@ static void old_glass_and_metal(void **state)
     assert_same_rgb(m.eta, spectrum("metal-Ag-eta"));
     assert_same_rgb(m.k, spectrum("metal-Ag-k"));
     assert_near(m.alpha_u, 0, 0);
-    m = warned_material("MakeNamedMaterial \"a\" \"string type\" \"metal\" \"spectrum eta\" \"metal-Al-eta\" \"spectrum k\" "
-                        "\"metal-Al-k\" \"float roughness\" .01",
-                        READ_AS("metal", "conductor"));
+    m = warned_material(
+        "MakeNamedMaterial \"a\" \"string type\" \"metal\" \"spectrum eta\" \"metal-Al-eta\" \"spectrum k\" "
+        "\"metal-Al-k\" \"float roughness\" .01",
+        READ_AS("metal", "conductor"));
     assert_same_rgb(m.eta, spectrum("metal-Al-eta"));
     assert_near(m.alpha_u, .1, 1e-6);
-    m = warned_material("Material \"translucent\" \"rgb Kd\" [ .3 .3 .2 ] \"rgb transmit\" [ 1 1 1 ] \"rgb Ks\" [ 0 0 0 ]",
-                        READ_AS("translucent", "diffusetransmission"));
+    m = warned_material(
+        "Material \"translucent\" \"rgb Kd\" [ .3 .3 .2 ] \"rgb transmit\" [ 1 1 1 ] \"rgb Ks\" [ 0 0 0 ]",
+        READ_AS("translucent", "diffusetransmission"));
     assert_int_equal(m.kind, MATERIAL_DIFFUSE_TRANSMISSION);
     assert_rgb(m.transmittance, .3, .3, .2, 1e-7);
     assert_rgb(m.reflectance, .25, .25, .25, 1e-7);
@@ -310,10 +333,11 @@ static void old_glass_and_metal(void **state)
 static void old_mixes(void **state)
 {
     (void)state;
-    material m = warned_material("MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"b\" \"string type\" "
-                                 "\"conductor\" Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" "
-                                 "\"b\" \"rgb amount\" [ .2 .4 .6 ]",
-                                 "\"rgb amount\" of \"mix\" is not supported: the mean of its components is used\n");
+    material m =
+        warned_material("MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"b\" \"string type\" "
+                        "\"conductor\" Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" "
+                        "\"b\" \"rgb amount\" [ .2 .4 .6 ]",
+                        "\"rgb amount\" of \"mix\" is not supported: the mean of its components is used\n");
     assert_int_equal(m.kind, MATERIAL_MIX);
     assert_near(m.mix_amount, .4, 1e-6);
     assert_int_equal(m.mixed[0], 2); /* the amount was that of the first, and is that of the second */
@@ -323,15 +347,17 @@ static void old_mixes(void **state)
 /* ---- stand-ins ---- */
 
 #define STANDS_IN(type, what) "material \"" type "\" is not supported: " what " stands in\n"
-#define FOR_HAIR STANDS_IN("hair", "\"diffuse\" of its colour")
-#define FOR_FLESH \
+#define FOR_HAIR              STANDS_IN("hair", "\"diffuse\" of its colour")
+#define FOR_FLESH                                                                                                      \
     STANDS_IN("subsurface", "\"coateddiffuse\" of its diffuse reflectance, which lets no light travel inside,")
 
 static void stand_ins_keep_what_they_can(void **state)
 {
     (void)state;
-    material m = warned_material("Material \"hair\" \"rgb reflectance\" [ .1 .2 .3 ] \"float beta_m\" .2 Material \"hair\" \"rgb "
-                                 "reflectance\" [ .4 .2 .3 ]", FOR_HAIR);
+    material m = warned_material(
+        "Material \"hair\" \"rgb reflectance\" [ .1 .2 .3 ] \"float beta_m\" .2 Material \"hair\" \"rgb "
+        "reflectance\" [ .4 .2 .3 ]",
+        FOR_HAIR);
     assert_int_equal(m.kind, MATERIAL_DIFFUSE);
     assert_rgb(m.reflectance, .4, .2, .3, 1e-7);
     assert_rgb(warned_material("Material \"hair\" \"rgb color\" [ .1 .2 .3 ]", FOR_HAIR).reflectance, .1, .2, .3, 1e-7);
@@ -346,8 +372,9 @@ static void stand_ins_keep_what_they_can(void **state)
     snprintf(text, sizeof text, "Material \"hair\" \"rgb sigma_a\" [ %.9g 0 0 ]", pow(log(.35) / fit, 2));
     assert_rgb(warned_material(text, FOR_HAIR).reflectance, .35, 1, 1, 1e-5);
 
-    m = warned_material("Material \"subsurface\" \"rgb reflectance\" [ .1 .2 .3 ] \"rgb mfp\" [ 1 1 1 ] \"float roughness\" .04",
-                        FOR_FLESH);
+    m = warned_material(
+        "Material \"subsurface\" \"rgb reflectance\" [ .1 .2 .3 ] \"rgb mfp\" [ 1 1 1 ] \"float roughness\" .04",
+        FOR_FLESH);
     assert_int_equal(m.kind, MATERIAL_COATED_DIFFUSE);
     assert_rgb(m.reflectance, .1, .2, .3, 1e-7);
     assert_near(m.ior, 1.33, 1e-6);
@@ -357,7 +384,8 @@ static void stand_ins_keep_what_they_can(void **state)
     assert_near(m.reflectance.r, 1, 1e-6);
     assert_near(m.reflectance.g, 0, 1e-6);
     assert_near(m.reflectance.b, .25 * (1 + exp(-4.0 / 3 * sqrt(1.5))) * exp(-sqrt(1.5)), 1e-6);
-    m = warned_material("Material \"kdsubsurface\" \"rgb Kd\" [ .1 .2 .3 ]", READ_AS("kdsubsurface", "subsurface") FOR_FLESH);
+    m = warned_material("Material \"kdsubsurface\" \"rgb Kd\" [ .1 .2 .3 ]",
+                        READ_AS("kdsubsurface", "subsurface") FOR_FLESH);
     assert_rgb(m.reflectance, .1, .2, .3, 1e-7);
 
     m = warned_material(FLOATS "Material \"measured\" \"string filename\" \"a.bsdf\" \"texture displacement\" \"f\"",

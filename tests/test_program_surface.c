@@ -1,6 +1,6 @@
-/* test_program_surface.c: pictures of surfaces that are not wholly there, whose answer is known: white veils in a furnace,
- * a lamp through a black veil, lamps that are invisible or a veil themselves.
- * Flow: tests of the whole program. Threads: the program's. */
+/* test_program_surface.c: pictures of surfaces that are not wholly there, whose answer is known: white veils in a
+ * furnace, a lamp through a black veil, lamps that are invisible or a veil themselves. Flow: tests of the whole
+ * program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 
@@ -12,8 +12,8 @@ static void test_veils_in_a_furnace(void **state)
 {
     (void)state;
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(PROGRAM_SCENES "veils_in_furnace.pbrt", "--integrator", INTEGRATORS[k], "--photons=400000", "--spp",
-                           k == 0 ? "4" : "128");
+        picture p = RENDER(PROGRAM_SCENES "veils_in_furnace.pbrt", "--integrator", INTEGRATORS[k], "--photons=400000",
+                           "--spp", k == 0 ? "4" : "128");
         expect_uniform(INTEGRATORS[k], &p, 2.0, 0.01, BLOCK, 0.03);
         picture_reset(&p);
     }
@@ -23,7 +23,8 @@ static void test_veils_in_a_furnace(void **state)
 static picture floor_under(const char *between, const char *integrator)
 {
     char text[1024];
-    snprintf(text, sizeof text, "Include \"" PROGRAM_SCENES "lamp_point.pbrt\"\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n%s\n",
+    snprintf(text, sizeof text,
+             "Include \"" PROGRAM_SCENES "lamp_point.pbrt\"\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n%s\n",
              between);
     return RENDER(write_text("scene.pbrt", text), "--integrator", integrator, "--spp=512", "--photons=10000",
                   "--gather-samples=4");
@@ -38,8 +39,10 @@ static void test_lamp_through_veils(void **state)
     } CASES[] = {
         {"Shape \"bilinearmesh\" \"point3 P\" [-4 -4 1.2  4 -4 1.2  -4 4 1.2  4 4 1.2] \"float alpha\" 0.3", 0.7},
         {"Translate 0.3 0.2 1.5 Shape \"sphere\" \"float radius\" 0.3 \"float alpha\" 0.4", 0.6},
-        {"Translate 0.3 0.2 1.3 Shape \"disk\" \"float radius\" 3 \"float alpha\" 0.5 Translate 0 0 -0.1 Shape \"disk\" "
-         "\"float radius\" 4 \"float alpha\" 0.2", 0.4},
+        {"Translate 0.3 0.2 1.3 Shape \"disk\" \"float radius\" 3 \"float alpha\" 0.5 Translate 0 0 -0.1 Shape "
+         "\"disk\" "
+         "\"float radius\" 4 \"float alpha\" 0.2",
+         0.4},
     };
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < INTEGRATOR_COUNT; k++) {
@@ -55,7 +58,8 @@ static void test_lamp_through_veils(void **state)
         }
 }
 
-/* The floor under a rectangular lamp is as bright when the lamp is invisible, and dimmed by its share when it is a veil. */
+/* The floor under a rectangular lamp is as bright when the lamp is invisible, and dimmed by its share when it is a
+ * veil. */
 static void test_lamps_that_are_veils(void **state)
 {
     (void)state;
@@ -69,11 +73,13 @@ static void test_lamps_that_are_veils(void **state)
         for (int k = 0; k < INTEGRATOR_COUNT; k++) {
             char with_alpha[256];
             snprintf(with_alpha, sizeof with_alpha, "0.8 0.3 1.5] %s", CASES[i].alpha);
-            const char *scene = SCENE_WITH("lamp_rectangle.pbrt", "Include \"floor.pbrt\"",
-                                           "Include \"" PROGRAM_SCENES "floor.pbrt\"", "0.8 0.3 1.5]", with_alpha, "AreaLightSource",
-                                           "Texture \"mask\" \"float\" \"checkerboard\" \"float uscale\" 16 \"float vscale\" 16 "
-                                           "\"float tex1\" 1 \"float tex2\" 0\nAreaLightSource");
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp=128", "--photons=10000", "--gather-samples=4");
+            const char *scene =
+                SCENE_WITH("lamp_rectangle.pbrt", "Include \"floor.pbrt\"", "Include \"" PROGRAM_SCENES "floor.pbrt\"",
+                           "0.8 0.3 1.5]", with_alpha, "AreaLightSource",
+                           "Texture \"mask\" \"float\" \"checkerboard\" \"float uscale\" 16 \"float vscale\" 16 "
+                           "\"float tex1\" 1 \"float tex2\" 0\nAreaLightSource");
+            picture p =
+                RENDER(scene, "--integrator", INTEGRATORS[k], "--spp=128", "--photons=10000", "--gather-samples=4");
             expect_near(CASES[i].alpha, picture_mean(&p, 1), CASES[i].share * picture_mean(&whole, 1), 0.01);
             for (int y = 0; y < p.height; y += BLOCK)
                 for (int x = 0; x < p.width; x += BLOCK)

@@ -1,6 +1,6 @@
-/* test_shading_frame.c: bump maps against the normals of the surfaces they stand for, normal maps against what their colours
- * say, the frame along the grain of brushed metal, and normals that stay above the horizon.
- * Threads: the run's workers build, one asks. */
+/* test_shading_frame.c: bump maps against the normals of the surfaces they stand for, normal maps against what their
+ * colours say, the frame along the grain of brushed metal, and normals that stay above the horizon. Threads: the run's
+ * workers build, one asks. */
 #include "shading_frame.h"
 
 #include "bsdf.h"
@@ -24,12 +24,14 @@ static int tear_down(void **state)
     return 0;
 }
 
-#define RAMP "Texture \"ramp\" \"float\" \"bilerp\" \"float v00\" 0.1 \"float v10\" 0.4 \"float v01\" 0.3 \"float v11\" 0.6\n"
+#define RAMP                                                                                                           \
+    "Texture \"ramp\" \"float\" \"bilerp\" \"float v00\" 0.1 \"float v10\" 0.4 \"float v01\" 0.3 \"float v11\" 0.6\n"
 static const double RISE_U = 0.3, RISE_V = 0.2;
 #define RAISED "Material \"diffuse\" \"texture displacement\" \"ramp\"\n"
 /* 2 by 4; u along x, v along y */
-#define PLANE "Shape \"trianglemesh\" \"point3 P\" [ -1 -2 0 1 -2 0 1 2 0 -1 2 0 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n" \
-              "\"point2 uv\" [ 0 0 1 0 1 1 0 1 ]\n"
+#define PLANE                                                                                                          \
+    "Shape \"trianglemesh\" \"point3 P\" [ -1 -2 0 1 -2 0 1 2 0 -1 2 0 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n"        \
+    "\"point2 uv\" [ 0 0 1 0 1 1 0 1 ]\n"
 
 static surface_hit hit_from_above(const scene *s, float x, float y)
 {
@@ -77,7 +79,8 @@ static void a_ramp_on_a_plane(void **state)
     scene_destroy(s);
 }
 
-/* r(u, v) = R + d: its normal is n - (dd/du u^ / |dp/du| + dd/dv v^ / |dp/dv|) with the tangents of the raised sphere. */
+/* r(u, v) = R + d: its normal is n - (dd/du u^ / |dp/du| + dd/dv v^ / |dp/dv|) with the tangents of the raised sphere.
+ */
 static void a_ramp_on_a_sphere(void **state)
 {
     (void)state;
@@ -112,9 +115,9 @@ static void a_ramp_on_a_sphere(void **state)
 static void a_relief_in_space(void **state)
 {
     (void)state;
-    scene *s = test_scene_create(&run, "Texture \"ramp\" \"float\" \"bilerp\" \"string mapping\" \"planar\" \"float v00\" 0\n"
-                                       "\"float v10\" 0.2 \"float v01\" 0 \"float v11\" 0.2\n" RAISED
-                                       "Shape \"disk\" \"float radius\" 2");
+    scene *s = test_scene_create(
+        &run, "Texture \"ramp\" \"float\" \"bilerp\" \"string mapping\" \"planar\" \"float v00\" 0\n"
+              "\"float v10\" 0.2 \"float v01\" 0 \"float v11\" 0.2\n" RAISED "Shape \"disk\" \"float radius\" 2");
     surface_hit hit = hit_from_above(s, 0.6f, -0.7f);
     assert_direction(normal_at(s, &hit), -0.2, 0.0, 1.0, 1e-3);
     scene_destroy(s);
@@ -186,8 +189,8 @@ static void normal_maps_say_the_normal(void **state)
 static void normals_stay_usable(void **state)
 {
     (void)state;
-    static const rgb COLORS[] = {{1.0f, 0.5f, 0.5f}, {1.0f, 1.0f, 0.0f}, {0.5f, 0.5f, 0.0f}, {0.5f, 0.5f, 0.5f},
-                                 {0.0f, 0.2f, 0.3f}, {9.0f, -7.0f, 2.0f}};
+    static const rgb COLORS[] = {{1.0f, 0.5f, 0.5f}, {1.0f, 1.0f, 0.0f}, {0.5f, 0.5f, 0.0f},
+                                 {0.5f, 0.5f, 0.5f}, {0.0f, 0.2f, 0.3f}, {9.0f, -7.0f, 2.0f}};
     scene *s = test_scene_create(&run, PLANE);
     surface_hit hit = hit_from_above(s, 0.3f, 0.7f);
     for (size_t i = 0; i < sizeof COLORS / sizeof *COLORS; i++) {
@@ -206,7 +209,8 @@ static void normals_stay_usable(void **state)
 static void the_grain_runs_along_u(void **state)
 {
     (void)state;
-    scene *s = test_scene_create(&run, "Rotate 90 0 0 1 " PLANE "Rotate 30 1 2 3 Shape \"sphere\" \"float radius\" 0.1");
+    scene *s =
+        test_scene_create(&run, "Rotate 90 0 0 1 " PLANE "Rotate 30 1 2 3 Shape \"sphere\" \"float radius\" 0.1");
     surface_hit hit = hit_from_above(s, 1.3f, 0.7f);
     material brushed = material_make(MATERIAL_CONDUCTOR);
     brushed.alpha_u = 0.3f, brushed.alpha_v = 0.1f;
@@ -233,12 +237,9 @@ static void the_grain_runs_along_u(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ramp_on_a_plane),
-        cmocka_unit_test(a_ramp_on_a_sphere),
-        cmocka_unit_test(a_relief_in_space),
-        cmocka_unit_test(mixes_have_the_maps_of_what_they_pick),
-        cmocka_unit_test(normal_maps_say_the_normal),
-        cmocka_unit_test(normals_stay_usable),
+        cmocka_unit_test(a_ramp_on_a_plane),          cmocka_unit_test(a_ramp_on_a_sphere),
+        cmocka_unit_test(a_relief_in_space),          cmocka_unit_test(mixes_have_the_maps_of_what_they_pick),
+        cmocka_unit_test(normal_maps_say_the_normal), cmocka_unit_test(normals_stay_usable),
         cmocka_unit_test(the_grain_runs_along_u),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,6 +1,5 @@
-/* test_tangents.c: dp/du, dp/dv and how the normal turns: a small step along them changes u, v and the normal by as much
- * as they say, on all shapes, under any map, with uvs and without.
- * Threads: the run's workers build, one asks. */
+/* test_tangents.c: dp/du, dp/dv and how the normal turns: a small step along them changes u, v and the normal by as
+ * much as they say, on all shapes, under any map, with uvs and without. Threads: the run's workers build, one asks. */
 #include "tangents.h"
 
 #include "test_scene.h"
@@ -100,7 +99,8 @@ static void quadrics(void **state)
         check_shape(WORLDS[i], 100 + i);
 }
 
-#define TRIANGLES "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0.2 1 1 0 -1 1 0.4 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n"
+#define TRIANGLES                                                                                                      \
+    "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0.2 1 1 0 -1 1 0.4 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n"
 
 static void meshes(void **state)
 {
