@@ -66,7 +66,7 @@ static bool quadric_hit(const void *user, const struct RTCRay *ray, float *out_t
     float from = ray->tnear;
     for (uint32_t crossing = 0; shape_intersect_quadric(a->shape, origin, direction, from, ray->tfar, out_t); crossing++) {
         if (shape_is_opaque(a->shape) ||
-            alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction, *out_t))
+            alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction, *out_t, ray->id))
             return true;
         from = *out_t;
     }
@@ -114,7 +114,7 @@ static void filter_triangle(const struct RTCFilterFunctionNArguments *arguments)
     const struct RTCHit *hit = (const struct RTCHit *)(const void *)arguments->hit;
     if (arguments->valid[0] &&
         !alpha_stops_ray(a->s, a->shape, hit->primID, hit->u, hit->v, 0, (vec3){ray->org_x, ray->org_y, ray->org_z},
-                         (vec3){ray->dir_x, ray->dir_y, ray->dir_z}, ray->tfar))
+                         (vec3){ray->dir_x, ray->dir_y, ray->dir_z}, ray->tfar, ray->id))
         arguments->valid[0] = 0;
 }
 
@@ -265,7 +265,7 @@ static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
 {
     struct RTCRay ray = {.org_x = r->origin.x, .org_y = r->origin.y, .org_z = r->origin.z, .tnear = 0.0f,
                          .dir_x = r->direction.x, .dir_y = r->direction.y, .dir_z = r->direction.z, .time = r->time,
-                         .tfar = max_distance, .mask = 0xffffffffu, .id = 0, .flags = 0};
+                         .tfar = max_distance, .mask = 0xffffffffu, .id = r->meets_veils, .flags = 0};
     return ray;
 }
 

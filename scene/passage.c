@@ -112,6 +112,7 @@ rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *
 
 bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
 {
+    ray.meets_veils = true;
     if (!s->has_interfaces)
         return scene_intersect(s, ray, max_distance, out_hit);
     uint64_t cut = 0;
@@ -125,5 +126,6 @@ bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, sur
 bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance)
 {
     surface_hit hit;
+    ray.meets_veils = true;
     return s->has_interfaces ? passage_find_surface(s, ray, max_distance, &hit) : scene_occluded(s, ray, max_distance);
 }

@@ -3,6 +3,7 @@
  * Threads: the run's workers build, one casts. */
 #include "alpha.h"
 #include "light.h"
+#include "passage.h"
 
 #include "test_scene.h"
 
@@ -86,6 +87,23 @@ static void a_share_of_the_rays_is_stopped(void **state)
     assert_true(share_stopped(SQUARE "\"float alpha\" 7", 1.0f, 9) == 1.0);
     assert_true(share_stopped(SQUARE "\"float alpha\" 0", 1.0f, 9) == 0.0);
     assert_true(share_stopped("Shape \"sphere\" \"float radius\" 2 \"float alpha\" -1", 1.0f, 9) == 0.0);
+}
+
+/* Rays that look for surfaces find veils always, and holes never. */
+static void probes_find_veils(void **state)
+{
+    (void)state;
+    scene *s =
+        test_scene_create(&run, SQUARE "\"float alpha\" 0.01 Translate 0 0 5 Shape \"sphere\" \"float alpha\" 0");
+    for (int i = 0; i < 100; i++) {
+        rng random = test_random((uint64_t)(40 + i));
+        scene_ray ray = ray_down(&random, 0.0f);
+        surface_hit hit;
+        ray.origin.z = 9.0f;
+        assert_true(passage_find_surface(s, ray, INFINITY, &hit) && hit.shape_index == 0);
+        assert_true(passage_is_blocked(s, ray, INFINITY));
+    }
+    scene_destroy(s);
 }
 
 /* The nearest of a ray's hits is the one that counts, also of a shape behind one that lets it through. */
@@ -197,6 +215,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_share_of_the_rays_is_stopped),
+        cmocka_unit_test(probes_find_veils),
         cmocka_unit_test(what_is_behind_is_met),
         cmocka_unit_test(holes_are_where_the_texture_has_them),
         cmocka_unit_test(cutoffs_make_masks),
