@@ -14,6 +14,7 @@ shape shape_make(shape_kind kind)
     memset(&s, 0, sizeof s);
     s.kind = kind;
     s.light_index = SHAPE_NO_LIGHT;
+    s.medium_inside = s.medium_outside = SCENE_NO_MEDIUM;
     s.alpha = 1.0f;
     s.alpha_texture = SCENE_NO_TEXTURE;
     return s;

@@ -65,7 +65,7 @@ typedef struct shape {
     float area; /* m^2, world; set by scene_commit */
 } shape;
 
-/* A shape with nothing in it yet: opaque, dark, of the scene's first material. */
+/* A shape with nothing in it yet: opaque, dark, of the scene's first material, in no medium. */
 shape shape_make(shape_kind kind);
 
 #endif
