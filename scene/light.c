@@ -40,7 +40,7 @@ static rgb find_power(const scene *s, const light *l)
     case LIGHT_PROJECTION: return rgb_mul(l->intensity, l->projection->integral);
     case LIGHT_DISTANT: return rgb_scale(l->radiance, disc);
     case LIGHT_AREA: {
-        rgb mean = l->radiance_map ? rgb_mul(l->radiance, l->radiance_map->mean) : l->radiance;
+        rgb mean = rgb_mul(l->radiance, l->radiance_map ? l->radiance_map->mean : light_sampled_value(s, l, NULL));
         return rgb_scale(mean, AG_PI * s->shapes[l->shape_index].area * (l->two_sided ? 2.0f : 1.0f));
     }
     case LIGHT_INFINITE:
@@ -53,7 +53,7 @@ static rgb find_power(const scene *s, const light *l)
 ag_status light_commit(const scene *s, light *l)
 {
     ag_status status = AG_OK;
-    if (l->kind == LIGHT_AREA && l->radiance_texture != SCENE_NO_TEXTURE && !l->radiance_map)
+    if (l->kind == LIGHT_AREA && light_varies(s, l) && !l->radiance_map)
         status = radiance_map_create(s, l, &l->radiance_map);
     if (status == AG_OK)
         l->power = find_power(s, l);
@@ -94,6 +94,27 @@ rgb light_texture_value(const scene *s, const light *l, const surface_hit *hit)
         return rgb_gray(1.0f);
     rgb c = texture_evaluate_rgb(s, l->radiance_texture, hit);
     return rgb_make(fmaxf(c.r, 0.0f), fmaxf(c.g, 0.0f), fmaxf(c.b, 0.0f));
+}
+
+bool light_varies(const scene *s, const light *l)
+{
+    const shape *lamp = &s->shapes[l->shape_index];
+    return l->radiance_texture != SCENE_NO_TEXTURE ||
+           (lamp->alpha_texture != SCENE_NO_TEXTURE && !shape_is_invisible(lamp));
+}
+
+rgb light_sampled_value(const scene *s, const light *l, const surface_sample *at)
+{
+    const shape *lamp = &s->shapes[l->shape_index];
+    if (l->radiance_texture == SCENE_NO_TEXTURE && shape_is_opaque(lamp))
+        return rgb_gray(1.0f);
+    surface_hit hit = {.distance = 0.0f};
+    if (light_varies(s, l))
+        shape_sample_surface(lamp, l->shape_index, at, &hit);
+    rgb value = light_texture_value(s, l, &hit);
+    if (shape_is_opaque(lamp) || shape_is_invisible(lamp))
+        return value;
+    return rgb_scale(value, alpha_at(s, lamp, &hit));
 }
 
 rgb light_emitted_radiance(const scene *s, const light *l, const surface_hit *hit, vec3 direction)
@@ -163,10 +184,9 @@ static bool sample_area(const scene *s, const light *l, vec3 point, vec2 u, ligh
         return false;
     out->distance = sqrtf(distance_squared);
     out->direction = vec3_scale(to_lamp, 1.0f / out->distance);
-    surface_hit hit = {.geometric_normal = at.geometric_normal};
-    if (l->radiance_texture != SCENE_NO_TEXTURE)
-        shape_sample_surface(lamp, l->shape_index, &at, &hit);
-    out->radiance = light_emitted_radiance(s, l, &hit, vec3_negate(out->direction));
+    out->radiance = rgb_gray(0.0f);
+    if (l->two_sided || vec3_dot(at.geometric_normal, out->direction) < 0.0f)
+        out->radiance = rgb_mul(l->radiance, light_sampled_value(s, l, &at));
     float cos_lamp = fabsf(vec3_dot(at.geometric_normal, out->direction));
     if (rgb_is_black(out->radiance) || cos_lamp <= 1e-6f)
         return false;

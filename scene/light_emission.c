@@ -39,12 +39,7 @@ static bool emit_area(const scene *s, const light *l, const light_target *target
     if (l->radiance_map && !radiance_map_sample(l->radiance_map, u, &u, &density))
         return false;
     surface_sample at = shape_sample_area(lamp, u);
-    rgb radiance = l->radiance;
-    if (l->radiance_texture != SCENE_NO_TEXTURE) {
-        surface_hit here;
-        shape_sample_surface(lamp, l->shape_index, &at, &here);
-        radiance = rgb_mul(radiance, light_texture_value(s, l, &here));
-    }
+    rgb radiance = rgb_mul(l->radiance, light_sampled_value(s, l, &at));
     vec3 n = at.geometric_normal;
     if (aim_at(target, at.position, 1.0f, random, &out->direction, &pdf)) {
         float cosine = vec3_dot(n, out->direction);
@@ -66,8 +61,8 @@ static bool emit_area(const scene *s, const light *l, const light_target *target
     return !rgb_is_black(out->flux);
 }
 
-/* A direction in the cone, uniform but thinned by the falloff, so that all photons are equal: on average at least half are
- * accepted, and what 64 trials refuse goes along the axis. */
+/* A direction in the cone, uniform but thinned by the falloff, so that all photons are equal: on average at least half
+ * are accepted, and what 64 trials refuse goes along the axis. */
 static vec3 sample_spot(const light *l, rng *random)
 {
     frame f = frame_from_z(l->direction);

@@ -10,7 +10,7 @@ enum { SIZE = 64, LOOKS = 16 * SIZE * SIZE }; /* cells along a side; places look
 static const double FLOOR = 0.1;
 
 /* Looks at places of a lattice by the golden ratio: no two alike in either number, so that meshes of many triangles are
- * looked at everywhere. Gives the sum of the texture, and of its mean channel in each cell. */
+ * looked at everywhere. Gives the sum of its values, and of its mean channel in each cell. */
 static void look(const scene *s, const light *l, double out_sum[3], double out_cells[SIZE * SIZE],
                  uint32_t out_counts[SIZE * SIZE])
 {
@@ -18,10 +18,8 @@ static void look(const scene *s, const light *l, double out_sum[3], double out_c
     for (uint32_t k = 0; k < LOOKS; k++) {
         double turn = k * 0.61803398874989485;
         vec2 u = {((float)k + 0.5f) / LOOKS, fminf((float)(turn - floor(turn)), 0x1.fffffep-1f)};
-        surface_hit hit;
         surface_sample at = shape_sample_area(lamp, u);
-        shape_sample_surface(lamp, l->shape_index, &at, &hit);
-        rgb c = light_texture_value(s, l, &hit);
+        rgb c = light_sampled_value(s, l, &at);
         /* ellipsoids are not sampled evenly: the weight undoes that */
         double weight = 1.0 / ((double)at.pdf_area * (double)lamp->area);
         uint32_t cell = (uint32_t)(u.y * SIZE) * SIZE + (uint32_t)(u.x * SIZE);

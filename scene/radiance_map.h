@@ -1,4 +1,4 @@
-/* radiance_map.h: where on a lamp with a texture the light comes from: a grid over the unit square that
+/* radiance_map.h: where on a lamp with a texture, or holes, the light comes from: a grid over the unit square that
  * shape_sample_area maps evenly onto the shape.
  * Flow: scene_commit makes it; light and light_emission sample it. Threads: read-only once created. */
 #ifndef AFTERGLOW_RADIANCE_MAP_H
@@ -9,10 +9,10 @@
 
 typedef struct radiance_map {
     distribution_2d picks;
-    rgb mean; /* of the texture over the shape's area */
+    rgb mean; /* of light_sampled_value over the shape's area */
 } radiance_map;
 
-/* Of an area light with a texture, whose shape is committed. Errors: AG_ERROR_MEMORY. */
+/* Of an area light that varies, whose shape is committed. Errors: AG_ERROR_MEMORY. */
 ag_status radiance_map_create(const struct scene *s, const light *l, radiance_map **out_map);
 void radiance_map_destroy(radiance_map *m); /* NULL is fine */
 
