@@ -4,6 +4,7 @@
 
 #include "bsdf_lobe.h"
 #include "fresnel.h"
+#include "principled.h"
 #include "scene.h"
 #include "shading_frame.h"
 
@@ -17,12 +18,35 @@ static void add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_del
     b->lobes[b->lobe_count++] = (bsdf_lobe){kind, group, is_delta, share};
 }
 
+/* Of three lobes: those that carry anything get the least share at the cost of the others. */
+static void normalize_many(bsdf *b)
+{
+    float sum = 0.0f, free_sum = 0.0f, left = 1.0f;
+    for (int k = 0; k < b->lobe_count; k++)
+        sum += b->lobes[k].probability;
+    for (int k = 0; k < b->lobe_count; k++) {
+        float *p = &b->lobes[k].probability;
+        *p = sum > 0.0f ? *p / sum : 1.0f / (float)b->lobe_count;
+        if (*p > 0.0f && *p <= PROBABILITY_MIN) {
+            *p = PROBABILITY_MIN;
+            left -= PROBABILITY_MIN;
+        } else {
+            free_sum += *p;
+        }
+    }
+    for (int k = 0; k < b->lobe_count; k++)
+        if (b->lobes[k].probability > PROBABILITY_MIN)
+            b->lobes[k].probability *= left / free_sum;
+}
+
 /* Shares become probabilities; a lobe that carries anything is not neglected. */
 static void normalize_probabilities(bsdf *b)
 {
-    if (b->lobe_count == 0)
+    if (b->lobe_count > 2) {
+        normalize_many(b);
         return;
-    if (b->lobe_count == 1) {
+    }
+    if (b->lobe_count < 2) {
         b->lobes[0].probability = 1.0f;
         return;
     }
@@ -32,6 +56,21 @@ static void normalize_probabilities(bsdf *b)
         p = fminf(fmaxf(p, PROBABILITY_MIN), 1.0f - PROBABILITY_MIN);
     b->lobes[0].probability = p;
     b->lobes[1].probability = 1.0f - p;
+}
+
+static void add_principled(bsdf *b)
+{
+    const material *m = &b->matter;
+    float cosine = vec3_dot(b->out, b->shading.z);
+    principled_shares shares = principled_shares_at(m, fminf(fabsf(cosine), 1.0f));
+    bool has_interface = principled_has_interface(m);
+    if (!rgb_is_black(principled_base_albedo(m)) || !has_interface)
+        add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, shares.base);
+    if (has_interface)
+        add_lobe(b, LOBE_PRINCIPLED, BSDF_TRACED, material_is_smooth(m->alpha_u, m->alpha_v), shares.interface);
+    float coat_alpha = m->clearcoat_roughness * m->clearcoat_roughness;
+    if (m->clearcoat > 0.0f && !(cosine < 0.0f && principled_is_solid(m)))
+        add_lobe(b, LOBE_CLEARCOAT, BSDF_TRACED, material_is_smooth(coat_alpha, coat_alpha), shares.coat);
 }
 
 static void add_lobes(bsdf *b)
@@ -44,7 +83,6 @@ static void add_lobes(bsdf *b)
     switch (m->kind) {
     case MATERIAL_INTERFACE: break; /* none: rays do not stop here */
     case MATERIAL_MIX: /* resolved before */
-    case MATERIAL_PRINCIPLED: /* its base colour alone, as yet */
     case MATERIAL_DIFFUSE: add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, 1.0f); break;
     case MATERIAL_DIFFUSE_TRANSMISSION:
         add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, rgb_max(m->reflectance));
@@ -64,6 +102,7 @@ static void add_lobes(bsdf *b)
         add_lobe(b, LOBE_CONDUCTOR_UNDER_COAT, BSDF_TRACED, material_is_smooth(m->base_alpha_u, m->base_alpha_v), 1.0f - coat);
         add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
         break;
+    case MATERIAL_PRINCIPLED: add_principled(b); break;
     }
     normalize_probabilities(b);
 }
@@ -140,6 +179,7 @@ rgb bsdf_gathered_reflection(const bsdf *b)
     case MATERIAL_DIFFUSE:
     case MATERIAL_DIFFUSE_TRANSMISSION: return m->reflectance;
     case MATERIAL_COATED_DIFFUSE:
+    case MATERIAL_PRINCIPLED:
         return rgb_scale(bsdf_lobe_diffuse_albedo(m), bsdf_lobe_transmittance(m, vec3_dot(b->out, b->shading.z)));
     default: return rgb_gray(0.0f);
     }

@@ -7,8 +7,9 @@
  *
  * One predicate splits the lobes, for photons and for the eye alike: GATHERED lobes (diffuse ones) store photons and look up
  * irradiance; all others, rough or smooth, are TRACED on. The S of the path notation is every traced lobe.
- * A gathered lobe is a product t(in) A t(out) / pi, where t is 1 but under a coat, which lets through 1 - Fresnel: photons
- * carry t(in), so that irradiance times A t(out) / pi is the radiance that leaves. */
+ * A gathered lobe is a product t(in) A t(out) / pi, where t is 1 but under a coat, which lets through 1 - Fresnel, or
+ * under an interface of which t is what it does not reflect in all (principled.h): photons carry t(in), so
+ * that irradiance times A t(out) / pi is the radiance that leaves. */
 #ifndef AFTERGLOW_BSDF_H
 #define AFTERGLOW_BSDF_H
 
@@ -27,7 +28,9 @@ typedef enum bsdf_lobe_kind {
     LOBE_DIELECTRIC,          /* reflection and refraction */
     LOBE_THIN_DIELECTRIC,     /* a pane: reflection, and straight through */
     LOBE_COAT,                /* reflection by a dielectric coat */
-    LOBE_CONDUCTOR_UNDER_COAT /* refracted in, reflected by the conductor, refracted out */
+    LOBE_CONDUCTOR_UNDER_COAT, /* refracted in, reflected by the conductor, refracted out */
+    LOBE_PRINCIPLED,           /* metal's and dielectric's reflection, and transmission, straight or refracted */
+    LOBE_CLEARCOAT             /* reflection by the coat of the principled one */
 } bsdf_lobe_kind;
 
 typedef struct bsdf_lobe {
@@ -37,7 +40,7 @@ typedef struct bsdf_lobe {
     float probability; /* of being picked among all lobes; they sum to 1 */
 } bsdf_lobe;
 
-enum { BSDF_LOBES_MAX = 2 };
+enum { BSDF_LOBES_MAX = 3 };
 
 typedef struct bsdf {
     frame shading;         /* z: shading normal, to the outside */

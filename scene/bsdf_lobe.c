@@ -2,8 +2,9 @@
  * Threads: pure functions. */
 #include "bsdf_lobe.h"
 
+#include "bsdf_principled.h"
 #include "fresnel.h"
-#include "microfacet.h"
+#include "principled.h"
 
 static ggx interface_of(const material *m) { return (ggx){m->alpha_u, m->alpha_v}; }
 
@@ -14,9 +15,10 @@ static vec3 into_coat(const material *m, vec3 v)
     return (vec3){v.x / m->ior, v.y / m->ior, copysignf(sqrtf(fmaxf(0.0f, 1.0f - sin2)), v.z)};
 }
 
-/* What a coat lets through, once, of light at that cosine outside; 1 where there is none. */
 float bsdf_lobe_transmittance(const material *m, float cos_theta)
 {
+    if (m->kind == MATERIAL_PRINCIPLED)
+        return principled_base_transmittance(m, cos_theta);
     if (m->kind != MATERIAL_COATED_DIFFUSE && m->kind != MATERIAL_COATED_CONDUCTOR)
         return 1.0f;
     float through = 1.0f - fresnel_dielectric(fabsf(cos_theta), m->ior);
@@ -37,6 +39,8 @@ static float coat_sum(const material *m, float r)
 /* A of the diffuse reflection. What gets out of a coat is spread over a wider solid angle: the squared index. */
 rgb bsdf_lobe_diffuse_albedo(const material *m)
 {
+    if (m->kind == MATERIAL_PRINCIPLED)
+        return principled_base_albedo(m);
     if (m->kind != MATERIAL_COATED_DIFFUSE)
         return m->reflectance;
     rgb r = m->reflectance;
@@ -60,38 +64,50 @@ static float diffuse_cosine(const bsdf *b, bsdf_lobe_kind kind, vec3 direction, 
     return fmaxf(0.0f, side * i.z);
 }
 
-/* Rough dielectric, one way: value (f |cos|) and density of scattering from o to i. Walter 2007, eq. 20, 21; the
- * density's factors follow Pharr et al., 9.7. */
-static void rough_dielectric(const material *m, bsdf_transport transport, vec3 o, vec3 i, float *out_value,
-                             float *out_pdf)
+/* Walter 2007, eq. 20, 21; the density's factors follow Pharr et al., 9.7. */
+bool bsdf_lobe_refraction(ggx facets, float ior, bsdf_transport transport, vec3 o, vec3 i, float *out_cosine,
+                          float *out_value, float *out_pdf)
 {
-    bool is_reflection = o.z * i.z > 0.0f;
-    float relative = o.z > 0.0f ? m->ior : 1.0f / m->ior, eta = is_reflection ? 1.0f : relative;
+    float eta = o.z > 0.0f ? ior : 1.0f / ior;
     vec3 h = vec3_add(vec3_scale(i, eta), o);
-    *out_value = *out_pdf = 0.0f;
     float square = vec3_length_squared(h);
     if (o.z == 0.0f || i.z == 0.0f || square == 0.0f)
-        return;
+        return false;
     h = vec3_scale(h, 1.0f / sqrtf(square));
     if (h.z < 0.0f)
         h = vec3_negate(h);
     float oh = vec3_dot(o, h), ih = vec3_dot(i, h);
     if (ih * i.z < 0.0f || oh * o.z < 0.0f)
-        return; /* a back-facing microfacet */
-    float reflectance = fresnel_dielectric(fabsf(oh), relative);
-    ggx facets = interface_of(m);
-    if (is_reflection) {
-        *out_value = ggx_reflection(facets, o, i, h) * reflectance;
-        *out_pdf = ggx_reflection_pdf(facets, o, h) * reflectance;
-        return;
-    }
+        return false; /* a back-facing microfacet */
     vec3 upper = o.z > 0.0f ? o : vec3_negate(o);
     float sum = ih + oh / eta, jacobian = fabsf(ih) / (sum * sum);
-    *out_value = ggx_density(facets, h) * (1.0f - reflectance) * ggx_masking_shadowing(facets, o, i) *
-                 fabsf(ih * oh / (o.z * sum * sum));
+    *out_cosine = fabsf(oh);
+    *out_value = ggx_density(facets, h) * ggx_masking_shadowing(facets, o, i) * fabsf(ih * oh / (o.z * sum * sum));
     if (transport == BSDF_RADIANCE)
         *out_value /= eta * eta;
-    *out_pdf = ggx_visible_density(facets, upper, h) * jacobian * (1.0f - reflectance);
+    *out_pdf = ggx_visible_density(facets, upper, h) * jacobian;
+    return true;
+}
+
+/* Rough dielectric, one way: value (f |cos|) and density of scattering from o to i. */
+static void rough_dielectric(const material *m, bsdf_transport transport, vec3 o, vec3 i, float *out_value,
+                             float *out_pdf)
+{
+    ggx facets = interface_of(m);
+    float relative = o.z > 0.0f ? m->ior : 1.0f / m->ior, share, cosine;
+    *out_value = *out_pdf = 0.0f;
+    if (o.z * i.z > 0.0f) {
+        vec3 h = ggx_half_vector(o, i);
+        share = fresnel_dielectric(fabsf(vec3_dot(o, h)), relative);
+        *out_value = ggx_reflection(facets, o, i, h);
+        *out_pdf = ggx_reflection_pdf(facets, o, h);
+    } else {
+        if (!bsdf_lobe_refraction(facets, m->ior, transport, o, i, &cosine, out_value, out_pdf))
+            return;
+        share = 1.0f - fresnel_dielectric(cosine, relative);
+    }
+    *out_value *= share;
+    *out_pdf *= share;
 }
 
 /* In through the coat, to and fro between conductor and coat, and out again: a geometric series. Of the coat's two
@@ -162,6 +178,10 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
         if (bsdf_is_same_side(b, direction) && o.z * i.z > 0.0f)
             conductor_under_coat(m, o, i, out_value, out_pdf);
         return;
+    case LOBE_PRINCIPLED:
+    case LOBE_CLEARCOAT:
+        bsdf_principled_evaluate(b, lobe->kind, transport, direction, o, i, out_value, out_pdf);
+        return;
     case LOBE_THIN_DIELECTRIC: return; /* always smooth */
     }
 }
@@ -173,6 +193,8 @@ bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport 
                           vec3 *out_local, rgb *out_weight)
 {
     const material *m = &b->matter;
+    if (kind == LOBE_PRINCIPLED || kind == LOBE_CLEARCOAT)
+        return bsdf_principled_sample_smooth(m, kind, transport, o, u_lobe, out_local, out_weight);
     vec3 n = {0.0f, 0.0f, o.z >= 0.0f ? 1.0f : -1.0f};
     float cosine = fabsf(o.z), eta = o.z >= 0.0f ? m->ior : 1.0f / m->ior;
     *out_local = reflect_about(o, n);
@@ -215,6 +237,8 @@ bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_
             out_local->z = -out_local->z;
         return true;
     }
+    if (kind == LOBE_PRINCIPLED || kind == LOBE_CLEARCOAT)
+        return bsdf_principled_sample_rough(m, kind, o, u_lobe, u, out_local);
     float side = o.z >= 0.0f ? 1.0f : -1.0f;
     vec3 upper = vec3_scale(o, side), i;
     if (kind == LOBE_CONDUCTOR_UNDER_COAT) {

@@ -5,12 +5,18 @@
 #define AFTERGLOW_BSDF_LOBE_H
 
 #include "bsdf.h"
+#include "microfacet.h"
 
 /* What a coat lets through, once, of light at that cosine outside; 1 where there is none. */
 float bsdf_lobe_transmittance(const material *m, float cos_theta);
 
 /* A of the diffuse reflection, under a coat what gets out of it. */
 rgb bsdf_lobe_diffuse_albedo(const material *m);
+
+/* Refraction by rough facets from o to i, on different sides, Fresnel's term left out: its value (f |cos|), its density,
+ * and the cosine (>= 0) at which o meets the facet. false: there is no such facet. */
+bool bsdf_lobe_refraction(ggx facets, float ior, bsdf_transport transport, vec3 o, vec3 i, float *out_cosine,
+                          float *out_value, float *out_pdf);
 
 /* Whether a direction is on out's side; judged by the geometry, which alone cannot leak. */
 bool bsdf_is_same_side(const bsdf *b, vec3 direction);

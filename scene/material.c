@@ -5,6 +5,7 @@
 #include "bvh.h"
 #include "fresnel.h"
 #include "math/rng.h"
+#include "principled.h"
 
 #include <string.h>
 
@@ -61,6 +62,8 @@ static bool has_textures(const material *m)
 void material_prepare(material *m)
 {
     m->is_textured = has_textures(m);
+    if (m->kind == MATERIAL_PRINCIPLED)
+        principled_resolve(m);
     make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
     make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
     if (m->kind == MATERIAL_COATED_DIFFUSE)
@@ -72,6 +75,8 @@ bool material_is_traced(const scene *s, uint32_t material_index)
     const material *m = &s->materials[material_index];
     if (m->kind == MATERIAL_MIX)
         return material_is_traced(s, m->mixed[0]) || material_is_traced(s, m->mixed[1]);
+    if (m->kind == MATERIAL_PRINCIPLED)
+        return principled_has_interface(m) || m->clearcoat > 0.0f;
     return m->kind != MATERIAL_DIFFUSE && m->kind != MATERIAL_DIFFUSE_TRANSMISSION && m->kind != MATERIAL_INTERFACE;
 }
 
@@ -157,12 +162,33 @@ static void look_up_textures(const scene *s, const surface_hit *hit, material *m
     make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
 }
 
+/* glTF's textures multiply what is given for the whole. */
+static void look_up_principled(const scene *s, const surface_hit *hit, material *m)
+{
+    if (m->reflectance_texture != SCENE_NO_TEXTURE)
+        m->reflectance = rgb_mul(m->reflectance, texture_evaluate_rgb(s, m->reflectance_texture, hit));
+    if (m->specular_color_texture != SCENE_NO_TEXTURE)
+        m->specular_color = rgb_mul(m->specular_color, texture_evaluate_rgb(s, m->specular_color_texture, hit));
+    const uint32_t textures[] = {m->metallic_texture, m->roughness_texture, m->transmission_texture,
+                                 m->specular_texture, m->clearcoat_texture, m->clearcoat_roughness_texture};
+    float *const factors[] = {&m->metallic, &m->roughness, &m->transmission,
+                              &m->specular, &m->clearcoat, &m->clearcoat_roughness};
+    for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
+        if (textures[i] != SCENE_NO_TEXTURE && *factors[i] != 0.0f)
+            *factors[i] *= texture_evaluate_float(s, textures[i], hit);
+    principled_resolve(m);
+}
+
 void material_at(const scene *s, const surface_hit *hit, material *out_material)
 {
     const material *m = &s->materials[s->shapes[hit->shape_index].material_index];
     if (m->kind == MATERIAL_MIX)
         m = resolve_mix(s, m, hit);
     *out_material = *m;
-    if (m->is_textured)
+    if (!m->is_textured)
+        return;
+    if (m->kind == MATERIAL_PRINCIPLED)
+        look_up_principled(s, hit, out_material);
+    else
         look_up_textures(s, hit, out_material);
 }

@@ -49,6 +49,10 @@ typedef struct material {
     float clearcoat_roughness; /* as it is perceived, [0, 1] */
     bool is_thin;       /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
 
+    /* of the same, set by scene_add_material, and at a place */
+    rgb dielectric_f0;  /* of facets at normal incidence; at grazing they reflect `specular` */
+    float base_through; /* of diffuse light from outside, what gets to the diffuse base */
+
     /* Values that vary over the surface, in place of those above, or of MATERIAL_PRINCIPLED: which they are multiplied
      * by. Each is SCENE_NO_TEXTURE where there is none; read only where is_textured. */
     bool is_textured; /* set by scene_add_material */

@@ -44,6 +44,7 @@ static const material_reader READERS[] = {
     {"coateddiffuse", MATERIAL_COATED_DIFFUSE, pbrt_read_coated_diffuse},
     {"coatedconductor", MATERIAL_COATED_CONDUCTOR, pbrt_read_coated_conductor},
     {"mix", MATERIAL_MIX, read_mix},
+    {"principled", MATERIAL_PRINCIPLED, pbrt_read_principled},
     {"interface", MATERIAL_INTERFACE, read_interface},
     {"none", MATERIAL_INTERFACE, read_interface},
     {"", MATERIAL_INTERFACE, read_interface},

@@ -229,7 +229,7 @@ ag_status pbrt_check_named_media(pbrt_parser *parser);
 typedef ag_status pbrt_material_reader(pbrt_parser *parser, parameter_list *list, material *m);
 pbrt_material_reader pbrt_read_diffuse, pbrt_read_diffuse_transmission, pbrt_read_conductor, pbrt_read_dielectric,
     pbrt_read_thin_dielectric, pbrt_read_coated_diffuse, pbrt_read_coated_conductor, pbrt_read_hair,
-    pbrt_read_subsurface, pbrt_read_measured, pbrt_read_unknown;
+    pbrt_read_subsurface, pbrt_read_measured, pbrt_read_unknown, pbrt_read_principled /* pbrt_principled.c */;
 /* "displacement" and "normalmap", of all kinds but mixes. */
 pbrt_material_reader pbrt_read_maps;
 

@@ -11,29 +11,31 @@ static const vec3 UP = {0.0f, 0.0f, 1.0f};
 
 static inline material diffuse(void)
 {
-    return (material){.kind = MATERIAL_DIFFUSE, .reflectance = {0.8f, 0.5f, 0.1f}, .ior = 1.5f};
+    material m = material_make(MATERIAL_DIFFUSE);
+    m.reflectance = (rgb){0.8f, 0.5f, 0.1f};
+    return m;
 }
 
 static inline material conductor(float alpha_u, float alpha_v)
 {
-    return (material){.kind = MATERIAL_CONDUCTOR,
-                      .eta = {0.2f, 0.9f, 1.5f},
-                      .k = {3.9f, 2.4f, 1.9f},
-                      .alpha_u = alpha_u,
-                      .alpha_v = alpha_v};
+    material m = material_make(MATERIAL_CONDUCTOR);
+    m.eta = (rgb){0.2f, 0.9f, 1.5f}, m.k = (rgb){3.9f, 2.4f, 1.9f};
+    m.alpha_u = alpha_u, m.alpha_v = alpha_v;
+    return m;
 }
 
 static inline material dielectric(float ior, float alpha_u, float alpha_v)
 {
-    return (material){.kind = MATERIAL_DIELECTRIC, .ior = ior, .alpha_u = alpha_u, .alpha_v = alpha_v};
+    material m = material_make(MATERIAL_DIELECTRIC);
+    m.ior = ior, m.alpha_u = alpha_u, m.alpha_v = alpha_v;
+    return m;
 }
 
 static inline material diffuse_transmission(void)
 {
-    return (material){.kind = MATERIAL_DIFFUSE_TRANSMISSION,
-                      .reflectance = {0.3f, 0.2f, 0.0f},
-                      .transmittance = {0.1f, 0.6f, 1.0f},
-                      .ior = 1.5f};
+    material m = material_make(MATERIAL_DIFFUSE_TRANSMISSION);
+    m.reflectance = (rgb){0.3f, 0.2f, 0.0f}, m.transmittance = (rgb){0.1f, 0.6f, 1.0f};
+    return m;
 }
 
 static inline material coated_diffuse(float alpha_u, float alpha_v)
@@ -174,6 +176,33 @@ static inline void check_lobes(const bsdf *b, bsdf_lobes lobes, int samples, boo
     assert_close(whole, sampled / n, 0.003 + 4.0 / sqrt(n) * (1.0 - whole));
     if (whole * n >= 500.0) /* between the two horizons of a leaning normal there is little room */
         assert_chi_square(counts, bins, n, 0.01);
+}
+
+/* Every group of lobes, from both sides. */
+static inline void check_groups(material m, int samples)
+{
+    static const bsdf_lobes GROUPS[] = {BSDF_GATHERED, BSDF_TRACED, BSDF_ALL};
+    static const double ANGLES[] = {8, 50, 78, 130};
+    for (int i = 0; i < 4; i++) {
+        bsdf b = flat(&m, direction_at(ANGLES[i], 25.0 + 130.0 * i));
+        double probability = 0.0;
+        for (int k = 0; k < b.lobe_count; k++)
+            probability += (double)b.lobes[k].probability;
+        assert_close(probability, 1.0, 1e-6);
+        assert_close(bsdf_probability(&b, BSDF_ALL), 1.0, 1e-6);
+        assert_close(bsdf_probability(&b, BSDF_GATHERED) + bsdf_probability(&b, BSDF_TRACED), 1.0, 1e-6);
+        for (int g = 0; g < 3; g++) {
+            assert_true(bsdf_has(&b, GROUPS[g]) == (bsdf_probability(&b, GROUPS[g]) > 0.0f));
+            if (bsdf_has(&b, GROUPS[g])) {
+                check_lobes(&b, GROUPS[g], samples, true);
+                continue;
+            }
+            bsdf_sample s;
+            assert_false(bsdf_sample_direction(&b, GROUPS[g], BSDF_FLUX, 0.5f, (vec2){0.5f, 0.5f}, &s));
+            assert_true(bsdf_pdf(&b, GROUPS[g], UP) == 0.0f);
+            assert_true(rgb_is_black(bsdf_evaluate(&b, GROUPS[g], BSDF_FLUX, UP)));
+        }
+    }
 }
 
 #endif

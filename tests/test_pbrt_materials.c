@@ -1,6 +1,7 @@
 /* test_pbrt_materials.c: materials of several parts as the pbrt reader makes them, with pbrt's defaults: coats, diffuse
  * transmission, panes, mixes and the names these use; and what is refused.
  * Threads: one. */
+#include "bvh.h"
 #include "pbrt_fixture.h"
 #include "spectra.h"
 
@@ -257,6 +258,9 @@ static void errors_name_place_and_reason(void **state)
         {"\"coateddiffuse\" \"float roughness\" -1", "1:37", "\"roughness\" should not be negative"},
         {"\"coateddiffuse\" \"float uroughness\" -1", "1:37", "\"uroughness\" should not be negative"},
         {"\"coateddiffuse\" \"string thickness\" \"a\"", "1:37", "\"string thickness\" should be \"float thickness\""},
+        {"\"principled\" \"float metallic\" 1.5", "1:34", "\"metallic\" should be from 0 to 1"},
+        {"\"principled\" \"float clearcoat_roughness\" -.5", "1:34", "\"clearcoat_roughness\" should be from 0 to 1"},
+        {"\"principled\" \"float ior\" .5", "1:34", "\"ior\" should be at least 1, or 0 for an infinite one"},
         {"\"coateddiffuse\" \"float maxdepth\" 3", "1:37", "\"float maxdepth\" should be \"integer maxdepth\""},
         {"\"coateddiffuse\" \"integer remaproughness\" 1", "1:37",
          "\"integer remaproughness\" should be \"bool remaproughness\""},
@@ -341,6 +345,61 @@ static void warnings_are_given_once(void **state)
     reading_destroy(&r);
 }
 
+static void principled_materials(void **state)
+{
+    (void)state;
+    material m = only_material("\"principled\"");
+    assert_int_equal(m.kind, MATERIAL_PRINCIPLED);
+    assert_rgb(m.reflectance, 1, 1, 1, 0);
+    assert_rgb(m.specular_color, 1, 1, 1, 0);
+    assert_true(m.metallic == 1.0f && m.roughness == 1.0f && m.transmission == 0.0f && m.specular == 1.0f);
+    assert_true(m.clearcoat == 0.0f && m.clearcoat_roughness == 0.0f && m.ior == 1.5f && m.is_thin && !m.is_textured);
+    assert_roughness(m.alpha_u, m.alpha_v, 1, 1);
+    assert_rgb(m.dielectric_f0, .04, .04, .04, 1e-6);
+    m = only_material("\"principled\" \"rgb reflectance\" [ .1 .2 1 ] \"float metallic\" .25 \"float roughness\" .5\n"
+                      "\"float transmission\" .75 \"float ior\" 1.8 \"float specular\" .5 \"bool is_thin\" false\n"
+                      "\"rgb specular_color\" [ 1 2 30 ] \"float clearcoat\" .3 \"float clearcoat_roughness\" .4");
+    assert_rgb(m.reflectance, .1, .2, 1, 1e-7);
+    assert_rgb(m.specular_color, 1, 2, 30, 1e-6);
+    assert_true(m.metallic == 0.25f && m.transmission == 0.75f && m.specular == 0.5f && !m.is_thin);
+    assert_true(m.clearcoat == 0.3f && m.clearcoat_roughness == 0.4f && m.ior == 1.8f);
+    assert_roughness(m.alpha_u, m.alpha_v, .25, .25);
+    const double f0 = .8 * .8 / (2.8 * 2.8);
+    assert_rgb(m.dielectric_f0, .5 * f0, f0, .5, 1e-6);
+}
+
+/* Factors that are textured start at 1; at a place they are what the texture says, and what follows from that. */
+static void principled_textures(void **state)
+{
+    (void)state;
+    reading r = reading_of("WorldBegin\n"
+                           "Texture \"f\" \"float\" \"bilerp\" \"float v00\" .5 \"float v01\" .5 \"float v10\" .5 \"float v11\" .5\n"
+                           "Texture \"c\" \"spectrum\" \"bilerp\" \"rgb v00\" [ .1 .2 .3 ] \"rgb v01\" [ .1 .2 .3 ]\n"
+                           "\"rgb v10\" [ .1 .2 .3 ] \"rgb v11\" [ .1 .2 .3 ]\n"
+                           "Material \"principled\" \"texture reflectance\" \"c\" \"texture specular_color\" \"c\"\n"
+                           "\"texture metallic\" \"f\" \"texture roughness\" \"f\" \"texture transmission\" \"f\"\n"
+                           "\"texture specular\" \"f\" \"texture clearcoat\" \"f\" \"texture clearcoat_roughness\" \"f\"\n"
+                           "Shape \"sphere\"");
+    scene *s = r.scene;
+    material *given = &s->materials[s->shapes[0].material_index], m;
+    surface_hit hit = {.uv = {0.5f, 0.5f}};
+    assert_true(given->is_textured && given->metallic == 1.0f && given->clearcoat == 1.0f);
+    material_at(s, &hit, &m);
+    assert_rgb(m.reflectance, .1, .2, .3, 1e-6);
+    assert_rgb(m.dielectric_f0, .5 * .04 * .1, .5 * .04 * .2, .5 * .04 * .3, 1e-7);
+    assert_true(m.metallic == 0.5f && m.roughness == 0.5f && m.transmission == 0.5f && m.specular == 0.5f);
+    assert_true(m.clearcoat == 0.5f && m.clearcoat_roughness == 0.5f);
+    assert_roughness(m.alpha_u, m.alpha_v, .25, .25);
+    /* they multiply what is given for the whole */
+    given->metallic = 0.5f, given->roughness = 0.8f, given->reflectance = rgb_gray(0.5f);
+    material_at(s, &hit, &m);
+    assert_true(m.metallic == 0.25f);
+    assert_near(m.roughness, .4, 1e-6);
+    assert_rgb(m.reflectance, .05, .1, .15, 1e-6);
+    assert_true(m.base_through > 0.5f && m.base_through < 1.0f);
+    reading_destroy(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -349,7 +408,8 @@ int main(void)
         cmocka_unit_test(mixes_are_of_named_materials),   cmocka_unit_test(mixes_may_look_forward),
         cmocka_unit_test(names_grow_while_a_mix_is_made), cmocka_unit_test(circles_of_mixes_are_refused),
         cmocka_unit_test(deep_mixes_are_refused),         cmocka_unit_test(errors_name_place_and_reason),
-        cmocka_unit_test(warnings_are_given_once),
+        cmocka_unit_test(warnings_are_given_once),        cmocka_unit_test(principled_materials),
+        cmocka_unit_test(principled_textures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

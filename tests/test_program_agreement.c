@@ -1,6 +1,6 @@
-/* test_program_agreement.c: photon map and path tracer show the same light in five rooms without a closed form:
- * diffuse blocks; glass, rough metal and a mirror; a room lit through an opening; media in glass and behind interfaces;
- * veils, bump maps and brushed metal. All light, and indirect light alone. Each picture is made twice, with two seeds: how
+/* test_program_agreement.c: photon map and path tracer show the same light in six rooms without a closed form:
+ * diffuse blocks; glass, rough metal and a mirror; glTF's material in many ways; a room lit through an opening; media in
+ * glass and behind interfaces; veils, bump maps and brushed metal. All light, and indirect light alone. Each picture is made twice, with two seeds: how
  * much those differ is its noise, the photons' share of it included.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
@@ -108,6 +108,12 @@ static void test_glass_and_metal(void **state)
     compare("glass_and_metal", "--spp=512", false);
 }
 
+static void test_principled(void **state)
+{
+    (void)state;
+    compare("principled", "--spp=256", false);
+}
+
 static void test_next_room(void **state)
 {
     (void)state;
@@ -131,6 +137,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_box_with_blocks),
         TEST_IN_FOLDER(test_glass_and_metal),
+        TEST_IN_FOLDER(test_principled),
         TEST_IN_FOLDER(test_next_room),
         TEST_IN_FOLDER(test_tea_in_glass),
         TEST_IN_FOLDER(test_veils_and_relief),
