@@ -3,6 +3,7 @@
 #include "bsdf.h"
 
 #include "bsdf_lobe.h"
+#include "coat.h"
 #include "fresnel.h"
 #include "principled.h"
 #include "scene.h"
@@ -80,6 +81,7 @@ static void add_lobes(bsdf *b)
     float coat = m->kind == MATERIAL_COATED_DIFFUSE || m->kind == MATERIAL_COATED_CONDUCTOR
                      ? fresnel_dielectric(fabsf(vec3_dot(b->out, b->shading.z)), m->ior)
                      : 0.0f;
+    float trapped;
     switch (m->kind) {
     case MATERIAL_INTERFACE: break; /* none: rays do not stop here */
     case MATERIAL_MIX: /* resolved before */
@@ -96,11 +98,17 @@ static void add_lobes(bsdf *b)
     case MATERIAL_THIN_DIELECTRIC: add_lobe(b, LOBE_THIN_DIELECTRIC, BSDF_TRACED, true, 1.0f); break;
     case MATERIAL_COATED_DIFFUSE:
         add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, (1.0f - coat) * rgb_max(m->reflectance));
-        add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
+        if (m->ior != 1.0f)
+            add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
         break;
     case MATERIAL_COATED_CONDUCTOR:
-        add_lobe(b, LOBE_CONDUCTOR_UNDER_COAT, BSDF_TRACED, material_is_smooth(m->base_alpha_u, m->base_alpha_v), 1.0f - coat);
-        add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
+        trapped = coat_has_trapped(m) ? rgb_max(coat_trapped_albedo(m, vec3_dot(b->out, b->shading.z))) : 0.0f;
+        add_lobe(b, LOBE_CONDUCTOR_UNDER_COAT, BSDF_TRACED, material_is_smooth(m->base_alpha_u, m->base_alpha_v),
+                 1.0f - coat - trapped);
+        if (m->ior != 1.0f)
+            add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
+        if (trapped > 0.0f)
+            add_lobe(b, LOBE_COAT_TRAPPED, BSDF_TRACED, false, trapped);
         break;
     case MATERIAL_PRINCIPLED: add_principled(b); break;
     }

@@ -3,17 +3,11 @@
 #include "bsdf_lobe.h"
 
 #include "bsdf_principled.h"
+#include "coat.h"
 #include "fresnel.h"
 #include "principled.h"
 
 static ggx interface_of(const material *m) { return (ggx){m->alpha_u, m->alpha_v}; }
-
-/* A direction refracted into the coat, on the same side of the base as it was. */
-static vec3 into_coat(const material *m, vec3 v)
-{
-    float sin2 = fmaxf(0.0f, 1.0f - v.z * v.z) / (m->ior * m->ior);
-    return (vec3){v.x / m->ior, v.y / m->ior, copysignf(sqrtf(fmaxf(0.0f, 1.0f - sin2)), v.z)};
-}
 
 float bsdf_lobe_transmittance(const material *m, float cos_theta)
 {
@@ -21,30 +15,14 @@ float bsdf_lobe_transmittance(const material *m, float cos_theta)
         return principled_base_transmittance(m, cos_theta);
     if (m->kind != MATERIAL_COATED_DIFFUSE && m->kind != MATERIAL_COATED_CONDUCTOR)
         return 1.0f;
-    float through = 1.0f - fresnel_dielectric(fabsf(cos_theta), m->ior);
-    if (m->coat_thickness > 0.0f && through > 0.0f)
-        through *= attenuation(m->coat_thickness / fabsf(into_coat(m, (vec3){0.0f, 0.0f, cos_theta}).z));
-    return through;
+    return coat_transmittance(m, cos_theta);
 }
 
-/* r + r (r back) + r (r back)^2 + …: light that goes to and fro between base and coat. */
-static float coat_sum(const material *m, float r)
-{
-    float again = r * m->coat_return, lost = 1.0f;
-    for (int i = 0; i < m->coat_bounces; i++)
-        lost *= again;
-    return r * (m->coat_bounces > 0 ? 1.0f - lost : 1.0f) / (1.0f - again);
-}
-
-/* A of the diffuse reflection. What gets out of a coat is spread over a wider solid angle: the squared index. */
 rgb bsdf_lobe_diffuse_albedo(const material *m)
 {
     if (m->kind == MATERIAL_PRINCIPLED)
         return principled_base_albedo(m);
-    if (m->kind != MATERIAL_COATED_DIFFUSE)
-        return m->reflectance;
-    rgb r = m->reflectance;
-    return rgb_scale((rgb){coat_sum(m, r.r), coat_sum(m, r.g), coat_sum(m, r.b)}, 1.0f / (m->ior * m->ior));
+    return m->kind == MATERIAL_COATED_DIFFUSE ? coat_diffuse_albedo(m) : m->reflectance;
 }
 
 /* Judged by the geometry, which alone cannot leak. */
@@ -110,23 +88,11 @@ static void rough_dielectric(const material *m, bsdf_transport transport, vec3 o
     *out_pdf *= share;
 }
 
-/* In through the coat, to and fro between conductor and coat, and out again: a geometric series. Of the coat's two
- * reflectances the lesser keeps light in, so that both ways are the same and no more leaves than got in. */
-static rgb coat_series(const material *m, rgb metal, float cos_o, float cos_i)
-{
-    float through = bsdf_lobe_transmittance(m, cos_o) * bsdf_lobe_transmittance(m, cos_i);
-    if (!(through > 0.0f))
-        return rgb_gray(0.0f); /* total reflection, by a coat of a lesser index than what is around */
-    float back = fminf(fresnel_dielectric(fabsf(cos_o), m->ior), fresnel_dielectric(fabsf(cos_i), m->ior));
-    return (rgb){through * metal.r / (1.0f - metal.r * back), through * metal.g / (1.0f - metal.g * back),
-                 through * metal.b / (1.0f - metal.b * back)};
-}
-
 /* Under a smooth coat: the conductor's value between the refracted directions; the squared index is the change of solid
  * angles. */
 static void conductor_under_coat(const material *m, vec3 o, vec3 i, rgb *out_value, float *out_pdf)
 {
-    vec3 oc = into_coat(m, o), ic = into_coat(m, i);
+    vec3 oc = coat_refract(m, o), ic = coat_refract(m, i);
     if (oc.z == 0.0f || ic.z == 0.0f)
         return; /* beyond total reflection, as above */
     vec3 h = ggx_half_vector(oc, ic);
@@ -161,6 +127,11 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
         *out_value = rgb_gray(value);
         return;
     }
+    case LOBE_COAT_TRAPPED:
+        *out_pdf = diffuse_cosine(b, lobe->kind, direction, i) * AG_INV_PI;
+        if (*out_pdf > 0.0f)
+            *out_value = rgb_scale(coat_trapped(m, o.z, i.z), *out_pdf);
+        return;
     case LOBE_CONDUCTOR:
     case LOBE_COAT: {
         if (!bsdf_is_same_side(b, direction) || o.z * i.z <= 0.0f)
@@ -169,7 +140,7 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
         vec3 h = ggx_half_vector(o, i);
         float cosine = fabsf(vec3_dot(o, h));
         rgb reflected = lobe->kind == LOBE_CONDUCTOR ? fresnel_conductor(cosine, m->eta, m->k)
-                                                     : rgb_gray(fresnel_dielectric(cosine, m->ior));
+                                                     : rgb_gray(coat_reflectance(m, cosine, o.z, i.z));
         *out_value = rgb_scale(reflected, ggx_reflection(facets, o, i, h));
         *out_pdf = ggx_reflection_pdf(facets, o, h);
         return;
@@ -203,7 +174,7 @@ bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport 
     case LOBE_CONDUCTOR: *out_weight = fresnel_conductor(cosine, m->eta, m->k); return true;
     case LOBE_COAT: *out_weight = rgb_gray(fresnel_dielectric(cosine, m->ior)); return true;
     case LOBE_CONDUCTOR_UNDER_COAT: {
-        rgb metal = fresnel_conductor(fabsf(into_coat(m, o).z), m->eta, m->k);
+        rgb metal = fresnel_conductor(fabsf(coat_refract(m, o).z), m->eta, m->k);
         *out_weight = coat_series(m, metal, o.z, o.z);
         return true;
     }
@@ -231,7 +202,7 @@ bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport 
 bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
     const material *m = &b->matter;
-    if (kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH) {
+    if (kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH || kind == LOBE_COAT_TRAPPED) {
         *out_local = sample_cosine_hemisphere(u);
         if ((vec3_dot(b->out, b->geometric_normal) < 0.0f) != (kind == LOBE_DIFFUSE_THROUGH))
             out_local->z = -out_local->z;
@@ -242,7 +213,7 @@ bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_
     float side = o.z >= 0.0f ? 1.0f : -1.0f;
     vec3 upper = vec3_scale(o, side), i;
     if (kind == LOBE_CONDUCTOR_UNDER_COAT) {
-        vec3 oc = into_coat(m, upper);
+        vec3 oc = coat_refract(m, upper);
         vec3 ic = reflect_about(oc, ggx_sample_visible((ggx){m->base_alpha_u, m->base_alpha_v}, oc, u));
         float sin2 = (1.0f - ic.z * ic.z) * m->ior * m->ior;
         if (ic.z <= 0.0f || sin2 >= 1.0f)

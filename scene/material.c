@@ -3,7 +3,7 @@
 #include "material.h"
 
 #include "bvh.h"
-#include "fresnel.h"
+#include "coat.h"
 #include "math/rng.h"
 #include "principled.h"
 
@@ -66,8 +66,8 @@ void material_prepare(material *m)
         principled_resolve(m);
     make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
     make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
-    if (m->kind == MATERIAL_COATED_DIFFUSE)
-        m->coat_return = fresnel_dielectric_diffuse(1.0f / m->ior, m->coat_thickness);
+    if (m->kind == MATERIAL_COATED_DIFFUSE || m->kind == MATERIAL_COATED_CONDUCTOR)
+        coat_prepare(m);
 }
 
 bool material_is_traced(const scene *s, uint32_t material_index)
@@ -77,6 +77,8 @@ bool material_is_traced(const scene *s, uint32_t material_index)
         return material_is_traced(s, m->mixed[0]) || material_is_traced(s, m->mixed[1]);
     if (m->kind == MATERIAL_PRINCIPLED)
         return principled_has_interface(m) || m->clearcoat > 0.0f;
+    if (m->kind == MATERIAL_COATED_DIFFUSE && m->ior == 1.0f)
+        return false; /* a coat that does not reflect */
     return m->kind != MATERIAL_DIFFUSE && m->kind != MATERIAL_DIFFUSE_TRANSMISSION && m->kind != MATERIAL_INTERFACE;
 }
 

@@ -25,6 +25,15 @@ typedef enum material_kind {
     MATERIAL_MIX               /* one of two others, picked by place */
 } material_kind;
 
+enum { COAT_TRAP_PLACES = 8 };
+
+/* Of a rough conductor under a coat: light that the coat keeps in by total reflection (coat.h). All 0: none. */
+typedef struct coat_trap {
+    float caught[COAT_TRAP_PLACES]; /* share of what got in, at even cosines outside from 0 to 1 */
+    float mean;           /* of that times what gets in, over the hemisphere */
+    float escape, retain; /* of a white conductor: what gets out at the next bounce, what is left for more */
+} coat_trap;
+
 typedef struct material {
     material_kind kind;
     rgb reflectance;        /* of the diffuse base, [0, 1] */
@@ -36,6 +45,7 @@ typedef struct material {
     float coat_thickness;   /* in mean free paths of the coat's stuff, which absorbs; >= 0 */
     int coat_bounces;       /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
     float coat_return;      /* of diffuse light from the base, the share that the coat sends back; set by scene_add_material */
+    coat_trap coat_trap;    /* set by scene_add_material */
     uint32_t mixed[2];      /* mix: indices of materials made before */
     float mix_amount;       /* mix: the share of the second, [0, 1] */
 

@@ -56,12 +56,18 @@ static inline material coated_conductor(float coat, float base_u, float base_v)
     return m;
 }
 
-static inline bsdf bsdf_at(const material *m, vec3 shading_normal, vec3 out)
+/* Of a material that is prepared already. */
+static inline bsdf bsdf_of(const material *prepared, vec3 shading_normal, vec3 out)
 {
     surface_hit hit = {.geometric_normal = UP, .shading_normal = shading_normal};
+    return bsdf_create_of(prepared, &hit, out);
+}
+
+static inline bsdf bsdf_at(const material *m, vec3 shading_normal, vec3 out)
+{
     material prepared = *m;
     material_prepare(&prepared);
-    return bsdf_create_of(&prepared, &hit, out);
+    return bsdf_of(&prepared, shading_normal, out);
 }
 
 /* A place whose normals are the z axis. */

@@ -2,6 +2,8 @@
  * reciprocity, samples against densities and values for each group of lobes, closed forms.
  * Threads: one. */
 #include "bsdf_fixture.h"
+#include "fresnel.h"
+#include "microfacet.h"
 
 enum { SAMPLES = 60000 / FEWER };
 
@@ -204,8 +206,6 @@ static void coats_make_no_light(void **state)
             for (int base = -1; base < 3; base++)
                 for (double degrees = 5.0; degrees < 90.0; degrees += 26.5) {
                     float a = ALPHAS[coat], c = base < 0 ? 0.0f : ALPHAS[base];
-                    if (IORS[n] < 1.0f && a > 0.0f)
-                        continue; /* total reflection by facets that the base knows nothing of */
                     material m = base < 0 ? coated_diffuse(a, a) : coated_conductor(a, c, c);
                     m.ior = IORS[n];
                     m.reflectance = rgb_gray(1.0f);
@@ -231,11 +231,12 @@ static void coats_are_reciprocal(void **state)
     rng random = test_random(14);
     for (int k = 0; k < 6; k++) {
         int compared = 0;
+        material_prepare(&all[k]);
         for (int i = 0; i < 5000; i++) {
             vec3 o = random_direction(&random), d = random_direction(&random);
             if (fabs((double)o.z) < 0.02 || fabs((double)d.z) < 0.02)
                 continue; /* cancellation near grazing */
-            bsdf from_o = flat(&all[k], o), from_d = flat(&all[k], d);
+            bsdf from_o = bsdf_of(&all[k], UP, o), from_d = bsdf_of(&all[k], UP, d);
             rgb there = rgb_scale(bsdf_evaluate(&from_o, BSDF_ALL, BSDF_RADIANCE, d), 1.0f / fabsf(d.z));
             rgb back = rgb_scale(bsdf_evaluate(&from_d, BSDF_ALL, BSDF_RADIANCE, o), 1.0f / fabsf(o.z));
             assert_close(there.r, back.r, 1e-2 * fabs((double)back.r) + 1e-5);
@@ -324,6 +325,85 @@ static void a_lacquered_mirror_obeys_the_series(void **state)
         }
         assert_close(sum, expected, 2e-3);
     }
+}
+
+/* --- a walk between coat and conductor, which the lobes stand for --- */
+
+/* Flux that leaves of 1 that came: refracted, reflected or kept in as Fresnel says, by a smooth coat,
+ * and thrown back by the conductor's facets, until nothing is left. */
+static rgb walk_between(const material *m, vec3 out, int walks)
+{
+    const ggx facets = {m->base_alpha_u, m->base_alpha_v};
+    rng random = test_random(31);
+    double n = m->ior, sum[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < walks; k++) {
+        double f = fresnel(out.z, n);
+        if ((double)rng_float(&random) < f) {
+            for (int c = 0; c < 3; c++)
+                sum[c] += 1.0;
+            continue;
+        }
+        vec3 o = {out.x / m->ior, out.y / m->ior, 0.0f};
+        o.z = sqrtf(1.0f - o.x * o.x - o.y * o.y);
+        rgb kept = rgb_gray(expf(-m->coat_thickness / o.z));
+        for (int bounce = 0; bounce < (m->coat_bounces ? m->coat_bounces : 200) && kept.g > 1e-4f; bounce++) {
+            vec3 h = ggx_sample_visible(facets, o, rng_vec2(&random)), i = reflect_about(o, h);
+            if (i.z <= 0.0f)
+                break;
+            float share = ggx_masking_shadowing(facets, o, i) / ggx_masking(facets, o);
+            share *= expf(-m->coat_thickness / i.z);
+            kept = rgb_mul(kept, rgb_scale(fresnel_conductor(vec3_dot(o, h), m->eta, m->k), share));
+            if ((double)rng_float(&random) >= fresnel(i.z, 1.0 / n)) {
+                sum[0] += kept.r, sum[1] += kept.g, sum[2] += kept.b;
+                break;
+            }
+            kept = rgb_scale(kept, expf(-m->coat_thickness / i.z));
+            o = i;
+        }
+    }
+    return (rgb){(float)(sum[0] / walks), (float)(sum[1] / walks), (float)(sum[2] / walks)};
+}
+
+/* All that leaves, by samples. */
+static rgb sampled_albedo(const bsdf *b, int samples)
+{
+    rng random = test_random(32);
+    rgb sum = rgb_gray(0.0f);
+    for (int k = 0; k < samples; k++) {
+        bsdf_sample s;
+        float u_lobe = rng_float(&random);
+        if (bsdf_sample_direction(b, BSDF_ALL, BSDF_FLUX, u_lobe, rng_vec2(&random), &s))
+            sum = rgb_add(sum, s.weight);
+    }
+    return rgb_scale(sum, 1.0f / (float)samples);
+}
+
+static void a_coat_gives_back_what_it_traps(void **state)
+{
+    (void)state;
+    enum { WALKS = 20000 / FEWER };
+    static const float IORS[] = {1.2f, 1.5f, 2.0f}, ALPHAS[] = {0.05f, 0.15f, 0.3f, 0.6f};
+    double worst = 0.0;
+    for (int which = 0; which < 3 * 4 * 3; which++) {
+        material m = coated_conductor(0.0f, ALPHAS[which / 3 % 4], ALPHAS[which / 3 % 4]);
+        m.ior = IORS[which % 3];
+        m.eta = rgb_scale(m.eta, 1.0f / m.ior), m.k = rgb_scale(m.k, 1.0f / m.ior);
+        if (which / 12 == 1)
+            m.eta = rgb_gray(1.0f), m.k = rgb_gray(1e4f); /* reflects all */
+        if (which / 12 == 2)
+            m.coat_thickness = 0.1f, m.coat_bounces = 5;
+        for (double degrees = 2.0; degrees < 90.0; degrees += 38.0) {
+            bsdf b = flat(&m, direction_at(degrees, 70.0));
+            rgb expected = walk_between(&b.matter, b.out, WALKS), got = sampled_albedo(&b, WALKS);
+            double error = fmax(fabs((double)(got.r - expected.r)), fabs((double)(got.b - expected.b)));
+            worst = fmax(worst, error);
+            if (!(error < 0.06 * WIDER && (double)got.r < 1.0 + 0.01 * WIDER))
+                fail_msg("index %g, base %g, sort %d, %g degrees: %.3f %.3f %.3f, not %.3f %.3f %.3f", (double)m.ior,
+                         (double)m.base_alpha_u, which / 12, degrees, (double)got.r, (double)got.g, (double)got.b,
+                         (double)expected.r, (double)expected.g, (double)expected.b);
+        }
+    }
+    print_message("at most %.3f off\n", worst);
 }
 
 /* --- panes --- */
@@ -470,6 +550,7 @@ int main(void)
         cmocka_unit_test(gathered_lobes_are_products),
         cmocka_unit_test(a_thin_coat_reflects_totally),
         cmocka_unit_test(a_lacquered_mirror_obeys_the_series),
+        cmocka_unit_test(a_coat_gives_back_what_it_traps),
         cmocka_unit_test(a_pane_reflects_and_passes_straight),
         cmocka_unit_test(mixes_pick_by_place),
         cmocka_unit_test(materials_know_whether_they_are_traced),
