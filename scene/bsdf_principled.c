@@ -90,8 +90,8 @@ static bool pass_through(const material *m, vec3 o, vec3 n, vec3 *out_local)
     return refract_through(o, n, o.z >= 0.0f ? m->ior : 1.0f / m->ior, out_local);
 }
 
-bool bsdf_principled_sample_smooth(const material *m, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, float u_lobe,
-                                   vec3 *out_local, rgb *out_weight)
+bool bsdf_principled_sample_smooth(const material *m, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o,
+                                   float u_lobe, vec3 *out_local, rgb *out_weight)
 {
     vec3 n = {0.0f, 0.0f, o.z >= 0.0f ? 1.0f : -1.0f};
     *out_local = reflect_about(o, n);
@@ -118,8 +118,8 @@ bool bsdf_principled_sample_rough(const material *m, bsdf_lobe_kind kind, vec3 o
     float side = o.z >= 0.0f ? 1.0f : -1.0f;
     vec3 h = ggx_sample_visible(facets_of(m, kind), vec3_scale(o, side), u);
     h = vec3_scale(h, side);
-    bool is_reflection = kind == LOBE_CLEARCOAT ||
-                         u_lobe < facet_at(m, o, fabsf(vec3_dot(o, h))).reflection_probability;
+    bool is_reflection =
+        kind == LOBE_CLEARCOAT || u_lobe < facet_at(m, o, fabsf(vec3_dot(o, h))).reflection_probability;
     if (is_reflection)
         *out_local = reflect_about(o, h);
     else if (!pass_through(m, o, h, out_local))

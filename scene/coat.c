@@ -38,8 +38,8 @@ rgb coat_diffuse_albedo(const material *m)
     return rgb_scale((rgb){diffuse_sum(m, r.r), diffuse_sum(m, r.g), diffuse_sum(m, r.b)}, 1.0f / (m->ior * m->ior));
 }
 
-/* A geometric series. Of the coat's two reflectances the lesser keeps light in, so that both ways are the same and no more
- * leaves than got in. */
+/* A geometric series. Of the coat's two reflectances the lesser keeps light in, so that both ways are the same and no
+ * more leaves than got in. */
 rgb coat_series(const material *m, rgb metal, float cos_o, float cos_i)
 {
     float through = coat_transmittance(m, cos_o) * coat_transmittance(m, cos_i);
@@ -64,8 +64,8 @@ float coat_reflectance(const material *m, float cos_facet, float cos_o, float co
 /* Inside, light is told by its cosine to the normal: STEPS of them. */
 enum { STEPS = 12, FACETS = 512 };
 
-/* Where light goes that meets a white conductor at a cosine inside: out, back to it at each cosine by a coat that reflects
- * in part, and by one that reflects totally. What is missing is masked, or absorbed by the coat. */
+/* Where light goes that meets a white conductor at a cosine inside: out, back to it at each cosine by a coat that
+ * reflects in part, and by one that reflects totally. What is missing is masked, or absorbed by the coat. */
 typedef struct conductor_ways {
     double out, back[STEPS], total[STEPS];
 } conductor_ways;

@@ -1,12 +1,12 @@
-/* coat.h: a dielectric coat over a base, as pbrt has it: what it lets through, what it sends back, and what of that gets out
- * in the end.
- * Rests on: Weidlich, Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", 2007; Pharr, Jakob, Humphreys, 4th ed., 2023, 14.3
- * (the random walk that this stands for); Kulla, Conty, "Revisiting Physically Based Shading at Imageworks", 2017 (a lobe
- * that gives back what others lose).
- * Flow: material -> [here] -> bsdf_lobe. Threads: coat_prepare while the scene is built; the rest are pure functions.
+/* coat.h: a dielectric coat over a base, as pbrt has it: what it lets through, what it sends back, and what of that
+ * gets out in the end. Rests on: Weidlich, Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", 2007; Pharr, Jakob,
+ * Humphreys, 4th ed., 2023, 14.3 (the random walk that this stands for); Kulla, Conty, "Revisiting Physically Based
+ * Shading at Imageworks", 2017 (a lobe that gives back what others lose). Flow: material -> [here] -> bsdf_lobe.
+ * Threads: coat_prepare while the scene is built; the rest are pure functions.
  *
- * A rough conductor sends part of its light where the coat reflects totally. It comes back to the conductor until it gets
- * out, at any angle: the lobe "trapped", a product g(o) g(i) of the share that is caught, scaled to all that escapes. */
+ * A rough conductor sends part of its light where the coat reflects totally. It comes back to the conductor until it
+ * gets out, at any angle: the lobe "trapped", a product g(o) g(i) of the share that is caught, scaled to all that
+ * escapes. */
 #ifndef AFTERGLOW_COAT_H
 #define AFTERGLOW_COAT_H
 

@@ -1,7 +1,7 @@
 /* ggx_albedo.h: how much of the light from a direction a rough interface reflects in all, by single scattering.
- * Rests on: Karis, "Real Shading in Unreal Engine 4", 2013 (the two terms of Schlick's Fresnel); Kulla, Conty, "Revisiting
- * Physically Based Shading at Imageworks", 2017 (what it is good for: what is below gets the rest).
- * Flow: a table -> [here] -> principled. Threads: pure functions. */
+ * Rests on: Karis, "Real Shading in Unreal Engine 4", 2013 (the two terms of Schlick's Fresnel); Kulla, Conty,
+ * "Revisiting Physically Based Shading at Imageworks", 2017 (what it is good for: what is below gets the rest). Flow: a
+ * table -> [here] -> principled. Threads: pure functions. */
 #ifndef AFTERGLOW_GGX_ALBEDO_H
 #define AFTERGLOW_GGX_ALBEDO_H
 

@@ -70,9 +70,10 @@ void principled_resolve(material *m)
     rgb *const colors[2] = {&m->reflectance, &m->specular_color};
     for (int i = 0; i < 2; i++)
         *colors[i] = rgb_make(fmaxf(colors[i]->r, 0.0f), fmaxf(colors[i]->g, 0.0f), fmaxf(colors[i]->b, 0.0f));
-    m->reflectance = rgb_make(fminf(m->reflectance.r, 1.0f), fminf(m->reflectance.g, 1.0f), fminf(m->reflectance.b, 1.0f));
-    float *const shares[] = {&m->metallic, &m->roughness, &m->transmission, &m->specular, &m->clearcoat,
-                             &m->clearcoat_roughness};
+    m->reflectance =
+        rgb_make(fminf(m->reflectance.r, 1.0f), fminf(m->reflectance.g, 1.0f), fminf(m->reflectance.b, 1.0f));
+    float *const shares[] = {&m->metallic, &m->roughness, &m->transmission,
+                             &m->specular, &m->clearcoat, &m->clearcoat_roughness};
     for (size_t i = 0; i < sizeof shares / sizeof *shares; i++)
         *shares[i] = clamp_to_unit(*shares[i]);
     m->alpha_u = m->alpha_v = m->roughness * m->roughness;
@@ -85,8 +86,8 @@ void principled_resolve(material *m)
         f0 = root * root;
     }
     rgb color = m->specular_color;
-    m->dielectric_f0 = rgb_scale(rgb_make(fminf(f0 * color.r, 1.0f), fminf(f0 * color.g, 1.0f), fminf(f0 * color.b, 1.0f)),
-                                 m->specular);
+    m->dielectric_f0 = rgb_scale(
+        rgb_make(fminf(f0 * color.r, 1.0f), fminf(f0 * color.g, 1.0f), fminf(f0 * color.b, 1.0f)), m->specular);
     m->base_through = base_share(m) > 0.0f ? mean_base_transmittance(m) : 0.0f;
 }
 
@@ -103,12 +104,14 @@ void principled_interface(const material *m, float cosine, bool is_inside, rgb *
     float weight = fresnel_schlick_weight(cosine), through = through_share(m);
     rgb dielectric = schlick(m->dielectric_f0, m->specular, weight), from_within = dielectric;
     if (is_inside) {
-        /* what is seen from outside at the refracted angle, so that both ways are the same; total reflection is total */
+        /* what is seen from outside at the refracted angle, so that both ways are the same; total reflection is total
+         */
         float sin2 = (1.0f - fminf(cosine * cosine, 1.0f)) * m->ior * m->ior;
         from_within = sin2 >= 1.0f ? rgb_gray(1.0f)
                                    : schlick(m->dielectric_f0, m->specular, fresnel_schlick_weight(sqrtf(1.0f - sin2)));
     }
-    *out_reflected = rgb_add(rgb_scale(dielectric, fmaxf(0.0f, 1.0f - m->metallic - through)), rgb_scale(from_within, through));
+    *out_reflected =
+        rgb_add(rgb_scale(dielectric, fmaxf(0.0f, 1.0f - m->metallic - through)), rgb_scale(from_within, through));
     if (m->metallic > 0.0f)
         *out_reflected = rgb_add(*out_reflected, rgb_scale(schlick(m->reflectance, 1.0f, weight), m->metallic));
     *out_through = rgb_scale(m->reflectance, through * (1.0f - rgb_max(from_within)));
@@ -136,8 +139,8 @@ principled_shares principled_shares_at(const material *m, float cosine)
     float under_coat = coat_through(m, cosine), base = rgb_max(m->reflectance);
     float dielectric = rgb_max(m->dielectric_f0) * albedo.of_f0 + m->specular * albedo.of_f90;
     float metal = base * albedo.of_f0 + albedo.of_f90, entered = base * (1.0f - dielectric);
-    return (principled_shares){1.0f - under_coat,
-                               under_coat * (m->metallic * metal + (1.0f - m->metallic) * dielectric +
-                                             through_share(m) * entered),
-                               under_coat * base_share(m) * entered};
+    return (principled_shares){
+        1.0f - under_coat,
+        under_coat * (m->metallic * metal + (1.0f - m->metallic) * dielectric + through_share(m) * entered),
+        under_coat * base_share(m) * entered};
 }

@@ -10,7 +10,8 @@ enum { SAMPLES = 30000 / FEWER };
 
 static const rgb COLOR = {0.9f, 0.6f, 0.2f};
 
-static material principled(float metallic, float roughness, float transmission, float clearcoat, float clearcoat_roughness)
+static material principled(float metallic, float roughness, float transmission, float clearcoat,
+                           float clearcoat_roughness)
 {
     material m = material_make(MATERIAL_PRINCIPLED);
     m.reflectance = COLOR;
@@ -142,7 +143,8 @@ static double gathered_furnace(const bsdf *b)
     double mean = 0.0;
     for (int i = 0; i < STEPS; i++) {
         double cosine = (i + 0.5) / STEPS;
-        bsdf in = flat(&b->matter, (vec3){(float)sqrt(1.0 - cosine * cosine), 0.0f, copysignf((float)cosine, b->out.z)});
+        bsdf in =
+            flat(&b->matter, (vec3){(float)sqrt(1.0 - cosine * cosine), 0.0f, copysignf((float)cosine, b->out.z)});
         mean += 2.0 * cosine * (double)bsdf_arrival_factor(&in) / STEPS;
     }
     return mean * (double)bsdf_gathered_reflection(b).g;
@@ -181,7 +183,7 @@ static void nothing_gains(void **state)
     static const float PARTS[] = {0.0f, 0.5f, 1.0f}, ROUGHNESSES[] = {0.0f, 0.1f, 0.4f, 1.0f};
     static const float IORS[] = {1.0f, 1.5f, 2.5f, 0.0f};
     double most = 0.0;
-    for (int index = 0; index < 3 * 4 * 3 * 3 * 2 * 4; index += FEWER > 1 ? 35 : 5) {
+    for (int index = 0; index<3 * 4 * 3 * 3 * 2 * 4; index += FEWER> 1 ? 35 : 5) {
         int rest = index;
         material m = principled(PARTS[rest % 3], ROUGHNESSES[rest / 3 % 4], 0.0f, 0.0f, 0.0f);
         rest /= 12;
@@ -210,9 +212,11 @@ static void a_white_furnace(void **state)
 {
     (void)state;
     static const float ROUGHNESSES[] = {0.0f, 0.3f, 0.6f, 1.0f};
-    static const char *const NAMES[] = {"plastic", "coated plastic", "metal", "coated metal", "thin glass", "solid glass"};
-    static const double LEAST[6][4] = {{0.999, 0.999, 0.999, 0.999}, {0.999, 0.98, 0.99, 0.995}, {0.999, 0.89, 0.77, 0.30},
-                                       {0.999, 0.90, 0.75, 0.31},    {0.999, 0.89, 0.77, 0.30}, {0.999, 0.93, 0.87, 0.70}};
+    static const char *const NAMES[] = {"plastic",      "coated plastic", "metal",
+                                        "coated metal", "thin glass",     "solid glass"};
+    static const double LEAST[6][4] = {{0.999, 0.999, 0.999, 0.999}, {0.999, 0.98, 0.99, 0.995},
+                                       {0.999, 0.89, 0.77, 0.30},    {0.999, 0.90, 0.75, 0.31},
+                                       {0.999, 0.89, 0.77, 0.30},    {0.999, 0.93, 0.87, 0.70}};
     for (int k = 0; k < 6; k++)
         for (int r = 0; r < 4; r++) {
             material m = principled(k == 2 || k == 3, ROUGHNESSES[r], k >= 4, k == 1 || k == 3, 0.0f);
@@ -249,7 +253,8 @@ static void metals_and_plastics_reflect_as_gltf_says(void **state)
         double alpha = 0.36, hz = h.z, t = hz * hz * (alpha * alpha - 1.0) + 1.0;
         double density = alpha * alpha / (PI * t * t);
         double zo = fabs((double)o.z), zd = fabs((double)d.z);
-        double lo = sqrt(alpha * alpha + (1 - alpha * alpha) * zo * zo), ld = sqrt(alpha * alpha + (1 - alpha * alpha) * zd * zd);
+        double lo = sqrt(alpha * alpha + (1 - alpha * alpha) * zo * zo),
+               ld = sqrt(alpha * alpha + (1 - alpha * alpha) * zd * zd);
         double visibility = 0.5 / (zd * lo + zo * ld), oh = vec3_dot(o, h);
         const double f0[3] = {0.8 * 0.64 / 7.84, 0.8, 0.0}; /* (0.8 / 2.8)^2 */
         const double base[3] = {0.9f, 0.6f, 0.2f};
@@ -276,7 +281,8 @@ static ways smooth_ways(const bsdf *b, bsdf_transport transport)
     ways w = {0.0, 0.0, {0.0f, 0.0f, 0.0f}};
     for (int i = 0; i < STEPS; i++) {
         bsdf_sample s;
-        assert_true(bsdf_sample_direction(b, BSDF_TRACED, transport, ((float)i + 0.5f) / STEPS, (vec2){0.3f, 0.3f}, &s));
+        assert_true(
+            bsdf_sample_direction(b, BSDF_TRACED, transport, ((float)i + 0.5f) / STEPS, (vec2){0.3f, 0.3f}, &s));
         assert_true(s.is_delta);
         bool is_reflection = s.direction.z * b->out.z > 0.0f;
         *(is_reflection ? &w.reflected : &w.through) += (double)s.weight.g / STEPS;

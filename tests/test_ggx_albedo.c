@@ -13,7 +13,8 @@ static void integrate(double alpha, double cosine, double *out_f0, double *out_f
     const vec3 o = {(float)sqrt(1.0 - cosine * cosine), 0.0f, (float)cosine};
     *out_f0 = *out_f90 = 0.0;
     for (int k = 0; k < STEPS * STEPS; k++) {
-        vec3 h = ggx_sample_visible(facets, o, (vec2){((float)(k / STEPS) + 0.5f) / STEPS, ((float)(k % STEPS) + 0.5f) / STEPS});
+        vec3 h = ggx_sample_visible(facets, o,
+                                    (vec2){((float)(k / STEPS) + 0.5f) / STEPS, ((float)(k % STEPS) + 0.5f) / STEPS});
         vec3 i = reflect_about(o, h);
         if (i.z <= 0.0f)
             continue;
