@@ -179,7 +179,7 @@ static inline void check_lobes(const bsdf *b, bsdf_lobes lobes, int samples, boo
     }
     double possible = 1.0 - picked_share(b, lobes, BSDF_GATHERED, true) - picked_share(b, lobes, BSDF_TRACED, true);
     assert_true(whole <= possible + 0.002);
-    assert_close(whole, sampled / n, 0.003 + 4.0 / sqrt(n) * (1.0 - whole));
+    assert_close(whole, sampled / n, 0.003 + 4.0 * sqrt(whole * fmax(0.0, 1.0 - whole) / n)); /* binomial */
     if (whole * n >= 500.0) /* between the two horizons of a leaning normal there is little room */
         assert_chi_square(counts, bins, n, 0.01);
 }
