@@ -115,28 +115,30 @@ static void add_lobes(bsdf *b)
     normalize_probabilities(b);
 }
 
-static bsdf create_in_frame(const material *matter, frame shading, const surface_hit *hit, vec3 out)
+/* matter is there already: it is large, and copied once. */
+static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
 {
-    bsdf b;
-    b.shading = shading;
-    b.geometric_normal = hit->geometric_normal;
-    b.out = out;
-    b.matter = *matter;
-    b.lobe_count = 0;
-    add_lobes(&b);
-    return b;
+    b->shading = shading;
+    b->geometric_normal = hit->geometric_normal;
+    b->out = out;
+    b->lobe_count = 0;
+    add_lobes(b);
 }
 
 bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out)
 {
-    return create_in_frame(matter, frame_from_z(hit->shading_normal), hit, out);
+    bsdf b;
+    b.matter = *matter;
+    set_up(&b, frame_from_z(hit->shading_normal), hit, out);
+    return b;
 }
 
 bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out)
 {
-    material here;
-    material_at(s, hit, &here);
-    return create_in_frame(&here, shading_frame_at(s, hit, &here), hit, out);
+    bsdf b;
+    material_at(s, hit, &b.matter);
+    set_up(&b, shading_frame_at(s, hit, &b.matter), hit, out);
+    return b;
 }
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes)
