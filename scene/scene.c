@@ -181,14 +181,21 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
     return AG_OK;
 }
 
-static void find_bounds(scene *s)
+void scene_find_bounds(const scene *s, vec3 *out_min, vec3 *out_max)
 {
+    *out_min = (vec3){INFINITY, INFINITY, INFINITY};
+    *out_max = (vec3){-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t i = 0; i < s->shape_count; i++) {
         vec3 low, high;
         shape_bounds(&s->shapes[i], &low, &high);
-        s->bounds_min = vec3_min(s->bounds_min, low);
-        s->bounds_max = vec3_max(s->bounds_max, high);
+        *out_min = vec3_min(*out_min, low);
+        *out_max = vec3_max(*out_max, high);
     }
+}
+
+static void find_bounds(scene *s)
+{
+    scene_find_bounds(s, &s->bounds_min, &s->bounds_max);
     if (s->bounds_min.x > s->bounds_max.x) {
         s->bounding_radius = 1.0f;
         return;

@@ -93,6 +93,9 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
  * A scene without shapes is valid. Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING, AG_ERROR_SCENE, AG_CANCELLED. */
 ag_status scene_commit(scene *s, run_context *run, const char *isa);
 
+/* Of all shapes, committed or not; min > max when there is none. */
+void scene_find_bounds(const scene *s, vec3 *out_min, vec3 *out_max);
+
 /* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
 float shape_area(const shape *s);
 
