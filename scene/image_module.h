@@ -19,7 +19,7 @@ extern "C" {
 #define IMAGE_MODULE_ENTRY_NAME "afterglow_image_module"
 
 /* Raised whenever this file or image.h changes. */
-enum { IMAGE_MODULE_INTERFACE = 2 };
+enum { IMAGE_MODULE_INTERFACE = 3 };
 
 typedef struct image_module {
     int interface_number; /* IMAGE_MODULE_INTERFACE of the module */
@@ -31,6 +31,10 @@ typedef struct image_module {
 
     /* As image_read, or where keep_bytes is set as image_read_compact. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
     ag_status (*decode)(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size);
+
+    /* The same of a file's bytes. extension: of their format, in lower case. */
+    ag_status (*decode_memory)(const char *extension, const unsigned char *bytes, size_t size, bool keep_bytes,
+                               image *out_image, char *message, size_t message_size);
 } image_module;
 
 /* The module's only symbol. NULL where OpenImageIO cannot be set up. */

@@ -204,29 +204,44 @@ Value *read_values(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, OIIO::T
     return values.release();
 }
 
+/* proxy: the file's bytes, or NULL: they are read from path. */
+image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::IOProxy *proxy)
+{
+    OIIO::ImageSpec wishes;
+    wishes.attribute("oiio:UnassociatedAlpha", 1); /* colours as stored, not multiplied by alpha */
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes, proxy);
+    if (!input)
+        fail("OpenImageIO cannot open it", OIIO::geterror());
+    input->threads(1);
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
+        throw std::runtime_error("it is not a flat picture");
+    image read = image();
+    read.width = spec.width;
+    read.height = spec.height;
+    read.channel_count = spec.nchannels;
+    read.type = sample_type_of(spec.format);
+    if (keep_bytes && read.type == IMAGE_UINT8)
+        read.bytes = read_values<unsigned char>(*input, spec, OIIO::TypeUInt8);
+    else
+        read.pixels = read_values<float>(*input, spec, OIIO::TypeFloat);
+    return read;
+}
+
 ag_status decode(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size) noexcept
 {
     *out_image = image();
+    return guarded(AG_ERROR_INPUT, message, message_size,
+                   [=] { *out_image = read_picture(path, keep_bytes, nullptr); });
+}
+
+ag_status decode_memory(const char *extension, const unsigned char *bytes, size_t size, bool keep_bytes,
+                        image *out_image, char *message, size_t message_size) noexcept
+{
+    *out_image = image();
     return guarded(AG_ERROR_INPUT, message, message_size, [=] {
-        OIIO::ImageSpec wishes;
-        wishes.attribute("oiio:UnassociatedAlpha", 1); /* colours as stored, not multiplied by alpha */
-        const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes);
-        if (!input)
-            fail("OpenImageIO cannot open it", OIIO::geterror());
-        input->threads(1);
-        const OIIO::ImageSpec spec = input->spec();
-        if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
-            throw std::runtime_error("it is not a flat picture");
-        image read = image();
-        read.width = spec.width;
-        read.height = spec.height;
-        read.channel_count = spec.nchannels;
-        read.type = sample_type_of(spec.format);
-        if (keep_bytes && read.type == IMAGE_UINT8)
-            read.bytes = read_values<unsigned char>(*input, spec, OIIO::TypeUInt8);
-        else
-            read.pixels = read_values<float>(*input, spec, OIIO::TypeFloat);
-        *out_image = read;
+        OIIO::Filesystem::IOMemReader proxy(const_cast<unsigned char *>(bytes), size); /* which only reads */
+        *out_image = read_picture(std::string("picture.") + extension, keep_bytes, &proxy);
     });
 }
 
@@ -234,7 +249,7 @@ ag_status decode(const char *path, bool keep_bytes, image *out_image, char *mess
 
 extern "C" const image_module *afterglow_image_module(void)
 {
-    static const image_module table = {IMAGE_MODULE_INTERFACE, encode, decode};
+    static const image_module table = {IMAGE_MODULE_INTERFACE, encode, decode, decode_memory};
     try {
         /* Before anything else, or OpenImageIO and OpenEXR start a thread for every CPU. And Debian's build prints
          * debug messages to standard error unless told not to. */

@@ -1,4 +1,4 @@
-/* image_reader.h: pictures from disk, by OpenImageIO, in a module that is opened when it is first needed.
+/* image_reader.h: pictures from disk and memory, by OpenImageIO, in a module that is opened when it is first needed.
  * Flow: file -> [here] -> textures, lights of images, tests and tools. Threads: any; no state but the loaded module. */
 #ifndef AFTERGLOW_IMAGE_READER_H
 #define AFTERGLOW_IMAGE_READER_H
@@ -15,6 +15,10 @@ ag_status image_read(const char *path, image *out_image, char *message, size_t m
 
 /* The same, but values of 8 bits stay bytes. */
 ag_status image_read_compact(const char *path, image *out_image, char *message, size_t message_size);
+
+/* The same of a PNG or JPEG file in memory; what it is, its first bytes say. name stands for it in messages. */
+ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t size, image *out_image, char *message,
+                            size_t message_size);
 
 void image_reset(image *picture); /* frees the pixels; leaves it zeroed */
 
