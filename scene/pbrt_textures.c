@@ -271,7 +271,7 @@ static ag_status read_image(pbrt_parser *parser, parameter_list *list, texture *
     if (!name)
         return pbrt_error(parser, list->where, strlen(list->directive),
                           "Texture \"imagemap\" has no \"string filename\"");
-    t->wrap = (texture_wrap)wrap;
+    t->wraps = texture_wraps_same((texture_wrap)wrap);
     t->filter = filter == 1 ? TEXTURE_FILTER_POINT : TEXTURE_FILTER_BILINEAR;
     return pbrt_load_image(parser, list, "filename", name, encoding, t);
 }

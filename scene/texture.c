@@ -48,10 +48,10 @@ static rgb image_value(const scene *s, const texture *t, const surface_hit *hit)
     const texture_image *picture = s->texture_images[t->image_index];
     vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
     if (!t->is_spectrum) {
-        float value = t->scale * texture_image_float(picture, t->channel, t->wrap, t->filter, st.x, 1.0f - st.y);
+        float value = t->scale * texture_image_float(picture, t->channel, t->wraps, t->filter, st.x, 1.0f - st.y);
         return rgb_gray(t->invert ? fmaxf(0.0f, 1.0f - value) : value);
     }
-    rgb value = rgb_scale(texture_image_rgb(picture, t->wrap, t->filter, st.x, 1.0f - st.y), t->scale);
+    rgb value = rgb_scale(texture_image_rgb(picture, t->wraps, t->filter, st.x, 1.0f - st.y), t->scale);
     if (t->invert)
         value = rgb_sub(rgb_gray(1.0f), value);
     return rgb_make(fmaxf(value.r, 0.0f), fmaxf(value.g, 0.0f), fmaxf(value.b, 0.0f));

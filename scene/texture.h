@@ -48,7 +48,7 @@ typedef struct texture {
     vec3 direction; /* direction mix: unit, world */
     uint32_t image_index;
     texture_channel channel; /* image, float textures: which of the picture's */
-    texture_wrap wrap;
+    texture_wraps wraps;
     texture_filter filter;
     bool invert;     /* image: 1 - value, after scale */
     float scale;     /* image: of values; marble: of the place */

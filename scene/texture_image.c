@@ -82,21 +82,28 @@ static ag_status take_pixels(texture_image *i, image *picture, char *message, si
     return status;
 }
 
-static ag_status read_image(texture_image *i, const char *path, char *message, size_t message_size)
+/* A file's bytes; NULL: they are on disk. */
+typedef struct file_bytes {
+    const unsigned char *bytes;
+    size_t size;
+} file_bytes;
+
+static ag_status read_image(texture_image *i, const char *path, file_bytes file, char *message, size_t message_size)
 {
     i->path = strdup(path);
     if (!i->path)
         return AG_ERROR_MEMORY;
     image picture;
-    ag_status status = image_read_compact(path, &picture, message, message_size);
+    ag_status status = file.bytes ? image_read_memory(path, file.bytes, file.size, &picture, message, message_size)
+                                  : image_read_compact(path, &picture, message, message_size);
     if (!status)
         status = take_pixels(i, &picture, message, message_size);
     image_reset(&picture);
     return status;
 }
 
-ag_status texture_image_load(struct scene *s, const char *path, image_encoding encoding, uint32_t *out_index,
-                             char *message, size_t message_size)
+static ag_status load(scene *s, const char *path, file_bytes file, image_encoding encoding, uint32_t *out_index,
+                      char *message, size_t message_size)
 {
     for (uint32_t k = 0; k < s->texture_image_count; k++)
         if (image_encoding_equal(s->texture_images[k]->encoding, encoding) &&
@@ -108,10 +115,22 @@ ag_status texture_image_load(struct scene *s, const char *path, image_encoding e
     if (!i)
         return AG_ERROR_MEMORY;
     i->encoding = encoding;
-    ag_status status = read_image(i, path, message, message_size);
+    ag_status status = read_image(i, path, file, message, message_size);
     if (status)
         texture_image_destroy(i);
     return status ? status : scene_add_texture_image(s, i, out_index);
+}
+
+ag_status texture_image_load(struct scene *s, const char *path, image_encoding encoding, uint32_t *out_index,
+                             char *message, size_t message_size)
+{
+    return load(s, path, (file_bytes){NULL, 0}, encoding, out_index, message, message_size);
+}
+
+ag_status texture_image_load_memory(struct scene *s, const char *name, const unsigned char *bytes, size_t size,
+                                    image_encoding encoding, uint32_t *out_index, char *message, size_t message_size)
+{
+    return load(s, name, (file_bytes){bytes, size}, encoding, out_index, message, message_size);
 }
 
 void texture_image_destroy(texture_image *i)
@@ -141,24 +160,31 @@ static float tame(texture_wrap wrap, float x)
     switch (wrap) {
     case TEXTURE_WRAP_REPEAT: return fabsf(x) < 1e9f ? x - floorf(x) : 0.0f;
     case TEXTURE_WRAP_BLACK: return fminf(fmaxf(x, -1.0f), 2.0f);
+    case TEXTURE_WRAP_MIRROR:
+        x = fabsf(x) < 1e9f ? 0.5f * x - floorf(0.5f * x) : 0.0f;
+        return x < 0.5f ? 2.0f * x : 2.0f - 2.0f * x;
     default: return fminf(fmaxf(x, 0.0f), 1.0f);
     }
 }
 
+/* Brings x, which is beyond an edge, to [0, size); false where all is black there. */
+static bool wrap_axis(texture_wrap wrap, int64_t size, int64_t *x)
+{
+    if (wrap == TEXTURE_WRAP_REPEAT)
+        *x = *x < 0 ? *x + size : *x - size;
+    else /* the edge's own pixel is also what a mirror shows next to it */
+        *x = *x < 0 ? 0 : size - 1;
+    return wrap != TEXTURE_WRAP_BLACK;
+}
+
 /* Brings pixel (x, y) into the picture; false where it is black. */
-static bool wrap_pixel(const texture_image *i, texture_wrap wrap, int64_t *x, int64_t *y)
+static bool wrap_pixel(const texture_image *i, texture_wraps wraps, int64_t *x, int64_t *y)
 {
     const int64_t width = i->width, height = i->height;
     const bool beyond_x = *x < 0 || *x >= width, beyond_y = *y < 0 || *y >= height;
     if (!beyond_x && !beyond_y)
         return true;
-    switch (wrap) {
-    case TEXTURE_WRAP_REPEAT:
-        *x = *x < 0 ? *x + width : *x >= width ? *x - width : *x;
-        *y = *y < 0 ? *y + height : *y >= height ? *y - height : *y;
-        return true;
-    case TEXTURE_WRAP_BLACK: return false;
-    case TEXTURE_WRAP_OCTAHEDRAL:
+    if (wraps.s == TEXTURE_WRAP_OCTAHEDRAL) {
         if (beyond_x) {
             *x = *x < 0 ? 0 : width - 1;
             *y = height - 1 - *y;
@@ -168,38 +194,35 @@ static bool wrap_pixel(const texture_image *i, texture_wrap wrap, int64_t *x, in
             *x = width - 1 - *x;
         }
         return true;
-    default:
-        *x = *x < 0 ? 0 : *x >= width ? width - 1 : *x;
-        *y = *y < 0 ? 0 : *y >= height ? height - 1 : *y;
-        return true;
     }
+    return (!beyond_x || wrap_axis(wraps.s, width, x)) && (!beyond_y || wrap_axis(wraps.t, height, y));
 }
 
-static void add_pixel(const texture_image *i, texture_wrap wrap, int64_t x, int64_t y, float weight, footprint *f)
+static void add_pixel(const texture_image *i, texture_wraps wraps, int64_t x, int64_t y, float weight, footprint *f)
 {
-    if (!wrap_pixel(i, wrap, &x, &y))
+    if (!wrap_pixel(i, wraps, &x, &y))
         return;
     f->offset[f->count] = ((size_t)y * i->width + (size_t)x) * i->channel_count;
     f->weight[f->count++] = weight;
 }
 
-static footprint find_pixels(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t)
+static footprint find_pixels(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
 {
     footprint f;
     f.count = 0;
-    float x = tame(wrap, s) * (float)i->width, y = tame(wrap, t) * (float)i->height;
+    float x = tame(wraps.s, s) * (float)i->width, y = tame(wraps.t, t) * (float)i->height;
     if (filter == TEXTURE_FILTER_POINT) {
-        add_pixel(i, wrap, (int64_t)floorf(x), (int64_t)floorf(y), 1.0f, &f);
+        add_pixel(i, wraps, (int64_t)floorf(x), (int64_t)floorf(y), 1.0f, &f);
         return f;
     }
     x -= 0.5f;
     y -= 0.5f;
     const float left = floorf(x), top = floorf(y), u = x - left, v = y - top;
     const int64_t x0 = (int64_t)left, y0 = (int64_t)top;
-    add_pixel(i, wrap, x0, y0, (1.0f - u) * (1.0f - v), &f);
-    add_pixel(i, wrap, x0 + 1, y0, u * (1.0f - v), &f);
-    add_pixel(i, wrap, x0, y0 + 1, (1.0f - u) * v, &f);
-    add_pixel(i, wrap, x0 + 1, y0 + 1, u * v, &f);
+    add_pixel(i, wraps, x0, y0, (1.0f - u) * (1.0f - v), &f);
+    add_pixel(i, wraps, x0 + 1, y0, u * (1.0f - v), &f);
+    add_pixel(i, wraps, x0, y0 + 1, (1.0f - u) * v, &f);
+    add_pixel(i, wraps, x0 + 1, y0 + 1, u * v, &f);
     return f;
 }
 
@@ -212,9 +235,9 @@ static float sum_channel(const texture_image *i, const footprint *f, size_t chan
     return sum;
 }
 
-rgb texture_image_rgb(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t)
+rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
 {
-    const footprint f = find_pixels(i, wrap, filter, s, t);
+    const footprint f = find_pixels(i, wraps, filter, s, t);
     const float first = sum_channel(i, &f, 0);
     return i->channel_count == 1 ? rgb_gray(first) : rgb_make(first, sum_channel(i, &f, 1), sum_channel(i, &f, 2));
 }
@@ -232,10 +255,10 @@ static float sum_alpha(const texture_image *i, const footprint *f)
     return sum;
 }
 
-float texture_image_float(const texture_image *i, texture_channel channel, texture_wrap wrap, texture_filter filter,
+float texture_image_float(const texture_image *i, texture_channel channel, texture_wraps wraps, texture_filter filter,
                           float s, float t)
 {
-    const footprint f = find_pixels(i, wrap, filter, s, t);
+    const footprint f = find_pixels(i, wraps, filter, s, t);
     if (channel == TEXTURE_CHANNEL_A)
         return sum_alpha(i, &f);
     const bool is_first = i->channel_count == 1 || channel == TEXTURE_CHANNEL_ALL;

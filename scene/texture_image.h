@@ -17,8 +17,16 @@ typedef enum texture_wrap {
     TEXTURE_WRAP_REPEAT,
     TEXTURE_WRAP_BLACK,
     TEXTURE_WRAP_CLAMP,
-    TEXTURE_WRAP_OCTAHEDRAL /* the other half of the same edge: a sphere unfolded onto a square */
+    TEXTURE_WRAP_OCTAHEDRAL, /* the other half of the same edge: a sphere unfolded onto a square */
+    TEXTURE_WRAP_MIRROR      /* repeated, every other time mirrored */
 } texture_wrap;
+
+/* Along s and t; an octahedral one is so along both. */
+typedef struct texture_wraps {
+    texture_wrap s, t;
+} texture_wraps;
+
+static inline texture_wraps texture_wraps_same(texture_wrap wrap) { return (texture_wraps){wrap, wrap}; }
 
 typedef enum texture_filter { TEXTURE_FILTER_BILINEAR, TEXTURE_FILTER_POINT } texture_filter;
 
@@ -49,11 +57,14 @@ typedef struct texture_image {
  * AG_ERROR_COLOR; text in message. */
 ag_status texture_image_load(struct scene *s, const char *path, image_encoding encoding, uint32_t *out_index,
                              char *message, size_t message_size);
+/* The same of a PNG or JPEG file in memory, once for each name, which is to differ from all paths, and encoding. */
+ag_status texture_image_load_memory(struct scene *s, const char *name, const unsigned char *bytes, size_t size,
+                                    image_encoding encoding, uint32_t *out_index, char *message, size_t message_size);
 void texture_image_destroy(texture_image *i); /* NULL is fine */
 
 /* s to the right, t down, from the top left corner (0, 0) to the bottom right one (1, 1). */
-rgb texture_image_rgb(const texture_image *i, texture_wrap wrap, texture_filter filter, float s, float t);
-float texture_image_float(const texture_image *i, texture_channel channel, texture_wrap wrap, texture_filter filter,
+rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t);
+float texture_image_float(const texture_image *i, texture_channel channel, texture_wraps wraps, texture_filter filter,
                           float s, float t);
 
 #endif

@@ -24,6 +24,9 @@ vec2 texture_mapping_st(const texture_mapping *m, vec2 uv, vec3 position)
 {
     if (m->kind == TEXTURE_MAPPING_UV)
         return (vec2){m->scale.x * uv.x + m->delta.x, m->scale.y * uv.y + m->delta.y};
+    if (m->kind == TEXTURE_MAPPING_UV_AFFINE)
+        return (vec2){m->axes[0].x * uv.x + m->axes[0].y * uv.y + m->delta.x,
+                      m->axes[1].x * uv.x + m->axes[1].y * uv.y + m->delta.y};
     vec3 p = texture_mapping_point(m, position);
     if (m->kind == TEXTURE_MAPPING_PLANAR)
         return (vec2){vec3_dot(p, m->axes[0]) + m->delta.x, vec3_dot(p, m->axes[1]) + m->delta.y};

@@ -11,7 +11,8 @@ typedef enum texture_mapping_kind {
     TEXTURE_MAPPING_SPHERICAL,   /* s: angle from the z axis over pi; t: angle round it over 2 pi */
     TEXTURE_MAPPING_CYLINDRICAL, /* s: angle round the z axis from -x over 2 pi; t: z */
     TEXTURE_MAPPING_PLANAR,      /* s, t: along two axes */
-    TEXTURE_MAPPING_SOLID        /* the place in space: for textures in three dimensions */
+    TEXTURE_MAPPING_SOLID,       /* the place in space: for textures in three dimensions */
+    TEXTURE_MAPPING_UV_AFFINE    /* the surface's own u and v under any affine map */
 } texture_mapping_kind;
 
 /* Of each kind the fields named at it; the others, and texture_from_world of uv, are not read. */
@@ -19,8 +20,8 @@ typedef struct texture_mapping {
     texture_mapping_kind kind;
     float texture_from_world[3][4];
     vec2 scale;   /* uv */
-    vec2 delta;   /* uv, planar */
-    vec3 axes[2]; /* planar, in texture space */
+    vec2 delta;   /* uv, affine, planar */
+    vec3 axes[2]; /* planar, in texture space; affine: s and t as (u, v, 0) is multiplied by them */
 } texture_mapping;
 
 /* Fills in texture_from_world. */
