@@ -209,6 +209,8 @@ image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::I
 {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1); /* colours as stored, not multiplied by alpha */
+    if (proxy)
+        wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes, proxy);
     if (!input)
         fail("OpenImageIO cannot open it", OIIO::geterror());
