@@ -122,10 +122,15 @@ ag_status gltf_get_extension(const gltf_reader *r, const gltf_value *parent, con
     return gltf_get_object(r, extensions_frame, name, out_value);
 }
 
+ag_status gltf_get_element(const gltf_reader *r, const gltf_value *array, size_t index, gltf_value *out_value)
+{
+    *out_value = gltf_element(array, index);
+    return json_is_object(out_value->json) ? AG_OK : wrong_type(r, out_value, "an object");
+}
+
 ag_status gltf_get_item(const gltf_reader *r, gltf_list list, uint32_t index, gltf_value *out_value)
 {
-    *out_value = gltf_element(&r->lists[list], index);
-    return json_is_object(out_value->json) ? AG_OK : wrong_type(r, out_value, "an object");
+    return gltf_get_element(r, &r->lists[list], index, out_value);
 }
 
 /* Values */

@@ -287,11 +287,10 @@ ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_matrix *
     GLTF_TRY(gltf_get_array(r, &at, "primitives", &primitives));
     GLTF_TRY(warn_weights(r, &at));
     for (size_t i = 0; i < json_array_size(primitives.json); i++) {
-        gltf_value primitive = gltf_element(&primitives, i);
+        gltf_value primitive;
         if (run_is_cancelled(r->run))
             return AG_CANCELLED;
-        if (!json_is_object(primitive.json))
-            return gltf_error(r, &primitive, "should be an object");
+        GLTF_TRY(gltf_get_element(r, &primitives, i, &primitive));
         GLTF_TRY(add_primitive(r, &primitive, &p));
     }
     return AG_OK;

@@ -124,7 +124,8 @@ ag_status gltf_get_array(const gltf_reader *r, const gltf_value *parent, const c
 /* extensions.NAME; extensions_frame takes the step between, and lives as long as the value. */
 ag_status gltf_get_extension(const gltf_reader *r, const gltf_value *parent, const char *name,
                              gltf_value *extensions_frame, gltf_value *out_value);
-/* The item of a list, an object; index is in range. */
+/* An element, or an item of a list, which must be an object; index is in range. */
+ag_status gltf_get_element(const gltf_reader *r, const gltf_value *array, size_t index, gltf_value *out_value);
 ag_status gltf_get_item(const gltf_reader *r, gltf_list list, uint32_t index, gltf_value *out_value);
 
 /* Each writes the value where there is one, and leaves *value alone where there is none. */
