@@ -72,6 +72,32 @@ static ag_status read_perspective(gltf_reader *r, const gltf_value *at, camera *
     return AG_OK;
 }
 
+/* What is seen lies within xmag and ymag of the middle, however far away. */
+static ag_status read_orthographic(gltf_reader *r, const gltf_value *at, camera *c)
+{
+    double half[2] = {0.0, 0.0};
+    gltf_value orthographic;
+    GLTF_TRY(gltf_require(r, at, "orthographic"));
+    GLTF_TRY(gltf_get_object(r, at, "orthographic", &orthographic));
+    GLTF_TRY(gltf_require(r, &orthographic, "xmag"));
+    GLTF_TRY(gltf_require(r, &orthographic, "ymag"));
+    GLTF_TRY(gltf_get_double(r, &orthographic, "xmag", &half[0]));
+    GLTF_TRY(gltf_get_double(r, &orthographic, "ymag", &half[1]));
+    for (int i = 0; i < 2; i++) { /* a negative one is to mirror the picture, says the format, but nobody should */
+        if (!(fabs(half[i]) >= 1e-18 && fabs(half[i]) <= GLTF_MAX_COORDINATE))
+            return gltf_error(r, &orthographic, "its xmag and ymag are %g and %g, which should not be 0", half[0],
+                              half[1]);
+        c->screen_window[2 * i] = (float)-half[i];
+        c->screen_window[2 * i + 1] = (float)half[i];
+    }
+    r->aspect = fabs(half[0] / half[1]);
+    if (!(r->aspect >= 1e-3 && r->aspect <= 1e3))
+        return gltf_error(r, &orthographic, "its xmag over ymag is %g, which should be from 0.001 to 1000", r->aspect);
+    c->kind = CAMERA_ORTHOGRAPHIC;
+    c->has_screen_window = true;
+    return AG_OK;
+}
+
 ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_matrix *world_from_node)
 {
     const char *type = "", *name = "";
@@ -84,10 +110,11 @@ ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_matrix *wor
         log_at(r->run->log, AG_LOG_INFO, r->where, "cameras[%u] \"%s\" is not the first one, and not used", index, name);
         return AG_OK;
     }
-    camera c = {.focal_distance = 1e6f};
-    if (strcmp(type, "perspective") != 0)
+    camera c = {.fov_degrees = 90.0f, .focal_distance = 1e6f};
+    bool is_orthographic = strcmp(type, "orthographic") == 0;
+    if (!is_orthographic && strcmp(type, "perspective") != 0)
         return gltf_error(r, &at, "there is no camera of type \"%s\"", type);
-    GLTF_TRY(read_perspective(r, &at, &c));
+    GLTF_TRY(is_orthographic ? read_orthographic(r, &at, &c) : read_perspective(r, &at, &c));
     if (!place_camera(world_from_node, &c.world_from_camera))
         return gltf_error(r, &at, "its node leaves no room for it");
     r->scene->camera = c;

@@ -161,6 +161,21 @@ static void cameras(void **state)
     reading_destroy(&r);
 }
 
+/* The same in parallel: what is at the picture's edge is xmag and ymag off its middle. */
+static void orthographic_camera(void **state)
+{
+    (void)state;
+    reading r = gltf_of(camera_text("{'type': 'orthographic', 'orthographic': {'xmag': 3, 'ymag': 2, 'zfar': 9, 'znear': 0}}",
+                                    "'translation': [1, 2, 3], 'scale': [2, 2, 2],"));
+    camera c = r.scene->camera;
+    expect_film(&r, 1280, 853);
+    c.tan_half_fov = 1.0f;
+    scene_ray corner = camera_generate_ray(&c, 1.0f, 0.0f, 1.5f, (vec2){0.5f, 0.5f});
+    assert_vec3(corner.origin, 1 + 3, 2 + 2, 3, 1e-5);
+    assert_vec3(corner.direction, 0, 0, -1, 1e-6);
+    reading_destroy(&r);
+}
+
 static void several_cameras(void **state)
 {
     (void)state;
@@ -185,6 +200,10 @@ static void camera_errors(void **state)
         {"{'type': 'perspective', 'perspective': {'yfov': 0}}", "", "its yfov is 0, which should be within (0, pi)"},
         {"{'type': 'perspective', 'perspective': {'yfov': 4}}", "", "its yfov is 4, which should be within (0, pi)"},
         {"{'type': 'perspective', 'perspective': {'yfov': 1, 'aspectRatio': -1}}", "", "its aspectRatio is -1"},
+        {"{'type': 'orthographic', 'orthographic': {'xmag': 1}}", "", "cameras[0].orthographic.ymag: is missing"},
+        {"{'type': 'orthographic', 'orthographic': {'xmag': 0, 'ymag': 1}}", "",
+         "its xmag and ymag are 0 and 1, which should not be 0"},
+        {"{'type': 'orthographic', 'orthographic': {'xmag': 1, 'ymag': 1e9}}", "", "its xmag over ymag is 1e-09"},
         {"{'type': 'perspective', 'perspective': {'yfov': 1}}", "'scale': [1, 0, 1],", "cameras[0]: its node leaves no room"},
     };
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++)
@@ -195,7 +214,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(lamps),   TEST_IN_FOLDER(units),           TEST_IN_FOLDER(lamp_errors),
-        TEST_IN_FOLDER(cameras), TEST_IN_FOLDER(several_cameras), TEST_IN_FOLDER(camera_errors),
+        TEST_IN_FOLDER(cameras), TEST_IN_FOLDER(orthographic_camera), TEST_IN_FOLDER(several_cameras), TEST_IN_FOLDER(camera_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
