@@ -11,7 +11,7 @@ static const double LARGEST_EXACT = 9007199254740992.0; /* 2^53: JSON's integers
 
 static const char *const LIST_NAMES[GLTF_LIST_COUNT] = {"accessors", "buffers",  "bufferViews", "cameras",
                                                         "images",    "materials", "meshes",      "nodes",
-                                                        "samplers",  "scenes",    "textures",    "lights"};
+                                                        "samplers",  "scenes",    "skins",       "textures",    "lights"};
 
 /* Paths and messages */
 

@@ -6,21 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static gltf_matrix identity(void) { return (gltf_matrix){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}; }
-
-/* b first. */
-static gltf_matrix multiply(const gltf_matrix *a, const gltf_matrix *b)
-{
-    gltf_matrix c;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 4; k++) {
-            c.m[i][k] = k == 3 ? a->m[i][3] : 0.0;
-            for (int j = 0; j < 3; j++)
-                c.m[i][k] += a->m[i][j] * b->m[j][k];
-        }
-    return c;
-}
-
 /* What is done to a node's children and to what hangs on it */
 
 static ag_status read_matrix(const gltf_reader *r, const gltf_value *node, gltf_matrix *out)
@@ -56,7 +41,7 @@ static ag_status read_rotation(const gltf_reader *r, const gltf_value *node, glt
 static ag_status read_transform(const gltf_reader *r, const gltf_value *node, gltf_matrix *out)
 {
     double translation[3] = {0.0, 0.0, 0.0}, scale[3] = {1.0, 1.0, 1.0};
-    *out = identity();
+    *out = gltf_matrix_identity();
     if (gltf_member(node, "matrix").json)
         return read_matrix(r, node, out);
     GLTF_TRY(read_rotation(r, node, out));
@@ -72,15 +57,11 @@ static ag_status read_transform(const gltf_reader *r, const gltf_value *node, gl
 
 /* The tree */
 
-typedef struct visit {
-    uint32_t node;
-    gltf_matrix world_from_parent;
-} visit;
-
 typedef struct tree {
     uint32_t *parents; /* [node_count], GLTF_NONE: it has none */
-    visit *stack;      /* [node_count]: each node is there once */
-    uint32_t node_count, stack_count;
+    uint32_t *stack;   /* [node_count]: each node is there once */
+    uint32_t *order;   /* [node_count], the nodes of the scene, parents first */
+    uint32_t node_count, stack_count, order_count;
 } tree;
 
 static ag_status find_parents(gltf_reader *r, tree *t)
@@ -103,30 +84,19 @@ static ag_status find_parents(gltf_reader *r, tree *t)
     return AG_OK;
 }
 
-/* Puts the children of a node that is done onto the stack, the first on top. */
-static void push_children(const gltf_reader *r, tree *t, uint32_t node, const gltf_matrix *world_from_node)
+/* Takes a node off the stack, and puts its children there, the first on top. */
+static uint32_t step(const gltf_reader *r, tree *t)
 {
+    uint32_t node = t->stack[--t->stack_count];
     const json_t *children = json_object_get(json_array_get(r->lists[GLTF_NODES].json, node), "children");
-    for (size_t k = json_array_size(children); k > 0; k--) {
-        uint32_t child = (uint32_t)json_number_value(json_array_get(children, k - 1)); /* checked in find_parents */
-        t->stack[t->stack_count++] = (visit){child, *world_from_node};
-    }
+    for (size_t k = json_array_size(children); k > 0; k--) /* checked in find_parents */
+        t->stack[t->stack_count++] = (uint32_t)json_number_value(json_array_get(children, k - 1));
+    return node;
 }
 
 /* Who has one parent at most, and is not below a node without one, is among its own ancestors or below such a node. */
-static ag_status refuse_cycles(const gltf_reader *r, tree *t)
+static ag_status refuse_cycle(const gltf_reader *r, const tree *t)
 {
-    gltf_matrix unused = identity();
-    uint32_t visited = 0;
-    for (uint32_t i = 0; i < t->node_count; i++) {
-        if (t->parents[i] != GLTF_NONE)
-            continue;
-        push_children(r, t, i, &unused);
-        for (visited++; t->stack_count > 0; visited++)
-            push_children(r, t, t->stack[--t->stack_count].node, &unused);
-    }
-    if (visited == t->node_count)
-        return AG_OK;
     for (uint32_t i = 0; i < t->node_count; i++) {
         uint32_t ancestor = t->parents[i];
         for (uint32_t k = 0; ancestor != GLTF_NONE && ancestor != i && k < t->node_count; k++)
@@ -136,28 +106,29 @@ static ag_status refuse_cycles(const gltf_reader *r, tree *t)
             return gltf_error(r, &node, "it is among its own children, or theirs");
         }
     }
-    return AG_OK;
+    return AG_ERROR_SCENE;
 }
 
-/* What hangs on a node */
-
-static ag_status add_node(gltf_reader *r, const gltf_value *node, const gltf_matrix *world_from_node)
+/* All nodes, those of other scenes too: a skin's joints may be anywhere. */
+static ag_status place_nodes(gltf_reader *r, tree *t)
 {
-    uint32_t mesh_index = GLTF_NONE, camera_index = GLTF_NONE, lamp_index = GLTF_NONE;
-    gltf_value extensions, extension, skin = gltf_member(node, "skin");
-    GLTF_TRY(gltf_get_index(r, node, "mesh", GLTF_MESHES, &mesh_index));
-    GLTF_TRY(gltf_get_index(r, node, "camera", GLTF_CAMERAS, &camera_index));
-    GLTF_TRY(gltf_get_extension(r, node, "KHR_lights_punctual", &extensions, &extension));
-    GLTF_TRY(gltf_get_index(r, &extension, "light", GLTF_LIGHTS, &lamp_index));
-    if (skin.json && mesh_index != GLTF_NONE)
-        gltf_warn_once(r, &skin, "skin", "skins are not supported: the mesh is shown as it was bound");
-    if (mesh_index != GLTF_NONE)
-        GLTF_TRY(gltf_add_mesh(r, mesh_index, world_from_node));
-    if (camera_index != GLTF_NONE)
-        GLTF_TRY(gltf_add_camera(r, camera_index, world_from_node));
-    if (lamp_index != GLTF_NONE)
-        GLTF_TRY(gltf_add_lamp(r, lamp_index, world_from_node));
-    return AG_OK;
+    uint32_t visited = 0;
+    for (uint32_t i = 0; i < t->node_count; i++) {
+        if (t->parents[i] != GLTF_NONE)
+            continue;
+        t->stack[t->stack_count++] = i;
+        for (; t->stack_count > 0; visited++) {
+            uint32_t n = step(r, t);
+            gltf_value node;
+            gltf_matrix own;
+            GLTF_TRY(gltf_get_item(r, GLTF_NODES, n, &node));
+            GLTF_TRY(read_transform(r, &node, &own));
+            r->world_from_nodes[n] = t->parents[n] == GLTF_NONE
+                                         ? own
+                                         : gltf_matrix_multiply(&r->world_from_nodes[t->parents[n]], &own);
+        }
+    }
+    return visited == t->node_count ? AG_OK : refuse_cycle(r, t);
 }
 
 /* The scene's roots, or where the file has no scene all nodes without a parent, are on the stack afterwards. */
@@ -165,12 +136,11 @@ static ag_status push_roots(gltf_reader *r, tree *t)
 {
     uint32_t scene_index = 0;
     gltf_value scene_value, roots;
-    gltf_matrix world = identity();
     GLTF_TRY(gltf_get_index(r, &r->document, "scene", GLTF_SCENES, &scene_index));
     if (r->list_counts[GLTF_SCENES] == 0) {
         for (uint32_t i = t->node_count; i > 0; i--)
             if (t->parents[i - 1] == GLTF_NONE)
-                t->stack[t->stack_count++] = (visit){i - 1, world};
+                t->stack[t->stack_count++] = i - 1;
         return AG_OK;
     }
     GLTF_TRY(gltf_get_item(r, GLTF_SCENES, scene_index, &scene_value));
@@ -187,28 +157,56 @@ static ag_status push_roots(gltf_reader *r, tree *t)
             status = gltf_error(r, &at, "nodes[%u] is named twice", root);
         if (!status) {
             is_root[root] = true;
-            t->stack[t->stack_count++] = (visit){root, world};
+            t->stack[t->stack_count++] = root;
         }
     }
     free(is_root);
     return status;
 }
 
+/* What hangs on a node */
+
+static ag_status add_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index, const gltf_matrix *world_from_node)
+{
+    gltf_value mesh_value;
+    gltf_pose pose;
+    GLTF_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &mesh_value));
+    ag_status status = gltf_pose_open(r, node, &mesh_value, world_from_node, &pose);
+    if (!status)
+        status = gltf_add_mesh(r, mesh_index, &pose);
+    gltf_pose_close(&pose);
+    return status;
+}
+
+static ag_status add_node(gltf_reader *r, uint32_t index)
+{
+    uint32_t mesh_index = GLTF_NONE, camera_index = GLTF_NONE, lamp_index = GLTF_NONE;
+    const gltf_matrix *world_from_node = &r->world_from_nodes[index];
+    gltf_value node, extensions, extension;
+    GLTF_TRY(gltf_get_item(r, GLTF_NODES, index, &node));
+    GLTF_TRY(gltf_get_index(r, &node, "mesh", GLTF_MESHES, &mesh_index));
+    GLTF_TRY(gltf_get_index(r, &node, "camera", GLTF_CAMERAS, &camera_index));
+    GLTF_TRY(gltf_get_extension(r, &node, "KHR_lights_punctual", &extensions, &extension));
+    GLTF_TRY(gltf_get_index(r, &extension, "light", GLTF_LIGHTS, &lamp_index));
+    if (mesh_index != GLTF_NONE)
+        GLTF_TRY(add_mesh(r, &node, mesh_index, world_from_node));
+    if (camera_index != GLTF_NONE)
+        GLTF_TRY(gltf_add_camera(r, camera_index, world_from_node));
+    if (lamp_index != GLTF_NONE)
+        GLTF_TRY(gltf_add_lamp(r, lamp_index, world_from_node));
+    return AG_OK;
+}
+
 static ag_status walk(gltf_reader *r, tree *t)
 {
     GLTF_TRY(find_parents(r, t));
-    GLTF_TRY(refuse_cycles(r, t));
+    GLTF_TRY(place_nodes(r, t));
     GLTF_TRY(push_roots(r, t));
-    for (uint32_t done = 0; t->stack_count > 0; done++) {
-        visit v = t->stack[--t->stack_count];
-        gltf_value node;
-        gltf_matrix parent_from_node;
-        GLTF_TRY(gltf_get_item(r, GLTF_NODES, v.node, &node));
-        GLTF_TRY(read_transform(r, &node, &parent_from_node));
-        gltf_matrix world_from_node = multiply(&v.world_from_parent, &parent_from_node);
-        GLTF_TRY(add_node(r, &node, &world_from_node));
-        push_children(r, t, v.node, &world_from_node);
-        run_progress(r->run, AG_PHASE_LOAD, (double)done / t->node_count);
+    while (t->stack_count > 0)
+        t->order[t->order_count++] = step(r, t);
+    for (uint32_t i = 0; i < t->order_count; i++) {
+        GLTF_TRY(add_node(r, t->order[i]));
+        run_progress(r->run, AG_PHASE_LOAD, (double)i / t->order_count);
     }
     return AG_OK;
 }
@@ -218,8 +216,10 @@ ag_status gltf_add_nodes(gltf_reader *r)
     tree t = {.node_count = r->list_counts[GLTF_NODES]};
     t.parents = malloc((t.node_count + 1) * sizeof *t.parents);
     t.stack = malloc((t.node_count + 1) * sizeof *t.stack);
-    ag_status status = t.parents && t.stack ? walk(r, &t) : AG_ERROR_MEMORY;
+    t.order = malloc((t.node_count + 1) * sizeof *t.order);
+    ag_status status = t.parents && t.stack && t.order ? walk(r, &t) : AG_ERROR_MEMORY;
     free(t.parents);
     free(t.stack);
+    free(t.order);
     return status;
 }

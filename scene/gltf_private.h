@@ -1,7 +1,7 @@
 /* gltf_private.h: what the gltf_*.c files share, and nobody else.
- * Flow: gltf_reader -> gltf_document (file to JSON) -> gltf_nodes -> gltf_meshes, gltf_cameras, gltf_lights, each by way
- * of gltf_json (values with their paths); gltf_meshes -> gltf_accessors -> gltf_buffers; gltf_meshes -> gltf_materials ->
- * gltf_textures -> gltf_images. Threads: one per scene. */
+ * Flow: gltf_reader -> gltf_document (file to JSON) -> gltf_nodes -> gltf_poses, gltf_meshes, gltf_cameras, gltf_lights,
+ * each by way of gltf_json (values with their paths); gltf_meshes -> gltf_vertices, gltf_triangles -> gltf_accessors ->
+ * gltf_buffers; gltf_meshes -> gltf_materials -> gltf_textures -> gltf_images. Threads: one per scene. */
 #ifndef AFTERGLOW_GLTF_PRIVATE_H
 #define AFTERGLOW_GLTF_PRIVATE_H
 
@@ -44,6 +44,7 @@ typedef enum gltf_list {
     GLTF_NODES,
     GLTF_SAMPLERS,
     GLTF_SCENES,
+    GLTF_SKINS,
     GLTF_TEXTURES,
     GLTF_LIGHTS, /* of KHR_lights_punctual */
     GLTF_LIST_COUNT
@@ -102,6 +103,7 @@ typedef struct gltf_reader {
     gltf_file *buffers; /* [list_counts[GLTF_BUFFERS]] */
     gltf_file *images;  /* those of data URIs; [list_counts[GLTF_IMAGES]] */
     gltf_material *materials; /* [list_counts[GLTF_MATERIALS] + 1], the last the default one */
+    gltf_matrix *world_from_nodes; /* [list_counts[GLTF_NODES]] */
     double aspect;            /* width / height of the camera's picture; 0: it does not say */
     size_t triangles_read, triangles_dropped;
 } gltf_reader;
@@ -192,8 +194,55 @@ void gltf_accessor_get(const gltf_accessor *a, uint32_t i, float *out_values);
 /* Of indices: unsigned integers. */
 uint32_t gltf_accessor_get_index(const gltf_accessor *a, uint32_t i);
 
+/* gltf_poses.c: how a node holds its mesh. */
+typedef struct gltf_pose {
+    gltf_matrix world_from_mesh;
+    bool is_mirror;
+    gltf_value weights;  /* of morph targets: numbers, as many as they like */
+    gltf_matrix *joints; /* of a skin: world_from_mesh by each; owned */
+    uint32_t joint_count;
+} gltf_pose;
+
+/* world_from_nodes is filled. *out_pose is to be closed, on failure too; node and mesh_value must live as long. */
+ag_status gltf_pose_open(gltf_reader *r, const gltf_value *node, const gltf_value *mesh_value,
+                         const gltf_matrix *world_from_node, gltf_pose *out_pose);
+void gltf_pose_close(gltf_pose *pose);
+gltf_matrix gltf_matrix_identity(void);
+gltf_matrix gltf_matrix_multiply(const gltf_matrix *a, const gltf_matrix *b); /* b first */
+
+/* gltf_vertices.c: a primitive's vertices. */
+enum { GLTF_MAX_INFLUENCES = 4 }; /* sets of four joints */
+
+typedef struct gltf_morph {
+    double weight;
+    gltf_accessor positions, normals; /* what is added */
+    bool has_positions, has_normals;
+} gltf_morph;
+
+typedef struct gltf_vertices {
+    const gltf_value *attributes;
+    const gltf_pose *pose;
+    uint32_t count; /* 0: there is nothing to see */
+    gltf_accessor positions, normals, uvs;
+    bool has_normals, has_uvs, needs_uvs;
+    gltf_morph *morphs; /* owned */
+    size_t morph_count;
+    gltf_accessor joints[GLTF_MAX_INFLUENCES], weights[GLTF_MAX_INFLUENCES];
+    int influence_count;
+} gltf_vertices;
+
+/* *out_vertices is to be closed, on failure too; attributes (the primitive's) and pose must live as long. */
+ag_status gltf_vertices_open(gltf_reader *r, const gltf_value *primitive, const gltf_value *attributes, uint32_t uv_set,
+                             const gltf_pose *pose, gltf_vertices *out_vertices);
+void gltf_vertices_close(gltf_vertices *v);
+/* Vertex i < count in world space. out_normal NULL or unit, or zero where there is none; out_uv NULL or left alone. */
+ag_status gltf_vertices_get(gltf_reader *r, const gltf_vertices *v, uint32_t i, vec3 *out_position, vec3 *out_normal,
+                            vec2 *out_uv);
+/* Cofactors of the linear part, of a mirror with the sign changed: what takes normals along. Returns whether it is one. */
+bool gltf_matrix_cofactors(const gltf_matrix *matrix, double out_cofactors[3][3]);
+
 /* gltf_meshes.c: adds a mesh's primitives to the scene. */
-ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_matrix *world_from_node);
+ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_pose *pose);
 
 /* gltf_triangles.c: the corners of a primitive's triangles. */
 typedef struct gltf_triangles {

@@ -237,11 +237,12 @@ static const char RICH[] =
     "'extensions': {'KHR_lights_punctual': {'lights': [{'type': 'spot', 'color': [1, 1, 0], 'intensity': 3,"
     "  'spot': {'innerConeAngle': 0.1, 'outerConeAngle': 0.2}}]}},"
     "'nodes': [{'children': [1, 2], 'rotation': [0, 0, 0, 1], 'scale': [1, 2, 1], 'translation': [0, 0, 1]},"
-    "  {'mesh': 0, 'matrix': [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},"
+    "  {'mesh': 0, 'skin': 0, 'weights': [1], 'matrix': [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},"
     "  {'camera': 0, 'extensions': {'KHR_lights_punctual': {'light': 0}}}],"
     "'cameras': [{'type': 'perspective', 'perspective': {'yfov': 0.7, 'aspectRatio': 1.5, 'znear': 0.1}}],"
     "'meshes': [{'weights': [0], 'primitives': [{'mode': 4, 'material': 0, 'indices': 1,"
-    "  'attributes': {'POSITION': 0, 'NORMAL': 0, 'TEXCOORD_0': 2}}]}],"
+    "  'attributes': {'POSITION': 0, 'NORMAL': 0, 'TEXCOORD_0': 2, 'JOINTS_0': 3, 'WEIGHTS_0': 4},"
+    "  'targets': [{'POSITION': 0}]}]}], 'skins': [{'joints': [1, 2], 'inverseBindMatrices': 5}],"
     "'materials': [{'alphaMode': 'MASK', 'alphaCutoff': 0.4, 'doubleSided': true, 'emissiveFactor': [1, 1, 1],"
     "  'pbrMetallicRoughness': {'baseColorFactor': [1, 1, 1, 1], 'metallicFactor': 0.5, 'roughnessFactor': 0.5},"
     "  'normalTexture': {'index': 0, 'scale': 0.5, 'texCoord': 0, 'extensions': {'KHR_texture_transform':"
@@ -258,10 +259,13 @@ static const char RICH[] =
     "    'type': 'VEC3', 'sparse': {'count': 1, 'indices': {'bufferView': 1, 'byteOffset': 0, 'componentType': 5121},"
     "    'values': {'bufferView': 0, 'byteOffset': 0}}},"
     "  {'bufferView': 1, 'componentType': 5121, 'count': 3, 'type': 'SCALAR'},"
-    "  {'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC2'}],"
+    "  {'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC2'},"
+    "  {'componentType': 5121, 'count': 3, 'type': 'VEC4'}, {'componentType': 5126, 'count': 3, 'type': 'VEC4'},"
+    "  {'bufferView': 3, 'componentType': 5126, 'count': 2, 'type': 'MAT4'}],"
     "'bufferViews': [{'buffer': 0, 'byteOffset': 0, 'byteLength': 36, 'byteStride': 12},"
-    "  {'buffer': 1, 'byteLength': 3}, {'buffer': 0, 'byteLength': 36}],"
-    "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}, {'uri': 'data:;base64,AAEC', 'byteLength': 3}]}";
+    "  {'buffer': 1, 'byteLength': 3}, {'buffer': 0, 'byteLength': 36}, {'buffer': 2, 'byteLength': 128}],"
+    "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}, {'uri': 'data:;base64,AAEC', 'byteLength': 3},"
+    "  {'uri': 'matrices.bin', 'byteLength': 128}]}";
 
 typedef struct attempt {
     json_t *root;
@@ -317,6 +321,10 @@ static void odd_values_everywhere(void **state)
     char *text = json_text(RICH);
     attempt a = {json_loads(text, 0, NULL), 0, 0};
     assert_non_null(a.root);
+    blob matrices = {.size = 0};
+    for (int i = 0; i < 2; i++)
+        BLOB_PUT(&matrices, (float[]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+    write_blob("matrices.bin", &matrices);
     write_triangle();
     reading r = gltf_of(RICH);
     assert_int_equal(r.scene->shape_count, 1);

@@ -389,6 +389,96 @@ static void transforms(void **state)
     reading_destroy(&r);
 }
 
+/* Two morph targets, of which the node's or else the mesh's weights say how much is added. */
+static void morph_targets(void **state)
+{
+    (void)state;
+    blob b = {.size = 0};
+    BLOB_PUT(&b, (float[]){0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+    BLOB_PUT(&b, (float[]){0, 0, 2, 0, 0, 2, 0, 0, 4, 4, 0, 0, 8, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0});
+    write_blob("b.bin", &b);
+    static const char TEXT[] =
+        "{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 180}], 'bufferViews': [{'buffer': 0, 'byteLength': 180}],"
+        "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+        "  {'bufferView': 0, 'byteOffset': 36, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+        "  {'bufferView': 0, 'byteOffset': 72, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+        "  {'bufferView': 0, 'byteOffset': 108, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+        "  {'bufferView': 0, 'byteOffset': 144, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+        "  {'bufferView': 0, 'componentType': 5126, 'count': 2, 'type': 'VEC3'}],"
+        "'meshes': [{%s 'primitives': [{'attributes': {'POSITION': 0, 'NORMAL': 1},"
+        "  'targets': [{'POSITION': %s}, {'POSITION': 3, 'NORMAL': 4}]}]}], 'nodes': [{'mesh': 0 %s}]}";
+    static const struct {
+        const char *mesh_weights, *node_weights;
+        double first, second;
+    } WEIGHTS[] = {
+        {"", "", 0, 0},
+        {"'weights': [0.5, 0],", "", 0.5, 0},
+        {"'weights': [0.5, 0.25],", "", 0.5, 0.25},
+        {"'weights': [0.5, 0.25],", ", 'weights': [0, 1]", 0, 1},
+        {"", ", 'weights': [1]", 1, 0},
+    };
+    char text[2048];
+    for (size_t i = 0; i < sizeof WEIGHTS / sizeof *WEIGHTS; i++) {
+        const double f = WEIGHTS[i].first, s = WEIGHTS[i].second;
+        snprintf(text, sizeof text, TEXT, WEIGHTS[i].mesh_weights, "2", WEIGHTS[i].node_weights);
+        reading r = gltf_of(text);
+        const mesh *m = only_mesh(&r);
+        assert_vec3(m->positions[0], 4 * s, 0, 2 * f, 1e-6);
+        assert_vec3(m->positions[1], 1 + 8 * s, 0, 2 * f, 1e-6);
+        assert_vec3(m->positions[2], 0, 1, 4 * f, 1e-6);
+        assert_vec3(m->normals[0], s / sqrt(s * s + 1), 0, 1 / sqrt(s * s + 1), 1e-6);
+        assert_vec3(m->normals[2], 0, 0, 1, 1e-6);
+        reading_destroy(&r);
+    }
+    snprintf(text, sizeof text, TEXT, "'weights': ['x'],", "2", "");
+    gltf_expect_error(text, AG_ERROR_SCENE, "meshes[0].weights[0]: should be a number");
+    snprintf(text, sizeof text, TEXT, "'weights': [1],", "5", "");
+    gltf_expect_error(text, AG_ERROR_SCENE, "primitives[0].targets[0].POSITION: it has 2 elements, but POSITION has 3");
+}
+
+/* Three vertices: of one joint, of the other, and half and half of both, in weights that do not add up to 1. The joints
+ * alone say where the mesh is; the node that has it does not. */
+static void skins(void **state)
+{
+    (void)state;
+    blob b = {.size = 0};
+    BLOB_PUT(&b, (float[]){0, 0, 0, 1, 0, 0, 0, 1, 0});
+    BLOB_PUT(&b, (float[]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}); /* inverse bind: back by 1 */
+    BLOB_PUT(&b, (float[]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+    BLOB_PUT(&b, (float[]){1, 0, 0, 0, 0, 1, 0, 0, 2, 2, 0, 0});
+    BLOB_PUT(&b, (unsigned char[]){0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 9, 9});
+    write_blob("b.bin", &b);
+    static const char TEXT[] =
+        "{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 224}], 'bufferViews': [{'buffer': 0, 'byteLength': 224}],"
+        "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+        "  {'bufferView': 0, 'byteOffset': 36, 'componentType': 5126, 'count': %d, 'type': 'MAT4'},"
+        "  {'bufferView': 0, 'byteOffset': 164, 'componentType': 5126, 'count': 3, 'type': 'VEC4'},"
+        "  {'bufferView': 0, 'byteOffset': 212, 'componentType': 5121, 'count': 3, 'type': 'VEC4'}],"
+        "'meshes': [{'primitives': [{'attributes': {'POSITION': 0, 'JOINTS_0': 3, 'WEIGHTS_0': 2}}]}],"
+        "'skins': [{'joints': [%s] %s}], 'nodes': [{'mesh': 0, 'skin': 0, 'translation': [9, 9, 9]}, {'children': [2],"
+        "  'translation': [1, 0, 5]}, {'scale': [3, 3, 3]}]}";
+    char text[2048];
+    snprintf(text, sizeof text, TEXT, 2, "1, 2", ", 'inverseBindMatrices': 1");
+    reading r = gltf_of(text);
+    const mesh *m = only_mesh(&r);
+    assert_vec3(m->positions[0], 0, 0, 5, 1e-6);   /* 0 - 1 + 1 */
+    assert_vec3(m->positions[1], 4, 0, 5, 1e-6);   /* 3 times 1, + 1 */
+    assert_vec3(m->positions[2], 0.5, 2, 5, 1e-6); /* between 0 1 5 and 1 3 5 */
+    reading_destroy(&r);
+    snprintf(text, sizeof text, TEXT, 2, "1, 2", "");
+    r = gltf_of(text);
+    assert_vec3(only_mesh(&r)->positions[0], 1, 0, 5, 1e-6);
+    reading_destroy(&r);
+    snprintf(text, sizeof text, TEXT, 2, "1", "");
+    gltf_expect_error(text, AG_ERROR_SCENE, "attributes: JOINTS_0: vertex 1 has joint 1, but the skin has 1");
+    snprintf(text, sizeof text, TEXT, 1, "1, 2", ", 'inverseBindMatrices': 1");
+    gltf_expect_error(text, AG_ERROR_SCENE, "skins[0].inverseBindMatrices: it has 1 elements, but there are 2 joints");
+    snprintf(text, sizeof text, TEXT, 2, "1, 7", "");
+    gltf_expect_error(text, AG_ERROR_SCENE, "skins[0].joints[1]: 7 is out of range: there are 3 nodes");
+    snprintf(text, sizeof text, TEXT, 2, "", "");
+    gltf_expect_error(text, AG_ERROR_SCENE, "skins[0].joints: there are 0, which should be from 1 to 65535");
+}
+
 static void node_errors(void **state)
 {
     (void)state;
@@ -447,7 +537,8 @@ int main(void)
         TEST_IN_FOLDER(component_types),    TEST_IN_FOLDER(signed_integers), TEST_IN_FOLDER(strides_and_offsets),
         TEST_IN_FOLDER(sparse_values),      TEST_IN_FOLDER(modes_and_indices), TEST_IN_FOLDER(what_is_no_surface),
         TEST_IN_FOLDER(mesh_errors),        TEST_IN_FOLDER(accessor_errors), TEST_IN_FOLDER(numbers_that_are_none),
-        TEST_IN_FOLDER(transforms),         TEST_IN_FOLDER(node_errors),     TEST_IN_FOLDER(deep_tree),
+        TEST_IN_FOLDER(transforms),         TEST_IN_FOLDER(morph_targets),   TEST_IN_FOLDER(skins),
+                TEST_IN_FOLDER(node_errors),     TEST_IN_FOLDER(deep_tree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
