@@ -91,7 +91,8 @@ char *gltf_uri_to_path(const gltf_reader *r, const char *uri, const char **out_w
     for (const char *c = uri; *c; c++) {
         int high = *c == '%' ? hexadecimal_value(c[1]) : -1, low = high >= 0 ? hexadecimal_value(c[2]) : -1;
         bool is_encoded = low >= 0 && (high > 0 || low > 0); /* else a plain % in a file's name, as some write it */
-        path[length++] = is_encoded ? (char)(high << 4 | low) : *c;
+        char decoded = (char)(16 * high + low);
+        path[length++] = is_encoded ? decoded : *c;
         c += is_encoded ? 2 : 0;
     }
     path[length] = '\0';

@@ -76,7 +76,7 @@ static ag_status open_morphs(gltf_reader *r, const gltf_value *primitive, gltf_v
 static ag_status open_influences(gltf_reader *r, const gltf_value *at, gltf_vertices *v)
 {
     for (int set = 0; v->pose->joint_count > 0 && set < GLTF_MAX_INFLUENCES; set++) {
-        char joints[16], weights[16];
+        char joints[32], weights[32];
         bool has_joints, has_weights;
         snprintf(joints, sizeof joints, "JOINTS_%d", set);
         snprintf(weights, sizeof weights, "WEIGHTS_%d", set);
