@@ -5,7 +5,7 @@
 #include "bvh.h"
 #include "clock.h"
 #include "floating_point.h"
-#include "pbrt_parser.h"
+#include "scene_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,7 +76,7 @@ ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_sc
     ag_status status = loaded && s ? AG_OK : AG_ERROR_MEMORY;
     double begin = clock_seconds();
     if (status == AG_OK)
-        status = pbrt_parse_file(&context->run, path, s);
+        status = scene_file_load(&context->run, path, s);
     if (status == AG_OK) {
         context_end_phase(context, AG_PHASE_LOAD, begin);
         begin = clock_seconds();

@@ -1,8 +1,6 @@
 /* import_defaults.c: see import_defaults.h. Threads: one per scene. */
 #include "import_defaults.h"
 
-#include <string.h>
-
 static const float FOV_DEGREES = 45.0f;
 static const double TAN_HALF_FOV = 0.41421356237309505; /* tan 22.5 degrees = sqrt 2 - 1 */
 static const double MARGIN = 1.05;                      /* around the bounds */
@@ -106,13 +104,9 @@ static vec3 sun_direction(const scene *s)
 
 ag_status import_add_default_light(scene *s, log_sink *log)
 {
-    light sky, sun;
+    light sky = light_make(LIGHT_INFINITE), sun = light_make(LIGHT_DISTANT);
     uint32_t index;
-    memset(&sky, 0, sizeof sky);
-    memset(&sun, 0, sizeof sun);
-    sky.kind = LIGHT_INFINITE;
     sky.radiance = SKY_RADIANCE;
-    sun.kind = LIGHT_DISTANT;
     sun.radiance = SUN_IRRADIANCE;
     sun.direction = sun_direction(s);
     ag_status status = scene_add_light(s, &sky, &index);

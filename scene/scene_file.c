@@ -1,0 +1,80 @@
+/* scene_file.c: see scene_file.h; and PLY files that are a scene by themselves. Threads: one per scene. */
+#include "scene_file.h"
+
+#include "importer.h"
+#include "mesh_import_assimp.h"
+#include "pbrt_parser.h"
+#include "ply_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* A mesh alone: grey, as it stands in the file. */
+static ag_status load_ply(run_context *run, const char *path, scene *out_scene)
+{
+    importer i;
+    ply_mesh m;
+    char error[768] = "";
+    import_surface surface = {.alpha = 1.0f, .alpha_texture = SCENE_NO_TEXTURE, .radiance_texture = SCENE_NO_TEXTURE};
+    material gray = material_make(MATERIAL_DIFFUSE);
+    transform identity = transform_identity();
+    ag_status status = importer_init(&i, run, path, out_scene);
+    if (status)
+        return status;
+    run_progress(run, AG_PHASE_LOAD, 0.0);
+    status = ply_file_read(path, run, error, sizeof error, &m);
+    if (status == AG_ERROR_INPUT)
+        log_message(run->log, AG_LOG_ERROR, "%s", error); /* begins with the file's name */
+    if (!status) {
+        i.left_out_count = m.lines;
+        i.odd_vector_count = m.odd_vectors;
+        status = scene_add_material(out_scene, &gray, &surface.material_index);
+    }
+    if (!status)
+        status = importer_add_mesh(&i, "vertex", &m.mesh, &identity, &surface);
+    else
+        ply_mesh_reset(&m);
+    if (!status)
+        log_at(run->log, AG_LOG_INFO, i.where, "a PLY file has no materials: the mesh is grey");
+    if (!status)
+        status = importer_finish(&i);
+    if (!status)
+        run_progress(run, AG_PHASE_LOAD, 1.0);
+    return status;
+}
+
+/* Not supported yet. */
+static ag_status load_gltf(run_context *run, const char *path, scene *out_scene)
+{
+    (void)out_scene;
+    log_at(run->log, AG_LOG_ERROR, (file_location){path, 0, 0}, "glTF is not supported");
+    return AG_ERROR_INPUT;
+}
+
+typedef ag_status load_function(run_context *run, const char *path, scene *out_scene);
+
+/* Ahead of assimp, which reads some of them too. */
+static const struct {
+    const char *ending;
+    load_function *load;
+} READERS[] = {
+    {".pbrt", pbrt_parse_file}, {".pbrt.gz", pbrt_parse_file}, {".ply", load_ply},
+    {".ply.gz", load_ply},      {".gltf", load_gltf},          {".glb", load_gltf},
+};
+
+static bool ends_with(const char *path, const char *ending)
+{
+    size_t length = strlen(path), ending_length = strlen(ending);
+    return length > ending_length && strcasecmp(path + length - ending_length, ending) == 0;
+}
+
+ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
+{
+    for (size_t k = 0; k < sizeof READERS / sizeof *READERS; k++)
+        if (ends_with(path, READERS[k].ending))
+            return READERS[k].load(run, path, out_scene);
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    bool is_assimps = dot && dot[1] != '\0' && assimp_reads_extension(dot);
+    return is_assimps ? assimp_load_file(run, path, out_scene) : pbrt_parse_file(run, path, out_scene);
+}
