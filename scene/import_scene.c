@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double BUMP_PER_DIAGONAL = 0.002;       /* MTL gives no unit: white is so high on the diagonal of the scene */
-
 typedef struct record {
     import_record_kind kind;
     const unsigned char *bytes; /* aligned to 8 */
@@ -255,9 +253,7 @@ static ag_status find_bump_unit(model *m)
             high = vec3_max(high, p);
         }
     }
-    double x = (double)high.x - low.x, y = (double)high.y - low.y, z = (double)high.z - low.z;
-    double diagonal = sqrt(x * x + y * y + z * z);
-    m->to.bump_unit = isfinite(diagonal) && low.x <= high.x ? (float)(BUMP_PER_DIAGONAL * diagonal) : 0.0f;
+    m->to.bump_unit = importer_bump_unit(low, high);
     return AG_OK;
 }
 

@@ -30,6 +30,13 @@ ag_status importer_refuse(importer *i, const char *format, ...)
     return AG_ERROR_INPUT;
 }
 
+float importer_bump_unit(vec3 low, vec3 high)
+{
+    double x = (double)high.x - low.x, y = (double)high.y - low.y, z = (double)high.z - low.z;
+    double diagonal = sqrt(x * x + y * y + z * z);
+    return low.x <= high.x && isfinite(diagonal) ? (float)(0.002 * diagonal) : 0.0f;
+}
+
 /* Meshes */
 
 static void free_arrays(mesh *m)

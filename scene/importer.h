@@ -1,5 +1,5 @@
 /* importer.h: a scene as it is filled from a file of a foreign format: surfaces, then meshes, then what is missing.
- * Flow: import_scene, scene_file (PLY) -> [here: importer.c, import_material.c, import_view.c] -> scene. Threads: one per scene. */
+ * Flow: import_scene, obj_file, scene_file (PLY) -> [here: importer.c, import_material.c, import_view.c] -> scene. Threads: one per scene. */
 #ifndef AFTERGLOW_IMPORTER_H
 #define AFTERGLOW_IMPORTER_H
 
@@ -21,6 +21,9 @@ typedef struct importer {
 
 /* Errors: AG_ERROR_MEMORY. */
 ag_status importer_init(importer *i, run_context *run, const char *path, scene *out_scene);
+
+/* For bump_unit, from the bounds of all that is there. MTL gives no unit: white is 0.002 of the diagonal high. */
+float importer_bump_unit(vec3 bounds_min, vec3 bounds_max);
 
 /* What a mesh is made of, other than its shape. */
 typedef struct import_surface {

@@ -3,6 +3,7 @@
 
 #include "importer.h"
 #include "mesh_import_assimp.h"
+#include "obj_file.h"
 #include "pbrt_parser.h"
 #include "ply_file.h"
 
@@ -59,8 +60,8 @@ static const struct {
     const char *ending;
     load_function *load;
 } READERS[] = {
-    {".pbrt", pbrt_parse_file}, {".pbrt.gz", pbrt_parse_file}, {".ply", load_ply},
-    {".ply.gz", load_ply},      {".gltf", load_gltf},          {".glb", load_gltf},
+    {".pbrt", pbrt_parse_file}, {".pbrt.gz", pbrt_parse_file}, {".obj", obj_load_file}, {".obj.gz", obj_load_file},
+    {".ply", load_ply},         {".ply.gz", load_ply},         {".gltf", load_gltf},    {".glb", load_gltf},
 };
 
 static bool ends_with(const char *path, const char *ending)
