@@ -71,7 +71,8 @@ void importer_add_camera(importer *i, const import_camera *source)
         return;
     }
     c.fov_degrees = (float)shorter_fov_degrees(source);
-    if (!(c.fov_degrees > 0.0f && c.fov_degrees < 180.0f) || !place_camera(source, &c.world_from_camera)) {
+    const bool is_angle = source->horizontal_fov > 0.0f && (double)source->horizontal_fov < PI;
+    if (!is_angle || !(c.fov_degrees > 0.0f && c.fov_degrees < 180.0f) || !place_camera(source, &c.world_from_camera)) {
         log_at(i->log, AG_LOG_WARNING, i->where, "camera \"%s\" makes no sense and is left out", source->name);
         return;
     }

@@ -105,6 +105,16 @@ static void get_picture(const struct aiMaterial *m, const enum aiTextureType typ
     }
 }
 
+/* Readers fill in specular colours where the file has none. */
+static bool has_highlights(const struct aiMaterial *m)
+{
+    int mode = 0;
+    unsigned count = 1;
+    if (aiGetMaterialIntegerArray(m, AI_MATKEY_SHADING_MODEL, &mode, &count) == aiReturn_SUCCESS && count == 1)
+        return mode == aiShadingMode_Phong || mode == aiShadingMode_Blinn || mode == aiShadingMode_CookTorrance;
+    return get_float(m, AI_MATKEY_SHININESS, 0.0f) > 0.0f;
+}
+
 static void write_material(writer *w, const struct aiMaterial *m)
 {
     static const enum aiTextureType TYPES[IMPORT_SLOT_COUNT][3] = {
@@ -128,8 +138,9 @@ static void write_material(writer *w, const struct aiMaterial *m)
     out.illumination = illumination;
     out.diffuse = get_color(m, AI_MATKEY_COLOR_DIFFUSE, rgb_gray(0.6f));
     out.diffuse = get_color(m, AI_MATKEY_BASE_COLOR, out.diffuse);
-    out.specular = rgb_scale(get_color(m, AI_MATKEY_COLOR_SPECULAR, black),
-                             get_float(m, AI_MATKEY_SHININESS_STRENGTH, 1.0f));
+    if (has_highlights(m))
+        out.specular = rgb_scale(get_color(m, AI_MATKEY_COLOR_SPECULAR, black),
+                                 get_float(m, AI_MATKEY_SHININESS_STRENGTH, 1.0f));
     out.emission = rgb_scale(get_color(m, AI_MATKEY_COLOR_EMISSIVE, black),
                              get_float(m, AI_MATKEY_EMISSIVE_INTENSITY, 1.0f));
     out.filter = illumination >= 0 ? get_color(m, AI_MATKEY_COLOR_TRANSPARENT, rgb_gray(1.0f)) : rgb_gray(1.0f);

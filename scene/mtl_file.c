@@ -36,8 +36,6 @@ static ag_status begin_material(reader *r)
     mtl_library *l = r->library;
     text_word rest = text_lines_rest(&r->lines);
     char name[IMPORT_NAME_SIZE];
-    if (rest.length == 0)
-        return text_lines_refuse(&r->lines, rest, "the material's name is missing");
     if (l->count == l->capacity) {
         size_t larger = l->capacity ? 2 * l->capacity : 16;
         import_material *materials = realloc(l->materials, larger * sizeof *materials);

@@ -67,7 +67,7 @@ static const struct {
 static bool ends_with(const char *path, const char *ending)
 {
     size_t length = strlen(path), ending_length = strlen(ending);
-    return length > ending_length && strcasecmp(path + length - ending_length, ending) == 0;
+    return length >= ending_length && strcasecmp(path + length - ending_length, ending) == 0;
 }
 
 ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
