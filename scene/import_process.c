@@ -17,8 +17,8 @@
 
 enum { LOOK_UP_EVERY_MS = 50 }; /* for cancellation */
 
-/* The memory that is mapped already, and all that the machine has on top; a sanitizer's shadow is among the former. */
-static void limit_memory(void)
+/* So much on top of what is mapped already, which a sanitizer's shadow is part of; and no more than the machine has. */
+static void limit_memory(uint64_t memory_bytes)
 {
     unsigned long pages = 0;
     FILE *file = fopen("/proc/self/statm", "r");
@@ -29,16 +29,18 @@ static void limit_memory(void)
     struct rlimit limit;
     if (!is_read || page_bytes <= 0 || all_pages <= 0 || getrlimit(RLIMIT_AS, &limit) != 0)
         return;
-    rlim_t most = ((rlim_t)pages + (rlim_t)all_pages) * (rlim_t)page_bytes;
+    rlim_t of_machine = (rlim_t)all_pages * (rlim_t)page_bytes;
+    rlim_t most = (rlim_t)pages * (rlim_t)page_bytes + (memory_bytes < of_machine ? memory_bytes : of_machine);
     if (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur > most) {
         limit.rlim_cur = most;
         setrlimit(RLIMIT_AS, &limit);
     }
 }
 
-static void keep_to_itself(void)
+static void keep_to_itself(uint64_t memory_bytes)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    setpgid(0, 0); /* the terminal's signals are for the caller, who ends this process then */
     for (int number = 1; number < NSIG; number++)
         signal(number, SIG_DFL);
     sigset_t none;
@@ -48,13 +50,13 @@ static void keep_to_itself(void)
     for (int descriptor = 0; descriptor < 3 && nowhere >= 0; descriptor++)
         dup2(nowhere, descriptor);
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-    limit_memory();
+    limit_memory(memory_bytes);
 }
 
-static void work_and_exit(import_task *task, void *user, int answer_descriptor)
+static void work_and_exit(import_task *task, void *user, uint64_t memory_bytes, int answer_descriptor)
 {
     int beyond_standard = fcntl(answer_descriptor, F_DUPFD_CLOEXEC, 3); /* those three go nowhere from now on */
-    keep_to_itself();
+    keep_to_itself(memory_bytes);
     FILE *answer = beyond_standard >= 0 ? fdopen(beyond_standard, "wb") : NULL;
     bool is_done = answer && task(user, answer) && fflush(answer) == 0;
     _exit(is_done ? 0 : 1);
@@ -106,8 +108,9 @@ static ag_status take_answer(int descriptor, import_answer *out_answer, char *me
     return AG_OK;
 }
 
-static ag_status run_process(const run_context *run, import_task *task, void *user, int answer_descriptor, int pipe_ends[2],
-                             import_answer *out_answer, char *message, size_t message_size)
+static ag_status run_process(const run_context *run, import_task *task, void *user, uint64_t memory_bytes,
+                             int answer_descriptor, int pipe_ends[2], import_answer *out_answer, char *message,
+                             size_t message_size)
 {
     /* No signal of the caller's may meet its handlers in the new process. */
     sigset_t all, saved;
@@ -116,7 +119,7 @@ static ag_status run_process(const run_context *run, import_task *task, void *us
     pid_t process = fork();
     if (process == 0) {
         close(pipe_ends[0]);
-        work_and_exit(task, user, answer_descriptor);
+        work_and_exit(task, user, memory_bytes, answer_descriptor);
     }
     int error = errno;
     pthread_sigmask(SIG_SETMASK, &saved, NULL);
@@ -133,8 +136,8 @@ static ag_status run_process(const run_context *run, import_task *task, void *us
     return status ? status : take_answer(answer_descriptor, out_answer, message, message_size);
 }
 
-ag_status import_process_run(const run_context *run, import_task *task, void *user, import_answer *out_answer,
-                             char *message, size_t message_size)
+ag_status import_process_run(const run_context *run, import_task *task, void *user, uint64_t memory_bytes,
+                             import_answer *out_answer, char *message, size_t message_size)
 {
     *out_answer = (import_answer){NULL, 0};
     snprintf(message, message_size, "%s", "");
@@ -143,7 +146,7 @@ ag_status import_process_run(const run_context *run, import_task *task, void *us
     if (answer < 0 || pipe2(pipe_ends, O_CLOEXEC) != 0)
         snprintf(message, message_size, "no process can be prepared: %s", strerror(errno));
     else
-        status = run_process(run, task, user, answer, pipe_ends, out_answer, message, message_size);
+        status = run_process(run, task, user, memory_bytes, answer, pipe_ends, out_answer, message, message_size);
     for (int i = 0; i < 2; i++)
         if (pipe_ends[i] >= 0)
             close(pipe_ends[i]);

@@ -2,6 +2,7 @@
  * Facts of assimp 5.2.5: camera angles are of the whole width; 3DS cameras have their place twice, in the node and in the
  * camera; FBX files keep their up axis, which stands in the metadata; STL, 3MF, AMF and Blender's files keep z up.
  * Threads: what is between "In the process" and "Here" runs in a process of its own. */
+#define _POSIX_C_SOURCE 200809L
 #include "mesh_import_assimp.h"
 
 #include "import_model.h"
@@ -18,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 enum { MAX_DEPTH = 1000 }; /* of nodes within nodes */
 
@@ -367,28 +369,42 @@ static bool import_in_process(void *user, FILE *answer)
 
 bool assimp_reads_extension(const char *extension) { return aiIsExtensionSupported(extension) == AI_TRUE; }
 
-static ag_status refuse(const run_context *run, const char *path, const char *reason)
+static ag_status refuse(const run_context *run, const char *path, const char *what, const char *reason)
 {
-    log_at(run->log, AG_LOG_ERROR, (file_location){path, 0, 0}, "%s", reason);
+    log_at(run->log, AG_LOG_ERROR, (file_location){path, 0, 0}, "%s: %s", what, reason);
     return AG_ERROR_INPUT;
+}
+
+/* What assimp may take: some formats are packed, but none by more than this. */
+static ag_status find_memory_limit(const run_context *run, const char *path, uint64_t *out_bytes)
+{
+    const uint64_t base = UINT64_C(2) << 30, per_byte = 64;
+    FILE *file = fopen(path, "rb");
+    struct stat info;
+    if (!file || fstat(fileno(file), &info) != 0) {
+        int error = errno;
+        if (file)
+            fclose(file);
+        return refuse(run, path, "cannot read the file", strerror(error));
+    }
+    fclose(file);
+    *out_bytes = base + per_byte * (uint64_t)(info.st_size > 0 ? info.st_size : 0);
+    return S_ISREG(info.st_mode) ? AG_OK : refuse(run, path, "cannot read the file", "it is no regular file");
 }
 
 ag_status assimp_load_file(run_context *run, const char *path, scene *out_scene)
 {
-    char message[512], reason[640];
+    char message[512];
     import_answer answer;
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        snprintf(reason, sizeof reason, "cannot read the file: %s", strerror(errno));
-        return refuse(run, path, reason);
-    }
-    fclose(file);
+    uint64_t memory_bytes;
+    ag_status status = find_memory_limit(run, path, &memory_bytes);
+    if (status)
+        return status;
     run_progress(run, AG_PHASE_LOAD, 0.0);
-    ag_status status = import_process_run(run, import_in_process, (void *)(uintptr_t)path, &answer, message, sizeof message);
-    if (status && message[0] != '\0') {
-        snprintf(reason, sizeof reason, "assimp cannot read the file: %s", message);
-        log_at(run->log, AG_LOG_ERROR, (file_location){path, 0, 0}, "%s", reason);
-    }
+    status = import_process_run(run, import_in_process, (void *)(uintptr_t)path, memory_bytes, &answer, message,
+                                sizeof message);
+    if (status && status != AG_CANCELLED && message[0] != '\0')
+        refuse(run, path, "assimp cannot read the file", message);
     if (!status)
         status = import_scene_fill(run, path, answer.bytes, answer.size, out_scene);
     import_answer_reset(&answer);

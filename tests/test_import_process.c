@@ -16,7 +16,7 @@
 #define UNDER_SANITIZER 1
 #endif
 
-enum { ANSWER_BYTES = 5000000 };
+enum { ANSWER_BYTES = 5000000, MEMORY_BYTES = 100000000 };
 
 static bool answer_much(void *user, FILE *answer)
 {
@@ -30,7 +30,7 @@ static void answers_come_back_whole(void **state)
     (void)state;
     import_answer answer;
     int number = 3;
-    assert_int_equal(import_process_run(NULL, answer_much, &number, &answer, message, sizeof message), AG_OK);
+    assert_int_equal(import_process_run(NULL, answer_much, &number, MEMORY_BYTES, &answer, message, sizeof message), AG_OK);
     assert_int_equal(answer.size, ANSWER_BYTES);
     for (int k = 0; k < ANSWER_BYTES; k++)
         assert_true(answer.bytes[k] == ((k * 7 + 3) & 0xff));
@@ -65,7 +65,7 @@ static bool leave(void *user, FILE *answer)
 static void expect_error(import_task *task, int number, const char *text)
 {
     import_answer answer;
-    ag_status status = import_process_run(NULL, task, &number, &answer, message, sizeof message);
+    ag_status status = import_process_run(NULL, task, &number, MEMORY_BYTES, &answer, message, sizeof message);
     expect_failure(status, AG_ERROR_INPUT, text);
     assert_null(answer.bytes);
 }
@@ -102,21 +102,23 @@ static void signals_have_their_default_actions(void **state)
 }
 
 #ifndef UNDER_SANITIZER
-static bool take_all_memory(void *user, FILE *answer)
+static bool take_memory(void *user, FILE *answer)
 {
     (void)user;
-    size_t step = (size_t)1 << 40; /* never touched */
-    bool is_there = malloc(step) != NULL;
-    fprintf(answer, "%s", is_there ? "there is" : "there is none");
+    void *half = malloc(MEMORY_BYTES / 2), *whole = malloc(MEMORY_BYTES); /* never touched */
+    fprintf(answer, "%s %s", half ? "half" : "none", whole ? "whole" : "no more");
+    free(half);
+    free(whole);
     return true;
 }
 
-static void memory_is_no_more_than_the_machines(void **state)
+static void memory_is_limited(void **state)
 {
     (void)state;
     import_answer answer;
-    assert_int_equal(import_process_run(NULL, take_all_memory, NULL, &answer, message, sizeof message), AG_OK);
-    assert_int_equal(answer.size, strlen("there is none"));
+    assert_int_equal(import_process_run(NULL, take_memory, NULL, MEMORY_BYTES, &answer, message, sizeof message), AG_OK);
+    assert_int_equal(answer.size, strlen("half no more"));
+    assert_memory_equal(answer.bytes, "half no more", answer.size);
     import_answer_reset(&answer);
 }
 #endif
@@ -143,7 +145,7 @@ static void cancelling_ends_it(void **state)
     pthread_t thread;
     run_context_init(&run, NULL, NULL, NULL, NULL);
     assert_int_equal(pthread_create(&thread, NULL, cancel, &run), 0);
-    assert_int_equal(import_process_run(&run, never_end, NULL, &answer, message, sizeof message), AG_CANCELLED);
+    assert_int_equal(import_process_run(&run, never_end, NULL, MEMORY_BYTES, &answer, message, sizeof message), AG_CANCELLED);
     pthread_join(thread, NULL);
     run_context_reset(&run);
 }
@@ -153,7 +155,7 @@ static void *run_one(void *user)
 {
     import_answer answer;
     char text[256];
-    bool is_right = import_process_run(NULL, answer_much, user, &answer, text, sizeof text) == AG_OK &&
+    bool is_right = import_process_run(NULL, answer_much, user, MEMORY_BYTES, &answer, text, sizeof text) == AG_OK &&
                     answer.size == ANSWER_BYTES && answer.bytes[0] == *(int *)user;
     import_answer_reset(&answer);
     return is_right ? user : NULL;
@@ -180,7 +182,7 @@ int main(void)
         cmocka_unit_test(any_end_is_an_error),
         cmocka_unit_test(signals_have_their_default_actions),
 #ifndef UNDER_SANITIZER
-        cmocka_unit_test(memory_is_no_more_than_the_machines),
+        cmocka_unit_test(memory_is_limited),
 #endif
         cmocka_unit_test(cancelling_ends_it),
         cmocka_unit_test(threads_may_have_one_each),
