@@ -55,6 +55,36 @@ static void warn_picture(importer *i, const import_picture *p, const char *reaso
     log_at_once(i->log, AG_LOG_WARNING, i->where, key, "the picture \"%s\" is not used: %s", p->path, reason);
 }
 
+/* A file's, or one within the model's. */
+static ag_status load_picture(importer *i, const import_picture *p, image_encoding encoding, uint32_t *out_image_index,
+                              char *message, size_t message_size)
+{
+    char path[2 * IMPORT_PATH_SIZE + 4096];
+    if (p->path[0] == '*') {
+        char *end;
+        unsigned long number = strtoul(p->path + 1, &end, 10);
+        if (end == p->path + 1 || *end || number >= i->embedded_count || i->embedded[number].size == 0) {
+            snprintf(message, message_size, "there is no such picture within the file");
+            return AG_ERROR_INPUT;
+        }
+        return texture_image_load_memory(i->scene, p->path, i->embedded[number].bytes, i->embedded[number].size, encoding,
+                                         out_image_index, message, message_size);
+    }
+    if (!find_picture(i, p->path, path, sizeof path)) {
+        snprintf(message, message_size, "there is no such file");
+        return AG_ERROR_INPUT;
+    }
+    return texture_image_load(i->scene, path, encoding, out_image_index, message, message_size);
+}
+
+static texture_wrap wrap_of(uint32_t wrap)
+{
+    return wrap == IMPORT_IS_CLAMPED    ? TEXTURE_WRAP_CLAMP
+           : wrap == IMPORT_IS_MIRRORED ? TEXTURE_WRAP_MIRROR
+           : wrap == IMPORT_IS_BLACK    ? TEXTURE_WRAP_BLACK
+                                        : TEXTURE_WRAP_REPEAT;
+}
+
 /* What is read of a picture. */
 typedef enum picture_use {
     PICTURE_COLOR,
@@ -66,18 +96,10 @@ typedef enum picture_use {
 /* Its texture, multiplied by scale; SCENE_NO_TEXTURE where there is none that can be read. */
 static ag_status add_picture(importer *i, const import_picture *p, picture_use use, float scale, uint32_t *out_texture)
 {
-    char path[2 * IMPORT_PATH_SIZE + 4096], message[1024] = "";
+    char message[1024] = "";
     *out_texture = SCENE_NO_TEXTURE;
     if (p->path[0] == '\0')
         return AG_OK;
-    if (p->path[0] == '*') {
-        warn_picture(i, p, "pictures within the file are not supported");
-        return AG_OK;
-    }
-    if (!find_picture(i, p->path, path, sizeof path)) {
-        warn_picture(i, p, "there is no such file");
-        return AG_OK;
-    }
     texture t;
     memset(&t, 0, sizeof t);
     t.kind = TEXTURE_IMAGE;
@@ -87,11 +109,11 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
     t.mapping.delta = (vec2){p->offset[0], p->offset[1]};
     for (size_t k = 0; k < sizeof t.inputs / sizeof *t.inputs; k++)
         t.inputs[k].texture_index = SCENE_NO_TEXTURE;
-    t.wrap = p->is_clamped ? TEXTURE_WRAP_CLAMP : TEXTURE_WRAP_REPEAT;
+    t.wraps = (texture_wraps){wrap_of(p->wrap_s), wrap_of(p->wrap_t)};
     t.filter = TEXTURE_FILTER_BILINEAR;
     t.scale = scale;
     image_encoding encoding = {.curve = use == PICTURE_COLOR ? IMAGE_CURVE_DEFAULT : IMAGE_CURVE_LINEAR};
-    ag_status status = texture_image_load(i->scene, path, encoding, &t.image_index, message, sizeof message);
+    ag_status status = load_picture(i, p, encoding, &t.image_index, message, sizeof message);
     if (status == AG_ERROR_MEMORY)
         return status;
     if (status) {

@@ -22,11 +22,14 @@ typedef enum import_slot {
     IMPORT_SLOT_COUNT
 } import_slot;
 
+/* What lies beyond a picture's edges. */
+typedef enum import_wrap { IMPORT_REPEATS, IMPORT_IS_CLAMPED, IMPORT_IS_MIRRORED, IMPORT_IS_BLACK } import_wrap;
+
 typedef struct import_picture {
-    char path[IMPORT_PATH_SIZE]; /* as the file has it; "": none; "*N": within the file */
+    char path[IMPORT_PATH_SIZE]; /* as the file has it; "": none; "*N": the Nth within the file */
     float scale[2], offset[2];   /* st = uv * scale + offset */
     float strength;              /* 1 where the file says nothing */
-    uint32_t is_clamped;         /* else it repeats */
+    uint32_t wrap_s, wrap_t;     /* import_wrap */
 } import_picture;
 
 /* Words and units of MTL. Negative: the file does not say. */
@@ -71,7 +74,7 @@ typedef struct import_camera {
     double position[3], forward[3], up[3];
     float horizontal_fov; /* radians, of the whole picture */
     float aspect;         /* width / height; 0: not said */
-    uint32_t is_orthographic;
+    float orthographic_half_width; /* scene units; 0: perspective */
 } import_camera;
 
 typedef enum import_light_kind {
@@ -94,10 +97,11 @@ typedef struct import_light {
     float size[2];                /* area: across and along up */
 } import_light;
 
-/* The records, in this order; materials and meshes are numbered as they come. */
+/* The records, in this order; pictures, materials and meshes are numbered as they come. */
 typedef enum import_record_kind {
     IMPORT_RECORD_ERROR,   /* text, without an end mark; nothing follows */
     IMPORT_RECORD_WARNING, /* text */
+    IMPORT_RECORD_PICTURE, /* within the file: a file of its own, PNG or JPEG; or nothing, of which a warning told */
     IMPORT_RECORD_MATERIAL,
     IMPORT_RECORD_MESH,
     IMPORT_RECORD_INSTANCE,

@@ -20,6 +20,7 @@ typedef struct model {
     size_t count;
     /* indices into records, in their order */
     size_t *materials, *meshes;
+    import_embedded *pictures;
     size_t material_count, mesh_count;
     import_surface *surfaces; /* [material_count] */
     bool *has_surface;
@@ -102,15 +103,19 @@ static ag_status index_records(model *m)
 {
     m->materials = malloc(m->count * sizeof *m->materials);
     m->meshes = malloc(m->count * sizeof *m->meshes);
+    m->pictures = malloc(m->count * sizeof *m->pictures);
+    m->to.embedded = m->pictures;
     m->surfaces = calloc(m->count, sizeof *m->surfaces);
     m->has_surface = calloc(m->count, sizeof *m->has_surface);
-    if (!m->materials || !m->meshes || !m->surfaces || !m->has_surface)
+    if (!m->materials || !m->meshes || !m->pictures || !m->surfaces || !m->has_surface)
         return AG_ERROR_MEMORY;
     for (size_t k = 0; k < m->count; k++) {
         const record *r = &m->records[k];
         ag_status status = check_record(m, r);
         if (status)
             return status;
+        if (r->kind == IMPORT_RECORD_PICTURE)
+            m->pictures[m->to.embedded_count++] = (import_embedded){r->bytes, r->size};
         if (r->kind == IMPORT_RECORD_MATERIAL)
             m->materials[m->material_count++] = k;
         if (r->kind == IMPORT_RECORD_MESH)
@@ -310,6 +315,7 @@ ag_status import_scene_fill(run_context *run, const char *path, const unsigned c
     free(m.records);
     free(m.materials);
     free(m.meshes);
+    free(m.pictures);
     free(m.surfaces);
     free(m.has_surface);
     return status;

@@ -29,8 +29,8 @@ static void cross(const double a[3], const double b[3], double out[3])
         out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-/* Of a right-handed world: right is forward x up. */
-static bool place_camera(const import_camera *source, transform *out_transform)
+/* Of a right-handed world: right is forward x up. size: what 1 on the screen of an orthographic camera stands for. */
+static bool place_camera(const import_camera *source, double size, transform *out_transform)
 {
     double forward[3], up[3], right[3], matrix[4][4] = {{0.0}};
     memcpy(forward, source->forward, sizeof forward);
@@ -39,8 +39,8 @@ static bool place_camera(const import_camera *source, transform *out_transform)
         return false;
     cross(right, forward, up);
     for (int k = 0; k < 3; k++) {
-        matrix[k][0] = right[k];
-        matrix[k][1] = up[k];
+        matrix[k][0] = right[k] * size;
+        matrix[k][1] = up[k] * size;
         matrix[k][2] = forward[k];
         matrix[k][3] = source->position[k];
     }
@@ -48,31 +48,35 @@ static bool place_camera(const import_camera *source, transform *out_transform)
     return transform_from_matrix((const double(*)[4])matrix, out_transform);
 }
 
-/* The field of view across the shorter side of the picture, from that across its width. */
+static double aspect_of(const import_camera *source)
+{
+    return source->aspect > 0.0f && isfinite(source->aspect) ? (double)source->aspect : DEFAULT_ASPECT;
+}
+
+/* The field of view across the shorter side of the picture, from that across its width; 0 where it makes no sense. */
 static double shorter_fov_degrees(const import_camera *source)
 {
-    double aspect = source->aspect > 0.0f ? (double)source->aspect : DEFAULT_ASPECT;
     double half = 0.5 * (double)source->horizontal_fov;
-    if (aspect > 1.0)
-        half = atan(tan(half) / aspect);
-    return half * 360.0 / PI;
+    if (!(half > 0.0 && half < 0.5 * PI))
+        return 0.0;
+    return (aspect_of(source) > 1.0 ? atan(tan(half) / aspect_of(source)) : half) * 360.0 / PI;
 }
 
 void importer_add_camera(importer *i, const import_camera *source)
 {
-    camera c = {.focal_distance = 1e6f};
+    camera c = {.kind = CAMERA_PERSPECTIVE, .fov_degrees = 90.0f, .focal_distance = 1e6f};
+    double size = 1.0;
     if (i->scene->has_camera) {
         log_at(i->log, AG_LOG_INFO, i->where, "camera \"%s\" is not used: the file's first one is", source->name);
         return;
     }
-    if (source->is_orthographic) {
-        log_at(i->log, AG_LOG_WARNING, i->where,
-               "camera \"%s\" is orthographic, which is not supported, and is left out", source->name);
-        return;
+    if (source->orthographic_half_width > 0.0f) {
+        c.kind = CAMERA_ORTHOGRAPHIC;
+        size = (double)source->orthographic_half_width / fmax(aspect_of(source), 1.0);
+    } else {
+        c.fov_degrees = (float)shorter_fov_degrees(source);
     }
-    c.fov_degrees = (float)shorter_fov_degrees(source);
-    const bool is_angle = source->horizontal_fov > 0.0f && (double)source->horizontal_fov < PI;
-    if (!is_angle || !(c.fov_degrees > 0.0f && c.fov_degrees < 180.0f) || !place_camera(source, &c.world_from_camera)) {
+    if (!(c.fov_degrees > 0.0f && c.fov_degrees < 180.0f) || !place_camera(source, size, &c.world_from_camera)) {
         log_at(i->log, AG_LOG_WARNING, i->where, "camera \"%s\" makes no sense and is left out", source->name);
         return;
     }

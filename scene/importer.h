@@ -9,11 +9,19 @@
 /* World coordinates are at most this, as in pbrt files. */
 #define IMPORT_MAX_COORDINATE 1e18f
 
+/* A picture within the file. */
+typedef struct import_embedded {
+    const unsigned char *bytes; /* borrowed */
+    size_t size;                /* 0: it cannot be read */
+} import_embedded;
+
 typedef struct importer {
     run_context *run;
     log_sink *log;
     scene *scene;
     file_location where; /* the file; no line */
+    const import_embedded *embedded; /* [embedded_count], borrowed */
+    size_t embedded_count;
     float bump_unit;     /* the height, in scene units, that a bump map's white stands for */
     /* what was left out, for importer_finish */
     size_t triangle_count, degenerate_count, left_out_count, odd_vector_count;

@@ -84,8 +84,16 @@ static rgb get_color(const struct aiMaterial *m, const char *key, unsigned type,
                                                                            : fallback;
 }
 
+static uint32_t wrap_of(enum aiTextureMapMode mode)
+{
+    return mode == aiTextureMapMode_Clamp    ? IMPORT_IS_CLAMPED
+           : mode == aiTextureMapMode_Mirror ? IMPORT_IS_MIRRORED
+           : mode == aiTextureMapMode_Decal  ? IMPORT_IS_BLACK
+                                             : IMPORT_REPEATS;
+}
+
 /* The first of up to three kinds of which the material has a picture. */
-static void get_picture(const struct aiMaterial *m, const enum aiTextureType types[3], import_picture *out)
+static void get_picture(const writer *w, const struct aiMaterial *m, const enum aiTextureType types[3], import_picture *out)
 {
     *out = (import_picture){.scale = {1.0f, 1.0f}, .strength = 1.0f};
     for (int k = 0; k < 3 && types[k] != aiTextureType_NONE; k++) {
@@ -95,7 +103,13 @@ static void get_picture(const struct aiMaterial *m, const enum aiTextureType typ
         if (aiGetMaterialTexture(m, types[k], 0, &path, NULL, NULL, NULL, NULL, modes, NULL) != aiReturn_SUCCESS)
             continue;
         copy_text(out->path, sizeof out->path, &path);
-        out->is_clamped = modes[0] == aiTextureMapMode_Clamp;
+        for (unsigned n = 0; n < w->scene->mNumTextures && path.data[0] != '*'; n++)
+            if (strcmp(w->scene->mTextures[n]->mFilename.data, path.data) == 0) {
+                snprintf(out->path, sizeof out->path, "*%u", n);
+                break;
+            }
+        out->wrap_s = wrap_of(modes[0]);
+        out->wrap_t = wrap_of(modes[1]);
         if (aiGetMaterialUVTransform(m, AI_MATKEY_UVTRANSFORM(types[k], 0), &t) == aiReturn_SUCCESS) {
             out->scale[0] = (float)t.mScaling.x;
             out->scale[1] = (float)t.mScaling.y;
@@ -156,7 +170,7 @@ static void write_material(writer *w, const struct aiMaterial *m)
     out.clearcoat_roughness = get_float(m, AI_MATKEY_CLEARCOAT_ROUGHNESS_FACTOR, 0.0f);
     out.transmission = get_float(m, AI_MATKEY_TRANSMISSION_FACTOR, 0.0f);
     for (int slot = 0; slot < IMPORT_SLOT_COUNT; slot++)
-        get_picture(m, TYPES[slot], &out.pictures[slot]);
+        get_picture(w, m, TYPES[slot], &out.pictures[slot]);
     write_record(w, IMPORT_RECORD_MATERIAL, &out, sizeof out);
 }
 
@@ -282,7 +296,7 @@ static void write_camera(writer *w, const struct aiCamera *c, matrix root)
     transform_to(world, &c->mUp, 0.0, out.up);
     out.horizontal_fov = c->mHorizontalFOV;
     out.aspect = c->mAspect;
-    out.is_orthographic = c->mOrthographicWidth > 0.0f;
+    out.orthographic_half_width = c->mOrthographicWidth;
     write_record(w, IMPORT_RECORD_CAMERA, &out, sizeof out);
 }
 
@@ -339,6 +353,12 @@ static void write_scene(writer *w, const char *path)
     int up = up_axis(s, path);
     matrix root;
     memcpy(root, up == 0 ? X_UP : up == 2 ? Z_UP : Y_UP, sizeof root);
+    for (unsigned k = 0; k < s->mNumTextures; k++) {
+        const struct aiTexture *t = s->mTextures[k];
+        if (t->mHeight != 0)
+            write_text(w, IMPORT_RECORD_WARNING, "a picture within the file is packed in no known way and is not used");
+        write_record(w, IMPORT_RECORD_PICTURE, t->pcData, t->mHeight == 0 && t->pcData ? t->mWidth : 0);
+    }
     for (unsigned k = 0; k < s->mNumMaterials; k++)
         write_material(w, s->mMaterials[k]);
     for (unsigned k = 0; k < s->mNumMeshes; k++)

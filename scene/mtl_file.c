@@ -116,7 +116,8 @@ static bool read_option(reader *r, const text_word *word, import_picture *p)
             return true;
         }
     if (text_word_is(word, "-clamp")) {
-        p->is_clamped = text_lines_word(&r->lines, &ignored) && text_word_is(&ignored, "on");
+        bool is_on = text_lines_word(&r->lines, &ignored) && text_word_is(&ignored, "on");
+        p->wrap_s = p->wrap_t = is_on ? IMPORT_IS_CLAMPED : IMPORT_REPEATS;
         return true;
     }
     bool is_scale = text_word_is(word, "-s"), is_offset = text_word_is(word, "-o"), is_strength = text_word_is(word, "-bm");

@@ -1,6 +1,7 @@
 /* scene_file.c: see scene_file.h; and PLY files that are a scene by themselves. Threads: one per scene. */
 #include "scene_file.h"
 
+#include "gltf_reader.h"
 #include "importer.h"
 #include "mesh_import_assimp.h"
 #include "obj_file.h"
@@ -45,14 +46,6 @@ static ag_status load_ply(run_context *run, const char *path, scene *out_scene)
     return status;
 }
 
-/* Not supported yet. */
-static ag_status load_gltf(run_context *run, const char *path, scene *out_scene)
-{
-    (void)out_scene;
-    log_at(run->log, AG_LOG_ERROR, (file_location){path, 0, 0}, "glTF is not supported");
-    return AG_ERROR_INPUT;
-}
-
 typedef ag_status load_function(run_context *run, const char *path, scene *out_scene);
 
 /* Ahead of assimp, which reads some of them too. */
@@ -61,7 +54,7 @@ static const struct {
     load_function *load;
 } READERS[] = {
     {".pbrt", pbrt_parse_file}, {".pbrt.gz", pbrt_parse_file}, {".obj", obj_load_file}, {".obj.gz", obj_load_file},
-    {".ply", load_ply},         {".ply.gz", load_ply},         {".gltf", load_gltf},    {".glb", load_gltf},
+    {".ply", load_ply},         {".ply.gz", load_ply},         {".gltf", gltf_load_file}, {".glb", gltf_load_file},
 };
 
 static bool ends_with(const char *path, const char *ending)

@@ -190,7 +190,8 @@ static void pictures(void **state)
     assert_near(t->mapping.scale.x, 2, 0);
     assert_near(t->mapping.scale.y, 3, 0);
     assert_near(t->mapping.delta.x, .5, 0);
-    assert_int_equal(t->wrap, TEXTURE_WRAP_CLAMP);
+    assert_int_equal(t->wraps.s, TEXTURE_WRAP_CLAMP);
+    assert_int_equal(t->wraps.t, TEXTURE_WRAP_CLAMP);
     reading_destroy(&r);
 
     /* a colour that is none of grey multiplies; what is not said, or black, does not darken */
@@ -199,7 +200,7 @@ static void pictures(void **state)
     assert_int_equal(m->kind, MATERIAL_PRINCIPLED);
     assert_near(m->specular, 0, 0);
     assert_rgb(m->reflectance, .5, .25, .5, 0);
-    assert_int_equal(texture_of(&r, m->reflectance_texture)->wrap, TEXTURE_WRAP_REPEAT);
+    assert_int_equal(texture_of(&r, m->reflectance_texture)->wraps.s, TEXTURE_WRAP_REPEAT);
     reading_destroy(&r);
     static const char *const WHITE[] = {"map_Kd C:\\once\\upon\\p.exr", "Kd 0 0 0\nmap_Kd p.exr", "map_Kd /nowhere/p.exr"};
     write_picture("p.exr", 3);

@@ -128,6 +128,68 @@ static void records_become_a_scene(void **state)
     reading_destroy(&r);
 }
 
+/* Three units are half the width of a picture of 2:1. */
+static void orthographic_cameras_are_as_wide_as_the_file_says(void **state)
+{
+    (void)state;
+    triangle t = plain_triangle();
+    import_instance i = plain_instance();
+    import_camera c = {.position = {0, 0, 9}, .forward = {0, 0, -1}, .up = {0, 1, 0}, .aspect = 2, .orthographic_half_width = 3};
+    b.size = 0;
+    put(&b, IMPORT_RECORD_MESH, &t, sizeof t);
+    put(&b, IMPORT_RECORD_INSTANCE, &i, sizeof i);
+    put(&b, IMPORT_RECORD_CAMERA, &c, sizeof c);
+    put(&b, IMPORT_RECORD_END, NULL, 0);
+    reading r = fill(b.bytes, b.size);
+    assert_int_equal(r.status, AG_OK);
+    scene_ray ray = camera_generate_ray(&r.scene->camera, 1.0f, 0.0f, 2.0f, (vec2){.5f, .5f});
+    assert_vec3(ray.origin, 3, 1.5, 9, 1e-6);
+    assert_vec3(ray.direction, 0, 0, -1, 1e-6);
+    reading_destroy(&r);
+}
+
+/* A PNG of one red pixel, and one that is none. */
+static void pictures_within_the_file(void **state)
+{
+    (void)state;
+    static const unsigned char PNG[] = {
+        0x89, 'P',  'N',  'G',  '\r', '\n', 0x1a, '\n', 0,    0,    0,    13,   'I',  'H',  'D',  'R',  0,    0,
+        0,    1,    0,    0,    0,    1,    8,    2,    0,    0,    0,    0x90, 0x77, 0x53, 0xde, 0,    0,    0,
+        12,   'I',  'D',  'A',  'T',  0x08, 0xd7, 0x63, 0xf8, 0xcf, 0xc0, 0,    0,    3,    1,    1,    0,    0x18,
+        0xdd, 0x8d, 0xb0, 0,    0,    0,    0,    'I',  'E',  'N',  'D',  0xae, 0x42, 0x60, 0x82};
+    triangle t = plain_triangle();
+    import_instance i = plain_instance();
+    import_material m = plain_material();
+    t.head.left_out = 0;
+    t.normals[2].x = t.uvs[2].x = 0;
+    for (int k = 0; k < 3; k++) {
+        snprintf(m.pictures[IMPORT_COLOR].path, IMPORT_PATH_SIZE, "*%d", k);
+        m.pictures[IMPORT_COLOR].wrap_t = IMPORT_IS_MIRRORED;
+        b.size = 0;
+        put(&b, IMPORT_RECORD_PICTURE, PNG, sizeof PNG);
+        put(&b, IMPORT_RECORD_PICTURE, NULL, 0);
+        put(&b, IMPORT_RECORD_MATERIAL, &m, sizeof m);
+        put(&b, IMPORT_RECORD_MESH, &t, sizeof t);
+        put(&b, IMPORT_RECORD_INSTANCE, &i, sizeof i);
+        put(&b, IMPORT_RECORD_END, NULL, 0);
+        reading r = fill(b.bytes, b.size);
+        assert_int_equal(r.status, AG_OK);
+        if (k == 0) {
+            assert_null(r.said[AG_LOG_WARNING]);
+            const texture *x = &r.scene->textures[model_material(&r, 0)->reflectance_texture];
+            assert_int_equal(x->wraps.t, TEXTURE_WRAP_MIRROR);
+            rgb c = texture_image_rgb(r.scene->texture_images[x->image_index], x->wraps, x->filter, .5f, .5f);
+            assert_rgb(c, 1, 0, 0, 1e-6);
+        } else {
+            char expected[128];
+            snprintf(expected, sizeof expected,
+                     "file: warning: the picture \"*%d\" is not used: there is no such picture within the file\n", k);
+            assert_string_equal(r.said[AG_LOG_WARNING], expected);
+        }
+        reading_destroy(&r);
+    }
+}
+
 static void errors_of_the_process_are_told(void **state)
 {
     (void)state;
@@ -258,6 +320,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(records_become_a_scene),
+        cmocka_unit_test(orthographic_cameras_are_as_wide_as_the_file_says),
+        cmocka_unit_test(pictures_within_the_file),
         cmocka_unit_test(errors_of_the_process_are_told),
         cmocka_unit_test(what_does_not_hold_together_is_refused),
         cmocka_unit_test(cut_anywhere_is_an_error),
