@@ -73,7 +73,8 @@ enum { LINE_COUNT = sizeof LINES / sizeof *LINES };
 static void print_help(void)
 {
     printf("usage: afterglow [options] SCENE\n"
-           "Renders a scene (pbrt-v4 text, plain or gzip; - is standard input) with photon mapping and final gathering.\n"
+           "Renders a scene with photon mapping and final gathering: pbrt-v4 text (plain or gzip; - is standard input), glTF,\n"
+           "OBJ, PLY, STL, Collada, FBX and what else assimp reads.\n"
            "Values that are not given come from the scene, else from defaults.\n\n");
     for (int i = 0; i < LINE_COUNT; i++) {
         char left[64];

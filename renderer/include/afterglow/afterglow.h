@@ -45,7 +45,9 @@ AG_API void ag_context_cancel(ag_context *context);
 
 typedef struct ag_scene ag_scene;
 
-/* Reads a scene in the pbrt-v4 text format (plain or gzip; "-" is standard input) and builds what rays need. */
+/* Reads a scene and builds what rays need. The end of the name says the format: .gltf, .glb; .obj; .ply; what assimp reads
+ * (.stl, .dae, .fbx, ...), for which a process is started; all else is pbrt-v4 text (plain or gzip; "-" is standard
+ * input). A camera and light are made up where a model brings none. */
 AG_API ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_scene);
 AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
 
