@@ -2,8 +2,8 @@
 #include "import_defaults.h"
 
 static const float FOV_DEGREES = 45.0f;
-static const double TAN_HALF_FOV = 0.41421356237309505; /* tan 22.5 degrees = sqrt 2 - 1 */
-static const double MARGIN = 1.05;                      /* around the bounds */
+static const double TAN_HALF_FOV = 0.41421356237309505;  /* tan 22.5 degrees = sqrt 2 - 1 */
+static const double MARGIN = 1.05;                       /* around the bounds */
 static const double FROM_CENTER[3] = {0.47, 0.34, 0.81}; /* 30 degrees to the right, 20 above the horizon */
 static const double UP[3] = {0.0, 1.0, 0.0};
 
@@ -79,8 +79,8 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
         c.world_from_camera = transform_identity(); /* bounds are finite, so there is an inverse */
     s->camera = c;
     s->has_camera = true;
-    log_message(log, AG_LOG_INFO, "the file has no camera: one is set at (%g, %g, %g), looking at (%g, %g, %g)", m[0][3],
-                m[1][3], m[2][3], center[0], center[1], center[2]);
+    log_message(log, AG_LOG_INFO, "the file has no camera: one is set at (%g, %g, %g), looking at (%g, %g, %g)",
+                m[0][3], m[1][3], m[2][3], center[0], center[1], center[2]);
     return AG_OK;
 }
 

@@ -1,5 +1,5 @@
-/* import_material.c: materials of foreign formats, in the words of MTL (Wavefront's "MTL material format", 1995, with the
- * PBR extension of Clara.io), as ours.
+/* import_material.c: materials of foreign formats, in the words of MTL (Wavefront's "MTL material format", 1995, with
+ * the PBR extension of Clara.io), as ours.
  *
  *   MTL                             here
  *   illum 4, 6, 7, 9                glass: dielectric of index Ni (1.5 where it says nothing above 1), smooth or of
@@ -25,8 +25,8 @@
 
 /* Pictures */
 
-/* The path with slashes as they are here, below the folder of the model, or where the file says, or with the folders that
- * were there when it was made left out. Gives whether there is a file. */
+/* The path with slashes as they are here, below the folder of the model, or where the file says, or with the folders
+ * that were there when it was made left out. Gives whether there is a file. */
 static bool find_picture(const importer *i, const char *name, char *out_path, size_t size)
 {
     char plain[IMPORT_PATH_SIZE];
@@ -67,8 +67,8 @@ static ag_status load_picture(importer *i, const import_picture *p, image_encodi
             snprintf(message, message_size, "there is no such picture within the file");
             return AG_ERROR_INPUT;
         }
-        return texture_image_load_memory(i->scene, p->path, i->embedded[number].bytes, i->embedded[number].size, encoding,
-                                         out_image_index, message, message_size);
+        return texture_image_load_memory(i->scene, p->path, i->embedded[number].bytes, i->embedded[number].size,
+                                         encoding, out_image_index, message, message_size);
     }
     if (!find_picture(i, p->path, path, sizeof path)) {
         snprintf(message, message_size, "there is no such file");
@@ -191,9 +191,9 @@ static material make_mirror(const import_material *source, rgb diffuse, rgb spec
 static material make_material(const import_material *source)
 {
     rgb diffuse = clamp_color(source->diffuse), specular = clamp_color(source->specular);
-    const bool is_principled = is_given(source->roughness) || is_given(source->metallic) ||
-                               source->clearcoat > 0.0f || source->transmission > 0.0f ||
-                               source->pictures[IMPORT_ROUGHNESS].path[0] || source->pictures[IMPORT_METALLIC].path[0];
+    const bool is_principled = is_given(source->roughness) || is_given(source->metallic) || source->clearcoat > 0.0f ||
+                               source->transmission > 0.0f || source->pictures[IMPORT_ROUGHNESS].path[0] ||
+                               source->pictures[IMPORT_METALLIC].path[0];
     switch (source->illumination) {
     case 4:
     case 6:
@@ -208,12 +208,12 @@ static material make_material(const import_material *source)
     default: break;
     }
     if (is_principled) {
-        material m = make_principled(diffuse, is_given(source->roughness) ? source->roughness
+        material m = make_principled(diffuse, is_given(source->roughness)                  ? source->roughness
                                               : source->pictures[IMPORT_ROUGHNESS].path[0] ? 1.0f
                                                                                            : 0.5f);
-        m.metallic = is_given(source->metallic)                    ? clamp01(source->metallic)
+        m.metallic = is_given(source->metallic)                  ? clamp01(source->metallic)
                      : source->pictures[IMPORT_METALLIC].path[0] ? 1.0f
-                                                                   : 0.0f;
+                                                                 : 0.0f;
         m.transmission = clamp01(source->transmission);
         m.ior = source->ior > 1.0f && isfinite(source->ior) ? source->ior : 1.5f;
         m.clearcoat = clamp01(source->clearcoat);
@@ -241,7 +241,8 @@ static ag_status add_color(importer *i, const import_material *source, material 
     rgb factor = rgb_is_black(m->reflectance) ? rgb_gray(1.0f) : m->reflectance;
     const bool is_gray = factor.r == factor.g && factor.g == factor.b;
     uint32_t picture;
-    ag_status status = add_picture(i, p, PICTURE_COLOR, m->kind == MATERIAL_DIFFUSE && is_gray ? factor.r : 1.0f, &picture);
+    ag_status status =
+        add_picture(i, p, PICTURE_COLOR, m->kind == MATERIAL_DIFFUSE && is_gray ? factor.r : 1.0f, &picture);
     if (status || picture == SCENE_NO_TEXTURE)
         return status;
     if (m->kind == MATERIAL_DIFFUSE && !is_gray) {

@@ -1,5 +1,5 @@
-/* import_model.h: what readers of foreign formats say of a file, in plain structs that hold no pointers, so that a process
- * can hand them to another: a row of records, each a head and its bytes. Whoever takes them believes nothing.
+/* import_model.h: what readers of foreign formats say of a file, in plain structs that hold no pointers, so that a
+ * process can hand them to another: a row of records, each a head and its bytes. Whoever takes them believes nothing.
  * Flow: mesh_import_assimp (in a process of its own) -> [here] -> import_scene. Threads: plain data. */
 #ifndef AFTERGLOW_IMPORT_MODEL_H
 #define AFTERGLOW_IMPORT_MODEL_H
@@ -12,7 +12,7 @@ enum { IMPORT_NAME_SIZE = 128, IMPORT_PATH_SIZE = 1024, IMPORT_TEXT_SIZE = 1024 
 
 /* Pictures that a material may have, and what they are multiplied by. */
 typedef enum import_slot {
-    IMPORT_COLOR,     /* diffuse or base colour */
+    IMPORT_COLOR, /* diffuse or base colour */
     IMPORT_EMISSION,
     IMPORT_OPACITY,   /* grey */
     IMPORT_ROUGHNESS, /* grey */
@@ -35,19 +35,19 @@ typedef struct import_picture {
 /* Words and units of MTL. Negative: the file does not say. */
 typedef struct import_material {
     char name[IMPORT_NAME_SIZE];
-    int32_t illumination;  /* MTL's illum */
-    rgb diffuse;           /* Kd, or the base colour */
-    rgb specular;          /* Ks */
-    rgb emission;          /* Ke */
-    rgb filter;            /* Tf: what passes */
-    float exponent;        /* Ns, Phong's */
-    float opacity;         /* d: 1 is opaque */
-    float ior;             /* Ni */
-    float roughness;       /* Pr */
-    float metallic;        /* Pm */
-    float clearcoat;       /* Pc */
+    int32_t illumination;      /* MTL's illum */
+    rgb diffuse;               /* Kd, or the base colour */
+    rgb specular;              /* Ks */
+    rgb emission;              /* Ke */
+    rgb filter;                /* Tf: what passes */
+    float exponent;            /* Ns, Phong's */
+    float opacity;             /* d: 1 is opaque */
+    float ior;                 /* Ni */
+    float roughness;           /* Pr */
+    float metallic;            /* Pm */
+    float clearcoat;           /* Pc */
     float clearcoat_roughness; /* Pcr */
-    float transmission;    /* the share that goes through, as glTF's */
+    float transmission;        /* the share that goes through, as glTF's */
     import_picture pictures[IMPORT_SLOT_COUNT];
 } import_material;
 
@@ -72,8 +72,8 @@ typedef struct import_instance {
 typedef struct import_camera {
     char name[IMPORT_NAME_SIZE];
     double position[3], forward[3], up[3];
-    float horizontal_fov; /* radians, of the whole picture */
-    float aspect;         /* width / height; 0: not said */
+    float horizontal_fov;          /* radians, of the whole picture */
+    float aspect;                  /* width / height; 0: not said */
     float orthographic_half_width; /* scene units; 0: perspective */
 } import_camera;
 
@@ -85,8 +85,8 @@ typedef enum import_light_kind {
     IMPORT_LIGHT_AREA
 } import_light_kind;
 
-/* World space; in the words of rasterizers: a white surface that faces it appears as bright as color * 1 / (attenuation[0] +
- * attenuation[1] d + attenuation[2] d^2) at distance d. */
+/* World space; in the words of rasterizers: a white surface that faces it appears as bright as color * 1 /
+ * (attenuation[0] + attenuation[1] d + attenuation[2] d^2) at distance d. */
 typedef struct import_light {
     char name[IMPORT_NAME_SIZE];
     uint32_t kind;

@@ -19,9 +19,9 @@ typedef struct import_answer {
     size_t size;
 } import_answer;
 
-/* Runs the task, which may take memory_bytes, and waits for its end. *out_answer is to be reset; on failure it is empty, and message says what became of
- * the process. Errors: AG_ERROR_INPUT (the task failed, crashed, or wrote nothing), AG_CANCELLED (the run is; the process
- * is ended), AG_ERROR_MEMORY, AG_ERROR_SYSTEM. */
+/* Runs the task, which may take memory_bytes, and waits for its end. *out_answer is to be reset; on failure it is
+ * empty, and message says what became of the process. Errors: AG_ERROR_INPUT (the task failed, crashed, or wrote
+ * nothing), AG_CANCELLED (the run is; the process is ended), AG_ERROR_MEMORY, AG_ERROR_SYSTEM. */
 ag_status import_process_run(const run_context *run, import_task *task, void *user, uint64_t memory_bytes,
                              import_answer *out_answer, char *message, size_t message_size);
 void import_answer_reset(import_answer *answer);

@@ -1,5 +1,5 @@
-/* import_scene.c: see import_scene.h. Records are indexed first, then instances, cameras and lights are taken one by one.
- * Threads: one per scene. */
+/* import_scene.c: see import_scene.h. Records are indexed first, then instances, cameras and lights are taken one by
+ * one. Threads: one per scene. */
 #include "import_scene.h"
 
 #include "importer.h"
@@ -30,7 +30,10 @@ typedef struct model {
 
 /* Records */
 
-static ag_status broken(model *m) { return importer_refuse(&m->to, "what was read of the file does not hold together"); }
+static ag_status broken(model *m)
+{
+    return importer_refuse(&m->to, "what was read of the file does not hold together");
+}
 
 static bool append(model *m, const record *r, size_t *capacity)
 {

@@ -1,8 +1,7 @@
 /* import_view.c: cameras and lights of foreign formats as ours; see importer.h.
- * Lights of rasterizers become physical ones of the same brightness: color c at distance d on a white surface that faces
- * the light is an irradiance of pi c, so an intensity of pi c d^2; where the light does not fall off with the square of
- * the distance, that of the centre of the scene counts.
- * Threads: one per scene. */
+ * Lights of rasterizers become physical ones of the same brightness: color c at distance d on a white surface that
+ * faces the light is an irradiance of pi c, so an intensity of pi c d^2; where the light does not fall off with the
+ * square of the distance, that of the centre of the scene counts. Threads: one per scene. */
 #include "importer.h"
 
 #include <stdlib.h>
@@ -95,7 +94,8 @@ static double intensity_factor(const importer *i, const import_light *source)
     vec3 low, high;
     double square = 0.0, radius = 0.0;
     scene_find_bounds(i->scene, &low, &high);
-    const double a[3] = {(double)low.x, (double)low.y, (double)low.z}, b[3] = {(double)high.x, (double)high.y, (double)high.z};
+    const double a[3] = {(double)low.x, (double)low.y, (double)low.z},
+                 b[3] = {(double)high.x, (double)high.y, (double)high.z};
     for (int k = 0; k < 3 && a[0] <= b[0]; k++) {
         double away = 0.5 * (a[k] + b[k]) - source->position[k];
         square += away * away;
@@ -112,7 +112,10 @@ static rgb scale_color(rgb color, double factor)
                     (float)((double)color.b * factor));
 }
 
-static bool is_sound(rgb c) { return rgb_is_finite(c) && c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f && !rgb_is_black(c); }
+static bool is_sound(rgb c)
+{
+    return rgb_is_finite(c) && c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f && !rgb_is_black(c);
+}
 
 /* A rectangle around its position that shines to one side. */
 static ag_status add_area_light(importer *i, const import_light *source, rgb intensity)
@@ -165,8 +168,8 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
     light l = light_make(LIGHT_POINT);
     uint32_t index;
     bool is_aimed = source.kind != IMPORT_LIGHT_POINT && source.kind != IMPORT_LIGHT_AMBIENT;
-    if (!is_sound(source.color) || !is_sound(intensity) || !vec3_is_finite(position) || source.kind > IMPORT_LIGHT_AREA ||
-        (is_aimed && !normalize(source.direction))) {
+    if (!is_sound(source.color) || !is_sound(intensity) || !vec3_is_finite(position) ||
+        source.kind > IMPORT_LIGHT_AREA || (is_aimed && !normalize(source.direction))) {
         log_at(i->log, AG_LOG_WARNING, i->where, "light \"%s\" is dark or makes no sense, and is left out",
                source.name);
         return AG_OK;

@@ -1,5 +1,6 @@
 /* importer.h: a scene as it is filled from a file of a foreign format: surfaces, then meshes, then what is missing.
- * Flow: import_scene, obj_file, scene_file (PLY) -> [here: importer.c, import_material.c, import_view.c] -> scene. Threads: one per scene. */
+ * Flow: import_scene, obj_file, scene_file (PLY) -> [here: importer.c, import_material.c, import_view.c] -> scene.
+ * Threads: one per scene. */
 #ifndef AFTERGLOW_IMPORTER_H
 #define AFTERGLOW_IMPORTER_H
 
@@ -19,10 +20,10 @@ typedef struct importer {
     run_context *run;
     log_sink *log;
     scene *scene;
-    file_location where; /* the file; no line */
+    file_location where;             /* the file; no line */
     const import_embedded *embedded; /* [embedded_count], borrowed */
     size_t embedded_count;
-    float bump_unit;     /* the height, in scene units, that a bump map's white stands for */
+    float bump_unit; /* the height, in scene units, that a bump map's white stands for */
     /* what was left out, for importer_finish */
     size_t triangle_count, degenerate_count, left_out_count, odd_vector_count;
 } importer;
@@ -46,19 +47,19 @@ typedef struct import_surface {
  * warning. Errors: AG_ERROR_MEMORY. */
 ag_status importer_add_material(importer *i, const import_material *m, import_surface *out_surface);
 
-/* Adds a mesh at its place, which also is a lamp where its surface shines. Its arrays pass into the scene's ownership, on
- * failure too (they are then freed). Checks all: indices, coordinates; triangles without area are left out. name is for
- * messages. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
+/* Adds a mesh at its place, which also is a lamp where its surface shines. Its arrays pass into the scene's ownership,
+ * on failure too (they are then freed). Checks all: indices, coordinates; triangles without area are left out. name is
+ * for messages. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
 ag_status importer_add_mesh(importer *i, const char *name, mesh *m, const transform *world_from_mesh,
                             const import_surface *surface);
 
-/* The first camera counts; what makes no sense is left out with a warning. Lights: shapes must be there already. Errors:
- * AG_ERROR_MEMORY. */
+/* The first camera counts; what makes no sense is left out with a warning. Lights: shapes must be there already.
+ * Errors: AG_ERROR_MEMORY. */
 void importer_add_camera(importer *i, const import_camera *source);
 ag_status importer_add_light(importer *i, const import_light *source);
 
-/* Warns of what was left out, and adds a camera and light where there are none. Errors: AG_ERROR_INPUT (nothing to see),
- * AG_ERROR_MEMORY. */
+/* Warns of what was left out, and adds a camera and light where there are none. Errors: AG_ERROR_INPUT (nothing to
+ * see), AG_ERROR_MEMORY. */
 ag_status importer_finish(importer *i);
 
 /* FILE: error: ...; gives AG_ERROR_INPUT. */

@@ -1,6 +1,6 @@
 /* mesh_import_assimp.c: see mesh_import_assimp.h. The only file that knows assimp.
- * Facts of assimp 5.2.5: camera angles are of the whole width; 3DS cameras have their place twice, in the node and in the
- * camera; FBX files keep their up axis, which stands in the metadata; STL, 3MF, AMF and Blender's files keep z up.
+ * Facts of assimp 5.2.5: camera angles are of the whole width; 3DS cameras have their place twice, in the node and in
+ * the camera; FBX files keep their up axis, which stands in the metadata; STL, 3MF, AMF and Blender's files keep z up.
  * Threads: what is between "In the process" and "Here" runs in a process of its own. */
 #define _POSIX_C_SOURCE 200809L
 #include "mesh_import_assimp.h"
@@ -74,14 +74,15 @@ static float get_float(const struct aiMaterial *m, const char *key, unsigned typ
     ai_real value;
     unsigned count = 1;
     return aiGetMaterialFloatArray(m, key, type, index, &value, &count) == aiReturn_SUCCESS && count == 1 ? (float)value
-                                                                                                         : fallback;
+                                                                                                          : fallback;
 }
 
 static rgb get_color(const struct aiMaterial *m, const char *key, unsigned type, unsigned index, rgb fallback)
 {
     struct aiColor4D c;
-    return aiGetMaterialColor(m, key, type, index, &c) == aiReturn_SUCCESS ? rgb_make((float)c.r, (float)c.g, (float)c.b)
-                                                                           : fallback;
+    return aiGetMaterialColor(m, key, type, index, &c) == aiReturn_SUCCESS
+               ? rgb_make((float)c.r, (float)c.g, (float)c.b)
+               : fallback;
 }
 
 static uint32_t wrap_of(enum aiTextureMapMode mode)
@@ -93,7 +94,8 @@ static uint32_t wrap_of(enum aiTextureMapMode mode)
 }
 
 /* The first of up to three kinds of which the material has a picture. */
-static void get_picture(const writer *w, const struct aiMaterial *m, const enum aiTextureType types[3], import_picture *out)
+static void get_picture(const writer *w, const struct aiMaterial *m, const enum aiTextureType types[3],
+                        import_picture *out)
 {
     *out = (import_picture){.scale = {1.0f, 1.0f}, .strength = 1.0f};
     for (int k = 0; k < 3 && types[k] != aiTextureType_NONE; k++) {
@@ -155,10 +157,10 @@ static void write_material(writer *w, const struct aiMaterial *m)
     out.diffuse = get_color(m, AI_MATKEY_COLOR_DIFFUSE, rgb_gray(0.6f));
     out.diffuse = get_color(m, AI_MATKEY_BASE_COLOR, out.diffuse);
     if (has_highlights(m))
-        out.specular = rgb_scale(get_color(m, AI_MATKEY_COLOR_SPECULAR, black),
-                                 get_float(m, AI_MATKEY_SHININESS_STRENGTH, 1.0f));
-    out.emission = rgb_scale(get_color(m, AI_MATKEY_COLOR_EMISSIVE, black),
-                             get_float(m, AI_MATKEY_EMISSIVE_INTENSITY, 1.0f));
+        out.specular =
+            rgb_scale(get_color(m, AI_MATKEY_COLOR_SPECULAR, black), get_float(m, AI_MATKEY_SHININESS_STRENGTH, 1.0f));
+    out.emission =
+        rgb_scale(get_color(m, AI_MATKEY_COLOR_EMISSIVE, black), get_float(m, AI_MATKEY_EMISSIVE_INTENSITY, 1.0f));
     out.filter = illumination >= 0 ? get_color(m, AI_MATKEY_COLOR_TRANSPARENT, rgb_gray(1.0f)) : rgb_gray(1.0f);
     out.exponent = get_float(m, AI_MATKEY_SHININESS, -1.0f);
     out.opacity = get_float(m, AI_MATKEY_OPACITY, 1.0f);
@@ -302,12 +304,10 @@ static void write_camera(writer *w, const struct aiCamera *c, matrix root)
 
 static void write_light(writer *w, const struct aiLight *l, matrix root)
 {
-    static const uint32_t KINDS[] = {[aiLightSource_UNDEFINED] = UINT32_MAX,
-                                     [aiLightSource_DIRECTIONAL] = IMPORT_LIGHT_DIRECTIONAL,
-                                     [aiLightSource_POINT] = IMPORT_LIGHT_POINT,
-                                     [aiLightSource_SPOT] = IMPORT_LIGHT_SPOT,
-                                     [aiLightSource_AMBIENT] = IMPORT_LIGHT_AMBIENT,
-                                     [aiLightSource_AREA] = IMPORT_LIGHT_AREA};
+    static const uint32_t KINDS[] = {
+        [aiLightSource_UNDEFINED] = UINT32_MAX,         [aiLightSource_DIRECTIONAL] = IMPORT_LIGHT_DIRECTIONAL,
+        [aiLightSource_POINT] = IMPORT_LIGHT_POINT,     [aiLightSource_SPOT] = IMPORT_LIGHT_SPOT,
+        [aiLightSource_AMBIENT] = IMPORT_LIGHT_AMBIENT, [aiLightSource_AREA] = IMPORT_LIGHT_AREA};
     import_light out;
     matrix world;
     memset(&out, 0, sizeof out);
@@ -416,7 +416,7 @@ ag_status assimp_load_file(run_context *run, const char *path, scene *out_scene)
 {
     char message[512];
     import_answer answer;
-    uint64_t memory_bytes;
+    uint64_t memory_bytes = 0;
     ag_status status = find_memory_limit(run, path, &memory_bytes);
     if (status)
         return status;

@@ -10,10 +10,10 @@
 bool assimp_reads_extension(const char *extension);
 
 /* Fills an empty, uncommitted scene: meshes in world space (right-handed, y up) with materials (import_material.c), the
- * file's first camera, its lights; or a default camera and light. Polygons are cut into triangles; where the file has no
- * normals, surfaces are flat. Animations are not played. Whatever is in the file, and whatever assimp makes of it, is at
- * worst an error. Errors: AG_ERROR_INPUT (also told to the log, in assimp's words), AG_ERROR_MEMORY, AG_ERROR_SYSTEM,
- * AG_CANCELLED. */
+ * file's first camera, its lights; or a default camera and light. Polygons are cut into triangles; where the file has
+ * no normals, surfaces are flat. Animations are not played. Whatever is in the file, and whatever assimp makes of it,
+ * is at worst an error. Errors: AG_ERROR_INPUT (also told to the log, in assimp's words), AG_ERROR_MEMORY,
+ * AG_ERROR_SYSTEM, AG_CANCELLED. */
 ag_status assimp_load_file(run_context *run, const char *path, scene *out_scene);
 
 #endif

@@ -10,7 +10,7 @@
 typedef struct reader {
     text_lines lines;
     mtl_library *library;
-    import_material *now;     /* NULL before the first newmtl */
+    import_material *now;    /* NULL before the first newmtl */
     bool has_diffuse, has_d; /* d counts more than Tr */
 } reader;
 
@@ -120,14 +120,16 @@ static bool read_option(reader *r, const text_word *word, import_picture *p)
         p->wrap_s = p->wrap_t = is_on ? IMPORT_IS_CLAMPED : IMPORT_REPEATS;
         return true;
     }
-    bool is_scale = text_word_is(word, "-s"), is_offset = text_word_is(word, "-o"), is_strength = text_word_is(word, "-bm");
+    bool is_scale = text_word_is(word, "-s"), is_offset = text_word_is(word, "-o"),
+         is_strength = text_word_is(word, "-bm");
     bool is_unsupported = text_word_is(word, "-mm") || text_word_is(word, "-t");
     if (!is_scale && !is_offset && !is_strength && !is_unsupported)
         return false;
     read_numbers(r, v, &count);
     if (is_unsupported)
         log_at_once(r->lines.log, AG_LOG_WARNING, text_lines_where(&r->lines, word->text), "mtl:option",
-                    "the option \"%.*s\" is not supported and is ignored, as are any others", (int)word->length, word->text);
+                    "the option \"%.*s\" is not supported and is ignored, as are any others", (int)word->length,
+                    word->text);
     if (is_strength && count > 0)
         p->strength = (float)v[0];
     for (int k = 0; k < 2 && k < count; k++)
@@ -148,7 +150,8 @@ static ag_status read_picture(reader *r, import_slot slot)
     }
     text_word rest = text_lines_rest(&r->lines);
     if (rest.length == 0 || rest.length >= sizeof p.path)
-        return text_lines_refuse(&r->lines, rest, "the picture's name is %s", rest.length == 0 ? "missing" : "too long");
+        return text_lines_refuse(&r->lines, rest, "the picture's name is %s",
+                                 rest.length == 0 ? "missing" : "too long");
     memcpy(p.path, rest.text, rest.length);
     p.path[rest.length] = '\0';
     r->now->pictures[slot] = p;
@@ -178,9 +181,9 @@ static ag_status read_value(reader *r, const text_word *word, bool *out_is_known
         const char *name;
         rgb *color;
         float *number;
-    } VALUES[] = {{"Ks", &m->specular, NULL},   {"Ke", &m->emission, NULL},   {"Tf", &m->filter, NULL},
-                  {"Ns", NULL, &m->exponent},   {"Ni", NULL, &m->ior},        {"Pr", NULL, &m->roughness},
-                  {"Pm", NULL, &m->metallic},   {"Pc", NULL, &m->clearcoat},  {"Pcr", NULL, &m->clearcoat_roughness}};
+    } VALUES[] = {{"Ks", &m->specular, NULL}, {"Ke", &m->emission, NULL},  {"Tf", &m->filter, NULL},
+                  {"Ns", NULL, &m->exponent}, {"Ni", NULL, &m->ior},       {"Pr", NULL, &m->roughness},
+                  {"Pm", NULL, &m->metallic}, {"Pc", NULL, &m->clearcoat}, {"Pcr", NULL, &m->clearcoat_roughness}};
     for (size_t k = 0; k < sizeof VALUES / sizeof *VALUES; k++)
         if (text_word_is(word, VALUES[k].name))
             return VALUES[k].color ? read_color(r, VALUES[k].name, VALUES[k].color, &is_read)
@@ -216,9 +219,9 @@ static ag_status read_statement(reader *r, const text_word *word)
     static const struct {
         const char *name;
         import_slot slot;
-    } PICTURES[] = {{"map_Kd", IMPORT_COLOR},     {"map_Ke", IMPORT_EMISSION},  {"map_emissive", IMPORT_EMISSION},
-                    {"map_d", IMPORT_OPACITY},    {"map_Pr", IMPORT_ROUGHNESS}, {"map_Pm", IMPORT_METALLIC},
-                    {"norm", IMPORT_NORMAL},      {"map_Kn", IMPORT_NORMAL},    {"bump", IMPORT_BUMP},
+    } PICTURES[] = {{"map_Kd", IMPORT_COLOR},  {"map_Ke", IMPORT_EMISSION},  {"map_emissive", IMPORT_EMISSION},
+                    {"map_d", IMPORT_OPACITY}, {"map_Pr", IMPORT_ROUGHNESS}, {"map_Pm", IMPORT_METALLIC},
+                    {"norm", IMPORT_NORMAL},   {"map_Kn", IMPORT_NORMAL},    {"bump", IMPORT_BUMP},
                     {"map_bump", IMPORT_BUMP}};
     static const char *const NO_CONCERN[] = {"Ka", "map_Ka", "sharpness", "map_aat", "Km", NULL};
     bool is_known;

@@ -1,5 +1,5 @@
-/* obj_file.c: see obj_file.h; here the statements. Vertices are counted first, so that faces may name those that follow.
- * Threads: one per scene. */
+/* obj_file.c: see obj_file.h; here the statements. Vertices are counted first, so that faces may name those that
+ * follow. Threads: one per scene. */
 #include "obj_file.h"
 
 #include "obj_private.h"
@@ -80,7 +80,8 @@ static ag_status read_normal(obj *o)
     return status;
 }
 
-/* One of the numbers of a corner, at *at; OBJ_NONE where there is none. Counts from 1, or back from the last one so far. */
+/* One of the numbers of a corner, at *at; OBJ_NONE where there is none. Counts from 1, or back from the last one so
+ * far. */
 static ag_status read_reference(obj *o, const char **at, const char *end, const text_word *word, const char *what,
                                 size_t so_far, size_t total, uint32_t *out_index)
 {
@@ -105,8 +106,7 @@ static ag_status read_corner(obj *o, const text_word *word)
 {
     const char *at = word->text, *end = at + word->length;
     obj_corner c = {OBJ_NONE, OBJ_NONE, OBJ_NONE};
-    ag_status status =
-        read_reference(o, &at, end, word, "vertex", o->position_count, o->position_total, &c.position);
+    ag_status status = read_reference(o, &at, end, word, "vertex", o->position_count, o->position_total, &c.position);
     if (!status && at < end && *at == '/') {
         at++;
         status = read_reference(o, &at, end, word, "texture vertex", o->uv_count, o->uv_total, &c.uv);

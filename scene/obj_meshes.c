@@ -1,5 +1,5 @@
-/* obj_meshes.c: the faces of an OBJ file as one mesh for each material, in which corners that agree in all are one vertex.
- * Flow: obj_file -> [here], polygon -> importer. Threads: one per scene. */
+/* obj_meshes.c: the faces of an OBJ file as one mesh for each material, in which corners that agree in all are one
+ * vertex. Flow: obj_file -> [here], polygon -> importer. Threads: one per scene. */
 #include "obj_private.h"
 #include "polygon.h"
 
@@ -10,7 +10,7 @@
 /* Numbers of vertices that agree */
 
 typedef struct corner_table {
-    obj_corner *keys;     /* [count] in the order in which they came */
+    obj_corner *keys; /* [count] in the order in which they came */
     uint32_t *slots;  /* [capacity] numbers of keys, OBJ_NONE where free */
     size_t count, key_capacity, capacity;
 } corner_table;
@@ -172,7 +172,8 @@ static ag_status fill_vertices(const obj *o, const corner_table *table, mesh *m)
         if (c.uv != OBJ_NONE)
             m->uvs[k] = o->uvs[c.uv];
         if (c.normal != OBJ_NONE)
-            m->normals[k] = c.normal >= OBJ_FIRST_SMOOTH ? o->smooth[c.normal - OBJ_FIRST_SMOOTH] : o->normals[c.normal];
+            m->normals[k] =
+                c.normal >= OBJ_FIRST_SMOOTH ? o->smooth[c.normal - OBJ_FIRST_SMOOTH] : o->normals[c.normal];
     }
     return AG_OK;
 }
@@ -186,7 +187,8 @@ static ag_status add_material(obj *o, const obj_material *u, import_surface *out
     char key[IMPORT_NAME_SIZE + 16];
     snprintf(key, sizeof key, "material:%s", u->name);
     if (u->name[0])
-        log_at_once(o->to.log, AG_LOG_WARNING, o->to.where, key, "material \"%s\" is not defined: grey stands in", u->name);
+        log_at_once(o->to.log, AG_LOG_WARNING, o->to.where, key, "material \"%s\" is not defined: grey stands in",
+                    u->name);
     return importer_add_material(&o->to, &plain, out_surface);
 }
 

@@ -11,9 +11,9 @@
 /* Twice the area, along the normal around which the corners run counter-clockwise (Newell's). */
 void polygon_area_vector(const vec3 *corners, size_t count, double out_vector[3]);
 
-/* Cuts count >= 3 corners into count - 2 triangles: 3 * (count - 2) numbers of corners. A convex polygon is cut into the
- * fan around its first corner; so is one that no ear can be cut off, or of more than 4096 corners. scratch has room for
- * count numbers. */
+/* Cuts count >= 3 corners into count - 2 triangles: 3 * (count - 2) numbers of corners. A convex polygon is cut into
+ * the fan around its first corner; so is one that no ear can be cut off, or of more than 4096 corners. scratch has room
+ * for count numbers. */
 void polygon_triangulate(const vec3 *corners, size_t count, uint32_t *scratch, uint32_t *out_corners);
 
 #endif

@@ -53,7 +53,7 @@ static const struct {
     const char *ending;
     load_function *load;
 } READERS[] = {
-    {".pbrt", pbrt_parse_file}, {".pbrt.gz", pbrt_parse_file}, {".obj", obj_load_file}, {".obj.gz", obj_load_file},
+    {".pbrt", pbrt_parse_file}, {".pbrt.gz", pbrt_parse_file}, {".obj", obj_load_file},   {".obj.gz", obj_load_file},
     {".ply", load_ply},         {".ply.gz", load_ply},         {".gltf", gltf_load_file}, {".glb", gltf_load_file},
 };
 

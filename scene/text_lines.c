@@ -107,7 +107,8 @@ bool text_word_is(const text_word *word, const char *text)
 
 bool text_word_number(const text_word *word, double *out_value)
 {
-    return decimal_parse(word->text, out_value) == word->text + word->length && word->length > 0 && isfinite(*out_value);
+    return decimal_parse(word->text, out_value) == word->text + word->length && word->length > 0 &&
+           isfinite(*out_value);
 }
 
 ag_status text_lines_number(text_lines *lines, const char *what, double *out_value)

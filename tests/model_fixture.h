@@ -1,5 +1,5 @@
-/* model_fixture.h: models in other formats than pbrt's, written by the tests and read by scene_file_load, with all that was
- * said meanwhile. Threads: one at a time. */
+/* model_fixture.h: models in other formats than pbrt's, written by the tests and read by scene_file_load, with all that
+ * was said meanwhile. Threads: one at a time. */
 #ifndef AFTERGLOW_TESTS_MODEL_FIXTURE_H
 #define AFTERGLOW_TESTS_MODEL_FIXTURE_H
 
@@ -39,10 +39,7 @@ static inline reading model_read(const char *path)
 }
 
 /* A file of that name with that text. */
-static inline reading model_of(const char *name, const char *text)
-{
-    return model_read(model_write_text(name, text));
-}
+static inline reading model_of(const char *name, const char *text) { return model_read(model_write_text(name, text)); }
 
 /* The same, which is right and says nothing louder than info. */
 static inline reading model_quietly(const char *name, const char *text)

@@ -1,5 +1,5 @@
-/* test_import_defaults.c: the camera that is made for files without one shows all there is, from the right side and with
- * up upwards, in pictures of any proportions; the light that is made shines on what it sees. */
+/* test_import_defaults.c: the camera that is made for files without one shows all there is, from the right side and
+ * with up upwards, in pictures of any proportions; the light that is made shines on what it sees. */
 #include "import_defaults.h"
 
 #include "pbrt_fixture.h"
@@ -56,8 +56,8 @@ static void all_is_in_the_picture(void **state)
         assert_true(i.r.scene->has_camera);
         float largest = 0.0f;
         for (int corner = 0; corner < 8; corner++) {
-            vec3 p = on_screen(c, vec3_make(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
-                                            corner & 4 ? high.z : low.z));
+            vec3 p = on_screen(
+                c, vec3_make(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z));
             assert_true(p.z > 0.0f);
             largest = fmaxf(largest, fmaxf(fabsf(p.x), fabsf(p.y)));
         }
@@ -75,13 +75,14 @@ static void front_is_in_front_and_nothing_is_mirrored(void **state)
     importing_init(&i, "Shape \"sphere\"");
     import_add_default_camera(i.r.scene, i.log);
     const camera *c = &i.r.scene->camera;
-    vec3 x = on_screen(c, vec3_make(1, 0, 0)), y = on_screen(c, vec3_make(0, 1, 0)), z = on_screen(c, vec3_make(0, 0, 1));
+    vec3 x = on_screen(c, vec3_make(1, 0, 0)), y = on_screen(c, vec3_make(0, 1, 0)),
+         z = on_screen(c, vec3_make(0, 0, 1));
     vec3 center = on_screen(c, vec3_make(0, 0, 0));
     assert_near(center.x, 0, 1e-6);
     assert_near(center.y, 0, 1e-6);
-    assert_true(x.x > 0.1f);                                   /* x goes to the right */
-    assert_true(y.y > 0.1f && fabsf(y.x) < 1e-6f);             /* y straight up */
-    assert_true(z.z < center.z && z.z < x.z && z.y < 0.0f);    /* z comes towards the eye, seen from above */
+    assert_true(x.x > 0.1f);                                /* x goes to the right */
+    assert_true(y.y > 0.1f && fabsf(y.x) < 1e-6f);          /* y straight up */
+    assert_true(z.z < center.z && z.z < x.z && z.y < 0.0f); /* z comes towards the eye, seen from above */
     importing_reset(&i);
 }
 

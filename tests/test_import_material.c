@@ -1,4 +1,5 @@
-/* test_import_material.c: what becomes of the words of an MTL file: each line of the table in scene/import_material.c. */
+/* test_import_material.c: what becomes of the words of an MTL file: each line of the table in scene/import_material.c.
+ */
 #define _POSIX_C_SOURCE 200809L
 #include "model_fixture.h"
 
@@ -10,7 +11,8 @@ static reading material_of(const char *words)
     char text[1024];
     snprintf(text, sizeof text, "newmtl m\n%s\n", words);
     model_write_text("m.mtl", text);
-    return model_of("a.obj", "mtllib m.mtl\nv 0 0 0\nv 3 0 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n");
+    return model_of("a.obj",
+                    "mtllib m.mtl\nv 0 0 0\nv 3 0 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n");
 }
 
 static reading quiet_material_of(const char *words)
@@ -150,7 +152,8 @@ static void opacity(void **state)
         reading_destroy(&r);
     }
     reading r = material_of("d 0");
-    model_said(&r, AG_LOG_WARNING, "a.obj", ": warning: material \"m\" has the opacity 0: what is made of it is not seen\n");
+    model_said(&r, AG_LOG_WARNING, "a.obj",
+               ": warning: material \"m\" has the opacity 0: what is made of it is not seen\n");
     reading_destroy(&r);
 }
 
@@ -202,7 +205,8 @@ static void pictures(void **state)
     assert_rgb(m->reflectance, .5, .25, .5, 0);
     assert_int_equal(texture_of(&r, m->reflectance_texture)->wraps.s, TEXTURE_WRAP_REPEAT);
     reading_destroy(&r);
-    static const char *const WHITE[] = {"map_Kd C:\\once\\upon\\p.exr", "Kd 0 0 0\nmap_Kd p.exr", "map_Kd /nowhere/p.exr"};
+    static const char *const WHITE[] = {"map_Kd C:\\once\\upon\\p.exr", "Kd 0 0 0\nmap_Kd p.exr",
+                                        "map_Kd /nowhere/p.exr"};
     write_picture("p.exr", 3);
     for (int k = 0; k < 3; k++) {
         r = quiet_material_of(WHITE[k]);
@@ -267,13 +271,17 @@ static void pictures_that_are_not_there_are_warnings(void **state)
 static void words_that_are_not_supported_are_named(void **state)
 {
     (void)state;
-    reading r = material_of("aniso .5\nanisor 0\nmap_Ks a.png\nmap_Ks b.png\nmap_Kd -mm 0 1 -t 1 none.png\nKs spectral a.rfl");
+    reading r =
+        material_of("aniso .5\nanisor 0\nmap_Ks a.png\nmap_Ks b.png\nmap_Kd -mm 0 1 -t 1 none.png\nKs spectral a.rfl");
     assert_int_equal(r.status, AG_OK);
-    model_said(&r, AG_LOG_WARNING, "m.mtl", ":2:1: warning: \"aniso\" is not known, or not supported, and is ignored\n");
-    model_said(&r, AG_LOG_WARNING, "m.mtl", ":4:1: warning: \"map_Ks\" is not known, or not supported, and is ignored\n");
+    model_said(&r, AG_LOG_WARNING, "m.mtl",
+               ":2:1: warning: \"aniso\" is not known, or not supported, and is ignored\n");
+    model_said(&r, AG_LOG_WARNING, "m.mtl",
+               ":4:1: warning: \"map_Ks\" is not known, or not supported, and is ignored\n");
     model_said(&r, AG_LOG_WARNING, "m.mtl",
                ":6:8: warning: the option \"-mm\" is not supported and is ignored, as are any others\n");
-    model_said(&r, AG_LOG_WARNING, "m.mtl", ":7:4: warning: \"Ks spectral\" is not supported and is ignored, as are any others\n");
+    model_said(&r, AG_LOG_WARNING, "m.mtl",
+               ":7:4: warning: \"Ks spectral\" is not supported and is ignored, as are any others\n");
     assert_int_equal(r.count[AG_LOG_WARNING], 6);
     reading_destroy(&r);
     static const struct {

@@ -30,7 +30,8 @@ static void answers_come_back_whole(void **state)
     (void)state;
     import_answer answer;
     int number = 3;
-    assert_int_equal(import_process_run(NULL, answer_much, &number, MEMORY_BYTES, &answer, message, sizeof message), AG_OK);
+    assert_int_equal(import_process_run(NULL, answer_much, &number, MEMORY_BYTES, &answer, message, sizeof message),
+                     AG_OK);
     assert_int_equal(answer.size, ANSWER_BYTES);
     for (int k = 0; k < ANSWER_BYTES; k++)
         assert_true(answer.bytes[k] == ((k * 7 + 3) & 0xff));
@@ -116,7 +117,8 @@ static void memory_is_limited(void **state)
 {
     (void)state;
     import_answer answer;
-    assert_int_equal(import_process_run(NULL, take_memory, NULL, MEMORY_BYTES, &answer, message, sizeof message), AG_OK);
+    assert_int_equal(import_process_run(NULL, take_memory, NULL, MEMORY_BYTES, &answer, message, sizeof message),
+                     AG_OK);
     assert_int_equal(answer.size, strlen("half no more"));
     assert_memory_equal(answer.bytes, "half no more", answer.size);
     import_answer_reset(&answer);
@@ -145,7 +147,8 @@ static void cancelling_ends_it(void **state)
     pthread_t thread;
     run_context_init(&run, NULL, NULL, NULL, NULL);
     assert_int_equal(pthread_create(&thread, NULL, cancel, &run), 0);
-    assert_int_equal(import_process_run(&run, never_end, NULL, MEMORY_BYTES, &answer, message, sizeof message), AG_CANCELLED);
+    assert_int_equal(import_process_run(&run, never_end, NULL, MEMORY_BYTES, &answer, message, sizeof message),
+                     AG_CANCELLED);
     pthread_join(thread, NULL);
     run_context_reset(&run);
 }

@@ -1,4 +1,5 @@
-/* test_import_scene.c: records become a scene; records that do not hold together, cut or damaged anywhere, are errors. */
+/* test_import_scene.c: records become a scene; records that do not hold together, cut or damaged anywhere, are errors.
+ */
 #define _POSIX_C_SOURCE 200809L
 #include "import_scene.h"
 
@@ -104,8 +105,9 @@ static void records_become_a_scene(void **state)
     put_all(&b);
     reading r = fill(b.bytes, b.size);
     assert_int_equal(r.status, AG_OK);
-    assert_string_equal(r.said[AG_LOG_WARNING], "file: warning: mind this\nfile: warning: 2 points and lines are left out\n"
-                                                "file: warning: 2 normals or texture coordinates are not finite, and are not used\n");
+    assert_string_equal(r.said[AG_LOG_WARNING],
+                        "file: warning: mind this\nfile: warning: 2 points and lines are left out\n"
+                        "file: warning: 2 normals or texture coordinates are not finite, and are not used\n");
     const mesh *m = model_mesh(&r, 0);
     assert_vec3(m->positions[1], 2, 0, 5, 0);
     assert_vec3(m->normals[0], 0, 0, 1, 0);
@@ -134,7 +136,8 @@ static void orthographic_cameras_are_as_wide_as_the_file_says(void **state)
     (void)state;
     triangle t = plain_triangle();
     import_instance i = plain_instance();
-    import_camera c = {.position = {0, 0, 9}, .forward = {0, 0, -1}, .up = {0, 1, 0}, .aspect = 2, .orthographic_half_width = 3};
+    import_camera c = {
+        .position = {0, 0, 9}, .forward = {0, 0, -1}, .up = {0, 1, 0}, .aspect = 2, .orthographic_half_width = 3};
     b.size = 0;
     put(&b, IMPORT_RECORD_MESH, &t, sizeof t);
     put(&b, IMPORT_RECORD_INSTANCE, &i, sizeof i);
@@ -153,10 +156,10 @@ static void pictures_within_the_file(void **state)
 {
     (void)state;
     static const unsigned char PNG[] = {
-        0x89, 'P',  'N',  'G',  '\r', '\n', 0x1a, '\n', 0,    0,    0,    13,   'I',  'H',  'D',  'R',  0,    0,
-        0,    1,    0,    0,    0,    1,    8,    2,    0,    0,    0,    0x90, 0x77, 0x53, 0xde, 0,    0,    0,
-        12,   'I',  'D',  'A',  'T',  0x08, 0xd7, 0x63, 0xf8, 0xcf, 0xc0, 0,    0,    3,    1,    1,    0,    0x18,
-        0xdd, 0x8d, 0xb0, 0,    0,    0,    0,    'I',  'E',  'N',  'D',  0xae, 0x42, 0x60, 0x82};
+        0x89, 'P',  'N',  'G', '\r', '\n', 0x1a, '\n', 0,    0,    0,    13,   'I',  'H',  'D',  'R', 0, 0,
+        0,    1,    0,    0,   0,    1,    8,    2,    0,    0,    0,    0x90, 0x77, 0x53, 0xde, 0,   0, 0,
+        12,   'I',  'D',  'A', 'T',  0x08, 0xd7, 0x63, 0xf8, 0xcf, 0xc0, 0,    0,    3,    1,    1,   0, 0x18,
+        0xdd, 0x8d, 0xb0, 0,   0,    0,    0,    'I',  'E',  'N',  'D',  0xae, 0x42, 0x60, 0x82};
     triangle t = plain_triangle();
     import_instance i = plain_instance();
     import_material m = plain_material();
@@ -220,9 +223,17 @@ static void what_does_not_hold_together_is_refused(void **state)
         import_instance other = i;
         const char *expected = BROKEN;
         switch (k) {
-        case 0: wrong.indices[2] = 3, expected = "file: error: mesh \"tri\": triangle 0 refers to vertex 3, but there are 3\n"; break;
-        case 1: wrong.positions[1].y = INFINITY, expected = "file: error: mesh \"tri\": vertex 1 is not a finite number\n"; break;
-        case 2: other.world_from_mesh[0][0] = 1e20, expected = "file: error: mesh \"tri\": vertex 1 lies beyond 1e18 units\n"; break;
+        case 0:
+            wrong.indices[2] = 3,
+            expected = "file: error: mesh \"tri\": triangle 0 refers to vertex 3, but there are 3\n";
+            break;
+        case 1:
+            wrong.positions[1].y = INFINITY, expected = "file: error: mesh \"tri\": vertex 1 is not a finite number\n";
+            break;
+        case 2:
+            other.world_from_mesh[0][0] = 1e20,
+            expected = "file: error: mesh \"tri\": vertex 1 lies beyond 1e18 units\n";
+            break;
         case 3: wrong.head.vertex_count = 4; break;
         case 4: wrong.head.triangle_count = UINT32_MAX, expected = "file: error: a mesh is too large\n"; break;
         default: other.mesh_index = 1; break;
@@ -309,8 +320,9 @@ static void cameras_and_lights_that_make_no_sense_are_left_out(void **state)
         put(&b, IMPORT_RECORD_END, NULL, 0);
         reading r = fill(b.bytes, b.size);
         assert_int_equal(r.status, AG_OK);
-        assert_non_null(strstr(r.said[AG_LOG_WARNING], k < 4 ? "file: warning: camera \"c\" makes no sense and is left out\n"
-                                                             : "file: warning: light \"l\" is dark or makes no sense, and is left out\n"));
+        assert_non_null(strstr(r.said[AG_LOG_WARNING],
+                               k < 4 ? "file: warning: camera \"c\" makes no sense and is left out\n"
+                                     : "file: warning: light \"l\" is dark or makes no sense, and is left out\n"));
         assert_int_equal(r.scene->light_count, 2); /* those by default */
         reading_destroy(&r);
     }

@@ -1,5 +1,5 @@
-/* test_mesh_import_assimp.c: what assimp reads arrives: meshes at their places, materials, cameras, lights, up axes; files
- * that assimp refuses, or that it dies of, are errors. */
+/* test_mesh_import_assimp.c: what assimp reads arrives: meshes at their places, materials, cameras, lights, up axes;
+ * files that assimp refuses, or that it dies of, are errors. */
 #define _POSIX_C_SOURCE 200809L
 #include "collada_fixture.h"
 #include "mesh_import_assimp.h"
@@ -12,7 +12,8 @@ static const double PI_D = 3.14159265358979323846;
 static void extensions(void **state)
 {
     (void)state;
-    static const char *const READS[] = {".stl", ".dae", ".fbx", ".3ds", ".OFF", ".x"}, *const NOT[] = {".pbrt", ".txt", ".exr", "."};
+    static const char *const READS[] = {".stl", ".dae", ".fbx", ".3ds", ".OFF", ".x"}, *const NOT[] = {".pbrt", ".txt",
+                                                                                                       ".exr", "."};
     for (int k = 0; k < 6; k++)
         assert_true(assimp_reads_extension(READS[k]));
     for (int k = 0; k < 4; k++)
@@ -23,7 +24,8 @@ static void extensions(void **state)
 static void stl_in_both_forms(void **state)
 {
     (void)state;
-    reading r = model_quietly("a.stl", "solid a\n" FACET("0 0 0", "1 0 0", "0 1 0") FACET("0 0 0", "0 1 0", "0 0 1") "endsolid a\n");
+    reading r = model_quietly("a.stl", "solid a\n" FACET("0 0 0", "1 0 0", "0 1 0")
+                                           FACET("0 0 0", "0 1 0", "0 0 1") "endsolid a\n");
     assert_int_equal(r.scene->shape_count, 1);
     const mesh *m = model_mesh(&r, 0);
     assert_int_equal(m->triangle_count, 2);
@@ -56,7 +58,8 @@ static void nodes_place_meshes(void **state)
     assert_int_equal(r.scene->shape_count, 2);
     assert_int_equal(model_mesh(&r, 0)->triangle_count, 2);
     bool is_mirrored_first = r.scene->shapes[0].flip_normal;
-    const mesh *mirrored = model_mesh(&r, is_mirrored_first ? 0 : 1), *floor = model_mesh(&r, is_mirrored_first ? 1 : 0);
+    const mesh *mirrored = model_mesh(&r, is_mirrored_first ? 0 : 1),
+               *floor = model_mesh(&r, is_mirrored_first ? 1 : 0);
     assert_true(r.scene->shapes[0].flip_normal != r.scene->shapes[1].flip_normal);
     assert_vec3(floor->positions[floor->indices[0]], -9, 0, 9, 0);
     assert_vec3(mirrored->positions[mirrored->indices[0]], 1 - 18, 2, 3 - 18, 1e-5);
@@ -64,8 +67,9 @@ static void nodes_place_meshes(void **state)
     assert_rgb(model_material(&r, 0)->reflectance, .5, .25, .75, 1e-6);
     assert_int_equal(r.scene->shapes[0].material_index, r.scene->shapes[1].material_index);
     reading_destroy(&r);
-    r = model_of("a.dae", COLLADA("<up_axis>Y_UP</up_axis>", "",
-                                  "<node id=\"b\" name=\"b\"><scale>1 0 1</scale>" COLLADA_MESH "</node>" COLLADA_FLOOR));
+    r = model_of("a.dae",
+                 COLLADA("<up_axis>Y_UP</up_axis>", "",
+                         "<node id=\"b\" name=\"b\"><scale>1 0 1</scale>" COLLADA_MESH "</node>" COLLADA_FLOOR));
     if (r.status)
         fail_msg("%s", r.said[AG_LOG_ERROR]);
     assert_int_equal(r.scene->shape_count, 1);
@@ -88,8 +92,9 @@ static void the_up_axis_is_turned(void **state)
 static void cameras_look_where_the_file_says(void **state)
 {
     (void)state;
-    reading r = model_quietly("a.dae", COLLADA("<up_axis>Y_UP</up_axis>", "",
-                                               COLLADA_FLOOR CAMERA("<translate>0 5 1</translate><rotate>1 0 0 -90</rotate>")));
+    reading r =
+        model_quietly("a.dae", COLLADA("<up_axis>Y_UP</up_axis>", "",
+                                       COLLADA_FLOOR CAMERA("<translate>0 5 1</translate><rotate>1 0 0 -90</rotate>")));
     const camera *c = &r.scene->camera;
     assert_vec3(transform_point(&c->world_from_camera, vec3_make(0, 0, 0)), 0, 5, 1, 1e-5);
     assert_vec3(transform_vector(&c->world_from_camera, vec3_make(0, 0, 1)), 0, -1, 0, 1e-6); /* forward is down */
@@ -100,9 +105,10 @@ static void cameras_look_where_the_file_says(void **state)
     reading_destroy(&r);
 }
 
-#define LIGHT(kind, words) "<light id=\"lam\" name=\"lam\"><technique_common><" kind "><color>1 0.5 0.25</color>" words \
-    "</" kind "></technique_common></light>"
-#define LAMP(place)        "<node id=\"lamn\" name=\"lamn\">" place "<instance_light url=\"#lam\"/></node>"
+#define LIGHT(kind, words)                                                                                             \
+    "<light id=\"lam\" name=\"lam\"><technique_common><" kind "><color>1 0.5 0.25</color>" words "</" kind             \
+    "></technique_common></light>"
+#define LAMP(place) "<node id=\"lamn\" name=\"lamn\">" place "<instance_light url=\"#lam\"/></node>"
 
 static reading lit(const char *lights, const char *place)
 {
@@ -114,9 +120,10 @@ static reading lit(const char *lights, const char *place)
 static void lights_are_as_bright_as_the_file_says(void **state)
 {
     (void)state;
-    reading r = lit(LIGHT("point", "<constant_attenuation>0</constant_attenuation><linear_attenuation>0</linear_attenuation>"
-                                   "<quadratic_attenuation>0.25</quadratic_attenuation>"),
-                    COLLADA_FLOOR LAMP("<translate>1 2 3</translate>"));
+    reading r =
+        lit(LIGHT("point", "<constant_attenuation>0</constant_attenuation><linear_attenuation>0</linear_attenuation>"
+                           "<quadratic_attenuation>0.25</quadratic_attenuation>"),
+            COLLADA_FLOOR LAMP("<translate>1 2 3</translate>"));
     assert_int_equal(r.scene->light_count, 1);
     const light *l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_POINT);
@@ -125,7 +132,8 @@ static void lights_are_as_bright_as_the_file_says(void **state)
     reading_destroy(&r);
 
     /* without falloff: as at the distance of the scene's centre, 4 */
-    r = lit(LIGHT("point", "<constant_attenuation>1</constant_attenuation>"), COLLADA_FLOOR LAMP("<translate>0 4 0</translate>"));
+    r = lit(LIGHT("point", "<constant_attenuation>1</constant_attenuation>"),
+            COLLADA_FLOOR LAMP("<translate>0 4 0</translate>"));
     assert_near(r.scene->lights[0].intensity.r, 16 * PI_D, 1e-4);
     reading_destroy(&r);
 
@@ -184,7 +192,8 @@ static void vertices_are_checked_here(void **state)
 static void damaged_files_do_no_harm(void **state)
 {
     (void)state;
-    static const char WHOLE[] = COLLADA("<up_axis>Y_UP</up_axis>", LIGHT("point", ""), COLLADA_FLOOR CAMERA("") LAMP(""));
+    static const char WHOLE[] =
+        COLLADA("<up_axis>Y_UP</up_axis>", LIGHT("point", ""), COLLADA_FLOOR CAMERA("") LAMP(""));
     static const char ASE[] = "*3DSMAX_ASCIIEXPORT 200\n*GEOMOBJECT {\n*MESH {\n*MESH_NUMVERTEX 3\n*MESH_NUMFACES 1\n"
                               "*MESH_FACE_LIST {\n*MESH_FACE 0: A: 0 B: 1 C: 99999999\n}\n}\n}\n";
     char bytes[sizeof WHOLE];
@@ -210,8 +219,10 @@ static void a_cancelled_run_stops(void **state)
     scene *s = scene_create();
     run_context_init(&run, NULL, NULL, NULL, NULL);
     run_cancel(&run);
-    assert_int_equal(scene_file_load(&run, model_write_text("a.stl", "solid a\n" FACET("0 0 0", "1 0 0", "0 1 0") "endsolid a\n"), s),
-                     AG_CANCELLED);
+    assert_int_equal(
+        scene_file_load(&run, model_write_text("a.stl", "solid a\n" FACET("0 0 0", "1 0 0", "0 1 0") "endsolid a\n"),
+                        s),
+        AG_CANCELLED);
     run_context_reset(&run);
     scene_destroy(s);
 }

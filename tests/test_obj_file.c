@@ -1,5 +1,5 @@
-/* test_obj_file.c: OBJ files: vertices, references of all forms, polygons, smoothing groups, materials; every error by its
- * message and place; files cut short or damaged anywhere. */
+/* test_obj_file.c: OBJ files: vertices, references of all forms, polygons, smoothing groups, materials; every error by
+ * its message and place; files cut short or damaged anywhere. */
 #define _POSIX_C_SOURCE 200809L
 #include "model_fixture.h"
 
@@ -73,11 +73,11 @@ static void concave_polygons_are_cut_inside(void **state)
         int corners;
         double area;
     } SHAPES[] = {
-        {"v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\n", 5, 16.0 - 6.0},                      /* a notch */
-        {"v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\n", 6, 5.0},                    /* an L */
-        {"v 2 1 0\nv 0 4 0\nv 0 0 0\nv 4 0 0\nv 4 4 0\n", 5, 10.0},                            /* the notch first */
+        {"v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\n", 5, 16.0 - 6.0},                     /* a notch */
+        {"v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\n", 6, 5.0},                   /* an L */
+        {"v 2 1 0\nv 0 4 0\nv 0 0 0\nv 4 0 0\nv 4 4 0\n", 5, 10.0},                           /* the notch first */
         {"v 0 0 0\nv 1 0 0\nv 1 2 0\nv 2 2 0\nv 2 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\n", 8, 7.0}, /* a U */
-        {"v 0 0 0\nv 1 .25 0\nv 2 0 0\nv 1 2 0\n", 4, 1.75},                                   /* an arrow */
+        {"v 0 0 0\nv 1 .25 0\nv 2 0 0\nv 1 2 0\n", 4, 1.75},                                  /* an arrow */
     };
     for (size_t k = 0; k < sizeof SHAPES / sizeof *SHAPES; k++) {
         char text[512], faces[64] = "f";
@@ -149,7 +149,8 @@ static void libraries_have_blanks_or_are_several(void **state)
     (void)state;
     model_write_text("a b.mtl", "newmtl x\nKd 1 0 0\n");
     model_write_text("c.mtl", "newmtl y\nKd 0 1 0\n");
-    reading r = model_quietly("a.obj", "mtllib a b.mtl\nmtllib c.mtl c.mtl\n" SQUARE "usemtl x\nf 1 2 3\nusemtl y\nf 1 2 4\n");
+    reading r =
+        model_quietly("a.obj", "mtllib a b.mtl\nmtllib c.mtl c.mtl\n" SQUARE "usemtl x\nf 1 2 3\nusemtl y\nf 1 2 4\n");
     assert_rgb(model_material(&r, 0)->reflectance, 1, 0, 0, 0);
     assert_rgb(model_material(&r, 1)->reflectance, 0, 1, 0, 0);
     reading_destroy(&r);
@@ -161,7 +162,8 @@ static void libraries_have_blanks_or_are_several(void **state)
     model_write_text("bad.mtl", "newmtl x\n  Kd 1 0 green\n");
     r = model_of("a.obj", "mtllib bad.mtl\n" SQUARE "f 1 2 3\n");
     assert_int_equal(r.status, AG_ERROR_SCENE);
-    model_said(&r, AG_LOG_ERROR, "bad.mtl", ":2:10: error: Kd should be a finite number\n      Kd 1 0 green\n             ^~~~~\n");
+    model_said(&r, AG_LOG_ERROR, "bad.mtl",
+               ":2:10: error: Kd should be a finite number\n      Kd 1 0 green\n             ^~~~~\n");
     reading_destroy(&r);
 }
 
@@ -187,18 +189,22 @@ static void errors_name_their_place(void **state)
     (void)state;
     model_refused("a.obj", SQUARE "f 1 2 9\n", AG_ERROR_SCENE,
                   ":5:7: error: the corner refers to vertex 9, but there are 4\n    f 1 2 9\n          ^\n");
-    model_refused("a.obj", SQUARE "f 1 2 0\n", AG_ERROR_SCENE, ":5:7: error: the corner refers to vertex 0, but there are 4");
+    model_refused("a.obj", SQUARE "f 1 2 0\n", AG_ERROR_SCENE,
+                  ":5:7: error: the corner refers to vertex 0, but there are 4");
     model_refused("a.obj", SQUARE "f 1 2 -5\n", AG_ERROR_SCENE,
                   ":5:7: error: the corner refers to vertex -5, but there are 4");
     model_refused("a.obj", SQUARE "f 1/1 2 3\n", AG_ERROR_SCENE,
                   ":5:3: error: the corner refers to texture vertex 1, but there are 0");
     model_refused("a.obj", SQUARE "f 1//1 2 3\n", AG_ERROR_SCENE,
                   ":5:3: error: the corner refers to normal 1, but there are 0");
-    model_refused("a.obj", SQUARE "f 1 2 99999999999999999999\n", AG_ERROR_SCENE, ":5:7: error: the corner refers to vertex");
+    model_refused("a.obj", SQUARE "f 1 2 99999999999999999999\n", AG_ERROR_SCENE,
+                  ":5:7: error: the corner refers to vertex");
     model_refused("a.obj", SQUARE "f 1 2 x\n", AG_ERROR_SCENE, ":5:7: error: a corner should be V, V/T, V//N or V/T/N");
-    model_refused("a.obj", SQUARE "f 1 2 3/-\n", AG_ERROR_SCENE, ":5:7: error: a corner should be V, V/T, V//N or V/T/N");
+    model_refused("a.obj", SQUARE "f 1 2 3/-\n", AG_ERROR_SCENE,
+                  ":5:7: error: a corner should be V, V/T, V//N or V/T/N");
     model_refused("a.obj", "v 0 0\n", AG_ERROR_SCENE, ":1:6: error: z is missing");
-    model_refused("a.obj", "v 0 nan 0\n", AG_ERROR_SCENE, ":1:5: error: y should be a finite number\n    v 0 nan 0\n        ^~~\n");
+    model_refused("a.obj", "v 0 nan 0\n", AG_ERROR_SCENE,
+                  ":1:5: error: y should be a finite number\n    v 0 nan 0\n        ^~~\n");
     model_refused("a.obj", "v 0 0 1e999\n", AG_ERROR_SCENE, ":1:7: error: z should be a finite number");
     model_refused("a.obj", "v 0 \\\n 0 zero\n", AG_ERROR_SCENE, ":2:4: error: z should be a finite number");
     model_refused("a.obj", "s smooth\n", AG_ERROR_SCENE, ":1:3: error: a smoothing group should be a number or off");
@@ -207,7 +213,8 @@ static void errors_name_their_place(void **state)
     model_refused("a.obj", "v 0 0 0\nv 1e300 0 0\nv 0 1 0\nf 1 2 3\n", AG_ERROR_INPUT,
                   ": error: mesh \"\": vertex 1 is not a finite number");
     model_refused("a.obj", "", AG_ERROR_INPUT, ": error: there is no triangle in the file: nothing to see\n");
-    model_refused("a.obj", SQUARE "f 1 1 2\n", AG_ERROR_INPUT, ": error: there is no triangle in the file: nothing to see\n");
+    model_refused("a.obj", SQUARE "f 1 1 2\n", AG_ERROR_INPUT,
+                  ": error: there is no triangle in the file: nothing to see\n");
     reading r = model_read(in_folder("none.obj"));
     assert_int_equal(r.status, AG_ERROR_INPUT);
     model_said(&r, AG_LOG_ERROR, "none.obj", ": error: cannot read the file: No such file or directory\n");
@@ -216,7 +223,8 @@ static void errors_name_their_place(void **state)
 
 static const char WHOLE[] = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n"
                             "usemtl a\ns 1\nf 1/1/1 2/2/1 3/3/1 4/1/1\nf 1 2 -1\nusemtl b\nf 1 \\\n 3 4\nl 1 2\n";
-static const char LIBRARY[] = "newmtl a\nKd .5 .5 .5\nKs 1 1 1\nNs 10\nillum 2\nd .5\nmap_Kd -s 2 2 x.png\nnewmtl b\nKe 1 1 1\n";
+static const char LIBRARY[] =
+    "newmtl a\nKd .5 .5 .5\nKs 1 1 1\nNs 10\nillum 2\nd .5\nmap_Kd -s 2 2 x.png\nnewmtl b\nKe 1 1 1\n";
 
 static void files_cut_anywhere_do_no_harm(void **state)
 {

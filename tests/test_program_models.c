@@ -1,5 +1,5 @@
-/* test_program_models.c: models of other formats through the whole program: they are seen and lit, as bright as their files
- * say; what was made up is said; errors end with 1.
+/* test_program_models.c: models of other formats through the whole program: they are seen and lit, as bright as their
+ * files say; what was made up is said; errors end with 1.
  *
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
@@ -11,8 +11,8 @@
 
 static const double PI_D = 3.14159265358979323846;
 
-#define BOX                                                                                                             \
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"                                          \
+#define BOX                                                                                                            \
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"                                         \
     "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
 
 /* Seen, not black, in its colour; what was made up and what is missing is said. */
@@ -26,7 +26,8 @@ static void a_box_is_seen(void **state)
     expect_said(&run, "the file has no camera: one is set at (");
     expect_said(&run, "the file has no light: an even sky and a sun light it");
     expect_said(&run, "box.obj: warning: the picture \"none.png\" is not used: there is no such file");
-    expect_said(&run, "box.obj:2:8: warning: the material library \"none.mtl\" cannot be read: No such file or directory");
+    expect_said(&run,
+                "box.obj:2:8: warning: the material library \"none.mtl\" cannot be read: No such file or directory");
     program_run_reset(&run);
     picture p = picture_read(in_folder("x.exr"));
     assert_int_equal(p.width, 32);
@@ -40,20 +41,23 @@ static void a_box_is_seen(void **state)
 static void the_light_that_is_made_is_as_bright_as_it_says(void **state)
 {
     (void)state;
-    const char *path = write_text("floor.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
-                                               "property float z\nelement face 1\nproperty list uchar int vertex_index\n"
-                                               "end_header\n-1 0 1\n1 0 1\n1 0 -1\n-1 0 -1\n4 0 1 2 3\n");
+    const char *path =
+        write_text("floor.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                                "property float z\nelement face 1\nproperty list uchar int vertex_index\n"
+                                "end_header\n-1 0 1\n1 0 1\n1 0 -1\n-1 0 -1\n4 0 1 2 3\n");
     run_context run;
     scene *s = scene_create();
     run_context_init(&run, NULL, NULL, NULL, NULL);
     assert_int_equal(scene_file_load(&run, path, s), AG_OK);
-    double expected = 0.5 * ((double)s->lights[0].radiance.g - (double)s->lights[1].radiance.g * (double)s->lights[1].direction.y / PI_D);
+    double expected = 0.5 * ((double)s->lights[0].radiance.g -
+                             (double)s->lights[1].radiance.g * (double)s->lights[1].direction.y / PI_D);
     run_context_reset(&run);
     scene_destroy(s);
     picture p = RENDER("floor.ply", "--integrator=path", "--spp=1024", "--size=32x18");
     expect_near("floor", picture_block(&p, 15, 8, 2, 1), expected, 0.01);
     picture_reset(&p);
-    p = RENDER("floor.ply", "--photons=2000", "--caustic-photons=0", "--spp=1024", "--gather-samples=1", "--size=32x18");
+    p = RENDER("floor.ply", "--photons=2000", "--caustic-photons=0", "--spp=1024", "--gather-samples=1",
+               "--size=32x18");
     expect_near("floor by the photon map", picture_block(&p, 15, 8, 2, 1), expected, 0.01);
     picture_reset(&p);
 }
@@ -66,7 +70,8 @@ static void lamps_shine_as_ke_says(void **state)
     static const char *const FACES[] = {"f 1 2 3 4\n", "f 4 3 2 1\n"};
     for (int k = 0; k < 2; k++) {
         char text[256];
-        snprintf(text, sizeof text, "mtllib lamp.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl lamp\n%s", FACES[k]);
+        snprintf(text, sizeof text, "mtllib lamp.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl lamp\n%s",
+                 FACES[k]);
         write_text("lamp.obj", text);
         picture p = RENDER("lamp.obj", QUICK);
         for (int c = 0; c < 3; c++)
@@ -80,16 +85,19 @@ static void lamps_shine_as_ke_says(void **state)
 static void lights_of_a_model_are_as_bright_as_it_says(void **state)
 {
     (void)state;
-    write_text("lit.dae",
-               COLLADA("<up_axis>Y_UP</up_axis>",
-                       "<light id=\"lam\" name=\"lam\"><technique_common><point><color>1 0.5 0.25</color><constant_attenuation>0"
-                       "</constant_attenuation><quadratic_attenuation>0.125</quadratic_attenuation></point></technique_common>"
-                       "</light>",
-                       COLLADA_FLOOR "<node id=\"lamn\" name=\"lamn\"><translate>0 4 0</translate><instance_light url=\"#lam\"/>"
-                                     "</node><node id=\"camn\" name=\"camn\"><translate>0 5 0</translate>"
-                                     "<rotate>1 0 0 -90</rotate><instance_camera url=\"#cam\"/></node>"));
+    write_text(
+        "lit.dae",
+        COLLADA(
+            "<up_axis>Y_UP</up_axis>",
+            "<light id=\"lam\" name=\"lam\"><technique_common><point><color>1 0.5 0.25</color><constant_attenuation>0"
+            "</constant_attenuation><quadratic_attenuation>0.125</quadratic_attenuation></point></technique_common>"
+            "</light>",
+            COLLADA_FLOOR "<node id=\"lamn\" name=\"lamn\"><translate>0 4 0</translate><instance_light url=\"#lam\"/>"
+                          "</node><node id=\"camn\" name=\"camn\"><translate>0 5 0</translate>"
+                          "<rotate>1 0 0 -90</rotate><instance_camera url=\"#cam\"/></node>"));
     static const double KD[3] = {0.5, 0.25, 0.75};
-    picture p = RENDER("lit.dae", "--photons=2000", "--caustic-photons=0", "--spp=4", "--size=64x36", "--cropwindow=.48,.52,.46,.54");
+    picture p = RENDER("lit.dae", "--photons=2000", "--caustic-photons=0", "--spp=4", "--size=64x36",
+                       "--cropwindow=.48,.52,.46,.54");
     for (int c = 0; c < 3; c++)
         expect_near("floor", picture_mean(&p, c), KD[c] * (1.0 / (1 << c)) / (0.125 * 16.0), 0.01);
     picture_reset(&p);
@@ -101,7 +109,8 @@ static void errors_end_with_1(void **state)
     static const struct {
         const char *name, *text, *said;
     } FILES[] = {
-        {"bad.obj", "v 0 0 0\nf 1 2 3\n", "bad.obj:2:5: error: the corner refers to vertex 2, but there are 1\n    f 1 2 3\n        ^\n"},
+        {"bad.obj", "v 0 0 0\nf 1 2 3\n",
+         "bad.obj:2:5: error: the corner refers to vertex 2, but there are 1\n    f 1 2 3\n        ^\n"},
         {"bad.dae", "<COLLADA>", "bad.dae: error: "},
         {"bad.stl", "solid", "bad.stl: error: "},
         {"bad.ply", "ply\n", "bad.ply:"},
@@ -119,10 +128,8 @@ static void errors_end_with_1(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(a_box_is_seen),
-        TEST_IN_FOLDER(the_light_that_is_made_is_as_bright_as_it_says),
-        TEST_IN_FOLDER(lamps_shine_as_ke_says),
-        TEST_IN_FOLDER(lights_of_a_model_are_as_bright_as_it_says),
+        TEST_IN_FOLDER(a_box_is_seen),          TEST_IN_FOLDER(the_light_that_is_made_is_as_bright_as_it_says),
+        TEST_IN_FOLDER(lamps_shine_as_ke_says), TEST_IN_FOLDER(lights_of_a_model_are_as_bright_as_it_says),
         TEST_IN_FOLDER(errors_end_with_1),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,10 +4,11 @@
 
 #include <zlib.h>
 
-#define TRIANGLE "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" \
+#define TRIANGLE                                                                                                       \
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"                  \
     "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
-#define PBRT     "WorldBegin Shape \"sphere\"\n"
-#define OBJ      "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+#define PBRT "WorldBegin Shape \"sphere\"\n"
+#define OBJ  "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
 static void the_name_picks_the_reader(void **state)
 {
@@ -15,12 +16,20 @@ static void the_name_picks_the_reader(void **state)
     static const struct {
         const char *name, *text;
         shape_kind kind;
-    } FILES[] = {{"a.pbrt", PBRT, SHAPE_SPHERE}, {"a.PBRT", PBRT, SHAPE_SPHERE}, {"a", PBRT, SHAPE_SPHERE},
-                 {"a.txt", PBRT, SHAPE_SPHERE},  {"a.", PBRT, SHAPE_SPHERE},     {"obj", PBRT, SHAPE_SPHERE},
-                 {"a.obj", OBJ, SHAPE_MESH},     {"b.pbrt.OBJ", OBJ, SHAPE_MESH},
-                 {"a.ply", TRIANGLE, SHAPE_MESH}, {"A.PLY", TRIANGLE, SHAPE_MESH},
-                 {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
-                           "endfacet\nendsolid a\n", SHAPE_MESH}};
+    } FILES[] = {{"a.pbrt", PBRT, SHAPE_SPHERE},
+                 {"a.PBRT", PBRT, SHAPE_SPHERE},
+                 {"a", PBRT, SHAPE_SPHERE},
+                 {"a.txt", PBRT, SHAPE_SPHERE},
+                 {"a.", PBRT, SHAPE_SPHERE},
+                 {"obj", PBRT, SHAPE_SPHERE},
+                 {"a.obj", OBJ, SHAPE_MESH},
+                 {"b.pbrt.OBJ", OBJ, SHAPE_MESH},
+                 {"a.ply", TRIANGLE, SHAPE_MESH},
+                 {"A.PLY", TRIANGLE, SHAPE_MESH},
+                 {"a.stl",
+                  "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+                  "endfacet\nendsolid a\n",
+                  SHAPE_MESH}};
     for (size_t k = 0; k < sizeof FILES / sizeof *FILES; k++) {
         reading r = model_of(FILES[k].name, FILES[k].text);
         if (r.status != AG_OK)
@@ -35,7 +44,8 @@ static void the_name_picks_the_reader(void **state)
 static void gzip_is_read_where_the_reader_is_ours(void **state)
 {
     (void)state;
-    static const char *const FILES[][2] = {{"a.pbrt.gz", PBRT}, {"a.ply.gz", TRIANGLE}, {"a.obj.gz", OBJ}, {"a.gz", PBRT}};
+    static const char *const FILES[][2] = {
+        {"a.pbrt.gz", PBRT}, {"a.ply.gz", TRIANGLE}, {"a.obj.gz", OBJ}, {"a.gz", PBRT}};
     for (int k = 0; k < 4; k++) {
         gzFile file = gzopen(in_folder(FILES[k][0]), "wb");
         assert_non_null(file);
@@ -100,10 +110,8 @@ static void files_that_are_not_there_are_errors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(the_name_picks_the_reader),
-        TEST_IN_FOLDER(gzip_is_read_where_the_reader_is_ours),
-        TEST_IN_FOLDER(a_ply_file_alone_is_grey_and_lit),
-        TEST_IN_FOLDER(ply_errors_name_the_file),
+        TEST_IN_FOLDER(the_name_picks_the_reader),           TEST_IN_FOLDER(gzip_is_read_where_the_reader_is_ours),
+        TEST_IN_FOLDER(a_ply_file_alone_is_grey_and_lit),    TEST_IN_FOLDER(ply_errors_name_the_file),
         TEST_IN_FOLDER(files_that_are_not_there_are_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
