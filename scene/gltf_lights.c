@@ -40,8 +40,7 @@ static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
     if (!(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= 1.5708))
         return gltf_error(r, &spot, "its angles are %g and %g, which should be 0 <= inner < outer <= pi / 2", inner,
                           outer);
-    l->cos_falloff_start = (float)cos(inner);
-    l->cos_total_width = (float)fmax(cos(outer), 0.0);
+    light_set_cone(l, inner, outer);
     return AG_OK;
 }
 

@@ -81,11 +81,7 @@ ag_status gltf_get_texture(gltf_reader *r, const gltf_value *parent, const char 
     uint32_t index = GLTF_NONE, source = GLTF_NONE;
     uint64_t wanted_set = 0;
     gltf_value info, texture_value;
-    texture t;
-    memset(&t, 0, sizeof t);
-    for (size_t i = 0; i < sizeof t.inputs / sizeof *t.inputs; i++)
-        t.inputs[i].texture_index = SCENE_NO_TEXTURE;
-    t.kind = TEXTURE_IMAGE;
+    texture t = texture_make(TEXTURE_IMAGE);
     t.is_spectrum = use.is_color;
     t.channel = use.channel;
     t.scale = use.scale;

@@ -100,17 +100,11 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
     *out_texture = SCENE_NO_TEXTURE;
     if (p->path[0] == '\0')
         return AG_OK;
-    texture t;
-    memset(&t, 0, sizeof t);
-    t.kind = TEXTURE_IMAGE;
+    texture t = texture_make(TEXTURE_IMAGE);
     t.is_spectrum = use == PICTURE_COLOR || use == PICTURE_DIRECTION;
-    t.mapping.kind = TEXTURE_MAPPING_UV;
     t.mapping.scale = (vec2){p->scale[0], p->scale[1]};
     t.mapping.delta = (vec2){p->offset[0], p->offset[1]};
-    for (size_t k = 0; k < sizeof t.inputs / sizeof *t.inputs; k++)
-        t.inputs[k].texture_index = SCENE_NO_TEXTURE;
     t.wraps = (texture_wraps){wrap_of(p->wrap_s), wrap_of(p->wrap_t)};
-    t.filter = TEXTURE_FILTER_BILINEAR;
     t.scale = scale;
     image_encoding encoding = {.curve = use == PICTURE_COLOR ? IMAGE_CURVE_DEFAULT : IMAGE_CURVE_LINEAR};
     ag_status status = load_picture(i, p, encoding, &t.image_index, message, sizeof message);

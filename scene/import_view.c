@@ -184,8 +184,7 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
         double outer = fmin(fmax(0.5 * (double)source.outer_cone, 1e-3), PI); /* NaN: the first */
         double inner = fmin(fmax(0.5 * (double)source.inner_cone, 0.0), outer);
         l.kind = LIGHT_SPOT;
-        l.cos_total_width = (float)cos(outer);
-        l.cos_falloff_start = (float)cos(inner);
+        light_set_cone(&l, inner, outer);
         break;
     }
     case IMPORT_LIGHT_DIRECTIONAL:

@@ -21,6 +21,14 @@ light light_make(light_kind kind)
                    .world_from_light = axes};
 }
 
+void light_set_cone(light *l, double full_angle, double dark_angle)
+{
+    /* 1 - cos without the cancellation that narrow cones would suffer from */
+    double full = sin(0.5 * full_angle), dark = sin(0.5 * dark_angle);
+    l->falloff_start = (float)(2.0 * full * full);
+    l->falloff_end = (float)(2.0 * dark * dark);
+}
+
 void light_reset(light *l)
 {
     environment_destroy(l->environment);

@@ -56,6 +56,8 @@ typedef struct light {
 
 /* A light of that kind, of no power, with everything that has one at its default. */
 light light_make(light_kind kind);
+/* A spot's cone: full inside the first angle from its axis, dark outside the second, radians in [0, pi]. */
+void light_set_cone(light *l, double full_angle, double dark_angle);
 /* Frees the pictures and tables. */
 void light_reset(light *l);
 

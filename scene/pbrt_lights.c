@@ -78,13 +78,6 @@ static ag_status read_point(pbrt_parser *parser, parameter_list *list, light *l)
     return scale_color(parser, list, c.color, factor, &l->intensity);
 }
 
-/* Without the cancellation that narrow cones would suffer from. */
-static double one_minus_cos(double degrees)
-{
-    double sine = sin(0.5 * degrees * PI / 180.0);
-    return 2.0 * sine * sine;
-}
-
 static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
 {
     light_common c;
@@ -100,10 +93,8 @@ static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
     if (!(delta >= 0.0f && delta <= 2.0f * cone)) /* beyond the axis pbrt counts on at the other side */
         return pbrt_refuse(parser, list, "conedeltaangle",
                            "\"conedeltaangle\" should be from 0 to twice \"coneangle\"");
-    double end = one_minus_cos(cone), start = one_minus_cos((double)cone - delta);
-    l->falloff_start = (float)start;
-    l->falloff_end = (float)end;
-    double cone_measure = PI * (start + end); /* the ramp is half of its height, on average */
+    light_set_cone(l, ((double)cone - delta) * (PI / 180.0), cone * (PI / 180.0));
+    double cone_measure = PI * ((double)l->falloff_start + l->falloff_end); /* the ramp is half of its height, on average */
     double factor = c.power > 0.0f ? c.scale * (c.power / cone_measure) : c.scale;
     return scale_color(parser, list, c.color, factor, &l->intensity);
 }
@@ -175,7 +166,7 @@ static double mean_luminance(const texture_image *i)
     double sum = 0.0;
     for (uint32_t y = 0; y < i->height; y++)
         for (uint32_t x = 0; x < i->width; x++)
-            sum += (double)rgb_luminance(texture_image_rgb(i, TEXTURE_WRAP_CLAMP, TEXTURE_FILTER_POINT,
+            sum += (double)rgb_luminance(texture_image_rgb(i, texture_wraps_same(TEXTURE_WRAP_CLAMP), TEXTURE_FILTER_POINT,
                                                            ((float)x + 0.5f) / (float)i->width,
                                                            ((float)y + 0.5f) / (float)i->height));
     return sum / ((double)i->width * i->height);
@@ -190,14 +181,9 @@ static ag_status read_area_picture(pbrt_parser *parser, parameter_list *list, pb
         return AG_OK;
     if (parameter_list_find(list, "L"))
         return pbrt_refuse(parser, list, "L", "an area light has \"L\" or \"filename\", not both");
-    texture t = {.kind = TEXTURE_IMAGE,
-                 .is_spectrum = true,
-                 .mapping = {.kind = TEXTURE_MAPPING_UV, .scale = {1.0f, 1.0f}},
-                 .wrap = TEXTURE_WRAP_CLAMP,
-                 .filter = TEXTURE_FILTER_BILINEAR,
-                 .scale = 1.0f};
-    for (size_t i = 0; i < sizeof t.inputs / sizeof *t.inputs; i++)
-        t.inputs[i].texture_index = SCENE_NO_TEXTURE;
+    texture t = texture_make(TEXTURE_IMAGE);
+    t.is_spectrum = true;
+    t.wraps = texture_wraps_same(TEXTURE_WRAP_CLAMP);
     PBRT_TRY(pbrt_load_image(parser, list, "filename", name, (image_encoding){0}, &t));
     PBRT_TRY(scene_add_texture(parser->scene, &t, &l->radiance_texture));
     if (l->power > 0.0f)

@@ -342,15 +342,8 @@ static ag_status read_normal_map(pbrt_parser *parser, parameter_list *list, mate
     PBRT_TRY(parameter_get_string(list, parser->log, "normalmap", &name));
     if (!name || *name == '\0')
         return AG_OK;
-    texture t;
-    memset(&t, 0, sizeof t);
-    t.kind = TEXTURE_IMAGE;
+    texture t = texture_make(TEXTURE_IMAGE);
     t.is_spectrum = true;
-    t.scale = 1.0f;
-    t.mapping.kind = TEXTURE_MAPPING_UV;
-    t.mapping.scale = (vec2){1.0f, 1.0f};
-    for (int i = 0; i < 4; i++)
-        t.inputs[i].texture_index = SCENE_NO_TEXTURE;
     PBRT_TRY(pbrt_load_image(parser, list, "normalmap", name, (image_encoding){IMAGE_CURVE_LINEAR, 0.0f}, &t));
     if (parser->scene->texture_images[t.image_index]->channel_count < 3)
         return pbrt_refuse(parser, list, "normalmap", "\"%s\" is no normal map: it has no red, green and blue", name);

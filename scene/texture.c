@@ -6,6 +6,23 @@
 #include "math/sampling.h"
 #include "texture_noise.h"
 
+#include <string.h>
+
+texture texture_make(texture_kind kind)
+{
+    texture t;
+    memset(&t, 0, sizeof t);
+    t.kind = kind;
+    t.mapping.kind = TEXTURE_MAPPING_UV;
+    t.mapping.scale = (vec2){1.0f, 1.0f};
+    t.wraps = texture_wraps_same(TEXTURE_WRAP_REPEAT);
+    t.filter = TEXTURE_FILTER_BILINEAR;
+    t.scale = 1.0f;
+    for (size_t i = 0; i < sizeof t.inputs / sizeof *t.inputs; i++)
+        t.inputs[i].texture_index = SCENE_NO_TEXTURE;
+    return t;
+}
+
 static rgb evaluate(const scene *s, const texture *t, const surface_hit *hit);
 
 static rgb input_at(const scene *s, const texture *t, int which, const surface_hit *hit)

@@ -59,6 +59,9 @@ typedef struct texture {
     float step;      /* likewise: of u and v, over which its slope is to be taken */
 } texture;
 
+/* Of that kind, without inputs, by the surface's own u and v; a picture as it is, bilinear, repeated. */
+texture texture_make(texture_kind kind);
+
 /* The value at a hit. Of a float texture all components are the same. */
 rgb texture_evaluate_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
 /* Of a float texture. */

@@ -39,12 +39,12 @@ static void lamps(void **state)
     assert_int_equal(l->kind, LIGHT_SPOT);
     assert_rgb(l->intensity, 1, 1, 1, 0);
     assert_vec3(l->direction, 0, 0, -1, 0);
-    assert_near(l->cos_falloff_start, cos(0.5), 1e-7);
-    assert_near(l->cos_total_width, cos(0.75), 1e-7);
+    assert_near(l->falloff_start, 1 - cos(0.5), 1e-7);
+    assert_near(l->falloff_end, 1 - cos(0.75), 1e-7);
     reading_destroy(&r);
     r = gltf_of(lamp_text("", "{'type': 'spot'}", ""));
-    assert_near(r.scene->lights[0].cos_falloff_start, 1, 0);
-    assert_near(r.scene->lights[0].cos_total_width, sqrt(0.5), 1e-7);
+    assert_near(r.scene->lights[0].falloff_start, 0, 0);
+    assert_near(r.scene->lights[0].falloff_end, 1 - sqrt(0.5), 1e-7);
     reading_destroy(&r);
 
     r = gltf_of(lamp_text("", "{'type': 'point', 'intensity': 0}", "")); /* dark: as if there were none */

@@ -155,8 +155,8 @@ static void lights_are_as_bright_as_the_file_says(void **state)
     l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_SPOT);
     assert_vec3(l->direction, 0, -1, 0, 1e-6);
-    assert_near(l->cos_falloff_start, cos(30.0 * PI_D / 180.0), 1e-6);
-    assert_true(l->cos_total_width <= l->cos_falloff_start);
+    assert_near(l->falloff_start, 1 - cos(30.0 * PI_D / 180.0), 1e-6);
+    assert_true(l->falloff_end >= l->falloff_start);
     assert_near(l->intensity.r, PI_D, 1e-5);
     reading_destroy(&r);
 }
