@@ -7,6 +7,7 @@
 #include "bsdf.h"
 #include "parallel_for.h"
 #include "passage.h"
+#include "scene_extent.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -46,7 +47,8 @@ static void store(tracer *t, const surface_hit *hit, const bsdf *b, vec3 directi
 {
     block *out = t->out;
     float alpha = alpha_at_hit(t->s, hit);
-    flux = rgb_scale(flux, alpha > 0.0f ? bsdf_arrival_factor(b) / alpha : 0.0f);
+    surface_rest at = surface_at_opening(t->s, hit);
+    flux = rgb_scale(flux, alpha > 0.0f ? bsdf_arrival_factor(b) * at.area_ratio / alpha : 0.0f);
     book(out->books.arrived, flux);
     if (out->count == t->limit) {
         book(out->books.cut, flux);
@@ -64,12 +66,13 @@ static void store(tracer *t, const surface_hit *hit, const bsdf *b, vec3 directi
     }
     photon *p = &out->photons[out->count++];
     memset(p, 0, sizeof *p);
-    p->position[0] = hit->position.x;
-    p->position[1] = hit->position.y;
-    p->position[2] = hit->position.z;
+    p->position[0] = at.position.x;
+    p->position[1] = at.position.y;
+    p->position[2] = at.position.z;
     p->flux = flux_encode(flux, key);
     p->direction = direction_encode(direction);
-    p->normal = direction_encode(vec3_face_forward(hit->geometric_normal, vec3_negate(direction)));
+    bool is_outside = !(vec3_dot(hit->geometric_normal, direction) > 0.0f);
+    p->normal = direction_encode(is_outside ? at.geometric_normal : vec3_negate(at.geometric_normal));
     book(out->books.stored, flux_decode(p->flux));
 }
 
@@ -101,14 +104,15 @@ static void trace_path(tracer *t, uint64_t path)
     rng random = rng_make(settings->seed, settings->kind == PHOTON_GLOBAL ? STREAM_GLOBAL : STREAM_CAUSTIC, path);
     uint64_t key = hash_combine(random.state, 0x70686f746f6eu);
 
-    /* leave a lamp, picked by its power */
-    float probability;
+    /* leave a lamp, picked by its power, at a time of the path's own where that matters */
+    float probability, time = s->has_motion ? rng_float(&random) : 0.0f;
     const light *lamp = &s->lights[scene_pick_light_by_power(s, rng_float(&random), &probability)];
     light_emission start;
     if (!(probability > 0.0f) || !light_sample_emission(s, lamp, t->target, &random, &start))
         return;
     scene_ray ray = scene_ray_make(start.origin, start.direction);
     ray.medium = start.medium;
+    ray.time = time;
     rgb flux = rgb_scale(start.flux, 1.0f / probability);
     book(books->emitted, flux);
 
@@ -213,23 +217,19 @@ static ag_status merge_block(round_job *job, photon_set *set, uint64_t first_pat
     return AG_OK;
 }
 
-/* A ball around all shapes that have traced lobes; false where there is none. */
-static bool find_traced_matter(const scene *s, light_target *out_target)
+static bool is_traced(const scene *s, const shape *item) { return material_is_traced(s, item->material_index); }
+
+/* A ball around all shapes that have traced lobes; of radius 0 where there is none. */
+static ag_status find_traced_matter(const scene *s, light_target *out_target)
 {
-    vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < s->shape_count; i++) {
-        vec3 shape_low, shape_high;
-        if (!material_is_traced(s, s->shapes[i].material_index))
-            continue;
-        shape_bounds(&s->shapes[i], &shape_low, &shape_high);
-        low = vec3_min(low, shape_low);
-        high = vec3_max(high, shape_high);
-    }
-    if (low.x > high.x)
-        return false;
+    vec3 low, high;
+    ag_status status = scene_find_bounds(s, is_traced, &low, &high);
+    *out_target = (light_target){{0.0f, 0.0f, 0.0f}, 0.0f};
+    if (status != AG_OK || low.x > high.x)
+        return status;
     out_target->center = vec3_scale(vec3_add(low, high), 0.5f);
     out_target->radius = vec3_length(vec3_sub(high, out_target->center)) * 1.0001f;
-    return out_target->radius > 0.0f;
+    return AG_OK;
 }
 
 static void explain_shortage(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
@@ -260,8 +260,14 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         return AG_OK; /* a sky alone, which the eye sees without photons */
     light_target traced_matter;
     const light_target *caustic_target = NULL;
-    if (settings->kind == PHOTON_CAUSTIC && find_traced_matter(s, &traced_matter))
+    if (settings->kind == PHOTON_CAUSTIC) {
+        ag_status found = find_traced_matter(s, &traced_matter);
+        if (found != AG_OK)
+            return found;
+        if (!(traced_matter.radius > 0.0f))
+            return AG_OK; /* there may be such matter in objects without instances */
         caustic_target = &traced_matter;
+    }
     block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
     set.photons = photon_records_create(settings->wanted);
     ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;

@@ -11,7 +11,7 @@ enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 8, CANCEL_EVERY = 64 };
 static void read_cache(const transport *t, eye_worker *worker, const vertex *v, rgb throughput, float u_side,
                        gather_ray *out)
 {
-    vec3 normal = transport_facing_normal(v);
+    map_place at = transport_map_place(t, v);
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
     rgb factor = reflected;
     if (!rgb_is_black(transmitted)) {
@@ -19,9 +19,9 @@ static void read_cache(const transport *t, eye_worker *worker, const vertex *v, 
         bool is_through = u_side < share;
         factor = is_through ? rgb_scale(transmitted, 1.0f / share) : rgb_scale(reflected, 1.0f / (1.0f - share));
         if (is_through)
-            normal = vec3_negate(normal);
+            at.facing_normal = vec3_negate(at.facing_normal);
     }
-    irradiance_cache_get(t->cache, v->hit.position, normal, worker->index, &out->request);
+    irradiance_cache_get(t->cache, at.position, at.facing_normal, worker->index, &out->request);
     out->weight = rgb_scale(rgb_mul(throughput, factor), AG_INV_PI);
 }
 

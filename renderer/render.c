@@ -143,10 +143,11 @@ static rgb render_sample(const tile_job *job, eye_worker *worker, int x, int y, 
     sampler where = sampler_make(settings->seed, x, y, index);
     vec2 offset = pixel_filter_sample(job->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), out_sign);
     vec2 lens = t->s->options.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
+    float time = !t->s->has_motion ? 0.0f : t->s->options.disable_pixel_jitter ? 0.5f : sampler_2d(&where, SAMPLE_TIME, 0).x;
     float width = (float)settings->width, height = (float)settings->height;
     scene_ray ray = camera_generate_ray(&t->s->camera, ((float)x + 0.5f + offset.x) / width,
                                          ((float)y + 0.5f + offset.y) / height, width / height,
-                                         lens);
+                                         lens, time);
     rgb radiance = settings->integrator == AG_INTEGRATOR_PATH
                        ? path_tracing_radiance(t, worker, ray, &where)
                        : shading_radiance(t, worker, ray, &where);

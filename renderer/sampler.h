@@ -20,7 +20,10 @@ typedef enum sample_use {
     SAMPLE_SCATTER_TO_LIGHT,
     SAMPLE_GATHER,
     SAMPLE_ROULETTE,
-    SAMPLE_USE_COUNT
+    SAMPLE_USE_COUNT,
+    /* The time of the path, which its first vertex alone asks for: there this is a number that the second vertex leaves
+     * free, for what that would mean is a place on the film. So pictures of scenes without motion keep their bits. */
+    SAMPLE_TIME = SAMPLE_USE_COUNT + SAMPLE_PIXEL
 } sample_use;
 
 typedef struct sampler {

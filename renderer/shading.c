@@ -19,13 +19,13 @@ static rgb diffuse_radiance(const transport *t, eye_worker *worker, const vertex
     if (scatterings_left < 1)
         return sum;
     if (is_whole && path_vertex > 0 && contribution < LOW_CONTRIBUTION) {
-        vec3 normal = transport_facing_normal(v);
+        map_place at = transport_map_place(t, v);
         rgb transmitted = bsdf_gathered_transmission(&v->scattering);
         sum = rgb_mul(bsdf_gathered_reflection(&v->scattering),
-                      irradiance_cache_estimate(t->cache, v->hit.position, normal, worker->index));
+                      irradiance_cache_estimate(t->cache, at.position, at.facing_normal, worker->index));
         if (!rgb_is_black(transmitted)) {
-            normal = vec3_negate(normal);
-            rgb behind = irradiance_cache_estimate(t->cache, v->hit.position, normal, worker->index);
+            rgb behind =
+                irradiance_cache_estimate(t->cache, at.position, vec3_negate(at.facing_normal), worker->index);
             sum = rgb_add(sum, rgb_mul(transmitted, behind));
         }
         return rgb_scale(sum, AG_INV_PI);

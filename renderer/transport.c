@@ -27,18 +27,25 @@ vec3 transport_facing_normal(const vertex *v)
     return vec3_face_forward(v->hit.geometric_normal, v->scattering.out);
 }
 
+map_place transport_map_place(const transport *t, const vertex *v)
+{
+    surface_rest rest = surface_at_opening(t->s, &v->hit);
+    bool is_behind = vec3_dot(v->hit.geometric_normal, v->scattering.out) < 0.0f;
+    return (map_place){rest.position, is_behind ? vec3_negate(rest.geometric_normal) : rest.geometric_normal};
+}
+
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
 {
     if (!t->caustic || t->caustic->set.count == 0)
         return rgb_gray(0.0f);
-    vec3 normal = transport_facing_normal(v);
+    map_place at = transport_map_place(t, v);
     arena_mark mark = arena_save(worker->scratch);
     photon_neighbor *neighbors =
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
-    rgb sum = rgb_mul(reflected, photon_map_irradiance_estimate(t->caustic, v->hit.position, normal, neighbors));
+    rgb sum = rgb_mul(reflected, photon_map_irradiance_estimate(t->caustic, at.position, at.facing_normal, neighbors));
     if (!rgb_is_black(transmitted)) {
-        rgb behind = photon_map_irradiance_estimate(t->caustic, v->hit.position, vec3_negate(normal), neighbors);
+        rgb behind = photon_map_irradiance_estimate(t->caustic, at.position, vec3_negate(at.facing_normal), neighbors);
         sum = rgb_add(sum, rgb_mul(transmitted, behind));
     }
     arena_restore(worker->scratch, mark);

@@ -56,6 +56,13 @@ rgb transport_emission(const transport *t, const vertex *v);
 /* The geometric normal on the side that the ray came from. */
 vec3 transport_facing_normal(const vertex *v);
 
+/* Where the photons of a place lie, and its geometric normal there on the side that the ray came from; see
+ * photon_tracing.h. */
+typedef struct map_place {
+    vec3 position, facing_normal;
+} map_place;
+map_place transport_map_place(const transport *t, const vertex *v);
+
 /* The caustic map's light at a diffuse place: reflected radiance. */
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);
 

@@ -18,7 +18,10 @@ float alpha_at(const scene *s, const shape *at, const surface_hit *hit)
 float alpha_at_hit(const scene *s, const surface_hit *hit)
 {
     const shape *at = &s->shapes[hit->shape_index];
-    return shape_is_opaque(at) ? 1.0f : alpha_at(s, at, hit);
+    if (shape_is_opaque(at))
+        return 1.0f;
+    surface_hit in_object = instance_hit_in_object(s, hit); /* where rays were asked */
+    return alpha_at(s, at, &in_object);
 }
 
 /* Uniform in [0, 1), another number for every ray and surface. */

@@ -33,6 +33,8 @@ typedef struct surface_hit {
     uint32_t medium_inside, medium_outside; /* likewise */
     uint32_t shape_index;
     uint32_t primitive_index; /* triangle of a mesh */
+    uint32_t instance_index;  /* SCENE_NO_INSTANCE where the shape stands in the world itself */
+    float time;               /* of the shutter, the ray's */
 } surface_hit;
 
 /* The nearest surface along the ray, from its origin to max_distance (in lengths of direction, INFINITY is fine). */
@@ -56,6 +58,15 @@ scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction)
  * across them on v's side. Worked out anew at each call. Where there are none, any that lie in the surface. */
 void surface_tangents(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec3 *out_dpdv);
 
+/* The same place of the surface as it stands when the shutter opens, and how its area there is to its area now (1 where
+ * nothing is stretched). The hit's own place where nothing moves. */
+typedef struct surface_rest {
+    vec3 position;
+    vec3 geometric_normal; /* unit, outside */
+    float area_ratio;
+} surface_rest;
+surface_rest surface_at_opening(const scene *s, const surface_hit *hit);
+
 /* A random place on a shape, in proportion to area. pdf_area: 1/m^2. */
 typedef struct surface_sample {
     vec3 position;
@@ -73,7 +84,7 @@ bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u);
 /* The density of shape_sample_area at a place on the shape with that geometric normal. */
 float shape_pdf_area(const shape *s, vec3 geometric_normal);
 
-/* shape.c's side of an intersection, for bvh_embree.c: fills in everything but distance and indices. u, v: Embree's
+/* shape.c's side of an intersection, for bvh_embree.c: fills in everything but distance, indices and time. u, v: Embree's
  * barycentrics for meshes; for the others `position` comes in as the ray's point and is put onto the surface. */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, surface_hit *out_hit);
 /* Nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */

@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { JOINED_ITEMS_MIN = 2048 };
+
 /* What Embree gives back to our functions. */
 typedef struct attached {
     const scene *s;
@@ -23,6 +25,8 @@ struct bvh {
     attached *attached; /* [shape_count] */
     RTCDevice device;
     RTCScene scene;
+    RTCScene *objects; /* [object_count], NULL where none is to be seen */
+    uint32_t object_count;
     char isa[16];
     _Atomic int64_t memory_bytes; /* moved by Embree's memory monitor, from several threads; a plain count */
 };
@@ -87,7 +91,7 @@ static void quadric_intersect(const struct RTCIntersectFunctionNArguments *argum
         ray_hit->hit.Ng_x = ray_hit->hit.Ng_y = 0.0f, ray_hit->hit.Ng_z = 1.0f;
         ray_hit->hit.geomID = arguments->geomID;
         ray_hit->hit.primID = arguments->primID;
-        ray_hit->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        ray_hit->hit.instID[0] = arguments->context->instID[0];
     }
     EMBREE_REPORT(arguments, was_hit);
 }
@@ -120,7 +124,7 @@ static void filter_triangle(const struct RTCFilterFunctionNArguments *arguments)
 
 /* --- build --- */
 
-static bool attach_shape(bvh *b, attached *user, uint32_t index)
+static bool attach_shape(bvh *b, RTCScene into, attached *user, uint32_t index)
 {
     const shape *s = user->shape;
     RTCGeometry geometry;
@@ -159,13 +163,38 @@ static bool attach_shape(bvh *b, attached *user, uint32_t index)
     rtcSetGeometryUserData(geometry, user);
     rtcSetGeometryMask(geometry, 0xffffffffu); /* Embree 4's default would be bit 0 alone */
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(b->scene, geometry, index);
+    rtcAttachGeometryByID(into, geometry, index);
     rtcReleaseGeometry(geometry);
     return true;
 }
 
+/* Instances are numbered behind the shapes. */
+static void attach_instance(bvh *b, const scene *s, uint32_t instance_index)
+{
+    const scene_instance *i = &s->instances[instance_index];
+    if (!b->objects[i->object_index])
+        return;
+    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, b->objects[i->object_index]);
+    rtcSetGeometryTimeStepCount(geometry, i->step_count);
+    for (uint32_t k = 0; k < i->step_count; k++)
+        rtcSetGeometryTransform(geometry, k, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, s->instance_steps[i->first_step + k].m);
+    rtcSetGeometryMask(geometry, 0xffffffffu);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(b->scene, geometry, s->shape_count + instance_index);
+    rtcReleaseGeometry(geometry);
+}
+
+static RTCScene new_scene(bvh *b)
+{
+    RTCScene made = rtcNewScene(b->device);
+    rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_MEDIUM);
+    return made;
+}
+
 typedef struct build_job {
-    bvh *b;
+    RTCScene scene;
     unsigned joiner_count;
 } build_job;
 
@@ -173,7 +202,45 @@ static void join_build(void *user, unsigned worker_index)
 {
     build_job *job = user;
     if (worker_index < job->joiner_count)
-        rtcJoinCommitScene(job->b->scene);
+        rtcJoinCommitScene(job->scene);
+}
+
+/* Joining costs more than a small build: item_count tells whether it is one. */
+static void build(RTCScene which, uint64_t item_count, run_context *run, unsigned joiners)
+{
+    if (joiners == 1 || item_count < JOINED_ITEMS_MIN)
+        rtcCommitScene(which);
+    else
+        thread_pool_run(run->pool, join_build, &(build_job){which, joiners});
+}
+
+/* The objects that instances show, each a scene of its own, whose shapes are numbered as in its list. */
+static bool build_objects(bvh *b, const scene *s, run_context *run, unsigned joiners)
+{
+    if (s->instance_count == 0)
+        return true;
+    b->objects = calloc(s->object_count, sizeof *b->objects);
+    if (!b->objects)
+        return false;
+    b->object_count = s->object_count;
+    for (uint32_t i = 0; i < s->instance_count; i++) {
+        uint32_t index = s->instances[i].object_index;
+        const scene_object *o = &s->objects[index];
+        if (b->objects[index] || o->shape_count == 0)
+            continue;
+        if (run_is_cancelled(run))
+            return true;
+        uint64_t item_count = 0;
+        b->objects[index] = new_scene(b);
+        for (uint32_t k = 0; k < o->shape_count; k++) {
+            attached *user = &b->attached[s->object_shapes[o->first_shape + k]];
+            item_count += user->shape->kind == SHAPE_MESH ? user->shape->as.mesh.triangle_count : 1;
+            if (!attach_shape(b, b->objects[index], user, k))
+                return false;
+        }
+        build(b->objects[index], item_count, run, joiners);
+    }
+    return true;
 }
 
 ag_status bvh_create(const scene *s, run_context *run, const char *isa, bvh **out_bvh)
@@ -206,18 +273,16 @@ ag_status bvh_create(const scene *s, run_context *run, const char *isa, bvh **ou
     rtcSetDeviceErrorFunction(b->device, log_embree_error, run->log);
     rtcSetDeviceMemoryMonitorFunction(b->device, count_memory, b);
 
-    b->scene = rtcNewScene(b->device);
-    rtcSetSceneFlags(b->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(b->scene, RTC_BUILD_QUALITY_MEDIUM);
+    if (!build_objects(b, s, run, joiners))
+        goto fail;
+    b->scene = new_scene(b);
     rtcSetSceneProgressMonitorFunction(b->scene, report_progress, run);
     for (uint32_t i = 0; i < s->shape_count; i++)
-        if (!attach_shape(b, &b->attached[i], i))
+        if (s->shapes[i].object_index == SCENE_NO_OBJECT && !attach_shape(b, b->scene, &b->attached[i], i))
             goto fail;
-
-    if (joiners == 1)
-        rtcCommitScene(b->scene);
-    else
-        thread_pool_run(run->pool, join_build, &(build_job){b, joiners});
+    for (uint32_t i = 0; i < s->instance_count; i++)
+        attach_instance(b, s, i);
+    build(b->scene, UINT64_MAX, run, joiners);
     rtcSetSceneProgressMonitorFunction(b->scene, NULL, NULL);
 
     if (run_is_cancelled(run)) {
@@ -245,6 +310,10 @@ void bvh_destroy(bvh *b)
         return;
     if (b->scene)
         rtcReleaseScene(b->scene);
+    for (uint32_t i = 0; i < b->object_count; i++)
+        if (b->objects[i])
+            rtcReleaseScene(b->objects[i]);
+    free(b->objects);
     if (b->device)
         rtcReleaseDevice(b->device);
     free(b->attached);
@@ -269,6 +338,22 @@ static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
     return ray;
 }
 
+static void place_instance_hit(const scene *s, const scene_ray *ray, const struct RTCRayHit *met, surface_hit *out_hit)
+{
+    uint32_t index = met->hit.instID[0] - s->shape_count;
+    const scene_object *o = &s->objects[s->instances[index].object_index];
+    affine world_from_object = instance_at(s, index, ray->time);
+    double t = (double)met->ray.tfar;
+    const double world[3] = {(double)ray->origin.x + t * (double)ray->direction.x,
+                             (double)ray->origin.y + t * (double)ray->direction.y,
+                             (double)ray->origin.z + t * (double)ray->direction.z};
+    out_hit->instance_index = index;
+    out_hit->shape_index = s->object_shapes[o->first_shape + met->hit.geomID];
+    shape_surface_at(&s->shapes[out_hit->shape_index], met->hit.primID, met->hit.u, met->hit.v,
+                     instance_point_in_object(&world_from_object, world), out_hit);
+    instance_place_hit(&world_from_object, out_hit);
+}
+
 bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
 {
     struct RTCRayHit ray_hit;
@@ -279,10 +364,16 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
     if (ray_hit.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
     out_hit->distance = ray_hit.ray.tfar;
-    out_hit->shape_index = ray_hit.hit.geomID;
     out_hit->primitive_index = ray_hit.hit.primID;
-    shape_surface_at(&s->shapes[ray_hit.hit.geomID], ray_hit.hit.primID, ray_hit.hit.u, ray_hit.hit.v,
-                     vec3_add_scaled(ray.origin, ray.direction, ray_hit.ray.tfar), out_hit);
+    out_hit->time = ray.time;
+    if (ray_hit.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+        out_hit->shape_index = ray_hit.hit.geomID;
+        out_hit->instance_index = SCENE_NO_INSTANCE;
+        shape_surface_at(&s->shapes[ray_hit.hit.geomID], ray_hit.hit.primID, ray_hit.hit.u, ray_hit.hit.v,
+                         vec3_add_scaled(ray.origin, ray.direction, ray_hit.ray.tfar), out_hit);
+    } else {
+        place_instance_hit(s, &ray, &ray_hit, out_hit);
+    }
     return true;
 }
 

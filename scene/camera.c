@@ -65,15 +65,23 @@ static vec3 spherical_direction(camera_kind kind, double x, double y)
     return (vec3){d.x, d.z, d.y};
 }
 
-scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u)
+scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u, float time)
 {
     vec3 origin = {0.0f, 0.0f, 0.0f}, direction;
     if (c->kind == CAMERA_PERSPECTIVE || c->kind == CAMERA_ORTHOGRAPHIC)
         projective_ray(c, screen_place(c, film_x, film_y, aspect), lens_u, &origin, &direction);
     else
         direction = spherical_direction(c->kind, (double)film_x, (double)film_y);
-    scene_ray ray = scene_ray_make(transform_point(&c->world_from_camera, origin),
-                                   vec3_normalize(transform_vector(&c->world_from_camera, direction)));
+    scene_ray ray;
+    if (c->is_moving) {
+        transform now = transform_identity(); /* of which only the matrix is used */
+        motion_at(&c->motion, (double)time, now.m);
+        ray = scene_ray_make(transform_point(&now, origin), vec3_normalize(transform_vector(&now, direction)));
+    } else {
+        ray = scene_ray_make(transform_point(&c->world_from_camera, origin),
+                             vec3_normalize(transform_vector(&c->world_from_camera, direction)));
+    }
+    ray.time = time;
     ray.medium = c->medium;
     return ray;
 }

@@ -5,6 +5,7 @@
 #ifndef AFTERGLOW_CAMERA_H
 #define AFTERGLOW_CAMERA_H
 
+#include "math/motion.h"
 #include "math/transform.h"
 #include "ray.h"
 
@@ -17,7 +18,10 @@ typedef enum camera_kind {
 
 typedef struct camera {
     camera_kind kind;
-    transform world_from_camera;
+    transform world_from_camera; /* of one that moves: at the start of its motion */
+    motion motion;               /* if is_moving: world_from_camera while the shutter is open */
+    bool is_moving;
+    float shutter_open, shutter_close; /* s, open < close; default 0 and 1 */
     float fov_degrees;         /* perspective: across the shorter image axis, (0, 180); default 90 */
     float frame_aspect_ratio;  /* width / height; 0: the film's */
     float screen_window[4];    /* x0, x1, y0, y1 in units of tan(fov/2) at distance 1 (orthographic: scene units); used if
@@ -31,7 +35,8 @@ typedef struct camera {
 } camera;
 
 /* film_x, film_y: in [0, 1] from the left and from the top of the full image, and a filter's radius beyond; aspect: its
- * width / height; lens_u in [0,1)^2 picks the place on the lens. The direction is unit. */
-scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u);
+ * width / height; lens_u in [0,1)^2 picks the place on the lens; time: of the shutter, see scene_ray. The direction is
+ * unit. */
+scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u, float time);
 
 #endif

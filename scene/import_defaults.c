@@ -1,6 +1,8 @@
 /* import_defaults.c: see import_defaults.h. Threads: one per scene. */
 #include "import_defaults.h"
 
+#include "scene_extent.h"
+
 static const float FOV_DEGREES = 45.0f;
 static const double TAN_HALF_FOV = 0.41421356237309505;  /* tan 22.5 degrees = sqrt 2 - 1 */
 static const double MARGIN = 1.05;                       /* around the bounds */
@@ -56,7 +58,9 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
     vec3 low, high;
     double axes[3][3], center[3] = {0.0, 0.0, 0.0}, half[3] = {1.0, 1.0, 1.0}, m[4][4] = {{0.0}};
     default_axes(axes);
-    scene_find_bounds(s, &low, &high);
+    ag_status status = scene_find_bounds(s, NULL, &low, &high);
+    if (status)
+        return status;
     if (low.x <= high.x) {
         const double a[3] = {(double)low.x, (double)low.y, (double)low.z};
         const double b[3] = {(double)high.x, (double)high.y, (double)high.z};

@@ -3,6 +3,7 @@
  * faces the light is an irradiance of pi c, so an intensity of pi c d^2; where the light does not fall off with the
  * square of the distance, that of the centre of the scene counts. Threads: one per scene. */
 #include "importer.h"
+#include "scene_extent.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -86,14 +87,17 @@ void importer_add_camera(importer *i, const import_camera *source)
 /* Lights */
 
 /* pi d^2 / attenuation, for d far away or where the scene's centre is. */
-static double intensity_factor(const importer *i, const import_light *source)
+static ag_status find_intensity_factor(const importer *i, const import_light *source, double *out_factor)
 {
     double c = (double)source->attenuation[0], l = (double)source->attenuation[1], q = (double)source->attenuation[2];
+    *out_factor = PI / q;
     if (q > 0.0)
-        return PI / q;
+        return AG_OK;
     vec3 low, high;
     double square = 0.0, radius = 0.0;
-    scene_find_bounds(i->scene, &low, &high);
+    ag_status status = scene_find_bounds(i->scene, NULL, &low, &high);
+    if (status)
+        return status;
     const double a[3] = {(double)low.x, (double)low.y, (double)low.z},
                  b[3] = {(double)high.x, (double)high.y, (double)high.z};
     for (int k = 0; k < 3 && a[0] <= b[0]; k++) {
@@ -103,7 +107,8 @@ static double intensity_factor(const importer *i, const import_light *source)
     }
     square = fmax(square, 0.01 * radius); /* a lamp in the very middle */
     double attenuation = c + l * sqrt(square);
-    return PI * square / (attenuation > 0.0 ? attenuation : 1.0);
+    *out_factor = PI * square / (attenuation > 0.0 ? attenuation : 1.0);
+    return AG_OK;
 }
 
 static rgb scale_color(rgb color, double factor)
@@ -163,7 +168,11 @@ static ag_status add_area_light(importer *i, const import_light *source, rgb int
 ag_status importer_add_light(importer *i, const import_light *light_source)
 {
     import_light source = *light_source; /* its direction becomes unit */
-    rgb intensity = scale_color(source.color, intensity_factor(i, &source));
+    double factor;
+    ag_status status = find_intensity_factor(i, &source, &factor);
+    if (status)
+        return status;
+    rgb intensity = scale_color(source.color, factor);
     vec3 position = {(float)source.position[0], (float)source.position[1], (float)source.position[2]};
     light l = light_make(LIGHT_POINT);
     uint32_t index;

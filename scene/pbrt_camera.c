@@ -21,16 +21,15 @@ static ag_status read_screen_window(pbrt_parser *parser, parameter_list *list, c
     return AG_OK;
 }
 
-/* The shutter: how long it is open is how bright the picture is. As nothing moves, when is not seen. */
+/* The shutter: how long it is open is how bright the picture is. */
 static ag_status read_shutter(pbrt_parser *parser, parameter_list *list, camera *c)
 {
-    float open = 0.0f, close = 1.0f;
-    PBRT_TRY(parameter_get_float(list, parser->log, "shutteropen", &open));
-    PBRT_TRY(parameter_get_float(list, parser->log, "shutterclose", &close));
-    c->exposure = close - open;
+    PBRT_TRY(parameter_get_float(list, parser->log, "shutteropen", &c->shutter_open));
+    PBRT_TRY(parameter_get_float(list, parser->log, "shutterclose", &c->shutter_close));
+    c->exposure = c->shutter_close - c->shutter_open;
     if (!(c->exposure > 0.0f && isfinite(c->exposure)))
         return pbrt_refuse(parser, list, parameter_list_find(list, "shutterclose") ? "shutterclose" : "shutteropen",
-                           "the shutter should close after it opens, at %g", (double)open);
+                           "the shutter should close after it opens, at %g", (double)c->shutter_open);
     return AG_OK;
 }
 
@@ -103,21 +102,35 @@ static ag_status read_camera(pbrt_parser *parser, parameter_list *list, camera *
     return pbrt_error(parser, list->where, strlen("Camera"), "unknown camera \"%s\"", list->name);
 }
 
+/* The scene's camera, whose shutter is known now, goes on to `end`. */
+static ag_status set_motion(pbrt_parser *parser, const transform *end, file_location where)
+{
+    camera *c = &parser->scene->camera;
+    if (!pbrt_is_moving(parser))
+        return AG_OK;
+    PBRT_TRY(pbrt_make_motion(parser, &c->world_from_camera, end, where, "Camera", &c->motion));
+    c->is_moving = true;
+    return AG_OK;
+}
+
 ag_status pbrt_camera(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
     PBRT_TRY(pbrt_read_named_parameters(parser, "Camera", "a quoted type", where, &list));
     camera c = {.world_from_camera = transform_invert(&parser->state.world_from_object),
+                .shutter_close = 1.0f,
                 .fov_degrees = 90.0f,
                 .focal_distance = 1e6f};
+    transform end = transform_invert(&parser->state.world_from_object_end);
     ag_status status = read_camera(parser, &list, &c);
     if (!status)
-        status = pbrt_name_coordinate_system(parser, "camera", &c.world_from_camera);
+        status = pbrt_name_coordinate_system(parser, "camera", &c.world_from_camera, &end);
     if (!status) {
         parameter_list_warn_unused(&list, parser->log);
         parser->scene->camera = c;
         parser->scene->camera_medium = pbrt_use_medium(parser, parser->state.medium_outside);
         parser->scene->has_camera = true;
+        status = set_motion(parser, &end, where);
     }
     parameter_list_reset(&list);
     return status;

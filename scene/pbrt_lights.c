@@ -156,6 +156,7 @@ ag_status pbrt_light_source(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
     PBRT_TRY(pbrt_read_named_parameters(parser, "LightSource", "a quoted type", where, &list));
+    pbrt_warn_still(parser, where, "a light");
     ag_status status = add_light(parser, &list);
     parameter_list_reset(&list);
     return status;
@@ -223,16 +224,9 @@ ag_status pbrt_area_light_source(pbrt_parser *parser, file_location where)
     return status;
 }
 
-ag_status pbrt_add_area_light(pbrt_parser *parser, uint32_t shape_index, file_location where)
+ag_status pbrt_add_area_light(pbrt_parser *parser, const pbrt_area_light *source, uint32_t shape_index,
+                              file_location where)
 {
-    const pbrt_area_light *source = &parser->state.area_light;
-    if (!source->is_set)
-        return AG_OK;
-    if (parser->state.has_no_surface) {
-        log_at(parser->log, AG_LOG_WARNING, where,
-               "a shape with the material \"interface\" cannot shine: its area light is left out");
-        return AG_OK;
-    }
     float area = shape_area(&parser->scene->shapes[shape_index]);
     if (!(area > 0.0f && isfinite(area))) {
         log_at(parser->log, AG_LOG_WARNING, where, "the area light has a shape of area %g and is left out",

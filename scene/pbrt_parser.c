@@ -150,6 +150,7 @@ static ag_status check_end(pbrt_parser *parser, file_location end)
     if (!parser->in_world)
         return pbrt_error(parser, end, 1, "the file ends without WorldBegin");
     PBRT_TRY(pbrt_check_blocks(parser, end));
+    PBRT_TRY(pbrt_end_objects(parser));
     PBRT_TRY(pbrt_check_named_media(parser));
     return pbrt_check_named_materials(parser);
 }
@@ -183,8 +184,10 @@ static pbrt_parser *parser_create(run_context *run, scene *out_scene)
         parser->run = run;
         parser->log = run->log;
         parser->scene = out_scene;
-        parser->state.world_from_object = transform_identity();
-        parser->state.start_is_active = true;
+        parser->state.world_from_object = parser->state.world_from_object_end = transform_identity();
+        parser->state.start_is_active = parser->state.end_is_active = true;
+        parser->transform_times[1] = 1.0;
+        parser->shapes_object_index = SCENE_NO_OBJECT;
         parser->source = (parameter_source){pbrt_excerpt, parser};
         parser->state.medium_inside = parser->state.medium_outside = PBRT_NO_MEDIUM;
     }
@@ -199,6 +202,7 @@ static void parser_destroy(pbrt_parser *parser)
         free(parser->named_materials[i].name);
     for (size_t i = 0; i < parser->named_medium_count; i++)
         free(parser->named_media[i].name);
+    pbrt_reset_objects(parser);
     name_table_reset(&parser->material_names);
     name_table_reset(&parser->medium_names);
     name_table_reset(&parser->float_texture_names);

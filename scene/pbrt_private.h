@@ -2,11 +2,12 @@
  * interpreters of directives.
  * Rests on the format's description, pbrt.org/fileformat-v4. Names and defaults are pbrt-v4's.
  * Flow: pbrt_parser dispatches directives; pbrt_files gives tokens; pbrt_parameters reads parameter lists;
- * pbrt_transforms, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights, pbrt_camera, ... interpret. Threads: one per scene. */
+ * pbrt_transforms, pbrt_objects, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights, pbrt_camera, ... interpret. Threads: one per scene. */
 #ifndef AFTERGLOW_PBRT_PRIVATE_H
 #define AFTERGLOW_PBRT_PRIVATE_H
 
 #include "color_space.h"
+#include "math/motion.h"
 #include "name_table.h"
 #include "pbrt_lexer.h"
 #include "scene.h"
@@ -29,13 +30,18 @@ enum { PBRT_MAX_DEPTH = 32 };         /* of files that include one another */
 enum { PBRT_MAX_PARAMETERS = 1000 };  /* of one directive */
 enum { PBRT_MAX_INCLUDES = 1000000 }; /* in all: files that include others twice multiply */
 
+/* The current transform's two ends, under a name. */
+typedef struct pbrt_named_transform {
+    transform start, end;
+} pbrt_named_transform;
+
 typedef struct pbrt_file {
     text_file file;
     pbrt_lexer lexer;
     file_location included_at; /* the Include or Import; zeroed for the first file */
 
     bool is_import; /* its end is told to who reads, who then ends it; the rest is for what it found: */
-    transform *coordinate_systems;
+    pbrt_named_transform *coordinate_systems;
     size_t coordinate_system_count;
     name_table coordinate_system_names;
 } pbrt_file;
@@ -71,8 +77,10 @@ typedef struct pbrt_area_light {
 
 /* What AttributeBegin saves and AttributeEnd brings back. */
 typedef struct pbrt_state {
-    transform world_from_object; /* before WorldBegin: camera_from_world */
-    bool start_is_active;        /* whether transforms apply to the start of the shutter, the only time there is yet */
+    /* At the start and at the end of TransformTimes; before WorldBegin: camera_from_world. What does not move looks at the
+     * start alone. */
+    transform world_from_object, world_from_object_end;
+    bool start_is_active, end_is_active; /* whether directives change them; at least one is */
     bool reverse_orientation;
     uint32_t material_index;
     bool has_no_surface;                  /* the material is known to be "interface" */
@@ -103,6 +111,37 @@ typedef struct pbrt_named_medium {
     file_location where; /* of its definition, or until then of the first MediumInterface that names it */
 } pbrt_named_medium;
 
+/* A shape that shines within an object, on its way into the world. */
+typedef struct pbrt_object_lamp {
+    shape shape; /* its arrays are owned */
+    pbrt_area_light light;
+    file_location where;
+} pbrt_object_lamp;
+
+/* A shape that moves within an object: an object of its own, as Embree knows one level of instances only. */
+typedef struct pbrt_object_part {
+    uint32_t object_index; /* the scene's */
+    motion object_from_part;
+} pbrt_object_part;
+
+typedef struct pbrt_object {
+    char *name;
+    uint32_t object_index; /* the scene's, of the shapes that stand still in it */
+    bool is_defined;
+    file_location where; /* of its ObjectBegin, or until then of its first ObjectInstance */
+    pbrt_object_lamp *lamps;
+    size_t lamp_count, lamp_capacity;
+    pbrt_object_part *parts;
+    size_t part_count, part_capacity;
+} pbrt_object;
+
+/* An ObjectInstance that came before its ObjectBegin. */
+typedef struct pbrt_early_instance {
+    uint32_t object; /* the parser's */
+    transform start, end;
+    file_location where;
+} pbrt_early_instance;
+
 typedef struct pbrt_parser {
     run_context *run;
     log_sink *log;
@@ -120,11 +159,12 @@ typedef struct pbrt_parser {
 
     double film_distance; /* m, from the lens of a realistic camera; 0: there is none */
 
-    bool in_world, in_object;
+    bool in_world;
     pbrt_state state;
+    double transform_times[2]; /* s */
     pbrt_saved_state *saved;
     size_t saved_count, saved_capacity;
-    transform *coordinate_systems;
+    pbrt_named_transform *coordinate_systems;
     size_t coordinate_system_count;
     name_table coordinate_system_names;
     pbrt_named_material *named_materials;
@@ -133,6 +173,14 @@ typedef struct pbrt_parser {
     pbrt_named_medium *named_media;
     size_t named_medium_count;
     name_table medium_names;
+    pbrt_object *objects;
+    size_t object_count, object_capacity;
+    name_table object_names;
+    pbrt_object *open_object;    /* between ObjectBegin and ObjectEnd, else NULL */
+    uint32_t shapes_object_index; /* where pbrt_add_shape adds to: the scene's object, SCENE_NO_OBJECT for the world */
+    pbrt_early_instance *early_instances;
+    size_t early_instance_count, early_instance_capacity;
+    size_t lamp_copy_count, lamp_copy_vertex_count; /* that instances have made */
     name_table float_texture_names, spectrum_texture_names; /* to indices of the scene's */
     float alpha;            /* of the shape being read */
     uint32_t alpha_texture; /* likewise */
@@ -198,18 +246,39 @@ ag_status pbrt_refuse(pbrt_parser *parser, const parameter_list *list, const cha
 
 /* pbrt_state.c: what Begin saves and End brings back. */
 pbrt_handler pbrt_import, pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin, pbrt_attribute_end, pbrt_transform_begin,
-    pbrt_transform_end, pbrt_object_begin, pbrt_object_end, pbrt_object_instance, pbrt_reverse_orientation;
+    pbrt_transform_end, pbrt_reverse_orientation;
+ag_status pbrt_save_state(pbrt_parser *parser, file_location where, bool is_object, bool is_import);
+ag_status pbrt_restore_state(pbrt_parser *parser, file_location where, const char *directive, bool is_object);
 /* Error where a Begin of the file that ends at that place has no End there. */
 ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end);
 /* At the end of an imported file: what is open is an error, else the state that it began with is brought back and the file
  * popped. */
 ag_status pbrt_end_import(pbrt_parser *parser, file_location end);
 
+/* pbrt_objects.c: what is kept once, and where it is shown. */
+pbrt_handler pbrt_object_begin, pbrt_object_end, pbrt_object_instance;
+/* Keeps a shape that shines within the open object. Takes its arrays, also on failure. */
+ag_status pbrt_add_object_lamp(pbrt_parser *parser, shape *s, file_location where);
+/* Shows a scene's object along the current transform as it moves: within the open object, or in the world. */
+ag_status pbrt_show_moving_shape(pbrt_parser *parser, uint32_t object_index, file_location where);
+/* Makes the instances that came early. Error where one is of an object that never came. */
+ag_status pbrt_end_objects(pbrt_parser *parser);
+void pbrt_reset_objects(pbrt_parser *parser);
+
 /* pbrt_transforms.c */
 pbrt_handler pbrt_identity, pbrt_translate, pbrt_scale, pbrt_rotate, pbrt_look_at, pbrt_transform,
     pbrt_concat_transform, pbrt_coordinate_system, pbrt_coord_sys_transform, pbrt_active_transform,
     pbrt_transform_times;
-ag_status pbrt_name_coordinate_system(pbrt_parser *parser, const char *name, const transform *world_from_system);
+ag_status pbrt_name_coordinate_system(pbrt_parser *parser, const char *name, const transform *start,
+                                      const transform *end);
+/* Whether the current transform moves while the shutter is open, as far as its two ends tell. */
+bool pbrt_is_moving(const pbrt_parser *parser);
+/* From one transform to another in TransformTimes, seen through the camera's shutter. Errors as motion_make's, at the
+ * directive. */
+ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const transform *end, file_location where,
+                           const char *directive, motion *out_motion);
+/* A warning, once for each of what, that it does not move. */
+void pbrt_warn_still(pbrt_parser *parser, file_location where, const char *what);
 
 /* pbrt_materials.c */
 pbrt_handler pbrt_material, pbrt_make_named_material, pbrt_use_named_material;
@@ -251,8 +320,9 @@ ag_status pbrt_get_float_texture(pbrt_parser *parser, parameter_list *list, cons
 
 /* pbrt_lights.c */
 pbrt_handler pbrt_light_source, pbrt_area_light_source;
-/* Makes the shape shine if AreaLightSource says so. */
-ag_status pbrt_add_area_light(pbrt_parser *parser, uint32_t shape_index, file_location where);
+/* Makes a shape of the world shine. */
+ag_status pbrt_add_area_light(pbrt_parser *parser, const pbrt_area_light *source, uint32_t shape_index,
+                              file_location where);
 
 /* Each comes as light_make leaves it; its pictures are the caller's. */
 /* pbrt_environments.c: LightSource "infinite". */

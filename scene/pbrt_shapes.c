@@ -16,8 +16,16 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     s->alpha_texture = parser->alpha_texture;
     s->material_index = parser->state.material_index;
     s->light_index = SHAPE_NO_LIGHT;
-    PBRT_TRY(scene_add_shape(parser->scene, s, &index));
-    return pbrt_add_area_light(parser, index, list->where);
+    bool shines = parser->state.area_light.is_set;
+    if (shines && parser->state.has_no_surface) {
+        log_at(parser->log, AG_LOG_WARNING, list->where,
+               "a shape with the material \"interface\" cannot shine: its area light is left out");
+        shines = false;
+    }
+    if (shines && parser->open_object)
+        return pbrt_add_object_lamp(parser, s, list->where);
+    PBRT_TRY(scene_add_object_shape(parser->scene, parser->shapes_object_index, s, &index));
+    return shines ? pbrt_add_area_light(parser, &parser->state.area_light, index, list->where) : AG_OK;
 }
 
 static ag_status add_quadric(pbrt_parser *parser, parameter_list *list, shape *s)
@@ -101,14 +109,6 @@ static ag_status read_disk(pbrt_parser *parser, parameter_list *list)
     return add_quadric(parser, list, &s);
 }
 
-/* Why a shape that is understood is not added; NULL when it is. */
-static const char *why_left_out(const pbrt_parser *parser)
-{
-    if (parser->in_object)
-        return "object instances are not supported yet: shapes between ObjectBegin and ObjectEnd are left out";
-    return NULL;
-}
-
 /* An interface with the same on both sides can be neither seen nor felt. */
 static bool is_nothing(const pbrt_parser *parser)
 {
@@ -139,16 +139,12 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
                    {"loopsubdiv", pbrt_loop_subdivision},
                    {"trianglemesh", pbrt_triangle_mesh},
                    {"bilinearmesh", pbrt_bilinear_mesh}};
-    const char *left_out = why_left_out(parser);
     PBRT_TRY(read_alpha(parser, list));
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(list->name, READERS[i].name) == 0) {
             if (is_nothing(parser))
                 return AG_OK;
-            if (!left_out)
-                return READERS[i].read(parser, list);
-            log_at_once(parser->log, AG_LOG_WARNING, list->where, left_out, "%s", left_out);
-            return AG_OK;
+            return READERS[i].read(parser, list);
         }
     for (size_t i = 0; i < sizeof UNSUPPORTED / sizeof *UNSUPPORTED; i++)
         if (strcmp(list->name, UNSUPPORTED[i]) == 0) {
@@ -159,11 +155,32 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
     return pbrt_error(parser, list->where, strlen("Shape"), "unknown shape \"%s\"", list->name);
 }
 
+/* A shape that moves is, as in pbrt, an object of its own in its own space, of which there is one instance. */
+static ag_status read_moving_shape(pbrt_parser *parser, parameter_list *list)
+{
+    pbrt_state *state = &parser->state;
+    const transform start = state->world_from_object, end = state->world_from_object_end;
+    uint32_t object_index, object_around = parser->shapes_object_index, count = parser->scene->shape_count;
+    PBRT_TRY(scene_add_object(parser->scene, &object_index));
+    state->world_from_object = state->world_from_object_end = transform_identity();
+    parser->shapes_object_index = object_index;
+    ag_status status = read_shape(parser, list);
+    parser->shapes_object_index = object_around;
+    state->world_from_object = start;
+    state->world_from_object_end = end;
+    if (status || parser->scene->shape_count == count) /* it was left out */
+        return status;
+    return pbrt_show_moving_shape(parser, object_index, list->where);
+}
+
 ag_status pbrt_shape(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
     PBRT_TRY(pbrt_read_named_parameters(parser, "Shape", "a quoted type", where, &list));
-    ag_status status = read_shape(parser, &list);
+    bool shines = parser->state.area_light.is_set;
+    if (shines)
+        pbrt_warn_still(parser, where, "a shape with an area light");
+    ag_status status = pbrt_is_moving(parser) && !shines ? read_moving_shape(parser, &list) : read_shape(parser, &list);
     parameter_list_reset(&list);
     return status;
 }

@@ -11,9 +11,10 @@ ag_status pbrt_world_begin(pbrt_parser *parser, file_location where)
     (void)where;
     PBRT_TRY(pbrt_settle_realistic(parser));
     parser->in_world = true;
-    parser->state.world_from_object = transform_identity();
-    parser->state.start_is_active = true;
-    return pbrt_name_coordinate_system(parser, "world", &parser->state.world_from_object);
+    pbrt_state *state = &parser->state;
+    state->world_from_object = state->world_from_object_end = transform_identity();
+    state->start_is_active = state->end_is_active = true;
+    return pbrt_name_coordinate_system(parser, "world", &state->world_from_object, &state->world_from_object_end);
 }
 
 ag_status pbrt_world_end(pbrt_parser *parser, file_location where)
@@ -22,7 +23,7 @@ ag_status pbrt_world_end(pbrt_parser *parser, file_location where)
     return AG_OK;
 }
 
-static ag_status save_state(pbrt_parser *parser, file_location where, bool is_object, bool is_import)
+ag_status pbrt_save_state(pbrt_parser *parser, file_location where, bool is_object, bool is_import)
 {
     if (parser->saved_count == parser->saved_capacity) {
         size_t capacity = parser->saved_capacity ? 2 * parser->saved_capacity : 16;
@@ -36,7 +37,7 @@ static ag_status save_state(pbrt_parser *parser, file_location where, bool is_ob
     return AG_OK;
 }
 
-static ag_status restore_state(pbrt_parser *parser, file_location where, const char *directive, bool is_object)
+ag_status pbrt_restore_state(pbrt_parser *parser, file_location where, const char *directive, bool is_object)
 {
     const char *begin = is_object ? "ObjectBegin" : "AttributeBegin",
                *other = is_object ? "AttributeBegin" : "ObjectBegin";
@@ -51,11 +52,14 @@ static ag_status restore_state(pbrt_parser *parser, file_location where, const c
     return AG_OK;
 }
 
-ag_status pbrt_attribute_begin(pbrt_parser *parser, file_location where) { return save_state(parser, where, false, false); }
+ag_status pbrt_attribute_begin(pbrt_parser *parser, file_location where)
+{
+    return pbrt_save_state(parser, where, false, false);
+}
 
 ag_status pbrt_attribute_end(pbrt_parser *parser, file_location where)
 {
-    return restore_state(parser, where, "AttributeEnd", false);
+    return pbrt_restore_state(parser, where, "AttributeEnd", false);
 }
 
 ag_status pbrt_transform_begin(pbrt_parser *parser, file_location where)
@@ -63,49 +67,18 @@ ag_status pbrt_transform_begin(pbrt_parser *parser, file_location where)
     log_at_once(
         parser->log, AG_LOG_WARNING, where, "TransformBegin",
         "TransformBegin and TransformEnd are deprecated and taken, as in pbrt-v4, for AttributeBegin and AttributeEnd");
-    return save_state(parser, where, false, false);
+    return pbrt_save_state(parser, where, false, false);
 }
 
 ag_status pbrt_transform_end(pbrt_parser *parser, file_location where)
 {
-    return restore_state(parser, where, "TransformEnd", false);
+    return pbrt_restore_state(parser, where, "TransformEnd", false);
 }
 
 ag_status pbrt_reverse_orientation(pbrt_parser *parser, file_location where)
 {
     (void)where;
     parser->state.reverse_orientation = !parser->state.reverse_orientation;
-    return AG_OK;
-}
-
-ag_status pbrt_object_begin(pbrt_parser *parser, file_location where)
-{
-    char *name;
-    PBRT_TRY(pbrt_read_string(parser, "ObjectBegin", "a quoted name", &name, NULL));
-    free(name);
-    if (parser->in_object)
-        return pbrt_error(parser, where, strlen("ObjectBegin"), "ObjectBegin within another object");
-    PBRT_TRY(save_state(parser, where, true, false));
-    parser->in_object = true;
-    return AG_OK;
-}
-
-ag_status pbrt_object_end(pbrt_parser *parser, file_location where)
-{
-    PBRT_TRY(restore_state(parser, where, "ObjectEnd", true));
-    parser->in_object = false;
-    return AG_OK;
-}
-
-ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
-{
-    char *name;
-    PBRT_TRY(pbrt_read_string(parser, "ObjectInstance", "a quoted name", &name, NULL));
-    log_at_once(parser->log, AG_LOG_WARNING, where, "ObjectInstance",
-                "object instances are not supported yet: ObjectInstance \"%s\" is left out, as are any others", name);
-    free(name);
-    if (parser->in_object)
-        return pbrt_error(parser, where, strlen("ObjectInstance"), "ObjectInstance within an object");
     return AG_OK;
 }
 
@@ -129,7 +102,7 @@ ag_status pbrt_import(pbrt_parser *parser, file_location where)
     ag_status status = pbrt_push_file(parser, name, name_where, strlen(name) + 2);
     free(name);
     if (!status)
-        status = save_state(parser, where, false, true);
+        status = pbrt_save_state(parser, where, false, true);
     if (status)
         return status;
     pbrt_file *top = &parser->files[parser->file_count - 1];

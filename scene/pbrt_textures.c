@@ -119,9 +119,10 @@ static ag_status read_word(pbrt_parser *parser, parameter_list *list, const char
     return pbrt_refuse(parser, list, name, "unknown %s \"%s\"; known are %s", name, word, known);
 }
 
-static ag_status read_solid_mapping(pbrt_parser *parser, texture *t)
+static ag_status read_solid_mapping(pbrt_parser *parser, const parameter_list *list, texture *t)
 {
     t->mapping.kind = TEXTURE_MAPPING_SOLID;
+    pbrt_warn_still(parser, list->where, "a texture in space");
     texture_mapping_place(&t->mapping, &parser->state.world_from_object);
     return AG_OK;
 }
@@ -133,6 +134,8 @@ static ag_status read_mapping(pbrt_parser *parser, parameter_list *list, texture
     int kind = TEXTURE_MAPPING_UV;
     PBRT_TRY(read_word(parser, list, "mapping", KINDS, 4, &kind));
     m->kind = (texture_mapping_kind)kind;
+    if (kind != TEXTURE_MAPPING_UV)
+        pbrt_warn_still(parser, list->where, "a texture in space");
     texture_mapping_place(m, &parser->state.world_from_object);
     if (kind == TEXTURE_MAPPING_UV) {
         m->scale = (vec2){1.0f, 1.0f};
@@ -200,7 +203,7 @@ static ag_status read_checkerboard(pbrt_parser *parser, parameter_list *list, te
     PBRT_TRY(parameter_get_int(list, parser->log, "dimension", &dimension));
     if (dimension != 2 && dimension != 3)
         return pbrt_refuse(parser, list, "dimension", "\"dimension\" should be 2 or 3, not %d", (int)dimension);
-    PBRT_TRY(dimension == 3 ? read_solid_mapping(parser, t) : read_mapping(parser, list, t));
+    PBRT_TRY(dimension == 3 ? read_solid_mapping(parser, list, t) : read_mapping(parser, list, t));
     return read_pair(parser, list, "tex1", 1.0f, "tex2", t);
 }
 
@@ -289,13 +292,13 @@ static ag_status read_octaves(pbrt_parser *parser, parameter_list *list, texture
                "\"octaves\" is above %d: %d is used, what is finer cannot be seen", TEXTURE_MAX_OCTAVES,
                TEXTURE_MAX_OCTAVES);
     t->octaves = octaves > TEXTURE_MAX_OCTAVES ? TEXTURE_MAX_OCTAVES : (int)octaves;
-    return read_solid_mapping(parser, t);
+    return read_solid_mapping(parser, list, t);
 }
 
 static ag_status read_windy(pbrt_parser *parser, parameter_list *list, texture *t)
 {
     (void)list;
-    return read_solid_mapping(parser, t);
+    return read_solid_mapping(parser, list, t);
 }
 
 static ag_status read_marble(pbrt_parser *parser, parameter_list *list, texture *t)

@@ -5,6 +5,7 @@
 
 #include "bsdf.h"
 #include "light_pick.h"
+#include "scene_extent.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,25 +21,13 @@ scene *scene_create(void)
     return s;
 }
 
-static void shape_free_arrays(shape *s)
-{
-    if (s->kind != SHAPE_MESH)
-        return;
-    free(s->as.mesh.positions);
-    free(s->as.mesh.normals);
-    free(s->as.mesh.uvs);
-    free(s->as.mesh.tangents);
-    free(s->as.mesh.indices);
-    free(s->as.mesh.area_cdf);
-}
-
 void scene_destroy(scene *s)
 {
     if (!s)
         return;
     bvh_destroy(s->bvh);
     for (uint32_t i = 0; i < s->shape_count; i++)
-        shape_free_arrays(&s->shapes[i]);
+        shape_reset(&s->shapes[i]);
     for (uint32_t i = 0; i < s->light_count; i++)
         light_reset(&s->lights[i]);
     for (uint32_t i = 0; i < s->texture_image_count; i++)
@@ -51,6 +40,10 @@ void scene_destroy(scene *s)
     parameter_list_reset(&s->pixel_filter);
     free(s->file_names);
     free(s->shapes);
+    free(s->objects);
+    free(s->instances);
+    free(s->instance_steps);
+    free(s->object_shapes);
     free(s->materials);
     free(s->media);
     free(s->textures);
@@ -154,16 +147,50 @@ ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index)
     return AG_OK;
 }
 
-ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index)
+ag_status scene_add_object_shape(scene *s, uint32_t object_index, const shape *item, uint32_t *out_index)
 {
     shape copy = *item;
     if (!grow((void **)&s->shapes, s->shape_count, sizeof *s->shapes)) {
-        shape_free_arrays(&copy);
+        shape_reset(&copy);
         return AG_ERROR_MEMORY;
     }
     copy.light_index = SHAPE_NO_LIGHT;
+    copy.object_index = object_index;
     *out_index = s->shape_count;
     s->shapes[s->shape_count++] = copy;
+    return AG_OK;
+}
+
+ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index)
+{
+    return scene_add_object_shape(s, SCENE_NO_OBJECT, item, out_index);
+}
+
+ag_status scene_add_object(scene *s, uint32_t *out_index)
+{
+    if (!grow((void **)&s->objects, s->object_count, sizeof *s->objects))
+        return AG_ERROR_MEMORY;
+    *out_index = s->object_count;
+    s->objects[s->object_count++] = (scene_object){0, 0};
+    return AG_OK;
+}
+
+ag_status scene_add_instance(scene *s, uint32_t object_index, const affine *steps, uint32_t step_count,
+                             uint32_t *out_index)
+{
+    for (uint32_t i = 0; i < step_count; i++)
+        if (!affine_can_be_undone(&steps[i]))
+            return AG_ERROR_SCENE;
+    if (!grow((void **)&s->instances, s->instance_count, sizeof *s->instances))
+        return AG_ERROR_MEMORY;
+    scene_instance added = {object_index, s->instance_step_count, step_count};
+    for (uint32_t i = 0; i < step_count; i++) {
+        if (!grow((void **)&s->instance_steps, s->instance_step_count, sizeof *s->instance_steps))
+            return AG_ERROR_MEMORY;
+        s->instance_steps[s->instance_step_count++] = steps[i];
+    }
+    *out_index = s->instance_count;
+    s->instances[s->instance_count++] = added;
     return AG_OK;
 }
 
@@ -181,44 +208,71 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
     return AG_OK;
 }
 
-void scene_find_bounds(const scene *s, vec3 *out_min, vec3 *out_max)
-{
-    *out_min = (vec3){INFINITY, INFINITY, INFINITY};
-    *out_max = (vec3){-INFINITY, -INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < s->shape_count; i++) {
-        vec3 low, high;
-        shape_bounds(&s->shapes[i], &low, &high);
-        *out_min = vec3_min(*out_min, low);
-        *out_max = vec3_max(*out_max, high);
-    }
-}
+/* Beyond this a float overflows when squared. */
+static const float REACH_MAX = 1e18f;
 
-static void find_bounds(scene *s)
+static ag_status find_bounds(scene *s, log_sink *log)
 {
-    scene_find_bounds(s, &s->bounds_min, &s->bounds_max);
+    ag_status status = scene_find_bounds(s, NULL, &s->bounds_min, &s->bounds_max);
+    if (status != AG_OK)
+        return status;
     if (s->bounds_min.x > s->bounds_max.x) {
         s->bounding_radius = 1.0f;
-        return;
+        return AG_OK;
+    }
+    /* instances: whoever made the shapes has looked at theirs */
+    if (s->instance_count > 0 && !(fmaxf(vec3_max_abs(s->bounds_min), vec3_max_abs(s->bounds_max)) <= REACH_MAX)) {
+        log_message(log, AG_LOG_ERROR, "an instance reaches beyond 1e18 units in world space");
+        return AG_ERROR_SCENE;
     }
     s->bounding_center = vec3_scale(vec3_add(s->bounds_min, s->bounds_max), 0.5f);
     s->bounding_radius = vec3_length(vec3_sub(s->bounds_max, s->bounding_center)) * 1.00001f;
+    return AG_OK;
+}
+
+/* Which shapes each object has. */
+static ag_status list_object_shapes(scene *s)
+{
+    if (s->object_count == 0)
+        return AG_OK;
+    s->object_shapes = malloc((size_t)(s->shape_count + 1) * sizeof *s->object_shapes);
+    if (!s->object_shapes)
+        return AG_ERROR_MEMORY;
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        if (s->shapes[i].object_index != SCENE_NO_OBJECT)
+            s->objects[s->shapes[i].object_index].shape_count++;
+    uint32_t first = 0;
+    for (uint32_t i = 0; i < s->object_count; i++) {
+        s->objects[i].first_shape = first;
+        first += s->objects[i].shape_count;
+        s->objects[i].shape_count = 0; /* counted again as they come */
+    }
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        if (s->shapes[i].object_index != SCENE_NO_OBJECT) {
+            scene_object *o = &s->objects[s->shapes[i].object_index];
+            s->object_shapes[o->first_shape + o->shape_count++] = i;
+        }
+    return AG_OK;
 }
 
 ag_status scene_commit(scene *s, run_context *run, const char *isa)
 {
-    for (uint32_t i = 0; i < s->shape_count; i++) {
-        ag_status status = shape_commit(&s->shapes[i]);
-        if (status != AG_OK)
-            return status;
+    ag_status status = AG_OK;
+    for (uint32_t i = 0; i < s->shape_count && status == AG_OK; i++) {
+        status = shape_commit(&s->shapes[i]);
         s->has_interfaces = s->has_interfaces || material_may_be_interface(s, s->shapes[i].material_index);
-        if (s->materials[s->shapes[i].material_index].kind != MATERIAL_INTERFACE)
-            s->surface_area += s->shapes[i].area;
     }
-    find_bounds(s);
-    s->camera.medium = s->camera_medium;
-    s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
-    ag_status status = light_pick_commit(s, run->log);
+    if (status == AG_OK)
+        status = list_object_shapes(s);
+    if (status == AG_OK)
+        status = scene_find_area(s, &s->surface_area);
+    if (status == AG_OK)
+        status = find_bounds(s, run->log);
     if (status != AG_OK)
         return status;
-    return bvh_create(s, run, isa, &s->bvh);
+    s->has_motion = s->camera.is_moving || s->instance_step_count > s->instance_count;
+    s->camera.medium = s->camera_medium;
+    s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
+    status = light_pick_commit(s, run->log);
+    return status == AG_OK ? bvh_create(s, run, isa, &s->bvh) : status;
 }

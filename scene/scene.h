@@ -6,6 +6,7 @@
 #define AFTERGLOW_SCENE_H
 
 #include "camera.h"
+#include "instance.h"
 #include "light.h"
 #include "material.h"
 #include "medium.h"
@@ -33,6 +34,12 @@ typedef struct scene {
     uint32_t texture_image_count;
     shape *shapes;
     uint32_t shape_count;
+    scene_object *objects; /* what their shapes are is told by the shapes */
+    uint32_t object_count;
+    scene_instance *instances;
+    uint32_t instance_count;
+    affine *instance_steps; /* of all instances, see scene_instance */
+    uint32_t instance_step_count;
     light *lights;
     uint32_t light_count;
     medium *media;
@@ -49,10 +56,12 @@ typedef struct scene {
     uint32_t file_name_count;
 
     /* set by scene_commit */
-    vec3 bounds_min, bounds_max; /* of all shapes; min > max when there is none */
+    uint32_t *object_shapes; /* indices of the shapes that belong to objects, object by object */
+    bool has_motion;         /* instances or the camera move while the shutter is open: what happens depends on the time */
+    vec3 bounds_min, bounds_max; /* of all shapes, where instances put them; min > max when there is none */
     vec3 bounding_center;
     float bounding_radius;
-    float surface_area;       /* m^2, of all shapes but interfaces */
+    float surface_area;       /* m^2, of all shapes but interfaces, in all instances */
     rgb light_power;          /* W, of all lights */
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
@@ -84,17 +93,21 @@ ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index);
 ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index);
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
-/* An area light's shape must be there already; its light_index is set here. Pictures and tables of a light pass into the
- * scene's ownership, on failure too (they are then destroyed). */
+/* An object, which is seen where instances put it. Its shapes do not shine. */
+ag_status scene_add_object(scene *s, uint32_t *out_index);
+ag_status scene_add_object_shape(scene *s, uint32_t object_index, const shape *item, uint32_t *out_index);
+/* An instance of an object that is there already (its shapes may come later); steps: see scene_instance, 1 of them where it
+ * is at rest, MOTION_STEPS_MAX at most. Errors also: AG_ERROR_SCENE (one that cannot be undone; nothing is said). */
+ag_status scene_add_instance(scene *s, uint32_t object_index, const affine *steps, uint32_t step_count,
+                             uint32_t *out_index);
+/* An area light's shape must be there already, in the world itself; its light_index is set here. Pictures and tables of
+ * a light pass into the scene's ownership, on failure too (they are then destroyed). */
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
 
 /* Areas, powers, bounds and the BVH (built by the run's threads and no others). isa: Embree's name of the widest
  * instruction set to use ("sse2", "sse4.2", "avx", "avx2", "avx512"), NULL for "avx2".
  * A scene without shapes is valid. Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING, AG_ERROR_SCENE, AG_CANCELLED. */
 ag_status scene_commit(scene *s, run_context *run, const char *isa);
-
-/* Of all shapes, committed or not; min > max when there is none. */
-void scene_find_bounds(const scene *s, vec3 *out_min, vec3 *out_max);
 
 /* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
 float shape_area(const shape *s);

@@ -17,7 +17,69 @@ shape shape_make(shape_kind kind)
     s.medium_inside = s.medium_outside = SCENE_NO_MEDIUM;
     s.alpha = 1.0f;
     s.alpha_texture = SCENE_NO_TEXTURE;
+    s.object_index = SCENE_NO_OBJECT;
     return s;
+}
+
+void shape_reset(shape *s)
+{
+    if (s->kind != SHAPE_MESH)
+        return;
+    mesh *m = &s->as.mesh;
+    free(m->positions);
+    free(m->normals);
+    free(m->uvs);
+    free(m->tangents);
+    free(m->indices);
+    free(m->area_cdf);
+    *m = (mesh){0};
+}
+
+/* A copy of count items and room for spare more, zeroed; NULL stays NULL. */
+static bool copy_array(const void *items, size_t count, size_t spare, size_t item_bytes, void *out_items)
+{
+    void *copy = NULL;
+    if (items) {
+        copy = calloc(count + spare, item_bytes);
+        if (!copy)
+            return false;
+        memcpy(copy, items, count * item_bytes);
+    }
+    memcpy(out_items, &copy, sizeof copy);
+    return true;
+}
+
+ag_status shape_copy(const shape *s, const transform *map, shape *out_copy)
+{
+    shape copy = *s;
+    if (s->kind != SHAPE_MESH) {
+        copy.as.quadric.world_from_object = transform_multiply(map, &s->as.quadric.world_from_object);
+        *out_copy = copy;
+        return AG_OK;
+    }
+    const mesh *from = &s->as.mesh;
+    mesh *m = &copy.as.mesh;
+    m->positions = NULL, m->normals = NULL, m->uvs = NULL, m->tangents = NULL, m->indices = NULL, m->area_cdf = NULL;
+    if (!copy_array(from->positions, from->vertex_count, 1, sizeof *m->positions, &m->positions) ||
+        !copy_array(from->normals, from->vertex_count, 0, sizeof *m->normals, &m->normals) ||
+        !copy_array(from->uvs, from->vertex_count, 0, sizeof *m->uvs, &m->uvs) ||
+        !copy_array(from->tangents, from->vertex_count, 0, sizeof *m->tangents, &m->tangents) ||
+        !copy_array(from->indices, 3 * (size_t)from->triangle_count, 0, sizeof *m->indices, &m->indices)) {
+        shape_reset(&copy);
+        return AG_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; i < m->vertex_count; i++)
+        m->positions[i] = transform_point(map, m->positions[i]);
+    for (uint32_t i = 0; m->normals && i < m->vertex_count; i++) {
+        vec3 n = transform_normal(map, m->normals[i]);
+        float largest = vec3_max_abs(n);
+        m->normals[i] = largest > 0.0f ? vec3_normalize(vec3_scale(n, 1.0f / largest)) : n;
+    }
+    for (uint32_t i = 0; m->tangents && i < m->vertex_count; i++)
+        m->tangents[i] = transform_vector(map, m->tangents[i]);
+    copy.flip_normal = s->flip_normal != transform_swaps_handedness(map);
+    *out_copy = copy;
+    return AG_OK;
 }
 
 static vec3 mesh_vertex(const mesh *m, uint32_t triangle, int corner)

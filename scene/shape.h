@@ -6,6 +6,8 @@
 #ifndef AFTERGLOW_SHAPE_H
 #define AFTERGLOW_SHAPE_H
 
+#include "afterglow/base.h"
+#include "instance.h"
 #include "math/transform.h"
 
 #include <stdint.h>
@@ -58,6 +60,7 @@ typedef struct shape {
     float alpha;            /* the share of it that is there, [0, 1]: rays pass through the rest (alpha.h) */
     uint32_t alpha_texture; /* a float texture that multiplies it; SCENE_NO_TEXTURE: none */
     float alpha_cutoff;     /* above 0: a place is there, wholly, where alpha is at least that */
+    uint32_t object_index; /* the scene's object that it belongs to; SCENE_NO_OBJECT: it stands in the world itself */
     union {
         mesh mesh;
         quadric quadric;
@@ -67,5 +70,9 @@ typedef struct shape {
 
 /* A shape with nothing in it yet: opaque, dark, of the scene's first material, in no medium. */
 shape shape_make(shape_kind kind);
+/* Frees what it owns. */
+void shape_reset(shape *s);
+/* The same shape, before its commit, moved on by a map: its world space becomes another's. Errors: AG_ERROR_MEMORY. */
+ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
 
 #endif

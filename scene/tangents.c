@@ -104,10 +104,43 @@ static surface_differentials quadric_differentials(const shape *s, const surface
                                    turn_of_normal(s, normal, dndv, hit->shading_normal)};
 }
 
+/* How the world's unit normal turns where the object's, of unit length, turns by dn: both go by the inverse transpose.
+ */
+static vec3 place_turn(const affine *a, vec3 object_normal, vec3 dn, vec3 world_normal)
+{
+    double c[3][3], turned[3], square = 0.0;
+    const double n[3] = {(double)object_normal.x, (double)object_normal.y, (double)object_normal.z};
+    affine_cofactors(a, c);
+    for (int i = 0; i < 3; i++) {
+        double placed = c[i][0] * n[0] + c[i][1] * n[1] + c[i][2] * n[2];
+        square += placed * placed;
+        turned[i] = c[i][0] * (double)dn.x + c[i][1] * (double)dn.y + c[i][2] * (double)dn.z;
+    }
+    double inverse = (affine_determinant(a) < 0.0 ? -1.0 : 1.0) / sqrt(square);
+    vec3 turn = {(float)(turned[0] * inverse), (float)(turned[1] * inverse), (float)(turned[2] * inverse)};
+    return across(turn, world_normal);
+}
+
+static surface_differentials differentials_of(const shape *at, const surface_hit *hit)
+{
+    return at->kind == SHAPE_MESH ? mesh_differentials(at, hit) : quadric_differentials(at, hit);
+}
+
 surface_differentials surface_differentials_at(const scene *s, const surface_hit *hit)
 {
     const shape *at = &s->shapes[hit->shape_index];
-    surface_differentials d = at->kind == SHAPE_MESH ? mesh_differentials(at, hit) : quadric_differentials(at, hit);
+    surface_differentials d;
+    if (hit->instance_index == SCENE_NO_INSTANCE) {
+        d = differentials_of(at, hit);
+    } else {
+        affine world_from_object = instance_at(s, hit->instance_index, hit->time);
+        surface_hit in_object = instance_hit_in_object(s, hit);
+        d = differentials_of(at, &in_object);
+        d.dpdu = affine_vector(&world_from_object, d.dpdu);
+        d.dpdv = affine_vector(&world_from_object, d.dpdv);
+        d.dndu = place_turn(&world_from_object, in_object.shading_normal, d.dndu, hit->shading_normal);
+        d.dndv = place_turn(&world_from_object, in_object.shading_normal, d.dndv, hit->shading_normal);
+    }
     float area = vec3_length_squared(vec3_cross(d.dpdu, d.dpdv));
     if (!(area > 0.0f && isfinite(area))) {
         frame any = frame_from_z(hit->geometric_normal);
@@ -118,7 +151,7 @@ surface_differentials surface_differentials_at(const scene *s, const surface_hit
     return d;
 }
 
-/* The tangents that a mesh has been given; false where there are none. */
+/* The tangents that a mesh has been given, in its own space; false where there are none. */
 static bool mesh_tangent(const shape *s, const surface_hit *hit, vec3 *out_tangent)
 {
     const mesh *m = &s->as.mesh;
@@ -138,7 +171,12 @@ void surface_tangents(const scene *s, const surface_hit *hit, vec3 *out_dpdu, ve
 {
     surface_differentials d = surface_differentials_at(s, hit);
     vec3 given;
-    if (mesh_tangent(&s->shapes[hit->shape_index], hit, &given)) {
+    surface_hit in_object = instance_hit_in_object(s, hit);
+    if (mesh_tangent(&s->shapes[hit->shape_index], &in_object, &given)) {
+        if (hit->instance_index != SCENE_NO_INSTANCE) {
+            affine world_from_object = instance_at(s, hit->instance_index, hit->time);
+            given = affine_vector(&world_from_object, given);
+        }
         vec3 aside = vec3_cross(hit->shading_normal, given);
         d.dpdv = vec3_face_forward(aside, d.dpdv);
         d.dpdu = given;

@@ -24,7 +24,7 @@ static const vec2 MIDDLE = {0.5f, 0.5f};
 
 static void check_ray(const camera *c, double x, double y, double aspect, vec3 origin, vec3 direction)
 {
-    scene_ray ray = camera_generate_ray(c, (float)x, (float)y, (float)aspect, MIDDLE);
+    scene_ray ray = camera_generate_ray(c, (float)x, (float)y, (float)aspect, MIDDLE, 0.0f);
     direction = vec3_normalize(direction);
     assert_vec3(ray.origin, origin.x, origin.y, origin.z, 1e-6);
     assert_vec3(ray.direction, direction.x, direction.y, direction.z, 1e-6);
@@ -72,7 +72,8 @@ static void lenses(void **state)
         double spread = 0.0;
         for (int i = 0; i < 16; i++) {
             scene_ray ray = camera_generate_ray(&c, 0.75f, 1.0f, 1.0f,
-                                                (vec2){((float)(i % 4) + 0.5f) / 4.0f, ((float)(i / 4) + 0.5f) / 4.0f});
+                                                (vec2){((float)(i % 4) + 0.5f) / 4.0f, ((float)(i / 4) + 0.5f) / 4.0f},
+                                                0.0f);
             assert_near(ray.origin.z, 0, 1e-6);
             double radius = sqrt((double)(ray.origin.x * ray.origin.x + ray.origin.y * ray.origin.y));
             assert_true(radius <= 0.5);
@@ -112,7 +113,7 @@ static void equal_area(void **state)
     assert_int_equal(c.kind, CAMERA_EQUAL_AREA);
     for (int i = 0; i < COUNT; i++) {
         double x = fmod(i * 0.61803398874989485, 1.0); /* spread without rows, which would fall along the bands' edges */
-        vec3 d = camera_generate_ray(&c, (float)x, ((float)i + 0.5f) / COUNT, 1.0f, MIDDLE).direction;
+        vec3 d = camera_generate_ray(&c, (float)x, ((float)i + 0.5f) / COUNT, 1.0f, MIDDLE, 0.0f).direction;
         int band = (int)((d.y + 1.0f) / 2.0f * BANDS);
         count[band < BANDS ? band : BANDS - 1]++;
         sum = vec3_add(sum, d);
@@ -126,9 +127,9 @@ static void equal_area(void **state)
     check_ray(&c, 0.5, 1.0, 1.0, ZERO, vec3_make(0, 0, 1));
     static const float OVER[][2] = {{-0.01f, 0.3f}, {1.01f, 0.3f}, {0.3f, -0.01f}, {0.3f, 1.01f}, {-0.01f, -0.01f}};
     for (int i = 0; i < 5; i++) {
-        vec3 beyond = camera_generate_ray(&c, OVER[i][0], OVER[i][1], 1.0f, MIDDLE).direction;
+        vec3 beyond = camera_generate_ray(&c, OVER[i][0], OVER[i][1], 1.0f, MIDDLE, 0.0f).direction;
         vec3 within = camera_generate_ray(&c, fminf(fmaxf(OVER[i][0], 0.0f), 1.0f), fminf(fmaxf(OVER[i][1], 0.0f), 1.0f),
-                                          1.0f, MIDDLE)
+                                          1.0f, MIDDLE, 0.0f)
                           .direction;
         assert_true(vec3_dot(beyond, within) > 0.998f && vec3_dot(beyond, within) < 0.99999f);
     }

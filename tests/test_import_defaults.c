@@ -1,6 +1,7 @@
 /* test_import_defaults.c: the camera that is made for files without one shows all there is, from the right side and
  * with up upwards, in pictures of any proportions; the light that is made shines on what it sees. */
 #include "import_defaults.h"
+#include "scene_extent.h"
 
 #include "pbrt_fixture.h"
 
@@ -52,7 +53,7 @@ static void all_is_in_the_picture(void **state)
         assert_int_equal(import_add_default_camera(i.r.scene, i.log), AG_OK);
         const camera *c = &i.r.scene->camera;
         vec3 low, high;
-        scene_find_bounds(i.r.scene, &low, &high);
+        assert_int_equal(scene_find_bounds(i.r.scene, NULL, &low, &high), AG_OK);
         assert_true(i.r.scene->has_camera);
         float largest = 0.0f;
         for (int corner = 0; corner < 8; corner++) {

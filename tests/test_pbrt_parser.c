@@ -263,12 +263,6 @@ static void warnings_are_given_once(void **state)
          "AreaLightSource \"diffuse\": \"string picture\" is not known, or not supported yet, and is ignored"},
         {"ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [ 0 1 0 ]",
          "\"rgb reflectance\" is outside the colours of Rec. 709: it is clipped, as are any others"},
-        {"ActiveTransform EndTime Translate 1 0 0 ActiveTransform All",
-         "ActiveTransform: motion is not supported yet, everything stands as it does at the start time"},
-        {"ObjectBegin \"a\" Shape \"sphere\" ObjectEnd",
-         "object instances are not supported yet: shapes between ObjectBegin and ObjectEnd are left out"},
-        {"ObjectInstance \"a\"",
-         "object instances are not supported yet: ObjectInstance \"a\" is left out, as are any others"},
         {"TransformBegin TransformEnd", "TransformBegin and TransformEnd are deprecated and taken, as in pbrt-v4, for "
                                         "AttributeBegin and AttributeEnd"},
         {"WorldEnd", "WorldEnd is not part of pbrt-v4 and is ignored"},
@@ -301,8 +295,6 @@ static void options_warn_where_they_matter(void **state)
     assert_true(r.scene->options.has_seed && r.scene->options.seed == -8 && r.scene->options.disable_pixel_jitter);
     assert_string_equal(r.said[AG_LOG_WARNING],
                         "t:2:1: warning: Option \"forcediffuse\" is not supported: materials stay as they are\n"
-                        "t:3:1: warning: TransformTimes: motion is not supported yet, everything stands as it does at "
-                        "the start time\n"
                         "t:4:1: warning: no coordinate system is named \"nowhere\": CoordSysTransform is ignored\n");
     reading_destroy(&r);
 }
@@ -372,17 +364,6 @@ static void transforms_compose_as_in_pbrt(void **state)
         "Scale -1 1 1 LookAt 1 2 3 4 2 3 0 0 1 Camera \"perspective\" WorldBegin CoordSysTransform \"camera\"\n"
         "Translate 0 0 1 Shape \"sphere\"",
         2, 2, 3);
-}
-
-static void end_time_leaves_the_start_alone(void **state)
-{
-    (void)state;
-    const char *text = "WorldBegin ActiveTransform EndTime Translate 5 0 0 ActiveTransform StartTime Translate 1 0 0\n"
-                       "ActiveTransform All Translate 0 1 0 Shape \"sphere\"";
-    reading r = reading_create(NULL, text, strlen(text));
-    assert_int_equal(r.status, AG_OK);
-    assert_vec3(transform_point(&r.scene->shapes[0].as.quadric.world_from_object, vec3_make(0, 0, 0)), 1, 1, 0, 0);
-    reading_destroy(&r);
 }
 
 static void attributes_are_brought_back(void **state)
@@ -710,7 +691,8 @@ static void damaged_scenes_are_survived(void **state)
         "WorldBegin MakeNamedMaterial \"m\" \"string type\" \"conductor\" \"rgb k\" [ 1 2 3 ] # comment\n"
         "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] \"bool twosided\" true NamedMaterial \"m\"\n"
         "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 1 ] \"integer indices\" [ 0 1 2 3 ] AttributeEnd\n"
-        "Texture \"t\" \"float\" \"scale\" \"float v\" 2 ObjectBegin \"o\" Shape \"disk\" ObjectEnd ColorSpace \"rec2020\"\n"
+        "Texture \"t\" \"float\" \"scale\" \"float v\" 2 ObjectBegin \"o\" Shape \"disk\" ObjectEnd\n"
+        "ActiveTransform EndTime Rotate 9 1 0 0 ObjectInstance \"o\" ColorSpace \"rec2020\"\n"
         "Attribute \"shape\" \"float radius\" 1 Material \"diffuse\" \"spectrum reflectance\" [ 400 1 ] Import \"/none\"";
     static const unsigned char BYTES[] = {0, '"', '[', ']', '#', '\\', '\n', '-', '9', 'e', 'x', 0xff};
     size_t size = sizeof TEXT - 1;
@@ -782,7 +764,6 @@ int main(void)
         cmocka_unit_test(options_warn_where_they_matter),
         cmocka_unit_test(words_for_the_renderer_are_kept),
         cmocka_unit_test(transforms_compose_as_in_pbrt),
-        cmocka_unit_test(end_time_leaves_the_start_alone),
         cmocka_unit_test(attributes_are_brought_back),
         cmocka_unit_test(included_files_are_found),
         cmocka_unit_test(included_files_are_told),

@@ -276,20 +276,6 @@ static void neighbouring_patches_share_their_edge(void **state)
     reading_destroy(&r);
 }
 
-static void shapes_in_objects_are_left_out(void **state)
-{
-    (void)state;
-    const char *text =
-        "WorldBegin ObjectBegin \"a\" Translate 1 0 0 Shape \"sphere\" " TRIANGLE
-        "ObjectEnd Shape \"sphere\" Material \"\" Shape \"sphere\" Material \"diffuse\" Shape \"sphere\"";
-    reading r = reading_create(NULL, text, strlen(text));
-    assert_int_equal(r.status, AG_OK);
-    assert_int_equal(r.count[AG_LOG_WARNING], 1);
-    assert_int_equal(r.scene->shape_count, 2);
-    assert_vec3(transform_point(&r.scene->shapes[0].as.quadric.world_from_object, vec3_make(0, 0, 0)), 0, 0, 0, 0);
-    reading_destroy(&r);
-}
-
 static void large_arrays_are_read(void **state)
 {
     (void)state;
@@ -327,7 +313,6 @@ int main(void)
         cmocka_unit_test(flat_quadrilaterals_become_two_triangles),
         cmocka_unit_test(curved_patches_are_cut),
         cmocka_unit_test(neighbouring_patches_share_their_edge),
-        cmocka_unit_test(shapes_in_objects_are_left_out),
         cmocka_unit_test(large_arrays_are_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

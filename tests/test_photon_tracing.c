@@ -330,14 +330,65 @@ static void a_shortage_is_explained(void **state)
         "LightSource \"point\"\nTranslate 0 0 1000 Shape \"disk\" \"float radius\" [10]\n";
     expect_shortage(FAR_DISK, PHOTON_GLOBAL, 200, "of 10000 photons stored");
     expect_shortage("LightSource \"point\"\n", PHOTON_GLOBAL, 0, "(100.0 % of the emitted light leaves the scene)");
-    /* nothing specular: no caustics */
-    char text[512];
-    snprintf(text, sizeof text, SPHERE, 0.5, 0.5, 0.5);
-    expect_shortage(text, PHOTON_CAUSTIC, 0, "caustic photon map: 0 of 10000");
     /* nothing diffuse: a room of black mirrors */
     expect_shortage("LightSource \"point\"\nMaterial \"conductor\" \"rgb reflectance\" [0.02 0.02 0.02]\n"
                     "Shape \"sphere\"\n",
                     PHOTON_GLOBAL, 0, "too few meet a diffuse surface");
+}
+
+/* A plate goes through a narrow beam, by which it is met for so much of the time; the floor below has the rest. Photons on the
+ * plate lie where those places are when it starts. */
+static void paths_have_times_of_their_own(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    /* three wide, its front edge goes from -3 to 7: it is in the beam from 0.3 to 0.6 */
+    scene *s = test_scene_create(
+        &r, "LightSource \"spot\" \"point3 from\" [0 0 9] \"point3 to\" [0 0 0] \"float coneangle\" 0.01 "
+            "\"float conedeltaangle\" 0\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+            "Shape \"disk\" \"float radius\" 5\nActiveTransform EndTime Translate 10 0 0 ActiveTransform All\n"
+            "Shape \"trianglemesh\" \"point3 P\" [-6 -1 1 -3 -1 1 -3 1 1 -6 1 1] \"integer indices\" [0 1 2 0 2 3]\n");
+    assert_true(s->has_motion);
+    photon_set set = trace(&r, s, PHOTON_GLOBAL, 100000 / FEWER, 100);
+    double floor_flux = 0.0, plate_flux = 0.0;
+    for (uint32_t i = 0; i < set.count; i++) {
+        const float *at = set.photons[i].position;
+        double flux = (double)flux_decode(set.photons[i].flux).r / (double)set.emitted_paths;
+        if (at[2] < 0.5f) {
+            assert_close(at[0], 0.0, 0.01);
+            floor_flux += flux;
+        } else {
+            assert_true(at[0] > -6.01f && at[0] < -2.99f);
+            plate_flux += flux;
+        }
+    }
+    assert_relative(floor_flux, 0.7 * s->light_power.r, 0.02 * WIDER);
+    assert_relative(plate_flux, 0.3 * s->light_power.r, 0.02 * WIDER);
+    photon_set_reset(&set);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+/* Nothing specular, or only in an object that is nowhere: not one path is traced. */
+static void without_traced_matter_there_are_no_caustics(void **state)
+{
+    (void)state;
+    static const char *const WORLDS[] = {
+        "LightSource \"point\" Shape \"sphere\" \"float radius\" 3\n",
+        "LightSource \"point\" Shape \"sphere\" \"float radius\" 3 ObjectBegin \"a\" Material \"dielectric\" "
+        "Shape \"sphere\" ObjectEnd\n"};
+    for (int i = 0; i < 2; i++) {
+        test_run r;
+        test_run_init(&r, 2);
+        scene *s = test_scene_create(&r, WORLDS[i]);
+        photon_set set = trace(&r, s, PHOTON_CAUSTIC, 1000, 100);
+        assert_true(set.count == 0 && set.emitted_paths == 0);
+        assert_int_equal(r.warning_count, 0);
+        photon_set_reset(&set);
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
 }
 
 static void a_scene_without_light_has_no_photons(void **state)
@@ -436,6 +487,8 @@ int main(void)
         cmocka_unit_test(any_number_of_threads_traces_the_same_photons),
         cmocka_unit_test(seeds_and_counts_make_a_difference),
         cmocka_unit_test(a_shortage_is_explained),
+        cmocka_unit_test(paths_have_times_of_their_own),
+        cmocka_unit_test(without_traced_matter_there_are_no_caustics),
         cmocka_unit_test(a_scene_without_light_has_no_photons),
         cmocka_unit_test(a_black_room_is_met_once_a_path),
         cmocka_unit_test(cancelling_ends_it),

@@ -1,5 +1,5 @@
 /* test_program_same_bits.c: the same picture, bit for bit, whatever the number of threads, on demand and precomputed,
- * twice each, in a plain room and in one full of coincidences; and in no run is an irradiance computed twice.
+ * twice each, in a plain room, in one full of coincidences and in one that moves; and in no run is an irradiance computed twice.
  *
  * Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
 /* ctest: sanitize */
@@ -26,6 +26,7 @@ enum { THREADS_COUNT = sizeof THREADS / sizeof *THREADS };
 static const long long PHOTON_COUNT = IS_SANITIZED ? 5000 : 20000;
 
 #define BOX          PROGRAM_SCENES "box_with_blocks.pbrt"
+#define MOTION       PROGRAM_SCENES "moving_blocks.pbrt"
 #define COINCIDENCES PROGRAM_SCENES "coincidences.pbrt"
 
 static void expect_same(const char *what, const picture *p, const picture *reference)
@@ -95,6 +96,12 @@ static void test_coincidences(void **state)
 {
     (void)state;
     expect_same_for_all_threads(COINCIDENCES);
+}
+
+static void test_motion(void **state)
+{
+    (void)state;
+    expect_same_for_all_threads(MOTION);
 }
 
 /* All photons on one spot of a floor, and few of them asked for by many threads at once. */
@@ -204,6 +211,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_plain_room),
         TEST_IN_FOLDER(test_coincidences),
+        TEST_IN_FOLDER(test_motion),
         TEST_IN_FOLDER(test_few_photons_for_many_threads),
         TEST_IN_FOLDER(test_path_tracer),
         TEST_IN_FOLDER(test_crop),

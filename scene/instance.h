@@ -1,0 +1,43 @@
+/* instance.h: objects, which are kept once, and instances, which put them into the world, at rest or moving while the
+ * shutter is open.
+ * Flow: the scene file makes them; bvh_embree casts rays at them and asks here where in the world a hit lies.
+ * Threads: read-only once the scene is committed. */
+#ifndef AFTERGLOW_INSTANCE_H
+#define AFTERGLOW_INSTANCE_H
+
+#include "math/affine.h"
+
+#include <stdint.h>
+
+#define SCENE_NO_OBJECT   UINT32_MAX
+#define SCENE_NO_INSTANCE UINT32_MAX
+
+struct scene;
+struct surface_hit;
+
+/* Shapes whose object_index says so; "world space" of theirs is the object's. */
+typedef struct scene_object {
+    /* set by scene_commit */
+    uint32_t first_shape, shape_count; /* the range of scene.object_shapes that tells which shapes */
+} scene_object;
+
+typedef struct scene_instance {
+    uint32_t object_index;
+    uint32_t first_step, step_count; /* the range of scene.instance_steps: world_from_object at evenly spaced times from
+                                      * the shutter's opening to its closing, straight in between; 1: at rest */
+} scene_instance;
+
+/* world_from_object at a time of the shutter, in [0, 1]. */
+affine instance_at(const struct scene *s, uint32_t instance_index, float time);
+
+/* The world's point, in double precision, in the object's space. */
+vec3 instance_point_in_object(const affine *world_from_object, const double world[3]);
+
+/* Takes a hit from the object's space to the world's: position, normals, epsilon. */
+void instance_place_hit(const affine *world_from_object, struct surface_hit *in_out_hit);
+
+/* The way back: the hit as its shape has it, but for epsilon; itself where the shape stands in the world. For bvh.h's
+ * readers of shapes. */
+struct surface_hit instance_hit_in_object(const struct scene *s, const struct surface_hit *hit);
+
+#endif

@@ -1,0 +1,204 @@
+/* scene_extent.c: see scene_extent.h.
+ * Threads: read-only. */
+#include "scene_extent.h"
+
+#include "bvh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* --- bounds --- */
+
+typedef struct box {
+    vec3 low, high;
+} box;
+
+static const box NOTHING = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+
+static void include(box *b, const box *other)
+{
+    b->low = vec3_min(b->low, other->low);
+    b->high = vec3_max(b->high, other->high);
+}
+
+/* Around the box that the map makes of b: its middle, and how far its half reaches along each axis. */
+static box place_box(const affine *a, const box *b)
+{
+    const double middle[3] = {0.5 * ((double)b->low.x + (double)b->high.x),
+                              0.5 * ((double)b->low.y + (double)b->high.y),
+                              0.5 * ((double)b->low.z + (double)b->high.z)};
+    const double half[3] = {(double)b->high.x - middle[0], (double)b->high.y - middle[1],
+                            (double)b->high.z - middle[2]};
+    float low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        double at = (double)a->m[i][3], reach = 0.0;
+        for (int j = 0; j < 3; j++) {
+            at += (double)a->m[i][j] * middle[j];
+            reach += fabs((double)a->m[i][j]) * half[j];
+        }
+        low[i] = (float)(at - reach);
+        high[i] = (float)(at + reach);
+    }
+    return (box){{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+ag_status scene_find_bounds(const scene *s, bool (*is_wanted)(const scene *s, const shape *item), vec3 *out_min,
+                            vec3 *out_max)
+{
+    box all = NOTHING, *of_objects = NULL;
+    if (s->object_count > 0) {
+        of_objects = malloc(s->object_count * sizeof *of_objects);
+        if (!of_objects)
+            return AG_ERROR_MEMORY;
+        for (uint32_t i = 0; i < s->object_count; i++)
+            of_objects[i] = NOTHING;
+    }
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        const shape *item = &s->shapes[i];
+        box b;
+        if (is_wanted && !is_wanted(s, item))
+            continue;
+        shape_bounds(item, &b.low, &b.high);
+        include(item->object_index == SCENE_NO_OBJECT ? &all : &of_objects[item->object_index], &b);
+    }
+    for (uint32_t i = 0; i < s->instance_count; i++) {
+        const scene_instance *at = &s->instances[i];
+        const box *b = &of_objects[at->object_index];
+        for (uint32_t k = 0; b->low.x <= b->high.x && k < at->step_count; k++) {
+            box placed = place_box(&s->instance_steps[at->first_step + k], b);
+            include(&all, &placed);
+        }
+    }
+    free(of_objects);
+    *out_min = all.low;
+    *out_max = all.high;
+    return AG_OK;
+}
+
+/* --- area --- */
+
+/* An object's area vectors, summed over those of like direction: each direction and its opposite by its largest
+ * coordinate and, in its plane, by one of 4 x 4 squares. */
+enum { SQUARES = 4, DIRECTIONS = 3 * SQUARES * SQUARES, SAMPLES_ACROSS_QUADRIC = 16 };
+
+typedef struct area_vectors {
+    double sums[DIRECTIONS][3];
+    double area;      /* of the object */
+    double area_seen; /* the lengths of the sums: what is round has lost some hundredths */
+} area_vectors;
+
+static void add_area(area_vectors *v, const double a[3])
+{
+    int largest = 0;
+    for (int i = 1; i < 3; i++)
+        if (fabs(a[i]) > fabs(a[largest]))
+            largest = i;
+    if (a[largest] == 0.0)
+        return;
+    double sign = a[largest] < 0.0 ? -1.0 : 1.0;
+    int bin = largest;
+    for (int k = 1; k < 3; k++) {
+        int square = (int)((a[(largest + k) % 3] / a[largest] + 1.0) * (0.5 * SQUARES));
+        bin = bin * SQUARES + (square < SQUARES ? square : SQUARES - 1);
+    }
+    for (int i = 0; i < 3; i++)
+        v->sums[bin][i] += sign * a[i];
+}
+
+static void add_shape(area_vectors *v, const shape *item)
+{
+    v->area += (double)item->area;
+    if (item->kind != SHAPE_MESH) {
+        const int n = SAMPLES_ACROSS_QUADRIC;
+        for (int i = 0; i < n * n; i++) {
+            vec2 u = {((float)(i % n) + 0.5f) / (float)n, ((float)(i / n) + 0.5f) / (float)n};
+            surface_sample at = shape_sample_area(item, u);
+            double share = 1.0 / ((double)at.pdf_area * n * n);
+            add_area(v, (const double[]){(double)at.geometric_normal.x * share, (double)at.geometric_normal.y * share,
+                                         (double)at.geometric_normal.z * share});
+        }
+        return;
+    }
+    const mesh *m = &item->as.mesh;
+    for (uint32_t i = 0; i < m->triangle_count; i++) {
+        const uint32_t *index = m->indices + 3 * (size_t)i;
+        vec3 p = m->positions[index[0]], q = m->positions[index[1]], r = m->positions[index[2]];
+        double u[3] = {(double)q.x - p.x, (double)q.y - p.y, (double)q.z - p.z};
+        double w[3] = {(double)r.x - p.x, (double)r.y - p.y, (double)r.z - p.z};
+        add_area(v, (const double[]){0.5 * (u[1] * w[2] - u[2] * w[1]), 0.5 * (u[2] * w[0] - u[0] * w[2]),
+                                     0.5 * (u[0] * w[1] - u[1] * w[0])});
+    }
+}
+
+/* Interfaces have no light on them. */
+static bool counts(const scene *s, const shape *item)
+{
+    return s->materials[item->material_index].kind != MATERIAL_INTERFACE;
+}
+
+static double length_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+static void gather_area_vectors(const scene *s, const scene_object *object, area_vectors *out)
+{
+    memset(out, 0, sizeof *out);
+    for (uint32_t i = 0; i < object->shape_count; i++) {
+        const shape *item = &s->shapes[s->object_shapes[object->first_shape + i]];
+        if (counts(s, item))
+            add_shape(out, item);
+    }
+    for (int i = 0; i < DIRECTIONS; i++)
+        out->area_seen += length_of(out->sums[i]);
+}
+
+/* Area vectors go over by the cofactors. */
+static double placed_area(const area_vectors *v, const affine *a)
+{
+    double c[3][3], sum = 0.0;
+    affine_cofactors(a, c);
+    for (int i = 0; i < DIRECTIONS; i++) {
+        const double *n = v->sums[i];
+        double w[3];
+        for (int k = 0; k < 3; k++)
+            w[k] = c[k][0] * n[0] + c[k][1] * n[1] + c[k][2] * n[2];
+        sum += length_of(w);
+    }
+    return v->area_seen > 0.0 ? sum * (v->area / v->area_seen) : 0.0;
+}
+
+ag_status scene_find_area(const scene *s, float *out_area)
+{
+    float area = 0.0f;
+    double of_instances = 0.0;
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        if (s->shapes[i].object_index == SCENE_NO_OBJECT && counts(s, &s->shapes[i]))
+            area += s->shapes[i].area;
+    *out_area = area;
+    if (s->instance_count == 0)
+        return AG_OK;
+    /* object by object: chains of their instances */
+    uint32_t *first = malloc(s->object_count * sizeof *first), *next = malloc(s->instance_count * sizeof *next);
+    if (!first || !next) {
+        free(first);
+        free(next);
+        return AG_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; i < s->object_count; i++)
+        first[i] = SCENE_NO_INSTANCE;
+    for (uint32_t i = s->instance_count; i-- > 0;) {
+        uint32_t object = s->instances[i].object_index;
+        next[i] = first[object];
+        first[object] = i;
+    }
+    for (uint32_t i = 0; i < s->object_count; i++) {
+        area_vectors vectors;
+        if (first[i] == SCENE_NO_INSTANCE)
+            continue;
+        gather_area_vectors(s, &s->objects[i], &vectors);
+        for (uint32_t k = first[i]; k != SCENE_NO_INSTANCE; k = next[k])
+            of_instances += placed_area(&vectors, &s->instance_steps[s->instances[k].first_step]);
+    }
+    free(first);
+    free(next);
+    *out_area = area + (float)of_instances;
+    return AG_OK;
+}
