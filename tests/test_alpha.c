@@ -82,6 +82,17 @@ static void a_share_of_the_rays_is_stopped(void **state)
                       "\"float alpha\" 0.3",
                       0.0f, 8),
         0.51);
+    /* instances: two of one object, one of them mirrored and stretched, stop rays each by themselves */
+    assert_share(share_stopped("ObjectBegin \"o\" " SQUARE
+                               "\"float alpha\" 0.3 ObjectEnd ObjectInstance \"o\" Translate 0 "
+                               "0 -1 Scale -3 2 2 ObjectInstance \"o\"",
+                               1.0f, 10),
+                 0.51);
+    assert_share(
+        share_stopped("ObjectBegin \"o\" Shape \"sphere\" \"float radius\" 1 \"float alpha\" 0.3 ObjectEnd Scale 2 2 "
+                      "-2 ObjectInstance \"o\"",
+                      1.0f, 11),
+        0.51);
     /* all and nothing */
     assert_true(share_stopped(SQUARE "\"float alpha\" 1", 1.0f, 9) == 1.0);
     assert_true(share_stopped(SQUARE "\"float alpha\" 7", 1.0f, 9) == 1.0);

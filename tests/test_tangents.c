@@ -118,6 +118,25 @@ static void meshes(void **state)
         check_shape(WORLDS[i], 200 + i);
 }
 
+#define INSTANCE(before, shape, place) before "ObjectBegin \"o\" " shape " ObjectEnd " place "ObjectInstance \"o\""
+
+static void instances(void **state)
+{
+    (void)state;
+    static const char *const WORLDS[] = {
+        INSTANCE("", "Shape \"sphere\" \"float radius\" 1.5", MAP),
+        INSTANCE("ReverseOrientation ", MAP "Shape \"sphere\" \"float phimax\" 200", "Scale -1.3 1 1 "),
+        INSTANCE("", "Shape \"cylinder\" \"float radius\" 0.7", MAP),
+        INSTANCE("", "Shape \"disk\" \"float innerradius\" 0.4", "Scale 1.5 1.5 -1 " MAP),
+        INSTANCE("", TRIANGLES "\"normal N\" [ -0.3 -0.3 1 0.3 -0.3 1 0.3 0.3 1 -0.3 0.3 1 ]", MAP),
+        INSTANCE("", "Scale 1 1 -1 " TRIANGLES "\"point2 uv\" [ 0 0 2 0.1 1.5 1 0.2 0.7 ]", MAP "Scale -1 1 1 "),
+        /* as it stands when the shutter opens */
+        MAP "ActiveTransform EndTime Translate 3 0 0 Rotate 90 1 2 0 ActiveTransform All Shape \"sphere\"",
+    };
+    for (size_t i = 0; i < sizeof WORLDS / sizeof *WORLDS; i++)
+        check_shape(WORLDS[i], 300 + i);
+}
+
 static surface_hit hit_from_above(const scene *s, float x, float y)
 {
     surface_hit hit;
@@ -156,6 +175,13 @@ static void tangents_of_the_file_and_of_uvs_that_say_nothing(void **state)
     /* the uvs' own derivatives stay what they are */
     assert_true(fabsf(surface_differentials_at(s, &hit).dpdu.x) < 1.0f);
     scene_destroy(s);
+    s = test_scene_create(&run, "ObjectBegin \"o\" " TRIANGLES "\"vector3 S\" [ 1 1 0 1 1 0 1 1 0 1 1 0 ] ObjectEnd "
+                                "Rotate 90 0 0 1 ObjectInstance \"o\"");
+    hit = hit_from_above(s, 0.3f, 0.1f);
+    surface_tangents(s, &hit, &dpdu, &dpdv);
+    assert_close((double)dpdu.x, -(double)dpdu.y, 1e-5);
+    assert_true(dpdu.y > 0.0f);
+    scene_destroy(s);
     s = test_scene_create(&run, TRIANGLES "\"point2 uv\" [ 0.5 0.5 0.5 0.5 0.5 0.5 0.5 0.5 ]");
     hit = hit_from_above(s, 0.3f, 0.1f);
     surface_tangents(s, &hit, &dpdu, &dpdv);
@@ -177,6 +203,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(quadrics),
         cmocka_unit_test(meshes),
+        cmocka_unit_test(instances),
         cmocka_unit_test(uvs_where_there_are_none),
         cmocka_unit_test(tangents_of_the_file_and_of_uvs_that_say_nothing),
     };
