@@ -122,7 +122,7 @@ static vec3 direction_at(const reading *r, float x, float y)
     const double *width = parameter_list_find(&r->scene->film, "xresolution")->numbers;
     const double *height = parameter_list_find(&r->scene->film, "yresolution")->numbers;
     c.tan_half_fov = (float)tan((double)c.fov_degrees * PI_ / 360.0);
-    scene_ray ray = camera_generate_ray(&c, x, y, (float)(*width / *height), (vec2){0.5f, 0.5f});
+    scene_ray ray = camera_generate_ray(&c, x, y, (float)(*width / *height), (vec2){0.5f, 0.5f}, 0.0f);
     return ray.direction;
 }
 
@@ -170,7 +170,7 @@ static void orthographic_camera(void **state)
     camera c = r.scene->camera;
     expect_film(&r, 1280, 853);
     c.tan_half_fov = 1.0f;
-    scene_ray corner = camera_generate_ray(&c, 1.0f, 0.0f, 1.5f, (vec2){0.5f, 0.5f});
+    scene_ray corner = camera_generate_ray(&c, 1.0f, 0.0f, 1.5f, (vec2){0.5f, 0.5f}, 0.0f);
     assert_vec3(corner.origin, 1 + 3, 2 + 2, 3, 1e-5);
     assert_vec3(corner.direction, 0, 0, -1, 1e-6);
     reading_destroy(&r);

@@ -145,7 +145,7 @@ static void orthographic_cameras_are_as_wide_as_the_file_says(void **state)
     put(&b, IMPORT_RECORD_END, NULL, 0);
     reading r = fill(b.bytes, b.size);
     assert_int_equal(r.status, AG_OK);
-    scene_ray ray = camera_generate_ray(&r.scene->camera, 1.0f, 0.0f, 2.0f, (vec2){.5f, .5f});
+    scene_ray ray = camera_generate_ray(&r.scene->camera, 1.0f, 0.0f, 2.0f, (vec2){.5f, .5f}, 0.0f);
     assert_vec3(ray.origin, 3, 1.5, 9, 1e-6);
     assert_vec3(ray.direction, 0, 0, -1, 1e-6);
     reading_destroy(&r);
