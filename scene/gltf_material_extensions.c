@@ -45,18 +45,33 @@ static ag_status read_transmission(gltf_reader *r, const gltf_value *at, const g
     return gltf_get_texture(r, extension, "transmissionTexture", RED, &out->uv_set, &m->transmission_texture);
 }
 
+/* Of which that share is left after that distance in the world, as the format has it. */
+static float absorption(float share, double distance)
+{
+    return (float)(-log(fmax((double)share, 1e-6)) / distance);
+}
+
 /* How thick it is, the mesh says better than the factor: only whether there is a volume is read from that. */
 static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
                              gltf_material *out)
 {
-    float thickness = 0.0f, distance = 0.0f;
+    float thickness = 0.0f;
+    double distance = 0.0;
     rgb color = rgb_gray(1.0f);
-    (void)at, (void)out;
+    gltf_value v = gltf_member(extension, "attenuationDistance");
+    (void)at;
     GLTF_TRY(gltf_get_clamped(r, extension, "thicknessFactor", 0.0, 1e30, &thickness));
-    GLTF_TRY(gltf_get_clamped(r, extension, "attenuationDistance", 0.0, 1e30, &distance));
+    GLTF_TRY(gltf_get_double(r, extension, "attenuationDistance", &distance));
     GLTF_TRY(gltf_get_color(r, extension, "attenuationColor", 0.0, 1.0, &color));
-    m->is_thin = m->is_thin && !(thickness > 0.0f);
-    return AG_OK;
+    if (v.json && !(distance > 1e-18))
+        return gltf_error(r, &v, "%g should be above 0", distance);
+    if (thickness == 0.0f || m->transmission == 0.0f)
+        return AG_OK;
+    m->is_thin = false;
+    bool absorbs = v.json && (color.r < 1.0f || color.g < 1.0f || color.b < 1.0f);
+    medium filling = {.sigma_a = {absorption(color.r, distance), absorption(color.g, distance),
+                                  absorption(color.b, distance)}};
+    return absorbs ? scene_add_medium(r->scene, &filling, &out->medium_inside) : AG_OK;
 }
 
 static ag_status read_clearcoat(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,

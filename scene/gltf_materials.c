@@ -86,6 +86,7 @@ static ag_status load(gltf_reader *r, const gltf_value *at, gltf_material *out)
 {
     material m = material_make(MATERIAL_PRINCIPLED);
     out->uv_set = GLTF_NONE;
+    out->medium_inside = SCENE_NO_MEDIUM;
     out->radiance = rgb_gray(0.0f);
     out->radiance_texture = SCENE_NO_TEXTURE;
     GLTF_TRY(read_metallic_roughness(r, at, &m, out));

@@ -87,6 +87,8 @@ static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const 
     s.as.mesh = *m;
     s.flip_normal = is_mirror;
     s.material_index = from->material_index;
+    s.medium_inside = from->medium_inside;
+    s.has_medium_interface = from->medium_inside != SCENE_NO_MEDIUM;
     s.alpha = from->alpha;
     s.alpha_texture = from->alpha_texture;
     s.alpha_cutoff = from->alpha_cutoff;

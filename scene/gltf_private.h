@@ -70,6 +70,7 @@ typedef struct gltf_material {
     float alpha;             /* as in shape */
     uint32_t alpha_texture;
     float alpha_cutoff;
+    uint32_t medium_inside; /* the scene's, SCENE_NO_MEDIUM: none */
     rgb radiance; /* black: it does not shine */
     uint32_t radiance_texture;
     bool is_two_sided; /* shines from both sides */

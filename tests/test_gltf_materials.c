@@ -73,10 +73,31 @@ static void factors(void **state)
                               "'KHR_materials_volume': {'thicknessFactor': 0.1}}}",
                               ""));
     assert_false(only_material(&r)->is_thin);
+    assert_false(r.scene->shapes[0].has_medium_interface);
     reading_destroy(&r);
-    r = gltf_of(material_text("{'extensions': {'KHR_materials_volume': {}}}", ""));
-    assert_true(only_material(&r)->is_thin);
+    /* after 2 units half of the red and all of the green is left, and of the blue as little as one can say */
+    r = gltf_of(material_text("{'extensions': {'KHR_materials_transmission': {'transmissionFactor': 1},"
+                              "'KHR_materials_volume': {'thicknessFactor': 0.1, 'attenuationDistance': 2,"
+                              "'attenuationColor': [0.5, 1, 0]}}}",
+                              ""));
+    assert_false(only_material(&r)->is_thin);
+    assert_true(r.scene->shapes[0].has_medium_interface);
+    assert_true(r.scene->shapes[0].medium_outside == SCENE_NO_MEDIUM);
+    assert_int_equal(r.scene->shapes[0].medium_inside, 0);
+    assert_int_equal(r.scene->medium_count, 1);
+    assert_rgb(r.scene->media[0].sigma_a, 0.5 * log(2), 0, 0.5 * log(1e6), 1e-5);
     reading_destroy(&r);
+    static const char *const THIN[] = {
+        "{'extensions': {'KHR_materials_transmission': {'transmissionFactor': 1}, 'KHR_materials_volume': {"
+        "'attenuationDistance': 2, 'attenuationColor': [0.5, 1, 0]}}}",
+        "{'extensions': {'KHR_materials_volume': {'thicknessFactor': 1, 'attenuationDistance': 2,"
+        "'attenuationColor': [0.5, 1, 0]}}}"};
+    for (int i = 0; i < 2; i++) {
+        r = gltf_of(material_text(THIN[i], ""));
+        assert_int_equal(r.scene->medium_count, 0);
+        assert_false(r.scene->shapes[0].has_medium_interface);
+        reading_destroy(&r);
+    }
 }
 
 static void alpha_modes(void **state)
@@ -443,6 +464,8 @@ static void material_errors(void **state)
          AG_ERROR_SCENE},
         {"{'extensions': {'KHR_materials_ior': {'ior': 0.5}}}", "", "KHR_materials_ior.ior: 0.5 should be 0 or from 1",
          AG_ERROR_SCENE},
+        {"{'extensions': {'KHR_materials_volume': {'attenuationDistance': 0}}}", "",
+         "KHR_materials_volume.attenuationDistance: 0 should be above 0", AG_ERROR_SCENE},
         {"{'extensions': {'KHR_materials_ior': 2}}", "", "KHR_materials_ior: should be an object, not an integer",
          AG_ERROR_SCENE},
         {"{'emissiveFactor': [1e30, 0, 0], 'extensions': {'KHR_materials_emissive_strength': {'emissiveStrength': 1e30}}}",

@@ -87,6 +87,28 @@ static void point_lamp(void **state)
     picture_reset(&p);
 }
 
+/* A wall that shines with 1, seen through a block that does not refract, two metres thick where half of the red and a
+ * quarter of the green are left. */
+static void volume(void **state)
+{
+    (void)state;
+    const char *scene = write_scene(
+        "{" GLTF_ASSET CUBE "'materials': [{'emissiveFactor': [1, 1, 1]}, {'pbrMetallicRoughness': {'metallicFactor': 0,"
+        "'roughnessFactor': 0}, 'extensions': {'KHR_materials_transmission': {'transmissionFactor': 1},"
+        "'KHR_materials_ior': {'ior': 1}, 'KHR_materials_volume': {'thicknessFactor': 1, 'attenuationDistance': 2,"
+        "'attenuationColor': [0.5, 0.25, 1]}}}],"
+        "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}, 'indices': 7, 'material': 0}]},"
+        "  {'primitives': [{'attributes': {'POSITION': 0}, 'indices': 1, 'material': 1}]}],"
+        "'cameras': [{'type': 'orthographic', 'orthographic': {'xmag': 0.5, 'ymag': 0.5, 'zfar': 9, 'znear': 0}}],"
+        "'nodes': [{'mesh': 0, 'translation': [0, 0, -4]}, {'mesh': 1, 'scale': [-1, 1, 1]},"
+        "  {'camera': 0, 'translation': [0, 0, 5]}]}");
+    picture p = RENDER(scene, "--integrator=path", "--size=8x8", "--spp=16");
+    expect_near("red", picture_mean(&p, 0), 0.5, 1e-3);
+    expect_near("green", picture_mean(&p, 1), 0.25, 1e-3);
+    expect_near("blue", picture_mean(&p, 2), 1.0, 1e-3);
+    picture_reset(&p);
+}
+
 /* Plastic walls in three colours, a lamp under the ceiling that shines down alone, a small one beside it, and two turned
  * boxes of rough metal, the second a mirror image. */
 static const char ROOM[] =
@@ -178,7 +200,7 @@ static void errors_end_the_program(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(furnace),      TEST_IN_FOLDER(point_lamp),
+        TEST_IN_FOLDER(furnace),      TEST_IN_FOLDER(point_lamp), TEST_IN_FOLDER(volume),
         TEST_IN_FOLDER(room_by_both_integrators), TEST_IN_FOLDER(picture_size),
         TEST_IN_FOLDER(errors_end_the_program),
     };
