@@ -1,6 +1,6 @@
 /* gltf_meshes.c: primitives become shapes in world space, and lights where their material shines.
  * Rests on: Khronos, "glTF 2.0 Specification", 2021, 3.7.2 (meshes).
- * Flow: gltf_nodes -> [here] -> gltf_vertices, gltf_triangles -> scene.shapes, scene.lights. Threads: one per scene. */
+ * Flow: gltf_instances -> [here] -> gltf_vertices, gltf_triangles -> scene.shapes, scene.lights. Threads: one per scene. */
 #include "gltf_private.h"
 
 #include <stdlib.h>
@@ -80,7 +80,7 @@ static void free_arrays(mesh *m)
 }
 
 /* The mesh's arrays become the scene's. */
-static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const gltf_material *from)
+static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const gltf_material *from, uint32_t object_index)
 {
     uint32_t shape_index, light_index;
     shape s = shape_make(SHAPE_MESH);
@@ -92,7 +92,7 @@ static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const 
     s.alpha = from->alpha;
     s.alpha_texture = from->alpha_texture;
     s.alpha_cutoff = from->alpha_cutoff;
-    GLTF_TRY(scene_add_shape(r->scene, &s, &shape_index));
+    GLTF_TRY(scene_add_object_shape(r->scene, object_index, &s, &shape_index));
     if (rgb_is_black(from->radiance))
         return AG_OK;
     light l = light_make(LIGHT_AREA);
@@ -103,7 +103,7 @@ static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const 
     return scene_add_light(r->scene, &l, &light_index);
 }
 
-static ag_status add_primitive(gltf_reader *r, const gltf_value *primitive, const gltf_pose *pose)
+static ag_status add_primitive(gltf_reader *r, const gltf_value *primitive, const gltf_pose *pose, gltf_destination to)
 {
     uint32_t material_index = GLTF_NONE, *file_numbers = NULL;
     const gltf_material *material_of;
@@ -111,6 +111,8 @@ static ag_status add_primitive(gltf_reader *r, const gltf_value *primitive, cons
     gltf_triangles t;
     GLTF_TRY(gltf_get_index(r, primitive, "material", GLTF_MATERIALS, &material_index));
     GLTF_TRY(gltf_material_find(r, material_index, &material_of));
+    if (to.part == (rgb_is_black(material_of->radiance) ? GLTF_SHINING_PART : GLTF_DARK_PART))
+        return AG_OK;
     gltf_value attributes;
     GLTF_TRY(gltf_require(r, primitive, "attributes"));
     GLTF_TRY(gltf_get_object(r, primitive, "attributes", &attributes));
@@ -130,12 +132,12 @@ static ag_status add_primitive(gltf_reader *r, const gltf_value *primitive, cons
     free(file_numbers);
     gltf_vertices_close(&v);
     if (!status && m.triangle_count > 0)
-        return add_shape(r, &m, pose->is_mirror, material_of);
+        return add_shape(r, &m, pose->is_mirror, material_of, to.object_index);
     free_arrays(&m);
     return status;
 }
 
-ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_pose *pose)
+ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_pose *pose, gltf_destination to)
 {
     gltf_value at, primitives;
     GLTF_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &at));
@@ -146,7 +148,7 @@ ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_pose *po
         if (run_is_cancelled(r->run))
             return AG_CANCELLED;
         GLTF_TRY(gltf_get_element(r, &primitives, i, &primitive));
-        GLTF_TRY(add_primitive(r, &primitive, pose));
+        GLTF_TRY(add_primitive(r, &primitive, pose, to));
     }
     return AG_OK;
 }

@@ -1,6 +1,6 @@
 /* gltf_nodes.c: the tree of nodes, from the default scene's roots down, and what hangs on each.
  * Rests on: Khronos, "glTF 2.0 Specification", 2021, 3.5 (scenes, nodes, transformations).
- * Flow: gltf_reader -> [here] -> gltf_meshes, gltf_cameras, gltf_lights. Threads: one per scene. */
+ * Flow: gltf_reader -> [here] -> gltf_instances, gltf_cameras, gltf_lights. Threads: one per scene. */
 #include "gltf_private.h"
 
 #include <stdlib.h>
@@ -166,18 +166,6 @@ static ag_status push_roots(gltf_reader *r, tree *t)
 
 /* What hangs on a node */
 
-static ag_status add_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index, const gltf_matrix *world_from_node)
-{
-    gltf_value mesh_value;
-    gltf_pose pose;
-    GLTF_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &mesh_value));
-    ag_status status = gltf_pose_open(r, node, &mesh_value, world_from_node, &pose);
-    if (!status)
-        status = gltf_add_mesh(r, mesh_index, &pose);
-    gltf_pose_close(&pose);
-    return status;
-}
-
 static ag_status add_node(gltf_reader *r, uint32_t index)
 {
     uint32_t mesh_index = GLTF_NONE, camera_index = GLTF_NONE, lamp_index = GLTF_NONE;
@@ -189,7 +177,7 @@ static ag_status add_node(gltf_reader *r, uint32_t index)
     GLTF_TRY(gltf_get_extension(r, &node, "KHR_lights_punctual", &extensions, &extension));
     GLTF_TRY(gltf_get_index(r, &extension, "light", GLTF_LIGHTS, &lamp_index));
     if (mesh_index != GLTF_NONE)
-        GLTF_TRY(add_mesh(r, &node, mesh_index, world_from_node));
+        GLTF_TRY(gltf_add_node_mesh(r, &node, mesh_index, world_from_node));
     if (camera_index != GLTF_NONE)
         GLTF_TRY(gltf_add_camera(r, camera_index, world_from_node));
     if (lamp_index != GLTF_NONE)
@@ -202,8 +190,12 @@ static ag_status walk(gltf_reader *r, tree *t)
     GLTF_TRY(find_parents(r, t));
     GLTF_TRY(place_nodes(r, t));
     GLTF_TRY(push_roots(r, t));
-    while (t->stack_count > 0)
+    while (t->stack_count > 0) {
+        gltf_value node;
         t->order[t->order_count++] = step(r, t);
+        GLTF_TRY(gltf_get_item(r, GLTF_NODES, t->order[t->order_count - 1], &node));
+        GLTF_TRY(gltf_count_mesh_use(r, &node));
+    }
     for (uint32_t i = 0; i < t->order_count; i++) {
         GLTF_TRY(add_node(r, t->order[i]));
         run_progress(r->run, AG_PHASE_LOAD, (double)i / t->order_count);

@@ -1,6 +1,6 @@
 /* gltf_private.h: what the gltf_*.c files share, and nobody else.
- * Flow: gltf_reader -> gltf_document (file to JSON) -> gltf_nodes -> gltf_poses, gltf_meshes, gltf_cameras, gltf_lights,
- * each by way of gltf_json (values with their paths); gltf_meshes -> gltf_vertices, gltf_triangles -> gltf_accessors ->
+ * Flow: gltf_reader -> gltf_document (file to JSON) -> gltf_nodes -> gltf_instances, gltf_cameras, gltf_lights, each by
+ * way of gltf_json (values with their paths); gltf_meshes -> gltf_vertices, gltf_triangles -> gltf_accessors ->
  * gltf_buffers; gltf_meshes -> gltf_materials -> gltf_textures -> gltf_images. Threads: one per scene. */
 #ifndef AFTERGLOW_GLTF_PRIVATE_H
 #define AFTERGLOW_GLTF_PRIVATE_H
@@ -76,6 +76,13 @@ typedef struct gltf_material {
     bool is_two_sided; /* shines from both sides */
 } gltf_material;
 
+/* How many nodes have a mesh, and the object that it is for them. */
+typedef struct gltf_mesh_use {
+    uint32_t node_count;
+    bool is_made;
+    uint32_t object_index; /* the scene's; SCENE_NO_OBJECT: there is nothing in it */
+} gltf_mesh_use;
+
 /* A node's place in the world: affine, of any rank. Row, column. */
 typedef struct gltf_matrix {
     double m[3][4];
@@ -104,6 +111,7 @@ typedef struct gltf_reader {
     gltf_file *buffers; /* [list_counts[GLTF_BUFFERS]] */
     gltf_file *images;  /* those of data URIs; [list_counts[GLTF_IMAGES]] */
     gltf_material *materials; /* [list_counts[GLTF_MATERIALS] + 1], the last the default one */
+    gltf_mesh_use *mesh_uses; /* [list_counts[GLTF_MESHES]] */
     gltf_matrix *world_from_nodes; /* [list_counts[GLTF_NODES]] */
     double aspect;            /* width / height of the camera's picture; 0: it does not say */
     size_t triangles_read, triangles_dropped;
@@ -243,7 +251,19 @@ ag_status gltf_vertices_get(gltf_reader *r, const gltf_vertices *v, uint32_t i, 
 bool gltf_matrix_cofactors(const gltf_matrix *matrix, double out_cofactors[3][3]);
 
 /* gltf_meshes.c: adds a mesh's primitives to the scene. */
-ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_pose *pose);
+typedef enum gltf_mesh_part { GLTF_ALL_PARTS, GLTF_DARK_PART, GLTF_SHINING_PART } gltf_mesh_part;
+
+typedef struct gltf_destination {
+    gltf_mesh_part part;   /* which primitives, by whether their materials shine */
+    uint32_t object_index; /* the scene's; SCENE_NO_OBJECT: the world itself */
+} gltf_destination;
+
+ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_pose *pose, gltf_destination to);
+
+/* gltf_instances.c: a node's mesh; before that, how many nodes have which. */
+ag_status gltf_count_mesh_use(gltf_reader *r, const gltf_value *node);
+ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index,
+                             const gltf_matrix *world_from_node);
 
 /* gltf_triangles.c: the corners of a primitive's triangles. */
 typedef struct gltf_triangles {

@@ -27,8 +27,9 @@ static ag_status allocate_lists(gltf_reader *r)
     r->buffers = calloc((size_t)r->list_counts[GLTF_BUFFERS] + 1, sizeof *r->buffers);
     r->images = calloc((size_t)r->list_counts[GLTF_IMAGES] + 1, sizeof *r->images);
     r->materials = calloc((size_t)r->list_counts[GLTF_MATERIALS] + 1, sizeof *r->materials);
+    r->mesh_uses = calloc((size_t)r->list_counts[GLTF_MESHES] + 1, sizeof *r->mesh_uses);
     r->world_from_nodes = calloc((size_t)r->list_counts[GLTF_NODES] + 1, sizeof *r->world_from_nodes);
-    return r->buffers && r->images && r->materials && r->world_from_nodes ? AG_OK : AG_ERROR_MEMORY;
+    return r->buffers && r->images && r->materials && r->mesh_uses && r->world_from_nodes ? AG_OK : AG_ERROR_MEMORY;
 }
 
 /* What a renderer of still pictures has no use for, or the file forgot. */
@@ -55,6 +56,7 @@ static void reset(gltf_reader *r)
     free(r->buffers);
     free(r->images);
     free(r->materials);
+    free(r->mesh_uses);
     free(r->world_from_nodes);
     json_decref(r->root);
     free(r->text);

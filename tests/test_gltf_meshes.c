@@ -389,6 +389,56 @@ static void transforms(void **state)
     reading_destroy(&r);
 }
 
+/* A mesh of 30000 triangles, of which one shines, used three times: an object and three instances of what is dark, and
+ * copies of what shines. Used twice, or with a weight of its own, it is copied. */
+static void instances(void **state)
+{
+    (void)state;
+    enum { TRIANGLES = 30000 };
+    write_triangle();
+    unsigned char *indices = malloc(3 * TRIANGLES);
+    assert_non_null(indices);
+    for (int i = 0; i < 3 * TRIANGLES; i++)
+        indices[i] = (unsigned char)(i % 3);
+    write_file("indices.bin", indices, 3 * TRIANGLES);
+    free(indices);
+    static const char TEXT[] =
+        "{" GLTF_ASSET "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}, {'uri': 'indices.bin', 'byteLength': 90000}],"
+        "'bufferViews': [{'buffer': 0, 'byteLength': 36}, {'buffer': 1, 'byteLength': 90000}],"
+        "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+        "  {'bufferView': 1, 'componentType': 5121, 'count': 90000, 'type': 'SCALAR'}],"
+        "'materials': [{}, {'emissiveFactor': [1, 1, 1]}], 'meshes': [{'primitives': ["
+        "  {'attributes': {'POSITION': 0}, 'indices': 1, 'material': 0}, {'attributes': {'POSITION': 0}, 'material': 1}]}],"
+        "'nodes': [{'mesh': 0}, {'mesh': 0, 'translation': [0, 0, 1]}, {%s 'scale': [-2, 1, 1], 'translation': [5, 0, 0]}]}";
+    char text[2048];
+    snprintf(text, sizeof text, TEXT, "'mesh': 0,");
+    reading r = gltf_of(text);
+    const scene *s = r.scene;
+    assert_int_equal(s->object_count, 1);
+    assert_int_equal(s->instance_count, 3);
+    assert_int_equal(s->shape_count, 4);
+    assert_int_equal(s->light_count, 3);
+    for (uint32_t i = 0; i < 4; i++)
+        assert_int_equal(s->shapes[i].object_index, s->shapes[i].as.mesh.triangle_count > 1 ? 0 : SCENE_NO_OBJECT);
+    affine last = instance_at(s, 2, 0.0f);
+    assert_vec3(affine_point(&last, vec3_make(1, 0, 0)), 3, 0, 0, 0);
+    assert_vec3(s->shapes[s->lights[2].shape_index].as.mesh.positions[1], 3, 0, 0, 0);
+    assert_true(s->shapes[s->lights[2].shape_index].flip_normal);
+    reading_destroy(&r);
+    static const char *const COPIED[] = {"", "'mesh': 0, 'weights': [1],"};
+    for (int i = 0; i < 2; i++) {
+        snprintf(text, sizeof text, TEXT, COPIED[i]);
+        r = gltf_of(text);
+        assert_int_equal(r.scene->instance_count, 0);
+        assert_int_equal(r.scene->shape_count, 4 + 2 * i);
+        reading_destroy(&r);
+    }
+    snprintf(text, sizeof text, TEXT, "'mesh': 0, 'matrix': [0,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"); /* not by scale */
+    r = gltf_of(text); /* flat: no instance can be, and there is nothing to see */
+    assert_int_equal(r.scene->instance_count, 2);
+    reading_destroy(&r);
+}
+
 /* Two morph targets, of which the node's or else the mesh's weights say how much is added. */
 static void morph_targets(void **state)
 {
@@ -537,7 +587,7 @@ int main(void)
         TEST_IN_FOLDER(component_types),    TEST_IN_FOLDER(signed_integers), TEST_IN_FOLDER(strides_and_offsets),
         TEST_IN_FOLDER(sparse_values),      TEST_IN_FOLDER(modes_and_indices), TEST_IN_FOLDER(what_is_no_surface),
         TEST_IN_FOLDER(mesh_errors),        TEST_IN_FOLDER(accessor_errors), TEST_IN_FOLDER(numbers_that_are_none),
-        TEST_IN_FOLDER(transforms),         TEST_IN_FOLDER(morph_targets),   TEST_IN_FOLDER(skins),
+        TEST_IN_FOLDER(transforms),         TEST_IN_FOLDER(instances), TEST_IN_FOLDER(morph_targets),   TEST_IN_FOLDER(skins),
                 TEST_IN_FOLDER(node_errors),     TEST_IN_FOLDER(deep_tree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
