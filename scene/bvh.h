@@ -37,7 +37,8 @@ typedef struct surface_hit {
     float time;               /* of the shutter, the ray's */
 } surface_hit;
 
-/* The nearest surface along the ray, from its origin to max_distance (in lengths of direction, INFINITY is fine). */
+/* The nearest surface along the ray, from its origin to max_distance (in lengths of direction, INFINITY is fine). A ray
+ * that is not of finite numbers below 1.8e18 meets nothing. */
 bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 
 /* How far along the ray the nearest surface is, INFINITY where there is none: traversal alone, without looking at what was

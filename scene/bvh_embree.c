@@ -354,8 +354,19 @@ static void place_instance_hit(const scene *s, const scene_ray *ray, const struc
     instance_place_hit(&world_from_object, out_hit);
 }
 
+/* Embree takes nothing beyond 1.8e18, and where it was built with its asserts, as Debian's is, ends the process. Comparisons
+ * with what is not a number are false. */
+static bool is_in_reach(vec3 v) { return fabsf(v.x) <= 1.8e18f && fabsf(v.y) <= 1.8e18f && fabsf(v.z) <= 1.8e18f; }
+
+static bool can_be_cast(const scene_ray *r, float max_distance)
+{
+    return is_in_reach(r->origin) && is_in_reach(r->direction) && max_distance >= 0.0f;
+}
+
 bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
 {
+    if (!can_be_cast(&ray, max_distance))
+        return false;
     struct RTCRayHit ray_hit;
     ray_hit.ray = embree_ray(&ray, max_distance);
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -389,6 +400,8 @@ float scene_first_distance(const scene *s, scene_ray ray)
 
 bool scene_occluded(const scene *s, scene_ray ray, float max_distance)
 {
+    if (!can_be_cast(&ray, max_distance))
+        return false;
     struct RTCRay cast = embree_ray(&ray, max_distance);
     embree_occluded(s->bvh->scene, &cast);
     return cast.tfar < 0.0f;

@@ -26,6 +26,11 @@ const float largest_half = 65504.0f;
 const int largest_jpeg_side = 65500;  /* libjpeg ends the process beyond that */
 const size_t jpeg_text_limit = 16384; /* ... and when metadata do not fit into a marker of 64 KiB */
 
+/* A header may say anything: a picture of more values than the first must come of a file that can hold them. The densest
+ * there is, a blank picture in OpenEXR's DWA, puts some 30000 into a byte. */
+const std::uint64_t trusted_values = std::uint64_t(1) << 28;
+const std::uint64_t values_per_byte = std::uint64_t(1) << 16;
+
 /* Runs work and is the one place where an exception becomes a status. */
 template <typename Work>
 ag_status guarded(ag_status failure, char *message, size_t message_size, Work &&work) noexcept
@@ -188,13 +193,22 @@ image_sample_type sample_type_of(OIIO::TypeDesc format)
     }
 }
 
-template <typename Value>
-Value *read_values(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, OIIO::TypeDesc type)
+/* The values of the picture. Throws where there are more than the file can hold, before they take memory. */
+std::uint64_t count_values(const OIIO::ImageSpec &spec, std::uint64_t file_size)
 {
-    const std::uint64_t count = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height) *
-                                static_cast<std::uint64_t>(spec.nchannels);
-    if (count > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(Value))
-        throw std::bad_alloc();
+    const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+    const std::uint64_t channels = static_cast<std::uint64_t>(spec.nchannels);
+    if (pixels > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(float) / channels ||
+        (pixels * channels > trusted_values && pixels * channels / values_per_byte > file_size))
+        throw std::runtime_error("its header promises " + std::to_string(spec.width) + " x " +
+                                 std::to_string(spec.height) + " pixels of " + std::to_string(spec.nchannels) +
+                                 " channels, which a file of " + std::to_string(file_size) + " bytes cannot hold");
+    return pixels * channels;
+}
+
+template <typename Value>
+Value *read_values(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, std::uint64_t count, OIIO::TypeDesc type)
+{
     std::unique_ptr<Value, decltype(&std::free)> values(static_cast<Value *>(std::malloc(count * sizeof(Value))),
                                                         &std::free);
     if (!values)
@@ -223,10 +237,11 @@ image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::I
     read.height = spec.height;
     read.channel_count = spec.nchannels;
     read.type = sample_type_of(spec.format);
+    const std::uint64_t count = count_values(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path));
     if (keep_bytes && read.type == IMAGE_UINT8)
-        read.bytes = read_values<unsigned char>(*input, spec, OIIO::TypeUInt8);
+        read.bytes = read_values<unsigned char>(*input, spec, count, OIIO::TypeUInt8);
     else
-        read.pixels = read_values<float>(*input, spec, OIIO::TypeFloat);
+        read.pixels = read_values<float>(*input, spec, count, OIIO::TypeFloat);
     return read;
 }
 

@@ -28,6 +28,16 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     return shines ? pbrt_add_area_light(parser, &parser->state.area_light, index, list->where) : AG_OK;
 }
 
+/* Whether normals and areas can be computed in floats, whose squares end at 1e38 and 1e-38. */
+static bool is_in_reach_of_floats(const quadric *q)
+{
+    double largest = fmax((double)q->radius, 1.0 / (double)q->radius);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            largest = fmax(largest, fmax(fabs(q->world_from_object.m[i][j]), fabs(q->world_from_object.inverse[i][j])));
+    return largest <= (double)PBRT_MAX_COORDINATE;
+}
+
 static ag_status add_quadric(pbrt_parser *parser, parameter_list *list, shape *s)
 {
     quadric *q = &s->as.quadric;
@@ -41,6 +51,11 @@ static ag_status add_quadric(pbrt_parser *parser, parameter_list *list, shape *s
             sum += reach * fabs(q->world_from_object.m[i][j]);
         if (!(sum <= (double)PBRT_MAX_COORDINATE))
             return pbrt_refuse(parser, list, "radius", "it reaches beyond 1e18 units in world space");
+    }
+    if (!is_in_reach_of_floats(q)) {
+        log_at(parser->log, AG_LOG_WARNING, list->where,
+               "Shape \"%s\" is too small, or scaled by too much or too little, for floats and is left out", list->name);
+        return AG_OK;
     }
     return pbrt_add_shape(parser, list, s);
 }
