@@ -36,5 +36,5 @@ if setarch --addr-no-randomize true 2>/dev/null; then
 fi
 # Beyond malloc_limit_mb an allocation fails instead (fuzz.c), hence 0 here; rss_limit_mb is for what many small ones take.
 "${in_place[@]}" nice "$bin/fuzz_$target" -dict="$(<"$bin/fuzz_$target.dictionary")" -artifact_prefix="$findings/$target-" \
-    -max_total_time="$seconds" -timeout=30 -rss_limit_mb=3000 -malloc_limit_mb=0 -max_len=16384 -print_final_stats=1 \
+    -max_total_time="$seconds" -timeout=120 -report_slow_units=60 -rss_limit_mb=3000 -malloc_limit_mb=0 -max_len=16384 -print_final_stats=1 \
     "$corpus" || exit 1
