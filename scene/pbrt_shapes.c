@@ -28,13 +28,15 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     return shines ? pbrt_add_area_light(parser, &parser->state.area_light, index, list->where) : AG_OK;
 }
 
-/* Whether normals and areas can be computed in floats, whose squares end at 1e38 and 1e-38. */
+/* Whether normals can be computed in floats, whose squares end at 1e38 and 1e-38, in object space and in the world's. */
 static bool is_in_reach_of_floats(const quadric *q)
 {
-    double largest = fmax((double)q->radius, 1.0 / (double)q->radius);
+    double r = q->radius, largest = fmax(r, 1.0 / r);
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            largest = fmax(largest, fmax(fabs(q->world_from_object.m[i][j]), fabs(q->world_from_object.inverse[i][j])));
+        for (int j = 0; j < 3; j++) {
+            largest = fmax(largest, fabs(q->world_from_object.m[i][j]) * fmax(1.0, r));
+            largest = fmax(largest, fabs(q->world_from_object.inverse[i][j]) * fmax(1.0, 1.0 / r));
+        }
     return largest <= (double)PBRT_MAX_COORDINATE;
 }
 

@@ -110,6 +110,32 @@ static void an_empty_scene_is_met_by_nothing(void **state)
 
 /* Rays at points on the edges, closely past the vertices and anywhere, from inside of a closed mesh and of spheres.
  * (At a vertex itself, met to the last bit, Embree's robust mode misses some rays in a thousand.) */
+/* Embree would end the process. */
+static void rays_beyond_reach_meet_nothing(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, "Shape \"sphere\" Scale 1 1 2 Shape \"sphere\" \"float radius\" 1e17");
+    static const float BAD[] = {NAN, INFINITY, -INFINITY, 2e18f, -3e38f};
+    const vec3 z = {0.0f, 0.0f, 1.0f};
+    surface_hit hit;
+    assert_true(scene_intersect(s, (scene_ray){.direction = z}, INFINITY, &hit));
+    assert_true(scene_occluded(s, (scene_ray){.direction = z}, INFINITY));
+    for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++)
+        for (int axis = 0; axis < 6; axis++) {
+            float v[6] = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f};
+            v[axis] = BAD[i];
+            scene_ray ray = {.origin = {v[0], v[1], v[2]}, .direction = {v[3], v[4], v[5]}};
+            assert_false(scene_intersect(s, ray, INFINITY, &hit));
+            assert_false(scene_occluded(s, ray, INFINITY));
+        }
+    assert_false(scene_intersect(s, (scene_ray){.direction = z}, NAN, &hit));
+    assert_false(scene_occluded(s, (scene_ray){.direction = z}, -1.0f));
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 static void closed_surfaces_let_nothing_through(void **state)
 {
     (void)state;
@@ -218,6 +244,7 @@ int main(void)
         cmocka_unit_test(the_nearest_shape_is_met),
         cmocka_unit_test(each_kind_of_shape_occludes),
         cmocka_unit_test(an_empty_scene_is_met_by_nothing),
+        cmocka_unit_test(rays_beyond_reach_meet_nothing),
         cmocka_unit_test(closed_surfaces_let_nothing_through),
         cmocka_unit_test(any_number_of_builders_gives_the_same_hits),
         cmocka_unit_test(a_cancelled_build_says_so),

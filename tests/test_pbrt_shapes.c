@@ -126,7 +126,10 @@ static void check_warnings(const char *text, uint32_t shape_count, const char *w
 {
     reading r = reading_create(NULL, text, strlen(text));
     assert_int_equal(r.status, AG_OK);
-    assert_string_equal(r.said[AG_LOG_WARNING], warnings);
+    if (warnings)
+        assert_string_equal(r.said[AG_LOG_WARNING], warnings);
+    else
+        assert_null(r.said[AG_LOG_WARNING]);
     assert_int_equal(r.scene->shape_count, shape_count);
     assert_int_equal(r.scene->light_count, 0);
     reading_destroy(&r);
@@ -154,8 +157,33 @@ static void triangles_without_area_are_dropped(void **state)
                    "t:1:12: warning: Shape \"trianglemesh\" is empty and is left out\n");
     check_warnings("WorldBegin Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 1 1 2 2 2 3 3 3 ]", 0,
                    "t:1:12: warning: Shape \"bilinearmesh\" is empty and is left out\n");
-    check_warnings("WorldBegin AreaLightSource \"diffuse\" Scale 1e-30 1e-30 1e-30 Shape \"sphere\"", 1,
-                   "t:1:62: warning: the area light has a shape of area 0 and is left out\n");
+    check_warnings("WorldBegin AreaLightSource \"diffuse\" Shape \"disk\" \"float radius\" 1e-17 \"float phimax\" 1e-15",
+                   1, "t:1:38: warning: the area light has a shape of area 0 and is left out\n");
+}
+
+/* Their normals would be no numbers. */
+static void quadrics_that_floats_cannot_tell_are_left_out(void **state)
+{
+    (void)state;
+    static const char *const TEXTS[] = {
+        "Shape \"sphere\" \"float radius\" 1e-19",
+        "Scale 1e-19 1e-19 1e-19 Shape \"cylinder\"",
+        "Scale 1 1 1e-19 Shape \"sphere\"",
+        "Scale 1e-10 1e-10 1e-10 Shape \"sphere\" \"float radius\" 1e-9",
+        "Scale 1e-20 1e-20 1e-20 Shape \"disk\" \"float radius\" 1e20",
+        "AreaLightSource \"diffuse\" Shape \"disk\" \"float radius\" 1e-19",
+    };
+    for (size_t i = 0; i < sizeof TEXTS / sizeof *TEXTS; i++) {
+        char text[256], warning[256];
+        const char *kind = strstr(TEXTS[i], "disk") ? "disk" : strstr(TEXTS[i], "cylinder") ? "cylinder" : "sphere";
+        snprintf(text, sizeof text, "WorldBegin %s", TEXTS[i]);
+        snprintf(warning, sizeof warning,
+                 "t:1:%d: warning: Shape \"%s\" is too small, or scaled by too much or too little, for floats and is left "
+                 "out\n",
+                 (int)(strstr(text, "Shape") - text) + 1, kind);
+        check_warnings(text, 0, warning);
+    }
+    check_warnings("WorldBegin Shape \"sphere\" \"float radius\" 1e-17 Shape \"disk\" \"float radius\" 1e17", 2, NULL);
 }
 
 static void vertex_data_that_does_not_fit_is_ignored(void **state)
@@ -308,6 +336,7 @@ int main(void)
         cmocka_unit_test(meshes_come_to_world_space),
         cmocka_unit_test(meshes_have_the_outside_that_pbrt_gives_them),
         cmocka_unit_test(triangles_without_area_are_dropped),
+        cmocka_unit_test(quadrics_that_floats_cannot_tell_are_left_out),
         cmocka_unit_test(vertex_data_that_does_not_fit_is_ignored),
         cmocka_unit_test(parallelograms_become_two_triangles),
         cmocka_unit_test(flat_quadrilaterals_become_two_triangles),
