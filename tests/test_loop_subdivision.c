@@ -310,7 +310,7 @@ static void loopsubdiv_says_what_is_wrong_and_where(void **state)
     check_scene_error("WorldBegin Shape \"loopsubdiv\" \"integer levels\" -1 \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ]",
                       "t:1:31: error: \"levels\" should be 0 or above");
     check_scene_error("WorldBegin Shape \"loopsubdiv\" \"integer levels\" 40 \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ]",
-                      "t:1:31: error: 1 triangles subdivided 40 times are more than 268435456");
+                      "t:1:31: error: 1 triangles subdivided 40 times are more than 67108864");
     check_scene_error("WorldBegin Shape \"loopsubdiv\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 1 ]\n"
                       "\"integer indices\" [ 0 1 2 0 1 3 ]",
                       "t:2:1: error: triangles 0 and 1 go the same way along the edge between vertices 0 and 1");
