@@ -204,6 +204,13 @@ static vec2 surface_uv(const shape *s, double x, double y, double z)
     return (vec2){(float)(turns / turn), (float)fmin(fmax(v, 0.0), 1.0)};
 }
 
+/* Far from the origin all of a small sphere is one float: there the middle is hit, and any direction will do. */
+static vec3 normalize_or_z(vec3 v)
+{
+    float square = vec3_length_squared(v);
+    return square > 0.0f ? vec3_scale(v, 1.0f / sqrtf(square)) : (vec3){0.0f, 0.0f, 1.0f};
+}
+
 void quadric_surface_at(const shape *s, vec3 position, surface_hit *out_hit)
 {
     const quadric *q = &s->as.quadric;
@@ -213,7 +220,7 @@ void quadric_surface_at(const shape *s, vec3 position, surface_hit *out_hit)
     h->is_flat = s->kind == SHAPE_DISK;
     if (q->uniform_radius > 0.0f) {
         /* onto the true sphere: the traversal's distance loses up to 1e-4 radii far away */
-        vec3 n = vec3_normalize(vec3_sub(position, q->center));
+        vec3 n = normalize_or_z(vec3_sub(position, q->center));
         h->position = vec3_add_scaled(q->center, n, q->uniform_radius);
         h->geometric_normal = s->flip_normal ? vec3_negate(n) : n;
         double p[3];
@@ -229,12 +236,13 @@ void quadric_surface_at(const shape *s, vec3 position, surface_hit *out_hit)
             p[2] = q->height;
         } else {
             double across = s->kind == SHAPE_SPHERE ? p[2] : 0.0;
-            double to_surface = (double)q->radius / sqrt(p[0] * p[0] + p[1] * p[1] + across * across);
+            double out = sqrt(p[0] * p[0] + p[1] * p[1] + across * across);
+            double to_surface = out > 0.0 ? (double)q->radius / out : 0.0;
             p[0] *= to_surface;
             p[1] *= to_surface;
             if (s->kind == SHAPE_SPHERE)
                 p[2] *= to_surface;
-            n = vec3_normalize((vec3){(float)p[0], (float)p[1], s->kind == SHAPE_SPHERE ? (float)p[2] : 0.0f});
+            n = normalize_or_z((vec3){(float)p[0], (float)p[1], s->kind == SHAPE_SPHERE ? (float)p[2] : 0.0f});
         }
         h->position = transform_point(&q->world_from_object, (vec3){(float)p[0], (float)p[1], (float)p[2]});
         h->geometric_normal = world_normal(s, n);

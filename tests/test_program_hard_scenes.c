@@ -90,6 +90,9 @@ static void test_beyond_all_measure(void **state)
         {"a large lamp", SEEN_SPHERE "AreaLightSource \"diffuse\"\nTranslate 0 2e12 0\nShape \"sphere\" \"float radius\" 1e12\n"},
         {"a bright lamp", SEEN_SPHERE "LightSource \"point\" \"rgb I\" [ 1e30 1e30 1e30 ] \"point3 from\" [ 0 0 -3 ]\n"},
         {"a dim lamp", SEEN_SPHERE "LightSource \"point\" \"rgb I\" [ 1e-30 1e-30 1e-30 ] \"point3 from\" [ 0 0 -3 ]\n"},
+        {"things smaller than a float is there",
+         "LookAt 0 0 4294967290 0 0 4294967296 0 1 0\nCamera \"perspective\" \"float fov\" 170\nWorldBegin\n"
+         "LightSource \"infinite\"\nTranslate 0 0 4294967296\nShape \"sphere\"\nScale 1 2 3\nShape \"sphere\"\nShape \"cylinder\"\n"},
         {"all that there is", SEEN_SPHERE "LightSource \"point\" \"point3 from\" [ 0 0 -3 ]\nShape \"sphere\" \"float radius\" 1e17\n"},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++)

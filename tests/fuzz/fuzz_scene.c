@@ -93,7 +93,7 @@ void fuzz_look_at_scene(scene *s, fuzz_run *run)
     if (status != AG_OK)
         return;
     for (uint32_t i = 0; i < s->light_count; i++)
-        FUZZ_CHECK(s->light_probability[i] >= 0.0f && s->light_probability[i] <= 1.0f);
+        FUZZ_CHECK(s->photon_probability[i] >= 0.0f && s->photon_probability[i] <= 1.0f);
     FUZZ_CHECK(isfinite(s->surface_area) && isfinite(s->bounding_radius));
     cast_rays(s);
 }
