@@ -1,15 +1,31 @@
 #!/usr/bin/env bash
-# dictionary.sh: the words of the pbrt-v4 format that the reader and the renderer know, for the fuzzers, from their sources.
-# Use: tests/fuzz/dictionary.sh >tests/fuzz/pbrt.dict
+# dictionary.sh: the words of a format that its reader (and for pbrt the renderer) knows, for the fuzzers, from its sources.
+# Use: tests/fuzz/dictionary.sh pbrt|gltf >tests/fuzz/pbrt.dict|gltf.dict
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+words() { # FILE...
+    cat "$@" | grep -v '^#include' | grep -oE '"[A-Za-z][A-Za-z0-9_.-]{0,50}"' | LC_ALL=C sort -u
+}
+
 echo "# made by dictionary.sh"
-cat scene/pbrt_*.c scene/parameter_list.c scene/spectra.c scene/color_space.c renderer/render_settings.c |
-    grep -v '^#include' | grep -oE '"[A-Za-z][A-Za-z0-9_.-]{0,30}"' | LC_ALL=C sort -u
-types=(bool integer float string rgb spectrum texture)
-names=(alpha reflectance roughness L I scale radius filename eta displacement)
-for type in "${types[@]}"; do
-    for name in "${names[@]}"; do
-        printf '"\\"%s %s\\""\n' "$type" "$name"
+case ${1-} in
+gltf)
+    # names stand in quotes
+    words scene/gltf_*.c | sed -E 's/^"(.*)"$/"\\"\1\\""/'
+    printf '"%s"\n' 'glTF\x02\x00\x00\x00' 'JSON' 'BIN\x00' 'data:image/png;base64,' 'data:;base64,' 5120 5121 5122 5123 5125 \
+        5126 33071 33648 10497 null true '{}' '[]' ':{' ':[' ',' 4294967295 '%20' '../'
+    ;;
+pbrt)
+    words scene/pbrt_*.c scene/parameter_list.c scene/spectra.c scene/color_space.c renderer/render_settings.c
+    for type in bool integer float string rgb spectrum texture; do
+        for name in alpha reflectance roughness L I scale radius filename eta displacement; do
+            printf '"\\"%s %s\\""\n' "$type" "$name"
+        done
     done
-done
+    ;;
+*)
+    sed -n '2,3s/^# \?//p' "${BASH_SOURCE[0]}" >&2
+    exit 2
+    ;;
+esac
