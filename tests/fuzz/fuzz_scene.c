@@ -67,7 +67,7 @@ static void cast_rays(const scene *s)
         for (int o = 0; o < 2; o++) {
             scene_ray ray = {.origin = o ? s->bounding_center : s->bounds_min, .direction = DIRECTIONS[d]};
             if (o == 0 && s->has_camera)
-                ray = camera_generate_ray(&s->camera, 0.25f * (float)(1 + d), 0.5f, 1.0f, (vec2){0.3f, 0.6f});
+                ray = camera_generate_ray(&s->camera, 0.25f * (float)(1 + d), 0.5f, 1.0f, (vec2){0.3f, 0.6f}, 0.0f);
             surface_hit hit;
             if (!scene_intersect(s, ray, INFINITY, &hit))
                 continue;
