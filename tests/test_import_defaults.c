@@ -96,7 +96,7 @@ static void places_and_nothing_have_a_camera_too(void **state)
     assert_true(on_screen(&i.r.scene->camera, vec3_make(0, 0, 0)).z > 1.0f);
     importing_reset(&i);
 
-    importing_init(&i, "Translate 1 2 3 Scale 1e-30 1e-30 1e-30 Shape \"sphere\"");
+    importing_init(&i, "Translate 1 2 3 Scale 1e-5 1e-5 1e-5 Shape \"sphere\"");
     assert_int_equal(import_add_default_camera(i.r.scene, i.log), AG_OK);
     assert_true(on_screen(&i.r.scene->camera, vec3_make(1, 2, 3)).z > 0.0f);
     importing_reset(&i);
