@@ -5,6 +5,18 @@
 
 enum { ROULETTE_AFTER = 3 };
 
+/* One group of lobes, picked by its share, where it matters which of them scattered: rough lobes of both may send light
+ * the same way. Makes the random number fresh again. */
+static bsdf_lobes pick_group(const vertex *v, float *in_out_u, rgb *in_out_throughput)
+{
+    float share = bsdf_probability(&v->scattering, BSDF_GATHERED);
+    bool is_gathered = *in_out_u < share;
+    float before = is_gathered ? 0.0f : share, picked = is_gathered ? share : 1.0f - share;
+    *in_out_u = fminf((*in_out_u - before) / picked, 0x1.fffffep-1f);
+    *in_out_throughput = rgb_scale(*in_out_throughput, 1.0f / picked);
+    return is_gathered ? BSDF_GATHERED : BSDF_TRACED;
+}
+
 rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where)
 {
     const ag_render_settings *settings = t->settings;
@@ -51,8 +63,11 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray,
 
         /* go on */
         bsdf_sample next;
-        if (!bsdf_sample_direction(&v.scattering, BSDF_ALL, BSDF_RADIANCE,
-                                   sampler_2d(where, SAMPLE_LOBE, path_vertex).x,
+        float u_lobe = sampler_2d(where, SAMPLE_LOBE, path_vertex).x;
+        bsdf_lobes lobes = BSDF_ALL;
+        if (!is_whole && !has_met_diffuse)
+            lobes = pick_group(&v, &u_lobe, &throughput);
+        if (!bsdf_sample_direction(&v.scattering, lobes, BSDF_RADIANCE, u_lobe,
                                    sampler_2d(where, SAMPLE_SCATTER, path_vertex), &next))
             return radiance;
         throughput = rgb_mul(throughput, next.weight);

@@ -111,7 +111,7 @@ static void test_glass_and_metal(void **state)
 static void test_principled(void **state)
 {
     (void)state;
-    compare("principled", "--spp=256", false);
+    compare("principled", "--spp=512", false);
 }
 
 static void test_next_room(void **state)
