@@ -166,7 +166,13 @@ bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
         case LOBE_DIFFUSE:
         case LOBE_CONDUCTOR:
         case LOBE_COAT:
+        case LOBE_CLEARCOAT:
+        case LOBE_COAT_TRAPPED:
         case LOBE_CONDUCTOR_UNDER_COAT: break;
+        case LOBE_PRINCIPLED:
+            if (principled_transmits(&b->matter))
+                return true;
+            break;
         default: return true;
         }
     }

@@ -3,6 +3,7 @@
 
 #include "fresnel.h"
 #include "microfacet.h"
+#include "texture.h"
 
 /* The cosine at which the trapped lobe takes the conductor's reflectance: about its mean over the hemisphere. */
 static const float MEAN_COSINE = 0.6f;
@@ -162,7 +163,9 @@ void coat_prepare(material *m)
     m->coat_trap = (coat_trap){{0.0f}, 0.0f, 0.0f, 0.0f};
     if (m->kind == MATERIAL_COATED_DIFFUSE)
         m->coat_return = fresnel_dielectric_diffuse(1.0f / m->ior, m->coat_thickness);
-    if (m->kind == MATERIAL_COATED_CONDUCTOR && m->ior > 1.0f && m->coat_bounces != 1 &&
+    /* where the roughness varies it is not known here, and what is trapped stays lost */
+    bool varies = m->base_alpha_u_texture != SCENE_NO_TEXTURE || m->base_alpha_v_texture != SCENE_NO_TEXTURE;
+    if (m->kind == MATERIAL_COATED_CONDUCTOR && m->ior > 1.0f && m->coat_bounces != 1 && !varies &&
         !material_is_smooth(m->base_alpha_u, m->base_alpha_v))
         prepare_trap(m);
 }

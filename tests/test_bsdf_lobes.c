@@ -406,6 +406,18 @@ static void a_coat_gives_back_what_it_traps(void **state)
     print_message("at most %.3f off\n", worst);
 }
 
+/* What it is worked out from is not known where the roughness is a texture's: nothing is given back then. */
+static void a_trap_needs_one_roughness(void **state)
+{
+    (void)state;
+    material m = coated_conductor(0.0f, 0.3f, 0.3f);
+    bsdf b = flat(&m, UP);
+    assert_int_equal(b.lobe_count, 3);
+    m.base_alpha_u_texture = 0;
+    b = flat(&m, UP);
+    assert_int_equal(b.lobe_count, 2);
+}
+
 /* --- panes --- */
 
 static void a_pane_reflects_and_passes_straight(void **state)
@@ -551,6 +563,7 @@ int main(void)
         cmocka_unit_test(a_thin_coat_reflects_totally),
         cmocka_unit_test(a_lacquered_mirror_obeys_the_series),
         cmocka_unit_test(a_coat_gives_back_what_it_traps),
+        cmocka_unit_test(a_trap_needs_one_roughness),
         cmocka_unit_test(a_pane_reflects_and_passes_straight),
         cmocka_unit_test(mixes_pick_by_place),
         cmocka_unit_test(materials_know_whether_they_are_traced),
