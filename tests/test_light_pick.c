@@ -81,8 +81,9 @@ static void write_lamps(char *text, int count, uint64_t seed)
             "LightSource \"spot\" \"float coneangle\" 40 \"float scale\" %g",
             "AreaLightSource \"diffuse\" \"float scale\" %g Shape \"sphere\" \"float radius\" 0.4",
             "AreaLightSource \"diffuse\" \"float scale\" %g Shape \"disk\" \"float radius\" 0.7",
-            "AreaLightSource \"diffuse\" \"bool twosided\" true \"float scale\" %g Shape \"bilinearmesh\" \"point3 P\" "
-            "[-1 -1 0 1 -1 0 -1 1 0 1 1 0.2]",
+            ("AreaLightSource \"diffuse\" \"bool twosided\" true \"float scale\" %g Shape \"bilinearmesh\" \"point3 "
+             "P\" "
+             "[-1 -1 0 1 -1 0 -1 1 0 1 1 0.2]"),
             "LightSource \"spot\" \"float coneangle\" 5 \"float scale\" %g",
         };
         at += (size_t)snprintf(text + at, TEXT_SIZE - at, KINDS[i % 6], power);
