@@ -1,5 +1,5 @@
-/* test_program_lights.c: lights with pictures, windows, and many lamps in a room: photon map and path tracer show the same.
- * Flow: tests of the whole program. Threads: the program's. */
+/* test_program_lights.c: lights with pictures, windows, and many lamps in a room: photon map and path tracer show the
+ * same. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 
@@ -21,7 +21,7 @@ typedef struct effort {
 } effort;
 
 static const effort USUAL = {"--photons=5e5", "--spp=16", "--gather-samples=16", "--spp=256"};
-/* Lamps that cover but a few pixels, and light up what is near them. */
+/* Lamps that cover but a few pixels. */
 static const effort MORE = {"--photons=1e6", "--spp=64", "--gather-samples=4", "--spp=512"};
 
 static void compare(const char *what, const char *scene, effort e, const char *only, double of_mean, double of_block)
@@ -89,8 +89,7 @@ static void test_goniometric(void **state)
 {
     (void)state;
     write_two_tones("lamp.exr");
-    compare_both("goniometric",
-                 "Translate 0.2 -0.3 1.4 LightSource \"goniometric\" \"string filename\" \"lamp.exr\"",
+    compare_both("goniometric", "Translate 0.2 -0.3 1.4 LightSource \"goniometric\" \"string filename\" \"lamp.exr\"",
                  USUAL);
 }
 
@@ -98,8 +97,9 @@ static void test_projection(void **state)
 {
     (void)state;
     write_two_tones("slide.exr");
-    compare_both("projection", "Translate -0.5 0 1 Rotate 70 0 1 0 LightSource \"projection\" \"float fov\" 70 \"string "
-                               "filename\" \"slide.exr\"",
+    compare_both("projection",
+                 "Translate -0.5 0 1 Rotate 70 0 1 0 LightSource \"projection\" \"float fov\" 70 \"string "
+                 "filename\" \"slide.exr\"",
                  USUAL);
 }
 
@@ -145,10 +145,12 @@ static void test_portal_adds_nothing(void **state)
 static void test_floor_under_a_portal(void **state)
 {
     (void)state;
-    /* z from 0 to c, y from 0 to b, at distance a: E = L / 2 (atan(b/a) - a / sqrt(a^2 + c^2) atan(b / sqrt(a^2 + c^2))) */
-    const char *scene = write_text(
-        "scene.pbrt", "Include \"" PROGRAM_SCENES "floor.pbrt\"\n"
-                      "LightSource \"infinite\" \"rgb L\" [2 1 0.5] \"point3 portal\" [3 -2 0  3 -2 3  3 2 3  3 2 0]\n");
+    /* z from 0 to c, y from 0 to b, at distance a: E = L / 2 (atan(b/a) - a / sqrt(a^2 + c^2) atan(b / sqrt(a^2 +
+     * c^2))) */
+    const char *scene =
+        write_text("scene.pbrt",
+                   "Include \"" PROGRAM_SCENES "floor.pbrt\"\n"
+                   "LightSource \"infinite\" \"rgb L\" [2 1 0.5] \"point3 portal\" [3 -2 0  3 -2 3  3 2 3  3 2 0]\n");
     for (int k = 0; k < 2; k++) {
         picture p = RENDER(scene, "--integrator", k ? "path" : "photonmap", "--spp=64", "--photons=20000");
         double sum = 0.0;
@@ -192,12 +194,13 @@ static void write_lamps(char *text, size_t size)
 {
     size_t at = 0;
     for (int i = 0; i < 30; i++) {
-        double x = -0.6 + 0.04 * i, y = 0.6 * sin(i * 2.4), z = 1.0 + 0.6 * cos(i * 1.7);
-        const char *kind = i % 3 == 0   ? "LightSource \"point\" \"float scale\" 0.05"
-                           : i % 3 == 1 ? "AreaLightSource \"diffuse\" \"float scale\" 2 Shape \"sphere\" \"float radius\" 0.04"
-                                        : "Rotate 180 1 0 0 LightSource \"spot\" \"float scale\" 0.2";
-        at += (size_t)snprintf(text + at, size - at, "AttributeBegin Translate %.3f %.3f %.3f %s AttributeEnd\n", x, y, z,
-                               kind);
+        double x = -0.5 + 0.3 * (i % 5), y = -0.4 + 0.4 * (i / 5 % 3), z = 0.9 + 0.6 * (i / 15);
+        const char *kind = i % 3 == 0 ? "LightSource \"point\" \"float scale\" 0.05"
+                           : i % 3 == 1
+                               ? "AreaLightSource \"diffuse\" \"float scale\" 2 Shape \"sphere\" \"float radius\" 0.04"
+                               : "Rotate 180 1 0 0 LightSource \"spot\" \"float scale\" 0.2";
+        at += (size_t)snprintf(text + at, size - at, "AttributeBegin Translate %.3f %.3f %.3f %s AttributeEnd\n", x, y,
+                               z, kind);
         assert_true(at < size);
     }
     snprintf(text + at, size - at,
@@ -213,7 +216,8 @@ static void test_many_lamps(void **state)
     compare("many lamps", room_with(text), MORE, NULL, 0.01, 0.05);
 }
 
-/* "photons" 0 takes a lamp's light out of the map, and leaves it in direct light; another factor changes noise alone. */
+/* "photons" 0 takes a lamp's light out of the map, and leaves it in direct light; another factor changes noise alone.
+ */
 static void test_photons(void **state)
 {
     (void)state;
@@ -234,10 +238,10 @@ static void test_photons(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_goniometric),    TEST_IN_FOLDER(test_projection),
-        TEST_IN_FOLDER(test_textured_lamps), TEST_IN_FOLDER(test_portal),
+        TEST_IN_FOLDER(test_goniometric),         TEST_IN_FOLDER(test_projection),
+        TEST_IN_FOLDER(test_textured_lamps),      TEST_IN_FOLDER(test_portal),
         TEST_IN_FOLDER(test_portal_adds_nothing), TEST_IN_FOLDER(test_floor_under_a_portal),
-        TEST_IN_FOLDER(test_many_lamps),     TEST_IN_FOLDER(test_photons),
+        TEST_IN_FOLDER(test_many_lamps),          TEST_IN_FOLDER(test_photons),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
