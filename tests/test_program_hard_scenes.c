@@ -118,8 +118,8 @@ static void test_eye_inside_of_opaque_things(void **state)
         "Material \"diffuse\"\nShape \"sphere\"\n",
         "Material \"conductor\"\nShape \"sphere\"\n",
         "Material \"conductor\" \"float roughness\" 0.3\nScale 1 2 3\nShape \"sphere\"\n",
-        "Material \"coateddiffuse\"\nShape \"trianglemesh\" \"point3 P\" [ -1 -1 -1  3 0 0  0 3 0  0 0 3 ]\n"
-        "\"integer indices\" [ 0 1 2  0 2 3  0 3 1  1 3 2 ]\n",
+        ("Material \"coateddiffuse\"\nShape \"trianglemesh\" \"point3 P\" [ -1 -1 -1  3 0 0  0 3 0  0 0 3 ]\n"
+         "\"integer indices\" [ 0 1 2  0 2 3  0 3 1  1 3 2 ]\n"),
     };
     for (size_t i = 0; i < sizeof THINGS / sizeof *THINGS; i++) {
         char text[512];
