@@ -30,9 +30,11 @@ static const char *find_end(const text_lines *lines, const char *start)
 
 static bool goes_on(const text_lines *lines, const char *start, const char *end)
 {
+    if (end == lines->end) /* there is no line behind it, nor with "\\\r" at the very end */
+        return false;
     if (end > start && end[-1] == '\r')
         end--;
-    return end > start && end[-1] == '\\' && end < lines->end;
+    return end > start && end[-1] == '\\';
 }
 
 static void find_line(text_lines *lines, const char *start)
