@@ -37,8 +37,8 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
         return none;
     float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
     if (!sample.is_delta && scatter_count > 0)
-        weight = mis_power((float)lamp_count, pdf, (float)scatter_count,
-                           bsdf_pdf(&v->scattering, lobes, sample.direction));
+        weight =
+            mis_power((float)lamp_count, pdf, (float)scatter_count, bsdf_pdf(&v->scattering, lobes, sample.direction));
     return rgb_scale(rgb_mul(reflected, transmittance), weight / pdf);
 }
 
@@ -70,7 +70,8 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
     return sum;
 }
 
-rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex)
+rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                          int path_vertex)
 {
     rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f);
     if (!t->has_lights)
@@ -81,8 +82,8 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
         uint32_t index = where->sample * (uint32_t)lamp_count + (uint32_t)i;
         float u_pick = sampler_2d_at(where, SAMPLE_LIGHT_PICK, path_vertex, index).x;
         vec2 u = sampler_2d_at(where, SAMPLE_LIGHT, path_vertex, index);
-        from_lamps = rgb_add(from_lamps, direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, lamp_count,
-                                                                scatter_count));
+        from_lamps = rgb_add(from_lamps,
+                             direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, lamp_count, scatter_count));
     }
     for (int i = 0; i < scatter_count; i++) {
         uint32_t index = where->sample * (uint32_t)scatter_count + (uint32_t)i;
@@ -102,8 +103,8 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
         rgb emitted = rgb_mul(transport_emission(t, &met), met.transmittance);
         if (rgb_is_black(emitted))
             continue;
-        float weight = direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, lamp_count,
-                                                   scatter_count);
+        float weight =
+            direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, lamp_count, scatter_count);
         by_scattering = rgb_add(by_scattering, rgb_scale(rgb_mul(emitted, scattered.weight), weight));
     }
     rgb sum = rgb_scale(from_lamps, 1.0f / (float)lamp_count);

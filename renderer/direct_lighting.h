@@ -10,8 +10,8 @@
 /* What picking a lamp for these lobes knows of how the surface lies: see scene_pick_light. */
 vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes);
 
-/* One sample towards a lamp picked for the place: reflected radiance. lamp_count and scatter_count: how many samples the
- * caller takes of either technique; it divides by lamp_count itself. scatter_count 0: this technique alone. */
+/* One sample towards a lamp picked for the place: reflected radiance. lamp_count and scatter_count: how many samples
+ * the caller takes of either technique; it divides by lamp_count itself. scatter_count 0: this technique alone. */
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
                            vec2 u, int lamp_count, int scatter_count);
 
@@ -20,12 +20,14 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
                                   float pdf_solid_angle, int lamp_count, int scatter_count);
 
-/* Radiance of the infinite lights that a ray from there brings which meets nothing, weighted like that. pdf_solid_angle:
- * with which it was scattered, or 0 where no sample towards a lamp could stand for it (the eye, smooth lobes): weight 1. */
+/* Radiance of the infinite lights that a ray from there brings which meets nothing, weighted like that.
+ * pdf_solid_angle: with which it was scattered, or 0 where no sample towards a lamp could stand for it (the eye, smooth
+ * lobes): weight 1. */
 rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
                          int lamp_count, int scatter_count);
 
 /* All of the direct light at a diffuse place: t->light_samples and t->scatter_samples samples. */
-rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex);
+rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                          int path_vertex);
 
 #endif

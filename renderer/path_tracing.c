@@ -38,16 +38,18 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray,
         bool is_met = transport_trace(t, worker, ray, &v);
         throughput = rgb_mul(throughput, v.transmittance);
         if (!is_met) {
-            if (counts_emission)
-                radiance = rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, scattered_from, scattered_normal,
-                                                                                     ray.direction, scattered_pdf, 1, 1)));
+            if (counts_emission) {
+                rgb escaped =
+                    direct_light_escaped(t, scattered_from, scattered_normal, ray.direction, scattered_pdf, 1, 1);
+                radiance = rgb_add(radiance, rgb_mul(throughput, escaped));
+            }
             return radiance;
         }
         rgb emitted = transport_emission(t, &v);
         if (!rgb_is_black(emitted) && counts_emission) {
-            float weight = scattered_pdf > 0.0f
-                               ? direct_light_scatter_weight(t, scattered_from, scattered_normal, &v, scattered_pdf, 1, 1)
-                               : 1.0f;
+            float weight = 1.0f;
+            if (scattered_pdf > 0.0f)
+                weight = direct_light_scatter_weight(t, scattered_from, scattered_normal, &v, scattered_pdf, 1, 1);
             radiance = rgb_add(radiance, rgb_scale(rgb_mul(throughput, emitted), weight));
         }
         if (path_vertex >= settings->max_depth)

@@ -55,18 +55,20 @@ rgb shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, cons
         bool is_met = transport_trace(t, worker, ray, &v);
         throughput = rgb_mul(throughput, v.transmittance);
         if (!is_met) {
-            if (is_whole)
-                radiance = rgb_add(radiance, rgb_mul(throughput, direct_light_escaped(t, scattered_from, scattered_normal,
-                                                                                     ray.direction, scattered_pdf, 1, 1)));
+            if (is_whole) {
+                rgb escaped =
+                    direct_light_escaped(t, scattered_from, scattered_normal, ray.direction, scattered_pdf, 1, 1);
+                radiance = rgb_add(radiance, rgb_mul(throughput, escaped));
+            }
             return radiance;
         }
 
         /* emitted light, shared with the shadow rays of the vertex before where that had any */
         rgb emitted = transport_emission(t, &v);
         if (is_whole && !rgb_is_black(emitted)) {
-            float weight = scattered_pdf > 0.0f
-                               ? direct_light_scatter_weight(t, scattered_from, scattered_normal, &v, scattered_pdf, 1, 1)
-                               : 1.0f;
+            float weight = 1.0f;
+            if (scattered_pdf > 0.0f)
+                weight = direct_light_scatter_weight(t, scattered_from, scattered_normal, &v, scattered_pdf, 1, 1);
             radiance = rgb_add(radiance, rgb_scale(rgb_mul(throughput, emitted), weight));
         }
 

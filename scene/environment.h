@@ -40,8 +40,8 @@ void environment_pixel_at(const environment *e, vec3 direction, uint32_t *out_x,
 /* A direction in the light's space, even in solid angle over each pixel for places within it in [0,1]^2. */
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within);
 
-/* The rest asks a light of kind LIGHT_INFINITE, from a point of the scene: light that comes through a portal reaches but
- * what sees through that. Directions are in world space, unit, towards the light. */
+/* The rest asks a light of kind LIGHT_INFINITE, from a point of the scene: light that comes through a portal reaches
+ * but what sees through that. Directions are in world space, unit, towards the light. */
 
 /* W/m^2/sr. */
 rgb environment_radiance(const light *l, vec3 point, vec3 direction);

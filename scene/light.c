@@ -129,8 +129,7 @@ rgb light_emitted_radiance(const scene *s, const light *l, const surface_hit *hi
 {
     if (l->kind != LIGHT_AREA || (!l->two_sided && vec3_dot(hit->geometric_normal, direction) <= 0.0f))
         return rgb_gray(0.0f);
-    return l->radiance_texture == SCENE_NO_TEXTURE ? l->radiance
-                                                   : rgb_mul(l->radiance, light_texture_value(s, l, hit));
+    return l->radiance_texture == SCENE_NO_TEXTURE ? l->radiance : rgb_mul(l->radiance, light_texture_value(s, l, hit));
 }
 
 /* --- towards a point --- */
@@ -172,10 +171,7 @@ static surface_sample sample_sphere_cone(const shape *lamp, vec3 point, vec2 u, 
 }
 
 /* Whether direct light is sampled by the lamp's radiance map too: where its density is known at a hit. */
-static bool is_sampled_by_map(const light *l, const shape *lamp)
-{
-    return l->radiance_map && lamp->kind == SHAPE_MESH;
-}
+static bool is_sampled_by_map(const light *l, const shape *lamp) { return l->radiance_map && lamp->kind == SHAPE_MESH; }
 
 static bool sample_area(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
 {
@@ -198,8 +194,7 @@ static bool sample_area(const scene *s, const light *l, vec3 point, vec2 u, ligh
     float cos_lamp = fabsf(vec3_dot(at.geometric_normal, out->direction));
     if (rgb_is_black(out->radiance) || cos_lamp <= 1e-6f)
         return false;
-    out->pdf_solid_angle =
-        is_cone ? 1.0f / (2.0f * AG_PI * cone) : at.pdf_area * density * distance_squared / cos_lamp;
+    out->pdf_solid_angle = is_cone ? 1.0f / (2.0f * AG_PI * cone) : at.pdf_area * density * distance_squared / cos_lamp;
     out->shadow_target =
         vec3_add_scaled(at.position, vec3_face_forward(at.geometric_normal, vec3_negate(out->direction)), at.epsilon);
     out->is_delta = shape_is_invisible(lamp); /* then shadow rays alone find it */

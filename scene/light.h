@@ -35,10 +35,10 @@ typedef struct light {
     vec3 position;  /* of all points: world space */
     vec3 direction; /* spot, projection, distant: the way the light goes, unit */
     rgb intensity;  /* point: W/sr; spot: along the axis; goniometric, projection: what the picture is multiplied by */
-    rgb radiance;   /* area: W/m^2/sr; distant: irradiance on a surface facing it, W/m^2; infinite: W/m^2/sr, or what its
-                     * picture is multiplied by */
-    float falloff_start, falloff_end; /* spot: 1 - cos of the angles inside of which it is full and outside of which there
-                                       * is nothing; smoothstep in the cosine between */
+    rgb radiance; /* area: W/m^2/sr; distant: irradiance on a surface facing it, W/m^2; infinite: W/m^2/sr, or what its
+                   * picture is multiplied by */
+    float falloff_start, falloff_end; /* spot: 1 - cos of the angles inside of which it is full and outside of which
+                                       * there is nothing; smoothstep in the cosine between */
     uint32_t shape_index;             /* area: the shape that shines */
     bool two_sided;                   /* area */
     uint32_t radiance_texture;        /* area: multiplies radiance from place to place; SCENE_NO_TEXTURE: nowhere */
@@ -63,12 +63,12 @@ void light_reset(light *l);
 
 /* Light arriving at a point. */
 typedef struct light_sample {
-    vec3 direction;         /* towards the light, unit */
-    float distance;         /* INFINITY for distant and infinite lights */
-    vec3 shadow_target;     /* where a shadow ray ends (just before the lamp's surface); unused for those */
-    rgb radiance;           /* area, infinite: W/m^2/sr; delta lights: irradiance perpendicular to direction, W/m^2 */
-    float pdf_solid_angle;  /* 1 for delta lights */
-    bool is_delta;          /* cannot be hit by a scattered ray: no MIS */
+    vec3 direction;        /* towards the light, unit */
+    float distance;        /* INFINITY for distant and infinite lights */
+    vec3 shadow_target;    /* where a shadow ray ends (just before the lamp's surface); unused for those */
+    rgb radiance;          /* area, infinite: W/m^2/sr; delta lights: irradiance perpendicular to direction, W/m^2 */
+    float pdf_solid_angle; /* 1 for delta lights */
+    bool is_delta;         /* cannot be hit by a scattered ray: no MIS */
 } light_sample;
 
 /* What scene_commit sets, areas and bounds being there. Errors: AG_ERROR_MEMORY. */
@@ -96,15 +96,15 @@ rgb light_sampled_value(const struct scene *s, const light *l, const struct surf
 /* Of the lights that are points: W/sr into direction (away from it, unit). */
 rgb light_intensity(const light *l, vec3 direction);
 
-/* The cone under which a ball is seen from a point outside it: true, and 1 - cos of its half angle; false when the point is
- * inside or too close for the cone to be precise. */
+/* The cone under which a ball is seen from a point outside it: true, and 1 - cos of its half angle; false when the
+ * point is inside or too close for the cone to be precise. */
 bool light_ball_cone(vec3 center, float radius, vec3 point, float *out_one_minus_cos);
 
 /* A photon's start. */
 typedef struct light_emission {
-    vec3 origin;    /* off the lamp's own surface */
-    vec3 direction; /* unit */
-    rgb flux;       /* W, carried by a single photon that stands for the whole light */
+    vec3 origin;     /* off the lamp's own surface */
+    vec3 direction;  /* unit */
+    rgb flux;        /* W, carried by a single photon that stands for the whole light */
     uint32_t medium; /* that it starts in, SCENE_NO_MEDIUM: none; what it took before, from infinitely far, is off */
 } light_emission;
 
@@ -114,9 +114,9 @@ typedef struct light_target {
     float radius; /* > 0 */
 } light_target;
 
-/* target NULL: all of the light. Else only that part of it is sampled, as far as is known beforehand, whose rays meet the
- * ball: every ray that does is, with the right share of the whole (Jensen 1996: projection maps).
- * Random numbers come from the path's own stream (math/rng.h). Returns false when the sample carries nothing. */
+/* target NULL: all of the light. Else only that part of it is sampled, as far as is known beforehand, whose rays meet
+ * the ball: every ray that does is, with the right share of the whole (Jensen 1996: projection maps). Random numbers
+ * come from the path's own stream (math/rng.h). Returns false when the sample carries nothing. */
 bool light_sample_emission(const struct scene *s, const light *l, const light_target *target, struct rng *random,
                            light_emission *out_emission);
 

@@ -1,7 +1,7 @@
-/* light_pick.c: which light to sample: see scene.h. For a place in the scene each light that is everywhere has one share,
- * and the lamps together have one, which the light tree deals out; for photons it is power that counts.
- * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.6 (a fair share of infinite lights:
- * how much of them is hidden is not known). Threads: light_pick_commit by one thread; the rest read only. */
+/* light_pick.c: which light to sample: see scene.h. For a place in the scene each light that is everywhere has one
+ * share, and the lamps together have one, which the light tree deals out; for photons it is power that counts. Rests
+ * on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.6 (a fair share of infinite lights: how
+ * much of them is hidden is not known). Threads: light_pick_commit by one thread; the rest read only. */
 #include "light_pick.h"
 
 #include "light_tree.h"

@@ -1,18 +1,18 @@
-/* light_tree.c: see light_tree.h. Places are in units of the scene's radius from its middle, and intensities parts of the
- * whole: nothing overflows. */
+/* light_tree.c: see light_tree.h. Places are in units of the scene's radius from its middle, and intensities parts of
+ * the whole: nothing overflows. */
 #include "light_tree.h"
 
 #include <stdlib.h>
 
 /* For rounding: what is this little beyond a horizon still counts. */
 static const float SLACK = 1e-3f;
-/* Of the cosine to the place's normal and of the lamp's own: what may count for more by a shading normal, or where the ball
- * hides how the lamp lies. */
+/* Of the cosine to the place's normal and of the lamp's own: what may count for more by a shading normal, or where the
+ * ball hides how the lamp lies. */
 static const float COSINE_LEAST = 0.02f;
 /* Nearer than this to a lamp, in scene radii, all distances count alike. */
 static const float NEAREST = 1e-4f;
-/* Of a ball's squared radius: how near one comes to what is in it. A panel has half of that as its area over pi, which is
- * what its irradiance ends at; in a group some lamp may be nearer: measured, 0.1 to 0.2 leave the least noise. */
+/* Of a ball's squared radius: how near one comes to what is in it. A panel has half of that as its area over pi, which
+ * is what its irradiance ends at; in a group some lamp may be nearer: measured, 0.1 to 0.2 leave the least noise. */
 static const float LAMP_NEAR = 0.64f, GROUP_NEAR = 0.15f;
 enum { BIN_COUNT = 16, ALL_AXES_MAX = 256 };
 
@@ -50,7 +50,8 @@ struct light_tree {
 
 typedef struct query {
     vec3 point, normal;
-    float horizon, least_received; /* cosines to the normal: below which nothing is received; that others are raised to */
+    float horizon,
+        least_received; /* cosines to the normal: below which nothing is received; that others are raised to */
 } query;
 
 static query make_query(const light_tree *t, vec3 point, vec3 normal)
@@ -235,8 +236,8 @@ static light_bounds bounds_of(const lamp *lamps, uint32_t begin, uint32_t end, v
     return all;
 }
 
-/* Conty Estevez and Kulla, 4.4: surface area, times the solid angle that is lit, times intensity; here the cone of normals
- * and light is measured by its height, and a margin keeps points from costing nothing. */
+/* Conty Estevez and Kulla, 4.4: surface area, times the solid angle that is lit, times intensity; here the cone of
+ * normals and light is measured by its height, and a margin keeps points from costing nothing. */
 static double cost_of(const lamp *lamps, uint32_t begin, uint32_t end)
 {
     vec3 low, high;
@@ -398,7 +399,8 @@ ag_status light_tree_create(const scene *s, const uint32_t *lights, uint32_t cou
     *out_tree = NULL;
     if (t) {
         *t = (light_tree){.center = s->bounding_center, .inverse_radius = 1.0f / s->bounding_radius};
-        t->nodes = calloc(count, sizeof *t->nodes); /* fewer than lamps, for each has two children or more, or is the root */
+        t->nodes =
+            calloc(count, sizeof *t->nodes); /* fewer than lamps, for each has two children or more, or is the root */
         t->places = malloc(s->light_count * sizeof *t->places);
     }
     ag_status status = t && lamps && queue && t->nodes && t->places ? AG_OK : AG_ERROR_MEMORY;

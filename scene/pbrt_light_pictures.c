@@ -1,8 +1,8 @@
 /* pbrt_light_pictures.c: pictures that lights throw, and LightSource "goniometric" and "projection" of a pbrt-v4 scene.
  * Rests on the format's description, pbrt.org/fileformat-v4, "Lights", and for which way up a picture is on pbrt-v4's
- * behaviour. Square pictures of directions are equal-area octahedral, as pbrt-v4 wants them; those twice as wide as high,
- * which it refuses, are latitude-longitude, as pbrt-v3 had them.
- * Flow: pbrt_lights, pbrt_environments -> [here] -> environment, projection. Threads: one per scene. */
+ * behaviour. Square pictures of directions are equal-area octahedral, as pbrt-v4 wants them; those twice as wide as
+ * high, which it refuses, are latitude-longitude, as pbrt-v3 had them. Flow: pbrt_lights, pbrt_environments -> [here]
+ * -> environment, projection. Threads: one per scene. */
 #include "environment.h"
 #include "image_encoding.h"
 #include "image_reader.h"
@@ -18,7 +18,8 @@ ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, 
     if (!(transform_uniform_scale(t) > 0.0))
         log_at(parser->log, AG_LOG_WARNING, list->where,
                "LightSource \"%s\": the transform is not a rotation, reflection or scaling: the picture is not "
-               "bent, just turned", list->name);
+               "bent, just turned",
+               list->name);
     double z[3], x[3], length = 0.0, along = 0.0;
     for (int i = 0; i < 3; i++)
         length += t->m[i][z_column] * t->m[i][z_column];
@@ -136,8 +137,7 @@ static ag_status read_common(pbrt_parser *parser, parameter_list *list, const ch
     l->position = transform_point(&parser->state.world_from_object, vec3_make(0.0f, 0.0f, 0.0f));
     *out_scale = scale;
     *out_power = power;
-    return vec3_is_finite(l->position) ? AG_OK
-                                       : pbrt_error(parser, list->where, 1, "the light is too far away");
+    return vec3_is_finite(l->position) ? AG_OK : pbrt_error(parser, list->where, 1, "the light is too far away");
 }
 
 /* intensity times scale; where power is given, as much as makes a light of intensity 1 have it. */

@@ -330,8 +330,8 @@ ag_status pbrt_infinite_light(pbrt_parser *parser, parameter_list *list, light *
 /* pbrt_light_pictures.c: LightSource "goniometric" and "projection". */
 ag_status pbrt_goniometric_light(pbrt_parser *parser, parameter_list *list, light *out_light);
 ag_status pbrt_projection_light(pbrt_parser *parser, parameter_list *list, light *out_light);
-/* world_from_light: the axes of the current transform, or with swaps_yz the light's y and z along its z and y. What is no
- * rotation, reflection or scaling keeps the light's z axis, and x as far as it can. */
+/* world_from_light: the axes of the current transform, or with swaps_yz the light's y and z along its z and y. What is
+ * no rotation, reflection or scaling keeps the light's z axis, and x as far as it can. */
 ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, bool swaps_yz, light *l);
 /* The picture called name, "filename" of the list; its colours averaged where is_gray. */
 ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,

@@ -21,10 +21,7 @@ typedef struct window {
 /* --- the map: angles from z, towards x and towards y, from -90 degrees to 90 --- */
 
 /* Where on [0, 1] the angle with this tangent is. */
-static double place_of(double tangent)
-{
-    return 0.5 + copysign(2.0 * angle_turns(fabs(tangent), 1.0), tangent);
-}
+static double place_of(double tangent) { return 0.5 + copysign(2.0 * angle_turns(fabs(tangent), 1.0), tangent); }
 
 static vec3 direction_at(double u, double v)
 {
@@ -41,10 +38,7 @@ static double stretch_at(vec3 w)
     return PI * PI * (x * x + z * z) * (y * y + z * z) / z;
 }
 
-static vec3 to_local(const portal *p, vec3 point)
-{
-    return frame_to_local(&p->axes, vec3_sub(point, p->corner));
-}
+static vec3 to_local(const portal *p, vec3 point) { return frame_to_local(&p->axes, vec3_sub(point, p->corner)); }
 
 /* What a point of the room (local, z < 0) sees through the portal. */
 static window window_from(const portal *p, vec3 local)
@@ -158,8 +152,8 @@ static float *look_around(const portal *p, const light *l)
     return seen;
 }
 
-/* A cell's radiance is the mean over its places and the ring around it, so that it knows of bright neighbours whose edge
- * it may share. */
+/* A cell's radiance is the mean over its places and the ring around it, so that it knows of bright neighbours whose
+ * edge it may share. */
 static double cell_radiance(const float *seen, uint32_t size, uint32_t i, uint32_t j)
 {
     uint32_t end = 2 * size, x0 = i > 0 ? 2 * i - 1 : 0, y0 = j > 0 ? 2 * j - 1 : 0;
@@ -255,10 +249,7 @@ void portal_destroy(portal *p)
 
 /* --- asking --- */
 
-bool portal_is_before(const portal *p, vec3 point)
-{
-    return vec3_dot(vec3_sub(p->corner, point), p->axes.z) > 0.0f;
-}
+bool portal_is_before(const portal *p, vec3 point) { return vec3_dot(vec3_sub(p->corner, point), p->axes.z) > 0.0f; }
 
 bool portal_is_crossed(const portal *p, vec3 point, vec3 direction)
 {
@@ -290,7 +281,8 @@ float portal_pdf(const portal *p, vec3 point, vec3 direction)
     return whole > 0.0 ? (float)(cell_density(p->light, n, i, j, whole) / stretch_at(w)) : 0.0f;
 }
 
-/* The tangents from a ball to a portal from 0 to length, `near` and `far` from its plane: the least, then the largest. */
+/* The tangents from a ball to a portal from 0 to length, `near` and `far` from its plane: the least, then the largest.
+ */
 static void tangents_from_ball(double center, double radius, double length, double near, double far, double out[2])
 {
     double low = -(center + radius), high = length - (center - radius);

@@ -16,12 +16,13 @@ typedef struct portal {
     frame axes;          /* x, y along the edges, z out of the room, towards the light */
     float width, height; /* along x and y */
     uint32_t size;       /* cells of the tables along a side */
-    double *light;       /* [size + 1][size + 1], sums over the cells above and left: radiance times solid angle; owned */
-    double *flux;        /* the same times the cosine to z */
-    rgb irradiance;      /* on its plane from outside, W/m^2 */
+    double *light;  /* [size + 1][size + 1], sums over the cells above and left: radiance times solid angle; owned */
+    double *flux;   /* the same times the cosine to z */
+    rgb irradiance; /* on its plane from outside, W/m^2 */
 } portal;
 
-/* Corners as pbrt's "portal", in world space: edges 0 to 3 and 0 to 1 are x and y. false where they are no rectangle. */
+/* Corners as pbrt's "portal", in world space: edges 0 to 3 and 0 to 1 are x and y. false where they are no rectangle.
+ */
 bool portal_place(const vec3 corners[4], portal *out_portal);
 
 /* l: the infinite light that shines through it, complete but for the portal. placed: see portal_place.
@@ -39,8 +40,8 @@ bool portal_is_crossed(const portal *p, vec3 point, vec3 direction);
 bool portal_sample(const portal *p, vec3 point, vec2 u, vec3 *out_direction, float *out_pdf_solid_angle);
 /* Its density; 0 for directions that miss the portal. */
 float portal_pdf(const portal *p, vec3 point, vec3 direction);
-/* A place on it and a direction, nearly in proportion to the flux that enters; where target is not NULL of what may meet
- * that ball. The density is per area and solid angle. false where the sample carries nothing. */
+/* A place on it and a direction, nearly in proportion to the flux that enters; where target is not NULL of what may
+ * meet that ball. The density is per area and solid angle. false where the sample carries nothing. */
 bool portal_sample_flux(const portal *p, const light_target *target, struct rng *random, vec3 *out_position,
                         vec3 *out_direction, float *out_pdf);
 

@@ -9,10 +9,10 @@
 /* Constant over each pixel. Directions are unit, in the light's own space: x to the right of the picture, y up. */
 typedef struct projection {
     uint32_t width, height;
-    rgb *pixels;          /* [height][width], top row first; owned */
-    distribution_2d picks; /* pixels in proportion to what they send */
+    rgb *pixels;            /* [height][width], top row first; owned */
+    distribution_2d picks;  /* pixels in proportion to what they send */
     float reach_x, reach_y; /* half the picture at z = 1 */
-    rgb integral;         /* over the pyramid, sr times the pixels' unit */
+    rgb integral;           /* over the pyramid, sr times the pixels' unit */
 } projection;
 
 /* fov_degrees: of the shorter side, in (0, 180). pixels: finite and not negative, from malloc; taken over, on failure

@@ -16,8 +16,8 @@ typedef struct radiance_map {
 ag_status radiance_map_create(const struct scene *s, const light *l, radiance_map **out_map);
 void radiance_map_destroy(radiance_map *m); /* NULL is fine */
 
-/* Where a sample of the shape goes instead, and how many times denser than evenly samples are there. false where the lamp
- * is black. */
+/* Where a sample of the shape goes instead, and how many times denser than evenly samples are there. false where the
+ * lamp is black. */
 bool radiance_map_sample(const radiance_map *m, vec2 u, vec2 *out_u, float *out_density);
 float radiance_map_density(const radiance_map *m, vec2 u);
 

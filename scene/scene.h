@@ -67,9 +67,9 @@ typedef struct scene {
     uint32_t infinite_light_count;
     bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */
     /* How lights are picked, see light_pick.c */
-    uint32_t lit_count;            /* lights with power */
-    uint32_t only_light;           /* where there is but one of them, that one */
-    uint32_t *everywhere_lights;   /* [everywhere_count], indices of distant and infinite ones with power */
+    uint32_t lit_count;          /* lights with power */
+    uint32_t only_light;         /* where there is but one of them, that one */
+    uint32_t *everywhere_lights; /* [everywhere_count], indices of distant and infinite ones with power */
     uint32_t everywhere_count;
     struct light_tree *light_tree; /* over the others with power; NULL where there is none */
     float *photon_cdf;             /* [light_count], running sum of photon_probability */
@@ -77,8 +77,8 @@ typedef struct scene {
     struct bvh *bvh;
 } scene;
 
-scene *scene_create(void);         /* NULL when out of memory */
-void scene_destroy(scene *s);      /* NULL is fine */
+scene *scene_create(void);    /* NULL when out of memory */
+void scene_destroy(scene *s); /* NULL is fine */
 
 /* The interned copy of a file name; NULL when out of memory. */
 const char *scene_intern_file_name(scene *s, const char *name);
@@ -88,8 +88,8 @@ const char *scene_intern_file_name(scene *s, const char *name);
 ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index);
 /* A texture's inputs must be there already. Errors also: AG_ERROR_SCENE (it costs more than TEXTURE_MAX_COST). */
 ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index);
-/* For texture_image_load, which looks first whether it is there. The scene takes the picture, on failure too (it is then
- * destroyed). */
+/* For texture_image_load, which looks first whether it is there. The scene takes the picture, on failure too (it is
+ * then destroyed). */
 ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index);
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
@@ -112,16 +112,16 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa);
 /* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
 float shape_area(const shape *s);
 
-/* For shading: picks one of the lights that may shine at a place, about in proportion to what it may bring; u in [0, 1).
- * normal: unit, of a surface that scatters only what comes from the side it points to; zero: light from all sides counts.
- * Gives its index, and the probability with which this one is picked: 0 where no light reaches the place, and the index is
- * of no use. The scene has at least one light with power. */
+/* For shading: picks one of the lights that may shine at a place, about in proportion to what it may bring; u in [0,
+ * 1). normal: unit, of a surface that scatters only what comes from the side it points to; zero: light from all sides
+ * counts. Gives its index, and the probability with which this one is picked: 0 where no light reaches the place, and
+ * the index is of no use. The scene has at least one light with power. */
 uint32_t scene_pick_light(const scene *s, vec3 point, vec3 normal, float u, float *out_probability);
 /* The probability with which scene_pick_light picks that one there. */
 float scene_light_probability(const scene *s, uint32_t light_index, vec3 point, vec3 normal);
 
-/* For photons: picks a light by its power, but none so rarely that its light would be a few bright specks, and each as often
- * as its `photons` says. Probability 0: no light sends photons. */
+/* For photons: picks a light by its power, but none so rarely that its light would be a few bright specks, and each as
+ * often as its `photons` says. Probability 0: no light sends photons. */
 uint32_t scene_pick_light_by_power(const scene *s, float u, float *out_probability);
 bool scene_sends_photons(const scene *s);
 

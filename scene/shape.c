@@ -191,7 +191,8 @@ bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u)
     double a = vec3_dot(e1, e1), b = vec3_dot(e1, e2), c = vec3_dot(e2, e2), p1 = vec3_dot(p, e1), p2 = vec3_dot(p, e2);
     double determinant = a * c - b * b, inverse = determinant > 0.0 ? 1.0 / determinant : 0.0;
     float before = i > 0 ? m->area_cdf[i - 1] : 0.0f, share = m->area_cdf[i] - before;
-    vec2 u = sample_triangle_inverse((vec2){(float)((c * p1 - b * p2) * inverse), (float)((a * p2 - b * p1) * inverse)});
+    vec2 u =
+        sample_triangle_inverse((vec2){(float)((c * p1 - b * p2) * inverse), (float)((a * p2 - b * p1) * inverse)});
     *out_u = (vec2){before + share * u.x, u.y};
     return true;
 }

@@ -49,10 +49,7 @@ static inline void mean_add(mean *m, double sample, double count)
     m->value += sample / count, m->square += sample * sample / count;
 }
 
-static inline double mean_error(mean m, double count)
-{
-    return sqrt(fmax(0.0, m.square - m.value * m.value) / count);
-}
+static inline double mean_error(mean m, double count) { return sqrt(fmax(0.0, m.square - m.value * m.value) / count); }
 
 static inline bool disc_is_met(const disc *d, const light_emission *e)
 {
@@ -62,8 +59,8 @@ static inline bool disc_is_met(const disc *d, const light_emission *e)
     return t > 0.0f && vec3_distance_squared(at, d->center) < d->radius * d->radius;
 }
 
-/* The flux of light 0 through a disc that nothing shadows, W of green: by its photons (aimed: those for a ball around the
- * disc), and by samples towards places on the disc. The two agree; gives the latter. */
+/* The flux of light 0 through a disc that nothing shadows, W of green: by its photons (aimed: those for a ball around
+ * the disc), and by samples towards places on the disc. The two agree; gives the latter. */
 static inline double expect_flux_through_disc(const scene *s, const disc *d, int count)
 {
     const light *l = &s->lights[0];

@@ -232,7 +232,10 @@ static scene *lit_scene_create(test_run *r, environment *e, rgb radiance)
 }
 
 static double density(void *user, vec3 d) { return environment_pdf(user, (vec3){0.0f, 0.0f, 0.0f}, d); }
-static double density_of_photons(void *user, vec3 d) { return environment_pdf(user, (vec3){0.0f, 0.0f, 0.0f}, vec3_negate(d)); }
+static double density_of_photons(void *user, vec3 d)
+{
+    return environment_pdf(user, (vec3){0.0f, 0.0f, 0.0f}, vec3_negate(d));
+}
 
 static environment *environment_for(int k)
 {
@@ -262,8 +265,8 @@ static void directions_are_sampled_by_their_density(void **state)
             assert_close(vec3_length(at.direction), 1.0, 1e-6);
             rgb seen = environment_radiance(l, point, at.direction);
             /* but for rounding at the borders of pixels, what is sampled is what is seen */
-            strangers +=
-                environment_pdf(l, point, at.direction) != at.pdf_solid_angle || memcmp(&seen, &at.radiance, sizeof seen);
+            strangers += environment_pdf(l, point, at.direction) != at.pdf_solid_angle ||
+                         memcmp(&seen, &at.radiance, sizeof seen);
             double inverse = 1.0 / (double)at.pdf_solid_angle / SAMPLES;
             integral[0] += (double)at.radiance.r * inverse, integral[1] += (double)at.radiance.g * inverse;
             integral[2] += (double)at.radiance.b * inverse;
@@ -297,8 +300,9 @@ static void power_is_what_enters_the_bounding_sphere(void **state)
         double sum = 0.0;
         enum { STEPS = 600 };
         for (int i = 0; i < STEPS * STEPS; i++)
-            sum += (double)environment_whole_radiance(l, sample_uniform_sphere((vec2){((float)(i / STEPS) + 0.5f) / STEPS,
-                                                                                ((float)(i % STEPS) + 0.5f) / STEPS}))
+            sum += (double)environment_whole_radiance(
+                       l, sample_uniform_sphere(
+                              (vec2){((float)(i / STEPS) + 0.5f) / STEPS, ((float)(i % STEPS) + 0.5f) / STEPS}))
                        .r;
         double integral = sum * 4.0 * PI / (STEPS * STEPS), radius = s->bounding_radius;
         assert_relative(radius, 2.0 * sqrt(3.0), 1e-4);

@@ -60,8 +60,8 @@ static void narrow_spots_keep_their_power(void **state)
         for (int has_ramp = 0; has_ramp < 2; has_ramp++) {
             char text[512];
             snprintf(text, sizeof text,
-                     "LightSource \"spot\" \"float coneangle\" %g \"float conedeltaangle\" %g \"float power\" 7", ANGLES[k],
-                     has_ramp ? ANGLES[k] : 0.0);
+                     "LightSource \"spot\" \"float coneangle\" %g \"float conedeltaangle\" %g \"float power\" 7",
+                     ANGLES[k], has_ramp ? ANGLES[k] : 0.0);
             scene *s = test_scene_create(&r, text);
             const light *l = &s->lights[0];
             double sine = sin(ANGLES[k] * PI / 360.0), height = 2.0 * sine * sine;
@@ -217,7 +217,8 @@ static void a_constant_goniometric_light_is_a_point(void **state)
 /* Each pixel as part x part ones: over smaller ones intensity and density are nearly proportional. */
 static rgb *enlarged(uint32_t width, uint32_t height, uint32_t part, uint64_t seed)
 {
-    rgb *small = noise_pixels(width, height, seed), *large = malloc((size_t)width * height * part * part * sizeof *large);
+    rgb *small = noise_pixels(width, height, seed),
+        *large = malloc((size_t)width * height * part * part * sizeof *large);
     assert_non_null(large);
     for (uint32_t y = 0; y < height * part; y++)
         for (uint32_t x = 0; x < width * part; x++)
@@ -237,8 +238,8 @@ static void projections(void **state)
     check_pictured(&l, 24, 0.02);
 }
 
-/* A constant picture: the solid angle of a rectangle is 4 asin(a b / sqrt((1 + a^2)(1 + b^2))); on a screen that faces it
- * irradiance is I cos^3 / distance^2. */
+/* A constant picture: the solid angle of a rectangle is 4 asin(a b / sqrt((1 + a^2)(1 + b^2))); on a screen that faces
+ * it irradiance is I cos^3 / distance^2. */
 static void a_constant_projection(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* test_light_emission.c: light that leaves carries the lamp's power, in the right directions; aimed at a ball it carries
- * the same flux there. Threads: one. */
+/* test_light_emission.c: light that leaves carries the lamp's power, in the right directions; aimed at a ball it
+ * carries the same flux there. Threads: one. */
 #include "test_scene.h"
 
 enum { SAMPLES = 100000 / FEWER };

@@ -1,5 +1,5 @@
-/* test_light_pick.c: which light is sampled: probabilities are those said and sum to 1, lights that shine at a place are
- * never left out, and many lamps' light is found with little noise. Threads: one. */
+/* test_light_pick.c: which light is sampled: probabilities are those said and sum to 1, lights that shine at a place
+ * are never left out, and many lamps' light is found with little noise. Threads: one. */
 #include "test_scene.h"
 
 #include "light_tree.h"
@@ -94,12 +94,13 @@ static void write_lamps(char *text, int count, uint64_t seed)
 
 static char text[TEXT_SIZE];
 
-static const char *const SKY = "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"float scale\" 50\n"
-                               "LightSource \"infinite\" \"rgb L\" [0.1 0.2 0.4]\n"
-                               "LightSource \"distant\" \"rgb L\" [0 0 0]\n";
+static const char *const SKY =
+    "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"float scale\" 50\n"
+    "LightSource \"infinite\" \"rgb L\" [0.1 0.2 0.4]\n"
+    "LightSource \"distant\" \"rgb L\" [0 0 0]\n";
 
-/* Irradiance that a light may bring to a place facing along normal (from all sides: to its whole surface), unshadowed, by
- * one sample of it. */
+/* Irradiance that a light may bring to a place facing along normal (from all sides: to its whole surface), unshadowed,
+ * by one sample of it. */
 static double brought(const scene *s, uint32_t index, vec3 point, vec3 normal, vec2 u)
 {
     light_sample at;

@@ -1,9 +1,10 @@
-/* test_pbrt_light_pictures.c: lights with pictures, windows and "photons", as the pbrt reader makes them. Threads: one. */
+/* test_pbrt_light_pictures.c: lights with pictures, windows and "photons", as the pbrt reader makes them. Threads: one.
+ */
 #define _GNU_SOURCE
 #include "pbrt_fixture.h" /* first: its arguments would hide what the next one declares */
 
-#include "environment.h"
 #include "bvh.h"
+#include "environment.h"
 #include "environment_picture.h"
 #include "portal.h"
 #include "projection.h"
@@ -38,9 +39,10 @@ static void goniometric(void **state)
 {
     (void)state;
     const char *path = write_constant("a.exr", 8, 8, 3.0f, 2.0f, 1.0f);
-    reading r = reading_with("WorldBegin Translate 1 2 3 LightSource \"goniometric\" \"rgb I\" [ 1 2 3 ] \"float scale\" 2 "
-                             "\"string filename\" \"%s\"",
-                             path);
+    reading r =
+        reading_with("WorldBegin Translate 1 2 3 LightSource \"goniometric\" \"rgb I\" [ 1 2 3 ] \"float scale\" 2 "
+                     "\"string filename\" \"%s\"",
+                     path);
     const light *l = only_light(&r, LIGHT_GONIOMETRIC);
     assert_vec3(l->position, 1, 2, 3, 0);
     assert_rgb(l->intensity, 2, 4, 6, 0);
@@ -71,8 +73,7 @@ static void goniometric_directions(void **state)
     for (int i = 0; i < SIZE * SIZE * 3; i++)
         pixels[i] = (float)(i / 3);
     const char *path = write_environment("a.exr", SIZE, SIZE, IMAGE_FLOAT, pixels);
-    reading r =
-        reading_with("WorldBegin Rotate 90 0 1 0 LightSource \"goniometric\" \"string filename\" \"%s\"", path);
+    reading r = reading_with("WorldBegin Rotate 90 0 1 0 LightSource \"goniometric\" \"string filename\" \"%s\"", path);
     const light *l = only_light(&r, LIGHT_GONIOMETRIC);
     /* the rotation takes x to -z, z to x */
     assert_near(light_intensity(l, vec3_make(0.01f, 0.999f, -0.01f)).g, 4 * SIZE + 4, 0);
@@ -120,9 +121,9 @@ static void area_lights(void **state)
     (void)state;
     float pixels[2 * 2 * 3] = {1.0f, 1.0f, 1.0f, 2.0f, 2.0f, 2.0f, 3.0f, 3.0f, 3.0f, 6.0f, 6.0f, 6.0f};
     const char *path = write_environment("a.exr", 2, 2, IMAGE_FLOAT, pixels);
-    reading r = reading_with(
-        "WorldBegin AreaLightSource \"diffuse\" \"float scale\" 2 \"string filename\" \"%s\" Shape \"disk\" Shape \"disk\"",
-        path);
+    reading r = reading_with("WorldBegin AreaLightSource \"diffuse\" \"float scale\" 2 \"string filename\" \"%s\" "
+                             "Shape \"disk\" Shape \"disk\"",
+                             path);
     assert_int_equal(r.scene->light_count, 2);
     for (int i = 0; i < 2; i++) {
         const light *l = &r.scene->lights[i];
@@ -138,9 +139,10 @@ static void area_lights(void **state)
     assert_int_equal(r.scene->texture_image_count, 1);
     reading_destroy(&r);
     /* as much as makes a lamp of the picture's mean have that power */
-    r = reading_with("WorldBegin AreaLightSource \"diffuse\" \"float power\" 30 \"string filename\" \"%s\" \"bool twosided\" "
-                     "true Shape \"disk\" \"float radius\" 2",
-                     path);
+    r = reading_with(
+        "WorldBegin AreaLightSource \"diffuse\" \"float power\" 30 \"string filename\" \"%s\" \"bool twosided\" "
+        "true Shape \"disk\" \"float radius\" 2",
+        path);
     assert_near(only_light(&r, LIGHT_AREA)->radiance.g, 30 / (8 * PI * PI * 3), 1e-6);
     reading_destroy(&r);
 }
@@ -187,8 +189,9 @@ static void photons(void **state)
     assert_near(r.scene->lights[0].photons, 1, 0);
     assert_near(r.scene->lights[1].photons, 2.5, 0);
     assert_near(r.scene->lights[2].photons, 0, 0);
-    assert_string_equal(r.said[AG_LOG_INFO], "t:2:1: info: the light sends no photons: its indirect light and caustics are "
-                                             "missing from the photon map\n");
+    assert_string_equal(r.said[AG_LOG_INFO],
+                        "t:2:1: info: the light sends no photons: its indirect light and caustics are "
+                        "missing from the photon map\n");
     reading_destroy(&r);
 }
 
@@ -216,13 +219,15 @@ static void errors(void **state)
         {"AreaLightSource \"diffuse\"", black, "\"float power\" 3", "the picture is black"},
         {"AreaLightSource \"diffuse\"", "", "\"string filename\" \"none.exr\"", "none.exr"},
         {"LightSource \"point\"", "", "\"float photons\" -1", "\"photons\" should not be negative"},
-        {"LightSource \"infinite\"", "", "\"point3 portal\" [ 0 0 0  1 0 0  1 1 0 ]", "\"portal\" has four corners, not 3"},
+        {"LightSource \"infinite\"", "", "\"point3 portal\" [ 0 0 0  1 0 0  1 1 0 ]",
+         "\"portal\" has four corners, not 3"},
         {"LightSource \"infinite\"", good, "\"point3 portal\" [ 0 0 0  1 0 0  1 1 0  0 1 1 ]",
          "\"portal\" is not a rectangle, corner by corner"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[1024];
-        snprintf(text, sizeof text, "WorldBegin\n  %s %s %s", cases[i].directive, cases[i].picture, cases[i].parameters);
+        snprintf(text, sizeof text, "WorldBegin\n  %s %s %s", cases[i].directive, cases[i].picture,
+                 cases[i].parameters);
         reading r = reading_create(NULL, text, strlen(text));
         assert_int_not_equal(r.status, AG_OK);
         assert_int_equal(r.scene->light_count, 0);

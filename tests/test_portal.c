@@ -187,8 +187,7 @@ static void the_light_is_what_comes_through(void **state)
                 vec3 d = random_direction(&random);
                 if (passes(l->portal, point, d))
                     mean_add(&all, 4.0 * PI * (double)environment_whole_radiance(l, d).g, ALL);
-                assert_true(passes(l->portal, point, d) || i % 64 ||
-                            rgb_is_black(environment_radiance(l, point, d)));
+                assert_true(passes(l->portal, point, d) || i % 64 || rgb_is_black(environment_radiance(l, point, d)));
             }
             assert_close(through.value, all.value, 5.0 * hypot(mean_error(through, SAMPLES), mean_error(all, ALL)));
             /* nearly by radiance: little noise is left */
@@ -211,7 +210,8 @@ static double solid_angle(vec3 point, const vec3 corners[3])
 {
     vec3 a = vec3_sub(corners[0], point), b = vec3_sub(corners[1], point), c = vec3_sub(corners[2], point);
     double la = vec3_length(a), lb = vec3_length(b), lc = vec3_length(c);
-    double below = la * lb * lc + (double)vec3_dot(a, b) * lc + (double)vec3_dot(a, c) * lb + (double)vec3_dot(b, c) * la;
+    double below =
+        la * lb * lc + (double)vec3_dot(a, b) * lc + (double)vec3_dot(a, c) * lb + (double)vec3_dot(b, c) * la;
     return 2.0 * atan2(fabs((double)vec3_dot(a, vec3_cross(b, c))), below);
 }
 
@@ -281,8 +281,9 @@ static void what_stands_outside_shadows(void **state)
         test_run r;
         test_run_init(&r, 1);
         light l = window_light_number(1);
-        scene *s = scene_with_light(&r, outside ? "Translate 5 0 0 Rotate 90 0 1 0 Shape \"disk\" \"float radius\" 500"
-                                                : "Translate -5 0 0 Rotate 90 0 1 0 Shape \"disk\" \"float radius\" 500",
+        scene *s = scene_with_light(&r,
+                                    outside ? "Translate 5 0 0 Rotate 90 0 1 0 Shape \"disk\" \"float radius\" 500"
+                                            : "Translate -5 0 0 Rotate 90 0 1 0 Shape \"disk\" \"float radius\" 500",
                                     &l);
         assert_int_equal(scene_commit(s, &r.run, NULL), AG_OK);
         rng random = test_random(10);

@@ -348,8 +348,7 @@ static void lamps_shine_as_they_are_seen(void **state)
                     surface_hit hit;
                     if (scene_intersect(s, scene_ray_make(point, at.direction), INFINITY, &hit) &&
                         fabsf(vec3_dot(hit.geometric_normal, at.direction)) > 0.05f) /* flatter ones lose digits */
-                        assert_relative(light_pdf_from_point(s, lamp, point, &hit),
-                                        at.pdf_solid_angle, 0.02);
+                        assert_relative(light_pdf_from_point(s, lamp, point, &hit), at.pdf_solid_angle, 0.02);
                 }
                 /* a cone of a third of a turn holds the scene: its sine is at most 2/3 */
                 vec3 local = sample_uniform_cone(rng_vec2(&random), 0.5f);

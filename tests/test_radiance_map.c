@@ -1,5 +1,5 @@
-/* test_radiance_map.c: lamps with a texture: their power, the density with which their light is sampled, and the photons
- * they send. Threads: one. */
+/* test_radiance_map.c: lamps with a texture: their power, the density with which their light is sampled, and the
+ * photons they send. Threads: one. */
 #include "light_fixture.h"
 
 #include "radiance_map.h"
@@ -62,7 +62,8 @@ static void power_is_that_of_the_mean(void **state)
                 shape_sample_surface(lamp, 0, &at, &hit);
                 assert_close(vec3_length(vec3_sub(hit.position, at.position)), 0.0, 1e-5);
                 assert_close(vec3_dot(hit.geometric_normal, at.geometric_normal), 1.0, 1e-5);
-                mean_add(&value, (double)light_texture_value(s, l, &hit).g / (double)(at.pdf_area * lamp->area), SAMPLES);
+                mean_add(&value, (double)light_texture_value(s, l, &hit).g / (double)(at.pdf_area * lamp->area),
+                         SAMPLES);
             }
             double expected = 2.0 * value.value * PI * (double)lamp->area * (l->two_sided ? 2.0 : 1.0);
             double error = 5.0 * mean_error(value, SAMPLES) / value.value + 0.002; /* its own grid's */
@@ -79,8 +80,9 @@ static void two_tones(void **state)
     (void)state;
     test_run r;
     test_run_init(&r, 1);
-    scene *s = lamp_scene(&r, "Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [1 1 1] \"rgb tex2\" [0 0 0] "
-                              "\"float uscale\" 2 \"float vscale\" 2\n",
+    scene *s = lamp_scene(&r,
+                          "Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [1 1 1] \"rgb tex2\" [0 0 0] "
+                          "\"float uscale\" 2 \"float vscale\" 2\n",
                           SHAPES[0]);
     assert_relative(s->lights[0].power.r, PI * 4.0 * 0.5, 2e-3);
     assert_relative(s->lights[0].power.b, 3.0 * PI * 4.0 * 0.5, 2e-3);
@@ -131,7 +133,8 @@ static double density(void *user, vec3 d)
     return light_pdf_from_point(v->s, &v->s->lights[0], v->point, &hit);
 }
 
-/* Towards a point: the density said is the one sampled, at hits as at samples, and the light is that of even samples. */
+/* Towards a point: the density said is the one sampled, at hits as at samples, and the light is that of even samples.
+ */
 static void light_is_sampled_by_its_density(void **state)
 {
     (void)state;
@@ -168,7 +171,8 @@ static void light_is_sampled_by_its_density(void **state)
             vec3 to = vec3_sub(place.position, point), d = vec3_normalize(to);
             surface_hit there;
             shape_sample_surface(&s->shapes[0], 0, &place, &there);
-            vec3 stop = vec3_add_scaled(place.position, vec3_face_forward(place.geometric_normal, vec3_negate(d)), 1e-4f);
+            vec3 stop =
+                vec3_add_scaled(place.position, vec3_face_forward(place.geometric_normal, vec3_negate(d)), 1e-4f);
             if (!is_blocked_between(s, point, stop))
                 mean_add(&by_area,
                          (double)light_emitted_radiance(s, l, &there, vec3_negate(d)).g *
@@ -177,7 +181,8 @@ static void light_is_sampled_by_its_density(void **state)
                          SAMPLES);
         }
         assert_true(strangers < SAMPLES / 100); /* at the borders of squares and of cells */
-        assert_close(by_map.value, by_area.value, 5.0 * hypot(mean_error(by_map, SAMPLES), mean_error(by_area, SAMPLES)));
+        assert_close(by_map.value, by_area.value,
+                     5.0 * hypot(mean_error(by_map, SAMPLES), mean_error(by_area, SAMPLES)));
         view v = {s, point};
         double whole = integrate_bins(density, &v, 24 / (FEWER > 1 ? 3 : 1), bins), drawn = 0.0;
         for (int n = 0; n < BIN_COUNT; n++)
@@ -235,12 +240,9 @@ static void photons_carry_what_direct_light_says(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(power_is_that_of_the_mean),
-        cmocka_unit_test(two_tones),
-        cmocka_unit_test(samples_of_meshes_are_undone),
-        cmocka_unit_test(light_is_sampled_by_its_density),
-        cmocka_unit_test(bright_specks_are_found),
-        cmocka_unit_test(photons_carry_what_direct_light_says),
+        cmocka_unit_test(power_is_that_of_the_mean),    cmocka_unit_test(two_tones),
+        cmocka_unit_test(samples_of_meshes_are_undone), cmocka_unit_test(light_is_sampled_by_its_density),
+        cmocka_unit_test(bright_specks_are_found),      cmocka_unit_test(photons_carry_what_direct_light_says),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
