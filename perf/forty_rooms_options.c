@@ -147,39 +147,23 @@ static void set_quick(forty_rooms_options *options)
 static bool apply_option(int choice, forty_rooms_options *options)
 {
     switch (choice) {
-    case OPTION_OUT:
-        options->folder = optarg;
-        return true;
-    case OPTION_ROOMS:
-        return parse_rooms(optarg, options->rooms);
-    case OPTION_GATHERS:
-        return parse_gathers(optarg, options);
-    case OPTION_MODES:
-        return parse_modes(optarg, options->modes);
+    case OPTION_OUT: options->folder = optarg; return true;
+    case OPTION_ROOMS: return parse_rooms(optarg, options->rooms);
+    case OPTION_GATHERS: return parse_gathers(optarg, options);
+    case OPTION_MODES: return parse_modes(optarg, options->modes);
     case OPTION_REPEATS:
         if (!parse_number(optarg, 1, 99, &options->repeats[CACHE_ON_DEMAND])) {
             return false;
         }
         options->repeats[CACHE_PRECOMPUTE] = options->repeats[CACHE_ON_DEMAND];
         return true;
-    case OPTION_OFF_REPEATS:
-        return parse_number(optarg, 1, 99, &options->repeats[CACHE_OFF]);
-    case OPTION_THREADS:
-        return parse_number(optarg, 0, 4096, &options->thread_count);
-    case OPTION_PROGRAM:
-        options->program = optarg;
-        return true;
-    case OPTION_QUICK:
-        set_quick(options);
-        return true;
-    case OPTION_RESUME:
-        options->resume = true;
-        return true;
-    case OPTION_SUMMARY_ONLY:
-        options->summary_only = true;
-        return true;
-    default:
-        return false;
+    case OPTION_OFF_REPEATS: return parse_number(optarg, 1, 99, &options->repeats[CACHE_OFF]);
+    case OPTION_THREADS: return parse_number(optarg, 0, 4096, &options->thread_count);
+    case OPTION_PROGRAM: options->program = optarg; return true;
+    case OPTION_QUICK: set_quick(options); return true;
+    case OPTION_RESUME: options->resume = true; return true;
+    case OPTION_SUMMARY_ONLY: options->summary_only = true; return true;
+    default: return false;
     }
 }
 

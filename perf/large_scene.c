@@ -1,5 +1,5 @@
-/* large_scene.c: the program afterglow-large-scene, which writes scenes of a size that shows what memory and time go with:
- * a hilly floor of so many triangles as a binary PLY, or so many instances of one small thing, under a lamp.
+/* large_scene.c: the program afterglow-large-scene, which writes scenes of a size that shows what memory and time go
+ * with: a hilly floor of so many triangles as a binary PLY, or so many instances of one small thing, under a lamp.
  * Flow: -> a folder; afterglow renders what is in it. Threads: one. */
 #include "path.h"
 
@@ -33,15 +33,16 @@ static bool is_host_little_endian(void)
 static void write_hills(FILE *file, uint32_t side)
 {
     const uint64_t squares = (uint64_t)(side - 1) * (side - 1);
-    fprintf(file,
-            "ply\nformat binary_%s_endian 1.0\nelement vertex %llu\nproperty float x\nproperty float y\nproperty float z\n"
-            "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
-            is_host_little_endian() ? "little" : "big", (unsigned long long)side * side,
-            (unsigned long long)(2 * squares));
+    fprintf(
+        file,
+        "ply\nformat binary_%s_endian 1.0\nelement vertex %llu\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face %llu\nproperty list uchar uint vertex_indices\nend_header\n",
+        is_host_little_endian() ? "little" : "big", (unsigned long long)side * side, (unsigned long long)(2 * squares));
     for (uint32_t i = 0; i < side; i++)
         for (uint32_t j = 0; j < side; j++) {
             double x = 16.0 * j / (side - 1) - 8.0, z = 16.0 * i / (side - 1) - 8.0;
-            float p[3] = {(float)x, (float)(0.3 * sin(2.0 * x) * cos(3.0 * z) + 0.01 * sin(90.0 * x + 70.0 * z)), (float)z};
+            float p[3] = {(float)x, (float)(0.3 * sin(2.0 * x) * cos(3.0 * z) + 0.01 * sin(90.0 * x + 70.0 * z)),
+                          (float)z};
             fwrite(p, sizeof p, 1, file);
         }
     for (uint32_t i = 0; i + 1 < side; i++)
@@ -65,9 +66,10 @@ static void write_instances(FILE *file, uint32_t count)
             "    \"integer indices\" [0 1 2 0 3 1 0 2 3 1 3 2]\nObjectEnd\n",
             BEGIN);
     for (uint32_t i = 0; i < count; i++)
-        fprintf(file, "AttributeBegin Translate %g %g %g Rotate %u 1 2 3 Scale %g %g %g ObjectInstance \"t\" AttributeEnd\n",
-                (i % side + 0.5) * size - 8.0, 0.5 * size, (i / side + 0.5) * size - 8.0, i % 360, 0.3 * size, 0.3 * size,
-                0.3 * size);
+        fprintf(file,
+                "AttributeBegin Translate %g %g %g Rotate %u 1 2 3 Scale %g %g %g ObjectInstance \"t\" AttributeEnd\n",
+                (i % side + 0.5) * size - 8.0, 0.5 * size, (i / side + 0.5) * size - 8.0, i % 360, 0.3 * size,
+                0.3 * size, 0.3 * size);
 }
 
 static FILE *create(const char *folder, const char *name)
@@ -95,7 +97,8 @@ int main(int argc, char **argv)
     char *end = NULL;
     const unsigned long count = argc == 4 ? strtoul(argv[2], &end, 10) : 0;
     const bool is_mesh = argc == 4 && strcmp(argv[1], "triangles") == 0;
-    if (argc != 4 || (!is_mesh && strcmp(argv[1], "instances") != 0) || *end != '\0' || count < 2 || count > 1000000000) {
+    if (argc != 4 || (!is_mesh && strcmp(argv[1], "instances") != 0) || *end != '\0' || count < 2 ||
+        count > 1000000000) {
         fputs(USAGE, stderr);
         return 2;
     }

@@ -1,4 +1,5 @@
-/* nanoflann_rival.cpp: see nanoflann_rival.h. Its own recommendation for points in space: single index, leaves of ten. */
+/* nanoflann_rival.cpp: see nanoflann_rival.h. Its own recommendation for points in space: single index, leaves of ten.
+ */
 #include "nanoflann_rival.h"
 
 #pragma GCC diagnostic push
@@ -8,16 +9,20 @@
 #include <nanoflann.hpp>
 #pragma GCC diagnostic pop
 
-namespace {
+namespace
+{
 struct cloud {
     const float *points;
     size_t count;
     size_t kdtree_get_point_count() const { return count; }
     float kdtree_get_pt(size_t index, size_t axis) const { return points[3 * index + axis]; }
-    template <class BBOX> bool kdtree_get_bbox(BBOX &) const { return false; }
+    template <class BBOX>
+    bool kdtree_get_bbox(BBOX &) const
+    {
+        return false;
+    }
 };
-using index_tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, cloud>, cloud, 3, uint32_t>;
+using index_tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, cloud>, cloud, 3, uint32_t>;
 } // namespace
 
 struct nanoflann_tree {

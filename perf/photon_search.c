@@ -1,12 +1,11 @@
 /* photon_search.c: the program afterglow-photon-search: what the photon map's two searches cost, against nanoflann's
  * kd-tree and against Embree's rays, on the photons of one of the forty rooms. All take turns in one process on one
  * thread; medians; ratios are what counts.
- *   estimate   irradiance from the 300 nearest of 500,000 photons within 3.0, at photon positions: in random order, and in
- *              the order in which the map keeps them (neighbours one after the other)
- *   nearest    the nearest photon with a similar normal, at what gather rays hit: ray after ray as they come, and sorted
- *   ray        the gather rays themselves, by Embree alone
- * The rival finds neighbours by distance alone, without normals or a radius: less work than ours.
- * Use: afterglow-photon-search [SCENE.pbrt]. Flow: [here]. Threads: one. */
+ *   estimate   irradiance from the 300 nearest of 500,000 photons within 3.0, at photon positions: in random order, and
+ * in the order in which the map keeps them (neighbours one after the other) nearest    the nearest photon with a
+ * similar normal, at what gather rays hit: ray after ray as they come, and sorted ray        the gather rays
+ * themselves, by Embree alone The rival finds neighbours by distance alone, without normals or a radius: less work than
+ * ours. Use: afterglow-photon-search [SCENE.pbrt]. Flow: [here]. Threads: one. */
 #define _GNU_SOURCE
 #include "bvh.h"
 #include "clock.h"
@@ -35,9 +34,9 @@ typedef struct bench {
     scene *s;
     photon_map map;
     nanoflann_tree *rival;
-    float *points;                       /* [3 count], in the map's order */
-    uint32_t *random_order, *map_order;  /* [QUERIES], photons */
-    ray_hit *hits, *sorted_hits;         /* [hit_count] */
+    float *points;                      /* [3 count], in the map's order */
+    uint32_t *random_order, *map_order; /* [QUERIES], photons */
+    ray_hit *hits, *sorted_hits;        /* [hit_count] */
     uint32_t hit_count;
     photon_neighbor *scratch;
     double sink; /* keeps the work from being optimised away */
@@ -67,7 +66,8 @@ static uint32_t rival_estimates(bench *b, const uint32_t *order)
     uint32_t indices[NEAREST + 1];
     float distances[NEAREST + 1];
     for (uint32_t i = 0; i < QUERIES; i++) {
-        size_t found = nanoflann_tree_nearest(b->rival, b->points + 3 * (size_t)order[i], NEAREST + 1, indices, distances);
+        size_t found =
+            nanoflann_tree_nearest(b->rival, b->points + 3 * (size_t)order[i], NEAREST + 1, indices, distances);
         rgb sum = rgb_gray(0.0f);
         for (size_t k = 0; k < found; k++)
             sum = rgb_add(sum, flux_decode(photon_block_flux(b->map.blocks, indices[k])));
@@ -218,7 +218,8 @@ static void report(void)
             double ratio[ROUNDS];
             for (int r = 0; r < ROUNDS; r++)
                 ratio[r] = m->us[r] / measurements[k].us[r];
-            printf("  %.3f of %s (%.3f)%s", median(ratio), m->rival, m->wanted, median(ratio) <= m->wanted ? "" : " MISSED");
+            printf("  %.3f of %s (%.3f)%s", median(ratio), m->rival, m->wanted,
+                   median(ratio) <= m->wanted ? "" : " MISSED");
         }
         printf("\n");
     }
@@ -283,8 +284,8 @@ int main(int argc, char **argv)
             measurements[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
         }
     floating_point_leave(arithmetic);
-    printf("%u photons, %u estimates, %u rays, %d rounds (checksum %g)\n", b.map.set.count, (unsigned)QUERIES, b.hit_count,
-           ROUNDS, b.sink);
+    printf("%u photons, %u estimates, %u rays, %d rounds (checksum %g)\n", b.map.set.count, (unsigned)QUERIES,
+           b.hit_count, ROUNDS, b.sink);
     report();
     nanoflann_tree_destroy(b.rival);
     photon_map_reset(&b.map);

@@ -46,24 +46,12 @@ static int parse_options(int argc, char **argv, const char **out_folder, int *ou
     for (int choice; (choice = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         bool good = true;
         switch (choice) {
-        case 'o':
-            *out_folder = optarg;
-            break;
-        case 'f':
-            good = parse_number("first", optarg, 1, ROOM_COUNT, out_first);
-            break;
-        case 'l':
-            good = parse_number("last", optarg, 1, ROOM_COUNT, out_last);
-            break;
-        case 'g':
-            good = parse_number("gather", optarg, 1, 65536, out_gather_samples);
-            break;
-        case 'h':
-            fputs(usage_text, stdout);
-            return -1;
-        default:
-            good = false;
-            break;
+        case 'o': *out_folder = optarg; break;
+        case 'f': good = parse_number("first", optarg, 1, ROOM_COUNT, out_first); break;
+        case 'l': good = parse_number("last", optarg, 1, ROOM_COUNT, out_last); break;
+        case 'g': good = parse_number("gather", optarg, 1, 65536, out_gather_samples); break;
+        case 'h': fputs(usage_text, stdout); return -1;
+        default: good = false; break;
         }
         if (!good) {
             return 2;

@@ -109,7 +109,8 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
     irradiance_counters *counters = &cache->counters[worker_index];
     counters->requests++;
     out_request->photon = PHOTON_NONE;
-    uint32_t index = cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
+    uint32_t index =
+        cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
     if (index == PHOTON_NONE) {
         out_request->irradiance = irradiance_cache_estimate(cache, position, normal, worker_index);
         return;
@@ -174,6 +175,7 @@ uint64_t irradiance_cache_distinct(const irradiance_cache *cache)
 {
     uint64_t ready = 0;
     for (uint32_t i = 0; i < cache->map->set.count; i++)
-        ready += irradiance_word_state(irradiance_slot_read(photon_block_slot(cache->map->blocks, (uint32_t)i))) == IRRADIANCE_READY;
+        ready += irradiance_word_state(irradiance_slot_read(photon_block_slot(cache->map->blocks, (uint32_t)i))) ==
+                 IRRADIANCE_READY;
     return ready - cache->ready_before;
 }

@@ -2,8 +2,8 @@
  * Rests on: Neilson, Yang, TR 04-21, 2004 (on demand); Christensen 1999 (precomputed, and the nearest-photon lookup).
  * Flow: final gathering asks; the photon map's estimates answer. Threads: any number ask at once.
  *
- * A value is a pure function of the finished map and the photon's index, and all threads use what the slot's bits decode
- * to: so neither the mode nor who computed it, nor when, can reach the picture. */
+ * A value is a pure function of the finished map and the photon's index, and all threads use what the slot's bits
+ * decode to: so neither the mode nor who computed it, nor when, can reach the picture. */
 #ifndef AFTERGLOW_IRRADIANCE_CACHE_H
 #define AFTERGLOW_IRRADIANCE_CACHE_H
 
@@ -18,13 +18,13 @@ typedef enum irradiance_cache_mode {
 /* Of one worker; summed when all is done. Padded apart: they change all the time. */
 typedef struct irradiance_counters {
     _Alignas(64) uint64_t requests; /* places asked for */
-    uint64_t computed;   /* estimates at photons, published */
-    uint64_t deferred;   /* requests that met a claim of another thread and were set aside */
-    uint64_t waited;     /* of those, the ones that had to wait in the end */
-    uint64_t duplicated; /* estimates computed although another had been published: 0 */
-    uint64_t uncached;   /* estimates at the place itself */
-    uint64_t timed;      /* estimates whose time was taken */
-    double timed_seconds; /* CPU time of those */
+    uint64_t computed;              /* estimates at photons, published */
+    uint64_t deferred;              /* requests that met a claim of another thread and were set aside */
+    uint64_t waited;                /* of those, the ones that had to wait in the end */
+    uint64_t duplicated;            /* estimates computed although another had been published: 0 */
+    uint64_t uncached;              /* estimates at the place itself */
+    uint64_t timed;                 /* estimates whose time was taken */
+    double timed_seconds;           /* CPU time of those */
 } irradiance_counters;
 
 typedef struct irradiance_cache {
@@ -55,8 +55,8 @@ typedef struct irradiance_request {
 void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                           irradiance_request *out_request);
 
-/* Comes back to a request that was set aside; waits for the claimer where it still computes. Afterwards the irradiance is
- * there. The claimer holds its claim only while computing, and takes no other meanwhile: so this ends. */
+/* Comes back to a request that was set aside; waits for the claimer where it still computes. Afterwards the irradiance
+ * is there. The claimer holds its claim only while computing, and takes no other meanwhile: so this ends. */
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index);
 
 /* An estimate at the place itself, not kept. */

@@ -1,6 +1,6 @@
-/* irradiance_slot.h: one atomic word per photon: who computes its irradiance, and then the irradiance. The lock-free core.
- * Rests on: Neilson, Yang, TR 04-21, 2004 (on demand, with a flag at the photon); the compare-and-swap makes it safe for threads.
- * Modelled in tests/irradiance_slot.pml.
+/* irradiance_slot.h: one atomic word per photon: who computes its irradiance, and then the irradiance. The lock-free
+ * core. Rests on: Neilson, Yang, TR 04-21, 2004 (on demand, with a flag at the photon); the compare-and-swap makes it
+ * safe for threads. Modelled in tests/irradiance_slot.pml.
  *
  *            try_claim (CAS on the flags)           publish (CAS)
  *   EMPTY ─────────────────────────────────▶ CLAIMED ─────────────▶ READY  (final)

@@ -15,11 +15,11 @@
 #define PHOTON_NONE UINT32_MAX
 
 typedef struct photon {
-    float position[3];     /* world */
-    uint32_t flux;         /* W per emitted path's share (times the number of paths emitted), shared exponent */
-    uint16_t direction;    /* the way the light goes, octahedral; for guiding gathers, nothing reads it yet */
-    uint16_t normal;       /* geometric, on the side it arrived at, octahedral */
-    irradiance_slot slot;  /* the irradiance here, once someone has asked for it */
+    float position[3];    /* world */
+    uint32_t flux;        /* W per emitted path's share (times the number of paths emitted), shared exponent */
+    uint16_t direction;   /* the way the light goes, octahedral; for guiding gathers, nothing reads it yet */
+    uint16_t normal;      /* geometric, on the side it arrived at, octahedral */
+    irradiance_slot slot; /* the irradiance here, once someone has asked for it */
 } photon;
 
 _Static_assert(sizeof(photon) == 24, "a photon is 24 bytes, as in the paper");

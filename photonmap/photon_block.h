@@ -1,9 +1,8 @@
-/* photon_block.h: how a finished map keeps its photons: sixteen records of 24 bytes as columns, 384 bytes, so that a search
- * tests a block's positions and normals four or eight at a time and touches nothing else.
- * Photon i of the map is lane i % 16 of block i / 16; the last block's spare lanes have positions that are no numbers, which
- * no comparison finds.
- * Flow: photon_tracing fills records; photon_tree_build turns them into blocks where they lie. Threads: all but the slots is
- * read-only once the map stands. */
+/* photon_block.h: how a finished map keeps its photons: sixteen records of 24 bytes as columns, 384 bytes, so that a
+ * search tests a block's positions and normals four or eight at a time and touches nothing else. Photon i of the map is
+ * lane i % 16 of block i / 16; the last block's spare lanes have positions that are no numbers, which no comparison
+ * finds. Flow: photon_tracing fills records; photon_tree_build turns them into blocks where they lie. Threads: all but
+ * the slots is read-only once the map stands. */
 #ifndef AFTERGLOW_PHOTON_BLOCK_H
 #define AFTERGLOW_PHOTON_BLOCK_H
 

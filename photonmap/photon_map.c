@@ -145,15 +145,17 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
     return (rgb){(float)((double)sum[0] * scale), (float)((double)sum[1] * scale), (float)((double)sum[2] * scale)};
 }
 
-/* In a dark room the nearest photon is the bright next room's. A photon farther away than this many mean spacings must be
- * in sight: of evenly spread ones 1 in 7 is so far, and what still leaks through a partition goes down with the square. */
+/* In a dark room the nearest photon is the bright next room's. A photon farther away than this many mean spacings must
+ * be in sight: of evenly spread ones 1 in 7 is so far, and what still leaks through a partition goes down with the
+ * square. */
 static const float FAR_SPACINGS = 1.4f;
 
 static bool is_behind_wall(const photon_map *map, vec3 position, vec3 normal, uint32_t index)
 {
     vec3 at = photon_block_position(map->blocks, index);
     float lift = sqrtf(vec3_distance_squared(position, at)) * (1.0f / 32.0f);
-    vec3 from = vec3_add_scaled(position, normal, lift), to = vec3_add_scaled(at, direction_decode(photon_block_normal(map->blocks, index)), lift);
+    vec3 from = vec3_add_scaled(position, normal, lift),
+         to = vec3_add_scaled(at, direction_decode(photon_block_normal(map->blocks, index)), lift);
     return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
@@ -162,8 +164,8 @@ uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
     float distance_squared;
     if (map->set.count == 0)
         return PHOTON_NONE;
-    uint32_t found = photon_tree_nearest(&map->tree, position, normal, PHOTON_NEAREST_MIN_COS, map->mean_radius,
-                                         &distance_squared);
+    uint32_t found =
+        photon_tree_nearest(&map->tree, position, normal, PHOTON_NEAREST_MIN_COS, map->mean_radius, &distance_squared);
     float spacing_squared = map->mean_radius * map->mean_radius / (float)map->nearest;
     if (found == PHOTON_NONE || !map->surfaces || distance_squared <= FAR_SPACINGS * FAR_SPACINGS * spacing_squared)
         return found;

@@ -10,10 +10,10 @@
 #include "photon_tree.h"
 
 typedef struct photon_map_settings {
-    uint32_t nearest;    /* photons of an estimate, >= 1; the paper: 300 */
-    float max_radius;    /* of an estimate, scene units; the paper: 3.0; 0: from the density of the map */
-    float surface_area;  /* of the scene, m^2: for the automatic radius */
-    float radius_bound;  /* the automatic radius is no larger; 0: no bound */
+    uint32_t nearest;      /* photons of an estimate, >= 1; the paper: 300 */
+    float max_radius;      /* of an estimate, scene units; the paper: 3.0; 0: from the density of the map */
+    float surface_area;    /* of the scene, m^2: for the automatic radius */
+    float radius_bound;    /* the automatic radius is no larger; 0: no bound */
     const scene *surfaces; /* borrowed: where discs end; NULL: nowhere */
 } photon_map_settings;
 
@@ -23,12 +23,13 @@ typedef struct photon_map {
     photon_tree tree;     /* over the blocks */
     uint32_t nearest;
     float max_radius;
-    float min_radius_squared; /* coincident photons have no area of their own: the estimate's area is at least this disc's */
-    float mean_radius;     /* of an estimate, were the photons spread evenly */
-    int flux_exponent_max; /* the largest of the photons' exponents: the sums' unit */
-    int irradiance_bias;   /* added to a slot's 6-bit exponent */
-    const scene *surfaces; /* borrowed, or NULL */
-    bool has_been_cached;  /* a cache has been made over it: some slots may be ready */
+    float min_radius_squared; /* coincident photons have no area of their own: the estimate's area is at least this
+                                 disc's */
+    float mean_radius;        /* of an estimate, were the photons spread evenly */
+    int flux_exponent_max;    /* the largest of the photons' exponents: the sums' unit */
+    int irradiance_bias;      /* added to a slot's 6-bit exponent */
+    const scene *surfaces;    /* borrowed, or NULL */
+    bool has_been_cached;     /* a cache has been made over it: some slots may be ready */
 } photon_map;
 
 /* Takes the set's photons over (and frees them on failure). A map without photons is valid: it says 0 everywhere.
@@ -49,9 +50,9 @@ uint32_t photon_map_scratch_count(const photon_map *map);
 #define PHOTON_ESTIMATE_MIN_COS 0.5f
 #define PHOTON_NEAREST_MIN_COS  0.9f
 
-/* Irradiance [W/m^2] on the side of `normal` (unit), from the k nearest photons: their flux over the area out to the next
- * one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Near an edge, of either as far as there
- * is surface. Does not fail, does not allocate. */
+/* Irradiance [W/m^2] on the side of `normal` (unit), from the k nearest photons: their flux over the area out to the
+ * next one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Near an edge, of either as far
+ * as there is surface. Does not fail, does not allocate. */
 rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch);
 
 /* The photon whose irradiance stands for the place; PHOTON_NONE where none with a like normal is near enough,

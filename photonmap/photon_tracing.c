@@ -238,10 +238,12 @@ static void explain_shortage(run_context *run, const photon_tracing_settings *se
     double emitted = b->emitted[0] + b->emitted[1] + b->emitted[2];
     double escaped = b->escaped[0] + b->escaped[1] + b->escaped[2];
     log_message(run->log, AG_LOG_WARNING,
-                "%s photon map: %u of %u photons stored after %llu paths, of which too few meet a diffuse surface%s (%.1f %% of "
+                "%s photon map: %u of %u photons stored after %llu paths, of which too few meet a diffuse surface%s "
+                "(%.1f %% of "
                 "the emitted light leaves the scene): the light is right, its detail coarser",
                 settings->kind == PHOTON_GLOBAL ? "global" : "caustic", set->count, settings->wanted,
-                (unsigned long long)set->emitted_paths, settings->kind == PHOTON_GLOBAL ? "" : " by way of a specular one",
+                (unsigned long long)set->emitted_paths,
+                settings->kind == PHOTON_GLOBAL ? "" : " by way of a specular one",
                 emitted > 0.0 ? 100.0 * escaped / emitted : 0.0);
 }
 
@@ -290,13 +292,13 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
             break;
         }
         /* as many blocks as the yield so far lets expect are needed, and one to spare */
-        double needed = set.count > 0 ? (double)(settings->wanted - set.count) * (double)set.emitted_paths / set.count
-                                      : 1e18;
+        double needed =
+            set.count > 0 ? (double)(settings->wanted - set.count) * (double)set.emitted_paths / set.count : 1e18;
         double wanted_blocks = needed / PATHS_PER_BLOCK + 1.0;
         block_count = wanted_blocks < BLOCKS_PER_ROUND_MAX ? (uint64_t)wanted_blocks : BLOCKS_PER_ROUND_MAX;
         run_progress(run, AG_PHASE_PHOTONS,
-                     settings->progress_begin + (settings->progress_end - settings->progress_begin) *
-                                                    ((double)set.count / settings->wanted));
+                     settings->progress_begin +
+                         (settings->progress_end - settings->progress_begin) * ((double)set.count / settings->wanted));
     }
     for (int i = 0; blocks && i < BLOCKS_PER_ROUND_MAX; i++)
         free(blocks[i].photons);

@@ -1,15 +1,16 @@
 /* photon_tracing.h: light from the lamps through the scene, into arrays of photons, with the books kept.
  * Rests on: Jensen, "Global Illumination using Photon Maps", 1996; Jensen 2001, ch. 5 (emission, roulette).
- * Flow: scene -> [here] -> photon_map. Threads: paths are traced in blocks by the run's workers; the photons are the same
- * for any number of them: each path has its own random numbers, blocks are merged in their order, and the array is cut at
- * a prefix.
+ * Flow: scene -> [here] -> photon_map. Threads: paths are traced in blocks by the run's workers; the photons are the
+ * same for any number of them: each path has its own random numbers, blocks are merged in their order, and the array is
+ * cut at a prefix.
  *
  * Global map: every arrival at a gathered lobe, caustic paths included: L(S|D)*D. Caustic map: arrivals that came from
  * the lamp by way of traced lobes alone, at least one: LS+D, from an emission of its own.
  *
- * Where something moves, each path has a time of the shutter of its own, so that a map is the mean over the shutter; which
- * light comes at which time is lost. A photon on a moving surface lies where that place of the surface is when the shutter
- * opens, and is looked for there (surface_at_opening): it goes with its surface, and is not smeared over its way. */
+ * Where something moves, each path has a time of the shutter of its own, so that a map is the mean over the shutter;
+ * which light comes at which time is lost. A photon on a moving surface lies where that place of the surface is when
+ * the shutter opens, and is looked for there (surface_at_opening): it goes with its surface, and is not smeared over
+ * its way. */
 #ifndef AFTERGLOW_PHOTON_TRACING_H
 #define AFTERGLOW_PHOTON_TRACING_H
 
@@ -34,7 +35,7 @@ typedef struct photon_books {
 } photon_books;
 
 typedef struct photon_set {
-    photon *photons;       /* owned, from photon_records_create */
+    photon *photons; /* owned, from photon_records_create */
     uint32_t count;
     uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
     uint64_t rays;
@@ -51,7 +52,8 @@ typedef struct photon_tracing_settings {
 } photon_tracing_settings;
 
 /* Stores exactly `wanted` photons wherever light can reach that many; else fewer, and says why in a warning. A scene
- * without light gives an empty set, as do caustics where nothing has traced lobes. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ * without light gives an empty set, as do caustics where nothing has traced lobes. Errors: AG_ERROR_MEMORY,
+ * AG_CANCELLED. */
 ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,
                              photon_set *out_set);
 void photon_set_reset(photon_set *set);

@@ -19,7 +19,8 @@ typedef struct range {
     uint32_t low, high; /* photons */
 } range;
 
-/* The photons below the node at that place of its level: those of the blocks that are its leaves, as far as there are any. */
+/* The photons below the node at that place of its level: those of the blocks that are its leaves, as far as there are
+ * any. */
 static range node_range(const photon_tree *tree, uint32_t level, uint64_t place)
 {
     uint64_t each = (uint64_t)PHOTON_BLOCK_LANES << (tree->depth - level);
@@ -36,8 +37,8 @@ static void swap_photons(photon *a, photon *b)
     __builtin_memcpy(b, hold, sizeof hold);
 }
 
-/* Hoare's quickselect (1961): afterwards nothing before `middle` is greater than it along the axis, and nothing after is
- * less. Equal keys are swapped too, which keeps the halves even when all photons coincide. */
+/* Hoare's quickselect (1961): afterwards nothing before `middle` is greater than it along the axis, and nothing after
+ * is less. Equal keys are swapped too, which keeps the halves even when all photons coincide. */
 static void select_middle(const run_context *run, photon *p, range r, int64_t middle, uint32_t axis)
 {
     int64_t low = r.low, high = (int64_t)r.high - 1;
@@ -209,8 +210,8 @@ typedef struct query {
 /* Rounding may make a box seem farther than its photons: what is within a hair of the limit is visited. */
 static float hair_beyond(float limit) { return limit * 1.00001f; }
 
-/* Goes down to the leaf on the query's side, leaving on the stack the other sides that are within the limit. Returns the
- * leaf's block. */
+/* Goes down to the leaf on the query's side, leaving on the stack the other sides that are within the limit. Returns
+ * the leaf's block. */
 static uint32_t descend(query *q, visit v, float limit)
 {
     uint32_t leaf_base = (1u << q->tree->depth) - 1, node = v.node;
@@ -252,8 +253,8 @@ static uint32_t first_leaf(const query *q)
     return photon_tree_leaf(q->tree, (vec3){q->position[0], q->position[1], q->position[2]});
 }
 
-/* Puts on the stack the sides that the way to the first leaf left aside, as far as they are within the limit; the nearest
- * to the leaf on top. By the offset from their plane alone, which may be too little, and is never too much. */
+/* Puts on the stack the sides that the way to the first leaf left aside, as far as they are within the limit; the
+ * nearest to the leaf on top. By the offset from their plane alone, which may be too little, and is never too much. */
 static void stack_other_sides(query *q, uint32_t first_block, float limit)
 {
     uint32_t leaf = (1u << q->tree->depth) - 1 + first_block;
@@ -369,8 +370,8 @@ static void quickselect(photon_neighbor *n, uint32_t count, uint32_t wanted)
     }
 }
 
-/* The same, for neighbours within the limit. On a surface the squared distances are spread evenly, so a histogram of them
- * leaves only a few to be compared; all else moves without a branch to be mispredicted. */
+/* The same, for neighbours within the limit. On a surface the squared distances are spread evenly, so a histogram of
+ * them leaves only a few to be compared; all else moves without a branch to be mispredicted. */
 static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, float limit)
 {
     enum { BINS = 256, BIN_MAX = 64 };
@@ -455,8 +456,8 @@ static void collect(query *q, uint32_t first_block, collection *c)
         keep_nearest(c);
 }
 
-/* A first radius squared, within which the wanted photons may be expected: the leaf around the query tells how dense they
- * lie there. A function of the tree and the query alone. */
+/* A first radius squared, within which the wanted photons may be expected: the leaf around the query tells how dense
+ * they lie there. A function of the tree and the query alone. */
 static float guess_radius_squared(query *q, uint32_t first_block, uint32_t wanted, float largest)
 {
     const photon_block *b = &q->tree->blocks[first_block];
@@ -487,7 +488,8 @@ uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 norm
     uint32_t block = first_leaf(&q);
     float largest = radius * radius, limit = guess_radius_squared(&q, block, wanted, largest);
     for (;;) {
-        collection c = {.neighbors = neighbors, .wanted = wanted, .capacity = photon_neighbors_capacity(wanted), .limit = limit};
+        collection c = {
+            .neighbors = neighbors, .wanted = wanted, .capacity = photon_neighbors_capacity(wanted), .limit = limit};
         collect(&q, block, &c);
         *out_other_squared = c.other;
         if (c.count == wanted || limit >= largest)

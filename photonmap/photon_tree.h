@@ -1,12 +1,12 @@
 /* photon_tree.h: a kd-tree over photons, in place: the records are put in order and become blocks.
- * Rests on: Bentley, "Multidimensional Binary Search Trees Used for Associative Searching", 1975; Arya, Mount, "Algorithms
- * for Fast Vector Quantization", 1993 (distances kept up to date on the way down).
- * A leaf is a block of sixteen photons, and leaf i of the perfect tree is block i: a node holds no more than its plane.
- * Flow: photon_tracing -> [here] -> photon_map. Threads: built by the run's workers; then read-only.
+ * Rests on: Bentley, "Multidimensional Binary Search Trees Used for Associative Searching", 1975; Arya, Mount,
+ * "Algorithms for Fast Vector Quantization", 1993 (distances kept up to date on the way down). A leaf is a block of
+ * sixteen photons, and leaf i of the perfect tree is block i: a node holds no more than its plane. Flow: photon_tracing
+ * -> [here] -> photon_map. Threads: built by the run's workers; then read-only.
  *
- * Only photons whose normal is similar count, and that is tested inside the search: a test afterwards would let photons on
- * the other side of a thin wall use up the search. Ties go by (distance squared, index), so a result does not depend on
- * the way it was found. */
+ * Only photons whose normal is similar count, and that is tested inside the search: a test afterwards would let photons
+ * on the other side of a thin wall use up the search. Ties go by (distance squared, index), so a result does not depend
+ * on the way it was found. */
 #ifndef AFTERGLOW_PHOTON_TREE_H
 #define AFTERGLOW_PHOTON_TREE_H
 
@@ -25,8 +25,8 @@ typedef struct photon_tree {
     photon_tree_node *nodes; /* children of i at 2 i + 1 and 2 i + 2 */
 } photon_tree;
 
-/* Puts the records, from photon_records_create, in order, so their indices change, and turns them into the tree's blocks
- * where they lie; on failure they are lost. Deterministic: equal input gives equal order for any number of
+/* Puts the records, from photon_records_create, in order, so their indices change, and turns them into the tree's
+ * blocks where they lie; on failure they are lost. Deterministic: equal input gives equal order for any number of
  * threads. Errors: AG_ERROR_MEMORY, AG_CANCELLED. phase and progress as in parallel_for. */
 ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, double progress_begin,
                             double progress_end, photon_tree *out_tree);
@@ -41,8 +41,8 @@ uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal
 /* The block of the leaf that a place falls into; of a tree that is not empty. */
 uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
 
-/* A photon found: its squared distance as the high half, its index as the low half. Distances are not negative, so their bits
- * order as integers do: comparing two neighbours compares (distance squared, index). */
+/* A photon found: its squared distance as the high half, its index as the low half. Distances are not negative, so
+ * their bits order as integers do: comparing two neighbours compares (distance squared, index). */
 typedef uint64_t photon_neighbor;
 
 static inline photon_neighbor photon_neighbor_make(float distance_squared, uint32_t index)
@@ -62,8 +62,8 @@ static inline float photon_neighbor_distance_squared(photon_neighbor n)
 
 /* The `wanted` nearest photons within radius, in no order, but with the farthest of them last when all were found.
  * neighbors: room for photon_neighbors_capacity(wanted). *out_other_squared: how far, squared, the nearest
- * photon is that has another normal, yet no opposite one (beyond 120 degrees), if that is no farther than the photons found
- * or the radius; else more than that. Returns how many were found. */
+ * photon is that has another normal, yet no opposite one (beyond 120 degrees), if that is no farther than the photons
+ * found or the radius; else more than that. Returns how many were found. */
 uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                                uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared);
 

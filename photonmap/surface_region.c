@@ -28,8 +28,8 @@ static bool is_alike(const surface_hit *hit, vec3 normal, vec3 arrival, float mi
     return vec3_dot(vec3_face_forward(hit->geometric_normal, vec3_negate(arrival)), normal) > min_cos;
 }
 
-/* The surface at the place itself, from above: its normal, and a start above it. A narrow corner may have no room for the
- * full lift. */
+/* The surface at the place itself, from above: its normal, and a start above it. A narrow corner may have no room for
+ * the full lift. */
 static bool find_foot(const scene *s, vec3 position, vec3 normal, float radius, vec3 *out_normal, float *out_lift)
 {
     vec3 down = vec3_negate(normal);
@@ -90,8 +90,8 @@ static void line_through(const float *extent, int first, float *out_line)
 }
 
 /* Between two ends the chord: straight walls and edges are met exactly. Where an edge runs out of the disc between two
- * directions it goes on straight; where that is not known, a chord to the rim leaves some surface out, but takes in none
- * that is not there. */
+ * directions it goes on straight; where that is not known, a chord to the rim leaves some surface out, but takes in
+ * none that is not there. */
 static void bound_sector(const float *extent, float radius, int i, float *out_line)
 {
     enum { COUNT = SURFACE_REGION_SECTORS };
@@ -158,10 +158,9 @@ double surface_region_area(const surface_region *region, float radius)
 {
     /* the middles of eight parts of an octant, by cosine and sine */
     enum { PARTS = 8 };
-    static const float PART[PARTS][2] = {{0.99879546f, 0.04906767f}, {0.98917651f, 0.14673047f},
-                                         {0.97003125f, 0.24298018f}, {0.94154407f, 0.33688985f},
-                                         {0.90398929f, 0.42755509f}, {0.85772861f, 0.51410274f},
-                                         {0.80320753f, 0.59569930f}, {0.74095113f, 0.67155895f}};
+    static const float PART[PARTS][2] = {
+        {0.99879546f, 0.04906767f}, {0.98917651f, 0.14673047f}, {0.97003125f, 0.24298018f}, {0.94154407f, 0.33688985f},
+        {0.90398929f, 0.42755509f}, {0.85772861f, 0.51410274f}, {0.80320753f, 0.59569930f}, {0.74095113f, 0.67155895f}};
     double sum = 0.0;
     for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
         float a = region->line[i][0], b = region->line[i][1], ux = UNIT[i][0], uy = UNIT[i][1];

@@ -1,9 +1,10 @@
-/* surface_region.h: which part of an estimate's disc is surface: a wall, the edge of a table or a thin partition ends it.
- * A disc that reaches past an edge loses light (about 0.21 of its radius along the edge); one that reaches through a wall
- * finds the next room's. A few short rays along the surface, and down onto it, tell how far it goes each way; photons and
- * area are then counted inside that region alone, so the estimate is right wherever the region is whole surface.
- * Rests on: Jensen 2001, 7.2 (boundary bias); the rays are an alternative to his convex hull, which takes shadows for edges.
- * Flow: photon_map asks, where the photons found hint at an edge. Threads: pure functions of the scene and the place. */
+/* surface_region.h: which part of an estimate's disc is surface: a wall, the edge of a table or a thin partition ends
+ * it. A disc that reaches past an edge loses light (about 0.21 of its radius along the edge); one that reaches through
+ * a wall finds the next room's. A few short rays along the surface, and down onto it, tell how far it goes each way;
+ * photons and area are then counted inside that region alone, so the estimate is right wherever the region is whole
+ * surface. Rests on: Jensen 2001, 7.2 (boundary bias); the rays are an alternative to his convex hull, which takes
+ * shadows for edges. Flow: photon_map asks, where the photons found hint at an edge. Threads: pure functions of the
+ * scene and the place. */
 #ifndef AFTERGLOW_SURFACE_REGION_H
 #define AFTERGLOW_SURFACE_REGION_H
 
@@ -18,8 +19,8 @@ typedef struct surface_region {
     float line[SURFACE_REGION_SECTORS][2];
 } surface_region;
 
-/* min_cos: normals more alike than this belong to the surface, as for photons. Returns false where nothing ends it within
- * radius of the place, and where there is no surface at the place. */
+/* min_cos: normals more alike than this belong to the surface, as for photons. Returns false where nothing ends it
+ * within radius of the place, and where there is no surface at the place. */
 bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
                          surface_region *out_region);
 

@@ -22,10 +22,10 @@ struct ag_scene {
 };
 
 struct ag_film {
-    int x0, y0, width, height;   /* the crop, in pixels of the full picture */
+    int x0, y0, width, height; /* the crop, in pixels of the full picture */
     int full_width, full_height;
-    float *pixels;               /* 3 a pixel, top row first */
-    bool float_samples;          /* as in ag_render_settings */
+    float *pixels;      /* 3 a pixel, top row first */
+    bool float_samples; /* as in ag_render_settings */
 };
 
 /* Adds the time since `begin` (clock_seconds) to a phase, and says at info level how long it took. */

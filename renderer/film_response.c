@@ -23,7 +23,8 @@ film_response film_response_make(const ag_render_settings *settings)
     r.develop = (color_matrix){{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
     if (settings->white_balance != 0.0f) {
         double from_xy[2];
-        light_chromaticity((double)settings->white_balance * (1.4388 / 1.4380), from_xy); /* c2 has changed since 1968 */
+        light_chromaticity((double)settings->white_balance * (1.4388 / 1.4380),
+                           from_xy); /* c2 has changed since 1968 */
         color_matrix adapt = color_adaptation(from_xy, COLOR_WHITE_XY), back = color_rec709_from_xyz();
         adapt = color_matrix_multiply(&adapt, &r.xyz_from_rgb);
         r.develop = color_matrix_multiply(&back, &adapt);
@@ -39,7 +40,8 @@ rgb film_response_bound(const film_response *response, rgb radiance)
     double xyz[3] = {radiance.r, radiance.g, radiance.b};
     color_matrix_apply(&response->xyz_from_rgb, xyz, xyz);
     double largest = fmax(xyz[0], fmax(xyz[1], xyz[2]));
-    return largest > response->max_component ? rgb_scale(radiance, (float)(response->max_component / largest)) : radiance;
+    return largest > response->max_component ? rgb_scale(radiance, (float)(response->max_component / largest))
+                                             : radiance;
 }
 
 void film_response_develop(const film_response *response, double pixel[3])

@@ -1,7 +1,7 @@
 /* film_response.h: from radiance to what the film holds: exposure, a bound on single samples, white balance.
- * Rests on: pbrt-v4's PixelSensor "cie1931" and RGBFilm: samples are bounded in CIE XYZ after the exposure; white balance is
- * the Bradford transform from daylight of a temperature to our white.
- * Flow: radiance -> [here] -> film. Threads: read-only once made. */
+ * Rests on: pbrt-v4's PixelSensor "cie1931" and RGBFilm: samples are bounded in CIE XYZ after the exposure; white
+ * balance is the Bradford transform from daylight of a temperature to our white. Flow: radiance -> [here] -> film.
+ * Threads: read-only once made. */
 #ifndef AFTERGLOW_FILM_RESPONSE_H
 #define AFTERGLOW_FILM_RESPONSE_H
 

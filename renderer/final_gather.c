@@ -3,8 +3,8 @@
 
 #include "direct_lighting.h"
 
-/* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often; and so often a
- * gather looks whether to stop: its sample is thrown away then. */
+/* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often; and so often
+ * a gather looks whether to stop: its sample is thrown away then. */
 enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 8, CANCEL_EVERY = 64 };
 
 /* The ray ends at a diffuse place: irradiance on one side of it, picked by the lobes' shares. */
@@ -25,10 +25,10 @@ static void read_cache(const transport *t, eye_worker *worker, const vertex *v, 
     out->weight = rgb_scale(rgb_mul(throughput, factor), AG_INV_PI);
 }
 
-/* What is behind one gather ray. Lamps and environments add nothing: light straight from them is direct light, light from
- * them by way of traced lobes is in the caustic map. */
-static void follow_gather_ray(const transport *t, eye_worker *worker, scene_ray ray, int scatterings_left,
-                              rng *random, gather_ray *out)
+/* What is behind one gather ray. Lamps and environments add nothing: light straight from them is direct light, light
+ * from them by way of traced lobes is in the caustic map. */
+static void follow_gather_ray(const transport *t, eye_worker *worker, scene_ray ray, int scatterings_left, rng *random,
+                              gather_ray *out)
 {
     rgb throughput = rgb_gray(1.0f);
     float travelled = 0.0f;

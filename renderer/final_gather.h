@@ -1,8 +1,9 @@
 /* final_gather.h: indirect light at a diffuse place, by rays over its hemisphere that read the irradiance cache where
  * they end.
  * Rests on: Jensen 1996, 2001 ch. 8; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
- * Threads: any number gather at once. A ray whose photon another thread is computing is set aside; its contribution has a
- * place of its own, and all are summed in ray order once the last is back: so being set aside cannot reach the picture. */
+ * Threads: any number gather at once. A ray whose photon another thread is computing is set aside; its contribution has
+ * a place of its own, and all are summed in ray order once the last is back: so being set aside cannot reach the
+ * picture. */
 #ifndef AFTERGLOW_FINAL_GATHER_H
 #define AFTERGLOW_FINAL_GATHER_H
 

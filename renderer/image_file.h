@@ -1,5 +1,5 @@
-/* image_file.h: pictures onto disk. OpenImageIO encodes to memory, inside a module that is opened when it is first needed
- * (linking it costs half a second at every start); the bytes are written by us, beside the target, and renamed.
+/* image_file.h: pictures onto disk. OpenImageIO encodes to memory, inside a module that is opened when it is first
+ * needed (linking it costs half a second at every start); the bytes are written by us, beside the target, and renamed.
  * Flow: film, colour -> [here] -> file. Threads: one caller at a time per call; no state but the loaded module. */
 #ifndef AFTERGLOW_IMAGE_FILE_H
 #define AFTERGLOW_IMAGE_FILE_H

@@ -52,7 +52,8 @@ static ag_status create_processor(ag_context *context, const ag_output_settings 
     color_config *config;
     ag_status status = color_config_create(settings->color_config, message, sizeof message, &config);
     if (status == AG_OK) {
-        status = color_processor_create(config, settings->display, settings->view, message, sizeof message, out_processor);
+        status =
+            color_processor_create(config, settings->display, settings->view, message, sizeof message, out_processor);
         if (status != AG_OK)
             color_config_destroy(config);
         else
@@ -103,8 +104,8 @@ static void apply_block(void *user, uint64_t begin, uint64_t end, uint64_t block
     (void)block, (void)worker;
     color_job *job = user;
     char message[MESSAGE_SIZE];
-    if (color_processor_apply(job->processor, job->pixels + 3 * begin, (size_t)(end - begin), message, sizeof message) ==
-        AG_OK)
+    if (color_processor_apply(job->processor, job->pixels + 3 * begin, (size_t)(end - begin), message,
+                              sizeof message) == AG_OK)
         return;
     uint32_t expected = 0;
     if (cas_acquire_u32(&job->has_failed, &expected, 1)) /* read after the workers have been joined */

@@ -23,9 +23,9 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray,
     bool is_whole = settings->only == AG_ONLY_ALL;
     rgb radiance = rgb_gray(0.0f), throughput = rgb_gray(1.0f);
     vec3 scattered_from = ray.origin, scattered_normal = {0.0f, 0.0f, 0.0f};
-    float scattered_pdf = 0.0f;       /* 0: the eye or a smooth lobe */
-    bool has_met_diffuse = false;     /* the path has been scattered by a gathered lobe */
-    bool left_first_diffuse = false;  /* at the vertex before, for the first time */
+    float scattered_pdf = 0.0f;      /* 0: the eye or a smooth lobe */
+    bool has_met_diffuse = false;    /* the path has been scattered by a gathered lobe */
+    bool left_first_diffuse = false; /* at the vertex before, for the first time */
 
     for (int path_vertex = 0;; path_vertex++) {
         vertex v;
@@ -33,7 +33,8 @@ rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray,
             worker->rays_camera++;
         else
             worker->rays_path++;
-        /* emitted light; indirect light alone leaves out what is seen, and what falls straight on the first diffuse place */
+        /* emitted light; indirect light alone leaves out what is seen, and what falls straight on the first diffuse
+         * place */
         bool counts_emission = is_whole || (has_met_diffuse && !left_first_diffuse);
         bool is_met = transport_trace(t, worker, ray, &v);
         throughput = rgb_mul(throughput, v.transmittance);

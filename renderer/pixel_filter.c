@@ -53,8 +53,8 @@ static double filter_value(const filter_shape *f, double x, double radius)
     return 0.0;
 }
 
-/* One axis of the filter; *out_mean_sign is its integral over that of its magnitude. false: it is nothing but rounding at
- * this resolution, or its lobes cancel out. */
+/* One axis of the filter; *out_mean_sign is its integral over that of its magnitude. false: it is nothing but rounding
+ * at this resolution, or its lobes cancel out. */
 static bool tabulate(const filter_shape *f, float radius, float *cdf, signed char *sign, double *out_mean_sign)
 {
     double sum = 0.0, whole = 0.0, step = 2.0 * (double)radius / PIXEL_FILTER_STEPS, running[PIXEL_FILTER_STEPS + 1];
@@ -165,7 +165,8 @@ vec2 pixel_filter_sample(const pixel_filter *filter, vec2 u, int *out_sign)
 
 void pixel_filter_resolve(const pixel_filter *filter, const pixel_sum *sum, double out_pixel[3])
 {
-    double signs = (double)sum->positive_count - sum->negative_count, count = (double)sum->positive_count + sum->negative_count;
+    double signs = (double)sum->positive_count - sum->negative_count,
+           count = (double)sum->positive_count + sum->negative_count;
     bool cancels = signs < LEAST_SIGN_SHARE * filter->mean_sign * count;
     for (int c = 0; c < 3; c++) {
         if (!cancels)

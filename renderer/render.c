@@ -93,8 +93,10 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
         log_message(context->log, AG_LOG_INFO, "photons: %u in the global map, %u in the caustic map, %llu paths",
                     global.count, caustic.count, (unsigned long long)(global.emitted_paths + caustic.emitted_paths));
         begin = clock_seconds();
-        photon_map_settings map_settings = {
-            .nearest = (uint32_t)settings->nearest, .max_radius = settings->radius, .surface_area = s->surface_area, .surfaces = s};
+        photon_map_settings map_settings = {.nearest = (uint32_t)settings->nearest,
+                                            .max_radius = settings->radius,
+                                            .surface_area = s->surface_area,
+                                            .surfaces = s};
         status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, &out_maps->global);
         /* caustics gather in places: how many of their photons there are does not tell how far apart they lie */
         map_settings.radius_bound = out_maps->global.max_radius;
@@ -143,22 +145,22 @@ static rgb render_sample(const tile_job *job, eye_worker *worker, int x, int y, 
     sampler where = sampler_make(settings->seed, x, y, index);
     vec2 offset = pixel_filter_sample(job->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), out_sign);
     vec2 lens = t->s->options.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
-    float time = !t->s->has_motion ? 0.0f : t->s->options.disable_pixel_jitter ? 0.5f : sampler_2d(&where, SAMPLE_TIME, 0).x;
+    float time = !t->s->has_motion                    ? 0.0f
+                 : t->s->options.disable_pixel_jitter ? 0.5f
+                                                      : sampler_2d(&where, SAMPLE_TIME, 0).x;
     float width = (float)settings->width, height = (float)settings->height;
     scene_ray ray = camera_generate_ray(&t->s->camera, ((float)x + 0.5f + offset.x) / width,
-                                         ((float)y + 0.5f + offset.y) / height, width / height,
-                                         lens, time);
-    rgb radiance = settings->integrator == AG_INTEGRATOR_PATH
-                       ? path_tracing_radiance(t, worker, ray, &where)
-                       : shading_radiance(t, worker, ray, &where);
+                                        ((float)y + 0.5f + offset.y) / height, width / height, lens, time);
+    rgb radiance = settings->integrator == AG_INTEGRATOR_PATH ? path_tracing_radiance(t, worker, ray, &where)
+                                                              : shading_radiance(t, worker, ray, &where);
     if (rgb_is_finite(radiance))
         return job->response.is_bounded ? film_response_bound(&job->response, radiance) : radiance;
     worker->samples_not_finite++;
     return rgb_gray(0.0f);
 }
 
-/* A pixel is the mean of its samples (of filters with negative lobes: their mean with signs), summed in their order by the
- * one thread that has its tile. */
+/* A pixel is the mean of its samples (of filters with negative lobes: their mean with signs), summed in their order by
+ * the one thread that has its tile. */
 static void render_pixel(const tile_job *job, eye_worker *worker, int x, int y)
 {
     uint32_t count = (uint32_t)job->t->settings->samples_per_pixel;
@@ -182,8 +184,8 @@ static void render_pixel(const tile_job *job, eye_worker *worker, int x, int y)
         pixel_filter_resolve(job->filter, &sum, mean);
     if (!job->response.is_plain)
         film_response_develop(&job->response, mean);
-    float *pixel = job->film->pixels +
-                   3 * ((size_t)(y - job->film->y0) * (size_t)job->film->width + (size_t)(x - job->film->x0));
+    float *pixel =
+        job->film->pixels + 3 * ((size_t)(y - job->film->y0) * (size_t)job->film->width + (size_t)(x - job->film->x0));
     for (int c = 0; c < 3; c++)
         pixel[c] = (float)mean[c];
 }
@@ -212,8 +214,8 @@ static void eye_workers_destroy(eye_worker *workers, unsigned count)
     free(workers);
 }
 
-/* The most that a worker has in use at once: a gather's rays, and an estimate's neighbours within it. Tried out here, so
- * that nothing can fail while tiles run. */
+/* The most that a worker has in use at once: a gather's rays, and an estimate's neighbours within it. Tried out here,
+ * so that nothing can fail while tiles run. */
 static bool eye_worker_reserve(eye_worker *worker, const transport *t)
 {
     worker->scratch = arena_create(ARENA_BLOCK_BYTES);

@@ -47,8 +47,8 @@ static ag_status get_int(parameter_list *list, log_sink *log, const char *name, 
 
 static bool is_crop_window(const double window[4])
 {
-    return window[0] >= 0.0 && window[0] < window[1] && window[1] <= 1.0 && window[2] >= 0.0 &&
-           window[2] < window[3] && window[3] <= 1.0;
+    return window[0] >= 0.0 && window[0] < window[1] && window[1] <= 1.0 && window[2] >= 0.0 && window[2] < window[3] &&
+           window[3] <= 1.0;
 }
 
 /* The film's kind, and the parameters of kinds that are not written. */
@@ -61,12 +61,14 @@ static ag_status read_film_kind(parameter_list *film, log_sink *log)
     if (strcmp(film->name, "rgb") == 0)
         return AG_OK;
     if (strcmp(film->name, "gbuffer") == 0) {
-        log_at_once(log, AG_LOG_WARNING, film->where, "film",
-                    "Film \"gbuffer\": R, G and B are written alone; its channels for albedo, position, normals, texture "
-                    "coordinates, depth slopes and variance are left out");
+        log_at_once(
+            log, AG_LOG_WARNING, film->where, "film",
+            "Film \"gbuffer\": R, G and B are written alone; its channels for albedo, position, normals, texture "
+            "coordinates, depth slopes and variance are left out");
         return parameter_get_string(film, log, "coordinatesystem", &system);
     }
-    log_at_once(log, AG_LOG_WARNING, film->where, "film", "Film \"%s\" is not supported; \"rgb\" stands in", film->name);
+    log_at_once(log, AG_LOG_WARNING, film->where, "film", "Film \"%s\" is not supported; \"rgb\" stands in",
+                film->name);
     if (strcmp(film->name, "spectral") == 0) {
         status = parameter_get_float(film, log, "lambdamin", &wavelength);
         if (status == AG_OK)
@@ -134,7 +136,8 @@ static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settin
     if (status == AG_OK)
         status = parameter_get_bool(film, log, "savefp16", &is_half);
     if (status == AG_OK)
-        status = parameter_get_float(film, log, "diagonal", &diagonal); /* of the sensor: a realistic camera's concern */
+        status =
+            parameter_get_float(film, log, "diagonal", &diagonal); /* of the sensor: a realistic camera's concern */
     if (status == AG_OK)
         status = parameter_get_numbers(film, log, "cropwindow", PARAMETER_FLOAT, &crop, &crop_count);
     if (status == AG_OK)
@@ -151,13 +154,13 @@ static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settin
                     "Film: \"pixelbounds\" is ignored, as there is a \"cropwindow\"");
     for (int i = 0; i < 4; i++) {
         if (crop) /* in any order, and clipped, as in pbrt */
-            out->crop_window[i] =
-                fmin(fmax(i % 2 ? fmax(crop[i - 1], crop[i]) : fmin(crop[i], crop[i + 1]), 0.0), 1.0);
+            out->crop_window[i] = fmin(fmax(i % 2 ? fmax(crop[i - 1], crop[i]) : fmin(crop[i], crop[i + 1]), 0.0), 1.0);
         else if (bounds) /* beyond the picture is nothing, as in pbrt */
             out->crop_window[i] = fmin(fmax(bounds[i] / (i < 2 ? out->width : out->height), 0.0), 1.0);
     }
     if (!is_crop_window(out->crop_window)) {
-        log_at(log, AG_LOG_ERROR, film->where, "Film: \"%s\" leaves no part of the picture", crop ? "cropwindow" : "pixelbounds");
+        log_at(log, AG_LOG_ERROR, film->where, "Film: \"%s\" leaves no part of the picture",
+               crop ? "cropwindow" : "pixelbounds");
         return AG_ERROR_SCENE;
     }
     out->float_samples = !is_half;

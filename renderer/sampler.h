@@ -1,9 +1,8 @@
 /* sampler.h: well-spread sample positions as a pure function of pixel, dimension and index.
- * Rests on: Owen, "Randomly Permuted (t,m,s)-Nets", 1995; Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020;
- * Vegdahl, "Building a Better LK Hash", 2021 (the constants).
- * The first two dimensions of Sobol's sequence, scrambled and shuffled anew for each dimension asked for: any 2^n
- * consecutive aligned samples are stratified in every pair. Keyed by absolute pixel: crops see the same samples.
- * Threads: pure functions. */
+ * Rests on: Owen, "Randomly Permuted (t,m,s)-Nets", 1995; Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4),
+ * 2020; Vegdahl, "Building a Better LK Hash", 2021 (the constants). The first two dimensions of Sobol's sequence,
+ * scrambled and shuffled anew for each dimension asked for: any 2^n consecutive aligned samples are stratified in every
+ * pair. Keyed by absolute pixel: crops see the same samples. Threads: pure functions. */
 #ifndef AFTERGLOW_SAMPLER_H
 #define AFTERGLOW_SAMPLER_H
 

@@ -4,8 +4,8 @@
 #include "direct_lighting.h"
 #include "final_gather.h"
 
-/* Below this throughput a diffuse place is shown by the k-nearest estimate at it instead of being gathered (Jensen 2001,
- * 8.2: an approximate evaluation where the contribution is low). */
+/* Below this throughput a diffuse place is shown by the k-nearest estimate at it instead of being gathered (Jensen
+ * 2001, 8.2: an approximate evaluation where the contribution is low). */
 static const float LOW_CONTRIBUTION = 0.03f;
 enum { ROULETTE_AFTER = 4 };
 
@@ -24,8 +24,7 @@ static rgb diffuse_radiance(const transport *t, eye_worker *worker, const vertex
         sum = rgb_mul(bsdf_gathered_reflection(&v->scattering),
                       irradiance_cache_estimate(t->cache, at.position, at.facing_normal, worker->index));
         if (!rgb_is_black(transmitted)) {
-            rgb behind =
-                irradiance_cache_estimate(t->cache, at.position, vec3_negate(at.facing_normal), worker->index);
+            rgb behind = irradiance_cache_estimate(t->cache, at.position, vec3_negate(at.facing_normal), worker->index);
             sum = rgb_add(sum, rgb_mul(transmitted, behind));
         }
         return rgb_scale(sum, AG_INV_PI);

@@ -1,6 +1,6 @@
 /* shading.h: radiance along a camera ray with the photon map, as Jensen splits it.
- * Rests on: Jensen 1996; Jensen 2001, ch. 8: emitted + direct + caustics + specular and glossy traced on + final gather.
- * Threads: pure but for the worker's counters and the irradiance slots. */
+ * Rests on: Jensen 1996; Jensen 2001, ch. 8: emitted + direct + caustics + specular and glossy traced on + final
+ * gather. Threads: pure but for the worker's counters and the irradiance slots. */
 #ifndef AFTERGLOW_SHADING_H
 #define AFTERGLOW_SHADING_H
 

@@ -22,10 +22,7 @@ rgb transport_emission(const transport *t, const vertex *v)
     return light_emitted_radiance(t->s, v->lamp, &v->hit, vec3_negate(v->arrived.direction));
 }
 
-vec3 transport_facing_normal(const vertex *v)
-{
-    return vec3_face_forward(v->hit.geometric_normal, v->scattering.out);
-}
+vec3 transport_facing_normal(const vertex *v) { return vec3_face_forward(v->hit.geometric_normal, v->scattering.out); }
 
 map_place transport_map_place(const transport *t, const vertex *v)
 {

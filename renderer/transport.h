@@ -1,7 +1,7 @@
 /* transport.h: what the eye's side reads while tiles are rendered, and what each worker has of its own.
  * Flow: render.c fills it; shading, final gather, direct lighting and path tracing read it.
- * Threads: a transport is read-only while tiles run, but for the slots behind the irradiance cache; an eye_worker belongs
- * to one worker. */
+ * Threads: a transport is read-only while tiles run, but for the slots behind the irradiance cache; an eye_worker
+ * belongs to one worker. */
 #ifndef AFTERGLOW_TRANSPORT_H
 #define AFTERGLOW_TRANSPORT_H
 
@@ -13,15 +13,15 @@
 
 typedef struct transport {
     const scene *s;
-    const run_context *run;     /* whether to stop */
-    const photon_map *caustic;  /* may be empty */
-    irradiance_cache *cache;    /* over the global map; NULL for path tracing */
+    const run_context *run;    /* whether to stop */
+    const photon_map *caustic; /* may be empty */
+    irradiance_cache *cache;   /* over the global map; NULL for path tracing */
     const ag_render_settings *settings;
-    bool has_lights;            /* any with power */
-    bool can_meet_lights;       /* area or infinite ones: those that scattered rays find */
-    int light_samples;          /* for direct light at a diffuse place, towards lamps */
-    int scatter_samples;        /* and by scattering, 0 where that cannot meet a lamp */
-    float gather_min_distance;  /* a gather ray that hits nearer than this does not use the cache, scene units */
+    bool has_lights;           /* any with power */
+    bool can_meet_lights;      /* area or infinite ones: those that scattered rays find */
+    int light_samples;         /* for direct light at a diffuse place, towards lamps */
+    int scatter_samples;       /* and by scattering, 0 where that cannot meet a lamp */
+    float gather_min_distance; /* a gather ray that hits nearer than this does not use the cache, scene units */
 } transport;
 
 /* A gather ray's contribution, known + weight irradiance, in a place of its own until all are back. */

@@ -84,7 +84,7 @@ static void add_lobes(bsdf *b)
     float trapped;
     switch (m->kind) {
     case MATERIAL_INTERFACE: break; /* none: rays do not stop here */
-    case MATERIAL_MIX: /* resolved before */
+    case MATERIAL_MIX:              /* resolved before */
     case MATERIAL_DIFFUSE: add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, 1.0f); break;
     case MATERIAL_DIFFUSE_TRANSMISSION:
         add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, rgb_max(m->reflectance));

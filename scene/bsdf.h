@@ -5,9 +5,9 @@
  * Flow: material + surface hit -> [here] -> photon tracing, shading, path tracing.
  * Threads: pure functions.
  *
- * One predicate splits the lobes, for photons and for the eye alike: GATHERED lobes (diffuse ones) store photons and look up
- * irradiance; all others, rough or smooth, are TRACED on. The S of the path notation is every traced lobe.
- * A gathered lobe is a product t(in) A t(out) / pi, where t is 1 but under a coat, which lets through 1 - Fresnel, or
+ * One predicate splits the lobes, for photons and for the eye alike: GATHERED lobes (diffuse ones) store photons and
+ * look up irradiance; all others, rough or smooth, are TRACED on. The S of the path notation is every traced lobe. A
+ * gathered lobe is a product t(in) A t(out) / pi, where t is 1 but under a coat, which lets through 1 - Fresnel, or
  * under an interface of which t is what it does not reflect in all (principled.h): photons carry t(in), so
  * that irradiance times A t(out) / pi is the radiance that leaves. */
 #ifndef AFTERGLOW_BSDF_H
@@ -22,12 +22,12 @@ typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsd
 typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
 
 typedef enum bsdf_lobe_kind {
-    LOBE_DIFFUSE,             /* to the side it came from, perhaps through a coat */
-    LOBE_DIFFUSE_THROUGH,     /* to the other side */
+    LOBE_DIFFUSE,         /* to the side it came from, perhaps through a coat */
+    LOBE_DIFFUSE_THROUGH, /* to the other side */
     LOBE_CONDUCTOR,
-    LOBE_DIELECTRIC,          /* reflection and refraction */
-    LOBE_THIN_DIELECTRIC,     /* a pane: reflection, and straight through */
-    LOBE_COAT,                /* reflection by a dielectric coat */
+    LOBE_DIELECTRIC,           /* reflection and refraction */
+    LOBE_THIN_DIELECTRIC,      /* a pane: reflection, and straight through */
+    LOBE_COAT,                 /* reflection by a dielectric coat */
     LOBE_CONDUCTOR_UNDER_COAT, /* refracted in, reflected by the conductor, refracted out */
     LOBE_COAT_TRAPPED,         /* what a rough conductor got out of the coat at last (coat.h) */
     LOBE_PRINCIPLED,           /* metal's and dielectric's reflection, and transmission, straight or refracted */
@@ -57,7 +57,7 @@ typedef struct bsdf_sample {
     rgb weight;            /* f |cos| / pdf, shading-normal correction of flux included */
     float pdf_solid_angle; /* of all lobes asked for together; meaningless where is_delta */
     bool is_delta;
-    bsdf_lobes group;      /* of the lobe that was picked */
+    bsdf_lobes group; /* of the lobe that was picked */
 } bsdf_sample;
 
 /* out: back along the ray that met the place, unit. */
@@ -76,12 +76,13 @@ bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes);
 /* With which probability bsdf_sample_direction, asked for all, picks one of these. */
 float bsdf_probability(const bsdf *b, bsdf_lobes lobes);
 
-/* The factor A t(out), of irradiance on out's side and on the other, each to be divided by pi: what leaves as radiance. */
+/* The factor A t(out), of irradiance on out's side and on the other, each to be divided by pi: what leaves as radiance.
+ */
 rgb bsdf_gathered_reflection(const bsdf *b);
 rgb bsdf_gathered_transmission(const bsdf *b);
 
-/* f |cos(direction, shading normal)| for light from `direction` (unit, away from the surface) leaving to out; smooth lobes
- * count as 0. */
+/* f |cos(direction, shading normal)| for light from `direction` (unit, away from the surface) leaving to out; smooth
+ * lobes count as 0. */
 rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction);
 float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 direction);
 
@@ -89,8 +90,8 @@ float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 direction);
 bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, float u_lobe, vec2 u,
                            bsdf_sample *out_sample);
 
-/* What arriving flux, from out, is multiplied by when it is stored: t(in), and |cos to shading normal| / |cos to geometric
- * normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
+/* What arriving flux, from out, is multiplied by when it is stored: t(in), and |cos to shading normal| / |cos to
+ * geometric normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
 float bsdf_arrival_factor(const bsdf *b);
 
 #endif

@@ -31,8 +31,8 @@ bool bsdf_is_same_side(const bsdf *b, vec3 direction)
     return vec3_dot(b->out, b->geometric_normal) * vec3_dot(direction, b->geometric_normal) > 0.0f;
 }
 
-/* The cosine of a direction to the shading normal on the side of the surface that its lobe is on, 0 beyond the horizon of
- * either normal. i: the direction in the shading frame. */
+/* The cosine of a direction to the shading normal on the side of the surface that its lobe is on, 0 beyond the horizon
+ * of either normal. i: the direction in the shading frame. */
 static float diffuse_cosine(const bsdf *b, bsdf_lobe_kind kind, vec3 direction, vec3 i)
 {
     bool is_through = kind == LOBE_DIFFUSE_THROUGH;
@@ -107,7 +107,7 @@ static void conductor_under_coat(const material *m, vec3 o, vec3 i, rgb *out_val
 
 /* Value (f |cos|) and density of one lobe that is not smooth. */
 void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
-                          rgb *out_value, float *out_pdf)
+                        rgb *out_value, float *out_pdf)
 {
     const material *m = &b->matter;
     *out_value = rgb_gray(0.0f);
@@ -161,7 +161,7 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
 
 /* A smooth lobe's one direction, and its weight once it has been picked. */
 bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, float u_lobe,
-                          vec3 *out_local, rgb *out_weight)
+                             vec3 *out_local, rgb *out_weight)
 {
     const material *m = &b->matter;
     if (kind == LOBE_PRINCIPLED || kind == LOBE_CLEARCOAT)

@@ -13,15 +13,16 @@ float bsdf_lobe_transmittance(const material *m, float cos_theta);
 /* A of the diffuse reflection, under a coat what gets out of it. */
 rgb bsdf_lobe_diffuse_albedo(const material *m);
 
-/* Refraction by rough facets from o to i, on different sides, Fresnel's term left out: its value (f |cos|), its density,
- * and the cosine (>= 0) at which o meets the facet. false: there is no such facet. */
+/* Refraction by rough facets from o to i, on different sides, Fresnel's term left out: its value (f |cos|), its
+ * density, and the cosine (>= 0) at which o meets the facet. false: there is no such facet. */
 bool bsdf_lobe_refraction(ggx facets, float ior, bsdf_transport transport, vec3 o, vec3 i, float *out_cosine,
                           float *out_value, float *out_pdf);
 
 /* Whether a direction is on out's side; judged by the geometry, which alone cannot leak. */
 bool bsdf_is_same_side(const bsdf *b, vec3 direction);
 
-/* Value (f |cos|) and density of one lobe that is not smooth. direction: world; o, i: out and direction in the frame. */
+/* Value (f |cos|) and density of one lobe that is not smooth. direction: world; o, i: out and direction in the frame.
+ */
 void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
                         rgb *out_value, float *out_pdf);
 

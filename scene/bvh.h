@@ -41,8 +41,8 @@ typedef struct surface_hit {
  * that is not of finite numbers below 1.8e18 meets nothing. */
 bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 
-/* How far along the ray the nearest surface is, INFINITY where there is none: traversal alone, without looking at what was
- * hit, which is the physical limit that benchmarks compare with. */
+/* How far along the ray the nearest surface is, INFINITY where there is none: traversal alone, without looking at what
+ * was hit, which is the physical limit that benchmarks compare with. */
 float scene_first_distance(const scene *s, scene_ray ray);
 
 /* Whether anything stands along the ray up to max_distance (as above). */
@@ -55,8 +55,8 @@ bool scene_occluded(const scene *s, scene_ray ray, float max_distance);
  * out light that is trapped in glass. */
 scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction);
 
-/* Along which the surface's u and v grow there, in world space, unless it is a mesh with tangents of its own: those, and
- * across them on v's side. Worked out anew at each call. Where there are none, any that lie in the surface. */
+/* Along which the surface's u and v grow there, in world space, unless it is a mesh with tangents of its own: those,
+ * and across them on v's side. Worked out anew at each call. Where there are none, any that lie in the surface. */
 void surface_tangents(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec3 *out_dpdv);
 
 /* The same place of the surface as it stands when the shutter opens, and how its area there is to its area now (1 where
@@ -85,8 +85,9 @@ bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u);
 /* The density of shape_sample_area at a place on the shape with that geometric normal. */
 float shape_pdf_area(const shape *s, vec3 geometric_normal);
 
-/* shape.c's side of an intersection, for bvh_embree.c: fills in everything but distance, indices and time. u, v: Embree's
- * barycentrics for meshes; for the others `position` comes in as the ray's point and is put onto the surface. */
+/* shape.c's side of an intersection, for bvh_embree.c: fills in everything but distance, indices and time. u, v:
+ * Embree's barycentrics for meshes; for the others `position` comes in as the ray's point and is put onto the surface.
+ */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, surface_hit *out_hit);
 /* Nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */
 bool shape_intersect_quadric(const shape *s, vec3 origin, vec3 direction, float t_min, float t_max, float *out_t);

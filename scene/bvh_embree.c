@@ -1,8 +1,8 @@
 /* bvh_embree.c: the scene's shapes in Embree, and rays cast at them; the only file that knows Embree.
  * Rests on: Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing", 2014.
- * Robust mode always: without it a few rays in a million slip through closed meshes. The kernels are held to AVX2 unless
- * asked otherwise: wider ones give other bits and no more speed for single rays.
- * Threads: the build is joined by the run's workers and no thread is created; rays may be cast from any. */
+ * Robust mode always: without it a few rays in a million slip through closed meshes. The kernels are held to AVX2
+ * unless asked otherwise: wider ones give other bits and no more speed for single rays. Threads: the build is joined by
+ * the run's workers and no thread is created; rays may be cast from any. */
 #define _GNU_SOURCE
 #include "alpha.h"
 #include "cpu_count.h"
@@ -68,7 +68,8 @@ static bool quadric_hit(const void *user, const struct RTCRay *ray, float *out_t
     const attached *a = user;
     vec3 origin = {ray->org_x, ray->org_y, ray->org_z}, direction = {ray->dir_x, ray->dir_y, ray->dir_z};
     float from = ray->tnear;
-    for (uint32_t crossing = 0; shape_intersect_quadric(a->shape, origin, direction, from, ray->tfar, out_t); crossing++) {
+    for (uint32_t crossing = 0; shape_intersect_quadric(a->shape, origin, direction, from, ray->tfar, out_t);
+         crossing++) {
         if (shape_is_opaque(a->shape) ||
             alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction, *out_t, ray->id))
             return true;
@@ -135,8 +136,8 @@ static bool attach_shape(bvh *b, RTCScene into, attached *user, uint32_t index)
         if (m->triangle_count == 0)
             return true;
         geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m->positions, 0, sizeof(vec3),
-                                   m->vertex_count);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m->positions, 0,
+                                   sizeof(vec3), m->vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m->indices, 0,
                                    3 * sizeof(uint32_t), m->triangle_count);
         if (!shape_is_opaque(s)) {
@@ -145,8 +146,8 @@ static bool attach_shape(bvh *b, RTCScene into, attached *user, uint32_t index)
         }
     } else if (s->as.quadric.uniform_radius > 0.0f && shape_is_opaque(s)) {
         geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-        float *sphere = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
-                                                4 * sizeof(float), 1);
+        float *sphere =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1);
         if (!sphere) {
             rtcReleaseGeometry(geometry);
             return false;
@@ -332,9 +333,18 @@ const char *bvh_isa(const bvh *b) { return b->isa; }
 
 static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
 {
-    struct RTCRay ray = {.org_x = r->origin.x, .org_y = r->origin.y, .org_z = r->origin.z, .tnear = 0.0f,
-                         .dir_x = r->direction.x, .dir_y = r->direction.y, .dir_z = r->direction.z, .time = r->time,
-                         .tfar = max_distance, .mask = 0xffffffffu, .id = r->meets_veils, .flags = 0};
+    struct RTCRay ray = {.org_x = r->origin.x,
+                         .org_y = r->origin.y,
+                         .org_z = r->origin.z,
+                         .tnear = 0.0f,
+                         .dir_x = r->direction.x,
+                         .dir_y = r->direction.y,
+                         .dir_z = r->direction.z,
+                         .time = r->time,
+                         .tfar = max_distance,
+                         .mask = 0xffffffffu,
+                         .id = r->meets_veils,
+                         .flags = 0};
     return ray;
 }
 
@@ -354,8 +364,8 @@ static void place_instance_hit(const scene *s, const scene_ray *ray, const struc
     instance_place_hit(&world_from_object, out_hit);
 }
 
-/* Embree takes nothing beyond 1.8e18, and where it was built with its asserts, as Debian's is, ends the process. Comparisons
- * with what is not a number are false. */
+/* Embree takes nothing beyond 1.8e18, and where it was built with its asserts, as Debian's is, ends the process.
+ * Comparisons with what is not a number are false. */
 static bool is_in_reach(vec3 v) { return fabsf(v.x) <= 1.8e18f && fabsf(v.y) <= 1.8e18f && fabsf(v.z) <= 1.8e18f; }
 
 static bool can_be_cast(const scene_ray *r, float max_distance)

@@ -34,8 +34,8 @@ static void projective_ray(const camera *c, vec2 screen, vec2 lens_u, vec3 *out_
     /* thin lens: all rays through one point of the film meet on the plane in focus */
     if (c->lens_radius > 0.0f) {
         vec2 lens = sample_disk_concentric(lens_u);
-        vec3 focus = is_perspective ? vec3_scale(direction, c->focal_distance)
-                                    : (vec3){screen.x, screen.y, c->focal_distance};
+        vec3 focus =
+            is_perspective ? vec3_scale(direction, c->focal_distance) : (vec3){screen.x, screen.y, c->focal_distance};
         origin = (vec3){lens.x * c->lens_radius, lens.y * c->lens_radius, 0.0f};
         direction = vec3_sub(focus, origin);
     }

@@ -1,7 +1,6 @@
 /* camera.h: from a place on the film to a ray.
- * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 5 (perspective, orthographic, thin
- * lens, spherical).
- * Threads: read-only once the scene is committed. */
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 5 (perspective, orthographic,
+ * thin lens, spherical). Threads: read-only once the scene is committed. */
 #ifndef AFTERGLOW_CAMERA_H
 #define AFTERGLOW_CAMERA_H
 
@@ -22,16 +21,16 @@ typedef struct camera {
     motion motion;               /* if is_moving: world_from_camera while the shutter is open */
     bool is_moving;
     float shutter_open, shutter_close; /* s, open < close; default 0 and 1 */
-    float fov_degrees;         /* perspective: across the shorter image axis, (0, 180); default 90 */
-    float frame_aspect_ratio;  /* width / height; 0: the film's */
-    float screen_window[4];    /* x0, x1, y0, y1 in units of tan(fov/2) at distance 1 (orthographic: scene units); used if
-                                * has_screen_window */
+    float fov_degrees;                 /* perspective: across the shorter image axis, (0, 180); default 90 */
+    float frame_aspect_ratio;          /* width / height; 0: the film's */
+    float screen_window[4]; /* x0, x1, y0, y1 in units of tan(fov/2) at distance 1 (orthographic: scene units); used if
+                             * has_screen_window */
     bool has_screen_window;
-    float lens_radius;         /* scene units, >= 0; 0 is a pinhole; perspective and orthographic */
-    float focal_distance;      /* scene units, > 0 */
-    float exposure;            /* what pixels are of the radiance: the shutter's time, times what a lens leaves; 0: 1 */
-    float tan_half_fov;        /* set by scene_commit */
-    uint32_t medium;           /* that the eye is in; set by scene_commit, from scene.camera_medium */
+    float lens_radius;    /* scene units, >= 0; 0 is a pinhole; perspective and orthographic */
+    float focal_distance; /* scene units, > 0 */
+    float exposure;       /* what pixels are of the radiance: the shutter's time, times what a lens leaves; 0: 1 */
+    float tan_half_fov;   /* set by scene_commit */
+    uint32_t medium;      /* that the eye is in; set by scene_commit, from scene.camera_medium */
 } camera;
 
 /* film_x, film_y: in [0, 1] from the left and from the top of the full image, and a filter's radius beyond; aspect: its

@@ -1,6 +1,6 @@
 /* cie.h: the CIE 1931 standard observer and the CIE's daylight: what spectra are seen with and seen under.
- * Rests on: ISO/CIE 11664-1:2019 (the colour matching functions, every 5 nm); CIE 15:2004, 3.1 and table T.2 (daylight).
- * Flow: spectra and color_space ask. Threads: pure functions. */
+ * Rests on: ISO/CIE 11664-1:2019 (the colour matching functions, every 5 nm); CIE 15:2004, 3.1 and table T.2
+ * (daylight). Flow: spectra and color_space ask. Threads: pure functions. */
 #ifndef AFTERGLOW_CIE_H
 #define AFTERGLOW_CIE_H
 

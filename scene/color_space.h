@@ -21,8 +21,8 @@ typedef struct color_matrix {
 /* By pbrt's names: "srgb", "dci-p3", "rec2020", "aces2065-1", in any case. */
 bool color_space_find(const char *name, color_space *out_space);
 
-/* To linear Rec. 709. Of light the colour is kept, and white becomes the white of the space; of what reflects or refracts
- * the white is kept, by the Bradford transform: 1 1 1 reflects all light in every space. */
+/* To linear Rec. 709. Of light the colour is kept, and white becomes the white of the space; of what reflects or
+ * refracts the white is kept, by the Bradford transform: 1 1 1 reflects all light in every space. */
 color_matrix color_space_to_rec709(color_space from, bool is_light);
 
 color_matrix color_xyz_from_rec709(void);
@@ -33,7 +33,7 @@ color_matrix color_adaptation(const double from_xy[2], const double to_xy[2]);
 /* The chromaticity of our white, D65. */
 extern const double COLOR_WHITE_XY[2];
 
-color_matrix color_matrix_multiply(const color_matrix *a, const color_matrix *b); /* applies b first */
+color_matrix color_matrix_multiply(const color_matrix *a, const color_matrix *b);  /* applies b first */
 void color_matrix_apply(const color_matrix *a, const double in[3], double out[3]); /* in and out may be the same */
 
 #endif

@@ -38,15 +38,16 @@ static inline rgb fresnel_conductor(float cos_in, rgb eta, rgb k)
                  fresnel_conductor_channel(cos_in, eta.b, k.b)};
 }
 
-/* Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994: the share of f90 in f0 + (f90 - f0) weight. */
+/* Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994: the share of f90 in f0 + (f90 - f0)
+ * weight. */
 static inline float fresnel_schlick_weight(float cos_in)
 {
     float away = 1.0f - fminf(cos_in, 1.0f), square = away * away;
     return square * square * away;
 }
 
-/* e^-x for x >= 0, to float precision, in plain steps (libm's variants differ in the last bit): the 1024th power of a short
- * series. */
+/* e^-x for x >= 0, to float precision, in plain steps (libm's variants differ in the last bit): the 1024th power of a
+ * short series. */
 static inline float attenuation(float x)
 {
     if (!(x < 100.0f))

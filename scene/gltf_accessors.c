@@ -174,7 +174,8 @@ void gltf_accessor_get(const gltf_accessor *a, uint32_t i, float *out_values)
     const unsigned char *element = element_at(a, i);
     size_t size = component_size(a->component_type);
     for (int c = 0; c < a->components; c++)
-        out_values[c] = element ? read_component(element + (size_t)c * size, a->component_type, a->is_normalized) : 0.0f;
+        out_values[c] =
+            element ? read_component(element + (size_t)c * size, a->component_type, a->is_normalized) : 0.0f;
 }
 
 uint32_t gltf_accessor_get_index(const gltf_accessor *a, uint32_t i)

@@ -107,7 +107,8 @@ ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_matrix *wor
     GLTF_TRY(gltf_get_text(r, &at, "type", &type));
     GLTF_TRY(gltf_get_text(r, &at, "name", &name));
     if (r->scene->has_camera) {
-        log_at(r->run->log, AG_LOG_INFO, r->where, "cameras[%u] \"%s\" is not the first one, and not used", index, name);
+        log_at(r->run->log, AG_LOG_INFO, r->where, "cameras[%u] \"%s\" is not the first one, and not used", index,
+               name);
         return AG_OK;
     }
     camera c = {.fov_degrees = 90.0f, .focal_distance = 1e6f};

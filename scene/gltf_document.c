@@ -184,9 +184,9 @@ static ag_status check_extensions(const gltf_reader *r)
 
 static ag_status find_lists(gltf_reader *r)
 {
-    static const char *const NAMES[GLTF_LIST_COUNT] = {"accessors", "buffers",  "bufferViews", "cameras",
-                                                       "images",    "materials", "meshes",      "nodes",
-                                                       "samplers",  "scenes",    "skins",       "textures",    "lights"};
+    static const char *const NAMES[GLTF_LIST_COUNT] = {"accessors", "buffers",  "bufferViews", "cameras",  "images",
+                                                       "materials", "meshes",   "nodes",       "samplers", "scenes",
+                                                       "skins",     "textures", "lights"};
     gltf_value *parents = r->lists_parents;
     GLTF_TRY(gltf_get_extension(r, &r->document, "KHR_lights_punctual", &parents[0], &parents[1]));
     for (int i = 0; i < GLTF_LIST_COUNT; i++) {

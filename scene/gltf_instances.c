@@ -42,8 +42,8 @@ ag_status gltf_count_mesh_use(gltf_reader *r, const gltf_value *node)
     return AG_OK;
 }
 
-static ag_status add_posed(gltf_reader *r, const gltf_value *node, uint32_t mesh_index, const gltf_matrix *world_from_node,
-                           gltf_destination to)
+static ag_status add_posed(gltf_reader *r, const gltf_value *node, uint32_t mesh_index,
+                           const gltf_matrix *world_from_node, gltf_destination to)
 {
     gltf_value mesh_value;
     gltf_pose pose;
@@ -68,7 +68,8 @@ static ag_status make_object(gltf_reader *r, const gltf_value *node, uint32_t me
     return AG_OK;
 }
 
-ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index, const gltf_matrix *world_from_node)
+ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index,
+                             const gltf_matrix *world_from_node)
 {
     uint32_t shared_index, instance_index;
     const gltf_destination world = {GLTF_ALL_PARTS, SCENE_NO_OBJECT}, shining = {GLTF_SHINING_PART, SCENE_NO_OBJECT};

@@ -9,9 +9,9 @@
 
 static const double LARGEST_EXACT = 9007199254740992.0; /* 2^53: JSON's integers are doubles */
 
-static const char *const LIST_NAMES[GLTF_LIST_COUNT] = {"accessors", "buffers",  "bufferViews", "cameras",
-                                                        "images",    "materials", "meshes",      "nodes",
-                                                        "samplers",  "scenes",    "skins",       "textures",    "lights"};
+static const char *const LIST_NAMES[GLTF_LIST_COUNT] = {"accessors", "buffers",  "bufferViews", "cameras",  "images",
+                                                        "materials", "meshes",   "nodes",       "samplers", "scenes",
+                                                        "skins",     "textures", "lights"};
 
 /* Paths and messages */
 
@@ -186,7 +186,8 @@ ag_status gltf_get_double(const gltf_reader *r, const gltf_value *parent, const 
     return AG_OK;
 }
 
-ag_status gltf_get_doubles(const gltf_reader *r, const gltf_value *parent, const char *key, size_t count, double *values)
+ag_status gltf_get_doubles(const gltf_reader *r, const gltf_value *parent, const char *key, size_t count,
+                           double *values)
 {
     gltf_value array;
     GLTF_TRY(gltf_get_array(r, parent, key, &array));

@@ -4,11 +4,12 @@
  * Flow: gltf_nodes -> [here] -> scene.lights. Threads: one per scene.
  *
  * Units. Only their ratios matter to a picture, and the format's own are photometric throughout: candela and lux of
- * lamps, nits of emissive materials. Reading each as its radiometric counterpart (W/sr, W/m^2, W/m^2/sr) keeps the ratios
- * for every exporter that keeps to the format. Blender's does not, by default: from version 3.6 on it multiplies the watts
- * of lamps by 683 lm/W ("Lighting Mode: Standard"), but writes emission as it is, 1 for a radiance of 1. There lamps are
- * divided by 683, and all is as it was in Blender, where a point lamp's W are 4 pi times its W/sr, and a sun's strength is
- * in W/m^2. Earlier versions wrote those W themselves. (Files of Blender's other lighting modes cannot be told apart.) */
+ * lamps, nits of emissive materials. Reading each as its radiometric counterpart (W/sr, W/m^2, W/m^2/sr) keeps the
+ * ratios for every exporter that keeps to the format. Blender's does not, by default: from version 3.6 on it multiplies
+ * the watts of lamps by 683 lm/W ("Lighting Mode: Standard"), but writes emission as it is, 1 for a radiance of 1.
+ * There lamps are divided by 683, and all is as it was in Blender, where a point lamp's W are 4 pi times its W/sr, and
+ * a sun's strength is in W/m^2. Earlier versions wrote those W themselves. (Files of Blender's other lighting modes
+ * cannot be told apart.) */
 #include "gltf_private.h"
 
 #include <stdio.h>
@@ -73,8 +74,8 @@ ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world
     else
         l.intensity = strength;
     l.direction = vec3_make((float)-z[0], (float)-z[1], (float)-z[2]);
-    l.position = vec3_make((float)world_from_node->m[0][3], (float)world_from_node->m[1][3],
-                           (float)world_from_node->m[2][3]);
+    l.position =
+        vec3_make((float)world_from_node->m[0][3], (float)world_from_node->m[1][3], (float)world_from_node->m[2][3]);
     if (is_spot)
         GLTF_TRY(read_spot(r, &at, &l));
     if (!((double)vec3_max_abs(l.position) <= GLTF_MAX_COORDINATE))

@@ -1,7 +1,7 @@
-/* gltf_material_extensions.c: the material extensions of Khronos: transmission, volume, ior, specular, clearcoat, unlit,
- * specular-glossiness.
- * Rests on: Khronos, KHR_materials_… of glTF 2.0; KHR_materials_ior says how specular-glossiness is written with an index
- * of 0. Flow: gltf_materials -> [here] -> gltf_textures. Threads: one per scene. */
+/* gltf_material_extensions.c: the material extensions of Khronos: transmission, volume, ior, specular, clearcoat,
+ * unlit, specular-glossiness. Rests on: Khronos, KHR_materials_… of glTF 2.0; KHR_materials_ior says how
+ * specular-glossiness is written with an index of 0. Flow: gltf_materials -> [here] -> gltf_textures. Threads: one per
+ * scene. */
 #include "gltf_private.h"
 
 static const gltf_texture_use COLOR = {.is_color = true, .is_srgb = true, .scale = 1.0f};
@@ -46,10 +46,7 @@ static ag_status read_transmission(gltf_reader *r, const gltf_value *at, const g
 }
 
 /* Of which that share is left after that distance in the world, as the format has it. */
-static float absorption(float share, double distance)
-{
-    return (float)(-log(fmax((double)share, 1e-6)) / distance);
-}
+static float absorption(float share, double distance) { return (float)(-log(fmax((double)share, 1e-6)) / distance); }
 
 /* How thick it is, the mesh says better than the factor: only whether there is a volume is read from that. */
 static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
@@ -69,8 +66,8 @@ static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_va
         return AG_OK;
     m->is_thin = false;
     bool absorbs = v.json && (color.r < 1.0f || color.g < 1.0f || color.b < 1.0f);
-    medium filling = {.sigma_a = {absorption(color.r, distance), absorption(color.g, distance),
-                                  absorption(color.b, distance)}};
+    medium filling = {
+        .sigma_a = {absorption(color.r, distance), absorption(color.g, distance), absorption(color.b, distance)}};
     return absorbs ? scene_add_medium(r->scene, &filling, &out->medium_inside) : AG_OK;
 }
 
@@ -106,8 +103,8 @@ static ag_status read_specular_glossiness(gltf_reader *r, const gltf_value *at, 
     out->uv_set = GLTF_NONE;
     GLTF_TRY(gltf_get_texture(r, extension, "diffuseTexture", COLOR, &out->uv_set, &m->reflectance_texture));
     GLTF_TRY(gltf_read_alpha(r, at, extension, "diffuseTexture", diffuse[3], out));
-    GLTF_TRY(gltf_get_texture(r, extension, "specularGlossinessTexture", COLOR, &out->uv_set,
-                              &m->specular_color_texture));
+    GLTF_TRY(
+        gltf_get_texture(r, extension, "specularGlossinessTexture", COLOR, &out->uv_set, &m->specular_color_texture));
     if (m->specular_color_texture == SCENE_NO_TEXTURE || glossiness == 0.0f)
         return AG_OK;
     /* the texture's alpha is the glossiness: roughness is 1 - factor alpha; alpha is never encoded */

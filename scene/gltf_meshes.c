@@ -1,6 +1,7 @@
 /* gltf_meshes.c: primitives become shapes in world space, and lights where their material shines.
  * Rests on: Khronos, "glTF 2.0 Specification", 2021, 3.7.2 (meshes).
- * Flow: gltf_instances -> [here] -> gltf_vertices, gltf_triangles -> scene.shapes, scene.lights. Threads: one per scene. */
+ * Flow: gltf_instances -> [here] -> gltf_vertices, gltf_triangles -> scene.shapes, scene.lights. Threads: one per
+ * scene. */
 #include "gltf_private.h"
 
 #include <stdlib.h>
@@ -80,7 +81,8 @@ static void free_arrays(mesh *m)
 }
 
 /* The mesh's arrays become the scene's. */
-static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const gltf_material *from, uint32_t object_index)
+static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const gltf_material *from,
+                           uint32_t object_index)
 {
     uint32_t shape_index, light_index;
     shape s = shape_make(SHAPE_MESH);

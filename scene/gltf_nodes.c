@@ -123,9 +123,8 @@ static ag_status place_nodes(gltf_reader *r, tree *t)
             gltf_matrix own;
             GLTF_TRY(gltf_get_item(r, GLTF_NODES, n, &node));
             GLTF_TRY(read_transform(r, &node, &own));
-            r->world_from_nodes[n] = t->parents[n] == GLTF_NONE
-                                         ? own
-                                         : gltf_matrix_multiply(&r->world_from_nodes[t->parents[n]], &own);
+            r->world_from_nodes[n] =
+                t->parents[n] == GLTF_NONE ? own : gltf_matrix_multiply(&r->world_from_nodes[t->parents[n]], &own);
         }
     }
     return visited == t->node_count ? AG_OK : refuse_cycle(r, t);

@@ -1,6 +1,6 @@
-/* gltf_poses.c: how a node holds its mesh: by its own matrix or by a skin's joints, and with what weights it is morphed.
- * Rests on: Khronos, "glTF 2.0 Specification", 2021, 3.7.2.2 (morph targets), 3.7.3 (skins: the joints alone place a mesh).
- * Flow: gltf_instances -> [here] -> gltf_accessors. Threads: one per scene. */
+/* gltf_poses.c: how a node holds its mesh: by its own matrix or by a skin's joints, and with what weights it is
+ * morphed. Rests on: Khronos, "glTF 2.0 Specification", 2021, 3.7.2.2 (morph targets), 3.7.3 (skins: the joints alone
+ * place a mesh). Flow: gltf_instances -> [here] -> gltf_accessors. Threads: one per scene. */
 #include "gltf_private.h"
 
 #include <stdlib.h>

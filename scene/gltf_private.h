@@ -16,11 +16,11 @@ enum { GLTF_MAX_FACTORS = 4 };
 /* Vertices lie within +-this, in world space, as those of other formats. */
 #define GLTF_MAX_COORDINATE 1e18
 
-#define GLTF_TRY(call)                  \
-    do {                                \
-        ag_status status_ = (call);     \
-        if (status_ != AG_OK)           \
-            return status_;             \
+#define GLTF_TRY(call)                                                                                                 \
+    do {                                                                                                               \
+        ag_status status_ = (call);                                                                                    \
+        if (status_ != AG_OK)                                                                                          \
+            return status_;                                                                                            \
     } while (0)
 
 /* A value of the document and where it is: a chain of keys and indices up to the document itself, which is all in the
@@ -71,7 +71,7 @@ typedef struct gltf_material {
     uint32_t alpha_texture;
     float alpha_cutoff;
     uint32_t medium_inside; /* the scene's, SCENE_NO_MEDIUM: none */
-    rgb radiance; /* black: it does not shine */
+    rgb radiance;           /* black: it does not shine */
     uint32_t radiance_texture;
     bool is_two_sided; /* shines from both sides */
 } gltf_material;
@@ -99,8 +99,8 @@ typedef struct gltf_reader {
     file_location where; /* the file, without line */
     char *directory;     /* of the file, with its slash, or "" */
 
-    char *text; /* the whole file; owned */
-    gltf_bytes chunk;   /* a binary file's BIN chunk, in text; data NULL: there is none */
+    char *text;       /* the whole file; owned */
+    gltf_bytes chunk; /* a binary file's BIN chunk, in text; data NULL: there is none */
     json_t *root;
     gltf_value document;
     gltf_value lists_parents[2]; /* extensions, KHR_lights_punctual: of the list of lights */
@@ -108,12 +108,12 @@ typedef struct gltf_reader {
     uint32_t list_counts[GLTF_LIST_COUNT];
     gltf_lamp_units lamp_units;
 
-    gltf_file *buffers; /* [list_counts[GLTF_BUFFERS]] */
-    gltf_file *images;  /* those of data URIs; [list_counts[GLTF_IMAGES]] */
-    gltf_material *materials; /* [list_counts[GLTF_MATERIALS] + 1], the last the default one */
-    gltf_mesh_use *mesh_uses; /* [list_counts[GLTF_MESHES]] */
+    gltf_file *buffers;            /* [list_counts[GLTF_BUFFERS]] */
+    gltf_file *images;             /* those of data URIs; [list_counts[GLTF_IMAGES]] */
+    gltf_material *materials;      /* [list_counts[GLTF_MATERIALS] + 1], the last the default one */
+    gltf_mesh_use *mesh_uses;      /* [list_counts[GLTF_MESHES]] */
     gltf_matrix *world_from_nodes; /* [list_counts[GLTF_NODES]] */
-    double aspect;            /* width / height of the camera's picture; 0: it does not say */
+    double aspect;                 /* width / height of the camera's picture; 0: it does not say */
     size_t triangles_read, triangles_dropped;
 } gltf_reader;
 
@@ -146,7 +146,8 @@ ag_status gltf_get_text(const gltf_reader *r, const gltf_value *parent, const ch
 ag_status gltf_get_uint(const gltf_reader *r, const gltf_value *parent, const char *key, uint64_t *value);
 ag_status gltf_get_double(const gltf_reader *r, const gltf_value *parent, const char *key, double *value);
 /* Exactly count numbers. */
-ag_status gltf_get_doubles(const gltf_reader *r, const gltf_value *parent, const char *key, size_t count, double *values);
+ag_status gltf_get_doubles(const gltf_reader *r, const gltf_value *parent, const char *key, size_t count,
+                           double *values);
 /* A number (count of them, up to GLTF_MAX_FACTORS; three) that the format wants in [low, high]: brought there, with a
  * warning, where it is not. */
 ag_status gltf_get_clamped(const gltf_reader *r, const gltf_value *parent, const char *key, double low, double high,
@@ -247,7 +248,8 @@ void gltf_vertices_close(gltf_vertices *v);
 /* Vertex i < count in world space. out_normal NULL or unit, or zero where there is none; out_uv NULL or left alone. */
 ag_status gltf_vertices_get(gltf_reader *r, const gltf_vertices *v, uint32_t i, vec3 *out_position, vec3 *out_normal,
                             vec2 *out_uv);
-/* Cofactors of the linear part, of a mirror with the sign changed: what takes normals along. Returns whether it is one. */
+/* Cofactors of the linear part, of a mirror with the sign changed: what takes normals along. Returns whether it is one.
+ */
 bool gltf_matrix_cofactors(const gltf_matrix *matrix, double out_cofactors[3][3]);
 
 /* gltf_meshes.c: adds a mesh's primitives to the scene. */

@@ -1,5 +1,6 @@
 /* gltf_reader.c: see gltf_reader.h. The whole way of a glTF file on one page.
- * Flow: file -> gltf_document -> [here] -> gltf_nodes, and import_defaults for what is missing. Threads: one per scene. */
+ * Flow: file -> gltf_document -> [here] -> gltf_nodes, and import_defaults for what is missing. Threads: one per scene.
+ */
 #define _POSIX_C_SOURCE 200809L
 #include "gltf_private.h"
 #include "import_defaults.h"

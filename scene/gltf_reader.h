@@ -10,7 +10,8 @@
  * scene with the file's default scene; a camera and light are made where it has none.
  * Every error is told to the run's log: of the JSON's syntax with line and column, else with the path of the value, as
  * "room.gltf: error: accessors[3].bufferView: ...". What is not supported is named in a warning, once. Errors:
- * AG_ERROR_INPUT (a file cannot be read), AG_ERROR_SCENE, AG_ERROR_MEMORY, AG_ERROR_SYSTEM, AG_ERROR_COLOR, AG_CANCELLED.
+ * AG_ERROR_INPUT (a file cannot be read), AG_ERROR_SCENE, AG_ERROR_MEMORY, AG_ERROR_SYSTEM, AG_ERROR_COLOR,
+ * AG_CANCELLED.
  *
  * Radiance is what the file's luminance is (1 nit is 1 W/m^2/sr), and lamps are measured alike (1 cd is 1 W/sr, 1 lx is
  * 1 W/m^2); but Blender's exporter multiplies those of lamps alone by 683 lm/W, which is taken back (gltf_lights.c). */

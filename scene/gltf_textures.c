@@ -58,8 +58,9 @@ static ag_status read_transform(const gltf_reader *r, const gltf_value *info, te
     GLTF_TRY(gltf_get_uint(r, &extension, "texCoord", uv_set));
     map_uv(offset, rotation, scale, m);
     vec3 largest = vec3_make(vec3_max_abs(m->axes[0]), vec3_max_abs(m->axes[1]), fabsf(m->delta.x) + fabsf(m->delta.y));
-    return vec3_max_abs(largest) <= 1e18f && vec3_is_finite(largest) ? AG_OK
-                                                                     : gltf_error(r, &extension, "its numbers are too large");
+    return vec3_max_abs(largest) <= 1e18f && vec3_is_finite(largest)
+               ? AG_OK
+               : gltf_error(r, &extension, "its numbers are too large");
 }
 
 static ag_status choose_uv_set(const gltf_reader *r, const gltf_value *info, uint64_t wanted, uint32_t *uv_set)

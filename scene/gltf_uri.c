@@ -58,7 +58,10 @@ unsigned char *gltf_uri_decode_data(const char *uri, size_t *out_size, const cha
 
 static int hexadecimal_value(char c)
 {
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
 }
 
 /* A scheme: a letter, then letters, digits, + - . up to a colon, before any slash. Of more than one letter, for that

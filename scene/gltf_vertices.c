@@ -1,6 +1,6 @@
-/* gltf_vertices.c: a primitive's vertices in world space: attributes, morphed, then taken along by joints or by the node.
- * Rests on: Khronos, "glTF 2.0 Specification", 2021, 3.7.2.2 (morph targets), 3.7.3 (skins).
- * Flow: gltf_meshes -> [here] -> gltf_accessors, gltf_skins. Threads: one per scene. */
+/* gltf_vertices.c: a primitive's vertices in world space: attributes, morphed, then taken along by joints or by the
+ * node. Rests on: Khronos, "glTF 2.0 Specification", 2021, 3.7.2.2 (morph targets), 3.7.3 (skins). Flow: gltf_meshes ->
+ * [here] -> gltf_accessors, gltf_skins. Threads: one per scene. */
 #include "gltf_private.h"
 
 #include <stdio.h>
@@ -149,7 +149,8 @@ static vec3 place_point(const gltf_matrix *matrix, const double *v)
     return vec3_make((float)world[0], (float)world[1], (float)world[2]);
 }
 
-/* By cofactors, so that a flattening matrix will do. Zero where there is none: the triangle's own normal is then used. */
+/* By cofactors, so that a flattening matrix will do. Zero where there is none: the triangle's own normal is then used.
+ */
 static vec3 place_normal(double cofactors[3][3], const double *v)
 {
     double world[3], square = 0.0;

@@ -26,8 +26,8 @@ const float largest_half = 65504.0f;
 const int largest_jpeg_side = 65500;  /* libjpeg ends the process beyond that */
 const size_t jpeg_text_limit = 16384; /* ... and when metadata do not fit into a marker of 64 KiB */
 
-/* A header may say anything: a picture of more values than the first must come of a file that can hold them. The densest
- * there is, a blank picture in OpenEXR's DWA, puts some 30000 into a byte. */
+/* A header may say anything: a picture of more values than the first must come of a file that can hold them. The
+ * densest there is, a blank picture in OpenEXR's DWA, puts some 30000 into a byte. */
 const std::uint64_t trusted_values = std::uint64_t(1) << 28;
 const std::uint64_t values_per_byte = std::uint64_t(1) << 16;
 

@@ -89,8 +89,9 @@ rgb light_texture_value(const struct scene *s, const light *l, const struct surf
 
 /* Whether an area light is not alike all over, by its texture or its shape's alpha. */
 bool light_varies(const struct scene *s, const light *l);
-/* What a place sampled on an area light has of its radiance: the texture's value, times the share of the shape that is there
- * unless it is invisible (alpha.h); rays that meet the lamp have taken account of that. at: read only if the light varies. */
+/* What a place sampled on an area light has of its radiance: the texture's value, times the share of the shape that is
+ * there unless it is invisible (alpha.h); rays that meet the lamp have taken account of that. at: read only if the
+ * light varies. */
 rgb light_sampled_value(const struct scene *s, const light *l, const struct surface_sample *at);
 
 /* Of the lights that are points: W/sr into direction (away from it, unit). */

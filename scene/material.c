@@ -47,12 +47,14 @@ material material_make(material_kind kind)
 
 static bool has_textures(const material *m)
 {
-    const uint32_t textures[] = {m->reflectance_texture,    m->transmittance_texture, m->alpha_u_texture,
-                                 m->alpha_v_texture,        m->mix_amount_texture,    m->metallic_texture,
-                                 m->roughness_texture,      m->transmission_texture,  m->specular_texture,
-                                 m->specular_color_texture, m->clearcoat_texture,     m->clearcoat_roughness_texture,
-                                 m->eta_texture,            m->k_texture,             m->base_alpha_u_texture,
-                                 m->base_alpha_v_texture};
+    const uint32_t textures[] = {m->reflectance_texture,  m->transmittance_texture,
+                                 m->alpha_u_texture,      m->alpha_v_texture,
+                                 m->mix_amount_texture,   m->metallic_texture,
+                                 m->roughness_texture,    m->transmission_texture,
+                                 m->specular_texture,     m->specular_color_texture,
+                                 m->clearcoat_texture,    m->clearcoat_roughness_texture,
+                                 m->eta_texture,          m->k_texture,
+                                 m->base_alpha_u_texture, m->base_alpha_v_texture};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         if (textures[i] != SCENE_NO_TEXTURE)
             return true;

@@ -30,8 +30,8 @@ enum { COAT_TRAP_PLACES = 8 };
 /* Of a rough conductor under a coat: light that the coat keeps in by total reflection (coat.h). All 0: none. */
 typedef struct coat_trap {
     float caught[COAT_TRAP_PLACES]; /* share of what got in, at even cosines outside from 0 to 1 */
-    float mean;           /* of that times what gets in, over the hemisphere */
-    float escape, retain; /* of a white conductor: what gets out at the next bounce, what is left for more */
+    float mean;                     /* of that times what gets in, over the hemisphere */
+    float escape, retain;           /* of a white conductor: what gets out at the next bounce, what is left for more */
 } coat_trap;
 
 typedef struct material {
@@ -42,22 +42,23 @@ typedef struct material {
     float ior;              /* dielectric or coat: inside over outside, > 0 */
     float alpha_u, alpha_v; /* GGX roughness after remapping, >= 0, of the outer interface */
     float base_alpha_u, base_alpha_v; /* of the conductor under a coat */
-    float coat_thickness;   /* in mean free paths of the coat's stuff, which absorbs; >= 0 */
-    int coat_bounces;       /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
-    float coat_return;      /* of diffuse light from the base, the share that the coat sends back; set by scene_add_material */
-    coat_trap coat_trap;    /* set by scene_add_material */
-    uint32_t mixed[2];      /* mix: indices of materials made before */
-    float mix_amount;       /* mix: the share of the second, [0, 1] */
+    float coat_thickness;             /* in mean free paths of the coat's stuff, which absorbs; >= 0 */
+    int coat_bounces; /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
+    float
+        coat_return; /* of diffuse light from the base, the share that the coat sends back; set by scene_add_material */
+    coat_trap coat_trap; /* set by scene_add_material */
+    uint32_t mixed[2];   /* mix: indices of materials made before */
+    float mix_amount;    /* mix: the share of the second, [0, 1] */
 
     /* principled; reflectance is the base colour, ior >= 1 or 0 (infinite) */
-    float metallic;     /* [0, 1] */
-    float roughness;    /* as it is perceived, [0, 1]; alpha_u and alpha_v are set to its square */
-    float transmission; /* share of what enters a dielectric that goes through, [0, 1] */
-    float specular;     /* of the dielectric's reflection, [0, 1] */
-    rgb specular_color; /* of the same at normal incidence, >= 0 */
-    float clearcoat;    /* [0, 1] */
+    float metallic;            /* [0, 1] */
+    float roughness;           /* as it is perceived, [0, 1]; alpha_u and alpha_v are set to its square */
+    float transmission;        /* share of what enters a dielectric that goes through, [0, 1] */
+    float specular;            /* of the dielectric's reflection, [0, 1] */
+    rgb specular_color;        /* of the same at normal incidence, >= 0 */
+    float clearcoat;           /* [0, 1] */
     float clearcoat_roughness; /* as it is perceived, [0, 1] */
-    bool is_thin;       /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
+    bool is_thin; /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
 
     /* of the same, set by scene_add_material, and at a place */
     rgb dielectric_f0;  /* of facets at normal incidence; at grazing they reflect `specular` */
@@ -65,10 +66,10 @@ typedef struct material {
 
     /* Values that vary over the surface, in place of those above, or of MATERIAL_PRINCIPLED: which they are multiplied
      * by. Each is SCENE_NO_TEXTURE where there is none; read only where is_textured. */
-    bool is_textured; /* set by scene_add_material */
+    bool is_textured;      /* set by scene_add_material */
     bool remaps_roughness; /* alpha is the square root of the texture's value */
     uint32_t reflectance_texture, transmittance_texture, alpha_u_texture, alpha_v_texture, mix_amount_texture;
-    uint32_t eta_texture, k_texture;                       /* conductor, from air */
+    uint32_t eta_texture, k_texture; /* conductor, from air */
     uint32_t base_alpha_u_texture, base_alpha_v_texture;
     uint32_t metallic_texture, roughness_texture, transmission_texture, specular_texture, specular_color_texture,
         clearcoat_texture, clearcoat_roughness_texture; /* principled */
@@ -94,8 +95,8 @@ static inline bool material_is_smooth(float alpha_u, float alpha_v)
 struct scene;
 struct surface_hit;
 
-/* A material without textures, all values as pbrt-v4, or of MATERIAL_PRINCIPLED glTF, has them by default: white, metallic,
- * rough, a thin wall. A conductor's eta and k are 0, and are to be set. */
+/* A material without textures, all values as pbrt-v4, or of MATERIAL_PRINCIPLED glTF, has them by default: white,
+ * metallic, rough, a thin wall. A conductor's eta and k are 0, and are to be set. */
 material material_make(material_kind kind);
 
 /* Works out what can be beforehand; scene_add_material calls it. */

@@ -128,8 +128,8 @@ static ag_status refuse(const parameter_list *list, log_sink *log, const paramet
     const char *text = format_text(fixed, sizeof fixed, format, arguments, &heap);
     va_end(arguments);
     if (list->source)
-        list->source->excerpt(list->source->user, p->where,
-                              strlen(parameter_type_name(p->type)) + strlen(p->name) + 3, excerpt, sizeof excerpt);
+        list->source->excerpt(list->source->user, p->where, strlen(parameter_type_name(p->type)) + strlen(p->name) + 3,
+                              excerpt, sizeof excerpt);
     log_at(log, AG_LOG_ERROR, p->where, "%s%s", text, excerpt);
     free(heap);
     return AG_ERROR_SCENE;
@@ -250,8 +250,8 @@ ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *na
 spectrum_use parameter_spectrum_use(const char *name)
 {
     static const char *const EMITTED[] = {"L", "I", "Le"};
-    static const char *const INDICES[] = {"eta", "k", "conductor.eta", "conductor.k", "interface.eta",
-                                          "sigma_a", "sigma_s", "mfp"};
+    static const char *const INDICES[] = {"eta",           "k",       "conductor.eta", "conductor.k",
+                                          "interface.eta", "sigma_a", "sigma_s",       "mfp"};
     for (size_t i = 0; i < sizeof EMITTED / sizeof *EMITTED; i++)
         if (strcmp(name, EMITTED[i]) == 0)
             return SPECTRUM_LIGHT;

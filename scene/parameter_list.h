@@ -66,9 +66,9 @@ typedef struct parameter_source {
 typedef struct parameter_list {
     parameter *items;
     size_t count;
-    file_location where; /* of the directive */
-    char *directive;     /* "Shape", "Integrator", ... */
-    char *name;          /* "sphere", "photonmap", ... */
+    file_location where;            /* of the directive */
+    char *directive;                /* "Shape", "Integrator", ... */
+    char *name;                     /* "sphere", "photonmap", ... */
     const parameter_source *source; /* borrowed; NULL: errors show no text */
 } parameter_list;
 
@@ -80,9 +80,9 @@ void parameter_reset(parameter *p); /* frees what it holds; leaves it zeroed */
 /* The parameter of that name, whatever its type, NULL where there is none. Does not mark it as looked up. */
 const parameter *parameter_list_find(const parameter_list *list, const char *name);
 
-/* Single values. Each returns AG_OK and writes the value where the parameter stands with a fitting type and count, AG_OK
- * and leaves *out alone where it is absent, AG_ERROR_SCENE (with a message that names the parameter) where it is of
- * another type or count. */
+/* Single values. Each returns AG_OK and writes the value where the parameter stands with a fitting type and count,
+ * AG_OK and leaves *out alone where it is absent, AG_ERROR_SCENE (with a message that names the parameter) where it is
+ * of another type or count. */
 ag_status parameter_get_float(parameter_list *list, log_sink *log, const char *name, float *out_value);
 ag_status parameter_get_int(parameter_list *list, log_sink *log, const char *name, int64_t *out_value);
 ag_status parameter_get_bool(parameter_list *list, log_sink *log, const char *name, bool *out_value);
@@ -91,8 +91,8 @@ ag_status parameter_get_string(parameter_list *list, log_sink *log, const char *
 ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char *name, const char **out_texture_name);
 ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *name, parameter_type type,
                              vec3 *out_value);
-/* Whether a colour of that name is emitted ("L", "I", "Le"), refracts or absorbs ("eta", "k", "sigma_a", "mfp", ...), or
- * reflects or transmits: all others. */
+/* Whether a colour of that name is emitted ("L", "I", "Le"), refracts or absorbs ("eta", "k", "sigma_a", "mfp", ...),
+ * or reflects or transmits: all others. */
 spectrum_use parameter_spectrum_use(const char *name);
 /* rgb, spectrum or blackbody; a warning that names it, and *out left alone, where the spectrum is one of pbrt's that we
  * have not. */

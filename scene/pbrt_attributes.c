@@ -1,8 +1,7 @@
 /* pbrt_attributes.c: Attribute of a pbrt-v4 scene: parameters for the shapes, lights, materials, media or textures that
  * follow, until the block ends.
- * Rests on the format's description, pbrt.org/fileformat-v4, "Attributes". What a directive says itself comes first, then
- * the latest Attribute.
- * Flow: pbrt_parser -> [here] -> pbrt_parameters. Threads: one per scene. */
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Attributes". What a directive says itself comes first,
+ * then the latest Attribute. Flow: pbrt_parser -> [here] -> pbrt_parameters. Threads: one per scene. */
 #include "pbrt_private.h"
 
 #include <stdlib.h>
@@ -12,9 +11,12 @@ static const struct {
     const char *directive;
     pbrt_target target;
 } TARGETS[] = {
-    {"Shape", PBRT_TARGET_SHAPE},         {"LightSource", PBRT_TARGET_LIGHT},
-    {"AreaLightSource", PBRT_TARGET_LIGHT}, {"Material", PBRT_TARGET_MATERIAL},
-    {"MakeNamedMaterial", PBRT_TARGET_MATERIAL}, {"MakeNamedMedium", PBRT_TARGET_MEDIUM},
+    {"Shape", PBRT_TARGET_SHAPE},
+    {"LightSource", PBRT_TARGET_LIGHT},
+    {"AreaLightSource", PBRT_TARGET_LIGHT},
+    {"Material", PBRT_TARGET_MATERIAL},
+    {"MakeNamedMaterial", PBRT_TARGET_MATERIAL},
+    {"MakeNamedMedium", PBRT_TARGET_MEDIUM},
     {"Texture", PBRT_TARGET_TEXTURE},
 };
 
@@ -43,11 +45,11 @@ ag_status pbrt_attribute_directive(pbrt_parser *parser, file_location where)
     int target = 0;
     while (target < PBRT_TARGET_COUNT && strcmp(list.name, NAMES[target]) != 0)
         target++;
-    ag_status status = target < PBRT_TARGET_COUNT
-                           ? add_attributes(parser, &list, (pbrt_target)target)
-                           : pbrt_error(parser, where, strlen("Attribute"),
-                                        "unknown target \"%s\"; known are shape, light, material, medium and texture",
-                                        list.name);
+    ag_status status =
+        target < PBRT_TARGET_COUNT
+            ? add_attributes(parser, &list, (pbrt_target)target)
+            : pbrt_error(parser, where, strlen("Attribute"),
+                         "unknown target \"%s\"; known are shape, light, material, medium and texture", list.name);
     parameter_list_reset(&list);
     return status;
 }

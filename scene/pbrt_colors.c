@@ -1,15 +1,15 @@
-/* pbrt_colors.c: what rgb and spectrum parameters of a pbrt-v4 scene are, before anybody asks for them: the colour space
- * of the file becomes ours, and spectra that are files become their values.
- * Rests on the format's description, pbrt.org/fileformat-v4, "Color Spaces" and "Spectra". Pictures have their own colour
- * space, as in pbrt: the directive does not concern them.
- * Flow: pbrt_parameters -> [here] -> parameter_list. Threads: one per scene. */
+/* pbrt_colors.c: what rgb and spectrum parameters of a pbrt-v4 scene are, before anybody asks for them: the colour
+ * space of the file becomes ours, and spectra that are files become their values. Rests on the format's description,
+ * pbrt.org/fileformat-v4, "Color Spaces" and "Spectra". Pictures have their own colour space, as in pbrt: the directive
+ * does not concern them. Flow: pbrt_parameters -> [here] -> parameter_list. Threads: one per scene. */
 #include "color_space.h"
 #include "pbrt_private.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* From the current colour space to Rec. 709. What it cannot hold is clipped, as is all else that is outside its gamut. */
+/* From the current colour space to Rec. 709. What it cannot hold is clipped, as is all else that is outside its gamut.
+ */
 static ag_status convert_rgb(pbrt_parser *parser, parameter *p, size_t width)
 {
     if (parser->state.rgb_space == COLOR_SPACE_SRGB)
@@ -33,7 +33,8 @@ static ag_status convert_rgb(pbrt_parser *parser, parameter *p, size_t width)
 }
 
 /* An error in a file of numbers, with its line. */
-static ag_status refuse_token(pbrt_parser *parser, const pbrt_lexer *lexer, const pbrt_token *token, const char *message)
+static ag_status refuse_token(pbrt_parser *parser, const pbrt_lexer *lexer, const pbrt_token *token,
+                              const char *message)
 {
     char excerpt[320] = "";
     pbrt_lexer_excerpt(lexer, token->where, token->width, excerpt, sizeof excerpt);
@@ -106,8 +107,9 @@ static ag_status read_spectrum(pbrt_parser *parser, parameter *p, size_t width)
                                    &numbers, &count));
     if (count == 0 || count % 2 != 0) {
         free(numbers);
-        return pbrt_error(parser, p->where, width, "the file \"%s\" has %zu numbers: it should have wavelengths and values",
-                          p->strings[0], count);
+        return pbrt_error(parser, p->where, width,
+                          "the file \"%s\" has %zu numbers: it should have wavelengths and values", p->strings[0],
+                          count);
     }
     free(p->strings[0]);
     free(p->strings);

@@ -94,7 +94,8 @@ static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
         return pbrt_refuse(parser, list, "conedeltaangle",
                            "\"conedeltaangle\" should be from 0 to twice \"coneangle\"");
     light_set_cone(l, ((double)cone - delta) * (PI / 180.0), cone * (PI / 180.0));
-    double cone_measure = PI * ((double)l->falloff_start + l->falloff_end); /* the ramp is half of its height, on average */
+    double cone_measure =
+        PI * ((double)l->falloff_start + l->falloff_end); /* the ramp is half of its height, on average */
     double factor = c.power > 0.0f ? c.scale * (c.power / cone_measure) : c.scale;
     return scale_color(parser, list, c.color, factor, &l->intensity);
 }
@@ -167,8 +168,8 @@ static double mean_luminance(const texture_image *i)
     double sum = 0.0;
     for (uint32_t y = 0; y < i->height; y++)
         for (uint32_t x = 0; x < i->width; x++)
-            sum += (double)rgb_luminance(texture_image_rgb(i, texture_wraps_same(TEXTURE_WRAP_CLAMP), TEXTURE_FILTER_POINT,
-                                                           ((float)x + 0.5f) / (float)i->width,
+            sum += (double)rgb_luminance(texture_image_rgb(i, texture_wraps_same(TEXTURE_WRAP_CLAMP),
+                                                           TEXTURE_FILTER_POINT, ((float)x + 0.5f) / (float)i->width,
                                                            ((float)y + 0.5f) / (float)i->height));
     return sum / ((double)i->width * i->height);
 }

@@ -207,7 +207,8 @@ static ag_status check_mixes(pbrt_parser *parser)
     free(depth);
     if (!is_too_deep)
         return AG_OK;
-    log_message(parser->log, AG_LOG_ERROR, "%s: error: materials of type \"mix\" mix one another in a circle, or more than %d deep",
+    log_message(parser->log, AG_LOG_ERROR,
+                "%s: error: materials of type \"mix\" mix one another in a circle, or more than %d deep",
                 parser->scene->file_names[0], DEPTH_MAX);
     return AG_ERROR_SCENE;
 }

@@ -1,6 +1,6 @@
-/* pbrt_principled.c: Material "principled" of a pbrt-v4 scene: no word of pbrt's, but glTF 2.0's metallic-roughness with
- * transmission, ior, specular and clearcoat, by glTF's names and defaults.
- * Flow: pbrt_materials -> [here] -> material. Threads: one per scene. */
+/* pbrt_principled.c: Material "principled" of a pbrt-v4 scene: no word of pbrt's, but glTF 2.0's metallic-roughness
+ * with transmission, ior, specular and clearcoat, by glTF's names and defaults. Flow: pbrt_materials -> [here] ->
+ * material. Threads: one per scene. */
 #include "pbrt_private.h"
 
 /* A number, or a texture in its place, which multiplies what then is 1. */

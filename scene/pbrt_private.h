@@ -2,7 +2,8 @@
  * interpreters of directives.
  * Rests on the format's description, pbrt.org/fileformat-v4. Names and defaults are pbrt-v4's.
  * Flow: pbrt_parser dispatches directives; pbrt_files gives tokens; pbrt_parameters reads parameter lists;
- * pbrt_transforms, pbrt_objects, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights, pbrt_camera, ... interpret. Threads: one per scene. */
+ * pbrt_transforms, pbrt_objects, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights, pbrt_camera, ... interpret.
+ * Threads: one per scene. */
 #ifndef AFTERGLOW_PBRT_PRIVATE_H
 #define AFTERGLOW_PBRT_PRIVATE_H
 
@@ -77,8 +78,8 @@ typedef struct pbrt_area_light {
 
 /* What AttributeBegin saves and AttributeEnd brings back. */
 typedef struct pbrt_state {
-    /* At the start and at the end of TransformTimes; before WorldBegin: camera_from_world. What does not move looks at the
-     * start alone. */
+    /* At the start and at the end of TransformTimes; before WorldBegin: camera_from_world. What does not move looks at
+     * the start alone. */
     transform world_from_object, world_from_object_end;
     bool start_is_active, end_is_active; /* whether directives change them; at least one is */
     bool reverse_orientation;
@@ -86,7 +87,7 @@ typedef struct pbrt_state {
     bool has_no_surface;                  /* the material is known to be "interface" */
     size_t medium_inside, medium_outside; /* MediumInterface: of pbrt_parser.named_media, or PBRT_NO_MEDIUM */
     pbrt_area_light area_light;
-    color_space rgb_space;                        /* of rgb parameters */
+    color_space rgb_space;                         /* of rgb parameters */
     pbrt_attribute *attributes[PBRT_TARGET_COUNT]; /* the newest of each, or NULL */
 } pbrt_state;
 
@@ -154,7 +155,7 @@ typedef struct pbrt_parser {
     bool has_peeked;
     size_t told_bytes; /* of the first file, at the last progress */
 
-    parameter_source source; /* of the lists that are read */
+    parameter_source source;    /* of the lists that are read */
     pbrt_attribute *attributes; /* all there have been, the newest first */
 
     double film_distance; /* m, from the lens of a realistic camera; 0: there is none */
@@ -176,14 +177,14 @@ typedef struct pbrt_parser {
     pbrt_object *objects;
     size_t object_count, object_capacity;
     name_table object_names;
-    pbrt_object *open_object;    /* between ObjectBegin and ObjectEnd, else NULL */
+    pbrt_object *open_object;     /* between ObjectBegin and ObjectEnd, else NULL */
     uint32_t shapes_object_index; /* where pbrt_add_shape adds to: the scene's object, SCENE_NO_OBJECT for the world */
     pbrt_early_instance *early_instances;
     size_t early_instance_count, early_instance_capacity;
-    size_t lamp_copy_count, lamp_copy_vertex_count; /* that instances have made */
+    size_t lamp_copy_count, lamp_copy_vertex_count;         /* that instances have made */
     name_table float_texture_names, spectrum_texture_names; /* to indices of the scene's */
-    float alpha;            /* of the shape being read */
-    uint32_t alpha_texture; /* likewise */
+    float alpha;                                            /* of the shape being read */
+    uint32_t alpha_texture;                                 /* likewise */
 } pbrt_parser;
 
 /* Every handler of a directive: where is the directive's place; its name has been read, nothing behind it. */
@@ -196,11 +197,11 @@ void pbrt_excerpt(const void *parser, file_location where, size_t width, char *o
 ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location where, size_t width);
 ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size);
 void pbrt_pop_file(pbrt_parser *parser);
-/* Where a file that the scene names is: as pbrt has it, below the first file's directory; where there is none, below that
- * of the file that names it. To be freed; NULL when out of memory. */
+/* Where a file that the scene names is: as pbrt has it, below the first file's directory; where there is none, below
+ * that of the file that names it. To be freed; NULL when out of memory. */
 char *pbrt_find_file(const pbrt_parser *parser, const char *name);
-/* The next token; where an included file ends, the one that included it goes on. The end of an imported file is told, as
- * often as is asked, until it is popped. */
+/* The next token; where an included file ends, the one that included it goes on. The end of an imported file is told,
+ * as often as is asked, until it is popped. */
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);
 ag_status pbrt_peek(pbrt_parser *parser, pbrt_token *out_token);
 /* Tells the error with the line it is in and a mark below; always returns AG_ERROR_SCENE. */
@@ -245,14 +246,14 @@ ag_status pbrt_refuse(pbrt_parser *parser, const parameter_list *list, const cha
     AG_PRINTF(4, 5);
 
 /* pbrt_state.c: what Begin saves and End brings back. */
-pbrt_handler pbrt_import, pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin, pbrt_attribute_end, pbrt_transform_begin,
-    pbrt_transform_end, pbrt_reverse_orientation;
+pbrt_handler pbrt_import, pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin, pbrt_attribute_end,
+    pbrt_transform_begin, pbrt_transform_end, pbrt_reverse_orientation;
 ag_status pbrt_save_state(pbrt_parser *parser, file_location where, bool is_object, bool is_import);
 ag_status pbrt_restore_state(pbrt_parser *parser, file_location where, const char *directive, bool is_object);
 /* Error where a Begin of the file that ends at that place has no End there. */
 ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end);
-/* At the end of an imported file: what is open is an error, else the state that it began with is brought back and the file
- * popped. */
+/* At the end of an imported file: what is open is an error, else the state that it began with is brought back and the
+ * file popped. */
 ag_status pbrt_end_import(pbrt_parser *parser, file_location end);
 
 /* pbrt_objects.c: what is kept once, and where it is shown. */
@@ -293,8 +294,8 @@ uint32_t pbrt_use_medium(pbrt_parser *parser, size_t named);
 /* Error where a medium was used and never made. */
 ag_status pbrt_check_named_media(pbrt_parser *parser);
 
-/* pbrt_material_kinds.c: each reads its parameters into *m, which is made of its kind. The last are stand-ins for what is
- * not supported, the last for any name. */
+/* pbrt_material_kinds.c: each reads its parameters into *m, which is made of its kind. The last are stand-ins for what
+ * is not supported, the last for any name. */
 typedef ag_status pbrt_material_reader(pbrt_parser *parser, parameter_list *list, material *m);
 pbrt_material_reader pbrt_read_diffuse, pbrt_read_diffuse_transmission, pbrt_read_conductor, pbrt_read_dielectric,
     pbrt_read_thin_dielectric, pbrt_read_coated_diffuse, pbrt_read_coated_conductor, pbrt_read_hair,
@@ -302,7 +303,8 @@ pbrt_material_reader pbrt_read_diffuse, pbrt_read_diffuse_transmission, pbrt_rea
 /* "displacement" and "normalmap", of all kinds but mixes. */
 pbrt_material_reader pbrt_read_maps;
 
-/* pbrt_old_materials.c: where *type is one of pbrt-v3's names, makes it pbrt-v4's, and the list's parameters with it. */
+/* pbrt_old_materials.c: where *type is one of pbrt-v3's names, makes it pbrt-v4's, and the list's parameters with it.
+ */
 ag_status pbrt_upgrade_material(pbrt_parser *parser, parameter_list *list, const char **type);
 
 /* pbrt_textures.c */
@@ -370,8 +372,8 @@ typedef struct pbrt_mesh {
 
 /* Adds it to the scene in world space, less the triangles without area. Takes source->indices, also on failure. */
 ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source);
-/* The same of a mesh whose arrays, in object space, are the scene's own already: they are transformed where they are and
- * taken, also on failure. dropped: triangles that were left out before, for the warning. */
+/* The same of a mesh whose arrays, in object space, are the scene's own already: they are transformed where they are
+ * and taken, also on failure. dropped: triangles that were left out before, for the warning. */
 ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
                                bool expects_degenerate);
 /* The arrays that meshes have in common, all but triangle_count. There are *out_index_count indices, a multiple of

@@ -1,7 +1,7 @@
 /* pbrt_realistic.c: Camera "realistic" of a pbrt-v4 scene: many lenses from a file, for which one thin lens stands in.
- * Rests on: Kolb, Mitchell, Hanrahan, "A Realistic Camera Model for Computer Graphics", 1995; paraxial rays as in Hecht,
- * "Optics", 5th ed., 2017, 6.1. Lengths in the lens file are millimetres, in the scene metres.
- * Flow: pbrt_camera -> [here] -> scene.camera. Threads: one per scene. */
+ * Rests on: Kolb, Mitchell, Hanrahan, "A Realistic Camera Model for Computer Graphics", 1995; paraxial rays as in
+ * Hecht, "Optics", 5th ed., 2017, 6.1. Lengths in the lens file are millimetres, in the scene metres. Flow: pbrt_camera
+ * -> [here] -> scene.camera. Threads: one per scene. */
 #include "pbrt_private.h"
 
 #include <stdlib.h>
@@ -49,8 +49,8 @@ static ag_status read_lens(pbrt_parser *parser, const parameter_list *list, cons
     bool is_lens = is_table && reduce(numbers, count / NUMBERS_PER_SURFACE, stop_diameter, out_lens);
     free(numbers);
     if (!is_table)
-        return pbrt_refuse(parser, list, "lensfile", "\"%s\" has %zu numbers: it should have four for each surface", name,
-                           count);
+        return pbrt_refuse(parser, list, "lensfile", "\"%s\" has %zu numbers: it should have four for each surface",
+                           name, count);
     if (!is_lens)
         return pbrt_refuse(parser, list, "lensfile", "\"%s\" does not focus light", name);
     return AG_OK;
@@ -77,11 +77,12 @@ ag_status pbrt_read_realistic(pbrt_parser *parser, parameter_list *list, camera 
         return pbrt_refuse(parser, list, "focusdistance", "\"focusdistance\" should be at least 4 focal lengths, %g m",
                            4.0 * lens.focal_length);
     double behind = 2.0 * focus * lens.focal_length / (focus + sqrt(room));
-    log_at_once(log, AG_LOG_WARNING, list->where, "realistic",
-                "Camera \"realistic\" is not supported: a thin lens stands in, with its focal length of %.4g mm, its aperture "
-                "and its brightness in the middle of the film, but without distortion, vignetting or a shape of the "
-                "aperture",
-                1e3 * lens.focal_length);
+    log_at_once(
+        log, AG_LOG_WARNING, list->where, "realistic",
+        "Camera \"realistic\" is not supported: a thin lens stands in, with its focal length of %.4g mm, its aperture "
+        "and its brightness in the middle of the film, but without distortion, vignetting or a shape of the "
+        "aperture",
+        1e3 * lens.focal_length);
     c->lens_radius = (float)lens.pupil_radius;
     c->focal_distance = (float)(focus - behind);
     c->exposure *= (float)(3.14159265358979323846 * lens.pupil_radius * lens.pupil_radius / (behind * behind));

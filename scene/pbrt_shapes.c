@@ -28,7 +28,8 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     return shines ? pbrt_add_area_light(parser, &parser->state.area_light, index, list->where) : AG_OK;
 }
 
-/* Whether normals can be computed in floats, whose squares end at 1e38 and 1e-38, in object space and in the world's. */
+/* Whether normals can be computed in floats, whose squares end at 1e38 and 1e-38, in object space and in the world's.
+ */
 static bool is_in_reach_of_floats(const quadric *q)
 {
     double r = q->radius, largest = fmax(r, 1.0 / r);
@@ -56,7 +57,8 @@ static ag_status add_quadric(pbrt_parser *parser, parameter_list *list, shape *s
     }
     if (!is_in_reach_of_floats(q)) {
         log_at(parser->log, AG_LOG_WARNING, list->where,
-               "Shape \"%s\" is too small, or scaled by too much or too little, for floats and is left out", list->name);
+               "Shape \"%s\" is too small, or scaled by too much or too little, for floats and is left out",
+               list->name);
         return AG_OK;
     }
     return pbrt_add_shape(parser, list, s);

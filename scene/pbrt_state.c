@@ -92,8 +92,8 @@ ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end)
                       saved->where.column);
 }
 
-/* The imported file begins with a copy of the state, and without named coordinate systems, as pbrt has it: there, it may
- * be read beside the other. What it names otherwise, materials and textures, is everybody's. */
+/* The imported file begins with a copy of the state, and without named coordinate systems, as pbrt has it: there, it
+ * may be read beside the other. What it names otherwise, materials and textures, is everybody's. */
 ag_status pbrt_import(pbrt_parser *parser, file_location where)
 {
     char *name;

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One end of the current transform becomes itself (or the identity) times t. What can be undone piece by piece may still
- * overflow as a whole. */
+/* One end of the current transform becomes itself (or the identity) times t. What can be undone piece by piece may
+ * still overflow as a whole. */
 static ag_status apply_to(pbrt_parser *parser, file_location where, const char *directive, bool replaces,
                           const transform *t, transform *end)
 {
@@ -52,10 +52,11 @@ ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const tr
     for (int i = 0; i < 2; i++)
         times[i] = (times[i] - span[0]) / (span[1] - span[0]);
     if (!motion_make(start, end, times[0], times[1], out_motion))
-        return pbrt_error(parser, where, strlen(directive),
-                          "%s moves by way of a transform that cannot be undone (it is not affine, too small or too large, "
-                          "or turns inside out on its way)",
-                          directive);
+        return pbrt_error(
+            parser, where, strlen(directive),
+            "%s moves by way of a transform that cannot be undone (it is not affine, too small or too large, "
+            "or turns inside out on its way)",
+            directive);
     return AG_OK;
 }
 

@@ -14,7 +14,7 @@ typedef struct scene_ray {
     vec3 origin, direction; /* world; whoever wants the direction unit says so */
     float time;             /* of the shutter, [0, 1] from its opening to its closing */
     uint32_t medium;        /* that it starts in; SCENE_NO_MEDIUM: nothing that absorbs */
-    bool meets_veils;       /* what is there in part (alpha.h) stops it always: it looks for surfaces, and is no light */
+    bool meets_veils; /* what is there in part (alpha.h) stops it always: it looks for surfaces, and is no light */
 } scene_ray;
 
 /* When the shutter opens, in nothing. */

@@ -101,8 +101,8 @@ static float own_step(const scene *s, const texture *t)
     if (t->kind != TEXTURE_IMAGE || t->mapping.kind != TEXTURE_MAPPING_UV)
         return STEP;
     const texture_image *picture = s->texture_images[t->image_index];
-    float pixels = fmaxf(fabsf(t->mapping.scale.x) * (float)picture->width,
-                         fabsf(t->mapping.scale.y) * (float)picture->height);
+    float pixels =
+        fmaxf(fabsf(t->mapping.scale.x) * (float)picture->width, fabsf(t->mapping.scale.y) * (float)picture->height);
     return pixels > 0.0f ? fminf(fmaxf(0.5f / pixels, STEP_MIN), STEP_MAX) : STEP_MAX;
 }
 

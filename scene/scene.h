@@ -57,12 +57,12 @@ typedef struct scene {
 
     /* set by scene_commit */
     uint32_t *object_shapes; /* indices of the shapes that belong to objects, object by object */
-    bool has_motion;         /* instances or the camera move while the shutter is open: what happens depends on the time */
+    bool has_motion; /* instances or the camera move while the shutter is open: what happens depends on the time */
     vec3 bounds_min, bounds_max; /* of all shapes, where instances put them; min > max when there is none */
     vec3 bounding_center;
     float bounding_radius;
-    float surface_area;       /* m^2, of all shapes but interfaces, in all instances */
-    rgb light_power;          /* W, of all lights */
+    float surface_area;        /* m^2, of all shapes but interfaces, in all instances */
+    rgb light_power;           /* W, of all lights */
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */
@@ -96,8 +96,9 @@ ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
 /* An object, which is seen where instances put it. Its shapes do not shine. */
 ag_status scene_add_object(scene *s, uint32_t *out_index);
 ag_status scene_add_object_shape(scene *s, uint32_t object_index, const shape *item, uint32_t *out_index);
-/* An instance of an object that is there already (its shapes may come later); steps: see scene_instance, 1 of them where it
- * is at rest, MOTION_STEPS_MAX at most. Errors also: AG_ERROR_SCENE (one that cannot be undone; nothing is said). */
+/* An instance of an object that is there already (its shapes may come later); steps: see scene_instance, 1 of them
+ * where it is at rest, MOTION_STEPS_MAX at most. Errors also: AG_ERROR_SCENE (one that cannot be undone; nothing is
+ * said). */
 ag_status scene_add_instance(scene *s, uint32_t object_index, const affine *steps, uint32_t step_count,
                              uint32_t *out_index);
 /* An area light's shape must be there already, in the world itself; its light_index is set here. Pictures and tables of

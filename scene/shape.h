@@ -56,11 +56,11 @@ typedef struct shape {
     uint32_t medium_inside, medium_outside; /* of the scene's, or SCENE_NO_MEDIUM; without an interface only of use to
                                              * light that starts here */
     uint32_t material_index;
-    uint32_t light_index; /* SHAPE_NO_LIGHT where it does not shine */
+    uint32_t light_index;   /* SHAPE_NO_LIGHT where it does not shine */
     float alpha;            /* the share of it that is there, [0, 1]: rays pass through the rest (alpha.h) */
     uint32_t alpha_texture; /* a float texture that multiplies it; SCENE_NO_TEXTURE: none */
     float alpha_cutoff;     /* above 0: a place is there, wholly, where alpha is at least that */
-    uint32_t object_index; /* the scene's object that it belongs to; SCENE_NO_OBJECT: it stands in the world itself */
+    uint32_t object_index;  /* the scene's object that it belongs to; SCENE_NO_OBJECT: it stands in the world itself */
     union {
         mesh mesh;
         quadric quadric;

@@ -59,7 +59,8 @@ void spectra_blackbody_chromaticity(double kelvin, double out_xy[2])
     out_xy[1] = xyz[1] / (xyz[0] + xyz[1] + xyz[2]);
 }
 
-/* Of the pairs, at a wavelength; *in_out_next is the first pair beyond the last wavelength asked for, which was below. */
+/* Of the pairs, at a wavelength; *in_out_next is the first pair beyond the last wavelength asked for, which was below.
+ */
 static double value_at(const double *pairs, size_t count, double nm, bool goes_on, size_t *in_out_next)
 {
     while (*in_out_next < count && pairs[2 * *in_out_next] <= nm)
@@ -138,10 +139,10 @@ static const struct {
     const char *name;
     double x, y;
 } ILLUMINANTS[] = {
-    {"stdillum-A", 0.44758, 0.40745},  {"stdillum-D50", 0.34567, 0.35851}, {"illum-acesD60", 0.32168, 0.33767},
-    {"stdillum-F1", 0.31310, 0.33727}, {"stdillum-F2", 0.37208, 0.37529},  {"stdillum-F3", 0.40910, 0.39430},
-    {"stdillum-F4", 0.44018, 0.40329}, {"stdillum-F5", 0.31379, 0.34531},  {"stdillum-F6", 0.37790, 0.38835},
-    {"stdillum-F7", 0.31292, 0.32933}, {"stdillum-F8", 0.34588, 0.35875},  {"stdillum-F9", 0.37417, 0.37281},
+    {"stdillum-A", 0.44758, 0.40745},   {"stdillum-D50", 0.34567, 0.35851}, {"illum-acesD60", 0.32168, 0.33767},
+    {"stdillum-F1", 0.31310, 0.33727},  {"stdillum-F2", 0.37208, 0.37529},  {"stdillum-F3", 0.40910, 0.39430},
+    {"stdillum-F4", 0.44018, 0.40329},  {"stdillum-F5", 0.31379, 0.34531},  {"stdillum-F6", 0.37790, 0.38835},
+    {"stdillum-F7", 0.31292, 0.32933},  {"stdillum-F8", 0.34588, 0.35875},  {"stdillum-F9", 0.37417, 0.37281},
     {"stdillum-F10", 0.34609, 0.35986}, {"stdillum-F11", 0.38052, 0.37713}, {"stdillum-F12", 0.43695, 0.40441},
 };
 
@@ -163,10 +164,10 @@ bool spectra_find_named(const char *name, rgb *out_value)
 bool spectra_is_sensor(const char *name, size_t length)
 {
     static const char *const SENSORS[] = {
-        "canon_eos_100d",   "canon_eos_1dx_mkii",  "canon_eos_200d",     "canon_eos_200d_mkii", "canon_eos_5d",
-        "canon_eos_5d_mkii", "canon_eos_5d_mkiii", "canon_eos_5d_mkiv",  "canon_eos_5ds",       "canon_eos_m",
-        "hasselblad_l1d_20c", "nikon_d810",        "nikon_d850",         "sony_ilce_6400",      "sony_ilce_7m3",
-        "sony_ilce_7rm3",   "sony_ilce_9"};
+        "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d",    "canon_eos_200d_mkii", "canon_eos_5d",
+        "canon_eos_5d_mkii",  "canon_eos_5d_mkiii", "canon_eos_5d_mkiv", "canon_eos_5ds",       "canon_eos_m",
+        "hasselblad_l1d_20c", "nikon_d810",         "nikon_d850",        "sony_ilce_6400",      "sony_ilce_7m3",
+        "sony_ilce_7rm3",     "sony_ilce_9"};
     for (size_t i = 0; i < sizeof SENSORS / sizeof *SENSORS; i++)
         if (strlen(SENSORS[i]) == length && memcmp(SENSORS[i], name, length) == 0)
             return true;

@@ -43,13 +43,13 @@ typedef struct texture_image {
     char *path;
     image_encoding encoding;
     uint32_t width, height;
-    uint32_t channel_count; /* 1 or 3 */
-    unsigned char *bytes;   /* packed, top row first; or NULL: values */
-    float *values;          /* linear */
-    float table[256];       /* linear values of the bytes */
+    uint32_t channel_count;     /* 1 or 3 */
+    unsigned char *bytes;       /* packed, top row first; or NULL: values */
+    float *values;              /* linear */
+    float table[256];           /* linear values of the bytes */
     unsigned char *alpha_bytes; /* with bytes, or NULL: 1 everywhere */
     float *alpha_values;        /* the same with values */
-    uint64_t bad_count;     /* values that were not finite, and are 0 now */
+    uint64_t bad_count;         /* values that were not finite, and are 0 now */
 } texture_image;
 
 /* Loads a picture into the scene's ownership, once for each path and encoding. Three channels or more are taken for

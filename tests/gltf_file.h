@@ -47,10 +47,11 @@ static inline char *json_text(const char *text)
 
 /* A triangle at the origin along x and y: positions 0 to 35, and what a document needs to have it; goes on with other
  * members. */
-#define GLTF_TRIANGLE_BUFFER "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}], 'bufferViews': [{'buffer': 0, 'byteLength': 36}], "
+#define GLTF_TRIANGLE_BUFFER                                                                                           \
+    "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}], 'bufferViews': [{'buffer': 0, 'byteLength': 36}], "
 #define GLTF_TRIANGLE_ACCESSOR "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'}], "
-#define GLTF_TRIANGLE GLTF_TRIANGLE_BUFFER GLTF_TRIANGLE_ACCESSOR
-#define GLTF_ASSET    "'asset': {'version': '2.0'}, "
+#define GLTF_TRIANGLE          GLTF_TRIANGLE_BUFFER GLTF_TRIANGLE_ACCESSOR
+#define GLTF_ASSET             "'asset': {'version': '2.0'}, "
 
 static inline void write_triangle(void)
 {

@@ -378,7 +378,8 @@ static void parts_that_carry_nothing_are_left_out(void **state)
     b = flat(&black, UP);
     assert_true(b.lobe_count == 1 && !bsdf_has(&b, BSDF_GATHERED));
     b = flat(&all, UP);
-    assert_true(b.lobe_count == 3 && bsdf_scatters_through(&b, BSDF_TRACED) && !bsdf_scatters_through(&b, BSDF_GATHERED));
+    assert_true(b.lobe_count == 3 && bsdf_scatters_through(&b, BSDF_TRACED) &&
+                !bsdf_scatters_through(&b, BSDF_GATHERED));
     all.transmission = 0.0f;
     b = flat(&all, UP);
     assert_true(b.lobe_count == 3 && !bsdf_scatters_through(&b, BSDF_ALL));

@@ -232,7 +232,8 @@ static void the_instruction_set_can_be_chosen(void **state)
     assert_int_equal(scene_commit(s, &r.run, "sse2"), AG_OK);
     assert_string_equal(bvh_isa(s->bvh), "sse2");
     surface_hit hit;
-    assert_true(scene_intersect(s, scene_ray_make((vec3){0.0f, 0.0f, -3.0f}, (vec3){0.0f, 0.0f, 1.0f}), INFINITY, &hit));
+    assert_true(
+        scene_intersect(s, scene_ray_make((vec3){0.0f, 0.0f, -3.0f}, (vec3){0.0f, 0.0f, 1.0f}), INFINITY, &hit));
     assert_close(hit.distance, 2.0, 1e-5);
     scene_destroy(s);
     test_run_reset(&r);

@@ -71,9 +71,8 @@ static void lenses(void **state)
         float x = k == 0 ? 4.0f * 0.5f : 0.5f, y = k == 0 ? 4.0f * -1.0f : -1.0f;
         double spread = 0.0;
         for (int i = 0; i < 16; i++) {
-            scene_ray ray = camera_generate_ray(&c, 0.75f, 1.0f, 1.0f,
-                                                (vec2){((float)(i % 4) + 0.5f) / 4.0f, ((float)(i / 4) + 0.5f) / 4.0f},
-                                                0.0f);
+            scene_ray ray = camera_generate_ray(
+                &c, 0.75f, 1.0f, 1.0f, (vec2){((float)(i % 4) + 0.5f) / 4.0f, ((float)(i / 4) + 0.5f) / 4.0f}, 0.0f);
             assert_near(ray.origin.z, 0, 1e-6);
             double radius = sqrt((double)(ray.origin.x * ray.origin.x + ray.origin.y * ray.origin.y));
             assert_true(radius <= 0.5);
@@ -101,8 +100,8 @@ static void equirectangular(void **state)
     }
 }
 
-/* Equal areas of the film are equal solid angles: each sixteenth of the sphere by height gets a sixteenth of the rays; and
- * the film goes on over its edges. */
+/* Equal areas of the film are equal solid angles: each sixteenth of the sphere by height gets a sixteenth of the rays;
+ * and the film goes on over its edges. */
 static void equal_area(void **state)
 {
     (void)state;
@@ -112,7 +111,8 @@ static void equal_area(void **state)
     camera c = camera_of("Camera \"spherical\" \"float lensradius\" 3");
     assert_int_equal(c.kind, CAMERA_EQUAL_AREA);
     for (int i = 0; i < COUNT; i++) {
-        double x = fmod(i * 0.61803398874989485, 1.0); /* spread without rows, which would fall along the bands' edges */
+        double x =
+            fmod(i * 0.61803398874989485, 1.0); /* spread without rows, which would fall along the bands' edges */
         vec3 d = camera_generate_ray(&c, (float)x, ((float)i + 0.5f) / COUNT, 1.0f, MIDDLE, 0.0f).direction;
         int band = (int)((d.y + 1.0f) / 2.0f * BANDS);
         count[band < BANDS ? band : BANDS - 1]++;
@@ -128,8 +128,8 @@ static void equal_area(void **state)
     static const float OVER[][2] = {{-0.01f, 0.3f}, {1.01f, 0.3f}, {0.3f, -0.01f}, {0.3f, 1.01f}, {-0.01f, -0.01f}};
     for (int i = 0; i < 5; i++) {
         vec3 beyond = camera_generate_ray(&c, OVER[i][0], OVER[i][1], 1.0f, MIDDLE, 0.0f).direction;
-        vec3 within = camera_generate_ray(&c, fminf(fmaxf(OVER[i][0], 0.0f), 1.0f), fminf(fmaxf(OVER[i][1], 0.0f), 1.0f),
-                                          1.0f, MIDDLE, 0.0f)
+        vec3 within = camera_generate_ray(&c, fminf(fmaxf(OVER[i][0], 0.0f), 1.0f),
+                                          fminf(fmaxf(OVER[i][1], 0.0f), 1.0f), 1.0f, MIDDLE, 0.0f)
                           .direction;
         assert_true(vec3_dot(beyond, within) > 0.998f && vec3_dot(beyond, within) < 0.99999f);
     }

@@ -58,7 +58,7 @@ static blob make_container(const char *text)
 }
 
 #define IN_CHUNK                                                                                                       \
-    "'buffers': [{'byteLength': 36}], 'bufferViews': [{'buffer': 0, 'byteLength': 36}], " GLTF_TRIANGLE_ACCESSOR        \
+    "'buffers': [{'byteLength': 36}], 'bufferViews': [{'buffer': 0, 'byteLength': 36}], " GLTF_TRIANGLE_ACCESSOR       \
     "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}], 'nodes': [{'mesh': 0}]}"
 
 static void binary_file(void **state)
@@ -128,11 +128,13 @@ static void syntax_errors(void **state)
     (void)state;
     reading r = gltf_read("{\n  'asset': {'version': '2.0'},\n  'nodes': [1, 2,, 3]\n}\n");
     assert_int_equal(r.status, AG_ERROR_SCENE);
-    expect_said(&r, AG_LOG_ERROR, "/t.gltf:3:18: error: unexpected token near ','\n      \"nodes\": [1, 2,, 3]\n"
-                                  "                     ^");
+    expect_said(&r, AG_LOG_ERROR,
+                "/t.gltf:3:18: error: unexpected token near ','\n      \"nodes\": [1, 2,, 3]\n"
+                "                     ^");
     reading_destroy(&r);
     gltf_expect_error("", AG_ERROR_SCENE, "t.gltf:1:1: error: ");
-    gltf_expect_error("{'asset': {'version': '2.0'}", AG_ERROR_SCENE, "t.gltf:1:28: error: '}' expected near end of file");
+    gltf_expect_error("{'asset': {'version': '2.0'}", AG_ERROR_SCENE,
+                      "t.gltf:1:28: error: '}' expected near end of file");
     gltf_expect_error("{'asset': {'version': '2.0'}} more", AG_ERROR_SCENE, "end of file expected");
     gltf_expect_error("{'a': 1e999}", AG_ERROR_SCENE, "t.gltf:1:11: error: real number overflow");
     gltf_expect_error("[]", AG_ERROR_SCENE, "t.gltf: error: the document: should be an object");
@@ -183,7 +185,8 @@ static void uris(void **state)
 {
     (void)state;
     static const char *const RIGHT[] = {
-        "{'byteLength': 36, 'uri': 'data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA'}",
+        "{'byteLength': 36, 'uri': "
+        "'data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA'}",
         "{'byteLength': 36, 'uri': 'data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAA=='}",
         "{'byteLength': 36, 'uri': 'a%20triangle%c3%a4.bin'}",
         "{'byteLength': 36, 'uri': 'a triangleä.bin'}",
@@ -215,9 +218,11 @@ static void uris(void **state)
          AG_ERROR_SCENE},
         {"{'byteLength': 36, 'uri': 'data:text/plain,AAAA'}", "the data URI is not in base64", AG_ERROR_SCENE},
         {"{'byteLength': 36, 'uri': 'data:;base64,AA*A'}", "the data URI holds what is not base64", AG_ERROR_SCENE},
-        {"{'byteLength': 36, 'uri': 'data:;base64,AAAA'}", "it has 3 bytes of the 36 that byteLength says", AG_ERROR_SCENE},
+        {"{'byteLength': 36, 'uri': 'data:;base64,AAAA'}", "it has 3 bytes of the 36 that byteLength says",
+         AG_ERROR_SCENE},
         {"{'byteLength': 0, 'uri': 'triangle.bin'}", "buffers[0]: its byteLength is 0", AG_ERROR_SCENE},
-        {"{'byteLength': -1, 'uri': 'triangle.bin'}", "byteLength: -1 should be an integer from 0 to 2^53", AG_ERROR_SCENE},
+        {"{'byteLength': -1, 'uri': 'triangle.bin'}", "byteLength: -1 should be an integer from 0 to 2^53",
+         AG_ERROR_SCENE},
         {"{'byteLength': 1.5, 'uri': 'triangle.bin'}", "byteLength: 1.5 should be an integer", AG_ERROR_SCENE},
         {"{'byteLength': 35, 'uri': 'triangle.bin'}",
          "bufferViews[0]: bytes 0 to 36 reach beyond the buffer, which has 35", AG_ERROR_SCENE},

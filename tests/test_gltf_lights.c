@@ -27,7 +27,8 @@ static void lamps(void **state)
     assert_vec3(l->position, 1, 2, 3, 0);
     reading_destroy(&r);
 
-    r = gltf_of(lamp_text("", "{'type': 'directional', 'intensity': 3}", "'rotation': [0, 1, 0, 1], 'scale': [1, 1, 9],"));
+    r = gltf_of(
+        lamp_text("", "{'type': 'directional', 'intensity': 3}", "'rotation': [0, 1, 0, 1], 'scale': [1, 1, 9],"));
     l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_DISTANT);
     assert_rgb(l->radiance, 3, 3, 3, 0);
@@ -141,16 +142,19 @@ static void cameras(void **state)
         snprintf(text, sizeof text, "{'type': 'perspective', 'perspective': {%s 'yfov': 0.8, 'znear': 0.1}}", aspect);
         reading r = gltf_of(camera_text(text, "'translation': [1, 2, 3], 'scale': [2, 2, 2],"));
         expect_film(&r, SHAPES[i].width, SHAPES[i].height);
-        vec3 middle = direction_at(&r, 0.5f, 0.5f), upper = direction_at(&r, 0.5f, 0.0f), right = direction_at(&r, 1.0f, 0.5f);
+        vec3 middle = direction_at(&r, 0.5f, 0.5f), upper = direction_at(&r, 0.5f, 0.0f),
+             right = direction_at(&r, 1.0f, 0.5f);
         assert_vec3(middle, 0, 0, -1, 1e-6);
         assert_near(upper.y / -upper.z, tan(0.4), SHAPES[i].aspect == 1000 ? 0.2 : 1e-5); /* 1280 by 1.28 pixels */
         assert_near(upper.x, 0, 1e-6);
-        assert_near(right.x / -right.z, tan(0.4) * SHAPES[i].width / SHAPES[i].height, SHAPES[i].aspect == 1000 ? 1e9 : 1e-4);
+        assert_near(right.x / -right.z, tan(0.4) * SHAPES[i].width / SHAPES[i].height,
+                    SHAPES[i].aspect == 1000 ? 1e9 : 1e-4);
         assert_vec3(transform_point(&r.scene->camera.world_from_camera, vec3_make(0, 0, 0)), 1, 2, 3, 0);
         reading_destroy(&r);
     }
     /* turned by a quarter about y it looks along -x, and -z is on its right */
-    reading r = gltf_of(camera_text("{'type': 'perspective', 'perspective': {'yfov': 0.8}}", "'rotation': [0, 1, 0, 1],"));
+    reading r =
+        gltf_of(camera_text("{'type': 'perspective', 'perspective': {'yfov': 0.8}}", "'rotation': [0, 1, 0, 1],"));
     assert_vec3(direction_at(&r, 0.5f, 0.5f), -1, 0, 0, 1e-6);
     assert_true(direction_at(&r, 1.0f, 0.5f).z < -0.1f);
     reading_destroy(&r);
@@ -165,8 +169,9 @@ static void cameras(void **state)
 static void orthographic_camera(void **state)
 {
     (void)state;
-    reading r = gltf_of(camera_text("{'type': 'orthographic', 'orthographic': {'xmag': 3, 'ymag': 2, 'zfar': 9, 'znear': 0}}",
-                                    "'translation': [1, 2, 3], 'scale': [2, 2, 2],"));
+    reading r =
+        gltf_of(camera_text("{'type': 'orthographic', 'orthographic': {'xmag': 3, 'ymag': 2, 'zfar': 9, 'znear': 0}}",
+                            "'translation': [1, 2, 3], 'scale': [2, 2, 2],"));
     camera c = r.scene->camera;
     expect_film(&r, 1280, 853);
     c.tan_half_fov = 1.0f;
@@ -204,7 +209,8 @@ static void camera_errors(void **state)
         {"{'type': 'orthographic', 'orthographic': {'xmag': 0, 'ymag': 1}}", "",
          "its xmag and ymag are 0 and 1, which should not be 0"},
         {"{'type': 'orthographic', 'orthographic': {'xmag': 1, 'ymag': 1e9}}", "", "its xmag over ymag is 1e-09"},
-        {"{'type': 'perspective', 'perspective': {'yfov': 1}}", "'scale': [1, 0, 1],", "cameras[0]: its node leaves no room"},
+        {"{'type': 'perspective', 'perspective': {'yfov': 1}}", "'scale': [1, 0, 1],",
+         "cameras[0]: its node leaves no room"},
     };
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++)
         gltf_expect_error(camera_text(WRONG[i].camera_json, WRONG[i].node), AG_ERROR_SCENE, WRONG[i].error);
@@ -213,8 +219,13 @@ static void camera_errors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(lamps),   TEST_IN_FOLDER(units),           TEST_IN_FOLDER(lamp_errors),
-        TEST_IN_FOLDER(cameras), TEST_IN_FOLDER(orthographic_camera), TEST_IN_FOLDER(several_cameras), TEST_IN_FOLDER(camera_errors),
+        TEST_IN_FOLDER(lamps),
+        TEST_IN_FOLDER(units),
+        TEST_IN_FOLDER(lamp_errors),
+        TEST_IN_FOLDER(cameras),
+        TEST_IN_FOLDER(orthographic_camera),
+        TEST_IN_FOLDER(several_cameras),
+        TEST_IN_FOLDER(camera_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

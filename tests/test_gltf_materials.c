@@ -9,10 +9,11 @@
 static const char *material_text(const char *material_json, const char *others)
 {
     static char text[8192];
-    int length = snprintf(text, sizeof text,
-                          "{" GLTF_ASSET GLTF_TRIANGLE "%s 'materials': [%s], 'meshes': [{'primitives': [{'material': 0,"
-                          "'attributes': {'POSITION': 0}}]}], 'nodes': [{'mesh': 0}]}",
-                          others, material_json);
+    int length =
+        snprintf(text, sizeof text,
+                 "{" GLTF_ASSET GLTF_TRIANGLE "%s 'materials': [%s], 'meshes': [{'primitives': [{'material': 0,"
+                 "'attributes': {'POSITION': 0}}]}], 'nodes': [{'mesh': 0}]}",
+                 others, material_json);
     assert_true(length < (int)sizeof text);
     return text;
 }
@@ -49,13 +50,14 @@ static void factors(void **state)
 {
     (void)state;
     write_triangle();
-    reading r = gltf_of(material_text(
-        "{'pbrMetallicRoughness': {'baseColorFactor': [0.1, 0.2, 0.3, 0.4], 'metallicFactor': 0.5, 'roughnessFactor': 0.6},"
-        "'extensions': {'KHR_materials_ior': {'ior': 1.3},"
-        "'KHR_materials_specular': {'specularFactor': 0.7, 'specularColorFactor': [0.5, 1, 2]},"
-        "'KHR_materials_transmission': {'transmissionFactor': 0.8},"
-        "'KHR_materials_clearcoat': {'clearcoatFactor': 0.25, 'clearcoatRoughnessFactor': 0.125}}}",
-        ""));
+    reading r = gltf_of(
+        material_text("{'pbrMetallicRoughness': {'baseColorFactor': [0.1, 0.2, 0.3, 0.4], 'metallicFactor': 0.5, "
+                      "'roughnessFactor': 0.6},"
+                      "'extensions': {'KHR_materials_ior': {'ior': 1.3},"
+                      "'KHR_materials_specular': {'specularFactor': 0.7, 'specularColorFactor': [0.5, 1, 2]},"
+                      "'KHR_materials_transmission': {'transmissionFactor': 0.8},"
+                      "'KHR_materials_clearcoat': {'clearcoatFactor': 0.25, 'clearcoatRoughnessFactor': 0.125}}}",
+                      ""));
     const material *m = only_material(&r);
     assert_rgb(m->reflectance, 0.1, 0.2, 0.3, 1e-7);
     assert_near(m->metallic, 0.5, 0);
@@ -158,10 +160,11 @@ static void specular_glossiness(void **state)
 {
     (void)state;
     write_triangle();
-    reading r = gltf_of(material_text("{'extensions': {'KHR_materials_pbrSpecularGlossiness': {'diffuseFactor':"
-                                      "[0.1, 0.2, 0.3, 0.4], 'specularFactor': [0.5, 0.6, 0.7], 'glossinessFactor': 0.75}},"
-                                      "'alphaMode': 'BLEND', 'pbrMetallicRoughness': {'metallicFactor': 1}}",
-                                      ""));
+    reading r =
+        gltf_of(material_text("{'extensions': {'KHR_materials_pbrSpecularGlossiness': {'diffuseFactor':"
+                              "[0.1, 0.2, 0.3, 0.4], 'specularFactor': [0.5, 0.6, 0.7], 'glossinessFactor': 0.75}},"
+                              "'alphaMode': 'BLEND', 'pbrMetallicRoughness': {'metallicFactor': 1}}",
+                              ""));
     const material *m = only_material(&r);
     assert_rgb(m->reflectance, 0.1, 0.2, 0.3, 1e-7);
     assert_rgb(m->specular_color, 0.5, 0.6, 0.7, 1e-7);
@@ -176,11 +179,10 @@ static void specular_glossiness(void **state)
 
 /* A PNG file of two pixels: red 0.2 green 0.4 blue 0.6 alpha 0.8, and black of alpha 0. */
 static const unsigned char PICTURE[] = {
-    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52,
-    0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0xf4, 0x22, 0x7f,
-    0x8a, 0x00, 0x00, 0x00, 0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x30, 0x4e, 0x9b, 0x79,
-    0x86, 0x01, 0x08, 0x00, 0x0b, 0xfd, 0x01, 0xff, 0xff, 0x1e, 0x69, 0x07, 0x00, 0x00, 0x00, 0x00,
-    0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
+    0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0xf4, 0x22, 0x7f, 0x8a, 0x00, 0x00, 0x00,
+    0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x30, 0x4e, 0x9b, 0x79, 0x86, 0x01, 0x08, 0x00, 0x0b, 0xfd,
+    0x01, 0xff, 0xff, 0x1e, 0x69, 0x07, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
 
 /* Those, or in a JPEG file much the same without alpha. */
 static void write_picture(const char *name)
@@ -248,7 +250,7 @@ static void material_textures(void **state)
     assert_near(value_at(&r, m->clearcoat_texture, u, v).r, 0.2, close);
     assert_near(value_at(&r, m->clearcoat_roughness_texture, u, v).r, 0.4, close);
     assert_near(value_at(&r, r.scene->shapes[0].alpha_texture, u, v).r, 0.4, close); /* times the factor's */
-    assert_int_equal(r.scene->texture_image_count, 2);                             /* once for each encoding */
+    assert_int_equal(r.scene->texture_image_count, 2);                               /* once for each encoding */
     reading_destroy(&r);
 
     r = gltf_read(material_text("{'extensions': {'KHR_materials_pbrSpecularGlossiness': {'glossinessFactor': 0.5,"
@@ -339,7 +341,8 @@ static void uv_sets(void **state)
     write_blob("b.bin", &b);
     write_picture("p.png");
     static const char TEXT[] =
-        "{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 84}], 'bufferViews': [{'buffer': 0, 'byteLength': 84}],"
+        "{" GLTF_ASSET
+        "'buffers': [{'uri': 'b.bin', 'byteLength': 84}], 'bufferViews': [{'buffer': 0, 'byteLength': 84}],"
         "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
         "  {'bufferView': 0, 'byteOffset': 36, 'componentType': 5126, 'count': 3, 'type': 'VEC2'},"
         "  {'bufferView': 0, 'byteOffset': 60, 'componentType': 5126, 'count': 3, 'type': 'VEC2'}]," ONE_TEXTURE
@@ -352,7 +355,8 @@ static void uv_sets(void **state)
         {"", 0.5},
         {"'normalTexture': {'index': 0}", 0.5},
         {"'normalTexture': {'index': 0, 'texCoord': 1}", 0.25},
-        {"'normalTexture': {'index': 0, 'texCoord': 0, 'extensions': {'KHR_texture_transform': {'texCoord': 1}}}", 0.25},
+        {"'normalTexture': {'index': 0, 'texCoord': 0, 'extensions': {'KHR_texture_transform': {'texCoord': 1}}}",
+         0.25},
         {"'normalTexture': {'index': 0}, 'occlusionTexture': {'index': 0, 'texCoord': 1}", 0.5},
     };
     for (size_t i = 0; i < sizeof SETS / sizeof *SETS; i++) {
@@ -365,8 +369,9 @@ static void uv_sets(void **state)
         reading_destroy(&r);
     }
     char text[2048];
-    snprintf(text, sizeof text, TEXT,
-             "'pbrMetallicRoughness': {'baseColorTexture': {'index': 0}}, 'normalTexture': {'index': 0, 'texCoord': 1}");
+    snprintf(
+        text, sizeof text, TEXT,
+        "'pbrMetallicRoughness': {'baseColorTexture': {'index': 0}}, 'normalTexture': {'index': 0, 'texCoord': 1}");
     gltf_expect_warning(text, "materials[0].normalTexture: textures of one material by several sets of uvs are not "
                               "supported: TEXCOORD_0 is used, not 1");
 }
@@ -388,13 +393,14 @@ static void pictures_in_memory(void **state)
         rgb expected = value_at(&r, only_material(&r)->normal_map_texture, 0.25f, 0.5f);
         reading_destroy(&r);
 
-        char *text = json_text("{" GLTF_ASSET "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}, {'uri': 'all.bin',"
-                               "'byteLength': 0000000}], 'bufferViews': [{'buffer': 0, 'byteLength': 36},"
-                               "{'buffer': 1, 'byteLength': 0000000}]," GLTF_TRIANGLE_ACCESSOR
-                               "'textures': [{'source': 0}], 'images': [{'bufferView': 1, 'mimeType': 'image/png'}],"
-                               "'materials': [{'normalTexture': {'index': 0}}],"
-                               "'meshes': [{'primitives': [{'material': 0, 'attributes': {'POSITION': 0}}]}],"
-                               "'nodes': [{'mesh': 0}]}");
+        char *text =
+            json_text("{" GLTF_ASSET "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}, {'uri': 'all.bin',"
+                      "'byteLength': 0000000}], 'bufferViews': [{'buffer': 0, 'byteLength': 36},"
+                      "{'buffer': 1, 'byteLength': 0000000}]," GLTF_TRIANGLE_ACCESSOR
+                      "'textures': [{'source': 0}], 'images': [{'bufferView': 1, 'mimeType': 'image/png'}],"
+                      "'materials': [{'normalTexture': {'index': 0}}],"
+                      "'meshes': [{'primitives': [{'material': 0, 'attributes': {'POSITION': 0}}]}],"
+                      "'nodes': [{'mesh': 0}]}");
         for (char *zeros = strstr(text, "0000000"); zeros; zeros = strstr(text, "0000000")) {
             char number[8];
             snprintf(number, sizeof number, "%7zu", size);
@@ -423,10 +429,10 @@ static void pictures_in_memory(void **state)
         free(text);
         free(bytes);
     }
-    reading r = gltf_read(material_text(
-        "{'normalTexture': {'index': 0}}",
-        "'textures': [{'source': 0}], 'images': [{'uri': 'data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6"
-        "fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=='}],"));
+    reading r = gltf_read(material_text("{'normalTexture': {'index': 0}}",
+                                        "'textures': [{'source': 0}], 'images': [{'uri': "
+                                        "'data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6"
+                                        "fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=='}],"));
     assert_int_equal(r.status, AG_OK);
     assert_rgb(value_at(&r, only_material(&r)->normal_map_texture, 0.25f, 0.5f), 1, 1, 1, 0);
     reading_destroy(&r);
@@ -437,8 +443,9 @@ static void warnings(void **state)
     (void)state;
     write_triangle();
     write_picture("p.png");
-    gltf_expect_warning(material_text("{'extensions': {'KHR_materials_sheen': {}}}", ""),
-                        "materials[0].extensions.KHR_materials_sheen: the extension KHR_materials_sheen is not supported");
+    gltf_expect_warning(
+        material_text("{'extensions': {'KHR_materials_sheen': {}}}", ""),
+        "materials[0].extensions.KHR_materials_sheen: the extension KHR_materials_sheen is not supported");
     gltf_expect_warning(material_text("{'pbrMetallicRoughness': {'metallicFactor': 1.5}}", ""),
                         "materials[0].pbrMetallicRoughness.metallicFactor: 1.5 is beyond [0, 1], and brought there");
     gltf_expect_warning(material_text("{'normalTexture': {'index': 0}}", "'textures': [{}],"),
@@ -468,14 +475,16 @@ static void material_errors(void **state)
          "KHR_materials_volume.attenuationDistance: 0 should be above 0", AG_ERROR_SCENE},
         {"{'extensions': {'KHR_materials_ior': 2}}", "", "KHR_materials_ior: should be an object, not an integer",
          AG_ERROR_SCENE},
-        {"{'emissiveFactor': [1e30, 0, 0], 'extensions': {'KHR_materials_emissive_strength': {'emissiveStrength': 1e30}}}",
+        {"{'emissiveFactor': [1e30, 0, 0], 'extensions': {'KHR_materials_emissive_strength': {'emissiveStrength': "
+         "1e30}}}",
          "", "materials[0]: it shines brighter than a float can say", AG_ERROR_SCENE},
         {"{'normalTexture': {}}", "", "materials[0].normalTexture.index: is missing", AG_ERROR_SCENE},
         {"{'normalTexture': {'index': 0}}", "", "normalTexture.index: 0 is out of range: there are 0 textures",
          AG_ERROR_SCENE},
         {"{'normalTexture': {'index': 0}}", "'textures': [{'source': 0}],",
          "textures[0].source: 0 is out of range: there are 0 images", AG_ERROR_SCENE},
-        {"{'normalTexture': {'index': 0, 'texCoord': 1e9}}", ONE_TEXTURE, "there is no TEXCOORD_1000000000", AG_ERROR_SCENE},
+        {"{'normalTexture': {'index': 0, 'texCoord': 1e9}}", ONE_TEXTURE, "there is no TEXCOORD_1000000000",
+         AG_ERROR_SCENE},
         {"{'normalTexture': {'index': 0, 'extensions': {'KHR_texture_transform': {'scale': [1e40, 1]}}}}", ONE_TEXTURE,
          "KHR_texture_transform: its numbers are too large", AG_ERROR_SCENE},
         {"{'normalTexture': {'index': 0}}", "'textures': [{'source': 0}], 'images': [{}],",
@@ -488,8 +497,9 @@ static void material_errors(void **state)
          "#images[0]': it is neither a PNG nor a JPEG picture", AG_ERROR_INPUT},
         {"{'normalTexture': {'index': 0}}", "'textures': [{'source': 0}], 'images': [{'uri': 'data:;base64,?'}],",
          "images[0].uri: the data URI holds what is not base64", AG_ERROR_SCENE},
-        {"{'normalTexture': {'index': 0}}", "'samplers': [{'wrapS': 1}], 'textures': [{'source': 0, 'sampler': 0}],"
-                                            "'images': [{'uri': 'p.png'}],",
+        {"{'normalTexture': {'index': 0}}",
+         "'samplers': [{'wrapS': 1}], 'textures': [{'source': 0, 'sampler': 0}],"
+         "'images': [{'uri': 'p.png'}],",
          "samplers[0].wrapS: there is no wrap 1", AG_ERROR_SCENE},
     };
     write_triangle();
@@ -501,11 +511,16 @@ static void material_errors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(defaults),  TEST_IN_FOLDER(factors),
-        TEST_IN_FOLDER(alpha_modes), TEST_IN_FOLDER(emission),
-        TEST_IN_FOLDER(specular_glossiness), TEST_IN_FOLDER(material_textures),
-        TEST_IN_FOLDER(samplers_and_transforms), TEST_IN_FOLDER(uv_sets),
-        TEST_IN_FOLDER(pictures_in_memory), TEST_IN_FOLDER(warnings),
+        TEST_IN_FOLDER(defaults),
+        TEST_IN_FOLDER(factors),
+        TEST_IN_FOLDER(alpha_modes),
+        TEST_IN_FOLDER(emission),
+        TEST_IN_FOLDER(specular_glossiness),
+        TEST_IN_FOLDER(material_textures),
+        TEST_IN_FOLDER(samplers_and_transforms),
+        TEST_IN_FOLDER(uv_sets),
+        TEST_IN_FOLDER(pictures_in_memory),
+        TEST_IN_FOLDER(warnings),
         TEST_IN_FOLDER(material_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* test_gltf_meshes.c: accessors of every kind, modes and indices, and how nodes place meshes: values as they come out in
- * the scene, and every error by its message. Threads: one. */
+/* test_gltf_meshes.c: accessors of every kind, modes and indices, and how nodes place meshes: values as they come out
+ * in the scene, and every error by its message. Threads: one. */
 #define _POSIX_C_SOURCE 200809L
 #include "gltf_fixture.h"
 
@@ -23,9 +23,9 @@ static void component_types(void **state)
         bool is_normalized;
         int64_t one;
     } TYPES[] = {
-        {5120, 1, true, 127},   {5121, 1, true, 255},        {5122, 2, true, 32767}, {5123, 2, true, 65535},
+        {5120, 1, true, 127},        {5121, 1, true, 255},         {5122, 2, true, 32767}, {5123, 2, true, 65535},
         {5125, 4, true, 4294967295}, {5126, 4, false, 0x3f800000}, {5120, 1, false, 1},    {5121, 1, false, 1},
-        {5122, 2, false, 1},    {5123, 2, false, 1},         {5125, 4, false, 1},
+        {5122, 2, false, 1},         {5123, 2, false, 1},          {5125, 4, false, 1},
     };
     for (size_t i = 0; i < sizeof TYPES / sizeof *TYPES; i++) {
         blob b = {.size = 0};
@@ -58,12 +58,13 @@ static void signed_integers(void **state)
     BLOB_PUT(&b, (float[]){0, 0, 0, 1, 0, 0, 0, 1, 0});
     BLOB_PUT(&b, (int8_t[]){-128, 127, 0, 99, -127, -127, 0, 99, 0, -64, 0, 99});
     write_blob("b.bin", &b);
-    reading r = gltf_of("{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 48}],"
-                        "'bufferViews': [{'buffer': 0, 'byteLength': 36},"
-                        "  {'buffer': 0, 'byteOffset': 36, 'byteLength': 12, 'byteStride': 4}],"
-                        "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
-                        "  {'bufferView': 1, 'componentType': 5120, 'normalized': true, 'count': 3, 'type': 'VEC3'}],"
-                        SCENE_OF("{'attributes': {'POSITION': 0, 'NORMAL': 1}}"));
+    reading r =
+        gltf_of("{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 48}],"
+                "'bufferViews': [{'buffer': 0, 'byteLength': 36},"
+                "  {'buffer': 0, 'byteOffset': 36, 'byteLength': 12, 'byteStride': 4}],"
+                "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+                "  {'bufferView': 1, 'componentType': 5120, 'normalized': true, 'count': 3, 'type': 'VEC3'}]," SCENE_OF(
+                    "{'attributes': {'POSITION': 0, 'NORMAL': 1}}"));
     const mesh *m = only_mesh(&r);
     assert_vec3(m->normals[0], -sqrt(0.5), sqrt(0.5), 0, 1e-7);
     assert_vec3(m->normals[1], -sqrt(0.5), -sqrt(0.5), 0, 1e-7);
@@ -81,12 +82,13 @@ static void strides_and_offsets(void **state)
     BLOB_PUT(&b, (float[]){1, 0, 5, 0, 3, 4, 0.5f, 0.75f});
     BLOB_PUT(&b, (float[]){0, 1, 5, 0, 0, 0, 0.75f, 0});
     write_blob("b.bin", &b);
-    reading r = gltf_of("{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 100}],"
-                        "'bufferViews': [{'buffer': 0, 'byteOffset': 4, 'byteLength': 96, 'byteStride': 32}],"
-                        "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
-                        "  {'bufferView': 0, 'byteOffset': 12, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
-                        "  {'bufferView': 0, 'byteOffset': 24, 'componentType': 5126, 'count': 3, 'type': 'VEC2'}],"
-                        SCENE_OF("{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}}"));
+    reading r =
+        gltf_of("{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 100}],"
+                "'bufferViews': [{'buffer': 0, 'byteOffset': 4, 'byteLength': 96, 'byteStride': 32}],"
+                "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+                "  {'bufferView': 0, 'byteOffset': 12, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
+                "  {'bufferView': 0, 'byteOffset': 24, 'componentType': 5126, 'count': 3, 'type': 'VEC2'}]," SCENE_OF(
+                    "{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}}"));
     const mesh *m = only_mesh(&r);
     assert_vec3(m->positions[1], 1, 0, 5, 0);
     assert_vec3(m->normals[0], 0, 0, 1, 1e-7);
@@ -114,8 +116,9 @@ static void sparse_values(void **state)
         "  {'buffer': 0, 'byteOffset': 52, 'byteLength': 24}, {'buffer': 0, 'byteOffset': 76, 'byteLength': 6}],"
         "'accessors': [{%s 'componentType': 5126, 'count': 4, 'type': 'VEC3', 'sparse': {'count': 2,"
         "    'indices': {'bufferView': 1, 'componentType': 5123}, 'values': {'bufferView': 2}}},"
-        "  {'bufferView': 3, 'componentType': 5121, 'count': 6, 'type': 'SCALAR'}]," SCENE_OF("{'attributes': {'POSITION': "
-                                                                                            "0}, 'indices': 1}");
+        "  {'bufferView': 3, 'componentType': 5121, 'count': 6, 'type': 'SCALAR'}]," SCENE_OF(
+            "{'attributes': {'POSITION': "
+            "0}, 'indices': 1}");
     char text[2048];
     snprintf(text, sizeof text, TEXT, "'bufferView': 0,");
     reading r = gltf_of(text);
@@ -223,8 +226,10 @@ static void what_is_no_surface(void **state)
     for (int mode = 0; mode < 4; mode++) {
         char primitive[256], warning[128];
         snprintf(primitive, sizeof primitive,
-                 "{'attributes': {'POSITION': 0}, 'mode': %d}, {'attributes': {'POSITION': 0}, 'mode': %d}", mode, mode);
-        snprintf(warning, sizeof warning, "meshes[0].primitives[0].mode: %s have no surface, and are left out", OTHERS[mode]);
+                 "{'attributes': {'POSITION': 0}, 'mode': %d}, {'attributes': {'POSITION': 0}, 'mode': %d}", mode,
+                 mode);
+        snprintf(warning, sizeof warning, "meshes[0].primitives[0].mode: %s have no surface, and are left out",
+                 OTHERS[mode]);
         gltf_expect_warning(strip_text(primitive), warning);
     }
     gltf_expect_warning(strip_text("{'attributes': {}}"), "primitives[0].attributes: there is no POSITION");
@@ -249,7 +254,8 @@ static void mesh_errors(void **state)
         {"{'attributes': {'POSITION': 0}, 'indices': 0}", "indices: accessors[0] is of type VEC3, which does not fit"},
         {"{'attributes': {'POSITION': 0}, 'indices': 5}", "primitives[0].indices: should be unsigned integers"},
         {"{'attributes': {'POSITION': 0}, 'indices': 6}", "primitives[0].indices: should be unsigned integers"},
-        {"{'attributes': {'POSITION': 7}, 'indices': 2}", "indices: index 5 (element 0) is out of range: there are 5 vertices"},
+        {"{'attributes': {'POSITION': 7}, 'indices': 2}",
+         "indices: index 5 (element 0) is out of range: there are 5 vertices"},
         {"{'attributes': {'POSITION': 0}, 'material': 0}", "material: 0 is out of range: there are 0 materials"},
     };
     blob b = {.size = 0};
@@ -271,7 +277,8 @@ static void accessor_errors(void **state)
         {"'byteLength': 36", "'componentType': 5126, 'count': 3", "accessors[0].type: is missing"},
         {"'byteLength': 36", "'componentType': 5124, 'count': 3, 'type': 'VEC3'", "there is no component type 5124"},
         {"'byteLength': 36", "'componentType': 5126, 'count': 3, 'type': 'VEC5'", "there is no type \"VEC5\""},
-        {"'byteLength': 36", "'componentType': 5126, 'count': 0, 'type': 'VEC3'", "its count is 0, which should be from 1"},
+        {"'byteLength': 36", "'componentType': 5126, 'count': 0, 'type': 'VEC3'",
+         "its count is 0, which should be from 1"},
         {"'byteLength': 36", "'componentType': 5126, 'count': 4, 'type': 'VEC3'",
          "accessors[0]: its 4 elements take bytes 0 to 48 of the view, which has 36"},
         {"'byteLength': 36", "'componentType': 5126, 'count': 1000000000, 'type': 'VEC3'", "elements take bytes 0 to"},
@@ -283,16 +290,19 @@ static void accessor_errors(void **state)
          "bufferViews[0]: its byteStride is 256; up to 252 are allowed"},
         {"'byteLength': 36, 'byteOffset': 1", "'componentType': 5126, 'count': 3, 'type': 'VEC3'",
          "bufferViews[0]: bytes 1 to 37 reach beyond the buffer, which has 36"},
-        {"'byteLength': 9007199254740992, 'byteOffset': 9007199254740992", "'componentType': 5126, 'count': 3, 'type': 'VEC3'",
-         "reach beyond the buffer, which has 36"},
-        {"'byteLength': 36", "'componentType': 5126, 'count': 3, 'type': 'VEC3', 'sparse': {'count': 4, 'indices':"
-                             "{'bufferView': 0, 'componentType': 5121}, 'values': {'bufferView': 0}}",
+        {"'byteLength': 9007199254740992, 'byteOffset': 9007199254740992",
+         "'componentType': 5126, 'count': 3, 'type': 'VEC3'", "reach beyond the buffer, which has 36"},
+        {"'byteLength': 36",
+         "'componentType': 5126, 'count': 3, 'type': 'VEC3', 'sparse': {'count': 4, 'indices':"
+         "{'bufferView': 0, 'componentType': 5121}, 'values': {'bufferView': 0}}",
          "accessors[0].sparse: its count is 4, but the accessor has 3 elements"},
-        {"'byteLength': 36", "'componentType': 5126, 'count': 3, 'type': 'VEC3', 'sparse': {'count': 2, 'indices':"
-                             "{'bufferView': 0, 'componentType': 5121}, 'values': {'bufferView': 0}}",
+        {"'byteLength': 36",
+         "'componentType': 5126, 'count': 3, 'type': 'VEC3', 'sparse': {'count': 2, 'indices':"
+         "{'bufferView': 0, 'componentType': 5121}, 'values': {'bufferView': 0}}",
          "sparse.indices: index 0 (element 1) is out of range, or does not rise"},
-        {"'byteLength': 36", "'componentType': 5126, 'count': 3, 'type': 'VEC3', 'sparse': {'count': 2, 'indices':"
-                             "{'bufferView': 0, 'componentType': 5126}, 'values': {'bufferView': 0}}",
+        {"'byteLength': 36",
+         "'componentType': 5126, 'count': 3, 'type': 'VEC3', 'sparse': {'count': 2, 'indices':"
+         "{'bufferView': 0, 'componentType': 5126}, 'values': {'bufferView': 0}}",
          "sparse.indices: should be unsigned integers"},
         {"'byteLength': 36", "'componentType': 5126, 'count': 3, 'type': 'VEC3', 'sparse': {'count': 2}",
          "accessors[0].sparse.indices: is missing"},
@@ -301,13 +311,15 @@ static void accessor_errors(void **state)
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++) {
         char text[1024];
         snprintf(text, sizeof text,
-                 "{" GLTF_ASSET "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}], 'bufferViews': [{'buffer': 0, %s}],"
+                 "{" GLTF_ASSET
+                 "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}], 'bufferViews': [{'buffer': 0, %s}],"
                  "'accessors': [{'bufferView': 0, %s}]," SCENE_OF("{'attributes': {'POSITION': 0}}"),
                  WRONG[i].view, WRONG[i].accessor);
         gltf_expect_error(text, AG_ERROR_SCENE, WRONG[i].error);
     }
-    gltf_expect_error("{" GLTF_ASSET "'accessors': [{'componentType': 5126, 'count': 1000000000, 'type': 'VEC3'}],"
-                      SCENE_OF("{'attributes': {'POSITION': 0}}"),
+    gltf_expect_error("{" GLTF_ASSET
+                      "'accessors': [{'componentType': 5126, 'count': 1000000000, 'type': 'VEC3'}]," SCENE_OF(
+                          "{'attributes': {'POSITION': 0}}"),
                       AG_ERROR_SCENE, "it has no bufferView, and 1000000000 elements are too many for that");
 }
 
@@ -335,7 +347,8 @@ static reading placed(const char *nodes)
 {
     char text[2048];
     snprintf(text, sizeof text,
-             "{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 72}], 'bufferViews': [{'buffer': 0, 'byteLength': 72}],"
+             "{" GLTF_ASSET
+             "'buffers': [{'uri': 'b.bin', 'byteLength': 72}], 'bufferViews': [{'buffer': 0, 'byteLength': 72}],"
              "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
              "  {'bufferView': 0, 'byteOffset': 36, 'componentType': 5126, 'count': 3, 'type': 'VEC3'}],"
              "'meshes': [{'primitives': [{'attributes': {'POSITION': 0, 'NORMAL': 1}}]}], %s}",
@@ -360,16 +373,31 @@ static void transforms(void **state)
         {"'nodes': [{'mesh': 0, 'rotation': [0.70710678, 0, 0, 0.70710678]}]", {1, 0, 0}, {0, 0, 1}, {0, -1, 0}, false},
         {"'nodes': [{'mesh': 0, 'rotation': [2, 0, 0, 2]}]", {1, 0, 0}, {0, 0, 1}, {0, -1, 0}, false},
         {"'nodes': [{'mesh': 0, 'translation': [0, 0, 7], 'rotation': [0, 0, 1, 1], 'scale': [2, 1, 1]}]",
-         {0, 2, 7}, {-1, 0, 7}, {0, 0, 1}, false},
+         {0, 2, 7},
+         {-1, 0, 7},
+         {0, 0, 1},
+         false},
         {"'nodes': [{'children': [1], 'scale': [2, 2, 2]}, {'mesh': 0, 'translation': [1, 0, 0]}]",
-         {4, 0, 0}, {2, 2, 0}, {0, 0, 1}, false},
+         {4, 0, 0},
+         {2, 2, 0},
+         {0, 0, 1},
+         false},
         {"'nodes': [{'mesh': 0, 'matrix': [0, 1, 0, 0,  0, 0, 1, 0,  1, 0, 0, 0,  5, 6, 7, 1]}]",
-         {5, 7, 7}, {5, 6, 8}, {1, 0, 0}, false},
+         {5, 7, 7},
+         {5, 6, 8},
+         {1, 0, 0},
+         false},
         {"'nodes': [{'mesh': 0, 'matrix': [1, 0, 0, 0,  0, 1, 0, 0,  1, 0, 1, 0,  0, 0, 0, 1]}]",
-         {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, false},
+         {1, 0, 0},
+         {0, 1, 0},
+         {0, 0, 1},
+         false},
         {"'scene': 1, 'scenes': [{'nodes': [0]}, {'nodes': [1]}],"
          "'nodes': [{'mesh': 0}, {'mesh': 0, 'translation': [0, 0, 1]}]",
-         {1, 0, 1}, {0, 1, 1}, {0, 0, 1}, false},
+         {1, 0, 1},
+         {0, 1, 1},
+         {0, 0, 1},
+         false},
     };
     blob b = {.size = 0};
     BLOB_PUT(&b, (float[]){0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1});
@@ -403,13 +431,16 @@ static void instances(void **state)
     write_file("indices.bin", indices, 3 * TRIANGLES);
     free(indices);
     static const char TEXT[] =
-        "{" GLTF_ASSET "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}, {'uri': 'indices.bin', 'byteLength': 90000}],"
+        "{" GLTF_ASSET
+        "'buffers': [{'uri': 'triangle.bin', 'byteLength': 36}, {'uri': 'indices.bin', 'byteLength': 90000}],"
         "'bufferViews': [{'buffer': 0, 'byteLength': 36}, {'buffer': 1, 'byteLength': 90000}],"
         "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
         "  {'bufferView': 1, 'componentType': 5121, 'count': 90000, 'type': 'SCALAR'}],"
         "'materials': [{}, {'emissiveFactor': [1, 1, 1]}], 'meshes': [{'primitives': ["
-        "  {'attributes': {'POSITION': 0}, 'indices': 1, 'material': 0}, {'attributes': {'POSITION': 0}, 'material': 1}]}],"
-        "'nodes': [{'mesh': 0}, {'mesh': 0, 'translation': [0, 0, 1]}, {%s 'scale': [-2, 1, 1], 'translation': [5, 0, 0]}]}";
+        "  {'attributes': {'POSITION': 0}, 'indices': 1, 'material': 0}, {'attributes': {'POSITION': 0}, 'material': "
+        "1}]}],"
+        "'nodes': [{'mesh': 0}, {'mesh': 0, 'translation': [0, 0, 1]}, {%s 'scale': [-2, 1, 1], 'translation': [5, 0, "
+        "0]}]}";
     char text[2048];
     snprintf(text, sizeof text, TEXT, "'mesh': 0,");
     reading r = gltf_of(text);
@@ -448,7 +479,8 @@ static void morph_targets(void **state)
     BLOB_PUT(&b, (float[]){0, 0, 2, 0, 0, 2, 0, 0, 4, 4, 0, 0, 8, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0});
     write_blob("b.bin", &b);
     static const char TEXT[] =
-        "{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 180}], 'bufferViews': [{'buffer': 0, 'byteLength': 180}],"
+        "{" GLTF_ASSET
+        "'buffers': [{'uri': 'b.bin', 'byteLength': 180}], 'bufferViews': [{'buffer': 0, 'byteLength': 180}],"
         "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
         "  {'bufferView': 0, 'byteOffset': 36, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
         "  {'bufferView': 0, 'byteOffset': 72, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
@@ -499,7 +531,8 @@ static void skins(void **state)
     BLOB_PUT(&b, (unsigned char[]){0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 9, 9});
     write_blob("b.bin", &b);
     static const char TEXT[] =
-        "{" GLTF_ASSET "'buffers': [{'uri': 'b.bin', 'byteLength': 224}], 'bufferViews': [{'buffer': 0, 'byteLength': 224}],"
+        "{" GLTF_ASSET
+        "'buffers': [{'uri': 'b.bin', 'byteLength': 224}], 'bufferViews': [{'buffer': 0, 'byteLength': 224}],"
         "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'},"
         "  {'bufferView': 0, 'byteOffset': 36, 'componentType': 5126, 'count': %d, 'type': 'MAT4'},"
         "  {'bufferView': 0, 'byteOffset': 164, 'componentType': 5126, 'count': 3, 'type': 'VEC4'},"
@@ -541,15 +574,18 @@ static void node_errors(void **state)
         {"'nodes': [{'children': [1]}, {'children': [2]}, {'children': [1]}]",
          "nodes[2].children[0]: nodes[1] is a child of nodes[0] already"},
         {"'nodes': [{}, {'children': [2]}, {'children': [1]}]", "nodes[1]: it is among its own children, or theirs"},
-        {"'nodes': [{'children': [2]}, {'children': [2]}, {}]", "nodes[1].children[0]: nodes[2] is a child of nodes[0] already"},
+        {"'nodes': [{'children': [2]}, {'children': [2]}, {}]",
+         "nodes[1].children[0]: nodes[2] is a child of nodes[0] already"},
         {"'scenes': [{'nodes': [1]}], 'nodes': [{'children': [1]}, {}]",
          "scenes[0].nodes[0]: nodes[1] is no root: it is a child of nodes[0]"},
         {"'scenes': [{'nodes': [0, 0]}], 'nodes': [{}]", "scenes[0].nodes[0]: nodes[0] is named twice"},
         {"'scene': 1, 'scenes': [{}]", "scene: 1 is out of range: there are 1 scenes"},
         {"'nodes': [{'matrix': [1, 0, 0]}]", "nodes[0].matrix: should have 16 numbers, but has 3"},
-        {"'nodes': [{'matrix': [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,'1']}]", "nodes[0].matrix[15]: should be a number, not a string"},
+        {"'nodes': [{'matrix': [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,'1']}]",
+         "nodes[0].matrix[15]: should be a number, not a string"},
         {"'nodes': [{'matrix': [1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}]", "nodes[0].matrix: its last row should be 0 0 0 1"},
-        {"'nodes': [{'rotation': [0, 0, 0, 0]}]", "nodes[0].rotation: is no rotation: the quaternion's length is not 1"},
+        {"'nodes': [{'rotation': [0, 0, 0, 0]}]",
+         "nodes[0].rotation: is no rotation: the quaternion's length is not 1"},
         {"'nodes': [{'scale': 2}]", "nodes[0].scale: should be an array, not an integer"},
         {"'nodes': [{'camera': 0}]", "nodes[0].camera: 0 is out of range: there are 0 cameras"},
         {"'nodes': [{'extensions': {'KHR_lights_punctual': {'light': 0}}}]",
@@ -584,11 +620,11 @@ static void deep_tree(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(component_types),    TEST_IN_FOLDER(signed_integers), TEST_IN_FOLDER(strides_and_offsets),
-        TEST_IN_FOLDER(sparse_values),      TEST_IN_FOLDER(modes_and_indices), TEST_IN_FOLDER(what_is_no_surface),
-        TEST_IN_FOLDER(mesh_errors),        TEST_IN_FOLDER(accessor_errors), TEST_IN_FOLDER(numbers_that_are_none),
-        TEST_IN_FOLDER(transforms),         TEST_IN_FOLDER(instances), TEST_IN_FOLDER(morph_targets),   TEST_IN_FOLDER(skins),
-                TEST_IN_FOLDER(node_errors),     TEST_IN_FOLDER(deep_tree),
+        TEST_IN_FOLDER(component_types), TEST_IN_FOLDER(signed_integers),   TEST_IN_FOLDER(strides_and_offsets),
+        TEST_IN_FOLDER(sparse_values),   TEST_IN_FOLDER(modes_and_indices), TEST_IN_FOLDER(what_is_no_surface),
+        TEST_IN_FOLDER(mesh_errors),     TEST_IN_FOLDER(accessor_errors),   TEST_IN_FOLDER(numbers_that_are_none),
+        TEST_IN_FOLDER(transforms),      TEST_IN_FOLDER(instances),         TEST_IN_FOLDER(morph_targets),
+        TEST_IN_FOLDER(skins),           TEST_IN_FOLDER(node_errors),       TEST_IN_FOLDER(deep_tree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* test_image_file.c: pictures to disk and back, what their headers say, and what is left behind when writing fails.
- * Flow: tests of renderer/image_file.c, and of scene/image_reader.c, image_oiio.cpp, image_module_loader.c. Threads: one. */
+ * Flow: tests of renderer/image_file.c, and of scene/image_reader.c, image_oiio.cpp, image_module_loader.c. Threads:
+ * one. */
 #define _GNU_SOURCE
 #include "atomic_file.h"
 #include "image_file.h"
@@ -406,9 +407,9 @@ static void values_are_as_stored(void **state)
         write_picture(in_folder(kinds[k].name), &description, pixels);
         for (int compact = 0; compact < 2; compact++) {
             image read;
-            assert_int_equal((compact ? image_read_compact : image_read)(in_folder(kinds[k].name), &read, message,
-                                                                         sizeof message),
-                             AG_OK);
+            assert_int_equal(
+                (compact ? image_read_compact : image_read)(in_folder(kinds[k].name), &read, message, sizeof message),
+                AG_OK);
             assert_int_equal(read.type, kinds[k].type);
             const bool is_bytes = compact && kinds[k].type == IMAGE_UINT8;
             assert_int_equal(read.bytes != NULL, is_bytes);

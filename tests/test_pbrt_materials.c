@@ -316,9 +316,11 @@ static void warnings_are_given_once(void **state)
         const char *text, *warning;
     } CASES[] = {
         {"Material \"coateddiffuse\" \"rgb albedo\" [ .1 .2 .3 ]",
-         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in\n"},
+         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands "
+         "in\n"},
         {"Material \"coatedconductor\" \"rgb albedo\" [ .1 .2 .3 ]",
-         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in\n"},
+         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands "
+         "in\n"},
         {"Material \"coateddiffuse\" \"float conductor.roughness\" .5",
          "t:2:26: warning: Material \"coateddiffuse\": \"float conductor.roughness\" is not known, or not supported "
          "yet, and is ignored\n"},
@@ -372,14 +374,15 @@ static void principled_materials(void **state)
 static void principled_textures(void **state)
 {
     (void)state;
-    reading r = reading_of("WorldBegin\n"
-                           "Texture \"f\" \"float\" \"bilerp\" \"float v00\" .5 \"float v01\" .5 \"float v10\" .5 \"float v11\" .5\n"
-                           "Texture \"c\" \"spectrum\" \"bilerp\" \"rgb v00\" [ .1 .2 .3 ] \"rgb v01\" [ .1 .2 .3 ]\n"
-                           "\"rgb v10\" [ .1 .2 .3 ] \"rgb v11\" [ .1 .2 .3 ]\n"
-                           "Material \"principled\" \"texture reflectance\" \"c\" \"texture specular_color\" \"c\"\n"
-                           "\"texture metallic\" \"f\" \"texture roughness\" \"f\" \"texture transmission\" \"f\"\n"
-                           "\"texture specular\" \"f\" \"texture clearcoat\" \"f\" \"texture clearcoat_roughness\" \"f\"\n"
-                           "Shape \"sphere\"");
+    reading r = reading_of(
+        "WorldBegin\n"
+        "Texture \"f\" \"float\" \"bilerp\" \"float v00\" .5 \"float v01\" .5 \"float v10\" .5 \"float v11\" .5\n"
+        "Texture \"c\" \"spectrum\" \"bilerp\" \"rgb v00\" [ .1 .2 .3 ] \"rgb v01\" [ .1 .2 .3 ]\n"
+        "\"rgb v10\" [ .1 .2 .3 ] \"rgb v11\" [ .1 .2 .3 ]\n"
+        "Material \"principled\" \"texture reflectance\" \"c\" \"texture specular_color\" \"c\"\n"
+        "\"texture metallic\" \"f\" \"texture roughness\" \"f\" \"texture transmission\" \"f\"\n"
+        "\"texture specular\" \"f\" \"texture clearcoat\" \"f\" \"texture clearcoat_roughness\" \"f\"\n"
+        "Shape \"sphere\"");
     scene *s = r.scene;
     material *given = &s->materials[s->shapes[0].material_index], m;
     surface_hit hit = {.uv = {0.5f, 0.5f}};
@@ -403,12 +406,18 @@ static void principled_textures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(coated_diffuse_materials),       cmocka_unit_test(coated_conductors),
-        cmocka_unit_test(diffuse_transmission_materials), cmocka_unit_test(thin_dielectrics),
-        cmocka_unit_test(mixes_are_of_named_materials),   cmocka_unit_test(mixes_may_look_forward),
-        cmocka_unit_test(names_grow_while_a_mix_is_made), cmocka_unit_test(circles_of_mixes_are_refused),
-        cmocka_unit_test(deep_mixes_are_refused),         cmocka_unit_test(errors_name_place_and_reason),
-        cmocka_unit_test(warnings_are_given_once),        cmocka_unit_test(principled_materials),
+        cmocka_unit_test(coated_diffuse_materials),
+        cmocka_unit_test(coated_conductors),
+        cmocka_unit_test(diffuse_transmission_materials),
+        cmocka_unit_test(thin_dielectrics),
+        cmocka_unit_test(mixes_are_of_named_materials),
+        cmocka_unit_test(mixes_may_look_forward),
+        cmocka_unit_test(names_grow_while_a_mix_is_made),
+        cmocka_unit_test(circles_of_mixes_are_refused),
+        cmocka_unit_test(deep_mixes_are_refused),
+        cmocka_unit_test(errors_name_place_and_reason),
+        cmocka_unit_test(warnings_are_given_once),
+        cmocka_unit_test(principled_materials),
         cmocka_unit_test(principled_textures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -151,8 +151,7 @@ static void errors_name_place_and_reason(void **state)
         {"Option \"Disable-Pixel_Jitter\" 1", "1:31", "Option expects true or false, not 1"},
         {"WorldBegin Attribute \"film\" \"float a\" 1", "1:12",
          "unknown target \"film\"; known are shape, light, material, medium and texture"},
-        {"WorldBegin Attribute \"shape\" \"float radius\" -1 Shape \"sphere\"", "1:30",
-         "\"radius\" should be above 0"},
+        {"WorldBegin Attribute \"shape\" \"float radius\" -1 Shape \"sphere\"", "1:30", "\"radius\" should be above 0"},
         {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [ 500 1 400 1 ]", "1:31",
          "\"spectrum reflectance\": the wavelengths should increase, but 400 follows 500"},
         {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [ 400 1 500 -2 ]", "1:31",
@@ -477,9 +476,10 @@ static void imported_files_have_a_state_of_their_own(void **state)
                            "Import \"parts/a.pbrt\" Shape \"sphere\" NamedMaterial \"m\" Shape \"disk\"\n"
                            "CoordSysTransform \"up\" Shape \"disk\"");
     /* the last parameter list ends with the file; what is named is everybody's, but for coordinate systems */
-    write_file("parts/a.pbrt", "Translate 1 0 0 Shape \"sphere\" CoordinateSystem \"up\" ReverseOrientation\n"
-                               "MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Include \"b.pbrt\" ColorSpace \"rec2020\"\n"
-                               "Attribute \"shape\" \"float radius\" 5 Shape \"sphere\" \"float zmax\" 1");
+    write_file("parts/a.pbrt",
+               "Translate 1 0 0 Shape \"sphere\" CoordinateSystem \"up\" ReverseOrientation\n"
+               "MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Include \"b.pbrt\" ColorSpace \"rec2020\"\n"
+               "Attribute \"shape\" \"float radius\" 5 Shape \"sphere\" \"float zmax\" 1");
     write_file("parts/b.pbrt", "Translate 1 0 0");
     reading r = reading_create(path_of("top.pbrt"), NULL, 0);
     if (r.said[AG_LOG_ERROR])
@@ -503,8 +503,9 @@ static void imported_files_have_a_state_of_their_own(void **state)
                      "%/inner.pbrt:2:1: error: the file ends, but AttributeBegin at %/inner.pbrt:1:1 is still open\n"
                      "    \n    ^\n");
     write_file("inner.pbrt", "AttributeEnd\n");
-    check_file_error("outer.pbrt", AG_ERROR_SCENE,
-                     "%/inner.pbrt:1:1: error: AttributeEnd without AttributeBegin\n    AttributeEnd\n    ^~~~~~~~~~~~\n");
+    check_file_error(
+        "outer.pbrt", AG_ERROR_SCENE,
+        "%/inner.pbrt:1:1: error: AttributeEnd without AttributeBegin\n    AttributeEnd\n    ^~~~~~~~~~~~\n");
     write_file("inner.pbrt", "Shape \"sphere\" \"float radius\" [ 1");
     check_file_error("outer.pbrt", AG_ERROR_SCENE,
                      "%/inner.pbrt:1:34: error: \"float radius\" expects numbers, but the file ends\n"
@@ -526,7 +527,8 @@ static void attributes_speak_to_what_follows(void **state)
         "WorldBegin Attribute \"shape\" \"float radius\" 2 \"float nobody\" 1\n"
         "Attribute \"light\" \"float scale\" 3 \"rgb L\" [ 1 2 3 ] \"string meant\" \"for others\"\n"
         "AttributeBegin Attribute \"shape\" \"float radius\" 4 Shape \"sphere\" Shape \"sphere\" \"float radius\" 5\n"
-        "AttributeEnd Shape \"disk\" ColorSpace \"aces2065-1\" Attribute \"material\" \"rgb reflectance\" [ .5 .5 .5 ]\n"
+        "AttributeEnd Shape \"disk\" ColorSpace \"aces2065-1\" Attribute \"material\" \"rgb reflectance\" [ .5 .5 .5 "
+        "]\n"
         "ColorSpace \"srgb\" Material \"diffuse\" AreaLightSource \"diffuse\" Shape \"sphere\"\n"
         "Attribute \"texture\" \"float value\" .25 Texture \"t\" \"float\" \"constant\"");
     static const double RADIUS[] = {4, 5, 2, 2};
@@ -555,8 +557,9 @@ static void colour_spaces_are_part_of_the_state(void **state)
     const char *film = "ColorSpace \"rec2020\" Film \"rgb\" WorldBegin";
     reading pictured = reading_create(NULL, film, strlen(film));
     assert_int_equal(pictured.status, AG_OK);
-    assert_string_equal(pictured.said[AG_LOG_WARNING], "t:1:22: warning: the ColorSpace is not that of the picture: it is "
-                                                       "written in linear Rec. 709\n");
+    assert_string_equal(pictured.said[AG_LOG_WARNING],
+                        "t:1:22: warning: the ColorSpace is not that of the picture: it is "
+                        "written in linear Rec. 709\n");
     reading_destroy(&pictured);
     rgb white;
     assert_true(spectra_find_named("illum-acesD60", &white));
@@ -586,15 +589,17 @@ static void spectra_are_read_from_files(void **state)
                      "%/parts/glass.spd:2:5: error: a number should stand here\n    700 x\n        ^\n");
     write_file("parts/glass.spd", "400 1.5 700");
     write_file("top.pbrt", "WorldBegin Material \"dielectric\" \"spectrum eta\" \"parts/glass.spd\"");
-    check_file_error("top.pbrt", AG_ERROR_SCENE,
-                     "%/top.pbrt:1:34: error: the file \"parts/glass.spd\" has 3 numbers: it should have wavelengths and "
-                     "values\n    WorldBegin Material \"dielectric\" \"spectrum eta\" \"parts/glass.spd\"\n"
-                     "                                     ^~~~~~~~~~~~~~\n");
+    check_file_error(
+        "top.pbrt", AG_ERROR_SCENE,
+        "%/top.pbrt:1:34: error: the file \"parts/glass.spd\" has 3 numbers: it should have wavelengths and "
+        "values\n    WorldBegin Material \"dielectric\" \"spectrum eta\" \"parts/glass.spd\"\n"
+        "                                     ^~~~~~~~~~~~~~\n");
     write_file("top.pbrt", "WorldBegin Material \"dielectric\" \"spectrum eta\" \"glass-none\"");
-    check_file_error("top.pbrt", AG_ERROR_INPUT,
-                     "%/top.pbrt:1:34: error: cannot read the file \"glass-none\": No such file or directory; nor has pbrt a "
-                     "spectrum of that name\n    WorldBegin Material \"dielectric\" \"spectrum eta\" \"glass-none\"\n"
-                     "                                     ^~~~~~~~~~~~~~\n");
+    check_file_error(
+        "top.pbrt", AG_ERROR_INPUT,
+        "%/top.pbrt:1:34: error: cannot read the file \"glass-none\": No such file or directory; nor has pbrt a "
+        "spectrum of that name\n    WorldBegin Material \"dielectric\" \"spectrum eta\" \"glass-none\"\n"
+        "                                     ^~~~~~~~~~~~~~\n");
 }
 
 static void deep_includes_are_refused(void **state)
@@ -693,7 +698,8 @@ static void damaged_scenes_are_survived(void **state)
         "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 1 ] \"integer indices\" [ 0 1 2 3 ] AttributeEnd\n"
         "Texture \"t\" \"float\" \"scale\" \"float v\" 2 ObjectBegin \"o\" Shape \"disk\" ObjectEnd\n"
         "ActiveTransform EndTime Rotate 9 1 0 0 ObjectInstance \"o\" ColorSpace \"rec2020\"\n"
-        "Attribute \"shape\" \"float radius\" 1 Material \"diffuse\" \"spectrum reflectance\" [ 400 1 ] Import \"/none\"";
+        "Attribute \"shape\" \"float radius\" 1 Material \"diffuse\" \"spectrum reflectance\" [ 400 1 ] Import "
+        "\"/none\"";
     static const unsigned char BYTES[] = {0, '"', '[', ']', '#', '\\', '\n', '-', '9', 'e', 'x', 0xff};
     size_t size = sizeof TEXT - 1;
     char *copy = malloc(size);
@@ -744,10 +750,9 @@ static int make_directory(void **state)
 static int remove_directory(void **state)
 {
     (void)state;
-    static const char *const NAMES[] = {"top.pbrt",   "parts/a.pbrt", "parts/b.pbrt",   "open.pbrt",
-                                        "begin.pbrt", "missing.pbrt", "cycle.pbrt",     "cycle2.pbrt",
-                                        "outer.pbrt", "inner.pbrt",   "packed.pbrt.gz", "stdin.pbrt",
-                                        "parts/glass.spd"};
+    static const char *const NAMES[] = {"top.pbrt",       "parts/a.pbrt", "parts/b.pbrt",   "open.pbrt",  "begin.pbrt",
+                                        "missing.pbrt",   "cycle.pbrt",   "cycle2.pbrt",    "outer.pbrt", "inner.pbrt",
+                                        "packed.pbrt.gz", "stdin.pbrt",   "parts/glass.spd"};
     for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
         remove(path_of(NAMES[i]));
     rmdir(path_of("parts"));

@@ -157,8 +157,9 @@ static void triangles_without_area_are_dropped(void **state)
                    "t:1:12: warning: Shape \"trianglemesh\" is empty and is left out\n");
     check_warnings("WorldBegin Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 1 1 2 2 2 3 3 3 ]", 0,
                    "t:1:12: warning: Shape \"bilinearmesh\" is empty and is left out\n");
-    check_warnings("WorldBegin AreaLightSource \"diffuse\" Shape \"disk\" \"float radius\" 1e-17 \"float phimax\" 1e-15",
-                   1, "t:1:38: warning: the area light has a shape of area 0 and is left out\n");
+    check_warnings(
+        "WorldBegin AreaLightSource \"diffuse\" Shape \"disk\" \"float radius\" 1e-17 \"float phimax\" 1e-15", 1,
+        "t:1:38: warning: the area light has a shape of area 0 and is left out\n");
 }
 
 /* Their normals would be no numbers. */
@@ -177,10 +178,11 @@ static void quadrics_that_floats_cannot_tell_are_left_out(void **state)
         char text[256], warning[256];
         const char *kind = strstr(TEXTS[i], "disk") ? "disk" : strstr(TEXTS[i], "cylinder") ? "cylinder" : "sphere";
         snprintf(text, sizeof text, "WorldBegin %s", TEXTS[i]);
-        snprintf(warning, sizeof warning,
-                 "t:1:%d: warning: Shape \"%s\" is too small, or scaled by too much or too little, for floats and is left "
-                 "out\n",
-                 (int)(strstr(text, "Shape") - text) + 1, kind);
+        snprintf(
+            warning, sizeof warning,
+            "t:1:%d: warning: Shape \"%s\" is too small, or scaled by too much or too little, for floats and is left "
+            "out\n",
+            (int)(strstr(text, "Shape") - text) + 1, kind);
         check_warnings(text, 0, warning);
     }
     check_warnings("WorldBegin Shape \"sphere\" \"float radius\" 1e-17 Shape \"disk\" \"float radius\" 1e17", 2, NULL);

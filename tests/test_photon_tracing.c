@@ -336,8 +336,8 @@ static void a_shortage_is_explained(void **state)
                     PHOTON_GLOBAL, 0, "too few meet a diffuse surface");
 }
 
-/* A plate goes through a narrow beam, by which it is met for so much of the time; the floor below has the rest. Photons on the
- * plate lie where those places are when it starts. */
+/* A plate goes through a narrow beam, by which it is met for so much of the time; the floor below has the rest. Photons
+ * on the plate lie where those places are when it starts. */
 static void paths_have_times_of_their_own(void **state)
 {
     (void)state;

@@ -122,8 +122,9 @@ static void searches_find_what_brute_force_finds(void **state)
                 if (count > 0 && q % 2 == 0) { /* at a photon, or half-way between two */
                     at = photon_block_position(tree.blocks, (uint32_t)(rng_next(&random) % count));
                     if (q % 4)
-                        at = vec3_scale(vec3_add(at, photon_block_position(
-                                                         tree.blocks, (uint32_t)(rng_next(&random) % count))), 0.5f);
+                        at = vec3_scale(
+                            vec3_add(at, photon_block_position(tree.blocks, (uint32_t)(rng_next(&random) % count))),
+                            0.5f);
                 }
                 vec3 normal = q % 3 == 0 ? random_direction(&random) : (vec3){0.0f, 1.0f, 0.0f};
                 check_query(&tree, at, normal, q % 5 == 0 ? 0.0f : 0.5f, RADII[q % 6], WANTED[q / 2 % 5], expected,

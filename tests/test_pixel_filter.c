@@ -15,9 +15,10 @@ static ag_status create(const char *directive, bool is_centered, pixel_filter *o
     reading heard = {0};
     log_sink *log = log_create(reading_hear, &heard);
     ag_status status = pixel_filter_create(&r.scene->pixel_filter, is_centered, log, out_filter);
-    snprintf(said, size, "%s", heard.said[AG_LOG_ERROR]     ? heard.said[AG_LOG_ERROR]
-                               : heard.said[AG_LOG_WARNING] ? heard.said[AG_LOG_WARNING]
-                                                            : "");
+    snprintf(said, size, "%s",
+             heard.said[AG_LOG_ERROR]     ? heard.said[AG_LOG_ERROR]
+             : heard.said[AG_LOG_WARNING] ? heard.said[AG_LOG_WARNING]
+                                          : "");
     for (int i = 0; i < 4; i++)
         free(heard.said[i]);
     log_destroy(log);
@@ -98,8 +99,8 @@ static void samples_follow_the_filter(void **state)
     check_distribution("PixelFilter \"box\" \"float yradius\" 2", 0.5, 2, box_1);
     check_distribution("PixelFilter \"triangle\"", 2, 2, triangle_1);
     check_distribution("PixelFilter \"mitchell\"", 2, 2, mitchell_1);
-    check_distribution("PixelFilter \"mitchell\" \"float xradius\" 3 \"float B\" 0.333333333 \"float C\" 0.333333333", 3,
-                       2, mitchell_1);
+    check_distribution("PixelFilter \"mitchell\" \"float xradius\" 3 \"float B\" 0.333333333 \"float C\" 0.333333333",
+                       3, 2, mitchell_1);
     check_distribution("PixelFilter \"sinc\"", 4, 4, sinc_1);
     check_distribution("PixelFilter \"sinc\" \"float xradius\" 2 \"float tau\" 3", 2, 4, sinc_1);
 }
@@ -222,9 +223,12 @@ static void mistakes_are_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(samples_follow_the_filter),   cmocka_unit_test(even_pictures_stay_even),
-        cmocka_unit_test(ramps_are_kept),              cmocka_unit_test(signs_that_cancel_are_left_out),
-        cmocka_unit_test(centred_samples_do_not_move), cmocka_unit_test(mistakes_are_told),
+        cmocka_unit_test(samples_follow_the_filter),
+        cmocka_unit_test(even_pictures_stay_even),
+        cmocka_unit_test(ramps_are_kept),
+        cmocka_unit_test(signs_that_cancel_are_left_out),
+        cmocka_unit_test(centred_samples_do_not_move),
+        cmocka_unit_test(mistakes_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,8 @@
 /* test_program_agreement.c: photon map and path tracer show the same light in six rooms without a closed form:
- * diffuse blocks; glass, rough metal and a mirror; glTF's material in many ways; a room lit through an opening; media in
- * glass and behind interfaces; veils, bump maps and brushed metal. All light, and indirect light alone. Each picture is made twice, with two seeds: how
- * much those differ is its noise, the photons' share of it included.
- * Flow: tests of the whole program. Threads: the program's. */
+ * diffuse blocks; glass, rough metal and a mirror; glTF's material in many ways; a room lit through an opening; media
+ * in glass and behind interfaces; veils, bump maps and brushed metal. All light, and indirect light alone. Each picture
+ * is made twice, with two seeds: how much those differ is its noise, the photons' share of it included. Flow: tests of
+ * the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "program_picture.h"
 
@@ -76,8 +76,8 @@ static void expect_agreement(const char *what, const estimate *a, const estimate
     assert_true(ninth_tenth <= 0.025 + 2.0 * noise);
 }
 
-/* path_samples: argument; is_all_indirect: once is enough, as leaving out direct light changes next to nothing, or what is
- * in question is in both. */
+/* path_samples: argument; is_all_indirect: once is enough, as leaving out direct light changes next to nothing, or what
+ * is in question is in both. */
 static void compare(const char *name, const char *path_samples, bool is_all_indirect)
 {
     char scene[512], what[128];
@@ -135,12 +135,9 @@ static void test_veils_and_relief(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_box_with_blocks),
-        TEST_IN_FOLDER(test_glass_and_metal),
-        TEST_IN_FOLDER(test_principled),
-        TEST_IN_FOLDER(test_next_room),
-        TEST_IN_FOLDER(test_tea_in_glass),
-        TEST_IN_FOLDER(test_veils_and_relief),
+        TEST_IN_FOLDER(test_box_with_blocks), TEST_IN_FOLDER(test_glass_and_metal),
+        TEST_IN_FOLDER(test_principled),      TEST_IN_FOLDER(test_next_room),
+        TEST_IN_FOLDER(test_tea_in_glass),    TEST_IN_FOLDER(test_veils_and_relief),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,7 +12,7 @@ static const char *scene_of(const char *head, const char *world)
 }
 
 #define FILM(parameters) "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32 " parameters "\n"
-#define SKY "LightSource \"infinite\" \"rgb L\" [1.5 1.5 1.5]"
+#define SKY              "LightSource \"infinite\" \"rgb L\" [1.5 1.5 1.5]"
 
 static void check_even(const char *head, const char *world, double expected)
 {
@@ -47,8 +47,9 @@ static void test_exposure(void **state)
 {
     (void)state;
     check_even(FILM("\"float iso\" 100") "Camera \"perspective\" \"float shutterclose\" 1", SKY, 1.5);
-    check_even(FILM("\"float iso\" 400") "Camera \"perspective\" \"float shutteropen\" 0.25 \"float shutterclose\" 0.75",
-               SKY, 1.5 * 0.5 * 4.0);
+    check_even(
+        FILM("\"float iso\" 400") "Camera \"perspective\" \"float shutteropen\" 0.25 \"float shutterclose\" 0.75", SKY,
+        1.5 * 0.5 * 4.0);
     check_even(FILM("\"string sensor\" \"cie1931\" \"float iso\" 50") "Camera \"perspective\"", SKY, 0.75);
 }
 
@@ -88,7 +89,7 @@ static void test_spectrum_of_light(void **state)
 {
     (void)state;
     picture p = RENDER(scene_of(FILM("") "Camera \"perspective\"",
-                                  "LightSource \"infinite\" \"spectrum L\" [ 300 9 900 9 ] \"float scale\" 2"),
+                                "LightSource \"infinite\" \"spectrum L\" [ 300 9 900 9 ] \"float scale\" 2"),
                        "--integrator=path", "--spp=1");
     double luminance = 0.2126 * picture_mean(&p, 0) + 0.7152 * picture_mean(&p, 1) + 0.0722 * picture_mean(&p, 2);
     expect_near("luminance", luminance, 2.0, 1e-3);
@@ -123,8 +124,8 @@ static void test_seeds(void **state)
 /* The program's warnings and errors about film and sampler, in one line each. */
 static void check_said(const char *head, int exit_code, const char *expected)
 {
-    const char *const arguments[] = {"--spp", "1", "-o", "p.exr", "--integrator", "path", "--progress", "none",
-                                     scene_of(head, SKY), NULL};
+    const char *const arguments[] = {
+        "--spp", "1", "-o", "p.exr", "--integrator", "path", "--progress", "none", scene_of(head, SKY), NULL};
     program_run run = program_execute(NULL, arguments);
     if (run.exit_code != exit_code || !strstr(run.err, expected))
         fail_msg("%s\n    exit %d, should say %s, but says %s", head, run.exit_code, expected, run.err);
@@ -135,7 +136,7 @@ static void test_what_is_said(void **state)
 {
     (void)state;
 #define CAMERA "Camera \"perspective\" Film "
-#define SMALL " \"integer xresolution\" 4 \"integer yresolution\" 4 "
+#define SMALL  " \"integer xresolution\" 4 \"integer yresolution\" 4 "
     check_said(CAMERA "\"gbuffer\"" SMALL "\"string coordinatesystem\" \"world\"", 0,
                "warning: Film \"gbuffer\": R, G and B are written alone; its channels for albedo, position");
     check_said(CAMERA "\"spectral\"" SMALL "\"integer nbuckets\" 8 \"float lambdamin\" 400", 0,
@@ -173,8 +174,10 @@ static void test_film(void **state)
                  "Camera \"perspective\" Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 64 %s\n"
                  "\"float cropwindow\" [ 0.75 0.25 -1 0.5 ]",
                  CASES[i][0]);
-        const char *const arguments[] = {"-q", "--spp", "1", "--integrator", "path", "-o", "p.exr",
-                                         scene_of(head, "LightSource \"infinite\" \"rgb L\" [ 0.1 0.1 0.1 ]"), NULL};
+        const char *const arguments[] = {
+            "-q",   "--spp", "1",     "--integrator",
+            "path", "-o",    "p.exr", scene_of(head, "LightSource \"infinite\" \"rgb L\" [ 0.1 0.1 0.1 ]"),
+            NULL};
         program_run run = program_execute(NULL, arguments);
         expect_exit(&run, 0);
         program_run_reset(&run);
@@ -190,10 +193,14 @@ static void test_film(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_even_light_through_all), TEST_IN_FOLDER(test_inside_a_lamp),
-        TEST_IN_FOLDER(test_exposure),               TEST_IN_FOLDER(test_bound),
-        TEST_IN_FOLDER(test_white_balance),          TEST_IN_FOLDER(test_spectrum_of_light),
-        TEST_IN_FOLDER(test_seeds),                  TEST_IN_FOLDER(test_what_is_said),
+        TEST_IN_FOLDER(test_even_light_through_all),
+        TEST_IN_FOLDER(test_inside_a_lamp),
+        TEST_IN_FOLDER(test_exposure),
+        TEST_IN_FOLDER(test_bound),
+        TEST_IN_FOLDER(test_white_balance),
+        TEST_IN_FOLDER(test_spectrum_of_light),
+        TEST_IN_FOLDER(test_seeds),
+        TEST_IN_FOLDER(test_what_is_said),
         TEST_IN_FOLDER(test_film),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* test_program_gltf.c: glTF files through the whole program: a room whose radiance is known, and one without closed form
- * that photon map and path tracer show alike; the picture's size; what the program says of files that are wrong.
+/* test_program_gltf.c: glTF files through the whole program: a room whose radiance is known, and one without closed
+ * form that photon map and path tracer show alike; the picture's size; what the program says of files that are wrong.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "gltf_file.h"
@@ -7,8 +7,8 @@
 
 enum { BLOCK = 8 };
 
-/* A cube from -1 to 1 in all axes without normals, its triangles facing outwards or inwards: 6 times 6 indices in the order
- * -x +x -y +y -z +z, the outward ones first. */
+/* A cube from -1 to 1 in all axes without normals, its triangles facing outwards or inwards: 6 times 6 indices in the
+ * order -x +x -y +y -z +z, the outward ones first. */
 static void write_cube(void)
 {
     blob b = {.size = 0};
@@ -29,8 +29,8 @@ static void write_cube(void)
 
 /* accessors: 0 positions, 1 all outwards, 2 all inwards, 3 to 8 each inward side. */
 #define CUBE                                                                                                           \
-    "'buffers': [{'uri': 'cube.bin', 'byteLength': 240}], 'bufferViews': [{'buffer': 0, 'byteLength': 96},"             \
-    "{'buffer': 0, 'byteOffset': 96, 'byteLength': 144}], 'accessors': ["                                               \
+    "'buffers': [{'uri': 'cube.bin', 'byteLength': 240}], 'bufferViews': [{'buffer': 0, 'byteLength': 96},"            \
+    "{'buffer': 0, 'byteOffset': 96, 'byteLength': 144}], 'accessors': ["                                              \
     "{'bufferView': 0, 'componentType': 5126, 'count': 8, 'type': 'VEC3'},"                                            \
     "{'bufferView': 1, 'componentType': 5123, 'count': 36, 'type': 'SCALAR'},"                                         \
     "{'bufferView': 1, 'byteOffset': 72, 'componentType': 5123, 'count': 36, 'type': 'SCALAR'},"                       \
@@ -70,7 +70,8 @@ static void furnace(void **state)
     picture_reset(&p);
 }
 
-/* A lamp of 2 W/sr two metres off lights a black-walled room's white far wall, seen straight on: 0.5 / pi in its middle. */
+/* A lamp of 2 W/sr two metres off lights a black-walled room's white far wall, seen straight on: 0.5 / pi in its
+ * middle. */
 static void point_lamp(void **state)
 {
     (void)state;
@@ -93,7 +94,8 @@ static void volume(void **state)
 {
     (void)state;
     const char *scene = write_scene(
-        "{" GLTF_ASSET CUBE "'materials': [{'emissiveFactor': [1, 1, 1]}, {'pbrMetallicRoughness': {'metallicFactor': 0,"
+        "{" GLTF_ASSET CUBE
+        "'materials': [{'emissiveFactor': [1, 1, 1]}, {'pbrMetallicRoughness': {'metallicFactor': 0,"
         "'roughnessFactor': 0}, 'extensions': {'KHR_materials_transmission': {'transmissionFactor': 1},"
         "'KHR_materials_ior': {'ior': 1}, 'KHR_materials_volume': {'thicknessFactor': 1, 'attenuationDistance': 2,"
         "'attenuationColor': [0.5, 0.25, 1]}}}],"
@@ -109,8 +111,8 @@ static void volume(void **state)
     picture_reset(&p);
 }
 
-/* Plastic walls in three colours, a lamp under the ceiling that shines down alone, a small one beside it, and two turned
- * boxes of rough metal, the second a mirror image. */
+/* Plastic walls in three colours, a lamp under the ceiling that shines down alone, a small one beside it, and two
+ * turned boxes of rough metal, the second a mirror image. */
 static const char ROOM[] =
     "{" GLTF_ASSET CUBE
     "'extensions': {'KHR_lights_punctual': {'lights': [{'type': 'point', 'intensity': 0.3, 'color': [1, 0.6, 0.3]}]}},"
@@ -122,8 +124,10 @@ static const char ROOM[] =
     "  'pbrMetallicRoughness': {'baseColorFactor': [0, 0, 0, 1], 'metallicFactor': 0}},"
     "{'pbrMetallicRoughness': {'baseColorFactor': [0.8, 0.6, 0.4, 1], 'metallicFactor': 1, 'roughnessFactor': 0.5}}],"
     "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}, 'indices': 3, 'material': 1},"
-    "  {'attributes': {'POSITION': 0}, 'indices': 4, 'material': 2}, {'attributes': {'POSITION': 0}, 'indices': 5, 'material': 0},"
-    "  {'attributes': {'POSITION': 0}, 'indices': 6, 'material': 0}, {'attributes': {'POSITION': 0}, 'indices': 7, 'material': 0},"
+    "  {'attributes': {'POSITION': 0}, 'indices': 4, 'material': 2}, {'attributes': {'POSITION': 0}, 'indices': 5, "
+    "'material': 0},"
+    "  {'attributes': {'POSITION': 0}, 'indices': 6, 'material': 0}, {'attributes': {'POSITION': 0}, 'indices': 7, "
+    "'material': 0},"
     "  {'attributes': {'POSITION': 0}, 'indices': 8, 'material': 0}]},"
     "  {'primitives': [{'attributes': {'POSITION': 0}, 'indices': 6, 'material': 3}]},"
     "  {'primitives': [{'attributes': {'POSITION': 0}, 'indices': 1, 'material': 4}]}],"
@@ -171,10 +175,10 @@ static void room_by_both_integrators(void **state)
 static void picture_size(void **state)
 {
     (void)state;
-    const char *scene = write_scene(
-        "{" GLTF_ASSET CUBE "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}, 'indices': 1}]}],"
-        "'cameras': [{'type': 'perspective', 'perspective': {'yfov': 1, 'aspectRatio': 4}}],"
-        "'nodes': [{'mesh': 0}, {'camera': 0, 'translation': [0, 0, 5]}]}");
+    const char *scene =
+        write_scene("{" GLTF_ASSET CUBE "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}, 'indices': 1}]}],"
+                    "'cameras': [{'type': 'perspective', 'perspective': {'yfov': 1, 'aspectRatio': 4}}],"
+                    "'nodes': [{'mesh': 0}, {'camera': 0, 'translation': [0, 0, 5]}]}");
     picture p = RENDER(scene, "--integrator=path", "--spp=1");
     assert_int_equal(p.width, 1280);
     assert_int_equal(p.height, 320);
@@ -200,9 +204,9 @@ static void errors_end_the_program(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(furnace),      TEST_IN_FOLDER(point_lamp), TEST_IN_FOLDER(volume),
-        TEST_IN_FOLDER(room_by_both_integrators), TEST_IN_FOLDER(picture_size),
-        TEST_IN_FOLDER(errors_end_the_program),
+        TEST_IN_FOLDER(furnace),      TEST_IN_FOLDER(point_lamp),
+        TEST_IN_FOLDER(volume),       TEST_IN_FOLDER(room_by_both_integrators),
+        TEST_IN_FOLDER(picture_size), TEST_IN_FOLDER(errors_end_the_program),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

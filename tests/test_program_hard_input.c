@@ -1,5 +1,6 @@
-/* test_program_hard_input.c: files that are missing, cut, damaged, of another kind or out of all proportion: the exit code,
- * the place that is named, and that nothing is left behind. What the readers say of each mistake is in their unit tests.
+/* test_program_hard_input.c: files that are missing, cut, damaged, of another kind or out of all proportion: the exit
+ * code, the place that is named, and that nothing is left behind. What the readers say of each mistake is in their unit
+ * tests.
  *
  * Flow: tests of the whole program. Threads: the program's. */
 /* ctest: sanitize */
@@ -12,7 +13,7 @@
 #define BEGIN "Camera \"perspective\"\nWorldBegin\n"
 
 #define PLY_HEAD(format)                                                                                               \
-    "ply\nformat " format " 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"           \
+    "ply\nformat " format " 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"             \
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
 
 static void write_bytes(const char *name, const void *bytes, size_t size)
@@ -72,7 +73,8 @@ static void test_no_scenes(void **state)
 {
     (void)state;
     static const unsigned char PICTURE[] = "\x76\x2f\x31\x01\x02\0\0\0channels\0chlist\0";
-    static const unsigned char WIDE[] = "\xff\xfe" "C\0a\0m\0e\0r\0a\0";
+    static const unsigned char WIDE[] = "\xff\xfe"
+                                        "C\0a\0m\0e\0r\0a\0";
     expect_refused(write_text("empty.pbrt", ""), "empty.pbrt:1:1: error: ", "the file ends without WorldBegin");
     expect_refused(write_text("blank.pbrt", "# nothing\n\n"), "blank.pbrt:3:1: error: ", "without WorldBegin");
     write_bytes("binary.pbrt", PICTURE, sizeof PICTURE);
@@ -86,10 +88,12 @@ static void test_no_scenes(void **state)
 static void test_byte_order_mark_and_line_ends(void **state)
 {
     (void)state;
-    expect_accepted(write_text("dos.pbrt", "\xef\xbb\xbf" "Camera \"perspective\"\r\nWorldBegin\r\n# a word\r\n"
+    expect_accepted(write_text("dos.pbrt", "\xef\xbb\xbf"
+                                           "Camera \"perspective\"\r\nWorldBegin\r\n# a word\r\n"
                                            "LightSource \"point\"\r\nTranslate 0 0 3\r\nShape \"sphere\"\r\n"),
                     NULL);
-    expect_refused(write_text("bad.pbrt", "\xef\xbb\xbf" "Camera \"perspective\"\r\nWorldBegin\r\n\tShape \"sphare\"\r\n"),
+    expect_refused(write_text("bad.pbrt", "\xef\xbb\xbf"
+                                          "Camera \"perspective\"\r\nWorldBegin\r\n\tShape \"sphare\"\r\n"),
                    "bad.pbrt:3:2: error: ", "unknown shape \"sphare\"");
 }
 
@@ -135,14 +139,17 @@ static void test_includes(void **state)
 {
     (void)state;
     write_text("b.pbrt", "Shape \"sphere\"\nInclude \"a.pbrt\"\n");
-    expect_refused(write_text("a.pbrt", BEGIN "  Include \"b.pbrt\"\n"), "b.pbrt:2:9: error: ", "\"a.pbrt\" includes itself: ");
+    expect_refused(write_text("a.pbrt", BEGIN "  Include \"b.pbrt\"\n"),
+                   "b.pbrt:2:9: error: ", "\"a.pbrt\" includes itself: ");
     expect_refused(write_text("self.pbrt", "Include \"self.pbrt\"\n"), "self.pbrt:1:9: error: ", "includes itself");
-    expect_refused(write_text("import.pbrt", BEGIN "Import \"import.pbrt\"\n"), "import.pbrt:3:8: error: ", "includes itself");
-    expect_refused(write_text("none.pbrt", BEGIN "Include \"nowhere.pbrt\"\n"), "none.pbrt:3:9: error: ",
-                   "cannot read the file \"nowhere.pbrt\": No such file or directory");
+    expect_refused(write_text("import.pbrt", BEGIN "Import \"import.pbrt\"\n"),
+                   "import.pbrt:3:8: error: ", "includes itself");
+    expect_refused(write_text("none.pbrt", BEGIN "Include \"nowhere.pbrt\"\n"),
+                   "none.pbrt:3:9: error: ", "cannot read the file \"nowhere.pbrt\": No such file or directory");
     expect_refused(write_text("folder.pbrt", BEGIN "Include \".\"\n"), "folder.pbrt:3:9: error: ", "Is a directory");
     write_bytes("cut.gz", "\x1f\x8b\x08\0\0\0\0\0", 8);
-    expect_refused(write_text("cut.pbrt", BEGIN "Include \"cut.gz\"\n"), "cut.pbrt:3:9: error: ", "the gzip file is cut short");
+    expect_refused(write_text("cut.pbrt", BEGIN "Include \"cut.gz\"\n"),
+                   "cut.pbrt:3:9: error: ", "the gzip file is cut short");
 }
 
 static void test_closed_files(void **state)
@@ -224,14 +231,17 @@ static void test_pictures(void **state)
     write_text("garbage.hdr", "this is no picture");
     assert_int_equal(mkdir(in_folder("folder.png"), 0755), 0);
     static const char *const CASES[][2] = {
-        {"none.png", "No such file or directory"}, {"folder.png", "it is not a regular file"},
-        {"garbage.exr", "cannot open it"},          {"garbage.hdr", "cannot open it"},
+        {"none.png", "No such file or directory"},
+        {"folder.png", "it is not a regular file"},
+        {"garbage.exr", "cannot open it"},
+        {"garbage.hdr", "cannot open it"},
         {"huge.png", "its header promises 65535 x 65535 pixels of 3 channels, which a file of 57 bytes cannot hold"}};
     for (int i = 0; i < 5; i++) {
         char text[512];
         snprintf(text, sizeof text, BEGIN "LightSource \"infinite\" \"string filename\" \"%s\"\n", CASES[i][0]);
         expect_refused(write_text("light.pbrt", text), "light.pbrt:3:24: error: ", CASES[i][1]);
-        snprintf(text, sizeof text, BEGIN "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\"\n", CASES[i][0]);
+        snprintf(text, sizeof text, BEGIN "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\"\n",
+                 CASES[i][0]);
         expect_refused(write_text("texture.pbrt", text), "texture.pbrt:3:35: error: ", CASES[i][1]);
     }
 }
@@ -245,7 +255,10 @@ static void test_spectra(void **state)
     expect_refused(scene, "a.spd:2:5: error: ", "a number should stand here");
     write_text("a.spd", "400 1 500\n");
     expect_refused(scene, "a.pbrt:3:21: error: ", "has 3 numbers: it should have wavelengths and values");
-    write_bytes("a.spd", "\x7f" "ELF\x02\x01\x01\0", 8);
+    write_bytes("a.spd",
+                "\x7f"
+                "ELF\x02\x01\x01\0",
+                8);
     expect_refused(scene, "a.spd:1:1: error: ", "0x7f");
 }
 
@@ -269,28 +282,24 @@ static void test_more_than_fits(void **state)
     end += sprintf(end, BEGIN "Shape \"sphere\"\n");
     for (int i = 0; i < COUNT; i++)
         end += sprintf(end, "\"float p%d\" %d\n", i, i);
-    expect_refused(write_text("parameters.pbrt", text), "parameters.pbrt:1004:1: error: ",
-                   "Shape has more than 1000 parameters");
+    expect_refused(write_text("parameters.pbrt", text),
+                   "parameters.pbrt:1004:1: error: ", "Shape has more than 1000 parameters");
     /* states within states: no recursion that a stack could be too small for */
     end = text + sprintf(text, BEGIN);
     for (int i = 0; i < COUNT; i++)
         end += sprintf(end, "AttributeBegin\n");
-    expect_refused(write_text("states.pbrt", text), "states.pbrt:100003:1: error: ",
-                   "the file ends, but AttributeBegin at ");
+    expect_refused(write_text("states.pbrt", text),
+                   "states.pbrt:100003:1: error: ", "the file ends, but AttributeBegin at ");
     free(text);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_no_scenes),
-        TEST_IN_FOLDER(test_byte_order_mark_and_line_ends),
-        TEST_IN_FOLDER(test_long_lines),
-        TEST_IN_FOLDER(test_includes),
-        TEST_IN_FOLDER(test_closed_files),
-        TEST_IN_FOLDER(test_ply_files),
-        TEST_IN_FOLDER(test_pictures),
-        TEST_IN_FOLDER(test_spectra),
+        TEST_IN_FOLDER(test_no_scenes),      TEST_IN_FOLDER(test_byte_order_mark_and_line_ends),
+        TEST_IN_FOLDER(test_long_lines),     TEST_IN_FOLDER(test_includes),
+        TEST_IN_FOLDER(test_closed_files),   TEST_IN_FOLDER(test_ply_files),
+        TEST_IN_FOLDER(test_pictures),       TEST_IN_FOLDER(test_spectra),
         TEST_IN_FOLDER(test_more_than_fits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -14,13 +14,14 @@ enum { INTEGRATOR_COUNT = 2 };
 
 #define QUICK "--photons=20000", "--caustic-photons=300", "--spp=4", "--gather-samples=2", "--size=8x6"
 
-/* Rendered by both, without a sample that is no number. warning NULL: nothing is said. *out_mean (or NULL): of green, the
- * photon map's and the path tracer's. */
+/* Rendered by both, without a sample that is no number. warning NULL: nothing is said. *out_mean (or NULL): of green,
+ * the photon map's and the path tracer's. */
 static void expect_finite(const char *name, const char *text, const char *warning, double out_mean[INTEGRATOR_COUNT])
 {
     const char *scene = write_text("scene.pbrt", text);
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        program_run run = RUN(QUICK, "--progress=none", INTEGRATORS[k], "--type=float", "-o", "a.exr", "--stats=a.json", scene);
+        program_run run =
+            RUN(QUICK, "--progress=none", INTEGRATORS[k], "--type=float", "-o", "a.exr", "--stats=a.json", scene);
         if (run.exit_code != 0 || (warning ? !strstr(run.err, warning) : run.err[0] != '\0'))
             fail_msg("%s, %s: exit code %d, signal %d, and said: %s", name, INTEGRATORS[k], run.exit_code, run.signal,
                      run.err);
@@ -56,7 +57,8 @@ static void test_scales(void **state)
                  2.5 * s, 1.2 * s, 0.4 * s, 1.0 * s, 2.5 * s, s, s, s);
         const char *scene = write_text("room.pbrt", text);
         for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-            picture p = RENDER(scene, INTEGRATORS[k], "--size=16x16", "--spp=4", "--photons=20000", "--gather-samples=16");
+            picture p =
+                RENDER(scene, INTEGRATORS[k], "--size=16x16", "--spp=4", "--photons=20000", "--gather-samples=16");
             mean[i][k] = picture_mean(&p, 1);
             picture_reset(&p);
             assert_true(mean[i][k] > 0.1 && mean[i][k] < 1.0);
@@ -78,26 +80,36 @@ static void test_beyond_all_measure(void **state)
         {"an eye nowhere", "Translate 0 0 1e200\nCamera \"perspective\"\n" SPHERE_AND_LIGHT},
         {"a large eye", "Scale 1e-12 1e-12 1e-12\nCamera \"perspective\"\n" SPHERE_AND_LIGHT},
         {"a small eye", "Scale 1e12 1e12 1e12\nCamera \"perspective\"\n" SPHERE_AND_LIGHT},
-        {"a wide window", "Camera \"orthographic\" \"float screenwindow\" [ -1e30 1e30 -1e30 1e30 ]\n" SPHERE_AND_LIGHT},
+        {"a wide window",
+         "Camera \"orthographic\" \"float screenwindow\" [ -1e30 1e30 -1e30 1e30 ]\n" SPHERE_AND_LIGHT},
         {"a wide angle", "Camera \"perspective\" \"float fov\" 179.9999\n" SPHERE_AND_LIGHT},
         {"a wide lens", "Camera \"perspective\" \"float lensradius\" 1e30\n" SPHERE_AND_LIGHT},
-        {"a far focus", "Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 1e30\n" SPHERE_AND_LIGHT},
-        {"a near focus", "Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 1e-30\n" SPHERE_AND_LIGHT},
+        {"a far focus",
+         "Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 1e30\n" SPHERE_AND_LIGHT},
+        {"a near focus",
+         "Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 1e-30\n" SPHERE_AND_LIGHT},
         {"a lamp far away", SEEN_SPHERE "LightSource \"point\" \"point3 from\" [ 0 1e15 0 ]\n"},
         {"a lamp beyond reach", SEEN_SPHERE "LightSource \"point\" \"point3 from\" [ 0 1e30 0 ]\n"},
         {"a lamp on the surface", SEEN_SPHERE "LightSource \"point\" \"point3 from\" [ 0 0 -1 ]\n"},
-        {"a small lamp", SEEN_SPHERE "AreaLightSource \"diffuse\"\nTranslate 0 3 0\nShape \"sphere\" \"float radius\" 1e-12\n"},
-        {"a large lamp", SEEN_SPHERE "AreaLightSource \"diffuse\"\nTranslate 0 2e12 0\nShape \"sphere\" \"float radius\" 1e12\n"},
-        {"a bright lamp", SEEN_SPHERE "LightSource \"point\" \"rgb I\" [ 1e30 1e30 1e30 ] \"point3 from\" [ 0 0 -3 ]\n"},
-        {"a dim lamp", SEEN_SPHERE "LightSource \"point\" \"rgb I\" [ 1e-30 1e-30 1e-30 ] \"point3 from\" [ 0 0 -3 ]\n"},
+        {"a small lamp",
+         SEEN_SPHERE "AreaLightSource \"diffuse\"\nTranslate 0 3 0\nShape \"sphere\" \"float radius\" 1e-12\n"},
+        {"a large lamp",
+         SEEN_SPHERE "AreaLightSource \"diffuse\"\nTranslate 0 2e12 0\nShape \"sphere\" \"float radius\" 1e12\n"},
+        {"a bright lamp",
+         SEEN_SPHERE "LightSource \"point\" \"rgb I\" [ 1e30 1e30 1e30 ] \"point3 from\" [ 0 0 -3 ]\n"},
+        {"a dim lamp",
+         SEEN_SPHERE "LightSource \"point\" \"rgb I\" [ 1e-30 1e-30 1e-30 ] \"point3 from\" [ 0 0 -3 ]\n"},
         {"things smaller than a float is there",
          "LookAt 0 0 4294967290 0 0 4294967296 0 1 0\nCamera \"perspective\" \"float fov\" 170\nWorldBegin\n"
-         "LightSource \"infinite\"\nTranslate 0 0 4294967296\nShape \"sphere\"\nScale 1 2 3\nShape \"sphere\"\nShape \"cylinder\"\n"},
-        {"all that there is", SEEN_SPHERE "LightSource \"point\" \"point3 from\" [ 0 0 -3 ]\nShape \"sphere\" \"float radius\" 1e17\n"},
+         "LightSource \"infinite\"\nTranslate 0 0 4294967296\nShape \"sphere\"\nScale 1 2 3\nShape \"sphere\"\nShape "
+         "\"cylinder\"\n"},
+        {"all that there is",
+         SEEN_SPHERE "LightSource \"point\" \"point3 from\" [ 0 0 -3 ]\nShape \"sphere\" \"float radius\" 1e17\n"},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++)
         expect_finite(CASES[i].name, CASES[i].text, "", NULL);
-    program_run run = RUN("-q", "-o", "b.exr", write_text("b.pbrt", SEEN_SPHERE "Translate 1e100 0 0\nLightSource \"point\"\n"));
+    program_run run =
+        RUN("-q", "-o", "b.exr", write_text("b.pbrt", SEEN_SPHERE "Translate 1e100 0 0\nLightSource \"point\"\n"));
     expect_exit(&run, 1);
     expect_said(&run, "b.pbrt:6:1: error: the light is too far away");
     program_run_reset(&run);
@@ -131,21 +143,23 @@ static void test_eye_inside_of_opaque_things(void **state)
     }
 }
 
-/* A black lamp of radius a and radiance L in the middle of a ball of glass, over a floor at distance h from that middle.
- * Its light meets the glass all but straight on: T = 1 - ((n - 1) / (n + 1))^2 = 0.96 of it leaves, and goes on as it was
- * (from a / b = 0.3, T is 0.9598 on average); what is reflected comes back to the lamp, which takes it. So below it the
- * irradiance is T pi L (a / h)^2, whatever n. */
+/* A black lamp of radius a and radiance L in the middle of a ball of glass, over a floor at distance h from that
+ * middle. Its light meets the glass all but straight on: T = 1 - ((n - 1) / (n + 1))^2 = 0.96 of it leaves, and goes on
+ * as it was (from a / b = 0.3, T is 0.9598 on average); what is reflected comes back to the lamp, which takes it. So
+ * below it the irradiance is T pi L (a / h)^2, whatever n. */
 static void test_lamp_inside_of_glass(void **state)
 {
     (void)state;
     const char *scene = write_text(
-        "scene.pbrt", "LookAt 0 0 2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 6\nPixelFilter \"box\"\nWorldBegin\n"
-                      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
-                      "Shape \"disk\" \"float radius\" 1.5\nTranslate 0 0 4\nAttributeBegin\nMaterial \"dielectric\"\n"
-                      "Shape \"sphere\"\nAttributeEnd\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\n"
-                      "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nShape \"sphere\" \"float radius\" 0.3\n");
+        "scene.pbrt",
+        "LookAt 0 0 2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 6\nPixelFilter \"box\"\nWorldBegin\n"
+        "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
+        "Shape \"disk\" \"float radius\" 1.5\nTranslate 0 0 4\nAttributeBegin\nMaterial \"dielectric\"\n"
+        "Shape \"sphere\"\nAttributeEnd\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\n"
+        "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nShape \"sphere\" \"float radius\" 0.3\n");
     const double irradiance = 0.9598 * PI * 100.0 * 0.09 / 16.0;
-    picture map = RENDER(scene, INTEGRATORS[0], "--size=16x16", "--spp=4", "--photons=1000", "--caustic-photons=100000");
+    picture map =
+        RENDER(scene, INTEGRATORS[0], "--size=16x16", "--spp=4", "--photons=1000", "--caustic-photons=100000");
     picture path = RENDER(scene, INTEGRATORS[1], "--size=16x16", "--spp=1024");
     expect_near("photon map", picture_mean(&map, 1), 0.5 / PI * irradiance, 0.03);
     expect_near("path", picture_mean(&path, 1), 0.5 / PI * irradiance, 0.06);
@@ -162,9 +176,12 @@ static void test_surfaces_at_the_same_place(void **state)
         /* glass in glass, to the last bit */
         "Material \"dielectric\"\nShape \"sphere\"\nShape \"sphere\"\nScale -1 1 1\nShape \"sphere\"\n",
         /* a lamp, a mirror and glass on one square; the eye in it */
-        "Material \"dielectric\"\n" "Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ]\n"
-        "Material \"conductor\"\n" "Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ]\n"
-        "AreaLightSource \"diffuse\"\n" "Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ]\n",
+        "Material \"dielectric\"\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ]\n"
+        "Material \"conductor\"\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ]\n"
+        "AreaLightSource \"diffuse\"\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ]\n",
         /* a lamp that is its own other side */
         "AreaLightSource \"diffuse\" \"bool twosided\" true\nShape \"disk\"\nReverseOrientation\nShape \"disk\"\n",
     };
@@ -187,11 +204,14 @@ static void test_things_of_no_size(void **state)
     } CASES[] = {
         {"points for triangles", LAMP "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 0 0 0 0 0 0 ]\n",
          "scene.pbrt:5:1: warning: Shape \"trianglemesh\": 1 of 1 triangles have no area and are left out"},
-        {"a mesh of nothing", LAMP "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ ]\n",
+        {"a mesh of nothing",
+         LAMP "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ ]\n",
          "scene.pbrt:5:1: warning: Shape \"trianglemesh\" is empty and is left out"},
         {"a sphere that floats cannot tell", LAMP "Shape \"sphere\" \"float radius\" 1e-25\n",
-         "scene.pbrt:5:1: warning: Shape \"sphere\" is too small, or scaled by too much or too little, for floats and is left out"},
-        {"a flat sphere", LAMP "Scale 1 1 1e-25\nShape \"sphere\"\n", "scene.pbrt:6:1: warning: Shape \"sphere\" is too small"},
+         "scene.pbrt:5:1: warning: Shape \"sphere\" is too small, or scaled by too much or too little, for floats and "
+         "is left out"},
+        {"a flat sphere", LAMP "Scale 1 1 1e-25\nShape \"sphere\"\n",
+         "scene.pbrt:6:1: warning: Shape \"sphere\" is too small"},
         {"a flat sphere that floats can tell", LAMP "Scale 1 1 1e-12\nShape \"sphere\"\n", ""},
         {"a needle for a lamp", LAMP "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1e-20 0 ]\n", ""},
         {"a lamp of no light", BEFORE "AreaLightSource \"diffuse\" \"float scale\" 0\nShape \"sphere\"\n", "no light"},

@@ -1,5 +1,6 @@
 /* test_program_same_bits.c: the same picture, bit for bit, whatever the number of threads, on demand and precomputed,
- * twice each, in a plain room, in one full of coincidences and in one that moves; and in no run is an irradiance computed twice.
+ * twice each, in a plain room, in one full of coincidences and in one that moves; and in no run is an irradiance
+ * computed twice.
  *
  * Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
 /* ctest: sanitize */
@@ -209,14 +210,10 @@ static void test_cache_off(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_plain_room),
-        TEST_IN_FOLDER(test_coincidences),
-        TEST_IN_FOLDER(test_motion),
-        TEST_IN_FOLDER(test_few_photons_for_many_threads),
-        TEST_IN_FOLDER(test_path_tracer),
-        TEST_IN_FOLDER(test_crop),
-        TEST_IN_FOLDER(test_seed),
-        TEST_IN_FOLDER(test_cache_off),
+        TEST_IN_FOLDER(test_plain_room),  TEST_IN_FOLDER(test_coincidences),
+        TEST_IN_FOLDER(test_motion),      TEST_IN_FOLDER(test_few_photons_for_many_threads),
+        TEST_IN_FOLDER(test_path_tracer), TEST_IN_FOLDER(test_crop),
+        TEST_IN_FOLDER(test_seed),        TEST_IN_FOLDER(test_cache_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

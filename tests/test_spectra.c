@@ -67,8 +67,11 @@ static void the_observer_is_the_standards(void **state)
 static void black_bodies(void **state)
 {
     (void)state;
-    static const double CASES[][3] = {{2856, .44757, .40745}, {4000, .3805, .3768}, {5000, .3451, .3516},
-                                      {6500, .3135, .3237},   {10000, .2806, .2883}};
+    static const double CASES[][3] = {{2856, .44757, .40745},
+                                      {4000, .3805, .3768},
+                                      {5000, .3451, .3516},
+                                      {6500, .3135, .3237},
+                                      {10000, .2806, .2883}};
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         double xy[2], luminance;
         chromaticity(spectra_blackbody(CASES[i][0]), xy, &luminance);
@@ -162,12 +165,12 @@ static void names(void **state)
 {
     (void)state;
     static const char *const KNOWN[] = {
-        "glass-BK7",     "glass-BAF10",  "glass-FK51A",  "glass-LASF9",   "glass-F5",      "glass-F10",
-        "glass-F11",     "metal-Ag-eta", "metal-Ag-k",   "metal-Al-eta",  "metal-Al-k",    "metal-Au-eta",
-        "metal-Au-k",    "metal-Cu-eta", "metal-Cu-k",   "metal-CuZn-eta", "metal-CuZn-k", "metal-MgO-eta",
-        "metal-MgO-k",   "metal-TiO2-eta", "metal-TiO2-k", "stdillum-A",  "stdillum-D50",  "stdillum-D65",
-        "stdillum-F1",   "stdillum-F2",  "stdillum-F3",  "stdillum-F4",   "stdillum-F5",   "stdillum-F6",
-        "stdillum-F7",   "stdillum-F8",  "stdillum-F9",  "stdillum-F10",  "stdillum-F11",  "stdillum-F12",
+        "glass-BK7",    "glass-BAF10",    "glass-FK51A",  "glass-LASF9",    "glass-F5",     "glass-F10",
+        "glass-F11",    "metal-Ag-eta",   "metal-Ag-k",   "metal-Al-eta",   "metal-Al-k",   "metal-Au-eta",
+        "metal-Au-k",   "metal-Cu-eta",   "metal-Cu-k",   "metal-CuZn-eta", "metal-CuZn-k", "metal-MgO-eta",
+        "metal-MgO-k",  "metal-TiO2-eta", "metal-TiO2-k", "stdillum-A",     "stdillum-D50", "stdillum-D65",
+        "stdillum-F1",  "stdillum-F2",    "stdillum-F3",  "stdillum-F4",    "stdillum-F5",  "stdillum-F6",
+        "stdillum-F7",  "stdillum-F8",    "stdillum-F9",  "stdillum-F10",   "stdillum-F11", "stdillum-F12",
         "illum-acesD60"};
     rgb c;
     for (size_t i = 0; i < sizeof KNOWN / sizeof *KNOWN; i++)
@@ -252,10 +255,14 @@ static void adaptation(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_observer_is_the_standards), cmocka_unit_test(black_bodies),
-        cmocka_unit_test(light_has_luminance_one),       cmocka_unit_test(reflectances_are_shares),
-        cmocka_unit_test(indices_stay_between_their_values), cmocka_unit_test(names),
-        cmocka_unit_test(color_spaces),                  cmocka_unit_test(adaptation),
+        cmocka_unit_test(the_observer_is_the_standards),
+        cmocka_unit_test(black_bodies),
+        cmocka_unit_test(light_has_luminance_one),
+        cmocka_unit_test(reflectances_are_shares),
+        cmocka_unit_test(indices_stay_between_their_values),
+        cmocka_unit_test(names),
+        cmocka_unit_test(color_spaces),
+        cmocka_unit_test(adaptation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

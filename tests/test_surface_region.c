@@ -1,5 +1,5 @@
-/* test_surface_region.c: what is surface around a place: nothing to tell in the open and on a ball, half planes at walls and
- * edges, a corner's quarter, none of the next room; and estimates that are right right up to the edge.
+/* test_surface_region.c: what is surface around a place: nothing to tell in the open and on a ball, half planes at
+ * walls and edges, a corner's quarter, none of the next room; and estimates that are right right up to the edge.
  * Threads: one at a time. */
 #include "surface_region.h"
 
@@ -7,9 +7,9 @@
 
 #include "test_scene.h"
 
-/* A floor of 2 x 2 whose edge at x = 1 is open, with walls at x = -1 and z = -1, and a partition at z = 0.5 from x = 0 on. */
-static const char ROOM[] =
-                           "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n"
+/* A floor of 2 x 2 whose edge at x = 1 is open, with walls at x = -1 and z = -1, and a partition at z = 0.5 from x = 0
+ * on. */
+static const char ROOM[] = "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n"
                            "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  -1 1 -1  -1 0 1  -1 1 1]\n"
                            "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 1 -1  1 1 -1]\n"
                            "Shape \"bilinearmesh\" \"point3 P\" [0 0 0.5  1 0 0.5  0 1 0.5  1 1 0.5]\n"
@@ -32,12 +32,11 @@ static void areas_are_those_of_cut_discs(void **state)
     scene *s = test_scene_create(&r, ROOM);
     const float radius = 0.2f;
     const place places[] = {
-        {{-0.3f, 0.0f, -0.2f}, 0.0},            /* in the open */
-        {{-0.9f, 0.0f, 0.0f}, cut_disc(0.5)},   /* a wall */
-        {{0.94f, 0.0f, -0.4f}, cut_disc(0.3)},  /* an open edge */
-        {{0.5f, 0.0f, 0.44f}, cut_disc(0.3)},   /* both sides of a wall without thickness */
-        {{0.5f, 0.0f, 0.56f}, cut_disc(0.3)},
-        {{-0.998f, 0.0f, -0.998f}, PI / 4.0 + 0.02}, /* a corner */
+        {{-0.3f, 0.0f, -0.2f}, 0.0},           /* in the open */
+        {{-0.9f, 0.0f, 0.0f}, cut_disc(0.5)},  /* a wall */
+        {{0.94f, 0.0f, -0.4f}, cut_disc(0.3)}, /* an open edge */
+        {{0.5f, 0.0f, 0.44f}, cut_disc(0.3)},  /* both sides of a wall without thickness */
+        {{0.5f, 0.0f, 0.56f}, cut_disc(0.3)},  {{-0.998f, 0.0f, -0.998f}, PI / 4.0 + 0.02}, /* a corner */
     };
     rng random = test_random(3);
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
@@ -119,8 +118,8 @@ static void a_ball_has_no_edge(void **state)
     test_run_reset(&r);
 }
 
-/* Photons even over a floor alone: estimates near one of its edges, on average, with and without knowing of it, against the
- * photons that really lie there. */
+/* Photons even over a floor alone: estimates near one of its edges, on average, with and without knowing of it, against
+ * the photons that really lie there. */
 static void estimates_hold_up_to_the_edge(void **state)
 {
     (void)state;
@@ -142,8 +141,7 @@ static void estimates_hold_up_to_the_edge(void **state)
             p->normal = direction_encode(UP);
             p->flux = flux_encode(rgb_gray(1.0f), i);
         }
-        photon_map_settings settings = {
-            .nearest = NEAREST, .surface_area = 1.0f, .surfaces = knows ? s : NULL};
+        photon_map_settings settings = {.nearest = NEAREST, .surface_area = 1.0f, .surfaces = knows ? s : NULL};
         photon_map map;
         assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
         photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);

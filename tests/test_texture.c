@@ -472,7 +472,8 @@ static void assert_channels(const char *name, const char *encoding, const double
 static void float_textures_read_one_channel(void **state)
 {
     (void)state;
-    static const float pixel[4] = {1.0f, 1.0f / 3, 2.0f / 3, 0.6f}, opaque[4] = {0.4f, 0.2f, 0.6f, 1.0f}, bad[4] = {1, 1, 1, NAN};
+    static const float pixel[4] = {1.0f, 1.0f / 3, 2.0f / 3, 0.6f}, opaque[4] = {0.4f, 0.2f, 0.6f, 1.0f},
+                       bad[4] = {1, 1, 1, NAN};
     static const float multiplied[4] = {0.6f, 0.2f, 0.4f, 0.6f}; /* PNG files are written divided by alpha */
     write_image("rgba.png", 1, 1, 4, IMAGE_UINT8, multiplied);
     write_image("rgba16.png", 1, 1, 4, IMAGE_UINT16, multiplied);

@@ -1,5 +1,5 @@
-/* atomics.h: C11 atomics under names that carry the memory order, so that every ordering decision can be read at its call.
- * Each use says with whom it pairs. Threads: any. */
+/* atomics.h: C11 atomics under names that carry the memory order, so that every ordering decision can be read at its
+ * call. Each use says with whom it pairs. Threads: any. */
 #ifndef AFTERGLOW_ATOMICS_H
 #define AFTERGLOW_ATOMICS_H
 

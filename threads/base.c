@@ -13,8 +13,7 @@ const char *ag_status_text(ag_status status)
 {
     switch (status) {
 #define STATUS_CASE(code, text)                                                                                        \
-    case code:                                                                                                         \
-        return text;
+    case code: return text;
         AG_STATUS_LIST(STATUS_CASE)
 #undef STATUS_CASE
     }
@@ -25,12 +24,10 @@ const char *ag_phase_name(ag_phase phase)
 {
     switch (phase) {
 #define PHASE_CASE(code, text)                                                                                         \
-    case code:                                                                                                         \
-        return text;
+    case code: return text;
         AG_PHASE_LIST(PHASE_CASE)
 #undef PHASE_CASE
-    case AG_PHASE_COUNT:
-        break;
+    case AG_PHASE_COUNT: break;
     }
     return "unknown phase";
 }

@@ -1,6 +1,6 @@
-/* floating_point.h: the floating-point state that all our arithmetic runs in: exceptions masked, round to nearest, denormals
- * flushed (FTZ and DAZ, as Embree's manual asks). It is set as a whole: what a caller or a library left there would
- * otherwise reach the picture. Threads: each has its own state. */
+/* floating_point.h: the floating-point state that all our arithmetic runs in: exceptions masked, round to nearest,
+ * denormals flushed (FTZ and DAZ, as Embree's manual asks). It is set as a whole: what a caller or a library left there
+ * would otherwise reach the picture. Threads: each has its own state. */
 #ifndef AFTERGLOW_FLOATING_POINT_H
 #define AFTERGLOW_FLOATING_POINT_H
 

@@ -11,8 +11,8 @@
 #include <pthread.h>
 
 typedef struct run_context {
-    thread_pool *pool; /* borrowed */
-    log_sink *log;     /* borrowed, may be NULL */
+    thread_pool *pool;        /* borrowed */
+    log_sink *log;            /* borrowed, may be NULL */
     ag_progress_fn *progress; /* may be NULL */
     void *progress_user;
     pthread_mutex_t progress_mutex; /* protects the three below and serialises the callback */
@@ -23,7 +23,8 @@ typedef struct run_context {
 } run_context;
 
 /* Borrows pool and log. */
-void run_context_init(run_context *run, thread_pool *pool, log_sink *log, ag_progress_fn *progress, void *progress_user);
+void run_context_init(run_context *run, thread_pool *pool, log_sink *log, ag_progress_fn *progress,
+                      void *progress_user);
 void run_context_reset(run_context *run); /* releases what init took; pool and log stay the caller's */
 
 static inline void run_cancel(run_context *run) { store_relaxed_u32(&run->cancelled, 1); }

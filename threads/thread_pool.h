@@ -18,7 +18,8 @@ void thread_pool_destroy(thread_pool *pool); /* NULL is fine */
 unsigned thread_pool_worker_count(const thread_pool *pool);
 
 /* Runs fn on every worker and returns when all have returned. Not to be nested. While fn runs, the MXCSR of every
- * thread, the caller's too, flushes denormals (FTZ and DAZ, as Embree's manual asks); the caller's is put back afterwards. */
+ * thread, the caller's too, flushes denormals (FTZ and DAZ, as Embree's manual asks); the caller's is put back
+ * afterwards. */
 void thread_pool_run(thread_pool *pool, thread_pool_fn *fn, void *user);
 
 #endif

@@ -41,7 +41,9 @@ typedef struct option_line {
 } option_line;
 
 static const option_line LINES[] = {
-    {'o', "outfile", "FILE", "write the picture to FILE; may be repeated; .exr is scene-linear,\n.png, .tif and .jpg go through a display and view (default: the Film's\nfilename, else SCENE.exr)"},
+    {'o', "outfile", "FILE",
+     "write the picture to FILE; may be repeated; .exr is scene-linear,\n.png, .tif and .jpg go through a display and "
+     "view (default: the Film's\nfilename, else SCENE.exr)"},
     {'t', "nthreads", "N", "threads (default: what affinity mask and cgroup quota allow)"},
     {OPT_SEED, "seed", "N", "seed of all random numbers (default: the scene's, else 0)"},
     {OPT_SPP, "spp", "N", "samples per pixel (default: the scene's, else 16)"},
@@ -51,7 +53,8 @@ static const option_line LINES[] = {
     {OPT_CACHE, "cache", "MODE", "irradiance at the photons: on-demand (default), precompute, or off"},
     {OPT_ONLY, "only", "indirect", "leave out emission, and direct light at the first non-specular hit"},
     {OPT_PHOTONS, "photons", "N", "photons to store in the global map (default 1000000)"},
-    {OPT_CAUSTIC_PHOTONS, "caustic-photons", "N", "photons to store in the caustic map (default 500000, where there is\nspecular matter)"},
+    {OPT_CAUSTIC_PHOTONS, "caustic-photons", "N",
+     "photons to store in the caustic map (default 500000, where there is\nspecular matter)"},
     {OPT_NEAREST, "nearest", "K", "photons of an irradiance estimate (default 50)"},
     {OPT_RADIUS, "radius", "R", "largest radius of an estimate, scene units; 0: from the photons' density"},
     {OPT_GATHER, "gather-samples", "N", "gather rays for each camera sample (default: 256 a pixel in all)"},
@@ -62,7 +65,9 @@ static const option_line LINES[] = {
     {OPT_VIEW, "view", "NAME", "view of the display"},
     {OPT_STATS, "stats", "FILE", "write statistics as JSON"},
     {OPT_PROGRESS, "progress", "STYLE", "auto (default), bar, plain, json or none"},
-    {OPT_ISA, "isa", "NAME", "widest instruction set of ray traversal: sse2, sse4.2, avx, avx2\n(default), avx512; another one may give other bits"},
+    {OPT_ISA, "isa", "NAME",
+     "widest instruction set of ray traversal: sse2, sse4.2, avx, avx2\n(default), avx512; another one may give other "
+     "bits"},
     {'q', "quiet", NULL, "errors only"},
     {'v', "verbose", NULL, "also say what was done; twice: also what is harmless in the scene"},
     {OPT_HELP, "help", NULL, "this text"},
@@ -73,12 +78,14 @@ enum { LINE_COUNT = sizeof LINES / sizeof *LINES };
 static void print_help(void)
 {
     printf("usage: afterglow [options] SCENE\n"
-           "Renders a scene with photon mapping and final gathering: pbrt-v4 text (plain or gzip; - is standard input), glTF,\n"
+           "Renders a scene with photon mapping and final gathering: pbrt-v4 text (plain or gzip; - is standard "
+           "input), glTF,\n"
            "OBJ, PLY, STL, Collada, FBX and what else assimp reads.\n"
            "Values that are not given come from the scene, else from defaults.\n\n");
     for (int i = 0; i < LINE_COUNT; i++) {
         char left[64];
-        int at = LINES[i].code < 256 ? snprintf(left, sizeof left, "-%c, ", LINES[i].code) : snprintf(left, sizeof left, "    ");
+        int at = LINES[i].code < 256 ? snprintf(left, sizeof left, "-%c, ", LINES[i].code)
+                                     : snprintf(left, sizeof left, "    ");
         snprintf(left + at, sizeof left - (size_t)at, "--%s%s%s", LINES[i].name, LINES[i].argument ? " " : "",
                  LINES[i].argument ? LINES[i].argument : "");
         printf("  %-32s", left);
@@ -146,8 +153,9 @@ static bool parse_size(const char *text, int *out_width, int *out_height)
 static bool parse_crop(const char *text, double crop[4])
 {
     int used = 0;
-    return sscanf(text, "%lf,%lf,%lf,%lf%n", &crop[0], &crop[1], &crop[2], &crop[3], &used) == 4 && text[used] == '\0' &&
-           crop[0] >= 0.0 && crop[0] < crop[1] && crop[1] <= 1.0 && crop[2] >= 0.0 && crop[2] < crop[3] && crop[3] <= 1.0;
+    return sscanf(text, "%lf,%lf,%lf,%lf%n", &crop[0], &crop[1], &crop[2], &crop[3], &used) == 4 &&
+           text[used] == '\0' && crop[0] >= 0.0 && crop[0] < crop[1] && crop[1] <= 1.0 && crop[2] >= 0.0 &&
+           crop[2] < crop[3] && crop[3] <= 1.0;
 }
 
 /* The place of a word in a list, -1 where it is not in it. */
@@ -165,7 +173,8 @@ static bool parse_word(const char *text, const char *const *words, int count, in
     return *out_index >= 0;
 }
 
-#define WORDS(...) (const char *const[]){__VA_ARGS__}, (int)(sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
+#define WORDS(...)                                                                                                     \
+    (const char *const[]){__VA_ARGS__}, (int)(sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
 
 /* One option; false when its argument is not valid. */
 static bool take_option(int code, const char *value, options *o)
@@ -260,7 +269,8 @@ options_result options_parse(int argc, char **argv, options *out_options)
 {
     struct option longs[LINE_COUNT + 1];
     for (int i = 0; i < LINE_COUNT; i++)
-        longs[i] = (struct option){LINES[i].name, LINES[i].argument ? required_argument : no_argument, NULL, LINES[i].code};
+        longs[i] =
+            (struct option){LINES[i].name, LINES[i].argument ? required_argument : no_argument, NULL, LINES[i].code};
     longs[LINE_COUNT] = (struct option){0};
 
     options o = {.context = ag_default_context_settings(), .output = ag_default_output_settings()};
@@ -280,13 +290,15 @@ options_result options_parse(int argc, char **argv, options *out_options)
             result = OPTIONS_EXIT_OK;
         } else if (!take_option(code, optarg, &o)) {
             const option_line *line = option_line_of(code);
-            fprintf(stderr, "afterglow: --%s: '%s' is not valid: %s %s: %s\n", line->name, optarg, line->name, line->argument,
-                    line->help);
+            fprintf(stderr, "afterglow: --%s: '%s' is not valid: %s %s: %s\n", line->name, optarg, line->name,
+                    line->argument, line->help);
             result = OPTIONS_EXIT_USAGE;
         }
     }
     if (result == OPTIONS_RUN && optind != argc - 1) {
-        fprintf(stderr, optind < argc ? "afterglow: one scene at a time: '%s' is one too many\n" : "afterglow: no scene given%s\n",
+        fprintf(stderr,
+                optind < argc ? "afterglow: one scene at a time: '%s' is one too many\n"
+                              : "afterglow: no scene given%s\n",
                 optind < argc ? argv[optind + 1] : "");
         result = OPTIONS_EXIT_USAGE;
     }

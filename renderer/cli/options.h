@@ -5,7 +5,13 @@
 
 #include "afterglow/afterglow.h"
 
-typedef enum progress_style { PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_PLAIN, PROGRESS_JSON, PROGRESS_NONE } progress_style;
+typedef enum progress_style {
+    PROGRESS_AUTO,
+    PROGRESS_BAR,
+    PROGRESS_PLAIN,
+    PROGRESS_JSON,
+    PROGRESS_NONE
+} progress_style;
 
 /* What the scene says holds where a value was not given. */
 typedef struct options {

@@ -21,7 +21,8 @@ void progress_init(progress *p, const options *o)
 /* The whole work in percent: each phase has a share of it that is usual. */
 static int overall_percent(const progress *p, ag_phase phase, double fraction)
 {
-    double shares[AG_PHASE_COUNT] = {[AG_PHASE_LOAD] = 2, [AG_PHASE_BVH] = 2, [AG_PHASE_RENDER] = 94, [AG_PHASE_WRITE] = 2};
+    double shares[AG_PHASE_COUNT] = {
+        [AG_PHASE_LOAD] = 2, [AG_PHASE_BVH] = 2, [AG_PHASE_RENDER] = 94, [AG_PHASE_WRITE] = 2};
     if (!p->is_path) {
         shares[AG_PHASE_PHOTONS] = 10;
         shares[AG_PHASE_MAP] = 3;

@@ -11,8 +11,8 @@ typedef struct progress {
     progress_style style; /* never PROGRESS_AUTO */
     int verbosity;
     bool bar_is_shown;
-    int told_percent;     /* the last one told, -1 before the first */
-    bool has_precompute;  /* its share of the work */
+    int told_percent;    /* the last one told, -1 before the first */
+    bool has_precompute; /* its share of the work */
     bool is_path;
 } progress;
 

@@ -85,8 +85,8 @@ static inline vec2 sample_triangle_inverse(vec2 b)
     return b.y > b.x ? (vec2){2.0f * b.x, b.x + b.y} : (vec2){b.x + b.y, 2.0f * b.y};
 }
 
-/* Veach and Guibas, "Optimally Combining Sampling Techniques", 1995: the power heuristic, exponent 2, for a sample drawn
- * by the first of two techniques with count_a and count_b samples. */
+/* Veach and Guibas, "Optimally Combining Sampling Techniques", 1995: the power heuristic, exponent 2, for a sample
+ * drawn by the first of two techniques with count_a and count_b samples. */
 static inline float mis_power(float count_a, float pdf_a, float count_b, float pdf_b)
 {
     float a = count_a * pdf_a, b = count_b * pdf_b;

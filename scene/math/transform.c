@@ -143,10 +143,8 @@ bool transform_look_at(const double eye[3], const double look[3], const double u
     y[0] = z[1] * x[2] - z[2] * x[1];
     y[1] = z[2] * x[0] - z[0] * x[2];
     y[2] = z[0] * x[1] - z[1] * x[0];
-    double world_from_camera[4][4] = {{x[0], y[0], z[0], eye[0]},
-                                      {x[1], y[1], z[1], eye[1]},
-                                      {x[2], y[2], z[2], eye[2]},
-                                      {0, 0, 0, 1}};
+    double world_from_camera[4][4] = {
+        {x[0], y[0], z[0], eye[0]}, {x[1], y[1], z[1], eye[1]}, {x[2], y[2], z[2], eye[2]}, {0, 0, 0, 1}};
     transform t;
     if (!transform_from_matrix((const double(*)[4])world_from_camera, &t))
         return false;

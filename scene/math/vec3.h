@@ -30,7 +30,10 @@ static inline vec3 vec3_mul(vec3 a, vec3 b) { return (vec3){a.x * b.x, a.y * b.y
 static inline vec3 vec3_scale(vec3 a, float s) { return (vec3){a.x * s, a.y * s, a.z * s}; }
 static inline vec3 vec3_negate(vec3 a) { return (vec3){-a.x, -a.y, -a.z}; }
 /* a + b s */
-static inline vec3 vec3_add_scaled(vec3 a, vec3 b, float s) { return (vec3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s}; }
+static inline vec3 vec3_add_scaled(vec3 a, vec3 b, float s)
+{
+    return (vec3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
+}
 static inline float vec3_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 static inline vec3 vec3_cross(vec3 a, vec3 b)
 {

@@ -18,10 +18,7 @@ const char *__asan_default_options(void)
 
 /* OpenImageIO loses a text where libpng jumps out of it; the rest of the stack is not to be had. */
 __attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:std::__cxx11::basic_string<*>::_M_assign";
-}
+const char *__lsan_default_suppressions(void) { return "leak:std::__cxx11::basic_string<*>::_M_assign"; }
 
 static char folder[64];
 

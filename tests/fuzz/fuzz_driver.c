@@ -64,7 +64,10 @@ static void reset(byte_lists *lists)
     free(lists->items);
 }
 
-static int compare_names(const struct dirent **a, const struct dirent **b) { return strcmp((*a)->d_name, (*b)->d_name); }
+static int compare_names(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name);
+}
 
 /* Files larger than an input may be are passed over. */
 static void add_seeds(byte_lists *seeds, const char *path)
@@ -163,14 +166,16 @@ static void find_word(size_t *out_at, size_t *out_size)
     *out_size = end - at;
 }
 
-static const char *const NUMBERS[] = {"0",    "-0",   "1",    "-1",  "2",     "3",          "0.5",        "1e-30", "1e30",
-                                      "-1e9", "1e38", "1e39", "nan", "1e308", "2147483647", "4294967296", "-5",    "1e-3",
-                                      "100",  "7",    "1e18", "inf", "16",    "-0.0001",    "1e400",      "65536"};
+static const char *const NUMBERS[] = {"0",          "-0",         "1",       "-1",    "2",    "3",   "0.5",
+                                      "1e-30",      "1e30",       "-1e9",    "1e38",  "1e39", "nan", "1e308",
+                                      "2147483647", "4294967296", "-5",      "1e-3",  "100",  "7",   "1e18",
+                                      "inf",        "16",         "-0.0001", "1e400", "65536"};
 
 static void change_once(const byte_lists *seeds, const byte_lists *words)
 {
-    static const uint32_t WHOLE[] = {0,          1,          0xff,       0x7f,       0x80,      0xffff,    0x7fff,
-                                     0x7fffffff, 0x80000000, 0xffffffff, 0x10000000, 0x3f800000, 0x7f800000, 0x7fc00000};
+    static const uint32_t WHOLE[] = {0,          1,          0xff,       0x7f,       0x80,
+                                     0xffff,     0x7fff,     0x7fffffff, 0x80000000, 0xffffffff,
+                                     0x10000000, 0x3f800000, 0x7f800000, 0x7fc00000};
     uint8_t copy[256];
     size_t at = below(input_size), size, other, other_size;
     switch (below(13)) {

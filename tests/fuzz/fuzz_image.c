@@ -1,5 +1,5 @@
-/* fuzz_image.c: a picture as texture and as light from everywhere: OpenImageIO decodes it, what it says is ours to judge.
- * Flow: bytes -> a file -> [here] -> image_reader, texture_image, pbrt_environments. Threads: one. */
+/* fuzz_image.c: a picture as texture and as light from everywhere: OpenImageIO decodes it, what it says is ours to
+ * judge. Flow: bytes -> a file -> [here] -> image_reader, texture_image, pbrt_environments. Threads: one. */
 #include "fuzz_scene.h"
 #include "image_module_loader.h"
 #include "pbrt_parser.h"
@@ -12,8 +12,13 @@ static const char *name_of(const uint8_t *data, size_t size)
 {
     static const struct {
         const char *bytes, *name;
-    } KINDS[] = {{"\x76\x2f\x31\x01", "a.exr"}, {"\x89PNG", "a.png"}, {"#?", "a.hdr"}, {"P", "a.pfm"},
-                 {"II*", "a.tif"},              {"MM", "a.tif"},      {"\xff\xd8", "a.jpg"}};
+    } KINDS[] = {{"\x76\x2f\x31\x01", "a.exr"},
+                 {"\x89PNG", "a.png"},
+                 {"#?", "a.hdr"},
+                 {"P", "a.pfm"},
+                 {"II*", "a.tif"},
+                 {"MM", "a.tif"},
+                 {"\xff\xd8", "a.jpg"}};
     for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++)
         if (size >= strlen(KINDS[i].bytes) && memcmp(data, KINDS[i].bytes, strlen(KINDS[i].bytes)) == 0)
             return KINDS[i].name;
@@ -23,7 +28,8 @@ static const char *name_of(const uint8_t *data, size_t size)
 static void read_scene(const char *name, const char *before, const char *behind)
 {
     char text[512];
-    snprintf(text, sizeof text, "Camera \"perspective\" WorldBegin %s \"string filename\" \"%s\" %s", before, name, behind);
+    snprintf(text, sizeof text, "Camera \"perspective\" WorldBegin %s \"string filename\" \"%s\" %s", before, name,
+             behind);
     fuzz_run run;
     fuzz_run_init(&run);
     scene *s = scene_create();

@@ -1,5 +1,5 @@
-/* fuzz_new.cpp: C++'s memory for the target of pictures: what is too large throws, as it does without a sanitizer, where
- * ASan would end the process. Threads: any. */
+/* fuzz_new.cpp: C++'s memory for the target of pictures: what is too large throws, as it does without a sanitizer,
+ * where ASan would end the process. Threads: any. */
 #include <cstdlib>
 #include <new>
 

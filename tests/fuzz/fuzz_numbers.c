@@ -1,5 +1,5 @@
-/* fuzz_numbers.c: text files of numbers that a scene names: a spectrum, emitted and reflected, and a lens; plain and gzip.
- * Flow: bytes -> a file -> [here] -> pbrt_colors, spectra, pbrt_realistic. Threads: one. */
+/* fuzz_numbers.c: text files of numbers that a scene names: a spectrum, emitted and reflected, and a lens; plain and
+ * gzip. Flow: bytes -> a file -> [here] -> pbrt_colors, spectra, pbrt_realistic. Threads: one. */
 #include "fuzz_scene.h"
 #include "pbrt_parser.h"
 
@@ -26,7 +26,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_enter_folder();
     fuzz_write("n", data, size);
     read_scene("Camera \"perspective\" WorldBegin LightSource \"point\" \"spectrum I\" \"n\"");
-    read_scene("Camera \"perspective\" WorldBegin Material \"diffuse\" \"spectrum reflectance\" \"n\" Shape \"sphere\"");
+    read_scene(
+        "Camera \"perspective\" WorldBegin Material \"diffuse\" \"spectrum reflectance\" \"n\" Shape \"sphere\"");
     read_scene("Camera \"realistic\" \"string lensfile\" \"n\" WorldBegin Shape \"sphere\"");
     return 0;
 }

@@ -1,6 +1,6 @@
-/* fuzz_render.c: whatever scene can be read can be rendered: both integrators, a handful of pixels, photons and rays, and
- * no pixel that is not a number.
- * Flow: bytes -> a file -> [here] -> the public interface. Threads: one of the program's. */
+/* fuzz_render.c: whatever scene can be read can be rendered: both integrators, a handful of pixels, photons and rays,
+ * and no pixel that is not a number. Flow: bytes -> a file -> [here] -> the public interface. Threads: one of the
+ * program's. */
 #include "afterglow/afterglow.h"
 #include "fuzz_scene.h"
 

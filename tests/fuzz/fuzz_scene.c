@@ -9,9 +9,10 @@
 void fuzz_enter_folder_with_files(void)
 {
     static const char SCENE[] = "Shape \"disk\" \"float height\" 2\n";
-    static const char PLY[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                              "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                              "0 0 2\n1 0 2\n0 1 2\n3 0 1 2\n";
+    static const char PLY[] =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 2\n1 0 2\n0 1 2\n3 0 1 2\n";
     static const char PICTURE[] = "PF\n2 1\n-1.0\n"
                                   "\0\0\200\077\0\0\0\077\0\0\200\076\0\0\0\077\0\0\200\076\0\0\0\100";
     static const char SPECTRUM[] = "400 1 700 2\n", LENS[] = "50 5 1.5 30\n-50 5 1 30\n";
@@ -62,7 +63,8 @@ static bool is_unit(vec3 v) { return fabsf(vec3_length(v) - 1.0f) < 1e-3f; }
 
 static void cast_rays(const scene *s)
 {
-    static const vec3 DIRECTIONS[] = {{0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, -1.0f}, {0.6f, 0.64f, 0.48f}, {-0.8f, 0.6f, 0.0f}};
+    static const vec3 DIRECTIONS[] = {
+        {0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, -1.0f}, {0.6f, 0.64f, 0.48f}, {-0.8f, 0.6f, 0.0f}};
     for (int d = 0; d < 4; d++)
         for (int o = 0; o < 2; o++) {
             scene_ray ray = {.origin = o ? s->bounding_center : s->bounds_min, .direction = DIRECTIONS[d]};

@@ -24,12 +24,12 @@ extern "C" {
 typedef struct ag_context ag_context;
 
 typedef struct ag_context_settings {
-    unsigned thread_count;     /* 0: as many as the affinity mask and the cgroup's quota allow; default 0 */
-    const char *isa;           /* widest instruction set of ray traversal: "sse2", "sse4.2", "avx", "avx2", "avx512";
-                                  NULL: "avx2". Another set may give other bits. */
-    ag_log_fn *log;            /* NULL: messages are dropped */
-    ag_progress_fn *progress;  /* or NULL */
-    void *user;                /* handed to both */
+    unsigned thread_count;    /* 0: as many as the affinity mask and the cgroup's quota allow; default 0 */
+    const char *isa;          /* widest instruction set of ray traversal: "sse2", "sse4.2", "avx", "avx2", "avx512";
+                                 NULL: "avx2". Another set may give other bits. */
+    ag_log_fn *log;           /* NULL: messages are dropped */
+    ag_progress_fn *progress; /* or NULL */
+    void *user;               /* handed to both */
 } ag_context_settings;
 
 AG_API ag_context_settings ag_default_context_settings(void);
@@ -45,7 +45,8 @@ AG_API void ag_context_cancel(ag_context *context);
 
 typedef struct ag_scene ag_scene;
 
-/* Reads a scene and builds what rays need. The end of the name says the format: .gltf, .glb; .obj; .ply; what assimp reads
+/* Reads a scene and builds what rays need. The end of the name says the format: .gltf, .glb; .obj; .ply; what assimp
+ * reads
  * (.stl, .dae, .fbx, ...), for which a process is started; all else is pbrt-v4 text (plain or gzip; "-" is standard
  * input). A camera and light are made up where a model brings none. */
 AG_API ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_scene);
@@ -72,28 +73,29 @@ typedef struct ag_render_settings {
     ag_only only;             /* AG_ONLY_INDIRECT: less emission and direct light at the first non-specular hit */
     uint64_t seed;            /* default 0; statistics show it as a signed number */
 
-    int width, height;        /* pixels of the full picture, [1, 65536] */
-    double crop_window[4];    /* x0, x1, y0, y1 in [0, 1]: the part to render, from the left and from the top, as
-                                 pbrt's cropwindow: pixels from ceil(x0 width) up to ceil(x1 width) - 1; default 0 1 0 1 */
-    int samples_per_pixel;    /* [1, 2^20] */
-    float exposure;           /* pixels are the radiance times this: pbrt's imaging ratio, the shutter's time * iso / 100;
-                                 > 0, default 1 */
-    float max_component;      /* no component of a sample in CIE XYZ, which is pbrt's sensor, is above it: brighter samples
-                                 are scaled down; 0: unbounded, the default */
-    float white_balance;      /* K, [1000, 25000]: daylight of this temperature (below 4000: a black body) becomes white;
-                                 0: none, the default */
-    bool float_samples;       /* EXR files of the film hold floats where ag_output_settings leaves it open; default half */
-    int max_depth;            /* scatterings between lamp and eye, [0, 100]; 100: roulette alone ends paths. Path tracing
-                                 keeps it exactly. The photon map bounds light's part (to max_depth - 2 before a
-                                 gather ray ends, max_depth - 1 before a caustic) and the eye's part apart: behind
-                                 mirrors and glass there may be some more. */
+    int width, height;     /* pixels of the full picture, [1, 65536] */
+    double crop_window[4]; /* x0, x1, y0, y1 in [0, 1]: the part to render, from the left and from the top, as
+                              pbrt's cropwindow: pixels from ceil(x0 width) up to ceil(x1 width) - 1; default 0 1 0 1 */
+    int samples_per_pixel; /* [1, 2^20] */
+    float exposure;        /* pixels are the radiance times this: pbrt's imaging ratio, the shutter's time * iso / 100;
+                              > 0, default 1 */
+    float max_component;   /* no component of a sample in CIE XYZ, which is pbrt's sensor, is above it: brighter samples
+                              are scaled down; 0: unbounded, the default */
+    float white_balance;   /* K, [1000, 25000]: daylight of this temperature (below 4000: a black body) becomes white;
+                              0: none, the default */
+    bool float_samples;    /* EXR files of the film hold floats where ag_output_settings leaves it open; default half */
+    int max_depth;         /* scatterings between lamp and eye, [0, 100]; 100: roulette alone ends paths. Path tracing
+                              keeps it exactly. The photon map bounds light's part (to max_depth - 2 before a
+                              gather ray ends, max_depth - 1 before a caustic) and the eye's part apart: behind
+                              mirrors and glass there may be some more. */
 
-    uint64_t photon_count;         /* photons to store in the global map, [1, 2^32 - 2] */
-    uint64_t caustic_photon_count; /* photons to store in the caustic map; only where there is specular matter; [0, …] */
-    int nearest;                   /* photons of an estimate, [1, 65536] */
-    float radius;                  /* largest radius of an estimate, scene units; 0: from the photons' density */
-    int gather_samples;            /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
-                                      gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
+    uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t
+        caustic_photon_count; /* photons to store in the caustic map; only where there is specular matter; [0, …] */
+    int nearest;              /* photons of an estimate, [1, 65536] */
+    float radius;             /* largest radius of an estimate, scene units; 0: from the photons' density */
+    int gather_samples;       /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
+                                 gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
 } ag_render_settings;
 
 /* The scene's own settings, and our defaults for what it leaves open; says in the log what it makes of another
@@ -116,7 +118,13 @@ AG_API const float *ag_film_pixels(const ag_film *film, int *out_width, int *out
 
 /* --- files --- */
 
-typedef enum ag_sample_type { AG_SAMPLE_DEFAULT, AG_SAMPLE_UINT8, AG_SAMPLE_UINT16, AG_SAMPLE_HALF, AG_SAMPLE_FLOAT } ag_sample_type;
+typedef enum ag_sample_type {
+    AG_SAMPLE_DEFAULT,
+    AG_SAMPLE_UINT8,
+    AG_SAMPLE_UINT16,
+    AG_SAMPLE_HALF,
+    AG_SAMPLE_FLOAT
+} ag_sample_type;
 
 typedef struct ag_output_settings {
     const char *color_config; /* an OpenColorIO config; NULL: $OCIO, else the one compiled in */
@@ -146,9 +154,9 @@ AG_API void ag_abandon_files(void);
 typedef struct ag_statistics {
     unsigned threads;
     uint64_t photons_emitted, photons_stored_global, photons_stored_caustic, photon_bytes;
-    /* requests: places asked for; computed: estimates at photons; distinct: photons found ready afterwards that were not
-     * before, counted by looking; deferred: set aside because another thread was computing; waited: had to wait in the end;
-     * duplicated: computed twice, 0; uncached: estimates at places themselves */
+    /* requests: places asked for; computed: estimates at photons; distinct: photons found ready afterwards that were
+     * not before, counted by looking; deferred: set aside because another thread was computing; waited: had to wait in
+     * the end; duplicated: computed twice, 0; uncached: estimates at places themselves */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
         irradiance_duplicated, irradiance_uncached;
     double irradiance_estimate_s; /* CPU seconds spent in estimates, all threads; from a sixteenth of them */
