@@ -79,16 +79,15 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
     int lamp_count = t->light_samples, scatter_count = t->scatter_samples;
     vec3 from = v->hit.position, normal = direct_light_normal(v, BSDF_GATHERED);
     for (int i = 0; i < lamp_count; i++) {
-        uint32_t index = where->sample * (uint32_t)lamp_count + (uint32_t)i;
-        float u_pick = sampler_2d_at(where, SAMPLE_LIGHT_PICK, path_vertex, index).x;
-        vec2 u = sampler_2d_at(where, SAMPLE_LIGHT, path_vertex, index);
+        float u_pick = sampler_2d_of(where, SAMPLE_LIGHT_PICK, path_vertex, (uint32_t)lamp_count, (uint32_t)i).x;
+        vec2 u = sampler_2d_of(where, SAMPLE_LIGHT, path_vertex, (uint32_t)lamp_count, (uint32_t)i);
         from_lamps = rgb_add(from_lamps,
                              direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, lamp_count, scatter_count));
     }
     for (int i = 0; i < scatter_count; i++) {
-        uint32_t index = where->sample * (uint32_t)scatter_count + (uint32_t)i;
-        float u_lobe = sampler_2d_at(where, SAMPLE_LOBE, path_vertex, index).y; /* x is for the way on */
-        vec2 u = sampler_2d_at(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex, index);
+        float u_lobe = sampler_2d_of(where, SAMPLE_LOBE, path_vertex, (uint32_t)scatter_count, (uint32_t)i)
+                           .y; /* x is for the way on */
+        vec2 u = sampler_2d_of(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex, (uint32_t)scatter_count, (uint32_t)i);
         bsdf_sample scattered;
         if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, u_lobe, u, &scattered))
             continue;

@@ -91,7 +91,7 @@ rgb final_gather(const transport *t, eye_worker *worker, const vertex *v, const 
         *ray = (gather_ray){.request = {.photon = PHOTON_NONE}};
         uint32_t index = where->sample * count + sent;
         bsdf_sample first;
-        vec2 u = sampler_2d_at(where, SAMPLE_GATHER, path_vertex, index);
+        vec2 u = sampler_2d_of(where, SAMPLE_GATHER, path_vertex, count, sent);
         rng random = rng_make(where->key, (uint64_t)path_vertex, index);
         float u_lobe = rng_float(&random);
         if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, u_lobe, u, &first))

@@ -142,7 +142,7 @@ static rgb render_sample(const tile_job *job, eye_worker *worker, int x, int y, 
 {
     const transport *t = job->t;
     const ag_render_settings *settings = t->settings;
-    sampler where = sampler_make(settings->seed, x, y, index);
+    sampler where = sampler_make(settings->seed, x, y, index, sampler_bits((uint32_t)settings->samples_per_pixel));
     vec2 offset = pixel_filter_sample(job->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), out_sign);
     vec2 lens = t->s->options.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
     float time = !t->s->has_motion                    ? 0.0f

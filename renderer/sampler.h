@@ -1,8 +1,10 @@
 /* sampler.h: well-spread sample positions as a pure function of pixel, dimension and index.
  * Rests on: Owen, "Randomly Permuted (t,m,s)-Nets", 1995; Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4),
- * 2020; Vegdahl, "Building a Better LK Hash", 2021 (the constants). The first two dimensions of Sobol's sequence,
- * scrambled and shuffled anew for each dimension asked for: any 2^n consecutive aligned samples are stratified in every
- * pair. Keyed by absolute pixel: crops see the same samples. Threads: pure functions. */
+ * 2020; Vegdahl, "Building a Better LK Hash", 2021 (the constants); Ahmed, Wonka, "Screen-space Blue-noise Diffusion of
+ * Monte Carlo Sampling Error via Hierarchical Ordering of Pixels", 2020. The first two dimensions of Sobol's sequence,
+ * scrambled and shuffled anew for each dimension asked for, run through the pixels in Morton order: any 2^n consecutive
+ * aligned samples are stratified in every pair, those of a pixel as well as those of a square of 2^k by 2^k pixels, so
+ * that neighbours' errors cancel. Keyed by absolute pixel: crops see the same samples. Threads: pure functions. */
 #ifndef AFTERGLOW_SAMPLER_H
 #define AFTERGLOW_SAMPLER_H
 
@@ -26,14 +28,35 @@ typedef enum sample_use {
 } sample_use;
 
 typedef struct sampler {
-    uint64_t key;    /* of seed and pixel */
-    uint32_t sample; /* of the pixel */
+    uint64_t key;         /* of seed and pixel: for what is random only */
+    uint64_t block_key;   /* of seed and block of pixels */
+    uint32_t place;       /* of the pixel in its block, in Morton order */
+    uint32_t sample;      /* of the pixel */
+    uint32_t sample_bits; /* the pixel has no more than 2^this samples */
 } sampler;
 
-static inline sampler sampler_make(uint64_t seed, int x, int y, uint32_t sample)
+enum { SAMPLER_BLOCK_BITS = 8 }; /* a block: 2^this pixels wide and high */
+
+/* The smallest n with 2^n >= count; count >= 1. */
+static inline uint32_t sampler_bits(uint32_t count) { return count > 1 ? 32 - (uint32_t)__builtin_clz(count - 1) : 0; }
+
+/* The low 8 bits of each, interlaced. */
+static inline uint32_t sampler_morton(uint32_t x, uint32_t y)
 {
-    uint64_t pixel = (uint64_t)(uint32_t)y << 32 | (uint32_t)x;
-    return (sampler){hash_combine(hash_mix64(seed + 0x73616d706c6572u), pixel), sample};
+    uint32_t both = (x & 0xffu) | (y & 0xffu) << 16;
+    both = (both | both << 4) & 0x0f0f0f0fu;
+    both = (both | both << 2) & 0x33333333u;
+    both = (both | both << 1) & 0x55555555u;
+    return (both | both >> 15) & 0xffffu;
+}
+
+static inline sampler sampler_make(uint64_t seed, int x, int y, uint32_t sample, uint32_t sample_bits)
+{
+    uint32_t column = (uint32_t)x, row = (uint32_t)y;
+    uint64_t seed_key = hash_mix64(seed + 0x73616d706c6572u), pixel = (uint64_t)row << 32 | column;
+    uint64_t block = (uint64_t)(row >> SAMPLER_BLOCK_BITS) << 32 | column >> SAMPLER_BLOCK_BITS;
+    return (sampler){hash_combine(seed_key, pixel), hash_combine(seed_key ^ 0x626c6f636bu, block),
+                     sampler_morton(column, row), sample, sample_bits};
 }
 
 static inline uint32_t sampler_reverse_bits(uint32_t x)
@@ -71,12 +94,13 @@ static inline uint32_t sampler_sobol_1(uint32_t index)
     return result;
 }
 
-/* Sample `index` of the sequence for a use at a vertex of the path, in [0,1)^2. */
-static inline vec2 sampler_2d_at(const sampler *s, sample_use use, int vertex, uint32_t index)
+/* Number i of the `count` that the sample draws for a use at a vertex of the path, in [0,1)^2. */
+static inline vec2 sampler_2d_of(const sampler *s, sample_use use, int vertex, uint32_t count, uint32_t i)
 {
-    uint64_t hash = hash_combine(s->key, (uint64_t)vertex * SAMPLE_USE_COUNT + (uint64_t)use);
+    uint64_t index = ((uint64_t)s->place << (s->sample_bits + sampler_bits(count))) + (uint64_t)s->sample * count + i;
+    uint64_t hash = hash_combine(s->block_key + (index >> 32), (uint64_t)vertex * SAMPLE_USE_COUNT + (uint64_t)use);
     uint64_t more = hash_mix64(hash + 0x9e3779b97f4a7c15u);
-    uint32_t shuffled = sampler_scramble(index, (uint32_t)hash);
+    uint32_t shuffled = sampler_scramble((uint32_t)index, (uint32_t)hash);
     uint32_t x = sampler_reverse_bits(sampler_scramble_reversed(shuffled, (uint32_t)(hash >> 32)));
     uint32_t y = sampler_scramble(sampler_sobol_1(shuffled), (uint32_t)more);
     return (vec2){(float)(x >> 8) * 0x1p-24f, (float)(y >> 8) * 0x1p-24f};
@@ -84,7 +108,7 @@ static inline vec2 sampler_2d_at(const sampler *s, sample_use use, int vertex, u
 
 static inline vec2 sampler_2d(const sampler *s, sample_use use, int vertex)
 {
-    return sampler_2d_at(s, use, vertex, s->sample);
+    return sampler_2d_of(s, use, vertex, 1, 0);
 }
 
 #endif

@@ -119,7 +119,7 @@ static void even_pictures_stay_even(void **state)
             for (int pixel = 0; pixel < 64; pixel++) {
                 pixel_sum sum = {0};
                 for (uint32_t i = 0; i < count; i++) {
-                    sampler s = sampler_make(1, pixel, 7, i);
+                    sampler s = sampler_make(1, pixel, 7, i, sampler_bits(count));
                     int sign;
                     (void)pixel_filter_sample(&f, sampler_2d(&s, SAMPLE_PIXEL, 0), &sign);
                     uint32_t *of_sign = sign > 0 ? &sum.positive_count : &sum.negative_count;
@@ -146,7 +146,7 @@ static void ramps_are_kept(void **state)
     for (int pixel = 0; pixel < PIXELS; pixel++) {
         pixel_sum sum = {0};
         for (uint32_t i = 0; i < COUNT; i++) {
-            sampler s = sampler_make(2, pixel, 3, i);
+            sampler s = sampler_make(2, pixel, 3, i, sampler_bits(COUNT));
             int sign;
             vec2 p = pixel_filter_sample(&f, sampler_2d(&s, SAMPLE_PIXEL, 0), &sign);
             double *value = sign > 0 ? sum.positive : sum.negative;
