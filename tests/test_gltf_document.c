@@ -185,8 +185,8 @@ static void uris(void **state)
 {
     (void)state;
     static const char *const RIGHT[] = {
-        "{'byteLength': 36, 'uri': "
-        "'data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA'}",
+        ("{'byteLength': 36, 'uri': "
+         "'data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA'}"),
         "{'byteLength': 36, 'uri': 'data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAA=='}",
         "{'byteLength': 36, 'uri': 'a%20triangle%c3%a4.bin'}",
         "{'byteLength': 36, 'uri': 'a triangleä.bin'}",
