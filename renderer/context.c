@@ -111,21 +111,6 @@ const char *ag_scene_film_file_name(const ag_scene *loaded)
     return name && name->type == PARAMETER_STRING && name->count == 1 ? name->strings[0] : NULL;
 }
 
-void ag_film_destroy(ag_film *film)
-{
-    if (!film)
-        return;
-    free(film->pixels);
-    free(film);
-}
-
-const float *ag_film_pixels(const ag_film *film, int *out_width, int *out_height)
-{
-    *out_width = film->width;
-    *out_height = film->height;
-    return film->pixels;
-}
-
 ag_statistics ag_context_statistics(const ag_context *context)
 {
     ag_statistics s = context->statistics;

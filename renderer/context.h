@@ -3,7 +3,7 @@
 #ifndef AFTERGLOW_CONTEXT_H
 #define AFTERGLOW_CONTEXT_H
 
-#include "afterglow/afterglow.h"
+#include "film.h"
 #include "run_context.h"
 #include "scene.h"
 
@@ -19,13 +19,6 @@ struct ag_context {
 
 struct ag_scene {
     scene *s;
-};
-
-struct ag_film {
-    int x0, y0, width, height; /* the crop, in pixels of the full picture */
-    int full_width, full_height;
-    float *pixels;      /* 3 a pixel, top row first */
-    bool float_samples; /* as in ag_render_settings */
 };
 
 /* Adds the time since `begin` (clock_seconds) to a phase, and says at info level how long it took. */

@@ -7,6 +7,7 @@
 #include "color.h"
 #include "image_file.h"
 #include "parallel_for.h"
+#include "picture_layers.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -131,6 +132,51 @@ static ag_status apply_view(ag_context *context, const ag_output_settings *setti
     return status;
 }
 
+/* pixels: RGB as they are to be written. */
+static ag_status write_picture(ag_context *context, const ag_film *film, const ag_output_settings *settings,
+                               const image_format *format, const float *pixels, const char *path)
+{
+    static const char *const names[3] = {"R", "G", "B"};
+    static const float rec709[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+    static const image_attribute attributes[] = {{.name = "Software", .text = "Afterglow"}};
+    ag_sample_type type = settings->type;
+    if (type == AG_SAMPLE_DEFAULT && film->float_samples && format->scene_linear)
+        type = AG_SAMPLE_FLOAT;
+    image_description description = {.width = film->width,
+                                     .height = film->height,
+                                     .x = film->x0,
+                                     .y = film->y0,
+                                     .full_width = film->full_width,
+                                     .full_height = film->full_height,
+                                     .channel_count = 3,
+                                     .channel_names = names,
+                                     .type = stored_type(format, type),
+                                     .is_tiled = settings->tiled,
+                                     .color_space = format->scene_linear ? "Linear" : NULL,
+                                     .attributes = attributes,
+                                     .attribute_count = sizeof attributes / sizeof *attributes};
+    picture_layers layers = {0};
+    ag_status status = AG_OK;
+    if (format->scene_linear) { /* the only one that holds layers */
+        status = picture_layers_create(context, film, pixels, settings, description.type, path, &layers);
+        if (status != AG_OK)
+            return status;
+        picture_layers_add_numbers(&layers, "chromaticities", rec709, 8);
+        description.channel_count = layers.channel_count;
+        description.channel_names = layers.names;
+        description.channel_types = layers.types;
+        description.attributes = layers.attributes;
+        description.attribute_count = layers.attribute_count;
+        pixels = layers.pixels;
+    }
+    char message[MESSAGE_SIZE];
+    status = image_file_write(path, &description, pixels, message, sizeof message);
+    if (status != AG_OK)
+        log_message(context->log, AG_LOG_ERROR, "%s", message);
+    picture_layers_reset(&layers);
+    return status;
+}
+
 ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings, const char *path)
 {
     ag_output_settings defaults = ag_default_output_settings();
@@ -157,29 +203,8 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
         pixels = shown;
         status = apply_view(context, settings, shown, count);
     }
-    if (status == AG_OK) {
-        static const char *const names[3] = {"R", "G", "B"};
-        static const image_attribute attributes[] = {{.name = "Software", .text = "Afterglow"}};
-        ag_sample_type type = settings->type;
-        if (type == AG_SAMPLE_DEFAULT && film->float_samples && format->scene_linear)
-            type = AG_SAMPLE_FLOAT;
-        image_description description = {.width = film->width,
-                                         .height = film->height,
-                                         .x = film->x0,
-                                         .y = film->y0,
-                                         .full_width = film->full_width,
-                                         .full_height = film->full_height,
-                                         .channel_count = 3,
-                                         .channel_names = names,
-                                         .type = stored_type(format, type),
-                                         .color_space = format->scene_linear ? "Linear" : NULL,
-                                         .attributes = attributes,
-                                         .attribute_count = sizeof attributes / sizeof *attributes};
-        char message[MESSAGE_SIZE];
-        status = image_file_write(path, &description, pixels, message, sizeof message);
-        if (status != AG_OK)
-            log_message(context->log, AG_LOG_ERROR, "%s", message);
-    }
+    if (status == AG_OK)
+        status = write_picture(context, film, settings, format, pixels, path);
     free(shown);
     if (status == AG_OK) {
         run_progress(&context->run, AG_PHASE_WRITE, 1.0);

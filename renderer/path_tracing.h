@@ -6,6 +6,8 @@
 
 #include "transport.h"
 
-rgb path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where);
+/* As shading_radiance. */
+void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where,
+                           eye_sample *in_out);
 
 #endif

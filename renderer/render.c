@@ -4,11 +4,10 @@
 #include "context.h"
 
 #include "clock.h"
-#include "film_response.h"
+#include "first_hit.h"
 #include "floating_point.h"
 #include "passage.h"
 #include "path_tracing.h"
-#include "pixel_filter.h"
 #include "shading.h"
 #include "tile_scheduler.h"
 
@@ -130,64 +129,87 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
 typedef struct tile_job {
     ag_context *context;
     const transport *t;
-    const pixel_filter *filter;
-    film_response response;
     tile_scheduler *tiles;
     eye_worker *workers;
     ag_film *film;
+    uint32_t wanted;        /* samples of each pixel */
     atomic_u64 pixels_done; /* for the progress alone: relaxed */
 } tile_job;
 
-static rgb render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index, int *out_sign)
+static void scale_layers(sample_layers *layers, float factor)
+{
+    for (int i = 0; i < LIGHT_PART_COUNT; i++)
+        layers->parts[i] = rgb_scale(layers->parts[i], factor);
+    for (int i = 0; i <= LIGHT_GROUPS_MAX; i++)
+        layers->groups[i] = rgb_scale(layers->groups[i], factor);
+}
+
+/* Samples that are not finite count as black; of those that are too bright all parts are scaled alike. */
+static void bound_sample(const film_response *response, eye_worker *worker, eye_sample *sample)
+{
+    bool is_finite = rgb_is_finite(sample->radiance);
+    for (int i = 0; sample->layers && i < LIGHT_PART_COUNT; i++)
+        is_finite = is_finite && rgb_is_finite(sample->layers->parts[i]);
+    if (!is_finite) {
+        worker->samples_not_finite++;
+        sample->radiance = rgb_gray(0.0f);
+        if (sample->layers) {
+            const first_hit first = sample->layers->first;
+            *sample->layers = (sample_layers){.first = first};
+        }
+    } else if (response->is_bounded) {
+        rgb bounded = film_response_bound(response, sample->radiance);
+        float before = rgb_max(sample->radiance);
+        if (sample->layers && before > 0.0f && rgb_max(bounded) < before)
+            scale_layers(sample->layers, rgb_max(bounded) / before);
+        sample->radiance = bounded;
+    }
+}
+
+static void render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index, eye_sample *out)
 {
     const transport *t = job->t;
     const ag_render_settings *settings = t->settings;
     sampler where = sampler_make(settings->seed, x, y, index, sampler_bits((uint32_t)settings->samples_per_pixel));
-    vec2 offset = pixel_filter_sample(job->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), out_sign);
+    vec2 offset = pixel_filter_sample(&job->film->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), &out->sign);
     vec2 lens = t->s->options.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
     float time = !t->s->has_motion                    ? 0.0f
                  : t->s->options.disable_pixel_jitter ? 0.5f
                                                       : sampler_2d(&where, SAMPLE_TIME, 0).x;
     float width = (float)settings->width, height = (float)settings->height;
-    scene_ray ray = camera_generate_ray(&t->s->camera, ((float)x + 0.5f + offset.x) / width,
-                                        ((float)y + 0.5f + offset.y) / height, width / height, lens, time);
-    rgb radiance = settings->integrator == AG_INTEGRATOR_PATH ? path_tracing_radiance(t, worker, ray, &where)
-                                                              : shading_radiance(t, worker, ray, &where);
-    if (rgb_is_finite(radiance))
-        return job->response.is_bounded ? film_response_bound(&job->response, radiance) : radiance;
-    worker->samples_not_finite++;
-    return rgb_gray(0.0f);
+    camera_place place = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, width / height,
+                          lens, time};
+    scene_ray ray = camera_generate_ray(&t->s->camera, place.film_x, place.film_y, place.aspect, lens, time);
+    out->radiance = rgb_gray(0.0f);
+    out->most_direct = settings->clamp_direct > 0.0f ? settings->clamp_direct : INFINITY;
+    out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
+    if (out->layers)
+        *out->layers = (sample_layers){0};
+    if (settings->integrator == AG_INTEGRATOR_PATH)
+        path_tracing_radiance(t, worker, ray, &where, out);
+    else
+        shading_radiance(t, worker, ray, &where, out);
+    bound_sample(&job->film->response, worker, out);
+    if (out->layers && t->layout->needs_first_hit)
+        first_hit_project(t, &place, &out->layers->first);
 }
 
-/* A pixel is the mean of its samples (of filters with negative lobes: their mean with signs), summed in their order by
- * the one thread that has its tile. */
+/* The samples that the pixel has not had yet, in their order, by the one thread that has its tile. One that was under
+ * way when the work was cancelled does not count. */
 static void render_pixel(const tile_job *job, eye_worker *worker, int x, int y)
 {
-    uint32_t count = (uint32_t)job->t->settings->samples_per_pixel;
-    pixel_sum sum = {0};
-    for (uint32_t i = 0; i < count; i++) {
+    ag_film *film = job->film;
+    size_t pixel = (size_t)(y - film->y0) * (size_t)film->width + (size_t)(x - film->x0);
+    sample_layers layers;
+    eye_sample sample = {.layers = job->t->wants_layers ? &layers : NULL};
+    while (film->counts[pixel] < job->wanted) {
         if (run_is_cancelled(&job->context->run))
             return;
-        int sign;
-        rgb sample = render_sample(job, worker, x, y, i, &sign);
-        double *signed_sum = sign > 0 ? sum.positive : sum.negative;
-        signed_sum[0] += (double)sample.r;
-        signed_sum[1] += (double)sample.g;
-        signed_sum[2] += (double)sample.b;
-        if (sign > 0)
-            sum.positive_count++;
-        else
-            sum.negative_count++;
+        render_sample(job, worker, x, y, film->counts[pixel], &sample);
+        if (run_is_cancelled(&job->context->run))
+            return;
+        film_add(film, pixel, &sample);
     }
-    double mean[3] = {sum.positive[0] / count, sum.positive[1] / count, sum.positive[2] / count};
-    if (job->filter->has_signs)
-        pixel_filter_resolve(job->filter, &sum, mean);
-    if (!job->response.is_plain)
-        film_response_develop(&job->response, mean);
-    float *pixel =
-        job->film->pixels + 3 * ((size_t)(y - job->film->y0) * (size_t)job->film->width + (size_t)(x - job->film->x0));
-    for (int c = 0; c < 3; c++)
-        pixel[c] = (float)mean[c];
 }
 
 static void render_tiles(void *user, unsigned worker_index)
@@ -224,6 +246,8 @@ static bool eye_worker_reserve(eye_worker *worker, const transport *t)
     arena_mark mark = arena_save(worker->scratch);
     bool fits = arena_alloc(worker->scratch, (size_t)t->settings->gather_samples * sizeof(gather_ray)) &&
                 arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
+    if (fits && aov_has(t->layout, SUM_IRRADIANCE)) /* alone, before there are gather rays */
+        fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->cache->map) * sizeof(photon_neighbor));
     arena_restore(worker->scratch, mark);
     return fits;
 }
@@ -243,70 +267,66 @@ static eye_worker *eye_workers_create(const transport *t, unsigned count)
     return workers;
 }
 
-static ag_status render_film(ag_context *context, const transport *t, const pixel_filter *filter, ag_film *film)
+/* --- a rendering --- */
+
+struct ag_rendering {
+    ag_context *context; /* borrowed */
+    scene *s;            /* borrowed; parameters are marked as looked up, nothing else changes */
+    ag_render_settings settings;
+    maps maps;
+    transport t;
+    eye_worker *workers;
+    ag_film *film;
+    uint64_t not_finite_before;
+};
+
+static ag_status render_tiles_of(ag_rendering *r, uint32_t wanted)
 {
-    ag_statistics *statistics = &context->statistics;
-    tile_job job = {.context = context, .t = t, .filter = filter, .film = film};
-    job.response = film_response_make(t->settings);
-    job.workers = eye_workers_create(t, statistics->threads);
-    if (!job.workers)
-        return AG_ERROR_MEMORY;
+    ag_context *context = r->context;
+    ag_film *film = r->film;
+    tile_job job = {.context = context, .t = &r->t, .film = film, .workers = r->workers, .wanted = wanted};
     ag_status status = tile_scheduler_create(film->x0, film->y0, film->x0 + film->width, film->y0 + film->height,
-                                             TILE_SIZE, statistics->threads, &job.tiles);
-    if (status == AG_OK) {
-        double begin = clock_seconds();
-        run_progress(&context->run, AG_PHASE_RENDER, 0.0); /* the first pixels may take long */
-        thread_pool_run(context->pool, render_tiles, &job);
-        status = run_is_cancelled(&context->run) ? AG_CANCELLED : AG_OK;
-        context_end_phase(context, AG_PHASE_RENDER, begin);
-    }
+                                             TILE_SIZE, context->statistics.threads, &job.tiles);
+    if (status != AG_OK)
+        return status;
+    double begin = clock_seconds();
+    run_progress(&context->run, AG_PHASE_RENDER, 0.0); /* the first pixels may take long */
+    thread_pool_run(context->pool, render_tiles, &job);
+    film_resolve(film);
+    tile_scheduler_destroy(job.tiles);
+    context_end_phase(context, AG_PHASE_RENDER, begin);
+    return run_is_cancelled(&context->run) ? AG_CANCELLED : AG_OK;
+}
+
+/* What the workers counted since they were asked last. */
+static void collect_counts(ag_rendering *r)
+{
+    ag_statistics *statistics = &r->context->statistics;
     uint64_t cut = 0;
     for (unsigned i = 0; i < statistics->threads; i++) {
-        statistics->rays_camera += job.workers[i].rays_camera;
-        statistics->rays_shadow += job.workers[i].rays_shadow;
-        statistics->rays_gather += job.workers[i].rays_gather;
-        statistics->rays_path += job.workers[i].rays_path;
-        statistics->samples_not_finite += job.workers[i].samples_not_finite;
-        cut += job.workers[i].passages_cut;
+        eye_worker *w = &r->workers[i];
+        statistics->rays_camera += w->rays_camera;
+        statistics->rays_shadow += w->rays_shadow;
+        statistics->rays_gather += w->rays_gather;
+        statistics->rays_path += w->rays_path;
+        statistics->samples_not_finite += w->samples_not_finite;
+        cut += w->passages_cut;
+        w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = 0;
+        w->samples_not_finite = w->passages_cut = 0;
     }
-    warn_of_cut_passages(context, cut);
-    tile_scheduler_destroy(job.tiles);
-    eye_workers_destroy(job.workers, statistics->threads);
-    return status;
+    warn_of_cut_passages(r->context, cut);
 }
 
-/* --- the flow --- */
-
-static ag_film *film_create(const ag_render_settings *settings)
+static transport make_transport(const ag_context *context, const scene *s, const ag_render_settings *settings,
+                                const aov_layout *layout, maps *m)
 {
-    ag_film *film = calloc(1, sizeof *film);
-    if (!film)
-        return NULL;
-    /* as pbrt: pixels from ceil(x0 width) on; a hair less, so that pixel / width times width is that pixel */
-    const double *crop = settings->crop_window;
-    int edges[4];
-    for (int i = 0; i < 4; i++)
-        edges[i] = (int)ceil(crop[i] * (i < 2 ? settings->width : settings->height) - 1e-6);
-    film->x0 = edges[0];
-    film->y0 = edges[2];
-    film->width = edges[1] - edges[0];
-    film->height = edges[3] - edges[2];
-    film->full_width = settings->width;
-    film->full_height = settings->height;
-    film->float_samples = settings->float_samples;
-    if (film->width < 1 || film->height < 1)
-        film->width = film->height = 0;
-    film->pixels = calloc((size_t)film->width * (size_t)film->height + 1, 3 * sizeof *film->pixels);
-    if (!film->pixels) {
-        free(film);
-        return NULL;
-    }
-    return film;
-}
-
-static transport make_transport(const ag_context *context, const scene *s, const ag_render_settings *settings, maps *m)
-{
-    transport t = {.s = s, .run = &context->run, .settings = settings, .has_lights = rgb_max(s->light_power) > 0.0f};
+    transport t = {.s = s,
+                   .run = &context->run,
+                   .settings = settings,
+                   .layout = layout,
+                   .wants_layers = layout->sum_count > 3 || layout->needs_nearest,
+                   .wants_groups = aov_has(layout, SUM_GROUPS),
+                   .has_lights = rgb_max(s->light_power) > 0.0f};
     for (uint32_t i = 0; i < s->light_count; i++)
         t.can_meet_lights = t.can_meet_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
     t.light_samples = (settings->gather_samples + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE;
@@ -334,74 +354,155 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
 }
 
 /* Settings with nothing left open. */
-static ag_status settle_settings(ag_context *context, const ag_scene *loaded, const ag_render_settings *wanted)
+static ag_status settle_settings(ag_context *context, const scene *s, const ag_render_settings *wanted,
+                                 ag_render_settings *out_settings)
 {
-    ag_render_settings *settings = &context->rendered;
-    *settings = *wanted;
-    if (settings->gather_samples == 0 && settings->samples_per_pixel > 0) {
-        int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / settings->samples_per_pixel;
-        settings->gather_samples = rays > 0 ? rays : 1;
+    *out_settings = *wanted;
+    if (out_settings->gather_samples == 0 && out_settings->samples_per_pixel > 0) {
+        int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / out_settings->samples_per_pixel;
+        out_settings->gather_samples = rays > 0 ? rays : 1;
     }
-    if (loaded->s->has_camera)
-        return render_settings_check(context, settings);
+    if (s->has_camera)
+        return render_settings_check(context, out_settings);
     log_message(context->log, AG_LOG_ERROR, "the scene has no Camera");
     return AG_ERROR_SCENE;
 }
 
-static ag_status render_into(ag_context *context, const scene *s, const pixel_filter *filter, ag_film *film)
+/* As OpenEXR's standard attributes describe them. */
+static void note_origin(const ag_rendering *r, film_origin *out)
 {
-    const ag_render_settings *settings = &context->rendered;
-    ag_status status = AG_OK;
-    if (!(rgb_max(s->light_power) > 0.0f))
-        log_once(context->log, AG_LOG_WARNING, "no light", "the scene has no light that emits: the picture is black");
+    const camera *c = &r->s->camera;
+    const ag_render_settings *settings = &r->settings;
+    double film_from_camera[4][4];
+    transform world_from_camera = c->world_from_camera;
+    if (c->is_moving)
+        world_from_camera = camera_transform_at(c, 0.0f);
+    out->settings = *settings;
+    out->has_ndc =
+        camera_film_from_camera(c, (float)settings->width / (float)settings->height, 1e-2, 1e3, film_from_camera);
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 4; k++) {
+            double ndc = 0.0;
+            for (int j = 0; out->has_ndc && j < 4; j++)
+                ndc += film_from_camera[i][j] * world_from_camera.inverse[j][k];
+            out->world_to_camera[4 * k + i] = (float)world_from_camera.inverse[i][k];
+            out->world_to_ndc[4 * k + i] = (float)ndc;
+        }
+}
 
-    /* light's side: lamps -> photons -> maps -> cache */
-    maps m = {0};
-    if (settings->integrator == AG_INTEGRATOR_PHOTONMAP)
-        status = build_maps(context, s, settings, &m);
-
-    /* the eye's side: tiles -> film */
-    if (status == AG_OK) {
-        transport t = make_transport(context, s, settings, &m);
-        status = render_film(context, &t, filter, film);
-        if (t.cache && status == AG_OK)
-            count_irradiance(&context->statistics, t.cache);
+static ag_status create_film(ag_rendering *r)
+{
+    pixel_filter filter;
+    aov_layout layout;
+    const ag_render_settings *settings = &r->settings;
+    static const char *const no_groups[] = {"default"};
+    const char *const *group_names = no_groups;
+    int group_count = 1;
+    if (r->s->light_group_count > 0) {
+        group_names = (const char *const *)(void *)r->s->light_group_names;
+        group_count = (int)r->s->light_group_count;
     }
-    maps_reset(&m);
+    ag_status status =
+        pixel_filter_create(&r->s->pixel_filter, r->s->options.disable_pixel_jitter, r->context->log, &filter);
+    if (status == AG_OK)
+        status = aov_layout_create(settings->layers, settings->integrator == AG_INTEGRATOR_PATH, group_names,
+                                   group_count, &layout);
+    if (status != AG_OK)
+        return status;
+    r->film = film_create(settings, &filter, &layout);
+    if (!r->film)
+        return AG_ERROR_MEMORY;
+    note_origin(r, &r->film->origin);
+    if (r->film->width > 0)
+        return AG_OK;
+    log_message(r->context->log, AG_LOG_ERROR, "the crop window holds no pixel");
+    return AG_ERROR_ARGUMENT;
+}
+
+static ag_status prepare(ag_rendering *r)
+{
+    ag_context *context = r->context;
+    ag_status status = create_film(r);
+    if (status != AG_OK)
+        return status;
+    if (!(rgb_max(r->s->light_power) > 0.0f))
+        log_once(context->log, AG_LOG_WARNING, "no light", "the scene has no light that emits: the picture is black");
+    if (r->settings.integrator == AG_INTEGRATOR_PHOTONMAP)
+        status = build_maps(context, r->s, &r->settings, &r->maps);
+    if (status != AG_OK)
+        return status;
+    r->t = make_transport(context, r->s, &r->settings, &r->film->layout, &r->maps);
+    r->workers = eye_workers_create(&r->t, context->statistics.threads);
+    return r->workers ? AG_OK : AG_ERROR_MEMORY;
+}
+
+/* light's side: lamps -> photons -> maps -> cache */
+ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
+                              ag_rendering **out_rendering)
+{
+    if (!context || !loaded || !settings || !out_rendering)
+        return AG_ERROR_ARGUMENT;
+    ag_rendering *r = calloc(1, sizeof *r);
+    if (!r)
+        return AG_ERROR_MEMORY;
+    unsigned callers_arithmetic = floating_point_enter();
+    r->context = context;
+    r->s = loaded->s;
+    r->not_finite_before = context->statistics.samples_not_finite;
+    ag_status status = settle_settings(context, loaded->s, settings, &r->settings);
+    context->rendered = r->settings;
+    if (status == AG_OK)
+        status = prepare(r);
+    floating_point_leave(callers_arithmetic);
+    if (status == AG_OK)
+        *out_rendering = r;
+    else
+        ag_rendering_finish(r, NULL);
     return status;
+}
+
+/* the eye's side: tiles -> film */
+ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
+{
+    if (!r || samples_per_pixel < 1 || samples_per_pixel > r->settings.samples_per_pixel)
+        return AG_ERROR_ARGUMENT;
+    unsigned callers_arithmetic = floating_point_enter();
+    ag_status status = render_tiles_of(r, (uint32_t)samples_per_pixel);
+    collect_counts(r);
+    floating_point_leave(callers_arithmetic);
+    return status;
+}
+
+const ag_film *ag_rendering_film(const ag_rendering *r) { return r->film; }
+
+void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
+{
+    if (!r)
+        return;
+    if (r->t.cache)
+        count_irradiance(&r->context->statistics, r->t.cache);
+    uint64_t not_finite = r->context->statistics.samples_not_finite - r->not_finite_before;
+    if (not_finite > 0)
+        log_message(r->context->log, AG_LOG_WARNING, "%llu camera samples were not finite and count as black",
+                    (unsigned long long)not_finite);
+    if (out_film)
+        *out_film = r->film;
+    else
+        ag_film_destroy(r->film);
+    eye_workers_destroy(r->workers, r->context->statistics.threads);
+    maps_reset(&r->maps);
+    free(r);
 }
 
 ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings, ag_film **out_film)
 {
-    if (!context || !loaded || !settings || !out_film)
+    if (!out_film)
         return AG_ERROR_ARGUMENT;
-    unsigned callers_arithmetic = floating_point_enter();
-    uint64_t not_finite_before = context->statistics.samples_not_finite;
-    ag_film *film = NULL;
-    pixel_filter filter;
-    ag_status status = settle_settings(context, loaded, settings);
-    if (status == AG_OK)
-        status = pixel_filter_create(&loaded->s->pixel_filter, loaded->s->options.disable_pixel_jitter, context->log,
-                                     &filter);
-    if (status == AG_OK) {
-        film = film_create(&context->rendered);
-        status = film ? AG_OK : AG_ERROR_MEMORY;
-    }
-    if (status == AG_OK && film->width == 0) {
-        log_message(context->log, AG_LOG_ERROR, "the crop window holds no pixel");
-        status = AG_ERROR_ARGUMENT;
-    }
-    if (status == AG_OK)
-        status = render_into(context, loaded->s, &filter, film);
-    floating_point_leave(callers_arithmetic);
-    if (status != AG_OK) {
-        ag_film_destroy(film);
+    ag_rendering *rendering;
+    ag_status status = ag_rendering_create(context, loaded, settings, &rendering);
+    if (status != AG_OK)
         return status;
-    }
-    uint64_t not_finite = context->statistics.samples_not_finite - not_finite_before;
-    if (not_finite > 0)
-        log_message(context->log, AG_LOG_WARNING, "%llu camera samples were not finite and count as black",
-                    (unsigned long long)not_finite);
-    *out_film = film;
-    return AG_OK;
+    status = ag_rendering_continue(rendering, rendering->settings.samples_per_pixel);
+    ag_rendering_finish(rendering, status == AG_OK ? out_film : NULL);
+    return status;
 }

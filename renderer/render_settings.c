@@ -52,20 +52,26 @@ static bool is_crop_window(const double window[4])
 }
 
 /* The film's kind, and the parameters of kinds that are not written. */
-static ag_status read_film_kind(parameter_list *film, log_sink *log)
+static ag_status read_film_kind(parameter_list *film, log_sink *log, ag_render_settings *out)
 {
-    const char *system;
     float wavelength;
     int64_t count;
     ag_status status = AG_OK;
     if (strcmp(film->name, "rgb") == 0)
         return AG_OK;
     if (strcmp(film->name, "gbuffer") == 0) {
-        log_at_once(
-            log, AG_LOG_WARNING, film->where, "film",
-            "Film \"gbuffer\": R, G and B are written alone; its channels for albedo, position, normals, texture "
-            "coordinates, depth slopes and variance are left out");
-        return parameter_get_string(film, log, "coordinatesystem", &system);
+        const char *space = "camera";
+        status = parameter_get_string(film, log, "coordinatesystem", &space);
+        if (status != AG_OK)
+            return status;
+        out->layers |= AG_LAYER_GBUFFER;
+        out->layers_in_camera_space = strcmp(space, "camera") == 0;
+        if (out->layers_in_camera_space || strcmp(space, "world") == 0)
+            return AG_OK;
+        const parameter *wrong = parameter_list_find(film, "coordinatesystem");
+        log_at(log, AG_LOG_ERROR, wrong->where,
+               "Film: \"coordinatesystem\" is \"%s\", it must be \"camera\" or \"world\"", space);
+        return AG_ERROR_SCENE;
     }
     log_at_once(log, AG_LOG_WARNING, film->where, "film", "Film \"%s\" is not supported; \"rgb\" stands in",
                 film->name);
@@ -124,7 +130,7 @@ static ag_status read_film(parameter_list *film, log_sink *log, ag_render_settin
     size_t crop_count = 0, bounds_count = 0;
     float diagonal;
     bool is_half = true;
-    ag_status status = read_film_kind(film, log);
+    ag_status status = read_film_kind(film, log, out);
     if (status == AG_OK)
         status = read_sensor(film, log, out);
     if (status == AG_OK)
@@ -307,6 +313,10 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "photons must be from 1 to 4294967294";
     else if (s->nearest < 1 || s->nearest > 65536)
         wrong = "nearest photons must be from 1 to 65536";
+    else if (!(s->clamp_direct >= 0.0f) || !(s->clamp_indirect >= 0.0f))
+        wrong = "clamps must not be negative";
+    else if (s->layers & ~(uint32_t)(AG_LAYERS_ALL | AG_LAYER_GBUFFER))
+        wrong = "layers must be of those that there are";
     else if (!(s->radius >= 0.0f) || isinf(s->radius))
         wrong = "radius must be finite and not negative";
     if (!wrong)

@@ -6,6 +6,7 @@
 
 #include "transport.h"
 
-rgb shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where);
+/* Adds to *in_out, which has nothing in it but its bounds and layers' place. */
+void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where, eye_sample *in_out);
 
 #endif

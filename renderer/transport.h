@@ -6,6 +6,7 @@
 #define AFTERGLOW_TRANSPORT_H
 
 #include "afterglow/afterglow.h"
+#include "aov.h"
 #include "arena.h"
 #include "bsdf.h"
 #include "irradiance_cache.h"
@@ -17,6 +18,9 @@ typedef struct transport {
     const photon_map *caustic; /* may be empty */
     irradiance_cache *cache;   /* over the global map; NULL for path tracing */
     const ag_render_settings *settings;
+    const aov_layout *layout;  /* what the film wants beside radiance */
+    bool wants_layers;         /* anything */
+    bool wants_groups;         /* light by the groups of its lamps */
     bool has_lights;           /* any with power */
     bool can_meet_lights;      /* area or infinite ones: those that scattered rays find */
     int light_samples;         /* for direct light at a diffuse place, towards lamps */

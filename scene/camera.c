@@ -7,18 +7,48 @@
 #include "environment.h"
 #include "math/sampling.h"
 
-/* The place on the screen: its shorter axis spans [-1, 1], unless a window says otherwise. */
-static vec2 screen_place(const camera *c, float film_x, float film_y, float aspect)
+#include <string.h>
+
+/* x0, x1, y0, y1 of the screen: its shorter axis spans [-1, 1], unless a window says otherwise. */
+static void screen_edges(const camera *c, float aspect, float out[4])
 {
     float frame_aspect = c->frame_aspect_ratio > 0.0f ? c->frame_aspect_ratio : aspect;
-    float x0 = -1.0f, x1 = 1.0f, y0 = -1.0f, y1 = 1.0f;
+    out[0] = out[2] = -1.0f;
+    out[1] = out[3] = 1.0f;
     if (c->has_screen_window)
-        x0 = c->screen_window[0], x1 = c->screen_window[1], y0 = c->screen_window[2], y1 = c->screen_window[3];
+        memcpy(out, c->screen_window, sizeof c->screen_window);
     else if (frame_aspect > 1.0f)
-        x0 = -frame_aspect, x1 = frame_aspect;
+        out[0] = -frame_aspect, out[1] = frame_aspect;
     else
-        y0 = -1.0f / frame_aspect, y1 = 1.0f / frame_aspect;
-    return (vec2){x0 + film_x * (x1 - x0), y1 + film_y * (y0 - y1)};
+        out[2] = -1.0f / frame_aspect, out[3] = 1.0f / frame_aspect;
+}
+
+static vec2 screen_place(const camera *c, float film_x, float film_y, float aspect)
+{
+    float e[4];
+    screen_edges(c, aspect, e);
+    return (vec2){e[0] + film_x * (e[1] - e[0]), e[3] + film_y * (e[2] - e[3])};
+}
+
+bool camera_film_from_camera(const camera *c, float aspect, double near, double far, double out[4][4])
+{
+    if (c->kind != CAMERA_PERSPECTIVE && c->kind != CAMERA_ORTHOGRAPHIC)
+        return false;
+    bool is_perspective = c->kind == CAMERA_PERSPECTIVE;
+    float e[4];
+    screen_edges(c, aspect, e);
+    double zoom = is_perspective ? (double)c->tan_half_fov : 1.0;
+    double width = (double)e[1] - (double)e[0], height = (double)e[2] - (double)e[3];
+    int last = is_perspective ? 2 : 3; /* what stands for 1: the depth that all is divided by */
+    memset(out, 0, 16 * sizeof **out);
+    out[0][0] = 1.0 / (zoom * width);
+    out[0][last] = -(double)e[0] / width;
+    out[1][1] = 1.0 / (zoom * height);
+    out[1][last] = -(double)e[3] / height;
+    out[2][2] = is_perspective ? far / (far - near) : 1.0 / (far - near);
+    out[2][3] = is_perspective ? -far * near / (far - near) : -near / (far - near);
+    out[3][last] = 1.0;
+    return true;
 }
 
 /* In camera space; the direction need not be unit. */
@@ -63,6 +93,17 @@ static vec3 spherical_direction(camera_kind kind, double x, double y)
     }
     vec3 d = environment_octahedral_direction(fmin(fmax(x, 0.0), 1.0), fmin(fmax(y, 0.0), 1.0));
     return (vec3){d.x, d.z, d.y};
+}
+
+transform camera_transform_at(const camera *c, float time)
+{
+    if (!c->is_moving)
+        return c->world_from_camera;
+    double moved[3][4], matrix[4][4] = {{0.0}, {0.0}, {0.0}, {0.0, 0.0, 0.0, 1.0}};
+    motion_at(&c->motion, (double)time, moved);
+    memcpy(matrix, moved, sizeof moved);
+    transform now;
+    return transform_from_matrix((const double(*)[4])matrix, &now) ? now : c->world_from_camera;
 }
 
 scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u, float time)

@@ -38,4 +38,11 @@ typedef struct camera {
  * unit. */
 scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u, float time);
 
+/* world_from_camera at a time of the shutter. */
+transform camera_transform_at(const camera *c, float time);
+
+/* The way back, of cameras with a pinhole: row 0, 1 and 3 of a projective map, as transform.h's, from camera space to
+ * film_x and film_y; row 2 maps the depths from near to far to [0, 1]. false for spherical cameras. */
+bool camera_film_from_camera(const camera *c, float aspect, double near, double far, double out[4][4]);
+
 #endif

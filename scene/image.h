@@ -3,6 +3,8 @@
 #ifndef AFTERGLOW_IMAGE_H
 #define AFTERGLOW_IMAGE_H
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -23,7 +25,7 @@ typedef struct image {
 typedef struct image_attribute {
     const char *name;
     const char *text;     /* a string attribute, or NULL: numbers */
-    const float *numbers; /* float attribute, count 1 or an array */
+    const float *numbers; /* float attribute, count 1 or an array; 16: a matrix */
     int number_count;
 } image_attribute;
 
@@ -34,8 +36,10 @@ typedef struct image_description {
     int full_width, full_height; /* the full picture (the display window), from (0, 0) */
     int channel_count;           /* 3 or 4, or more for EXR */
     const char *const *channel_names;
-    image_sample_type type;  /* as stored; a format that cannot hold it is an error */
-    const char *color_space; /* oiio:ColorSpace, or NULL */
+    image_sample_type type;                 /* as stored; a format that cannot hold it is an error */
+    const image_sample_type *channel_types; /* of each channel, EXR alone; NULL: all of the type above */
+    bool is_tiled;                          /* EXR: in tiles, else in lines */
+    const char *color_space;                /* oiio:ColorSpace, or NULL */
     const image_attribute *attributes;
     int attribute_count;
 } image_description;

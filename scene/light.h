@@ -42,6 +42,7 @@ typedef struct light {
     uint32_t shape_index;             /* area: the shape that shines */
     bool two_sided;                   /* area */
     uint32_t radiance_texture;        /* area: multiplies radiance from place to place; SCENE_NO_TEXTURE: nowhere */
+    uint32_t group;                   /* of the scene's light groups; 0: the one of those that name none */
     float photons;                    /* multiplies its share of the photons; 0: it sends none */
     uint32_t medium;                  /* all but area lights: that their light starts in; SCENE_NO_MEDIUM: none */
     frame world_from_light;           /* of those with a picture: a rotation or reflection */

@@ -122,6 +122,24 @@ static ag_status read_photons(pbrt_parser *parser, parameter_list *list, float *
     return AG_OK;
 }
 
+/* "lightgroup", which pbrt does not have: a name under which layers keep the light apart. */
+static ag_status read_group(pbrt_parser *parser, parameter_list *list, uint32_t *out_group)
+{
+    const char *name = "default";
+    uint32_t unnamed;
+    PBRT_TRY(parameter_get_string(list, parser->log, "lightgroup", &name));
+    if (name[0] == '\0' || name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")] ||
+        strlen(name) > 40 || strcmp(name, "photons") == 0)
+        return pbrt_refuse(
+            parser, list, "lightgroup",
+            "\"lightgroup\" should be a name of at most 40 letters, digits, - and _, and not \"photons\"");
+    PBRT_TRY(scene_light_group(parser->scene, "default", &unnamed)); /* the first */
+    ag_status status = scene_light_group(parser->scene, name, out_group);
+    if (status == AG_ERROR_SCENE)
+        return pbrt_refuse(parser, list, "lightgroup", "there are more than %d light groups", SCENE_LIGHT_GROUPS_MAX);
+    return status;
+}
+
 static ag_status read_light(pbrt_parser *parser, parameter_list *list, light *l)
 {
     typedef ag_status reader(pbrt_parser *, parameter_list *, light *);
@@ -135,6 +153,7 @@ static ag_status read_light(pbrt_parser *parser, parameter_list *list, light *l)
                    {"goniometric", pbrt_goniometric_light},
                    {"projection", pbrt_projection_light}};
     PBRT_TRY(read_photons(parser, list, &l->photons));
+    PBRT_TRY(read_group(parser, list, &l->group));
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(list->name, READERS[i].name) == 0)
             return READERS[i].read(parser, list, l);
@@ -210,6 +229,7 @@ static ag_status read_area_light(pbrt_parser *parser, parameter_list *list, pbrt
     PBRT_TRY(scale_color(parser, list, c.color, c.scale, &l.radiance));
     l.power = c.power;
     PBRT_TRY(read_photons(parser, list, &l.photons));
+    PBRT_TRY(read_group(parser, list, &l.group));
     PBRT_TRY(read_area_picture(parser, list, &l));
     parameter_list_warn_unused(list, parser->log);
     *out_light = l;
@@ -240,6 +260,7 @@ ag_status pbrt_add_area_light(pbrt_parser *parser, const pbrt_area_light *source
     l.radiance = source->radiance;
     l.radiance_texture = source->radiance_texture;
     l.photons = source->photons;
+    l.group = source->group;
     if (source->power > 0.0f) {
         /* of a lamp with radiance 1 */
         double power = PI * (double)area * (source->two_sided ? 2.0 : 1.0) * source->mean_luminance;

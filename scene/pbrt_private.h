@@ -71,6 +71,7 @@ typedef struct pbrt_area_light {
     float power;  /* W, as pbrt's "power": above 0 the radiance is multiplied until a lamp of radiance 1 has it */
     bool two_sided;
     float photons;
+    uint32_t group;            /* of light.group */
     uint32_t radiance_texture; /* of its picture, or SCENE_NO_TEXTURE */
     double mean_luminance;     /* of that picture; else 1 */
     file_location where;

@@ -34,11 +34,14 @@ void scene_destroy(scene *s)
         texture_image_destroy(s->texture_images[i]);
     for (uint32_t i = 0; i < s->file_name_count; i++)
         free(s->file_names[i]);
+    for (uint32_t i = 0; i < s->light_group_count; i++)
+        free(s->light_group_names[i]);
     parameter_list_reset(&s->integrator);
     parameter_list_reset(&s->sampler);
     parameter_list_reset(&s->film);
     parameter_list_reset(&s->pixel_filter);
     free(s->file_names);
+    free(s->light_group_names);
     free(s->shapes);
     free(s->objects);
     free(s->instances);
@@ -51,6 +54,25 @@ void scene_destroy(scene *s)
     free(s->lights);
     light_pick_reset(s);
     free(s);
+}
+
+ag_status scene_light_group(scene *s, const char *name, uint32_t *out_index)
+{
+    for (uint32_t i = 0; i < s->light_group_count; i++)
+        if (strcmp(s->light_group_names[i], name) == 0) {
+            *out_index = i;
+            return AG_OK;
+        }
+    if (s->light_group_count == SCENE_LIGHT_GROUPS_MAX)
+        return AG_ERROR_SCENE;
+    if (!s->light_group_names)
+        s->light_group_names = calloc(SCENE_LIGHT_GROUPS_MAX, sizeof *s->light_group_names);
+    char *copy = s->light_group_names ? strdup(name) : NULL;
+    if (!copy)
+        return AG_ERROR_MEMORY;
+    s->light_group_names[s->light_group_count] = copy;
+    *out_index = s->light_group_count++;
+    return AG_OK;
 }
 
 /* Makes room for one more item in an array that has doubled whenever its count reached a power of two. */

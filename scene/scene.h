@@ -18,6 +18,8 @@
 struct bvh;
 struct light_tree;
 
+enum { SCENE_LIGHT_GROUPS_MAX = 32 };
+
 /* What the file's Option directives say that the renderer heeds. */
 typedef struct scene_options {
     bool has_seed;
@@ -42,6 +44,8 @@ typedef struct scene {
     uint32_t instance_step_count;
     light *lights;
     uint32_t light_count;
+    char **light_group_names; /* of light.group; the first is "default", of lights that name none */
+    uint32_t light_group_count;
     medium *media;
     uint32_t medium_count;
     uint32_t camera_medium; /* that the eye is in, SCENE_NO_MEDIUM: none */
@@ -91,6 +95,9 @@ ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index);
 /* For texture_image_load, which looks first whether it is there. The scene takes the picture, on failure too (it is
  * then destroyed). */
 ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index);
+/* The group of that name, made where it is not there yet; "default" is to be asked for first. Errors: AG_ERROR_MEMORY,
+ * AG_ERROR_SCENE (more than SCENE_LIGHT_GROUPS_MAX; nothing is said). */
+ag_status scene_light_group(scene *s, const char *name, uint32_t *out_index);
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
 /* An object, which is seen where instances put it. Its shapes do not shine. */

@@ -137,8 +137,9 @@ static void test_what_is_said(void **state)
     (void)state;
 #define CAMERA "Camera \"perspective\" Film "
 #define SMALL  " \"integer xresolution\" 4 \"integer yresolution\" 4 "
-    check_said(CAMERA "\"gbuffer\"" SMALL "\"string coordinatesystem\" \"world\"", 0,
-               "warning: Film \"gbuffer\": R, G and B are written alone; its channels for albedo, position");
+    check_said(CAMERA "\"gbuffer\"" SMALL "\"string coordinatesystem\" \"camera\"", 0, "");
+    check_said(CAMERA "\"gbuffer\"" SMALL "\"string coordinatesystem\" \"render\"", 1,
+               "error: Film: \"coordinatesystem\" is \"render\", it must be \"camera\" or \"world\"");
     check_said(CAMERA "\"spectral\"" SMALL "\"integer nbuckets\" 8 \"float lambdamin\" 400", 0,
                "warning: Film \"spectral\" is not supported; \"rgb\" stands in");
     check_said(CAMERA "\"rgb\"" SMALL "\"string sensor\" \"nikon_d850\"", 0,

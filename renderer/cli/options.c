@@ -24,6 +24,11 @@ enum {
     OPT_GATHER,
     OPT_MAX_DEPTH,
     OPT_TYPE,
+    OPT_AOV,
+    OPT_CLAMP_DIRECT,
+    OPT_CLAMP_INDIRECT,
+    OPT_TILED,
+    OPT_REPRODUCIBLE,
     OPT_OCIO,
     OPT_DISPLAY,
     OPT_VIEW,
@@ -59,7 +64,16 @@ static const option_line LINES[] = {
     {OPT_RADIUS, "radius", "R", "largest radius of an estimate, scene units; 0: from the photons' density"},
     {OPT_GATHER, "gather-samples", "N", "gather rays for each camera sample (default: 256 a pixel in all)"},
     {OPT_MAX_DEPTH, "max-depth", "N", "scatterings between lamp and eye at most, up to 100 (default: roulette)"},
+    {OPT_CLAMP_DIRECT, "clamp-direct", "V", "no sample gets more than V of direct light; 0 (default): unbounded"},
+    {OPT_CLAMP_INDIRECT, "clamp-indirect", "V", "the same of indirect light"},
     {OPT_TYPE, "type", "NAME", "stored samples: half, float, uint8 or uint16"},
+    {OPT_AOV, "aov", "LIST",
+     "layers of .exr files, by commas: A, Z, albedo, N, P, uv; the parts of\nlight: emission, direct, indirect, "
+     "caustic, "
+     "specular, or all five: light;\nirradiance, variance, samples, id, lightgroups; gbuffer; or all"},
+    {OPT_TILED, "tiled", NULL, "write .exr files in tiles, not in lines"},
+    {OPT_REPRODUCIBLE, "reproducible", NULL,
+     "leave out of .exr files what differs from run to run: times, threads, ..."},
     {OPT_OCIO, "ocio", "FILE", "OpenColorIO config (default: $OCIO, else the one built in)"},
     {OPT_DISPLAY, "display", "NAME", "display of the config"},
     {OPT_VIEW, "view", "NAME", "view of the display"},
@@ -143,6 +157,14 @@ static bool parse_count(const char *text, uint64_t least, uint64_t *out_value)
     return true;
 }
 
+/* A finite number that is not negative. */
+static bool parse_bound(const char *text, float *out_value)
+{
+    char *end;
+    *out_value = strtof(text, &end);
+    return end != text && !*end && *out_value >= 0.0f && !isinf(*out_value);
+}
+
 static bool parse_size(const char *text, int *out_width, int *out_height)
 {
     int used = 0;
@@ -211,12 +233,17 @@ static bool take_option(int code, const char *value, options *o)
         is_valid = o->has_caustic_photons = parse_count(value, 0, &r->caustic_photon_count);
         break;
     case OPT_NEAREST: is_valid = o->has_nearest = parse_int(value, 1, 65536, &r->nearest); break;
-    case OPT_RADIUS: {
-        char *end;
-        r->radius = strtof(value, &end);
-        is_valid = o->has_radius = end != value && !*end && r->radius >= 0.0f && !isinf(r->radius);
+    case OPT_RADIUS: is_valid = o->has_radius = parse_bound(value, &r->radius); break;
+    case OPT_AOV: {
+        uint32_t layers = 0;
+        is_valid = ag_layers_parse(value, &layers) == AG_OK;
+        r->layers |= layers;
         break;
     }
+    case OPT_CLAMP_DIRECT: is_valid = parse_bound(value, &r->clamp_direct); break;
+    case OPT_CLAMP_INDIRECT: is_valid = parse_bound(value, &r->clamp_indirect); break;
+    case OPT_TILED: o->output.tiled = true; break;
+    case OPT_REPRODUCIBLE: o->output.reproducible = true; break;
     case OPT_GATHER: is_valid = o->has_gather_samples = parse_int(value, 1, 65536, &r->gather_samples); break;
     case OPT_MAX_DEPTH: is_valid = o->has_max_depth = parse_int(value, 0, 100, &r->max_depth); break;
     case OPT_TYPE:
@@ -265,6 +292,21 @@ static bool has_file_twice(const options *o)
     return false;
 }
 
+/* With a blank between; to be freed, NULL when out of memory. */
+static char *join_arguments(int argc, char **argv)
+{
+    size_t size = 1;
+    for (int i = 0; i < argc; i++)
+        size += strlen(argv[i]) + 1;
+    char *joined = calloc(size, 1);
+    for (int i = 0; joined && i < argc; i++) {
+        strcat(joined, argv[i]);
+        if (i + 1 < argc)
+            strcat(joined, " ");
+    }
+    return joined;
+}
+
 options_result options_parse(int argc, char **argv, options *out_options)
 {
     struct option longs[LINE_COUNT + 1];
@@ -275,8 +317,11 @@ options_result options_parse(int argc, char **argv, options *out_options)
 
     options o = {.context = ag_default_context_settings(), .output = ag_default_output_settings()};
     o.outfiles = calloc((size_t)argc + 1, sizeof *o.outfiles);
-    if (!o.outfiles)
+    o.command_line = join_arguments(argc, argv); /* before getopt moves them */
+    if (!o.outfiles || !o.command_line) {
+        options_reset(&o);
         return OPTIONS_EXIT_USAGE;
+    }
     options_result result = OPTIONS_RUN;
     int code;
     while (result == OPTIONS_RUN && (code = getopt_long(argc, argv, "o:t:qv", longs, NULL)) != -1) {
@@ -311,6 +356,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
         return result;
     }
     o.scene = argv[optind];
+    o.output.command_line = o.command_line;
     *out_options = o;
     return OPTIONS_RUN;
 }
@@ -318,6 +364,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
 void options_reset(options *o)
 {
     free(o->outfiles);
+    free(o->command_line);
     *o = (options){0};
 }
 
@@ -327,6 +374,9 @@ void options_override(const options *o, ag_render_settings *settings)
     settings->cache = r->cache;
     settings->only = r->only;
     settings->integrator = r->integrator;
+    settings->layers |= r->layers;
+    settings->clamp_direct = r->clamp_direct;
+    settings->clamp_indirect = r->clamp_indirect;
     if (o->has_seed)
         settings->seed = r->seed;
     if (o->has_size)

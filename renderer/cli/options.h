@@ -18,6 +18,7 @@ typedef struct options {
     const char *scene;
     const char **outfiles; /* owned array, the strings are argv's */
     int outfile_count;
+    char *command_line; /* owned */
     const char *stats;
     progress_style progress;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */

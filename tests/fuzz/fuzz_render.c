@@ -30,6 +30,7 @@ static void render(ag_context *context, const ag_scene *s, ag_integrator integra
     settings.caustic_photon_count = 20;
     settings.nearest = 8;
     settings.gather_samples = 2;
+    settings.layers |= AG_LAYERS_ALL;
     if (settings.max_depth > 8)
         settings.max_depth = 8;
     ag_film *film;
@@ -41,6 +42,12 @@ static void render(ag_context *context, const ag_scene *s, ag_integrator integra
     FUZZ_CHECK(width == 3 && height == 2);
     for (int i = 0; i < 3 * width * height; i++)
         FUZZ_CHECK(isfinite(pixels[i]));
+    for (int c = 0; c < ag_film_channel_count(film); c++) {
+        float values[6];
+        FUZZ_CHECK(ag_film_read_channel(film, c, values) == AG_OK);
+        for (int i = 0; i < 6; i++)
+            FUZZ_CHECK(isfinite(values[i]));
+    }
     ag_film_destroy(film);
     FUZZ_CHECK(ag_context_statistics(context).samples_not_finite == 0);
 }

@@ -67,6 +67,39 @@ typedef enum ag_cache_mode {
 
 typedef enum ag_only { AG_ONLY_ALL, AG_ONLY_INDIRECT } ag_only;
 
+/* Layers of a picture beside its R, G and B. Their channels have the names that other renderers give them. */
+typedef enum ag_layer {
+    AG_LAYER_ALPHA = 1 << 0,  /* A: the share of the pixel where there is something; R, G and B hold the sky as well */
+    AG_LAYER_DEPTH = 1 << 1,  /* Z: the nearest surface's, along the camera's axis; 1e10 where there is none */
+    AG_LAYER_ALBEDO = 1 << 2, /* albedo.R, G, B: of what is met first, with what it reflects like a mirror, [0, 1] */
+    AG_LAYER_NORMAL = 1 << 3, /* N.X, Y, Z: its shading normal on the eye's side, world space, mean over the pixel */
+    AG_LAYER_POSITION = 1 << 4, /* P.X, Y, Z: world space, mean over what of the pixel is not empty */
+    AG_LAYER_UV = 1 << 5,       /* u, v */
+    /* The parts of light. R, G and B are their sum in this order, in floats, to the last bit. */
+    AG_LAYER_EMISSION = 1 << 6,      /* straight from lamps and sky to the eye */
+    AG_LAYER_DIRECT = 1 << 7,        /* straight from lamps, reflected by the first surface's diffuse lobes */
+    AG_LAYER_INDIRECT = 1 << 8,      /* what else these reflect, but */
+    AG_LAYER_CAUSTIC = 1 << 9,       /* what comes to them from lamps by way of mirrors and glass alone */
+    AG_LAYER_SPECULAR = 1 << 10,     /* all that comes by the first surface's other lobes */
+    AG_LAYER_IRRADIANCE = 1 << 11,   /* irradiance.R, G, B: of the photon map at the first surface, W/m^2 */
+    AG_LAYER_VARIANCE = 1 << 12,     /* variance.R, G, B: of the pixel's samples (not of their mean) */
+    AG_LAYER_SAMPLES = 1 << 13,      /* samples: how many */
+    AG_LAYER_ID = 1 << 14,           /* id.object, id.material: of the nearest surface, from 1 on; 0: nothing */
+    AG_LAYER_LIGHT_GROUPS = 1 << 15, /* light_NAME.R, G, B: what came from the lamps of a group to the first surface and
+                                        by way of mirrors and glass; light_photons: through the photon map */
+    AG_LAYER_GBUFFER = 1 << 16       /* the channels of pbrt-v4's film "gbuffer"; its P and N in place of the above */
+} ag_layer;
+#define AG_LAYERS_LIGHT (AG_LAYER_EMISSION | AG_LAYER_DIRECT | AG_LAYER_INDIRECT | AG_LAYER_CAUSTIC | AG_LAYER_SPECULAR)
+/* All that is the same from run to run, in our names. */
+#define AG_LAYERS_ALL                                                                                                  \
+    (AG_LAYER_ALPHA | AG_LAYER_DEPTH | AG_LAYER_ALBEDO | AG_LAYER_NORMAL | AG_LAYER_POSITION | AG_LAYER_UV |           \
+     AG_LAYERS_LIGHT | AG_LAYER_IRRADIANCE | AG_LAYER_VARIANCE | AG_LAYER_SAMPLES | AG_LAYER_ID |                      \
+     AG_LAYER_LIGHT_GROUPS)
+
+/* Layers by name, separated by commas: "A,Z,albedo", "light" for the parts of light, "all". Errors:
+ * AG_ERROR_ARGUMENT. */
+AG_API ag_status ag_layers_parse(const char *list, uint32_t *out_layers);
+
 typedef struct ag_render_settings {
     ag_integrator integrator; /* default: photonmap */
     ag_cache_mode cache;      /* default: on demand */
@@ -94,8 +127,13 @@ typedef struct ag_render_settings {
         caustic_photon_count; /* photons to store in the caustic map; only where there is specular matter; [0, …] */
     int nearest;              /* photons of an estimate, [1, 65536] */
     float radius;             /* largest radius of an estimate, scene units; 0: from the photons' density */
-    int gather_samples;       /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
-                                 gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
+    uint32_t layers;          /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
+    bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */
+    float clamp_direct; /* no component of what a sample gets from a lamp by way of at most one surface is above it; 0:
+                           unbounded, the default */
+    float clamp_indirect; /* the same of all other contributions */
+    int gather_samples;   /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
+                             gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
 } ag_render_settings;
 
 /* The scene's own settings, and our defaults for what it leaves open; says in the log what it makes of another
@@ -113,8 +151,31 @@ AG_API ag_status ag_render(ag_context *context, const ag_scene *scene, const ag_
                            ag_film **out_film);
 AG_API void ag_film_destroy(ag_film *film); /* NULL is fine */
 
+/* The same in passes over the whole picture: previews, checkpoints and limits of time are built on it. Samples [0, a)
+ * and then [a, b) give the bits of [0, b) at once. The rendering borrows scene and context. */
+typedef struct ag_rendering ag_rendering;
+
+/* Traces photons and builds the maps. Errors as ag_render. */
+AG_API ag_status ag_rendering_create(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
+                                     ag_rendering **out_rendering);
+/* Brings every pixel to so many samples; those that have them already stay as they are. samples_per_pixel: [1, that of
+ * the settings]. Errors: AG_ERROR_ARGUMENT, AG_CANCELLED: the film is then as good as it is, each pixel with the
+ * samples that it has had. */
+AG_API ag_status ag_rendering_continue(ag_rendering *rendering, int samples_per_pixel);
+/* The film as it is now. The rendering's. */
+AG_API const ag_film *ag_rendering_film(const ag_rendering *rendering);
+/* Ends the rendering, counts what was done, and hands its film over; out_film NULL: destroys that too. rendering NULL
+ * is fine. */
+AG_API void ag_rendering_finish(ag_rendering *rendering, ag_film **out_film);
+
 /* The pixels rendered (the crop), linear RGB with Rec. 709 primaries, top row first, 3 floats a pixel. The film's. */
 AG_API const float *ag_film_pixels(const ag_film *film, int *out_width, int *out_height);
+
+/* The channels of picture and layers, by the names that they have in a file; R, G and B are the first three. */
+AG_API int ag_film_channel_count(const ag_film *film);
+AG_API const char *ag_film_channel_name(const ag_film *film, int channel); /* the film's; NULL: there is none */
+/* Width * height values, top row first. Errors: AG_ERROR_ARGUMENT. */
+AG_API ag_status ag_film_read_channel(const ag_film *film, int channel, float *out_values);
 
 /* --- files --- */
 
@@ -131,6 +192,9 @@ typedef struct ag_output_settings {
     const char *display;      /* NULL: the config's default */
     const char *view;         /* NULL: the display's default */
     ag_sample_type type;      /* default: half for EXR, 8 bit for the others */
+    bool tiled;               /* EXR in tiles of 64 x 64 pixels; default: in lines */
+    bool reproducible;        /* EXR without what differs from run to run: equal pictures are equal files */
+    const char *command_line; /* to be noted in EXR files, or NULL */
 } ag_output_settings;
 
 AG_API ag_output_settings ag_default_output_settings(void);
@@ -140,8 +204,8 @@ AG_API ag_output_settings ag_default_output_settings(void);
  * AG_ERROR_OUTPUT, AG_ERROR_COLOR. */
 AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *settings, const char *path);
 
-/* Writes the film: scene-linear for .exr; through display and view for .png, .tif, .jpg. The file appears complete or
- * not at all. settings NULL: the defaults. */
+/* Writes the film: scene-linear and with its layers for .exr; through display and view for .png, .tif, .jpg. The file
+ * appears complete or not at all. settings NULL: the defaults. */
 AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                const char *path);
 

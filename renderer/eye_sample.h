@@ -1,0 +1,100 @@
+/* eye_sample.h: what one camera sample brings home: its radiance, and where layers are asked for, the parts of light
+ * that make it up and what its ray met first.
+ * Rests on: Jensen 2001, ch. 8 (emitted + direct + caustics + specular + indirect); Heckbert 1990 (path notation).
+ * Flow: shading, path_tracing -> [here] -> film. Threads: a sample belongs to one worker.
+ *
+ * The parts, of the light that reaches the eye: EMISSION by no surface (LE); DIRECT by the first surface's gathered
+ * lobes, straight from a lamp (LDE); CAUSTIC by the same, from a lamp by way of traced lobes alone (LS+DE); INDIRECT by
+ * the same, from elsewhere; SPECULAR by the first surface's traced lobes, whatever came before. Both integrators split
+ * alike. */
+#ifndef AFTERGLOW_EYE_SAMPLE_H
+#define AFTERGLOW_EYE_SAMPLE_H
+
+#include "math/vec3.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum light_part { PART_EMISSION, PART_DIRECT, PART_INDIRECT, PART_CAUSTIC, PART_SPECULAR } light_part;
+enum { LIGHT_PART_COUNT = PART_SPECULAR + 1 };
+
+/* Groups of lights by their names; behind them what comes through the photon map, of which no lamp is known. */
+enum { LIGHT_GROUPS_MAX = 32 };
+
+/* What the camera ray met first; all zero where nothing. Space is the film's: see aov.h. */
+typedef struct first_hit {
+    bool is_hit;
+    float depth;                             /* along the camera's axis; of spherical cameras the distance */
+    vec3 position, normal, geometric_normal; /* the normals on the eye's side */
+    vec2 uv;
+    float dz_dx, dz_dy; /* of the surface's plane, from pixel to pixel */
+    rgb albedo;
+    rgb irradiance;                  /* W/m^2, of the photon map's estimate there */
+    uint32_t object_id, material_id; /* from 1 on; 0: nothing */
+} first_hit;
+
+typedef struct sample_layers {
+    rgb parts[LIGHT_PART_COUNT];
+    rgb groups[LIGHT_GROUPS_MAX + 1];
+    first_hit first;
+} sample_layers;
+
+typedef struct eye_sample {
+    rgb radiance;
+    float most_direct, most_indirect; /* of a component of one contribution, INFINITY: unbounded */
+    int sign;                         /* of the pixel filter there */
+    sample_layers *layers;            /* NULL: radiance alone is asked for */
+} eye_sample;
+
+/* By what light that was scattered so many times between lamp and eye is to be multiplied: mostly 1. */
+static inline float eye_sample_bound(const eye_sample *s, int scatterings, rgb light)
+{
+    float most = scatterings > 1 ? s->most_indirect : s->most_direct, largest = rgb_max(light);
+    return largest > most ? most / largest : 1.0f;
+}
+
+/* Says of light that is in the radiance which part it is. */
+static inline void eye_sample_note(eye_sample *s, light_part part, rgb light)
+{
+    if (s->layers)
+        s->layers->parts[part] = rgb_add(s->layers->parts[part], light);
+}
+
+/* Adds light. Gives the factor of its bound. */
+static inline float eye_sample_add(eye_sample *s, light_part part, int scatterings, rgb light)
+{
+    float factor = eye_sample_bound(s, scatterings, light);
+    if (factor < 1.0f)
+        light = rgb_scale(light, factor);
+    s->radiance = rgb_add(s->radiance, light);
+    eye_sample_note(s, part, light);
+    return factor;
+}
+
+/* Light by the groups of its lamps, while an estimate goes on. */
+typedef struct light_group_sums {
+    rgb of_group[LIGHT_GROUPS_MAX + 1];
+} light_group_sums;
+
+/* Emptied; NULL where no groups are asked for, and then nothing is touched. */
+static inline rgb *light_group_sums_begin(light_group_sums *sums, bool is_wanted)
+{
+    if (!is_wanted)
+        return NULL;
+    *sums = (light_group_sums){0};
+    return sums->of_group;
+}
+
+static inline void eye_sample_add_group(eye_sample *s, uint32_t group, rgb light)
+{
+    s->layers->groups[group] = rgb_add(s->layers->groups[group], light);
+}
+
+/* by_group NULL: nothing. */
+static inline void eye_sample_add_groups(eye_sample *s, const rgb *by_group, rgb throughput)
+{
+    for (uint32_t i = 0; by_group && i <= LIGHT_GROUPS_MAX; i++)
+        eye_sample_add_group(s, i, rgb_mul(throughput, by_group[i]));
+}
+
+#endif
