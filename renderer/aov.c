@@ -37,6 +37,11 @@ static const layer_name NAMES[] = {
     {"id", AG_LAYER_ID},
     {"lightgroups", AG_LAYER_LIGHT_GROUPS},
     {"gbuffer", AG_LAYER_GBUFFER},
+    {"photon_density", AG_LAYER_PHOTON_DENSITY},
+    {"cache_state", AG_LAYER_CACHE_STATE},
+    {"photon_distance", AG_LAYER_PHOTON_DISTANCE},
+    {"gather_distance", AG_LAYER_GATHER_DISTANCE},
+    {"tile_time", AG_LAYER_TILE_TIME},
     {"light", AG_LAYERS_LIGHT},
     {"all", AG_LAYERS_ALL},
 };
@@ -73,7 +78,7 @@ static void want(aov_layout *layout, bool is_wanted, film_sum sum, int width)
     layout->sum_count += width;
 }
 
-static void lay_out_sums(aov_layout *layout)
+static void lay_out_sums(aov_layout *layout, bool denoises)
 {
     uint32_t layers = layout->layers;
     const struct {
@@ -99,6 +104,8 @@ static void lay_out_sums(aov_layout *layout)
     want(layout, true, SUM_RADIANCE, SUM_WIDTH[SUM_RADIANCE]);
     for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
         want(layout, layers & needs[i].layers, needs[i].sum, SUM_WIDTH[needs[i].sum]);
+    want(layout, denoises, SUM_ALBEDO, SUM_WIDTH[SUM_ALBEDO]);
+    want(layout, denoises, SUM_NORMAL, SUM_WIDTH[SUM_NORMAL]);
     want(layout, layers & AG_LAYER_LIGHT_GROUPS, SUM_GROUPS, 3 * (layout->group_count + 1));
     layout->needs_nearest = layers & (AG_LAYER_DEPTH | AG_LAYER_ID);
     layout->needs_first_hit = layout->needs_nearest || aov_has(layout, SUM_ALPHA) || aov_has(layout, SUM_ALBEDO) ||
@@ -194,6 +201,21 @@ static void lay_out_channels(aov_layout *layout)
         add_channel(layout, (channel_style){CHANNEL_OBJECT, SUM_RADIANCE, 0, true}, 0, "id.object");
         add_channel(layout, (channel_style){CHANNEL_MATERIAL, SUM_RADIANCE, 0, true}, 0, "id.material");
     }
+    static const struct {
+        uint32_t layer;
+        film_view view;
+        const char *name;
+    } views[] = {{AG_LAYER_PHOTON_DENSITY, VIEW_PHOTON_DENSITY, "photon_density"},
+                 {AG_LAYER_CACHE_STATE, VIEW_CACHE_STATE, "cache_state"},
+                 {AG_LAYER_PHOTON_DISTANCE, VIEW_PHOTON_DISTANCE, "photon_distance"},
+                 {AG_LAYER_GATHER_DISTANCE, VIEW_GATHER_DISTANCE, "gather_distance"},
+                 {AG_LAYER_TILE_TIME, VIEW_TILE_TIME, "tile_time"}};
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++)
+        if (layers & views[i].layer) {
+            layout->has_view[views[i].view] = true;
+            add_channel(layout, (channel_style){CHANNEL_VIEW, SUM_RADIANCE, 0, true}, (int)views[i].view, "%s",
+                        views[i].name);
+        }
     for (int i = 0; (layers & AG_LAYER_LIGHT_GROUPS) && i <= layout->group_count; i++) {
         char name[64];
         snprintf(name, sizeof name, "light_%.50s", i < layout->group_count ? layout->group_names[i] : "photons");
@@ -201,14 +223,15 @@ static void lay_out_channels(aov_layout *layout)
     }
 }
 
-ag_status aov_layout_create(uint32_t layers, bool is_path, const char *const *group_names, int group_count,
-                            aov_layout *out_layout)
+ag_status aov_layout_create(uint32_t layers, bool denoises, bool is_path, const char *const *group_names,
+                            int group_count, aov_layout *out_layout)
 {
     aov_layout layout = {.layers = layers, .group_count = group_count, .group_names = group_names};
     if (is_path) /* what only the photon map knows */
-        layout.layers &= ~(uint32_t)AG_LAYER_IRRADIANCE;
+        layout.layers &= ~(uint32_t)(AG_LAYER_IRRADIANCE | AG_LAYER_PHOTON_DENSITY | AG_LAYER_CACHE_STATE |
+                                     AG_LAYER_PHOTON_DISTANCE | AG_LAYER_GATHER_DISTANCE);
     layout.is_gbuffer = layout.layers & AG_LAYER_GBUFFER;
-    lay_out_sums(&layout);
+    lay_out_sums(&layout, denoises);
     layout.channels = calloc((size_t)(64 + 3 * (LIGHT_PART_COUNT + group_count + 1)), sizeof *layout.channels);
     if (!layout.channels)
         return AG_ERROR_MEMORY;

@@ -41,8 +41,19 @@ typedef enum channel_source {
     CHANNEL_SAMPLES,
     CHANNEL_DEPTH,
     CHANNEL_OBJECT,
-    CHANNEL_MATERIAL
+    CHANNEL_MATERIAL,
+    CHANNEL_VIEW /* component: of film_view */
 } channel_source;
+
+/* What is known of a pixel as a whole, see debug_views.h. */
+typedef enum film_view {
+    VIEW_PHOTON_DENSITY,
+    VIEW_CACHE_STATE,
+    VIEW_PHOTON_DISTANCE,
+    VIEW_GATHER_DISTANCE,
+    VIEW_TILE_TIME
+} film_view;
+enum { FILM_VIEW_COUNT = VIEW_TILE_TIME + 1 };
 
 typedef struct film_channel {
     char name[64];
@@ -61,12 +72,14 @@ typedef struct aov_layout {
     const char *const *group_names; /* borrowed */
     film_channel *channels;         /* owned; R, G, B first */
     int channel_count;
+    bool has_view[FILM_VIEW_COUNT];
     bool needs_first_hit, needs_nearest;
 } aov_layout;
 
-/* group_names: of the scene's light groups, [group_count], the first "default". Errors: AG_ERROR_MEMORY. */
-ag_status aov_layout_create(uint32_t layers, bool is_path, const char *const *group_names, int group_count,
-                            aov_layout *out_layout);
+/* denoises: albedo and normals are summed, whether they become channels or not. group_names: of the scene's light
+ * groups, [group_count], the first "default". Errors: AG_ERROR_MEMORY. */
+ag_status aov_layout_create(uint32_t layers, bool denoises, bool is_path, const char *const *group_names,
+                            int group_count, aov_layout *out_layout);
 void aov_layout_reset(aov_layout *layout);
 
 static inline bool aov_has(const aov_layout *layout, film_sum sum) { return layout->offset[sum] >= 0; }

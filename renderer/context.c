@@ -4,6 +4,7 @@
 
 #include "bvh.h"
 #include "clock.h"
+#include "denoise.h"
 #include "floating_point.h"
 #include "scene_file.h"
 
@@ -109,6 +110,40 @@ const char *ag_scene_film_file_name(const ag_scene *loaded)
 {
     const parameter *name = parameter_list_find(&loaded->s->film, "filename");
     return name && name->type == PARAMETER_STRING && name->count == 1 ? name->strings[0] : NULL;
+}
+
+ag_status ag_denoise_check(ag_context *context)
+{
+    char message[1024];
+    ag_status status = denoise_check(message, sizeof message);
+    if (status != AG_OK)
+        log_message(context->log, AG_LOG_ERROR, "%s", message);
+    return status;
+}
+
+ag_status ag_film_denoise(ag_context *context, ag_film *film)
+{
+    if (!context || !film)
+        return AG_ERROR_ARGUMENT;
+    size_t size = (size_t)film->width * (size_t)film->height * 3;
+    bool has_albedo = aov_has(&film->layout, SUM_ALBEDO), has_normal = aov_has(&film->layout, SUM_NORMAL);
+    float *albedo = has_albedo ? malloc(size * sizeof *albedo) : NULL;
+    float *normal = has_normal ? malloc(size * sizeof *normal) : NULL;
+    char message[1024] = "";
+    ag_status status = (has_albedo && !albedo) || (has_normal && !normal) ? AG_ERROR_MEMORY : AG_OK;
+    if (status == AG_OK) {
+        if (albedo)
+            film_read_sum(film, SUM_ALBEDO, albedo);
+        if (normal)
+            film_read_sum(film, SUM_NORMAL, normal);
+        status = denoise_picture(film->width, film->height, film->pixels, albedo, normal, context->statistics.threads,
+                                 message, sizeof message);
+    }
+    if (message[0])
+        log_message(context->log, AG_LOG_ERROR, "%s", message);
+    free(albedo);
+    free(normal);
+    return status;
 }
 
 ag_statistics ag_context_statistics(const ag_context *context)

@@ -54,6 +54,11 @@ ag_film *film_create(const ag_render_settings *settings, const pixel_filter *fil
         film->negatives = calloc(count, sizeof *film->negatives);
         is_whole = is_whole && film->negatives;
     }
+    for (int i = 0; i < FILM_VIEW_COUNT; i++)
+        if (film->layout.has_view[i]) {
+            film->views[i] = calloc(count, sizeof *film->views[i]);
+            is_whole = is_whole && film->views[i];
+        }
     if (film->layout.needs_nearest) {
         film->nearest = calloc(count, sizeof *film->nearest);
         is_whole = is_whole && film->nearest;
@@ -72,6 +77,8 @@ void ag_film_destroy(ag_film *film)
     free(film->counts);
     free(film->negatives);
     free(film->nearest);
+    for (int i = 0; i < FILM_VIEW_COUNT; i++)
+        free(film->views[i]);
     free(film->pixels);
     aov_layout_reset(&film->layout);
     free(film);
@@ -275,6 +282,7 @@ static float read_value(const ag_film *film, size_t pixel, const film_channel *c
     case CHANNEL_DEPTH: return nearest->depth;
     case CHANNEL_OBJECT: return (float)nearest->object_id;
     case CHANNEL_MATERIAL: return (float)nearest->material_id;
+    case CHANNEL_VIEW: return film->views[component][pixel];
     }
     return 0.0f;
 }
@@ -283,6 +291,16 @@ void film_read_channel(const ag_film *film, int channel, float *out, size_t stri
 {
     for (size_t i = 0; i < pixel_count(film); i++)
         out[i * stride] = read_value(film, i, &film->layout.channels[channel]);
+}
+
+void film_read_sum(const ag_film *film, film_sum sum, float *out)
+{
+    double value[3];
+    for (size_t i = 0; i < pixel_count(film); i++) {
+        read_mean(film, i, film->layout.offset[sum], 3, value);
+        for (int c = 0; c < 3; c++)
+            out[3 * i + (size_t)c] = (float)value[c];
+    }
 }
 
 /* --- as the public interface shows it --- */

@@ -34,11 +34,12 @@ struct ag_film {
     film_origin origin;
 
     /* Of each pixel, top row first; all owned. */
-    double *sums;          /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
-    uint32_t *counts;      /* samples so far */
-    uint32_t *negatives;   /* those with sign -1; NULL where the filter has no signs */
-    film_nearest *nearest; /* NULL where not asked for */
-    float *pixels;         /* 3, RGB: set by film_resolve */
+    double *sums;                  /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
+    uint32_t *counts;              /* samples so far */
+    uint32_t *negatives;           /* those with sign -1; NULL where the filter has no signs */
+    float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
+    film_nearest *nearest;         /* NULL where not asked for */
+    float *pixels;                 /* 3, RGB: set by film_resolve */
 };
 
 /* An empty film of the settings' crop; takes the layout, on failure too (it is then reset). NULL when out of memory. A
@@ -53,5 +54,8 @@ void film_resolve(struct ag_film *film);
 
 /* One channel of the layout, of a resolved film: width * height floats, stride apart. */
 void film_read_channel(const struct ag_film *film, int channel, float *out, size_t stride);
+
+/* The means of a sum of 3 that the layout has, packed: 3 floats a pixel. */
+void film_read_sum(const struct ag_film *film, film_sum sum, float *out);
 
 #endif

@@ -4,10 +4,12 @@
 #include "context.h"
 
 #include "clock.h"
+#include "debug_views.h"
 #include "first_hit.h"
 #include "floating_point.h"
 #include "passage.h"
 #include "path_tracing.h"
+#include "photon_dump.h"
 #include "shading.h"
 #include "tile_scheduler.h"
 
@@ -212,13 +214,23 @@ static void render_pixel(const tile_job *job, eye_worker *worker, int x, int y)
     }
 }
 
+static void add_tile_time(ag_film *film, tile area, float seconds)
+{
+    for (int y = area.y0; y < area.y1; y++)
+        for (int x = area.x0; x < area.x1; x++)
+            film->views[VIEW_TILE_TIME][(size_t)(y - film->y0) * (size_t)film->width + (size_t)(x - film->x0)] +=
+                seconds;
+}
+
 static void render_tiles(void *user, unsigned worker_index)
 {
     tile_job *job = user;
     eye_worker *worker = &job->workers[worker_index];
     double pixel_count = (double)job->film->width * (double)job->film->height;
+    float *times = job->film->views[VIEW_TILE_TIME];
     tile area;
     while (!run_is_cancelled(&job->context->run) && tile_scheduler_next(job->tiles, &area)) {
+        double begin = times ? clock_seconds() : 0.0;
         for (int y = area.y0; y < area.y1; y++) {
             for (int x = area.x0; x < area.x1; x++)
                 render_pixel(job, worker, x, y);
@@ -226,6 +238,8 @@ static void render_tiles(void *user, unsigned worker_index)
             uint64_t done = fetch_add_relaxed_u64(&job->pixels_done, row) + row;
             run_progress(&job->context->run, AG_PHASE_RENDER, (double)done / pixel_count);
         }
+        if (times)
+            add_tile_time(job->film, area, (float)(clock_seconds() - begin));
     }
 }
 
@@ -246,7 +260,8 @@ static bool eye_worker_reserve(eye_worker *worker, const transport *t)
     arena_mark mark = arena_save(worker->scratch);
     bool fits = arena_alloc(worker->scratch, (size_t)t->settings->gather_samples * sizeof(gather_ray)) &&
                 arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
-    if (fits && aov_has(t->layout, SUM_IRRADIANCE)) /* alone, before there are gather rays */
+    if (fits && (aov_has(t->layout, SUM_IRRADIANCE) ||
+                 t->layout->has_view[VIEW_PHOTON_DENSITY])) /* alone, before there are gather rays */
         fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->cache->map) * sizeof(photon_neighbor));
     arena_restore(worker->scratch, mark);
     return fits;
@@ -294,8 +309,11 @@ static ag_status render_tiles_of(ag_rendering *r, uint32_t wanted)
     thread_pool_run(context->pool, render_tiles, &job);
     film_resolve(film);
     tile_scheduler_destroy(job.tiles);
+    status = run_is_cancelled(&context->run) ? AG_CANCELLED : AG_OK;
+    if (status == AG_OK)
+        status = debug_views_render(&r->t, &context->run, r->workers, film);
     context_end_phase(context, AG_PHASE_RENDER, begin);
-    return run_is_cancelled(&context->run) ? AG_CANCELLED : AG_OK;
+    return status;
 }
 
 /* What the workers counted since they were asked last. */
@@ -405,8 +423,8 @@ static ag_status create_film(ag_rendering *r)
     ag_status status =
         pixel_filter_create(&r->s->pixel_filter, r->s->options.disable_pixel_jitter, r->context->log, &filter);
     if (status == AG_OK)
-        status = aov_layout_create(settings->layers, settings->integrator == AG_INTEGRATOR_PATH, group_names,
-                                   group_count, &layout);
+        status = aov_layout_create(settings->layers, settings->denoise, settings->integrator == AG_INTEGRATOR_PATH,
+                                   group_names, group_count, &layout);
     if (status != AG_OK)
         return status;
     r->film = film_create(settings, &filter, &layout);
@@ -470,6 +488,17 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     ag_status status = render_tiles_of(r, (uint32_t)samples_per_pixel);
     collect_counts(r);
     floating_point_leave(callers_arithmetic);
+    return status;
+}
+
+ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
+{
+    if (!r || !path || r->settings.integrator != AG_INTEGRATOR_PHOTONMAP)
+        return AG_ERROR_ARGUMENT;
+    char message[1024] = "";
+    ag_status status = photon_dump_write(&r->maps.global, &r->maps.caustic, path, message, sizeof message);
+    if (message[0])
+        log_message(r->context->log, AG_LOG_ERROR, "%s", message);
     return status;
 }
 

@@ -315,7 +315,7 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "nearest photons must be from 1 to 65536";
     else if (!(s->clamp_direct >= 0.0f) || !(s->clamp_indirect >= 0.0f))
         wrong = "clamps must not be negative";
-    else if (s->layers & ~(uint32_t)(AG_LAYERS_ALL | AG_LAYER_GBUFFER))
+    else if (s->layers & ~(uint32_t)(AG_LAYERS_ALL | AG_LAYER_GBUFFER | AG_LAYER_TILE_TIME))
         wrong = "layers must be of those that there are";
     else if (!(s->radius >= 0.0f) || isinf(s->radius))
         wrong = "radius must be finite and not negative";

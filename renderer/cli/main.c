@@ -84,6 +84,22 @@ static void name_default_output(const options *o, const ag_scene *scene, char *o
         snprintf(out_name, size, "%.*s.exr", stem, base);
 }
 
+static ag_status render(ag_context *context, const options *o, const ag_scene *scene,
+                        const ag_render_settings *settings, ag_film **out_film)
+{
+    ag_rendering *rendering;
+    ag_status status = ag_rendering_create(context, scene, settings, &rendering);
+    if (status != AG_OK)
+        return status;
+    status = ag_rendering_continue(rendering, settings->samples_per_pixel);
+    if (status == AG_OK && o->photons_file)
+        status = ag_rendering_write_photons(rendering, o->photons_file);
+    ag_rendering_finish(rendering, status == AG_OK ? out_film : NULL);
+    if (status == AG_OK && settings->denoise)
+        status = ag_film_denoise(context, *out_film);
+    return status;
+}
+
 static ag_status run(ag_context *context, options *o)
 {
     ag_status status = AG_OK;
@@ -92,6 +108,14 @@ static ag_status run(ag_context *context, options *o)
         status = ag_output_check(context, &o->output, o->outfiles[i]);
     if (status == AG_OK && o->stats)
         status = ag_statistics_check(context, o->stats);
+    if (status == AG_OK && o->photons_file)
+        status = ag_statistics_check(context, o->photons_file); /* as for any file */
+    if (status == AG_OK && o->photons_file && o->render.integrator == AG_INTEGRATOR_PATH) {
+        fprintf(stderr, "afterglow: --dump-photons: path tracing has no photons\n");
+        status = AG_ERROR_ARGUMENT;
+    }
+    if (status == AG_OK && o->render.denoise)
+        status = ag_denoise_check(context);
     if (status != AG_OK)
         return status;
 
@@ -111,7 +135,7 @@ static ag_status run(ag_context *context, options *o)
         status = ag_render_settings_from_scene(context, scene, &settings);
     if (status == AG_OK) {
         options_override(o, &settings);
-        status = ag_render(context, scene, &settings, &film);
+        status = render(context, o, scene, &settings, &film);
     }
     for (int i = 0; i < o->outfile_count && status == AG_OK; i++)
         status = ag_film_write(context, film, &o->output, o->outfiles[i]);

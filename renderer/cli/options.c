@@ -27,6 +27,8 @@ enum {
     OPT_AOV,
     OPT_CLAMP_DIRECT,
     OPT_CLAMP_INDIRECT,
+    OPT_DENOISE,
+    OPT_DUMP_PHOTONS,
     OPT_TILED,
     OPT_REPRODUCIBLE,
     OPT_OCIO,
@@ -70,7 +72,10 @@ static const option_line LINES[] = {
     {OPT_AOV, "aov", "LIST",
      "layers of .exr files, by commas: A, Z, albedo, N, P, uv; the parts of\nlight: emission, direct, indirect, "
      "caustic, "
-     "specular, or all five: light;\nirradiance, variance, samples, id, lightgroups; gbuffer; or all"},
+     "specular, or all five: light;\nirradiance, variance, samples, id, lightgroups; photon_density,\ncache_state, "
+     "photon_distance, gather_distance, tile_time; gbuffer; or all"},
+    {OPT_DENOISE, "denoise", NULL, "take the noise out with Open Image Denoise, where its library is there"},
+    {OPT_DUMP_PHOTONS, "dump-photons", "FILE", "write the photons as PLY"},
     {OPT_TILED, "tiled", NULL, "write .exr files in tiles, not in lines"},
     {OPT_REPRODUCIBLE, "reproducible", NULL,
      "leave out of .exr files what differs from run to run: times, threads, ..."},
@@ -242,6 +247,8 @@ static bool take_option(int code, const char *value, options *o)
     }
     case OPT_CLAMP_DIRECT: is_valid = parse_bound(value, &r->clamp_direct); break;
     case OPT_CLAMP_INDIRECT: is_valid = parse_bound(value, &r->clamp_indirect); break;
+    case OPT_DENOISE: r->denoise = true; break;
+    case OPT_DUMP_PHOTONS: o->photons_file = value; break;
     case OPT_TILED: o->output.tiled = true; break;
     case OPT_REPRODUCIBLE: o->output.reproducible = true; break;
     case OPT_GATHER: is_valid = o->has_gather_samples = parse_int(value, 1, 65536, &r->gather_samples); break;
@@ -281,7 +288,8 @@ static const option_line *option_line_of(int code)
 static bool has_file_twice(const options *o)
 {
     for (int i = 0; i < o->outfile_count; i++) {
-        bool is_twice = o->stats && strcmp(o->stats, o->outfiles[i]) == 0;
+        bool is_twice = (o->stats && strcmp(o->stats, o->outfiles[i]) == 0) ||
+                        (o->photons_file && strcmp(o->photons_file, o->outfiles[i]) == 0);
         for (int k = 0; k < i; k++)
             is_twice = is_twice || strcmp(o->outfiles[k], o->outfiles[i]) == 0;
         if (is_twice) {
@@ -375,6 +383,7 @@ void options_override(const options *o, ag_render_settings *settings)
     settings->only = r->only;
     settings->integrator = r->integrator;
     settings->layers |= r->layers;
+    settings->denoise = r->denoise;
     settings->clamp_direct = r->clamp_direct;
     settings->clamp_indirect = r->clamp_indirect;
     if (o->has_seed)

@@ -19,7 +19,7 @@ typedef struct options {
     const char **outfiles; /* owned array, the strings are argv's */
     int outfile_count;
     char *command_line; /* owned */
-    const char *stats;
+    const char *stats, *photons_file;
     progress_style progress;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
     ag_context_settings context;

@@ -87,14 +87,23 @@ typedef enum ag_layer {
     AG_LAYER_ID = 1 << 14,           /* id.object, id.material: of the nearest surface, from 1 on; 0: nothing */
     AG_LAYER_LIGHT_GROUPS = 1 << 15, /* light_NAME.R, G, B: what came from the lamps of a group to the first surface and
                                         by way of mirrors and glass; light_photons: through the photon map */
-    AG_LAYER_GBUFFER = 1 << 16       /* the channels of pbrt-v4's film "gbuffer"; its P and N in place of the above */
+    AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N in place of the above */
+    /* How the photon map fared, at what the ray through the pixel's middle meets first; 0 where that gathers nothing.
+     */
+    AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density: photons per area, 1/m^2 */
+    AG_LAYER_CACHE_STATE = 1 << 18,    /* cache_state: of the photon nearest there: 1 its irradiance was not demanded, 2
+                                          it was; 0: no photon is near */
+    AG_LAYER_PHOTON_DISTANCE = 1 << 19, /* photon_distance: how far that photon is */
+    AG_LAYER_GATHER_DISTANCE = 1 << 20, /* gather_distance: how far gather rays go, harmonic mean */
+    AG_LAYER_TILE_TIME = 1 << 21        /* tile_time: seconds that the pixel's tile took: another number in each run */
 } ag_layer;
 #define AG_LAYERS_LIGHT (AG_LAYER_EMISSION | AG_LAYER_DIRECT | AG_LAYER_INDIRECT | AG_LAYER_CAUSTIC | AG_LAYER_SPECULAR)
 /* All that is the same from run to run, in our names. */
 #define AG_LAYERS_ALL                                                                                                  \
     (AG_LAYER_ALPHA | AG_LAYER_DEPTH | AG_LAYER_ALBEDO | AG_LAYER_NORMAL | AG_LAYER_POSITION | AG_LAYER_UV |           \
      AG_LAYERS_LIGHT | AG_LAYER_IRRADIANCE | AG_LAYER_VARIANCE | AG_LAYER_SAMPLES | AG_LAYER_ID |                      \
-     AG_LAYER_LIGHT_GROUPS)
+     AG_LAYER_LIGHT_GROUPS | AG_LAYER_PHOTON_DENSITY | AG_LAYER_CACHE_STATE | AG_LAYER_PHOTON_DISTANCE |               \
+     AG_LAYER_GATHER_DISTANCE)
 
 /* Layers by name, separated by commas: "A,Z,albedo", "light" for the parts of light, "all". Errors:
  * AG_ERROR_ARGUMENT. */
@@ -128,6 +137,7 @@ typedef struct ag_render_settings {
     int nearest;              /* photons of an estimate, [1, 65536] */
     float radius;             /* largest radius of an estimate, scene units; 0: from the photons' density */
     uint32_t layers;          /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
+    bool denoise;             /* ag_film_denoise will be asked for: the film keeps what it needs */
     bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */
     float clamp_direct; /* no component of what a sample gets from a lamp by way of at most one surface is above it; 0:
                            unbounded, the default */
@@ -162,6 +172,10 @@ AG_API ag_status ag_rendering_create(ag_context *context, const ag_scene *scene,
  * the settings]. Errors: AG_ERROR_ARGUMENT, AG_CANCELLED: the film is then as good as it is, each pixel with the
  * samples that it has had. */
 AG_API ag_status ag_rendering_continue(ag_rendering *rendering, int samples_per_pixel);
+/* The photons as binary PLY, for viewers and scripts: x, y, z, nx, ny, nz, the way the light went dx, dy, dz, red,
+ * green, blue in W, caustic (0 global map, 1 caustic map), demanded (whether irradiance was computed there); written
+ * atomically. Errors: AG_ERROR_ARGUMENT (path tracing has none), AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
+AG_API ag_status ag_rendering_write_photons(const ag_rendering *rendering, const char *path);
 /* The film as it is now. The rendering's. */
 AG_API const ag_film *ag_rendering_film(const ag_rendering *rendering);
 /* Ends the rendering, counts what was done, and hands its film over; out_film NULL: destroys that too. rendering NULL
@@ -176,6 +190,13 @@ AG_API int ag_film_channel_count(const ag_film *film);
 AG_API const char *ag_film_channel_name(const ag_film *film, int channel); /* the film's; NULL: there is none */
 /* Width * height values, top row first. Errors: AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_film_read_channel(const ag_film *film, int channel, float *out_values);
+
+/* Takes the noise out of R, G and B with Open Image Denoise, which is looked for when this is called; with albedo and
+ * normals where the settings said denoise. The other channels stay, so the parts of light no longer add up. Errors:
+ * AG_ERROR_SYSTEM (no such library), AG_ERROR_MEMORY. */
+AG_API ag_status ag_film_denoise(ag_context *context, ag_film *film);
+/* Whether the library is there. To be asked before a long render. Errors: AG_ERROR_SYSTEM. */
+AG_API ag_status ag_denoise_check(ag_context *context);
 
 /* --- files --- */
 
