@@ -45,8 +45,8 @@ static float gather_distance(const transport *t, eye_worker *worker, const verte
         bsdf_sample first;
         vertex met;
         if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE,
-                                   sampler_2d_at(where, SAMPLE_LOBE, 0, i).x, sampler_2d_at(where, SAMPLE_GATHER, 0, i),
-                                   &first))
+                                   sampler_2d_of(where, SAMPLE_LOBE, 0, GATHER_RAYS, i).x,
+                                   sampler_2d_of(where, SAMPLE_GATHER, 0, GATHER_RAYS, i), &first))
             continue;
         count++;
         if (transport_trace(t, worker, surface_ray(&v->hit, v->arrived, first.direction), &met))
@@ -64,7 +64,7 @@ static void view_pixel(const views_job *job, eye_worker *worker, size_t pixel, i
     vertex v;
     if (!transport_trace(t, worker, ray, &v) || !bsdf_has(&v.scattering, BSDF_GATHERED))
         return;
-    sampler where = sampler_make(t->settings->seed, x, y, 0);
+    sampler where = sampler_make(t->settings->seed, x, y, 0, 0);
     if (job->film->views[VIEW_GATHER_DISTANCE])
         put(job, VIEW_GATHER_DISTANCE, pixel, gather_distance(t, worker, &v, &where));
     if (!t->cache)
