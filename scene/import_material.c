@@ -115,8 +115,8 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
         return AG_OK;
     }
     const texture_image *read = i->scene->texture_images[t.image_index];
-    if (use == PICTURE_OPACITY && (read->alpha_bytes || read->alpha_values))
-        t.channel = TEXTURE_CHANNEL_A;
+    const bool has_alpha = read->alpha_bytes || read->alpha_values;
+    t.channel = use == PICTURE_OPACITY && has_alpha ? TEXTURE_CHANNEL_A : TEXTURE_CHANNEL_MEAN;
     return scene_add_texture(i->scene, &t, out_texture);
 }
 

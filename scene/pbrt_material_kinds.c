@@ -85,7 +85,7 @@ static ag_status read_metal(pbrt_parser *parser, parameter_list *list, const cha
 static ag_status read_index(pbrt_parser *parser, parameter_list *list, const char *name, float *ior)
 {
     const parameter *eta = parameter_list_find(list, name);
-    if (eta && eta->type == PARAMETER_SPECTRUM) {
+    if (eta && (eta->type == PARAMETER_SPECTRUM || eta->type == PARAMETER_RGB)) {
         rgb value = rgb_gray(*ior);
         PBRT_TRY(parameter_get_rgb(list, parser->log, name, &value));
         *ior = value.g;

@@ -11,20 +11,6 @@
 
 static parameter *find(parameter_list *list, const char *name) { return (parameter *)parameter_list_find(list, name); }
 
-/* Where both are there the new name's value holds. */
-static ag_status rename_parameter(parameter_list *list, const char *from, const char *to)
-{
-    parameter *p = find(list, from);
-    if (!p || find(list, to))
-        return AG_OK;
-    char *name = strdup(to);
-    if (!name)
-        return AG_ERROR_MEMORY;
-    free(p->name);
-    p->name = name;
-    return AG_OK;
-}
-
 static bool is_constant(const parameter *p, double value)
 {
     if (!p->numbers || (p->type != PARAMETER_RGB && p->type != PARAMETER_FLOAT) || p->count == 0)
@@ -50,29 +36,6 @@ static bool drop(pbrt_parser *parser, parameter_list *list, const char *type, co
         log_at_once(parser->log, AG_LOG_WARNING, p->where, key, "\"%s\" of pbrt-v3's material \"%s\" is not used", name,
                     type);
     return is_silent;
-}
-
-/* Makes a new one of nothing: a spectrum by its name. */
-static ag_status add_spectrum(parameter_list *list, const char *name, const char *spectrum)
-{
-    if (find(list, name))
-        return AG_OK;
-    parameter *larger = realloc(list->items, (list->count + 1) * sizeof *larger);
-    if (!larger)
-        return AG_ERROR_MEMORY;
-    list->items = larger;
-    parameter *p = &larger[list->count];
-    memset(p, 0, sizeof *p);
-    p->type = PARAMETER_SPECTRUM;
-    p->where = list->where;
-    list->count++; /* the list's from here on */
-    p->name = strdup(name);
-    p->strings = calloc(1, sizeof *p->strings);
-    if (!p->name || !p->strings)
-        return AG_ERROR_MEMORY;
-    p->count = 1;
-    p->strings[0] = strdup(spectrum);
-    return p->strings[0] ? AG_OK : AG_ERROR_MEMORY;
 }
 
 /* Of "uber" and "plastic": without gloss they are but diffuse. */
@@ -113,7 +76,7 @@ static ag_status upgrade_mix(pbrt_parser *parser, parameter_list *list)
     second->strings[0] = NULL;
     second->count = 0;
     second->looked_up = true;
-    return rename_parameter(list, "namedmaterial1", "materials");
+    return pbrt_rename_parameter(list, "namedmaterial1", "materials");
 }
 
 static ag_status upgrade(pbrt_parser *parser, parameter_list *list, const char *old, const char **out_new)
@@ -121,7 +84,7 @@ static ag_status upgrade(pbrt_parser *parser, parameter_list *list, const char *
     *out_new = NULL;
     bool is_uber = strcmp(old, "uber") == 0, is_glass = strcmp(old, "glass") == 0;
     if (is_uber || is_glass)
-        PBRT_TRY(rename_parameter(list, "index", "eta"));
+        PBRT_TRY(pbrt_rename_parameter(list, "index", "eta"));
     if (is_uber || strcmp(old, "plastic") == 0) {
         *out_new = plastic_kind(parser, list, old);
         if (is_uber) {
@@ -129,7 +92,7 @@ static ag_status upgrade(pbrt_parser *parser, parameter_list *list, const char *
             drop(parser, list, old, "Kt", 0.0);
             drop(parser, list, old, "opacity", 1.0);
         }
-        return rename_parameter(list, "Kd", "reflectance");
+        return pbrt_rename_parameter(list, "Kd", "reflectance");
     }
     if (is_glass) {
         *out_new = "dielectric";
@@ -138,32 +101,32 @@ static ag_status upgrade(pbrt_parser *parser, parameter_list *list, const char *
     } else if (strcmp(old, "matte") == 0) {
         *out_new = "diffuse";
         drop(parser, list, old, "sigma", 0.0);
-        PBRT_TRY(rename_parameter(list, "Kd", "reflectance"));
+        PBRT_TRY(pbrt_rename_parameter(list, "Kd", "reflectance"));
     } else if (strcmp(old, "substrate") == 0) {
         *out_new = "coateddiffuse";
         drop(parser, list, old, "Ks", 1.0);
-        PBRT_TRY(rename_parameter(list, "Kd", "reflectance"));
+        PBRT_TRY(pbrt_rename_parameter(list, "Kd", "reflectance"));
     } else if (strcmp(old, "metal") == 0) {
         *out_new = "conductor";
         drop(parser, list, old, "Kr", 1.0);
     } else if (strcmp(old, "mirror") == 0) {
         *out_new = "conductor";
         drop(parser, list, old, "Kr", 0.0);
-        PBRT_TRY(add_spectrum(list, "eta", "metal-Ag-eta"));
-        PBRT_TRY(add_spectrum(list, "k", "metal-Ag-k"));
+        PBRT_TRY(pbrt_add_string(list, "eta", PARAMETER_SPECTRUM, "metal-Ag-eta"));
+        PBRT_TRY(pbrt_add_string(list, "k", PARAMETER_SPECTRUM, "metal-Ag-k"));
     } else if (strcmp(old, "translucent") == 0) {
         *out_new = "diffusetransmission";
         drop(parser, list, old, "reflect", 0.0);
         drop(parser, list, old, "transmit", 1.0);
         drop(parser, list, old, "Ks", 0.0);
         drop(parser, list, old, "roughness", 0.0);
-        PBRT_TRY(rename_parameter(list, "Kd", "transmittance"));
+        PBRT_TRY(pbrt_rename_parameter(list, "Kd", "transmittance"));
     } else if (strcmp(old, "kdsubsurface") == 0) {
         *out_new = "subsurface";
-        PBRT_TRY(rename_parameter(list, "Kd", "reflectance"));
+        PBRT_TRY(pbrt_rename_parameter(list, "Kd", "reflectance"));
     } else if (strcmp(old, "disney") == 0) {
         *out_new = "diffuse";
-        PBRT_TRY(rename_parameter(list, "color", "reflectance"));
+        PBRT_TRY(pbrt_rename_parameter(list, "color", "reflectance"));
         for (size_t i = 0; i < list->count; i++)
             if (strcmp(list->items[i].name, "reflectance") != 0 && strcmp(list->items[i].name, "bumpmap") != 0)
                 list->items[i].looked_up = true;
@@ -177,7 +140,7 @@ ag_status pbrt_upgrade_material(pbrt_parser *parser, parameter_list *list, const
     if (strcmp(old, "mix") == 0)
         return upgrade_mix(parser, list);
     PBRT_TRY(upgrade(parser, list, old, &new_name));
-    PBRT_TRY(rename_parameter(list, "bumpmap", "displacement"));
+    PBRT_TRY(pbrt_rename_parameter(list, "bumpmap", "displacement"));
     if (!new_name)
         return AG_OK;
     char key[96];

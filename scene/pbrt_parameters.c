@@ -204,6 +204,22 @@ static ag_status read_declaration(pbrt_parser *parser, const pbrt_token *token, 
     return AG_OK;
 }
 
+/* Of two with one name the last counts, as in pbrt. */
+static void drop_shadowed(pbrt_parser *parser, parameter_list *list)
+{
+    parameter *last = &list->items[list->count - 1];
+    for (parameter *p = list->items; p < last; p++)
+        if (strcmp(p->name, last->name) == 0) {
+            log_at(parser->log, AG_LOG_WARNING, last->where,
+                   "%s: \"%s\" is given twice, first at %d:%d: the last counts", list->directive, last->name,
+                   p->where.line, p->where.column);
+            parameter_reset(p);
+            *p = *last;
+            list->count--;
+            return;
+        }
+}
+
 static ag_status read_parameter(pbrt_parser *parser, parameter_list *list)
 {
     pbrt_token token;
@@ -216,13 +232,11 @@ static ag_status read_parameter(pbrt_parser *parser, parameter_list *list)
     b.p->where = token.where;
     list->count++; /* from here on the list owns it, whatever happens */
     PBRT_TRY(read_declaration(parser, &token, &b));
-    for (size_t i = 0; i + 1 < list->count; i++)
-        if (strcmp(list->items[i].name, b.p->name) == 0)
-            return pbrt_error(parser, token.where, token.width, "\"%s\" is given twice, first at %d:%d", b.p->name,
-                              list->items[i].where.line, list->items[i].where.column);
     PBRT_TRY(read_values(parser, &b));
     PBRT_TRY(check_values(parser, &b, token.width));
-    return pbrt_settle_color(parser, b.p, token.width);
+    PBRT_TRY(pbrt_settle_color(parser, b.p, token.width));
+    drop_shadowed(parser, list);
+    return AG_OK;
 }
 
 static ag_status read_all(pbrt_parser *parser, parameter_list *list)
@@ -258,6 +272,8 @@ static ag_status read_list(pbrt_parser *parser, const char *directive, const cha
         status = read_all(parser, out_list);
     if (!status)
         status = pbrt_append_attributes(parser, out_list);
+    if (!status)
+        status = pbrt_upgrade_parameters(parser, out_list);
     if (status)
         parameter_list_reset(out_list);
     return status;

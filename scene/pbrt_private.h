@@ -233,6 +233,14 @@ ag_status pbrt_settle_color(pbrt_parser *parser, parameter *p, size_t width);
 ag_status pbrt_read_number_file(pbrt_parser *parser, const char *name, file_location where, size_t width,
                                 const char *hint, double **out_numbers, size_t *out_count);
 
+/* pbrt_old_parameters.c: what the list says in pbrt-v3's words, said in pbrt-v4's; all but materials. Errors:
+ * AG_ERROR_SCENE, AG_ERROR_MEMORY. */
+ag_status pbrt_upgrade_parameters(pbrt_parser *parser, parameter_list *list);
+/* Where both are there the new name's value holds. */
+ag_status pbrt_rename_parameter(parameter_list *list, const char *from, const char *to);
+/* A parameter that the file has not, unless it has it. */
+ag_status pbrt_add_string(parameter_list *list, const char *name, parameter_type type, const char *value);
+
 /* pbrt_attributes.c */
 pbrt_handler pbrt_attribute_directive;
 /* Adds those in force for the list's directive, less those that it says itself. Errors: AG_ERROR_MEMORY. */

@@ -147,6 +147,7 @@ static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
 static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
 {
     static const char *const UNSUPPORTED[] = {"curve"};
+    static const char *const OLD[] = {"cone", "paraboloid", "hyperboloid", "heightfield", "heightfield2", "nurbs"};
     typedef ag_status reader(pbrt_parser *, parameter_list *);
     static const struct {
         const char *name;
@@ -169,6 +170,12 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
         if (strcmp(list->name, UNSUPPORTED[i]) == 0) {
             log_at_once(parser->log, AG_LOG_WARNING, list->where, UNSUPPORTED[i],
                         "Shape \"%s\" is not supported yet and is left out", list->name);
+            return AG_OK;
+        }
+    for (size_t i = 0; i < sizeof OLD / sizeof *OLD; i++)
+        if (strcmp(list->name, OLD[i]) == 0) {
+            log_at_once(parser->log, AG_LOG_WARNING, list->where, OLD[i],
+                        "Shape \"%s\" is pbrt-v3's and not part of pbrt-v4: it is left out", list->name);
             return AG_OK;
         }
     return pbrt_error(parser, list->where, strlen("Shape"), "unknown shape \"%s\"", list->name);

@@ -165,8 +165,19 @@ static ag_status read_constant(pbrt_parser *parser, parameter_list *list, textur
     return read_value(parser, list, "value", t->is_spectrum, &t->inputs[0].value);
 }
 
+/* pbrt-v3's: both are of the texture's type. */
+static ag_status read_old_scale(pbrt_parser *parser, parameter_list *list, texture *t)
+{
+    log_at_once(parser->log, AG_LOG_WARNING, list->where, "old scale",
+                "Texture \"scale\": \"tex1\" and \"tex2\" are pbrt-v3's: they are read as \"tex\" and \"scale\"");
+    PBRT_TRY(read_input(parser, list, "tex1", t->is_spectrum, 1.0f, &t->inputs[0]));
+    return read_input(parser, list, "tex2", t->is_spectrum, 1.0f, &t->inputs[1]);
+}
+
 static ag_status read_scale(pbrt_parser *parser, parameter_list *list, texture *t)
 {
+    if (parameter_list_find(list, "tex1") || parameter_list_find(list, "tex2"))
+        return read_old_scale(parser, list, t);
     PBRT_TRY(read_input(parser, list, "tex", t->is_spectrum, 1.0f, &t->inputs[0]));
     return read_input(parser, list, "scale", false, 1.0f, &t->inputs[1]);
 }
@@ -224,9 +235,32 @@ static ag_status read_bilerp(pbrt_parser *parser, parameter_list *list, texture 
     return AG_OK;
 }
 
+/* pbrt-v3's "gamma": whether it is sRGB, or in its last days a power. */
+static ag_status read_old_encoding(pbrt_parser *parser, parameter_list *list, image_encoding *encoding)
+{
+    const parameter *gamma = parameter_list_find(list, "gamma");
+    bool is_srgb = true;
+    float power = 0.0f;
+    if (!gamma)
+        return AG_OK;
+    log_at_once(parser->log, AG_LOG_WARNING, gamma->where, "old gamma",
+                "Texture \"imagemap\": \"gamma\" is pbrt-v3's: it is read as \"encoding\"");
+    if (gamma->type == PARAMETER_FLOAT) {
+        PBRT_TRY(parameter_get_float(list, parser->log, "gamma", &power));
+        if (!(power > 0.0f && power <= 1000.0f))
+            return pbrt_refuse(parser, list, "gamma", "\"gamma\" should be above 0");
+        *encoding = (image_encoding){IMAGE_CURVE_GAMMA, power};
+        return AG_OK;
+    }
+    PBRT_TRY(parameter_get_bool(list, parser->log, "gamma", &is_srgb));
+    encoding->curve = is_srgb ? IMAGE_CURVE_SRGB : IMAGE_CURVE_LINEAR;
+    return AG_OK;
+}
+
 static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, image_encoding *encoding)
 {
     const char *text = NULL;
+    PBRT_TRY(read_old_encoding(parser, list, encoding));
     PBRT_TRY(parameter_get_string(list, parser->log, "encoding", &text));
     if (text && !image_encoding_parse(text, encoding))
         return pbrt_refuse(parser, list, "encoding",
@@ -261,12 +295,14 @@ static ag_status read_image(pbrt_parser *parser, parameter_list *list, texture *
     const char *name = NULL;
     int wrap = TEXTURE_WRAP_REPEAT, filter = 0;
     float unused_anisotropy;
+    bool unused_trilinear; /* pbrt-v3's "filter" */
     image_encoding encoding = {IMAGE_CURVE_DEFAULT, 0.0f};
     t->scale = 1.0f;
     PBRT_TRY(read_mapping(parser, list, t));
     PBRT_TRY(read_word(parser, list, "wrap", WRAPS, 4, &wrap));
     PBRT_TRY(read_word(parser, list, "filter", FILTERS, 5, &filter));
     PBRT_TRY(parameter_get_float(list, parser->log, "maxanisotropy", &unused_anisotropy));
+    PBRT_TRY(parameter_get_bool(list, parser->log, "trilinear", &unused_trilinear));
     PBRT_TRY(parameter_get_float(list, parser->log, "scale", &t->scale));
     PBRT_TRY(parameter_get_bool(list, parser->log, "invert", &t->invert));
     PBRT_TRY(read_encoding(parser, list, &encoding));

@@ -44,6 +44,21 @@ static void blackbody_xyz(double kelvin, double xyz[3])
     xyz[1] = 1.0;
 }
 
+double spectra_blackbody_luminance(double kelvin)
+{
+    /* Wien's law: there the exponent is that of the emission's greatest value */
+    const double peak = 4.965114231744276, second_radiation_constant = 1.438776877e7,
+                 peak_nm = second_radiation_constant / (peak * kelvin);
+    double sum = 0.0, whole = 0.0;
+    for (int nm = CIE_FIRST_NM; nm <= CIE_LAST_NM; nm++) {
+        double match[3], relative = peak_nm / nm;
+        cie_match(nm, match);
+        sum += match[1] * relative * relative * relative * relative * relative * (expm1(peak) / expm1(peak * relative));
+        whole += match[1];
+    }
+    return sum / whole;
+}
+
 rgb spectra_blackbody(double kelvin)
 {
     double xyz[3];

@@ -28,6 +28,8 @@ rgb spectra_sampled(const double *pairs, size_t pair_count, spectrum_use use);
 /* The colour of a black body in linear RGB with sRGB's primaries, of luminance 1. Components outside the gamut become
  * 0. kelvin in [SPECTRA_MIN_KELVIN, SPECTRA_MAX_KELVIN]. */
 rgb spectra_blackbody(double kelvin);
+/* Of a black body whose greatest spectral value is 1, relative to light that is 1 at all wavelengths. */
+double spectra_blackbody_luminance(double kelvin);
 void spectra_blackbody_chromaticity(double kelvin, double out_xy[2]);
 
 /* "metal-Ag-eta", "metal-Ag-k", ... (index of refraction and absorption for red, green and blue), "glass-BK7", ...

@@ -133,9 +133,9 @@ static rgb evaluate(const scene *s, const texture *t, const surface_hit *hit)
 {
     switch (t->kind) {
     case TEXTURE_CONSTANT: return t->inputs[0].value;
-    case TEXTURE_SCALE: {
-        float factor = input_at(s, t, 1, hit).r;
-        return factor == 0.0f ? rgb_gray(0.0f) : rgb_scale(input_at(s, t, 0, hit), factor);
+    case TEXTURE_SCALE: { /* by a float, which is grey, or by a colour */
+        rgb factor = input_at(s, t, 1, hit);
+        return rgb_is_black(factor) ? rgb_gray(0.0f) : rgb_mul(input_at(s, t, 0, hit), factor);
     }
     case TEXTURE_MIX: return mix_inputs(s, t, input_at(s, t, 2, hit).r, hit);
     case TEXTURE_DIRECTION_MIX:

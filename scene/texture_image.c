@@ -242,14 +242,16 @@ rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filte
     return i->channel_count == 1 ? rgb_gray(first) : rgb_make(first, sum_channel(i, &f, 1), sum_channel(i, &f, 2));
 }
 
-static float sum_alpha(const texture_image *i, const footprint *f)
+/* is_encoded: bytes are decoded as those of colours are. */
+static float sum_alpha(const texture_image *i, const footprint *f, bool is_encoded)
 {
     float sum = 0.0f;
     for (int k = 0; k < f->count; k++) {
         const size_t pixel = f->offset[k] / i->channel_count;
-        const float alpha = i->alpha_bytes    ? (float)i->alpha_bytes[pixel] * (1.0f / 255.0f)
-                            : i->alpha_values ? i->alpha_values[pixel]
-                                              : 1.0f;
+        const float alpha = i->alpha_bytes && is_encoded ? i->table[i->alpha_bytes[pixel]]
+                            : i->alpha_bytes             ? (float)i->alpha_bytes[pixel] * (1.0f / 255.0f)
+                            : i->alpha_values            ? i->alpha_values[pixel]
+                                                         : 1.0f;
         sum += f->weight[k] * alpha;
     }
     return sum;
@@ -260,7 +262,12 @@ float texture_image_float(const texture_image *i, texture_channel channel, textu
 {
     const footprint f = find_pixels(i, wraps, filter, s, t);
     if (channel == TEXTURE_CHANNEL_A)
-        return sum_alpha(i, &f);
-    const bool is_first = i->channel_count == 1 || channel == TEXTURE_CHANNEL_ALL;
-    return sum_channel(i, &f, is_first ? 0 : (size_t)(channel - TEXTURE_CHANNEL_R));
+        return sum_alpha(i, &f, false);
+    if (channel == TEXTURE_CHANNEL_ALL && i->channel_count == 3 && (i->alpha_bytes || i->alpha_values))
+        return sum_alpha(i, &f, true);
+    if (i->channel_count == 1)
+        return sum_channel(i, &f, 0);
+    if (channel == TEXTURE_CHANNEL_ALL || channel == TEXTURE_CHANNEL_MEAN)
+        return (sum_channel(i, &f, 0) + sum_channel(i, &f, 1) + sum_channel(i, &f, 2)) * (1.0f / 3.0f);
+    return sum_channel(i, &f, (size_t)(channel - TEXTURE_CHANNEL_R));
 }

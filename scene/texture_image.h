@@ -32,7 +32,8 @@ typedef enum texture_filter { TEXTURE_FILTER_BILINEAR, TEXTURE_FILTER_POINT } te
 
 /* Of a grey picture all three colours are the same; alpha is 1 where it has none. */
 typedef enum texture_channel {
-    TEXTURE_CHANNEL_ALL, /* the first */
+    TEXTURE_CHANNEL_ALL,  /* as pbrt has it: alpha of pictures that have one, else the mean of the colours */
+    TEXTURE_CHANNEL_MEAN, /* of the colours */
     TEXTURE_CHANNEL_R,
     TEXTURE_CHANNEL_G,
     TEXTURE_CHANNEL_B,

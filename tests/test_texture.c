@@ -367,16 +367,16 @@ static void wraps(void **state)
 static void scale_and_invert(void **state)
 {
     (void)state;
-    static const float colours[3] = {0.25f, 0.5f, 1.0f};
+    static const float colours[3] = {0.25f, 0.5f, 1.0f}, mean = 1.75f / 3.0f;
     write_image("a.exr", 1, 1, 3, IMAGE_FLOAT, colours);
     const surface_hit hit = hit_at(0.5f, 0.5f, 0, 0, 0);
 #define IMAGE_OF(type) "Texture \"a\" \"" type "\" \"imagemap\" \"string filename\" \"a.exr\" "
     assert_rgb(rgb_of(IMAGE_OF("spectrum") "\"float scale\" 3", hit), 0.75, 1.5, 3.0, 1e-6);
     assert_rgb(rgb_of(IMAGE_OF("spectrum") "\"float scale\" 1.5 \"bool invert\" true", hit), 0.625, 0.25, 0.0, 1e-6);
-    assert_near(float_of(IMAGE_OF("float") "\"float scale\" 2", hit), 0.5, 1e-6); /* the first channel */
-    assert_near(float_of(IMAGE_OF("float") "\"bool invert\" true", hit), 0.75, 1e-6);
+    assert_near(float_of(IMAGE_OF("float") "\"float scale\" 2", hit), 2 * mean, 1e-6); /* of its colours */
+    assert_near(float_of(IMAGE_OF("float") "\"bool invert\" true", hit), 1 - mean, 1e-6);
     assert_near(float_of(IMAGE_OF("float") "\"bool invert\" true \"float scale\" 8", hit), 0.0, 0.0);
-    assert_near(float_of(IMAGE_OF("float") "\"float scale\" -1", hit), -0.25, 1e-7);
+    assert_near(float_of(IMAGE_OF("float") "\"float scale\" -1", hit), -mean, 1e-7);
 #undef IMAGE_OF
 }
 
@@ -445,24 +445,25 @@ static void channels_and_sharing(void **state)
     assert_int_equal(r.scene->texture_images[0]->channel_count, 3);
     assert_int_equal(r.scene->texture_images[1]->channel_count, 1);
     assert_rgb(texture_evaluate_rgb(r.scene, 0, &hit), 1.0, 0.2, 0.6, 1e-7);
-    assert_near(texture_evaluate_float(r.scene, 1, &hit), 1.0, 0.0);
+    assert_near(texture_evaluate_float(r.scene, 1, &hit), 0.4, 1e-6); /* alpha */
     const double grey = srgb(51.0 / 255.0);
     assert_rgb(texture_evaluate_rgb(r.scene, 3, &hit), grey, grey, grey, 1e-6);
     assert_rgb(texture_evaluate_rgb(r.scene, 4, &hit), 0.2, 0.2, 0.2, 1e-7);
     reading_destroy(&r);
 }
 
-/* The picture's channels as four float textures, and as the first; in that order A, R, G, B, all. */
-static void assert_channels(const char *name, const char *encoding, const double expected[5])
+/* The picture's channels as float textures; in that order A, R, G, B, the mean of colours, and as pbrt has it. */
+static void assert_channels(const char *name, const char *encoding, const double expected[6])
 {
     char world[512];
     snprintf(world, sizeof world,
              "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"%s\" \"string encoding\" \"%s\"", name,
              encoding);
-    static const texture_channel CHANNELS[5] = {TEXTURE_CHANNEL_A, TEXTURE_CHANNEL_R, TEXTURE_CHANNEL_G,
-                                                TEXTURE_CHANNEL_B, TEXTURE_CHANNEL_ALL};
+    static const texture_channel CHANNELS[6] = {TEXTURE_CHANNEL_A, TEXTURE_CHANNEL_R,    TEXTURE_CHANNEL_G,
+                                                TEXTURE_CHANNEL_B, TEXTURE_CHANNEL_MEAN, TEXTURE_CHANNEL_ALL};
     reading r = good_world(world);
-    for (int c = 0; c < 5; c++) {
+    assert_int_equal(r.scene->textures[0].channel, TEXTURE_CHANNEL_ALL);
+    for (int c = 0; c < 6; c++) {
         r.scene->textures[0].channel = CHANNELS[c];
         assert_near(last_float(&r, hit_at(0.1f, 0.9f, 0, 0, 0)), expected[c], 2e-5);
     }
@@ -481,14 +482,17 @@ static void float_textures_read_one_channel(void **state)
     write_image("opaque.png", 1, 1, 4, IMAGE_UINT8, opaque);
     write_image("bad.exr", 1, 1, 4, IMAGE_FLOAT, bad);
     write_image("grey.png", 1, 1, 1, IMAGE_UINT8, opaque + 1);
-    /* colours are decoded, alpha is as it stands */
-    const double decoded[5] = {0.6, 1.0, srgb(1.0 / 3), srgb(2.0 / 3), 1.0}, raw[5] = {0.6, 1.0, 1.0 / 3, 2.0 / 3, 1.0};
+    /* colours are decoded, alpha is as it stands; but to pbrt bytes of alpha are encoded too */
+    const double mean = (1.0 + srgb(1.0 / 3) + srgb(2.0 / 3)) / 3;
+    const double raw[6] = {0.6, 1.0, 1.0 / 3, 2.0 / 3, 2.0 / 3, 0.6};
+    double decoded[6] = {0.6, 1.0, srgb(1.0 / 3), srgb(2.0 / 3), mean, srgb(0.6)};
     assert_channels("rgba.png", "sRGB", decoded);
     assert_channels("rgba.png", "linear", raw);
+    decoded[5] = 0.6;
     assert_channels("rgba16.png", "sRGB", decoded);
     assert_channels("rgba.exr", "linear", raw);
-    assert_channels("opaque.png", "linear", (const double[5]){1.0, 0.4, 0.2, 0.6, 0.4});
-    assert_channels("grey.png", "linear", (const double[5]){1.0, 0.2, 0.2, 0.2, 0.2});
+    assert_channels("opaque.png", "linear", (const double[6]){1.0, 0.4, 0.2, 0.6, 0.4, 0.4});
+    assert_channels("grey.png", "linear", (const double[6]){1.0, 0.2, 0.2, 0.2, 0.2, 0.2});
 
     /* between two pixels */
     static const float two[8] = {0.1f, 0.2f, 0.3f, 0.0f, 0.4f, 0.5f, 0.6f, 1.0f};
