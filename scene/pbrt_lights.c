@@ -177,7 +177,7 @@ ag_status pbrt_light_source(pbrt_parser *parser, file_location where)
     parameter_list list;
     PBRT_TRY(pbrt_read_named_parameters(parser, "LightSource", "a quoted type", where, &list));
     pbrt_warn_still(parser, where, "a light");
-    ag_status status = add_light(parser, &list);
+    ag_status status = pbrt_is_flattened(parser, where, "LightSource") ? AG_OK : add_light(parser, &list);
     parameter_list_reset(&list);
     return status;
 }

@@ -1,6 +1,7 @@
 /* pbrt_media.c: MakeNamedMedium and MediumInterface of a pbrt-v4 scene.
  * Rests on the format's description, pbrt.org/fileformat-v4, "Participating media"; defaults as in pbrt-v4's media.cpp.
- * Media that scatter, or vary from place to place, get a stand-in that absorbs alike everywhere.
+ * Media that scatter, or vary from place to place, get a stand-in that absorbs alike everywhere; those that do both,
+ * one that does nothing.
  * Flow: pbrt_parser -> [here] -> scene.media; shapes, lights and the camera use them. Threads: one per scene. */
 #define _POSIX_C_SOURCE 200809L
 #include "pbrt_private.h"
@@ -81,19 +82,27 @@ static double mean_of(const double *values, size_t count, size_t components, siz
 static void tell_stand_in(pbrt_parser *parser, const parameter_list *list, const char *type, const char *stand_in)
 {
     char key[64];
-    snprintf(key, sizeof key, "medium:%s", type);
+    snprintf(key, sizeof key, "medium:%s:%c", type, stand_in[0]); /* "as any others": of those that get the same */
     log_at_once(parser->log, AG_LOG_WARNING, list->where, key,
                 "media of type \"%s\" are not supported: \"%s\" %s, as do any others", type, list->name, stand_in);
 }
 
-static const char *const MEAN = "absorbs alike everywhere, by its mean \"sigma_a\", and scatters nothing";
+/* What scatters and varies is mostly a cloud in a container that it does not fill: absorbing everywhere in it would
+ * hide all behind. */
+static void tell_grid(pbrt_parser *parser, const parameter_list *list, const char *type, bool scatters, medium *m)
+{
+    if (scatters)
+        m->sigma_a = rgb_gray(0.0f);
+    tell_stand_in(parser, list, type,
+                  scatters ? "neither absorbs nor scatters" : "absorbs alike everywhere, by its mean \"sigma_a\"");
+}
 
 /* A density for each cell of a box, times sigma_a. */
 static ag_status read_uniform_grid(pbrt_parser *parser, parameter_list *list, medium *m)
 {
     const double *density;
     size_t count;
-    rgb sigma_a = rgb_gray(1.0f);
+    rgb sigma_a = rgb_gray(1.0f), sigma_s = rgb_gray(1.0f);
     float scale;
     PBRT_TRY(parameter_get_numbers(list, parser->log, "density", PARAMETER_FLOAT, &density, &count));
     if (count == 0)
@@ -102,16 +111,18 @@ static ag_status read_uniform_grid(pbrt_parser *parser, parameter_list *list, me
         if (density[i] < 0.0)
             return pbrt_refuse(parser, list, "density", "\"density\" has a negative value, %g", density[i]);
     PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
+    PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
     PBRT_TRY(read_scale(parser, list, &scale));
-    tell_stand_in(parser, list, "uniformgrid", MEAN);
-    return set_absorption(parser, list, sigma_a, (double)scale * mean_of(density, count, 1, 0), m);
+    PBRT_TRY(set_absorption(parser, list, sigma_a, (double)scale * mean_of(density, count, 1, 0), m));
+    tell_grid(parser, list, "uniformgrid", !rgb_is_black(sigma_s), m);
+    return AG_OK;
 }
 
 /* sigma_a for each cell; without it, as pbrt, 1 everywhere. */
 static ag_status read_rgb_grid(pbrt_parser *parser, parameter_list *list, medium *m)
 {
-    const double *values;
-    size_t count;
+    const double *values, *scattering;
+    size_t count, scattering_count;
     float scale;
     rgb mean = rgb_gray(1.0f);
     PBRT_TRY(parameter_get_numbers(list, parser->log, "sigma_a", PARAMETER_RGB, &values, &count));
@@ -125,9 +136,14 @@ static ag_status read_rgb_grid(pbrt_parser *parser, parameter_list *list, medium
     if (count > 0)
         mean = rgb_make((float)mean_of(values, count, 3, 0), (float)mean_of(values, count, 3, 1),
                         (float)mean_of(values, count, 3, 2));
+    PBRT_TRY(parameter_get_numbers(list, parser->log, "sigma_s", PARAMETER_RGB, &scattering, &scattering_count));
+    bool scatters = scattering_count == 0; /* without it it is 1 */
+    for (size_t i = 0; i < scattering_count; i++)
+        scatters = scatters || scattering[i] != 0.0;
     PBRT_TRY(read_scale(parser, list, &scale));
-    tell_stand_in(parser, list, "rgbgrid", MEAN);
-    return set_absorption(parser, list, mean, (double)scale, m);
+    PBRT_TRY(set_absorption(parser, list, mean, (double)scale, m));
+    tell_grid(parser, list, "rgbgrid", scatters, m);
+    return AG_OK;
 }
 
 /* How dense it is where is in a file, or in pbrt's own noise. */

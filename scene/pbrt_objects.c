@@ -201,6 +201,8 @@ ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
     ag_status status = find_object(parser, name, where, &object);
     free(name);
     PBRT_TRY(status);
+    if (pbrt_is_flattened(parser, where, "ObjectInstance"))
+        return AG_OK;
     if (parser->objects[object].is_defined)
         return add_instance(parser, &parser->objects[object], &state->world_from_object, &state->world_from_object_end,
                             where);

@@ -83,6 +83,7 @@ typedef struct pbrt_state {
      * the start alone. */
     transform world_from_object, world_from_object_end;
     bool start_is_active, end_is_active; /* whether directives change them; at least one is */
+    bool is_flattened;                   /* by a transform that cannot be undone: what it would apply to is left out */
     bool reverse_orientation;
     uint32_t material_index;
     bool has_no_surface;                  /* the material is known to be "interface" */
@@ -287,6 +288,8 @@ bool pbrt_is_moving(const pbrt_parser *parser);
  * directive. */
 ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const transform *end, file_location where,
                            const char *directive, motion *out_motion);
+/* Whether the current transform cannot be undone; then a warning, once for each of what, that it is left out. */
+bool pbrt_is_flattened(pbrt_parser *parser, file_location where, const char *what);
 /* A warning, once for each of what, that it does not move. */
 void pbrt_warn_still(pbrt_parser *parser, file_location where, const char *what);
 

@@ -203,6 +203,10 @@ ag_status pbrt_shape(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
     PBRT_TRY(pbrt_read_named_parameters(parser, "Shape", "a quoted type", where, &list));
+    if (pbrt_is_flattened(parser, where, "Shape")) {
+        parameter_list_reset(&list);
+        return AG_OK;
+    }
     bool shines = parser->state.area_light.is_set;
     if (shines)
         pbrt_warn_still(parser, where, "a shape with an area light");

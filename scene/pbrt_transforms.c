@@ -3,6 +3,7 @@
  * Flow: pbrt_parser -> [here] -> the graphics state. Threads: one per scene. */
 #include "pbrt_private.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,6 +27,8 @@ static ag_status apply(pbrt_parser *parser, file_location where, const char *dir
 {
     pbrt_state *state = &parser->state;
     bool is_moving = pbrt_is_moving(parser);
+    if (replaces)
+        state->is_flattened = false;
     if (state->start_is_active)
         PBRT_TRY(apply_to(parser, where, directive, replaces, t, &state->world_from_object));
     if (state->end_is_active && state->start_is_active && !is_moving)
@@ -33,6 +36,29 @@ static ag_status apply(pbrt_parser *parser, file_location where, const char *dir
     else if (state->end_is_active)
         PBRT_TRY(apply_to(parser, where, directive, replaces, t, &state->world_from_object_end));
     return AG_OK;
+}
+
+/* Exporters write such transforms around what cannot be seen, and pbrt reads on: as long as they hold, nothing is
+ * made. Before WorldBegin they are the camera's. */
+static ag_status flatten(pbrt_parser *parser, file_location where, const char *directive, const char *what)
+{
+    if (!parser->in_world)
+        return pbrt_error(parser, where, strlen(directive), "%s cannot be undone", what);
+    log_at_once(parser->log, AG_LOG_WARNING, where, "flattened",
+                "%s cannot be undone: what stands below it is left out", what);
+    parser->state.is_flattened = true;
+    return AG_OK;
+}
+
+bool pbrt_is_flattened(pbrt_parser *parser, file_location where, const char *what)
+{
+    char key[64];
+    if (!parser->state.is_flattened)
+        return false;
+    snprintf(key, sizeof key, "flattened:%s", what);
+    log_at_once(parser->log, AG_LOG_WARNING, where, key,
+                "%s: its transform cannot be undone: it is left out, as are any others of the kind", what);
+    return true;
 }
 
 bool pbrt_is_moving(const pbrt_parser *parser)
@@ -86,8 +112,11 @@ ag_status pbrt_scale(pbrt_parser *parser, file_location where)
     double v[3];
     transform t;
     PBRT_TRY(pbrt_read_numbers(parser, "Scale", 3, v));
-    if (!transform_scale(v[0], v[1], v[2], &t))
-        return pbrt_error(parser, where, 5, "Scale %g %g %g cannot be undone", v[0], v[1], v[2]);
+    if (!transform_scale(v[0], v[1], v[2], &t)) {
+        char what[96];
+        snprintf(what, sizeof what, "Scale %g %g %g", v[0], v[1], v[2]);
+        return flatten(parser, where, "Scale", what);
+    }
     return apply(parser, where, "Scale", false, &t);
 }
 
@@ -115,7 +144,8 @@ ag_status pbrt_look_at(pbrt_parser *parser, file_location where)
 }
 
 /* [ 16 numbers ], column by column. */
-static ag_status read_matrix(pbrt_parser *parser, file_location where, const char *directive, transform *out_transform)
+static ag_status read_matrix(pbrt_parser *parser, const char *directive, bool *out_is_singular,
+                             transform *out_transform)
 {
     double v[16], m[4][4];
     pbrt_token token;
@@ -129,23 +159,27 @@ static ag_status read_matrix(pbrt_parser *parser, file_location where, const cha
     for (int column = 0; column < 4; column++)
         for (int row = 0; row < 4; row++)
             m[row][column] = v[4 * column + row];
-    if (!transform_from_matrix((const double(*)[4])m, out_transform))
-        return pbrt_error(parser, where, strlen(directive), "%s has a matrix that cannot be undone (it is singular)",
-                          directive);
+    *out_is_singular = !transform_from_matrix((const double(*)[4])m, out_transform);
     return AG_OK;
 }
 
 ag_status pbrt_transform(pbrt_parser *parser, file_location where)
 {
     transform t;
-    PBRT_TRY(read_matrix(parser, where, "Transform", &t));
+    bool is_singular = false;
+    PBRT_TRY(read_matrix(parser, "Transform", &is_singular, &t));
+    if (is_singular)
+        return flatten(parser, where, "Transform", "the singular matrix of Transform");
     return apply(parser, where, "Transform", true, &t);
 }
 
 ag_status pbrt_concat_transform(pbrt_parser *parser, file_location where)
 {
     transform t;
-    PBRT_TRY(read_matrix(parser, where, "ConcatTransform", &t));
+    bool is_singular = false;
+    PBRT_TRY(read_matrix(parser, "ConcatTransform", &is_singular, &t));
+    if (is_singular)
+        return flatten(parser, where, "ConcatTransform", "the singular matrix of ConcatTransform");
     return apply(parser, where, "ConcatTransform", false, &t);
 }
 
@@ -189,6 +223,7 @@ ag_status pbrt_coord_sys_transform(pbrt_parser *parser, file_location where)
     uint32_t index;
     PBRT_TRY(pbrt_read_string(parser, "CoordSysTransform", "a quoted name", &name, NULL));
     if (name_table_find(&parser->coordinate_system_names, name, &index)) {
+        parser->state.is_flattened = false;
         parser->state.world_from_object = parser->coordinate_systems[index].start;
         parser->state.world_from_object_end = parser->coordinate_systems[index].end;
     } else {

@@ -64,21 +64,22 @@ static void what_varies_gets_its_mean(void **state)
         const char *text, *warning;
         double r, g, b;
     } CASES[] = {
-        {"\"uniformgrid\" \"integer nx\" 2 \"float density\" [1 5] \"rgb sigma_a\" [1 2 3] \"float scale\" 2",
-         "media of type \"uniformgrid\" are not supported: \"m\" absorbs alike everywhere, by its mean \"sigma_a\", "
-         "and scatters "
-         "nothing, as do any others",
+        {"\"uniformgrid\" \"integer nx\" 2 \"float density\" [1 5] \"rgb sigma_a\" [1 2 3] \"float scale\" 2 \"rgb "
+         "sigma_s\" [0 0 0]",
+         "media of type \"uniformgrid\" are not supported: \"m\" absorbs alike everywhere, by its mean \"sigma_a\", as "
+         "do any others",
          6, 12, 18},
-        {"\"rgbgrid\" \"integer nx\" 2 \"rgb sigma_a\" [1 2 3 5 6 7] \"float scale\" 2",
-         "media of type \"rgbgrid\" are not supported: \"m\" absorbs alike everywhere, by its mean \"sigma_a\", and "
-         "scatters "
-         "nothing, as do any others",
+        {"\"uniformgrid\" \"integer nx\" 2 \"float density\" [1 5] \"rgb sigma_a\" [1 2 3]",
+         "media of type \"uniformgrid\" are not supported: \"m\" neither absorbs nor scatters, as do any others", 0, 0,
+         0},
+        {"\"rgbgrid\" \"integer nx\" 2 \"rgb sigma_a\" [1 2 3 5 6 7] \"rgb sigma_s\" [0 0 0 0 0 0] \"float scale\" 2",
+         "media of type \"rgbgrid\" are not supported: \"m\" absorbs alike everywhere, by its mean \"sigma_a\", as do "
+         "any others",
          6, 8, 10},
         {"\"rgbgrid\" \"rgb sigma_s\" [1 2 3]",
-         "media of type \"rgbgrid\" are not supported: \"m\" absorbs alike everywhere, by its mean \"sigma_a\", and "
-         "scatters "
-         "nothing, as do any others",
-         1, 1, 1},
+         "media of type \"rgbgrid\" are not supported: \"m\" neither absorbs nor scatters, as do any others", 0, 0, 0},
+        {"\"rgbgrid\" \"rgb sigma_a\" [1 2 3]",
+         "media of type \"rgbgrid\" are not supported: \"m\" neither absorbs nor scatters, as do any others", 0, 0, 0},
         {"\"cloud\"", "media of type \"cloud\" are not supported: \"m\" neither absorbs nor scatters, as do any others",
          0, 0, 0},
         {"\"nanovdb\" \"string filename\" \"smoke.nvdb\"",

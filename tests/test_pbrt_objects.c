@@ -47,7 +47,7 @@ static void errors_say_what_is_wrong(void **state)
         "t:2:1: error: Camera moves by way of a transform that cannot be undone",
         "TransformTimes 1 1 WorldBegin",
         "t:1:1: error: TransformTimes 1 1: the end should be later",
-        "WorldBegin Scale 0 1 1",
+        "Scale 0 1 1 WorldBegin",
         "cannot be undone",
         "WorldBegin ObjectBegin \"a\" AreaLightSource \"diffuse\" Shape \"disk\" ObjectEnd Scale 1e20 1e20 "
         "1\nObjectInstance \"a\"",

@@ -28,15 +28,14 @@ static void errors_name_place_and_reason(void **state)
         {"WorldBegin Translate 1 2 x", "1:26", "Translate expects 3 numbers, not x"},
         {"WorldBegin Translate 1 2 1e999", "1:26", "the number is too large"},
         {"WorldBegin Translate 1 2 \"3\"", "1:26", "Translate expects 3 numbers, not \"3\""},
-        {"WorldBegin Scale 0 1 1", "1:12", "Scale 0 1 1 cannot be undone"},
+        {"Scale 0 1 1 WorldBegin", "1:1", "Scale 0 1 1 cannot be undone"},
         {"Rotate 30 0 0 0", "1:1", "Rotate has no axis: 0 0 0"},
         {"LookAt 1 2 3 1 2 3 0 1 0", "1:1", "LookAt looks at the eye itself"},
         {"LookAt 0 0 0 0 1 0 0 1 0", "1:1", "LookAt has an up vector that is zero or along the view"},
         {"Transform 1 2 3", "1:11", "Transform expects [, not 1"},
         {"Transform [ 1 2 3 ]", "1:19", "Transform expects 16 numbers, not ]"},
         {"Transform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 1 ]", "1:45", "Transform expects ] after 16 numbers, not 1"},
-        {"Transform [ 1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1 ]", "1:1",
-         "Transform has a matrix that cannot be undone (it is singular)"},
+        {"Transform [ 1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1 ]", "1:1", "the singular matrix of Transform cannot be undone"},
         {"WorldBegin Scale 1e200 1 1 Scale 1e200 1 1", "1:28",
          "Scale makes a transform that is too large or too small"},
         {"Camera perspective", "1:8", "Camera expects a quoted type, not perspective"},
@@ -130,7 +129,7 @@ static void errors_name_place_and_reason(void **state)
         {"WorldBegin LightSource \"spot\" \"point3 to\" [ 0 0 0 ]", "1:31", "\"from\" and \"to\" give no direction"},
         {"WorldBegin LightSource \"distant\" \"point3 from\" [ 0 0 1 ]", "1:12",
          "\"from\" and \"to\" give no direction"},
-        {"WorldBegin AreaLightSource \"area\"", "1:12", "unknown area light \"area\""},
+        {"WorldBegin AreaLightSource \"sun\"", "1:12", "unknown area light \"sun\""},
         {"Camera \"foo\"", "1:1", "unknown camera \"foo\""},
         {"Camera \"perspective\" \"float fov\" 180", "1:22", "the field of view should be within (0, 180) degrees"},
         {"Camera \"perspective\" \"float fov\" 0", "1:22", "the field of view should be within (0, 180) degrees"},
@@ -334,6 +333,33 @@ static void check_origin(const char *text, double x, double y, double z)
     reading r = reading_of(text);
     assert_int_equal(r.scene->shape_count, 1);
     assert_vec3(transform_point(&r.scene->shapes[0].as.quadric.world_from_object, vec3_make(0, 0, 0)), x, y, z, 1e-6);
+    reading_destroy(&r);
+}
+
+/* As exporters write them around what is not there: nothing is made below them, and the rest is read. */
+static void singular_transforms_leave_out_what_they_hold(void **state)
+{
+    (void)state;
+    const char *text = "WorldBegin AttributeBegin\n"
+                       "ConcatTransform [ -0 -0 0 0 0 1 0 0 -1e-16 0 -1 0 5 6 7 1 ] Translate 1 2 3\n"
+                       "Shape \"sphere\" Shape \"disk\" LightSource \"point\" ObjectInstance \"o\"\n"
+                       "AttributeBegin Identity Shape \"sphere\" AttributeEnd Shape \"sphere\"\n"
+                       "AttributeEnd Shape \"sphere\" ObjectBegin \"o\" ObjectEnd Scale 1 0 1 Shape \"sphere\"\n"
+                       "CoordSysTransform \"world\" Translate 1 0 0 Shape \"sphere\"";
+    reading r = reading_create(NULL, text, strlen(text));
+    assert_int_equal(r.status, AG_OK);
+    assert_string_equal(
+        r.said[AG_LOG_WARNING],
+        "t:2:1: warning: the singular matrix of ConcatTransform cannot be undone: what stands below it is left out\n"
+        "t:3:1: warning: Shape: its transform cannot be undone: it is left out, as are any others of the kind\n"
+        "t:3:29: warning: LightSource: its transform cannot be undone: it is left out, as are any others of the kind\n"
+        "t:3:49: warning: ObjectInstance: its transform cannot be undone: it is left out, as are any others of the "
+        "kind\n");
+    assert_int_equal(r.scene->shape_count, 3);
+    assert_int_equal(r.scene->light_count, 0);
+    assert_int_equal(r.scene->instance_count, 0);
+    assert_near(r.scene->shapes[1].as.quadric.world_from_object.m[0][3], 0, 0);
+    assert_near(r.scene->shapes[2].as.quadric.world_from_object.m[0][3], 1, 0);
     reading_destroy(&r);
 }
 
@@ -767,6 +793,7 @@ int main(void)
         cmocka_unit_test(options_warn_where_they_matter),
         cmocka_unit_test(words_for_the_renderer_are_kept),
         cmocka_unit_test(transforms_compose_as_in_pbrt),
+        cmocka_unit_test(singular_transforms_leave_out_what_they_hold),
         cmocka_unit_test(attributes_are_brought_back),
         cmocka_unit_test(included_files_are_found),
         cmocka_unit_test(included_files_are_told),
