@@ -125,6 +125,7 @@ static ag_status read_unlit(gltf_reader *r, const gltf_value *at, const gltf_val
     m->reflectance = rgb_gray(0.0f);
     out->radiance = color;
     out->radiance_texture = color_texture;
+    out->only_glows = false;
     out->is_two_sided = true;
     return AG_OK;
 }

@@ -78,7 +78,9 @@ static ag_status read_emission(gltf_reader *r, const gltf_value *at, gltf_materi
     if (rgb_is_black(out->radiance))
         return AG_OK;
     GLTF_TRY(gltf_get_bool(r, at, "doubleSided", &out->is_two_sided));
-    return gltf_get_texture(r, at, "emissiveTexture", COLOR, &out->uv_set, &out->radiance_texture);
+    GLTF_TRY(gltf_get_texture(r, at, "emissiveTexture", COLOR, &out->uv_set, &out->radiance_texture));
+    out->only_glows = out->radiance_texture != SCENE_NO_TEXTURE && rgb_max(out->radiance) <= 1.0f;
+    return AG_OK;
 }
 
 /* at.json NULL: the default material. */

@@ -102,6 +102,7 @@ static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const 
     l.radiance = from->radiance;
     l.radiance_texture = from->radiance_texture;
     l.two_sided = from->is_two_sided;
+    r->glow_count += from->only_glows;
     return scene_add_light(r->scene, &l, &light_index);
 }
 

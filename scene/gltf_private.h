@@ -74,6 +74,7 @@ typedef struct gltf_material {
     rgb radiance;           /* black: it does not shine */
     uint32_t radiance_texture;
     bool is_two_sided; /* shines from both sides */
+    bool only_glows;   /* by a picture that is no brighter than white, as signs and displays are: not to see by */
 } gltf_material;
 
 /* How many nodes have a mesh, and the object that it is for them. */
@@ -115,6 +116,7 @@ typedef struct gltf_reader {
     gltf_matrix *world_from_nodes; /* [list_counts[GLTF_NODES]] */
     double aspect;                 /* width / height of the camera's picture; 0: it does not say */
     size_t triangles_read, triangles_dropped;
+    uint32_t glow_count; /* of the scene's lights: surfaces that only glow */
 } gltf_reader;
 
 /* gltf_json.c: values by key and index. Each function that fails tells the error with the value's path. */

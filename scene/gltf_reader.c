@@ -45,7 +45,7 @@ static ag_status end(gltf_reader *r)
     GLTF_TRY(gltf_set_film(r));
     if (!r->scene->has_camera)
         GLTF_TRY(import_add_default_camera(r->scene, r->run->log));
-    return r->scene->light_count > 0 ? AG_OK : import_add_default_light(r->scene, r->run->log);
+    return r->scene->light_count > r->glow_count ? AG_OK : import_add_default_light(r->scene, r->run->log);
 }
 
 static void reset(gltf_reader *r)

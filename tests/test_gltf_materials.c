@@ -217,6 +217,33 @@ static rgb value_at(const reading *r, uint32_t texture_index, float u, float v)
 /* Linear from sRGB. */
 static double decoded(double v) { return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4); }
 
+/* Small lamps painted on a device are no light to see it by. */
+static void what_only_glows_does_not_replace_the_sky(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        uint32_t light_count;
+    } CASES[] = {
+        {"{'emissiveTexture': {'index': 0}, 'emissiveFactor': [1, 1, 1]}", 3},
+        {"{'emissiveFactor': [1, 1, 1]}", 1},
+        {"{'emissiveTexture': {'index': 0}, 'emissiveFactor': [1, 1, 1],"
+         "'extensions': {'KHR_materials_emissive_strength': {'emissiveStrength': 5}}}",
+         1},
+        {"{'emissiveTexture': {'index': 0}, 'emissiveFactor': [1, 1, 1],"
+         "'pbrMetallicRoughness': {'baseColorTexture': {'index': 0}}, 'extensions': {'KHR_materials_unlit': {}}}",
+         1},
+    };
+    write_triangle();
+    write_picture("p.png");
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        reading r = gltf_read(material_text(CASES[i].text, ONE_TEXTURE));
+        assert_int_equal(r.status, AG_OK);
+        assert_int_equal(r.scene->light_count, CASES[i].light_count);
+        reading_destroy(&r);
+    }
+}
+
 static void material_textures(void **state)
 {
     (void)state;
@@ -516,6 +543,7 @@ int main(void)
         TEST_IN_FOLDER(alpha_modes),
         TEST_IN_FOLDER(emission),
         TEST_IN_FOLDER(specular_glossiness),
+        TEST_IN_FOLDER(what_only_glows_does_not_replace_the_sky),
         TEST_IN_FOLDER(material_textures),
         TEST_IN_FOLDER(samplers_and_transforms),
         TEST_IN_FOLDER(uv_sets),
