@@ -42,6 +42,9 @@ static const layer_name NAMES[] = {
     {"photon_distance", AG_LAYER_PHOTON_DISTANCE},
     {"gather_distance", AG_LAYER_GATHER_DISTANCE},
     {"tile_time", AG_LAYER_TILE_TIME},
+    {"crypto_object", AG_LAYER_CRYPTO_OBJECT},
+    {"crypto_material", AG_LAYER_CRYPTO_MATERIAL},
+    {"crypto", AG_LAYER_CRYPTO_OBJECT | AG_LAYER_CRYPTO_MATERIAL},
     {"light", AG_LAYERS_LIGHT},
     {"all", AG_LAYERS_ALL},
 };
@@ -108,7 +111,10 @@ static void lay_out_sums(aov_layout *layout, bool denoises)
     want(layout, denoises, SUM_NORMAL, SUM_WIDTH[SUM_NORMAL]);
     want(layout, layers & AG_LAYER_LIGHT_GROUPS, SUM_GROUPS, 3 * (layout->group_count + 1));
     layout->needs_nearest = layers & (AG_LAYER_DEPTH | AG_LAYER_ID);
-    layout->needs_first_hit = layout->needs_nearest || aov_has(layout, SUM_ALPHA) || aov_has(layout, SUM_ALBEDO) ||
+    layout->has_matte[CRYPTOMATTE_OBJECT] = layers & AG_LAYER_CRYPTO_OBJECT;
+    layout->has_matte[CRYPTOMATTE_MATERIAL] = layers & AG_LAYER_CRYPTO_MATERIAL;
+    layout->needs_first_hit = layout->needs_nearest || layout->has_matte[0] || layout->has_matte[1] ||
+                              aov_has(layout, SUM_ALPHA) || aov_has(layout, SUM_ALBEDO) ||
                               aov_has(layout, SUM_NORMAL) || aov_has(layout, SUM_IRRADIANCE);
 }
 
@@ -157,6 +163,16 @@ static void add_gbuffer(aov_layout *layout)
     add_channels(layout, (channel_style){CHANNEL_VARIANCE, SUM_HIT_SQUARES, 0, true}, "Variance", "RGB");
     add_channels(layout, (channel_style){CHANNEL_RELATIVE_VARIANCE, SUM_HIT_SQUARES, 0, true}, "RelativeVariance",
                  "RGB");
+}
+
+/* Two ranks to a layer: id and coverage, id and coverage. */
+static void add_cryptomatte(aov_layout *layout, cryptomatte_kind kind, const char *name)
+{
+    for (int i = 0; layout->has_matte[kind] && i < 2 * CRYPTOMATTE_RANKS; i++) {
+        channel_source source = i % 2 == 0 ? CHANNEL_CRYPTO_ID : CHANNEL_CRYPTO_COVERAGE;
+        add_channel(layout, (channel_style){source, SUM_RADIANCE, 0, true}, i / 2 + CRYPTOMATTE_RANKS * (int)kind,
+                    "%s%02d.%c", name, i / 4, "RGBA"[i % 4]);
+    }
 }
 
 static void lay_out_channels(aov_layout *layout)
@@ -216,6 +232,8 @@ static void lay_out_channels(aov_layout *layout)
             add_channel(layout, (channel_style){CHANNEL_VIEW, SUM_RADIANCE, 0, true}, (int)views[i].view, "%s",
                         views[i].name);
         }
+    add_cryptomatte(layout, CRYPTOMATTE_OBJECT, "CryptoObject");
+    add_cryptomatte(layout, CRYPTOMATTE_MATERIAL, "CryptoMaterial");
     for (int i = 0; (layers & AG_LAYER_LIGHT_GROUPS) && i <= layout->group_count; i++) {
         char name[64];
         snprintf(name, sizeof name, "light_%.50s", i < layout->group_count ? layout->group_names[i] : "photons");
@@ -232,7 +250,7 @@ ag_status aov_layout_create(uint32_t layers, bool denoises, bool is_path, const 
                                      AG_LAYER_PHOTON_DISTANCE | AG_LAYER_GATHER_DISTANCE);
     layout.is_gbuffer = layout.layers & AG_LAYER_GBUFFER;
     lay_out_sums(&layout, denoises);
-    layout.channels = calloc((size_t)(64 + 3 * (LIGHT_PART_COUNT + group_count + 1)), sizeof *layout.channels);
+    layout.channels = calloc((size_t)(96 + 3 * (LIGHT_PART_COUNT + group_count + 1)), sizeof *layout.channels);
     if (!layout.channels)
         return AG_ERROR_MEMORY;
     lay_out_channels(&layout);

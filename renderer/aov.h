@@ -6,6 +6,7 @@
 #define AFTERGLOW_AOV_H
 
 #include "afterglow/afterglow.h"
+#include "cryptomatte.h"
 #include "eye_sample.h"
 
 /* What is summed over a pixel's samples, each in so many channels. */
@@ -42,7 +43,9 @@ typedef enum channel_source {
     CHANNEL_DEPTH,
     CHANNEL_OBJECT,
     CHANNEL_MATERIAL,
-    CHANNEL_VIEW /* component: of film_view */
+    CHANNEL_VIEW,      /* component: of film_view */
+    CHANNEL_CRYPTO_ID, /* component: rank + CRYPTOMATTE_RANKS * cryptomatte_kind */
+    CHANNEL_CRYPTO_COVERAGE
 } channel_source;
 
 /* What is known of a pixel as a whole, see debug_views.h. */
@@ -72,7 +75,7 @@ typedef struct aov_layout {
     const char *const *group_names; /* borrowed */
     film_channel *channels;         /* owned; R, G, B first */
     int channel_count;
-    bool has_view[FILM_VIEW_COUNT];
+    bool has_view[FILM_VIEW_COUNT], has_matte[CRYPTOMATTE_KIND_COUNT];
     bool needs_first_hit, needs_nearest;
 } aov_layout;
 

@@ -47,27 +47,27 @@ typedef struct eye_sample {
 } eye_sample;
 
 /* By what light that was scattered so many times between lamp and eye is to be multiplied: mostly 1. */
-static inline float eye_sample_bound(const eye_sample *s, int scatterings, rgb light)
+static inline float eye_sample_bound(const eye_sample *s, int scatterings, rgb brought)
 {
-    float most = scatterings > 1 ? s->most_indirect : s->most_direct, largest = rgb_max(light);
+    float most = scatterings > 1 ? s->most_indirect : s->most_direct, largest = rgb_max(brought);
     return largest > most ? most / largest : 1.0f;
 }
 
 /* Says of light that is in the radiance which part it is. */
-static inline void eye_sample_note(eye_sample *s, light_part part, rgb light)
+static inline void eye_sample_note(eye_sample *s, light_part part, rgb brought)
 {
     if (s->layers)
-        s->layers->parts[part] = rgb_add(s->layers->parts[part], light);
+        s->layers->parts[part] = rgb_add(s->layers->parts[part], brought);
 }
 
 /* Adds light. Gives the factor of its bound. */
-static inline float eye_sample_add(eye_sample *s, light_part part, int scatterings, rgb light)
+static inline float eye_sample_add(eye_sample *s, light_part part, int scatterings, rgb brought)
 {
-    float factor = eye_sample_bound(s, scatterings, light);
+    float factor = eye_sample_bound(s, scatterings, brought);
     if (factor < 1.0f)
-        light = rgb_scale(light, factor);
-    s->radiance = rgb_add(s->radiance, light);
-    eye_sample_note(s, part, light);
+        brought = rgb_scale(brought, factor);
+    s->radiance = rgb_add(s->radiance, brought);
+    eye_sample_note(s, part, brought);
     return factor;
 }
 
@@ -85,9 +85,9 @@ static inline rgb *light_group_sums_begin(light_group_sums *sums, bool is_wanted
     return sums->of_group;
 }
 
-static inline void eye_sample_add_group(eye_sample *s, uint32_t group, rgb light)
+static inline void eye_sample_add_group(eye_sample *s, uint32_t group, rgb brought)
 {
-    s->layers->groups[group] = rgb_add(s->layers->groups[group], light);
+    s->layers->groups[group] = rgb_add(s->layers->groups[group], brought);
 }
 
 /* by_group NULL: nothing. */

@@ -59,6 +59,11 @@ ag_film *film_create(const ag_render_settings *settings, const pixel_filter *fil
             film->views[i] = calloc(count, sizeof *film->views[i]);
             is_whole = is_whole && film->views[i];
         }
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++)
+        if (film->layout.has_matte[i]) {
+            film->slots[i] = calloc(count, CRYPTOMATTE_SLOTS * sizeof *film->slots[i]);
+            is_whole = is_whole && film->slots[i];
+        }
     if (film->layout.needs_nearest) {
         film->nearest = calloc(count, sizeof *film->nearest);
         is_whole = is_whole && film->nearest;
@@ -79,6 +84,10 @@ void ag_film_destroy(ag_film *film)
     free(film->nearest);
     for (int i = 0; i < FILM_VIEW_COUNT; i++)
         free(film->views[i]);
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++) {
+        free(film->slots[i]);
+        cryptomatte_reset(&film->mattes[i]);
+    }
     free(film->pixels);
     aov_layout_reset(&film->layout);
     free(film);
@@ -144,6 +153,10 @@ static void add_layers(ag_film *film, size_t pixel, double *sums, const eye_samp
         add_rgb(sums + offset[SUM_IRRADIANCE], first->irradiance);
     if (aov_has(layout, SUM_HIT_SQUARES))
         add_squares(film, sums + offset[SUM_HIT_SQUARES], sums + offset[SUM_HIT_DEVELOPED], sample->radiance);
+    const uint32_t ids[CRYPTOMATTE_KIND_COUNT] = {first->object_id, first->material_id};
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++)
+        if (film->slots[i])
+            cryptomatte_add(&film->mattes[i], ids[i], sample->sign, film->slots[i] + CRYPTOMATTE_SLOTS * pixel);
     if (film->nearest) {
         film_nearest *nearest = &film->nearest[pixel];
         if (nearest->object_id == 0 || first->depth < nearest->depth)
@@ -282,6 +295,14 @@ static float read_value(const ag_film *film, size_t pixel, const film_channel *c
     case CHANNEL_DEPTH: return nearest->depth;
     case CHANNEL_OBJECT: return (float)nearest->object_id;
     case CHANNEL_MATERIAL: return (float)nearest->material_id;
+    case CHANNEL_CRYPTO_ID:
+    case CHANNEL_CRYPTO_COVERAGE: {
+        float id, coverage;
+        int64_t negatives = film->negatives ? (int64_t)film->negatives[pixel] : 0;
+        cryptomatte_rank(film->slots[component / CRYPTOMATTE_RANKS] + CRYPTOMATTE_SLOTS * pixel,
+                         component % CRYPTOMATTE_RANKS, (int64_t)film->counts[pixel] - 2 * negatives, &id, &coverage);
+        return channel->source == CHANNEL_CRYPTO_ID ? id : coverage;
+    }
     case CHANNEL_VIEW: return film->views[component][pixel];
     }
     return 0.0f;

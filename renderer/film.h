@@ -38,8 +38,10 @@ struct ag_film {
     uint32_t *counts;              /* samples so far */
     uint32_t *negatives;           /* those with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
-    film_nearest *nearest;         /* NULL where not asked for */
-    float *pixels;                 /* 3, RGB: set by film_resolve */
+    cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
+    cryptomatte_slot *slots[CRYPTOMATTE_KIND_COUNT]; /* [CRYPTOMATTE_SLOTS]; NULL where not asked for */
+    film_nearest *nearest;                           /* NULL where not asked for */
+    float *pixels;                                   /* 3, RGB: set by film_resolve */
 };
 
 /* An empty film of the settings' crop; takes the layout, on failure too (it is then reset). NULL when out of memory. A

@@ -142,6 +142,13 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
         add_text(out, "afterglow/irradianceRequests", "%llu", (unsigned long long)s->irradiance_requests);
         add_text(out, "afterglow/irradianceComputed", "%llu", (unsigned long long)s->irradiance_computed);
     }
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++) {
+        const cryptomatte *m = &film->mattes[i];
+        const char *const texts[4] = {m->layer, "MurmurHash3_32", "uint32_to_float32", m->manifest};
+        for (int k = 0; m->layer && k < 4; k++)
+            out->attributes[out->attribute_count++] =
+                (image_attribute){.name = m->attribute_names[k], .text = texts[k]};
+    }
     if (!settings->reproducible)
         describe_run(context, settings, out);
 }

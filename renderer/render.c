@@ -342,7 +342,7 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .run = &context->run,
                    .settings = settings,
                    .layout = layout,
-                   .wants_layers = layout->sum_count > 3 || layout->needs_nearest,
+                   .wants_layers = layout->sum_count > 3 || layout->needs_first_hit,
                    .wants_groups = aov_has(layout, SUM_GROUPS),
                    .has_lights = rgb_max(s->light_power) > 0.0f};
     for (uint32_t i = 0; i < s->light_count; i++)
@@ -431,6 +431,11 @@ static ag_status create_film(ag_rendering *r)
     if (!r->film)
         return AG_ERROR_MEMORY;
     note_origin(r, &r->film->origin);
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT && status == AG_OK; i++)
+        if (r->film->layout.has_matte[i])
+            status = cryptomatte_create(r->s, (cryptomatte_kind)i, &r->film->mattes[i]);
+    if (status != AG_OK)
+        return status;
     if (r->film->width > 0)
         return AG_OK;
     log_message(r->context->log, AG_LOG_ERROR, "the crop window holds no pixel");

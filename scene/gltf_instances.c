@@ -68,8 +68,8 @@ static ag_status make_object(gltf_reader *r, const gltf_value *node, uint32_t me
     return AG_OK;
 }
 
-ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index,
-                             const gltf_matrix *world_from_node)
+static ag_status add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index,
+                               const gltf_matrix *world_from_node)
 {
     uint32_t shared_index, instance_index;
     const gltf_destination world = {GLTF_ALL_PARTS, SCENE_NO_OBJECT}, shining = {GLTF_SHINING_PART, SCENE_NO_OBJECT};
@@ -86,4 +86,22 @@ ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t me
     if (use->object_index != SCENE_NO_OBJECT)
         GLTF_TRY(scene_add_instance(r->scene, use->object_index, &place, 1, &instance_index));
     return add_posed(r, node, mesh_index, world_from_node, shining);
+}
+
+/* What the file calls it, or NULL. */
+static const char *name_of(const gltf_value *item) { return json_string_value(gltf_member(item, "name").json); }
+
+ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index,
+                             const gltf_matrix *world_from_node)
+{
+    gltf_value mesh_item;
+    uint32_t shape_count = r->scene->shape_count, object_count = r->scene->object_count;
+    GLTF_TRY(add_node_mesh(r, node, mesh_index, world_from_node));
+    GLTF_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &mesh_item));
+    const char *mesh_name = name_of(&mesh_item), *node_name = name_of(node);
+    for (uint32_t i = shape_count; i < r->scene->shape_count; i++) /* of what stands in the world itself */
+        GLTF_TRY(scene_set_name(r->scene, NAMED_SHAPE, i, node_name ? node_name : mesh_name));
+    for (uint32_t i = object_count; i < r->scene->object_count; i++) /* which several nodes share */
+        GLTF_TRY(scene_set_name(r->scene, NAMED_OBJECT, i, mesh_name));
+    return AG_OK;
 }

@@ -95,7 +95,9 @@ static ag_status load(gltf_reader *r, const gltf_value *at, gltf_material *out)
     GLTF_TRY(read_normal_map(r, at, &m, out));
     GLTF_TRY(read_emission(r, at, out));
     GLTF_TRY(gltf_read_material_extensions(r, at, &m, out));
-    return scene_add_material(r->scene, &m, &out->material_index);
+    GLTF_TRY(scene_add_material(r->scene, &m, &out->material_index));
+    const gltf_value name = gltf_member(at, "name");
+    return scene_set_name(r->scene, NAMED_MATERIAL, out->material_index, json_string_value(name.json));
 }
 
 ag_status gltf_material_find(gltf_reader *r, uint32_t index, const gltf_material **out_material)

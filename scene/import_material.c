@@ -302,6 +302,8 @@ ag_status importer_add_material(importer *i, const import_material *source, impo
         status = add_emission(i, source, &surface);
     if (!status)
         status = scene_add_material(i->scene, &m, &surface.material_index);
+    if (!status)
+        status = scene_set_name(i->scene, NAMED_MATERIAL, surface.material_index, source->name);
     *out_surface = surface;
     return status;
 }

@@ -151,6 +151,8 @@ ag_status importer_add_mesh(importer *i, const char *name, mesh *m, const transf
     s.as.mesh = *m;
     memset(m, 0, sizeof *m);
     status = scene_add_shape(i->scene, &s, &index);
+    if (!status)
+        status = scene_set_name(i->scene, NAMED_SHAPE, index, name);
     return status ? status : add_lamp(i, surface, index);
 }
 

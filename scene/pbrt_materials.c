@@ -114,7 +114,7 @@ static ag_status add_named_material(pbrt_parser *parser, const char *name, pbrt_
     }
     parser->named_materials[count] = added;
     parser->named_material_count++;
-    return AG_OK;
+    return scene_set_name(parser->scene, NAMED_MATERIAL, added.index, name);
 }
 
 static ag_status make_named(pbrt_parser *parser, parameter_list *list)

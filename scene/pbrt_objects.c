@@ -47,7 +47,7 @@ static ag_status find_object(pbrt_parser *parser, const char *name, file_locatio
     }
     *out_object = (uint32_t)parser->object_count;
     parser->objects[parser->object_count++] = made;
-    return AG_OK;
+    return scene_set_name(parser->scene, NAMED_OBJECT, made.object_index, name);
 }
 
 ag_status pbrt_object_begin(pbrt_parser *parser, file_location where)

@@ -43,5 +43,8 @@ ag_status pbrt_ply_mesh(pbrt_parser *parser, parameter_list *list)
         log_at(parser->log, AG_LOG_WARNING, list->where,
                "Shape \"plymesh\": %zu normals or texture coordinates in \"%s\" are not finite, and are not used",
                m.odd_vectors, name);
-    return pbrt_add_object_mesh(parser, list, &m.mesh, m.lines, false);
+    uint32_t shape_count = parser->scene->shape_count;
+    PBRT_TRY(pbrt_add_object_mesh(parser, list, &m.mesh, m.lines, false));
+    return parser->scene->shape_count > shape_count ? scene_set_name(parser->scene, NAMED_SHAPE, shape_count, name)
+                                                    : AG_OK;
 }

@@ -12,6 +12,7 @@
 #include "medium.h"
 #include "parameter_list.h"
 #include "run_context.h"
+#include "scene_names.h"
 #include "shape.h"
 #include "texture.h"
 
@@ -44,6 +45,7 @@ typedef struct scene {
     uint32_t instance_step_count;
     light *lights;
     uint32_t light_count;
+    scene_names names;
     char **light_group_names; /* of light.group; the first is "default", of lights that name none */
     uint32_t light_group_count;
     medium *media;

@@ -37,6 +37,8 @@ static ag_status load_ply(run_context *run, const char *path, scene *out_scene)
         status = importer_add_mesh(&i, "vertex", &m.mesh, &identity, &surface);
     else
         ply_mesh_reset(&m);
+    if (!status && out_scene->shape_count > 0)
+        status = scene_set_name(out_scene, NAMED_SHAPE, 0, path);
     if (!status)
         log_at(run->log, AG_LOG_INFO, i.where, "a PLY file has no materials: the mesh is grey");
     if (!status)

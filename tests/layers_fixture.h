@@ -26,7 +26,7 @@ static inline void studio_hear(void *user, ag_log_level level, const char *text)
 }
 
 /* A scene of that text or, where it begins with a slash, in that file; small and quick. */
-static inline studio *studio_open(const char *scene, unsigned threads)
+static inline studio *studio_open(const char *what, unsigned threads)
 {
     studio *s = calloc(1, sizeof *s);
     assert_non_null(s);
@@ -35,12 +35,12 @@ static inline studio *studio_open(const char *scene, unsigned threads)
     settings.log = studio_hear;
     settings.user = s;
     assert_int_equal(ag_context_create(&settings, &s->context), AG_OK);
-    const char *path = scene;
-    if (scene[0] != '/') {
+    const char *path = what;
+    if (what[0] != '/') {
         path = in_folder("scene.pbrt");
         FILE *file = fopen(path, "w");
         assert_non_null(file);
-        assert_true(fputs(scene, file) >= 0);
+        assert_true(fputs(what, file) >= 0);
         assert_int_equal(fclose(file), 0);
     }
     if (ag_scene_load(s->context, path, &s->scene) != AG_OK ||

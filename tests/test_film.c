@@ -140,7 +140,10 @@ static double value_of(const ag_film *film, const char *name) { return film_mean
 static void test_sums(void **state)
 {
     (void)state;
-    ag_film *film = film_of((AG_LAYERS_ALL & ~(uint32_t)AG_LAYERS_LIGHT) | AG_LAYER_GBUFFER, false);
+    ag_film *film =
+        film_of((AG_LAYERS_ALL & ~(uint32_t)(AG_LAYERS_LIGHT | AG_LAYER_CRYPTO_OBJECT | AG_LAYER_CRYPTO_MATERIAL)) |
+                    AG_LAYER_GBUFFER,
+                false);
     film_resolve(film); /* without any sample */
     expect_within("nothing", value_of(film, "R"), 0.0, 0.0);
     expect_within("depth of nothing", value_of(film, "Z"), (double)1e10f, 0.0);

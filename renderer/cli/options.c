@@ -73,7 +73,7 @@ static const option_line LINES[] = {
      "layers of .exr files, by commas: A, Z, albedo, N, P, uv; the parts of\nlight: emission, direct, indirect, "
      "caustic, "
      "specular, or all five: light;\nirradiance, variance, samples, id, lightgroups; photon_density,\ncache_state, "
-     "photon_distance, gather_distance, tile_time; gbuffer; or all"},
+     "photon_distance, gather_distance, tile_time;\ncrypto_object, crypto_material, or both: crypto; gbuffer; or all"},
     {OPT_DENOISE, "denoise", NULL, "take the noise out with Open Image Denoise, where its library is there"},
     {OPT_DUMP_PHOTONS, "dump-photons", "FILE", "write the photons as PLY"},
     {OPT_TILED, "tiled", NULL, "write .exr files in tiles, not in lines"},

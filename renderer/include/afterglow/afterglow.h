@@ -95,7 +95,11 @@ typedef enum ag_layer {
                                           it was; 0: no photon is near */
     AG_LAYER_PHOTON_DISTANCE = 1 << 19, /* photon_distance: how far that photon is */
     AG_LAYER_GATHER_DISTANCE = 1 << 20, /* gather_distance: how far gather rays go, harmonic mean */
-    AG_LAYER_TILE_TIME = 1 << 21        /* tile_time: seconds that the pixel's tile took: another number in each run */
+    /* Cryptomatte 1.2 for objects (instances, glTF nodes, files of meshes) and materials, by their names in the scene,
+     * or by numbers; six ranks. */
+    AG_LAYER_CRYPTO_OBJECT = 1 << 22,
+    AG_LAYER_CRYPTO_MATERIAL = 1 << 23,
+    AG_LAYER_TILE_TIME = 1 << 21 /* tile_time: seconds that the pixel's tile took: another number in each run */
 } ag_layer;
 #define AG_LAYERS_LIGHT (AG_LAYER_EMISSION | AG_LAYER_DIRECT | AG_LAYER_INDIRECT | AG_LAYER_CAUSTIC | AG_LAYER_SPECULAR)
 /* All that is the same from run to run, in our names. */
@@ -103,7 +107,7 @@ typedef enum ag_layer {
     (AG_LAYER_ALPHA | AG_LAYER_DEPTH | AG_LAYER_ALBEDO | AG_LAYER_NORMAL | AG_LAYER_POSITION | AG_LAYER_UV |           \
      AG_LAYERS_LIGHT | AG_LAYER_IRRADIANCE | AG_LAYER_VARIANCE | AG_LAYER_SAMPLES | AG_LAYER_ID |                      \
      AG_LAYER_LIGHT_GROUPS | AG_LAYER_PHOTON_DENSITY | AG_LAYER_CACHE_STATE | AG_LAYER_PHOTON_DISTANCE |               \
-     AG_LAYER_GATHER_DISTANCE)
+     AG_LAYER_GATHER_DISTANCE | AG_LAYER_CRYPTO_OBJECT | AG_LAYER_CRYPTO_MATERIAL)
 
 /* Layers by name, separated by commas: "A,Z,albedo", "light" for the parts of light, "all". Errors:
  * AG_ERROR_ARGUMENT. */
