@@ -217,13 +217,11 @@ static ag_status merge_block(round_job *job, photon_set *set, uint64_t first_pat
     return AG_OK;
 }
 
-static bool is_traced(const scene *s, const shape *item) { return material_is_traced(s, item->material_index); }
-
 /* A ball around all shapes that have traced lobes; of radius 0 where there is none. */
 static ag_status find_traced_matter(const scene *s, light_target *out_target)
 {
     vec3 low, high;
-    ag_status status = scene_find_bounds(s, is_traced, &low, &high);
+    ag_status status = scene_find_bounds(s, scene_shape_is_traced, &low, &high);
     *out_target = (light_target){{0.0f, 0.0f, 0.0f}, 0.0f};
     if (status != AG_OK || low.x > high.x)
         return status;

@@ -39,7 +39,7 @@ static void maps_reset(maps *m)
 static bool has_traced_matter(const scene *s)
 {
     for (uint32_t i = 0; i < s->shape_count; i++)
-        if (material_is_traced(s, s->shapes[i].material_index))
+        if (scene_shape_is_traced(s, &s->shapes[i]))
             return true;
     return false;
 }

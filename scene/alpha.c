@@ -41,7 +41,7 @@ bool alpha_stops_ray(const scene *s, const shape *at, uint32_t primitive_index, 
 {
     surface_hit hit = {.distance = t};
     if (at->alpha_texture != SCENE_NO_TEXTURE)
-        shape_surface_at(at, primitive_index, u, v, vec3_add_scaled(origin, direction, t), &hit);
+        shape_surface_at(at, primitive_index, u, v, vec3_add_scaled(origin, direction, t), direction, &hit);
     float alpha = alpha_at(s, at, &hit); /* which reads the hit for a texture only */
     if (alpha <= 0.0f || alpha >= 1.0f || is_probe)
         return alpha > 0.0f;

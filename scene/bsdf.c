@@ -123,6 +123,8 @@ static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
     b->out = out;
     b->lobe_count = 0;
     add_lobes(b);
+    for (int k = 0; hit->is_strand && k < b->lobe_count; k++)
+        b->lobes[k].group = BSDF_TRACED;
 }
 
 bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out)

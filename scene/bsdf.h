@@ -9,7 +9,8 @@
  * look up irradiance; all others, rough or smooth, are TRACED on. The S of the path notation is every traced lobe. A
  * gathered lobe is a product t(in) A t(out) / pi, where t is 1 but under a coat, which lets through 1 - Fresnel, or
  * under an interface of which t is what it does not reflect in all (principled.h): photons carry t(in), so
- * that irradiance times A t(out) / pi is the radiance that leaves. */
+ * that irradiance times A t(out) / pi is the radiance that leaves. On curves every lobe is traced: a hair is thinner
+ * than the disc of any estimate, and a flat one has no normal of its own that photons and eye could agree on. */
 #ifndef AFTERGLOW_BSDF_H
 #define AFTERGLOW_BSDF_H
 

@@ -25,14 +25,16 @@ typedef struct surface_hit {
     vec3 position;
     vec3 geometric_normal; /* unit, to the shape's outside */
     vec3 shading_normal;   /* unit, on the geometric normal's side */
-    vec2 uv;               /* pbrt's, in [0, 1] on quadrics; a mesh's own, or (0, 0), (1, 0), (1, 1) on each triangle */
+    vec2 uv;               /* pbrt's, in [0, 1] on quadrics, and curves; a mesh's own, or (0, 0), (1, 0), (1, 1) on each
+                            * triangle */
     float distance;        /* along the ray, for a unit direction in scene units */
     float epsilon;         /* how far off the surface a new ray must start so as not to meet it again, scene units */
+    bool is_strand;        /* part of a curve, too thin for the estimates of a photon map: see bsdf.h */
     bool is_flat;          /* part of a mesh, whose corners a start must stay out of: see surface_ray */
     bool has_medium_interface;              /* the shape's, for surface_ray */
     uint32_t medium_inside, medium_outside; /* likewise */
     uint32_t shape_index;
-    uint32_t primitive_index; /* triangle of a mesh */
+    uint32_t primitive_index; /* triangle of a mesh, segment of curves */
     uint32_t instance_index;  /* SCENE_NO_INSTANCE where the shape stands in the world itself */
     float time;               /* of the shutter, the ray's */
 } surface_hit;
@@ -86,9 +88,10 @@ bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u);
 float shape_pdf_area(const shape *s, vec3 geometric_normal);
 
 /* shape.c's side of an intersection, for bvh_embree.c: fills in everything but distance, indices and time. u, v:
- * Embree's barycentrics for meshes; for the others `position` comes in as the ray's point and is put onto the surface.
- */
-void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, surface_hit *out_hit);
+ * Embree's barycentrics for meshes, u along curves; for all but meshes `position` comes in as the ray's point and is
+ * put onto the surface. direction: the ray's, of any length; read for curves alone. */
+void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                      surface_hit *out_hit);
 /* Nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */
 bool shape_intersect_quadric(const shape *s, vec3 origin, vec3 direction, float t_min, float t_max, float *out_t);
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);

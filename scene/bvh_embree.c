@@ -109,21 +109,43 @@ static void quadric_occluded(const struct RTCOccludedFunctionNArguments *argumen
     EMBREE_REPORT(arguments, was_hit);
 }
 
-/* --- triangles that are not wholly there --- */
+/* --- triangles and curves that are not wholly there --- */
 
-/* N is 1 here too. Embree has put the hit's distance into the ray. */
-static void filter_triangle(const struct RTCFilterFunctionNArguments *arguments)
+/* N is 1 here too. Embree has put the hit's distance into the ray. A tube is crossed twice, in and out. */
+static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
 {
     const attached *a = arguments->geometryUserPtr;
     const struct RTCRay *ray = (const struct RTCRay *)(const void *)arguments->ray;
     const struct RTCHit *hit = (const struct RTCHit *)(const void *)arguments->hit;
+    vec3 origin = {ray->org_x, ray->org_y, ray->org_z}, direction = {ray->dir_x, ray->dir_y, ray->dir_z};
+    uint32_t crossing = a->shape->kind == SHAPE_CURVES && a->shape->as.curves.type == CURVES_CYLINDER &&
+                        vec3_dot((vec3){hit->Ng_x, hit->Ng_y, hit->Ng_z}, direction) > 0.0f;
     if (arguments->valid[0] &&
-        !alpha_stops_ray(a->s, a->shape, hit->primID, hit->u, hit->v, 0, (vec3){ray->org_x, ray->org_y, ray->org_z},
-                         (vec3){ray->dir_x, ray->dir_y, ray->dir_z}, ray->tfar, ray->id))
+        !alpha_stops_ray(a->s, a->shape, hit->primID, hit->u, hit->v, crossing, origin, direction, ray->tfar, ray->id))
         arguments->valid[0] = 0;
 }
 
 /* --- build --- */
+
+static RTCGeometry make_curves(bvh *b, const shape *s)
+{
+    static const enum RTCGeometryType TYPES[] = {[CURVES_FLAT] = RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE,
+                                                 [CURVES_CYLINDER] = RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE,
+                                                 [CURVES_RIBBON] = RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE};
+    const curves *c = &s->as.curves;
+    size_t point_count = 4 * (size_t)c->segment_count;
+    RTCGeometry geometry = rtcNewGeometry(b->device, TYPES[c->type]);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, c->points, 0, sizeof *c->points,
+                               point_count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, c->first_points, 0,
+                               sizeof *c->first_points, c->segment_count);
+    if (c->type == CURVES_RIBBON)
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, c->normals, 0,
+                                   sizeof *c->normals, point_count);
+    if (c->type == CURVES_FLAT)
+        rtcSetGeometryTessellationRate(geometry, CURVES_FLAT_PIECES);
+    return geometry;
+}
 
 static bool attach_shape(bvh *b, RTCScene into, attached *user, uint32_t index)
 {
@@ -140,10 +162,8 @@ static bool attach_shape(bvh *b, RTCScene into, attached *user, uint32_t index)
                                    sizeof(vec3), m->vertex_count);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m->indices, 0,
                                    3 * sizeof(uint32_t), m->triangle_count);
-        if (!shape_is_opaque(s)) {
-            rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
-            rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
-        }
+    } else if (s->kind == SHAPE_CURVES) {
+        geometry = make_curves(b, s);
     } else if (s->as.quadric.uniform_radius > 0.0f && shape_is_opaque(s)) {
         geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
         float *sphere =
@@ -160,6 +180,10 @@ static bool attach_shape(bvh *b, RTCScene into, attached *user, uint32_t index)
         rtcSetGeometryBoundsFunction(geometry, quadric_bounds, NULL);
         rtcSetGeometryIntersectFunction(geometry, quadric_intersect);
         rtcSetGeometryOccludedFunction(geometry, quadric_occluded);
+    }
+    if ((s->kind == SHAPE_MESH || s->kind == SHAPE_CURVES) && !shape_is_opaque(s)) {
+        rtcSetGeometryIntersectFilterFunction(geometry, filter_hit);
+        rtcSetGeometryOccludedFilterFunction(geometry, filter_hit);
     }
     rtcSetGeometryUserData(geometry, user);
     rtcSetGeometryMask(geometry, 0xffffffffu); /* Embree 4's default would be bit 0 alone */
@@ -215,6 +239,11 @@ static void build(RTCScene which, uint64_t item_count, run_context *run, unsigne
         thread_pool_run(run->pool, join_build, &(build_job){which, joiners});
 }
 
+static uint64_t item_count_of(const shape *s)
+{
+    return s->kind == SHAPE_MESH ? s->as.mesh.triangle_count : s->kind == SHAPE_CURVES ? s->as.curves.segment_count : 1;
+}
+
 /* The objects that instances show, each a scene of its own, whose shapes are numbered as in its list. */
 static bool build_objects(bvh *b, const scene *s, run_context *run, unsigned joiners)
 {
@@ -235,7 +264,7 @@ static bool build_objects(bvh *b, const scene *s, run_context *run, unsigned joi
         b->objects[index] = new_scene(b);
         for (uint32_t k = 0; k < o->shape_count; k++) {
             attached *user = &b->attached[s->object_shapes[o->first_shape + k]];
-            item_count += user->shape->kind == SHAPE_MESH ? user->shape->as.mesh.triangle_count : 1;
+            item_count += item_count_of(user->shape);
             if (!attach_shape(b, b->objects[index], user, k))
                 return false;
         }
@@ -359,8 +388,12 @@ static void place_instance_hit(const scene *s, const scene_ray *ray, const struc
                              (double)ray->origin.z + t * (double)ray->direction.z};
     out_hit->instance_index = index;
     out_hit->shape_index = s->object_shapes[o->first_shape + met->hit.geomID];
-    shape_surface_at(&s->shapes[out_hit->shape_index], met->hit.primID, met->hit.u, met->hit.v,
-                     instance_point_in_object(&world_from_object, world), out_hit);
+    const shape *at = &s->shapes[out_hit->shape_index];
+    vec3 direction = ray->direction;
+    if (at->kind == SHAPE_CURVES)
+        direction = instance_direction_in_object(&world_from_object, direction);
+    shape_surface_at(at, met->hit.primID, met->hit.u, met->hit.v, instance_point_in_object(&world_from_object, world),
+                     direction, out_hit);
     instance_place_hit(&world_from_object, out_hit);
 }
 
@@ -391,7 +424,7 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
         out_hit->shape_index = ray_hit.hit.geomID;
         out_hit->instance_index = SCENE_NO_INSTANCE;
         shape_surface_at(&s->shapes[ray_hit.hit.geomID], ray_hit.hit.primID, ray_hit.hit.u, ray_hit.hit.v,
-                         vec3_add_scaled(ray.origin, ray.direction, ray_hit.ray.tfar), out_hit);
+                         vec3_add_scaled(ray.origin, ray.direction, ray_hit.ray.tfar), ray.direction, out_hit);
     } else {
         place_instance_hit(s, &ray, &ray_hit, out_hit);
     }

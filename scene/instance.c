@@ -30,6 +30,16 @@ vec3 instance_point_in_object(const affine *world_from_object, const double worl
     return (vec3){(float)p[0], (float)p[1], (float)p[2]};
 }
 
+vec3 instance_direction_in_object(const affine *world_from_object, vec3 direction)
+{
+    double c[3][3], determinant = affine_determinant(world_from_object), d[3];
+    affine_cofactors(world_from_object, c);
+    for (int i = 0; i < 3; i++)
+        d[i] = (c[0][i] * (double)direction.x + c[1][i] * (double)direction.y + c[2][i] * (double)direction.z) /
+               determinant;
+    return (vec3){(float)d[0], (float)d[1], (float)d[2]};
+}
+
 static vec3 place_normal(const double cofactors[3][3], double sign, vec3 n)
 {
     double w[3], square = 0.0;

@@ -188,6 +188,7 @@ static pbrt_parser *parser_create(run_context *run, scene *out_scene)
         parser->state.start_is_active = parser->state.end_is_active = true;
         parser->transform_times[1] = 1.0;
         parser->shapes_object_index = SCENE_NO_OBJECT;
+        parser->curves_object_index = SCENE_NO_OBJECT;
         parser->source = (parameter_source){pbrt_excerpt, parser};
         parser->state.medium_inside = parser->state.medium_outside = PBRT_NO_MEDIUM;
     }

@@ -181,6 +181,10 @@ typedef struct pbrt_parser {
     name_table object_names;
     pbrt_object *open_object;     /* between ObjectBegin and ObjectEnd, else NULL */
     uint32_t shapes_object_index; /* where pbrt_add_shape adds to: the scene's object, SCENE_NO_OBJECT for the world */
+    /* The object that curves were last put into for a transform that moves or stretches them, with that transform and
+     * the object around it: curves that follow join it. SCENE_NO_OBJECT: none yet. */
+    uint32_t curves_object_index, curves_object_around;
+    transform curves_start, curves_end;
     pbrt_early_instance *early_instances;
     size_t early_instance_count, early_instance_capacity;
     size_t lamp_copy_count, lamp_copy_vertex_count;         /* that instances have made */
@@ -362,6 +366,9 @@ ag_status pbrt_settle_realistic(pbrt_parser *parser);
 pbrt_handler pbrt_shape;
 /* Adds the shape with the current material and area light. A mesh's arrays pass to the scene, also on failure. */
 ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape *s);
+
+/* pbrt_curves.c: Shape "curve". The current transform keeps angles. */
+ag_status pbrt_curve(pbrt_parser *parser, parameter_list *list);
 
 /* pbrt_meshes.c, pbrt_patches.c, pbrt_ply.c, pbrt_subdivision.c: Shape "trianglemesh", "bilinearmesh", "plymesh" and
  * "loopsubdiv". */

@@ -17,6 +17,11 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     s->material_index = parser->state.material_index;
     s->light_index = SHAPE_NO_LIGHT;
     bool shines = parser->state.area_light.is_set;
+    if (shines && s->kind == SHAPE_CURVES)
+        log_at_once(parser->log, AG_LOG_WARNING, list->where, "curve light",
+                    "Shape \"curve\" cannot shine, nor can it in pbrt: its area light is left out");
+    if (s->kind == SHAPE_CURVES)
+        return scene_add_curves(parser->scene, parser->shapes_object_index, s);
     if (shines && parser->state.has_no_surface) {
         log_at(parser->log, AG_LOG_WARNING, list->where,
                "a shape with the material \"interface\" cannot shine: its area light is left out");
@@ -146,7 +151,6 @@ static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
 
 static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
 {
-    static const char *const UNSUPPORTED[] = {"curve"};
     static const char *const OLD[] = {"cone", "paraboloid", "hyperboloid", "heightfield", "heightfield2", "nurbs"};
     typedef ag_status reader(pbrt_parser *, parameter_list *);
     static const struct {
@@ -158,19 +162,14 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
                    {"plymesh", pbrt_ply_mesh},
                    {"loopsubdiv", pbrt_loop_subdivision},
                    {"trianglemesh", pbrt_triangle_mesh},
-                   {"bilinearmesh", pbrt_bilinear_mesh}};
+                   {"bilinearmesh", pbrt_bilinear_mesh},
+                   {"curve", pbrt_curve}};
     PBRT_TRY(read_alpha(parser, list));
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(list->name, READERS[i].name) == 0) {
             if (is_nothing(parser))
                 return AG_OK;
             return READERS[i].read(parser, list);
-        }
-    for (size_t i = 0; i < sizeof UNSUPPORTED / sizeof *UNSUPPORTED; i++)
-        if (strcmp(list->name, UNSUPPORTED[i]) == 0) {
-            log_at_once(parser->log, AG_LOG_WARNING, list->where, UNSUPPORTED[i],
-                        "Shape \"%s\" is not supported yet and is left out", list->name);
-            return AG_OK;
         }
     for (size_t i = 0; i < sizeof OLD / sizeof *OLD; i++)
         if (strcmp(list->name, OLD[i]) == 0) {
@@ -181,21 +180,49 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
     return pbrt_error(parser, list->where, strlen("Shape"), "unknown shape \"%s\"", list->name);
 }
 
+static bool is_curve(const parameter_list *list) { return strcmp(list->name, "curve") == 0; }
+
+/* A curve's width is of its own space, where it is alike all round. */
+static bool is_stretched_curve(const pbrt_parser *parser, const parameter_list *list)
+{
+    return is_curve(list) && !(transform_uniform_scale(&parser->state.world_from_object) > 0.0);
+}
+
+/* Whether curves have been put there just before. */
+static bool joins_curves(const pbrt_parser *parser, const parameter_list *list)
+{
+    const pbrt_state *state = &parser->state;
+    return is_curve(list) && parser->curves_object_index != SCENE_NO_OBJECT &&
+           parser->curves_object_around == parser->shapes_object_index &&
+           memcmp(parser->curves_start.m, state->world_from_object.m, sizeof parser->curves_start.m) == 0 &&
+           memcmp(parser->curves_end.m, state->world_from_object_end.m, sizeof parser->curves_end.m) == 0;
+}
+
 /* A shape that moves is, as in pbrt, an object of its own in its own space, of which there is one instance. */
 static ag_status read_moving_shape(pbrt_parser *parser, parameter_list *list)
 {
     pbrt_state *state = &parser->state;
     const transform start = state->world_from_object, end = state->world_from_object_end;
     uint32_t object_index, object_around = parser->shapes_object_index, count = parser->scene->shape_count;
-    PBRT_TRY(scene_add_object(parser->scene, &object_index));
+    bool is_shown = joins_curves(parser, list);
+    if (is_shown)
+        object_index = parser->curves_object_index;
+    else
+        PBRT_TRY(scene_add_object(parser->scene, &object_index));
     state->world_from_object = state->world_from_object_end = transform_identity();
     parser->shapes_object_index = object_index;
     ag_status status = read_shape(parser, list);
     parser->shapes_object_index = object_around;
     state->world_from_object = start;
     state->world_from_object_end = end;
-    if (status || parser->scene->shape_count == count) /* it was left out */
+    if (status || is_shown || parser->scene->shape_count == count) /* the last: it was left out */
         return status;
+    if (is_curve(list)) {
+        parser->curves_object_index = object_index;
+        parser->curves_object_around = object_around;
+        parser->curves_start = start;
+        parser->curves_end = end;
+    }
     return pbrt_show_moving_shape(parser, object_index, list->where);
 }
 
@@ -207,10 +234,11 @@ ag_status pbrt_shape(pbrt_parser *parser, file_location where)
         parameter_list_reset(&list);
         return AG_OK;
     }
-    bool shines = parser->state.area_light.is_set;
+    bool shines = parser->state.area_light.is_set && !is_curve(&list);
     if (shines)
         pbrt_warn_still(parser, where, "a shape with an area light");
-    ag_status status = pbrt_is_moving(parser) && !shines ? read_moving_shape(parser, &list) : read_shape(parser, &list);
+    bool has_own_space = (pbrt_is_moving(parser) && !shines) || is_stretched_curve(parser, &list);
+    ag_status status = has_own_space ? read_moving_shape(parser, &list) : read_shape(parser, &list);
     parameter_list_reset(&list);
     return status;
 }

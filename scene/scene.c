@@ -4,6 +4,7 @@
 #include "scene.h"
 
 #include "bsdf.h"
+#include "curves.h"
 #include "light_pick.h"
 #include "scene_extent.h"
 
@@ -182,6 +183,24 @@ ag_status scene_add_object_shape(scene *s, uint32_t object_index, const shape *i
     *out_index = s->shape_count;
     s->shapes[s->shape_count++] = copy;
     return AG_OK;
+}
+
+ag_status scene_add_curves(scene *s, uint32_t object_index, const shape *item)
+{
+    uint32_t index;
+    shape added = *item;
+    added.object_index = object_index;
+    shape *before = s->shape_count > 0 ? &s->shapes[s->shape_count - 1] : NULL;
+    if (!before || !curves_can_be_joined(before, &added))
+        return scene_add_object_shape(s, object_index, item, &index);
+    ag_status status = curves_join(&before->as.curves, &item->as.curves);
+    curves_reset(&added.as.curves);
+    return status;
+}
+
+bool scene_shape_is_traced(const scene *s, const shape *item)
+{
+    return item->kind == SHAPE_CURVES || material_is_traced(s, item->material_index);
 }
 
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index)

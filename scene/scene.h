@@ -67,8 +67,8 @@ typedef struct scene {
     vec3 bounds_min, bounds_max; /* of all shapes, where instances put them; min > max when there is none */
     vec3 bounding_center;
     float bounding_radius;
-    float surface_area;        /* m^2, of all shapes but interfaces, in all instances */
-    rgb light_power;           /* W, of all lights */
+    float surface_area; /* m^2, of all shapes where photons may lie: but interfaces and curves, in all instances */
+    rgb light_power;    /* W, of all lights */
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */
@@ -102,6 +102,8 @@ ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_i
 ag_status scene_light_group(scene *s, const char *name, uint32_t *out_index);
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
+/* The same of curves, which join those of the shape before where they differ in nothing else: fur is many. */
+ag_status scene_add_curves(scene *s, uint32_t object_index, const shape *item);
 /* An object, which is seen where instances put it. Its shapes do not shine. */
 ag_status scene_add_object(scene *s, uint32_t *out_index);
 ag_status scene_add_object_shape(scene *s, uint32_t object_index, const shape *item, uint32_t *out_index);
@@ -118,6 +120,9 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
  * instruction set to use ("sse2", "sse4.2", "avx", "avx2", "avx512"), NULL for "avx2".
  * A scene without shapes is valid. Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING, AG_ERROR_SCENE, AG_CANCELLED. */
 ag_status scene_commit(scene *s, run_context *run, const char *isa);
+
+/* Whether any light that meets it is traced on, rather than gathered: see bsdf.h. */
+bool scene_shape_is_traced(const scene *s, const shape *item);
 
 /* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
 float shape_area(const shape *s);

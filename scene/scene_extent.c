@@ -130,10 +130,10 @@ static void add_shape(area_vectors *v, const shape *item)
     }
 }
 
-/* Interfaces have no light on them. */
+/* Interfaces have no light on them, curves no photons. */
 static bool counts(const scene *s, const shape *item)
 {
-    return s->materials[item->material_index].kind != MATERIAL_INTERFACE;
+    return item->kind != SHAPE_CURVES && s->materials[item->material_index].kind != MATERIAL_INTERFACE;
 }
 
 static double length_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }

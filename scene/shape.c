@@ -1,6 +1,7 @@
 /* shape.c: areas, bounds, sampling and surface geometry: of meshes here, of the others in quadric.c.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6.
  * Threads: shape_commit by one thread; the rest read only. */
+#include "curves.h"
 #include "math/sampling.h"
 #include "quadric.h"
 #include "texture.h"
@@ -23,6 +24,8 @@ shape shape_make(shape_kind kind)
 
 void shape_reset(shape *s)
 {
+    if (s->kind == SHAPE_CURVES)
+        curves_reset(&s->as.curves);
     if (s->kind != SHAPE_MESH)
         return;
     mesh *m = &s->as.mesh;
@@ -110,6 +113,10 @@ static float mesh_epsilon(const mesh *m, uint32_t triangle)
 
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
 {
+    if (s->kind == SHAPE_CURVES) {
+        curves_find_bounds(s, out_min, out_max);
+        return;
+    }
     if (s->kind != SHAPE_MESH) {
         quadric_find_bounds(s, out_min, out_max);
         return;
@@ -125,6 +132,8 @@ void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
 
 float shape_area(const shape *s)
 {
+    if (s->kind == SHAPE_CURVES)
+        return curves_area(s);
     if (s->kind != SHAPE_MESH)
         return quadric_area(s);
     double area = 0.0;
@@ -139,6 +148,8 @@ float shape_area(const shape *s)
 ag_status shape_commit(shape *s)
 {
     s->area = shape_area(s);
+    if (s->kind == SHAPE_CURVES)
+        return AG_OK;
     if (s->kind != SHAPE_MESH) {
         quadric_commit(s);
         return AG_OK;
@@ -159,6 +170,8 @@ ag_status shape_commit(shape *s)
     return AG_OK;
 }
 
+static const vec3 NOWHERE = {0.0f, 0.0f, 0.0f};
+
 /* Picks a triangle by area, then reuses the random number's rest. */
 static surface_sample mesh_sample_area(const shape *s, vec2 u)
 {
@@ -176,7 +189,7 @@ static surface_sample mesh_sample_area(const shape *s, vec2 u)
         u.x = fminf(fmaxf((u.x - before) / share, 0.0f), 0x1.fffffep-1f);
     vec2 b = sample_triangle(u);
     surface_hit hit;
-    shape_surface_at(s, low, b.x, b.y, (vec3){0.0f, 0.0f, 0.0f}, &hit);
+    shape_surface_at(s, low, b.x, b.y, NOWHERE, NOWHERE, &hit);
     return (surface_sample){hit.position, hit.geometric_normal, 1.0f / s->area, hit.epsilon, low, b};
 }
 
@@ -205,7 +218,7 @@ surface_sample shape_sample_area(const shape *s, vec2 u)
 void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit)
 {
     shape_surface_at(s, sample->primitive_index, sample->barycentrics.x, sample->barycentrics.y, sample->position,
-                     out_hit);
+                     NOWHERE, out_hit);
     out_hit->distance = 0.0f;
     out_hit->shape_index = shape_index;
     out_hit->primitive_index = sample->primitive_index;
@@ -248,10 +261,14 @@ static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, f
     h->is_flat = true;
 }
 
-void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, surface_hit *out_hit)
+void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                      surface_hit *out_hit)
 {
+    out_hit->is_strand = false;
     if (s->kind == SHAPE_MESH)
         mesh_surface_at(s, primitive_index, u, v, out_hit);
+    else if (s->kind == SHAPE_CURVES)
+        curves_surface_at(s, primitive_index, u, position, direction, out_hit);
     else
         quadric_surface_at(s, position, out_hit);
     out_hit->has_medium_interface = s->has_medium_interface;

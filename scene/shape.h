@@ -1,4 +1,4 @@
-/* shape.h: surfaces in world space: triangle meshes, spheres, cylinders and disks.
+/* shape.h: surfaces in world space: triangle meshes, spheres, cylinders, disks and curves.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6; orientation follows pbrt's:
  * a shape's outside is where its geometric normal points, ReverseOrientation turns it over.
  * Flow: the scene file makes shapes; bvh_embree casts rays at them; lights sample points on them.
@@ -18,7 +18,7 @@
  * float, a few times what the traversal's arithmetic loses. */
 #define SHAPE_EPSILON_RELATIVE 0x1p-16f
 
-typedef enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_CYLINDER, SHAPE_DISK } shape_kind;
+typedef enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_CURVES } shape_kind;
 
 /* World space. Arrays are owned by the shape, which is owned by the scene. Positions have room for one more vertex, so
  * that Embree may read 16 bytes at the last one. */
@@ -49,6 +49,30 @@ typedef struct quadric {
     bool has_even_area;          /* object area and world area have one ratio everywhere */
 } quadric;
 
+typedef enum curves_type {
+    CURVES_FLAT,     /* turned about its middle line to each ray; its outside is where the ray came from */
+    CURVES_CYLINDER, /* a tube, open at its ends */
+    CURVES_RIBBON    /* flat, and turned as its normals say */
+} curves_type;
+
+typedef struct curve_point {
+    vec3 at;
+    float radius; /* half the width */
+} curve_point;
+
+/* So many straight pieces does Embree make of a flat segment; the reader cuts those that need more. */
+enum { CURVES_FLAT_PIECES = 8 };
+
+/* Cubic Bezier segments, many curves in one shape. World space; arrays are owned as a mesh's. */
+typedef struct curves {
+    curves_type type;
+    uint32_t segment_count, capacity;
+    curve_point *points;    /* 4 per segment */
+    vec3 *normals;          /* of ribbons, else NULL: 4 per segment, control points too; of any length */
+    vec2 *spans;            /* per segment: the uv.x of its ends, for a curve may have been cut */
+    uint32_t *first_points; /* per segment: 4 times its number, for Embree */
+} curves;
+
 typedef struct shape {
     shape_kind kind;
     bool flip_normal; /* ReverseOrientation, and for meshes also a transform that swaps handedness (not both) */
@@ -64,6 +88,7 @@ typedef struct shape {
     union {
         mesh mesh;
         quadric quadric;
+        curves curves;
     } as;
     float area; /* m^2, world; set by scene_commit */
 } shape;
@@ -72,7 +97,8 @@ typedef struct shape {
 shape shape_make(shape_kind kind);
 /* Frees what it owns. */
 void shape_reset(shape *s);
-/* The same shape, before its commit, moved on by a map: its world space becomes another's. Errors: AG_ERROR_MEMORY. */
+/* The same shape, which is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
+ * AG_ERROR_MEMORY. */
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
 
 #endif

@@ -1,6 +1,7 @@
 /* tangents.c: see tangents.h. Threads: pure functions. */
 #include "tangents.h"
 
+#include "curves.h"
 #include "math/sampling.h"
 #include "quadric.h"
 
@@ -123,6 +124,8 @@ static vec3 place_turn(const affine *a, vec3 object_normal, vec3 dn, vec3 world_
 
 static surface_differentials differentials_of(const shape *at, const surface_hit *hit)
 {
+    if (at->kind == SHAPE_CURVES)
+        return curves_differentials(at, hit);
     return at->kind == SHAPE_MESH ? mesh_differentials(at, hit) : quadric_differentials(at, hit);
 }
 

@@ -239,7 +239,8 @@ static void warnings_are_given_once(void **state)
     static const struct {
         const char *text, *warning;
     } CASES[] = {
-        {"Shape \"curve\"", "Shape \"curve\" is not supported yet and is left out"},
+        {"AreaLightSource \"diffuse\" Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]",
+         "Shape \"curve\" cannot shine, nor can it in pbrt: its area light is left out"},
         {"Shape \"sphere\" \"float betamax\" 0.5",
          "Shape \"sphere\": \"float betamax\" is not known, or not supported yet, and is ignored"},
         {"Material \"measured\" \"string filename\" \"a\"",

@@ -39,6 +39,14 @@ static void check_mesh(const mesh *m)
         FUZZ_CHECK(m->indices[i] < m->vertex_count);
 }
 
+static void check_curves(const curves *c)
+{
+    FUZZ_CHECK(c->segment_count > 0 && c->segment_count <= c->capacity);
+    FUZZ_CHECK((c->type == CURVES_RIBBON) == (c->normals != NULL));
+    for (size_t i = 0; i < 4 * (size_t)c->segment_count; i++)
+        FUZZ_CHECK(vec3_is_finite(c->points[i].at) && c->points[i].radius >= 0.0f && isfinite(c->points[i].radius));
+}
+
 static void check_indices(const scene *s)
 {
     for (uint32_t i = 0; i < s->shape_count; i++) {
@@ -47,6 +55,8 @@ static void check_indices(const scene *s)
         FUZZ_CHECK(item->light_index == SHAPE_NO_LIGHT || item->light_index < s->light_count);
         if (item->kind == SHAPE_MESH)
             check_mesh(&item->as.mesh);
+        if (item->kind == SHAPE_CURVES)
+            check_curves(&item->as.curves);
     }
     for (uint32_t i = 0; i < s->light_count; i++)
         FUZZ_CHECK(s->lights[i].kind != LIGHT_AREA || s->lights[i].shape_index < s->shape_count);
@@ -77,6 +87,7 @@ static void cast_rays(const scene *s)
             FUZZ_CHECK(vec3_is_finite(hit.position) && hit.epsilon >= 0.0f);
             FUZZ_CHECK(is_unit(hit.geometric_normal) && is_unit(hit.shading_normal));
             const shape *met = &s->shapes[hit.shape_index];
+            FUZZ_CHECK(met->kind != SHAPE_CURVES || hit.primitive_index < met->as.curves.segment_count);
             FUZZ_CHECK(met->kind != SHAPE_MESH || hit.primitive_index < met->as.mesh.triangle_count);
             for (uint32_t i = 0; i < s->texture_count && i < 16; i++)
                 texture_evaluate_rgb(s, i, &hit);
