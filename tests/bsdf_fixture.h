@@ -56,6 +56,47 @@ static inline material coated_conductor(float coat, float base_u, float base_v)
     return m;
 }
 
+static inline material principled(float metallic, float roughness, float transmission, float clearcoat,
+                                  float clearcoat_roughness)
+{
+    material m = material_make(MATERIAL_PRINCIPLED);
+    m.reflectance = (rgb){0.9f, 0.6f, 0.2f};
+    m.metallic = metallic, m.roughness = roughness, m.transmission = transmission;
+    m.clearcoat = clearcoat, m.clearcoat_roughness = clearcoat_roughness;
+    return m;
+}
+
+static inline material solid(material m, float ior)
+{
+    m.is_thin = false;
+    m.ior = ior;
+    return m;
+}
+
+/* All sorts: plastic, metal, coats, thin and solid glass, and much of each at once. */
+enum { PRINCIPLED_SORTS = 14 };
+static inline material principled_sort(int which)
+{
+    material colored = principled(0.2f, 0.7f, 0.3f, 0.6f, 0.4f);
+    colored.specular = 0.7f, colored.specular_color = (rgb){0.3f, 2.0f, 9.0f};
+    switch (which) {
+    case 0: return principled(0.0f, 0.5f, 0.0f, 0.0f, 0.0f);
+    case 1: return principled(0.0f, 0.0f, 0.0f, 0.0f, 0.0f);
+    case 2: return principled(1.0f, 0.6f, 0.0f, 0.0f, 0.0f);
+    case 3: return principled(0.5f, 1.0f, 0.0f, 0.0f, 0.0f);
+    case 4: return principled(0.0f, 0.8f, 0.0f, 1.0f, 0.0f);
+    case 5: return principled(1.0f, 0.5f, 0.0f, 0.8f, 0.5f);
+    case 6: return principled(0.0f, 0.5f, 1.0f, 0.0f, 0.0f);
+    case 7: return principled(0.0f, 0.0f, 0.6f, 0.0f, 0.0f);
+    case 8: return solid(principled(0.0f, 0.6f, 1.0f, 0.0f, 0.0f), 1.5f);
+    case 9: return solid(principled(0.0f, 0.0f, 0.7f, 0.5f, 0.0f), 1.33f);
+    case 10: return solid(colored, 1.8f);
+    case 11: return colored;
+    case 12: return solid(principled(0.0f, 0.5f, 0.5f, 0.0f, 0.0f), 0.0f);
+    default: return solid(principled(0.0f, 0.7f, 0.8f, 1.0f, 0.6f), 1.2f);
+    }
+}
+
 /* Of a material that is prepared already. */
 static inline bsdf bsdf_of(const material *prepared, vec3 shading_normal, vec3 out)
 {
@@ -167,7 +208,7 @@ static inline void check_lobes(const bsdf *b, bsdf_lobes lobes, int samples, boo
             assert_close(smooth[group] / n, share, 5.0 * sqrt(share * (1.0 - share) / n));
     }
     view v = {b, lobes, {0.0, 0.0}};
-    enum { STEPS = 12 };
+    enum { STEPS = 9 };
     double whole = integrate_bins(view_density, &v, STEPS, bins), cell = 4.0 * PI / BIN_COUNT / STEPS / STEPS;
     for (int c = 0; c < 2; c++) { /* the mean of the weights is the integral of the value */
         double mean = rough[c] / n, variance = fmax(0.0, squares[c] / n - mean * mean);
@@ -182,33 +223,6 @@ static inline void check_lobes(const bsdf *b, bsdf_lobes lobes, int samples, boo
     assert_close(whole, sampled / n, 0.003 + 4.0 * sqrt(whole * fmax(0.0, 1.0 - whole) / n)); /* binomial */
     if (whole * n >= 500.0) /* between the two horizons of a leaning normal there is little room */
         assert_chi_square(counts, bins, n, 0.01);
-}
-
-/* Every group of lobes, from both sides. */
-static inline void check_groups(material m, int samples)
-{
-    static const bsdf_lobes GROUPS[] = {BSDF_GATHERED, BSDF_TRACED, BSDF_ALL};
-    static const double ANGLES[] = {8, 50, 78, 130};
-    for (int i = 0; i < 4; i++) {
-        bsdf b = flat(&m, direction_at(ANGLES[i], 25.0 + 130.0 * i));
-        double probability = 0.0;
-        for (int k = 0; k < b.lobe_count; k++)
-            probability += (double)b.lobes[k].probability;
-        assert_close(probability, 1.0, 1e-6);
-        assert_close(bsdf_probability(&b, BSDF_ALL), 1.0, 1e-6);
-        assert_close(bsdf_probability(&b, BSDF_GATHERED) + bsdf_probability(&b, BSDF_TRACED), 1.0, 1e-6);
-        for (int g = 0; g < 3; g++) {
-            assert_true(bsdf_has(&b, GROUPS[g]) == (bsdf_probability(&b, GROUPS[g]) > 0.0f));
-            if (bsdf_has(&b, GROUPS[g])) {
-                check_lobes(&b, GROUPS[g], samples, true);
-                continue;
-            }
-            bsdf_sample s;
-            assert_false(bsdf_sample_direction(&b, GROUPS[g], BSDF_FLUX, 0.5f, (vec2){0.5f, 0.5f}, &s));
-            assert_true(bsdf_pdf(&b, GROUPS[g], UP) == 0.0f);
-            assert_true(rgb_is_black(bsdf_evaluate(&b, GROUPS[g], BSDF_FLUX, UP)));
-        }
-    }
 }
 
 #endif

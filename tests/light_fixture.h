@@ -3,6 +3,10 @@
 #ifndef AFTERGLOW_TESTS_LIGHT_FIXTURE_H
 #define AFTERGLOW_TESTS_LIGHT_FIXTURE_H
 
+#include "environment.h"
+#include "portal.h"
+#include "projection.h"
+
 #include "test_scene.h"
 
 /* Not committed yet; l NULL: none. */
@@ -33,6 +37,89 @@ static inline rgb *noise_pixels(uint32_t width, uint32_t height, uint64_t seed)
     }
     return pixels;
 }
+
+/* --- lights with pictures --- */
+
+static inline frame odd_frame(void)
+{
+    frame f = frame_from_z(vec3_normalize(vec3_make(1.0f, -2.0f, 0.5f)));
+    f.y = vec3_negate(f.y); /* a reflection too */
+    return f;
+}
+
+static inline light goniometric(environment_mapping mapping, uint32_t width, uint32_t height, rgb *pixels)
+{
+    light l = light_make(LIGHT_GONIOMETRIC);
+    l.position = vec3_make(1.0f, 2.0f, 3.0f);
+    l.intensity = rgb_make(3.0f, 2.0f, 1.0f);
+    l.world_from_light = odd_frame();
+    assert_int_equal(environment_create(mapping, width, height, pixels, &l.environment), AG_OK);
+    return l;
+}
+
+static inline light projector(uint32_t width, uint32_t height, rgb *pixels, float fov)
+{
+    light l = light_make(LIGHT_PROJECTION);
+    l.position = vec3_make(1.0f, 2.0f, 3.0f);
+    l.intensity = rgb_make(3.0f, 2.0f, 1.0f);
+    l.world_from_light = odd_frame();
+    l.direction = l.world_from_light.z;
+    assert_int_equal(projection_create(width, height, pixels, fov, &l.projection), AG_OK);
+    return l;
+}
+
+/* Each pixel as part x part ones: over smaller ones intensity and density are nearly proportional. */
+static inline rgb *enlarged(uint32_t width, uint32_t height, uint32_t part, uint64_t seed)
+{
+    rgb *small = noise_pixels(width, height, seed),
+        *large = malloc((size_t)width * height * part * part * sizeof *large);
+    assert_non_null(large);
+    for (uint32_t y = 0; y < height * part; y++)
+        for (uint32_t x = 0; x < width * part; x++)
+            large[(size_t)y * width * part + x] = small[(y / part) * width + x / part];
+    free(small);
+    return large;
+}
+
+/* A window of 2 x 1.5 that faces +x from the origin's side, a little askew. */
+static inline void make_corners(vec3 out_corners[4])
+{
+    frame f = frame_from_z(vec3_normalize(vec3_make(1.0f, 0.2f, -0.1f)));
+    vec3 corner = vec3_make(2.0f, -1.0f, -0.5f);
+    out_corners[0] = corner;
+    out_corners[1] = vec3_add_scaled(corner, f.y, 1.5f);
+    out_corners[2] = vec3_add_scaled(out_corners[1], f.x, 2.0f);
+    out_corners[3] = vec3_add_scaled(corner, f.x, 2.0f);
+}
+
+/* pixels NULL: constant. */
+static inline light window_light(environment_mapping mapping, uint32_t width, uint32_t height, rgb *pixels)
+{
+    light l = light_make(LIGHT_INFINITE);
+    vec3 corners[4];
+    portal placed;
+    l.radiance = rgb_make(3.0f, 2.0f, 1.0f);
+    l.world_from_light = frame_from_z(vec3_normalize(vec3_make(1.0f, -2.0f, 0.5f)));
+    if (pixels)
+        assert_int_equal(environment_create(mapping, width, height, pixels, &l.environment), AG_OK);
+    make_corners(corners);
+    assert_true(portal_place(corners, &placed));
+    assert_int_equal(portal_create(&placed, &l, &l.portal), AG_OK);
+    return l;
+}
+
+static inline light window_light_number(int k)
+{
+    switch (k) {
+    case 0: return window_light(ENVIRONMENT_OCTAHEDRAL, 0, 0, NULL);
+    case 1: return window_light(ENVIRONMENT_OCTAHEDRAL, 16, 16, noise_pixels(16, 16, 1));
+    case 2: return window_light(ENVIRONMENT_LATITUDE_LONGITUDE, 24, 12, noise_pixels(24, 12, 2));
+    default: return window_light(ENVIRONMENT_OCTAHEDRAL, 150, 150, noise_pixels(150, 150, 3));
+    }
+}
+enum { WINDOW_LIGHT_COUNT = 4 };
+
+/* --- photons against direct light --- */
 
 typedef struct disc {
     vec3 center, normal; /* light counts that comes against the normal */

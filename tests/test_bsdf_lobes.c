@@ -1,23 +1,11 @@
-/* test_bsdf_lobes.c: scattering by materials of several lobes: diffuse transmission, coats, panes and mixes. Energy,
- * reciprocity, samples against densities and values for each group of lobes, closed forms.
+/* test_bsdf_lobes.c: scattering by materials of several lobes: diffuse transmission, coats, panes and mixes. Energy and
+ * closed forms. See test_bsdf_table.c too.
  * Threads: one. */
 #include "bsdf_fixture.h"
 #include "fresnel.h"
 #include "microfacet.h"
 
 enum { SAMPLES = 60000 / FEWER };
-
-static void every_group_is_sampled_as_it_says(void **state)
-{
-    (void)state;
-    check_groups(diffuse_transmission(), SAMPLES);
-    check_groups(coated_diffuse(0.0f, 0.0f), SAMPLES);
-    check_groups(coated_diffuse(0.4f, 0.25f), SAMPLES);
-    check_groups(coated_conductor(0.0f, 0.0f, 0.0f), SAMPLES);
-    check_groups(coated_conductor(0.0f, 0.3f, 0.5f), SAMPLES);
-    check_groups(coated_conductor(0.3f, 0.0f, 0.0f), SAMPLES);
-    check_groups(coated_conductor(0.4f, 0.3f, 0.3f), SAMPLES);
-}
 
 /* Picks of the groups, and what is said of them. */
 static void samples_tell_their_group(void **state)
@@ -217,60 +205,6 @@ static void coats_make_no_light(void **state)
                         fail_msg("index %g, coat %g, base %g, %g degrees: %g", (double)m.ior, (double)a,
                                  base < 0 ? -1.0 : (double)c, degrees, sum);
                 }
-}
-
-static void coats_are_reciprocal(void **state)
-{
-    (void)state;
-    material all[] = {diffuse_transmission(),
-                      coated_diffuse(0.0f, 0.0f),
-                      coated_diffuse(0.4f, 0.2f),
-                      coated_conductor(0.0f, 0.3f, 0.3f),
-                      coated_conductor(0.3f, 0.0f, 0.0f),
-                      coated_conductor(0.2f, 0.5f, 0.3f)};
-    rng random = test_random(14);
-    for (int k = 0; k < 6; k++) {
-        int compared = 0;
-        material_prepare(&all[k]);
-        for (int i = 0; i < 5000; i++) {
-            vec3 o = random_direction(&random), d = random_direction(&random);
-            if (fabs((double)o.z) < 0.02 || fabs((double)d.z) < 0.02)
-                continue; /* cancellation near grazing */
-            bsdf from_o = bsdf_of(&all[k], UP, o), from_d = bsdf_of(&all[k], UP, d);
-            rgb there = rgb_scale(bsdf_evaluate(&from_o, BSDF_ALL, BSDF_RADIANCE, d), 1.0f / fabsf(d.z));
-            rgb back = rgb_scale(bsdf_evaluate(&from_d, BSDF_ALL, BSDF_RADIANCE, o), 1.0f / fabsf(o.z));
-            assert_close(there.r, back.r, 1e-2 * fabs((double)back.r) + 1e-5);
-            assert_close(there.g, back.g, 1e-2 * fabs((double)back.g) + 1e-5);
-            compared += back.g > 0.0f;
-        }
-        assert_true(compared > 1000);
-    }
-}
-
-/* What photons store and what the eye looks up are together the value: also where the shading normal leans. */
-static void gathered_lobes_are_products(void **state)
-{
-    (void)state;
-    material all[] = {diffuse(), diffuse_transmission(), coated_diffuse(0.0f, 0.0f), coated_diffuse(0.3f, 0.3f)};
-    rng random = test_random(15);
-    for (int k = 0; k < 4; k++) {
-        int compared = 0;
-        for (int i = 0; i < 5000; i++) {
-            vec3 normal = i % 2 ? UP : vec3_face_forward(random_direction(&random), UP);
-            vec3 o = random_direction(&random), d = random_direction(&random);
-            bsdf out = bsdf_at(&all[k], normal, o), in = bsdf_at(&all[k], normal, d);
-            double stored = bsdf_arrival_factor(&in);
-            if (vec3_dot(d, normal) / d.z > 7.9f)
-                continue; /* bounded, at grazing silhouettes */
-            rgb factor = o.z * d.z > 0.0f ? bsdf_gathered_reflection(&out) : bsdf_gathered_transmission(&out);
-            rgb value = bsdf_evaluate(&out, BSDF_GATHERED, BSDF_RADIANCE, d);
-            double expected = stored * fabs((double)d.z) / PI;
-            assert_close(value.r, expected * (double)factor.r, 1e-4 * (double)value.r + 1e-6);
-            assert_close(value.g, expected * (double)factor.g, 1e-4 * (double)value.g + 1e-6);
-            compared += value.g > 0.0f;
-        }
-        assert_true(compared > 1000);
-    }
 }
 
 /* Light that the coat turns away by total reflection is lost to what is below it, and to nothing else. */
@@ -552,14 +486,11 @@ static void materials_know_whether_they_are_traced(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_group_is_sampled_as_it_says),
         cmocka_unit_test(samples_tell_their_group),
         cmocka_unit_test(diffuse_transmission_parts_the_light),
         cmocka_unit_test(a_smooth_coat_on_a_diffuse_base_keeps_all),
         cmocka_unit_test(a_coat_of_index_one_is_no_coat),
         cmocka_unit_test(coats_make_no_light),
-        cmocka_unit_test(coats_are_reciprocal),
-        cmocka_unit_test(gathered_lobes_are_products),
         cmocka_unit_test(a_thin_coat_reflects_totally),
         cmocka_unit_test(a_lacquered_mirror_obeys_the_series),
         cmocka_unit_test(a_coat_gives_back_what_it_traps),

@@ -1,9 +1,6 @@
-/* test_light.c: lights that are points, with pictures and without, and the sun: what arrives where, and what leaves.
- * Threads: one. */
+/* test_light.c: lights that are points, with pictures and without, and the sun: closed forms of what arrives where, and
+ * what leaves. See test_light_table.c too. Threads: one. */
 #include "light_fixture.h"
-
-#include "environment.h"
-#include "projection.h"
 
 enum { SAMPLES = 60000 / FEWER };
 
@@ -96,34 +93,6 @@ static void narrow_spots_keep_their_power(void **state)
 
 /* --- with pictures --- */
 
-static frame odd_frame(void)
-{
-    frame f = frame_from_z(vec3_normalize(vec3_make(1.0f, -2.0f, 0.5f)));
-    f.y = vec3_negate(f.y); /* a reflection too */
-    return f;
-}
-
-static light goniometric(environment_mapping mapping, uint32_t width, uint32_t height, rgb *pixels)
-{
-    light l = light_make(LIGHT_GONIOMETRIC);
-    l.position = vec3_make(1.0f, 2.0f, 3.0f);
-    l.intensity = rgb_make(3.0f, 2.0f, 1.0f);
-    l.world_from_light = odd_frame();
-    assert_int_equal(environment_create(mapping, width, height, pixels, &l.environment), AG_OK);
-    return l;
-}
-
-static light projector(uint32_t width, uint32_t height, rgb *pixels, float fov)
-{
-    light l = light_make(LIGHT_PROJECTION);
-    l.position = vec3_make(1.0f, 2.0f, 3.0f);
-    l.intensity = rgb_make(3.0f, 2.0f, 1.0f);
-    l.world_from_light = odd_frame();
-    l.direction = l.world_from_light.z;
-    assert_int_equal(projection_create(width, height, pixels, fov, &l.projection), AG_OK);
-    return l;
-}
-
 static rgb *constant_pixels(uint32_t count)
 {
     rgb *pixels = malloc(count * sizeof *pixels);
@@ -131,66 +100,6 @@ static rgb *constant_pixels(uint32_t count)
     for (uint32_t i = 0; i < count; i++)
         pixels[i] = rgb_gray(1.0f);
     return pixels;
-}
-
-static double density_by_intensity(void *user, vec3 d)
-{
-    const light *l = user;
-    rgb i = light_intensity(l, d), p = l->power;
-    return (double)(i.r / 3.0f + i.g / 2.0f + i.b) / (double)(p.r / 3.0f + p.g / 2.0f + p.b);
-}
-
-/* Power is the integral of intensity; photons go where it is, and carry what direct light says. steps: of the bins'
- * integrals, in which pixels have sharp edges. */
-static void check_pictured(const light *wanted, int steps, double edges)
-{
-    test_run r;
-    test_run_init(&r, 1);
-    scene *s = scene_with_light(&r, "Shape \"sphere\" \"float radius\" 0.1", wanted);
-    assert_int_equal(scene_commit(s, &r.run, NULL), AG_OK);
-    const light *l = &s->lights[0];
-    static uint32_t counts[BIN_COUNT];
-    static double bins[BIN_COUNT];
-    memset(counts, 0, sizeof counts);
-    rng random = test_random(4);
-    for (int i = 0; i < SAMPLES; i++) {
-        light_emission e;
-        assert_true(light_sample_emission(s, l, NULL, &random, &e));
-        assert_memory_equal(&e.origin, &l->position, sizeof(vec3));
-        counts[direction_bin(e.direction)]++;
-        vec3 point = vec3_add_scaled(l->position, e.direction, 2.0f);
-        light_sample at;
-        if (i % 16 == 0 && light_sample_from_point(s, l, point, (vec2){0.5f, 0.5f}, &at)) {
-            rgb expected = light_intensity(l, vec3_negate(at.direction));
-            assert_true(at.is_delta && at.pdf_solid_angle == 1.0f);
-            assert_relative(at.distance, 2.0, 1e-5);
-            assert_relative(at.radiance.g, (double)expected.g / 4.0, 1e-5);
-        }
-    }
-    double whole = integrate_bins(density_by_intensity, (void *)l, steps, bins);
-    assert_close(whole, 1.0, edges);
-    assert_chi_square(counts, bins, SAMPLES, 3.0 * edges);
-    expect_power_of_photons(s, SAMPLES);
-    for (int k = 0; k < 3; k++) {
-        vec3 away = k == 0 ? l->world_from_light.z
-                           : vec3_normalize(vec3_add_scaled(l->world_from_light.z, random_direction(&random), 0.6f));
-        disc d = {vec3_add_scaled(l->position, away, 3.0f), vec3_normalize(vec3_make(-away.x, -away.y, -away.z + 0.3f)),
-                  1.0f};
-        expect_flux_through_disc(s, &d, 4 * SAMPLES);
-    }
-    scene_destroy(s);
-    test_run_reset(&r);
-}
-
-static void goniometric_lights(void **state)
-{
-    (void)state;
-    light l = goniometric(ENVIRONMENT_OCTAHEDRAL, 8, 8, noise_pixels(8, 8, 5));
-    check_pictured(&l, 24, 0.01);
-    l = goniometric(ENVIRONMENT_LATITUDE_LONGITUDE, 12, 6, noise_pixels(12, 6, 6));
-    check_pictured(&l, 24, 0.01);
-    l = goniometric(ENVIRONMENT_OCTAHEDRAL, 1, 1, constant_pixels(1));
-    check_pictured(&l, 4, 0.001);
 }
 
 /* The same from everywhere: a point light. */
@@ -212,30 +121,6 @@ static void a_constant_goniometric_light_is_a_point(void **state)
     }
     scene_destroy(s);
     test_run_reset(&r);
-}
-
-/* Each pixel as part x part ones: over smaller ones intensity and density are nearly proportional. */
-static rgb *enlarged(uint32_t width, uint32_t height, uint32_t part, uint64_t seed)
-{
-    rgb *small = noise_pixels(width, height, seed),
-        *large = malloc((size_t)width * height * part * part * sizeof *large);
-    assert_non_null(large);
-    for (uint32_t y = 0; y < height * part; y++)
-        for (uint32_t x = 0; x < width * part; x++)
-            large[(size_t)y * width * part + x] = small[(y / part) * width + x / part];
-    free(small);
-    return large;
-}
-
-static void projections(void **state)
-{
-    (void)state;
-    light l = projector(60, 60, enlarged(6, 6, 10, 7), 100.0f);
-    check_pictured(&l, 24, 0.02);
-    l = projector(120, 50, enlarged(12, 5, 10, 8), 60.0f);
-    check_pictured(&l, 24, 0.02);
-    l = projector(30, 70, enlarged(3, 7, 10, 9), 120.0f);
-    check_pictured(&l, 24, 0.02);
 }
 
 /* A constant picture: the solid angle of a rectangle is 4 asin(a b / sqrt((1 + a^2)(1 + b^2))); on a screen that faces
@@ -312,9 +197,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lamps_without_extent),
         cmocka_unit_test(narrow_spots_keep_their_power),
-        cmocka_unit_test(goniometric_lights),
         cmocka_unit_test(a_constant_goniometric_light_is_a_point),
-        cmocka_unit_test(projections),
         cmocka_unit_test(a_constant_projection),
         cmocka_unit_test(a_projection_is_upright),
         cmocka_unit_test(black_pictures_send_nothing),

@@ -221,28 +221,12 @@ static void bright_specks_are_found(void **state)
     test_run_reset(&r);
 }
 
-static void photons_carry_what_direct_light_says(void **state)
-{
-    (void)state;
-    const disc d = {{0.1f, -0.2f, 0.0f}, {0.0f, 0.0f, 1.0f}, 0.8f};
-    for (size_t i = 0; i < SHAPE_COUNT; i++) {
-        if (strstr(SHAPES[i], "cylinder"))
-            continue; /* which hides a part of itself */
-        test_run r;
-        test_run_init(&r, 1);
-        scene *s = lamp_scene(&r, i % 2 ? CHECKS : SLOPE, SHAPES[i]);
-        expect_flux_through_disc(s, &d, SAMPLES);
-        scene_destroy(s);
-        test_run_reset(&r);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(power_is_that_of_the_mean),    cmocka_unit_test(two_tones),
         cmocka_unit_test(samples_of_meshes_are_undone), cmocka_unit_test(light_is_sampled_by_its_density),
-        cmocka_unit_test(bright_specks_are_found),      cmocka_unit_test(photons_carry_what_direct_light_says),
+        cmocka_unit_test(bright_specks_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
