@@ -1,5 +1,5 @@
 /* aov.h: the layers of a picture: their names, what the film sums for them, and the channels of a file they become.
- * Rests on: pbrt-v4's GBufferFilm (its channel names); Cryptomatte 1.2 (Friedman, Jones, Psyop); the names that EXR
+ * Rests on: pbrt-v4's GBufferFilm (its channel names); Cryptomatte (Friedman, Jones, Psyop); the names that EXR
  * files of PRMan, Arnold and Cycles have in common. Flow: settings -> [here] -> film, files. Threads: read-only once
  * made. */
 #ifndef AFTERGLOW_AOV_H

@@ -1,6 +1,6 @@
 /* cryptomatte.h: which objects and materials a pixel shows, and how much of each, for mattes by name.
  * Rests on: Friedman, Jones, "Fully automatic ID mattes with support for motion blur and transparency", SIGGRAPH 2015
- * (posters); Psyop, "Cryptomatte Specification" 1.2: ids are MurmurHash3 of names, as the bits of a float.
+ * (posters); Psyop, "Cryptomatte Specification" 1.1.0: ids are MurmurHash3 of names, as the bits of a float.
  * Flow: scene's names, samples -> [here] -> film, files. Threads: made by one; a pixel's coverage belongs to one worker
  * at a time. */
 #ifndef AFTERGLOW_CRYPTOMATTE_H

@@ -95,7 +95,7 @@ typedef enum ag_layer {
                                           it was; 0: no photon is near */
     AG_LAYER_PHOTON_DISTANCE = 1 << 19, /* photon_distance: how far that photon is */
     AG_LAYER_GATHER_DISTANCE = 1 << 20, /* gather_distance: how far gather rays go, harmonic mean */
-    /* Cryptomatte 1.2 for objects (instances, glTF nodes, files of meshes) and materials, by their names in the scene,
+    /* Cryptomatte for objects (instances, glTF nodes, files of meshes) and materials, by their names in the scene,
      * or by numbers; six ranks. */
     AG_LAYER_CRYPTO_OBJECT = 1 << 22,
     AG_LAYER_CRYPTO_MATERIAL = 1 << 23,
