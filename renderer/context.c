@@ -1,5 +1,6 @@
 /* context.c: creating and destroying the public objects, and loading a scene.
  * Threads: as in afterglow.h. */
+#define _POSIX_C_SOURCE 200809L
 #include "context.h"
 
 #include "bvh.h"
@@ -31,12 +32,18 @@ ag_status ag_context_create(const ag_context_settings *settings, ag_context **ou
         return AG_ERROR_MEMORY;
     c->created_at = clock_seconds();
     snprintf(c->isa, sizeof c->isa, "%s", isa);
+    c->color_config_path = settings->color_config ? strdup(settings->color_config) : NULL;
+    c->working_space_name = settings->working_space ? strdup(settings->working_space) : NULL;
+    const bool is_copied =
+        !settings->color_config == !c->color_config_path && !settings->working_space == !c->working_space_name;
     ag_status status = AG_ERROR_MEMORY;
     c->log = log_create(settings->log, settings->user);
-    if (c->log)
+    if (c->log && is_copied)
         status = thread_pool_create(settings->thread_count, &c->pool);
     if (status != AG_OK) {
         log_destroy(c->log);
+        free(c->color_config_path);
+        free(c->working_space_name);
         free(c);
         return status;
     }
@@ -53,6 +60,10 @@ void ag_context_destroy(ag_context *context)
     run_context_reset(&context->run);
     thread_pool_destroy(context->pool);
     log_destroy(context->log);
+    color_config_destroy(context->color_config);
+    free(context->color_config_path);
+    free(context->working_space_name);
+    free(context->color_summary);
     free(context);
 }
 
@@ -76,6 +87,13 @@ ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_sc
     scene *s = scene_create();
     ag_status status = loaded && s ? AG_OK : AG_ERROR_MEMORY;
     double begin = clock_seconds();
+    const color_config *colors = NULL;
+    if (status == AG_OK)
+        status = context_color_config(context, &colors);
+    if (status == AG_OK) {
+        s->space = context->working_space;
+        s->color_config = colors;
+    }
     if (status == AG_OK)
         status = scene_file_load(&context->run, path, s);
     if (status == AG_OK) {
@@ -144,6 +162,11 @@ ag_status ag_film_denoise(ag_context *context, ag_film *film)
     free(albedo);
     free(normal);
     return status;
+}
+
+void ag_film_chromaticities(const ag_film *film, float out_chromaticities[8])
+{
+    working_space_chromaticities(&film->space, out_chromaticities);
 }
 
 ag_statistics ag_context_statistics(const ag_context *context)

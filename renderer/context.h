@@ -3,6 +3,7 @@
 #ifndef AFTERGLOW_CONTEXT_H
 #define AFTERGLOW_CONTEXT_H
 
+#include "color.h"
 #include "film.h"
 #include "run_context.h"
 #include "scene.h"
@@ -14,7 +15,11 @@ struct ag_context {
     char isa[16];
     double created_at; /* clock_seconds */
     ag_statistics statistics;
-    ag_render_settings rendered; /* of the last ag_render, nothing left open */
+    ag_render_settings rendered;                  /* of the last ag_render, nothing left open */
+    char *color_config_path, *working_space_name; /* as in ag_context_settings */
+    color_config *color_config;                   /* NULL until it is asked for */
+    working_space working_space;                  /* of that */
+    char *color_summary;                          /* of ag_color_summary, or NULL */
 };
 
 struct ag_scene {
@@ -23,6 +28,10 @@ struct ag_scene {
 
 /* Adds the time since `begin` (clock_seconds) to a phase, and says at info level how long it took. */
 void context_end_phase(ag_context *context, ag_phase phase, double begin);
+
+/* The context's colour config, and with it context->working_space; read when first asked for. What is wrong is said in
+ * the log. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. (output_color.c) */
+ag_status context_color_config(ag_context *context, const color_config **out_config);
 
 /* Whether settings are in range; says in the log which is not. */
 ag_status render_settings_check(ag_context *context, const ag_render_settings *settings);

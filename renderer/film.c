@@ -32,7 +32,8 @@ static void set_crop(ag_film *film, const ag_render_settings *settings)
         film->width = film->height = 0;
 }
 
-ag_film *film_create(const ag_render_settings *settings, const pixel_filter *filter, aov_layout *layout)
+ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
+                     aov_layout *layout)
 {
     ag_film *film = calloc(1, sizeof *film);
     if (!film) {
@@ -42,7 +43,8 @@ ag_film *film_create(const ag_render_settings *settings, const pixel_filter *fil
     set_crop(film, settings);
     film->float_samples = settings->float_samples;
     film->filter = *filter;
-    film->response = film_response_make(settings);
+    film->space = *space;
+    film->response = film_response_make(settings, space);
     film->layout = *layout;
     *layout = (aov_layout){0};
     size_t count = pixel_count(film) + 1; /* never none */

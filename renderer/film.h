@@ -27,7 +27,8 @@ typedef struct film_origin {
 struct ag_film {
     int x0, y0, width, height; /* the crop, in pixels of the full picture */
     int full_width, full_height;
-    bool float_samples; /* as in ag_render_settings */
+    bool float_samples;  /* as in ag_render_settings */
+    working_space space; /* of all colours */
     pixel_filter filter;
     film_response response;
     aov_layout layout;
@@ -46,7 +47,8 @@ struct ag_film {
 
 /* An empty film of the settings' crop; takes the layout, on failure too (it is then reset). NULL when out of memory. A
  * crop that holds no pixel has width 0. */
-struct ag_film *film_create(const ag_render_settings *settings, const pixel_filter *filter, aov_layout *layout);
+struct ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
+                            aov_layout *layout);
 
 /* The next sample of a pixel, by the number of the pixel. */
 void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);

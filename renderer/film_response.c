@@ -14,18 +14,18 @@ static void light_chromaticity(double kelvin, double out_xy[2])
     spectra_blackbody_chromaticity(kelvin, out_xy);
 }
 
-film_response film_response_make(const ag_render_settings *settings)
+film_response film_response_make(const ag_render_settings *settings, const working_space *space)
 {
     film_response r = {.is_bounded = settings->max_component > 0.0f && !isinf(settings->max_component)};
     r.is_plain = settings->exposure == 1.0f && settings->white_balance == 0.0f;
     r.max_component = (double)settings->max_component / settings->exposure;
-    r.xyz_from_rgb = color_xyz_from_rec709();
+    r.xyz_from_rgb = space->to_xyz;
     r.develop = (color_matrix){{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
     if (settings->white_balance != 0.0f) {
         double from_xy[2];
         light_chromaticity((double)settings->white_balance * (1.4388 / 1.4380),
                            from_xy); /* c2 has changed since 1968 */
-        color_matrix adapt = color_adaptation(from_xy, COLOR_WHITE_XY), back = color_rec709_from_xyz();
+        color_matrix adapt = color_adaptation(from_xy, COLOR_WHITE_XY), back = space->from_xyz;
         adapt = color_matrix_multiply(&adapt, &r.xyz_from_rgb);
         r.develop = color_matrix_multiply(&back, &adapt);
     }

@@ -6,7 +6,7 @@
 #define AFTERGLOW_FILM_RESPONSE_H
 
 #include "afterglow/afterglow.h"
-#include "color_space.h"
+#include "working_space.h"
 
 typedef struct film_response {
     bool is_bounded, is_plain; /* is_plain: the pixel is the mean of its samples, bit for bit */
@@ -15,7 +15,8 @@ typedef struct film_response {
     color_matrix develop; /* exposure and white balance */
 } film_response;
 
-film_response film_response_make(const ag_render_settings *settings);
+/* space: of the radiance and of the film. */
+film_response film_response_make(const ag_render_settings *settings, const working_space *space);
 
 /* A sample that is too bright, scaled down. Asked for only where is_bounded. */
 rgb film_response_bound(const film_response *response, rgb radiance);

@@ -1,18 +1,17 @@
-/* output.c: from film to file: scene-linear as it is, or through a display and view on all threads.
- * Flow: film -> color -> [here] -> image_file. Threads: as in afterglow.h. */
+/* output.c: from film to file: scene-linear, or through a display and view.
+ * Flow: film -> output_color -> [here] -> image_file. Threads: as in afterglow.h. */
 #include "context.h"
 
 #include "atomic_file.h"
 #include "clock.h"
-#include "color.h"
 #include "image_file.h"
-#include "parallel_for.h"
+#include "output_color.h"
 #include "picture_layers.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { PIXELS_PER_BLOCK = 1 << 14, MESSAGE_SIZE = 1024 };
+enum { MESSAGE_SIZE = 1024 };
 
 ag_output_settings ag_default_output_settings(void) { return (ag_output_settings){0}; }
 
@@ -46,25 +45,6 @@ static ag_status find_format(ag_context *context, const ag_output_settings *sett
     return AG_OK;
 }
 
-static ag_status create_processor(ag_context *context, const ag_output_settings *settings, color_config **out_config,
-                                  color_processor **out_processor)
-{
-    char message[MESSAGE_SIZE];
-    color_config *config;
-    ag_status status = color_config_create(settings->color_config, message, sizeof message, &config);
-    if (status == AG_OK) {
-        status =
-            color_processor_create(config, settings->display, settings->view, message, sizeof message, out_processor);
-        if (status != AG_OK)
-            color_config_destroy(config);
-        else
-            *out_config = config;
-    }
-    if (status != AG_OK)
-        log_message(context->log, AG_LOG_ERROR, "%s", message);
-    return status;
-}
-
 ag_status ag_output_check(ag_context *context, const ag_output_settings *settings, const char *path)
 {
     ag_output_settings defaults = ag_default_output_settings();
@@ -83,61 +63,14 @@ ag_status ag_output_check(ag_context *context, const ag_output_settings *setting
         return status;
     }
     /* a config that is named but cannot be used is an error even where this picture would not need it */
-    color_config *config;
-    color_processor *processor;
-    status = create_processor(context, settings, &config, &processor);
-    if (status != AG_OK)
-        return status;
-    color_processor_destroy(processor);
-    color_config_destroy(config);
-    return AG_OK;
-}
-
-typedef struct color_job {
-    const color_processor *processor;
-    float *pixels;
-    atomic_u32 has_failed;
-    char message[MESSAGE_SIZE]; /* of the one that failed first */
-} color_job;
-
-static void apply_block(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
-{
-    (void)block, (void)worker;
-    color_job *job = user;
-    char message[MESSAGE_SIZE];
-    if (color_processor_apply(job->processor, job->pixels + 3 * begin, (size_t)(end - begin), message,
-                              sizeof message) == AG_OK)
-        return;
-    uint32_t expected = 0;
-    if (cas_acquire_u32(&job->has_failed, &expected, 1)) /* read after the workers have been joined */
-        memcpy(job->message, message, sizeof message);
-}
-
-static ag_status apply_view(ag_context *context, const ag_output_settings *settings, float *pixels, uint64_t count)
-{
-    color_config *config;
-    color_job job = {.pixels = pixels};
-    color_processor *processor;
-    ag_status status = create_processor(context, settings, &config, &processor);
-    if (status != AG_OK)
-        return status;
-    job.processor = processor;
-    status = parallel_for(&context->run, count, PIXELS_PER_BLOCK, apply_block, &job, AG_PHASE_WRITE, 0.0, 0.5);
-    if (status == AG_OK && load_relaxed_u32(&job.has_failed)) {
-        log_message(context->log, AG_LOG_ERROR, "%s", job.message);
-        status = AG_ERROR_COLOR;
-    }
-    color_processor_destroy(processor);
-    color_config_destroy(config);
-    return status;
+    return output_color_check(context, settings);
 }
 
 /* pixels: RGB as they are to be written. */
 static ag_status write_picture(ag_context *context, const ag_film *film, const ag_output_settings *settings,
-                               const image_format *format, const float *pixels, const char *path)
+                               const image_format *format, const output_color_tag *tag, const float *pixels, const char *path)
 {
     static const char *const names[3] = {"R", "G", "B"};
-    static const float rec709[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
     static const image_attribute attributes[] = {{.name = "Software", .text = "Afterglow"}};
     ag_sample_type type = settings->type;
     if (type == AG_SAMPLE_DEFAULT && film->float_samples && format->scene_linear)
@@ -152,7 +85,7 @@ static ag_status write_picture(ag_context *context, const ag_film *film, const a
                                      .channel_names = names,
                                      .type = stored_type(format, type),
                                      .is_tiled = settings->tiled,
-                                     .color_space = format->scene_linear ? "Linear" : NULL,
+                                     .color_space = tag->color_space,
                                      .attributes = attributes,
                                      .attribute_count = sizeof attributes / sizeof *attributes};
     picture_layers layers = {0};
@@ -161,7 +94,8 @@ static ag_status write_picture(ag_context *context, const ag_film *film, const a
         status = picture_layers_create(context, film, pixels, settings, description.type, path, &layers);
         if (status != AG_OK)
             return status;
-        picture_layers_add_numbers(&layers, "chromaticities", rec709, 8);
+        if (tag->has_chromaticities)
+            picture_layers_add_numbers(&layers, "chromaticities", tag->chromaticities, 8);
         description.channel_count = layers.channel_count;
         description.channel_names = layers.names;
         description.channel_types = layers.types;
@@ -195,16 +129,19 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
     const float *pixels = film->pixels;
     float *shown = NULL;
     size_t count = (size_t)film->width * (size_t)film->height;
-    if (!format->scene_linear) {
+    output_color_tag tag = {0};
+    if (format->scene_linear)
+        status = output_color_find_tag(context, settings, film, &tag);
+    if (status == AG_OK && (!format->scene_linear || settings->color_space)) {
         shown = malloc(count * 3 * sizeof *shown);
         if (!shown)
             return AG_ERROR_MEMORY;
         memcpy(shown, film->pixels, count * 3 * sizeof *shown);
         pixels = shown;
-        status = apply_view(context, settings, shown, count);
+        status = output_color_apply(context, settings, format->scene_linear, shown, count);
     }
     if (status == AG_OK)
-        status = write_picture(context, film, settings, format, pixels, path);
+        status = write_picture(context, film, settings, format, &tag, pixels, path);
     free(shown);
     if (status == AG_OK) {
         run_progress(&context->run, AG_PHASE_WRITE, 1.0);

@@ -427,7 +427,7 @@ static ag_status create_film(ag_rendering *r)
                                    group_names, group_count, &layout);
     if (status != AG_OK)
         return status;
-    r->film = film_create(settings, &filter, &layout);
+    r->film = film_create(settings, &r->s->space, &filter, &layout);
     if (!r->film)
         return AG_ERROR_MEMORY;
     note_origin(r, &r->film->origin);

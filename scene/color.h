@@ -7,6 +7,7 @@
 
 #include "afterglow/base.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -17,9 +18,12 @@ typedef struct color_config color_config;
 typedef struct color_processor color_processor;
 
 /* The order: path (NULL: none) > $OCIO > the config compiled in. A config that is named but cannot be used is an error,
- * with OpenColorIO's own text; there is no silent fallback. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY; the text goes to
+ * with OpenColorIO's own text; there is no silent fallback. working_space: the colour space that light is carried in,
+ * by name, alias or role; NULL: the config's role rendering, else scene_linear, else linear Rec. 709 by its known
+ * names. Errors: AG_ERROR_COLOR (also: the working space is unknown or not linear), AG_ERROR_MEMORY; the text goes to
  * message (always terminated). */
-ag_status color_config_create(const char *path, char *message, size_t message_size, color_config **out_config);
+ag_status color_config_create(const char *path, const char *working_space, char *message, size_t message_size,
+                              color_config **out_config);
 /* The config compiled in, whatever $OCIO says: what a scene file means by its encodings. Errors: as above. */
 ag_status color_config_create_builtin(char *message, size_t message_size, color_config **out_config);
 void color_config_destroy(color_config *config); /* NULL is fine */
@@ -28,18 +32,53 @@ void color_config_destroy(color_config *config); /* NULL is fine */
 const char *color_config_name(const color_config *config);
 const char *color_config_hash(const color_config *config);
 
-/* For the log: the config's colour space that our pixels are taken to be in (or the one they reach by a matrix of ours,
- * ACES2065-1). Where the config has no Rec. 709 space, its role rendering or scene_linear. Owned by the config. */
-const char *color_config_input_space(const color_config *config);
+/* The working space, as the config spells it. Owned by the config. */
+const char *color_config_working_space(const color_config *config);
+/* To it from linear Rec. 709, row by row. False, and the unit matrix, where the config names neither linear Rec. 709
+ * nor an interchange space: what its primaries are is not known. */
+bool color_config_from_rec709(const color_config *config, double out_matrix[9]);
 
-/* Scene-linear RGB is taken as linear Rec. 709 primaries. display, view NULL: the config's defaults.
- * Unknown names are an error that lists the known ones. */
-ag_status color_processor_create(const color_config *config, const char *display, const char *view, char *message,
-                                 size_t message_size, color_processor **out_processor);
+/* What there is: displays with their views, looks, colour spaces, roles; lines of text, to be freed. */
+ag_status color_config_describe(const color_config *config, char *message, size_t message_size, char **out_text);
 
-/* From a colour space of the config, by its name or an alias ("sRGB - Texture", "srgb_tx"), to linear Rec. 709; by the
- * exact curves, not their fast approximations. Errors: AG_ERROR_COLOR (an unknown space), AG_ERROR_MEMORY. */
+/* The colour space of that name, alias or role, as the config spells it; NULL where there is none. Owned by the config.
+ * Where message is not NULL, what there is goes there. */
+const char *color_config_find_space(const color_config *config, const char *name, char *message, size_t message_size);
+/* The colour space that the config's file rules give to a file, as the config spells it; NULL where only the rule for
+ * all other files fits, which says nothing of this one. Owned by the config. */
+const char *color_config_rule(const color_config *config, const char *path);
+
+/* What a colour space's values are, to the working space. */
+typedef enum color_curve {
+    COLOR_CURVE_DATA,   /* no colours: never converted */
+    COLOR_CURVE_LINEAR, /* a matrix leads to the working space */
+    COLOR_CURVE_SRGB,   /* IEC 61966-2-1, then a matrix */
+    COLOR_CURVE_OTHER   /* what a decoder does */
+} color_curve;
+
+/* The colour space's curve, and the matrix, row by row, to the working space; a unit matrix where there is none. The
+ * space's name, an alias or a role. Errors: AG_ERROR_COLOR (an unknown space), AG_ERROR_MEMORY. */
+ag_status color_config_study_space(const color_config *config, const char *space, char *message, size_t message_size,
+                                   color_curve *out_curve, double out_matrix[9]);
+
+/* How a picture is shown. */
+typedef struct color_view {
+    const char *display, *view; /* NULL: the config's defaults */
+    const char *look;           /* instead of the view's own: names with commas between them, each with a - before it
+                                 * undone; "none": none; NULL: the view's own */
+    float exposure;             /* stops: values are first multiplied by 2^exposure */
+} color_view;
+
+/* From the working space to a display. Unknown names are an error that lists the known ones. */
+ag_status color_processor_create(const color_config *config, const color_view *view, char *message, size_t message_size,
+                                 color_processor **out_processor);
+
+/* From a colour space of the config, by its name or an alias ("sRGB - Texture", "srgb_tx"), to the working space; by
+ * the exact curves, not their fast approximations. Errors: AG_ERROR_COLOR (an unknown space), AG_ERROR_MEMORY. */
 ag_status color_decoder_create(const color_config *config, const char *space, char *message, size_t message_size,
+                               color_processor **out_processor);
+/* The way back: from the working space. */
+ag_status color_encoder_create(const color_config *config, const char *space, char *message, size_t message_size,
                                color_processor **out_processor);
 void color_processor_destroy(color_processor *processor); /* NULL is fine */
 

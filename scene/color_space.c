@@ -17,6 +17,7 @@ static const chromaticities SPACES[] = {
     [COLOR_SPACE_DCI_P3] = {"dci-p3", {{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}}, {0.3127, 0.3290}},
     [COLOR_SPACE_REC2020] = {"rec2020", {{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}}, {0.3127, 0.3290}},
     [COLOR_SPACE_ACES2065_1] = {"aces2065-1", {{0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.0770}}, {0.32168, 0.33767}},
+    [COLOR_SPACE_ACESCG] = {"acescg", {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}}, {0.32168, 0.33767}},
 };
 
 bool color_space_find(const char *name, color_space *out_space)
@@ -27,6 +28,15 @@ bool color_space_find(const char *name, color_space *out_space)
             return true;
         }
     return false;
+}
+
+void color_space_chromaticities(color_space space, double out_primaries[3][2], double out_white[2])
+{
+    for (int i = 0; i < 2; i++) {
+        for (int c = 0; c < 3; c++)
+            out_primaries[c][i] = SPACES[space].primaries[c][i];
+        out_white[i] = SPACES[space].white[i];
+    }
 }
 
 color_matrix color_matrix_multiply(const color_matrix *a, const color_matrix *b)
@@ -45,7 +55,7 @@ void color_matrix_apply(const color_matrix *a, const double in[3], double out[3]
         out[i] = a->m[i][0] * x + a->m[i][1] * y + a->m[i][2] * z;
 }
 
-/* By cofactors; none of ours is singular. */
+/* By cofactors. */
 static color_matrix invert(const color_matrix *a)
 {
     color_matrix c;
@@ -59,6 +69,15 @@ static color_matrix invert(const color_matrix *a)
         for (int k = 0; k < 3; k++)
             c.m[i][k] /= determinant;
     return c;
+}
+
+bool color_matrix_invert(const color_matrix *a, color_matrix *out_inverse)
+{
+    *out_inverse = invert(a);
+    for (int i = 0; i < 9; i++)
+        if (!(fabs(out_inverse->m[i / 3][i % 3]) < 1e9)) /* NaN and infinity too */
+            return false;
+    return true;
 }
 
 /* Of luminance 1. */
@@ -113,13 +132,26 @@ color_matrix color_rec709_from_xyz(void)
     return invert(&m);
 }
 
-color_matrix color_space_to_rec709(color_space from, bool is_light)
+static color_matrix to_rec709(const chromaticities *c, bool is_light)
 {
-    const chromaticities *c = &SPACES[from];
     color_matrix xyz = xyz_from(c), rec709 = color_rec709_from_xyz();
     if (!is_light) {
         color_matrix adapt = color_adaptation(c->white, COLOR_WHITE_XY);
         xyz = color_matrix_multiply(&adapt, &xyz);
     }
     return color_matrix_multiply(&rec709, &xyz);
+}
+
+color_matrix color_space_to_rec709(color_space from, bool is_light) { return to_rec709(&SPACES[from], is_light); }
+
+bool color_chromaticities_to_rec709(const float chromaticities_xy[8], color_matrix *out_matrix)
+{
+    chromaticities c = {.name = "a picture's"};
+    for (int i = 0; i < 8; i++)
+        *(i < 6 ? &c.primaries[i / 2][i % 2] : &c.white[i % 2]) = (double)chromaticities_xy[i];
+    color_matrix back;
+    if (!(c.white[0] > 0.0 && c.white[1] > 0.0))
+        return false;
+    *out_matrix = to_rec709(&c, false);
+    return color_matrix_invert(out_matrix, &back);
 }

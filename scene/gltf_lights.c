@@ -56,6 +56,7 @@ ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world
     GLTF_TRY(gltf_require(r, &at, "type"));
     GLTF_TRY(gltf_get_text(r, &at, "type", &type));
     GLTF_TRY(gltf_get_color(r, &at, "color", 0.0, 1e6, &color));
+    color = working_space_light(&r->scene->space, color);
     GLTF_TRY(gltf_get_double(r, &at, "intensity", &intensity));
     bool is_sun = strcmp(type, "directional") == 0, is_spot = strcmp(type, "spot") == 0;
     if (!is_sun && !is_spot && strcmp(type, "point") != 0)

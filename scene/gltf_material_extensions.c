@@ -31,6 +31,7 @@ static ag_status read_specular(gltf_reader *r, const gltf_value *at, const gltf_
     (void)at;
     GLTF_TRY(gltf_get_clamped(r, extension, "specularFactor", 0.0, 1.0, &m->specular));
     GLTF_TRY(gltf_get_color(r, extension, "specularColorFactor", 0.0, 1e6, &m->specular_color));
+    m->specular_color = working_space_light(&r->scene->space, m->specular_color);
     GLTF_TRY(gltf_get_texture(r, extension, "specularTexture", ALPHA, &out->uv_set, &m->specular_texture));
     return gltf_get_texture(r, extension, "specularColorTexture", COLOR, &out->uv_set, &m->specular_color_texture);
 }
@@ -60,6 +61,7 @@ static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_va
     GLTF_TRY(gltf_get_clamped(r, extension, "thicknessFactor", 0.0, 1e30, &thickness));
     GLTF_TRY(gltf_get_double(r, extension, "attenuationDistance", &distance));
     GLTF_TRY(gltf_get_color(r, extension, "attenuationColor", 0.0, 1.0, &color));
+    color = working_space_reflectance(&r->scene->space, color);
     if (v.json && !(distance > 1e-18))
         return gltf_error(r, &v, "%g should be above 0", distance);
     if (thickness == 0.0f || m->transmission == 0.0f)
@@ -95,7 +97,8 @@ static ag_status read_specular_glossiness(gltf_reader *r, const gltf_value *at, 
     GLTF_TRY(gltf_get_factors(r, extension, "diffuseFactor", 0.0, 1.0, 4, diffuse));
     GLTF_TRY(gltf_get_color(r, extension, "specularFactor", 0.0, 1.0, &m->specular_color));
     GLTF_TRY(gltf_get_clamped(r, extension, "glossinessFactor", 0.0, 1.0, &glossiness));
-    m->reflectance = rgb_make(diffuse[0], diffuse[1], diffuse[2]);
+    m->reflectance = working_space_reflectance(&r->scene->space, rgb_make(diffuse[0], diffuse[1], diffuse[2]));
+    m->specular_color = working_space_reflectance(&r->scene->space, m->specular_color);
     m->reflectance_texture = m->metallic_texture = m->roughness_texture = SCENE_NO_TEXTURE;
     m->metallic = 0.0f;
     m->ior = 0.0f;

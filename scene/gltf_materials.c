@@ -43,7 +43,7 @@ static ag_status read_metallic_roughness(gltf_reader *r, const gltf_value *at, m
     gltf_value pbr;
     GLTF_TRY(gltf_get_object(r, at, "pbrMetallicRoughness", &pbr));
     GLTF_TRY(gltf_get_factors(r, &pbr, "baseColorFactor", 0.0, 1.0, 4, base));
-    m->reflectance = rgb_make(base[0], base[1], base[2]);
+    m->reflectance = working_space_reflectance(&r->scene->space, rgb_make(base[0], base[1], base[2]));
     GLTF_TRY(gltf_get_clamped(r, &pbr, "metallicFactor", 0.0, 1.0, &m->metallic));
     GLTF_TRY(gltf_get_clamped(r, &pbr, "roughnessFactor", 0.0, 1.0, &m->roughness));
     GLTF_TRY(gltf_get_texture(r, &pbr, "baseColorTexture", COLOR, &out->uv_set, &m->reflectance_texture));
@@ -72,7 +72,7 @@ static ag_status read_emission(gltf_reader *r, const gltf_value *at, gltf_materi
     GLTF_TRY(gltf_get_color(r, at, "emissiveFactor", 0.0, 1e30, &out->radiance));
     GLTF_TRY(gltf_get_extension(r, at, "KHR_materials_emissive_strength", &extensions, &extension));
     GLTF_TRY(gltf_get_clamped(r, &extension, "emissiveStrength", 0.0, 1e30, &strength));
-    out->radiance = rgb_scale(out->radiance, strength);
+    out->radiance = rgb_scale(working_space_light(&r->scene->space, out->radiance), strength);
     if (!rgb_is_finite(out->radiance))
         return gltf_error(r, at, "it shines brighter than a float can say");
     if (rgb_is_black(out->radiance))

@@ -84,6 +84,7 @@ ag_status gltf_get_texture(gltf_reader *r, const gltf_value *parent, const char 
     gltf_value info, texture_value;
     texture t = texture_make(TEXTURE_IMAGE);
     t.is_spectrum = use.is_color;
+    t.is_data = use.is_color && !use.is_srgb;
     t.channel = use.channel;
     t.scale = use.scale;
     t.invert = use.invert;
@@ -102,7 +103,7 @@ ag_status gltf_get_texture(gltf_reader *r, const gltf_value *parent, const char 
     }
     GLTF_TRY(read_sampler(r, &texture_value, &t));
     GLTF_TRY(choose_uv_set(r, &info, wanted_set, uv_set));
-    image_encoding encoding = {use.is_srgb ? IMAGE_CURVE_SRGB : IMAGE_CURVE_LINEAR, 0.0f};
+    image_encoding encoding = {.curve = use.is_srgb ? IMAGE_CURVE_SRGB : IMAGE_CURVE_LINEAR};
     GLTF_TRY(gltf_load_image(r, source, encoding, &t.image_index));
     return scene_add_texture(r->scene, &t, out_texture);
 }

@@ -13,7 +13,7 @@
 bool image_encoding_parse(const char *text, image_encoding *out_encoding)
 {
     static const char GAMMA[] = "gamma ";
-    image_encoding encoding = {IMAGE_CURVE_LINEAR, 0.0f};
+    image_encoding encoding = {.curve = IMAGE_CURVE_LINEAR};
     if (strcmp(text, "sRGB") == 0) {
         encoding.curve = IMAGE_CURVE_SRGB;
     } else if (strncmp(text, GAMMA, sizeof GAMMA - 1) == 0) {
@@ -22,7 +22,7 @@ bool image_encoding_parse(const char *text, image_encoding *out_encoding)
         number = decimal_parse(number, &gamma);
         if (!number || *number != '\0' || !(gamma > 0.0 && gamma <= 1000.0))
             return false;
-        encoding = (image_encoding){IMAGE_CURVE_GAMMA, (float)gamma};
+        encoding = (image_encoding){.curve = IMAGE_CURVE_GAMMA, .gamma = (float)gamma};
     } else if (strcmp(text, "linear") != 0) {
         return false;
     }
@@ -34,7 +34,11 @@ static image_curve curve_of(image_encoding e) { return e.curve == IMAGE_CURVE_DE
 
 bool image_encoding_equal(image_encoding a, image_encoding b)
 {
-    return curve_of(a) == curve_of(b) && (curve_of(a) != IMAGE_CURVE_GAMMA || a.gamma == b.gamma);
+    if (curve_of(a) != curve_of(b))
+        return false;
+    if (a.curve == IMAGE_CURVE_SPACE)
+        return a.space == b.space && a.is_rule == b.is_rule;
+    return a.curve != IMAGE_CURVE_GAMMA || a.gamma == b.gamma;
 }
 
 /* By greys, since OpenColorIO takes colours. The config compiled in, because the encodings' meaning is the scene

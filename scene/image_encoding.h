@@ -15,17 +15,22 @@ typedef enum image_curve {
     IMAGE_CURVE_DEFAULT, /* sRGB */
     IMAGE_CURVE_LINEAR,
     IMAGE_CURVE_SRGB,
-    IMAGE_CURVE_GAMMA
+    IMAGE_CURVE_GAMMA,
+    IMAGE_CURVE_SPACE /* a colour space of the config: see image_colors.h */
 } image_curve;
 
-/* Of integers alone: half and float values are linear, whatever it says. Zeroed, it is the default. */
+/* Of integers alone, but for colour spaces: half and float values are linear, whatever it says. Zeroed, it is the
+ * default. */
 typedef struct image_encoding {
     image_curve curve;
-    float gamma; /* linear = encoded ^ gamma; > 0; of IMAGE_CURVE_GAMMA, else 0 */
+    float gamma;       /* linear = encoded ^ gamma; > 0; of IMAGE_CURVE_GAMMA, else 0 */
+    const char *space; /* of IMAGE_CURVE_SPACE: the colour config's own string; else NULL */
+    bool is_rule;      /* likewise: the config's file rules say so, not the scene */
 } image_encoding;
 
 /* "sRGB", "linear" or "gamma NUMBER"; false where the text is none of these. */
 bool image_encoding_parse(const char *text, image_encoding *out_encoding);
+/* Whether pictures become the same by both. */
 bool image_encoding_equal(image_encoding a, image_encoding b);
 
 /* The linear values of the integers 0 to size - 1, of which the last stands for 1. size: 256 or 65536.

@@ -250,6 +250,12 @@ image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::I
     read.height = spec.height;
     read.channel_count = spec.nchannels;
     read.type = sample_type_of(spec.format);
+    const OIIO::ParamValue *chromaticities =
+        spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+    if (chromaticities) {
+        read.has_chromaticities = true;
+        std::memcpy(read.chromaticities, chromaticities->data(), sizeof read.chromaticities);
+    }
     const std::uint64_t count = count_values(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path));
     if (keep_bytes && read.type == IMAGE_UINT8)
         read.bytes = read_values<unsigned char>(*input, spec, count, OIIO::TypeUInt8);

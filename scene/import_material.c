@@ -74,6 +74,8 @@ static ag_status load_picture(importer *i, const import_picture *p, image_encodi
         snprintf(message, message_size, "there is no such file");
         return AG_ERROR_INPUT;
     }
+    if (encoding.curve == IMAGE_CURVE_DEFAULT) /* a colour's */
+        encoding = image_colors_rule(i->scene, path);
     return texture_image_load(i->scene, path, encoding, out_image_index, message, message_size);
 }
 
@@ -106,7 +108,9 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
     t.mapping.delta = (vec2){p->offset[0], p->offset[1]};
     t.wraps = (texture_wraps){wrap_of(p->wrap_s), wrap_of(p->wrap_t)};
     t.scale = scale;
-    image_encoding encoding = {.curve = use == PICTURE_COLOR ? IMAGE_CURVE_DEFAULT : IMAGE_CURVE_LINEAR};
+    t.is_data = use == PICTURE_DIRECTION;
+    const bool is_color = use == PICTURE_COLOR;
+    image_encoding encoding = {.curve = is_color ? IMAGE_CURVE_DEFAULT : IMAGE_CURVE_LINEAR};
     ag_status status = load_picture(i, p, encoding, &t.image_index, message, sizeof message);
     if (status == AG_ERROR_MEMORY)
         return status;
@@ -125,6 +129,9 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
 static float clamp01(float x) { return fminf(fmaxf(x, 0.0f), 1.0f); } /* 0 for NaN */
 
 static rgb clamp_color(rgb c) { return rgb_make(clamp01(c.r), clamp01(c.g), clamp01(c.b)); }
+
+/* A share of light, as the working space has it. */
+static rgb share_of(const importer *i, rgb c) { return working_space_reflectance(&i->scene->space, clamp_color(c)); }
 
 static bool is_given(float x) { return x >= 0.0f && isfinite(x); }
 
@@ -151,9 +158,9 @@ static material make_principled(rgb base, float roughness)
     return m;
 }
 
-static material make_glass(const import_material *source)
+static material make_glass(const importer *i, const import_material *source)
 {
-    rgb filter = clamp_color(source->filter);
+    rgb filter = share_of(i, source->filter);
     float roughness = is_given(source->roughness) ? clamp01(source->roughness) : 0.0f;
     bool is_clear = rgb_is_black(filter) || (filter.r == 1.0f && filter.g == 1.0f && filter.b == 1.0f);
     material m = is_clear ? material_make(MATERIAL_DIELECTRIC) : make_principled(filter, roughness);
@@ -182,9 +189,9 @@ static material make_mirror(const import_material *source, rgb diffuse, rgb spec
 }
 
 /* Without its pictures. */
-static material make_material(const import_material *source)
+static material make_material(const importer *i, const import_material *source)
 {
-    rgb diffuse = clamp_color(source->diffuse), specular = clamp_color(source->specular);
+    rgb diffuse = share_of(i, source->diffuse), specular = share_of(i, source->specular);
     const bool is_principled = is_given(source->roughness) || is_given(source->metallic) || source->clearcoat > 0.0f ||
                                source->transmission > 0.0f || source->pictures[IMPORT_ROUGHNESS].path[0] ||
                                source->pictures[IMPORT_METALLIC].path[0];
@@ -192,7 +199,7 @@ static material make_material(const import_material *source)
     case 4:
     case 6:
     case 7:
-    case 9: return make_glass(source);
+    case 9: return make_glass(i, source);
     case 3:
     case 5:
     case 8:
@@ -277,6 +284,7 @@ static ag_status add_emission(importer *i, const import_material *source, import
     const import_picture *p = &source->pictures[IMPORT_EMISSION];
     if (!rgb_is_finite(e) || e.r < 0.0f || e.g < 0.0f || e.b < 0.0f)
         e = rgb_gray(0.0f);
+    e = working_space_light(&i->scene->space, e);
     ag_status status = add_picture(i, p, PICTURE_COLOR, 1.0f, &out->radiance_texture);
     if (!status && out->radiance_texture != SCENE_NO_TEXTURE && rgb_is_black(e))
         e = rgb_gray(1.0f);
@@ -287,7 +295,7 @@ static ag_status add_emission(importer *i, const import_material *source, import
 ag_status importer_add_material(importer *i, const import_material *source, import_surface *out_surface)
 {
     import_surface surface = {.alpha = 1.0f, .alpha_texture = SCENE_NO_TEXTURE, .radiance_texture = SCENE_NO_TEXTURE};
-    material m = make_material(source);
+    material m = make_material(i, source);
     ag_status status = add_color(i, source, &m);
     if (!status && m.kind == MATERIAL_PRINCIPLED && !is_glass(&m)) {
         status = add_picture(i, &source->pictures[IMPORT_ROUGHNESS], PICTURE_NUMBER, 1.0f, &m.roughness_texture);

@@ -167,7 +167,9 @@ static ag_status add_area_light(importer *i, const import_light *source, rgb int
 
 ag_status importer_add_light(importer *i, const import_light *light_source)
 {
-    import_light source = *light_source; /* its direction becomes unit */
+    import_light source = *light_source; /* its direction becomes unit, its colour the working space's */
+    if (is_sound(source.color))
+        source.color = working_space_light(&i->scene->space, source.color);
     double factor;
     ag_status status = find_intensity_factor(i, &source, &factor);
     if (status)

@@ -250,25 +250,29 @@ ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *na
 spectrum_use parameter_spectrum_use(const char *name)
 {
     static const char *const EMITTED[] = {"L", "I", "Le"};
-    static const char *const INDICES[] = {"eta",           "k",       "conductor.eta", "conductor.k",
-                                          "interface.eta", "sigma_a", "sigma_s",       "mfp"};
+    static const char *const INDICES[] = {"eta", "k", "conductor.eta", "conductor.k", "interface.eta"};
+    static const char *const DENSITIES[] = {"sigma_a", "sigma_s", "mfp"};
     for (size_t i = 0; i < sizeof EMITTED / sizeof *EMITTED; i++)
         if (strcmp(name, EMITTED[i]) == 0)
             return SPECTRUM_LIGHT;
     for (size_t i = 0; i < sizeof INDICES / sizeof *INDICES; i++)
         if (strcmp(name, INDICES[i]) == 0)
             return SPECTRUM_INDEX;
+    for (size_t i = 0; i < sizeof DENSITIES / sizeof *DENSITIES; i++)
+        if (strcmp(name, DENSITIES[i]) == 0)
+            return SPECTRUM_DENSITY;
     return SPECTRUM_REFLECTANCE;
 }
 
 /* The reader has looked into the files of those that have no name of pbrt's. */
 static ag_status get_spectrum(const parameter_list *list, log_sink *log, const parameter *p, rgb *out_value)
 {
+    const working_space *space = list->source ? list->source->space : NULL;
     if (p->count == 0 || (p->strings && p->count != 1))
         return refuse(list, log, p, "\"spectrum %s\" should have %s", p->name,
                       p->count == 0 ? "values" : "one name, or numbers");
     if (p->strings) {
-        if (!spectra_find_named(p->strings[0], out_value)) {
+        if (!spectra_find_named(p->strings[0], space, out_value)) {
             char key[160];
             snprintf(key, sizeof key, "named spectrum:%s", p->strings[0]);
             log_at_once(log, AG_LOG_WARNING, p->where, key,
@@ -286,7 +290,7 @@ static ag_status get_spectrum(const parameter_list *list, log_sink *log, const p
     }
     ag_status status = check_float(list, log, p);
     if (!status)
-        *out_value = spectra_sampled(p->numbers, p->count / 2, parameter_spectrum_use(p->name));
+        *out_value = spectra_sampled(p->numbers, p->count / 2, parameter_spectrum_use(p->name), space);
     return status;
 }
 
@@ -300,7 +304,7 @@ static ag_status get_blackbody(parameter_list *list, log_sink *log, const char *
     if (!(kelvin >= SPECTRA_MIN_KELVIN && kelvin <= SPECTRA_MAX_KELVIN))
         return refuse(list, log, p, "\"blackbody %s\": %g is not a temperature from %g to %g kelvin", name, kelvin,
                       SPECTRA_MIN_KELVIN, SPECTRA_MAX_KELVIN);
-    *out_value = spectra_blackbody(kelvin);
+    *out_value = spectra_blackbody(kelvin, list->source ? list->source->space : NULL);
     return AG_OK;
 }
 

@@ -56,11 +56,12 @@ typedef struct parameter {
     bool may_be_unused; /* it is for whom it may concern: an Attribute's */
 } parameter;
 
-/* Where the text of parameters is, for messages that show it. */
+/* Where parameters come from: their text, for messages that show it, and what their colours are to become. */
 typedef struct parameter_source {
     /* Writes a line of text with a mark below it ("\n    line\n    ^~~"), or nothing where it is no longer there. */
     void (*excerpt)(const void *user, file_location where, size_t width, char *out_text, size_t size);
     const void *user;
+    const working_space *space; /* of colours that are asked for; NULL: Rec. 709 */
 } parameter_source;
 
 typedef struct parameter_list {

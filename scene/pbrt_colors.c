@@ -1,21 +1,25 @@
 /* pbrt_colors.c: what rgb and spectrum parameters of a pbrt-v4 scene are, before anybody asks for them: the colour
- * space of the file becomes ours, and spectra that are files become their values. Rests on the format's description,
- * pbrt.org/fileformat-v4, "Color Spaces" and "Spectra". Pictures have their own colour space, as in pbrt: the directive
- * does not concern them. Flow: pbrt_parameters -> [here] -> parameter_list. Threads: one per scene. */
+ * space of the file becomes the working space, and spectra that are files become their values. Rests on the format's
+ * description, pbrt.org/fileformat-v4, "Color Spaces" and "Spectra". Pictures have their own colour space, as in pbrt:
+ * the directive does not concern them. Flow: pbrt_parameters -> [here] -> parameter_list. Threads: one per scene. */
 #include "color_space.h"
 #include "pbrt_private.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* From the current colour space to Rec. 709. What it cannot hold is clipped, as is all else that is outside its gamut.
- */
+/* From the current colour space to the working space, but for the indices of metals: those become Rec. 709's, and are
+ * converted with their absorption. What it cannot hold is clipped, as is all else that is outside its gamut. */
 static ag_status convert_rgb(pbrt_parser *parser, parameter *p, size_t width)
 {
-    if (parser->state.rgb_space == COLOR_SPACE_SRGB)
-        return AG_OK;
+    const working_space *space = &parser->scene->space;
     spectrum_use use = parameter_spectrum_use(p->name);
+    const bool stays_rec709 = space->is_rec709 || use == SPECTRUM_INDEX;
+    if (parser->state.rgb_space == COLOR_SPACE_SRGB && stays_rec709)
+        return AG_OK;
     color_matrix m = color_space_to_rec709(parser->state.rgb_space, use == SPECTRUM_LIGHT);
+    if (!stays_rec709)
+        m = color_matrix_multiply(&space->from_rec709, &m);
     for (size_t i = 0; i + 2 < p->count; i += 3) {
         double *c = &p->numbers[i];
         if (c[0] < 0.0 || c[1] < 0.0 || c[2] < 0.0)
@@ -25,7 +29,8 @@ static ag_status convert_rgb(pbrt_parser *parser, parameter *p, size_t width)
         color_matrix_apply(&m, c, c);
         if (fmin(c[0], fmin(c[1], c[2])) < -1e-3 * largest || fmax(c[0], fmax(c[1], c[2])) > bound + 1e-3)
             log_at_once(parser->log, AG_LOG_WARNING, p->where, "gamut",
-                        "\"rgb %s\" is outside the colours of Rec. 709: it is clipped, as are any others", p->name);
+                        "\"rgb %s\" is outside the colours of %s: it is clipped, as are any others", p->name,
+                        stays_rec709 ? "Rec. 709" : "the working space");
         for (int k = 0; k < 3; k++)
             c[k] = fmin(fmax(c[k], 0.0), bound);
     }
@@ -101,7 +106,7 @@ static ag_status read_spectrum(pbrt_parser *parser, parameter *p, size_t width)
     rgb ignored;
     double *numbers;
     size_t count;
-    if (p->count != 1 || spectra_find_named(p->strings[0], &ignored) || spectra_is_missing(p->strings[0]))
+    if (p->count != 1 || spectra_find_named(p->strings[0], NULL, &ignored) || spectra_is_missing(p->strings[0]))
         return AG_OK;
     PBRT_TRY(pbrt_read_number_file(parser, p->strings[0], p->where, width, "; nor has pbrt a spectrum of that name",
                                    &numbers, &count));
@@ -134,8 +139,9 @@ ag_status pbrt_color_space(pbrt_parser *parser, file_location where)
     PBRT_TRY(pbrt_read_string(parser, "ColorSpace", "a quoted name", &name, NULL));
     ag_status status = AG_OK;
     if (!color_space_find(name, &parser->state.rgb_space))
-        status = pbrt_error(parser, where, strlen("ColorSpace"),
-                            "unknown colour space \"%s\"; known are srgb, dci-p3, rec2020 and aces2065-1", name);
+        status =
+            pbrt_error(parser, where, strlen("ColorSpace"),
+                       "unknown colour space \"%s\"; known are srgb, dci-p3, rec2020, aces2065-1 and acescg", name);
     free(name);
     return status;
 }

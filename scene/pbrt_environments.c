@@ -10,7 +10,7 @@ static const double PI = 3.14159265358979323846;
 
 /* The measure of "illuminance" for a picture: what reaches a surface that faces the light's z, but half of it: pbrt
  * counts each pixel as 2 pi / count, and scenes are lit by what comes of that. */
-static double picture_illuminance(const environment *e)
+static double picture_illuminance(const working_space *space, const environment *e)
 {
     double sum = 0.0;
     for (uint32_t y = 0; y < e->height; y++) {
@@ -18,7 +18,7 @@ static double picture_illuminance(const environment *e)
         for (uint32_t x = 0; x < e->width; x++) {
             vec3 d = environment_direction(e, x, y, (vec2){0.5f, 0.5f});
             if (d.z > 0.0f)
-                row += (double)d.z * rgb_luminance(e->pixels[(size_t)y * e->width + x]);
+                row += (double)d.z * working_space_luminance(space, e->pixels[(size_t)y * e->width + x]);
         }
         sum += row * 0.5 * environment_pixel_solid_angle(e, y);
     }
@@ -45,11 +45,11 @@ static ag_status read_portal(pbrt_parser *parser, parameter_list *list, bool *ou
 }
 
 /* What of the light makes "illuminance" 1. With a portal a constant light is, to pbrt, a picture of one pixel. */
-static double find_measure(const light *l, bool has_portal)
+static double find_measure(const working_space *space, const light *l, bool has_portal)
 {
     if (l->environment)
-        return picture_illuminance(l->environment);
-    return has_portal ? 2.0 * PI * (double)rgb_luminance(l->radiance) : PI;
+        return picture_illuminance(space, l->environment);
+    return has_portal ? 2.0 * PI * (double)working_space_luminance(space, l->radiance) : PI;
 }
 
 static ag_status read_infinite(pbrt_parser *parser, parameter_list *list, light *l)
@@ -77,7 +77,7 @@ static ag_status read_infinite(pbrt_parser *parser, parameter_list *list, light 
         PBRT_TRY(pbrt_read_environment(parser, list, name, false, &l->environment));
     }
     if (illuminance > 0.0f) {
-        double measure = find_measure(l, has_portal);
+        double measure = find_measure(&parser->scene->space, l, has_portal);
         if (!(measure > 0.0))
             return pbrt_refuse(parser, list, "illuminance", "no light comes from the upper half of the picture");
         factor *= illuminance / measure;

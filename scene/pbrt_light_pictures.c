@@ -44,41 +44,53 @@ ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, 
     return AG_OK;
 }
 
-/* RGB of what was read, finite and not negative; NULL when out of memory. */
-static rgb *finite_pixels(const image *picture, size_t *out_bad_count)
+/* RGB of what was read; NULL when out of memory. */
+static rgb *rgb_pixels(const image *picture)
 {
     size_t count = (size_t)picture->width * (size_t)picture->height, channels = (size_t)picture->channel_count;
     rgb *pixels = malloc(count * sizeof *pixels);
-    *out_bad_count = 0;
     for (size_t i = 0; pixels && i < count; i++) {
-        float c[3];
-        bool is_bad = false;
-        for (size_t k = 0; k < 3; k++) {
-            float v = picture->pixels[i * channels + (channels >= 3 ? k : 0)];
-            if (!(v >= 0.0f && isfinite(v))) {
-                is_bad = true;
-                v = 0.0f;
-            }
-            c[k] = v;
-        }
-        *out_bad_count += is_bad;
-        pixels[i] = rgb_make(c[0], c[1], c[2]);
+        const float *v = &picture->pixels[i * channels];
+        pixels[i] = channels >= 3 ? rgb_make(v[0], v[1], v[2]) : rgb_gray(v[0]);
     }
     return pixels;
 }
 
-/* A picture's pixels, from malloc. */
-static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, const char *name, uint32_t *out_width,
-                             uint32_t *out_height, rgb **out_pixels)
+/* Makes what is negative or not finite 0, before the matrix may make it anything else; gives the number of pixels. */
+static size_t clean_pixels(const image_colors *colors, rgb *pixels, size_t count)
+{
+    size_t bad_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        float *c[3] = {&pixels[i].r, &pixels[i].g, &pixels[i].b};
+        bool is_bad = false;
+        for (int k = 0; k < 3; k++)
+            if (!(*c[k] >= 0.0f && isfinite(*c[k]))) {
+                is_bad = true;
+                *c[k] = 0.0f;
+            }
+        bad_count += is_bad;
+        if (colors->has_matrix)
+            pixels[i] = image_colors_convert(colors, pixels[i]);
+    }
+    return bad_count;
+}
+
+/* A picture's pixels, from malloc. is_gray: they are no colours. */
+static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
+                             uint32_t *out_width, uint32_t *out_height, rgb **out_pixels)
 {
     char message[512];
     image picture = {0};
+    image_colors colors = {0};
     char *path = pbrt_find_file(parser, name);
     ag_status status = path ? image_read(path, &picture, message, sizeof message) : AG_ERROR_MEMORY;
-    free(path);
     *out_pixels = NULL;
-    if (status == AG_OK)
-        status = image_linearize(&picture, (image_encoding){0}, message, sizeof message);
+    if (status == AG_OK && !is_gray)
+        status = image_colors_find(parser->scene, image_colors_rule(parser->scene, path), &picture, &colors, message,
+                                   sizeof message);
+    free(path);
+    if (status == AG_OK && !colors.space)
+        status = image_linearize(&picture, colors.encoding, message, sizeof message);
     if (status == AG_ERROR_COLOR)
         pbrt_refuse(parser, list, "filename", "cannot decode the picture \"%s\": %s", name, message);
     if (status == AG_ERROR_INPUT || status == AG_ERROR_SYSTEM)
@@ -87,14 +99,25 @@ static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, co
                             picture.height > ENVIRONMENT_MAX_SIZE))
         status = pbrt_refuse(parser, list, "filename", "\"%s\" is %d x %d, which is beyond what a light may have", name,
                              picture.width, picture.height);
-    size_t bad_count = 0;
+    const size_t count = (size_t)picture.width * (size_t)picture.height;
     if (status == AG_OK) {
         *out_width = (uint32_t)picture.width;
         *out_height = (uint32_t)picture.height;
-        *out_pixels = finite_pixels(&picture, &bad_count);
+        *out_pixels = rgb_pixels(&picture);
         status = *out_pixels ? AG_OK : AG_ERROR_MEMORY;
     }
     image_reset(&picture); /* as soon as can be: large ones are a gigabyte */
+    if (status == AG_OK && colors.space) {
+        status = image_colors_decode(parser->scene, &colors, &(*out_pixels)->r, count, message, sizeof message);
+        if (status == AG_ERROR_COLOR)
+            pbrt_refuse(parser, list, "filename", "cannot decode the picture \"%s\": %s", name, message);
+    }
+    if (status != AG_OK) {
+        free(*out_pixels);
+        *out_pixels = NULL;
+        return status;
+    }
+    size_t bad_count = clean_pixels(&colors, *out_pixels, count);
     if (bad_count > 0)
         log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, "filename")->where,
                "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0", name, bad_count);
@@ -106,7 +129,7 @@ ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list,
 {
     uint32_t width, height;
     rgb *pixels;
-    PBRT_TRY(read_pixels(parser, list, name, &width, &height, &pixels));
+    PBRT_TRY(read_pixels(parser, list, name, is_gray, &width, &height, &pixels));
     if (width != height && width != 2 * height) {
         free(pixels);
         return pbrt_refuse(parser, list, "filename",
@@ -185,9 +208,10 @@ static ag_status read_projection(pbrt_parser *parser, parameter_list *list, ligh
         return pbrt_refuse(parser, list, "fov", "\"fov\" should be within (0, 180) degrees");
     PBRT_TRY(pbrt_set_light_frame(parser, list, false, l));
     l->direction = l->world_from_light.z;
-    PBRT_TRY(read_pixels(parser, list, name, &width, &height, &pixels));
+    PBRT_TRY(read_pixels(parser, list, name, false, &width, &height, &pixels));
     PBRT_TRY(projection_create(width, height, pixels, fov, &l->projection));
-    PBRT_TRY(set_intensity(parser, list, rgb_gray(1.0f), scale, power, rgb_luminance(l->projection->integral), l));
+    PBRT_TRY(set_intensity(parser, list, rgb_gray(1.0f), scale, power,
+                           working_space_luminance(&parser->scene->space, l->projection->integral), l));
     return rgb_is_finite(rgb_mul(l->intensity, l->projection->integral))
                ? AG_OK
                : pbrt_refuse(parser, list, "scale", "the light is too bright for a float");

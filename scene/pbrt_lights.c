@@ -182,14 +182,14 @@ ag_status pbrt_light_source(pbrt_parser *parser, file_location where)
     return status;
 }
 
-static double mean_luminance(const texture_image *i)
+static double mean_luminance(const working_space *space, const texture_image *i)
 {
     double sum = 0.0;
     for (uint32_t y = 0; y < i->height; y++)
         for (uint32_t x = 0; x < i->width; x++)
-            sum += (double)rgb_luminance(texture_image_rgb(i, texture_wraps_same(TEXTURE_WRAP_CLAMP),
-                                                           TEXTURE_FILTER_POINT, ((float)x + 0.5f) / (float)i->width,
-                                                           ((float)y + 0.5f) / (float)i->height));
+            sum += (double)working_space_luminance(
+                space, texture_image_color(i, texture_wraps_same(TEXTURE_WRAP_CLAMP), TEXTURE_FILTER_POINT,
+                                           ((float)x + 0.5f) / (float)i->width, ((float)y + 0.5f) / (float)i->height));
     return sum / ((double)i->width * i->height);
 }
 
@@ -208,7 +208,7 @@ static ag_status read_area_picture(pbrt_parser *parser, parameter_list *list, pb
     PBRT_TRY(pbrt_load_image(parser, list, "filename", name, (image_encoding){0}, &t));
     PBRT_TRY(scene_add_texture(parser->scene, &t, &l->radiance_texture));
     if (l->power > 0.0f)
-        l->mean_luminance = mean_luminance(parser->scene->texture_images[t.image_index]);
+        l->mean_luminance = mean_luminance(&parser->scene->space, parser->scene->texture_images[t.image_index]);
     if (!(l->mean_luminance > 0.0))
         return pbrt_refuse(parser, list, "power", "the picture is black");
     return AG_OK;

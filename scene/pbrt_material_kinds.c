@@ -55,19 +55,27 @@ static ag_status read_roughness(pbrt_parser *parser, parameter_list *list, const
     return AG_OK;
 }
 
+static bool is_texture(const parameter_list *list, const char *name)
+{
+    const parameter *p = parameter_list_find(list, name);
+    return p && p->type == PARAMETER_TEXTURE;
+}
+
 /* eta and k of a conductor, or those that give its reflectance; prefix as for read_roughness. */
 static ag_status read_metal(pbrt_parser *parser, parameter_list *list, const char *prefix, material *m)
 {
     char eta[32], k[32];
     snprintf(eta, sizeof eta, "%seta", prefix);
     snprintf(k, sizeof k, "%sk", prefix);
-    spectra_find_named("metal-Cu-eta", &m->eta);
-    spectra_find_named("metal-Cu-k", &m->k);
+    spectra_find_named("metal-Cu-eta", NULL, &m->eta);
+    spectra_find_named("metal-Cu-k", NULL, &m->k);
     if (!parameter_list_find(list, "reflectance")) {
         PBRT_TRY(pbrt_get_rgb_texture(parser, list, eta, &m->eta, &m->eta_texture));
         PBRT_TRY(pbrt_get_rgb_texture(parser, list, k, &m->k, &m->k_texture));
         if (!(m->eta.r > 0.0f && m->eta.g > 0.0f && m->eta.b > 0.0f))
             return pbrt_refuse(parser, list, eta, "\"%s\" should be above 0", eta);
+        if (!is_texture(list, eta) && !is_texture(list, k)) /* those are colours to their readers */
+            working_space_metal(&parser->scene->space, &m->eta, &m->k);
         return AG_OK;
     }
     if (parameter_list_find(list, eta) || parameter_list_find(list, k))
@@ -257,7 +265,7 @@ ag_status pbrt_read_hair(pbrt_parser *parser, parameter_list *list, material *m)
             eumelanin = 1.3f;
         PBRT_TRY(parameter_get_float(list, parser->log, "eumelanin", &eumelanin));
         PBRT_TRY(parameter_get_float(list, parser->log, "pheomelanin", &pheomelanin));
-        rgb sigma_a = hair_absorption(eumelanin, pheomelanin);
+        rgb sigma_a = working_space_light(&parser->scene->space, hair_absorption(eumelanin, pheomelanin));
         PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
         m->reflectance = rgb_make(hair_reflectance(sigma_a.r, beta_n), hair_reflectance(sigma_a.g, beta_n),
                                   hair_reflectance(sigma_a.b, beta_n));
@@ -287,7 +295,8 @@ ag_status pbrt_read_subsurface(pbrt_parser *parser, parameter_list *list, materi
     if (parameter_list_find(list, "reflectance")) {
         PBRT_TRY(read_reflectance(parser, list, m));
     } else {
-        rgb sigma_a = {0.0011f, 0.0024f, 0.014f}, sigma_s = {2.55f, 3.21f, 3.77f};
+        rgb sigma_a = working_space_light(&parser->scene->space, rgb_make(0.0011f, 0.0024f, 0.014f));
+        rgb sigma_s = working_space_light(&parser->scene->space, rgb_make(2.55f, 3.21f, 3.77f));
         PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
         PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
         PBRT_TRY(parameter_get_float(list, parser->log, "g", &g));
@@ -343,8 +352,9 @@ static ag_status read_normal_map(pbrt_parser *parser, parameter_list *list, mate
     if (!name || *name == '\0')
         return AG_OK;
     texture t = texture_make(TEXTURE_IMAGE);
+    t.is_data = true;
     t.is_spectrum = true;
-    PBRT_TRY(pbrt_load_image(parser, list, "normalmap", name, (image_encoding){IMAGE_CURVE_LINEAR, 0.0f}, &t));
+    PBRT_TRY(pbrt_load_image(parser, list, "normalmap", name, (image_encoding){.curve = IMAGE_CURVE_LINEAR}, &t));
     if (parser->scene->texture_images[t.image_index]->channel_count < 3)
         return pbrt_refuse(parser, list, "normalmap", "\"%s\" is no normal map: it has no red, green and blue", name);
     return scene_add_texture(parser->scene, &t, &m->normal_map_texture);

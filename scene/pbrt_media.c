@@ -60,6 +60,8 @@ static ag_status read_homogeneous(pbrt_parser *parser, parameter_list *list, med
                    "no medium has the preset \"%s\": \"sigma_a\" counts", preset);
         PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
         PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
+    } else {
+        sigma_a = working_space_light(&parser->scene->space, sigma_a);
     }
     PBRT_TRY(read_scale(parser, list, &scale));
     PBRT_TRY(parameter_get_float(list, parser->log, "g", &g)); /* of scattering */

@@ -37,7 +37,8 @@ static ag_status film(pbrt_parser *parser, file_location where)
 {
     if (parser->state.rgb_space != COLOR_SPACE_SRGB) /* pbrt writes the picture in it */
         log_at_once(parser->log, AG_LOG_WARNING, where, "film colours",
-                    "the ColorSpace is not that of the picture: it is written in linear Rec. 709");
+                    "the ColorSpace is not that of the picture: it is written in %s",
+                    parser->scene->space.is_rec709 ? "linear Rec. 709" : "the working space");
     return keep_parameters(parser, where, "Film", &parser->scene->film);
 }
 
@@ -189,7 +190,7 @@ static pbrt_parser *parser_create(run_context *run, scene *out_scene)
         parser->transform_times[1] = 1.0;
         parser->shapes_object_index = SCENE_NO_OBJECT;
         parser->curves_object_index = SCENE_NO_OBJECT;
-        parser->source = (parameter_source){pbrt_excerpt, parser};
+        parser->source = (parameter_source){pbrt_excerpt, parser, &parser->scene->space};
         parser->state.medium_inside = parser->state.medium_outside = PBRT_NO_MEDIUM;
     }
     return parser;

@@ -230,7 +230,7 @@ ag_status pbrt_read_named_parameters(pbrt_parser *parser, const char *directive,
 
 /* pbrt_colors.c */
 pbrt_handler pbrt_color_space;
-/* Makes rgb parameters Rec. 709's and reads the files of spectra. width: of the quoted "type name". Errors:
+/* Makes rgb parameters the working space's and reads the files of spectra. width: of the quoted "type name". Errors:
  * AG_ERROR_SCENE, AG_ERROR_INPUT (a file cannot be read), AG_ERROR_MEMORY. */
 ag_status pbrt_settle_color(pbrt_parser *parser, parameter *p, size_t width);
 /* A text file of nothing but numbers and comments, named at that place; hint ends the message where it cannot be read.

@@ -249,7 +249,7 @@ static ag_status read_old_encoding(pbrt_parser *parser, parameter_list *list, im
         PBRT_TRY(parameter_get_float(list, parser->log, "gamma", &power));
         if (!(power > 0.0f && power <= 1000.0f))
             return pbrt_refuse(parser, list, "gamma", "\"gamma\" should be above 0");
-        *encoding = (image_encoding){IMAGE_CURVE_GAMMA, power};
+        *encoding = (image_encoding){.curve = IMAGE_CURVE_GAMMA, .gamma = power};
         return AG_OK;
     }
     PBRT_TRY(parameter_get_bool(list, parser->log, "gamma", &is_srgb));
@@ -257,15 +257,20 @@ static ag_status read_old_encoding(pbrt_parser *parser, parameter_list *list, im
     return AG_OK;
 }
 
-static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, image_encoding *encoding)
+/* pbrt's encodings; of colours also the config's colour spaces. */
+static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, bool is_color, image_encoding *encoding)
 {
     const char *text = NULL;
+    char spaces[1024] = "";
     PBRT_TRY(read_old_encoding(parser, list, encoding));
     PBRT_TRY(parameter_get_string(list, parser->log, "encoding", &text));
-    if (text && !image_encoding_parse(text, encoding))
-        return pbrt_refuse(parser, list, "encoding",
-                           "unknown encoding \"%s\"; known are sRGB, linear and, with a number, gamma", text);
-    return AG_OK;
+    if (!text || image_encoding_parse(text, encoding))
+        return AG_OK;
+    if (is_color && image_colors_parse(parser->scene, text, encoding, spaces, sizeof spaces))
+        return AG_OK;
+    return pbrt_refuse(parser, list, "encoding",
+                       "unknown encoding \"%s\"; known are sRGB, linear and, with a number, gamma%s%s", text,
+                       spaces[0] ? "; " : "", spaces);
 }
 
 ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *parameter_name,
@@ -275,6 +280,8 @@ ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const
     scene *s = parser->scene;
     uint32_t known_count = s->texture_image_count;
     char *path = pbrt_find_file(parser, file_name);
+    if (path && t->is_spectrum && !t->is_data && encoding.curve == IMAGE_CURVE_DEFAULT)
+        encoding = image_colors_rule(s, path);
     ag_status status =
         path ? texture_image_load(s, path, encoding, &t->image_index, message, sizeof message) : AG_ERROR_MEMORY;
     free(path);
@@ -296,7 +303,7 @@ static ag_status read_image(pbrt_parser *parser, parameter_list *list, texture *
     int wrap = TEXTURE_WRAP_REPEAT, filter = 0;
     float unused_anisotropy;
     bool unused_trilinear; /* pbrt-v3's "filter" */
-    image_encoding encoding = {IMAGE_CURVE_DEFAULT, 0.0f};
+    image_encoding encoding = {0};
     t->scale = 1.0f;
     PBRT_TRY(read_mapping(parser, list, t));
     PBRT_TRY(read_word(parser, list, "wrap", WRAPS, 4, &wrap));
@@ -305,7 +312,7 @@ static ag_status read_image(pbrt_parser *parser, parameter_list *list, texture *
     PBRT_TRY(parameter_get_bool(list, parser->log, "trilinear", &unused_trilinear));
     PBRT_TRY(parameter_get_float(list, parser->log, "scale", &t->scale));
     PBRT_TRY(parameter_get_bool(list, parser->log, "invert", &t->invert));
-    PBRT_TRY(read_encoding(parser, list, &encoding));
+    PBRT_TRY(read_encoding(parser, list, t->is_spectrum, &encoding));
     PBRT_TRY(parameter_get_string(list, parser->log, "filename", &name));
     if (!name)
         return pbrt_error(parser, list->where, strlen(list->directive),

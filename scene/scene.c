@@ -15,6 +15,7 @@ scene *scene_create(void)
 {
     scene *s = calloc(1, sizeof *s);
     if (s) {
+        s->space = working_space_rec709();
         s->bounds_min = (vec3){INFINITY, INFINITY, INFINITY};
         s->bounds_max = (vec3){-INFINITY, -INFINITY, -INFINITY};
         s->camera_medium = SCENE_NO_MEDIUM;

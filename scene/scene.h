@@ -15,8 +15,10 @@
 #include "scene_names.h"
 #include "shape.h"
 #include "texture.h"
+#include "working_space.h"
 
 struct bvh;
+struct color_config;
 struct light_tree;
 
 enum { SCENE_LIGHT_GROUPS_MAX = 32 };
@@ -29,6 +31,9 @@ typedef struct scene_options {
 } scene_options;
 
 typedef struct scene {
+    working_space space;                     /* of all its colours; settled before anything is read */
+    const struct color_config *color_config; /* that names it, and tells how pictures are encoded; borrowed for as long
+                                                as it is read; NULL: none */
     material *materials;
     uint32_t material_count;
     texture *textures;

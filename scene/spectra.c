@@ -11,18 +11,18 @@
 #include <string.h>
 
 /* XYZ of luminance 1 as linear RGB, what is outside the gamut as 0. */
-static rgb rgb_of(const double xyz[3])
+static rgb rgb_of(const double xyz[3], const working_space *space)
 {
-    color_matrix rec709 = color_rec709_from_xyz();
+    color_matrix from_xyz = space ? space->from_xyz : color_rec709_from_xyz();
     double c[3];
-    color_matrix_apply(&rec709, xyz, c);
+    color_matrix_apply(&from_xyz, xyz, c);
     return rgb_make((float)fmax(c[0], 0.0), (float)fmax(c[1], 0.0), (float)fmax(c[2], 0.0));
 }
 
-static rgb rgb_of_chromaticity(double x, double y)
+static rgb rgb_of_chromaticity(double x, double y, const working_space *space)
 {
     const double xyz[3] = {x / y, 1.0, (1.0 - x - y) / y};
-    return rgb_of(xyz);
+    return rgb_of(xyz, space);
 }
 
 /* XYZ of luminance 1. */
@@ -59,11 +59,11 @@ double spectra_blackbody_luminance(double kelvin)
     return sum / whole;
 }
 
-rgb spectra_blackbody(double kelvin)
+rgb spectra_blackbody(double kelvin, const working_space *space)
 {
     double xyz[3];
     blackbody_xyz(kelvin, xyz);
-    return rgb_of(xyz);
+    return rgb_of(xyz, space);
 }
 
 void spectra_blackbody_chromaticity(double kelvin, double out_xy[2])
@@ -89,20 +89,21 @@ static double value_at(const double *pairs, size_t count, double nm, bool goes_o
     return below[1] + (nm - below[0]) / (above[0] - below[0]) * (above[1] - below[1]);
 }
 
-rgb spectra_sampled(const double *pairs, size_t pair_count, spectrum_use use)
+rgb spectra_sampled(const double *pairs, size_t pair_count, spectrum_use use, const working_space *space)
 {
     double sum[3] = {0.0, 0.0, 0.0}, whole[3] = {0.0, 0.0, 0.0}, value[3];
-    color_matrix rec709 = color_rec709_from_xyz();
+    const bool is_index = use == SPECTRUM_INDEX || use == SPECTRUM_DENSITY;
+    color_matrix from_xyz = space && !is_index ? space->from_xyz : color_rec709_from_xyz();
     size_t next = 0;
     for (int nm = CIE_FIRST_NM; nm <= CIE_LAST_NM; nm++) {
         double weight[3], v = value_at(pairs, pair_count, nm, use != SPECTRUM_LIGHT, &next);
         cie_match(nm, weight);
         if (use != SPECTRUM_LIGHT)
-            color_matrix_apply(&rec709, weight, weight);
+            color_matrix_apply(&from_xyz, weight, weight);
         for (int i = 0; i < 3; i++) {
             if (use == SPECTRUM_REFLECTANCE)
                 weight[i] *= cie_d65(nm);
-            if (use == SPECTRUM_INDEX)
+            if (is_index)
                 weight[i] = fmax(weight[i], 0.0);
             sum[i] += weight[i] * v;
             whole[i] += weight[i];
@@ -112,11 +113,12 @@ rgb spectra_sampled(const double *pairs, size_t pair_count, spectrum_use use)
         if (!(sum[1] > 0.0))
             return rgb_gray(0.0f);
         const double xyz[3] = {sum[0] / sum[1], 1.0, sum[2] / sum[1]};
-        return rgb_of(xyz);
+        return rgb_of(xyz, space);
     }
     for (int i = 0; i < 3; i++)
         value[i] = use == SPECTRUM_REFLECTANCE ? fmin(fmax(sum[i] / whole[i], 0.0), 1.0) : sum[i] / whole[i];
-    return rgb_make((float)value[0], (float)value[1], (float)value[2]);
+    rgb result = rgb_make((float)value[0], (float)value[1], (float)value[2]);
+    return use == SPECTRUM_DENSITY ? working_space_light(space, result) : result;
 }
 
 typedef struct named_spectrum {
@@ -161,7 +163,7 @@ static const struct {
     {"stdillum-F10", 0.34609, 0.35986}, {"stdillum-F11", 0.38052, 0.37713}, {"stdillum-F12", 0.43695, 0.40441},
 };
 
-bool spectra_find_named(const char *name, rgb *out_value)
+bool spectra_find_named(const char *name, const working_space *space, rgb *out_value)
 {
     for (size_t i = 0; i < sizeof NAMED_SPECTRA / sizeof *NAMED_SPECTRA; i++)
         if (strcmp(NAMED_SPECTRA[i].name, name) == 0) {
@@ -170,7 +172,7 @@ bool spectra_find_named(const char *name, rgb *out_value)
         }
     for (size_t i = 0; i < sizeof ILLUMINANTS / sizeof *ILLUMINANTS; i++)
         if (strcmp(ILLUMINANTS[i].name, name) == 0) {
-            *out_value = rgb_of_chromaticity(ILLUMINANTS[i].x, ILLUMINANTS[i].y);
+            *out_value = rgb_of_chromaticity(ILLUMINANTS[i].x, ILLUMINANTS[i].y, space);
             return true;
         }
     return false;

@@ -68,7 +68,8 @@ static rgb image_value(const scene *s, const texture *t, const surface_hit *hit)
         float value = t->scale * texture_image_float(picture, t->channel, t->wraps, t->filter, st.x, 1.0f - st.y);
         return rgb_gray(t->invert ? fmaxf(0.0f, 1.0f - value) : value);
     }
-    rgb value = rgb_scale(texture_image_rgb(picture, t->wraps, t->filter, st.x, 1.0f - st.y), t->scale);
+    rgb value = (t->is_data ? texture_image_rgb : texture_image_color)(picture, t->wraps, t->filter, st.x, 1.0f - st.y);
+    value = rgb_scale(value, t->scale);
     if (t->invert)
         value = rgb_sub(rgb_gray(1.0f), value);
     return rgb_make(fmaxf(value.r, 0.0f), fmaxf(value.g, 0.0f), fmaxf(value.b, 0.0f));
@@ -154,7 +155,10 @@ static rgb evaluate(const scene *s, const texture *t, const surface_hit *hit)
     case TEXTURE_FBM: return rgb_gray(texture_fbm(p, t->roughness, t->octaves));
     case TEXTURE_WRINKLED: return rgb_gray(texture_turbulence(p, t->roughness, t->octaves));
     case TEXTURE_WINDY: return rgb_gray(windy(p));
-    default: return marble(t, p);
+    default: {
+        rgb c = marble(t, p);
+        return s->space.is_rec709 ? c : working_space_reflectance(&s->space, c);
+    }
     }
 }
 

@@ -50,6 +50,7 @@ typedef struct texture {
     texture_channel channel; /* image, float textures: which of the picture's */
     texture_wraps wraps;
     texture_filter filter;
+    bool is_data;    /* image: three numbers, not a colour */
     bool invert;     /* image: 1 - value, after scale */
     float scale;     /* image: of values; marble: of the place */
     int octaves;     /* fbm, wrinkled, marble; [0, TEXTURE_MAX_OCTAVES] */

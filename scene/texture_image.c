@@ -53,8 +53,47 @@ static ag_status take_alpha(texture_image *i, const image *picture, size_t pixel
     return AG_OK;
 }
 
+static void clean_values(texture_image *i, size_t count)
+{
+    for (size_t k = 0; k < count; k++)
+        if (!isfinite(i->values[k])) {
+            i->values[k] = 0.0f;
+            i->bad_count++;
+        }
+}
+
+/* From a colour space that is more than a curve and a matrix: three floats for each pixel, of the working space. */
+static ag_status decode_pixels(const scene *s, texture_image *i, const image *picture, char *message,
+                               size_t message_size)
+{
+    const size_t pixel_count = (size_t)picture->width * (size_t)picture->height;
+    const size_t channel_count = (size_t)picture->channel_count;
+    i->values = malloc(3 * pixel_count * sizeof *i->values);
+    if (!i->values)
+        return AG_ERROR_MEMORY;
+    for (size_t pixel = 0; pixel < pixel_count; pixel++)
+        for (size_t k = 0; k < 3; k++) {
+            const size_t from = pixel * channel_count + (channel_count >= 3 ? k : 0);
+            i->values[3 * pixel + k] =
+                picture->bytes ? (float)picture->bytes[from] * (1.0f / 255.0f) : picture->pixels[from];
+        }
+    i->channel_count = 3;
+    if (i->alpha_bytes) { /* they go with bytes */
+        i->alpha_values = malloc(pixel_count * sizeof *i->alpha_values);
+        if (!i->alpha_values)
+            return AG_ERROR_MEMORY;
+        for (size_t k = 0; k < pixel_count; k++)
+            i->alpha_values[k] = (float)i->alpha_bytes[k] * (1.0f / 255.0f);
+        free(i->alpha_bytes);
+        i->alpha_bytes = NULL;
+    }
+    ag_status status = image_colors_decode(s, &i->colors, i->values, pixel_count, message, message_size);
+    clean_values(i, 3 * pixel_count);
+    return status;
+}
+
 /* Takes the picture's pixels. */
-static ag_status take_pixels(texture_image *i, image *picture, char *message, size_t message_size)
+static ag_status take_pixels(const scene *s, texture_image *i, image *picture, char *message, size_t message_size)
 {
     const size_t channel_count = (size_t)picture->channel_count, kept = channel_count >= 3 ? 3 : 1;
     const size_t pixel_count = (size_t)picture->width * (size_t)picture->height;
@@ -62,23 +101,23 @@ static ag_status take_pixels(texture_image *i, image *picture, char *message, si
     i->height = (uint32_t)picture->height;
     i->channel_count = (uint32_t)kept;
     ag_status status = take_alpha(i, picture, pixel_count);
+    if (!status)
+        status = image_colors_find(s, i->encoding, picture, &i->colors, message, message_size);
     if (status)
         return status;
+    if (i->colors.space)
+        return decode_pixels(s, i, picture, message, message_size);
     if (picture->bytes) {
         i->bytes = keep_channels(picture->bytes, 1, pixel_count, channel_count, kept);
         picture->bytes = NULL;
-        return image_encoding_table(i->encoding, 256, i->table, message, message_size);
+        return image_encoding_table(i->colors.encoding, 256, i->table, message, message_size);
     }
     picture->pixels = keep_channels(picture->pixels, sizeof *picture->pixels, pixel_count, channel_count, kept);
     picture->channel_count = (int)kept;
-    status = image_linearize(picture, i->encoding, message, message_size);
+    status = image_linearize(picture, i->colors.encoding, message, message_size);
     i->values = picture->pixels;
     picture->pixels = NULL;
-    for (size_t k = 0; k < pixel_count * kept; k++)
-        if (!isfinite(i->values[k])) {
-            i->values[k] = 0.0f;
-            i->bad_count++;
-        }
+    clean_values(i, pixel_count * kept);
     return status;
 }
 
@@ -88,7 +127,8 @@ typedef struct file_bytes {
     size_t size;
 } file_bytes;
 
-static ag_status read_image(texture_image *i, const char *path, file_bytes file, char *message, size_t message_size)
+static ag_status read_image(const scene *s, texture_image *i, const char *path, file_bytes file, char *message,
+                            size_t message_size)
 {
     i->path = strdup(path);
     if (!i->path)
@@ -97,7 +137,7 @@ static ag_status read_image(texture_image *i, const char *path, file_bytes file,
     ag_status status = file.bytes ? image_read_memory(path, file.bytes, file.size, &picture, message, message_size)
                                   : image_read_compact(path, &picture, message, message_size);
     if (!status)
-        status = take_pixels(i, &picture, message, message_size);
+        status = take_pixels(s, i, &picture, message, message_size);
     image_reset(&picture);
     return status;
 }
@@ -115,7 +155,7 @@ static ag_status load(scene *s, const char *path, file_bytes file, image_encodin
     if (!i)
         return AG_ERROR_MEMORY;
     i->encoding = encoding;
-    ag_status status = read_image(i, path, file, message, message_size);
+    ag_status status = read_image(s, i, path, file, message, message_size);
     if (status)
         texture_image_destroy(i);
     return status ? status : scene_add_texture_image(s, i, out_index);
@@ -240,6 +280,12 @@ rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filte
     const footprint f = find_pixels(i, wraps, filter, s, t);
     const float first = sum_channel(i, &f, 0);
     return i->channel_count == 1 ? rgb_gray(first) : rgb_make(first, sum_channel(i, &f, 1), sum_channel(i, &f, 2));
+}
+
+rgb texture_image_color(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
+{
+    rgb c = texture_image_rgb(i, wraps, filter, s, t);
+    return i->colors.has_matrix ? image_colors_convert(&i->colors, c) : c;
 }
 
 /* is_encoded: bytes are decoded as those of colours are. */

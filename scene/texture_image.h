@@ -1,11 +1,11 @@
 /* texture_image.h: pictures as textures look them up: linear values between the middles of pixels. Pixels of 8 bits
- * stay bytes, and are decoded by a table of 256. Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th
- * ed., 2023, 10.4 (image texture). Flow: image_reader, image_encoding -> [here] -> texture. Threads: one loads; then
- * any number look up. */
+ * stay bytes, and are decoded by a table of 256; a picture may serve as colours and as numbers. Rests on: Pharr, Jakob,
+ * Humphreys, "Physically Based Rendering", 4th ed., 2023, 10.4 (image texture). Flow: image_reader, image_encoding ->
+ * [here] -> texture. Threads: one loads; then any number look up. */
 #ifndef AFTERGLOW_TEXTURE_IMAGE_H
 #define AFTERGLOW_TEXTURE_IMAGE_H
 
-#include "image_encoding.h"
+#include "image_colors.h"
 #include "math/vec3.h"
 
 #include <stdint.h>
@@ -50,6 +50,7 @@ typedef struct texture_image {
     float table[256];           /* linear values of the bytes */
     unsigned char *alpha_bytes; /* with bytes, or NULL: 1 everywhere */
     float *alpha_values;        /* the same with values */
+    image_colors colors;        /* from linear values to the working space's, of those that are colours */
     uint64_t bad_count;         /* values that were not finite, and are 0 now */
 } texture_image;
 
@@ -63,7 +64,9 @@ ag_status texture_image_load_memory(struct scene *s, const char *name, const uns
                                     image_encoding encoding, uint32_t *out_index, char *message, size_t message_size);
 void texture_image_destroy(texture_image *i); /* NULL is fine */
 
-/* s to the right, t down, from the top left corner (0, 0) to the bottom right one (1, 1). */
+/* s to the right, t down, from the top left corner (0, 0) to the bottom right one (1, 1). The first is a colour of the
+ * working space, the others are numbers as they stand in the picture, made linear. */
+rgb texture_image_color(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t);
 rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t);
 float texture_image_float(const texture_image *i, texture_channel channel, texture_wraps wraps, texture_filter filter,
                           float s, float t);

@@ -40,7 +40,7 @@ static void write_scaling_config(const char *name, double factor)
 static color_config *open_config(const char *path)
 {
     color_config *config = NULL;
-    const ag_status status = color_config_create(path, message, sizeof message, &config);
+    const ag_status status = color_config_create(path, NULL, message, sizeof message, &config);
     if (status != AG_OK)
         print_error("%s\n", message);
     assert_int_equal(status, AG_OK);
@@ -53,7 +53,8 @@ static color_config *open_config_file(const char *name) { return open_config(in_
 static color_processor *open_processor(const color_config *config, const char *display, const char *view)
 {
     color_processor *processor = NULL;
-    const ag_status status = color_processor_create(config, display, view, message, sizeof message, &processor);
+    const color_view wanted = {.display = display, .view = view};
+    const ag_status status = color_processor_create(config, &wanted, message, sizeof message, &processor);
     if (status != AG_OK)
         print_error("%s\n", message);
     assert_int_equal(status, AG_OK);
@@ -117,7 +118,7 @@ static void defaults_and_names(void **state)
 {
     (void)state;
     color_config *config = open_config(NULL);
-    assert_string_equal(color_config_input_space(config), "Linear Rec.709 (sRGB)");
+    assert_string_equal(color_config_working_space(config), "Linear Rec.709 (sRGB)");
     assert_true(strlen(color_config_name(config)) > 0);
     assert_true(strlen(color_config_hash(config)) >= 16);
 
@@ -162,7 +163,7 @@ static void path_beats_environment_beats_builtin(void **state)
 static void expect_bad_config(const char *path, const char *text, const char *more_text)
 {
     color_config *config = (color_config *)(void *)message;
-    assert_int_equal(color_config_create(path, message, sizeof message, &config), AG_ERROR_COLOR);
+    assert_int_equal(color_config_create(path, NULL, message, sizeof message, &config), AG_ERROR_COLOR);
     assert_null(config);
     assert_non_null(strstr(message, text));
     assert_non_null(strstr(message, more_text));
@@ -194,7 +195,7 @@ static void bad_configs_say_why(void **state)
     /* The message is cut, not overrun. */
     char small[8];
     color_config *config;
-    assert_int_equal(color_config_create(path, small, sizeof small, &config), AG_ERROR_COLOR);
+    assert_int_equal(color_config_create(path, NULL, small, sizeof small, &config), AG_ERROR_COLOR);
     assert_int_equal(strlen(small), sizeof small - 1);
 }
 
@@ -203,20 +204,33 @@ static void unknown_names_list_the_known(void **state)
     (void)state;
     color_config *config = open_config(NULL);
     color_processor *processor = NULL;
-    assert_int_equal(color_processor_create(config, "Cinema", NULL, message, sizeof message, &processor),
-                     AG_ERROR_COLOR);
+    const color_view cinema = {.display = "Cinema"}, filmic = {.view = "Filmic"}, look = {.look = "Bleach"};
+    assert_int_equal(color_processor_create(config, &cinema, message, sizeof message, &processor), AG_ERROR_COLOR);
     assert_null(processor);
     assert_non_null(strstr(message, "'Cinema'"));
     assert_non_null(strstr(message, "'sRGB - Display'"));
     assert_non_null(strstr(message, "'P3-D65 - Display'"));
 
-    assert_int_equal(color_processor_create(config, NULL, "Filmic", message, sizeof message, &processor),
-                     AG_ERROR_COLOR);
+    assert_int_equal(color_processor_create(config, &filmic, message, sizeof message, &processor), AG_ERROR_COLOR);
     assert_non_null(strstr(message, "'Filmic'"));
     assert_non_null(strstr(message, "'Un-tone-mapped'"));
     assert_non_null(strstr(message, "'ACES 1.0 - SDR Video'"));
     assert_null(strstr(message, "P3 lim")); /* a view of other displays */
+
+    expect_failure(color_processor_create(config, &look, message, sizeof message, &processor), AG_ERROR_COLOR,
+                   "'Bleach'");
+    assert_non_null(strstr(message, "'Higher Contrast'"));
+    const color_view half_known = {.look = "Higher Contrast, nothing"};
+    expect_failure(color_processor_create(config, &half_known, message, sizeof message, &processor), AG_ERROR_COLOR,
+                   "'nothing'");
     color_config_destroy(config);
+
+    color_config *none = NULL;
+    expect_failure(color_config_create(NULL, "ACEScq", message, sizeof message, &none), AG_ERROR_COLOR, "'ACEScq'");
+    assert_non_null(strstr(message, "'ACEScg'"));
+    expect_failure(color_config_create(NULL, "Raw", message, sizeof message, &none), AG_ERROR_COLOR, "data");
+    expect_failure(color_config_create(NULL, "ACEScct", message, sizeof message, &none), AG_ERROR_COLOR, "not linear");
+    assert_null(none);
 }
 
 /* Blender before 4.0: the reference space is linear Rec. 709 and is called "Linear". */
@@ -229,22 +243,28 @@ static void config_of_blender_kind(void **state)
                                          "  - !<ColorSpace>\n    name: Square\n"
                                          "    from_reference: !<ExponentTransform> {value: [2, 2, 2, 1]}\n");
     color_config *config = open_config_file("blender.ocio");
-    assert_string_equal(color_config_input_space(config), "Linear");
+    assert_string_equal(color_config_working_space(config), "Linear");
     float rgb[3] = {0.5f, 0.25f, 0.125f};
     apply(config, "sRGB", "Standard", rgb, 1);
     assert_rgb(rgb, 0.25, 0.0625, 0.015625, 1e-5);
     color_config_destroy(config);
 }
 
-/* The view hands out ACEScg values, so Rec. 709 red must come out as the first column of the matrix. */
-static void expect_red_in_acescg(const char *name, const char *text, const char *input_space)
+/* Light is carried in ACEScg: Rec. 709 red is the first column of the matrix there, and the view shows what it is
+ * given. */
+static void expect_acescg(const char *name, const char *text, const char *working_space)
 {
     write_text(name, text);
     color_config *config = open_config_file(name);
-    assert_string_equal(color_config_input_space(config), input_space);
-    float rgb[3] = {1.0f, 0.0f, 0.0f};
+    assert_string_equal(color_config_working_space(config), working_space);
+    double m[9];
+    assert_true(color_config_from_rec709(config, m));
+    assert_near(m[0], 0.613097, 2e-6);
+    assert_near(m[3], 0.070194, 2e-6);
+    assert_near(m[6], 0.020616, 2e-6);
+    float rgb[3] = {0.5f, 0.25f, 0.125f};
     apply(config, NULL, NULL, rgb, 1);
-    assert_rgb(rgb, 0.613097, 0.070194, 0.020616, 2e-5);
+    assert_rgb(rgb, 0.5, 0.25, 0.125, 1e-6);
     color_config_destroy(config);
 }
 
@@ -252,22 +272,119 @@ static void configs_of_aces_kind(void **state)
 {
     (void)state;
     /* 1.x: scene_linear is ACEScg, and Rec. 709 has a name. */
-    expect_red_in_acescg("aces1.ocio",
-                         VERSION_1 "roles:\n  scene_linear: ACES - ACEScg\n  rendering: ACES - ACEScg\ndisplays:\n"
-                                   "  ACES:\n    - !<View> {name: Plain, colorspace: ACES - ACEScg}\ncolorspaces:\n"
-                                   "  - !<ColorSpace>\n    name: ACES - ACEScg\n"
-                                   "  - !<ColorSpace>\n    name: Utility - Linear - sRGB\n"
-                                   "    to_reference: !<MatrixTransform> {matrix: " ACESCG_FROM_REC709 "}\n",
-                         "Utility - Linear - sRGB");
+    expect_acescg("aces1.ocio",
+                  VERSION_1 "roles:\n  scene_linear: ACES - ACEScg\n  rendering: ACES - ACEScg\ndisplays:\n"
+                            "  ACES:\n    - !<View> {name: Plain, colorspace: ACES - ACEScg}\ncolorspaces:\n"
+                            "  - !<ColorSpace>\n    name: ACES - ACEScg\n"
+                            "  - !<ColorSpace>\n    name: Utility - Linear - sRGB\n"
+                            "    to_reference: !<MatrixTransform> {matrix: " ACESCG_FROM_REC709 "}\n",
+                  "ACES - ACEScg");
     /* 2.x without a Rec. 709 space: by way of the interchange role. */
-    expect_red_in_acescg("aces2.ocio",
-                         "ocio_profile_version: 2\nfile_rules:\n  - !<Rule> {name: Default, colorspace: ACEScg}\n"
-                         "roles:\n  scene_linear: ACEScg\n  aces_interchange: ACES2065-1\ndisplays:\n"
-                         "  ACES:\n    - !<View> {name: Plain, colorspace: ACEScg}\ncolorspaces:\n"
-                         "  - !<ColorSpace>\n    name: ACES2065-1\n"
-                         "  - !<ColorSpace>\n    name: ACEScg\n"
-                         "    to_scene_reference: !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}\n",
-                         "ACES2065-1");
+    expect_acescg("aces2.ocio",
+                  "ocio_profile_version: 2\nfile_rules:\n  - !<Rule> {name: Default, colorspace: ACEScg}\n"
+                  "roles:\n  scene_linear: ACEScg\n  aces_interchange: ACES2065-1\ndisplays:\n"
+                  "  ACES:\n    - !<View> {name: Plain, colorspace: ACEScg}\ncolorspaces:\n"
+                  "  - !<ColorSpace>\n    name: ACES2065-1\n"
+                  "  - !<ColorSpace>\n    name: ACEScg\n"
+                  "    to_scene_reference: !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}\n",
+                  "ACEScg");
+}
+
+/* Light is multiplied before the view, and the looks that are asked for take the place of the view's own. */
+static void exposure_and_looks(void **state)
+{
+    (void)state;
+    color_config *config = open_config(NULL);
+    color_processor *plain, *brighter, *contrast, *undone;
+    const color_view views[] = {{.view = "Un-tone-mapped"},
+                                {.view = "Un-tone-mapped", .exposure = -1.0f},
+                                {.view = "Un-tone-mapped", .look = "higher contrast"},
+                                {.view = "Un-tone-mapped", .look = "Higher Contrast, -Higher Contrast"}};
+    color_processor **const made[] = {&plain, &brighter, &contrast, &undone};
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(color_processor_create(config, &views[i], message, sizeof message, made[i]), AG_OK);
+    float in[4][3] = {{0.09f, 0.2f, 0.3f}, {0.18f, 0.4f, 0.6f}, {0.09f, 0.2f, 0.3f}, {0.09f, 0.2f, 0.3f}};
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(color_processor_apply(*made[i], in[i], 1, message, sizeof message), AG_OK);
+    assert_memory_equal(in[0], in[1], sizeof in[0]);
+    assert_true(in[2][0] < in[0][0] - 0.01f); /* below grey it is darker */
+    assert_rgb(in[3], in[0][0], in[0][1], in[0][2], 2e-4);
+    for (int i = 0; i < 4; i++)
+        color_processor_destroy(*made[i]);
+    color_config_destroy(config);
+}
+
+static void working_space_by_name(void **state)
+{
+    (void)state;
+    color_config *config = NULL;
+    double m[9];
+    assert_int_equal(color_config_create(NULL, "lin_ap1", message, sizeof message, &config), AG_OK);
+    assert_string_equal(color_config_working_space(config), "ACEScg");
+    assert_true(color_config_from_rec709(config, m));
+    assert_near(m[0], 0.613097, 2e-6);
+    assert_near(m[1], 0.339523, 2e-6);
+    /* the same light looks the same from both spaces */
+    color_config *rec709 = open_config(NULL);
+    float a[3] = {0.8f, 0.1f, 0.3f}, b[3];
+    for (int i = 0; i < 3; i++)
+        b[i] = (float)(m[3 * i] * (double)a[0] + m[3 * i + 1] * (double)a[1] + m[3 * i + 2] * (double)a[2]);
+    apply(rec709, NULL, NULL, a, 1);
+    apply(config, NULL, NULL, b, 1);
+    assert_rgb(a, b[0], b[1], b[2], 2e-5);
+    color_config_destroy(rec709);
+
+    color_curve curve;
+    assert_int_equal(color_config_study_space(config, "srgb_tx", message, sizeof message, &curve, m), AG_OK);
+    assert_int_equal(curve, COLOR_CURVE_SRGB);
+    assert_near(m[0], 0.613097, 2e-5);
+    assert_int_equal(color_config_study_space(config, "ACES2065-1", message, sizeof message, &curve, m), AG_OK);
+    assert_int_equal(curve, COLOR_CURVE_LINEAR);
+    assert_near(m[0], 1.451439, 2e-5);
+    assert_int_equal(color_config_study_space(config, "Raw", message, sizeof message, &curve, m), AG_OK);
+    assert_int_equal(curve, COLOR_CURVE_DATA);
+    assert_int_equal(color_config_study_space(config, "ACEScct", message, sizeof message, &curve, m), AG_OK);
+    assert_int_equal(curve, COLOR_CURVE_OTHER);
+    expect_failure(color_config_study_space(config, "sRBG", message, sizeof message, &curve, m), AG_ERROR_COLOR,
+                   "'sRBG'");
+
+    assert_string_equal(color_config_rule(config, "/some/where/a.exr"), "Linear Rec.709 (sRGB)");
+    assert_null(color_config_rule(config, "a.png"));
+    assert_string_equal(color_config_find_space(config, "rendering", message, sizeof message), "Linear Rec.709 (sRGB)");
+    color_config_destroy(config);
+}
+
+/* A view whose table is not there is told as it is; the config's other views work. */
+static void missing_tables_are_named(void **state)
+{
+    (void)state;
+    write_text("tables.ocio", VERSION_1 "search_path: luts\nroles:\n  scene_linear: Linear\ndisplays:\n  Screen:\n"
+                                        "    - !<View> {name: Plain, colorspace: Linear}\n"
+                                        "    - !<View> {name: Table, colorspace: table}\ncolorspaces:\n"
+                                        "  - !<ColorSpace>\n    name: Linear\n"
+                                        "  - !<ColorSpace>\n    name: table\n"
+                                        "    from_reference: !<FileTransform> {src: gone.spi1d}\n");
+    color_config *config = open_config_file("tables.ocio");
+    color_processor *processor = NULL;
+    const color_view table = {.view = "Table"};
+    expect_failure(color_processor_create(config, &table, message, sizeof message, &processor), AG_ERROR_COLOR,
+                   "gone.spi1d");
+    expect_grey(config, "Screen", "Plain", 0.3f, 0.3, 1e-6);
+    color_config_destroy(config);
+}
+
+static void tells_what_there_is(void **state)
+{
+    (void)state;
+    char *text = NULL;
+    color_config *config = open_config(NULL);
+    assert_int_equal(color_config_describe(config, message, sizeof message, &text), AG_OK);
+    static const char *const told[] = {"  sRGB - Display (default)\n", "    ACES 1.0 - SDR Video (default)\n",
+                                       "  Lower Contrast\n", "  ACEScg (aces_cg, ", "  scene_linear: Linear Rec.709"};
+    for (size_t i = 0; i < sizeof told / sizeof *told; i++)
+        assert_non_null(strstr(text, told[i]));
+    free(text);
+    color_config_destroy(config);
 }
 
 /* Neither a known name nor an interchange space: the role is all there is. */
@@ -278,7 +395,7 @@ static void falls_back_to_the_role(void **state)
                                       "    - !<View> {name: Plain, colorspace: scene}\ncolorspaces:\n"
                                       "  - !<ColorSpace>\n    name: scene\n");
     color_config *config = open_config_file("role.ocio");
-    assert_string_equal(color_config_input_space(config), "scene");
+    assert_string_equal(color_config_working_space(config), "scene");
     expect_grey(config, NULL, NULL, 0.3f, 0.3, 1e-6);
     color_config_destroy(config);
 }
@@ -387,6 +504,10 @@ int main(void)
         cmocka_unit_test(unknown_names_list_the_known),
         cmocka_unit_test(config_of_blender_kind),
         cmocka_unit_test(configs_of_aces_kind),
+        cmocka_unit_test(exposure_and_looks),
+        cmocka_unit_test(working_space_by_name),
+        cmocka_unit_test(missing_tables_are_named),
+        cmocka_unit_test(tells_what_there_is),
         cmocka_unit_test(falls_back_to_the_role),
         cmocka_unit_test(bands_have_the_same_bits),
         cmocka_unit_test(agrees_with_oiiotool),

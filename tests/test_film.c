@@ -117,7 +117,8 @@ static ag_film *film_of(uint32_t layers, bool has_signs)
     pixel_filter filter = {.has_signs = has_signs, .mean_sign = 1.0};
     aov_layout layout;
     assert_int_equal(aov_layout_create(layers, false, false, groups, 1, &layout), AG_OK);
-    ag_film *film = film_create(&settings, &filter, &layout);
+    working_space space = working_space_rec709();
+    ag_film *film = film_create(&settings, &space, &filter, &layout);
     assert_non_null(film);
     return film;
 }

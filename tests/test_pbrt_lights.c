@@ -119,7 +119,7 @@ static void black_bodies(void **state)
 {
     (void)state;
     reading r = reading_of("WorldBegin LightSource \"point\" \"blackbody I\" [ 4000 ] \"float scale\" 3");
-    rgb expected = spectra_blackbody(4000), value = only_light(&r)->intensity;
+    rgb expected = spectra_blackbody(4000, NULL), value = only_light(&r)->intensity;
     assert_rgb(value, 3 * expected.r, 3 * expected.g, 3 * expected.b, 1e-5);
     reading_destroy(&r);
 }
@@ -153,7 +153,7 @@ static void conductors(void **state)
     (void)state;
     material m = only_material("\"conductor\"");
     rgb eta, k;
-    assert_true(spectra_find_named("metal-Cu-eta", &eta) && spectra_find_named("metal-Cu-k", &k));
+    assert_true(spectra_find_named("metal-Cu-eta", NULL, &eta) && spectra_find_named("metal-Cu-k", NULL, &k));
     assert_int_equal(m.kind, MATERIAL_CONDUCTOR);
     assert_rgb(m.eta, eta.r, eta.g, eta.b, 0);
     assert_rgb(m.k, k.r, k.g, k.b, 0);

@@ -18,7 +18,7 @@ static material only_material(const char *text)
 static rgb spectrum(const char *name)
 {
     rgb value;
-    assert_true(spectra_find_named(name, &value));
+    assert_true(spectra_find_named(name, NULL, &value));
     return value;
 }
 

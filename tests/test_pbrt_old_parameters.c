@@ -107,7 +107,7 @@ static void black_bodies_have_a_peak_of_one(void **state)
         assert_near(spectra_blackbody_luminance(KELVIN[i]) / (sum / whole), 1, 0.01);
     }
     assert_true(spectra_blackbody_luminance(5221) < 1);
-    const rgb one = spectra_blackbody(2700);
+    const rgb one = spectra_blackbody(2700, NULL);
     const double l = 5 * 2 * spectra_blackbody_luminance(2700);
     assert_rgb(light_of("AreaLightSource \"diffuse\" \"blackbody L\" [ 2700 5 ] \"float scale\" 2", 1,
                         "is as bright as there"),

@@ -139,7 +139,8 @@ static void errors_name_place_and_reason(void **state)
         {"Camera \"perspective\" \"float frameaspectratio\" 0", "1:22", "\"frameaspectratio\" should be above 0"},
         {"Camera \"perspective\" \"float screenwindow\" [ 1 0 0 1 ]", "1:22",
          "\"screenwindow\" should be x0 x1 y0 y1, with x0 < x1 and y0 < y1"},
-        {"ColorSpace \"foo\"", "1:1", "unknown colour space \"foo\"; known are srgb, dci-p3, rec2020 and aces2065-1"},
+        {"ColorSpace \"foo\"", "1:1",
+         "unknown colour space \"foo\"; known are srgb, dci-p3, rec2020, aces2065-1 and acescg"},
         {"ActiveTransform Foo", "1:17", "ActiveTransform expects StartTime, EndTime or All, not Foo"},
         {"Option \"a\" 1", "1:8", "unknown option \"a\""},
         {"Option \"seed\" [", "1:15", "Option expects a value, not ["},
@@ -587,7 +588,7 @@ static void colour_spaces_are_part_of_the_state(void **state)
                         "written in linear Rec. 709\n");
     reading_destroy(&pictured);
     rgb white;
-    assert_true(spectra_find_named("illum-acesD60", &white));
+    assert_true(spectra_find_named("illum-acesD60", NULL, &white));
     assert_rgb(s->lights[0].intensity, white.r, white.g, white.b, 1e-6);
     reading_destroy(&r);
 }

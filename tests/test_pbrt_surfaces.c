@@ -56,7 +56,7 @@ static material warned_material(const char *text, const char *warnings)
 static rgb spectrum(const char *name)
 {
     rgb value;
-    assert_true(spectra_find_named(name, &value));
+    assert_true(spectra_find_named(name, NULL, &value));
     return value;
 }
 

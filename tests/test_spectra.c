@@ -74,7 +74,7 @@ static void black_bodies(void **state)
                                       {10000, .2806, .2883}};
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         double xy[2], luminance;
-        chromaticity(spectra_blackbody(CASES[i][0]), xy, &luminance);
+        chromaticity(spectra_blackbody(CASES[i][0], NULL), xy, &luminance);
         assert_near(luminance, 1.0, 1e-6);
         assert_near(xy[0], CASES[i][1], 1e-4);
         assert_near(xy[1], CASES[i][2], 1e-4);
@@ -91,7 +91,7 @@ static void light_has_luminance_one(void **state)
     static const double EVEN[2][4] = {{300, 1, 900, 1}, {300, 7, 900, 7}};
     for (int i = 0; i < 2; i++) {
         double xy[2], luminance;
-        chromaticity(spectra_sampled(EVEN[i], 2, SPECTRUM_LIGHT), xy, &luminance);
+        chromaticity(spectra_sampled(EVEN[i], 2, SPECTRUM_LIGHT, NULL), xy, &luminance);
         assert_near(luminance, 1.0, 1e-6);
         assert_near(xy[0], 1.0 / 3.0, 5e-5);
         assert_near(xy[1], 1.0 / 3.0, 5e-5);
@@ -103,19 +103,19 @@ static void light_has_luminance_one(void **state)
         planck[2 * i] = nm;
         planck[2 * i + 1] = pow(560.0 / nm, 5.0) / expm1(1.438776877e7 / (nm * 4500.0));
     }
-    rgb sampled = spectra_sampled(planck, 96, SPECTRUM_LIGHT), exact = spectra_blackbody(4500.0);
+    rgb sampled = spectra_sampled(planck, 96, SPECTRUM_LIGHT, NULL), exact = spectra_blackbody(4500.0, NULL);
     assert_near(sampled.r, exact.r, 2e-4);
     assert_near(sampled.g, exact.g, 2e-4);
     assert_near(sampled.b, exact.b, 2e-4);
     /* outside its wavelengths there is none */
     static const double RED[] = {620, 1, 700, 1}, NONE[] = {400, 0, 700, 0}, INFRARED[] = {900, 1, 1000, 1};
-    rgb red = spectra_sampled(RED, 2, SPECTRUM_LIGHT);
+    rgb red = spectra_sampled(RED, 2, SPECTRUM_LIGHT, NULL);
     assert_true(red.r > 3.0f && red.g == 0.0f && red.b == 0.0f);
-    assert_true(rgb_is_black(spectra_sampled(NONE, 2, SPECTRUM_LIGHT)));
-    assert_true(rgb_is_black(spectra_sampled(INFRARED, 2, SPECTRUM_LIGHT)));
+    assert_true(rgb_is_black(spectra_sampled(NONE, 2, SPECTRUM_LIGHT, NULL)));
+    assert_true(rgb_is_black(spectra_sampled(INFRARED, 2, SPECTRUM_LIGHT, NULL)));
     /* one wavelength is a line: 580 nm, whose chromaticity is .5125 .4866; blue is outside the gamut and becomes 0 */
     static const double LINE[] = {580, 1};
-    rgb line = spectra_sampled(LINE, 1, SPECTRUM_LIGHT);
+    rgb line = spectra_sampled(LINE, 1, SPECTRUM_LIGHT, NULL);
     color_matrix m = color_rec709_from_xyz();
     const double xyz[3] = {.9163 / .87, 1.0, .001650001 / .87};
     double c[3];
@@ -129,17 +129,18 @@ static void reflectances_are_shares(void **state)
 {
     (void)state;
     static const double HALF[] = {400, .5, 700, .5}, WHITE[] = {550, 1}, STEP[] = {300, 0, 589.5, 0, 590.5, 1, 900, 1};
-    rgb c = spectra_sampled(HALF, 2, SPECTRUM_REFLECTANCE);
+    rgb c = spectra_sampled(HALF, 2, SPECTRUM_REFLECTANCE, NULL);
     assert_near(c.r, 0.5, 1e-6);
     assert_near(c.g, 0.5, 1e-6);
     assert_near(c.b, 0.5, 1e-6);
-    c = spectra_sampled(WHITE, 1, SPECTRUM_REFLECTANCE);
+    c = spectra_sampled(WHITE, 1, SPECTRUM_REFLECTANCE, NULL);
     assert_near(c.r + c.g + c.b, 3.0, 1e-6);
     /* a reflectance and the rest of the light make white: they are linear while nothing is clipped */
-    c = spectra_sampled(STEP, 4, SPECTRUM_REFLECTANCE);
+    c = spectra_sampled(STEP, 4, SPECTRUM_REFLECTANCE, NULL);
     assert_true(c.r > 0.7f && c.r <= 1.0f && c.g < 0.2f && c.b < 0.02f);
     static const double SLOPE[] = {360, .2, 830, .8}, REST[] = {360, .8, 830, .2};
-    rgb a = spectra_sampled(SLOPE, 2, SPECTRUM_REFLECTANCE), b = spectra_sampled(REST, 2, SPECTRUM_REFLECTANCE);
+    rgb a = spectra_sampled(SLOPE, 2, SPECTRUM_REFLECTANCE, NULL),
+        b = spectra_sampled(REST, 2, SPECTRUM_REFLECTANCE, NULL);
     assert_near(a.r + b.r, 1.0, 1e-6);
     assert_near(a.g + b.g, 1.0, 1e-6);
     assert_near(a.b + b.b, 1.0, 1e-6);
@@ -150,14 +151,14 @@ static void indices_stay_between_their_values(void **state)
 {
     (void)state;
     static const double GLASS[] = {400, 1.5, 700, 1.5}, SLOPE[] = {400, 4, 700, 1}, STEP[] = {499, 1.5, 501, .2};
-    rgb c = spectra_sampled(GLASS, 2, SPECTRUM_INDEX);
+    rgb c = spectra_sampled(GLASS, 2, SPECTRUM_INDEX, NULL);
     assert_near(c.r, 1.5, 1e-6);
     assert_near(c.b, 1.5, 1e-6);
-    c = spectra_sampled(SLOPE, 2, SPECTRUM_INDEX);
+    c = spectra_sampled(SLOPE, 2, SPECTRUM_INDEX, NULL);
     assert_near(c.b, 4.0 - .01 * 50, 0.1); /* each at its wavelength: about 450, 540 and 600 nm */
     assert_near(c.g, 4.0 - .01 * 140, 0.1);
     assert_near(c.r, 4.0 - .01 * 200, 0.15);
-    c = spectra_sampled(STEP, 2, SPECTRUM_INDEX);
+    c = spectra_sampled(STEP, 2, SPECTRUM_INDEX, NULL);
     assert_true(c.r >= .2f && c.g >= .2f && c.b <= 1.5f && c.b > 1.3f);
 }
 
@@ -174,20 +175,20 @@ static void names(void **state)
         "illum-acesD60"};
     rgb c;
     for (size_t i = 0; i < sizeof KNOWN / sizeof *KNOWN; i++)
-        if (!spectra_find_named(KNOWN[i], &c) || spectra_is_missing(KNOWN[i]))
+        if (!spectra_find_named(KNOWN[i], NULL, &c) || spectra_is_missing(KNOWN[i]))
             fail_msg("%s", KNOWN[i]);
-    assert_false(spectra_find_named("stdillum-F13", &c));
+    assert_false(spectra_find_named("stdillum-F13", NULL, &c));
     assert_true(spectra_is_missing("nikon_d810_g") && spectra_is_missing("canon_eos_100d_r"));
     assert_false(spectra_is_missing("nikon_d810_x") || spectra_is_missing("nikon_d811_g") || spectra_is_missing("_g"));
     assert_true(spectra_is_sensor("sony_ilce_9", 11));
     /* A is a black body of 2855.54 K */
-    assert_true(spectra_find_named("stdillum-A", &c));
-    rgb body = spectra_blackbody(2855.54);
+    assert_true(spectra_find_named("stdillum-A", NULL, &c));
+    rgb body = spectra_blackbody(2855.54, NULL);
     assert_near(c.r, body.r, 2e-3);
     assert_near(c.g, body.g, 2e-3);
     assert_near(c.b, body.b, 2e-3);
     double xy[2], luminance;
-    assert_true(spectra_find_named("stdillum-F11", &c));
+    assert_true(spectra_find_named("stdillum-F11", NULL, &c));
     chromaticity(c, xy, &luminance);
     assert_near(xy[0], .38052, 1e-6);
     assert_near(xy[1], .37713, 1e-6);

@@ -100,9 +100,20 @@ static ag_status render(ag_context *context, const options *o, const ag_scene *s
     return status;
 }
 
+static ag_status list_displays(ag_context *context)
+{
+    const char *text;
+    ag_status status = ag_color_summary(context, &text);
+    if (status == AG_OK && (fputs(text, stdout) < 0 || fflush(stdout) != 0))
+        status = AG_ERROR_OUTPUT;
+    return status;
+}
+
 static ag_status run(ag_context *context, options *o)
 {
     ag_status status = AG_OK;
+    if (o->lists_displays)
+        return list_displays(context);
     /* what was asked for is checked before the work */
     for (int i = 0; i < o->outfile_count && status == AG_OK; i++)
         status = ag_output_check(context, &o->output, o->outfiles[i]);

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum {
     OPT_SEED = 256,
@@ -34,6 +35,11 @@ enum {
     OPT_OCIO,
     OPT_DISPLAY,
     OPT_VIEW,
+    OPT_LOOK,
+    OPT_EXPOSURE,
+    OPT_WORKING_SPACE,
+    OPT_OUTPUT_SPACE,
+    OPT_LIST_DISPLAYS,
     OPT_STATS,
     OPT_PROGRESS,
     OPT_ISA,
@@ -82,6 +88,14 @@ static const option_line LINES[] = {
     {OPT_OCIO, "ocio", "FILE", "OpenColorIO config (default: $OCIO, else the one built in)"},
     {OPT_DISPLAY, "display", "NAME", "display of the config"},
     {OPT_VIEW, "view", "NAME", "view of the display"},
+    {OPT_LOOK, "look", "NAMES",
+     "looks of the config, with commas between them, - before one that is\nto be undone; none: not even the view's "
+     "own"},
+    {OPT_EXPOSURE, "exposure", "STOPS", "of pictures for displays: light times 2^STOPS, before the view"},
+    {OPT_WORKING_SPACE, "working-space", "NAME",
+     "colour space that light is carried in (default: the config's role\nrendering, else scene_linear)"},
+    {OPT_OUTPUT_SPACE, "output-space", "NAME", "colour space of .exr files (default: the working space)"},
+    {OPT_LIST_DISPLAYS, "list-displays", NULL, "print the config's displays, views, looks, colour spaces and roles"},
     {OPT_STATS, "stats", "FILE", "write statistics as JSON"},
     {OPT_PROGRESS, "progress", "STYLE", "auto (default), bar, plain, json or none"},
     {OPT_ISA, "isa", "NAME",
@@ -257,9 +271,19 @@ static bool take_option(int code, const char *value, options *o)
         is_valid = parse_word(value, WORDS("default", "uint8", "uint16", "half", "float"), &word);
         o->output.type = (ag_sample_type)word;
         break;
-    case OPT_OCIO: o->output.color_config = value; break;
+    case OPT_OCIO: o->context.color_config = value; break;
     case OPT_DISPLAY: o->output.display = value; break;
     case OPT_VIEW: o->output.view = value; break;
+    case OPT_LOOK: o->output.look = value; break;
+    case OPT_EXPOSURE: {
+        char *end;
+        o->output.exposure_stops = strtof(value, &end);
+        is_valid = end != value && !*end && fabsf(o->output.exposure_stops) <= 100.0f;
+        break;
+    }
+    case OPT_WORKING_SPACE: o->context.working_space = value; break;
+    case OPT_OUTPUT_SPACE: o->output.color_space = value; break;
+    case OPT_LIST_DISPLAYS: o->lists_displays = true; break;
     case OPT_STATS: o->stats = value; break;
     case OPT_PROGRESS:
         is_valid = parse_word(value, WORDS("auto", "bar", "plain", "json", "none"), &word);
@@ -315,6 +339,41 @@ static char *join_arguments(int argc, char **argv)
     return joined;
 }
 
+/* What is asked for must be for one of the files, where they are known. */
+static bool has_idle_color_option(const options *o)
+{
+    int exr_count = 0;
+    for (int i = 0; i < o->outfile_count; i++) {
+        size_t length = strlen(o->outfiles[i]);
+        exr_count += length >= 4 && strcasecmp(o->outfiles[i] + length - 4, ".exr") == 0;
+    }
+    if (o->outfile_count == 0)
+        return false;
+    const ag_output_settings *s = &o->output;
+    const char *of_displays = s->display               ? "display"
+                              : s->view                ? "view"
+                              : s->look                ? "look"
+                              : s->exposure_stops != 0 ? "exposure"
+                                                       : NULL;
+    if (of_displays && exr_count == o->outfile_count)
+        fprintf(stderr, "afterglow: --%s is for pictures that are not .exr, and there is none\n", of_displays);
+    else if (s->color_space && exr_count == 0)
+        fprintf(stderr, "afterglow: --output-space is for .exr files, and there is none\n");
+    else
+        return false;
+    return true;
+}
+
+/* Where the config is to be shown, nothing is rendered. */
+static bool has_scene_to_list(const options *o, int rest)
+{
+    if (!o->lists_displays || (rest == 0 && o->outfile_count == 0))
+        return false;
+    fprintf(stderr, "afterglow: --list-displays renders nothing: it goes with %s\n",
+            rest > 0 ? "no scene" : "no --outfile");
+    return true;
+}
+
 options_result options_parse(int argc, char **argv, options *out_options)
 {
     struct option longs[LINE_COUNT + 1];
@@ -348,14 +407,16 @@ options_result options_parse(int argc, char **argv, options *out_options)
             result = OPTIONS_EXIT_USAGE;
         }
     }
-    if (result == OPTIONS_RUN && optind != argc - 1) {
+    if (result == OPTIONS_RUN && has_scene_to_list(&o, argc - optind))
+        result = OPTIONS_EXIT_USAGE;
+    if (result == OPTIONS_RUN && !o.lists_displays && optind != argc - 1) {
         fprintf(stderr,
                 optind < argc ? "afterglow: one scene at a time: '%s' is one too many\n"
                               : "afterglow: no scene given%s\n",
                 optind < argc ? argv[optind + 1] : "");
         result = OPTIONS_EXIT_USAGE;
     }
-    if (result == OPTIONS_RUN && has_file_twice(&o))
+    if (result == OPTIONS_RUN && (has_file_twice(&o) || has_idle_color_option(&o)))
         result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
         fprintf(stderr, "Try 'afterglow --help'.\n");
@@ -363,7 +424,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
         options_reset(&o);
         return result;
     }
-    o.scene = argv[optind];
+    o.scene = o.lists_displays ? NULL : argv[optind];
     o.output.command_line = o.command_line;
     *out_options = o;
     return OPTIONS_RUN;

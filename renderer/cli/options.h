@@ -20,6 +20,7 @@ typedef struct options {
     int outfile_count;
     char *command_line; /* owned */
     const char *stats, *photons_file;
+    bool lists_displays; /* there is no scene then */
     progress_style progress;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
     ag_context_settings context;

@@ -24,12 +24,17 @@ extern "C" {
 typedef struct ag_context ag_context;
 
 typedef struct ag_context_settings {
-    unsigned thread_count;    /* 0: as many as the affinity mask and the cgroup's quota allow; default 0 */
-    const char *isa;          /* widest instruction set of ray traversal: "sse2", "sse4.2", "avx", "avx2", "avx512";
-                                 NULL: "avx2". Another set may give other bits. */
-    ag_log_fn *log;           /* NULL: messages are dropped */
-    ag_progress_fn *progress; /* or NULL */
-    void *user;               /* handed to both */
+    unsigned thread_count;     /* 0: as many as the affinity mask and the cgroup's quota allow; default 0 */
+    const char *isa;           /* widest instruction set of ray traversal: "sse2", "sse4.2", "avx", "avx2", "avx512";
+                                  NULL: "avx2". Another set may give other bits. */
+    const char *color_config;  /* an OpenColorIO config; NULL: $OCIO, else the one compiled in. Read when it is first
+                                  needed; one that cannot be used is an error of that call */
+    const char *working_space; /* colour space of the config that light is carried in, by name, alias or role; NULL: its
+                                  role rendering, else scene_linear (linear Rec. 709 in the one compiled in). The
+                                  scene's colours, spectra and pictures are converted to it as they are read */
+    ag_log_fn *log;            /* NULL: messages are dropped */
+    ag_progress_fn *progress;  /* or NULL */
+    void *user;                /* handed to both */
 } ag_context_settings;
 
 AG_API ag_context_settings ag_default_context_settings(void);
@@ -40,6 +45,10 @@ AG_API unsigned ag_context_thread_count(const ag_context *context);
 /* The work under way returns AG_CANCELLED, within 50 ms; so does all later work with this context. Safe in a signal
  * handler. */
 AG_API void ag_context_cancel(ag_context *context);
+
+/* What the colour config has, as lines of text: displays and their views, looks, colour spaces, roles. The context's.
+ * Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
+AG_API ag_status ag_color_summary(ag_context *context, const char **out_text);
 
 /* --- scene --- */
 
@@ -186,8 +195,10 @@ AG_API const ag_film *ag_rendering_film(const ag_rendering *rendering);
  * is fine. */
 AG_API void ag_rendering_finish(ag_rendering *rendering, ag_film **out_film);
 
-/* The pixels rendered (the crop), linear RGB with Rec. 709 primaries, top row first, 3 floats a pixel. The film's. */
+/* The pixels rendered (the crop), linear RGB of the working space, top row first, 3 floats a pixel. The film's. */
 AG_API const float *ag_film_pixels(const ag_film *film, int *out_width, int *out_height);
+/* Of the working space: red, green, blue, white, each x and y, as EXR files have them. */
+AG_API void ag_film_chromaticities(const ag_film *film, float out_chromaticities[8]);
 
 /* The channels of picture and layers, by the names that they have in a file; R, G and B are the first three. */
 AG_API int ag_film_channel_count(const ag_film *film);
@@ -213,24 +224,28 @@ typedef enum ag_sample_type {
 } ag_sample_type;
 
 typedef struct ag_output_settings {
-    const char *color_config; /* an OpenColorIO config; NULL: $OCIO, else the one compiled in */
-    const char *display;      /* NULL: the config's default */
-    const char *view;         /* NULL: the display's default */
-    ag_sample_type type;      /* default: half for EXR, 8 bit for the others */
-    bool tiled;               /* EXR in tiles of 64 x 64 pixels; default: in lines */
-    bool reproducible;        /* EXR without what differs from run to run: equal pictures are equal files */
+    ag_sample_type type;     /* default: half for EXR, 8 bit for the others */
+    bool tiled;              /* EXR in tiles of 64 x 64 pixels; default: in lines */
+    bool reproducible;       /* EXR without what differs from run to run: equal pictures are equal files */
     const char *command_line; /* to be noted in EXR files, or NULL */
+    const char *color_space; /* of EXR files, by the config's name, an alias or a role; NULL: the working space */
+    /* of all others: */
+    const char *display;  /* NULL: the config's default */
+    const char *view;     /* NULL: the display's default */
+    const char *look;     /* in place of the view's own: names with commas between them, undone with a - before it;
+                             "none": none; NULL: the view's own */
+    float exposure_stops; /* light is multiplied by 2 to this before the view; default 0 */
 } ag_output_settings;
 
 AG_API ag_output_settings ag_default_output_settings(void);
 
 /* Whether a file of that name could be written with these settings: the extension is known, the folder there, the
- * colour config usable. To be asked before a long render. Errors: AG_ERROR_ARGUMENT (extension or type),
- * AG_ERROR_OUTPUT, AG_ERROR_COLOR. */
+ * colour config and what is asked of it usable. To be asked before a long render. Errors: AG_ERROR_ARGUMENT (extension
+ * or type), AG_ERROR_OUTPUT, AG_ERROR_COLOR. */
 AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *settings, const char *path);
 
-/* Writes the film: scene-linear and with its layers for .exr; through display and view for .png, .tif, .jpg. The file
- * appears complete or not at all. settings NULL: the defaults. */
+/* Writes the film: scene-linear, with its layers and chromaticities, for .exr; through look, display and view for .png,
+ * .tif, .jpg. The file appears complete or not at all. settings NULL: the defaults. */
 AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                const char *path);
 
