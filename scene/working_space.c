@@ -71,7 +71,11 @@ bool working_space_make(const double from_rec709[9], working_space *out_space)
         return false;
     s.to_xyz = color_matrix_multiply(&rec709.to_xyz, &to_rec709);
     s.from_xyz = color_matrix_multiply(&s.from_rec709, &rec709.from_xyz);
-    s.luminance = rgb_make((float)s.to_xyz.m[1][0], (float)s.to_xyz.m[1][1], (float)s.to_xyz.m[1][2]);
+    float *const luminance[3] = {&s.luminance.r, &s.luminance.g, &s.luminance.b};
+    for (int i = 0; i < 3; i++) /* by the same rounded weights: what a lamp's power makes of it is the same */
+        *luminance[i] =
+            (float)((double)rec709.luminance.r * to_rec709.m[0][i] + (double)rec709.luminance.g * to_rec709.m[1][i] +
+                    (double)rec709.luminance.b * to_rec709.m[2][i]);
     find_chromaticities(&s);
     *out_space = s;
     return true;

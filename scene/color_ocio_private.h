@@ -1,0 +1,76 @@
+/* color_ocio_private.h: what the files that know OpenColorIO share: color_ocio.cpp (configs), color_space_ocio.cpp
+ * (what a config has, by its names) and color_view_ocio.cpp (ways from space to space, and to displays). Its exceptions
+ * end in guarded. Threads: see color.h; OpenColorIO's const objects may be shared. */
+#ifndef AFTERGLOW_COLOR_OCIO_PRIVATE_H
+#define AFTERGLOW_COLOR_OCIO_PRIVATE_H
+
+#include "color.h"
+
+#include <OpenColorIO/OpenColorIO.h>
+
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace OCIO = OCIO_NAMESPACE;
+
+struct color_config {
+    OCIO::ConstConfigRcPtr config;
+    std::string name;
+    std::string hash;
+    std::string working_space;
+    double from_rec709[9]; /* to the working space */
+    bool has_primaries;    /* that matrix is known */
+};
+
+namespace ag_color
+{
+
+/* Cut where it does not fit, and always terminated. */
+void put_message(char *message, size_t message_size, const char *text) noexcept;
+
+/* Runs work and is the one place where an exception becomes a status. */
+template <typename Work>
+ag_status guarded(char *message, size_t message_size, Work &&work) noexcept
+{
+    try {
+        put_message(message, message_size, "");
+        work();
+        return AG_OK;
+    } catch (const std::bad_alloc &) {
+        put_message(message, message_size, ag_status_text(AG_ERROR_MEMORY));
+        return AG_ERROR_MEMORY;
+    } catch (const std::exception &exception) {
+        put_message(message, message_size, exception.what());
+    } catch (...) {
+        put_message(message, message_size, "OpenColorIO failed without saying why");
+    }
+    return AG_ERROR_COLOR;
+}
+
+/* --- color_space_ocio.cpp --- */
+
+/* Inactive displays and views may be asked for by name too, so all are listed, not only those a menu would show. */
+std::vector<std::string> all_displays(const OCIO::ConstConfigRcPtr &config);
+std::vector<std::string> all_views(const OCIO::ConstConfigRcPtr &config, const char *display);
+std::vector<std::string> all_looks(const OCIO::ConstConfigRcPtr &config);
+
+/* The config's own spelling of name among names; unknown: an error that lists them. */
+std::string chosen(const char *what, const char *name, const std::vector<std::string> &names);
+
+/* By name, alias or role; unknown: an error that lists the config's. */
+OCIO::ConstColorSpaceRcPtr space_of(const OCIO::ConstConfigRcPtr &config, const char *name);
+
+/* --- color_view_ocio.cpp --- */
+
+OCIO::ColorSpaceTransformRcPtr space_transform(const std::string &from, const std::string &to);
+OCIO::ConstCPUProcessorRcPtr exact_processor(const OCIO::ConstConfigRcPtr &config,
+                                             const OCIO::ConstTransformRcPtr &transform);
+/* The matrix of a transform, row by row; false where it is none. */
+bool find_matrix(const OCIO::ConstCPUProcessorRcPtr &cpu, double out_matrix[9]);
+void set_unit_matrix(double matrix[9]);
+
+} // namespace ag_color
+
+#endif
