@@ -215,21 +215,22 @@ extern "C" ag_status color_processor_apply(const color_processor *processor, flo
                                            char *message, size_t message_size)
 {
     return guarded(message, message_size, [processor, rgb_pixels, count] {
-        if (processor->factor != 1.0f)
-            for (size_t i = 0; i < 3 * count; i++)
-                rgb_pixels[i] *= processor->factor;
-        /* In short rows: OpenColorIO copies a row of packed RGB at a time, and one long row would be one large copy. */
+        /* By way of RGBA: packed RGB OpenColorIO would copy there and back itself, at twice the price of a curve. */
         const size_t row_size = 1024;
-        const size_t row_count = count / row_size;
-        const size_t rest = count % row_size;
-        const OCIO::CPUProcessor &cpu = *processor->cpu;
-        if (row_count > 0) {
-            OCIO::PackedImageDesc rows(rgb_pixels, static_cast<long>(row_size), static_cast<long>(row_count), 3);
-            cpu.apply(rows);
-        }
-        if (rest > 0) {
-            OCIO::PackedImageDesc last(rgb_pixels + 3 * row_size * row_count, static_cast<long>(rest), 1, 3);
-            cpu.apply(last);
+        const float factor = processor->factor;
+        float row[4 * row_size];
+        for (size_t begin = 0; begin < count; begin += row_size) {
+            const size_t size = std::min(row_size, count - begin);
+            float *pixels = rgb_pixels + 3 * begin;
+            for (size_t i = 0; i < size; i++) {
+                for (size_t c = 0; c < 3; c++)
+                    row[4 * i + c] = factor * pixels[3 * i + c];
+                row[4 * i + 3] = 1.0f;
+            }
+            OCIO::PackedImageDesc description(row, static_cast<long>(size), 1, 4);
+            processor->cpu->apply(description);
+            for (size_t i = 0; i < size; i++)
+                std::copy(row + 4 * i, row + 4 * i + 3, pixels + 3 * i);
         }
     });
 }

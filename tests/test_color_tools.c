@@ -134,10 +134,8 @@ static void check_config(const char *config_path, const char *look, const char *
     }
     const color_view looked = {.display = look_display, .view = look_view, .look = look, .exposure = 1.0f};
     check_view(config, "oiiotool with a look", &looked, "look.exr");
-    for (int i = 0; i < count && has_tool("ocioconvert"); i++) {
-        const color_view view = {.display = views[i].display, .view = views[i].view};
-        if (i > 0 && strcmp(views[i].display, views[i - 1].display) == 0)
-            continue;
+    if (has_tool("ocioconvert")) {
+        const color_view view = {.display = views[0].display, .view = views[0].view};
         snprintf(command, sizeof command,
                  "cd '%s' && OCIO='%s' ocioconvert --view in.exr '%s' converted.exr '%s' '%s' >converted.txt 2>&1",
                  folder, path, space, view.display, view.view);
