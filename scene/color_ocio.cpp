@@ -142,6 +142,7 @@ ag_status create_config(const char *working_space, char *message, size_t message
             self->name = self->config->getName();
         /* Without a context: of the config's text alone, hence the same on every machine. */
         self->hash = self->config->getCacheID(OCIO::ConstContextRcPtr());
+        refuse_cycles(self->config);
         find_working_space(self, working_space);
     });
     if (status == AG_OK)

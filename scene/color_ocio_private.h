@@ -1,6 +1,7 @@
 /* color_ocio_private.h: what the files that know OpenColorIO share: color_ocio.cpp (configs), color_space_ocio.cpp
- * (what a config has, by its names) and color_view_ocio.cpp (ways from space to space, and to displays). Its exceptions
- * end in guarded. Threads: see color.h; OpenColorIO's const objects may be shared. */
+ * (what a config has, by its names), color_cycle_ocio.cpp (what would not end) and color_view_ocio.cpp (ways from space
+ * to space, and to displays). Its exceptions end in guarded. Threads: see color.h; OpenColorIO's const objects may be
+ * shared. */
 #ifndef AFTERGLOW_COLOR_OCIO_PRIVATE_H
 #define AFTERGLOW_COLOR_OCIO_PRIVATE_H
 
@@ -61,6 +62,11 @@ std::string chosen(const char *what, const char *name, const std::vector<std::st
 
 /* By name, alias or role; unknown: an error that lists the config's. */
 OCIO::ConstColorSpaceRcPtr space_of(const OCIO::ConstConfigRcPtr &config, const char *name);
+
+/* --- color_cycle_ocio.cpp --- */
+
+/* Throws where something in the config is made of itself, or of so much else that it would not end. */
+void refuse_cycles(const OCIO::ConstConfigRcPtr &config);
 
 /* --- color_view_ocio.cpp --- */
 

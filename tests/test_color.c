@@ -354,6 +354,39 @@ static void working_space_by_name(void **state)
     color_config_destroy(config);
 }
 
+/* What OpenColorIO would follow for ever. */
+static void what_is_made_of_itself_is_refused(void **state)
+{
+    (void)state;
+#define HEAD_OF_SPACES                                                                                                 \
+    VERSION_1 "roles:\n  scene_linear: Linear\ndisplays:\n  Screen:\n"                                                 \
+              "    - !<View> {name: Plain, colorspace: a}\ncolorspaces:\n  - !<ColorSpace>\n    name: Linear\n"
+#define SPACE_OF(name, src)                                                                                            \
+    "  - !<ColorSpace>\n    name: " name "\n    to_reference: !<ColorSpaceTransform> {src: " src ", dst: Linear}\n"
+    write_text("self.ocio", HEAD_OF_SPACES SPACE_OF("a", "a"));
+    expect_bad_config(in_folder("self.ocio"), "'a'", "made of itself");
+    write_text("ring.ocio", HEAD_OF_SPACES SPACE_OF("a", "b") SPACE_OF("b", "c") SPACE_OF("c", "a"));
+    expect_bad_config(in_folder("ring.ocio"), "made of itself", "");
+    write_text("chain.ocio", HEAD_OF_SPACES SPACE_OF("a", "b") SPACE_OF("b", "c") SPACE_OF("c", "Linear"));
+    color_config *config = open_config_file("chain.ocio");
+    expect_grey(config, NULL, NULL, 0.3f, 0.3, 1e-6);
+    color_config_destroy(config);
+
+    /* each is made of the next, twice */
+    enum { SPACES = 30 };
+    char text[8192];
+    int at = snprintf(text, sizeof text, HEAD_OF_SPACES SPACE_OF("a", "s0"));
+    for (int i = 0; i < SPACES; i++)
+        at += snprintf(text + at, sizeof text - (size_t)at,
+                       "  - !<ColorSpace>\n    name: s%d\n    to_reference: !<GroupTransform>\n      children:\n"
+                       "        - !<ColorSpaceTransform> {src: s%d, dst: Linear}\n"
+                       "        - !<ColorSpaceTransform> {src: s%d, dst: Linear}\n",
+                       i, i + 1, i + 1);
+    snprintf(text + at, sizeof text - (size_t)at, SPACE_OF("s30", "Linear"));
+    write_text("doubling.ocio", text);
+    expect_bad_config(in_folder("doubling.ocio"), "too many", "");
+}
+
 /* A view whose table is not there is told as it is; the config's other views work. */
 static void missing_tables_are_named(void **state)
 {
@@ -506,6 +539,7 @@ int main(void)
         cmocka_unit_test(configs_of_aces_kind),
         cmocka_unit_test(exposure_and_looks),
         cmocka_unit_test(working_space_by_name),
+        cmocka_unit_test(what_is_made_of_itself_is_refused),
         cmocka_unit_test(missing_tables_are_named),
         cmocka_unit_test(tells_what_there_is),
         cmocka_unit_test(falls_back_to_the_role),
