@@ -66,9 +66,47 @@ ag_status ag_output_check(ag_context *context, const ag_output_settings *setting
     return output_color_check(context, settings);
 }
 
+static bool ends_with(const char *text, const char *end)
+{
+    size_t length = strlen(text), end_length = strlen(end);
+    return length >= end_length && strcmp(text + length - end_length, end) == 0;
+}
+
+/* Whether a layer's red, green and blue begin with this channel. Variances are no colours; the picture's own are
+ * converted before. */
+static bool is_color_layer(const aov_layout *layout, int channel)
+{
+    const film_channel *c = &layout->channels[channel];
+    return channel + 2 < layout->channel_count && ends_with(c[0].name, ".R") && ends_with(c[1].name, ".G") &&
+           ends_with(c[2].name, ".B") && c->source != CHANNEL_BEAUTY && c->source != CHANNEL_VARIANCE &&
+           c->source != CHANNEL_RELATIVE_VARIANCE;
+}
+
+/* Layers of colours to the colour space that is asked for. */
+static ag_status convert_layers(ag_context *context, const ag_film *film, const ag_output_settings *settings,
+                                picture_layers *layers)
+{
+    const size_t count = (size_t)film->width * (size_t)film->height, stride = (size_t)layers->channel_count;
+    float *packed = malloc(3 * count * sizeof *packed);
+    ag_status status = packed ? AG_OK : AG_ERROR_MEMORY;
+    for (int c = 0; c < layers->channel_count && status == AG_OK; c++) {
+        if (!is_color_layer(&film->layout, c))
+            continue;
+        float *first = layers->pixels + c;
+        for (size_t i = 0; i < 3 * count; i++)
+            packed[i] = first[i / 3 * stride + i % 3];
+        status = output_color_apply(context, settings, true, packed, count);
+        for (size_t i = 0; i < 3 * count; i++)
+            first[i / 3 * stride + i % 3] = packed[i];
+    }
+    free(packed);
+    return status;
+}
+
 /* pixels: RGB as they are to be written. */
 static ag_status write_picture(ag_context *context, const ag_film *film, const ag_output_settings *settings,
-                               const image_format *format, const output_color_tag *tag, const float *pixels, const char *path)
+                               const image_format *format, const output_color_tag *tag, const float *pixels,
+                               const char *path)
 {
     static const char *const names[3] = {"R", "G", "B"};
     static const image_attribute attributes[] = {{.name = "Software", .text = "Afterglow"}};
@@ -92,6 +130,11 @@ static ag_status write_picture(ag_context *context, const ag_film *film, const a
     ag_status status = AG_OK;
     if (format->scene_linear) { /* the only one that holds layers */
         status = picture_layers_create(context, film, pixels, settings, description.type, path, &layers);
+        if (status == AG_OK && settings->color_space) {
+            status = convert_layers(context, film, settings, &layers);
+            if (status != AG_OK)
+                picture_layers_reset(&layers);
+        }
         if (status != AG_OK)
             return status;
         if (tag->has_chromaticities)

@@ -296,6 +296,16 @@ static void spaces_of_exr_files(void **state)
         image_reset(&read);
         picture_reset(&p);
     }
+    /* layers go where the picture goes: what is seen here is emission alone */
+    image read;
+    program_run run = RUN("-q", DIRECT, "--type=float", "--aov=emission", "--output-space=AP0", "-o", "a.exr", scene);
+    expect_exit(&run, 0);
+    program_run_reset(&run);
+    assert_int_equal(image_read(in_folder("a.exr"), &read, message, sizeof message), AG_OK);
+    assert_int_equal(read.channel_count, 6);
+    for (int c = 0; c < 3; c++)
+        assert_true(read.pixels[c] > 0.0f && fabsf(read.pixels[c] - read.pixels[3 + c]) <= 1e-6f);
+    image_reset(&read);
 }
 
 /* One run's EXR through oiiotool is that run's picture of 16 bits, with view, look and exposure. */

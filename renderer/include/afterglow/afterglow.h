@@ -224,11 +224,11 @@ typedef enum ag_sample_type {
 } ag_sample_type;
 
 typedef struct ag_output_settings {
-    ag_sample_type type;     /* default: half for EXR, 8 bit for the others */
-    bool tiled;              /* EXR in tiles of 64 x 64 pixels; default: in lines */
-    bool reproducible;       /* EXR without what differs from run to run: equal pictures are equal files */
+    ag_sample_type type;      /* default: half for EXR, 8 bit for the others */
+    bool tiled;               /* EXR in tiles of 64 x 64 pixels; default: in lines */
+    bool reproducible;        /* EXR without what differs from run to run: equal pictures are equal files */
     const char *command_line; /* to be noted in EXR files, or NULL */
-    const char *color_space; /* of EXR files, by the config's name, an alias or a role; NULL: the working space */
+    const char *color_space;  /* of EXR files, by the config's name, an alias or a role; NULL: the working space */
     /* of all others: */
     const char *display;  /* NULL: the config's default */
     const char *view;     /* NULL: the display's default */
