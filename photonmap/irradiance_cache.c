@@ -13,6 +13,21 @@ enum { PRECOMPUTE_BLOCK = 512 };
 /* Asking for a thread's CPU time is a system call: of every so many estimates, one is timed. */
 enum { TIMED_EVERY = 16 };
 
+static bool scratch_create(irradiance_scratch *s, const photon_map *map)
+{
+    s->neighbors = malloc(photon_map_scratch_count(map) * sizeof *s->neighbors);
+    s->order[0] = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->order[0]);
+    s->order[1] = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->order[1]);
+    return s->neighbors && s->order[0] && s->order[1];
+}
+
+static void scratch_reset(irradiance_scratch *s)
+{
+    free(s->neighbors);
+    free(s->order[0]);
+    free(s->order[1]);
+}
+
 ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
                                   irradiance_cache *out_cache)
 {
@@ -22,8 +37,7 @@ ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, u
     bool is_complete = c.counters && c.scratch;
     for (unsigned i = 0; is_complete && i < worker_count; i++) {
         c.counters[i] = (irradiance_counters){0};
-        c.scratch[i] = malloc(photon_map_scratch_count(map) * sizeof **c.scratch);
-        is_complete = c.scratch[i] != NULL;
+        is_complete = scratch_create(&c.scratch[i], map);
     }
     if (!is_complete) {
         irradiance_cache_reset(&c);
@@ -39,7 +53,7 @@ ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, u
 void irradiance_cache_reset(irradiance_cache *cache)
 {
     for (unsigned i = 0; cache->scratch && i < cache->worker_count; i++)
-        free(cache->scratch[i]);
+        scratch_reset(&cache->scratch[i]);
     free(cache->scratch);
     free(cache->counters);
     *cache = (irradiance_cache){0};
@@ -48,7 +62,7 @@ void irradiance_cache_reset(irradiance_cache *cache)
 static rgb estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
 {
     irradiance_counters *counters = &cache->counters[worker_index];
-    photon_neighbor *scratch = cache->scratch[worker_index];
+    photon_neighbor *scratch = cache->scratch[worker_index].neighbors;
     if ((counters->computed + counters->uncached) % TIMED_EVERY != 0)
         return photon_map_irradiance_estimate(cache->map, position, normal, scratch);
     double begin = clock_thread_cpu_seconds();
@@ -103,14 +117,13 @@ static void fulfil(const irradiance_cache *cache, uint32_t word, irradiance_requ
     request->irradiance = photon_map_decode_irradiance(cache->map, word & IRRADIANCE_VALUE_MASK);
 }
 
-void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
-                          irradiance_request *out_request)
+/* Asks for what stands for the place: a photon's, or PHOTON_NONE: an estimate at the place itself. */
+static void ask(irradiance_cache *cache, uint32_t index, vec3 position, vec3 normal, unsigned worker_index,
+                irradiance_request *out_request)
 {
     irradiance_counters *counters = &cache->counters[worker_index];
     counters->requests++;
     out_request->photon = PHOTON_NONE;
-    uint32_t index =
-        cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
     if (index == PHOTON_NONE) {
         out_request->irradiance = irradiance_cache_estimate(cache, position, normal, worker_index);
         return;
@@ -126,6 +139,77 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
     counters->deferred++;
     out_request->photon = index;
     out_request->irradiance = rgb_gray(0.0f);
+}
+
+void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
+                          irradiance_request *out_request)
+{
+    uint32_t index =
+        cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
+    ask(cache, index, position, normal, worker_index, out_request);
+}
+
+/* The queries' numbers in the map's order, as the low halves; the high ones are places. By digits, from the lowest. */
+static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch, const irradiance_query *queries,
+                              uint32_t count)
+{
+    enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS };
+    uint64_t *from = scratch->order[0], *to = scratch->order[1];
+    for (uint32_t i = 0; i < count; i++)
+        from[i] = (uint64_t)photon_map_place(map, queries[i].position) << 32 | i;
+    for (uint32_t shift = 32; shift < 32 + map->tree.depth; shift += DIGIT_BITS) {
+        uint32_t begin[DIGITS] = {0}, sum = 0;
+        for (uint32_t i = 0; i < count; i++)
+            begin[from[i] >> shift & (DIGITS - 1)]++;
+        for (uint32_t d = 0; d < DIGITS; d++) {
+            uint32_t of_digit = begin[d];
+            begin[d] = sum;
+            sum += of_digit;
+        }
+        for (uint32_t i = 0; i < count; i++)
+            to[begin[from[i] >> shift & (DIGITS - 1)]++] = from[i];
+        uint64_t *hold = from;
+        from = to;
+        to = hold;
+    }
+    return from;
+}
+
+void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
+                               uint32_t count, unsigned worker_index, rgb *out_irradiance)
+{
+    enum { AHEAD = 6, CANCEL_EVERY = 64 };
+    const photon_map *map = cache->map;
+    irradiance_scratch *scratch = &cache->scratch[worker_index];
+    uint64_t *order = put_in_order(map, scratch, queries, count);
+    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->set.count > 0;
+    uint32_t waiting = 0;
+    photon_walk walk;
+    photon_walk_init(&walk, &map->tree);
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t i = (uint32_t)order[k], index = PHOTON_NONE;
+        const irradiance_query *q = &queries[i];
+        irradiance_request request;
+        if (k % CANCEL_EVERY == 0 && run_is_cancelled(run))
+            return;
+        if (is_cached) {
+            /* what a query a little later needs, and itself */
+            if (k + 2 * AHEAD < count)
+                __builtin_prefetch(&queries[(uint32_t)order[k + 2 * AHEAD]]);
+            if (k + AHEAD < count)
+                photon_block_prefetch(&map->blocks[order[k + AHEAD] >> 32]);
+            index = photon_map_nearest_at(map, &walk, (uint32_t)(order[k] >> 32), q->position, q->normal);
+        }
+        ask(cache, index, q->position, q->normal, worker_index, &request);
+        out_irradiance[i] = request.irradiance;
+        if (request.photon != PHOTON_NONE) /* its place in the order is free by now */
+            order[waiting++] = (uint64_t)request.photon << 32 | i;
+    }
+    for (uint32_t k = 0; k < waiting; k++) {
+        irradiance_request request = {.photon = (uint32_t)(order[k] >> 32)};
+        irradiance_cache_retry(cache, &request, worker_index);
+        out_irradiance[(uint32_t)order[k]] = request.irradiance;
+    }
 }
 
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index)

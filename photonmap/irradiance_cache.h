@@ -9,6 +9,9 @@
 
 #include "photon_map.h"
 
+/* Places that can be asked for at once. */
+enum { IRRADIANCE_BATCH_MAX = 1 << 16 };
+
 typedef enum irradiance_cache_mode {
     IRRADIANCE_ON_DEMAND,  /* the first to ask computes */
     IRRADIANCE_PRECOMPUTE, /* all are computed beforehand */
@@ -27,12 +30,18 @@ typedef struct irradiance_counters {
     double timed_seconds;           /* CPU time of those */
 } irradiance_counters;
 
+/* Of one worker: an estimate's neighbours, and a batch's order. */
+typedef struct irradiance_scratch {
+    photon_neighbor *neighbors;
+    uint64_t *order[2]; /* [IRRADIANCE_BATCH_MAX], from one to the other while it is sorted */
+} irradiance_scratch;
+
 typedef struct irradiance_cache {
     photon_map *map; /* borrowed; only its slots change */
     irradiance_cache_mode mode;
     unsigned worker_count;
     irradiance_counters *counters; /* [worker_count] */
-    photon_neighbor **scratch;     /* [worker_count] */
+    irradiance_scratch *scratch;   /* [worker_count] */
     uint64_t ready_before;         /* photons that were ready when the cache was created */
 } irradiance_cache;
 
@@ -58,6 +67,17 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
 /* Comes back to a request that was set aside; waits for the claimer where it still computes. Afterwards the irradiance
  * is there. The claimer holds its claim only while computing, and takes no other meanwhile: so this ends. */
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index);
+
+/* A place, and the side of the unit normal. */
+typedef struct irradiance_query {
+    vec3 position, normal;
+} irradiance_query;
+
+/* Asks for the irradiance at up to IRRADIANCE_BATCH_MAX places at once, in the map's order: what is looked up and
+ * computed one after the other lies near each other. Those that another thread is computing are set aside, and come
+ * last. Afterwards all are there, unless the run is cancelled meanwhile: then some are not. */
+void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
+                               uint32_t count, unsigned worker_index, rgb *out_irradiance);
 
 /* An estimate at the place itself, not kept. */
 rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index);

@@ -89,7 +89,7 @@ static inline uint16_t direction_encode(vec3 d)
 static inline vec3 direction_decode_unnormalized(uint16_t code)
 {
     float x = ((float)(code >> 8) - 127.0f) * (1.0f / 127.0f), y = ((float)(code & 255) - 127.0f) * (1.0f / 127.0f);
-    float z = 1.0f - fabsf(x) - fabsf(y), fold = fmaxf(-z, 0.0f);
+    float z = 1.0f - fabsf(x) - fabsf(y), fold = z < 0.0f ? -z : 0.0f;
     x -= copysignf(fold, x);
     y -= copysignf(fold, y);
     return (vec3){x, y, z};

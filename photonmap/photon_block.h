@@ -6,6 +6,7 @@
 #ifndef AFTERGLOW_PHOTON_BLOCK_H
 #define AFTERGLOW_PHOTON_BLOCK_H
 
+#include "large_alloc.h"
 #include "photon.h"
 
 #include <stdlib.h>
@@ -34,7 +35,7 @@ static inline uint64_t photon_block_count(uint32_t photon_count)
 static inline photon *photon_records_create(uint32_t photon_count)
 {
     uint64_t blocks = photon_block_count(photon_count);
-    return aligned_alloc(_Alignof(photon_block), (size_t)(blocks ? blocks : 1) * sizeof(photon_block));
+    return large_alloc((size_t)(blocks ? blocks : 1) * sizeof(photon_block));
 }
 
 static inline irradiance_slot *photon_block_slot(photon_block *blocks, uint32_t index)
@@ -95,6 +96,48 @@ static inline uint32_t photon_block_nearest_lane(const float distance_squared[PH
         best = distance_squared[lane] < distance_squared[best] ? lane : best;
     }
     return best;
+}
+
+/* The nearest of all lanes that are no farther than the limit, of equally near ones the first; false where there is
+ * none. All squared distances are given, too. */
+static inline bool photon_block_nearest(const photon_block *b, const float position[3], float limit,
+                                        float out_distance_squared[PHOTON_BLOCK_LANES], uint32_t *out_lane)
+{
+#if defined(__SSE2__)
+    enum { VECTORS = PHOTON_BLOCK_LANES / 4 };
+    __m128 px = _mm_set1_ps(position[0]), py = _mm_set1_ps(position[1]), pz = _mm_set1_ps(position[2]);
+    __m128 d[VECTORS], least = _mm_set1_ps(INFINITY);
+    for (uint32_t i = 0; i < VECTORS; i++) {
+        __m128 x = _mm_sub_ps(_mm_load_ps(&b->position[0][4 * i]), px);
+        __m128 y = _mm_sub_ps(_mm_load_ps(&b->position[1][4 * i]), py);
+        __m128 z = _mm_sub_ps(_mm_load_ps(&b->position[2][4 * i]), pz);
+        d[i] = _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, x), _mm_mul_ps(y, y)), _mm_mul_ps(z, z));
+        _mm_store_ps(&out_distance_squared[4 * i], d[i]);
+        least = _mm_min_ps(d[i], least); /* of what is no number, the second */
+    }
+    least = _mm_min_ps(least, _mm_shuffle_ps(least, least, _MM_SHUFFLE(1, 0, 3, 2)));
+    least = _mm_min_ps(least, _mm_shuffle_ps(least, least, _MM_SHUFFLE(2, 3, 0, 1)));
+    if (!(_mm_cvtss_f32(least) <= limit))
+        return false;
+    uint32_t lanes = 0;
+    for (uint32_t i = 0; i < VECTORS; i++)
+        lanes |= (uint32_t)_mm_movemask_ps(_mm_cmpeq_ps(d[i], least)) << 4 * i;
+    *out_lane = (uint32_t)__builtin_ctz(lanes | 1u << (PHOTON_BLOCK_LANES - 1));
+    return true;
+#else
+    uint32_t within = photon_block_within(b, position, limit, out_distance_squared);
+    *out_lane = within ? photon_block_nearest_lane(out_distance_squared, within) : 0;
+    return within != 0;
+#endif
+}
+
+/* Asks for what a search of the block reads, but the flux. */
+static inline void photon_block_prefetch(const photon_block *b)
+{
+    for (int a = 0; a < 3; a++)
+        __builtin_prefetch(b->position[a]);
+    __builtin_prefetch(b->normal);
+    __builtin_prefetch(b->slot);
 }
 
 /* As bits, which lanes have just that normal. */

@@ -58,6 +58,8 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
     double largest = 255.0 * ldexp(1.0, map.flux_exponent_max) * (map.nearest + 1.0) /
                      ((double)map.set.emitted_paths * (double)AG_PI * (double)map.min_radius_squared);
     map.irradiance_bias = shared_exponent_of((float)fmin(largest, 1e38)) - 63;
+    for (int i = 0; i < 64; i++)
+        map.irradiance_unit[i] = ldexpf(1.0f, i + map.irradiance_bias);
     *out_map = map;
     return AG_OK;
 }
@@ -76,9 +78,6 @@ uint64_t photon_map_bytes(const photon_map *map)
 }
 
 uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbors_capacity(map->nearest + 1); }
-
-/* One channel of a photon in units of 2^(flux_exponent_max - 32). */
-static int64_t fixed_flux(uint32_t mantissa, int shift) { return shift < 63 ? ((int64_t)mantissa << 32) >> shift : 0; }
 
 /* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */
 static const float LOPSIDED = 0.15f;
@@ -110,6 +109,28 @@ static uint32_t keep_in_region(const photon_map *map, const surface_region *regi
     return kept;
 }
 
+/* The photons' flux in units of 2^(flux_exponent_max - 32). Mantissas are summed by exponent, the three side by side in
+ * one word; of photons that are 63 octaves weaker than the strongest nothing is left. */
+static void sum_flux(const photon_map *map, const photon_neighbor *n, uint32_t count, int64_t out_sum[3])
+{
+    enum { OCTAVES = 63, CHANNEL_BITS = 21, SAFE = 1 << (CHANNEL_BITS - 8) };
+    const uint64_t channel = (1u << CHANNEL_BITS) - 1;
+    out_sum[0] = out_sum[1] = out_sum[2] = 0;
+    for (uint32_t begin = 0; begin < count; begin += SAFE) {
+        uint64_t packed[OCTAVES + 1] = {0};
+        uint32_t end = count - begin > SAFE ? begin + SAFE : count;
+        for (uint32_t i = begin; i < end; i++) {
+            uint64_t code = photon_block_flux(map->blocks, photon_neighbor_index(n[i]));
+            int below = map->flux_exponent_max - flux_exponent((uint32_t)code);
+            packed[below < OCTAVES ? below : OCTAVES] +=
+                (code & 255) | (code & 0xff00) << (CHANNEL_BITS - 8) | (code & 0xff0000) << (2 * CHANNEL_BITS - 16);
+        }
+        for (int below = 0; below < OCTAVES; below++)
+            for (int c = 0; packed[below] && c < 3; c++)
+                out_sum[c] += (int64_t)((packed[below] >> (2 - c) * CHANNEL_BITS & channel) << 32) >> below;
+    }
+}
+
 rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
 {
     if (map->set.count == 0)
@@ -133,14 +154,8 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
         count = keep_in_region(map, &region, scratch, count);
         area = surface_region_area(&region, radius);
     }
-    int64_t sum[3] = {0, 0, 0};
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t code = photon_block_flux(map->blocks, photon_neighbor_index(scratch[i]));
-        int shift = map->flux_exponent_max - flux_exponent(code);
-        sum[0] += fixed_flux(code >> 16 & 255, shift);
-        sum[1] += fixed_flux(code >> 8 & 255, shift);
-        sum[2] += fixed_flux(code & 255, shift);
-    }
+    int64_t sum[3];
+    sum_flux(map, scratch, count, sum);
     double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
     return (rgb){(float)((double)sum[0] * scale), (float)((double)sum[1] * scale), (float)((double)sum[2] * scale)};
 }
@@ -159,17 +174,22 @@ static bool is_behind_wall(const photon_map *map, vec3 position, vec3 normal, ui
     return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
-uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
+uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_t place, vec3 position, vec3 normal)
 {
-    float distance_squared;
-    if (map->set.count == 0)
-        return PHOTON_NONE;
+    float distance_squared, spacings_squared = FAR_SPACINGS * FAR_SPACINGS / (float)map->nearest;
     uint32_t found =
-        photon_tree_nearest(&map->tree, position, normal, PHOTON_NEAREST_MIN_COS, map->mean_radius, &distance_squared);
-    float spacing_squared = map->mean_radius * map->mean_radius / (float)map->nearest;
-    if (found == PHOTON_NONE || !map->surfaces || distance_squared <= FAR_SPACINGS * FAR_SPACINGS * spacing_squared)
+        photon_walk_nearest(walk, place, position, normal, PHOTON_NEAREST_MIN_COS, map->mean_radius, &distance_squared);
+    if (found == PHOTON_NONE || !map->surfaces ||
+        distance_squared <= spacings_squared * map->mean_radius * map->mean_radius)
         return found;
     return is_behind_wall(map, position, normal, found) ? PHOTON_NONE : found;
+}
+
+uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
+{
+    photon_walk walk;
+    photon_walk_init(&walk, &map->tree);
+    return photon_map_nearest_at(map, &walk, photon_map_place(map, position), position, normal);
 }
 
 uint32_t photon_map_place(const photon_map *map, vec3 position)
@@ -193,6 +213,6 @@ uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uin
 
 rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value)
 {
-    float scale = ldexpf(1.0f, (int)(value >> 24 & 63) + map->irradiance_bias);
+    float scale = map->irradiance_unit[value >> 24 & 63];
     return (rgb){(float)(value >> 16 & 255) * scale, (float)(value >> 8 & 255) * scale, (float)(value & 255) * scale};
 }

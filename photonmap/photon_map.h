@@ -23,13 +23,14 @@ typedef struct photon_map {
     photon_tree tree;     /* over the blocks */
     uint32_t nearest;
     float max_radius;
-    float min_radius_squared; /* coincident photons have no area of their own: the estimate's area is at least this
-                                 disc's */
-    float mean_radius;        /* of an estimate, were the photons spread evenly */
-    int flux_exponent_max;    /* the largest of the photons' exponents: the sums' unit */
-    int irradiance_bias;      /* added to a slot's 6-bit exponent */
-    const scene *surfaces;    /* borrowed, or NULL */
-    bool has_been_cached;     /* a cache has been made over it: some slots may be ready */
+    float min_radius_squared;  /* coincident photons have no area of their own: the estimate's area is at least this
+                                  disc's */
+    float mean_radius;         /* of an estimate, were the photons spread evenly */
+    int flux_exponent_max;     /* the largest of the photons' exponents: the sums' unit */
+    int irradiance_bias;       /* added to a slot's 6-bit exponent */
+    float irradiance_unit[64]; /* of a slot's mantissas, by its exponent */
+    const scene *surfaces;     /* borrowed, or NULL */
+    bool has_been_cached;      /* a cache has been made over it: some slots may be ready */
 } photon_map;
 
 /* Takes the set's photons over (and frees them on failure). A map without photons is valid: it says 0 everywhere.
@@ -61,6 +62,9 @@ uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal);
 
 /* Where in the map's order a place is: lookups at places with like numbers touch the same memory. */
 uint32_t photon_map_place(const photon_map *map, vec3 position);
+
+/* The same at a place of that number, walk being one over map->tree: cheap for one place after the other in order. */
+uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_t place, vec3 position, vec3 normal);
 
 /* Irradiance as a slot's 30 bits. key decides the rounding: the photon's index. */
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);

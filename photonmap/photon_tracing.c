@@ -111,6 +111,7 @@ static void trace_path(tracer *t, uint64_t path)
     if (!(probability > 0.0f) || !light_sample_emission(s, lamp, t->target, &random, &start))
         return;
     scene_ray ray = scene_ray_make(start.origin, start.direction);
+    ray.skips_uv = true;
     ray.medium = start.medium;
     ray.time = time;
     rgb flux = rgb_scale(start.flux, 1.0f / probability);

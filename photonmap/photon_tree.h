@@ -41,6 +41,26 @@ uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal
 /* The block of the leaf that a place falls into; of a tree that is not empty. */
 uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
 
+enum { PHOTON_TREE_DEPTH_MAX = 32, PHOTON_WALK_AXES = 4 };
+
+/* The way to a leaf, with the cells of the nodes along it: kept for the next lookup, which is cheap where its leaf is
+ * not far. The fourth axis has no bounds. */
+typedef struct photon_walk {
+    const photon_tree *tree;
+    uint32_t way;                      /* to the leaf of the last lookup; 0: there was none */
+    vec3 normal;                       /* of that lookup */
+    float min_cos;                     /* likewise */
+    uint32_t similar_code, other_code; /* normals that were last found similar to it, and not */
+    _Alignas(16) float low[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES], high[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES];
+} photon_walk;
+
+void photon_walk_init(photon_walk *walk, const photon_tree *tree); /* borrows the tree */
+
+/* photon_tree_nearest at a place of the leaf that photon_tree_leaf tells: the same photon, whatever was looked up
+ * before. */
+uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, vec3 normal, float min_cos, float radius,
+                             float *out_distance_squared);
+
 /* A photon found: its squared distance as the high half, its index as the low half. Distances are not negative, so
  * their bits order as integers do: comparing two neighbours compares (distance squared, index). */
 typedef uint64_t photon_neighbor;

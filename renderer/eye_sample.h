@@ -46,11 +46,17 @@ typedef struct eye_sample {
     sample_layers *layers;            /* NULL: radiance alone is asked for */
 } eye_sample;
 
+/* The factor that bounds light to a largest component. */
+static inline float eye_bound(float most, rgb brought)
+{
+    float largest = rgb_max(brought);
+    return largest > most ? most / largest : 1.0f;
+}
+
 /* By what light that was scattered so many times between lamp and eye is to be multiplied: mostly 1. */
 static inline float eye_sample_bound(const eye_sample *s, int scatterings, rgb brought)
 {
-    float most = scatterings > 1 ? s->most_indirect : s->most_direct, largest = rgb_max(brought);
-    return largest > most ? most / largest : 1.0f;
+    return eye_bound(scatterings > 1 ? s->most_indirect : s->most_direct, brought);
 }
 
 /* Says of light that is in the radiance which part it is. */

@@ -10,6 +10,7 @@
 #include "passage.h"
 #include "path_tracing.h"
 #include "photon_dump.h"
+#include "sample_queue.h"
 #include "shading.h"
 #include "tile_scheduler.h"
 
@@ -138,36 +139,7 @@ typedef struct tile_job {
     atomic_u64 pixels_done; /* for the progress alone: relaxed */
 } tile_job;
 
-static void scale_layers(sample_layers *layers, float factor)
-{
-    for (int i = 0; i < LIGHT_PART_COUNT; i++)
-        layers->parts[i] = rgb_scale(layers->parts[i], factor);
-    for (int i = 0; i <= LIGHT_GROUPS_MAX; i++)
-        layers->groups[i] = rgb_scale(layers->groups[i], factor);
-}
-
-/* Samples that are not finite count as black; of those that are too bright all parts are scaled alike. */
-static void bound_sample(const film_response *response, eye_worker *worker, eye_sample *sample)
-{
-    bool is_finite = rgb_is_finite(sample->radiance);
-    for (int i = 0; sample->layers && i < LIGHT_PART_COUNT; i++)
-        is_finite = is_finite && rgb_is_finite(sample->layers->parts[i]);
-    if (!is_finite) {
-        worker->samples_not_finite++;
-        sample->radiance = rgb_gray(0.0f);
-        if (sample->layers) {
-            const first_hit first = sample->layers->first;
-            *sample->layers = (sample_layers){.first = first};
-        }
-    } else if (response->is_bounded) {
-        rgb bounded = film_response_bound(response, sample->radiance);
-        float before = rgb_max(sample->radiance);
-        if (sample->layers && before > 0.0f && rgb_max(bounded) < before)
-            scale_layers(sample->layers, rgb_max(bounded) / before);
-        sample->radiance = bounded;
-    }
-}
-
+/* All but the gathered light, which the worker's batch brings later. */
 static void render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index, eye_sample *out)
 {
     const transport *t = job->t;
@@ -182,35 +154,49 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
     camera_place place = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, width / height,
                           lens, time};
     scene_ray ray = camera_generate_ray(&t->s->camera, place.film_x, place.film_y, place.aspect, lens, time);
-    out->radiance = rgb_gray(0.0f);
     out->most_direct = settings->clamp_direct > 0.0f ? settings->clamp_direct : INFINITY;
     out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
-    if (out->layers)
-        *out->layers = (sample_layers){0};
     if (settings->integrator == AG_INTEGRATOR_PATH)
         path_tracing_radiance(t, worker, ray, &where, out);
     else
         shading_radiance(t, worker, ray, &where, out);
-    bound_sample(&job->film->response, worker, out);
     if (out->layers && t->layout->needs_first_hit)
         first_hit_project(t, &place, &out->layers->first);
 }
 
-/* The samples that the pixel has not had yet, in their order, by the one thread that has its tile. One that was under
- * way when the work was cancelled does not count. */
-static void render_pixel(const tile_job *job, eye_worker *worker, int x, int y)
+/* Completes the samples under way. When the work is cancelled they do not count. */
+static void finish_samples(tile_job *job, eye_worker *worker)
+{
+    const transport *t = job->t;
+    gather_batch *batch = worker->batch;
+    if (batch)
+        gather_batch_resolve(batch, t->cache, t->run, worker->index);
+    if (!run_is_cancelled(t->run))
+        worker->samples_not_finite += sample_queue_deliver(worker->queue, batch ? batch->gathered : NULL,
+                                                           (uint32_t)t->layout->group_count, job->film);
+}
+
+/* Whether the next sample is better begun when those under way are complete. */
+static bool should_finish(const transport *t, const eye_worker *worker)
+{
+    const gather_batch *batch = worker->batch;
+    return sample_queue_is_full(worker->queue) ||
+           (batch && batch->query_count > 0 &&
+            batch->query_count + (uint32_t)t->settings->gather_samples > IRRADIANCE_BATCH_MAX);
+}
+
+/* The samples that the pixel has not had yet, in their order, by the one thread that has its tile. */
+static void render_pixel(tile_job *job, eye_worker *worker, int x, int y)
 {
     ag_film *film = job->film;
     size_t pixel = (size_t)(y - film->y0) * (size_t)film->width + (size_t)(x - film->x0);
-    sample_layers layers;
-    eye_sample sample = {.layers = job->t->wants_layers ? &layers : NULL};
-    while (film->counts[pixel] < job->wanted) {
+    for (uint32_t i = film->counts[pixel]; i < job->wanted; i++) {
         if (run_is_cancelled(&job->context->run))
             return;
-        render_sample(job, worker, x, y, film->counts[pixel], &sample);
-        if (run_is_cancelled(&job->context->run))
-            return;
-        film_add(film, pixel, &sample);
+        worker->sample = worker->queue->count;
+        render_sample(job, worker, x, y, i, sample_queue_begin(worker->queue, pixel));
+        if (should_finish(job->t, worker))
+            finish_samples(job, worker);
     }
 }
 
@@ -222,6 +208,7 @@ static void add_tile_time(ag_film *film, tile area, float seconds)
                 seconds;
 }
 
+/* Samples under way may be of several tiles, unless each tile's time is asked for. */
 static void render_tiles(void *user, unsigned worker_index)
 {
     tile_job *job = user;
@@ -229,6 +216,9 @@ static void render_tiles(void *user, unsigned worker_index)
     double pixel_count = (double)job->film->width * (double)job->film->height;
     float *times = job->film->views[VIEW_TILE_TIME];
     tile area;
+    worker->queue->count = 0;
+    if (worker->batch)
+        gather_batch_reset(worker->batch);
     while (!run_is_cancelled(&job->context->run) && tile_scheduler_next(job->tiles, &area)) {
         double begin = times ? clock_seconds() : 0.0;
         for (int y = area.y0; y < area.y1; y++) {
@@ -238,30 +228,39 @@ static void render_tiles(void *user, unsigned worker_index)
             uint64_t done = fetch_add_relaxed_u64(&job->pixels_done, row) + row;
             run_progress(&job->context->run, AG_PHASE_RENDER, (double)done / pixel_count);
         }
-        if (times)
+        if (times) {
+            finish_samples(job, worker);
             add_tile_time(job->film, area, (float)(clock_seconds() - begin));
+        }
     }
+    if (!run_is_cancelled(&job->context->run))
+        finish_samples(job, worker);
 }
 
 static void eye_workers_destroy(eye_worker *workers, unsigned count)
 {
-    for (unsigned i = 0; workers && i < count; i++)
+    for (unsigned i = 0; workers && i < count; i++) {
         arena_destroy(workers[i].scratch);
+        gather_batch_destroy(workers[i].batch);
+        sample_queue_destroy(workers[i].queue);
+    }
     free(workers);
 }
 
-/* The most that a worker has in use at once: a gather's rays, and an estimate's neighbours within it. Tried out here,
- * so that nothing can fail while tiles run. */
+/* What a worker has in use, tried out here, so that nothing can fail while tiles run. */
 static bool eye_worker_reserve(eye_worker *worker, const transport *t)
 {
+    float most_indirect = t->settings->clamp_indirect > 0.0f ? t->settings->clamp_indirect : INFINITY;
+    worker->queue = sample_queue_create(t->wants_layers);
+    if (!worker->queue || !t->cache)
+        return worker->queue != NULL;
+    worker->batch = gather_batch_create(most_indirect);
     worker->scratch = arena_create(ARENA_BLOCK_BYTES);
-    if (!worker->scratch)
+    if (!worker->batch || !worker->scratch)
         return false;
     arena_mark mark = arena_save(worker->scratch);
-    bool fits = arena_alloc(worker->scratch, (size_t)t->settings->gather_samples * sizeof(gather_ray)) &&
-                arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
-    if (fits && (aov_has(t->layout, SUM_IRRADIANCE) ||
-                 t->layout->has_view[VIEW_PHOTON_DENSITY])) /* alone, before there are gather rays */
+    bool fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor)) != NULL;
+    if (fits && (aov_has(t->layout, SUM_IRRADIANCE) || t->layout->has_view[VIEW_PHOTON_DENSITY])) /* alone */
         fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->cache->map) * sizeof(photon_neighbor));
     arena_restore(worker->scratch, mark);
     return fits;
@@ -274,7 +273,7 @@ static eye_worker *eye_workers_create(const transport *t, unsigned count)
         return NULL;
     for (unsigned i = 0; i < count; i++)
         workers[i] = (eye_worker){.index = i};
-    for (unsigned i = 0; t->cache && i < count; i++)
+    for (unsigned i = 0; i < count; i++)
         if (!eye_worker_reserve(&workers[i], t)) {
             eye_workers_destroy(workers, count);
             return NULL;

@@ -83,27 +83,62 @@ static inline uint32_t sampler_scramble(uint32_t x, uint32_t seed)
     return sampler_reverse_bits(sampler_scramble_reversed(sampler_reverse_bits(x), seed));
 }
 
-/* The second Sobol dimension, of an index with its bits reversed as well as not: column j of its matrix is row j of
- * Pascal's triangle modulo 2. */
-static inline uint32_t sampler_sobol_1(uint32_t index)
+/* The second Sobol dimension, its bits reversed: column j of its matrix is row j of Pascal's triangle modulo 2, where
+ * (Lucas) those entries are 1 whose number's bits are among j's; so a bit of the result is the sum of the index's bits
+ * whose numbers have all of its own number's. */
+static inline uint32_t sampler_sobol_1_reversed(uint32_t x)
 {
-    uint32_t result = 0;
-    for (uint32_t column = 0x80000000u; index; index >>= 1, column ^= column >> 1)
-        if (index & 1)
-            result ^= column;
-    return result;
+    x ^= x >> 1 & 0x55555555u;
+    x ^= x >> 2 & 0x33333333u;
+    x ^= x >> 4 & 0x0f0f0f0fu;
+    x ^= x >> 8 & 0x00ff00ffu;
+    x ^= x >> 16 & 0x0000ffffu;
+    return x;
+}
+
+/* The numbers that a sample draws for a use at a vertex of the path. */
+typedef struct sampler_sequence {
+    uint64_t first; /* index of the first in the whole sequence, of which there is one for each 2^32 */
+    uint64_t use_key, block_key, high;
+    uint32_t shuffle, scramble_x, scramble_y;
+} sampler_sequence;
+
+static inline void sampler_sequence_enter(sampler_sequence *s, uint64_t high)
+{
+    uint64_t hash = hash_combine(s->block_key + high, s->use_key), more = hash_mix64(hash + 0x9e3779b97f4a7c15u);
+    s->high = high;
+    s->shuffle = (uint32_t)hash;
+    s->scramble_x = (uint32_t)(hash >> 32);
+    s->scramble_y = (uint32_t)more;
+}
+
+static inline sampler_sequence sampler_sequence_make(const sampler *s, sample_use use, int vertex, uint32_t count)
+{
+    sampler_sequence made;
+    made.first = ((uint64_t)s->place << (s->sample_bits + sampler_bits(count))) + (uint64_t)s->sample * count;
+    made.use_key = (uint64_t)vertex * SAMPLE_USE_COUNT + (uint64_t)use;
+    made.block_key = s->block_key;
+    sampler_sequence_enter(&made, made.first >> 32);
+    return made;
+}
+
+/* Number i of them, in [0,1)^2. */
+static inline vec2 sampler_sequence_at(sampler_sequence *s, uint32_t i)
+{
+    uint64_t index = s->first + i;
+    if (index >> 32 != s->high)
+        sampler_sequence_enter(s, index >> 32);
+    uint32_t shuffled = sampler_scramble((uint32_t)index, s->shuffle);
+    uint32_t x = sampler_reverse_bits(sampler_scramble_reversed(shuffled, s->scramble_x));
+    uint32_t y = sampler_reverse_bits(sampler_scramble_reversed(sampler_sobol_1_reversed(shuffled), s->scramble_y));
+    return (vec2){(float)(x >> 8) * 0x1p-24f, (float)(y >> 8) * 0x1p-24f};
 }
 
 /* Number i of the `count` that the sample draws for a use at a vertex of the path, in [0,1)^2. */
 static inline vec2 sampler_2d_of(const sampler *s, sample_use use, int vertex, uint32_t count, uint32_t i)
 {
-    uint64_t index = ((uint64_t)s->place << (s->sample_bits + sampler_bits(count))) + (uint64_t)s->sample * count + i;
-    uint64_t hash = hash_combine(s->block_key + (index >> 32), (uint64_t)vertex * SAMPLE_USE_COUNT + (uint64_t)use);
-    uint64_t more = hash_mix64(hash + 0x9e3779b97f4a7c15u);
-    uint32_t shuffled = sampler_scramble((uint32_t)index, (uint32_t)hash);
-    uint32_t x = sampler_reverse_bits(sampler_scramble_reversed(shuffled, (uint32_t)(hash >> 32)));
-    uint32_t y = sampler_scramble(sampler_sobol_1(shuffled), (uint32_t)more);
-    return (vec2){(float)(x >> 8) * 0x1p-24f, (float)(y >> 8) * 0x1p-24f};
+    sampler_sequence sequence = sampler_sequence_make(s, use, vertex, count);
+    return sampler_sequence_at(&sequence, i);
 }
 
 static inline vec2 sampler_2d(const sampler *s, sample_use use, int vertex)

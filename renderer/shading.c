@@ -10,13 +10,13 @@
 static const float LOW_CONTRIBUTION = 0.03f;
 enum { ROULETTE_AFTER = 4 };
 
-/* What a diffuse place sends on: its parts, and their sum in the order of the estimators. */
+/* What a diffuse place sends on: its parts, but for what is gathered, which comes to the sample later. */
 typedef struct diffuse_light {
     rgb direct, caustic, indirect;
 } diffuse_light;
 
 static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                                      int path_vertex, float contribution, rgb *by_group)
+                                      int path_vertex, rgb throughput, rgb *by_group)
 {
     const ag_render_settings *settings = t->settings;
     int scatterings_left = settings->max_depth - path_vertex;
@@ -24,7 +24,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
     diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};
     if (scatterings_left < 1)
         return sum;
-    if (is_whole && path_vertex > 0 && contribution < LOW_CONTRIBUTION) {
+    if (is_whole && path_vertex > 0 && rgb_max(throughput) < LOW_CONTRIBUTION) {
         map_place at = transport_map_place(t, v);
         rgb transmitted = bsdf_gathered_transmission(&v->scattering);
         rgb all = rgb_mul(bsdf_gathered_reflection(&v->scattering),
@@ -40,7 +40,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
         sum.direct = direct_light_gathered(t, worker, v, where, path_vertex, by_group);
     sum.caustic = transport_caustics(t, worker, v);
     if (scatterings_left >= 2)
-        sum.indirect = final_gather(t, worker, v, where, path_vertex, scatterings_left);
+        final_gather(t, worker, v, where, path_vertex, scatterings_left, throughput);
     return sum;
 }
 
@@ -116,7 +116,7 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
         /* diffuse lobes end here */
         if (bsdf_has(&v.scattering, BSDF_GATHERED)) {
             rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
-            diffuse_light diffuse = diffuse_radiance(t, worker, &v, where, path_vertex, rgb_max(throughput), by_group);
+            diffuse_light diffuse = diffuse_radiance(t, worker, &v, where, path_vertex, throughput, by_group);
             add_diffuse(t, in_out, &diffuse, path_vertex, throughput, by_group);
         }
 

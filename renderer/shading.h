@@ -7,6 +7,7 @@
 #include "transport.h"
 
 /* Adds to *in_out, which has nothing in it but its bounds and layers' place. */
+/* All but what is gathered: that the worker's batch has when it is resolved. */
 void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where, eye_sample *in_out);
 
 #endif

@@ -3,15 +3,26 @@
 
 #include "passage.h"
 
-bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
+bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
+{
+    bool is_met = passage_intersect(t->s, &ray, &worker->passages_cut, &out_vertex->hit, &out_vertex->transmittance);
+    out_vertex->arrived = ray;
+    return is_met;
+}
+
+void transport_complete(const transport *t, vertex *v)
 {
     const scene *s = t->s;
-    if (!passage_intersect(s, &ray, &worker->passages_cut, &out_vertex->hit, &out_vertex->transmittance))
+    const shape *where = &s->shapes[v->hit.shape_index];
+    v->scattering = bsdf_create(s, &v->hit, vec3_negate(v->arrived.direction));
+    v->lamp = where->light_index == SHAPE_NO_LIGHT ? NULL : &s->lights[where->light_index];
+}
+
+bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
+{
+    if (!transport_meet(t, worker, ray, out_vertex))
         return false;
-    const shape *where = &s->shapes[out_vertex->hit.shape_index];
-    out_vertex->arrived = ray;
-    out_vertex->scattering = bsdf_create(s, &out_vertex->hit, vec3_negate(ray.direction));
-    out_vertex->lamp = where->light_index == SHAPE_NO_LIGHT ? NULL : &s->lights[where->light_index];
+    transport_complete(t, out_vertex);
     return true;
 }
 
@@ -27,7 +38,7 @@ vec3 transport_facing_normal(const vertex *v) { return vec3_face_forward(v->hit.
 map_place transport_map_place(const transport *t, const vertex *v)
 {
     surface_rest rest = surface_at_opening(t->s, &v->hit);
-    bool is_behind = vec3_dot(v->hit.geometric_normal, v->scattering.out) < 0.0f;
+    bool is_behind = vec3_dot(v->hit.geometric_normal, v->arrived.direction) > 0.0f;
     return (map_place){rest.position, is_behind ? vec3_negate(rest.geometric_normal) : rest.geometric_normal};
 }
 

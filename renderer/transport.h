@@ -9,7 +9,7 @@
 #include "aov.h"
 #include "arena.h"
 #include "bsdf.h"
-#include "irradiance_cache.h"
+#include "gather_batch.h"
 #include "sampler.h"
 
 typedef struct transport {
@@ -28,18 +28,14 @@ typedef struct transport {
     float gather_min_distance; /* a gather ray that hits nearer than this does not use the cache, scene units */
 } transport;
 
-/* A gather ray's contribution, known + weight irradiance, in a place of its own until all are back. */
-typedef struct gather_ray {
-    rgb known;  /* radiance, W/m^2/sr */
-    rgb weight; /* 1/sr */
-    irradiance_request request;
-} gather_ray;
-
 typedef struct eye_worker {
     _Alignas(64) unsigned index; /* the worker's */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
     uint64_t samples_not_finite, passages_cut; /* the latter: ways across more interfaces than passage.h follows */
-    arena *scratch; /* for gather rays and neighbours; what render.c has tried out beforehand always fits */
+    arena *scratch;                            /* for neighbours; what render.c has tried out beforehand always fits */
+    gather_batch *batch;                       /* of the samples under way; NULL for path tracing */
+    struct sample_queue *queue;                /* those samples */
+    uint32_t sample;                           /* the number there of the one whose path is being traced */
 } eye_worker;
 
 /* A place where a camera path or gather ray met a surface. */
@@ -53,6 +49,10 @@ typedef struct vertex {
 
 /* Follows a ray of unit direction to the first surface that scatters. */
 bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
+
+/* The same in two steps, for those who may not need the second: how the place scatters, and whether it shines. */
+bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
+void transport_complete(const transport *t, vertex *in_out_vertex);
 
 /* Radiance that the place itself sends back along the ray. */
 rgb transport_emission(const transport *t, const vertex *v);

@@ -5,6 +5,7 @@
 #include "bsdf_lobe.h"
 #include "coat.h"
 #include "fresnel.h"
+#include "math/sampling.h"
 #include "principled.h"
 #include "scene.h"
 #include "shading_frame.h"
@@ -275,10 +276,30 @@ static const bsdf_lobe *pick_lobe(const bsdf *b, bsdf_lobes lobes, float *in_out
     return last;
 }
 
+/* f |cos| / pdf is the albedo, without evaluating any of them. */
+static bool sample_plain(const bsdf *b, bsdf_transport transport, vec2 u, bsdf_sample *out)
+{
+    vec3 i = sample_cosine_hemisphere(u);
+    out->pdf_solid_angle = i.z * AG_INV_PI;
+    if (vec3_dot(b->out, b->geometric_normal) < 0.0f)
+        i.z = -i.z;
+    out->direction = vec3_normalize(frame_to_world(&b->shading, i));
+    if (!bsdf_is_same_side(b, out->direction))
+        return false;
+    out->weight = b->matter.reflectance;
+    if (transport == BSDF_FLUX)
+        out->weight = rgb_scale(out->weight, flux_correction(b, out->direction));
+    out->is_delta = false;
+    out->group = BSDF_GATHERED;
+    return true;
+}
+
 bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, float u_lobe, vec2 u,
                            bsdf_sample *out_sample)
 {
     float probability;
+    if (bsdf_is_plain(b))
+        return (lobes & BSDF_GATHERED) && sample_plain(b, transport, u, out_sample);
     if (!(bsdf_probability(b, lobes) > 0.0f))
         return false;
     const bsdf_lobe *lobe = pick_lobe(b, lobes, &u_lobe, &probability);

@@ -68,6 +68,12 @@ bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out);
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
 
+/* A Lambertian surface and nothing else: sampling it needs no u_lobe. */
+static inline bool bsdf_is_plain(const bsdf *b)
+{
+    return b->matter.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;
+}
+
 /* Whether light can find these lobes by sampling a lamp: they are not all perfectly smooth. */
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);
 

@@ -92,6 +92,9 @@ float shape_pdf_area(const shape *s, vec3 geometric_normal);
  * put onto the surface. direction: the ray's, of any length; read for curves alone. */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
                       surface_hit *out_hit);
+/* The same, but uv may be missing. */
+void shape_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                    surface_hit *out_hit);
 /* Nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */
 bool shape_intersect_quadric(const shape *s, vec3 origin, vec3 direction, float t_min, float t_max, float *out_t);
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);

@@ -423,8 +423,13 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
     if (ray_hit.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
         out_hit->shape_index = ray_hit.hit.geomID;
         out_hit->instance_index = SCENE_NO_INSTANCE;
-        shape_surface_at(&s->shapes[ray_hit.hit.geomID], ray_hit.hit.primID, ray_hit.hit.u, ray_hit.hit.v,
-                         vec3_add_scaled(ray.origin, ray.direction, ray_hit.ray.tfar), ray.direction, out_hit);
+        vec3 position = vec3_add_scaled(ray.origin, ray.direction, ray_hit.ray.tfar);
+        const shape *met = &s->shapes[ray_hit.hit.geomID];
+        const struct RTCHit *h = &ray_hit.hit;
+        if (ray.skips_uv && s->texture_count == 0)
+            shape_place_at(met, h->primID, h->u, h->v, position, ray.direction, out_hit);
+        else
+            shape_surface_at(met, h->primID, h->u, h->v, position, ray.direction, out_hit);
     } else {
         place_instance_hit(s, &ray, &ray_hit, out_hit);
     }

@@ -112,7 +112,7 @@ rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *
 
 bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
 {
-    ray.meets_veils = true;
+    ray.meets_veils = ray.skips_uv = true;
     if (!s->has_interfaces)
         return scene_intersect(s, ray, max_distance, out_hit);
     uint64_t cut = 0;

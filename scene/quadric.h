@@ -13,6 +13,6 @@ float quadric_area(const shape *s); /* needs no commit */
 void quadric_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
 surface_sample quadric_sample_area(const shape *s, vec2 u);
 float quadric_pdf_area(const shape *s, vec3 geometric_normal);
-void quadric_surface_at(const shape *s, vec3 position, surface_hit *out_hit);
+void quadric_surface_at(const shape *s, vec3 position, bool with_uv, surface_hit *out_hit);
 
 #endif

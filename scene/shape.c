@@ -106,8 +106,12 @@ static vec3 mesh_area_vector(const mesh *m, uint32_t triangle, double *out_lengt
 static float mesh_epsilon(const mesh *m, uint32_t triangle)
 {
     float largest = 0.0f;
-    for (int c = 0; c < 3; c++)
-        largest = fmaxf(largest, vec3_max_abs(mesh_vertex(m, triangle, c)));
+    for (int c = 0; c < 3; c++) {
+        vec3 p = mesh_vertex(m, triangle, c);
+        const float size[3] = {fabsf(p.x), fabsf(p.y), fabsf(p.z)};
+        for (int a = 0; a < 3; a++)
+            largest = size[a] > largest ? size[a] : largest; /* of fmaxf the compiler makes a call */
+    }
     return largest * SHAPE_EPSILON_RELATIVE;
 }
 
@@ -261,8 +265,8 @@ static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, f
     h->is_flat = true;
 }
 
-void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
-                      surface_hit *out_hit)
+static void surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                       bool with_uv, surface_hit *out_hit)
 {
     out_hit->is_strand = false;
     if (s->kind == SHAPE_MESH)
@@ -270,8 +274,20 @@ void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v
     else if (s->kind == SHAPE_CURVES)
         curves_surface_at(s, primitive_index, u, position, direction, out_hit);
     else
-        quadric_surface_at(s, position, out_hit);
+        quadric_surface_at(s, position, with_uv, out_hit);
     out_hit->has_medium_interface = s->has_medium_interface;
     out_hit->medium_inside = s->medium_inside;
     out_hit->medium_outside = s->medium_outside;
+}
+
+void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                      surface_hit *out_hit)
+{
+    surface_at(s, primitive_index, u, v, position, direction, true, out_hit);
+}
+
+void shape_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                    surface_hit *out_hit)
+{
+    surface_at(s, primitive_index, u, v, position, direction, false, out_hit);
 }

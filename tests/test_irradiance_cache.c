@@ -69,7 +69,7 @@ static void uncached_answers_at_the_place(void **state)
         field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
         irradiance_request request;
         irradiance_cache_get(&f.cache, at.position, at.normal, 0, &request);
-        rgb expected = photon_map_irradiance_estimate(&f.map, at.position, at.normal, f.cache.scratch[0]);
+        rgb expected = photon_map_irradiance_estimate(&f.map, at.position, at.normal, f.cache.scratch[0].neighbors);
         assert_int_equal(request.photon, PHOTON_NONE);
         assert_memory_equal(&request.irradiance, &expected, sizeof expected);
     }
@@ -155,6 +155,74 @@ static void a_request_set_aside_comes_back(void **state)
     assert_memory_equal(&copy.irradiance, &expected, sizeof expected);
     assert_int_equal(irradiance_cache_counters(&f.cache).waited, waited);
     assert_int_equal(irradiance_cache_counters(&f.cache).duplicated, 0);
+    fixture_reset(&f);
+}
+
+/* Many at once: each gets what it would have got alone, at its own place, and what another computes comes last. */
+static void many_at_once_are_as_each_alone(void **state)
+{
+    (void)state;
+    enum { PLACES = 3000 };
+    static irradiance_query queries[PLACES];
+    static rgb many[PLACES];
+    const irradiance_cache_mode modes[] = {IRRADIANCE_ON_DEMAND, IRRADIANCE_UNCACHED};
+    for (int m = 0; m < 2; m++) {
+        fixture f, single;
+        fixture_init(&f, modes[m], 1);
+        fixture_init(&single, modes[m], 1);
+        rng random = test_random(5);
+        for (int i = 0; i < PLACES; i++) {
+            field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
+            if (i % 100 == 0)
+                at.position = vec3_scale(at.position, 5.0f); /* no photon is near */
+            queries[i] = (irradiance_query){at.position, at.normal};
+        }
+        irradiance_cache_get_many(&f.cache, &f.r.run, queries, PLACES, 0, many);
+        for (int i = 0; i < PLACES; i++) {
+            irradiance_request request;
+            irradiance_cache_get(&single.cache, queries[i].position, queries[i].normal, 0, &request);
+            assert_memory_equal(&many[i], &request.irradiance, sizeof many[i]);
+        }
+        irradiance_counters a = irradiance_cache_counters(&f.cache), b = irradiance_cache_counters(&single.cache);
+        assert_int_equal(a.requests, PLACES);
+        assert_int_equal(a.computed, b.computed);
+        assert_int_equal(a.uncached, b.uncached);
+        assert_int_equal(a.computed, irradiance_cache_distinct(&f.cache));
+        fixture_reset(&single);
+        fixture_reset(&f);
+    }
+}
+
+static void many_at_once_come_back_to_what_another_computes(void **state)
+{
+    (void)state;
+    enum { PLACES = 50 };
+    fixture f;
+    fixture_init(&f, IRRADIANCE_ON_DEMAND, 2);
+    irradiance_query queries[PLACES];
+    rgb found[PLACES];
+    for (uint32_t i = 0; i < PLACES; i++) {
+        field_place p = field_photon(&f.map, i * (PHOTONS / PLACES));
+        queries[i] = (irradiance_query){p.position, p.normal};
+    }
+    enum { HELD = 20 };
+    irradiance_slot *slot = photon_block_slot(f.map.blocks, HELD * (PHOTONS / PLACES));
+    uint32_t word, value = photon_map_encode_irradiance(&f.map, rgb_gray(3.0f), 0);
+    assert_true(irradiance_slot_try_claim(slot, 7, &word));
+    atomic_u32 go = 1;
+    late_claimer late = {slot, value, &go};
+    pthread_t thread;
+    assert_int_equal(pthread_create(&thread, NULL, publish_late, &late), 0);
+    irradiance_cache_get_many(&f.cache, &f.r.run, queries, PLACES, 1, found);
+    void *published;
+    pthread_join(thread, &published);
+    assert_non_null(published);
+    rgb expected = photon_map_decode_irradiance(&f.map, value);
+    assert_memory_equal(&found[HELD], &expected, sizeof expected);
+    irradiance_counters c = irradiance_cache_counters(&f.cache);
+    assert_int_equal(c.computed, PLACES - 1);
+    assert_true(c.deferred <= 1);
+    assert_int_equal(c.duplicated, 0);
     fixture_reset(&f);
 }
 
@@ -352,6 +420,8 @@ int main(void)
         cmocka_unit_test(uncached_answers_at_the_place),
         cmocka_unit_test(a_place_without_photons_is_estimated_uncached),
         cmocka_unit_test(a_request_set_aside_comes_back),
+        cmocka_unit_test(many_at_once_are_as_each_alone),
+        cmocka_unit_test(many_at_once_come_back_to_what_another_computes),
         cmocka_unit_test(a_second_computation_would_be_counted),
         cmocka_unit_test(many_threads_demand_the_same_few_photons),
         cmocka_unit_test(on_demand_and_precomputed_slots_are_the_same),

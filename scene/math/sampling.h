@@ -24,28 +24,26 @@ static inline void sincos_turns(float u, float *out_sin, float *out_cos)
     }
 }
 
-/* Uniform in the unit disk; density 1 / pi. */
+/* Uniform in the unit disk; density 1 / pi. Which half of the square a point is in decides its angle's formula, and is
+ * as good as random: so without a branch. */
 static inline vec2 sample_disk_concentric(vec2 u)
 {
-    float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f, s, c;
-    if (x == 0.0f && y == 0.0f)
-        return (vec2){0.0f, 0.0f};
-    float r;
-    if (fabsf(x) > fabsf(y)) {
-        r = x;
-        sincos_turns(y / x * 0.125f, &s, &c);
-    } else {
-        r = y;
-        sincos_turns(0.25f - x / y * 0.125f, &s, &c);
-    }
-    return (vec2){r * c, r * s};
+    float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
+    bool is_wide = fabsf(x) > fabsf(y);
+    float r = is_wide ? x : y, other = is_wide ? y : x;
+    /* an eighth of a turn at most: Taylor's series, as above */
+    double a = r != 0.0f ? (double)(other / r) * 0.78539816339744831 : 0.0, a2 = a * a;
+    float s = (float)(a * (1.0 + a2 * (-1.0 / 6 + a2 * (1.0 / 120 + a2 * (-1.0 / 5040 + a2 * (1.0 / 362880))))));
+    float c = (float)(1.0 + a2 * (-0.5 + a2 * (1.0 / 24 + a2 * (-1.0 / 720 + a2 * (1.0 / 40320)))));
+    return is_wide ? (vec2){r * c, r * s} : (vec2){r * s, r * c};
 }
 
 /* Cosine-distributed around +z; density cos / pi per solid angle. */
 static inline vec3 sample_cosine_hemisphere(vec2 u)
 {
     vec2 d = sample_disk_concentric(u);
-    return (vec3){d.x, d.y, sqrtf(fmaxf(1e-12f, 1.0f - d.x * d.x - d.y * d.y))};
+    float z_squared = 1.0f - d.x * d.x - d.y * d.y;
+    return (vec3){d.x, d.y, sqrtf(z_squared > 1e-12f ? z_squared : 1e-12f)};
 }
 
 /* Uniform on the unit sphere; density 1 / (4 pi). */

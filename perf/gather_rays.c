@@ -1,0 +1,300 @@
+/* gather_rays.c: the program afterglow-gather-rays: what a final gather's ray costs in all and by part, against what
+ * Embree alone needs for the very same rays. Room 20 of the forty, or another scene; all take turns in one process on
+ * one thread; medians of the rounds' ratios, as CSV.
+ * The rays are those of some tiles of a picture of 400 x 400, 64 from each place; all irradiance is there already.
+ * Use: afterglow-gather-rays [SCENE.pbrt]. Flow: [here]. Threads: one. */
+#define _GNU_SOURCE
+#include "clock.h"
+#include "final_gather.h"
+#include "floating_point.h"
+#include "pbrt_parser.h"
+#include "room_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { ROOM = 20, PICTURE = 400, TILE = 32, TILES = 5, GATHER_RAYS = 64, NEAREST = 300, ROUNDS = 9, ESTIMATES = 20000 };
+enum { PLACES_MAX = TILES * TILE * TILE, RAYS_MAX = PLACES_MAX * GATHER_RAYS };
+static const float RADIUS = 3.0f;
+
+typedef struct place {
+    vertex v;
+    sampler where;
+} place;
+
+typedef struct bench {
+    scene *s;
+    photon_map map, no_caustics;
+    irradiance_cache cache;
+    ag_render_settings settings;
+    transport t;
+    eye_worker worker;
+    place *places; /* [place_count] */
+    scene_ray *rays;
+    irradiance_query *queries; /* where the rays end */
+    rgb *irradiance;
+    uint32_t place_count, ray_count, query_count;
+    double sink; /* keeps the work from being optimised away */
+} bench;
+
+static void say(void *user, ag_log_level level, const char *message)
+{
+    (void)user;
+    if (level <= AG_LOG_WARNING)
+        fprintf(stderr, "%s\n", message);
+}
+
+/* --- what is measured: each gives the number of operations --- */
+
+static double embree(bench *b)
+{
+    for (uint32_t i = 0; i < b->ray_count; i++)
+        b->sink += (double)scene_first_distance(b->s, b->rays[i]);
+    return b->ray_count;
+}
+
+static double whole(bench *b)
+{
+    uint64_t before = b->worker.rays_gather;
+    for (uint32_t i = 0; i < b->place_count; i++)
+        final_gather(&b->t, &b->worker, &b->places[i].v, &b->places[i].where, 0, 98, rgb_gray(1.0f));
+    gather_batch_resolve(b->worker.batch, &b->cache, b->t.run, 0);
+    b->sink += (double)b->worker.batch->gathered[0].first.g;
+    return (double)(b->worker.rays_gather - before);
+}
+
+static double lookups(bench *b)
+{
+    for (uint32_t i = 0; i < b->query_count; i += IRRADIANCE_BATCH_MAX) {
+        uint32_t left = b->query_count - i, count = left < IRRADIANCE_BATCH_MAX ? left : IRRADIANCE_BATCH_MAX;
+        irradiance_cache_get_many(&b->cache, b->t.run, b->queries + i, count, 0, b->irradiance);
+        b->sink += (double)b->irradiance[0].g;
+    }
+    return b->query_count;
+}
+
+static double directions(bench *b)
+{
+    for (uint32_t i = 0; i < b->place_count; i++) {
+        const place *p = &b->places[i];
+        sampler_sequence sequence = sampler_sequence_make(&p->where, SAMPLE_GATHER, 0, GATHER_RAYS);
+        for (uint32_t k = 0; k < GATHER_RAYS; k++) {
+            bsdf_sample first;
+            if (bsdf_sample_direction(&p->v.scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f,
+                                      sampler_sequence_at(&sequence, k), &first))
+                b->sink += (double)surface_ray(&p->v.hit, p->v.arrived, first.direction).direction.x;
+        }
+    }
+    return (double)b->place_count * GATHER_RAYS;
+}
+
+static double hits(bench *b)
+{
+    for (uint32_t i = 0; i < b->ray_count; i++) {
+        surface_hit hit;
+        if (scene_intersect(b->s, b->rays[i], INFINITY, &hit))
+            b->sink += (double)hit.position.x;
+    }
+    return b->ray_count;
+}
+
+static double estimates(bench *b)
+{
+    uint32_t step = b->map.set.count / ESTIMATES + 1, count = 0;
+    for (uint32_t i = 0; i < b->map.set.count; i += step, count++)
+        b->sink += (double)photon_map_irradiance_estimate(&b->map, photon_block_position(b->map.blocks, i),
+                                                          direction_decode(photon_block_normal(b->map.blocks, i)),
+                                                          b->cache.scratch[0].neighbors)
+                       .g;
+    return count;
+}
+
+static struct measurement {
+    const char *name;
+    double (*run)(bench *b);
+    double wanted; /* at most so many of Embree's rays; 0: not said */
+    double us[ROUNDS];
+} measurements[] = {
+    {"Embree alone", embree, 0.0, {0}},        {"whole gather ray", whole, 2.4, {0}},
+    {"ray and hit", hits, 0.0, {0}},           {"direction", directions, 0.0, {0}},
+    {"lookup, warm cache", lookups, 1.0, {0}}, {"estimate, scattered", estimates, 0.0, {0}},
+};
+enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
+
+/* --- what they work on --- */
+
+static void add_place(bench *b, int x, int y)
+{
+    place *p = &b->places[b->place_count];
+    p->where = sampler_make(0, x, y, 0, 0);
+    scene_ray ray = camera_generate_ray(&b->s->camera, ((float)x + 0.5f) / PICTURE, ((float)y + 0.5f) / PICTURE, 1.0f,
+                                        (vec2){0.5f, 0.5f}, 0.0f);
+    if (!transport_trace(&b->t, &b->worker, ray, &p->v) || !bsdf_is_plain(&p->v.scattering))
+        return;
+    b->place_count++;
+    sampler_sequence sequence = sampler_sequence_make(&p->where, SAMPLE_GATHER, 0, GATHER_RAYS);
+    for (uint32_t k = 0; k < GATHER_RAYS; k++) {
+        bsdf_sample first;
+        if (!bsdf_sample_direction(&p->v.scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f,
+                                   sampler_sequence_at(&sequence, k), &first))
+            continue;
+        ray = surface_ray(&p->v.hit, p->v.arrived, first.direction);
+        ray.skips_uv = true;
+        b->rays[b->ray_count++] = ray;
+        vertex end;
+        if (transport_trace(&b->t, &b->worker, ray, &end)) {
+            map_place at = transport_map_place(&b->t, &end);
+            b->queries[b->query_count++] = (irradiance_query){at.position, at.facing_normal};
+        }
+    }
+}
+
+static ag_status make_work(bench *b)
+{
+    b->places = malloc(PLACES_MAX * sizeof *b->places);
+    b->rays = malloc(RAYS_MAX * sizeof *b->rays);
+    b->queries = malloc(RAYS_MAX * sizeof *b->queries);
+    b->irradiance = malloc(IRRADIANCE_BATCH_MAX * sizeof *b->irradiance);
+    b->worker.batch = gather_batch_create(INFINITY);
+    b->worker.scratch = arena_create(1 << 16);
+    if (!b->places || !b->rays || !b->queries || !b->irradiance || !b->worker.batch || !b->worker.scratch)
+        return AG_ERROR_MEMORY;
+    for (int tile = 0; tile < TILES; tile++) { /* across the picture, from corner to corner */
+        int corner = tile * (PICTURE - TILE) / (TILES - 1);
+        for (int y = corner; y < corner + TILE; y++)
+            for (int x = corner; x < corner + TILE; x++)
+                add_place(b, x, y);
+    }
+    return AG_OK;
+}
+
+static ag_status load(bench *b, run_context *run, const char *path)
+{
+    char room[] = "/tmp/afterglow-room-XXXXXX";
+    room_sphere spheres[ROOM_COUNT];
+    if (!path) {
+        int file = mkstemp(room);
+        if (file < 0)
+            return AG_ERROR_OUTPUT;
+        close(file);
+        ag_status status = room_layout_place(ROOM_SEED, spheres);
+        if (status == AG_OK)
+            status = room_file_write(room, spheres, ROOM, GATHER_RAYS);
+        if (status != AG_OK)
+            return status;
+    }
+    b->s = scene_create();
+    ag_status status = b->s ? pbrt_parse_file(run, path ? path : room, b->s) : AG_ERROR_MEMORY;
+    if (!path)
+        unlink(room);
+    return status == AG_OK ? scene_commit(b->s, run, NULL) : status;
+}
+
+static ag_status make_cache(bench *b, run_context *run)
+{
+    photon_set set = {0};
+    photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL, .wanted = ROOM_PHOTON_COUNT, .max_scatterings = 98};
+    ag_status status = photon_tracing_run(b->s, run, &tracing, &set);
+    photon_map_settings settings = {
+        .nearest = NEAREST, .max_radius = RADIUS, .surface_area = b->s->surface_area, .surfaces = b->s};
+    if (status == AG_OK)
+        status = photon_map_create(run, &set, &settings, 0.0, 1.0, &b->map);
+    if (status == AG_OK)
+        status = irradiance_cache_create(&b->map, IRRADIANCE_PRECOMPUTE, 1, &b->cache);
+    if (status == AG_OK)
+        status = irradiance_cache_precompute(&b->cache, run);
+    b->settings.gather_samples = GATHER_RAYS;
+    b->t = (transport){.s = b->s,
+                       .run = run,
+                       .caustic = &b->no_caustics,
+                       .cache = &b->cache,
+                       .settings = &b->settings,
+                       .has_lights = true,
+                       .gather_min_distance = b->map.mean_radius};
+    return status;
+}
+
+/* --- report --- */
+
+static int by_value(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static double median(double values[ROUNDS])
+{
+    qsort(values, ROUNDS, sizeof *values, by_value);
+    return values[ROUNDS / 2];
+}
+
+/* The median of the rounds' ratios: both halves of a ratio have seen the same noise. */
+static void report(void)
+{
+    printf("what,us,us_least,embree_rays,at_most,holds\n");
+    for (int i = 0; i < MEASUREMENTS; i++) {
+        const struct measurement *m = &measurements[i];
+        double us[ROUNDS], ratio[ROUNDS];
+        for (int r = 0; r < ROUNDS; r++) {
+            us[r] = m->us[r];
+            ratio[r] = m->us[r] / measurements[0].us[r];
+        }
+        double times = median(ratio), middle = median(us);
+        printf("\"%s\",%.4f,%.4f,%.3f,", m->name, middle, us[0], times);
+        if (m->wanted > 0.0)
+            printf("%.2f,%s\n", m->wanted, times <= m->wanted ? "yes" : "no");
+        else
+            printf(",\n");
+    }
+}
+
+static void bench_reset(bench *b)
+{
+    irradiance_cache_reset(&b->cache);
+    photon_map_reset(&b->map);
+    scene_destroy(b->s);
+    free(b->places);
+    free(b->rays);
+    free(b->queries);
+    free(b->irradiance);
+    gather_batch_destroy(b->worker.batch);
+    arena_destroy(b->worker.scratch);
+}
+
+int main(int argc, char **argv)
+{
+    static bench b;
+    thread_pool *pool = NULL;
+    run_context run;
+    log_sink *log = log_create(say, NULL);
+    ag_status status = log ? thread_pool_create(1, &pool) : AG_ERROR_MEMORY;
+    unsigned arithmetic = floating_point_enter();
+    if (status == AG_OK) {
+        run_context_init(&run, pool, log, NULL, NULL);
+        status = load(&b, &run, argc > 1 ? argv[1] : NULL);
+        if (status == AG_OK)
+            status = make_cache(&b, &run);
+        if (status == AG_OK)
+            status = make_work(&b);
+    }
+    if (status != AG_OK) {
+        fprintf(stderr, "afterglow-gather-rays: %s\n", ag_status_text(status));
+        return 1;
+    }
+    for (int round = 0; round < ROUNDS; round++)
+        for (int i = 0; i < MEASUREMENTS; i++) {
+            double begin = clock_thread_cpu_seconds(), count = measurements[i].run(&b);
+            measurements[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
+        }
+    floating_point_leave(arithmetic);
+    fprintf(stderr, "%u photons, %u places, %u rays, %d rounds (checksum %g)\n", b.map.set.count, b.place_count,
+            b.ray_count, ROUNDS, b.sink);
+    report();
+    bench_reset(&b);
+    run_context_reset(&run);
+    thread_pool_destroy(pool);
+    log_destroy(log);
+    return 0;
+}

@@ -1,0 +1,204 @@
+/* photon_k_nearest.c: the k nearest photons; see photon_tree.h.
+ * Threads: read only. */
+#include "photon_query.h"
+
+#include <string.h>
+
+/* The leaf that the query is in. The way down is not kept: what has been found there tells which other sides matter. */
+static uint32_t first_leaf(const photon_query *q)
+{
+    return photon_tree_leaf(q->tree, (vec3){q->position[0], q->position[1], q->position[2]});
+}
+
+/* Puts on the stack the sides that the way to the first leaf left aside, as far as they are within the limit; the
+ * nearest to the leaf on top. By the offset from their plane alone, which may be too little, and is never too much. */
+static void stack_other_sides(photon_query *q, uint32_t first_block, float limit)
+{
+    uint32_t way = (1u << q->tree->depth) + first_block; /* the heap's order: the ancestor `up` levels above the leaf */
+    float most = photon_query_hair_beyond(limit);
+    q->visits = 0;
+    for (uint32_t up = q->tree->depth; up > 0; up--) {
+        photon_tree_node n = q->tree->nodes[(way >> up) - 1];
+        photon_query_push(q, photon_lanes_fill(0.0f), q->at - photon_lanes_fill(n.split), n.axis,
+                          ((way >> (up - 1)) ^ 1) - 1, most);
+    }
+}
+
+/* Quickselect over neighbours, which are all different: the `wanted` nearest come first, the farthest of them at
+ * wanted - 1. */
+static void quickselect(photon_neighbor *n, uint32_t count, uint32_t wanted)
+{
+    int64_t low = 0, high = (int64_t)count - 1, target = (int64_t)wanted - 1;
+    while (low < high) {
+        photon_neighbor a = n[low], b = n[low + (high - low) / 2], c = n[high];
+        photon_neighbor pivot = a < b ? (b < c ? b : (a < c ? c : a)) : (a < c ? a : (b < c ? c : b));
+        int64_t i = low, j = high;
+        while (i <= j) {
+            while (n[i] < pivot)
+                i++;
+            while (n[j] > pivot)
+                j--;
+            if (i <= j) {
+                photon_neighbor hold = n[i];
+                n[i++] = n[j];
+                n[j--] = hold;
+            }
+        }
+        if (target <= j)
+            high = j;
+        else if (target >= i)
+            low = i;
+        else
+            return;
+    }
+}
+
+/* The same, for neighbours within the limit. On a surface the squared distances are spread evenly, so a histogram of
+ * them leaves only a few to be compared; all else moves without a branch to be mispredicted. */
+static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, float limit)
+{
+    enum { BINS = 256, BIN_MAX = 64 };
+    uint32_t histogram[BINS] = {0};
+    float scale = limit > 0x1p-100f ? (float)(BINS - 1) / limit : 0.0f; /* smaller ones share a bin: no overflow */
+    for (uint32_t i = 0; i < count; i++)
+        histogram[(uint32_t)(photon_neighbor_distance_squared(n[i]) * scale)]++;
+    uint32_t before = 0, bin = 0; /* the bin of the last one wanted, and how many lie in those before it */
+    while (before + histogram[bin] < wanted)
+        before += histogram[bin++];
+    if (histogram[bin] > BIN_MAX) {
+        quickselect(n, count, wanted);
+        return;
+    }
+    photon_neighbor in_bin[BIN_MAX + 1];
+    uint32_t kept = 0, in_bin_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        photon_neighbor x = n[i];
+        uint32_t its_bin = (uint32_t)(photon_neighbor_distance_squared(x) * scale);
+        n[kept] = x;
+        kept += its_bin < bin;
+        in_bin[in_bin_count] = x;
+        in_bin_count += its_bin == bin;
+    }
+    quickselect(in_bin, in_bin_count, wanted - kept);
+    for (uint32_t i = 0; kept < wanted; i++)
+        n[kept++] = in_bin[i];
+}
+
+/* What has been collected: those of the `wanted` nearest that lie within the limit, which shrinks. */
+typedef struct collection {
+    photon_neighbor *neighbors;
+    uint32_t count, wanted, capacity;
+    float limit;
+    float other; /* squared distance of the nearest photon with another normal, but none about the opposite */
+} collection;
+
+static void keep_nearest(collection *c)
+{
+    select_nearest(c->neighbors, c->count, c->wanted, c->limit);
+    c->count = c->wanted;
+}
+
+static void scan_for_all(photon_query *q, uint32_t block, collection *c)
+{
+    const photon_block *b = &q->tree->blocks[block];
+    _Alignas(16) float d[PHOTON_BLOCK_LANES];
+    uint32_t within = photon_block_within(b, q->position, c->limit, d);
+    uint32_t similar =
+        q->similar_code == PHOTON_QUERY_NO_CODE ? 0 : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
+    uint32_t rest = within & ~similar;
+    while (rest) {
+        uint32_t lane = (uint32_t)__builtin_ctz(rest);
+        rest &= rest - 1;
+        if (photon_query_has_similar_normal(q, b->normal[lane]))
+            similar |= 1u << lane;
+        else if (!q->other_is_behind)
+            c->other = d[lane] < c->other ? d[lane] : c->other;
+    }
+    photon_neighbor *end = c->neighbors + c->count;
+    for (; similar; similar &= similar - 1) {
+        uint32_t lane = (uint32_t)__builtin_ctz(similar);
+        *end++ = photon_neighbor_make(d[lane], block * PHOTON_BLOCK_LANES + lane);
+    }
+    c->count = (uint32_t)(end - c->neighbors);
+    if (c->count + PHOTON_BLOCK_LANES > c->capacity) {
+        /* full: keep the nearest, and look no farther than they reach */
+        keep_nearest(c);
+        c->limit = photon_neighbor_distance_squared(c->neighbors[c->wanted - 1]);
+    }
+}
+
+static void collect(photon_query *q, uint32_t first_block, collection *c)
+{
+    uint32_t block;
+    c->count = 0;
+    c->other = INFINITY;
+    scan_for_all(q, first_block, c);
+    stack_other_sides(q, first_block, c->limit);
+    while (photon_query_next_leaf(q, c->limit, &block))
+        scan_for_all(q, block, c);
+    if (c->count >= c->wanted)
+        keep_nearest(c);
+}
+
+/* A first radius squared, within which the wanted photons may be expected: the few leaves around the query tell how
+ * dense they lie. A rectangle of photons has the area 12 sqrt(var u var v); of a plane that lies askew, var u var v is
+ * the sum of the principal minors of their covariance. A function of the tree and the query alone; what it is changes
+ * the time of a search only. */
+static float guess_radius_squared(const photon_query *q, uint32_t first_block, uint32_t wanted, float largest)
+{
+    enum { LEAVES = 4, PHOTONS = LEAVES * PHOTON_BLOCK_LANES };
+    static const float MARGIN = 1.2f;
+    uint32_t begin = first_block & ~(uint32_t)(LEAVES - 1);
+    if (((uint64_t)begin + LEAVES) * PHOTON_BLOCK_LANES > q->tree->count)
+        return largest;
+    /* relative to the query, which is near: nothing cancels */
+    float sum[3] = {0.0f, 0.0f, 0.0f}, xx = 0.0f, yy = 0.0f, zz = 0.0f, xy = 0.0f, yz = 0.0f, zx = 0.0f;
+    for (uint32_t block = begin; block < begin + LEAVES; block++) {
+        const photon_block *b = &q->tree->blocks[block];
+        photon_lanes sums[9] = {{0.0f}};
+        for (uint32_t i = 0; i < PHOTON_BLOCK_LANES; i += 4) {
+            photon_lanes x, y, z;
+            memcpy(&x, &b->position[0][i], sizeof x);
+            memcpy(&y, &b->position[1][i], sizeof y);
+            memcpy(&z, &b->position[2][i], sizeof z);
+            x -= photon_lanes_fill(q->position[0]);
+            y -= photon_lanes_fill(q->position[1]);
+            z -= photon_lanes_fill(q->position[2]);
+            sums[0] += x, sums[1] += y, sums[2] += z;
+            sums[3] += x * x, sums[4] += y * y, sums[5] += z * z;
+            sums[6] += x * y, sums[7] += y * z, sums[8] += z * x;
+        }
+        float *const to[9] = {&sum[0], &sum[1], &sum[2], &xx, &yy, &zz, &xy, &yz, &zx};
+        for (int k = 0; k < 9; k++)
+            *to[k] += (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]);
+    }
+    float n = 1.0f / PHOTONS, mx = sum[0] * n, my = sum[1] * n, mz = sum[2] * n;
+    xx = xx * n - mx * mx, yy = yy * n - my * my, zz = zz * n - mz * mz;
+    xy = xy * n - mx * my, yz = yz * n - my * mz, zx = zx * n - mz * mx;
+    float minors = xx * yy - xy * xy + yy * zz - yz * yz + zz * xx - zx * zx;
+    float area = 12.0f * sqrtf(minors > 0.0f ? minors : 0.0f);
+    float guess = MARGIN * AG_INV_PI * area * n * (float)wanted;
+    return guess > 0.0f && guess < largest ? guess : largest;
+}
+
+uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                               uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
+{
+    *out_other_squared = INFINITY;
+    if (tree->count == 0)
+        return 0;
+    photon_query q;
+    photon_query_init(&q, tree, position, normal, min_cos);
+    uint32_t block = first_leaf(&q);
+    float largest = radius * radius, limit = guess_radius_squared(&q, block, wanted, largest);
+    for (;;) {
+        collection c = {
+            .neighbors = neighbors, .wanted = wanted, .capacity = photon_neighbors_capacity(wanted), .limit = limit};
+        collect(&q, block, &c);
+        *out_other_squared = c.other;
+        if (c.count == wanted || limit >= largest)
+            return c.count;
+        /* too few: by how many tells how much farther to look */
+        limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(c.count + 1)), largest);
+    }
+}

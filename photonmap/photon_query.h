@@ -1,0 +1,120 @@
+/* photon_query.h: a way through the photon tree: the query, what is still to visit, and which normals count. Private
+ * to the two searches. Rests on: Arya, Mount, "Algorithms for Fast Vector Quantization", 1993.
+ * Depth first, near side first; a stack entry carries its box's offset from the query along each axis.
+ * Threads: a query belongs to one. */
+#ifndef AFTERGLOW_PHOTON_QUERY_H
+#define AFTERGLOW_PHOTON_QUERY_H
+
+#include "photon_tree.h"
+
+/* x, y, z, and nothing: in registers, since a single lane that is stored cannot soon be read back with its neighbours.
+ */
+typedef float photon_lanes __attribute__((vector_size(16)));
+typedef int32_t photon_lane_bits __attribute__((vector_size(16)));
+
+static inline photon_lanes photon_lanes_fill(float value) { return (photon_lanes){value, value, value, value}; }
+
+/* a, but b along the axis. */
+static inline photon_lanes photon_lanes_replace(photon_lanes a, photon_lanes b, uint32_t axis)
+{
+    static const photon_lane_bits ALONG[3] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}};
+    return (photon_lanes)(((photon_lane_bits)a & ~ALONG[axis]) | ((photon_lane_bits)b & ALONG[axis]));
+}
+
+/* A part of the tree still to visit: how far the query is outside its box, along each axis and in all. */
+typedef struct photon_visit {
+    photon_lanes offset;
+    float distance_squared;
+    uint32_t node;
+} photon_visit;
+
+typedef struct photon_query {
+    photon_lanes at;
+    float position[3]; /* the same */
+    const photon_tree *tree;
+    vec3 normal;
+    float min_cos;
+    uint32_t similar_code, other_code; /* normals, as photons have them, that were last found similar and not */
+    bool other_is_behind;              /* that other one is turned by more than 120 degrees */
+    uint32_t visits;                   /* on the stack */
+    photon_visit stack[PHOTON_TREE_DEPTH_MAX];
+} photon_query;
+
+#define PHOTON_QUERY_NO_CODE UINT32_MAX
+
+/* Rounding may make a box seem farther than its photons: what is within a hair of the limit is visited. */
+static inline float photon_query_hair_beyond(float limit) { return limit * 1.00001f; }
+
+/* The other side of a node's plane, as seen from the box that the visit is in; on the stack, where it is within reach:
+ * most is the limit and a hair. */
+static inline void photon_query_push(photon_query *q, photon_lanes offset, photon_lanes from_plane, uint32_t axis,
+                                     uint32_t node, float most)
+{
+    photon_lanes far = photon_lanes_replace(offset, from_plane, axis), square = far * far;
+    float beyond = square[0] + square[1] + square[2];
+    if (beyond <= most && beyond < INFINITY) /* beyond a plane at infinity there is nothing */
+        q->stack[q->visits++] = (photon_visit){far, beyond, node};
+}
+
+/* Goes down to the leaf on the query's side, leaving on the stack the other sides that are within the limit. Returns
+ * the leaf's block. */
+static inline uint32_t photon_query_descend(photon_query *q, photon_lanes offset, uint32_t node, float limit)
+{
+    uint32_t leaf_base = (1u << q->tree->depth) - 1;
+    float most = photon_query_hair_beyond(limit);
+    while (node < leaf_base) {
+        photon_tree_node n = q->tree->nodes[node];
+        photon_lanes from_plane = q->at - photon_lanes_fill(n.split);
+        uint32_t is_right = q->position[n.axis] >= n.split;
+        photon_query_push(q, offset, from_plane, n.axis, 2 * node + 2 - is_right, most);
+        node = 2 * node + 1 + is_right;
+    }
+    return node - leaf_base;
+}
+
+/* Takes the next visit from the stack and goes down to its leaf; false when nothing within the limit is left. */
+static inline bool photon_query_next_leaf(photon_query *q, float limit, uint32_t *out_block)
+{
+    float most = photon_query_hair_beyond(limit);
+    while (q->visits > 0) {
+        const photon_visit *v = &q->stack[--q->visits];
+        if (v->distance_squared > most)
+            continue;
+        *out_block = photon_query_descend(q, v->offset, v->node, limit);
+        return true;
+    }
+    return false;
+}
+
+/* Neighbours mostly share a normal: the last answers are kept. */
+static inline bool photon_query_has_similar_normal(photon_query *q, uint16_t code)
+{
+    if (code == q->similar_code)
+        return true;
+    if (code == q->other_code)
+        return false;
+    /* the cosine against min_cos >= 0, without a square root */
+    vec3 n = direction_decode_unnormalized(code);
+    float d = vec3_dot(n, q->normal), square = vec3_length_squared(n);
+    if (d > 0.0f && d * d > q->min_cos * q->min_cos * square) {
+        q->similar_code = code;
+        return true;
+    }
+    q->other_code = code;
+    q->other_is_behind = d < 0.0f && d * d > 0.25f * square;
+    return false;
+}
+
+static inline void photon_query_init(photon_query *q, const photon_tree *tree, vec3 position, vec3 normal,
+                                     float min_cos)
+{
+    q->tree = tree;
+    q->at = (photon_lanes){position.x, position.y, position.z, 0.0f};
+    q->position[0] = position.x, q->position[1] = position.y, q->position[2] = position.z;
+    q->normal = normal;
+    q->min_cos = min_cos;
+    q->similar_code = q->other_code = PHOTON_QUERY_NO_CODE;
+    q->other_is_behind = false;
+}
+
+#endif
