@@ -135,8 +135,9 @@ typedef struct tile_job {
     tile_scheduler *tiles;
     eye_worker *workers;
     ag_film *film;
-    uint32_t wanted;        /* samples of each pixel */
-    atomic_u64 pixels_done; /* for the progress alone: relaxed */
+    uint32_t wanted;         /* samples of each pixel */
+    double sample_count;     /* all that are still to be taken */
+    atomic_u64 samples_done; /* for the progress alone: relaxed */
 } tile_job;
 
 /* All but the gathered light, which the worker's batch brings later. */
@@ -169,11 +170,15 @@ static void finish_samples(tile_job *job, eye_worker *worker)
 {
     const transport *t = job->t;
     gather_batch *batch = worker->batch;
-    if (batch)
+    if (batch && !run_is_cancelled(t->run))
         gather_batch_resolve(batch, t->cache, t->run, worker->index);
-    if (!run_is_cancelled(t->run))
-        worker->samples_not_finite += sample_queue_deliver(worker->queue, batch ? batch->gathered : NULL,
-                                                           (uint32_t)t->layout->group_count, job->film);
+    uint32_t count = worker->queue->count;
+    if (count == 0 || run_is_cancelled(t->run))
+        return;
+    worker->samples_not_finite += sample_queue_deliver(worker->queue, batch ? batch->gathered : NULL,
+                                                       (uint32_t)t->layout->group_count, job->film);
+    uint64_t done = fetch_add_relaxed_u64(&job->samples_done, count) + count;
+    run_progress(&job->context->run, AG_PHASE_RENDER, (double)done / job->sample_count);
 }
 
 /* Whether the next sample is better begun when those under way are complete. */
@@ -213,7 +218,6 @@ static void render_tiles(void *user, unsigned worker_index)
 {
     tile_job *job = user;
     eye_worker *worker = &job->workers[worker_index];
-    double pixel_count = (double)job->film->width * (double)job->film->height;
     float *times = job->film->views[VIEW_TILE_TIME];
     tile area;
     worker->queue->count = 0;
@@ -224,17 +228,15 @@ static void render_tiles(void *user, unsigned worker_index)
         for (int y = area.y0; y < area.y1; y++) {
             for (int x = area.x0; x < area.x1; x++)
                 render_pixel(job, worker, x, y);
-            uint64_t row = (uint64_t)(area.x1 - area.x0);
-            uint64_t done = fetch_add_relaxed_u64(&job->pixels_done, row) + row;
-            run_progress(&job->context->run, AG_PHASE_RENDER, (double)done / pixel_count);
+            if (!worker->batch) /* nothing is waited for */
+                finish_samples(job, worker);
         }
         if (times) {
             finish_samples(job, worker);
             add_tile_time(job->film, area, (float)(clock_seconds() - begin));
         }
     }
-    if (!run_is_cancelled(&job->context->run))
-        finish_samples(job, worker);
+    finish_samples(job, worker);
 }
 
 static void eye_workers_destroy(eye_worker *workers, unsigned count)
@@ -303,6 +305,8 @@ static ag_status render_tiles_of(ag_rendering *r, uint32_t wanted)
                                              TILE_SIZE, context->statistics.threads, &job.tiles);
     if (status != AG_OK)
         return status;
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; i++)
+        job.sample_count += film->counts[i] < wanted ? (double)(wanted - film->counts[i]) : 0.0;
     double begin = clock_seconds();
     run_progress(&context->run, AG_PHASE_RENDER, 0.0); /* the first pixels may take long */
     thread_pool_run(context->pool, render_tiles, &job);
