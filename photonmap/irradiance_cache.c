@@ -216,11 +216,15 @@ void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request
 {
     const irradiance_slot *slot = photon_block_slot(cache->map->blocks, request->photon);
     uint32_t word = irradiance_slot_read(slot);
-    if (irradiance_word_state(word) != IRRADIANCE_READY)
-        cache->counters[worker_index].waited++;
-    while (irradiance_word_state(word) != IRRADIANCE_READY) {
-        sched_yield(); /* the claimer may need this processor */
-        word = irradiance_slot_read(slot);
+    if (irradiance_word_state(word) != IRRADIANCE_READY) {
+        irradiance_counters *counters = &cache->counters[worker_index];
+        double begin = clock_thread_cpu_seconds();
+        do {
+            sched_yield(); /* the claimer may need this processor */
+            word = irradiance_slot_read(slot);
+        } while (irradiance_word_state(word) != IRRADIANCE_READY);
+        counters->waited++;
+        counters->waited_seconds += clock_thread_cpu_seconds() - begin;
     }
     fulfil(cache, word, request);
 }
@@ -245,6 +249,7 @@ irradiance_counters irradiance_cache_counters(const irradiance_cache *cache)
         sum.uncached += c->uncached;
         sum.timed += c->timed;
         sum.timed_seconds += c->timed_seconds;
+        sum.waited_seconds += c->waited_seconds;
     }
     return sum;
 }

@@ -28,6 +28,7 @@ typedef struct irradiance_counters {
     uint64_t uncached;              /* estimates at the place itself */
     uint64_t timed;                 /* estimates whose time was taken */
     double timed_seconds;           /* CPU time of those */
+    double waited_seconds;          /* CPU time of waiting */
 } irradiance_counters;
 
 /* Of one worker: an estimate's neighbours, and a batch's order. */

@@ -71,10 +71,11 @@ unsigned ag_context_thread_count(const ag_context *context) { return thread_pool
 
 void ag_context_cancel(ag_context *context) { run_cancel(&context->run); }
 
-void context_end_phase(ag_context *context, ag_phase phase, double begin)
+void context_end_phase(ag_context *context, ag_phase phase, phase_begin begin)
 {
-    double seconds = clock_seconds() - begin;
+    double seconds = clock_seconds() - begin.time_s;
     context->statistics.time_s[phase] += seconds;
+    context->statistics.phase_cpu_s[phase] += clock_process_cpu_seconds() - begin.cpu_s;
     log_message(context->log, AG_LOG_INFO, "%-10s %9.3f s", ag_phase_name(phase), seconds);
 }
 
@@ -86,7 +87,6 @@ ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_sc
     ag_scene *loaded = calloc(1, sizeof *loaded);
     scene *s = scene_create();
     ag_status status = loaded && s ? AG_OK : AG_ERROR_MEMORY;
-    double begin = clock_seconds();
     const color_config *colors = NULL;
     if (status == AG_OK)
         status = context_color_config(context, &colors);
@@ -94,11 +94,12 @@ ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_sc
         s->space = context->working_space;
         s->color_config = colors;
     }
+    phase_begin begin = context_begin_phase();
     if (status == AG_OK)
         status = scene_file_load(&context->run, path, s);
     if (status == AG_OK) {
         context_end_phase(context, AG_PHASE_LOAD, begin);
-        begin = clock_seconds();
+        begin = context_begin_phase();
         status = scene_commit(s, &context->run, context->isa);
     }
     if (status == AG_OK) {

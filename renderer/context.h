@@ -3,6 +3,7 @@
 #ifndef AFTERGLOW_CONTEXT_H
 #define AFTERGLOW_CONTEXT_H
 
+#include "clock.h"
 #include "color.h"
 #include "film.h"
 #include "run_context.h"
@@ -26,8 +27,18 @@ struct ag_scene {
     scene *s;
 };
 
-/* Adds the time since `begin` (clock_seconds) to a phase, and says at info level how long it took. */
-void context_end_phase(ag_context *context, ag_phase phase, double begin);
+/* When a phase began. */
+typedef struct phase_begin {
+    double time_s, cpu_s; /* clock_seconds, clock_process_cpu_seconds */
+} phase_begin;
+
+static inline phase_begin context_begin_phase(void)
+{
+    return (phase_begin){clock_seconds(), clock_process_cpu_seconds()};
+}
+
+/* Adds the time since `begin` to a phase, and says at info level how long it took. */
+void context_end_phase(ag_context *context, ag_phase phase, phase_begin begin);
 
 /* The context's colour config, and with it context->working_space; read when first asked for. What is wrong is said in
  * the log. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. (output_color.c) */

@@ -163,7 +163,7 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
         settings = &defaults;
     if (run_is_cancelled(&context->run))
         return AG_CANCELLED;
-    double begin = clock_seconds();
+    phase_begin begin = context_begin_phase();
     const image_format *format;
     ag_status status = find_format(context, settings, path, &format);
     if (status != AG_OK)

@@ -83,7 +83,7 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
 {
     ag_statistics *statistics = &context->statistics;
     photon_set global = {0}, caustic = {0};
-    double begin = clock_seconds();
+    phase_begin begin = context_begin_phase();
     ag_status status = trace_photons(context, s, settings, &global, &caustic);
     if (status == AG_OK) {
         context_end_phase(context, AG_PHASE_PHOTONS, begin);
@@ -94,7 +94,7 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
         warn_of_cut_passages(context, global.passages_cut + caustic.passages_cut);
         log_message(context->log, AG_LOG_INFO, "photons: %u in the global map, %u in the caustic map, %llu paths",
                     global.count, caustic.count, (unsigned long long)(global.emitted_paths + caustic.emitted_paths));
-        begin = clock_seconds();
+        begin = context_begin_phase();
         photon_map_settings map_settings = {.nearest = (uint32_t)settings->nearest,
                                             .max_radius = settings->radius,
                                             .surface_area = s->surface_area,
@@ -120,7 +120,7 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
                                                   [AG_CACHE_OFF] = IRRADIANCE_UNCACHED};
     status = irradiance_cache_create(&out_maps->global, modes[settings->cache], statistics->threads, &out_maps->cache);
     if (status == AG_OK && settings->cache == AG_CACHE_PRECOMPUTE) {
-        begin = clock_seconds();
+        begin = context_begin_phase();
         status = irradiance_cache_precompute(&out_maps->cache, &context->run);
         context_end_phase(context, AG_PHASE_PRECOMPUTE, begin);
     }
@@ -307,7 +307,7 @@ static ag_status render_tiles_of(ag_rendering *r, uint32_t wanted)
         return status;
     for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; i++)
         job.sample_count += film->counts[i] < wanted ? (double)(wanted - film->counts[i]) : 0.0;
-    double begin = clock_seconds();
+    phase_begin begin = context_begin_phase();
     run_progress(&context->run, AG_PHASE_RENDER, 0.0); /* the first pixels may take long */
     thread_pool_run(context->pool, render_tiles, &job);
     film_resolve(film);
@@ -372,6 +372,7 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
     statistics->irradiance_duplicated += c.duplicated;
     statistics->irradiance_uncached += c.uncached;
     statistics->irradiance_estimate_s += irradiance_counters_estimate_seconds(&c);
+    statistics->irradiance_wait_s += c.waited_seconds;
 }
 
 /* Settings with nothing left open. */

@@ -18,31 +18,33 @@ static const char *cache_name(ag_cache_mode mode)
 /* Takes every value over; NULL when out of memory. */
 static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settings *settings, const char *isa)
 {
-    json_t *times = json_object();
-    for (int i = 0; i < AG_PHASE_COUNT; i++)
+    json_t *times = json_object(), *cpu_times = json_object();
+    for (int i = 0; i < AG_PHASE_COUNT; i++) {
         json_object_set_new(times, ag_phase_name((ag_phase)i), json_real(s->time_s[i]));
+        json_object_set_new(cpu_times, ag_phase_name((ag_phase)i), json_real(s->phase_cpu_s[i]));
+    }
     json_object_set_new(times, "total", json_real(s->time_total_s));
-    return json_pack("{s:s, s:i, s:s, s:I, s:s, s:s, s:s, s:{s:i, s:i, s:i}, s:{s:o, s:o, s:o, s:o},"
-                     " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f}, s:{s:o, s:o, s:o, s:o, s:o}, s:{s:i, s:f, s:i, s:i},"
-                     " s:o, s:o, s:f, s:{s:o}}",
-                     "version", ag_version(), "threads", (int)s->threads, "isa", isa, "seed",
-                     (json_int_t)settings->seed, "integrator",
-                     settings->integrator == AG_INTEGRATOR_PATH ? "path" : "photonmap", "cache",
-                     cache_name(settings->cache), "only", settings->only == AG_ONLY_INDIRECT ? "indirect" : "all", /**/
-                     "image", "width", settings->width, "height", settings->height, "samples_per_pixel",
-                     settings->samples_per_pixel, /**/
-                     "photons", "emitted", count(s->photons_emitted), "stored_global", count(s->photons_stored_global),
-                     "stored_caustic", count(s->photons_stored_caustic), "bytes", count(s->photon_bytes), /**/
-                     "irradiance", "requests", count(s->irradiance_requests), "computed", count(s->irradiance_computed),
-                     "distinct", count(s->irradiance_distinct), "deferred", count(s->irradiance_deferred), "waited",
-                     count(s->irradiance_waited), "duplicated", count(s->irradiance_duplicated), "uncached",
-                     count(s->irradiance_uncached), "estimate_s", s->irradiance_estimate_s, /**/
-                     "rays", "camera", count(s->rays_camera), "shadow", count(s->rays_shadow), "gather",
-                     count(s->rays_gather), "photon", count(s->rays_photon), "path", count(s->rays_path), /**/
-                     "settings", "nearest", settings->nearest, "radius", (double)settings->radius, "gather_samples",
-                     settings->gather_samples, "max_depth", settings->max_depth, /**/
-                     "samples_not_finite", count(s->samples_not_finite), "time_s", times, "cpu_s", s->cpu_s, "memory",
-                     "peak_bytes", count(s->memory_peak_bytes));
+    return json_pack(
+        "{s:s, s:i, s:s, s:I, s:s, s:s, s:s, s:{s:i, s:i, s:i}, s:{s:o, s:o, s:o, s:o},"
+        " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o},"
+        " s:{s:i, s:f, s:i, s:i}, s:o, s:o, s:f, s:o, s:{s:o}}",
+        "version", ag_version(), "threads", (int)s->threads, "isa", isa, "seed", (json_int_t)settings->seed,
+        "integrator", settings->integrator == AG_INTEGRATOR_PATH ? "path" : "photonmap", "cache",
+        cache_name(settings->cache), "only", settings->only == AG_ONLY_INDIRECT ? "indirect" : "all", /**/
+        "image", "width", settings->width, "height", settings->height, "samples_per_pixel",
+        settings->samples_per_pixel, /**/
+        "photons", "emitted", count(s->photons_emitted), "stored_global", count(s->photons_stored_global),
+        "stored_caustic", count(s->photons_stored_caustic), "bytes", count(s->photon_bytes), /**/
+        "irradiance", "requests", count(s->irradiance_requests), "computed", count(s->irradiance_computed), "distinct",
+        count(s->irradiance_distinct), "deferred", count(s->irradiance_deferred), "waited", count(s->irradiance_waited),
+        "duplicated", count(s->irradiance_duplicated), "uncached", count(s->irradiance_uncached), "estimate_s",
+        s->irradiance_estimate_s, "wait_s", s->irradiance_wait_s, /**/
+        "rays", "camera", count(s->rays_camera), "shadow", count(s->rays_shadow), "gather", count(s->rays_gather),
+        "photon", count(s->rays_photon), "path", count(s->rays_path), /**/
+        "settings", "nearest", settings->nearest, "radius", (double)settings->radius, "gather_samples",
+        settings->gather_samples, "max_depth", settings->max_depth, /**/
+        "samples_not_finite", count(s->samples_not_finite), "time_s", times, "cpu_s", s->cpu_s, "phase_cpu_s",
+        cpu_times, "memory", "peak_bytes", count(s->memory_peak_bytes));
 }
 
 ag_status ag_statistics_write(ag_context *context, const char *path)

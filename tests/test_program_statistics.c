@@ -39,9 +39,10 @@ static void expect_keys(const json_t *stats)
                                            "rays.gather",
                                            "rays.photon",
                                            "memory.peak_bytes"};
-    static const char *const SECONDS[] = {"time_s.load",  "time_s.bvh",        "time_s.photons",
-                                          "time_s.map",   "time_s.precompute", "time_s.render",
-                                          "time_s.write", "time_s.total",      "cpu_s"};
+    static const char *const SECONDS[] = {"time_s.load",      "time_s.bvh",         "time_s.photons",
+                                          "time_s.map",       "time_s.precompute",  "time_s.render",
+                                          "time_s.write",     "time_s.total",       "cpu_s",
+                                          "phase_cpu_s.load", "phase_cpu_s.render", "irradiance.wait_s"};
     for (size_t i = 0; i < sizeof INTEGERS / sizeof *INTEGERS; i++)
         assert_true(stats_integer(stats, INTEGERS[i]) >= 0);
     for (size_t i = 0; i < sizeof SECONDS / sizeof *SECONDS; i++)
@@ -126,6 +127,11 @@ static void test_times(void **state)
     assert_true(sum > 0.0);
     assert_true(sum <= stats_number(stats, "time_s.total"));
     assert_true(stats_number(stats, "cpu_s") > 0.0);
+    double cpu_sum = 0.0;
+    json_object_foreach((json_t *)(uintptr_t)stats_find(stats, "phase_cpu_s"), phase, seconds) cpu_sum +=
+        json_number_value(seconds);
+    assert_true(cpu_sum > 0.0);
+    assert_true(cpu_sum <= stats_number(stats, "cpu_s"));
     json_decref(stats);
 }
 

@@ -264,11 +264,13 @@ typedef struct ag_statistics {
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
         irradiance_duplicated, irradiance_uncached;
     double irradiance_estimate_s; /* CPU seconds spent in estimates, all threads; from a sixteenth of them */
+    double irradiance_wait_s;     /* CPU seconds spent in waiting for other threads' estimates, all threads */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path;
     uint64_t samples_not_finite; /* camera samples dropped because they were not numbers: 0 */
     double time_s[AG_PHASE_COUNT];
-    double time_total_s; /* since the context was created */
-    double cpu_s;        /* user + system of the whole process */
+    double phase_cpu_s[AG_PHASE_COUNT]; /* user + system of the whole process meanwhile */
+    double time_total_s;                /* since the context was created */
+    double cpu_s;                       /* user + system of the whole process */
     uint64_t memory_peak_bytes;
 } ag_statistics;
 
