@@ -1,6 +1,6 @@
 /* large_scene.c: the program afterglow-large-scene, which writes scenes of a size that shows what memory and time go
- * with: a hilly floor of so many triangles as a binary PLY, or so many instances of one small thing, under a lamp.
- * Flow: -> a folder; afterglow renders what is in it. Threads: one. */
+ * with: a hilly floor of so many triangles as a binary PLY, so many instances of one small thing, or so many spheres,
+ * under a lamp. Flow: -> a folder; afterglow renders what is in it. Threads: one. */
 #include "path.h"
 
 #include <math.h>
@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char USAGE[] = "usage: afterglow-large-scene triangles|instances COUNT DIR\n"
-                            "Writes DIR/triangles.pbrt and DIR/triangles.ply, or DIR/instances.pbrt.\n";
+static const char USAGE[] =
+    "usage: afterglow-large-scene triangles|instances|spheres COUNT DIR\n"
+    "Writes DIR/triangles.pbrt and DIR/triangles.ply, DIR/instances.pbrt, or DIR/spheres.pbrt.\n";
 
 static const char BEGIN[] = "LookAt 0 4 -9  0 0 0  0 1 0\n"
                             "Camera \"perspective\" \"float fov\" 60\n"
@@ -72,6 +73,21 @@ static void write_instances(FILE *file, uint32_t count)
                 0.3 * size, 0.3 * size);
 }
 
+/* Spheres on a square grid, some higher than others, on a floor. */
+static void write_spheres(FILE *file, uint32_t count)
+{
+    uint32_t side = (uint32_t)ceil(sqrt((double)count));
+    double size = 16.0 / side;
+    fprintf(
+        file,
+        "%sShape \"trianglemesh\" \"point3 P\" [-8 0 -8  8 0 -8  8 0 8  -8 0 8] \"integer indices\" [0 2 1 0 3 2]\n",
+        BEGIN);
+    for (uint32_t i = 0; i < count; i++)
+        fprintf(file, "AttributeBegin Translate %g %g %g Shape \"sphere\" \"float radius\" %g AttributeEnd\n",
+                (i % side + 0.5) * size - 8.0, (0.5 + 0.1 * (i % 7)) * size, (i / side + 0.5) * size - 8.0,
+                0.45 * size);
+}
+
 static FILE *create(const char *folder, const char *name)
 {
     char path[PATH_SIZE];
@@ -97,16 +113,17 @@ int main(int argc, char **argv)
     char *end = NULL;
     const unsigned long count = argc == 4 ? strtoul(argv[2], &end, 10) : 0;
     const bool is_mesh = argc == 4 && strcmp(argv[1], "triangles") == 0;
-    if (argc != 4 || (!is_mesh && strcmp(argv[1], "instances") != 0) || *end != '\0' || count < 2 ||
+    const bool is_spheres = argc == 4 && strcmp(argv[1], "spheres") == 0;
+    if (argc != 4 || (!is_mesh && !is_spheres && strcmp(argv[1], "instances") != 0) || *end != '\0' || count < 2 ||
         count > 1000000000) {
         fputs(USAGE, stderr);
         return 2;
     }
-    FILE *file = create(argv[3], is_mesh ? "triangles.pbrt" : "instances.pbrt");
+    FILE *file = create(argv[3], is_mesh ? "triangles.pbrt" : is_spheres ? "spheres.pbrt" : "instances.pbrt");
     if (!file)
         return 1;
     if (!is_mesh) {
-        write_instances(file, (uint32_t)count);
+        (is_spheres ? write_spheres : write_instances)(file, (uint32_t)count);
         return finish(file) ? 0 : 1;
     }
     fprintf(file, "%sShape \"plymesh\" \"string filename\" \"triangles.ply\"\n", BEGIN);

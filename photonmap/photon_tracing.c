@@ -1,6 +1,6 @@
 /* photon_tracing.c: see photon_tracing.h.
  * Paths are traced in rounds of blocks; how many blocks a round has depends on the counts so far alone.
- * Threads: blocks by the run's workers, each into its own buffer; merged by the caller. */
+ * Threads: blocks by the run's workers, each into its own buffer; merged in their order. */
 #include "photon_tracing.h"
 
 #include "alpha.h"
@@ -14,7 +14,10 @@
 
 /* A path ends here at the latest; what it still carries is booked as truncated. */
 enum { SCATTERING_CAP = 100 };
-enum { PATHS_PER_BLOCK = 1024, BLOCKS_PER_ROUND_MAX = 256 };
+enum { PATHS_PER_BLOCK = 256, BLOCKS_PER_FIRST_ROUND = 32, BLOCKS_PER_ROUND_MAX = 1024 };
+/* While more blocks than this are wanted, a round does half of them: what it found lies beside the photons until it is
+ * merged, and is to be small against them. */
+enum { BLOCKS_WHOLE_ROUND = 512 };
 /* Tracing gives up after so many paths for each photon wanted, and at once when so many have stored none at all. */
 static const uint64_t PATHS_PER_PHOTON_MAX = 16, PATHS_WITHOUT_PHOTON_MAX = 1u << 20;
 /* Random streams, apart from those of the eye. */
@@ -23,6 +26,7 @@ enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2 };
 typedef struct block {
     photon *photons;
     uint32_t count, capacity;
+    uint32_t place; /* of its photons in the set */
     uint64_t paths, rays, passages_cut;
     photon_books books;
     bool out_of_memory;
@@ -55,7 +59,7 @@ static void store(tracer *t, const surface_hit *hit, const bsdf *b, vec3 directi
         return;
     }
     if (out->count == out->capacity) {
-        uint32_t capacity = out->capacity ? 2 * out->capacity : 2 * PATHS_PER_BLOCK;
+        uint32_t capacity = out->capacity ? 2 * out->capacity : 4 * PATHS_PER_BLOCK;
         photon *larger = realloc(out->photons, capacity * sizeof *larger);
         if (!larger) {
             out->out_of_memory = true;
@@ -195,9 +199,9 @@ static void add_books(photon_books *sum, const photon_books *part)
         a[i] += b[i];
 }
 
-/* Appends a block; where it overfills the set, its paths are traced again up to the one that fills it, so that the
- * books tell of whole paths and of those alone. */
-static ag_status merge_block(round_job *job, photon_set *set, uint64_t first_path, block *b)
+/* Takes a block into the account; where it overfills the set, its paths are traced again up to the one that fills it,
+ * so that the books tell of whole paths and of those alone. */
+static ag_status account_block(round_job *job, photon_set *set, uint64_t first_path, block *b)
 {
     uint32_t room = job->settings->wanted - set->count;
     if (b->out_of_memory)
@@ -208,14 +212,40 @@ static ag_status merge_block(round_job *job, photon_set *set, uint64_t first_pat
         while (b->count < room)
             trace_path(&t, first_path + b->paths++);
     }
-    if (b->count > 0)
-        memcpy(set->photons + set->count, b->photons, b->count * sizeof *b->photons);
+    b->place = set->count;
     set->count += b->count;
     set->emitted_paths += b->paths;
     set->rays += b->rays;
     set->passages_cut += b->passages_cut;
     add_books(&set->books, &b->books);
     return AG_OK;
+}
+
+typedef struct merge_job {
+    const block *blocks;
+    photon *photons;
+} merge_job;
+
+static void copy_blocks(void *user, uint64_t begin, uint64_t end, uint64_t index, unsigned worker)
+{
+    (void)index, (void)worker;
+    const merge_job *job = user;
+    for (uint64_t i = begin; i < end; i++)
+        if (job->blocks[i].count > 0)
+            memcpy(job->photons + job->blocks[i].place, job->blocks[i].photons, job->blocks[i].count * sizeof(photon));
+}
+
+/* Appends the round's blocks in their order, up to the one that fills the set. */
+static ag_status merge_round(round_job *job, photon_set *set, uint64_t block_count)
+{
+    uint64_t used = 0;
+    for (; used < block_count && set->count < job->settings->wanted; used++) {
+        ag_status status = account_block(job, set, job->first_path + used * PATHS_PER_BLOCK, &job->blocks[used]);
+        if (status != AG_OK)
+            return status;
+    }
+    merge_job merge = {job->blocks, set->photons};
+    return parallel_for(job->run, used, 16, copy_blocks, &merge, AG_PHASE_PHOTONS, 0.0, 0.0);
 }
 
 /* A ball around all shapes that have traced lobes; of radius 0 where there is none. */
@@ -272,16 +302,15 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
     block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
     set.photons = photon_records_create(settings->wanted);
     ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
-    uint64_t next_path = 0, block_count = 8;
+    uint64_t next_path = 0, block_count = BLOCKS_PER_FIRST_ROUND;
     while (status == AG_OK && set.count < settings->wanted) {
         round_job job = {s, caustic_target, settings, blocks, next_path, run};
         status = parallel_for(run, block_count * PATHS_PER_BLOCK, PATHS_PER_BLOCK, trace_block, &job, AG_PHASE_PHOTONS,
                               0.0, 0.0);
-        for (uint64_t i = 0; i < block_count; i++) {
-            if (status == AG_OK && set.count < settings->wanted)
-                status = merge_block(&job, &set, next_path + i * PATHS_PER_BLOCK, &blocks[i]);
+        if (status == AG_OK)
+            status = merge_round(&job, &set, block_count);
+        for (uint64_t i = 0; i < block_count; i++)
             blocks[i] = (block){.photons = blocks[i].photons, .capacity = blocks[i].capacity};
-        }
         next_path += block_count * PATHS_PER_BLOCK;
 
         bool is_hopeless = set.emitted_paths >= PATHS_WITHOUT_PHOTON_MAX &&
@@ -294,6 +323,8 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         double needed =
             set.count > 0 ? (double)(settings->wanted - set.count) * (double)set.emitted_paths / set.count : 1e18;
         double wanted_blocks = needed / PATHS_PER_BLOCK + 1.0;
+        if (wanted_blocks > BLOCKS_WHOLE_ROUND)
+            wanted_blocks *= 0.5;
         block_count = wanted_blocks < BLOCKS_PER_ROUND_MAX ? (uint64_t)wanted_blocks : BLOCKS_PER_ROUND_MAX;
         run_progress(run, AG_PHASE_PHOTONS,
                      settings->progress_begin +
