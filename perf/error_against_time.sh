@@ -1,0 +1,153 @@
+#!/usr/bin/env bash
+# error_against_time.sh: how far from the truth after how much CPU time: photon map and path tracing on the same scenes,
+# held against a long path-traced reference of another seed (kept in the build folder); all light, and indirect alone.
+# Use: perf/error_against_time.sh [--quick] [--repeats N] [--out DIR] [--reference-spp N] [--scenes LIST]
+# Writes error.csv and .json (the curves), equal_error.csv (when the photon map has the error that path tracing has
+# after 64 samples), runs.csv and the figures. Pictures are small: 3,600 pixels.
+set -euo pipefail
+# shellcheck source=perf/suite.sh
+. "$(dirname "${BASH_SOURCE[0]}")/suite.sh"
+
+suite_begin error_against_time "usage: perf/error_against_time.sh [options]
+Relative mean square error against CPU time, photonmap and path.
+  --reference-spp N  samples of the reference (4096), kept by scene and N
+  --scenes LIST      of cornell-box, veach-ajar (in \$AG_SCENES), room (all three, as far as they are there)" "$@"
+reference_spp=4096 scenes=cornell-box,veach-ajar,room
+if [[ $quick == yes ]]; then reference_spp=64 scenes=room; fi
+while ((${#suite_rest[@]} > 0)); do
+    case ${suite_rest[0]} in
+    --reference-spp) reference_spp=${suite_rest[1]:?--reference-spp wants a number} ;;
+    --scenes) scenes=${suite_rest[1]:?--scenes wants a list} ;;
+    *) suite_no_more_options ;;
+    esac
+    suite_rest=("${suite_rest[@]:2}")
+done
+
+# photons-caustic photons-samples a pixel-gather rays a sample; and samples a pixel of path tracing
+photon_map_steps=(1000-100-4-1 3000-300-4-1 10000-1000-4-4 10000-1000-16-1 30000-3000-16-4 100000-10000-16-4
+    100000-10000-64-4 300000-30000-64-8)
+path_steps=(1 4 16 64 256) parts=(all indirect)
+if [[ $quick == yes ]]; then photon_map_steps=(1000-100-4-1) path_steps=(64) parts=(indirect); fi
+
+scene_options() { # NAME: sets scene and options; false where it is not there
+    case $1 in
+    cornell-box) scene=$suite_scenes/cornell-box/scene.pbrt options=(--size 60x60) ;;
+    veach-ajar) scene=$suite_scenes/veach-ajar/scene.pbrt options=(--size 80x45) ;;
+    room)
+        suite_room 20
+        scene=$room options=(--size 60x60 --nearest 50 --radius 0)
+        [[ $quick == yes ]] && options=(--size 20x20 --nearest 50 --radius 0)
+        ;;
+    *) suite_fail "--scenes does not know '$1'" ;;
+    esac
+    [[ -f $scene ]]
+}
+
+make_reference() { # NAME PART OPTIONS...: sets reference
+    local name=$1 part=$2
+    shift 2
+    reference=$suite_build/perf/references/$name-$part-$(printf '%s' "$*" | tr -c 'a-z0-9' _)-$reference_spp.exr
+    mkdir -p "${reference%/*}"
+    if [[ ! -s $reference ]]; then
+        echo "error_against_time: reference of $name, $part: $reference_spp samples a pixel" >&2
+        "$suite_program" -q --progress none "$scene" "$@" --integrator path --spp "$reference_spp" --seed 1000003 \
+            -o "$reference.part.exr" && mv "$reference.part.exr" "$reference"
+    fi
+}
+
+echo "scene,part,integrator,step,repeat,work_cpu_s,cpu_s,error,mean_ratio" >"$out/errors.csv"
+one_run() { # NAME PART INTEGRATOR STEP REPEAT OPTIONS...: the work is all but loading and writing
+    local name=$1 part=$2 integrator=$3 step=$4 repeat=$5
+    shift 5
+    suite_run "$name-$part" "$integrator-$step" "$repeat" "$scene" "$@" --integrator "$integrator" --seed "$repeat"
+    echo "$name,$part,$integrator,$step,$repeat,$(jq -r '[.phase_cpu_s.photons + .phase_cpu_s.map +
+        .phase_cpu_s.precompute + .phase_cpu_s.render, .cpu_s] | map(tostring) | join(",")' "$suite_work/run.json"),$(
+        "$suite_bin/afterglow-picture-error" "$suite_work/run.exr" "$reference" | cut -d, -f2-
+    )" >>"$out/errors.csv"
+}
+
+for ((r = 1; r <= repeats; r++)); do
+    for name in ${scenes//,/ }; do
+        if ! scene_options "$name"; then
+            echo "error_against_time: left out: $name: $scene is not there" >&2
+            continue
+        fi
+        for part in "${parts[@]}"; do
+            part_options=("${options[@]}")
+            [[ $part == indirect ]] && part_options+=(--only indirect)
+            make_reference "$name" "$part" "${part_options[@]}"
+            for step in "${path_steps[@]}"; do
+                one_run "$name" "$part" path "$step" "$r" "${part_options[@]}" --spp "$step"
+            done
+            for step in "${photon_map_steps[@]}"; do
+                IFS=- read -r photons caustic spp gather <<<"$step"
+                one_run "$name" "$part" photonmap "$step" "$r" "${part_options[@]}" --photons "$photons" \
+                    --caustic-photons "$caustic" --spp "$spp" --gather-samples "$gather"
+            done
+        done
+    done
+done
+
+# reference_share: what the reference's own noise, which is path tracing's, has of the error: a bound on what is seen.
+awk -v reference_spp="$reference_spp" "$suite_awk"'
+{
+    key = $1 "," $2 "," $3 "," $4
+    if (!(key in n)) order[++keys] = key
+    r = ++n[key]; work[key, r] = $6; cpu[key, r] = $7; error[key] += $8; mean[key] += $9
+    if ($3 == "path" && $4 == 64) { path[$1 "," $2] += $8; paths[$1 "," $2]++ }
+}
+END {
+    print "scene,part,integrator,step,work_cpu_s,cpu_s,error,mean_ratio,reference_share"
+    for (k = 1; k <= keys; k++) {
+        key = order[k]; split(key, word, ",")
+        for (r = 1; r <= n[key]; r++) { a[r] = work[key, r]; b[r] = cpu[key, r] }
+        noise = path[word[1] "," word[2]] / paths[word[1] "," word[2]] * 64 / reference_spp
+        printf "%s,%.5f,%.4f,%.6g,%.5f,%.3f\n", key, median(a, n[key]), median(b, n[key]), error[key] / n[key],
+            mean[key] / n[key], noise / (error[key] / n[key])
+    }
+}' "$out/errors.csv" >"$out/error.csv"
+suite_json "$out/error.csv"
+
+# When the photon map has path tracing's error after 64 samples: between two steps by logarithms, on its best steps alone.
+awk "$suite_awk"'
+{
+    key = $at["scene"] "," $at["part"]
+    if ($at["integrator"] == "path") { if ($at["step"] == 64) { target[key] = $at["error"]; path[key] = $at["work_cpu_s"]; order[++keys] = key } next }
+    i = ++n[key]; t[key, i] = $at["work_cpu_s"]; e[key, i] = $at["error"]
+}
+END {
+    print "scene,part,path_error,path_cpu_s,photonmap_cpu_s,faster,note"
+    for (k = 1; k <= keys; k++) {
+        key = order[k]; best = ""; note = "never within these steps"; m = n[key]
+        for (i = 1; i <= m; i++) if (e[key, i] <= target[key] && (best == "" || t[key, i] < best)) {
+            best = t[key, i]; note = "at a step"; where = i
+        }
+        if (best != "") for (j = 1; j <= m; j++) # a cheaper step of a larger error: between the two
+            if (t[key, j] < t[key, where] && e[key, j] > target[key]) {
+                share = log(e[key, j] / target[key]) / log(e[key, j] / e[key, where])
+                between = exp(log(t[key, j]) + share * log(t[key, where] / t[key, j]))
+                if (between < best) { best = between; note = "between two steps" }
+            }
+        if (best != "" && note == "at a step") note = "or earlier: the cheapest step is better already"
+        printf "%s,%.6g,%.5f,%s,%s,%s\n", key, target[key], path[key], best == "" ? "" : sprintf("%.5f", best),
+            best == "" ? 0 : sprintf("%.3f", path[key] / best), note
+    }
+}' "$out/error.csv" >"$out/equal_error.csv"
+suite_json "$out/equal_error.csv"
+
+for name in ${scenes//,/ }; do
+    grep -q "^$name," "$out/error.csv" || continue
+    suite_plot "$out/error-$name" <<PLOT
+set logscale xy; set xlabel "CPU seconds of the work (photons, map, picture)"; set ylabel "relative mean square error"
+set title "$name: error against time"; set key top right
+of(part, integrator) = sprintf("< grep '^$name,%s,%s,' '$out/error.csv' | cut -d, -f5,7 | sort -t, -g", part, integrator)
+plot of("all", "path") using 1:2 with linespoints lw 2 lc rgb "#1f77b4" title "path tracing", \
+    of("all", "photonmap") using 1:2 with linespoints lw 2 lc rgb "#d62728" title "photon map", \
+    of("indirect", "path") using 1:2 with linespoints lw 2 dt 2 lc rgb "#1f77b4" title "path tracing, indirect light", \
+    of("indirect", "photonmap") using 1:2 with linespoints lw 2 dt 2 lc rgb "#d62728" title "photon map, indirect light"
+PLOT
+done
+while IFS=, read -r name part _ _ _ faster _; do
+    suite_ratio "error.$name.$part" "$faster"
+done < <(tail -n +2 "$out/equal_error.csv")
+column -t -s, "$out/equal_error.csv"

@@ -1,0 +1,186 @@
+#!/usr/bin/env bash
+# run.sh: the whole benchmark: microbenchmarks, gather rays against Embree's, forty rooms, thread scaling by phase,
+# scale, contention, memory, error against time. One page of report, tables by machine, and a verdict.
+# Use: perf/run.sh [--quick] [--repeats N] [--out DIR] [--results DIR] [--parts LIST] [--all-rooms]
+# Exit code 1 when a bound of README.md's table is not met, or a part fails; which one, is named.
+set -euo pipefail
+# shellcheck source=perf/suite.sh
+. "$(dirname "${BASH_SOURCE[0]}")/suite.sh"
+
+suite_begin run "usage: perf/run.sh [options]
+All benchmarks, one report, judged by the table of perf/README.md. Hours; with --quick minutes.
+  --parts L      of micro, gather_rays, forty_rooms, thread_scaling, scale, contention, memory, error_against_time (all;
+                 with --quick the last five)
+  --results DIR  where tables, figures and report go (perf/results/MACHINE; with --quick: report/ in the folder of --out)
+  --all-rooms    all forty rooms (rooms 1, 10, 20, 30, 33, 40)" "$@"
+parts=micro,gather_rays,forty_rooms,thread_scaling,scale,contention,memory,error_against_time
+[[ $quick == yes ]] && parts=thread_scaling,scale,contention,memory,error_against_time
+rooms=1,10,20,30,33,40 results=''
+while ((${#suite_rest[@]} > 0)); do
+    case ${suite_rest[0]} in
+    --parts) parts=${suite_rest[1]:?--parts wants a list} suite_rest=("${suite_rest[@]:1}") ;;
+    --results) results=${suite_rest[1]:?--results wants a folder} suite_rest=("${suite_rest[@]:1}") ;;
+    --all-rooms) rooms=1-40 ;;
+    *) suite_no_more_options ;;
+    esac
+    suite_rest=("${suite_rest[@]:1}")
+done
+if [[ -z $results ]]; then
+    results=$suite_root/perf/results/$(suite_machine_name)
+    [[ $quick == yes ]] && results=$out/report
+fi
+mkdir -p "$results"
+export AG_PERF_BUILD=no # from here on: it is built
+options=(--repeats "$repeats")
+[[ $quick == yes ]] && options=(--quick)
+machine=$(suite_machine)
+failures=()
+
+slug() { tr '[:upper:]' '[:lower:]' | sed "s/[^a-z0-9]\{1,\}/_/g; s/^_//; s/_\$//"; }
+
+# The two programs know their own bounds; a line of theirs that misses one is a failure by its name.
+run_micro() {
+    mkdir -p "$out/micro"
+    [[ -x $suite_bin/afterglow-photon-search ]] || { echo "run: no afterglow-photon-search: it wants nanoflann" >&2 && return; }
+    "$suite_bin/afterglow-photon-search" >"$out/micro/photon_search.txt"
+    echo "what,us_each,share,of,at_most,holds" >"$out/micro/micro.csv"
+    # name (36 wide), microseconds, and where it is held against something: "share of NAME (bound)"
+    sed -n '2,$p' "$out/micro/photon_search.txt" | while IFS= read -r line; do
+        [[ ${line:36} =~ ^\ +([0-9.]+)(\ +([0-9.]+)\ of\ (.*)\ \(([0-9.]+)\)(\ MISSED)?)?$ ]] || continue
+        what=$(sed 's/ *$//; s/,/;/g' <<<"${line:0:36}")
+        if [[ -n ${BASH_REMATCH[2]} ]]; then
+            holds=yes
+            [[ -n ${BASH_REMATCH[6]} ]] && holds=no
+            echo "$what,${BASH_REMATCH[1]},${BASH_REMATCH[3]},${BASH_REMATCH[4]//,/;},${BASH_REMATCH[5]},$holds"
+        else
+            echo "$what,${BASH_REMATCH[1]},,,,"
+        fi
+    done >>"$out/micro/micro.csv"
+    awk -F, '$6 != "" && NR > 1 { print $1 "," $3 "," $5 "," $6 }' "$out/micro/micro.csv" | own_verdicts micro
+}
+
+run_gather_rays() {
+    mkdir -p "$out/gather_rays"
+    [[ -x $suite_bin/afterglow-gather-rays ]] || { echo "run: no afterglow-gather-rays" >&2 && return; }
+    "$suite_bin/afterglow-gather-rays" | sed ':a; s/^\("[^",]*\),\([^"]*"\)/\1;\2/; ta; s/"//g' \
+        >"$out/gather_rays/gather_rays.csv"
+    awk -F, '$5 != "" && NR > 1 { print $1 "," $4 "," $5 "," $6 }' "$out/gather_rays/gather_rays.csv" | own_verdicts gather_rays
+}
+
+own_verdicts() { # lines NAME,VALUE,BOUND,yes|no
+    while IFS=, read -r name value bound holds; do
+        name=$1.$(slug <<<"$name")
+        [[ $holds == yes ]] && verdict=met || verdict=MISSED
+        echo "$name,$value,at most,$bound,time,$verdict" >>"$out/own_verdicts.csv"
+    done
+}
+
+run_forty_rooms() {
+    "$suite_bin/afterglow-forty-rooms" --out "$out/forty_rooms" --rooms "$rooms" --modes on-demand,precompute \
+        --repeats "$repeats" || return 1
+    ! command -v gnuplot >/dev/null || gnuplot -e "folder='$out/forty_rooms'" "$suite_root/perf/forty_rooms.gp"
+    mv "$out/forty_rooms/results.csv" "$out/forty_rooms/forty_rooms.csv"
+    awk "$suite_awk"'
+    { gathers[$at["gather"]]; cpu[$at["mode"], $at["room"], $at["gather"]] = $at["cpu_s"]; rooms[$at["room"]]
+      more += $at["computed"] > $at["stored"]; differing += $at["identical"] != 1 }
+    END {
+        for (g in gathers) {
+            n = 0
+            for (r in rooms) if (("precompute", r, g) in cpu) v[++n] = cpu["precompute", r, g] / cpu["on-demand", r, g]
+            print "forty_rooms.speedup_" g, median(v, n)
+        }
+        print "forty_rooms.computed_more", more + 0
+        print "forty_rooms.differing", differing + 0
+    }' "$out/forty_rooms/forty_rooms.csv" >"$out/forty_rooms/ratios.csv"
+}
+
+rm -f "$out/own_verdicts.csv"
+for part in ${parts//,/ }; do
+    echo "run: $part" >&2
+    case $part in
+    micro | gather_rays | forty_rooms) "run_$part" || failures+=("$part failed") ;;
+    thread_scaling | scale | contention | memory | error_against_time)
+        "$suite_root/perf/$part.sh" "${options[@]}" --out "$out/$part" >"$out/$part.txt" || failures+=("$part failed")
+        ;;
+    *) suite_fail "--parts does not know '$part'" ;;
+    esac
+done
+
+# The table of README.md: | `name` | at most or at least | bound | time or count | what it is |
+echo "name,value,relation,bound,kind,verdict" >"$results/verdicts.csv"
+for part in ${parts//,/ }; do cat "$out/$part/ratios.csv" 2>/dev/null || true; done |
+    awk -F, -v quick="$quick" '
+    NR == FNR {
+        if (split($0, cell, / *\| */) >= 6 && cell[2] ~ /^`.*`$/) {
+            name = substr(cell[2], 2, length(cell[2]) - 2)
+            relation[name] = cell[3]; bound[name] = cell[4]; kind[name] = cell[5]
+        }
+        next
+    }
+    {
+        verdict = "no bound"
+        if ($1 in relation) {
+            is_met = $2 != "" && (relation[$1] == "at most" ? $2 <= bound[$1] + 0 : $2 >= bound[$1] + 0)
+            verdict = quick == "yes" && kind[$1] == "time" ? "not judged" : is_met ? "met" : "MISSED"
+        }
+        print $1 "," $2 "," relation[$1] "," bound[$1] "," kind[$1] "," verdict
+    }' "$suite_root/perf/README.md" - >>"$results/verdicts.csv"
+[[ ! -s $out/own_verdicts.csv ]] || cat "$out/own_verdicts.csv" >>"$results/verdicts.csv"
+suite_json "$results/verdicts.csv"
+
+while IFS=, read -r name value relation bound _ verdict; do
+    [[ $verdict != MISSED ]] || failures+=("$name is $value, wanted $relation $bound")
+done < <(tail -n +2 "$results/verdicts.csv")
+
+# --- the report ---
+
+table() { # FILE.csv as markdown
+    awk -F, '{ printf "|"; for (i = 1; i <= NF; i++) printf " %s |", $i; print ""
+        if (NR == 1) { printf "|"; for (i = 1; i <= NF; i++) printf "---|"; print "" } }' "$1"
+}
+section() { # TITLE PART TABLE... : tables and figures are copied beside the report
+    local title=$1 part=$2 file
+    shift 2
+    [[ ,$parts, == *,$part,* ]] || return 0
+    printf '\n## %s\n' "$title"
+    for file in "$@"; do
+        [[ -s $out/$part/$file ]] || continue
+        cp "$out/$part/$file" "$results/"
+        printf '\n'
+        if (($(wc -l <"$out/$part/$file") > 100)); then echo "[$file]($file)"; else table "$results/$file"; fi
+    done
+    for file in "$out/$part"/*."$([[ $quick == yes ]] && echo svg || echo png)"; do
+        [[ -s $file ]] || continue
+        cp "$file" "$results/$part-${file##*/}"
+        printf '\n![%s](%s)\n' "$title" "$part-${file##*/}"
+    done
+}
+{
+    echo "# Afterglow: what it costs on this machine"
+    printf '\n%s\n\n' "$machine"
+    echo "Medians of $repeats interleaved runs of each. On a machine that does other work too, elapsed seconds mean little;"
+    echo "ratios within a run, CPU time and counts mean what they say. What each figure is: perf/README.md."
+    printf '\n## Verdict\n\n'
+    if ((${#failures[@]} > 0)); then
+        printf -- '- **%s**\n' "${failures[@]}"
+    elif [[ $quick == yes ]]; then
+        echo "Counts and ratios of work are as they should be; time was not judged."
+    else
+        echo "All bounds are met."
+    fi
+    printf '\n'
+    table "$results/verdicts.csv"
+    section "Photon map against nanoflann" micro micro.csv
+    section "Gather rays against Embree's" gather_rays gather_rays.csv
+    section "Forty rooms" forty_rooms forty_rooms.csv
+    section "Threads, by phase" thread_scaling scaling.csv waiting.csv arithmetic.csv
+    section "Growth" scale exponents.csv scale.csv
+    section "Contention" contention contention.csv
+    section "Memory" memory memory.csv
+    section "Error against time" error_against_time equal_error.csv error.csv
+} >"$results/report.md"
+echo "$results/report.md"
+if ((${#failures[@]} > 0)); then
+    printf 'run: error: %s\n' "${failures[@]}" >&2
+    exit 1
+fi
