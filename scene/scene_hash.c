@@ -1,0 +1,277 @@
+/* scene_hash.c: see scene_hash.h. Field by field, for what lies between the fields of a struct is anything. What
+ * scene_commit works out of the rest is left out. tests/test_scene_hash.c finds the field that was forgotten. */
+#include "scene_hash.h"
+
+#include "environment.h"
+#include "portal.h"
+#include "projection.h"
+#include "scene.h"
+
+#define ADD(value) HASH128_ADD(h, value)
+
+static void add_array(hash128 *h, const void *items, size_t count, size_t item_size)
+{
+    ADD(count);
+    hash128_add(h, items, items ? count * item_size : 0);
+}
+
+/* --- matter --- */
+
+static void add_image(hash128 *h, const texture_image *i)
+{
+    size_t count = (size_t)i->width * i->height;
+    ADD(i->width);
+    ADD(i->height);
+    ADD(i->channel_count);
+    if (i->bytes)
+        ADD(i->table);
+    add_array(h, i->bytes, count * i->channel_count, 1);
+    add_array(h, i->values, count * i->channel_count, sizeof *i->values);
+    add_array(h, i->alpha_bytes, count, 1);
+    add_array(h, i->alpha_values, count, sizeof *i->alpha_values);
+}
+
+static void add_texture(hash128 *h, const texture *t)
+{
+    ADD(t->kind);
+    ADD(t->is_spectrum);
+    ADD(t->mapping);
+    ADD(t->inputs);
+    ADD(t->direction);
+    ADD(t->image_index);
+    ADD(t->channel);
+    ADD(t->wraps);
+    ADD(t->filter);
+    ADD(t->invert);
+    ADD(t->scale);
+    ADD(t->octaves);
+    ADD(t->roughness);
+    ADD(t->variation);
+    ADD(t->cost);
+    ADD(t->step);
+}
+
+static void add_material(hash128 *h, const material *m)
+{
+    ADD(m->kind);
+    ADD(m->reflectance);
+    ADD(m->transmittance);
+    ADD(m->eta);
+    ADD(m->k);
+    ADD(m->ior);
+    ADD(m->alpha_u);
+    ADD(m->alpha_v);
+    ADD(m->base_alpha_u);
+    ADD(m->base_alpha_v);
+    ADD(m->coat_thickness);
+    ADD(m->coat_bounces);
+    ADD(m->coat_return);
+    ADD(m->coat_trap);
+    ADD(m->mixed);
+    ADD(m->mix_amount);
+    ADD(m->metallic);
+    ADD(m->roughness);
+    ADD(m->transmission);
+    ADD(m->specular);
+    ADD(m->specular_color);
+    ADD(m->clearcoat);
+    ADD(m->clearcoat_roughness);
+    ADD(m->is_thin);
+    ADD(m->dielectric_f0);
+    ADD(m->base_through);
+    ADD(m->is_textured);
+    ADD(m->remaps_roughness);
+    ADD(m->reflectance_texture);
+    ADD(m->transmittance_texture);
+    ADD(m->alpha_u_texture);
+    ADD(m->alpha_v_texture);
+    ADD(m->mix_amount_texture);
+    ADD(m->eta_texture);
+    ADD(m->k_texture);
+    ADD(m->base_alpha_u_texture);
+    ADD(m->base_alpha_v_texture);
+    ADD(m->metallic_texture);
+    ADD(m->roughness_texture);
+    ADD(m->transmission_texture);
+    ADD(m->specular_texture);
+    ADD(m->specular_color_texture);
+    ADD(m->clearcoat_texture);
+    ADD(m->clearcoat_roughness_texture);
+    ADD(m->displacement_texture);
+    ADD(m->normal_map_texture);
+    ADD(m->normal_scale);
+}
+
+/* --- shapes --- */
+
+static void add_mesh(hash128 *h, const mesh *m)
+{
+    add_array(h, m->positions, m->vertex_count, sizeof *m->positions);
+    add_array(h, m->normals, m->vertex_count, sizeof *m->normals);
+    add_array(h, m->uvs, m->vertex_count, sizeof *m->uvs);
+    add_array(h, m->tangents, m->vertex_count, sizeof *m->tangents);
+    add_array(h, m->indices, (size_t)m->triangle_count * 3, sizeof *m->indices);
+}
+
+static void add_quadric(hash128 *h, const quadric *q)
+{
+    ADD(q->world_from_object);
+    ADD(q->radius);
+    ADD(q->inner_radius);
+    ADD(q->height);
+    ADD(q->z_min);
+    ADD(q->z_max);
+    ADD(q->turn);
+}
+
+static void add_curves(hash128 *h, const curves *c)
+{
+    size_t points = (size_t)c->segment_count * 4;
+    ADD(c->type);
+    add_array(h, c->points, points, sizeof *c->points);
+    add_array(h, c->normals, points, sizeof *c->normals);
+    add_array(h, c->spans, c->segment_count, sizeof *c->spans);
+}
+
+static void add_shape(hash128 *h, const shape *s)
+{
+    ADD(s->kind);
+    ADD(s->flip_normal);
+    ADD(s->has_medium_interface);
+    ADD(s->medium_inside);
+    ADD(s->medium_outside);
+    ADD(s->material_index);
+    ADD(s->light_index);
+    ADD(s->alpha);
+    ADD(s->alpha_texture);
+    ADD(s->alpha_cutoff);
+    ADD(s->object_index);
+    switch (s->kind) {
+    case SHAPE_MESH: add_mesh(h, &s->as.mesh); break;
+    case SHAPE_SPHERE:
+    case SHAPE_CYLINDER:
+    case SHAPE_DISK: add_quadric(h, &s->as.quadric); break;
+    case SHAPE_CURVES: add_curves(h, &s->as.curves); break;
+    }
+}
+
+static void add_instance(hash128 *h, const scene_instance *i)
+{
+    ADD(i->object_index);
+    ADD(i->first_step);
+    ADD(i->step_count);
+}
+
+/* --- light --- */
+
+static void add_light(hash128 *h, const light *l)
+{
+    ADD(l->kind);
+    ADD(l->position);
+    ADD(l->direction);
+    ADD(l->intensity);
+    ADD(l->radiance);
+    ADD(l->falloff_start);
+    ADD(l->falloff_end);
+    ADD(l->shape_index);
+    ADD(l->two_sided);
+    ADD(l->radiance_texture);
+    ADD(l->photons);
+    ADD(l->medium);
+    ADD(l->world_from_light);
+    uint32_t has = (l->environment != NULL) | (l->projection != NULL) << 1 | (l->portal != NULL) << 2;
+    ADD(has);
+    if (l->environment) {
+        const environment *e = l->environment;
+        ADD(e->mapping);
+        ADD(e->width);
+        ADD(e->height);
+        add_array(h, e->pixels, (size_t)e->width * e->height, sizeof *e->pixels);
+    }
+    if (l->projection) {
+        const projection *p = l->projection;
+        ADD(p->width);
+        ADD(p->height);
+        ADD(p->reach_x);
+        ADD(p->reach_y);
+        add_array(h, p->pixels, (size_t)p->width * p->height, sizeof *p->pixels);
+    }
+    if (l->portal) {
+        const portal *p = l->portal;
+        ADD(p->corner);
+        ADD(p->axes);
+        ADD(p->width);
+        ADD(p->height);
+    }
+}
+
+hash128 scene_hash_of_light(const scene *s)
+{
+    hash128 begun = hash128_begin(), *h = &begun;
+    ADD(s->texture_image_count);
+    for (uint32_t i = 0; i < s->texture_image_count; i++)
+        add_image(h, s->texture_images[i]);
+    ADD(s->texture_count);
+    for (uint32_t i = 0; i < s->texture_count; i++)
+        add_texture(h, &s->textures[i]);
+    ADD(s->material_count);
+    for (uint32_t i = 0; i < s->material_count; i++)
+        add_material(h, &s->materials[i]);
+    ADD(s->medium_count);
+    for (uint32_t i = 0; i < s->medium_count; i++)
+        ADD(s->media[i].sigma_a);
+    ADD(s->shape_count);
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        add_shape(h, &s->shapes[i]);
+    ADD(s->object_count);
+    ADD(s->instance_count);
+    for (uint32_t i = 0; i < s->instance_count; i++)
+        add_instance(h, &s->instances[i]);
+    add_array(h, s->instance_steps, s->instance_step_count, sizeof *s->instance_steps);
+    ADD(s->light_count);
+    for (uint32_t i = 0; i < s->light_count; i++)
+        add_light(h, &s->lights[i]);
+    ADD(s->has_motion); /* photons then have times, by a random number */
+    return begun;
+}
+
+/* --- the eye --- */
+
+static void add_camera(hash128 *h, const camera *c)
+{
+    ADD(c->kind);
+    ADD(c->world_from_camera);
+    ADD(c->is_moving);
+    if (c->is_moving)
+        ADD(c->motion);
+    ADD(c->shutter_open);
+    ADD(c->shutter_close);
+    ADD(c->fov_degrees);
+    ADD(c->frame_aspect_ratio);
+    ADD(c->has_screen_window);
+    if (c->has_screen_window)
+        ADD(c->screen_window);
+    ADD(c->lens_radius);
+    ADD(c->focal_distance);
+    ADD(c->exposure);
+    ADD(c->medium);
+}
+
+hash128 scene_hash_of_view(const scene *s)
+{
+    hash128 begun = hash128_begin(), *h = &begun;
+    ADD(s->has_camera);
+    add_camera(h, &s->camera);
+    ADD(s->options.disable_pixel_jitter);
+    ADD(s->light_group_count);
+    for (uint32_t i = 0; i < s->light_group_count; i++)
+        hash128_add_text(h, s->light_group_names[i]);
+    for (uint32_t i = 0; i < s->light_count; i++)
+        ADD(s->lights[i].group);
+    const uint32_t counts[SCENE_NAMED_COUNT] = {
+        [NAMED_MATERIAL] = s->material_count, [NAMED_SHAPE] = s->shape_count, [NAMED_OBJECT] = s->object_count};
+    for (int kind = 0; kind < SCENE_NAMED_COUNT; kind++)
+        for (uint32_t i = 0; i < counts[kind]; i++)
+            hash128_add_text(h, scene_name(s, (scene_named)kind, i));
+    return begun;
+}

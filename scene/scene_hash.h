@@ -1,0 +1,19 @@
+/* scene_hash.h: fingerprints of a committed scene, by what it is and not by the files it came from: pixels, vertices
+ * and numbers. For files that hold for one scene alone: photon maps, checkpoints.
+ * Flow: scene -> [here] -> photon_file, checkpoint. Threads: any number, of a committed scene. */
+#ifndef AFTERGLOW_SCENE_HASH_H
+#define AFTERGLOW_SCENE_HASH_H
+
+#include "math/hash128.h"
+
+struct scene;
+
+/* What the way of the photons depends on: shapes, objects, instances, materials, textures and their pictures, media,
+ * lights. Camera, film, names and groups of lights may differ. */
+hash128 scene_hash_of_light(const struct scene *s);
+
+/* The rest that a picture depends on: camera, options, names, groups of lights. Of the Film, Sampler, Integrator and
+ * PixelFilter directives the renderer's settings tell. */
+hash128 scene_hash_of_view(const struct scene *s);
+
+#endif
