@@ -111,6 +111,26 @@ ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run)
     return status == AG_OK && run_is_cancelled(run) ? AG_CANCELLED : status;
 }
 
+void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words)
+{
+    for (uint32_t i = 0; i < cache->map->set.count; i++) {
+        uint32_t word = irradiance_slot_read(photon_block_slot(cache->map->blocks, i));
+        out_words[i] = irradiance_word_state(word) == IRRADIANCE_READY ? word : 0;
+    }
+}
+
+void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
+{
+    uint64_t distinct = irradiance_cache_distinct(cache);
+    for (uint32_t i = 0; i < cache->map->set.count; i++) {
+        uint32_t found;
+        irradiance_slot *slot = photon_block_slot(cache->map->blocks, i);
+        if (irradiance_word_state(words[i]) == IRRADIANCE_READY && irradiance_slot_try_claim(slot, 0, &found))
+            irradiance_slot_publish(slot, 0, words[i] & IRRADIANCE_VALUE_MASK);
+    }
+    cache->ready_before += irradiance_cache_distinct(cache) - distinct;
+}
+
 static void fulfil(const irradiance_cache *cache, uint32_t word, irradiance_request *request)
 {
     request->photon = PHOTON_NONE;

@@ -54,6 +54,11 @@ void irradiance_cache_reset(irradiance_cache *cache);
 /* Computes what is not ready yet, at every photon. Errors: AG_CANCELLED. */
 ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run);
 
+/* What is there already, a word for each photon, 0 where nothing is; and back into a cache over the same map, where it
+ * counts as ready before. Not while anybody asks. */
+void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words);
+void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words);
+
 typedef struct irradiance_request {
     uint32_t photon; /* PHOTON_NONE: irradiance is there already */
     rgb irradiance;  /* W/m^2 */

@@ -259,10 +259,11 @@ static int write_all(int fd, const void *bytes, size_t size)
 }
 
 /* Everything from the first byte to the rename; 0 or -1 with errno. */
-static int fill_and_rename(output *out, const void *bytes, size_t size)
+static int fill_and_rename(output *out, const atomic_file_piece *pieces, int count)
 {
-    if (write_all(out->fd, bytes, size) != 0)
-        return -1;
+    for (int i = 0; i < count; i++)
+        if (write_all(out->fd, pieces[i].bytes, pieces[i].size) != 0)
+            return -1;
     if (out->folder_fd >= 0 && fsync(out->fd) != 0)
         return -1;
     const int closed = close_quietly(out->fd);
@@ -276,12 +277,19 @@ static int fill_and_rename(output *out, const void *bytes, size_t size)
 
 ag_status atomic_file_write(const char *path, const void *bytes, size_t size, char *message, size_t message_size)
 {
+    const atomic_file_piece whole = {bytes, size};
+    return atomic_file_write_pieces(path, &whole, 1, message, message_size);
+}
+
+ag_status atomic_file_write_pieces(const char *path, const atomic_file_piece *pieces, int count, char *message,
+                                   size_t message_size)
+{
     output out;
     snprintf(message, message_size, "%s", "");
     ag_status status = begin(path, &out, message, message_size);
     if (status != AG_OK)
         return status;
-    if (fill_and_rename(&out, bytes, size) != 0) {
+    if (fill_and_rename(&out, pieces, count) != 0) {
         const int error = errno;
         abandon(&out);
         return failure(path, "", error, message, message_size);

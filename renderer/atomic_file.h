@@ -18,6 +18,14 @@ extern "C" {
  * message (always terminated). */
 ag_status atomic_file_write(const char *path, const void *bytes, size_t size, char *message, size_t message_size);
 
+/* The same of bytes that lie apart, one behind the other. */
+typedef struct atomic_file_piece {
+    const void *bytes;
+    size_t size;
+} atomic_file_piece;
+ag_status atomic_file_write_pieces(const char *path, const atomic_file_piece *pieces, int count, char *message,
+                                   size_t message_size);
+
 /* Whether atomic_file_write could begin now; found out by creating the temporary file and removing it. */
 ag_status atomic_file_check(const char *path, char *message, size_t message_size);
 

@@ -71,11 +71,19 @@ unsigned ag_context_thread_count(const ag_context *context) { return thread_pool
 
 void ag_context_cancel(ag_context *context) { run_cancel(&context->run); }
 
-void context_end_phase(ag_context *context, ag_phase phase, phase_begin begin)
+void ag_context_pause(ag_context *context) { run_pause(&context->run); }
+
+double context_add_to_phase(ag_context *context, ag_phase phase, phase_begin begin)
 {
     double seconds = clock_seconds() - begin.time_s;
     context->statistics.time_s[phase] += seconds;
     context->statistics.phase_cpu_s[phase] += clock_process_cpu_seconds() - begin.cpu_s;
+    return seconds;
+}
+
+void context_end_phase(ag_context *context, ag_phase phase, phase_begin begin)
+{
+    double seconds = context_add_to_phase(context, phase, begin);
     log_message(context->log, AG_LOG_INFO, "%-10s %9.3f s", ag_phase_name(phase), seconds);
 }
 

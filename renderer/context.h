@@ -37,6 +37,9 @@ static inline phase_begin context_begin_phase(void)
     return (phase_begin){clock_seconds(), clock_process_cpu_seconds()};
 }
 
+/* Adds the time since `begin` to a phase; gives the seconds. */
+double context_add_to_phase(ag_context *context, ag_phase phase, phase_begin begin);
+
 /* Adds the time since `begin` to a phase, and says at info level how long it took. */
 void context_end_phase(ag_context *context, ag_phase phase, phase_begin begin);
 

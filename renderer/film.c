@@ -95,6 +95,42 @@ void ag_film_destroy(ag_film *film)
     free(film);
 }
 
+int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
+{
+    size_t pixels = pixel_count(film);
+    int count = 0;
+    out_planes[count++] = (film_plane){film->sums, pixels * sums_of_pixel(film) * sizeof *film->sums};
+    out_planes[count++] = (film_plane){film->counts, pixels * sizeof *film->counts};
+    if (film->negatives)
+        out_planes[count++] = (film_plane){film->negatives, pixels * sizeof *film->negatives};
+    for (int i = 0; i < FILM_VIEW_COUNT; i++)
+        if (film->views[i])
+            out_planes[count++] = (film_plane){film->views[i], pixels * sizeof *film->views[i]};
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++)
+        if (film->slots[i])
+            out_planes[count++] = (film_plane){film->slots[i], pixels * CRYPTOMATTE_SLOTS * sizeof *film->slots[i]};
+    if (film->nearest)
+        out_planes[count++] = (film_plane){film->nearest, pixels * sizeof *film->nearest};
+    return count;
+}
+
+film_count film_count_samples(const ag_film *film)
+{
+    film_count count = {.least = UINT32_MAX};
+    uint64_t sum = 0;
+    size_t pixels = pixel_count(film);
+    for (size_t i = 0; i < pixels; i++) {
+        uint32_t samples = film->counts[i];
+        sum += samples;
+        count.least = samples < count.least ? samples : count.least;
+        count.most = samples > count.most ? samples : count.most;
+    }
+    if (pixels == 0)
+        return (film_count){0};
+    count.mean = (double)sum / (double)pixels;
+    return count;
+}
+
 /* --- samples in --- */
 
 static void add_rgb(double *sums, rgb value)

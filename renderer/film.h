@@ -56,6 +56,21 @@ void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);
 /* Makes the pixels of the sums. */
 void film_resolve(struct ag_film *film);
 
+/* All that samples have brought, for writing it down and reading it back; gives how many there are. */
+typedef struct film_plane {
+    void *bytes; /* the film's */
+    size_t size;
+} film_plane;
+enum { FILM_PLANES_MAX = 4 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
+int film_planes(const struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
+
+/* How many samples pixels have had. */
+typedef struct film_count {
+    uint32_t least, most;
+    double mean;
+} film_count;
+film_count film_count_samples(const struct ag_film *film);
+
 /* One channel of the layout, of a resolved film: width * height floats, stride apart. */
 void film_read_channel(const struct ag_film *film, int channel, float *out, size_t stride);
 

@@ -114,6 +114,9 @@ static void describe_run(ag_context *context, const ag_output_settings *settings
     add_text(out, "afterglow/threads", "%u", s.threads);
     add_text(out, "afterglow/cpu", "%s", cpu);
     add_text(out, "afterglow/memoryPeakBytes", "%llu", (unsigned long long)s.memory_peak_bytes);
+    /* of this process, samples that a pause cut short counted twice */
+    add_text(out, "afterglow/irradianceRequests", "%llu", (unsigned long long)s.irradiance_requests);
+    add_text(out, "afterglow/irradianceComputed", "%llu", (unsigned long long)s.irradiance_computed);
     add_text(out, "afterglow/irradianceDeferred", "%llu", (unsigned long long)s.irradiance_deferred);
     add_text(out, "afterglow/irradianceWaited", "%llu", (unsigned long long)s.irradiance_waited);
     out->render_time = (float)s.time_total_s;
@@ -139,8 +142,6 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
         add_text(out, "afterglow/photonsGlobal", "%llu", (unsigned long long)s->photons_stored_global);
         add_text(out, "afterglow/photonsCaustic", "%llu", (unsigned long long)s->photons_stored_caustic);
         add_text(out, "afterglow/photonPathsEmitted", "%llu", (unsigned long long)s->photons_emitted);
-        add_text(out, "afterglow/irradianceRequests", "%llu", (unsigned long long)s->irradiance_requests);
-        add_text(out, "afterglow/irradianceComputed", "%llu", (unsigned long long)s->irradiance_computed);
     }
     for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++) {
         const cryptomatte *m = &film->mattes[i];

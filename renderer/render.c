@@ -1,7 +1,7 @@
 /* render.c: the whole flow on one page: photons, maps, cache, tiles, film.
  * Rests on: Jensen 1996; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
  * Threads: one phase after the other, each on all of the context's workers; what a phase made is const in the next. */
-#include "context.h"
+#include "rendering.h"
 
 #include "clock.h"
 #include "debug_views.h"
@@ -23,11 +23,6 @@ enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
 static const float GATHER_MIN_DISTANCE_RADII = 1.0f;
 
 /* --- photons and maps --- */
-
-typedef struct maps {
-    photon_map global, caustic;
-    irradiance_cache cache;
-} maps;
 
 static void maps_reset(maps *m)
 {
@@ -135,9 +130,10 @@ typedef struct tile_job {
     tile_scheduler *tiles;
     eye_worker *workers;
     ag_film *film;
-    uint32_t wanted;         /* samples of each pixel */
-    double sample_count;     /* all that are still to be taken */
-    atomic_u64 samples_done; /* for the progress alone: relaxed */
+    uint32_t wanted;                     /* samples of each pixel */
+    double sample_count;                 /* all that are still to be taken */
+    atomic_u64 samples_done;             /* for the progress alone: relaxed */
+    double progress_begin, progress_end; /* of the phase, before and after this pass */
 } tile_job;
 
 /* All but the gathered light, which the worker's batch brings later. */
@@ -178,7 +174,9 @@ static void finish_samples(tile_job *job, eye_worker *worker)
     worker->samples_not_finite += sample_queue_deliver(worker->queue, batch ? batch->gathered : NULL,
                                                        (uint32_t)t->layout->group_count, job->film);
     uint64_t done = fetch_add_relaxed_u64(&job->samples_done, count) + count;
-    run_progress(&job->context->run, AG_PHASE_RENDER, (double)done / job->sample_count);
+    double share = (double)done / job->sample_count;
+    run_progress(&job->context->run, AG_PHASE_RENDER,
+                 job->progress_begin + share * (job->progress_end - job->progress_begin));
 }
 
 /* Whether the next sample is better begun when those under way are complete. */
@@ -285,22 +283,19 @@ static eye_worker *eye_workers_create(const transport *t, unsigned count)
 
 /* --- a rendering --- */
 
-struct ag_rendering {
-    ag_context *context; /* borrowed */
-    scene *s;            /* borrowed; parameters are marked as looked up, nothing else changes */
-    ag_render_settings settings;
-    maps maps;
-    transport t;
-    eye_worker *workers;
-    ag_film *film;
-    uint64_t not_finite_before;
-};
-
+/* A pass: brings pixels to so many samples. AG_PAUSED: not all of them. */
 static ag_status render_tiles_of(ag_rendering *r, uint32_t wanted)
 {
     ag_context *context = r->context;
     ag_film *film = r->film;
-    tile_job job = {.context = context, .t = &r->t, .film = film, .workers = r->workers, .wanted = wanted};
+    double most = (double)r->settings.samples_per_pixel;
+    tile_job job = {.context = context,
+                    .t = &r->t,
+                    .film = film,
+                    .workers = r->workers,
+                    .wanted = wanted,
+                    .progress_begin = film_count_samples(film).mean / most,
+                    .progress_end = (double)wanted / most};
     ag_status status = tile_scheduler_create(film->x0, film->y0, film->x0 + film->width, film->y0 + film->height,
                                              TILE_SIZE, context->statistics.threads, &job.tiles);
     if (status != AG_OK)
@@ -308,14 +303,20 @@ static ag_status render_tiles_of(ag_rendering *r, uint32_t wanted)
     for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; i++)
         job.sample_count += film->counts[i] < wanted ? (double)(wanted - film->counts[i]) : 0.0;
     phase_begin begin = context_begin_phase();
-    run_progress(&context->run, AG_PHASE_RENDER, 0.0); /* the first pixels may take long */
+    run_progress(&context->run, AG_PHASE_RENDER, job.progress_begin); /* the first pixels may take long */
+    run_allow_pause(&context->run);
     thread_pool_run(context->pool, render_tiles, &job);
+    bool is_paused = run_end_pause(&context->run);
     film_resolve(film);
     tile_scheduler_destroy(job.tiles);
-    status = run_is_cancelled(&context->run) ? AG_CANCELLED : AG_OK;
+    status = run_is_cancelled(&context->run) ? AG_CANCELLED : is_paused ? AG_PAUSED : AG_OK;
+    if (status == AG_OK)
+        run_progress(&context->run, AG_PHASE_RENDER, job.progress_end);
     if (status == AG_OK)
         status = debug_views_render(&r->t, &context->run, r->workers, film);
-    context_end_phase(context, AG_PHASE_RENDER, begin);
+    r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
+    if (status == AG_OK && (int)wanted == r->settings.samples_per_pixel)
+        log_message(context->log, AG_LOG_INFO, "%-10s %9.3f s", ag_phase_name(AG_PHASE_RENDER), r->seconds);
     return status;
 }
 

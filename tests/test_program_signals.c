@@ -1,12 +1,26 @@
-/* test_program_signals.c: a signal ends the program with 128 + its number, in whatever phase it comes, and leaves no
- * file.
+/* test_program_signals.c: a signal ends the program with 128 + its number, in whatever phase it comes. While it renders
+ * it leaves what picture there is, whole as a file and marked as unfinished; in other phases it leaves no file. SIGUSR1
+ * shows the picture so far, and ends nothing.
  *
  * Flow: tests of the whole program. Threads: the program's. */
 /* ctest: sanitize */
 #define _GNU_SOURCE
-#include "program_run.h"
+#include "program_picture.h"
 
 #define BOX PROGRAM_SCENES "box_with_blocks.pbrt"
+
+/* What a render that was ended may leave: both pictures or none, since there may be no sample yet. */
+static void expect_partial_pictures(void)
+{
+    if (access(in_folder("a.exr"), F_OK) != 0) {
+        expect_listing("a.json");
+        return;
+    }
+    expect_listing("a.exr a.exr.afterglow-unfinished a.json a.png a.png.afterglow-unfinished");
+    picture p = picture_read(in_folder("a.exr"));
+    assert_int_equal(p.width, 48);
+    picture_reset(&p);
+}
 
 /* Sends the signal as soon as the phase is told of, in a run that would take minutes. */
 static void expect_end(const char *phase, int number, const char *const *arguments)
@@ -29,8 +43,8 @@ static void test_every_signal(void **state)
     (void)state;
     static const int NUMBERS[] = {SIGINT, SIGTERM, SIGHUP};
     for (int i = 0; i < 3; i++)
-        expect_end("render", NUMBERS[i], ARGUMENTS(LONG, "--integrator=path", "--spp=100000", BOX));
-    expect_listing("");
+        expect_end("render", NUMBERS[i], ARGUMENTS(LONG, "--integrator=path", "--spp=100000", "--size=48x48", BOX));
+    expect_partial_pictures();
 }
 
 static void test_every_phase(void **state)
@@ -39,9 +53,50 @@ static void test_every_phase(void **state)
     expect_end("photons", SIGINT, ARGUMENTS(LONG, "--photons=2e7", "--spp=100000", BOX));
     expect_end("map", SIGINT, ARGUMENTS(LONG, "--photons=1e6", "--spp=100000", BOX));
     expect_end("precompute", SIGINT, ARGUMENTS(LONG, "--photons=1e6", "--nearest=3000", "--cache=precompute", BOX));
-    /* seconds of rays within one sample */
-    expect_end("render", SIGTERM, ARGUMENTS(LONG, "--photons=1e6", "--nearest=3000", "--gather-samples=50000", BOX));
     expect_listing("");
+    /* seconds of rays within one sample */
+    expect_end("render", SIGTERM,
+               ARGUMENTS(LONG, "--photons=1e6", "--nearest=3000", "--gather-samples=50000", "--size=48x48", BOX));
+    expect_partial_pictures();
+}
+
+static bool has_said(const program_process *process, const char *text)
+{
+    char *said = program_said(process->err);
+    bool is_there = strstr(said, text) != NULL;
+    free(said);
+    return is_there;
+}
+
+/* Asked again until there is a sample to show. */
+static void test_snapshot(void **state)
+{
+    (void)state;
+    const program_setting usual = {0};
+    program_process process = program_start(&usual, ARGUMENTS("--progress=json", "--integrator=path", "--spp=100000",
+                                                              "--size=48x48", "--reproducible", "-o", "a.exr", BOX));
+    program_wait_for(&process, "\"phase\": \"render\"");
+    while (!has_said(&process, "snapshot: ")) {
+        assert_int_equal(kill(process.id, SIGUSR1), 0);
+        program_pause();
+        assert_int_equal(kill(process.id, 0), 0);
+    }
+    picture p = picture_read(in_folder("a.exr"));
+    double sum = picture_block(&p, 0, 0, 48, 0);
+    assert_true(sum > 0.0);
+    picture_reset(&p);
+    assert_int_equal(access(in_folder("a.exr.afterglow-unfinished"), F_OK), 0);
+    assert_int_equal(kill(process.id, SIGTERM), 0);
+    program_run run = program_finish(&process);
+    expect_exit(&run, 128 + SIGTERM);
+    expect_said(&run, "samples per pixel, from");
+    program_run_reset(&run);
+
+    /* the end of a render takes the mark away */
+    run = RUN("-q", "--integrator=path", "--spp=1", "--size=48x48", "-o", "a.exr", BOX);
+    expect_exit(&run, 0);
+    program_run_reset(&run);
+    expect_listing("a.exr");
 }
 
 /* A mesh that takes a while to read and to sort. */
@@ -142,8 +197,9 @@ static void test_ignored_signal(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_every_signal), TEST_IN_FOLDER(test_every_phase),   TEST_IN_FOLDER(test_loading),
-        TEST_IN_FOLDER(test_writing),      TEST_IN_FOLDER(test_second_signal), TEST_IN_FOLDER(test_ignored_signal),
+        TEST_IN_FOLDER(test_every_signal),   TEST_IN_FOLDER(test_every_phase), TEST_IN_FOLDER(test_loading),
+        TEST_IN_FOLDER(test_snapshot),       TEST_IN_FOLDER(test_writing),     TEST_IN_FOLDER(test_second_signal),
+        TEST_IN_FOLDER(test_ignored_signal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,6 +27,15 @@ static inline bool cas_release_u32(atomic_u32 *a, uint32_t *expected, uint32_t d
     return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_release, memory_order_relaxed);
 }
 
+static inline uint32_t fetch_or_relaxed_u32(atomic_u32 *a, uint32_t v)
+{
+    return atomic_fetch_or_explicit(a, v, memory_order_relaxed);
+}
+static inline uint32_t fetch_and_relaxed_u32(atomic_u32 *a, uint32_t v)
+{
+    return atomic_fetch_and_explicit(a, v, memory_order_relaxed);
+}
+
 static inline uint64_t load_relaxed_u64(const atomic_u64 *a) { return atomic_load_explicit(a, memory_order_relaxed); }
 static inline void store_relaxed_u64(atomic_u64 *a, uint64_t v) { atomic_store_explicit(a, v, memory_order_relaxed); }
 static inline uint64_t fetch_add_relaxed_u64(atomic_u64 *a, uint64_t v)

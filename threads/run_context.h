@@ -1,5 +1,6 @@
 /* run_context.h: what every phase needs of its surroundings: threads, log, progress, and whether to stop.
- * Threads: run_cancel may be called from any thread and from a signal handler; the others from any thread. */
+ * Threads: run_cancel and run_pause may be called from any thread and from a signal handler; the others from any
+ * thread. */
 #ifndef AFTERGLOW_RUN_CONTEXT_H
 #define AFTERGLOW_RUN_CONTEXT_H
 
@@ -10,6 +11,9 @@
 
 #include <pthread.h>
 
+/* A pause is heeded by the phase that allows it alone, and stays asked for until then. */
+typedef enum run_stop { RUN_CANCELLED = 1, RUN_PAUSE_WANTED = 2, RUN_PAUSE_ALLOWED = 4 } run_stop;
+
 typedef struct run_context {
     thread_pool *pool;        /* borrowed */
     log_sink *log;            /* borrowed, may be NULL */
@@ -19,7 +23,7 @@ typedef struct run_context {
     double progress_fraction;       /* the last fraction told */
     double progress_time;           /* when, in clock_seconds */
     ag_phase progress_phase;
-    atomic_u32 cancelled; /* set once, read often; orders nothing else, so relaxed */
+    atomic_u32 stop; /* run_stop bits: set seldom, read often; orders nothing else, so relaxed */
 } run_context;
 
 /* Borrows pool and log. */
@@ -27,8 +31,25 @@ void run_context_init(run_context *run, thread_pool *pool, log_sink *log, ag_pro
                       void *progress_user);
 void run_context_reset(run_context *run); /* releases what init took; pool and log stay the caller's */
 
-static inline void run_cancel(run_context *run) { store_relaxed_u32(&run->cancelled, 1); }
-static inline bool run_is_cancelled(const run_context *run) { return load_relaxed_u32(&run->cancelled) != 0; }
+static inline void run_cancel(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_CANCELLED); }
+static inline void run_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_WANTED); }
+/* From here on run_is_cancelled is true where a pause is wanted, so that all that stops for good also pauses. */
+static inline void run_allow_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_ALLOWED); }
+/* No longer. Whether there was a pause, which is over then. */
+static inline bool run_end_pause(run_context *run)
+{
+    uint32_t now = fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_PAUSE_ALLOWED);
+    bool was_paused = now & RUN_PAUSE_ALLOWED && now & RUN_PAUSE_WANTED;
+    if (was_paused)
+        fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_PAUSE_WANTED);
+    return was_paused && !(now & RUN_CANCELLED);
+}
+static inline bool run_is_cancelled(const run_context *run)
+{
+    uint32_t now = load_relaxed_u32(&run->stop);
+    /* without a pause wanted, one comparison: "allowed" alone stops nothing */
+    return (now & ~(uint32_t)RUN_PAUSE_ALLOWED) != 0 && now != RUN_PAUSE_WANTED;
+}
 
 /* Tells the callback at most some 20 times a second, and always at the beginning (0) and the end (1) of a phase.
  * Cheap when there is nothing to tell. */

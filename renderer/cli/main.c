@@ -1,54 +1,12 @@
 /* main.c: the program: scene -> picture -> files.
- * Threads: main alone; signals are taken by a handler that does no more than say stop. */
-#define _GNU_SOURCE
+ * Threads: main alone. */
 #include "options.h"
+#include "passes.h"
 #include "progress.h"
+#include "signals.h"
 
-#include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
-
-static ag_context *signalled_context;
-static volatile sig_atomic_t caught_signal;
-
-static const int CAUGHT[] = {SIGINT, SIGTERM, SIGHUP};
-
-/* The first signal lets the work end in order, the second ends the process at once. */
-static void on_signal(int number)
-{
-    if (caught_signal) {
-        ag_abandon_files();
-        _exit(128 + number);
-    }
-    caught_signal = number;
-    ag_context_cancel(signalled_context);
-}
-
-static void catch_signals(ag_context *context)
-{
-    signalled_context = context;
-    for (size_t i = 0; i < sizeof CAUGHT / sizeof *CAUGHT; i++) {
-        struct sigaction before, action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
-        /* what nohup or a shell's & have set to be ignored stays so */
-        if (sigaction(CAUGHT[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
-            sigaction(CAUGHT[i], &action, NULL);
-    }
-    /* a limit on file size is an error of the write, not the end */
-    signal(SIGXFSZ, SIG_IGN);
-    signal(SIGPIPE, SIG_IGN);
-}
-
-/* From here on there is no context to cancel. */
-static void release_signals(void)
-{
-    sigset_t caught;
-    sigemptyset(&caught);
-    for (size_t i = 0; i < sizeof CAUGHT / sizeof *CAUGHT; i++)
-        sigaddset(&caught, CAUGHT[i]);
-    sigprocmask(SIG_BLOCK, &caught, NULL);
-}
 
 static int exit_code(ag_status status)
 {
@@ -58,11 +16,12 @@ static int exit_code(ag_status status)
     case AG_ERROR_SCENE:
     case AG_ERROR_COLOR: return 1;
     case AG_ERROR_ARGUMENT: return 2;
-    case AG_CANCELLED: return caught_signal ? 128 + caught_signal : 3;
+    case AG_CANCELLED: return signals_stop() ? 128 + signals_stop() : 3;
     case AG_ERROR_MEMORY:
     case AG_ERROR_OUTPUT:
     case AG_ERROR_RAY_TRACING:
-    case AG_ERROR_SYSTEM: break;
+    case AG_ERROR_SYSTEM:
+    case AG_PAUSED: break;
     }
     return 3;
 }
@@ -84,22 +43,6 @@ static void name_default_output(const options *o, const ag_scene *scene, char *o
         snprintf(out_name, size, "%.*s.exr", stem, base);
 }
 
-static ag_status render(ag_context *context, const options *o, const ag_scene *scene,
-                        const ag_render_settings *settings, ag_film **out_film)
-{
-    ag_rendering *rendering;
-    ag_status status = ag_rendering_create(context, scene, settings, &rendering);
-    if (status != AG_OK)
-        return status;
-    status = ag_rendering_continue(rendering, settings->samples_per_pixel);
-    if (status == AG_OK && o->photons_file)
-        status = ag_rendering_write_photons(rendering, o->photons_file);
-    ag_rendering_finish(rendering, status == AG_OK ? out_film : NULL);
-    if (status == AG_OK && settings->denoise)
-        status = ag_film_denoise(context, *out_film);
-    return status;
-}
-
 static ag_status list_displays(ag_context *context)
 {
     const char *text;
@@ -109,7 +52,7 @@ static ag_status list_displays(ag_context *context)
     return status;
 }
 
-static ag_status run(ag_context *context, options *o)
+static ag_status run(ag_context *context, options *o, passes_result *out_result)
 {
     ag_status status = AG_OK;
     if (o->lists_displays)
@@ -131,7 +74,6 @@ static ag_status run(ag_context *context, options *o)
         return status;
 
     ag_scene *scene = NULL;
-    ag_film *film = NULL;
     ag_render_settings settings;
     char default_name[4096];
     status = ag_scene_load(context, o->scene, &scene);
@@ -146,13 +88,12 @@ static ag_status run(ag_context *context, options *o)
         status = ag_render_settings_from_scene(context, scene, &settings);
     if (status == AG_OK) {
         options_override(o, &settings);
-        status = render(context, o, scene, &settings, &film);
+        status = passes_render(context, o, scene, &settings, out_result);
     }
-    for (int i = 0; i < o->outfile_count && status == AG_OK; i++)
-        status = ag_film_write(context, film, &o->output, o->outfiles[i]);
-    if (status == AG_OK && o->stats)
-        status = ag_statistics_write(context, o->stats);
-    ag_film_destroy(film);
+    if ((status == AG_OK || out_result->is_partial) && o->stats) {
+        ag_status written = ag_statistics_write(context, o->stats);
+        status = status == AG_OK ? written : status;
+    }
     ag_scene_destroy(scene);
     return status;
 }
@@ -178,14 +119,20 @@ int main(int argc, char **argv)
         options_reset(&o);
         return exit_code(status);
     }
-    catch_signals(context);
-    status = run(context, &o);
+    signals_catch(context);
+    passes_result result = {0};
+    status = run(context, &o, &result);
     progress_finish(&told);
-    if (status == AG_CANCELLED && o.verbosity >= 0)
-        fprintf(stderr, "afterglow: interrupted: no picture was written\n");
+    if (status == AG_CANCELLED && o.verbosity >= 0) {
+        if (result.is_partial && result.samples.most > 0)
+            fprintf(stderr, "afterglow: interrupted: the picture has %.4g samples per pixel, from %d to %d\n",
+                    result.samples.mean, result.samples.least, result.samples.most);
+        else
+            fprintf(stderr, "afterglow: interrupted: no picture was written\n");
+    }
     if (status == AG_ERROR_MEMORY || status == AG_ERROR_SYSTEM)
         fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
-    release_signals();
+    signals_release();
     ag_context_destroy(context);
     options_reset(&o);
     return exit_code(status);

@@ -41,6 +41,8 @@ enum {
     OPT_OUTPUT_SPACE,
     OPT_LIST_DISPLAYS,
     OPT_STATS,
+    OPT_CHECKPOINT,
+    OPT_RESUME,
     OPT_PROGRESS,
     OPT_ISA,
     OPT_HELP,
@@ -97,6 +99,9 @@ static const option_line LINES[] = {
     {OPT_OUTPUT_SPACE, "output-space", "NAME", "colour space of .exr files (default: the working space)"},
     {OPT_LIST_DISPLAYS, "list-displays", NULL, "print the config's displays, views, looks, colour spaces and roles"},
     {OPT_STATS, "stats", "FILE", "write statistics as JSON"},
+    {OPT_CHECKPOINT, "checkpoint", "SECONDS",
+     "write down what there is so often, and at a signal, to OUTFILE.afterglow-checkpoint"},
+    {OPT_RESUME, "resume", NULL, "go on from that file, where it is there, to the same bits"},
     {OPT_PROGRESS, "progress", "STYLE", "auto (default), bar, plain, json or none"},
     {OPT_ISA, "isa", "NAME",
      "widest instruction set of ray traversal: sse2, sse4.2, avx, avx2\n(default), avx512; another one may give other "
@@ -182,6 +187,14 @@ static bool parse_bound(const char *text, float *out_value)
     char *end;
     *out_value = strtof(text, &end);
     return end != text && !*end && *out_value >= 0.0f && !isinf(*out_value);
+}
+
+/* Above 0 and finite. */
+static bool parse_seconds(const char *text, double *out_seconds)
+{
+    char *end;
+    *out_seconds = strtod(text, &end);
+    return end != text && !*end && *out_seconds > 0.0 && !isinf(*out_seconds);
 }
 
 static bool parse_size(const char *text, int *out_width, int *out_height)
@@ -271,6 +284,8 @@ static bool take_option(int code, const char *value, options *o)
         is_valid = parse_word(value, WORDS("default", "uint8", "uint16", "half", "float"), &word);
         o->output.type = (ag_sample_type)word;
         break;
+    case OPT_CHECKPOINT: is_valid = parse_seconds(value, &o->checkpoint_seconds); break;
+    case OPT_RESUME: o->resume = true; break;
     case OPT_OCIO: o->context.color_config = value; break;
     case OPT_DISPLAY: o->output.display = value; break;
     case OPT_VIEW: o->output.view = value; break;

@@ -5,6 +5,8 @@
 
 #include "afterglow/afterglow.h"
 
+#include <stdbool.h>
+
 typedef enum progress_style {
     PROGRESS_AUTO,
     PROGRESS_BAR,
@@ -20,7 +22,9 @@ typedef struct options {
     int outfile_count;
     char *command_line; /* owned */
     const char *stats, *photons_file;
-    bool lists_displays; /* there is no scene then */
+    bool lists_displays;       /* there is no scene then */
+    double checkpoint_seconds; /* 0: none but at signals, where resume is asked for */
+    bool resume;
     progress_style progress;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
     ag_context_settings context;

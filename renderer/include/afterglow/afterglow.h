@@ -3,8 +3,8 @@
  *
  *     ag_context_create -> ag_scene_load -> ag_render -> ag_film_write
  *
- * Threads: a context and what was made with it belong to one thread at a time, but for ag_context_cancel, which any
- * thread and any signal handler may call. Several contexts may work side by side.
+ * Threads: a context and what was made with it belong to one thread at a time, but for ag_context_cancel and
+ * ag_context_pause, which any thread and any signal handler may call. Several contexts may work side by side.
  * Errors: what can fail returns ag_status and writes its out-parameters on AG_OK alone; the text goes to the log. */
 #ifndef AFTERGLOW_AFTERGLOW_H
 #define AFTERGLOW_AFTERGLOW_H
@@ -45,6 +45,9 @@ AG_API unsigned ag_context_thread_count(const ag_context *context);
 /* The work under way returns AG_CANCELLED, within 50 ms; so does all later work with this context. Safe in a signal
  * handler. */
 AG_API void ag_context_cancel(ag_context *context);
+/* The ag_rendering_continue under way, else the next, returns AG_PAUSED, within 50 ms and with whole samples; it may be
+ * called again. No other work is touched. Safe in a signal handler. */
+AG_API void ag_context_pause(ag_context *context);
 
 /* What the colour config has, as lines of text: displays and their views, looks, colour spaces, roles. The context's.
  * Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
@@ -182,9 +185,21 @@ typedef struct ag_rendering ag_rendering;
 AG_API ag_status ag_rendering_create(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
                                      ag_rendering **out_rendering);
 /* Brings every pixel to so many samples; those that have them already stay as they are. samples_per_pixel: [1, that of
- * the settings]. Errors: AG_ERROR_ARGUMENT, AG_CANCELLED: the film is then as good as it is, each pixel with the
- * samples that it has had. */
+ * the settings]. Errors: AG_ERROR_ARGUMENT; AG_CANCELLED, AG_PAUSED: the film is then as good as it is, each pixel
+ * with the samples that it has had. */
 AG_API ag_status ag_rendering_continue(ag_rendering *rendering, int samples_per_pixel);
+/* How many samples pixels have had so far. */
+typedef struct ag_sample_counts {
+    int least, most;
+    double mean;
+} ag_sample_counts;
+AG_API ag_sample_counts ag_rendering_sample_counts(const ag_rendering *rendering);
+/* All that samples have brought so far, as a file; written atomically. Another process that makes the same rendering
+ * reads it, and goes on to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
+AG_API ag_status ag_rendering_write_checkpoint(const ag_rendering *rendering, const char *path);
+/* To be called before the first ag_rendering_continue. The log says why a file is refused: damaged, or of another
+ * scene, other settings, another version. The rendering is then as it was. Errors: AG_ERROR_INPUT. */
+AG_API ag_status ag_rendering_read_checkpoint(ag_rendering *rendering, const char *path);
 /* The photons as binary PLY, for viewers and scripts: x, y, z, nx, ny, nz, the way the light went dx, dy, dz, red,
  * green, blue in W, caustic (0 global map, 1 caustic map), demanded (whether irradiance was computed there); written
  * atomically. Errors: AG_ERROR_ARGUMENT (path tracing has none), AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */

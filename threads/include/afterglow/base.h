@@ -27,7 +27,8 @@ extern "C" {
     X(AG_ERROR_OUTPUT, "an output file cannot be written")                                                             \
     X(AG_ERROR_RAY_TRACING, "the ray tracing library failed")                                                          \
     X(AG_ERROR_SYSTEM, "a system resource is not available")                                                           \
-    X(AG_CANCELLED, "cancelled")
+    X(AG_CANCELLED, "cancelled")                                                                                       \
+    X(AG_PAUSED, "paused")
 
 typedef enum ag_status {
 #define AG_STATUS_ENUM(code, text) code,

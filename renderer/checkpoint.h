@@ -1,0 +1,33 @@
+/* checkpoint.h: a rendering written down, so that another process can go on where this one ended, to the same bits.
+ * Flow: rendering (film, irradiance that was demanded) -> [here] -> atomic_file; and back. Threads: as in afterglow.h.
+ *
+ * A file is a checkpoint_header, the film's planes, the irradiance words, and a CRC-32 of all that; numbers as the
+ * machine has them. Photons are not in it: they are traced again, by the same random numbers. */
+#ifndef AFTERGLOW_CHECKPOINT_H
+#define AFTERGLOW_CHECKPOINT_H
+
+#include "math/hash128.h"
+#include "rendering.h"
+
+/* To be raised with every change of the header or of what the film's planes hold. */
+enum { CHECKPOINT_LAYOUT = 1, CHECKPOINT_SETTINGS_MAX = 512 };
+
+/* Without gaps: it is written as it is. */
+typedef struct checkpoint_header {
+    char magic[8];
+    uint32_t layout, byte_order;
+    char program[32], isa[16];
+    hash128 scene, view, filter;
+    uint64_t plane_sizes[FILM_PLANES_MAX]; /* bytes; 0 behind the last */
+    uint64_t photon_count;                 /* irradiance words; 0: none */
+    uint32_t settings_size, spare;
+    unsigned char settings[CHECKPOINT_SETTINGS_MAX]; /* the fields, one behind the other */
+} checkpoint_header;
+
+/* What a rendering's header is to be. */
+void checkpoint_header_make(const struct ag_rendering *r, checkpoint_header *out_header);
+
+/* In words, what differs between a file's header and the rendering's; NULL: nothing. */
+const char *checkpoint_header_difference(const checkpoint_header *file, const checkpoint_header *ours);
+
+#endif

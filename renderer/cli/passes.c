@@ -1,0 +1,224 @@
+/* passes.c: see passes.h. */
+#define _POSIX_C_SOURCE 200809L
+#include "passes.h"
+
+#include "signals.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char UNFINISHED[] = ".afterglow-unfinished", CHECKPOINT[] = ".afterglow-checkpoint";
+
+typedef struct passes {
+    ag_context *context;
+    const options *o;
+    ag_rendering *rendering;
+    char *checkpoint;       /* its file; NULL: none is asked for */
+    double next_checkpoint; /* when, in seconds of now(); INFINITY: at signals alone */
+    int final;              /* samples per pixel in the end */
+} passes;
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* --- names and marks beside a picture --- */
+
+static char *beside(const char *outfile, const char *suffix)
+{
+    size_t size = strlen(outfile) + strlen(suffix) + 1;
+    char *name = malloc(size);
+    if (name)
+        snprintf(name, size, "%s%s", outfile, suffix);
+    return name;
+}
+
+char *passes_checkpoint_name(const char *outfile) { return beside(outfile, CHECKPOINT); }
+
+/* A pipe or device takes one picture, the last one. */
+static bool is_stream(const char *outfile)
+{
+    struct stat info;
+    return stat(outfile, &info) == 0 && !S_ISREG(info.st_mode);
+}
+
+/* Before the first picture that is not the last one, so that whoever looks knows, whatever happens then. */
+static void mark_unfinished(const char *outfile)
+{
+    char *name = beside(outfile, UNFINISHED);
+    FILE *file = name ? fopen(name, "w") : NULL;
+    if (file) {
+        fprintf(file, "The picture beside this file is what there was before its render was complete.\n");
+        fclose(file);
+    }
+    free(name);
+}
+
+static void mark_finished(const char *outfile)
+{
+    char *name = beside(outfile, UNFINISHED);
+    if (name)
+        unlink(name);
+    free(name);
+}
+
+bool passes_is_complete(const char *outfile)
+{
+    struct stat info;
+    char *mark = beside(outfile, UNFINISHED);
+    bool is_marked = !mark || access(mark, F_OK) == 0;
+    free(mark);
+    return !is_marked && stat(outfile, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
+}
+
+/* --- pictures --- */
+
+static ag_status write_pictures(passes *p, const ag_film *film, bool is_last)
+{
+    ag_status status = AG_OK;
+    for (int i = 0; i < p->o->outfile_count && status == AG_OK; i++) {
+        const char *outfile = p->o->outfiles[i];
+        if (!is_last && is_stream(outfile))
+            continue;
+        if (!is_last)
+            mark_unfinished(outfile);
+        status = ag_film_write(p->context, film, &p->o->output, outfile);
+        if (is_last && status == AG_OK)
+            mark_finished(outfile);
+    }
+    return status;
+}
+
+static ag_status write_snapshot(passes *p)
+{
+    ag_sample_counts samples = ag_rendering_sample_counts(p->rendering);
+    if (samples.most == 0)
+        return AG_OK; /* nothing to show yet */
+    ag_status status = write_pictures(p, ag_rendering_film(p->rendering), false);
+    if (status == AG_OK && p->o->verbosity >= 0)
+        fprintf(stderr, "afterglow: snapshot: %.4g of %d samples per pixel\n", samples.mean, p->final);
+    return status;
+}
+
+/* --- checkpoints --- */
+
+static ag_status write_checkpoint(passes *p)
+{
+    ag_status status = ag_rendering_write_checkpoint(p->rendering, p->checkpoint);
+    p->next_checkpoint = p->o->checkpoint_seconds > 0.0 ? now() + p->o->checkpoint_seconds : INFINITY;
+    return status;
+}
+
+static ag_status resume(passes *p)
+{
+    if (access(p->checkpoint, F_OK) != 0 && errno == ENOENT) {
+        if (p->o->verbosity >= 0)
+            fprintf(stderr, "afterglow: no checkpoint '%s': beginning anew\n", p->checkpoint);
+        return AG_OK;
+    }
+    ag_status status = ag_rendering_read_checkpoint(p->rendering, p->checkpoint);
+    if (status == AG_OK && p->o->verbosity >= 0)
+        fprintf(stderr, "afterglow: resumed from '%s': %.4g of %d samples per pixel are there\n", p->checkpoint,
+                ag_rendering_sample_counts(p->rendering).mean, p->final);
+    return status;
+}
+
+/* --- the passes --- */
+
+/* The whole picture is brought to 1 sample, then to 4, to 16, ...: what there is when a render ends early is a picture
+ * of one quality. */
+enum { PASS_GROWTH = 4 };
+
+static int next_pass(const passes *p, int samples)
+{
+    return samples <= p->final / PASS_GROWTH ? samples * PASS_GROWTH : p->final;
+}
+
+/* AG_PAUSED: a signal wants the end. */
+static ag_status run_passes(passes *p)
+{
+    int samples = 1;
+    for (;;) {
+        signals_set_timer(p->next_checkpoint - now());
+        ag_status status = ag_rendering_continue(p->rendering, samples);
+        if (status != AG_OK && status != AG_PAUSED)
+            return status;
+        if (status == AG_OK && samples == p->final)
+            return AG_OK;
+        if (signals_stop())
+            return AG_PAUSED;
+        if (signals_take_snapshot()) {
+            ag_status written = write_snapshot(p);
+            if (written != AG_OK)
+                return written;
+        }
+        if (now() >= p->next_checkpoint) {
+            ag_status written = write_checkpoint(p);
+            if (written != AG_OK)
+                return written;
+        }
+        if (status == AG_OK)
+            samples = next_pass(p, samples);
+    }
+}
+
+static ag_status begin(passes *p, const ag_scene *scene, const ag_render_settings *settings)
+{
+    const options *o = p->o;
+    if (o->checkpoint_seconds > 0.0 || o->resume) {
+        p->checkpoint = passes_checkpoint_name(o->outfiles[0]);
+        if (!p->checkpoint)
+            return AG_ERROR_MEMORY;
+        ag_status status = ag_statistics_check(p->context, p->checkpoint); /* as for any file */
+        if (status != AG_OK)
+            return status;
+    }
+    ag_status status = ag_rendering_create(p->context, scene, settings, &p->rendering);
+    if (status == AG_OK && o->resume)
+        status = resume(p);
+    p->next_checkpoint = o->checkpoint_seconds > 0.0 ? now() + o->checkpoint_seconds : INFINITY;
+    return status;
+}
+
+ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
+                        const ag_render_settings *settings, passes_result *out_result)
+{
+    passes p = {.context = context, .o = o, .final = settings->samples_per_pixel};
+    ag_film *film = NULL;
+    *out_result = (passes_result){0};
+    ag_status status = begin(&p, scene, settings);
+    if (status == AG_OK) {
+        signals_begin_rendering(); /* until all is written: what has been rendered is not thrown away */
+        status = run_passes(&p);
+        out_result->is_partial = status == AG_PAUSED;
+        if (status == AG_PAUSED && p.checkpoint)
+            status = write_checkpoint(&p);
+        signals_set_timer(INFINITY);
+        if (status == AG_PAUSED)
+            status = AG_OK;
+        out_result->samples = ag_rendering_sample_counts(p.rendering);
+    }
+    if (status == AG_OK && o->photons_file && !out_result->is_partial)
+        status = ag_rendering_write_photons(p.rendering, o->photons_file);
+    ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
+    bool has_picture = !out_result->is_partial || out_result->samples.most > 0;
+    if (status == AG_OK && settings->denoise && has_picture)
+        status = ag_film_denoise(context, film);
+    if (status == AG_OK && has_picture)
+        status = write_pictures(&p, film, !out_result->is_partial);
+    if (status == AG_OK && p.checkpoint && !out_result->is_partial)
+        unlink(p.checkpoint); /* it has served */
+    signals_end_rendering();
+    ag_film_destroy(film);
+    free(p.checkpoint);
+    return status == AG_OK && out_result->is_partial ? AG_CANCELLED : status;
+}

@@ -1,0 +1,27 @@
+/* passes.h: a picture rendered pass by pass, with what is written on the way: checkpoints, snapshots, and what there
+ * is when a signal ends it early.
+ * Flow: main -> [here] -> ag_rendering. Threads: main's. */
+#ifndef AFTERGLOW_PASSES_H
+#define AFTERGLOW_PASSES_H
+
+#include "options.h"
+
+#include <stdbool.h>
+
+typedef struct passes_result {
+    ag_sample_counts samples;
+    bool is_partial; /* a signal ended it: the picture is what there was, and there may be none */
+} passes_result;
+
+/* Renders, and writes every outfile. AG_CANCELLED: a signal ended it; *out_result is valid then too. Other errors as of
+ * what it calls. */
+ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
+                        const ag_render_settings *settings, passes_result *out_result);
+
+/* Whether a picture is there, and complete: what was written on the way has a file beside it that says so. */
+bool passes_is_complete(const char *outfile);
+
+/* The name of a file beside the first outfile; to be freed, NULL when out of memory. */
+char *passes_checkpoint_name(const char *outfile);
+
+#endif

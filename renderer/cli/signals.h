@@ -1,0 +1,28 @@
+/* signals.h: what the system tells the program while it works: stop, show the picture so far, time is up.
+ * Flow: handlers -> [here] -> main, passes. Threads: main alone asks; handlers do no more than set flags. */
+#ifndef AFTERGLOW_SIGNALS_H
+#define AFTERGLOW_SIGNALS_H
+
+#include "afterglow/afterglow.h"
+
+#include <stdbool.h>
+
+/* The first SIGINT, SIGTERM or SIGHUP lets the work end in order: rendering pauses, all else is cancelled. The second
+ * ends the process at once. */
+void signals_catch(ag_context *context);
+/* From here on there is no context to cancel: signals wait. */
+void signals_release(void);
+
+/* Between these, a signal to stop pauses. */
+void signals_begin_rendering(void);
+void signals_end_rendering(void);
+
+/* The number of the signal to stop, 0: none so far. */
+int signals_stop(void);
+/* Whether SIGUSR1 asked for a snapshot since this was called last. */
+bool signals_take_snapshot(void);
+
+/* Pauses the rendering after so many seconds (at least a millisecond); INFINITY: never. */
+void signals_set_timer(double seconds);
+
+#endif

@@ -1,0 +1,26 @@
+/* rendering.h: a rendering under way: its maps, its film, its workers, from pass to pass.
+ * Flow: render.c makes and continues it, checkpoint.c writes it down. Threads: as in afterglow.h. */
+#ifndef AFTERGLOW_RENDERING_H
+#define AFTERGLOW_RENDERING_H
+
+#include "context.h"
+#include "transport.h"
+
+typedef struct maps {
+    photon_map global, caustic;
+    irradiance_cache cache;
+} maps;
+
+struct ag_rendering {
+    ag_context *context; /* borrowed */
+    scene *s;            /* borrowed; parameters are marked as looked up, nothing else changes */
+    ag_render_settings settings;
+    maps maps;
+    transport t;
+    eye_worker *workers;
+    ag_film *film;
+    uint64_t not_finite_before;
+    double seconds; /* of all passes */
+};
+
+#endif
