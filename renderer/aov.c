@@ -81,7 +81,7 @@ static void want(aov_layout *layout, bool is_wanted, film_sum sum, int width)
     layout->sum_count += width;
 }
 
-static void lay_out_sums(aov_layout *layout, bool denoises)
+static void lay_out_sums(aov_layout *layout, aov_needs also)
 {
     uint32_t layers = layout->layers;
     const struct {
@@ -107,8 +107,10 @@ static void lay_out_sums(aov_layout *layout, bool denoises)
     want(layout, true, SUM_RADIANCE, SUM_WIDTH[SUM_RADIANCE]);
     for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
         want(layout, layers & needs[i].layers, needs[i].sum, SUM_WIDTH[needs[i].sum]);
-    want(layout, denoises, SUM_ALBEDO, SUM_WIDTH[SUM_ALBEDO]);
-    want(layout, denoises, SUM_NORMAL, SUM_WIDTH[SUM_NORMAL]);
+    want(layout, also.albedo_and_normal, SUM_ALBEDO, SUM_WIDTH[SUM_ALBEDO]);
+    want(layout, also.albedo_and_normal, SUM_NORMAL, SUM_WIDTH[SUM_NORMAL]);
+    want(layout, also.variance, SUM_SQUARES, SUM_WIDTH[SUM_SQUARES]);
+    want(layout, also.variance, SUM_DEVELOPED, SUM_WIDTH[SUM_DEVELOPED]);
     want(layout, layers & AG_LAYER_LIGHT_GROUPS, SUM_GROUPS, 3 * (layout->group_count + 1));
     layout->needs_nearest = layers & (AG_LAYER_DEPTH | AG_LAYER_ID);
     layout->has_matte[CRYPTOMATTE_OBJECT] = layers & AG_LAYER_CRYPTO_OBJECT;
@@ -241,7 +243,7 @@ static void lay_out_channels(aov_layout *layout)
     }
 }
 
-ag_status aov_layout_create(uint32_t layers, bool denoises, bool is_path, const char *const *group_names,
+ag_status aov_layout_create(uint32_t layers, aov_needs also, bool is_path, const char *const *group_names,
                             int group_count, aov_layout *out_layout)
 {
     aov_layout layout = {.layers = layers, .group_count = group_count, .group_names = group_names};
@@ -249,7 +251,7 @@ ag_status aov_layout_create(uint32_t layers, bool denoises, bool is_path, const 
         layout.layers &= ~(uint32_t)(AG_LAYER_IRRADIANCE | AG_LAYER_PHOTON_DENSITY | AG_LAYER_CACHE_STATE |
                                      AG_LAYER_PHOTON_DISTANCE | AG_LAYER_GATHER_DISTANCE);
     layout.is_gbuffer = layout.layers & AG_LAYER_GBUFFER;
-    lay_out_sums(&layout, denoises);
+    lay_out_sums(&layout, also);
     layout.channels = calloc((size_t)(96 + 3 * (LIGHT_PART_COUNT + group_count + 1)), sizeof *layout.channels);
     if (!layout.channels)
         return AG_ERROR_MEMORY;

@@ -79,9 +79,15 @@ typedef struct aov_layout {
     bool needs_first_hit, needs_nearest;
 } aov_layout;
 
-/* denoises: albedo and normals are summed, whether they become channels or not. group_names: of the scene's light
+/* What is summed whether it becomes channels or not. */
+typedef struct aov_needs {
+    bool albedo_and_normal; /* for denoising */
+    bool variance;          /* for adaptive sampling */
+} aov_needs;
+
+/* group_names: of the scene's light
  * groups, [group_count], the first "default". Errors: AG_ERROR_MEMORY. */
-ag_status aov_layout_create(uint32_t layers, bool denoises, bool is_path, const char *const *group_names,
+ag_status aov_layout_create(uint32_t layers, aov_needs also, bool is_path, const char *const *group_names,
                             int group_count, aov_layout *out_layout);
 void aov_layout_reset(aov_layout *layout);
 

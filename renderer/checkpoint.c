@@ -46,6 +46,8 @@ static const struct {
     SETTING(layers_in_camera_space, "space of layers"),
     SETTING(clamp_direct, "bound of direct light"),
     SETTING(clamp_indirect, "bound of indirect light"),
+    SETTING(noise_level, "noise level"),
+    SETTING(noise_min_samples, "least number of samples"),
     SETTING(gather_samples, "number of gather rays"),
 };
 enum { SETTING_COUNT = sizeof SETTINGS / sizeof *SETTINGS };

@@ -66,6 +66,10 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
             film->slots[i] = calloc(count, CRYPTOMATTE_SLOTS * sizeof *film->slots[i]);
             is_whole = is_whole && film->slots[i];
         }
+    if (settings->noise_level > 0.0f) {
+        film->wanted = calloc(count, sizeof *film->wanted);
+        is_whole = is_whole && film->wanted;
+    }
     if (film->layout.needs_nearest) {
         film->nearest = calloc(count, sizeof *film->nearest);
         is_whole = is_whole && film->nearest;
@@ -82,6 +86,7 @@ void ag_film_destroy(ag_film *film)
         return;
     free(film->sums);
     free(film->counts);
+    free(film->wanted);
     free(film->negatives);
     free(film->nearest);
     for (int i = 0; i < FILM_VIEW_COUNT; i++)
@@ -101,6 +106,8 @@ int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
     int count = 0;
     out_planes[count++] = (film_plane){film->sums, pixels * sums_of_pixel(film) * sizeof *film->sums};
     out_planes[count++] = (film_plane){film->counts, pixels * sizeof *film->counts};
+    if (film->wanted)
+        out_planes[count++] = (film_plane){film->wanted, pixels * sizeof *film->wanted};
     if (film->negatives)
         out_planes[count++] = (film_plane){film->negatives, pixels * sizeof *film->negatives};
     for (int i = 0; i < FILM_VIEW_COUNT; i++)
@@ -274,6 +281,20 @@ static double read_variance(const ag_film *film, size_t pixel, const film_channe
     if (!is_relative)
         return variance;
     return mean != 0.0 ? variance / mean : 0.0; /* as pbrt: over the mean, not its square */
+}
+
+void film_read_noise(const ag_film *film, size_t pixel, double *out_mean, double *out_variance)
+{
+    const int *offset = film->layout.offset;
+    double count = (double)film->counts[pixel], mean = 0.0, variance = 0.0;
+    for (int c = 0; c < 3 && count >= 2.0; c++) {
+        double sum = read_total(film, pixel, offset[SUM_DEVELOPED] + c);
+        double squares = read_total(film, pixel, offset[SUM_SQUARES] + c);
+        mean += sum / count;
+        variance += fmax(squares - sum * sum / count, 0.0) / ((count - 1.0) * count);
+    }
+    *out_mean = mean / 3.0;
+    *out_variance = variance / 3.0;
 }
 
 static void read_color(const ag_film *film, size_t pixel, int offset, double out[3])

@@ -37,6 +37,7 @@ struct ag_film {
     /* Of each pixel, top row first; all owned. */
     double *sums;                  /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
     uint32_t *counts;              /* samples so far */
+    uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
     uint32_t *negatives;           /* those with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
@@ -61,8 +62,18 @@ typedef struct film_plane {
     void *bytes; /* the film's */
     size_t size;
 } film_plane;
-enum { FILM_PLANES_MAX = 4 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
+enum { FILM_PLANES_MAX = 5 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
 int film_planes(const struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
+
+/* How many samples a pixel is to have in a pass that brings all to `all`. */
+static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint32_t all)
+{
+    return film->wanted && film->wanted[pixel] < all ? film->wanted[pixel] : all;
+}
+
+/* Of a pixel as the film develops it, over the three colours: the mean of their means, and of the variances of these. A
+ * film that sums SUM_SQUARES. */
+void film_read_noise(const struct ag_film *film, size_t pixel, double *out_mean, double *out_variance);
 
 /* How many samples pixels have had. */
 typedef struct film_count {

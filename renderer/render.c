@@ -3,6 +3,7 @@
  * Threads: one phase after the other, each on all of the context's workers; what a phase made is const in the next. */
 #include "rendering.h"
 
+#include "adaptive.h"
 #include "clock.h"
 #include "debug_views.h"
 #include "first_hit.h"
@@ -193,7 +194,8 @@ static void render_pixel(tile_job *job, eye_worker *worker, int x, int y)
 {
     ag_film *film = job->film;
     size_t pixel = (size_t)(y - film->y0) * (size_t)film->width + (size_t)(x - film->x0);
-    for (uint32_t i = film->counts[pixel]; i < job->wanted; i++) {
+    uint32_t goal = film_goal(film, pixel, job->wanted);
+    for (uint32_t i = film->counts[pixel]; i < goal; i++) {
         if (run_is_cancelled(&job->context->run))
             return;
         worker->sample = worker->queue->count;
@@ -300,23 +302,33 @@ static ag_status render_tiles_of(ag_rendering *r, uint32_t wanted)
                                              TILE_SIZE, context->statistics.threads, &job.tiles);
     if (status != AG_OK)
         return status;
-    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; i++)
-        job.sample_count += film->counts[i] < wanted ? (double)(wanted - film->counts[i]) : 0.0;
-    phase_begin begin = context_begin_phase();
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; i++) {
+        uint32_t goal = film_goal(film, i, wanted);
+        job.sample_count += film->counts[i] < goal ? (double)(goal - film->counts[i]) : 0.0;
+    }
     run_progress(&context->run, AG_PHASE_RENDER, job.progress_begin); /* the first pixels may take long */
     run_allow_pause(&context->run);
     thread_pool_run(context->pool, render_tiles, &job);
     bool is_paused = run_end_pause(&context->run);
-    film_resolve(film);
     tile_scheduler_destroy(job.tiles);
-    status = run_is_cancelled(&context->run) ? AG_CANCELLED : is_paused ? AG_PAUSED : AG_OK;
-    if (status == AG_OK)
-        run_progress(&context->run, AG_PHASE_RENDER, job.progress_end);
-    if (status == AG_OK)
-        status = debug_views_render(&r->t, &context->run, r->workers, film);
-    r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
-    if (status == AG_OK && (int)wanted == r->settings.samples_per_pixel)
-        log_message(context->log, AG_LOG_INFO, "%-10s %9.3f s", ag_phase_name(AG_PHASE_RENDER), r->seconds);
+    return run_is_cancelled(&context->run) ? AG_CANCELLED : is_paused ? AG_PAUSED : AG_OK;
+}
+
+/* The passes between the places where it is decided which pixels need more. */
+static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
+{
+    ag_film *film = r->film;
+    bool is_done = false;
+    ag_status status = AG_OK;
+    uint32_t barrier = adaptive_barrier(film);
+    while (status == AG_OK && !is_done) {
+        if (barrier > 0)
+            status = render_tiles_of(r, barrier < wanted ? barrier : wanted);
+        if (barrier >= wanted || status != AG_OK)
+            break;
+        status = adaptive_decide(film, &r->context->run, &r->settings, &is_done);
+        barrier = adaptive_barrier(film);
+    }
     return status;
 }
 
@@ -418,6 +430,7 @@ static ag_status create_film(ag_rendering *r)
     pixel_filter filter;
     aov_layout layout;
     const ag_render_settings *settings = &r->settings;
+    const aov_needs also = {.albedo_and_normal = settings->denoise, .variance = settings->noise_level > 0.0f};
     static const char *const no_groups[] = {"default"};
     const char *const *group_names = no_groups;
     int group_count = 1;
@@ -428,8 +441,8 @@ static ag_status create_film(ag_rendering *r)
     ag_status status =
         pixel_filter_create(&r->s->pixel_filter, r->s->options.disable_pixel_jitter, r->context->log, &filter);
     if (status == AG_OK)
-        status = aov_layout_create(settings->layers, settings->denoise, settings->integrator == AG_INTEGRATOR_PATH,
-                                   group_names, group_count, &layout);
+        status = aov_layout_create(settings->layers, also, settings->integrator == AG_INTEGRATOR_PATH, group_names,
+                                   group_count, &layout);
     if (status != AG_OK)
         return status;
     r->film = film_create(settings, &r->s->space, &filter, &layout);
@@ -495,7 +508,18 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     if (!r || samples_per_pixel < 1 || samples_per_pixel > r->settings.samples_per_pixel)
         return AG_ERROR_ARGUMENT;
     unsigned callers_arithmetic = floating_point_enter();
-    ag_status status = render_tiles_of(r, (uint32_t)samples_per_pixel);
+    ag_context *context = r->context;
+    uint32_t wanted = (uint32_t)samples_per_pixel;
+    phase_begin begin = context_begin_phase();
+    ag_status status = r->film->wanted ? render_adaptively(r, wanted) : render_tiles_of(r, wanted);
+    film_resolve(r->film);
+    if (status == AG_OK)
+        status = debug_views_render(&r->t, &context->run, r->workers, r->film);
+    if (status == AG_OK)
+        run_progress(&context->run, AG_PHASE_RENDER, (double)wanted / (double)r->settings.samples_per_pixel);
+    r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
+    if (status == AG_OK && samples_per_pixel == r->settings.samples_per_pixel)
+        log_message(context->log, AG_LOG_INFO, "%-10s %9.3f s", ag_phase_name(AG_PHASE_RENDER), r->seconds);
     collect_counts(r);
     floating_point_leave(callers_arithmetic);
     return status;

@@ -13,6 +13,7 @@ static const ag_render_settings DEFAULTS = {
     .crop_window = {0.0, 1.0, 0.0, 1.0},
     .samples_per_pixel = 16,
     .exposure = 1.0f,
+    .noise_min_samples = 16,
     .max_depth = 100,
     .photon_count = 1000000,
     .caustic_photon_count = 500000,
@@ -313,6 +314,8 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "photons must be from 1 to 4294967294";
     else if (s->nearest < 1 || s->nearest > 65536)
         wrong = "nearest photons must be from 1 to 65536";
+    else if (!(s->noise_level >= 0.0f) || s->noise_min_samples < 2 || s->noise_min_samples > 1 << 20)
+        wrong = "the noise level must not be negative, and its least samples from 2 to 1048576";
     else if (!(s->clamp_direct >= 0.0f) || !(s->clamp_indirect >= 0.0f))
         wrong = "clamps must not be negative";
     else if (s->layers & ~(uint32_t)(AG_LAYERS_ALL | AG_LAYER_GBUFFER | AG_LAYER_TILE_TIME))

@@ -116,7 +116,8 @@ static ag_film *film_of(uint32_t layers, bool has_signs)
     ag_render_settings settings = {.width = 1, .height = 1, .crop_window = {0, 1, 0, 1}, .exposure = 2.0f};
     pixel_filter filter = {.has_signs = has_signs, .mean_sign = 1.0};
     aov_layout layout;
-    assert_int_equal(aov_layout_create(layers, false, false, groups, 1, &layout), AG_OK);
+    assert_int_equal(aov_layout_create(layers, (aov_needs){.albedo_and_normal = false}, false, groups, 1, &layout),
+                     AG_OK);
     working_space space = working_space_rec709();
     ag_film *film = film_create(&settings, &space, &filter, &layout);
     assert_non_null(film);

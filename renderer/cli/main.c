@@ -55,6 +55,7 @@ static ag_status list_displays(ag_context *context)
 static ag_status run(ag_context *context, options *o, passes_result *out_result)
 {
     ag_status status = AG_OK;
+    o->begun = passes_seconds();
     if (o->lists_displays)
         return list_displays(context);
     /* what was asked for is checked before the work */

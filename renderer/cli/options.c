@@ -43,6 +43,10 @@ enum {
     OPT_STATS,
     OPT_CHECKPOINT,
     OPT_RESUME,
+    OPT_TIME_LIMIT,
+    OPT_PREVIEW,
+    OPT_NOISE,
+    OPT_MIN_SPP,
     OPT_PROGRESS,
     OPT_ISA,
     OPT_HELP,
@@ -62,6 +66,10 @@ static const option_line LINES[] = {
     {'t', "nthreads", "N", "threads (default: what affinity mask and cgroup quota allow)"},
     {OPT_SEED, "seed", "N", "seed of all random numbers (default: the scene's, else 0)"},
     {OPT_SPP, "spp", "N", "samples per pixel (default: the scene's, else 16)"},
+    {OPT_NOISE, "noise", "LEVEL",
+     "as many samples up to --spp as it takes for this noise in what is\nshown, where white is 1: 0.01 is good, "
+     "0.003 clean"},
+    {OPT_MIN_SPP, "min-spp", "N", "samples per pixel at least, with --noise (default 16)"},
     {OPT_SIZE, "size", "WxH", "size of the full picture in pixels"},
     {OPT_CROP, "cropwindow", "X0,X1,Y0,Y1", "part of the picture to render, each in [0, 1]"},
     {OPT_INTEGRATOR, "integrator", "NAME", "photonmap (default) or path"},
@@ -101,6 +109,8 @@ static const option_line LINES[] = {
     {OPT_STATS, "stats", "FILE", "write statistics as JSON"},
     {OPT_CHECKPOINT, "checkpoint", "SECONDS",
      "write down what there is so often, and at a signal, to OUTFILE.afterglow-checkpoint"},
+    {OPT_TIME_LIMIT, "time-limit", "TIME", "stop after so many seconds, or HH:MM:SS, with the samples that there are"},
+    {OPT_PREVIEW, "preview", NULL, "write the picture after 1, 2, 4, ... samples per pixel, too"},
     {OPT_RESUME, "resume", NULL, "go on from that file, where it is there, to the same bits"},
     {OPT_PROGRESS, "progress", "STYLE", "auto (default), bar, plain, json or none"},
     {OPT_ISA, "isa", "NAME",
@@ -197,6 +207,19 @@ static bool parse_seconds(const char *text, double *out_seconds)
     return end != text && !*end && *out_seconds > 0.0 && !isinf(*out_seconds);
 }
 
+/* Seconds, or HH:MM:SS. */
+static bool parse_time(const char *text, double *out_seconds)
+{
+    int hours, minutes, seconds, used = 0;
+    if (!strchr(text, ':'))
+        return parse_seconds(text, out_seconds);
+    if (sscanf(text, "%6d:%2d:%2d%n", &hours, &minutes, &seconds, &used) != 3 || text[used] || hours < 0 ||
+        minutes < 0 || minutes > 59 || seconds < 0 || seconds > 59)
+        return false;
+    *out_seconds = 3600.0 * hours + 60.0 * minutes + seconds;
+    return *out_seconds > 0.0;
+}
+
 static bool parse_size(const char *text, int *out_width, int *out_height)
 {
     int used = 0;
@@ -285,6 +308,10 @@ static bool take_option(int code, const char *value, options *o)
         o->output.type = (ag_sample_type)word;
         break;
     case OPT_CHECKPOINT: is_valid = parse_seconds(value, &o->checkpoint_seconds); break;
+    case OPT_TIME_LIMIT: is_valid = parse_time(value, &o->time_limit); break;
+    case OPT_PREVIEW: o->preview = true; break;
+    case OPT_NOISE: is_valid = parse_bound(value, &r->noise_level); break;
+    case OPT_MIN_SPP: is_valid = o->has_noise_min_samples = parse_int(value, 2, 1 << 20, &r->noise_min_samples); break;
     case OPT_RESUME: o->resume = true; break;
     case OPT_OCIO: o->context.color_config = value; break;
     case OPT_DISPLAY: o->output.display = value; break;
@@ -462,6 +489,9 @@ void options_override(const options *o, ag_render_settings *settings)
     settings->denoise = r->denoise;
     settings->clamp_direct = r->clamp_direct;
     settings->clamp_indirect = r->clamp_indirect;
+    settings->noise_level = r->noise_level;
+    if (o->has_noise_min_samples)
+        settings->noise_min_samples = r->noise_min_samples;
     if (o->has_seed)
         settings->seed = r->seed;
     if (o->has_size)

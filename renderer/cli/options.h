@@ -24,14 +24,15 @@ typedef struct options {
     const char *stats, *photons_file;
     bool lists_displays;       /* there is no scene then */
     double checkpoint_seconds; /* 0: none but at signals, where resume is asked for */
-    bool resume;
+    bool resume, preview;
+    double time_limit, begun; /* s, 0: none; from when it counts, see passes_seconds */
     progress_style progress;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
     ag_context_settings context;
     ag_output_settings output;
     ag_render_settings render; /* fields are valid where has_… is set */
     bool has_seed, has_spp, has_size, has_crop, has_integrator, has_photons, has_caustic_photons, has_nearest,
-        has_radius, has_gather_samples, has_max_depth;
+        has_radius, has_noise_min_samples, has_gather_samples, has_max_depth;
 } options;
 
 typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE } options_result;

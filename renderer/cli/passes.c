@@ -21,10 +21,14 @@ typedef struct passes {
     ag_rendering *rendering;
     char *checkpoint;       /* its file; NULL: none is asked for */
     double next_checkpoint; /* when, in seconds of now(); INFINITY: at signals alone */
+    double deadline;        /* likewise */
     int final;              /* samples per pixel in the end */
+    bool time_is_up;
 } passes;
 
-static double now(void)
+static double now(void) { return passes_seconds(); }
+
+double passes_seconds(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -135,39 +139,65 @@ static ag_status resume(passes *p)
 /* --- the passes --- */
 
 /* The whole picture is brought to 1 sample, then to 4, to 16, ...: what there is when a render ends early is a picture
- * of one quality. */
-enum { PASS_GROWTH = 4 };
+ * of one quality. Previews take smaller steps. */
+enum { PASS_GROWTH = 4, PREVIEW_GROWTH = 2 };
+/* Of the time that is left, a pass is planned to take so much: a machine is not always as fast as before. */
+static const double PLANNED_SHARE = 0.9;
 
-static int next_pass(const passes *p, int samples)
+/* The samples after which the next pass ends; 0: there is no time for one more. */
+static int next_pass(const passes *p, int samples, double seconds_per_sample)
 {
-    return samples <= p->final / PASS_GROWTH ? samples * PASS_GROWTH : p->final;
+    int growth = p->o->preview ? PREVIEW_GROWTH : PASS_GROWTH;
+    int next = samples <= p->final / growth ? samples * growth : p->final;
+    double affordable = PLANNED_SHARE * (p->deadline - now()) / fmax(seconds_per_sample, 1e-9);
+    if (affordable >= next - samples)
+        return next;
+    return affordable >= 1.0 ? samples + (int)affordable : 0;
+}
+
+/* What was asked for in a pause or after a pass, but the end. */
+static ag_status serve(passes *p, bool is_after_pass)
+{
+    ag_status status = AG_OK;
+    if (signals_take_snapshot())
+        status = write_snapshot(p);
+    else if (is_after_pass && p->o->preview)
+        status = write_pictures(p, ag_rendering_film(p->rendering), false);
+    if (status == AG_OK && now() >= p->next_checkpoint)
+        status = write_checkpoint(p);
+    return status;
 }
 
 /* AG_PAUSED: a signal wants the end. */
 static ag_status run_passes(passes *p)
 {
     int samples = 1;
+    double rendered = 0.0; /* seconds of this pass, and samples per pixel that they brought */
+    double before = ag_rendering_sample_counts(p->rendering).mean;
     for (;;) {
-        signals_set_timer(p->next_checkpoint - now());
+        double begun = now();
+        signals_set_timer(p->next_checkpoint - begun);
         ag_status status = ag_rendering_continue(p->rendering, samples);
+        rendered += now() - begun;
         if (status != AG_OK && status != AG_PAUSED)
             return status;
         if (status == AG_OK && samples == p->final)
             return AG_OK;
         if (signals_stop())
             return AG_PAUSED;
-        if (signals_take_snapshot()) {
-            ag_status written = write_snapshot(p);
-            if (written != AG_OK)
-                return written;
+        ag_status served = serve(p, status == AG_OK);
+        if (served != AG_OK)
+            return served;
+        if (status != AG_OK)
+            continue;
+        double mean = ag_rendering_sample_counts(p->rendering).mean;
+        samples = next_pass(p, samples, mean > before ? rendered / (mean - before) : 0.0);
+        if (samples == 0) {
+            p->time_is_up = true;
+            return AG_OK;
         }
-        if (now() >= p->next_checkpoint) {
-            ag_status written = write_checkpoint(p);
-            if (written != AG_OK)
-                return written;
-        }
-        if (status == AG_OK)
-            samples = next_pass(p, samples);
+        rendered = 0.0;
+        before = mean;
     }
 }
 
@@ -192,7 +222,9 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result)
 {
-    passes p = {.context = context, .o = o, .final = settings->samples_per_pixel};
+    passes p = {.context = context, .o = o, .final = settings->samples_per_pixel, .deadline = INFINITY};
+    if (o->time_limit > 0.0)
+        p.deadline = o->begun + o->time_limit;
     ag_film *film = NULL;
     *out_result = (passes_result){0};
     ag_status status = begin(&p, scene, settings);
@@ -200,11 +232,11 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
         signals_begin_rendering(); /* until all is written: what has been rendered is not thrown away */
         status = run_passes(&p);
         out_result->is_partial = status == AG_PAUSED;
-        if (status == AG_PAUSED && p.checkpoint)
-            status = write_checkpoint(&p);
         signals_set_timer(INFINITY);
         if (status == AG_PAUSED)
             status = AG_OK;
+        if (status == AG_OK && p.checkpoint && (out_result->is_partial || p.time_is_up))
+            status = write_checkpoint(&p);
         out_result->samples = ag_rendering_sample_counts(p.rendering);
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial)
@@ -215,8 +247,14 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
         status = ag_film_denoise(context, film);
     if (status == AG_OK && has_picture)
         status = write_pictures(&p, film, !out_result->is_partial);
-    if (status == AG_OK && p.checkpoint && !out_result->is_partial)
+    if (status == AG_OK && p.checkpoint && !out_result->is_partial && !p.time_is_up)
         unlink(p.checkpoint); /* it has served */
+    if (status == AG_OK && p.time_is_up && o->verbosity >= 0)
+        fprintf(stderr, "afterglow: time limit: the picture has %.4g of %d samples per pixel\n",
+                out_result->samples.mean, p.final);
+    if (status == AG_OK && settings->noise_level > 0.0f && o->verbosity >= 0)
+        fprintf(stderr, "afterglow: noise: %.4g samples per pixel, from %d to %d\n", out_result->samples.mean,
+                out_result->samples.least, out_result->samples.most);
     signals_end_rendering();
     ag_film_destroy(film);
     free(p.checkpoint);

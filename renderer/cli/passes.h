@@ -13,6 +13,9 @@ typedef struct passes_result {
     bool is_partial; /* a signal ended it: the picture is what there was, and there may be none */
 } passes_result;
 
+/* Of a clock that only goes on; what options.begun is of. */
+double passes_seconds(void);
+
 /* Renders, and writes every outfile. AG_CANCELLED: a signal ended it; *out_result is valid then too. Other errors as of
  * what it calls. */
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,

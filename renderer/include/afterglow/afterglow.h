@@ -158,8 +158,12 @@ typedef struct ag_render_settings {
     float clamp_direct; /* no component of what a sample gets from a lamp by way of at most one surface is above it; 0:
                            unbounded, the default */
     float clamp_indirect; /* the same of all other contributions */
-    int gather_samples;   /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
-                             gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
+    float noise_level;    /* adaptive sampling: a pixel gets no more samples when the standard error of what is shown of
+                             it (its square root; white is 1) and of what lies around it is below this; samples_per_pixel
+                             is the most then; 0: all pixels get as many, the default */
+    int noise_min_samples; /* of each pixel then, [2, 2^20]; default 16 */
+    int gather_samples;    /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
+                              gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
 } ag_render_settings;
 
 /* The scene's own settings, and our defaults for what it leaves open; says in the log what it makes of another
@@ -184,7 +188,8 @@ typedef struct ag_rendering ag_rendering;
 /* Traces photons and builds the maps. Errors as ag_render. */
 AG_API ag_status ag_rendering_create(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
                                      ag_rendering **out_rendering);
-/* Brings every pixel to so many samples; those that have them already stay as they are. samples_per_pixel: [1, that of
+/* Brings every pixel to so many samples, or to fewer where the settings' noise level is reached before; those that have
+ * them already stay as they are. samples_per_pixel: [1, that of
  * the settings]. Errors: AG_ERROR_ARGUMENT; AG_CANCELLED, AG_PAUSED: the film is then as good as it is, each pixel
  * with the samples that it has had. */
 AG_API ag_status ag_rendering_continue(ag_rendering *rendering, int samples_per_pixel);
