@@ -4,8 +4,11 @@
 #include "passes.h"
 #include "progress.h"
 #include "signals.h"
+#include "summary.h"
 
+#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static int exit_code(ag_status status)
@@ -27,11 +30,22 @@ static int exit_code(ag_status status)
 }
 
 /* Where nothing is asked for: the scene's own file name, else the scene file's with .exr, in the working directory. */
-static void name_default_output(const options *o, const ag_scene *scene, char *out_name, size_t size)
+static void name_default_output(const options *o, const ag_scene *scene, int frame, char *out_name, size_t size)
 {
     const char *own = ag_scene_film_file_name(scene);
-    if (own) {
+    if (own && frame < 0) {
         snprintf(out_name, size, "%s", own);
+        return;
+    }
+    if (own) {
+        const char *dot = strrchr(own, '.');
+        char *named = frames_name(own, frame);
+        if (named && frames_has_place(own))
+            snprintf(out_name, size, "%s", named);
+        else /* the frames may have one name */
+            snprintf(out_name, size, "%.*s.%04d%s", (int)(dot ? dot - own : (long)strlen(own)), own, frame,
+                     dot ? dot : "");
+        free(named);
         return;
     }
     const char *base = strrchr(o->scene, '/');
@@ -52,12 +66,24 @@ static ag_status list_displays(ag_context *context)
     return status;
 }
 
-static ag_status run(ag_context *context, options *o, passes_result *out_result)
+/* Whether all that is to be written is there, and complete; says so. */
+static bool is_there(const options *o)
+{
+    for (int i = 0; i < o->outfile_count; i++)
+        if (!passes_is_complete(o->outfiles[i]))
+            return false;
+    if (o->outfile_count > 0 && o->verbosity >= 0)
+        fprintf(stderr, "afterglow: skipped: '%s' is there\n", o->outfiles[0]);
+    return o->outfile_count > 0;
+}
+
+/* One picture; frame: -1 where there is none. */
+static ag_status run(ag_context *context, options *o, int frame, passes_result *out_result)
 {
     ag_status status = AG_OK;
     o->begun = passes_seconds();
-    if (o->lists_displays)
-        return list_displays(context);
+    if (o->no_clobber && is_there(o))
+        return AG_OK;
     /* what was asked for is checked before the work */
     for (int i = 0; i < o->outfile_count && status == AG_OK; i++)
         status = ag_output_check(context, &o->output, o->outfiles[i]);
@@ -77,25 +103,110 @@ static ag_status run(ag_context *context, options *o, passes_result *out_result)
     ag_scene *scene = NULL;
     ag_render_settings settings;
     char default_name[4096];
+    bool is_skipped = false;
     status = ag_scene_load(context, o->scene, &scene);
     if (status == AG_OK && o->outfile_count == 0) {
-        name_default_output(o, scene, default_name, sizeof default_name);
+        name_default_output(o, scene, frame, default_name, sizeof default_name);
         o->outfiles[o->outfile_count++] = default_name;
         status = ag_output_check(context, &o->output, default_name);
         if (status == AG_ERROR_ARGUMENT)
             status = AG_ERROR_SCENE; /* the name is the scene's, not the command line's */
+        is_skipped = status == AG_OK && o->no_clobber && is_there(o);
     }
-    if (status == AG_OK)
+    if (status == AG_OK && !is_skipped)
         status = ag_render_settings_from_scene(context, scene, &settings);
-    if (status == AG_OK) {
-        options_override(o, &settings);
+    if (status == AG_OK && !is_skipped && !options_override(o, &settings)) {
+        fprintf(stderr, "afterglow: --tile: there are more tiles than rows\n");
+        status = AG_ERROR_ARGUMENT;
+    }
+    if (status == AG_OK && !is_skipped) {
         status = passes_render(context, o, scene, &settings, out_result);
     }
-    if ((status == AG_OK || out_result->is_partial) && o->stats) {
+    if ((status == AG_OK || out_result->is_partial) && !is_skipped && o->verbosity >= 1) {
+        ag_statistics statistics = ag_context_statistics(context);
+        summary_print(stderr, &statistics);
+    }
+    if ((status == AG_OK || out_result->is_partial) && !is_skipped && o->stats) {
         ag_status written = ag_statistics_write(context, o->stats);
         status = status == AG_OK ? written : status;
     }
     ag_scene_destroy(scene);
+    return status;
+}
+
+static void tell_end(const options *o, ag_status status, const passes_result *result)
+{
+    if (status == AG_CANCELLED && o->verbosity >= 0) {
+        if (result->is_partial && result->samples.most > 0)
+            fprintf(stderr, "afterglow: interrupted: the picture has %.4g samples per pixel, from %d to %d\n",
+                    result->samples.mean, result->samples.least, result->samples.most);
+        else
+            fprintf(stderr, "afterglow: interrupted: no picture was written\n");
+    }
+    if (status == AG_ERROR_MEMORY || status == AG_ERROR_SYSTEM)
+        fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
+}
+
+/* Each picture has a context of its own, so that statistics are its own. */
+static ag_status run_in_context(options *o, int frame, progress *told)
+{
+    ag_context *context;
+    ag_status status = ag_context_create(&o->context, &context);
+    if (status != AG_OK) {
+        fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
+        return status;
+    }
+    signals_catch(context);
+    passes_result result = {0};
+    status = o->lists_displays ? list_displays(context) : run(context, o, frame, &result);
+    progress_finish(told);
+    tell_end(o, status, &result);
+    signals_release();
+    ag_context_destroy(context);
+    return status;
+}
+
+/* The options of one frame: its number in all names. The strings are to be freed. */
+static bool name_frame(const options *o, int frame, options *out_one)
+{
+    options one = *o;
+    bool is_whole = true;
+    one.outfiles = calloc((size_t)o->outfile_count + 1, sizeof *one.outfiles);
+    for (int i = 0; one.outfiles && i < o->outfile_count; i++)
+        is_whole = (one.outfiles[i] = frames_name(o->outfiles[i], frame)) && is_whole;
+    one.scene = frames_name(o->scene, frame);
+    one.stats = o->stats ? frames_name(o->stats, frame) : NULL;
+    one.photons_file = o->photons_file ? frames_name(o->photons_file, frame) : NULL;
+    *out_one = one;
+    return is_whole && one.outfiles && one.scene && (one.stats || !o->stats) && (one.photons_file || !o->photons_file);
+}
+
+static void free_frame(options *one, int outfile_count)
+{
+    for (int i = 0; one->outfiles && i < outfile_count; i++)
+        free((void *)(uintptr_t)one->outfiles[i]);
+    free((void *)one->outfiles);
+    free((void *)(uintptr_t)one->scene);
+    free((void *)(uintptr_t)one->stats);
+    free((void *)(uintptr_t)one->photons_file);
+}
+
+/* One after the other; the first that fails ends it. */
+static ag_status run_frames(options *o, progress *told)
+{
+    ag_status status = AG_OK;
+    for (int i = 0; i < o->frames.count && status == AG_OK; i++) {
+        options one;
+        status = name_frame(o, o->frames.numbers[i], &one) ? AG_OK : AG_ERROR_MEMORY;
+        progress_begin_frame(told, i, o->frames.count);
+        if (status == AG_OK && o->verbosity >= 1)
+            fprintf(stderr, "afterglow: frame %d: %s\n", o->frames.numbers[i], one.scene);
+        if (status == AG_OK)
+            status = run_in_context(&one, o->frames.numbers[i], told);
+        free_frame(&one, o->outfile_count);
+        if (status == AG_OK && signals_stop() && i + 1 < o->frames.count)
+            status = AG_CANCELLED; /* it came when this one was complete */
+    }
     return status;
 }
 
@@ -113,28 +224,7 @@ int main(int argc, char **argv)
     o.context.log = progress_log;
     o.context.progress = progress_tell;
     o.context.user = &told;
-    ag_context *context;
-    ag_status status = ag_context_create(&o.context, &context);
-    if (status != AG_OK) {
-        fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
-        options_reset(&o);
-        return exit_code(status);
-    }
-    signals_catch(context);
-    passes_result result = {0};
-    status = run(context, &o, &result);
-    progress_finish(&told);
-    if (status == AG_CANCELLED && o.verbosity >= 0) {
-        if (result.is_partial && result.samples.most > 0)
-            fprintf(stderr, "afterglow: interrupted: the picture has %.4g samples per pixel, from %d to %d\n",
-                    result.samples.mean, result.samples.least, result.samples.most);
-        else
-            fprintf(stderr, "afterglow: interrupted: no picture was written\n");
-    }
-    if (status == AG_ERROR_MEMORY || status == AG_ERROR_SYSTEM)
-        fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
-    signals_release();
-    ag_context_destroy(context);
+    ag_status status = o.frames.count > 0 ? run_frames(&o, &told) : run_in_context(&o, -1, &told);
     options_reset(&o);
     return exit_code(status);
 }

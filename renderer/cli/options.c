@@ -45,6 +45,9 @@ enum {
     OPT_RESUME,
     OPT_TIME_LIMIT,
     OPT_PREVIEW,
+    OPT_FRAMES,
+    OPT_NO_CLOBBER,
+    OPT_TILE,
     OPT_NOISE,
     OPT_MIN_SPP,
     OPT_PROGRESS,
@@ -72,6 +75,7 @@ static const option_line LINES[] = {
     {OPT_MIN_SPP, "min-spp", "N", "samples per pixel at least, with --noise (default 16)"},
     {OPT_SIZE, "size", "WxH", "size of the full picture in pixels"},
     {OPT_CROP, "cropwindow", "X0,X1,Y0,Y1", "part of the picture to render, each in [0, 1]"},
+    {OPT_TILE, "tile", "I/N", "the I-th of N bands of the picture, from the top, from 1 on"},
     {OPT_INTEGRATOR, "integrator", "NAME", "photonmap (default) or path"},
     {OPT_CACHE, "cache", "MODE", "irradiance at the photons: on-demand (default), precompute, or off"},
     {OPT_ONLY, "only", "indirect", "leave out emission, and direct light at the first non-specular hit"},
@@ -107,12 +111,16 @@ static const option_line LINES[] = {
     {OPT_OUTPUT_SPACE, "output-space", "NAME", "colour space of .exr files (default: the working space)"},
     {OPT_LIST_DISPLAYS, "list-displays", NULL, "print the config's displays, views, looks, colour spaces and roles"},
     {OPT_STATS, "stats", "FILE", "write statistics as JSON"},
+    {OPT_FRAMES, "frames", "LIST",
+     "render frames, as 1-100, 1-100x2 or 1,5,9; %d, %04d and #### in names of\nfiles, SCENE too, are the frame's "
+     "number"},
+    {OPT_NO_CLOBBER, "no-clobber", NULL, "skip pictures that are there already, and complete"},
     {OPT_CHECKPOINT, "checkpoint", "SECONDS",
      "write down what there is so often, and at a signal, to OUTFILE.afterglow-checkpoint"},
     {OPT_TIME_LIMIT, "time-limit", "TIME", "stop after so many seconds, or HH:MM:SS, with the samples that there are"},
     {OPT_PREVIEW, "preview", NULL, "write the picture after 1, 2, 4, ... samples per pixel, too"},
     {OPT_RESUME, "resume", NULL, "go on from that file, where it is there, to the same bits"},
-    {OPT_PROGRESS, "progress", "STYLE", "auto (default), bar, plain, json or none"},
+    {OPT_PROGRESS, "progress", "STYLE", "auto (default), bar, plain (or lines), alf, json or none (or off)"},
     {OPT_ISA, "isa", "NAME",
      "widest instruction set of ray traversal: sse2, sse4.2, avx, avx2\n(default), avx512; another one may give other "
      "bits"},
@@ -227,6 +235,13 @@ static bool parse_size(const char *text, int *out_width, int *out_height)
            *out_height >= 1 && *out_width <= 65536 && *out_height <= 65536;
 }
 
+static bool parse_tile(const char *text, int *out_index, int *out_count)
+{
+    int used = 0;
+    return sscanf(text, "%6d/%6d%n", out_index, out_count, &used) == 2 && text[used] == '\0' && *out_index >= 1 &&
+           *out_index <= *out_count;
+}
+
 static bool parse_crop(const char *text, double crop[4])
 {
     int used = 0;
@@ -312,6 +327,12 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_PREVIEW: o->preview = true; break;
     case OPT_NOISE: is_valid = parse_bound(value, &r->noise_level); break;
     case OPT_MIN_SPP: is_valid = o->has_noise_min_samples = parse_int(value, 2, 1 << 20, &r->noise_min_samples); break;
+    case OPT_FRAMES:
+        frames_reset(&o->frames);
+        is_valid = frames_parse(value, &o->frames);
+        break;
+    case OPT_NO_CLOBBER: o->no_clobber = true; break;
+    case OPT_TILE: is_valid = parse_tile(value, &o->tile_index, &o->tile_count); break;
     case OPT_RESUME: o->resume = true; break;
     case OPT_OCIO: o->context.color_config = value; break;
     case OPT_DISPLAY: o->output.display = value; break;
@@ -328,8 +349,8 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_LIST_DISPLAYS: o->lists_displays = true; break;
     case OPT_STATS: o->stats = value; break;
     case OPT_PROGRESS:
-        is_valid = parse_word(value, WORDS("auto", "bar", "plain", "json", "none"), &word);
-        o->progress = (progress_style)word;
+        is_valid = parse_word(value, WORDS("auto", "bar", "plain", "json", "none", "alf", "lines", "off"), &word);
+        o->progress = word == 6 ? PROGRESS_PLAIN : word == 7 ? PROGRESS_NONE : (progress_style)word;
         break;
     case OPT_ISA:
         is_valid = parse_word(value, WORDS("sse2", "sse4.2", "avx", "avx2", "avx512"), &word);
@@ -364,6 +385,20 @@ static bool has_file_twice(const options *o)
         }
     }
     return false;
+}
+
+/* Frames would be written one over the other. */
+static bool has_frames_in_one_file(const options *o)
+{
+    const char *name = o->stats && !frames_has_place(o->stats) ? o->stats : NULL;
+    if (o->photons_file && !frames_has_place(o->photons_file))
+        name = o->photons_file;
+    for (int i = 0; i < o->outfile_count; i++)
+        if (!frames_has_place(o->outfiles[i]))
+            name = o->outfiles[i];
+    if (name)
+        fprintf(stderr, "afterglow: '%s' has no place for the frame's number: %%04d or ####\n", name);
+    return name;
 }
 
 /* With a blank between; to be freed, NULL when out of memory. */
@@ -458,6 +493,8 @@ options_result options_parse(int argc, char **argv, options *out_options)
                 optind < argc ? argv[optind + 1] : "");
         result = OPTIONS_EXIT_USAGE;
     }
+    if (result == OPTIONS_RUN && o.frames.count > 1 && has_frames_in_one_file(&o))
+        result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_RUN && (has_file_twice(&o) || has_idle_color_option(&o)))
         result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
@@ -475,11 +512,24 @@ options_result options_parse(int argc, char **argv, options *out_options)
 void options_reset(options *o)
 {
     free(o->outfiles);
+    frames_reset(&o->frames);
     free(o->command_line);
     *o = (options){0};
 }
 
-void options_override(const options *o, ag_render_settings *settings)
+/* A band of the crop window's rows. */
+static bool take_tile(const options *o, ag_render_settings *settings)
+{
+    double height = settings->height, *crop = settings->crop_window;
+    int begin = (int)ceil(crop[2] * height - 1e-6), rows = (int)ceil(crop[3] * height - 1e-6) - begin;
+    if (o->tile_count > rows)
+        return false;
+    crop[2] = (begin + (int)((long)rows * (o->tile_index - 1) / o->tile_count)) / height;
+    crop[3] = (begin + (int)((long)rows * o->tile_index / o->tile_count)) / height;
+    return true;
+}
+
+bool options_override(const options *o, ag_render_settings *settings)
 {
     const ag_render_settings *r = &o->render;
     settings->cache = r->cache;
@@ -512,4 +562,5 @@ void options_override(const options *o, ag_render_settings *settings)
         settings->samples_per_pixel = r->samples_per_pixel;
     if (o->has_gather_samples)
         settings->gather_samples = r->gather_samples;
+    return o->tile_count == 0 || take_tile(o, settings);
 }

@@ -4,6 +4,7 @@
 #define AFTERGLOW_OPTIONS_H
 
 #include "afterglow/afterglow.h"
+#include "frames.h"
 
 #include <stdbool.h>
 
@@ -12,7 +13,8 @@ typedef enum progress_style {
     PROGRESS_BAR,
     PROGRESS_PLAIN,
     PROGRESS_JSON,
-    PROGRESS_NONE
+    PROGRESS_NONE,
+    PROGRESS_ALF
 } progress_style;
 
 /* What the scene says holds where a value was not given. */
@@ -24,8 +26,10 @@ typedef struct options {
     const char *stats, *photons_file;
     bool lists_displays;       /* there is no scene then */
     double checkpoint_seconds; /* 0: none but at signals, where resume is asked for */
-    bool resume, preview;
-    double time_limit, begun; /* s, 0: none; from when it counts, see passes_seconds */
+    bool resume, preview, no_clobber;
+    frame_list frames;          /* none: one picture, whose names are as they stand */
+    int tile_index, tile_count; /* from 1 on; 0: the whole */
+    double time_limit, begun;   /* s, 0: none; from when it counts, see passes_seconds */
     progress_style progress;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
     ag_context_settings context;
@@ -41,7 +45,8 @@ typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE }
 options_result options_parse(int argc, char **argv, options *out_options);
 void options_reset(options *o);
 
-/* Puts what was given on the command line over the scene's settings. */
-void options_override(const options *o, ag_render_settings *settings);
+/* Puts what was given on the command line over the scene's settings. False where the picture has fewer rows than
+ * tiles. */
+bool options_override(const options *o, ag_render_settings *settings);
 
 #endif

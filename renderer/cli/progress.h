@@ -14,10 +14,17 @@ typedef struct progress {
     int told_percent;    /* the last one told, -1 before the first */
     bool has_precompute; /* its share of the work */
     bool is_path;
+    int frame, frame_count; /* which of the pictures, from 0 on */
+    ag_phase phase;         /* the one told last */
+    double phase_begun;     /* s, when it was told first, and how far it was then */
+    double phase_begun_at;
 } progress;
 
 /* Settles AUTO: a bar on a terminal, whole lines elsewhere; nothing when quiet. */
 void progress_init(progress *p, const options *o);
+
+/* The next of so many pictures: progress is that of all of them. */
+void progress_begin_frame(progress *p, int frame, int frame_count);
 
 /* For ag_context_settings, with a progress as user. Messages go to standard error. */
 void progress_tell(void *user, ag_phase phase, double fraction);

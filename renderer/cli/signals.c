@@ -11,6 +11,8 @@
 static ag_context *signalled_context;
 static volatile sig_atomic_t stop_signal, wants_snapshot, is_rendering;
 
+static bool is_released; /* signals are blocked, by us */
+
 static const int STOPPING[] = {SIGINT, SIGTERM, SIGHUP};
 
 static void on_stop(int number)
@@ -39,6 +41,17 @@ static void on_timer(int number)
     ag_context_pause(signalled_context);
 }
 
+static void block(int how)
+{
+    sigset_t caught;
+    sigemptyset(&caught);
+    for (size_t i = 0; i < sizeof STOPPING / sizeof *STOPPING; i++)
+        sigaddset(&caught, STOPPING[i]);
+    sigaddset(&caught, SIGUSR1);
+    sigaddset(&caught, SIGALRM);
+    sigprocmask(how, &caught, NULL);
+}
+
 void signals_catch(ag_context *context)
 {
     signalled_context = context;
@@ -55,18 +68,16 @@ void signals_catch(ag_context *context)
     /* a limit on file size is an error of the write, not the end */
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
+    if (is_released) /* after another context: what came meanwhile comes now */
+        block(SIG_UNBLOCK);
+    is_released = false;
 }
 
 void signals_release(void)
 {
-    sigset_t caught;
     signals_set_timer(INFINITY);
-    sigemptyset(&caught);
-    for (size_t i = 0; i < sizeof STOPPING / sizeof *STOPPING; i++)
-        sigaddset(&caught, STOPPING[i]);
-    sigaddset(&caught, SIGUSR1);
-    sigaddset(&caught, SIGALRM);
-    sigprocmask(SIG_BLOCK, &caught, NULL);
+    block(SIG_BLOCK);
+    is_released = true;
 }
 
 void signals_begin_rendering(void) { is_rendering = 1; }

@@ -1,0 +1,12 @@
+/* summary.h: what was done, as a table for a person.
+ * Flow: ag_context_statistics -> [here] -> standard error. Threads: main's. */
+#ifndef AFTERGLOW_SUMMARY_H
+#define AFTERGLOW_SUMMARY_H
+
+#include "afterglow/afterglow.h"
+
+#include <stdio.h>
+
+void summary_print(FILE *file, const ag_statistics *statistics);
+
+#endif
