@@ -29,6 +29,10 @@ static void add_image(hash128 *h, const texture_image *i)
     add_array(h, i->values, count * i->channel_count, sizeof *i->values);
     add_array(h, i->alpha_bytes, count, 1);
     add_array(h, i->alpha_values, count, sizeof *i->alpha_values);
+    hash128_add_text(h, i->colors.space);
+    ADD(i->colors.has_matrix);
+    if (i->colors.has_matrix)
+        ADD(i->colors.matrix);
 }
 
 static void add_texture(hash128 *h, const texture *t)
@@ -42,6 +46,7 @@ static void add_texture(hash128 *h, const texture *t)
     ADD(t->channel);
     ADD(t->wraps);
     ADD(t->filter);
+    ADD(t->is_data);
     ADD(t->invert);
     ADD(t->scale);
     ADD(t->octaves);
@@ -214,6 +219,7 @@ hash128 scene_hash_of_light(const scene *s)
     ADD(s->texture_count);
     for (uint32_t i = 0; i < s->texture_count; i++)
         add_texture(h, &s->textures[i]);
+    ADD(s->space.from_rec709);
     ADD(s->material_count);
     for (uint32_t i = 0; i < s->material_count; i++)
         add_material(h, &s->materials[i]);
