@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # error_against_time.sh: how far from the truth after how much CPU time: photon map and path tracing on the same scenes,
 # held against a long path-traced reference of another seed (kept in the build folder); all light, and indirect alone.
-# Use: perf/error_against_time.sh [--quick] [--repeats N] [--out DIR] [--reference-spp N] [--scenes LIST]
+# Use: perf/error_against_time.sh [--quick] [--repeats N] [--out DIR] [--reference-spp N] [--scenes LIST] [--resume]
 # Writes error.csv and .json (the curves), equal_error.csv (when the photon map has the error that path tracing has
-# after 64 samples), runs.csv and the figures. Pictures are small: 3,600 pixels.
+# after so many samples; 64 are judged), runs.csv and the figures. Pictures are small: 3,600 pixels.
 set -euo pipefail
 # shellcheck source=perf/suite.sh
 . "$(dirname "${BASH_SOURCE[0]}")/suite.sh"
@@ -11,13 +11,15 @@ set -euo pipefail
 suite_begin error_against_time "usage: perf/error_against_time.sh [options]
 Relative mean square error against CPU time, photonmap and path.
   --reference-spp N  samples of the reference (4096), kept by scene and N
+  --resume           keep what is in errors.csv, and measure only what is not there
   --scenes LIST      of cornell-box, veach-ajar (in \$AG_SCENES), room (all three, as far as they are there)" "$@"
-reference_spp=4096 scenes=cornell-box,veach-ajar,room
+reference_spp=4096 resume=no scenes=cornell-box,veach-ajar,room
 if [[ $quick == yes ]]; then reference_spp=64 scenes=room; fi
 while ((${#suite_rest[@]} > 0)); do
     case ${suite_rest[0]} in
     --reference-spp) reference_spp=${suite_rest[1]:?--reference-spp wants a number} ;;
     --scenes) scenes=${suite_rest[1]:?--scenes wants a list} ;;
+    --resume) resume=yes suite_rest=("" "${suite_rest[@]}") ;; # as if it had a value
     *) suite_no_more_options ;;
     esac
     suite_rest=("${suite_rest[@]:2}")
@@ -55,15 +57,18 @@ make_reference() { # NAME PART OPTIONS...: sets reference
     fi
 }
 
-echo "scene,part,integrator,step,repeat,work_cpu_s,cpu_s,error,mean_ratio" >"$out/errors.csv"
+if [[ $resume == no || ! -s $out/errors.csv ]]; then
+    echo "scene,part,integrator,step,repeat,work_cpu_s,cpu_s,error,mean_ratio" >"$out/errors.csv"
+fi
 one_run() { # NAME PART INTEGRATOR STEP REPEAT OPTIONS...: the work is all but loading and writing
-    local name=$1 part=$2 integrator=$3 step=$4 repeat=$5
+    local name=$1 part=$2 integrator=$3 step=$4 repeat=$5 times error
     shift 5
+    if grep -q "^$name,$part,$integrator,$step,$repeat," "$out/errors.csv"; then return; fi
     suite_run "$name-$part" "$integrator-$step" "$repeat" "$scene" "$@" --integrator "$integrator" --seed "$repeat"
-    echo "$name,$part,$integrator,$step,$repeat,$(jq -r '[.phase_cpu_s.photons + .phase_cpu_s.map +
-        .phase_cpu_s.precompute + .phase_cpu_s.render, .cpu_s] | map(tostring) | join(",")' "$suite_work/run.json"),$(
-        "$suite_bin/afterglow-picture-error" "$suite_work/run.exr" "$reference" | cut -d, -f2-
-    )" >>"$out/errors.csv"
+    times=$(jq -r '[.phase_cpu_s.photons + .phase_cpu_s.map + .phase_cpu_s.precompute + .phase_cpu_s.render, .cpu_s] |
+        map(tostring) | join(",")' "$suite_work/run.json")
+    error=$("$suite_bin/afterglow-picture-error" "$suite_work/run.exr" "$reference")
+    echo "$name,$part,$integrator,$step,$repeat,$times,${error#*,}" >>"$out/errors.csv"
 }
 
 for ((r = 1; r <= repeats; r++)); do
@@ -111,26 +116,27 @@ suite_json "$out/error.csv"
 # When the photon map has path tracing's error after 64 samples: between two steps by logarithms, on its best steps alone.
 awk "$suite_awk"'
 {
-    key = $at["scene"] "," $at["part"]
-    if ($at["integrator"] == "path") { if ($at["step"] == 64) { target[key] = $at["error"]; path[key] = $at["work_cpu_s"]; order[++keys] = key } next }
-    i = ++n[key]; t[key, i] = $at["work_cpu_s"]; e[key, i] = $at["error"]
+    scene = $at["scene"] "," $at["part"]
+    if ($at["integrator"] == "path") {
+        order[++keys] = scene "," $at["step"]; of[keys] = scene
+        target[keys] = $at["error"]; path[keys] = $at["work_cpu_s"]
+    } else { i = ++n[scene]; t[scene, i] = $at["work_cpu_s"]; e[scene, i] = $at["error"] }
 }
 END {
-    print "scene,part,path_error,path_cpu_s,photonmap_cpu_s,faster,note"
+    print "scene,part,path_samples,path_error,path_cpu_s,photonmap_cpu_s,faster,note"
     for (k = 1; k <= keys; k++) {
-        key = order[k]; best = ""; note = "never within these steps"; m = n[key]
-        for (i = 1; i <= m; i++) if (e[key, i] <= target[key] && (best == "" || t[key, i] < best)) {
-            best = t[key, i]; note = "at a step"; where = i
+        key = of[k]; best = ""; note = "never within these steps"; m = n[key]
+        for (i = 1; i <= m; i++) if (e[key, i] <= target[k] && (best == "" || t[key, i] < best)) {
+            best = t[key, i]; note = "or earlier: the cheapest step is better already"; where = i
         }
         if (best != "") for (j = 1; j <= m; j++) # a cheaper step of a larger error: between the two
-            if (t[key, j] < t[key, where] && e[key, j] > target[key]) {
-                share = log(e[key, j] / target[key]) / log(e[key, j] / e[key, where])
+            if (t[key, j] < t[key, where] && e[key, j] > target[k]) {
+                share = log(e[key, j] / target[k]) / log(e[key, j] / e[key, where])
                 between = exp(log(t[key, j]) + share * log(t[key, where] / t[key, j]))
                 if (between < best) { best = between; note = "between two steps" }
             }
-        if (best != "" && note == "at a step") note = "or earlier: the cheapest step is better already"
-        printf "%s,%.6g,%.5f,%s,%s,%s\n", key, target[key], path[key], best == "" ? "" : sprintf("%.5f", best),
-            best == "" ? 0 : sprintf("%.3f", path[key] / best), note
+        printf "%s,%.6g,%.5f,%s,%s,%s\n", order[k], target[k], path[k], best == "" ? "" : sprintf("%.5f", best),
+            best == "" ? 0 : sprintf("%.3f", path[k] / best), note
     }
 }' "$out/error.csv" >"$out/equal_error.csv"
 suite_json "$out/equal_error.csv"
@@ -147,7 +153,7 @@ plot of("all", "path") using 1:2 with linespoints lw 2 lc rgb "#1f77b4" title "p
     of("indirect", "photonmap") using 1:2 with linespoints lw 2 dt 2 lc rgb "#d62728" title "photon map, indirect light"
 PLOT
 done
-while IFS=, read -r name part _ _ _ faster _; do
-    suite_ratio "error.$name.$part" "$faster"
+while IFS=, read -r name part samples _ _ _ faster _; do
+    [[ $samples != 64 ]] || suite_ratio "error.$name.$part" "$faster"
 done < <(tail -n +2 "$out/equal_error.csv")
 column -t -s, "$out/equal_error.csv"

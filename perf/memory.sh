@@ -27,7 +27,8 @@ for ((r = 1; r <= repeats; r++)); do
             echo "memory: left out: $n photons: $free_gib GiB are free" >&2
             continue
         fi
-        echo "$("$suite_bin/afterglow-photon-memory" "$room" "$n" 0),$r" >>"$out/runs.csv"
+        line=$("$suite_bin/afterglow-photon-memory" "$room" "$n" 0)
+        echo "$line,$r" >>"$out/runs.csv"
     done
 done
 

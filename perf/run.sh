@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # run.sh: the whole benchmark: microbenchmarks, gather rays against Embree's, forty rooms, thread scaling by phase,
 # scale, contention, memory, error against time. One page of report, tables by machine, and a verdict.
-# Use: perf/run.sh [--quick] [--repeats N] [--out DIR] [--results DIR] [--parts LIST] [--all-rooms]
+# Use: perf/run.sh [--quick] [--repeats N] [--out DIR] [--results DIR] [--parts LIST] [--report-only] [--all-rooms]
 # Exit code 1 when a bound of README.md's table is not met, or a part fails; which one, is named.
 set -euo pipefail
 # shellcheck source=perf/suite.sh
@@ -12,14 +12,16 @@ All benchmarks, one report, judged by the table of perf/README.md. Hours; with -
   --parts L      of micro, gather_rays, forty_rooms, thread_scaling, scale, contention, memory, error_against_time (all;
                  with --quick the last five)
   --results DIR  where tables, figures and report go (perf/results/MACHINE; with --quick: report/ in the folder of --out)
+  --report-only  measure nothing: report and verdict of what is in the folder of --out
   --all-rooms    all forty rooms (rooms 1, 10, 20, 30, 33, 40)" "$@"
 parts=micro,gather_rays,forty_rooms,thread_scaling,scale,contention,memory,error_against_time
 [[ $quick == yes ]] && parts=thread_scaling,scale,contention,memory,error_against_time
-rooms=1,10,20,30,33,40 results=''
+rooms=1,10,20,30,33,40 results='' report_only=no
 while ((${#suite_rest[@]} > 0)); do
     case ${suite_rest[0]} in
     --parts) parts=${suite_rest[1]:?--parts wants a list} suite_rest=("${suite_rest[@]:1}") ;;
     --results) results=${suite_rest[1]:?--results wants a folder} suite_rest=("${suite_rest[@]:1}") ;;
+    --report-only) report_only=yes ;;
     --all-rooms) rooms=1-40 ;;
     *) suite_no_more_options ;;
     esac
@@ -94,8 +96,9 @@ run_forty_rooms() {
     }' "$out/forty_rooms/forty_rooms.csv" >"$out/forty_rooms/ratios.csv"
 }
 
-rm -f "$out/own_verdicts.csv"
+[[ $report_only == yes ]] || rm -f "$out/own_verdicts.csv"
 for part in ${parts//,/ }; do
+    [[ $report_only == no ]] || continue
     echo "run: $part" >&2
     case $part in
     micro | gather_rays | forty_rooms) "run_$part" || failures+=("$part failed") ;;
@@ -158,7 +161,7 @@ section() { # TITLE PART TABLE... : tables and figures are copied beside the rep
 {
     echo "# Afterglow: what it costs on this machine"
     printf '\n%s\n\n' "$machine"
-    echo "Medians of $repeats interleaved runs of each. On a machine that does other work too, elapsed seconds mean little;"
+    echo "Medians of interleaved runs. On a machine that does other work too, elapsed seconds mean little;"
     echo "ratios within a run, CPU time and counts mean what they say. What each figure is: perf/README.md."
     printf '\n## Verdict\n\n'
     if ((${#failures[@]} > 0)); then

@@ -42,8 +42,9 @@ suite_begin() {
     out=${out:-$suite_build/perf/$suite_name}
     mkdir -p "$out"
     out=$(cd "$out" && pwd)
-    suite_work=$suite_build/perf/work/$suite_name
-    mkdir -p "$suite_work"
+    mkdir -p "$suite_build/perf"
+    suite_work=$(mktemp -d "$suite_build/perf/$suite_name.XXXXXX") # its own: two runs may go on at once
+    trap 'rm -rf "$suite_work"' EXIT
     suite_runs=$out/runs.csv
     rm -f "$suite_runs" "$out/ratios.csv"
     if [[ ${AG_PERF_BUILD:-yes} == yes ]]; then

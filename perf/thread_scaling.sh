@@ -39,7 +39,8 @@ echo "cache,threads,repeat,differing" >"$out/pixels.csv"
 first=${threads%%,*}
 for ((r = 1; r <= repeats; r++)); do
     for n in ${threads//,/ }; do
-        echo "$n,$r,$("$suite_bin/afterglow-arithmetic" "$n" "$units")" >>"$out/arithmetic.csv"
+        limit=$("$suite_bin/afterglow-arithmetic" "$n" "$units")
+        echo "$n,$r,$limit" >>"$out/arithmetic.csv"
         for cache in on-demand precompute; do
             suite_run scaling "$cache" "$r" --cache "$cache" -t "$n" "${suite_rest[@]}"
             kept=$suite_work/scaling.exr
