@@ -119,7 +119,9 @@ plot of("precompute", "photons", 8) using 1:2 with linespoints lw 2, \
 unset multiplot
 PLOT
 
-# What run.sh judges, with as many threads as cores.
+# What run.sh judges, with as many threads as cores; and how much of a core one thread of arithmetic got.
+suite_ratio scaling.machine_share "$(awk -v first="$first" "$suite_awk"'
+    $1 == first { v[++n] = $4 / ($3 * $1) } END { print median(v, n) }' "$out/arithmetic.csv")"
 for pair in precompute:photons precompute:map precompute:precompute on-demand:render; do
     value=$(awk -F, -v cache="${pair%:*}" -v phase="${pair#*:}" -v n="$suite_cores" \
         '$1 == cache && $2 == phase && $3 == n { print $8 }' "$out/scaling.csv")
