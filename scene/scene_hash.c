@@ -184,7 +184,8 @@ static void add_light(hash128 *h, const light *l)
     ADD(l->photons);
     ADD(l->medium);
     ADD(l->world_from_light);
-    uint32_t has = (l->environment != NULL) | (l->projection != NULL) << 1 | (l->portal != NULL) << 2;
+    uint32_t has = (uint32_t)(l->environment != NULL) | (uint32_t)(l->projection != NULL) << 1 |
+                   (uint32_t)(l->portal != NULL) << 2;
     ADD(has);
     if (l->environment) {
         const environment *e = l->environment;
