@@ -214,6 +214,8 @@ static void add_light(hash128 *h, const light *l)
 hash128 scene_hash_of_light(const scene *s)
 {
     hash128 begun = hash128_begin(), *h = &begun;
+    ADD(s->space.primaries); /* of the working space, which all colours are of */
+    ADD(s->space.white);
     ADD(s->texture_image_count);
     for (uint32_t i = 0; i < s->texture_image_count; i++)
         add_image(h, s->texture_images[i]);

@@ -139,10 +139,10 @@ static void test_texts(void **state)
     (void)state;
     assert_string_equal(ag_status_text(AG_OK), "success");
     assert_string_equal(ag_status_text(AG_CANCELLED), "cancelled");
-    for (int i = AG_OK; i <= AG_CANCELLED; i++)
+    for (int i = AG_OK; i <= AG_PAUSED; i++)
         for (int j = AG_OK; j < i; j++)
             assert_string_not_equal(ag_status_text((ag_status)i), ag_status_text((ag_status)j));
-    assert_string_equal(ag_status_text((ag_status)(AG_CANCELLED + 1)), "unknown status");
+    assert_string_equal(ag_status_text((ag_status)(AG_PAUSED + 1)), "unknown status");
     assert_string_equal(ag_phase_name(AG_PHASE_LOAD), "load");
     assert_string_equal(ag_phase_name(AG_PHASE_WRITE), "write");
     assert_string_equal(ag_phase_name(AG_PHASE_COUNT), "unknown phase");

@@ -224,6 +224,9 @@ static void test_pixels(void **state)
                 FROM(texture_image, alpha_bytes));
     picture = (texture_image){.width = 1, .height = 1, .channel_count = 1, .values = values, .alpha_values = values};
     words_count(s, "values", values, sizeof values, NULL, 0);
+    words_count(s, "primaries", s->space.primaries, sizeof s->space.primaries, NULL, 0);
+    picture.colors.has_matrix = true;
+    words_count(s, "matrix", picture.colors.matrix, sizeof picture.colors.matrix, NULL, 0);
     s->texture_images = NULL;
     s->texture_image_count = 0;
     assert_true(hash128_is_equal(before, scene_hash_of_light(s)));
