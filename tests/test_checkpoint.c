@@ -10,13 +10,14 @@
 /* Asks for a pause again and again, at no moment that anybody could tell beforehand. */
 typedef struct pauser {
     ag_context *context;
+    unsigned first_microseconds; /* more with each part, so that slow machines come to an end */
     atomic_u32 has_ended;
 } pauser;
 
 static void *pause_at_times(void *user)
 {
     pauser *p = user;
-    for (unsigned microseconds = 300; !load_relaxed_u32(&p->has_ended); microseconds += 700) {
+    for (unsigned microseconds = p->first_microseconds; !load_relaxed_u32(&p->has_ended); microseconds *= 2) {
         usleep(microseconds);
         ag_context_pause(p->context);
     }
@@ -55,7 +56,7 @@ static void test_resumed_bits(void **state)
                 if (part > 0 && ag_rendering_read_checkpoint(r, in_folder("c")) != AG_OK)
                     fail_msg("%s", s->said);
                 ag_sample_counts counts = ag_rendering_sample_counts(r);
-                pauser pausing = {.context = s->context};
+                pauser pausing = {.context = s->context, .first_microseconds = 500u << (part < 10 ? part : 10)};
                 pthread_t thread;
                 assert_int_equal(pthread_create(&thread, NULL, pause_at_times, &pausing), 0);
                 status = ag_rendering_continue(r, part < wanted ? part + 1 : wanted);
