@@ -222,7 +222,6 @@ hash128 scene_hash_of_light(const scene *s)
     ADD(s->texture_count);
     for (uint32_t i = 0; i < s->texture_count; i++)
         add_texture(h, &s->textures[i]);
-    ADD(s->space.from_rec709);
     ADD(s->material_count);
     for (uint32_t i = 0; i < s->material_count; i++)
         add_material(h, &s->materials[i]);
