@@ -72,6 +72,14 @@ static rgb estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigne
     return irradiance;
 }
 
+void irradiance_cache_share(irradiance_cache *cache, const claim_owners *owners) { cache->owners = owners; }
+
+/* What the worker's claims carry: among processes, the process is enough. */
+static uint32_t claimer_of(const irradiance_cache *cache, unsigned worker_index)
+{
+    return cache->owners ? cache->owners->claimer : worker_index;
+}
+
 /* Computes and publishes what the worker has claimed; gives the slot's word. */
 static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker_index)
 {
@@ -79,11 +87,31 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker
     rgb irradiance = estimate(cache, photon_block_position(blocks, index),
                               direction_decode(photon_block_normal(blocks, index)), worker_index);
     uint32_t value = photon_map_encode_irradiance(cache->map, irradiance, index);
-    if (irradiance_slot_publish(photon_block_slot(blocks, index), worker_index, value))
+    if (irradiance_slot_publish(photon_block_slot(blocks, index), claimer_of(cache, worker_index), value))
         cache->counters[worker_index].computed++;
     else
         cache->counters[worker_index].duplicated++;
     return irradiance_word(IRRADIANCE_READY, value);
+}
+
+/* The word of a photon that somebody is computing, once it is ready. Holds no claim meanwhile, but those that it takes
+ * over. */
+static uint32_t await(irradiance_cache *cache, uint32_t index, unsigned worker_index)
+{
+    irradiance_slot *slot = photon_block_slot(cache->map->blocks, index);
+    claim_wait wait = {0};
+    uint32_t word = irradiance_slot_read(slot);
+    while (irradiance_word_state(word) != IRRADIANCE_READY) {
+        if (!cache->owners) {
+            sched_yield(); /* the claimer may need this processor */
+        } else if (claim_owners_wait(cache->owners, &wait, word) &&
+                   irradiance_slot_take_over(slot, &word, cache->owners->claimer)) {
+            cache->counters[worker_index].reclaimed++;
+            return compute(cache, index, worker_index);
+        }
+        word = irradiance_slot_read(slot);
+    }
+    return word;
 }
 
 typedef struct precompute_job {
@@ -98,9 +126,13 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
     irradiance_cache *cache = job->cache;
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++) {
         uint32_t word;
-        if (irradiance_slot_try_claim(photon_block_slot(cache->map->blocks, (uint32_t)i), worker_index, &word))
+        if (irradiance_slot_try_claim(photon_block_slot(cache->map->blocks, (uint32_t)i),
+                                      claimer_of(cache, worker_index), &word))
             compute(cache, (uint32_t)i, worker_index);
     }
+    /* what other processes are at, or have left: nothing is held here */
+    for (uint64_t i = begin; cache->owners && i < end && !run_is_cancelled(job->run); i++)
+        await(cache, (uint32_t)i, worker_index);
 }
 
 ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run)
@@ -125,8 +157,9 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
     for (uint32_t i = 0; i < cache->map->set.count; i++) {
         uint32_t found;
         irradiance_slot *slot = photon_block_slot(cache->map->blocks, i);
-        if (irradiance_word_state(words[i]) == IRRADIANCE_READY && irradiance_slot_try_claim(slot, 0, &found))
-            irradiance_slot_publish(slot, 0, words[i] & IRRADIANCE_VALUE_MASK);
+        if (irradiance_word_state(words[i]) == IRRADIANCE_READY &&
+            irradiance_slot_try_claim(slot, claimer_of(cache, 0), &found))
+            irradiance_slot_publish(slot, claimer_of(cache, 0), words[i] & IRRADIANCE_VALUE_MASK);
     }
     cache->ready_before += irradiance_cache_distinct(cache) - distinct;
 }
@@ -150,7 +183,8 @@ static void ask(irradiance_cache *cache, uint32_t index, vec3 position, vec3 nor
     }
     irradiance_slot *slot = photon_block_slot(cache->map->blocks, index);
     uint32_t word = irradiance_slot_read(slot);
-    if (irradiance_word_state(word) == IRRADIANCE_EMPTY && irradiance_slot_try_claim(slot, worker_index, &word))
+    if (irradiance_word_state(word) == IRRADIANCE_EMPTY &&
+        irradiance_slot_try_claim(slot, claimer_of(cache, worker_index), &word))
         word = compute(cache, index, worker_index);
     if (irradiance_word_state(word) == IRRADIANCE_READY) {
         fulfil(cache, word, out_request);
@@ -234,15 +268,11 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
 
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index)
 {
-    const irradiance_slot *slot = photon_block_slot(cache->map->blocks, request->photon);
-    uint32_t word = irradiance_slot_read(slot);
+    uint32_t word = irradiance_slot_read(photon_block_slot(cache->map->blocks, request->photon));
     if (irradiance_word_state(word) != IRRADIANCE_READY) {
         irradiance_counters *counters = &cache->counters[worker_index];
         double begin = clock_thread_cpu_seconds();
-        do {
-            sched_yield(); /* the claimer may need this processor */
-            word = irradiance_slot_read(slot);
-        } while (irradiance_word_state(word) != IRRADIANCE_READY);
+        word = await(cache, request->photon, worker_index);
         counters->waited++;
         counters->waited_seconds += clock_thread_cpu_seconds() - begin;
     }
@@ -266,6 +296,7 @@ irradiance_counters irradiance_cache_counters(const irradiance_cache *cache)
         sum.deferred += c->deferred;
         sum.waited += c->waited;
         sum.duplicated += c->duplicated;
+        sum.reclaimed += c->reclaimed;
         sum.uncached += c->uncached;
         sum.timed += c->timed;
         sum.timed_seconds += c->timed_seconds;

@@ -7,6 +7,7 @@
 #ifndef AFTERGLOW_IRRADIANCE_CACHE_H
 #define AFTERGLOW_IRRADIANCE_CACHE_H
 
+#include "claim_owners.h"
 #include "photon_map.h"
 
 /* Places that can be asked for at once. */
@@ -25,6 +26,7 @@ typedef struct irradiance_counters {
     uint64_t deferred;              /* requests that met a claim of another thread and were set aside */
     uint64_t waited;                /* of those, the ones that had to wait in the end */
     uint64_t duplicated;            /* estimates computed although another had been published: 0 */
+    uint64_t reclaimed;             /* claims taken over from processes that died */
     uint64_t uncached;              /* estimates at the place itself */
     uint64_t timed;                 /* estimates whose time was taken */
     double timed_seconds;           /* CPU time of those */
@@ -43,12 +45,15 @@ typedef struct irradiance_cache {
     unsigned worker_count;
     irradiance_counters *counters; /* [worker_count] */
     irradiance_scratch *scratch;   /* [worker_count] */
+    const claim_owners *owners;    /* borrowed; of a map that other processes fill too, else NULL */
     uint64_t ready_before;         /* photons that were ready when the cache was created */
 } irradiance_cache;
 
 /* Borrows the map. Errors: AG_ERROR_MEMORY. */
 ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
                                   irradiance_cache *out_cache);
+/* Before the first request: the map is filled by other processes, too. Borrows. */
+void irradiance_cache_share(irradiance_cache *cache, const claim_owners *owners);
 void irradiance_cache_reset(irradiance_cache *cache);
 
 /* Computes what is not ready yet, at every photon. Errors: AG_CANCELLED. */
@@ -71,7 +76,8 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
                           irradiance_request *out_request);
 
 /* Comes back to a request that was set aside; waits for the claimer where it still computes. Afterwards the irradiance
- * is there. The claimer holds its claim only while computing, and takes no other meanwhile: so this ends. */
+ * is there. The claimer holds its claim only while computing, and takes no other meanwhile; a dead one's is taken over:
+ * so this ends. */
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index);
 
 /* A place, and the side of the unit normal. */
@@ -94,7 +100,8 @@ irradiance_counters irradiance_cache_counters(const irradiance_cache *cache);
 /* CPU seconds spent in all estimates, from those whose time was taken. */
 double irradiance_counters_estimate_seconds(const irradiance_counters *counters);
 
-/* Photons whose slots are ready now, less those that were so at creation: counted by looking at them. */
+/* Photons whose slots are ready now, less those that were so at creation: counted by looking at them. Of a shared map,
+ * those too that other processes have made ready meanwhile. */
 uint64_t irradiance_cache_distinct(const irradiance_cache *cache);
 
 #endif

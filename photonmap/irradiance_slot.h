@@ -1,6 +1,7 @@
 /* irradiance_slot.h: one atomic word per photon: who computes its irradiance, and then the irradiance. The lock-free
  * core. Rests on: Neilson, Yang, TR 04-21, 2004 (on demand, with a flag at the photon); the compare-and-swap makes it
- * safe for threads. Modelled in tests/irradiance_slot.pml.
+ * safe for threads, and for processes that share a map file. Modelled in tests/irradiance_slot.pml, and with the
+ * death of processes in tests/irradiance_slot_shared.pml.
  *
  *            try_claim (CAS on the flags)           publish (CAS)
  *   EMPTY ─────────────────────────────────▶ CLAIMED ─────────────▶ READY  (final)
@@ -8,7 +9,7 @@
  *
  *   state    the other 30 bits          who may change the word
  *   EMPTY    0                          anybody: to CLAIMED, naming itself
- *   CLAIMED  the claimer's number       the claimer alone: to READY
+ *   CLAIMED  the claimer's number       the claimer: to READY; where it is dead, anybody: to CLAIMED, naming itself
  *   READY    exponent, mantissas        nobody
  *
  * State and value are one word, so nobody can see half of a result, and zeroed memory is a valid empty cache.
@@ -40,17 +41,30 @@ static inline uint32_t irradiance_word(irradiance_state state, uint32_t value)
 static inline uint32_t irradiance_slot_read(const irradiance_slot *slot) { return load_acquire_u32(slot); }
 
 /* Takes an empty slot for the claimer (any number below 2^30). At most one caller ever gets true. Acquire: pairs with
- * publish when it loses and finds READY. *out_word: what is there now. */
+ * publish when it loses and finds READY. Release: whoever reads the claim and asks after its claimer finds its place in
+ * the table of claim_owners.h. *out_word: what is there now. */
 static inline bool irradiance_slot_try_claim(irradiance_slot *slot, uint32_t claimer, uint32_t *out_word)
 {
     uint32_t found = 0, claimed = irradiance_word(IRRADIANCE_CLAIMED, claimer);
-    bool won = cas_acquire_u32(slot, &found, claimed);
+    bool won = cas_acquire_release_u32(slot, &found, claimed);
     *out_word = won ? claimed : found;
     return won;
 }
 
+/* Takes over a claim that its claimer will not make ready: see claim_owners.h. *in_out_word: what was read there; what
+ * is there now. False when it is not that word any more. Orders as try_claim. */
+static inline bool irradiance_slot_take_over(irradiance_slot *slot, uint32_t *in_out_word, uint32_t claimer)
+{
+    uint32_t claimed = irradiance_word(IRRADIANCE_CLAIMED, claimer);
+    if (!cas_acquire_release_u32(slot, in_out_word, claimed))
+        return false;
+    *in_out_word = claimed;
+    return true;
+}
+
 /* Makes the claimer's value (30 bits) final. Release: pairs with read. False when the claim was not the claimer's any
- * more: somebody else computed it too, which never happens while a claim is held by one thread. */
+ * more: somebody else computed it too, which happens where a process has stood still for so long that it was thought
+ * dead, and to nobody else. */
 static inline bool irradiance_slot_publish(irradiance_slot *slot, uint32_t claimer, uint32_t value)
 {
     uint32_t expected = irradiance_word(IRRADIANCE_CLAIMED, claimer);

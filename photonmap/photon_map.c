@@ -57,17 +57,25 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
      * 64 octaves below that lie a thousandth of a photon on the largest disc, for k up to a million. */
     double largest = 255.0 * ldexp(1.0, map.flux_exponent_max) * (map.nearest + 1.0) /
                      ((double)map.set.emitted_paths * (double)AG_PI * (double)map.min_radius_squared);
-    map.irradiance_bias = shared_exponent_of((float)fmin(largest, 1e38)) - 63;
-    for (int i = 0; i < 64; i++)
-        map.irradiance_unit[i] = ldexpf(1.0f, i + map.irradiance_bias);
+    photon_map_set_bias(&map, shared_exponent_of((float)fmin(largest, 1e38)) - 63);
     *out_map = map;
     return AG_OK;
 }
 
+void photon_map_set_bias(photon_map *map, int irradiance_bias)
+{
+    map->irradiance_bias = irradiance_bias;
+    for (int i = 0; i < 64; i++)
+        map->irradiance_unit[i] = ldexpf(1.0f, i + irradiance_bias);
+}
+
 void photon_map_reset(photon_map *map)
 {
+    if (map->is_borrowed)
+        map->tree = (photon_tree){0};
+    else
+        free(map->blocks);
     photon_tree_reset(&map->tree);
-    free(map->blocks);
     map->blocks = NULL;
     photon_set_reset(&map->set);
 }

@@ -19,7 +19,7 @@ typedef struct photon_map_settings {
 
 typedef struct photon_map {
     photon_set set;       /* without its records, which have become: */
-    photon_block *blocks; /* owned; NULL where there is no photon */
+    photon_block *blocks; /* owned, but of a map from a file; NULL where there is no photon */
     photon_tree tree;     /* over the blocks */
     uint32_t nearest;
     float max_radius;
@@ -30,6 +30,7 @@ typedef struct photon_map {
     int irradiance_bias;       /* added to a slot's 6-bit exponent */
     float irradiance_unit[64]; /* of a slot's mantissas, by its exponent */
     const scene *surfaces;     /* borrowed, or NULL */
+    bool is_borrowed;          /* blocks and nodes are a photon_file's */
     bool has_been_cached;      /* a cache has been made over it: some slots may be ready */
 } photon_map;
 
@@ -38,6 +39,9 @@ typedef struct photon_map {
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
                             double progress_begin, double progress_end, photon_map *out_map);
 void photon_map_reset(photon_map *map);
+
+/* What the codes of irradiances stand for. For a map that comes from a file. */
+void photon_map_set_bias(photon_map *map, int irradiance_bias);
 
 /* Photons and tree, all told. */
 uint64_t photon_map_bytes(const photon_map *map);

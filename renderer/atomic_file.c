@@ -247,23 +247,36 @@ static int write_all(int fd, const void *bytes, size_t size)
         const ssize_t written = write(fd, next, size);
         if (written < 0 && errno == EINTR)
             continue;
-        if (written <= 0) {
-            if (written == 0)
-                errno = ENOSPC;
-            return -1;
-        }
+        if (written <= 0)
+            return written < 0 ? errno : ENOSPC;
         next += written;
         size -= (size_t)written;
     }
     return 0;
 }
 
-/* Everything from the first byte to the rename; 0 or -1 with errno. */
-static int fill_and_rename(output *out, const atomic_file_piece *pieces, int count)
+typedef struct piece_list {
+    const atomic_file_piece *pieces;
+    int count;
+} piece_list;
+
+static int write_pieces(void *user, int fd)
 {
-    for (int i = 0; i < count; i++)
-        if (write_all(out->fd, pieces[i].bytes, pieces[i].size) != 0)
-            return -1;
+    const piece_list *all = user;
+    int error = 0;
+    for (int i = 0; i < all->count && error == 0; i++)
+        error = write_all(fd, all->pieces[i].bytes, all->pieces[i].size);
+    return error;
+}
+
+/* Everything from the first byte to the rename; 0 or -1 with errno. */
+static int fill_and_rename(output *out, atomic_file_fill *fill, void *user)
+{
+    const int error = fill(user, out->fd);
+    if (error != 0) {
+        errno = error;
+        return -1;
+    }
     if (out->folder_fd >= 0 && fsync(out->fd) != 0)
         return -1;
     const int closed = close_quietly(out->fd);
@@ -284,12 +297,18 @@ ag_status atomic_file_write(const char *path, const void *bytes, size_t size, ch
 ag_status atomic_file_write_pieces(const char *path, const atomic_file_piece *pieces, int count, char *message,
                                    size_t message_size)
 {
+    piece_list all = {pieces, count};
+    return atomic_file_write_by(path, write_pieces, &all, message, message_size);
+}
+
+ag_status atomic_file_write_by(const char *path, atomic_file_fill *fill, void *user, char *message, size_t message_size)
+{
     output out;
     snprintf(message, message_size, "%s", "");
     ag_status status = begin(path, &out, message, message_size);
     if (status != AG_OK)
         return status;
-    if (fill_and_rename(&out, pieces, count) != 0) {
+    if (fill_and_rename(&out, fill, user) != 0) {
         const int error = errno;
         abandon(&out);
         return failure(path, "", error, message, message_size);

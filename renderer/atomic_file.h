@@ -26,6 +26,12 @@ typedef struct atomic_file_piece {
 ag_status atomic_file_write_pieces(const char *path, const atomic_file_piece *pieces, int count, char *message,
                                    size_t message_size);
 
+/* The same for what is not at hand as one piece: fill writes it to the descriptor, which is open for writing alone and
+ * empty, and returns 0 or an errno. */
+typedef int atomic_file_fill(void *user, int descriptor);
+ag_status atomic_file_write_by(const char *path, atomic_file_fill *fill, void *user, char *message,
+                               size_t message_size);
+
 /* Whether atomic_file_write could begin now; found out by creating the temporary file and removing it. */
 ag_status atomic_file_check(const char *path, char *message, size_t message_size);
 

@@ -8,6 +8,7 @@
 #include "debug_views.h"
 #include "first_hit.h"
 #include "floating_point.h"
+#include "map_file.h"
 #include "passage.h"
 #include "path_tracing.h"
 #include "photon_dump.h"
@@ -30,6 +31,7 @@ static void maps_reset(maps *m)
     irradiance_cache_reset(&m->cache);
     photon_map_reset(&m->global);
     photon_map_reset(&m->caustic);
+    photon_file_close(&m->file);
 }
 
 /* A caustic needs something to be focused by. */
@@ -75,9 +77,11 @@ static void warn_of_cut_passages(const ag_context *context, uint64_t count)
                     (unsigned long long)count, PASSAGE_CROSSINGS_MAX);
 }
 
-static ag_status build_maps(ag_context *context, const scene *s, const ag_render_settings *settings, maps *out_maps)
+static ag_status trace_maps(ag_context *context, const scene *s, const ag_render_settings *settings,
+                            photon_map *out_global, photon_map *out_caustic)
 {
     ag_statistics *statistics = &context->statistics;
+    *out_global = *out_caustic = (photon_map){0};
     photon_set global = {0}, caustic = {0};
     phase_begin begin = context_begin_phase();
     ag_status status = trace_photons(context, s, settings, &global, &caustic);
@@ -95,18 +99,35 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
                                             .max_radius = settings->radius,
                                             .surface_area = s->surface_area,
                                             .surfaces = s};
-        status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, &out_maps->global);
+        status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, out_global);
         /* caustics gather in places: how many of their photons there are does not tell how far apart they lie */
-        map_settings.radius_bound = out_maps->global.max_radius;
+        map_settings.radius_bound = out_global->max_radius;
         if (status == AG_OK)
-            status = photon_map_create(&context->run, &caustic, &map_settings, 0.7, 1.0, &out_maps->caustic);
+            status = photon_map_create(&context->run, &caustic, &map_settings, 0.7, 1.0, out_caustic);
     }
     photon_set_reset(&global); /* empty, where the maps have taken them over */
     photon_set_reset(&caustic);
-    if (status != AG_OK)
+    if (status != AG_OK) {
+        photon_map_reset(out_global);
+        photon_map_reset(out_caustic);
         return status;
+    }
     run_progress(&context->run, AG_PHASE_MAP, 1.0);
     context_end_phase(context, AG_PHASE_MAP, begin);
+    return AG_OK;
+}
+
+static ag_status build_maps(ag_context *context, const scene *s, const ag_render_settings *settings, maps *out_maps)
+{
+    ag_statistics *statistics = &context->statistics;
+    ag_status status;
+    if (settings->photon_map_file)
+        status =
+            map_file_obtain(context, s, settings, trace_maps, &out_maps->file, &out_maps->global, &out_maps->caustic);
+    else
+        status = trace_maps(context, s, settings, &out_maps->global, &out_maps->caustic);
+    if (status != AG_OK)
+        return status;
     statistics->photon_bytes += photon_map_bytes(&out_maps->global) + photon_map_bytes(&out_maps->caustic);
     log_message(context->log, AG_LOG_INFO, "estimates: %u nearest, %.4g at most, %.4g where light is spread evenly",
                 out_maps->global.nearest, (double)out_maps->global.max_radius, (double)out_maps->global.mean_radius);
@@ -115,8 +136,11 @@ static ag_status build_maps(ag_context *context, const scene *s, const ag_render
                                                   [AG_CACHE_PRECOMPUTE] = IRRADIANCE_PRECOMPUTE,
                                                   [AG_CACHE_OFF] = IRRADIANCE_UNCACHED};
     status = irradiance_cache_create(&out_maps->global, modes[settings->cache], statistics->threads, &out_maps->cache);
+    if (status == AG_OK && out_maps->file.is_shared)
+        irradiance_cache_share(&out_maps->cache, &out_maps->file.owners);
+    statistics->irradiance_ready += out_maps->cache.ready_before;
     if (status == AG_OK && settings->cache == AG_CACHE_PRECOMPUTE) {
-        begin = context_begin_phase();
+        phase_begin begin = context_begin_phase();
         status = irradiance_cache_precompute(&out_maps->cache, &context->run);
         context_end_phase(context, AG_PHASE_PRECOMPUTE, begin);
     }
@@ -383,6 +407,7 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
     statistics->irradiance_deferred += c.deferred;
     statistics->irradiance_waited += c.waited;
     statistics->irradiance_duplicated += c.duplicated;
+    statistics->irradiance_reclaimed += c.reclaimed;
     statistics->irradiance_uncached += c.uncached;
     statistics->irradiance_estimate_s += irradiance_counters_estimate_seconds(&c);
     statistics->irradiance_wait_s += c.waited_seconds;
@@ -413,6 +438,7 @@ static void note_origin(const ag_rendering *r, film_origin *out)
     if (c->is_moving)
         world_from_camera = camera_transform_at(c, 0.0f);
     out->settings = *settings;
+    out->settings.photon_map_file = NULL; /* the caller's */
     out->has_ndc =
         camera_film_from_camera(c, (float)settings->width / (float)settings->height, 1e-2, 1e3, film_from_camera);
     for (int i = 0; i < 4; i++)
@@ -492,8 +518,10 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
     r->not_finite_before = context->statistics.samples_not_finite;
     ag_status status = settle_settings(context, loaded->s, settings, &r->settings);
     context->rendered = r->settings;
+    context->rendered.photon_map_file = NULL; /* the caller's */
     if (status == AG_OK)
         status = prepare(r);
+    r->settings.photon_map_file = NULL; /* the caller's, and done with */
     floating_point_leave(callers_arithmetic);
     if (status == AG_OK)
         *out_rendering = r;

@@ -1,8 +1,9 @@
 #!/bin/bash
-# The irradiance slot's protocol, checked exhaustively by spin; and that spin catches it when it is broken.
+# The irradiance slot's protocol, between threads and between processes that die, checked exhaustively by spin; and that spin catches it when it is broken.
 # Exit 77 (skipped) where spin is not installed.
 set -u
-model=$(cd "$(dirname "$0")" && pwd)/irradiance_slot.pml
+tests=$(cd "$(dirname "$0")" && pwd)
+model=$tests/irradiance_slot.pml
 command -v spin >/dev/null || { echo "spin is not installed: skipped"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -51,5 +52,24 @@ check "what is ready stays ready" holds "" "-a -N ready_is_final"
 check "a claim that is not atomic: safety" fails "$safety" "" -DBROKEN_CLAIM
 check "a claim that is never released: liveness" fails "$liveness" "-a -f -N every_request_ends" -DBROKEN_RELEASE
 check "a claim held while waiting: liveness" fails "$liveness" "-a -f -N every_request_ends" -DBROKEN_NESTING
+
+model=$tests/irradiance_slot_shared.pml
+liveness="-DNFAIR=6"
+three="-DFIRST=3 -DSLOTS=1 -DREQUESTS=1"
+check "processes that die: nothing twice, no claim lost, no deadlock" holds "$safety" ""
+# shellcheck disable=SC2086
+check "the same, of four" holds "$safety" "" $three
+check "processes that die: all others end" holds "$liveness" "-a -f -N all_end"
+check "processes that die: what is ready stays ready" holds "" "-a -N ready_is_final"
+# shellcheck disable=SC2086
+check "processes that are stopped: a value is published once" holds "$safety" "" -DSTOPS $three
+check "processes that are stopped: all end" holds "$liveness" "-a -f -N all_end" -DSTOPS
+check "processes that are stopped: what is ready stays ready" holds "" "-a -N ready_is_final" -DSTOPS
+
+# shellcheck disable=SC2086
+check "a place without generations: safety" fails "$safety" "" -DBROKEN_GENERATION $three
+check "a claim taken over without comparing: safety" fails "$safety" "" -DBROKEN_TAKE_OVER
+check "a value published without comparing: safety" fails "$safety" "" -DBROKEN_PUBLISH -DSTOPS
+check "the dead are not found: liveness" fails "$liveness" "-a -f -N all_end" -DBROKEN_LOCK
 
 [ $failures -eq 0 ]

@@ -21,7 +21,13 @@ static inline bool cas_acquire_u32(atomic_u32 *a, uint32_t *expected, uint32_t d
     return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_acquire, memory_order_acquire);
 }
 
-/* The same with release on success: what was written before is seen by whoever acquires the new value. */
+/* The same with acquire and release on success: and whoever acquires the new value sees what was written before. */
+static inline bool cas_acquire_release_u32(atomic_u32 *a, uint32_t *expected, uint32_t desired)
+{
+    return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_acq_rel, memory_order_acquire);
+}
+
+/* Strong, with release on success: what was written before is seen by whoever acquires the new value. */
 static inline bool cas_release_u32(atomic_u32 *a, uint32_t *expected, uint32_t desired)
 {
     return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_release, memory_order_relaxed);

@@ -91,8 +91,12 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
         status = ag_statistics_check(context, o->stats);
     if (status == AG_OK && o->photons_file)
         status = ag_statistics_check(context, o->photons_file); /* as for any file */
-    if (status == AG_OK && o->photons_file && o->render.integrator == AG_INTEGRATOR_PATH) {
-        fprintf(stderr, "afterglow: --dump-photons: path tracing has no photons\n");
+    if (status == AG_OK && o->render.photon_map_file)
+        status = ag_photon_map_check(context, o->render.photon_map_file);
+    if (status == AG_OK && (o->photons_file || o->render.photon_map_file) &&
+        o->render.integrator == AG_INTEGRATOR_PATH) {
+        fprintf(stderr, "afterglow: --%s: path tracing has no photons\n",
+                o->photons_file ? "dump-photons" : "photon-map");
         status = AG_ERROR_ARGUMENT;
     }
     if (status == AG_OK && o->render.denoise)

@@ -30,6 +30,8 @@ enum {
     OPT_CLAMP_INDIRECT,
     OPT_DENOISE,
     OPT_DUMP_PHOTONS,
+    OPT_PHOTON_MAP,
+    OPT_PHOTON_MAP_REFRESH,
     OPT_TILED,
     OPT_REPRODUCIBLE,
     OPT_OCIO,
@@ -96,6 +98,11 @@ static const option_line LINES[] = {
      "photon_distance, gather_distance, tile_time;\ncrypto_object, crypto_material, or both: crypto; gbuffer; or all"},
     {OPT_DENOISE, "denoise", NULL, "take the noise out with Open Image Denoise, where its library is there"},
     {OPT_DUMP_PHOTONS, "dump-photons", "FILE", "write the photons as PLY"},
+    {OPT_PHOTON_MAP, "photon-map", "FILE",
+     "keep the photon map and its irradiances in FILE: read where it is there,\nelse traced; processes that use it at "
+     "once fill it together"},
+    {OPT_PHOTON_MAP_REFRESH, "photon-map-refresh", NULL,
+     "trace the map anew where that of FILE is of another scene or settings,\nor damaged"},
     {OPT_TILED, "tiled", NULL, "write .exr files in tiles, not in lines"},
     {OPT_REPRODUCIBLE, "reproducible", NULL,
      "leave out of .exr files what differs from run to run: times, threads, ..."},
@@ -314,6 +321,8 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_CLAMP_INDIRECT: is_valid = parse_bound(value, &r->clamp_indirect); break;
     case OPT_DENOISE: r->denoise = true; break;
     case OPT_DUMP_PHOTONS: o->photons_file = value; break;
+    case OPT_PHOTON_MAP: r->photon_map_file = value; break;
+    case OPT_PHOTON_MAP_REFRESH: r->photon_map_refresh = true; break;
     case OPT_TILED: o->output.tiled = true; break;
     case OPT_REPRODUCIBLE: o->output.reproducible = true; break;
     case OPT_GATHER: is_valid = o->has_gather_samples = parse_int(value, 1, 65536, &r->gather_samples); break;
@@ -371,12 +380,19 @@ static const option_line *option_line_of(int code)
     return &LINES[i];
 }
 
+static bool is_same(const char *a, const char *b) { return a && b && strcmp(a, b) == 0; }
+
 /* One file cannot hold two things. */
 static bool has_file_twice(const options *o)
 {
+    const char *map = o->render.photon_map_file;
+    if (is_same(map, o->stats) || is_same(map, o->photons_file)) {
+        fprintf(stderr, "afterglow: '%s' is to be written twice\n", map);
+        return true;
+    }
     for (int i = 0; i < o->outfile_count; i++) {
-        bool is_twice = (o->stats && strcmp(o->stats, o->outfiles[i]) == 0) ||
-                        (o->photons_file && strcmp(o->photons_file, o->outfiles[i]) == 0);
+        bool is_twice = is_same(o->stats, o->outfiles[i]) || is_same(o->photons_file, o->outfiles[i]) ||
+                        is_same(map, o->outfiles[i]);
         for (int k = 0; k < i; k++)
             is_twice = is_twice || strcmp(o->outfiles[k], o->outfiles[i]) == 0;
         if (is_twice) {
@@ -537,6 +553,8 @@ bool options_override(const options *o, ag_render_settings *settings)
     settings->integrator = r->integrator;
     settings->layers |= r->layers;
     settings->denoise = r->denoise;
+    settings->photon_map_file = r->photon_map_file;
+    settings->photon_map_refresh = r->photon_map_refresh;
     settings->clamp_direct = r->clamp_direct;
     settings->clamp_indirect = r->clamp_indirect;
     settings->noise_level = r->noise_level;

@@ -164,6 +164,13 @@ typedef struct ag_render_settings {
     int noise_min_samples; /* of each pixel then, [2, 2^20]; default 16 */
     int gather_samples;    /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
                               gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
+    /* A file that holds the photon map from one picture to the next, with the irradiances computed so far; NULL, the
+     * default: none. Traced where there is none yet; other processes on this machine that use it meanwhile fill it
+     * together with this one. The picture is the same. Borrowed until ag_rendering_create or ag_render returns. One
+     * that is damaged, or was made of another scene or with other settings than the photons depend on, is refused:
+     * camera, film, samples and gather rays may differ. */
+    const char *photon_map_file;
+    bool photon_map_refresh; /* one that would be refused is traced anew, and replaced */
 } ag_render_settings;
 
 /* The scene's own settings, and our defaults for what it leaves open; says in the log what it makes of another
@@ -176,10 +183,14 @@ AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_sce
 typedef struct ag_film ag_film;
 
 /* Traces photons, builds the maps, renders. The picture depends on scene, settings and seed alone.
- * Errors: AG_ERROR_ARGUMENT (settings out of range), AG_ERROR_SCENE (no camera), AG_ERROR_MEMORY, AG_CANCELLED. */
+ * Errors: AG_ERROR_ARGUMENT (settings out of range), AG_ERROR_SCENE (no camera), AG_ERROR_INPUT (the photon map's file
+ * is refused), AG_ERROR_OUTPUT (it cannot be written), AG_ERROR_MEMORY, AG_CANCELLED. */
 AG_API ag_status ag_render(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
                            ag_film **out_film);
 AG_API void ag_film_destroy(ag_film *film); /* NULL is fine */
+/* Whether a photon map could be kept there; of one that is there already nothing is read. To be asked before the scene
+ * is loaded. Errors: AG_ERROR_OUTPUT. */
+AG_API ag_status ag_photon_map_check(ag_context *context, const char *path);
 
 /* The same in passes over the whole picture: previews, checkpoints and limits of time are built on it. Samples [0, a)
  * and then [a, b) give the bits of [0, b) at once. The rendering borrows scene and context. */
@@ -275,14 +286,25 @@ AG_API void ag_abandon_files(void);
 
 /* --- what was done --- */
 
+/* Where a picture's photon map came from. */
+typedef enum ag_map_file {
+    AG_MAP_FILE_NONE,   /* traced, and not kept */
+    AG_MAP_FILE_TRACED, /* traced, and kept */
+    AG_MAP_FILE_OPENED, /* from the file, and filled further */
+    AG_MAP_FILE_PRIVATE /* from a file that could not be shared: a copy, which is not kept */
+} ag_map_file;
+
 typedef struct ag_statistics {
     unsigned threads;
     uint64_t photons_emitted, photons_stored_global, photons_stored_caustic, photon_bytes;
+    ag_map_file map_file; /* of the last picture */
     /* requests: places asked for; computed: estimates at photons; distinct: photons found ready afterwards that were
      * not before, counted by looking; deferred: set aside because another thread was computing; waited: had to wait in
-     * the end; duplicated: computed twice, 0; uncached: estimates at places themselves */
+     * the end; duplicated: computed twice, 0; uncached: estimates at places themselves; ready: photons of a map from a
+     * file that were ready when it was opened; reclaimed: claims taken over from other processes that had died. Where
+     * other processes fill the map too, distinct counts what they computed as well. */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
-        irradiance_duplicated, irradiance_uncached;
+        irradiance_duplicated, irradiance_uncached, irradiance_ready, irradiance_reclaimed;
     double irradiance_estimate_s; /* CPU seconds spent in estimates, all threads; from a sixteenth of them */
     double irradiance_wait_s;     /* CPU seconds spent in waiting for other threads' estimates, all threads */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path;

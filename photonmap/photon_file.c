@@ -1,0 +1,469 @@
+/* photon_file.c: see photon_file.h.
+ * Rests on: mmap(2), posix_fallocate(3), fcntl(2). Threads: see photon_file.h. */
+#define _GNU_SOURCE
+#include "photon_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#if defined(__linux__)
+#include <sys/vfs.h>
+#endif
+
+_Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
+
+/* To be raised whenever the layout, or what photons or irradiances are, changes. */
+enum { LAYOUT_VERSION = 1 };
+enum { MAP_COUNT = 2, PAGE = 4096, CHUNK_BYTES = 1 << 22 };
+static const uint32_t BYTE_ORDER_MARK = 0x01020304;
+static const char MAGIC[16] = "Afterglow map\r\n";
+
+typedef struct map_record {
+    uint64_t blocks_at, nodes_at; /* bytes from the file's beginning */
+    uint64_t emitted_paths, rays, passages_cut;
+    photon_books books;
+    uint32_t count, depth, nearest;
+    float max_radius, min_radius_squared, mean_radius;
+    int32_t flux_exponent_max, irradiance_bias;
+} map_record;
+
+typedef struct file_header {
+    char magic[16];
+    uint32_t byte_order, layout;
+    uint32_t header_bytes, block_bytes, node_bytes, reserved;
+    uint64_t file_bytes;
+    photon_file_key key;
+    map_record maps[MAP_COUNT];
+    hash128 content; /* of the photons and the nodes */
+    hash128 self;    /* of all above */
+} file_header;
+
+enum { OWNERS_AT = PAGE };
+_Static_assert(sizeof(file_header) <= OWNERS_AT, "the header has a page of its own");
+_Static_assert(sizeof(photon_file_key) == 168 && sizeof(map_record) == 288, "no gaps: they are compared and hashed");
+_Static_assert(offsetof(photon_block, slot) + PHOTON_BLOCK_LANES * sizeof(irradiance_slot) == sizeof(photon_block),
+               "what never changes of a block is its first part");
+
+/* --- layout --- */
+
+static uint64_t to_page(uint64_t bytes) { return (bytes + PAGE - 1) / PAGE * PAGE; }
+
+static uint64_t blocks_bytes(const map_record *m) { return photon_block_count(m->count) * sizeof(photon_block); }
+
+static uint64_t nodes_bytes(const map_record *m)
+{
+    return m->depth ? (((uint64_t)1 << m->depth) - 1) * sizeof(photon_tree_node) : 0;
+}
+
+/* Where all lies, from counts and depths. Returns the file's size. */
+static uint64_t lay_out(map_record maps[MAP_COUNT])
+{
+    uint64_t at = to_page(OWNERS_AT + CLAIM_OWNERS_MAX * sizeof(claim_owner));
+    for (int i = 0; i < MAP_COUNT; i++) {
+        maps[i].blocks_at = at;
+        at += to_page(blocks_bytes(&maps[i]));
+    }
+    for (int i = 0; i < MAP_COUNT; i++) {
+        maps[i].nodes_at = at;
+        at += to_page(nodes_bytes(&maps[i]));
+    }
+    return at;
+}
+
+static hash128 hash_of_header(const file_header *h)
+{
+    hash128 hash = hash128_begin();
+    hash128_add(&hash, h, offsetof(file_header, self));
+    return hash;
+}
+
+/* Of what never changes. False when cancelled. */
+static bool hash_content(const run_context *run, const photon_block *const blocks[MAP_COUNT],
+                         const photon_tree_node *const nodes[MAP_COUNT], const map_record maps[MAP_COUNT],
+                         hash128 *out_hash)
+{
+    hash128 hash = hash128_begin();
+    for (int i = 0; i < MAP_COUNT; i++) {
+        uint64_t count = photon_block_count(maps[i].count);
+        for (uint64_t k = 0; k < count; k++) {
+            if ((k & 0xfff) == 0 && run_is_cancelled(run))
+                return false;
+            hash128_add(&hash, &blocks[i][k], offsetof(photon_block, slot));
+        }
+        uint64_t size = nodes_bytes(&maps[i]);
+        for (uint64_t at = 0; at < size; at += CHUNK_BYTES) {
+            if (run_is_cancelled(run))
+                return false;
+            hash128_add(&hash, (const char *)nodes[i] + at,
+                        (size_t)(size - at < CHUNK_BYTES ? size - at : CHUNK_BYTES));
+        }
+    }
+    *out_hash = hash;
+    return true;
+}
+
+/* --- writing --- */
+
+static map_record record_of(const photon_map *map)
+{
+    return (map_record){.emitted_paths = map->set.emitted_paths,
+                        .rays = map->set.rays,
+                        .passages_cut = map->set.passages_cut,
+                        .books = map->set.books,
+                        .count = map->set.count,
+                        .depth = map->tree.depth,
+                        .nearest = map->nearest,
+                        .max_radius = map->max_radius,
+                        .min_radius_squared = map->min_radius_squared,
+                        .mean_radius = map->mean_radius,
+                        .flux_exponent_max = map->flux_exponent_max,
+                        .irradiance_bias = map->irradiance_bias};
+}
+
+static int write_at(const run_context *run, int descriptor, const void *bytes, uint64_t size, uint64_t at)
+{
+    const char *next = bytes;
+    while (size > 0) {
+        if (run_is_cancelled(run))
+            return ECANCELED;
+        ssize_t written = pwrite(descriptor, next, (size_t)(size < CHUNK_BYTES ? size : CHUNK_BYTES), (off_t)at);
+        if (written < 0 && errno == EINTR)
+            continue;
+        if (written <= 0)
+            return written < 0 ? errno : ENOSPC;
+        next += written;
+        at += (uint64_t)written;
+        size -= (uint64_t)written;
+    }
+    return 0;
+}
+
+int photon_file_write(const run_context *run, int descriptor, const photon_file_key *key, const photon_map *global,
+                      const photon_map *caustic)
+{
+    file_header h;
+    memset(&h, 0, sizeof h);
+    memcpy(h.magic, MAGIC, sizeof MAGIC);
+    h.byte_order = BYTE_ORDER_MARK;
+    h.layout = LAYOUT_VERSION;
+    h.header_bytes = sizeof h;
+    h.block_bytes = sizeof(photon_block);
+    h.node_bytes = sizeof(photon_tree_node);
+    h.key = *key;
+    h.maps[0] = record_of(global);
+    h.maps[1] = record_of(caustic);
+    h.file_bytes = lay_out(h.maps);
+    const photon_block *const blocks[MAP_COUNT] = {global->blocks, caustic->blocks};
+    const photon_tree_node *const nodes[MAP_COUNT] = {global->tree.nodes, caustic->tree.nodes};
+    if (!hash_content(run, blocks, nodes, h.maps, &h.content))
+        return ECANCELED;
+    h.self = hash_of_header(&h);
+
+    /* What is mapped must have its place on the disk: a disk that is full later would end processes by SIGBUS. A file
+     * system that cannot reserve gets all bytes written below: none is left out. */
+    int error = posix_fallocate(descriptor, 0, (off_t)h.file_bytes);
+    if (error != 0 && error != EOPNOTSUPP && error != EINVAL && error != ENOSYS && error != EBADF)
+        return error;
+    static const char zeros[PAGE];
+    uint64_t owners_end = to_page(OWNERS_AT + CLAIM_OWNERS_MAX * sizeof(claim_owner));
+    for (uint64_t at = 0; at < owners_end; at += PAGE)
+        if ((error = write_at(run, descriptor, zeros, PAGE, at)) != 0)
+            return error;
+    error = write_at(run, descriptor, &h, sizeof h, 0);
+    for (int i = 0; i < MAP_COUNT && error == 0; i++) {
+        const map_record *m = &h.maps[i];
+        uint64_t size = blocks_bytes(m), rest = to_page(size) - size;
+        error = write_at(run, descriptor, blocks[i], size, m->blocks_at);
+        if (error == 0)
+            error = write_at(run, descriptor, zeros, rest, m->blocks_at + size);
+        size = nodes_bytes(m), rest = to_page(size) - size;
+        if (error == 0)
+            error = write_at(run, descriptor, nodes[i], size, m->nodes_at);
+        if (error == 0)
+            error = write_at(run, descriptor, zeros, rest, m->nodes_at + size);
+    }
+    return error;
+}
+
+/* --- opening --- */
+
+static bool is_text(const char *text, size_t size) { return memchr(text, '\0', size) != NULL; }
+
+/* What the file was made of, where it is another than the key's; "" where it fits. */
+static void describe_difference(const photon_file_key *is, const photon_file_key *wanted, char *out, size_t size)
+{
+    typedef unsigned long long number;
+    snprintf(out, size, "%s", "");
+    if (strncmp(is->machine, wanted->machine, sizeof is->machine) != 0)
+        snprintf(out, size, "it was made on another machine: '%s', this is '%s'", is->machine, wanted->machine);
+    else if (strncmp(is->program, wanted->program, sizeof is->program) != 0)
+        snprintf(out, size, "it was made by another program: '%s', this is '%s'", is->program, wanted->program);
+    else if (!hash128_is_equal(is->scene, wanted->scene))
+        snprintf(out, size, "it was made of another scene: shapes, lights, materials or textures differ");
+    else if (is->seed != wanted->seed)
+        snprintf(out, size, "it was made with seed %llu, not %llu", (number)is->seed, (number)wanted->seed);
+    else if (is->photon_count != wanted->photon_count)
+        snprintf(out, size, "it was made with %llu photons, not %llu", (number)is->photon_count,
+                 (number)wanted->photon_count);
+    else if (is->caustic_photon_count != wanted->caustic_photon_count)
+        snprintf(out, size, "it was made with %llu caustic photons, not %llu", (number)is->caustic_photon_count,
+                 (number)wanted->caustic_photon_count);
+    else if (is->max_depth != wanted->max_depth)
+        snprintf(out, size, "it was made with a depth of %u, not %u", is->max_depth, wanted->max_depth);
+    else if (is->nearest != wanted->nearest)
+        snprintf(out, size, "it was made for estimates of %u photons, not %u", is->nearest, wanted->nearest);
+    else if (memcmp(&is->radius, &wanted->radius, sizeof is->radius) != 0)
+        snprintf(out, size, "it was made for a radius of %g, not %g", (double)is->radius, (double)wanted->radius);
+}
+
+/* Whether it is a file of ours, whole by its length, and fits the key; where not, the message says why. */
+static bool header_is_valid(const file_header *h, uint64_t got_bytes, uint64_t file_bytes, const photon_file_key *key,
+                            char *message, size_t message_size)
+{
+    snprintf(message, message_size, "%s", "");
+    if (got_bytes < sizeof h->magic || memcmp(h->magic, MAGIC, sizeof MAGIC) != 0)
+        snprintf(message, message_size, "it is no photon map");
+    else if (got_bytes < sizeof *h)
+        snprintf(message, message_size, "it is cut short");
+    else if (h->byte_order != BYTE_ORDER_MARK)
+        snprintf(message, message_size, "it was made on a machine of another byte order");
+    else if (h->layout != LAYOUT_VERSION)
+        snprintf(message, message_size, "its layout is number %u, this program's is %d", h->layout, LAYOUT_VERSION);
+    else if (h->header_bytes != sizeof *h || h->block_bytes != sizeof(photon_block) ||
+             h->node_bytes != sizeof(photon_tree_node))
+        snprintf(message, message_size, "it was made on a machine whose numbers have other sizes");
+    else if (!hash128_is_equal(h->self, hash_of_header(h)) || !is_text(h->key.machine, sizeof h->key.machine) ||
+             !is_text(h->key.program, sizeof h->key.program))
+        snprintf(message, message_size, "it is damaged: its header does not have its checksum");
+    else if (file_bytes != h->file_bytes)
+        snprintf(message, message_size, "it is %s: %llu bytes, not %llu",
+                 file_bytes < h->file_bytes ? "cut short" : "too long", (unsigned long long)file_bytes,
+                 (unsigned long long)h->file_bytes);
+    if (message[0])
+        return false;
+    map_record maps[MAP_COUNT];
+    memcpy(maps, h->maps, sizeof maps);
+    for (int i = 0; i < MAP_COUNT; i++)
+        if (maps[i].count == PHOTON_NONE || maps[i].depth > 28 ||
+            photon_block_count(maps[i].count) > (uint64_t)1 << maps[i].depth)
+            snprintf(message, message_size, "it is damaged: its counts cannot be");
+    if (!message[0] && (lay_out(maps) != h->file_bytes || memcmp(maps, h->maps, sizeof maps) != 0))
+        snprintf(message, message_size, "it is damaged: its parts do not lie where they should");
+    if (!message[0])
+        describe_difference(&h->key, key, message, message_size);
+    return message[0] == '\0';
+}
+
+static photon_map map_of(void *memory, const map_record *m)
+{
+    photon_map map = {.set = {.count = m->count,
+                              .emitted_paths = m->emitted_paths,
+                              .rays = m->rays,
+                              .passages_cut = m->passages_cut,
+                              .books = m->books},
+                      .nearest = m->nearest,
+                      .max_radius = m->max_radius,
+                      .min_radius_squared = m->min_radius_squared,
+                      .mean_radius = m->mean_radius,
+                      .flux_exponent_max = m->flux_exponent_max,
+                      .is_borrowed = true,
+                      .has_been_cached = true};
+    photon_map_set_bias(&map, m->irradiance_bias);
+    if (m->count > 0) {
+        map.blocks = (photon_block *)(void *)((char *)memory + m->blocks_at);
+        map.tree = (photon_tree){.blocks = map.blocks, .count = m->count, .depth = m->depth};
+        if (m->depth > 0)
+            map.tree.nodes = (photon_tree_node *)(void *)((char *)memory + m->nodes_at);
+    }
+    return map;
+}
+
+/* A network's file system: another host's processes may be at the file, whose locks or memory ours do not see. */
+static bool is_on_network(int descriptor)
+{
+#if defined(__linux__)
+    static const uint32_t NETWORKS[] = {
+        0x6969,     /* NFS */
+        0x517b,     /* SMB */
+        0xff534d42, /* CIFS */
+        0xfe534d42, /* SMB2 */
+        0x01021997, /* 9P */
+        0x65735546, /* FUSE: sshfs and many others */
+        0x00c36400, /* Ceph */
+        0x0bd00bd0, /* Lustre */
+        0x47504653, /* GPFS */
+        0x19830326, /* BeeGFS */
+        0x7461636f, /* OCFS2 */
+        0x01161970, /* GFS2 */
+        0x5346414f, /* AFS */
+        0x73757245, /* Coda */
+        0x6b414653, /* kAFS */
+        0xaad7aaea, /* PanFS */
+    };
+    struct statfs system;
+    if (fstatfs(descriptor, &system) != 0)
+        return true;
+    for (size_t i = 0; i < sizeof NETWORKS / sizeof *NETWORKS; i++)
+        if ((uint32_t)system.f_type == NETWORKS[i])
+            return true;
+    return false;
+#else
+    (void)descriptor;
+    return true;
+#endif
+}
+
+/* Maps it, and takes a place among its owners. message: where not, why. */
+static bool share(int descriptor, photon_file *file, char *message, size_t message_size)
+{
+    if (is_on_network(descriptor)) {
+        snprintf(message, message_size, "it is on a network's file system");
+        return false;
+    }
+    void *memory = mmap(NULL, file->size_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+    if (memory == MAP_FAILED) {
+        snprintf(message, message_size, "it cannot be mapped: %s", strerror(errno));
+        return false;
+    }
+    claim_owner *table = (claim_owner *)(void *)((char *)memory + OWNERS_AT);
+    if (!claim_owners_join(descriptor, table, &file->owners)) {
+        snprintf(message, message_size, "too many processes use it, or its file system has no locks");
+        munmap(memory, file->size_bytes);
+        return false;
+    }
+    file->memory = memory;
+    file->descriptor = descriptor;
+    file->is_shared = true;
+    return true;
+}
+
+/* Reads it into memory: a private mapping would still show what others write to pages that are not touched yet, claims
+ * among it, whose values then never come. */
+static photon_file_result copy(const run_context *run, int descriptor, photon_file *file, char *message,
+                               size_t message_size)
+{
+    char *memory = aligned_alloc(PAGE, file->size_bytes);
+    if (!memory) {
+        snprintf(message, message_size, "out of memory");
+        return PHOTON_FILE_FAILED;
+    }
+    for (uint64_t at = 0; at < file->size_bytes;) {
+        size_t left = (size_t)(file->size_bytes - at);
+        ssize_t got = pread(descriptor, memory + at, left < CHUNK_BYTES ? left : CHUNK_BYTES, (off_t)at);
+        bool is_cancelled = run_is_cancelled(run);
+        if (got < 0 && errno == EINTR && !is_cancelled)
+            continue;
+        if (got <= 0 || is_cancelled) {
+            snprintf(message, message_size, "%s", got < 0 ? strerror(errno) : "it is cut short");
+            free(memory);
+            return is_cancelled ? PHOTON_FILE_CANCELLED : got < 0 ? PHOTON_FILE_FAILED : PHOTON_FILE_REFUSED;
+        }
+        at += (uint64_t)got;
+    }
+    file->memory = memory;
+    file->descriptor = -1;
+    return PHOTON_FILE_OPEN;
+}
+
+/* In a copy nobody will publish what was being computed. */
+static void drop_claims(photon_map *map)
+{
+    for (uint32_t i = 0; i < map->set.count; i++) {
+        irradiance_slot *slot = photon_block_slot(map->blocks, i);
+        if (irradiance_word_state(load_relaxed_u32(slot)) != IRRADIANCE_READY)
+            store_relaxed_u32(slot, 0);
+    }
+}
+
+static photon_file_result open_maps(const run_context *run, int descriptor, const file_header *h, bool may_share,
+                                    photon_file *file, photon_map maps[MAP_COUNT], char *message, size_t message_size)
+{
+    file->size_bytes = (size_t)h->file_bytes;
+    if (!may_share || !share(descriptor, file, message, message_size)) {
+        if (!may_share)
+            snprintf(message, message_size, "it may not be written");
+        char wrong[256];
+        photon_file_result result = copy(run, descriptor, file, wrong, sizeof wrong);
+        if (result != PHOTON_FILE_OPEN) {
+            snprintf(message, message_size, "%s", wrong);
+            return result;
+        }
+    }
+    for (int i = 0; i < MAP_COUNT; i++)
+        maps[i] = map_of(file->memory, &h->maps[i]);
+    const photon_block *const blocks[MAP_COUNT] = {maps[0].blocks, maps[1].blocks};
+    const photon_tree_node *const nodes[MAP_COUNT] = {maps[0].tree.nodes, maps[1].tree.nodes};
+    hash128 content;
+    if (!hash_content(run, blocks, nodes, h->maps, &content))
+        return PHOTON_FILE_CANCELLED;
+    if (!hash128_is_equal(content, h->content)) {
+        snprintf(message, message_size, "it is damaged: its photons do not have their checksum");
+        return PHOTON_FILE_REFUSED;
+    }
+    for (int i = 0; i < MAP_COUNT && !file->is_shared; i++)
+        drop_claims(&maps[i]);
+    return PHOTON_FILE_OPEN;
+}
+
+photon_file_result photon_file_open(const run_context *run, const char *path, const photon_file_key *key,
+                                    photon_file *out_file, photon_map *out_global, photon_map *out_caustic,
+                                    char *message, size_t message_size)
+{
+    snprintf(message, message_size, "%s", "");
+    bool may_share = true;
+    /* O_NONBLOCK: a FIFO would wait for its writer */
+    int descriptor = open(path, O_RDWR | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor < 0 && (errno == EACCES || errno == EROFS || errno == EPERM)) {
+        may_share = false;
+        descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    }
+    if (descriptor < 0 && errno == ENOENT)
+        return PHOTON_FILE_ABSENT;
+    struct stat status;
+    if (descriptor < 0 || fstat(descriptor, &status) != 0) {
+        snprintf(message, message_size, "%s", strerror(errno));
+        if (descriptor >= 0)
+            close(descriptor);
+        return PHOTON_FILE_FAILED;
+    }
+    photon_file file = {.descriptor = -1};
+    photon_map maps[MAP_COUNT];
+    photon_file_result result = PHOTON_FILE_REFUSED;
+    file_header h;
+    ssize_t got = S_ISREG(status.st_mode) ? pread(descriptor, &h, sizeof h, 0) : 0;
+    if (!S_ISREG(status.st_mode)) {
+        snprintf(message, message_size, "it is no regular file");
+        result = PHOTON_FILE_FAILED;
+    } else if (got < 0) {
+        snprintf(message, message_size, "%s", strerror(errno));
+        result = PHOTON_FILE_FAILED;
+    } else if (header_is_valid(&h, (uint64_t)got, (uint64_t)status.st_size, key, message, message_size)) {
+        result = open_maps(run, descriptor, &h, may_share, &file, maps, message, message_size);
+    }
+    if (file.descriptor != descriptor)
+        close(descriptor);
+    if (result != PHOTON_FILE_OPEN) {
+        photon_file_close(&file);
+        return result;
+    }
+    *out_file = file;
+    *out_global = maps[0];
+    *out_caustic = maps[1];
+    return PHOTON_FILE_OPEN;
+}
+
+void photon_file_close(photon_file *file)
+{
+    if (file->is_shared) {
+        munmap(file->memory, file->size_bytes);
+        close(file->descriptor); /* and with it our place is free */
+    } else {
+        free(file->memory);
+    }
+    *file = (photon_file){.descriptor = -1};
+}

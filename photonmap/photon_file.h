@@ -1,0 +1,64 @@
+/* photon_file.h: finished photon maps in a file, mapped by any number of processes, which fill its irradiances
+ * together. What was computed for one picture is there for the next: an irradiance depends on the map alone. Flow:
+ * photon_map -> [write] -> file -> [open] -> photon_map, irradiance_cache. Threads: one writes or opens; the maps are
+ * then as any.
+ *
+ *     header       what it is, what it was made of, constants of the maps, checksum: never changes
+ *     owners       the processes at work on it (claim_owners.h)
+ *     blocks       of the global map, then of the caustic map: photons never change, slots do
+ *     nodes        of both maps' trees: never change
+ *
+ * The layout is the machine's own: byte order and sizes are in the header, and another machine's file is refused. Only
+ * what never changes is under the checksum. A slot says something valid whatever its bits are: READY is any 30 bits;
+ * a claim that no living process holds is taken over. The checksum tells damage; it does not protect from malice. */
+#ifndef AFTERGLOW_PHOTON_FILE_H
+#define AFTERGLOW_PHOTON_FILE_H
+
+#include "claim_owners.h"
+#include "math/hash128.h"
+#include "photon_map.h"
+
+/* What photons and irradiances depend on: a file holds for one such key alone. Without gaps, and zeroed before it is
+ * filled. */
+typedef struct photon_file_key {
+    hash128 scene; /* scene_hash_of_light */
+    uint64_t seed;
+    uint64_t photon_count, caustic_photon_count;
+    uint32_t max_depth, nearest;
+    float radius;
+    uint32_t reserved;
+    char program[56]; /* version and compiler */
+    char machine[56]; /* what may give other bits: kind and maker of the processor, instruction set of ray traversal */
+} photon_file_key;
+
+typedef struct photon_file {
+    void *memory; /* all of the file: mapped, or a copy */
+    size_t size_bytes;
+    int descriptor; /* of the mapped file; holds our lock */
+    bool is_shared; /* others see what is filled in here, and the file keeps it */
+    claim_owners owners;
+} photon_file;
+
+typedef enum photon_file_result {
+    PHOTON_FILE_OPEN,
+    PHOTON_FILE_ABSENT,
+    PHOTON_FILE_REFUSED,  /* damaged, or made of something else; the message says what */
+    PHOTON_FILE_FAILED,   /* cannot be read, or memory is short; the message says why */
+    PHOTON_FILE_CANCELLED /* no message */
+} photon_file_result;
+
+/* Opens the maps, which borrow the file, and have no surfaces yet. Where the file cannot be shared (it may not be
+ * written, it is on a network's file system, or there are no places left) it is copied into memory: is_shared is false,
+ * and its claims count as empty. message: one line, always terminated; for OPEN, why it is not shared. */
+photon_file_result photon_file_open(const run_context *run, const char *path, const photon_file_key *key,
+                                    photon_file *out_file, photon_map *out_global, photon_map *out_caustic,
+                                    char *message, size_t message_size);
+/* After the maps, and when none of our claims is held. {0} is fine. */
+void photon_file_close(photon_file *file);
+
+/* Writes maps into an empty file that is open for writing, space reserved first. Returns 0, or an errno; ECANCELED when
+ * the run was cancelled. */
+int photon_file_write(const run_context *run, int descriptor, const photon_file_key *key, const photon_map *global,
+                      const photon_map *caustic);
+
+#endif
