@@ -61,7 +61,7 @@ static void test_types(void **state)
 {
     (void)state;
     picture as_float = RENDER(SPHERE, QUICK);
-    program_run run = RUN("-q", QUICK, "-o", "half.exr", "-o", "again.exr", SPHERE);
+    program_run run = RUN("-q", "--reproducible", QUICK, "-o", "half.exr", "-o", "again.exr", SPHERE);
     expect_exit(&run, 0);
     program_run_reset(&run);
     picture as_half = picture_read(in_folder("half.exr"));
