@@ -19,10 +19,12 @@ typedef struct passes {
     ag_context *context;
     const options *o;
     ag_rendering *rendering;
-    char *checkpoint;       /* its file; NULL: none is asked for */
-    double next_checkpoint; /* when, in seconds of now(); INFINITY: at signals alone */
-    double deadline;        /* likewise */
-    int final;              /* samples per pixel in the end */
+    char *checkpoint;           /* its file; NULL: none is asked for */
+    double checkpoint_interval; /* seconds; INFINITY: at signals alone */
+    double next_checkpoint;     /* when, in seconds of now() */
+    double mean_at_checkpoint;  /* samples per pixel there were at the last one */
+    double deadline;            /* in seconds of now() */
+    int final;                  /* samples per pixel in the end */
     bool time_is_up;
 } passes;
 
@@ -117,8 +119,13 @@ static ag_status write_snapshot(passes *p)
 
 static ag_status write_checkpoint(passes *p)
 {
+    /* samples under way when a pause comes are lost: an interval too short for any to be completed would never end */
+    double mean = ag_rendering_sample_counts(p->rendering).mean;
+    if (mean <= p->mean_at_checkpoint)
+        p->checkpoint_interval *= 2.0;
+    p->mean_at_checkpoint = mean;
     ag_status status = ag_rendering_write_checkpoint(p->rendering, p->checkpoint);
-    p->next_checkpoint = p->o->checkpoint_seconds > 0.0 ? now() + p->o->checkpoint_seconds : INFINITY;
+    p->next_checkpoint = now() + p->checkpoint_interval;
     return status;
 }
 
@@ -215,7 +222,10 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
     ag_status status = ag_rendering_create(p->context, scene, settings, &p->rendering);
     if (status == AG_OK && o->resume)
         status = resume(p);
-    p->next_checkpoint = o->checkpoint_seconds > 0.0 ? now() + o->checkpoint_seconds : INFINITY;
+    p->checkpoint_interval = o->checkpoint_seconds > 0.0 ? o->checkpoint_seconds : INFINITY;
+    p->next_checkpoint = now() + p->checkpoint_interval;
+    if (status == AG_OK)
+        p->mean_at_checkpoint = ag_rendering_sample_counts(p->rendering).mean;
     return status;
 }
 
