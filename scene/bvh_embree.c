@@ -42,6 +42,8 @@ static bool count_memory(void *user, ssize_t bytes, bool post)
 static bool report_progress(void *user, double fraction)
 {
     run_context *run = user;
+    /* pairs with run_context_init: TSan cannot see how Embree's threads come here */
+    (void)load_acquire_u32(&run->stop);
     run_progress(run, AG_PHASE_BVH, fraction < 1.0 ? fraction : 1.0);
     return !run_is_cancelled(run);
 }
