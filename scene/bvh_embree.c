@@ -5,6 +5,7 @@
  * the run's workers and no thread is created; rays may be cast from any. */
 #define _GNU_SOURCE
 #include "alpha.h"
+#include "atomics.h"
 #include "cpu_count.h"
 
 #include "embree_api.h"
@@ -31,21 +32,27 @@ struct bvh {
     _Atomic int64_t memory_bytes; /* moved by Embree's memory monitor, from several threads; a plain count */
 };
 
+/* What a build's calls to us from Embree's threads read was written before it, and what it wrote is read after it. */
+static char embree_threads;
+
 static bool count_memory(void *user, ssize_t bytes, bool post)
 {
     (void)post;
+    order_after_library(&embree_threads);
     bvh *b = user;
     atomic_fetch_add_explicit(&b->memory_bytes, (int64_t)bytes, memory_order_relaxed);
+    order_before_library(&embree_threads);
     return true;
 }
 
 static bool report_progress(void *user, double fraction)
 {
+    order_after_library(&embree_threads);
     run_context *run = user;
-    /* pairs with run_context_init: TSan cannot see how Embree's threads come here */
-    (void)load_acquire_u32(&run->stop);
     run_progress(run, AG_PHASE_BVH, fraction < 1.0 ? fraction : 1.0);
-    return !run_is_cancelled(run);
+    bool goes_on = !run_is_cancelled(run);
+    order_before_library(&embree_threads);
+    return goes_on;
 }
 
 static void log_embree_error(void *user, enum RTCError code, const char *text)
@@ -58,11 +65,13 @@ static void log_embree_error(void *user, enum RTCError code, const char *text)
 
 static void quadric_bounds(const struct RTCBoundsFunctionArguments *arguments)
 {
+    order_after_library(&embree_threads);
     vec3 low, high;
     shape_bounds(((const attached *)arguments->geometryUserPtr)->shape, &low, &high);
     struct RTCBounds *b = arguments->bounds_o;
     b->lower_x = low.x, b->lower_y = low.y, b->lower_z = low.z;
     b->upper_x = high.x, b->upper_y = high.y, b->upper_z = high.z;
+    order_before_library(&embree_threads);
 }
 
 static bool quadric_hit(const void *user, const struct RTCRay *ray, float *out_t)
@@ -235,10 +244,12 @@ static void join_build(void *user, unsigned worker_index)
 /* Joining costs more than a small build: item_count tells whether it is one. */
 static void build(RTCScene which, uint64_t item_count, run_context *run, unsigned joiners)
 {
+    order_before_library(&embree_threads);
     if (joiners == 1 || item_count < JOINED_ITEMS_MIN)
         rtcCommitScene(which);
     else
         thread_pool_run(run->pool, join_build, &(build_job){which, joiners});
+    order_after_library(&embree_threads);
 }
 
 static uint64_t item_count_of(const shape *s)
@@ -303,6 +314,7 @@ ag_status bvh_create(const scene *s, run_context *run, const char *isa, bvh **ou
         goto fail;
     }
     rtcSetDeviceErrorFunction(b->device, log_embree_error, run->log);
+    order_before_library(&embree_threads);
     rtcSetDeviceMemoryMonitorFunction(b->device, count_memory, b);
 
     if (!build_objects(b, s, run, joiners))

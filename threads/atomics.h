@@ -7,6 +7,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define AFTERGLOW_TSAN 1
+#endif
+#elif defined(__SANITIZE_THREAD__)
+#define AFTERGLOW_TSAN 1
+#endif
+#ifdef AFTERGLOW_TSAN
+#include <sanitizer/tsan_interface.h>
+#endif
+
 typedef _Atomic uint32_t atomic_u32;
 typedef _Atomic uint64_t atomic_u64;
 
@@ -47,6 +58,26 @@ static inline void store_relaxed_u64(atomic_u64 *a, uint64_t v) { atomic_store_e
 static inline uint64_t fetch_add_relaxed_u64(atomic_u64 *a, uint64_t v)
 {
     return atomic_fetch_add_explicit(a, v, memory_order_relaxed);
+}
+
+/* For a call that a library makes from a thread of its own: an order that the library keeps, but by locks that TSan
+ * does not see (libraries are not instrumented). Told to TSan; otherwise nothing. */
+static inline void order_before_library(void *a)
+{
+#ifdef AFTERGLOW_TSAN
+    __tsan_release(a);
+#else
+    (void)a;
+#endif
+}
+
+static inline void order_after_library(void *a)
+{
+#ifdef AFTERGLOW_TSAN
+    __tsan_acquire(a);
+#else
+    (void)a;
+#endif
 }
 
 #endif

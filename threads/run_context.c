@@ -18,7 +18,7 @@ void run_context_init(run_context *run, thread_pool *pool, log_sink *log, ag_pro
     run->progress_fraction = 0.0;
     run->progress_time = 0.0;
     run->progress_phase = AG_PHASE_COUNT; /* none yet */
-    store_release_u32(&run->stop, 0);     /* pairs with the BVH's report_progress */
+    store_relaxed_u32(&run->stop, 0);
 }
 
 void run_context_reset(run_context *run) { pthread_mutex_destroy(&run->progress_mutex); }
