@@ -7,17 +7,15 @@
 #include "clock.h"
 #include "final_gather.h"
 #include "floating_point.h"
-#include "pbrt_parser.h"
-#include "room_file.h"
+#include "room_bench.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { ROOM = 20, PICTURE = 400, TILE = 32, TILES = 5, GATHER_RAYS = 64, NEAREST = 300, ROUNDS = 9, ESTIMATES = 20000 };
+enum { PICTURE = 400, TILE = 32, TILES = 5, GATHER_RAYS = ROOM_BENCH_GATHER_RAYS, ROUNDS = 9, ESTIMATES = 20000 };
 enum { PLACES_MAX = TILES * TILE * TILE, RAYS_MAX = PLACES_MAX * GATHER_RAYS };
-static const float RADIUS = 3.0f;
 
 typedef struct place {
     vertex v;
@@ -38,13 +36,6 @@ typedef struct bench {
     uint32_t place_count, ray_count, query_count;
     double sink; /* keeps the work from being optimised away */
 } bench;
-
-static void say(void *user, ag_log_level level, const char *message)
-{
-    (void)user;
-    if (level <= AG_LOG_WARNING)
-        fprintf(stderr, "%s\n", message);
-}
 
 /* --- what is measured: each gives the number of operations --- */
 
@@ -170,37 +161,9 @@ static ag_status make_work(bench *b)
     return AG_OK;
 }
 
-static ag_status load(bench *b, run_context *run, const char *path)
-{
-    char room[] = "/tmp/afterglow-room-XXXXXX";
-    room_sphere spheres[ROOM_COUNT];
-    if (!path) {
-        int file = mkstemp(room);
-        if (file < 0)
-            return AG_ERROR_OUTPUT;
-        close(file);
-        ag_status status = room_layout_place(ROOM_SEED, spheres);
-        if (status == AG_OK)
-            status = room_file_write(room, spheres, ROOM, GATHER_RAYS);
-        if (status != AG_OK)
-            return status;
-    }
-    b->s = scene_create();
-    ag_status status = b->s ? pbrt_parse_file(run, path ? path : room, b->s) : AG_ERROR_MEMORY;
-    if (!path)
-        unlink(room);
-    return status == AG_OK ? scene_commit(b->s, run, NULL) : status;
-}
-
 static ag_status make_cache(bench *b, run_context *run)
 {
-    photon_set set = {0};
-    photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL, .wanted = ROOM_PHOTON_COUNT, .max_scatterings = 98};
-    ag_status status = photon_tracing_run(b->s, run, &tracing, &set);
-    photon_map_settings settings = {
-        .nearest = NEAREST, .max_radius = RADIUS, .surface_area = b->s->surface_area, .surfaces = b->s};
-    if (status == AG_OK)
-        status = photon_map_create(run, &set, &settings, 0.0, 1.0, &b->map);
+    ag_status status = room_bench_map(run, b->s, &b->map);
     if (status == AG_OK)
         status = irradiance_cache_create(&b->map, IRRADIANCE_PRECOMPUTE, 1, &b->cache);
     if (status == AG_OK)
@@ -218,18 +181,6 @@ static ag_status make_cache(bench *b, run_context *run)
 
 /* --- report --- */
 
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
-static double median(double values[ROUNDS])
-{
-    qsort(values, ROUNDS, sizeof *values, by_value);
-    return values[ROUNDS / 2];
-}
-
 /* The median of the rounds' ratios: both halves of a ratio have seen the same noise. */
 static void report(void)
 {
@@ -241,7 +192,7 @@ static void report(void)
             us[r] = m->us[r];
             ratio[r] = m->us[r] / measurements[0].us[r];
         }
-        double times = median(ratio), middle = median(us);
+        double times = room_bench_median(ratio, ROUNDS), middle = room_bench_median(us, ROUNDS);
         printf("\"%s\",%.4f,%.4f,%.3f,", m->name, middle, us[0], times);
         if (m->wanted > 0.0)
             printf("%.2f,%s\n", m->wanted, times <= m->wanted ? "yes" : "no");
@@ -268,12 +219,12 @@ int main(int argc, char **argv)
     static bench b;
     thread_pool *pool = NULL;
     run_context run;
-    log_sink *log = log_create(say, NULL);
+    log_sink *log = log_create(room_bench_say, NULL);
     ag_status status = log ? thread_pool_create(1, &pool) : AG_ERROR_MEMORY;
     unsigned arithmetic = floating_point_enter();
     if (status == AG_OK) {
         run_context_init(&run, pool, log, NULL, NULL);
-        status = load(&b, &run, argc > 1 ? argv[1] : NULL);
+        status = room_bench_load(&run, argc > 1 ? argv[1] : NULL, &b.s);
         if (status == AG_OK)
             status = make_cache(&b, &run);
         if (status == AG_OK)

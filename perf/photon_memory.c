@@ -3,17 +3,10 @@
  * Flow: memory.sh -> [here]. Threads: its own pool. */
 #include "clock.h"
 #include "pbrt_parser.h"
-#include "photon_map.h"
+#include "room_bench.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-
-static void say(void *user, ag_log_level level, const char *message)
-{
-    (void)user;
-    if (level <= AG_LOG_WARNING)
-        fprintf(stderr, "%s\n", message);
-}
 
 static ag_status measure(run_context *run, const char *path, uint32_t count)
 {
@@ -63,7 +56,7 @@ int main(int argc, char **argv)
         return 2;
     }
     thread_pool *pool = NULL;
-    log_sink *log = log_create(say, NULL);
+    log_sink *log = log_create(room_bench_say, NULL);
     ag_status status = log ? thread_pool_create((unsigned)threads, &pool) : AG_ERROR_MEMORY;
     if (status == AG_OK) {
         run_context run;

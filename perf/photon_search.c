@@ -1,28 +1,26 @@
 /* photon_search.c: the program afterglow-photon-search: what the photon map's two searches cost, against nanoflann's
  * kd-tree and against Embree's rays, on the photons of one of the forty rooms. All take turns in one process on one
  * thread; medians; ratios are what counts.
- *   estimate   irradiance from the 300 nearest of 500,000 photons within 3.0, at photon positions: in random order, and
- * in the order in which the map keeps them (neighbours one after the other) nearest    the nearest photon with a
- * similar normal, at what gather rays hit: ray after ray as they come, and sorted ray        the gather rays
- * themselves, by Embree alone The rival finds neighbours by distance alone, without normals or a radius: less work than
- * ours. Use: afterglow-photon-search [SCENE.pbrt]. Flow: [here]. Threads: one. */
+ * estimate: irradiance from the 300 nearest of 500,000 photons within 3.0, at photon positions: in random order, and in
+ * the order in which the map keeps them (neighbours one after the other).
+ * nearest: the nearest photon with a similar normal, at what gather rays hit: ray after ray as they come, and sorted.
+ * ray: the gather rays themselves, by Embree alone.
+ * The rival finds neighbours by distance alone, without normals or a radius: less work than ours.
+ * Use: afterglow-photon-search [SCENE.pbrt]. Flow: room_bench -> [here]. Threads: one. */
 #define _GNU_SOURCE
 #include "bvh.h"
 #include "clock.h"
 #include "floating_point.h"
 #include "math/sampling.h"
 #include "nanoflann_rival.h"
-#include "pbrt_parser.h"
-#include "photon_map.h"
-#include "room_file.h"
+#include "room_bench.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { QUERIES = 20000, RAYS = 200000, ROUNDS = 7, NEAREST = 300, ROOM = 20 };
-static const float RADIUS = 3.0f;
+enum { QUERIES = 20000, RAYS = 200000, ROUNDS = 7, NEAREST = ROOM_BENCH_NEAREST };
 
 typedef struct ray_hit {
     scene_ray ray;
@@ -41,13 +39,6 @@ typedef struct bench {
     photon_neighbor *scratch;
     double sink; /* keeps the work from being optimised away */
 } bench;
-
-static void say(void *user, ag_log_level level, const char *message)
-{
-    (void)user;
-    if (level <= AG_LOG_WARNING)
-        fprintf(stderr, "%s\n", message);
-}
 
 /* --- what is measured: each gives the number of operations --- */
 
@@ -204,18 +195,11 @@ static bool make_orders(bench *b)
     return b->rival != NULL;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 static double median(const double *values)
 {
     double sorted[ROUNDS];
     memcpy(sorted, values, sizeof sorted);
-    qsort(sorted, ROUNDS, sizeof *sorted, by_value);
-    return sorted[ROUNDS / 2];
+    return room_bench_median(sorted, ROUNDS);
 }
 
 /* The median of the rounds' ratios: both halves of a ratio have seen the same noise. */
@@ -238,50 +222,18 @@ static void report(void)
     }
 }
 
-static ag_status load(bench *b, run_context *run, const char *path)
-{
-    char room[] = "/tmp/afterglow-room-XXXXXX";
-    room_sphere spheres[ROOM_COUNT];
-    if (!path) {
-        int file = mkstemp(room);
-        if (file < 0)
-            return AG_ERROR_OUTPUT;
-        close(file);
-        ag_status status = room_layout_place(ROOM_SEED, spheres);
-        if (status == AG_OK)
-            status = room_file_write(room, spheres, ROOM, 64);
-        if (status != AG_OK)
-            return status;
-    }
-    b->s = scene_create();
-    ag_status status = b->s ? pbrt_parse_file(run, path ? path : room, b->s) : AG_ERROR_MEMORY;
-    if (!path)
-        unlink(room);
-    return status == AG_OK ? scene_commit(b->s, run, NULL) : status;
-}
-
-static ag_status make_map(bench *b, run_context *run)
-{
-    photon_set set = {0};
-    photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL, .wanted = ROOM_PHOTON_COUNT, .max_scatterings = 98};
-    ag_status status = photon_tracing_run(b->s, run, &tracing, &set);
-    photon_map_settings settings = {
-        .nearest = NEAREST, .max_radius = RADIUS, .surface_area = b->s->surface_area, .surfaces = b->s};
-    return status == AG_OK ? photon_map_create(run, &set, &settings, 0.0, 1.0, &b->map) : status;
-}
-
 int main(int argc, char **argv)
 {
     bench b = {0};
     thread_pool *pool = NULL;
     run_context run;
-    log_sink *log = log_create(say, NULL);
+    log_sink *log = log_create(room_bench_say, NULL);
     ag_status status = log ? thread_pool_create(1, &pool) : AG_ERROR_MEMORY;
     if (status == AG_OK) {
         run_context_init(&run, pool, log, NULL, NULL);
-        status = load(&b, &run, argc > 1 ? argv[1] : NULL);
+        status = room_bench_load(&run, argc > 1 ? argv[1] : NULL, &b.s);
         if (status == AG_OK)
-            status = make_map(&b, &run);
+            status = room_bench_map(&run, b.s, &b.map);
         if (status == AG_OK && !make_orders(&b))
             status = AG_ERROR_MEMORY;
     }

@@ -1,0 +1,23 @@
+/* room_bench.h: what the microbenchmarks share: room 20 of the forty, or another scene, its photon map as the paper has
+ * it, and medians. Flow: room_layout, room_file -> [here] -> photon_search, gather_rays. Threads: one. */
+#ifndef AFTERGLOW_ROOM_BENCH_H
+#define AFTERGLOW_ROOM_BENCH_H
+
+#include "photon_map.h"
+
+enum { ROOM_BENCH_NEAREST = 300, ROOM_BENCH_GATHER_RAYS = 64 };
+
+/* A log's listener: warnings and errors go to standard error. */
+void room_bench_say(void *user, ag_log_level level, const char *message);
+
+/* The scene of that file, or the room where path is NULL; ready for rays. *out_scene is to be destroyed, on failure
+ * too, where it may be NULL. Errors: those of the parser and of files. */
+ag_status room_bench_load(run_context *run, const char *path, scene **out_scene);
+
+/* The global map: 500,000 photons, estimates of the 300 nearest within 3.0. Borrows the scene. */
+ag_status room_bench_map(run_context *run, const scene *s, photon_map *out_map);
+
+/* Of an odd number of values, which are put in order. */
+double room_bench_median(double *values, size_t count);
+
+#endif
