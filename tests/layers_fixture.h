@@ -61,6 +61,15 @@ static inline void studio_close(studio *s)
     free(s);
 }
 
+/* A rendering that has no samples yet. */
+static inline ag_rendering *studio_begin(studio *s)
+{
+    ag_rendering *rendering;
+    if (ag_rendering_create(s->context, s->scene, &s->settings, &rendering) != AG_OK)
+        fail_msg("%s", s->said);
+    return rendering;
+}
+
 static inline ag_film *studio_render(studio *s)
 {
     ag_film *film;

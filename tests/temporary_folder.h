@@ -58,6 +58,17 @@ static inline unsigned char *read_bytes(const char *path, size_t *out_size)
     return bytes;
 }
 
+/* Two files of the folder, to the last byte. */
+static inline void expect_same_files(const char *a, const char *b)
+{
+    size_t size_a, size_b;
+    unsigned char *bytes_a = read_bytes(in_folder(a), &size_a), *bytes_b = read_bytes(in_folder(b), &size_b);
+    if (size_a != size_b || memcmp(bytes_a, bytes_b, size_a) != 0)
+        fail_msg("%s and %s differ", a, b);
+    free(bytes_a);
+    free(bytes_b);
+}
+
 static inline void expect_text(const char *path, const char *text)
 {
     size_t size;

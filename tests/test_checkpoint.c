@@ -24,14 +24,6 @@ static void *pause_at_times(void *user)
     return NULL;
 }
 
-static ag_rendering *start(studio *s)
-{
-    ag_rendering *r;
-    if (ag_rendering_create(s->context, s->scene, &s->settings, &r) != AG_OK)
-        fail_msg("%s", s->said);
-    return r;
-}
-
 static void test_resumed_bits(void **state)
 {
     (void)state;
@@ -52,7 +44,7 @@ static void test_resumed_bits(void **state)
             for (int part = 0; part < wanted || status == AG_PAUSED; part++) {
                 studio *s = studio_open(text, 1 + (unsigned)part % 3);
                 s->settings = whole->settings;
-                ag_rendering *r = start(s);
+                ag_rendering *r = studio_begin(s);
                 if (part > 0 && ag_rendering_read_checkpoint(r, in_folder("c")) != AG_OK)
                     fail_msg("%s", s->said);
                 ag_sample_counts counts = ag_rendering_sample_counts(r);
@@ -84,7 +76,7 @@ static void test_pauses(void **state)
     (void)state;
     studio *s = studio_open(LAYERS_SCENES "mirror_wall.pbrt", 2);
     ag_context_pause(s->context);
-    ag_rendering *r = start(s);
+    ag_rendering *r = studio_begin(s);
     assert_int_equal(ag_rendering_continue(r, 4), AG_PAUSED);
     assert_int_equal(ag_rendering_sample_counts(r).most, 0);
     assert_int_equal(ag_rendering_continue(r, 2), AG_OK);
@@ -99,7 +91,7 @@ static void test_pauses(void **state)
 
 static void expect_refusal(studio *s, const char *why)
 {
-    ag_rendering *r = start(s);
+    ag_rendering *r = studio_begin(s);
     s->said[0] = '\0';
     assert_int_equal(ag_rendering_read_checkpoint(r, in_folder("c")), AG_ERROR_INPUT);
     if (!strstr(s->said, why))
@@ -112,7 +104,7 @@ static const char TEXT[] = "Include \"" LAYERS_SCENES "mirror_wall.pbrt\"";
 
 static void write_checkpoint_of(studio *s)
 {
-    ag_rendering *r = start(s);
+    ag_rendering *r = studio_begin(s);
     assert_int_equal(ag_rendering_continue(r, 2), AG_OK);
     assert_int_equal(ag_rendering_write_checkpoint(r, in_folder("c")), AG_OK);
     ag_rendering_finish(r, NULL);
@@ -149,7 +141,7 @@ static void test_other_renders(void **state)
     studio_close(s);
     snprintf(text, sizeof text, "Include \"%smirror_wall.pbrt\" ", LAYERS_SCENES);
     s = studio_open(text, 1), s->settings = ours; /* another text of the same scene will do */
-    ag_rendering *r = start(s);
+    ag_rendering *r = studio_begin(s);
     assert_int_equal(ag_rendering_read_checkpoint(r, in_folder("c")), AG_OK);
     assert_int_equal(ag_rendering_read_checkpoint(r, in_folder("none")), AG_ERROR_INPUT);
     ag_rendering_finish(r, NULL);
@@ -174,7 +166,7 @@ static void test_damage(void **state)
     write_checkpoint_of(s);
     size_t size;
     unsigned char *bytes = read_bytes(in_folder("c"), &size);
-    ag_rendering *r = start(s);
+    ag_rendering *r = studio_begin(s);
     for (size_t at = 0; at < size; at += at < 256 ? 1 : 7) { /* every byte counts */
         bytes[at] ^= 0x10;
         overwrite(bytes, size);
@@ -201,7 +193,7 @@ static void test_every_setting_counts(void **state)
 {
     (void)state;
     studio *s = studio_open(TEXT, 1);
-    ag_rendering *r = start(s);
+    ag_rendering *r = studio_begin(s);
     checkpoint_header before, after;
     checkpoint_header_make(r, &before);
     assert_null(checkpoint_header_difference(&before, &before));

@@ -7,9 +7,8 @@
 
 static ag_film *render_in_passes(studio *s, const int *passes)
 {
-    ag_rendering *rendering;
+    ag_rendering *rendering = studio_begin(s);
     ag_film *film;
-    assert_int_equal(ag_rendering_create(s->context, s->scene, &s->settings, &rendering), AG_OK);
     for (int i = 0; passes[i]; i++)
         assert_int_equal(ag_rendering_continue(rendering, passes[i]), AG_OK);
     ag_rendering_finish(rendering, &film);

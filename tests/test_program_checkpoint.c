@@ -21,16 +21,6 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void expect_same_files(const char *a, const char *b)
-{
-    size_t size, other_size;
-    unsigned char *bytes = read_bytes(in_folder(a), &size), *other = read_bytes(in_folder(b), &other_size);
-    assert_int_equal(size, other_size);
-    assert_memory_equal(bytes, other, size);
-    free(bytes);
-    free(other);
-}
-
 /* Where it is killed depends on the machine; that the file is the same does not. */
 static void test_killed(void **state)
 {

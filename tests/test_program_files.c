@@ -67,13 +67,7 @@ static void test_types(void **state)
     picture as_half = picture_read(in_folder("half.exr"));
     for (int i = 0; i < 3 * 8 * 6; i++)
         expect_near("half", (double)as_half.pixels[i], (double)as_float.pixels[i], 0.0005);
-    size_t sizes[2];
-    unsigned char *files[2] = {read_bytes(in_folder("half.exr"), &sizes[0]),
-                               read_bytes(in_folder("again.exr"), &sizes[1])};
-    assert_int_equal(sizes[0], sizes[1]);
-    assert_memory_equal(files[0], files[1], sizes[0]);
-    free(files[0]);
-    free(files[1]);
+    expect_same_files("half.exr", "again.exr");
     picture_reset(&as_float);
     picture_reset(&as_half);
 }

@@ -123,16 +123,6 @@ static void test_metadata(void **state)
     free(value);
 }
 
-static void expect_same_files(const char *a, const char *b)
-{
-    size_t size_a, size_b;
-    unsigned char *bytes_a = read_bytes(in_folder(a), &size_a), *bytes_b = read_bytes(in_folder(b), &size_b);
-    assert_int_equal(size_a, size_b);
-    assert_memory_equal(bytes_a, bytes_b, size_a);
-    free(bytes_a);
-    free(bytes_b);
-}
-
 static void test_reproducible(void **state)
 {
     (void)state;

@@ -10,16 +10,6 @@
     "--photons=4000", "--caustic-photons=500", "--spp=2", "--gather-samples=4", "--size=24x24", "--nthreads=2",        \
         "--progress=none", "--type=float", "--reproducible"
 
-static void expect_same_files(const char *a, const char *b)
-{
-    size_t size_a, size_b;
-    unsigned char *bytes_a = read_bytes(in_folder(a), &size_a), *bytes_b = read_bytes(in_folder(b), &size_b);
-    if (size_a != size_b || memcmp(bytes_a, bytes_b, size_a) != 0)
-        fail_msg("%s and %s differ", a, b);
-    free(bytes_a);
-    free(bytes_b);
-}
-
 static void expect_end(program_run run, int code, const char *said)
 {
     expect_exit(&run, code);
