@@ -96,12 +96,8 @@ static void follow_gather_ray(const transport *t, eye_worker *worker, scene_ray 
         if (!bsdf_sample_direction(&v.scattering, lobes, BSDF_RADIANCE, u_lobe, u, &next))
             return;
         throughput = rgb_mul(throughput, next.weight);
-        if (depth >= ROULETTE_AFTER || lobes == BSDF_GATHERED) {
-            float survival = fminf(1.0f, rgb_max(throughput));
-            if (rng_float(&random) >= survival)
-                return;
-            throughput = rgb_scale(throughput, 1.0f / survival);
-        }
+        if ((depth >= ROULETTE_AFTER || lobes == BSDF_GATHERED) && !transport_survives(&throughput, rng_float(&random)))
+            return;
         ray = surface_ray(&v.hit, v.arrived, next.direction);
     }
 }

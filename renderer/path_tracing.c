@@ -134,12 +134,9 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
                                    sampler_2d(where, SAMPLE_SCATTER, path_vertex), &next))
             return;
         throughput = rgb_mul(throughput, next.weight);
-        if (path_vertex >= ROULETTE_AFTER) {
-            float survival = fminf(1.0f, rgb_max(throughput));
-            if (sampler_2d(where, SAMPLE_ROULETTE, path_vertex).x >= survival)
-                return;
-            throughput = rgb_scale(throughput, 1.0f / survival);
-        }
+        if (path_vertex >= ROULETTE_AFTER &&
+            !transport_survives(&throughput, sampler_2d(where, SAMPLE_ROULETTE, path_vertex).x))
+            return;
         if (wants_parts) {
             bool is_of_one = next.is_delta || lobes != BSDF_ALL;
             shares = part_shares_scatter(&shares, is_of_one ? rgb_gray(next.group == BSDF_GATHERED ? 1.0f : 0.0f)

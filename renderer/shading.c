@@ -138,12 +138,9 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
                                    sampler_2d(where, SAMPLE_SCATTER, path_vertex), &next))
             return;
         throughput = rgb_mul(throughput, next.weight);
-        if (path_vertex >= ROULETTE_AFTER) {
-            float survival = fminf(1.0f, rgb_max(throughput));
-            if (sampler_2d(where, SAMPLE_ROULETTE, path_vertex).x >= survival)
-                return;
-            throughput = rgb_scale(throughput, 1.0f / survival);
-        }
+        if (path_vertex >= ROULETTE_AFTER &&
+            !transport_survives(&throughput, sampler_2d(where, SAMPLE_ROULETTE, path_vertex).x))
+            return;
         scattered_from = v.hit.position;
         scattered_normal = direct_light_normal(&v, BSDF_TRACED);
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;

@@ -57,6 +57,17 @@ void transport_complete(const transport *t, vertex *in_out_vertex);
 /* Radiance that the place itself sends back along the ray. */
 rgb transport_emission(const transport *t, const vertex *v);
 
+/* Roulette: whether a path that carries so much goes on, by a number in [0, 1); what survives carries the others'
+ * share. */
+static inline bool transport_survives(rgb *in_out_throughput, float u)
+{
+    float survival = fminf(1.0f, rgb_max(*in_out_throughput));
+    if (u >= survival)
+        return false;
+    *in_out_throughput = rgb_scale(*in_out_throughput, 1.0f / survival);
+    return true;
+}
+
 /* The geometric normal on the side that the ray came from. */
 vec3 transport_facing_normal(const vertex *v);
 
