@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { PICTURE = 400, TILE = 32, TILES = 5, GATHER_RAYS = ROOM_BENCH_GATHER_RAYS, ROUNDS = 9, ESTIMATES = 20000 };
+enum { PICTURE = 400, TILE = 32, TILES = 5, GATHER_RAYS = ROOM_BENCH_GATHER_RAYS, ESTIMATES = 20000 };
 enum { PLACES_MAX = TILES * TILE * TILE, RAYS_MAX = PLACES_MAX * GATHER_RAYS };
 
 typedef struct place {
@@ -102,17 +102,12 @@ static double estimates(bench *b)
     return count;
 }
 
-static struct measurement {
-    const char *name;
-    double (*run)(bench *b);
-    double wanted; /* at most so many of Embree's rays; 0: not said */
-    double us[ROUNDS];
-} measurements[] = {
-    {"Embree alone", embree, 0.0, {0}},        {"whole gather ray", whole, 2.4, {0}},
-    {"ray and hit", hits, 0.0, {0}},           {"direction", directions, 0.0, {0}},
-    {"lookup, warm cache", lookups, 1.0, {0}}, {"estimate, scattered", estimates, 0.0, {0}},
+static room_bench_row rows[] = {
+    {.name = "Embree alone"}, {.name = "whole gather ray", .most_ratio = 2.4},   {.name = "ray and hit"},
+    {.name = "direction"},    {.name = "lookup, warm cache", .most_ratio = 1.0}, {.name = "estimate, scattered"},
 };
-enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
+enum { ROWS = sizeof rows / sizeof *rows };
+static double (*const measured[ROWS])(bench *b) = {embree, whole, hits, directions, lookups, estimates};
 
 /* --- what they work on --- */
 
@@ -179,28 +174,6 @@ static ag_status make_cache(bench *b, run_context *run)
     return status;
 }
 
-/* --- report --- */
-
-/* The median of the rounds' ratios: both halves of a ratio have seen the same noise. */
-static void report(void)
-{
-    printf("what,us,us_least,embree_rays,at_most,holds\n");
-    for (int i = 0; i < MEASUREMENTS; i++) {
-        const struct measurement *m = &measurements[i];
-        double us[ROUNDS], ratio[ROUNDS];
-        for (int r = 0; r < ROUNDS; r++) {
-            us[r] = m->us[r];
-            ratio[r] = m->us[r] / measurements[0].us[r];
-        }
-        double times = room_bench_median(ratio, ROUNDS), middle = room_bench_median(us, ROUNDS);
-        printf("\"%s\",%.4f,%.4f,%.3f,", m->name, middle, us[0], times);
-        if (m->wanted > 0.0)
-            printf("%.2f,%s\n", m->wanted, times <= m->wanted ? "yes" : "no");
-        else
-            printf(",\n");
-    }
-}
-
 static void bench_reset(bench *b)
 {
     irradiance_cache_reset(&b->cache);
@@ -234,15 +207,15 @@ int main(int argc, char **argv)
         fprintf(stderr, "afterglow-gather-rays: %s\n", ag_status_text(status));
         return 1;
     }
-    for (int round = 0; round < ROUNDS; round++)
-        for (int i = 0; i < MEASUREMENTS; i++) {
-            double begin = clock_thread_cpu_seconds(), count = measurements[i].run(&b);
-            measurements[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
+    for (int round = 0; round < ROOM_BENCH_ROUNDS; round++)
+        for (int i = 0; i < ROWS; i++) {
+            double begin = clock_thread_cpu_seconds(), count = measured[i](&b);
+            rows[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
         }
     floating_point_leave(arithmetic);
     fprintf(stderr, "%u photons, %u places, %u rays, %d rounds (checksum %g)\n", b.map.set.count, b.place_count,
-            b.ray_count, ROUNDS, b.sink);
-    report();
+            b.ray_count, ROOM_BENCH_ROUNDS, b.sink);
+    room_bench_report(rows, ROWS);
     bench_reset(&b);
     run_context_reset(&run);
     thread_pool_destroy(pool);

@@ -49,11 +49,16 @@ ag_status room_bench_load(run_context *run, const char *path, scene **out_scene)
     return status == AG_OK ? scene_commit(*out_scene, run, NULL) : status;
 }
 
+ag_status room_bench_trace(run_context *run, const scene *s, photon_set *out_set)
+{
+    photon_tracing_settings settings = {.kind = PHOTON_GLOBAL, .wanted = ROOM_PHOTON_COUNT, .max_scatterings = 98};
+    return photon_tracing_run(s, run, &settings, out_set);
+}
+
 ag_status room_bench_map(run_context *run, const scene *s, photon_map *out_map)
 {
     photon_set set = {0};
-    photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL, .wanted = ROOM_PHOTON_COUNT, .max_scatterings = 98};
-    ag_status status = photon_tracing_run(s, run, &tracing, &set);
+    ag_status status = room_bench_trace(run, s, &set);
     photon_map_settings settings = {
         .nearest = ROOM_BENCH_NEAREST, .max_radius = RADIUS, .surface_area = s->surface_area, .surfaces = s};
     return status == AG_OK ? photon_map_create(run, &set, &settings, 0.0, 1.0, out_map) : status;
@@ -69,4 +74,24 @@ double room_bench_median(double *values, size_t count)
 {
     qsort(values, count, sizeof *values, by_value);
     return values[count / 2];
+}
+
+void room_bench_report(const room_bench_row *rows, size_t count)
+{
+    printf("what,us,us_least,embree_rays,at_most,holds\n");
+    for (const room_bench_row *row = rows; row < rows + count; row++) {
+        double us[ROOM_BENCH_ROUNDS], ratios[ROOM_BENCH_ROUNDS];
+        for (int r = 0; r < ROOM_BENCH_ROUNDS; r++) {
+            us[r] = row->us[r];
+            ratios[r] = row->us[r] / rows->us[r];
+        }
+        double ratio = room_bench_median(ratios, ROOM_BENCH_ROUNDS), middle = room_bench_median(us, ROOM_BENCH_ROUNDS);
+        printf("\"%s\",%.4f,%.4f,%.3f,", row->name, middle, us[0], ratio);
+        if (row->most_ratio > 0.0)
+            printf("%.2f,%s\n", row->most_ratio, ratio <= row->most_ratio ? "yes" : "no");
+        else if (row->most_us > 0.0)
+            printf("%.2f us,%s\n", row->most_us, middle <= row->most_us ? "yes" : "no");
+        else
+            printf(",\n");
+    }
 }

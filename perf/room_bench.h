@@ -1,11 +1,12 @@
 /* room_bench.h: what the microbenchmarks share: room 20 of the forty, or another scene, its photon map as the paper has
- * it, and medians. Flow: room_layout, room_file -> [here] -> photon_search, gather_rays. Threads: one. */
+ * it, and medians. Flow: room_layout, room_file -> [here] -> photon_search, gather_rays, photon_making. Threads: one.
+ */
 #ifndef AFTERGLOW_ROOM_BENCH_H
 #define AFTERGLOW_ROOM_BENCH_H
 
 #include "photon_map.h"
 
-enum { ROOM_BENCH_NEAREST = 300, ROOM_BENCH_GATHER_RAYS = 64 };
+enum { ROOM_BENCH_NEAREST = 300, ROOM_BENCH_GATHER_RAYS = 64, ROOM_BENCH_ROUNDS = 9 };
 
 /* A log's listener: warnings and errors go to standard error. */
 void room_bench_say(void *user, ag_log_level level, const char *message);
@@ -14,10 +15,23 @@ void room_bench_say(void *user, ag_log_level level, const char *message);
  * too, where it may be NULL. Errors: those of the parser and of files. */
 ag_status room_bench_load(run_context *run, const char *path, scene **out_scene);
 
-/* The global map: 500,000 photons, estimates of the 300 nearest within 3.0. Borrows the scene. */
+/* Its 500,000 photons, to be reset. */
+ag_status room_bench_trace(run_context *run, const scene *s, photon_set *out_set);
+
+/* The global map of those: estimates of the 300 nearest within 3.0. Borrows the scene. */
 ag_status room_bench_map(run_context *run, const scene *s, photon_map *out_map);
 
 /* Of an odd number of values, which are put in order. */
 double room_bench_median(double *values, size_t count);
+
+typedef struct room_bench_row {
+    const char *name;
+    double most_ratio,
+        most_us; /* how much is wanted at most, of the first row's time and in microseconds; 0: not said */
+    double us[ROOM_BENCH_ROUNDS];
+} room_bench_row;
+
+/* CSV: medians of the rounds' ratios to the first row: both halves of a ratio have seen the same noise. */
+void room_bench_report(const room_bench_row *rows, size_t count);
 
 #endif

@@ -9,12 +9,12 @@ set -euo pipefail
 
 suite_begin run "usage: perf/run.sh [options]
 All benchmarks, one report, judged by the table of perf/README.md. Hours; with --quick minutes.
-  --parts L      of micro, gather_rays, forty_rooms, thread_scaling, scale, contention, memory, error_against_time (all;
-                 with --quick the last five)
+  --parts L      of micro, photon_making, gather_rays, forty_rooms, thread_scaling, scale, contention, memory,
+                 error_against_time (all; with --quick the last five)
   --results DIR  where tables, figures and report go (perf/results/MACHINE; with --quick: report/ in the folder of --out)
   --report-only  measure nothing: report and verdict of what is in the folder of --out
   --all-rooms    all forty rooms (rooms 1, 10, 20, 30, 33, 40)" "$@"
-parts=micro,gather_rays,forty_rooms,thread_scaling,scale,contention,memory,error_against_time
+parts=micro,photon_making,gather_rays,forty_rooms,thread_scaling,scale,contention,memory,error_against_time
 [[ $quick == yes ]] && parts=thread_scaling,scale,contention,memory,error_against_time
 rooms=1,10,20,30,33,40 results='' report_only=no
 while ((${#suite_rest[@]} > 0)); do
@@ -61,12 +61,12 @@ run_micro() {
     awk -F, '$6 != "" && NR > 1 { print $1 "," $3 "," $5 "," $6 }' "$out/micro/micro.csv" | own_verdicts micro
 }
 
-run_gather_rays() {
-    mkdir -p "$out/gather_rays"
-    [[ -x $suite_bin/afterglow-gather-rays ]] || { echo "run: no afterglow-gather-rays" >&2 && return; }
-    "$suite_bin/afterglow-gather-rays" | sed ':a; s/^\("[^",]*\),\([^"]*"\)/\1;\2/; ta; s/"//g' \
-        >"$out/gather_rays/gather_rays.csv"
-    awk -F, '$5 != "" && NR > 1 { print $1 "," $4 "," $5 "," $6 }' "$out/gather_rays/gather_rays.csv" | own_verdicts gather_rays
+run_rows() { # PART: the CSV of a program afterglow-PART, and its own bounds
+    mkdir -p "$out/$1"
+    local program=$suite_bin/afterglow-${1//_/-}
+    [[ -x $program ]] || { echo "run: no $program" >&2 && return; }
+    "$program" | sed ':a; s/^\("[^",]*\),\([^"]*"\)/\1;\2/; ta; s/"//g' >"$out/$1/$1.csv"
+    awk -F, '$5 != "" && NR > 1 { print $1 "," ($5 ~ / us$/ ? $2 " us" : $4) "," $5 "," $6 }' "$out/$1/$1.csv" | own_verdicts "$1"
 }
 
 own_verdicts() { # lines NAME,VALUE,BOUND,yes|no
@@ -101,7 +101,8 @@ for part in ${parts//,/ }; do
     [[ $report_only == no ]] || continue
     echo "run: $part" >&2
     case $part in
-    micro | gather_rays | forty_rooms) "run_$part" || failures+=("$part failed") ;;
+    micro | forty_rooms) "run_$part" || failures+=("$part failed") ;;
+    photon_making | gather_rays) run_rows "$part" || failures+=("$part failed") ;;
     thread_scaling | scale | contention | memory | error_against_time)
         "$suite_root/perf/$part.sh" "${options[@]}" --out "$out/$part" >"$out/$part.txt" || failures+=("$part failed")
         ;;
@@ -178,6 +179,7 @@ section() { # TITLE PART TABLE... : tables and figures are copied beside the rep
     printf '\n'
     table "$results/verdicts.csv"
     section "Photon map against nanoflann" micro micro.csv
+    section "Making the photon map" photon_making photon_making.csv
     section "Gather rays against Embree's" gather_rays gather_rays.csv
     section "Forty rooms" forty_rooms forty_rooms.csv
     section "Threads, by phase" thread_scaling scaling.csv waiting.csv arithmetic.csv
