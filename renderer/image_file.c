@@ -124,5 +124,8 @@ ag_status image_file_check_target(const char *path, char *message, size_t messag
 {
     if (!image_format_of(path))
         return unknown_extension(path, message, message_size);
-    return atomic_file_check(path, message, message_size);
+    ag_status status = atomic_file_check(path, message, message_size);
+    if (status == AG_OK && !image_module_get(message, message_size))
+        status = AG_ERROR_SYSTEM;
+    return status;
 }

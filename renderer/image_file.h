@@ -37,7 +37,7 @@ ag_status image_file_write(const char *path, const image_description *descriptio
                            size_t message_size);
 
 /* Whether a file could be created at path now: the extension is known, its folder exists and may be written, it is no
- * folder itself. Called before a long render. Errors: AG_ERROR_OUTPUT. */
+ * folder itself, the module can be opened. Called before a long render. Errors: AG_ERROR_OUTPUT, AG_ERROR_SYSTEM. */
 ag_status image_file_check_target(const char *path, char *message, size_t message_size);
 
 #ifdef __cplusplus

@@ -53,6 +53,18 @@ for program in "$prefix/bin/afterglow" "$staged/afterglow"; do
     echo "ok: $(realpath --relative-to="$folder" "$program")"
 done
 
+# What would fail at the end fails at the beginning: here the scene is not even read.
+cp -r "$prefix" bare
+find bare -name afterglow_image.so -delete
+if [[ -e $(sed -nE 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$AFTERGLOW_BUILD_DIR/CMakeCache.txt")/lib/afterglow/afterglow_image.so ]]; then
+    echo "skipped: a module that is missing: there is one where this build would be installed"
+else
+    status=0
+    bare/bin/afterglow -o room.exr no-such.pbrt 2>bare.log || status=$?
+    [[ $status -ne 0 ]] || fail "rendered without a module"
+    grep -q 'image module cannot be opened' bare.log || fail "without a module: $(<bare.log)"
+fi
+
 [[ -s $(find "$prefix" -path '*/man/man1/afterglow.1') ]] || fail "no man page"
 pc=$(find "$prefix" -name afterglow.pc)
 [[ -s $pc ]] || fail "no pkg-config file"
