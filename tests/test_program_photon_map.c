@@ -129,6 +129,29 @@ static void test_full_disk(void **state)
     expect_listing("");
 }
 
+/* The first job of a farm: all that the pictures share, and no picture. */
+static void test_photons_only(void **state)
+{
+    (void)state;
+    const char *scene = PROGRAM_SCENES ROOM;
+    expect_end(RUN(QUICK, MAP, "--photons-only", "--cache=precompute", scene), 0, NULL);
+    expect_listing("a.map");
+    expect_end(RUN(QUICK, MAP, "--stats=a.json", "-o", "kept.exr", scene), 0, NULL);
+    expect_end(RUN(QUICK, "-o", "fresh.exr", scene), 0, NULL);
+    expect_same_files("fresh.exr", "kept.exr");
+    json_t *stats = stats_read(in_folder("a.json"));
+    expect_map(stats, "opened");
+    assert_int_equal(stats_integer(stats, "irradiance.computed"), 0);
+    assert_int_equal(stats_integer(stats, "irradiance.ready"), 4000);
+    json_decref(stats);
+    expect_end(RUN(QUICK, "--photons-only", "--dump-photons=a.ply", scene), 0, NULL);
+    expect_listing("a.json a.map a.ply fresh.exr kept.exr");
+    expect_end(RUN(QUICK, "--photons-only", scene), 2, "give --photon-map or --dump-photons");
+    expect_end(RUN(QUICK, MAP, "--photons-only", "-o", "a.exr", scene), 2, "--outfile");
+    expect_end(RUN(QUICK, MAP, "--photons-only", "--resume", scene), 2, "--resume");
+    expect_end(RUN(QUICK, MAP, "--photons-only", "--integrator=path", scene), 2, "path tracing has no photons");
+}
+
 /* What may not be written is used, and left as it is. */
 static void test_read_only(void **state)
 {
@@ -215,9 +238,9 @@ static void test_kills(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_camera_move), TEST_IN_FOLDER(test_dump),      TEST_IN_FOLDER(test_refusal),
-        TEST_IN_FOLDER(test_full_disk),   TEST_IN_FOLDER(test_read_only), TEST_IN_FOLDER(test_crowd),
-        TEST_IN_FOLDER(test_kills),
+        TEST_IN_FOLDER(test_camera_move),  TEST_IN_FOLDER(test_dump),      TEST_IN_FOLDER(test_refusal),
+        TEST_IN_FOLDER(test_photons_only), TEST_IN_FOLDER(test_full_disk), TEST_IN_FOLDER(test_read_only),
+        TEST_IN_FOLDER(test_crowd),        TEST_IN_FOLDER(test_kills),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,7 +109,7 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
     char default_name[4096];
     bool is_skipped = false;
     status = ag_scene_load(context, o->scene, &scene);
-    if (status == AG_OK && o->outfile_count == 0) {
+    if (status == AG_OK && o->outfile_count == 0 && !o->photons_only) {
         name_default_output(o, scene, frame, default_name, sizeof default_name);
         o->outfiles[o->outfile_count++] = default_name;
         status = ag_output_check(context, &o->output, default_name);

@@ -30,6 +30,7 @@ enum {
     OPT_CLAMP_INDIRECT,
     OPT_DENOISE,
     OPT_DUMP_PHOTONS,
+    OPT_PHOTONS_ONLY,
     OPT_PHOTON_MAP,
     OPT_PHOTON_MAP_REFRESH,
     OPT_TILED,
@@ -98,6 +99,8 @@ static const option_line LINES[] = {
      "photon_distance, gather_distance, tile_time;\ncrypto_object, crypto_material, or both: crypto; gbuffer; or all"},
     {OPT_DENOISE, "denoise", NULL, "take the noise out with Open Image Denoise, where its library is there"},
     {OPT_DUMP_PHOTONS, "dump-photons", "FILE", "write the photons as PLY"},
+    {OPT_PHOTONS_ONLY, "photons-only", NULL,
+     "render no picture: for --photon-map, which later runs read, or\n--dump-photons"},
     {OPT_PHOTON_MAP, "photon-map", "FILE",
      "keep the photon map and its irradiances in FILE: read where it is there,\nelse traced; processes that use it at "
      "once fill it together"},
@@ -321,6 +324,7 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_CLAMP_INDIRECT: is_valid = parse_bound(value, &r->clamp_indirect); break;
     case OPT_DENOISE: r->denoise = true; break;
     case OPT_DUMP_PHOTONS: o->photons_file = value; break;
+    case OPT_PHOTONS_ONLY: o->photons_only = true; break;
     case OPT_PHOTON_MAP: r->photon_map_file = value; break;
     case OPT_PHOTON_MAP_REFRESH: r->photon_map_refresh = true; break;
     case OPT_TILED: o->output.tiled = true; break;
@@ -467,6 +471,26 @@ static bool has_scene_to_list(const options *o, int rest)
     return true;
 }
 
+/* Where there is no picture, nothing may be asked of it. */
+static bool has_picture_of_photons_only(const options *o)
+{
+    if (!o->photons_only)
+        return false;
+    bool has_file = o->photons_file || o->render.photon_map_file;
+    const char *idle = o->outfile_count > 0          ? "--outfile"
+                       : o->preview                  ? "--preview"
+                       : o->resume                   ? "--resume"
+                       : o->checkpoint_seconds > 0.0 ? "--checkpoint"
+                       : o->no_clobber               ? "--no-clobber"
+                       : o->render.denoise           ? "--denoise"
+                                                     : NULL;
+    if (idle)
+        fprintf(stderr, "afterglow: --photons-only renders no picture: it does not go with %s\n", idle);
+    else if (!has_file)
+        fprintf(stderr, "afterglow: --photons-only: nothing is to be written: give --photon-map or --dump-photons\n");
+    return idle || !has_file;
+}
+
 options_result options_parse(int argc, char **argv, options *out_options)
 {
     struct option longs[LINE_COUNT + 1];
@@ -511,7 +535,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
     }
     if (result == OPTIONS_RUN && o.frames.count > 1 && has_frames_in_one_file(&o))
         result = OPTIONS_EXIT_USAGE;
-    if (result == OPTIONS_RUN && (has_file_twice(&o) || has_idle_color_option(&o)))
+    if (result == OPTIONS_RUN && (has_file_twice(&o) || has_idle_color_option(&o) || has_picture_of_photons_only(&o)))
         result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
         fprintf(stderr, "Try 'afterglow --help'.\n");

@@ -24,6 +24,7 @@ typedef struct options {
     int outfile_count;
     char *command_line; /* owned */
     const char *stats, *photons_file;
+    bool photons_only;         /* no picture */
     bool lists_displays;       /* there is no scene then */
     double checkpoint_seconds; /* 0: none but at signals, where resume is asked for */
     bool resume, preview, no_clobber;

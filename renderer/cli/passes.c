@@ -240,7 +240,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     ag_status status = begin(&p, scene, settings);
     if (status == AG_OK) {
         signals_begin_rendering(); /* until all is written: what has been rendered is not thrown away */
-        status = run_passes(&p);
+        status = o->photons_only ? AG_OK : run_passes(&p);
         out_result->is_partial = status == AG_PAUSED;
         signals_set_timer(INFINITY);
         if (status == AG_PAUSED)
@@ -252,7 +252,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     if (status == AG_OK && o->photons_file && !out_result->is_partial)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
     ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
-    bool has_picture = !out_result->is_partial || out_result->samples.most > 0;
+    bool has_picture = !o->photons_only && (!out_result->is_partial || out_result->samples.most > 0);
     if (status == AG_OK && settings->denoise && has_picture)
         status = ag_film_denoise(context, film);
     if (status == AG_OK && has_picture)
@@ -262,7 +262,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     if (status == AG_OK && p.time_is_up && o->verbosity >= 0)
         fprintf(stderr, "afterglow: time limit: the picture has %.4g of %d samples per pixel\n",
                 out_result->samples.mean, p.final);
-    if (status == AG_OK && settings->noise_level > 0.0f && o->verbosity >= 0)
+    if (status == AG_OK && has_picture && settings->noise_level > 0.0f && o->verbosity >= 0)
         fprintf(stderr, "afterglow: noise: %.4g samples per pixel, from %d to %d\n", out_result->samples.mean,
                 out_result->samples.least, out_result->samples.most);
     signals_end_rendering();
