@@ -96,6 +96,7 @@ void ag_film_destroy(ag_film *film)
         cryptomatte_reset(&film->mattes[i]);
     }
     free(film->pixels);
+    free(film->origin.defined);
     aov_layout_reset(&film->layout);
     free(film);
 }

@@ -22,6 +22,7 @@ typedef struct film_origin {
     float world_to_camera[16];   /* as OpenEXR has it: row by row, of row vectors; when the shutter opens */
     float world_to_ndc[16];      /* to (0, 0) in the display window's upper left corner and (1, 1) opposite */
     bool has_ndc;
+    char *defined; /* of the scene, see scene.h; owned, or NULL */
 } film_origin;
 
 struct ag_film {

@@ -132,6 +132,8 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
     add_numbers(out, "worldToCamera", film->origin.world_to_camera, 16);
     if (film->origin.has_ndc)
         add_numbers(out, "worldToNDC", film->origin.world_to_ndc, 16);
+    if (film->origin.defined && film->origin.defined[0])
+        add_text(out, "afterglow/define", "%s", film->origin.defined);
     add_text(out, "afterglow/version", "%s", ag_version());
     add_text(out, "afterglow/isa", "%s", context->isa);
     add_text(out, "afterglow/integrator", "%s", is_path ? "path" : "photonmap");
@@ -161,6 +163,8 @@ ag_status picture_layers_create(ag_context *context, const ag_film *film, const 
     picture_layers made = {.text_capacity = PICTURE_TEXT_MAX};
     if (settings->command_line)
         made.text_capacity += strlen(settings->command_line);
+    if (film->origin.defined)
+        made.text_capacity += strlen(film->origin.defined) + 1;
     made.text = malloc(made.text_capacity);
     ag_status status = made.text ? fill_pixels(context, film, beauty, type, path, &made) : AG_ERROR_MEMORY;
     if (status != AG_OK) {

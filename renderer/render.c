@@ -1,6 +1,7 @@
 /* render.c: the whole flow on one page: photons, maps, cache, tiles, film.
  * Rests on: Jensen 1996; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
  * Threads: one phase after the other, each on all of the context's workers; what a phase made is const in the next. */
+#define _POSIX_C_SOURCE 200809L
 #include "rendering.h"
 
 #include "adaptive.h"
@@ -17,6 +18,7 @@
 #include "tile_scheduler.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { TILE_SIZE = 32, ARENA_BLOCK_BYTES = 1 << 16 };
 /* Direct light takes one sample for so many gather rays, so that neither is much noisier than the other. */
@@ -428,8 +430,8 @@ static ag_status settle_settings(ag_context *context, const scene *s, const ag_r
     return AG_ERROR_SCENE;
 }
 
-/* As OpenEXR's standard attributes describe them. */
-static void note_origin(const ag_rendering *r, film_origin *out)
+/* As OpenEXR's standard attributes describe them. Errors: AG_ERROR_MEMORY. */
+static ag_status note_origin(const ag_rendering *r, film_origin *out)
 {
     const camera *c = &r->s->camera;
     const ag_render_settings *settings = &r->settings;
@@ -449,6 +451,8 @@ static void note_origin(const ag_rendering *r, film_origin *out)
             out->world_to_camera[4 * k + i] = (float)world_from_camera.inverse[i][k];
             out->world_to_ndc[4 * k + i] = (float)ndc;
         }
+    out->defined = r->s->defined ? strdup(r->s->defined) : NULL;
+    return out->defined || !r->s->defined ? AG_OK : AG_ERROR_MEMORY;
 }
 
 static ag_status create_film(ag_rendering *r)
@@ -474,7 +478,7 @@ static ag_status create_film(ag_rendering *r)
     r->film = film_create(settings, &r->s->space, &filter, &layout);
     if (!r->film)
         return AG_ERROR_MEMORY;
-    note_origin(r, &r->film->origin);
+    status = note_origin(r, &r->film->origin);
     for (int i = 0; i < CRYPTOMATTE_KIND_COUNT && status == AG_OK; i++)
         if (r->film->layout.has_matte[i])
             status = cryptomatte_create(r->s, (cryptomatte_kind)i, &r->film->mattes[i]);

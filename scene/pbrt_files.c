@@ -166,10 +166,54 @@ ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text
 void pbrt_pop_file(pbrt_parser *parser)
 {
     pbrt_file *top = &parser->files[--parser->file_count];
+    if (top->value.has_tokens)
+        pbrt_lexer_reset(&top->value.lexer);
+    free(top->value.text);
     free(top->coordinate_systems);
     name_table_reset(&top->coordinate_system_names);
     pbrt_lexer_reset(&top->lexer);
     text_file_reset(&top->file);
+}
+
+/* The next token of a value that stands without quotes; PBRT_TOKEN_END: it has no more. */
+static ag_status next_of_value(pbrt_parser *parser, pbrt_value *value, pbrt_token *out_token)
+{
+    ag_status status = pbrt_lexer_next(&value->lexer, out_token);
+    out_token->where = value->where;
+    out_token->width = value->width;
+    if (status == AG_ERROR_SCENE)
+        return pbrt_error(parser, value->where, value->width, "in the value \"%s\": %s", value->text,
+                          value->lexer.error);
+    if (status == AG_OK && out_token->kind == PBRT_TOKEN_END) {
+        pbrt_lexer_reset(&value->lexer);
+        value->has_tokens = false;
+    }
+    return status;
+}
+
+/* Puts values in the places of $name: into a string, or as tokens, which then are the next. */
+static ag_status fill_in(pbrt_parser *parser, pbrt_file *file, pbrt_token *token)
+{
+    char message[256], *text;
+    size_t length;
+    ag_status status = definitions_expand(parser->scene->definitions, token->text, token->length,
+                                          token->kind == PBRT_TOKEN_STRING, message, sizeof message, &text, &length);
+    if (status == AG_ERROR_SCENE)
+        return pbrt_error(parser, token->where, token->width, "%s", message);
+    if (status || !text)
+        return status;
+    free(file->value.text);
+    file->value.text = text;
+    if (token->kind == PBRT_TOKEN_STRING) {
+        token->text = text;
+        token->length = length;
+        return AG_OK;
+    }
+    pbrt_lexer_init(&file->value.lexer, token->where.file, text, length);
+    file->value.has_tokens = true;
+    file->value.where = token->where;
+    file->value.width = token->width;
+    return AG_OK;
 }
 
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
@@ -180,12 +224,22 @@ ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
         return AG_OK;
     }
     for (;;) {
-        pbrt_lexer *lexer = &parser->files[parser->file_count - 1].lexer;
-        ag_status status = pbrt_lexer_next(lexer, out_token);
+        pbrt_file *file = &parser->files[parser->file_count - 1];
+        if (file->value.has_tokens) {
+            PBRT_TRY(next_of_value(parser, &file->value, out_token));
+            if (file->value.has_tokens)
+                return AG_OK;
+        }
+        ag_status status = pbrt_lexer_next(&file->lexer, out_token);
         if (status == AG_ERROR_SCENE)
-            return pbrt_error(parser, out_token->where, out_token->width, "%s", lexer->error);
-        if (status || out_token->kind != PBRT_TOKEN_END || parser->file_count == 1 ||
-            parser->files[parser->file_count - 1].is_import)
+            return pbrt_error(parser, out_token->where, out_token->width, "%s", file->lexer.error);
+        if (status == AG_OK && (out_token->kind == PBRT_TOKEN_STRING || out_token->kind == PBRT_TOKEN_WORD) &&
+            out_token->length > 0 && memchr(out_token->text, '$', out_token->length)) {
+            PBRT_TRY(fill_in(parser, file, out_token));
+            if (file->value.has_tokens)
+                continue;
+        }
+        if (status || out_token->kind != PBRT_TOKEN_END || parser->file_count == 1 || file->is_import)
             return status;
         pbrt_pop_file(parser);
     }

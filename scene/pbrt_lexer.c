@@ -134,6 +134,19 @@ static ag_status read_string(pbrt_lexer *lexer, pbrt_token *out_token)
     return AG_OK;
 }
 
+/* Behind what begins at p, a byte of a word: ${...} is one, whatever stands in it. */
+static const char *skip_word_part(const char *p)
+{
+    if (p[0] == '$' && p[1] == '{') {
+        const char *q = p + 2;
+        while (*q != '}' && ((unsigned char)*q >= ' ' || *q == '\t'))
+            q++;
+        if (*q == '}')
+            return q + 1;
+    }
+    return p + 1;
+}
+
 ag_status pbrt_lexer_next(pbrt_lexer *lexer, pbrt_token *out_token)
 {
     skip_blanks(lexer);
@@ -153,7 +166,7 @@ ag_status pbrt_lexer_next(pbrt_lexer *lexer, pbrt_token *out_token)
     }
     const char *p = start;
     while (is_word_byte(*p))
-        p++;
+        p = skip_word_part(p);
     if (p == start)
         return fail_strange_byte(lexer, out_token, p);
     out_token->kind = PBRT_TOKEN_WORD;

@@ -8,7 +8,7 @@
 
 typedef enum pbrt_token_kind {
     PBRT_TOKEN_END,
-    PBRT_TOKEN_WORD,   /* a directive, a number, true, false: anything without quotes */
+    PBRT_TOKEN_WORD,   /* a directive, a number, true, false: anything without quotes; ${...} may hold blanks */
     PBRT_TOKEN_STRING, /* text is what stands between the quotes, escapes resolved */
     PBRT_TOKEN_OPEN,   /* [ */
     PBRT_TOKEN_CLOSE   /* ] */

@@ -113,11 +113,12 @@ static ag_status add_numbers(pbrt_parser *parser, builder *b)
     enum { BLOCK = 16384 };
     parameter *p = b->p;
     size_t count, wanted = 16;
-    if (p->strings)
+    pbrt_file *file = &parser->files[parser->file_count - 1];
+    if (p->strings || file->value.has_tokens)
         return AG_OK;
     do {
         PBRT_TRY(make_room(b, wanted, (void **)&p->numbers, sizeof *p->numbers));
-        count = pbrt_lexer_numbers(&parser->files[parser->file_count - 1].lexer, wanted, p->numbers + p->count);
+        count = pbrt_lexer_numbers(&file->lexer, wanted, p->numbers + p->count);
         p->count += count;
         if (wanted == BLOCK)
             PBRT_TRY(pbrt_tell_progress(parser));

@@ -36,9 +36,19 @@ typedef struct pbrt_named_transform {
     transform start, end;
 } pbrt_named_transform;
 
+/* What stands in the place of $name. */
+typedef struct pbrt_value {
+    char *text;       /* owned; the last token may lie in it */
+    pbrt_lexer lexer; /* of a value that stands without quotes: tokens of its own, which come first */
+    bool has_tokens;
+    file_location where; /* of $name, and how wide that is */
+    size_t width;
+} pbrt_value;
+
 typedef struct pbrt_file {
     text_file file;
     pbrt_lexer lexer;
+    pbrt_value value;
     file_location included_at; /* the Include or Import; zeroed for the first file */
 
     bool is_import; /* its end is told to who reads, who then ends it; the rest is for what it found: */

@@ -43,6 +43,7 @@ void scene_destroy(scene *s)
     parameter_list_reset(&s->film);
     parameter_list_reset(&s->pixel_filter);
     free(s->file_names);
+    free(s->defined);
     free(s->light_group_names);
     scene_names_reset(&s->names);
     free(s->shapes);

@@ -6,6 +6,7 @@
 #define AFTERGLOW_SCENE_H
 
 #include "camera.h"
+#include "definitions.h"
 #include "instance.h"
 #include "light.h"
 #include "material.h"
@@ -34,6 +35,7 @@ typedef struct scene {
     working_space space;                     /* of all its colours; settled before anything is read */
     const struct color_config *color_config; /* that names it, and tells how pictures are encoded; borrowed for as long
                                                 as it is read; NULL: none */
+    const definitions *definitions;          /* of names in its text; borrowed for as long; NULL: none */
     material *materials;
     uint32_t material_count;
     texture *textures;
@@ -63,6 +65,7 @@ typedef struct scene {
     parameter_list integrator, sampler, film, pixel_filter;
     scene_options options;
 
+    char *defined;     /* which definitions its text has used, see definitions_describe; NULL: it was given none */
     char **file_names; /* interned, for file_location.file */
     uint32_t file_name_count;
 

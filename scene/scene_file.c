@@ -65,7 +65,7 @@ static bool ends_with(const char *path, const char *ending)
     return length >= ending_length && strcasecmp(path + length - ending_length, ending) == 0;
 }
 
-ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
+static ag_status load(run_context *run, const char *path, scene *out_scene)
 {
     for (size_t k = 0; k < sizeof READERS / sizeof *READERS; k++)
         if (ends_with(path, READERS[k].ending))
@@ -73,4 +73,15 @@ ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     bool is_assimps = dot && dot[1] != '\0' && assimp_reads_extension(dot);
     return is_assimps ? assimp_load_file(run, path, out_scene) : pbrt_parse_file(run, path, out_scene);
+}
+
+ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
+{
+    ag_status status = load(run, path, out_scene);
+    const definition *unused = status == AG_OK ? definitions_unused(out_scene->definitions) : NULL;
+    if (!unused)
+        return status;
+    log_message(run->log, AG_LOG_ERROR, "%s: error: the scene has no $%s, which -D %s=%s is for", path, unused->name,
+                unused->name, unused->value);
+    return AG_ERROR_ARGUMENT;
 }

@@ -8,7 +8,8 @@
 /* path: NAME.ply and .ply.gz, .gltf and .glb, what assimp reads (.obj, .stl, .dae, .fbx, ...), and all else as pbrt-v4
  * text (plain or gzip; "-" is standard input). Fills an empty, uncommitted scene. Models without camera or light get
  * those of import_defaults.h. Every error is told to the run's log. Errors: AG_ERROR_INPUT, AG_ERROR_SCENE,
- * AG_ERROR_MEMORY, AG_ERROR_SYSTEM, AG_CANCELLED. */
+ * AG_ERROR_MEMORY, AG_ERROR_SYSTEM, AG_CANCELLED, AG_ERROR_ARGUMENT (one of the scene's definitions is used
+ * nowhere; formats other than pbrt's text use none). */
 ag_status scene_file_load(run_context *run, const char *path, scene *out_scene);
 
 #endif

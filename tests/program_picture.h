@@ -49,6 +49,26 @@ static inline picture render(const char *scene, const char *const *arguments)
 
 #define RENDER(scene, ...) render(scene, ARGUMENTS(__VA_ARGS__))
 
+/* The value of an attribute of an EXR file in the folder: a copy, to be freed; NULL where there is none. */
+static inline unsigned char *attribute_of(const char *name, const char *attribute, const char *type)
+{
+    size_t size;
+    unsigned char *bytes = read_bytes(in_folder(name), &size);
+    char key[128];
+    int length = snprintf(key, sizeof key, "%s%c%s", attribute, '\0', type) + 1;
+    const unsigned char *at = memmem(bytes, size, key, (size_t)length);
+    unsigned char *value = NULL;
+    if (at) {
+        uint32_t count;
+        memcpy(&count, at + length, sizeof count);
+        value = calloc(count + 1, 1);
+        assert_non_null(value);
+        memcpy(value, at + length + sizeof count, count);
+    }
+    free(bytes);
+    return value;
+}
+
 /* The mean of one channel over the block whose top left pixel is (x, y). */
 static inline double picture_block(const picture *p, int x, int y, int size, int channel)
 {

@@ -24,26 +24,6 @@ static void run_well(const char *const *arguments)
     program_run_reset(&run);
 }
 
-/* The value of an attribute of a file in the folder: a copy, to be freed; NULL where there is none. */
-static unsigned char *attribute_of(const char *name, const char *attribute, const char *type)
-{
-    size_t size;
-    unsigned char *bytes = read_bytes(in_folder(name), &size);
-    char key[128];
-    int length = snprintf(key, sizeof key, "%s%c%s", attribute, '\0', type) + 1;
-    const unsigned char *at = memmem(bytes, size, key, (size_t)length);
-    unsigned char *value = NULL;
-    if (at) {
-        uint32_t count;
-        memcpy(&count, at + length, sizeof count);
-        value = calloc(count + 1, 1);
-        assert_non_null(value);
-        memcpy(value, at + length + sizeof count, count);
-    }
-    free(bytes);
-    return value;
-}
-
 /* R, G, B, P.X, P.Y, P.Z, then caustic, direct, emission, indirect, specular. */
 static void test_parts_in_files(void **state)
 {

@@ -1,5 +1,6 @@
 /* main.c: the program: scene -> picture -> files.
  * Threads: main alone. */
+#define _POSIX_C_SOURCE 200809L
 #include "options.h"
 #include "passes.h"
 #include "progress.h"
@@ -108,7 +109,7 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
     ag_render_settings settings;
     char default_name[4096];
     bool is_skipped = false;
-    status = ag_scene_load(context, o->scene, &scene);
+    status = ag_scene_load_with(context, o->scene, o->definitions, o->definition_count, &scene);
     if (status == AG_OK && o->outfile_count == 0 && !o->photons_only) {
         name_default_output(o, scene, frame, default_name, sizeof default_name);
         o->outfiles[o->outfile_count++] = default_name;
@@ -170,11 +171,34 @@ static ag_status run_in_context(options *o, int frame, progress *told)
     return status;
 }
 
+/* The definitions of one frame: its number in their values, and as "frame" where that is not defined. */
+static bool define_frame(const options *o, int frame, options *one)
+{
+    char number[16];
+    snprintf(number, sizeof number, "%d", frame);
+    one->definition_count = 0;
+    one->definitions = calloc(o->definition_count + 1, sizeof *one->definitions);
+    bool is_whole = one->definitions != NULL, is_named = false;
+    for (size_t i = 0; is_whole && i < o->definition_count; i++) {
+        const ag_definition *from = &o->definitions[i];
+        ag_definition *to = &one->definitions[one->definition_count++];
+        is_named = is_named || strcmp(from->name, "frame") == 0;
+        *to = (ag_definition){.name = strdup(from->name), .value = frames_name(from->value, frame)};
+        is_whole = to->name && to->value;
+    }
+    if (is_whole && !is_named) {
+        ag_definition *to = &one->definitions[one->definition_count++];
+        *to = (ag_definition){.name = strdup("frame"), .value = strdup(number), .is_optional = true};
+        is_whole = to->name && to->value;
+    }
+    return is_whole;
+}
+
 /* The options of one frame: its number in all names. The strings are to be freed. */
 static bool name_frame(const options *o, int frame, options *out_one)
 {
     options one = *o;
-    bool is_whole = true;
+    bool is_whole = define_frame(o, frame, &one);
     one.outfiles = calloc((size_t)o->outfile_count + 1, sizeof *one.outfiles);
     for (int i = 0; one.outfiles && i < o->outfile_count; i++)
         is_whole = (one.outfiles[i] = frames_name(o->outfiles[i], frame)) && is_whole;
@@ -193,6 +217,9 @@ static void free_frame(options *one, int outfile_count)
     free((void *)(uintptr_t)one->scene);
     free((void *)(uintptr_t)one->stats);
     free((void *)(uintptr_t)one->photons_file);
+    for (size_t i = 0; i < one->definition_count; i++)
+        options_free_definition(&one->definitions[i]);
+    free(one->definitions);
 }
 
 /* One after the other; the first that fails ends it. */

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <getopt.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,6 +70,9 @@ static const option_line LINES[] = {
     {'o', "outfile", "FILE",
      "write the picture to FILE; may be repeated; .exr is scene-linear,\n.png, .tif and .jpg go through a display and "
      "view (default: the Film's\nfilename, else SCENE.exr)"},
+    {'D', "define", "NAME=VALUE",
+     "put VALUE in the place of $NAME and ${NAME} in the scene's text; may be\nrepeated; with --frames $frame is the "
+     "frame's number"},
     {'t', "nthreads", "N", "threads (default: what affinity mask and cgroup quota allow)"},
     {OPT_SEED, "seed", "N", "seed of all random numbers (default: the scene's, else 0)"},
     {OPT_SPP, "spp", "N", "samples per pixel (default: the scene's, else 16)"},
@@ -122,8 +126,8 @@ static const option_line LINES[] = {
     {OPT_LIST_DISPLAYS, "list-displays", NULL, "print the config's displays, views, looks, colour spaces and roles"},
     {OPT_STATS, "stats", "FILE", "write statistics as JSON"},
     {OPT_FRAMES, "frames", "LIST",
-     "render frames, as 1-100, 1-100x2 or 1,5,9; %d, %04d and #### in names of\nfiles, SCENE too, are the frame's "
-     "number"},
+     "render frames, as 1-100, 1-100x2 or 1,5,9; %d, %04d and #### in names of\nfiles, SCENE too, and in -D's values are "
+     "the frame's number"},
     {OPT_NO_CLOBBER, "no-clobber", NULL, "skip pictures that are there already, and complete"},
     {OPT_CHECKPOINT, "checkpoint", "SECONDS",
      "write down what there is so often, and at a signal, to OUTFILE.afterglow-checkpoint"},
@@ -278,6 +282,31 @@ static bool parse_word(const char *text, const char *const *words, int count, in
 #define WORDS(...)                                                                                                     \
     (const char *const[]){__VA_ARGS__}, (int)(sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
 
+/* "NAME=VALUE"; of two with one name the last counts. Out of memory is told as not valid. */
+static bool take_definition(const char *text, options *o)
+{
+    size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"), i = 0;
+    if (text[length] != '=' || length == 0 || (text[0] >= '0' && text[0] <= '9'))
+        return false;
+    ag_definition *larger = realloc(o->definitions, (o->definition_count + 1) * sizeof *larger);
+    char *name = strndup(text, length), *value = strdup(text + length + 1);
+    if (larger)
+        o->definitions = larger;
+    if (!larger || !name || !value) {
+        free(name);
+        free(value);
+        return false;
+    }
+    while (i < o->definition_count && strcmp(o->definitions[i].name, name) != 0)
+        i++;
+    if (i == o->definition_count)
+        o->definition_count++;
+    else
+        options_free_definition(&o->definitions[i]);
+    o->definitions[i] = (ag_definition){.name = name, .value = value};
+    return true;
+}
+
 /* One option; false when its argument is not valid. */
 static bool take_option(int code, const char *value, options *o)
 {
@@ -286,6 +315,7 @@ static bool take_option(int code, const char *value, options *o)
     bool is_valid = true;
     switch (code) {
     case 'o': o->outfiles[o->outfile_count++] = value; break;
+    case 'D': is_valid = take_definition(value, o); break;
     case 't': {
         int threads;
         is_valid = parse_int(value, 1, 4096, &threads);
@@ -508,7 +538,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
     }
     options_result result = OPTIONS_RUN;
     int code;
-    while (result == OPTIONS_RUN && (code = getopt_long(argc, argv, "o:t:qv", longs, NULL)) != -1) {
+    while (result == OPTIONS_RUN && (code = getopt_long(argc, argv, "o:D:t:qv", longs, NULL)) != -1) {
         if (code == '?') {
             result = OPTIONS_EXIT_USAGE; /* getopt has said what is wrong */
         } else if (code == OPT_HELP) {
@@ -549,8 +579,17 @@ options_result options_parse(int argc, char **argv, options *out_options)
     return OPTIONS_RUN;
 }
 
+void options_free_definition(ag_definition *definition)
+{
+    free((void *)(uintptr_t)definition->name);
+    free((void *)(uintptr_t)definition->value);
+}
+
 void options_reset(options *o)
 {
+    for (size_t i = 0; i < o->definition_count; i++)
+        options_free_definition(&o->definitions[i]);
+    free(o->definitions);
     free(o->outfiles);
     frames_reset(&o->frames);
     free(o->command_line);

@@ -28,6 +28,8 @@ typedef struct options {
     bool lists_displays;       /* there is no scene then */
     double checkpoint_seconds; /* 0: none but at signals, where resume is asked for */
     bool resume, preview, no_clobber;
+    ag_definition *definitions; /* owned, as are its strings */
+    size_t definition_count;
     frame_list frames;          /* none: one picture, whose names are as they stand */
     int tile_index, tile_count; /* from 1 on; 0: the whole */
     double time_limit, begun;   /* s, 0: none; from when it counts, see passes_seconds */
@@ -45,6 +47,7 @@ typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE }
 /* Prints help or version to standard output, mistakes to standard error. */
 options_result options_parse(int argc, char **argv, options *out_options);
 void options_reset(options *o);
+void options_free_definition(ag_definition *definition); /* its strings */
 
 /* Puts what was given on the command line over the scene's settings. False where the picture has fewer rows than
  * tiles. */

@@ -3,6 +3,11 @@
 #include "fuzz_scene.h"
 #include "pbrt_parser.h"
 
+#include <string.h>
+
+/* What stands for $a, $b, $c. */
+static const definition GIVEN[] = {{"a", "1", false, false}, {"b", "[ 0.5 2", false, false}, {"c", "x\"", true, false}};
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz_enter_folder_with_files();
@@ -10,6 +15,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_run_init(&run);
     scene *s = scene_create();
     FUZZ_CHECK(s);
+    definition items[3];
+    memcpy(items, GIVEN, sizeof items);
+    const definitions given = {items, 3};
+    s->definitions = &given;
     ag_status status = pbrt_parse_text(&run.context, "t", (const char *)data, size, s);
     fuzz_check_said(&run, status);
     if (status == AG_OK)

@@ -62,6 +62,19 @@ typedef struct ag_scene ag_scene;
  * (.stl, .dae, .fbx, ...), for which a process is started; all else is pbrt-v4 text (plain or gzip; "-" is standard
  * input). A camera and light are made up where a model brings none. */
 AG_API ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_scene);
+
+/* A value that a scene leaves open: pbrt text may say $name or ${name}, in strings or alone, or ${name:-otherwise}. */
+typedef struct ag_definition {
+    const char *name;  /* letters, digits and _, no digit first */
+    const char *value; /* text, not looked through for further names: a number, several, a part of a file's name */
+    bool is_optional;  /* that the scene does not use it is no error */
+} ag_definition;
+
+/* The same with values for names; each name once. A name of the scene that has no value is an error at its place; but
+ * where all that is defined is optional, strings with a $ in them stay as they are. Errors also: AG_ERROR_ARGUMENT (a
+ * name is not valid or given twice, or the scene does not use it; the log says which). */
+AG_API ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_definition *definitions,
+                                    size_t definition_count, ag_scene **out_scene);
 AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
 
 /* The Film directive's "filename", NULL where there is none. Lives as long as the scene. */
