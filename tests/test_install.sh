@@ -42,63 +42,41 @@ library=$(readlink -f "$library_folder/libafterglow.so")
 soname=$(readelf -d "$library" | sed -nE 's/.*SONAME.*\[(.*)\]/\1/p')
 [[ $soname =~ ^libafterglow\.so\.[0-9]+$ && -e $library_folder/$soname ]] || fail "soname is '$soname'"
 
-cat >use.c <<'SOURCE'
-#include <afterglow/afterglow.h>
-
-#include <stdio.h>
-
-static void say(void *user, ag_log_level level, const char *message)
-{
-    (void)user;
-    if (level <= AG_LOG_WARNING)
-        fprintf(stderr, "%s\n", message);
-}
-
-int main(void)
-{
-    ag_context_settings settings = ag_default_context_settings();
-    settings.log = say;
-    ag_context *context = NULL;
-    ag_scene *scene = NULL;
-    ag_film *film = NULL;
-    ag_render_settings render;
-    ag_status status = ag_context_create(&settings, &context);
-    if (status == AG_OK)
-        status = ag_scene_load(context, "room.pbrt", &scene);
-    if (status == AG_OK)
-        status = ag_render_settings_from_scene(context, scene, &render);
-    if (status == AG_OK) {
-        render.photon_count = 1000;
-        status = ag_render(context, scene, &render, &film);
-    }
-    if (status == AG_OK)
-        status = ag_film_write(context, film, NULL, "from_c.exr");
-    ag_film_destroy(film);
-    ag_scene_destroy(scene);
-    ag_context_destroy(context);
-    printf("%s %s\n", ag_status_text(status), ag_version());
-    return status != AG_OK;
-}
-SOURCE
-cat >use.cpp <<'SOURCE'
-#include <afterglow/afterglow.h>
-
-#include <iostream>
-
-int main()
-{
-    ag_context *context = nullptr;
-    const ag_status status = ag_context_create(nullptr, &context);
-    std::cout << ag_status_text(status) << ' ' << ag_version() << '\n';
-    ag_context_destroy(context);
-    return status != AG_OK;
-}
-SOURCE
-"$CC" -std=c17 -Wall -Wextra -pedantic -Werror use.c -o use_c "${flags[@]}"
-"$CXX" -std=c++17 -Wall -Wextra -pedantic -Werror use.cpp -o use_cpp "${flags[@]}"
+# The example, as a user in C and as one in C++ compile it.
+example=$(find "$prefix" -name render_scene.c)
+[[ -s $example ]] || fail "no example"
+cp "$example" use.c
+cp "$example" use.cpp
+warnings=(-Wall -Wextra -Wshadow -Wconversion -pedantic -Werror)
+"$CC" -std=c17 "${warnings[@]}" use.c -o use_c "${flags[@]}"
+"$CXX" -std=c++17 "${warnings[@]}" use.cpp -o use_cpp "${flags[@]}"
+export LD_LIBRARY_PATH=$library_folder
+sed 's/\[0.5 0.5 0.5\]/[$rho $rho $rho]/; s/"float fov" 90/&  Integrator "photonmap" "integer indirectphotons" 1000/' room.pbrt >open.pbrt
 for user in use_c use_cpp; do
-    said=$(LD_LIBRARY_PATH=$library_folder ./$user)
-    [[ "afterglow ${said#success }" == "$(<version)" ]] || fail "$user says: $said"
+    ./$user open.pbrt $user.png rho=0.5 >said 2>told || fail "$user: $(<told)"
+    grep -Eqx "$user.png: 16 x 12, [0-9.]+ [0-9.]+ [0-9.]+ in the middle, [0-9]+ irradiances" said || fail "$user says: $(<said)"
+    [[ $(od -An -tx1 -N4 $user.png | tr -d ' ') == 89504e47 ]] || fail "$user wrote no PNG file"
+    for phase in load bvh photons map render write; do
+        tr '\r' '\n' <told | grep -Eqx "$phase +100 %" || fail "$user did not tell the end of $phase: $(<told)"
+    done
     echo "ok: $user"
 done
-[[ -s from_c.exr ]] || fail "the C program wrote no picture"
+cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
+
+./use_c open.pbrt no.png 2>told && fail "a scene with a name left open was rendered"
+grep -q 'open.pbrt:.*\$rho has no value' told || fail "of the name it says: $(<told)"
+./use_c nothing.pbrt no.png 2>told && fail "a scene that is not there was rendered"
+grep -q 'error: nothing.pbrt' told || fail "of the scene it says: $(<told)"
+# Ctrl-C while it renders.
+sed 's/"integer xresolution" 16 "integer yresolution" 12/"integer xresolution" 4096 "integer yresolution" 4096/' room.pbrt >large.pbrt
+./use_c large.pbrt no.png 2>told &
+user=$!
+until tr '\r' '\n' <told | grep -q '^render'; do
+    kill -0 $user 2>/dev/null || fail "it ended: $(<told)"
+    sleep 0.05
+done
+kill -INT $user
+wait $user && fail "it was cancelled, and says it succeeded"
+tr '\r' '\n' <told | grep -Eqx 'cancelled *' || fail "cancelled, it says: $(<told)"
+[[ ! -e no.png ]] || fail "it has left a picture"
+echo "ok: mistakes and Ctrl-C"
