@@ -18,8 +18,8 @@ ag_status context_color_config(ag_context *context, const color_config **out_con
     if (*out_config)
         return AG_OK;
     color_config *config;
-    ag_status status =
-        color_config_create(context->color_config_path, context->working_space_name, message, sizeof message, &config);
+    ag_status status = color_config_create(context->color_config_path, context->working_space_name, context->log,
+                                           message, sizeof message, &config);
     if (status != AG_OK) {
         log_message(context->log, AG_LOG_ERROR, "%s", message);
         return status;

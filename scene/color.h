@@ -14,16 +14,19 @@
 extern "C" {
 #endif
 
+struct log_sink;
+
 typedef struct color_config color_config;
 typedef struct color_processor color_processor;
 
 /* The order: path (NULL: none) > $OCIO > the config compiled in. A config that is named but cannot be used is an error,
  * with OpenColorIO's own text; there is no silent fallback. working_space: the colour space that light is carried in,
  * by name, alias or role; NULL: the config's role rendering, else scene_linear, else linear Rec. 709 by its known
- * names. Errors: AG_ERROR_COLOR (also: the working space is unknown or not linear), AG_ERROR_MEMORY; the text goes to
- * message (always terminated). */
-ag_status color_config_create(const char *path, const char *working_space, char *message, size_t message_size,
-                              color_config **out_config);
+ * names. log: what OpenColorIO itself says meanwhile, and whenever the config or a processor of it is at work, each
+ * thing once; borrowed for as long as these live; NULL: it is dropped. Errors: AG_ERROR_COLOR (also: the working space
+ * is unknown or not linear), AG_ERROR_MEMORY; the text goes to message (always terminated). */
+ag_status color_config_create(const char *path, const char *working_space, struct log_sink *log, char *message,
+                              size_t message_size, color_config **out_config);
 /* The config compiled in, whatever $OCIO says: what a scene file means by its encodings. Errors: as above. */
 ag_status color_config_create_builtin(char *message, size_t message_size, color_config **out_config);
 void color_config_destroy(color_config *config); /* NULL is fine */

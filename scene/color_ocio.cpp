@@ -127,8 +127,8 @@ OCIO::ConstConfigRcPtr builtin_config()
 
 /* Makes a config of what load gives, under the name that load puts into it. */
 template <typename Load>
-ag_status create_config(const char *working_space, char *message, size_t message_size, color_config **out_config,
-                        Load &&load) noexcept
+ag_status create_config(const char *working_space, struct log_sink *log, char *message, size_t message_size,
+                        color_config **out_config, Load &&load) noexcept
 {
     *out_config = nullptr;
     color_config *self = new (std::nothrow) color_config();
@@ -136,7 +136,8 @@ ag_status create_config(const char *working_space, char *message, size_t message
         put_message(message, message_size, ag_status_text(AG_ERROR_MEMORY));
         return AG_ERROR_MEMORY;
     }
-    const ag_status status = guarded(message, message_size, [self, working_space, &load] {
+    self->log = log;
+    const ag_status status = guarded(log, message, message_size, [self, working_space, &load] {
         load(*self);
         if (self->config->getName()[0] != '\0')
             self->name = self->config->getName();
@@ -154,10 +155,10 @@ ag_status create_config(const char *working_space, char *message, size_t message
 
 } // namespace
 
-extern "C" ag_status color_config_create(const char *path, const char *working_space, char *message,
-                                         size_t message_size, color_config **out_config)
+extern "C" ag_status color_config_create(const char *path, const char *working_space, struct log_sink *log,
+                                         char *message, size_t message_size, color_config **out_config)
 {
-    return create_config(working_space, message, message_size, out_config, [path](color_config &self) {
+    return create_config(working_space, log, message, message_size, out_config, [path](color_config &self) {
         const char *environment = std::getenv("OCIO");
         if (path) {
             self.config = config_from_file(path, "given");
@@ -174,7 +175,7 @@ extern "C" ag_status color_config_create(const char *path, const char *working_s
 
 extern "C" ag_status color_config_create_builtin(char *message, size_t message_size, color_config **out_config)
 {
-    return create_config(nullptr, message, message_size, out_config, [](color_config &self) {
+    return create_config(nullptr, nullptr, message, message_size, out_config, [](color_config &self) {
         self.config = builtin_config();
         self.name = "built-in";
     });

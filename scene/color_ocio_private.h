@@ -1,7 +1,7 @@
 /* color_ocio_private.h: what the files that know OpenColorIO share: color_ocio.cpp (configs), color_space_ocio.cpp
- * (what a config has, by its names), color_cycle_ocio.cpp (what would not end) and color_view_ocio.cpp (ways from space
- * to space, and to displays). Its exceptions end in guarded. Threads: see color.h; OpenColorIO's const objects may be
- * shared. */
+ * (what a config has, by its names), color_cycle_ocio.cpp (what would not end), color_log_ocio.cpp (what OpenColorIO
+ * says) and color_view_ocio.cpp (ways from space to space, and to displays). Its exceptions end in guarded. Threads:
+ * see color.h; OpenColorIO's const objects may be shared. */
 #ifndef AFTERGLOW_COLOR_OCIO_PRIVATE_H
 #define AFTERGLOW_COLOR_OCIO_PRIVATE_H
 
@@ -17,6 +17,7 @@
 namespace OCIO = OCIO_NAMESPACE;
 
 struct color_config {
+    struct log_sink *log; /* may be nullptr */
     OCIO::ConstConfigRcPtr config;
     std::string name;
     std::string hash;
@@ -31,10 +32,28 @@ namespace ag_color
 /* Cut where it does not fit, and always terminated. */
 void put_message(char *message, size_t message_size, const char *text) noexcept;
 
+/* --- color_log_ocio.cpp --- */
+
+/* For as long as it lives, what OpenColorIO says on this thread goes to a log; nullptr: it is dropped. */
+class listening
+{
+  public:
+    explicit listening(struct log_sink *log) noexcept;
+    ~listening();
+    listening(const listening &) = delete;
+    listening &operator=(const listening &) = delete;
+
+  private:
+    const listening *outer;
+    struct log_sink *log;
+    static void hear(const char *text);
+};
+
 /* Runs work and is the one place where an exception becomes a status. */
 template <typename Work>
-ag_status guarded(char *message, size_t message_size, Work &&work) noexcept
+ag_status guarded(struct log_sink *log, char *message, size_t message_size, Work &&work) noexcept
 {
+    const listening listens(log);
     try {
         put_message(message, message_size, "");
         work();

@@ -129,7 +129,7 @@ extern "C" ag_status color_config_describe(const color_config *config, char *mes
                                            char **out_text)
 {
     *out_text = nullptr;
-    return guarded(message, message_size, [config, out_text] {
+    return guarded(config->log, message, message_size, [config, out_text] {
         *out_text = strdup(described(config).c_str());
         if (!*out_text)
             throw std::bad_alloc();
@@ -140,14 +140,15 @@ extern "C" const char *color_config_find_space(const color_config *config, const
                                                size_t message_size)
 {
     const char *found = nullptr;
-    guarded(message, message_size, [config, name, &found] { found = space_of(config->config, name)->getName(); });
+    guarded(config->log, message, message_size,
+            [config, name, &found] { found = space_of(config->config, name)->getName(); });
     return found;
 }
 
 extern "C" const char *color_config_rule(const color_config *config, const char *path)
 {
     const char *found = nullptr;
-    guarded(nullptr, 0, [config, path, &found] {
+    guarded(config->log, nullptr, 0, [config, path, &found] {
         const OCIO::ConstConfigRcPtr &ocio = config->config;
         if (!ocio->filepathOnlyMatchesDefaultRule(path))
             found = space_of(ocio, ocio->getColorSpaceFromFilepath(path))->getName();

@@ -8,6 +8,7 @@
 #include <strings.h>
 
 struct color_processor {
+    struct log_sink *log; /* the config's */
     OCIO::ConstCPUProcessorRcPtr cpu;
     float factor; /* of the values that go in */
 };
@@ -143,7 +144,8 @@ bool find_srgb_matrix(const OCIO::ConstCPUProcessorRcPtr &cpu, double out_matrix
 
 /* Makes a processor of what the work puts into it. */
 template <typename Work>
-ag_status create_processor(char *message, size_t message_size, color_processor **out_processor, Work &&work) noexcept
+ag_status create_processor(const color_config *config, char *message, size_t message_size,
+                           color_processor **out_processor, Work &&work) noexcept
 {
     *out_processor = nullptr;
     color_processor *self = new (std::nothrow) color_processor();
@@ -151,7 +153,8 @@ ag_status create_processor(char *message, size_t message_size, color_processor *
         put_message(message, message_size, ag_status_text(AG_ERROR_MEMORY));
         return AG_ERROR_MEMORY;
     }
-    const ag_status status = guarded(message, message_size, [self, &work] { work(*self); });
+    self->log = config->log;
+    const ag_status status = guarded(self->log, message, message_size, [self, &work] { work(*self); });
     if (status == AG_OK)
         *out_processor = self;
     else
@@ -164,7 +167,7 @@ ag_status create_processor(char *message, size_t message_size, color_processor *
 extern "C" ag_status color_config_study_space(const color_config *config, const char *space, char *message,
                                               size_t message_size, color_curve *out_curve, double out_matrix[9])
 {
-    return guarded(message, message_size, [config, space, out_curve, out_matrix] {
+    return guarded(config->log, message, message_size, [config, space, out_curve, out_matrix] {
         const OCIO::ConstColorSpaceRcPtr from = space_of(config->config, space);
         *out_curve = COLOR_CURVE_DATA;
         set_unit_matrix(out_matrix);
@@ -183,7 +186,7 @@ extern "C" ag_status color_config_study_space(const color_config *config, const 
 extern "C" ag_status color_processor_create(const color_config *config, const color_view *view, char *message,
                                             size_t message_size, color_processor **out_processor)
 {
-    return create_processor(message, message_size, out_processor, [config, view](color_processor &self) {
+    return create_processor(config, message, message_size, out_processor, [config, view](color_processor &self) {
         self.cpu = display_processor(config, *view)->getDefaultCPUProcessor();
         self.factor = std::exp2(view->exposure);
     });
@@ -192,7 +195,7 @@ extern "C" ag_status color_processor_create(const color_config *config, const co
 extern "C" ag_status color_decoder_create(const color_config *config, const char *space, char *message,
                                           size_t message_size, color_processor **out_processor)
 {
-    return create_processor(message, message_size, out_processor, [config, space](color_processor &self) {
+    return create_processor(config, message, message_size, out_processor, [config, space](color_processor &self) {
         const OCIO::ConstColorSpaceRcPtr from = space_of(config->config, space);
         self.cpu = exact_processor(config->config, space_transform(from->getName(), config->working_space));
         self.factor = 1.0f;
@@ -202,7 +205,7 @@ extern "C" ag_status color_decoder_create(const color_config *config, const char
 extern "C" ag_status color_encoder_create(const color_config *config, const char *space, char *message,
                                           size_t message_size, color_processor **out_processor)
 {
-    return create_processor(message, message_size, out_processor, [config, space](color_processor &self) {
+    return create_processor(config, message, message_size, out_processor, [config, space](color_processor &self) {
         const OCIO::ConstColorSpaceRcPtr to = space_of(config->config, space);
         self.cpu = exact_processor(config->config, space_transform(config->working_space, to->getName()));
         self.factor = 1.0f;
@@ -214,7 +217,7 @@ extern "C" void color_processor_destroy(color_processor *processor) { delete pro
 extern "C" ag_status color_processor_apply(const color_processor *processor, float *rgb_pixels, size_t count,
                                            char *message, size_t message_size)
 {
-    return guarded(message, message_size, [processor, rgb_pixels, count] {
+    return guarded(processor->log, message, message_size, [processor, rgb_pixels, count] {
         /* By way of RGBA: packed RGB OpenColorIO would copy there and back itself, at twice the price of a curve. */
         const size_t row_size = 1024;
         const float factor = processor->factor;

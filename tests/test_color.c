@@ -40,7 +40,7 @@ static void write_scaling_config(const char *name, double factor)
 static color_config *open_config(const char *path)
 {
     color_config *config = NULL;
-    const ag_status status = color_config_create(path, NULL, message, sizeof message, &config);
+    const ag_status status = color_config_create(path, NULL, NULL, message, sizeof message, &config);
     if (status != AG_OK)
         print_error("%s\n", message);
     assert_int_equal(status, AG_OK);
@@ -163,7 +163,7 @@ static void path_beats_environment_beats_builtin(void **state)
 static void expect_bad_config(const char *path, const char *text, const char *more_text)
 {
     color_config *config = (color_config *)(void *)message;
-    assert_int_equal(color_config_create(path, NULL, message, sizeof message, &config), AG_ERROR_COLOR);
+    assert_int_equal(color_config_create(path, NULL, NULL, message, sizeof message, &config), AG_ERROR_COLOR);
     assert_null(config);
     assert_non_null(strstr(message, text));
     assert_non_null(strstr(message, more_text));
@@ -195,7 +195,7 @@ static void bad_configs_say_why(void **state)
     /* The message is cut, not overrun. */
     char small[8];
     color_config *config;
-    assert_int_equal(color_config_create(path, NULL, small, sizeof small, &config), AG_ERROR_COLOR);
+    assert_int_equal(color_config_create(path, NULL, NULL, small, sizeof small, &config), AG_ERROR_COLOR);
     assert_int_equal(strlen(small), sizeof small - 1);
 }
 
@@ -226,10 +226,12 @@ static void unknown_names_list_the_known(void **state)
     color_config_destroy(config);
 
     color_config *none = NULL;
-    expect_failure(color_config_create(NULL, "ACEScq", message, sizeof message, &none), AG_ERROR_COLOR, "'ACEScq'");
+    expect_failure(color_config_create(NULL, "ACEScq", NULL, message, sizeof message, &none), AG_ERROR_COLOR,
+                   "'ACEScq'");
     assert_non_null(strstr(message, "'ACEScg'"));
-    expect_failure(color_config_create(NULL, "Raw", message, sizeof message, &none), AG_ERROR_COLOR, "data");
-    expect_failure(color_config_create(NULL, "ACEScct", message, sizeof message, &none), AG_ERROR_COLOR, "not linear");
+    expect_failure(color_config_create(NULL, "Raw", NULL, message, sizeof message, &none), AG_ERROR_COLOR, "data");
+    expect_failure(color_config_create(NULL, "ACEScct", NULL, message, sizeof message, &none), AG_ERROR_COLOR,
+                   "not linear");
     assert_null(none);
 }
 
@@ -319,7 +321,7 @@ static void working_space_by_name(void **state)
     (void)state;
     color_config *config = NULL;
     double m[9];
-    assert_int_equal(color_config_create(NULL, "lin_ap1", message, sizeof message, &config), AG_OK);
+    assert_int_equal(color_config_create(NULL, "lin_ap1", NULL, message, sizeof message, &config), AG_OK);
     assert_string_equal(color_config_working_space(config), "ACEScg");
     assert_true(color_config_from_rec709(config, m));
     assert_near(m[0], 0.613097, 2e-6);

@@ -109,7 +109,7 @@ static void check_config(const char *config_path, const char *look, const char *
     char command[16384], path[256];
     color_config *config;
     snprintf(path, sizeof path, "%s", config_path); /* in_folder's do not last */
-    if (color_config_create(path, NULL, message, sizeof message, &config) != AG_OK)
+    if (color_config_create(path, NULL, NULL, message, sizeof message, &config) != AG_OK)
         fail_msg("%s", message);
     const char *space = color_config_working_space(config);
     int count = read_views(config, views);

@@ -29,7 +29,7 @@ static const char *scene_of(const char *world)
 static void acescg_matrix(double m[9])
 {
     color_config *config;
-    assert_int_equal(color_config_create(ACES, NULL, message, sizeof message, &config), AG_OK);
+    assert_int_equal(color_config_create(ACES, NULL, NULL, message, sizeof message, &config), AG_OK);
     assert_true(color_config_from_rec709(config, m));
     color_config_destroy(config);
     assert_true(fabs(m[0] - 0.613097) < 2e-6 && fabs(m[4] - 0.916354) < 2e-6 && fabs(m[8] - 0.869815) < 2e-6);
@@ -454,9 +454,42 @@ static void configs_and_their_listing(void **state)
     free(whole);
 }
 
+static int occurrences(const char *text, const char *part)
+{
+    int count = 0;
+    for (const char *at = strstr(text, part); at; at = strstr(at + 1, part))
+        count++;
+    return count;
+}
+
+/* What OpenColorIO has to say is said as all else is: once, by level, and not at all where the program is to be quiet.
+ */
+static void what_the_library_says(void **state)
+{
+    (void)state;
+    size_t size;
+    char *text = (char *)read_bytes(ACES, &size), *more = malloc(size + 100);
+    assert_non_null(more);
+    sprintf(more, "%s\nmystery: 3\n", text);
+    write_text("odd.ocio", more);
+    free(text);
+    free(more);
+#define ODD "--size=8x8", "--spp=1", "--integrator=path", "--ocio=odd.ocio", "-o", "a.exr", "-o", "a.png", "-o", "b.png"
+    program_run run = RUN("-q", ODD, PROGRAM_SCENES "floor.pbrt");
+    expect_exit(&run, 0);
+    assert_string_equal(run.err, "");
+    program_run_reset(&run);
+    run = RUN("--progress=off", ODD, PROGRAM_SCENES "floor.pbrt");
+    expect_exit(&run, 0);
+    expect_said(&run, "afterglow: warning: OpenColorIO: Unknown key in profile: 'mystery'.\n");
+    assert_int_equal(occurrences(run.err, "OpenColorIO"), 1);
+    program_run_reset(&run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(what_the_library_says),
         TEST_IN_FOLDER(colors_of_the_scene),
         TEST_IN_FOLDER(metals_and_media),
         TEST_IN_FOLDER(grey_furnace),

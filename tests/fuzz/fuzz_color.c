@@ -22,7 +22,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     color_processor *processor;
     fuzz_enter_folder();
     fuzz_write("c.ocio", data, size);
-    if (color_config_create("c.ocio", NULL, message, sizeof message, &config) != AG_OK) {
+    if (color_config_create("c.ocio", NULL, NULL, message, sizeof message, &config) != AG_OK) {
         FUZZ_CHECK(message[0] != '\0' && !config);
         return 0;
     }
