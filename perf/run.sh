@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run.sh: the whole benchmark: microbenchmarks, gather rays against Embree's, forty rooms, thread scaling by phase,
+# run.sh: the whole benchmark: microbenchmarks, gather rays and whole frames against Embree's, forty rooms, thread scaling by phase,
 # scale, contention, memory, error against time. One page of report, tables by machine, and a verdict.
 # Use: perf/run.sh [--quick] [--repeats N] [--out DIR] [--results DIR] [--parts LIST] [--report-only] [--all-rooms]
 # Exit code 1 when a bound of README.md's table is not met, or a part fails; which one, is named.
@@ -9,13 +9,13 @@ set -euo pipefail
 
 suite_begin run "usage: perf/run.sh [options]
 All benchmarks, one report, judged by the table of perf/README.md. Hours; with --quick minutes.
-  --parts L      of micro, photon_making, gather_rays, forty_rooms, thread_scaling, scale, contention, memory,
-                 error_against_time (all; with --quick the last five)
+  --parts L      of micro, photon_making, gather_rays, frame, forty_rooms, thread_scaling, scale, contention,
+                 memory, error_against_time (all; with --quick the last five, and frame)
   --results DIR  where tables, figures and report go (perf/results/MACHINE; with --quick: report/ in the folder of --out)
   --report-only  measure nothing: report and verdict of what is in the folder of --out
   --all-rooms    all forty rooms (rooms 1, 10, 20, 30, 33, 40)" "$@"
-parts=micro,photon_making,gather_rays,forty_rooms,thread_scaling,scale,contention,memory,error_against_time
-[[ $quick == yes ]] && parts=thread_scaling,scale,contention,memory,error_against_time
+parts=micro,photon_making,gather_rays,frame,forty_rooms,thread_scaling,scale,contention,memory,error_against_time
+[[ $quick == yes ]] && parts=frame,thread_scaling,scale,contention,memory,error_against_time
 rooms=1,10,20,30,33,40 results='' report_only=no
 while ((${#suite_rest[@]} > 0)); do
     case ${suite_rest[0]} in
@@ -103,7 +103,7 @@ for part in ${parts//,/ }; do
     case $part in
     micro | forty_rooms) "run_$part" || failures+=("$part failed") ;;
     photon_making | gather_rays) run_rows "$part" || failures+=("$part failed") ;;
-    thread_scaling | scale | contention | memory | error_against_time)
+    frame | thread_scaling | scale | contention | memory | error_against_time)
         "$suite_root/perf/$part.sh" "${options[@]}" --out "$out/$part" >"$out/$part.txt" || failures+=("$part failed")
         ;;
     *) suite_fail "--parts does not know '$part'" ;;
@@ -181,6 +181,7 @@ section() { # TITLE PART TABLE... : tables and figures are copied beside the rep
     section "Photon map against nanoflann" micro micro.csv
     section "Making the photon map" photon_making photon_making.csv
     section "Gather rays against Embree's" gather_rays gather_rays.csv
+    section "A whole frame against Embree's rays" frame frame.csv
     section "Forty rooms" forty_rooms forty_rooms.csv
     section "Threads, by phase" thread_scaling scaling.csv waiting.csv arithmetic.csv
     section "Growth" scale exponents.csv scale.csv

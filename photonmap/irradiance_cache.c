@@ -83,7 +83,7 @@ static uint32_t claimer_of(const irradiance_cache *cache, unsigned worker_index)
 /* Computes and publishes what the worker has claimed; gives the slot's word. */
 static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker_index)
 {
-    photon_block *blocks = cache->map->blocks;
+    photon_block *blocks = cache->map->bearers.blocks;
     rgb irradiance = estimate(cache, photon_block_position(blocks, index),
                               direction_decode(photon_block_normal(blocks, index)), worker_index);
     uint32_t value = photon_map_encode_irradiance(cache->map, irradiance, index);
@@ -98,7 +98,7 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker
  * over. */
 static uint32_t await(irradiance_cache *cache, uint32_t index, unsigned worker_index)
 {
-    irradiance_slot *slot = photon_block_slot(cache->map->blocks, index);
+    irradiance_slot *slot = photon_map_slot(cache->map, index);
     claim_wait wait = {0};
     uint32_t word = irradiance_slot_read(slot);
     while (irradiance_word_state(word) != IRRADIANCE_READY) {
@@ -126,8 +126,7 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
     irradiance_cache *cache = job->cache;
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++) {
         uint32_t word;
-        if (irradiance_slot_try_claim(photon_block_slot(cache->map->blocks, (uint32_t)i),
-                                      claimer_of(cache, worker_index), &word))
+        if (irradiance_slot_try_claim(photon_map_slot(cache->map, (uint32_t)i), claimer_of(cache, worker_index), &word))
             compute(cache, (uint32_t)i, worker_index);
     }
     /* what other processes are at, or have left: nothing is held here */
@@ -138,15 +137,15 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
 ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run)
 {
     precompute_job job = {cache, run};
-    ag_status status = parallel_for(run, cache->map->set.count, PRECOMPUTE_BLOCK, precompute_block, &job,
+    ag_status status = parallel_for(run, cache->map->bearers.count, PRECOMPUTE_BLOCK, precompute_block, &job,
                                     AG_PHASE_PRECOMPUTE, 0.0, 1.0);
     return status == AG_OK && run_is_cancelled(run) ? AG_CANCELLED : status;
 }
 
 void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words)
 {
-    for (uint32_t i = 0; i < cache->map->set.count; i++) {
-        uint32_t word = irradiance_slot_read(photon_block_slot(cache->map->blocks, i));
+    for (uint32_t i = 0; i < cache->map->bearers.count; i++) {
+        uint32_t word = irradiance_slot_read(photon_map_slot(cache->map, i));
         out_words[i] = irradiance_word_state(word) == IRRADIANCE_READY ? word : 0;
     }
 }
@@ -154,9 +153,9 @@ void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words)
 void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
 {
     uint64_t distinct = irradiance_cache_distinct(cache);
-    for (uint32_t i = 0; i < cache->map->set.count; i++) {
+    for (uint32_t i = 0; i < cache->map->bearers.count; i++) {
         uint32_t found;
-        irradiance_slot *slot = photon_block_slot(cache->map->blocks, i);
+        irradiance_slot *slot = photon_map_slot(cache->map, i);
         if (irradiance_word_state(words[i]) == IRRADIANCE_READY &&
             irradiance_slot_try_claim(slot, claimer_of(cache, 0), &found))
             irradiance_slot_publish(slot, claimer_of(cache, 0), words[i] & IRRADIANCE_VALUE_MASK);
@@ -166,7 +165,7 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
 
 static void fulfil(const irradiance_cache *cache, uint32_t word, irradiance_request *request)
 {
-    request->photon = PHOTON_NONE;
+    request->bearer = PHOTON_NONE;
     request->irradiance = photon_map_decode_irradiance(cache->map, word & IRRADIANCE_VALUE_MASK);
 }
 
@@ -176,12 +175,12 @@ static void ask(irradiance_cache *cache, uint32_t index, vec3 position, vec3 nor
 {
     irradiance_counters *counters = &cache->counters[worker_index];
     counters->requests++;
-    out_request->photon = PHOTON_NONE;
+    out_request->bearer = PHOTON_NONE;
     if (index == PHOTON_NONE) {
         out_request->irradiance = irradiance_cache_estimate(cache, position, normal, worker_index);
         return;
     }
-    irradiance_slot *slot = photon_block_slot(cache->map->blocks, index);
+    irradiance_slot *slot = photon_map_slot(cache->map, index);
     uint32_t word = irradiance_slot_read(slot);
     if (irradiance_word_state(word) == IRRADIANCE_EMPTY &&
         irradiance_slot_try_claim(slot, claimer_of(cache, worker_index), &word))
@@ -191,7 +190,7 @@ static void ask(irradiance_cache *cache, uint32_t index, vec3 position, vec3 nor
         return;
     }
     counters->deferred++;
-    out_request->photon = index;
+    out_request->bearer = index;
     out_request->irradiance = rgb_gray(0.0f);
 }
 
@@ -211,7 +210,7 @@ static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch
     uint64_t *from = scratch->order[0], *to = scratch->order[1];
     for (uint32_t i = 0; i < count; i++)
         from[i] = (uint64_t)photon_map_place(map, queries[i].position) << 32 | i;
-    for (uint32_t shift = 32; shift < 32 + map->tree.depth; shift += DIGIT_BITS) {
+    for (uint32_t shift = 32; shift < 32 + map->bearers.depth; shift += DIGIT_BITS) {
         uint32_t begin[DIGITS] = {0}, sum = 0;
         for (uint32_t i = 0; i < count; i++)
             begin[from[i] >> shift & (DIGITS - 1)]++;
@@ -236,10 +235,10 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
     const photon_map *map = cache->map;
     irradiance_scratch *scratch = &cache->scratch[worker_index];
     uint64_t *order = put_in_order(map, scratch, queries, count);
-    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->set.count > 0;
+    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->bearers.count > 0;
     uint32_t waiting = 0;
     photon_walk walk;
-    photon_walk_init(&walk, &map->tree);
+    photon_walk_init(&walk, &map->bearers);
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = (uint32_t)order[k], index = PHOTON_NONE;
         const irradiance_query *q = &queries[i];
@@ -251,16 +250,16 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
             if (k + 2 * AHEAD < count)
                 __builtin_prefetch(&queries[(uint32_t)order[k + 2 * AHEAD]]);
             if (k + AHEAD < count)
-                photon_block_prefetch(&map->blocks[order[k + AHEAD] >> 32]);
+                photon_block_prefetch(&map->bearers.blocks[order[k + AHEAD] >> 32]);
             index = photon_map_nearest_at(map, &walk, (uint32_t)(order[k] >> 32), q->position, q->normal);
         }
         ask(cache, index, q->position, q->normal, worker_index, &request);
         out_irradiance[i] = request.irradiance;
-        if (request.photon != PHOTON_NONE) /* its place in the order is free by now */
-            order[waiting++] = (uint64_t)request.photon << 32 | i;
+        if (request.bearer != PHOTON_NONE) /* its place in the order is free by now */
+            order[waiting++] = (uint64_t)request.bearer << 32 | i;
     }
     for (uint32_t k = 0; k < waiting; k++) {
-        irradiance_request request = {.photon = (uint32_t)(order[k] >> 32)};
+        irradiance_request request = {.bearer = (uint32_t)(order[k] >> 32)};
         irradiance_cache_retry(cache, &request, worker_index);
         out_irradiance[(uint32_t)order[k]] = request.irradiance;
     }
@@ -268,11 +267,11 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
 
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index)
 {
-    uint32_t word = irradiance_slot_read(photon_block_slot(cache->map->blocks, request->photon));
+    uint32_t word = irradiance_slot_read(photon_map_slot(cache->map, request->bearer));
     if (irradiance_word_state(word) != IRRADIANCE_READY) {
         irradiance_counters *counters = &cache->counters[worker_index];
         double begin = clock_thread_cpu_seconds();
-        word = await(cache, request->photon, worker_index);
+        word = await(cache, request->bearer, worker_index);
         counters->waited++;
         counters->waited_seconds += clock_thread_cpu_seconds() - begin;
     }
@@ -314,8 +313,8 @@ double irradiance_counters_estimate_seconds(const irradiance_counters *counters)
 uint64_t irradiance_cache_distinct(const irradiance_cache *cache)
 {
     uint64_t ready = 0;
-    for (uint32_t i = 0; i < cache->map->set.count; i++)
-        ready += irradiance_word_state(irradiance_slot_read(photon_block_slot(cache->map->blocks, (uint32_t)i))) ==
-                 IRRADIANCE_READY;
+    for (uint32_t i = 0; i < cache->map->bearers.count; i++)
+        ready +=
+            irradiance_word_state(irradiance_slot_read(photon_map_slot(cache->map, (uint32_t)i))) == IRRADIANCE_READY;
     return ready - cache->ready_before;
 }

@@ -1,8 +1,8 @@
-/* irradiance_cache.h: the irradiance at a place, from the photon nearest to it, computed at most once per photon.
+/* irradiance_cache.h: the irradiance at a place, from the photon nearest to it that bears it, computed at most once.
  * Rests on: Neilson, Yang, TR 04-21, 2004 (on demand); Christensen 1999 (precomputed, and the nearest-photon lookup).
  * Flow: final gathering asks; the photon map's estimates answer. Threads: any number ask at once.
  *
- * A value is a pure function of the finished map and the photon's index, and all threads use what the slot's bits
+ * A value is a pure function of the finished map and the bearer's index, and all threads use what the slot's bits
  * decode to: so neither the mode nor who computed it, nor when, can reach the picture. */
 #ifndef AFTERGLOW_IRRADIANCE_CACHE_H
 #define AFTERGLOW_IRRADIANCE_CACHE_H
@@ -56,20 +56,20 @@ ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, u
 void irradiance_cache_share(irradiance_cache *cache, const claim_owners *owners);
 void irradiance_cache_reset(irradiance_cache *cache);
 
-/* Computes what is not ready yet, at every photon. Errors: AG_CANCELLED. */
+/* Computes what is not ready yet, at every bearer. Errors: AG_CANCELLED. */
 ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run);
 
-/* What is there already, a word for each photon, 0 where nothing is; and back into a cache over the same map, where it
+/* What is there already, a word for each bearer, 0 where nothing is; and back into a cache over the same map, where it
  * counts as ready before. Not while anybody asks. */
 void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words);
 void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words);
 
 typedef struct irradiance_request {
-    uint32_t photon; /* PHOTON_NONE: irradiance is there already */
+    uint32_t bearer; /* PHOTON_NONE: irradiance is there already */
     rgb irradiance;  /* W/m^2 */
 } irradiance_request;
 
-/* Asks for the irradiance at a place, on the side of the unit normal. Either it is there (request->photon is
+/* Asks for the irradiance at a place, on the side of the unit normal. Either it is there (request->bearer is
  * PHOTON_NONE), or another thread is computing it: then it is to be asked for again with irradiance_cache_retry, after
  * the caller's other work. */
 void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
@@ -100,7 +100,7 @@ irradiance_counters irradiance_cache_counters(const irradiance_cache *cache);
 /* CPU seconds spent in all estimates, from those whose time was taken. */
 double irradiance_counters_estimate_seconds(const irradiance_counters *counters);
 
-/* Photons whose slots are ready now, less those that were so at creation: counted by looking at them. Of a shared map,
+/* Bearers whose slots are ready now, less those that were so at creation: counted by looking at them. Of a shared map,
  * those too that other processes have made ready meanwhile. */
 uint64_t irradiance_cache_distinct(const irradiance_cache *cache);
 

@@ -18,16 +18,21 @@
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
 
 /* To be raised whenever the layout, or what photons or irradiances are, changes. */
-enum { LAYOUT_VERSION = 1 };
-enum { MAP_COUNT = 2, PAGE = 4096, CHUNK_BYTES = 1 << 22 };
+enum { LAYOUT_VERSION = 2 };
+enum { GLOBAL, CAUSTIC, MAP_COUNT, BEARERS = MAP_COUNT, TREE_COUNT };
+enum { PAGE = 4096, CHUNK_BYTES = 1 << 22 };
 static const uint32_t BYTE_ORDER_MARK = 0x01020304;
 static const char MAGIC[16] = "Afterglow map\r\n";
 
-typedef struct map_record {
+typedef struct tree_record {
     uint64_t blocks_at, nodes_at; /* bytes from the file's beginning */
+    uint32_t count, depth;
+} tree_record;
+
+typedef struct map_record {
     uint64_t emitted_paths, rays, passages_cut;
     photon_books books;
-    uint32_t count, depth, nearest;
+    uint32_t nearest;
     float max_radius, min_radius_squared, mean_radius;
     int32_t flux_exponent_max, irradiance_bias;
 } map_record;
@@ -38,6 +43,7 @@ typedef struct file_header {
     uint32_t header_bytes, block_bytes, node_bytes, reserved;
     uint64_t file_bytes;
     photon_file_key key;
+    tree_record trees[TREE_COUNT]; /* BEARERS is empty where all photons are */
     map_record maps[MAP_COUNT];
     hash128 content; /* of the photons and the nodes */
     hash128 self;    /* of all above */
@@ -45,7 +51,8 @@ typedef struct file_header {
 
 enum { OWNERS_AT = PAGE };
 _Static_assert(sizeof(file_header) <= OWNERS_AT, "the header has a page of its own");
-_Static_assert(sizeof(photon_file_key) == 168 && sizeof(map_record) == 288, "no gaps: they are compared and hashed");
+_Static_assert(sizeof(photon_file_key) == 168 && sizeof(map_record) == 264 && sizeof(tree_record) == 24,
+               "no gaps: they are compared and hashed");
 _Static_assert(offsetof(photon_block, slot) + PHOTON_BLOCK_LANES * sizeof(irradiance_slot) == sizeof(photon_block),
                "what never changes of a block is its first part");
 
@@ -53,24 +60,24 @@ _Static_assert(offsetof(photon_block, slot) + PHOTON_BLOCK_LANES * sizeof(irradi
 
 static uint64_t to_page(uint64_t bytes) { return (bytes + PAGE - 1) / PAGE * PAGE; }
 
-static uint64_t blocks_bytes(const map_record *m) { return photon_block_count(m->count) * sizeof(photon_block); }
+static uint64_t blocks_bytes(const tree_record *t) { return photon_block_count(t->count) * sizeof(photon_block); }
 
-static uint64_t nodes_bytes(const map_record *m)
+static uint64_t nodes_bytes(const tree_record *t)
 {
-    return m->depth ? (((uint64_t)1 << m->depth) - 1) * sizeof(photon_tree_node) : 0;
+    return t->depth ? (((uint64_t)1 << t->depth) - 1) * sizeof(photon_tree_node) : 0;
 }
 
 /* Where all lies, from counts and depths. Returns the file's size. */
-static uint64_t lay_out(map_record maps[MAP_COUNT])
+static uint64_t lay_out(tree_record trees[TREE_COUNT])
 {
     uint64_t at = to_page(OWNERS_AT + CLAIM_OWNERS_MAX * sizeof(claim_owner));
-    for (int i = 0; i < MAP_COUNT; i++) {
-        maps[i].blocks_at = at;
-        at += to_page(blocks_bytes(&maps[i]));
+    for (int i = 0; i < TREE_COUNT; i++) {
+        trees[i].blocks_at = at;
+        at += to_page(blocks_bytes(&trees[i]));
     }
-    for (int i = 0; i < MAP_COUNT; i++) {
-        maps[i].nodes_at = at;
-        at += to_page(nodes_bytes(&maps[i]));
+    for (int i = 0; i < TREE_COUNT; i++) {
+        trees[i].nodes_at = at;
+        at += to_page(nodes_bytes(&trees[i]));
     }
     return at;
 }
@@ -83,23 +90,22 @@ static hash128 hash_of_header(const file_header *h)
 }
 
 /* Of what never changes. False when cancelled. */
-static bool hash_content(const run_context *run, const photon_block *const blocks[MAP_COUNT],
-                         const photon_tree_node *const nodes[MAP_COUNT], const map_record maps[MAP_COUNT],
-                         hash128 *out_hash)
+static bool hash_content(const run_context *run, const photon_tree trees[TREE_COUNT], hash128 *out_hash)
 {
     hash128 hash = hash128_begin();
-    for (int i = 0; i < MAP_COUNT; i++) {
-        uint64_t count = photon_block_count(maps[i].count);
+    for (int i = 0; i < TREE_COUNT; i++) {
+        const tree_record record = {.count = trees[i].count, .depth = trees[i].depth};
+        uint64_t count = photon_block_count(trees[i].count);
         for (uint64_t k = 0; k < count; k++) {
             if ((k & 0xfff) == 0 && run_is_cancelled(run))
                 return false;
-            hash128_add(&hash, &blocks[i][k], offsetof(photon_block, slot));
+            hash128_add(&hash, &trees[i].blocks[k], offsetof(photon_block, slot));
         }
-        uint64_t size = nodes_bytes(&maps[i]);
+        uint64_t size = nodes_bytes(&record);
         for (uint64_t at = 0; at < size; at += CHUNK_BYTES) {
             if (run_is_cancelled(run))
                 return false;
-            hash128_add(&hash, (const char *)nodes[i] + at,
+            hash128_add(&hash, (const char *)trees[i].nodes + at,
                         (size_t)(size - at < CHUNK_BYTES ? size - at : CHUNK_BYTES));
         }
     }
@@ -115,8 +121,6 @@ static map_record record_of(const photon_map *map)
                         .rays = map->set.rays,
                         .passages_cut = map->set.passages_cut,
                         .books = map->set.books,
-                        .count = map->set.count,
-                        .depth = map->tree.depth,
                         .nearest = map->nearest,
                         .max_radius = map->max_radius,
                         .min_radius_squared = map->min_radius_squared,
@@ -155,12 +159,15 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
     h.block_bytes = sizeof(photon_block);
     h.node_bytes = sizeof(photon_tree_node);
     h.key = *key;
-    h.maps[0] = record_of(global);
-    h.maps[1] = record_of(caustic);
-    h.file_bytes = lay_out(h.maps);
-    const photon_block *const blocks[MAP_COUNT] = {global->blocks, caustic->blocks};
-    const photon_tree_node *const nodes[MAP_COUNT] = {global->tree.nodes, caustic->tree.nodes};
-    if (!hash_content(run, blocks, nodes, h.maps, &h.content))
+    h.maps[GLOBAL] = record_of(global);
+    h.maps[CAUSTIC] = record_of(caustic);
+    photon_tree trees[TREE_COUNT] = {[GLOBAL] = global->tree, [CAUSTIC] = caustic->tree};
+    if (!photon_map_all_bear(global))
+        trees[BEARERS] = global->bearers;
+    for (int i = 0; i < TREE_COUNT; i++)
+        h.trees[i] = (tree_record){.count = trees[i].count, .depth = trees[i].depth};
+    h.file_bytes = lay_out(h.trees);
+    if (!hash_content(run, trees, &h.content))
         return ECANCELED;
     h.self = hash_of_header(&h);
 
@@ -175,17 +182,17 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
         if ((error = write_at(run, descriptor, zeros, PAGE, at)) != 0)
             return error;
     error = write_at(run, descriptor, &h, sizeof h, 0);
-    for (int i = 0; i < MAP_COUNT && error == 0; i++) {
-        const map_record *m = &h.maps[i];
-        uint64_t size = blocks_bytes(m), rest = to_page(size) - size;
-        error = write_at(run, descriptor, blocks[i], size, m->blocks_at);
+    for (int i = 0; i < TREE_COUNT && error == 0; i++) {
+        const tree_record *t = &h.trees[i];
+        uint64_t size = blocks_bytes(t), rest = to_page(size) - size;
+        error = write_at(run, descriptor, trees[i].blocks, size, t->blocks_at);
         if (error == 0)
-            error = write_at(run, descriptor, zeros, rest, m->blocks_at + size);
-        size = nodes_bytes(m), rest = to_page(size) - size;
+            error = write_at(run, descriptor, zeros, rest, t->blocks_at + size);
+        size = nodes_bytes(t), rest = to_page(size) - size;
         if (error == 0)
-            error = write_at(run, descriptor, nodes[i], size, m->nodes_at);
+            error = write_at(run, descriptor, trees[i].nodes, size, t->nodes_at);
         if (error == 0)
-            error = write_at(run, descriptor, zeros, rest, m->nodes_at + size);
+            error = write_at(run, descriptor, zeros, rest, t->nodes_at + size);
     }
     return error;
 }
@@ -219,6 +226,9 @@ static void describe_difference(const photon_file_key *is, const photon_file_key
         snprintf(out, size, "it was made for estimates of %u photons, not %u", is->nearest, wanted->nearest);
     else if (memcmp(&is->radius, &wanted->radius, sizeof is->radius) != 0)
         snprintf(out, size, "it was made for a radius of %g, not %g", (double)is->radius, (double)wanted->radius);
+    else if (memcmp(&is->irradiance_fraction, &wanted->irradiance_fraction, sizeof is->irradiance_fraction) != 0)
+        snprintf(out, size, "irradiance is borne by a fraction of %g of its photons, not %g",
+                 (double)is->irradiance_fraction, (double)wanted->irradiance_fraction);
 }
 
 /* Whether it is a file of ours, whole by its length, and fits the key; where not, the message says why. */
@@ -246,26 +256,39 @@ static bool header_is_valid(const file_header *h, uint64_t got_bytes, uint64_t f
                  (unsigned long long)h->file_bytes);
     if (message[0])
         return false;
-    map_record maps[MAP_COUNT];
-    memcpy(maps, h->maps, sizeof maps);
-    for (int i = 0; i < MAP_COUNT; i++)
-        if (maps[i].count == PHOTON_NONE || maps[i].depth > 28 ||
-            photon_block_count(maps[i].count) > (uint64_t)1 << maps[i].depth)
+    tree_record trees[TREE_COUNT];
+    memcpy(trees, h->trees, sizeof trees);
+    for (int i = 0; i < TREE_COUNT; i++)
+        if (trees[i].count == PHOTON_NONE || trees[i].depth > 28 ||
+            photon_block_count(trees[i].count) > (uint64_t)1 << trees[i].depth)
             snprintf(message, message_size, "it is damaged: its counts cannot be");
-    if (!message[0] && (lay_out(maps) != h->file_bytes || memcmp(maps, h->maps, sizeof maps) != 0))
+    if (!message[0] && (lay_out(trees) != h->file_bytes || memcmp(trees, h->trees, sizeof trees) != 0))
         snprintf(message, message_size, "it is damaged: its parts do not lie where they should");
     if (!message[0])
         describe_difference(&h->key, key, message, message_size);
     return message[0] == '\0';
 }
 
-static photon_map map_of(void *memory, const map_record *m)
+static photon_tree tree_of(void *memory, const tree_record *t)
 {
-    photon_map map = {.set = {.count = m->count,
+    photon_tree tree = {.count = t->count, .depth = t->depth};
+    if (t->count > 0)
+        tree.blocks = (photon_block *)(void *)((char *)memory + t->blocks_at);
+    if (t->count > 0 && t->depth > 0)
+        tree.nodes = (photon_tree_node *)(void *)((char *)memory + t->nodes_at);
+    return tree;
+}
+
+static photon_map map_of(const map_record *m, photon_tree tree, photon_tree bearers)
+{
+    photon_map map = {.set = {.count = tree.count,
                               .emitted_paths = m->emitted_paths,
                               .rays = m->rays,
                               .passages_cut = m->passages_cut,
                               .books = m->books},
+                      .blocks = tree.blocks,
+                      .tree = tree,
+                      .bearers = bearers,
                       .nearest = m->nearest,
                       .max_radius = m->max_radius,
                       .min_radius_squared = m->min_radius_squared,
@@ -274,12 +297,6 @@ static photon_map map_of(void *memory, const map_record *m)
                       .is_borrowed = true,
                       .has_been_cached = true};
     photon_map_set_bias(&map, m->irradiance_bias);
-    if (m->count > 0) {
-        map.blocks = (photon_block *)(void *)((char *)memory + m->blocks_at);
-        map.tree = (photon_tree){.blocks = map.blocks, .count = m->count, .depth = m->depth};
-        if (m->depth > 0)
-            map.tree.nodes = (photon_tree_node *)(void *)((char *)memory + m->nodes_at);
-    }
     return map;
 }
 
@@ -373,8 +390,8 @@ static photon_file_result copy(const run_context *run, int descriptor, photon_fi
 /* In a copy nobody will publish what was being computed. */
 static void drop_claims(photon_map *map)
 {
-    for (uint32_t i = 0; i < map->set.count; i++) {
-        irradiance_slot *slot = photon_block_slot(map->blocks, i);
+    for (uint32_t i = 0; i < map->bearers.count; i++) {
+        irradiance_slot *slot = photon_map_slot(map, i);
         if (irradiance_word_state(load_relaxed_u32(slot)) != IRRADIANCE_READY)
             store_relaxed_u32(slot, 0);
     }
@@ -394,12 +411,13 @@ static photon_file_result open_maps(const run_context *run, int descriptor, cons
             return result;
         }
     }
-    for (int i = 0; i < MAP_COUNT; i++)
-        maps[i] = map_of(file->memory, &h->maps[i]);
-    const photon_block *const blocks[MAP_COUNT] = {maps[0].blocks, maps[1].blocks};
-    const photon_tree_node *const nodes[MAP_COUNT] = {maps[0].tree.nodes, maps[1].tree.nodes};
+    photon_tree trees[TREE_COUNT];
+    for (int i = 0; i < TREE_COUNT; i++)
+        trees[i] = tree_of(file->memory, &h->trees[i]);
+    maps[GLOBAL] = map_of(&h->maps[GLOBAL], trees[GLOBAL], trees[BEARERS].count > 0 ? trees[BEARERS] : trees[GLOBAL]);
+    maps[CAUSTIC] = map_of(&h->maps[CAUSTIC], trees[CAUSTIC], trees[CAUSTIC]);
     hash128 content;
-    if (!hash_content(run, blocks, nodes, h->maps, &content))
+    if (!hash_content(run, trees, &content))
         return PHOTON_FILE_CANCELLED;
     if (!hash128_is_equal(content, h->content)) {
         snprintf(message, message_size, "it is damaged: its photons do not have their checksum");
@@ -452,8 +470,8 @@ photon_file_result photon_file_open(const run_context *run, const char *path, co
         return result;
     }
     *out_file = file;
-    *out_global = maps[0];
-    *out_caustic = maps[1];
+    *out_global = maps[GLOBAL];
+    *out_caustic = maps[CAUSTIC];
     return PHOTON_FILE_OPEN;
 }
 

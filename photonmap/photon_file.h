@@ -5,8 +5,8 @@
  *
  *     header       what it is, what it was made of, constants of the maps, checksum: never changes
  *     owners       the processes at work on it (claim_owners.h)
- *     blocks       of the global map, then of the caustic map: photons never change, slots do
- *     nodes        of both maps' trees: never change
+ *     blocks       of the global map, the caustic map, and the global map's bearers where they are a part of the
+ * photons: photons never change, slots do nodes        of their trees: never change
  *
  * The layout is the machine's own: byte order and sizes are in the header, and another machine's file is refused. Only
  * what never changes is under the checksum. A slot says something valid whatever its bits are: READY is any 30 bits;
@@ -25,8 +25,7 @@ typedef struct photon_file_key {
     uint64_t seed;
     uint64_t photon_count, caustic_photon_count;
     uint32_t max_depth, nearest;
-    float radius;
-    uint32_t reserved;
+    float radius, irradiance_fraction;
     char program[56]; /* version and compiler */
     char machine[56]; /* what may give other bits: kind and maker of the processor, instruction set of ray traversal */
 } photon_file_key;

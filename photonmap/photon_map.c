@@ -38,6 +38,9 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
     map.set.photons = NULL;
     map.blocks = (photon_block *)(void *)records;
     ag_status status = photon_tree_build(run, records, map.set.count, progress_begin, progress_end, &map.tree);
+    map.bearers = map.tree;
+    if (status == AG_OK && settings->bearing > 0.0f && settings->bearing < 1.0f)
+        status = irradiance_bearers_create(run, &map.tree, settings->bearing, progress_end, &map.bearers);
     if (status != AG_OK) {
         photon_map_reset(&map);
         return status;
@@ -71,18 +74,25 @@ void photon_map_set_bias(photon_map *map, int irradiance_bias)
 
 void photon_map_reset(photon_map *map)
 {
-    if (map->is_borrowed)
-        map->tree = (photon_tree){0};
-    else
+    if (!map->is_borrowed) {
+        if (!photon_map_all_bear(map)) {
+            free(map->bearers.blocks);
+            photon_tree_reset(&map->bearers);
+        }
         free(map->blocks);
-    photon_tree_reset(&map->tree);
+        photon_tree_reset(&map->tree);
+    }
+    map->tree = map->bearers = (photon_tree){0};
     map->blocks = NULL;
     photon_set_reset(&map->set);
 }
 
 uint64_t photon_map_bytes(const photon_map *map)
 {
-    return photon_block_count(map->set.count) * sizeof(photon_block) + photon_tree_bytes(&map->tree);
+    uint64_t bytes = photon_block_count(map->set.count) * sizeof(photon_block) + photon_tree_bytes(&map->tree);
+    if (!photon_map_all_bear(map))
+        bytes += photon_block_count(map->bearers.count) * sizeof(photon_block) + photon_tree_bytes(&map->bearers);
+    return bytes;
 }
 
 uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbors_capacity(map->nearest + 1); }
@@ -168,23 +178,24 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
     return (rgb){(float)((double)sum[0] * scale), (float)((double)sum[1] * scale), (float)((double)sum[2] * scale)};
 }
 
-/* In a dark room the nearest photon is the bright next room's. A photon farther away than this many mean spacings must
+/* In a dark room the nearest bearer is the bright next room's. One farther away than this many mean spacings must
  * be in sight: of evenly spread ones 1 in 7 is so far, and what still leaks through a partition goes down with the
  * square. */
 static const float FAR_SPACINGS = 1.4f;
 
 static bool is_behind_wall(const photon_map *map, vec3 position, vec3 normal, uint32_t index)
 {
-    vec3 at = photon_block_position(map->blocks, index);
+    vec3 at = photon_block_position(map->bearers.blocks, index);
     float lift = sqrtf(vec3_distance_squared(position, at)) * (1.0f / 32.0f);
     vec3 from = vec3_add_scaled(position, normal, lift),
-         to = vec3_add_scaled(at, direction_decode(photon_block_normal(map->blocks, index)), lift);
+         to = vec3_add_scaled(at, direction_decode(photon_block_normal(map->bearers.blocks, index)), lift);
     return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
 uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_t place, vec3 position, vec3 normal)
 {
-    float distance_squared, spacings_squared = FAR_SPACINGS * FAR_SPACINGS / (float)map->nearest;
+    float distance_squared, photons_each = (float)map->set.count / (float)map->bearers.count;
+    float spacings_squared = FAR_SPACINGS * FAR_SPACINGS / (float)map->nearest * photons_each;
     uint32_t found =
         photon_walk_nearest(walk, place, position, normal, PHOTON_NEAREST_MIN_COS, map->mean_radius, &distance_squared);
     if (found == PHOTON_NONE || !map->surfaces ||
@@ -196,13 +207,13 @@ uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
 {
     photon_walk walk;
-    photon_walk_init(&walk, &map->tree);
+    photon_walk_init(&walk, &map->bearers);
     return photon_map_nearest_at(map, &walk, photon_map_place(map, position), position, normal);
 }
 
 uint32_t photon_map_place(const photon_map *map, vec3 position)
 {
-    return map->set.count > 0 ? photon_tree_leaf(&map->tree, position) : 0;
+    return map->bearers.count > 0 ? photon_tree_leaf(&map->bearers, position) : 0;
 }
 
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key)

@@ -2,10 +2,11 @@
  * Rests on: Jensen 2001, ch. 6, 7 (density estimates); Neilson, Yang, TR 04-21, 2004; Christensen, "Faster Photon Map
  * Global Illumination", 1999 (irradiance at the photons).
  * Flow: photon_tracing, photon_tree -> [here] -> irradiance_cache, caustics. Threads: built by one caller on the run's
- * workers; then read-only, but for the photons' slots. */
+ * workers; then read-only, but for the slots. */
 #ifndef AFTERGLOW_PHOTON_MAP_H
 #define AFTERGLOW_PHOTON_MAP_H
 
+#include "irradiance_bearers.h"
 #include "photon_tracing.h"
 #include "photon_tree.h"
 
@@ -14,6 +15,7 @@ typedef struct photon_map_settings {
     float max_radius;      /* of an estimate, scene units; the paper: 3.0; 0: from the density of the map */
     float surface_area;    /* of the scene, m^2: for the automatic radius */
     float radius_bound;    /* the automatic radius is no larger; 0: no bound */
+    float bearing;         /* fraction of the photons that bear irradiance, (0, 1]; 0: all */
     const scene *surfaces; /* borrowed: where discs end; NULL: nowhere */
 } photon_map_settings;
 
@@ -21,6 +23,7 @@ typedef struct photon_map {
     photon_set set;       /* without its records, which have become: */
     photon_block *blocks; /* owned, but of a map from a file; NULL where there is no photon */
     photon_tree tree;     /* over the blocks */
+    photon_tree bearers;  /* of the photons that bear irradiance, with its slots: the tree itself where all do */
     uint32_t nearest;
     float max_radius;
     float min_radius_squared;  /* coincident photons have no area of their own: the estimate's area is at least this
@@ -43,7 +46,15 @@ void photon_map_reset(photon_map *map);
 /* What the codes of irradiances stand for. For a map that comes from a file. */
 void photon_map_set_bias(photon_map *map, int irradiance_bias);
 
-/* Photons and tree, all told. */
+/* Whether all photons bear irradiance; else bearers have blocks and indices of their own. */
+static inline bool photon_map_all_bear(const photon_map *map) { return map->bearers.blocks == map->blocks; }
+
+static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t bearer)
+{
+    return photon_block_slot(map->bearers.blocks, bearer);
+}
+
+/* Photons, bearers and trees, all told. */
 uint64_t photon_map_bytes(const photon_map *map);
 
 /* Room for one worker's neighbours: photon_map_scratch_count(map) of them. */
@@ -60,17 +71,18 @@ uint32_t photon_map_scratch_count(const photon_map *map);
  * as there is surface. Does not fail, does not allocate. */
 rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch);
 
-/* The photon whose irradiance stands for the place; PHOTON_NONE where none with a like normal is near enough,
+/* The bearer whose irradiance stands for the place; PHOTON_NONE where none with a like normal is near enough,
  * or the one that is stands behind a wall. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal);
 
-/* Where in the map's order a place is: lookups at places with like numbers touch the same memory. */
+/* Where in the bearers' order a place is: lookups at places with like numbers touch the same memory. */
 uint32_t photon_map_place(const photon_map *map, vec3 position);
 
-/* The same at a place of that number, walk being one over map->tree: cheap for one place after the other in order. */
+/* The same at a place of that number, walk being one over map->bearers: cheap for one place after the other in order.
+ */
 uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_t place, vec3 position, vec3 normal);
 
-/* Irradiance as a slot's 30 bits. key decides the rounding: the photon's index. */
+/* Irradiance as a slot's 30 bits. key decides the rounding: the bearer's index. */
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);
 rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value);
 

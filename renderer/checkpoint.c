@@ -41,6 +41,7 @@ static const struct {
     SETTING(caustic_photon_count, "number of caustic photons"),
     SETTING(nearest, "number of nearest photons"),
     SETTING(radius, "radius"),
+    SETTING(irradiance_fraction, "fraction of photons that bear irradiance"),
     SETTING(layers, "set of layers"),
     SETTING(denoise, "choice of denoising"),
     SETTING(layers_in_camera_space, "space of layers"),
@@ -67,7 +68,7 @@ static hash128 hash_filter(const pixel_filter *filter)
 static uint64_t words_of(const struct ag_rendering *r)
 {
     return r->settings.integrator == AG_INTEGRATOR_PHOTONMAP && r->settings.cache == AG_CACHE_ON_DEMAND
-               ? r->maps.global.set.count
+               ? r->maps.global.bearers.count
                : 0;
 }
 

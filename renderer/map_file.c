@@ -57,6 +57,7 @@ static photon_file_key key_of(const ag_context *context, const scene *s, const a
     key.max_depth = (uint32_t)settings->max_depth;
     key.nearest = (uint32_t)settings->nearest;
     key.radius = settings->radius;
+    key.irradiance_fraction = settings->irradiance_fraction;
     snprintf(key.program, sizeof key.program, "%s, %.30s", ag_version(), COMPILER);
     describe_machine(context->isa, key.machine, sizeof key.machine);
     return key;

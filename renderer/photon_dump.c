@@ -9,9 +9,21 @@
 
 enum { FLOATS = 12, RECORD_BYTES = FLOATS * 4 + 2, HEAD_BYTES = 1024 };
 
+/* Photon by photon, whether its irradiance is there: at places so many bytes apart. */
+static void mark_demanded(const photon_map *map, unsigned char *first)
+{
+    for (uint32_t i = 0; i < map->bearers.count; i++) {
+        uint32_t word = irradiance_slot_read(photon_map_slot(map, i));
+        uint32_t photon_index = photon_map_all_bear(map) ? i : irradiance_bearers_photon(&map->bearers, i);
+        if (irradiance_word_state(word) == IRRADIANCE_READY && photon_index < map->set.count)
+            first[(size_t)photon_index * RECORD_BYTES] = 1;
+    }
+}
+
 /* PLY's "binary_little_endian", as this machine is. */
 static unsigned char *write_map(const photon_map *map, unsigned char kind, unsigned char *at)
 {
+    unsigned char *first_mark = at + RECORD_BYTES - 1;
     for (uint32_t i = 0; i < map->set.count; i++) {
         const photon_block *block = &map->blocks[i / PHOTON_BLOCK_LANES];
         vec3 position = photon_block_position(map->blocks, i);
@@ -22,12 +34,12 @@ static unsigned char *write_map(const photon_map *map, unsigned char kind, unsig
         const float values[FLOATS] = {position.x,  position.y,     position.z,     normal.x,
                                       normal.y,    normal.z,       direction.x,    direction.y,
                                       direction.z, flux.r * share, flux.g * share, flux.b * share};
-        uint32_t word = irradiance_slot_read(photon_block_slot(map->blocks, i));
         memcpy(at, values, sizeof values);
         at[sizeof values] = kind;
-        at[sizeof values + 1] = irradiance_word_state(word) == IRRADIANCE_READY;
+        at[sizeof values + 1] = 0;
         at += RECORD_BYTES;
     }
+    mark_demanded(map, first_mark);
     return at;
 }
 

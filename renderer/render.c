@@ -100,10 +100,12 @@ static ag_status trace_maps(ag_context *context, const scene *s, const ag_render
         photon_map_settings map_settings = {.nearest = (uint32_t)settings->nearest,
                                             .max_radius = settings->radius,
                                             .surface_area = s->surface_area,
+                                            .bearing = settings->irradiance_fraction,
                                             .surfaces = s};
         status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, out_global);
         /* caustics gather in places: how many of their photons there are does not tell how far apart they lie */
         map_settings.radius_bound = out_global->max_radius;
+        map_settings.bearing = 1.0f;
         if (status == AG_OK)
             status = photon_map_create(&context->run, &caustic, &map_settings, 0.7, 1.0, out_caustic);
     }

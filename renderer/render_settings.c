@@ -18,6 +18,7 @@ static const ag_render_settings DEFAULTS = {
     .photon_count = 1000000,
     .caustic_photon_count = 500000,
     .nearest = 50,
+    .irradiance_fraction = 1.0f,
 };
 
 /* An integer parameter within a range. */
@@ -322,6 +323,8 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "layers must be of those that there are";
     else if (!(s->radius >= 0.0f) || isinf(s->radius))
         wrong = "radius must be finite and not negative";
+    else if (!(s->irradiance_fraction > 0.0f) || s->irradiance_fraction > 1.0f)
+        wrong = "the fraction of photons that bear irradiance must be above 0, and 1 at most";
     if (!wrong)
         return AG_OK;
     log_message(context->log, AG_LOG_ERROR, "%s", wrong);

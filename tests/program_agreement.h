@@ -56,19 +56,26 @@ static inline void expect_agreement(const char *what, const picture *map, const 
 }
 
 /* only: NULL, or the argument for indirect light alone. Small estimates: what is lost along the edges of surfaces stays
- * below half a hundredth. */
-static inline void compare_integrators(const char *name, const char *path_samples, const char *only,
-                                       agreement_bounds bounds)
+ * below half a hundredth. fraction: NULL, or the argument that says how many photons bear irradiance. */
+static inline void compare_integrators_with(const char *name, const char *path_samples, const char *only,
+                                            const char *fraction, agreement_bounds bounds)
 {
     char scene[512], what[128];
     snprintf(scene, sizeof scene, PROGRAM_SCENES "%s.pbrt", name);
-    snprintf(what, sizeof what, "%s, %s light", name, only ? "indirect" : "all");
+    snprintf(what, sizeof what, "%s, %s light%s%s", name, only ? "indirect" : "all", fraction ? ", " : "",
+             fraction ? fraction : "");
     picture map = RENDER(scene, "--size=24x24", "--photons=4e5", "--caustic-photons=1e5", "--nearest=16", "--spp=20",
-                         "--gather-samples=10", only);
+                         "--gather-samples=10", only ? only : "--clamp-direct=0", fraction);
     picture path = RENDER(scene, "--size=24x24", "--integrator=path", path_samples, only);
     expect_agreement(what, &map, &path, bounds);
     picture_reset(&map);
     picture_reset(&path);
+}
+
+static inline void compare_integrators(const char *name, const char *path_samples, const char *only,
+                                       agreement_bounds bounds)
+{
+    compare_integrators_with(name, path_samples, only, NULL, bounds);
 }
 
 #endif

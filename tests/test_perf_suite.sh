@@ -30,6 +30,7 @@ expect() { # FILE LINES
     (($2 == lines || $2 == 0 && lines > 0)) || fail "$1 has $lines lines instead of $2"
 }
 expect verdicts.csv 0
+expect frame.csv 2
 expect scaling.csv 0
 expect waiting.csv 0
 expect exponents.csv 8

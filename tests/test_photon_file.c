@@ -28,6 +28,7 @@ static photon_file_key some_key(void)
     key.max_depth = 100;
     key.nearest = NEAREST;
     key.radius = 1.0f;
+    key.irradiance_fraction = 1.0f;
     strcpy(key.program, "1.2.3, gcc 12");
     strcpy(key.machine, "x86_64 Somebody avx2");
     return key;
@@ -84,12 +85,12 @@ static void close_map(opened *o)
 
 static rgb ask(opened *o, uint32_t index)
 {
-    irradiance_request request = {.photon = index};
+    irradiance_request request = {.bearer = index};
     irradiance_slot *slot = photon_block_slot(o->map.blocks, index);
     if (irradiance_slot_read(slot) == 0) {
         field_place p = field_photon(&o->map, index);
         irradiance_cache_get(&o->cache, p.position, p.normal, 0, &request);
-        if (request.photon == PHOTON_NONE)
+        if (request.bearer == PHOTON_NONE)
             return request.irradiance;
     }
     irradiance_cache_retry(&o->cache, &request, 0);
@@ -156,6 +157,57 @@ static void expect_refused(const char *path, const photon_file_key *key, const c
         fail_msg("'%s' is not in: %s", why, message);
 }
 
+/* Bearers that are a part of the photons have slots of their own, which the file keeps too. */
+static void bearers_are_kept(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    const char *path = in_folder("b.map");
+    photon_set set = field_photons(FIELD_SPHERE, PHOTONS, 3), empty = {0};
+    photon_map_settings settings = {
+        .nearest = NEAREST, .max_radius = 1.0f, .surface_area = 4.0f * AG_PI, .bearing = 0.25f};
+    photon_map map, none = field_map(&r, &empty, NEAREST, 1.0f);
+    assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
+    photon_file_key key = some_key();
+    key.irradiance_fraction = 0.25f;
+    int descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    assert_true(descriptor >= 0);
+    assert_int_equal(photon_file_write(&quiet, descriptor, &key, &map, &none), 0);
+    assert_int_equal(close(descriptor), 0);
+
+    irradiance_cache in_memory;
+    assert_int_equal(irradiance_cache_create(&map, IRRADIANCE_ON_DEMAND, 1, &in_memory), AG_OK);
+    for (int time = 0; time < 2; time++) {
+        opened o;
+        assert_int_equal(photon_file_open(&quiet, path, &key, &o.file, &o.map, &o.caustic, message, sizeof message),
+                         PHOTON_FILE_OPEN);
+        assert_true(o.file.is_shared);
+        assert_int_equal(o.map.set.count, PHOTONS);
+        assert_int_equal(o.map.bearers.count, map.bearers.count);
+        assert_false(photon_map_all_bear(&o.map));
+        assert_true(photon_map_all_bear(&o.caustic));
+        assert_int_equal(irradiance_cache_create(&o.map, IRRADIANCE_ON_DEMAND, 1, &o.cache), AG_OK);
+        irradiance_cache_share(&o.cache, &o.file.owners);
+        for (uint32_t i = 0; i < PHOTONS; i += 3) {
+            irradiance_request x, y;
+            field_place at = field_photon(&map, i);
+            irradiance_cache_get(&in_memory, at.position, at.normal, 0, &x);
+            irradiance_cache_get(&o.cache, at.position, at.normal, 0, &y);
+            assert_memory_equal(&x.irradiance, &y.irradiance, sizeof x.irradiance);
+        }
+        uint64_t computed = irradiance_cache_counters(&in_memory).computed;
+        assert_true(computed > map.bearers.count / 2 && computed <= map.bearers.count);
+        assert_int_equal(o.cache.ready_before, time == 0 ? 0 : computed);
+        assert_int_equal(irradiance_cache_counters(&o.cache).computed, time == 0 ? computed : 0);
+        close_map(&o);
+    }
+    irradiance_cache_reset(&in_memory);
+    photon_map_reset(&map);
+    photon_map_reset(&none);
+    test_run_reset(&r);
+}
+
 static void what_was_made_of_something_else_is_refused(void **state)
 {
     (void)state;
@@ -176,6 +228,7 @@ static void what_was_made_of_something_else_is_refused(void **state)
     EXPECT_REFUSED(key.max_depth = 3, "depth");
     EXPECT_REFUSED(key.nearest = 3, "estimates of");
     EXPECT_REFUSED(key.radius = 2.0f, "radius of 1, not 2");
+    EXPECT_REFUSED(key.irradiance_fraction = 0.125f, "fraction of 1 of its photons, not 0.125");
     EXPECT_REFUSED(strcpy(key.program, "1.2.4, gcc 12"), "another program");
     EXPECT_REFUSED(strcpy(key.machine, "x86_64 Somebody avx512"), "another machine");
     photon_file file;
@@ -495,6 +548,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(what_was_computed_is_there_again),
+        TEST_IN_FOLDER(bearers_are_kept),
         TEST_IN_FOLDER(what_was_made_of_something_else_is_refused),
         TEST_IN_FOLDER(what_is_damaged_is_refused),
         TEST_IN_FOLDER(slots_may_hold_anything),

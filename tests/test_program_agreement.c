@@ -13,6 +13,12 @@ static void test_box_with_blocks(void **state)
     compare_integrators("box_with_blocks", "--spp=512", "--only=indirect", BOUNDS);
 }
 
+static void test_few_bearers(void **state)
+{
+    (void)state;
+    compare_integrators_with("box_with_blocks", "--spp=512", "--only=indirect", "--irradiance-fraction=0.25", BOUNDS);
+}
+
 /* Nearly all of its light is indirect: once is enough. Few photons find the way in: twice the noise. */
 static void test_next_room(void **state)
 {
@@ -31,6 +37,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_box_with_blocks),
+        TEST_IN_FOLDER(test_few_bearers),
         TEST_IN_FOLDER(test_next_room),
         TEST_IN_FOLDER(test_tea_in_glass),
     };

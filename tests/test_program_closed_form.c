@@ -46,6 +46,19 @@ static void test_light_in_the_middle(void **state)
         }
 }
 
+/* The same light where few of the photons bear irradiance. */
+static void test_few_bearers(void **state)
+{
+    (void)state;
+    static const char *const FRACTIONS[] = {"--irradiance-fraction=0.5", "--irradiance-fraction=0.125"};
+    for (int i = 0; i < 2; i++) {
+        picture p =
+            RENDER(PROGRAM_SCENES "sphere.pbrt", photons_of(0.5), "--spp", spp_of(0), FRACTIONS[i], "--only=indirect");
+        expect_uniform(FRACTIONS[i], &p, 0.5 / PI * SPHERE_DIRECT * 0.5 / (1.0 - 0.5), 0.01, BLOCK, 0.04);
+        picture_reset(&p);
+    }
+}
+
 static void test_light_off_the_middle(void **state)
 {
     (void)state;
@@ -377,6 +390,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_light_in_the_middle),
+        TEST_IN_FOLDER(test_few_bearers),
         TEST_IN_FOLDER(test_light_off_the_middle),
         TEST_IN_FOLDER(test_spot_in_the_sphere),
         TEST_IN_FOLDER(test_sphere_of_triangles),

@@ -24,7 +24,8 @@ static void expect_map(const json_t *stats, const char *state)
     assert_int_equal(stats_integer(stats, "irradiance.duplicated"), 0);
 }
 
-#define MAP "--photon-map=a.map"
+#define MAP      "--photon-map=a.map"
+#define FRACTION "--irradiance-fraction=0.125"
 
 /* --- alone --- */
 
@@ -85,6 +86,17 @@ static void test_dump(void **state)
         expect_same_files("fresh.exr", "kept.exr");
         expect_same_files("fresh.ply", "kept.ply");
     }
+    expect_end(RUN(QUICK, FRACTION, "--dump-photons=fresh.ply", "-o", "fresh.exr", scene), 0, NULL);
+    for (int i = 0; i < 2; i++) {
+        expect_end(RUN(QUICK, FRACTION, "--photon-map=b.map", "--dump-photons=kept.ply", "--stats=b.json", "-o",
+                       "kept.exr", scene),
+                   0, NULL);
+        expect_same_files("fresh.exr", "kept.exr");
+        expect_same_files("fresh.ply", "kept.ply");
+        json_t *stats = stats_read(in_folder("b.json"));
+        expect_map(stats, i == 0 ? "traced" : "opened");
+        json_decref(stats);
+    }
 }
 
 static void test_refusal(void **state)
@@ -94,6 +106,8 @@ static void test_refusal(void **state)
     expect_end(RUN(QUICK, MAP, "-o", "a.exr", scene), 0, NULL);
     expect_end(RUN(QUICK, MAP, "--seed=3", "-o", "a.exr", scene), 1, "made with seed 0, not 3");
     expect_end(RUN(QUICK, MAP, "--photons=4001", "-o", "a.exr", scene), 1, "made with 4000 photons, not 4001");
+    expect_end(RUN(QUICK, MAP, "--irradiance-fraction=0.5", "-o", "a.exr", scene), 1,
+               "fraction of 1 of its photons, not 0.5");
     expect_end(RUN(QUICK, MAP, "--isa=sse2", "-o", "a.exr", scene), 1, "another machine");
     const char *paler = SCENE_WITH(ROOM, "[0.6 0.6 0.5]", "[0.6 0.6 0.51]");
     expect_end(RUN(QUICK, MAP, "-o", "a.exr", paler), 1, "another scene");

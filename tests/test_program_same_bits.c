@@ -1,6 +1,6 @@
 /* test_program_same_bits.c: the same picture, bit for bit, whatever the number of threads, on demand and precomputed,
- * twice each, in a plain room, in one full of coincidences and in one that moves; and in no run is an irradiance
- * computed twice.
+ * twice each, in a plain room, in one full of coincidences and in one that moves; also where few photons bear
+ * irradiance; and in no run is an irradiance computed twice.
  *
  * Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
 /* ctest: sanitize */
@@ -66,9 +66,9 @@ static picture render_map(const char *scene, const char *threads, const char *ca
     return p;
 }
 
-static void expect_same_for_all_threads(const char *scene)
+static void expect_same_for_all_threads(const char *scene, const char *more)
 {
-    picture reference = render_map(scene, THREADS[0], "--cache=on-demand", NULL);
+    picture reference = render_map(scene, THREADS[0], "--cache=on-demand", more);
     double brightest = 0.0;
     for (int i = 0; i < 3 * reference.width * reference.height; i++)
         brightest = fmax(brightest, (double)reference.pixels[i]);
@@ -79,7 +79,7 @@ static void expect_same_for_all_threads(const char *scene)
             for (int run = 0; run < RUNS_EACH; run++) {
                 char what[64];
                 snprintf(what, sizeof what, "%s %s", THREADS[i], CACHES[cache]);
-                picture p = render_map(scene, THREADS[i], CACHES[cache], NULL);
+                picture p = render_map(scene, THREADS[i], CACHES[cache], more);
                 expect_same(what, &p, &reference);
                 expect_books("stats.json", PHOTON_COUNT);
                 picture_reset(&p);
@@ -90,19 +90,28 @@ static void expect_same_for_all_threads(const char *scene)
 static void test_plain_room(void **state)
 {
     (void)state;
-    expect_same_for_all_threads(BOX);
+    expect_same_for_all_threads(BOX, NULL);
 }
 
 static void test_coincidences(void **state)
 {
     (void)state;
-    expect_same_for_all_threads(COINCIDENCES);
+    expect_same_for_all_threads(COINCIDENCES, NULL);
+}
+
+static void test_few_bearers(void **state)
+{
+    (void)state;
+    expect_same_for_all_threads(BOX, "--irradiance-fraction=0.125");
+    json_t *stats = stats_read(in_folder("stats.json")); /* of the last picture, precomputed */
+    assert_int_equal(stats_integer(stats, "irradiance.computed"), PHOTON_COUNT / 8);
+    json_decref(stats);
 }
 
 static void test_motion(void **state)
 {
     (void)state;
-    expect_same_for_all_threads(MOTION);
+    expect_same_for_all_threads(MOTION, NULL);
 }
 
 /* All photons on one spot of a floor, and few of them asked for by many threads at once. */
@@ -214,6 +223,7 @@ int main(void)
         TEST_IN_FOLDER(test_motion),      TEST_IN_FOLDER(test_few_photons_for_many_threads),
         TEST_IN_FOLDER(test_path_tracer), TEST_IN_FOLDER(test_crop),
         TEST_IN_FOLDER(test_seed),        TEST_IN_FOLDER(test_cache_off),
+        TEST_IN_FOLDER(test_few_bearers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -162,11 +162,15 @@ typedef struct ag_render_settings {
 
     uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2] */
     uint64_t
-        caustic_photon_count; /* photons to store in the caustic map; only where there is specular matter; [0, …] */
-    int nearest;              /* photons of an estimate, [1, 65536] */
-    float radius;             /* largest radius of an estimate, scene units; 0: from the photons' density */
-    uint32_t layers;          /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
-    bool denoise;             /* ag_film_denoise will be asked for: the film keeps what it needs */
+        caustic_photon_count;  /* photons to store in the caustic map; only where there is specular matter; [0, …] */
+    int nearest;               /* photons of an estimate, [1, 65536] */
+    float radius;              /* largest radius of an estimate, scene units; 0: from the photons' density */
+    float irradiance_fraction; /* of the photons, how many bear irradiance, (0, 1]: gather rays look for the nearest of
+                                  those, and each estimate is still of all photons. Less is faster, and blurs by about
+                                  what the bearers are apart; below some 4 / nearest it saves nothing more, as places
+                                  then lack a bearer nearby. Default 1 */
+    uint32_t layers;           /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
+    bool denoise;              /* ag_film_denoise will be asked for: the film keeps what it needs */
     bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */
     float clamp_direct; /* no component of what a sample gets from a lamp by way of at most one surface is above it; 0:
                            unbounded, the default */
