@@ -129,3 +129,10 @@ bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance)
     ray.meets_veils = true;
     return s->has_interfaces ? passage_find_surface(s, ray, max_distance, &hit) : scene_occluded(s, ray, max_distance);
 }
+
+void passage_warn_of_cut(log_sink *log, uint64_t count)
+{
+    if (count > 0)
+        log_message(log, AG_LOG_WARNING, "%llu rays would cross more than %d interfaces: they end there, dark",
+                    (unsigned long long)count, PASSAGE_CROSSINGS_MAX);
+}

@@ -26,4 +26,7 @@ rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *
 bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance);
 
+/* Says that so many rays were cut, if any. */
+void passage_warn_of_cut(log_sink *log, uint64_t count);
+
 #endif

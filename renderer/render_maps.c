@@ -1,0 +1,121 @@
+/* render_maps.c: see render_maps.h. */
+#include "render_maps.h"
+
+#include "map_file.h"
+#include "passage.h"
+
+void maps_reset(maps *m)
+{
+    irradiance_cache_reset(&m->cache);
+    photon_map_reset(&m->global);
+    photon_map_reset(&m->caustic);
+    photon_file_close(&m->file);
+}
+
+/* A caustic needs something to be focused by. */
+static bool has_traced_matter(const scene *s)
+{
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        if (scene_shape_is_traced(s, &s->shapes[i]))
+            return true;
+    return false;
+}
+
+static ag_status trace_photons(ag_context *context, const scene *s, const ag_render_settings *settings,
+                               photon_set *out_global, photon_set *out_caustic)
+{
+    bool wants_caustics = settings->caustic_photon_count > 0 && settings->max_depth >= 2 && has_traced_matter(s);
+    /* an arrival after n scatterings reaches the eye after n + 2 (gathered), or n + 1 (a caustic seen) */
+    photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL,
+                                       .wanted = (uint32_t)settings->photon_count,
+                                       .max_scatterings = settings->max_depth - 2,
+                                       .seed = settings->seed,
+                                       .progress_begin = 0.0,
+                                       .progress_end = wants_caustics ? 0.7 : 1.0};
+    ag_status status = AG_OK;
+    if (settings->max_depth >= 2)
+        status = photon_tracing_run(s, &context->run, &tracing, out_global);
+    if (status == AG_OK && wants_caustics) {
+        tracing.kind = PHOTON_CAUSTIC;
+        tracing.wanted = (uint32_t)settings->caustic_photon_count;
+        tracing.max_scatterings = settings->max_depth - 1;
+        tracing.progress_begin = 0.7;
+        tracing.progress_end = 1.0;
+        status = photon_tracing_run(s, &context->run, &tracing, out_caustic);
+    }
+    if (status == AG_OK)
+        run_progress(&context->run, AG_PHASE_PHOTONS, 1.0);
+    return status;
+}
+
+static ag_status trace_maps(ag_context *context, const scene *s, const ag_render_settings *settings,
+                            photon_map *out_global, photon_map *out_caustic)
+{
+    ag_statistics *statistics = &context->statistics;
+    *out_global = *out_caustic = (photon_map){0};
+    photon_set global = {0}, caustic = {0};
+    phase_begin begin = context_begin_phase();
+    ag_status status = trace_photons(context, s, settings, &global, &caustic);
+    if (status == AG_OK) {
+        context_end_phase(context, AG_PHASE_PHOTONS, begin);
+        statistics->photons_emitted += global.emitted_paths + caustic.emitted_paths;
+        statistics->photons_stored_global += global.count;
+        statistics->photons_stored_caustic += caustic.count;
+        statistics->rays_photon += global.rays + caustic.rays;
+        passage_warn_of_cut(context->log, global.passages_cut + caustic.passages_cut);
+        log_message(context->log, AG_LOG_INFO, "photons: %u in the global map, %u in the caustic map, %llu paths",
+                    global.count, caustic.count, (unsigned long long)(global.emitted_paths + caustic.emitted_paths));
+        begin = context_begin_phase();
+        photon_map_settings map_settings = {.nearest = (uint32_t)settings->nearest,
+                                            .max_radius = settings->radius,
+                                            .surface_area = s->surface_area,
+                                            .bearing = settings->irradiance_fraction,
+                                            .surfaces = s};
+        status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, out_global);
+        /* caustics gather in places: how many of their photons there are does not tell how far apart they lie */
+        map_settings.radius_bound = out_global->max_radius;
+        map_settings.bearing = 1.0f;
+        if (status == AG_OK)
+            status = photon_map_create(&context->run, &caustic, &map_settings, 0.7, 1.0, out_caustic);
+    }
+    photon_set_reset(&global); /* empty, where the maps have taken them over */
+    photon_set_reset(&caustic);
+    if (status != AG_OK) {
+        photon_map_reset(out_global);
+        photon_map_reset(out_caustic);
+        return status;
+    }
+    run_progress(&context->run, AG_PHASE_MAP, 1.0);
+    context_end_phase(context, AG_PHASE_MAP, begin);
+    return AG_OK;
+}
+
+ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps *out_maps)
+{
+    ag_statistics *statistics = &context->statistics;
+    ag_status status;
+    if (settings->photon_map_file)
+        status =
+            map_file_obtain(context, s, settings, trace_maps, &out_maps->file, &out_maps->global, &out_maps->caustic);
+    else
+        status = trace_maps(context, s, settings, &out_maps->global, &out_maps->caustic);
+    if (status != AG_OK)
+        return status;
+    statistics->photon_bytes += photon_map_bytes(&out_maps->global) + photon_map_bytes(&out_maps->caustic);
+    log_message(context->log, AG_LOG_INFO, "estimates: %u nearest, %.4g at most, %.4g where light is spread evenly",
+                out_maps->global.nearest, (double)out_maps->global.max_radius, (double)out_maps->global.mean_radius);
+
+    static const irradiance_cache_mode modes[] = {[AG_CACHE_ON_DEMAND] = IRRADIANCE_ON_DEMAND,
+                                                  [AG_CACHE_PRECOMPUTE] = IRRADIANCE_PRECOMPUTE,
+                                                  [AG_CACHE_OFF] = IRRADIANCE_UNCACHED};
+    status = irradiance_cache_create(&out_maps->global, modes[settings->cache], statistics->threads, &out_maps->cache);
+    if (status == AG_OK && out_maps->file.is_shared)
+        irradiance_cache_share(&out_maps->cache, &out_maps->file.owners);
+    statistics->irradiance_ready += out_maps->cache.ready_before;
+    if (status == AG_OK && settings->cache == AG_CACHE_PRECOMPUTE) {
+        phase_begin begin = context_begin_phase();
+        status = irradiance_cache_precompute(&out_maps->cache, &context->run);
+        context_end_phase(context, AG_PHASE_PRECOMPUTE, begin);
+    }
+    return status;
+}

@@ -1,0 +1,14 @@
+/* render_maps.h: light's side of a rendering: photons are traced, or read from a file; maps and the cache made of them.
+ * Rests on: Jensen 1996; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
+ * Flow: render.c -> [here]. Threads: each phase on all of the context's workers. */
+#ifndef AFTERGLOW_RENDER_MAPS_H
+#define AFTERGLOW_RENDER_MAPS_H
+
+#include "rendering.h"
+
+/* Counts what it did, phase by phase, in the context's statistics; precomputes where the settings say so. To be reset,
+ * on failure too. Borrows scene and context. Errors: AG_ERROR_MEMORY, AG_CANCELLED, those of map_file_obtain. */
+ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps *out_maps);
+void maps_reset(maps *m);
+
+#endif

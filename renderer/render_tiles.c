@@ -1,0 +1,203 @@
+/* render_tiles.c: see render_tiles.h. */
+#include "render_tiles.h"
+
+#include "clock.h"
+#include "first_hit.h"
+#include "path_tracing.h"
+#include "sample_queue.h"
+#include "shading.h"
+#include "tile_scheduler.h"
+
+#include <stdlib.h>
+
+enum { TILE_SIZE = 32, ARENA_BLOCK_BYTES = 1 << 16 };
+
+/* --- workers --- */
+
+void eye_workers_destroy(eye_worker *workers, unsigned count)
+{
+    for (unsigned i = 0; workers && i < count; i++) {
+        arena_destroy(workers[i].scratch);
+        gather_batch_destroy(workers[i].batch);
+        sample_queue_destroy(workers[i].queue);
+    }
+    free(workers);
+}
+
+/* What a worker has in use, tried out here, so that nothing can fail while tiles run. */
+static bool eye_worker_reserve(eye_worker *worker, const transport *t)
+{
+    float most_indirect = t->settings->clamp_indirect > 0.0f ? t->settings->clamp_indirect : INFINITY;
+    worker->queue = sample_queue_create(t->wants_layers);
+    if (!worker->queue || !t->cache)
+        return worker->queue != NULL;
+    worker->batch = gather_batch_create(most_indirect);
+    worker->scratch = arena_create(ARENA_BLOCK_BYTES);
+    if (!worker->batch || !worker->scratch)
+        return false;
+    arena_mark mark = arena_save(worker->scratch);
+    bool fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor)) != NULL;
+    if (fits && (aov_has(t->layout, SUM_IRRADIANCE) || t->layout->has_view[VIEW_PHOTON_DENSITY])) /* alone */
+        fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->cache->map) * sizeof(photon_neighbor));
+    arena_restore(worker->scratch, mark);
+    return fits;
+}
+
+eye_worker *eye_workers_create(const transport *t, unsigned count)
+{
+    eye_worker *workers = aligned_alloc(_Alignof(eye_worker), count * sizeof *workers);
+    if (!workers)
+        return NULL;
+    for (unsigned i = 0; i < count; i++)
+        workers[i] = (eye_worker){.index = i};
+    for (unsigned i = 0; i < count; i++)
+        if (!eye_worker_reserve(&workers[i], t)) {
+            eye_workers_destroy(workers, count);
+            return NULL;
+        }
+    return workers;
+}
+
+/* --- tiles --- */
+
+typedef struct tile_job {
+    ag_context *context;
+    const transport *t;
+    tile_scheduler *tiles;
+    eye_worker *workers;
+    ag_film *film;
+    uint32_t wanted;                     /* samples of each pixel */
+    double sample_count;                 /* all that are still to be taken */
+    atomic_u64 samples_done;             /* for the progress alone: relaxed */
+    double progress_begin, progress_end; /* of the phase, before and after this pass */
+} tile_job;
+
+/* All but the gathered light, which the worker's batch brings later. */
+static void render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index, eye_sample *out)
+{
+    const transport *t = job->t;
+    const ag_render_settings *settings = t->settings;
+    sampler where = sampler_make(settings->seed, x, y, index, sampler_bits((uint32_t)settings->samples_per_pixel));
+    vec2 offset = pixel_filter_sample(&job->film->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), &out->sign);
+    vec2 lens = t->s->options.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
+    float time = !t->s->has_motion                    ? 0.0f
+                 : t->s->options.disable_pixel_jitter ? 0.5f
+                                                      : sampler_2d(&where, SAMPLE_TIME, 0).x;
+    float width = (float)settings->width, height = (float)settings->height;
+    camera_place place = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, width / height,
+                          lens, time};
+    scene_ray ray = camera_generate_ray(&t->s->camera, place.film_x, place.film_y, place.aspect, lens, time);
+    out->most_direct = settings->clamp_direct > 0.0f ? settings->clamp_direct : INFINITY;
+    out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
+    if (settings->integrator == AG_INTEGRATOR_PATH)
+        path_tracing_radiance(t, worker, ray, &where, out);
+    else
+        shading_radiance(t, worker, ray, &where, out);
+    if (out->layers && t->layout->needs_first_hit)
+        first_hit_project(t, &place, &out->layers->first);
+}
+
+/* Completes the samples under way. When the work is cancelled they do not count. */
+static void finish_samples(tile_job *job, eye_worker *worker)
+{
+    const transport *t = job->t;
+    gather_batch *batch = worker->batch;
+    if (batch && !run_is_cancelled(t->run))
+        gather_batch_resolve(batch, t->cache, t->run, worker->index);
+    uint32_t count = worker->queue->count;
+    if (count == 0 || run_is_cancelled(t->run))
+        return;
+    worker->samples_not_finite += sample_queue_deliver(worker->queue, batch ? batch->gathered : NULL,
+                                                       (uint32_t)t->layout->group_count, job->film);
+    uint64_t done = fetch_add_relaxed_u64(&job->samples_done, count) + count;
+    double share = (double)done / job->sample_count;
+    run_progress(&job->context->run, AG_PHASE_RENDER,
+                 job->progress_begin + share * (job->progress_end - job->progress_begin));
+}
+
+/* Whether the next sample is better begun when those under way are complete. */
+static bool should_finish(const transport *t, const eye_worker *worker)
+{
+    const gather_batch *batch = worker->batch;
+    return sample_queue_is_full(worker->queue) ||
+           (batch && batch->query_count > 0 &&
+            batch->query_count + (uint32_t)t->settings->gather_samples > IRRADIANCE_BATCH_MAX);
+}
+
+/* The samples that the pixel has not had yet, in their order, by the one thread that has its tile. */
+static void render_pixel(tile_job *job, eye_worker *worker, int x, int y)
+{
+    ag_film *film = job->film;
+    size_t pixel = (size_t)(y - film->y0) * (size_t)film->width + (size_t)(x - film->x0);
+    uint32_t goal = film_goal(film, pixel, job->wanted);
+    for (uint32_t i = film->counts[pixel]; i < goal; i++) {
+        if (run_is_cancelled(&job->context->run))
+            return;
+        worker->sample = worker->queue->count;
+        render_sample(job, worker, x, y, i, sample_queue_begin(worker->queue, pixel));
+        if (should_finish(job->t, worker))
+            finish_samples(job, worker);
+    }
+}
+
+static void add_tile_time(ag_film *film, tile area, float seconds)
+{
+    for (int y = area.y0; y < area.y1; y++)
+        for (int x = area.x0; x < area.x1; x++)
+            film->views[VIEW_TILE_TIME][(size_t)(y - film->y0) * (size_t)film->width + (size_t)(x - film->x0)] +=
+                seconds;
+}
+
+/* Samples under way may be of several tiles, unless each tile's time is asked for. */
+static void work_on_tiles(void *user, unsigned worker_index)
+{
+    tile_job *job = user;
+    eye_worker *worker = &job->workers[worker_index];
+    float *times = job->film->views[VIEW_TILE_TIME];
+    tile area;
+    worker->queue->count = 0;
+    if (worker->batch)
+        gather_batch_reset(worker->batch);
+    while (!run_is_cancelled(&job->context->run) && tile_scheduler_next(job->tiles, &area)) {
+        double begin = times ? clock_seconds() : 0.0;
+        for (int y = area.y0; y < area.y1; y++) {
+            for (int x = area.x0; x < area.x1; x++)
+                render_pixel(job, worker, x, y);
+            if (!worker->batch) /* nothing is waited for */
+                finish_samples(job, worker);
+        }
+        if (times) {
+            finish_samples(job, worker);
+            add_tile_time(job->film, area, (float)(clock_seconds() - begin));
+        }
+    }
+    finish_samples(job, worker);
+}
+
+ag_status render_tiles(ag_rendering *r, uint32_t wanted)
+{
+    ag_context *context = r->context;
+    ag_film *film = r->film;
+    double most = (double)r->settings.samples_per_pixel;
+    tile_job job = {.context = context,
+                    .t = &r->t,
+                    .film = film,
+                    .workers = r->workers,
+                    .wanted = wanted,
+                    .progress_begin = film_count_samples(film).mean / most,
+                    .progress_end = (double)wanted / most};
+    ag_status status = tile_scheduler_create(film->x0, film->y0, film->x0 + film->width, film->y0 + film->height,
+                                             TILE_SIZE, context->statistics.threads, &job.tiles);
+    if (status != AG_OK)
+        return status;
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; i++) {
+        uint32_t goal = film_goal(film, i, wanted);
+        job.sample_count += film->counts[i] < goal ? (double)(goal - film->counts[i]) : 0.0;
+    }
+    run_progress(&context->run, AG_PHASE_RENDER, job.progress_begin); /* the first pixels may take long */
+    run_allow_pause(&context->run);
+    thread_pool_run(context->pool, work_on_tiles, &job);
+    bool is_paused = run_end_pause(&context->run);
+    tile_scheduler_destroy(job.tiles);
+    return run_is_cancelled(&context->run) ? AG_CANCELLED : is_paused ? AG_PAUSED : AG_OK;
+}
