@@ -12,8 +12,55 @@
 /* The automatic radius: this many times what an estimate needs where the light is spread evenly. Darker places then
  * take the photons of the whole disc, which is right, only noisier. */
 static const float RADIUS_FACTOR = 4.0f;
-/* No estimate divides by less than the disc of this share of the largest radius. */
-static const float MIN_RADIUS_SHARE = 0x1p-10f;
+/* Behind a glass on a plain of kilometres the discs of a caustic are a millionth of what its photons' number lets
+ * expect. So the smallest disc, which is a safeguard against photons in one place, is as small as a slot allows:
+ * between the estimate on it and a thousandth of a photon on the largest disc lie these octaves. */
+enum { IRRADIANCE_OCTAVES = 64, OCTAVES_OF_A_THOUSAND = 10 };
+
+/* Where most of the scene is dark, its area does not tell how far apart the photons lie. Estimates need no more than
+ * this many times the radius of the median photon's. */
+static const float MEDIAN_FACTOR = 4.0f;
+/* Half of the photons may lie in one place, a share of the largest radius that is no use. */
+static const float LEAST_MEDIAN = 0x1p-16f;
+enum { MEDIAN_OF = 255 };
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* The radius of the estimate at every so-manieth photon: the median; max_radius where that many have no k neighbours.
+ */
+static ag_status find_median_radius(const photon_map *map, float *out_radius)
+{
+    float radius[MEDIAN_OF];
+    uint32_t count = map->set.count < MEDIAN_OF ? map->set.count : MEDIAN_OF;
+    photon_neighbor *scratch = malloc(photon_map_scratch_count(map) * sizeof *scratch);
+    if (!scratch)
+        return AG_ERROR_MEMORY;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t index = (uint32_t)((uint64_t)i * map->set.count / count);
+        float other_squared;
+        uint32_t found =
+            photon_tree_k_nearest(&map->tree, photon_block_position(map->blocks, index),
+                                  direction_decode(photon_block_normal(map->blocks, index)), PHOTON_ESTIMATE_MIN_COS,
+                                  map->max_radius, map->nearest + 1, scratch, &other_squared);
+        radius[i] = found == map->nearest + 1 ? sqrtf(photon_neighbor_distance_squared(scratch[map->nearest]))
+                                              : map->max_radius;
+    }
+    free(scratch);
+    qsort(radius, count, sizeof *radius, compare_floats);
+    *out_radius = radius[count / 2];
+    return AG_OK;
+}
+
+/* Against photons that coincide, which have no area of their own. */
+static float smallest_radius(const photon_map *map)
+{
+    int octaves = (IRRADIANCE_OCTAVES - OCTAVES_OF_A_THOUSAND - 1 - ilogbf((float)map->nearest + 1.0f)) / 2;
+    return ldexpf(map->max_radius, -octaves);
+}
 
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
                             double progress_begin, double progress_end, photon_map *out_map)
@@ -28,8 +75,6 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
         map.max_radius = fminf(map.max_radius, settings->radius_bound);
     if (map.mean_radius > map.max_radius)
         map.mean_radius = map.max_radius;
-    float min_radius = map.max_radius * MIN_RADIUS_SHARE;
-    map.min_radius_squared = min_radius * min_radius;
     if (map.set.count == 0) {
         *out_map = map;
         return AG_OK;
@@ -45,6 +90,19 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
         photon_map_reset(&map);
         return status;
     }
+    float median;
+    if (settings->max_radius == 0.0f && !(settings->radius_bound > 0.0f)) {
+        status = find_median_radius(&map, &median);
+        if (status != AG_OK) {
+            photon_map_reset(&map);
+            return status;
+        }
+        median = fmaxf(median, LEAST_MEDIAN * map.max_radius);
+        map.mean_radius = fminf(map.mean_radius, MEDIAN_FACTOR * median);
+        map.max_radius = fminf(map.max_radius, RADIUS_FACTOR * map.mean_radius);
+    }
+    float min_radius = smallest_radius(&map);
+    map.min_radius_squared = min_radius * min_radius;
     map.flux_exponent_max = FLUX_EXPONENT_MIN;
     for (uint32_t i = 0; i < map.set.count; i++) {
         if ((i & 0xffff) == 0 && run_is_cancelled(run)) {
@@ -56,8 +114,7 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
         if (code != 0 && exponent > map.flux_exponent_max)
             map.flux_exponent_max = exponent;
     }
-    /* The largest estimate: all k photons of the largest flux on the smallest disc; its mantissa's exponent is 63's.
-     * 64 octaves below that lie a thousandth of a photon on the largest disc, for k up to a million. */
+    /* The largest estimate: all k photons of the largest flux on the smallest disc; its mantissa's exponent is 63's. */
     double largest = 255.0 * ldexp(1.0, map.flux_exponent_max) * (map.nearest + 1.0) /
                      ((double)map.set.emitted_paths * (double)AG_PI * (double)map.min_radius_squared);
     photon_map_set_bias(&map, shared_exponent_of((float)fmin(largest, 1e38)) - 63);
@@ -117,6 +174,48 @@ static bool is_lopsided(const photon_map *map, vec3 position, const photon_neigh
     return share > (double)LOPSIDED * (double)LOPSIDED * count * count;
 }
 
+static bool is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
+                           uint32_t index)
+{
+    vec3 at = photon_block_position(blocks, index);
+    float lift = sqrtf(vec3_distance_squared(position, at)) * (1.0f / 32.0f);
+    vec3 from = vec3_add_scaled(position, normal, lift),
+         to = vec3_add_scaled(at, direction_decode(photon_block_normal(blocks, index)), lift);
+    return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
+}
+
+/* Photons this much higher or lower than the place, as a share of the radius, may lie on another surface. */
+static const float LEVEL = 1.0f / 32.0f;
+
+/* Whether a photon within the radius lies on a floor above or below, not on the surface at the place. */
+static bool is_of_other_level(const photon_map *map, vec3 position, vec3 normal, uint32_t index, float radius)
+{
+    vec3 at = photon_block_position(map->blocks, index), offset = vec3_sub(at, position);
+    float height = vec3_dot(offset, normal), level = radius * LEVEL;
+    if (fabsf(height) <= level)
+        return false;
+    if (height > 0.0f)
+        return is_behind_wall(map, map->blocks, position, normal, index);
+    /* as low as a convex surface goes that has the two normals; if lower, what is straight above must be open */
+    float cosine = vec3_dot(direction_decode(photon_block_normal(map->blocks, index)), normal);
+    float lateral = sqrtf(fmaxf(0.0f, vec3_dot(offset, offset) - height * height));
+    if (-height <= lateral * sqrtf(fmaxf(0.0f, 1.0f - cosine * cosine)) / cosine + level)
+        return false;
+    return passage_is_blocked(
+        map->surfaces, scene_ray_make(vec3_add_scaled(at, normal, 0.5f * level), vec3_scale(normal, -height)), 1.0f);
+}
+
+/* Keeps the photons that lie on the surface at the place, in their order. */
+static uint32_t keep_on_level(const photon_map *map, vec3 position, vec3 normal, float radius, photon_neighbor *n,
+                              uint32_t count)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (!is_of_other_level(map, position, normal, photon_neighbor_index(n[i]), radius))
+            n[kept++] = n[i];
+    return kept;
+}
+
 /* Keeps the photons of the disc that are in the region, in their order. */
 static uint32_t keep_in_region(const photon_map *map, const surface_region *region, photon_neighbor *n, uint32_t count)
 {
@@ -166,6 +265,8 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
     float radius = sqrtf(radius_squared);
     double area = (double)AG_PI * (double)radius_squared;
     surface_region region;
+    if (map->surfaces)
+        count = keep_on_level(map, position, normal, radius, scratch, count);
     if (map->surfaces && count > 0 &&
         (other_squared <= radius_squared || is_lopsided(map, position, scratch, count, radius)) &&
         surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, &region)) {
@@ -183,15 +284,6 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
  * square. */
 static const float FAR_SPACINGS = 1.4f;
 
-static bool is_behind_wall(const photon_map *map, vec3 position, vec3 normal, uint32_t index)
-{
-    vec3 at = photon_block_position(map->bearers.blocks, index);
-    float lift = sqrtf(vec3_distance_squared(position, at)) * (1.0f / 32.0f);
-    vec3 from = vec3_add_scaled(position, normal, lift),
-         to = vec3_add_scaled(at, direction_decode(photon_block_normal(map->bearers.blocks, index)), lift);
-    return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
-}
-
 uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_t place, vec3 position, vec3 normal)
 {
     float distance_squared, photons_each = (float)map->set.count / (float)map->bearers.count;
@@ -201,7 +293,7 @@ uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_
     if (found == PHOTON_NONE || !map->surfaces ||
         distance_squared <= spacings_squared * map->mean_radius * map->mean_radius)
         return found;
-    return is_behind_wall(map, position, normal, found) ? PHOTON_NONE : found;
+    return is_behind_wall(map, map->bearers.blocks, position, normal, found) ? PHOTON_NONE : found;
 }
 
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)

@@ -266,7 +266,8 @@ static void explain_shortage(run_context *run, const photon_tracing_settings *se
     const photon_books *b = &set->books;
     double emitted = b->emitted[0] + b->emitted[1] + b->emitted[2];
     double escaped = b->escaped[0] + b->escaped[1] + b->escaped[2];
-    log_message(run->log, AG_LOG_WARNING,
+    /* most scenes with something shiny have hardly any caustics: that is no news */
+    log_message(run->log, settings->kind == PHOTON_GLOBAL ? AG_LOG_WARNING : AG_LOG_INFO,
                 "%s photon map: %u of %u photons stored after %llu paths, of which too few meet a diffuse surface%s "
                 "(%.1f %% of "
                 "the emitted light leaves the scene): the light is right, its detail coarser",

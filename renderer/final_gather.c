@@ -3,9 +3,10 @@
 
 #include "direct_lighting.h"
 
-/* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often; and after so
- * many rays a gather looks whether to stop: its sample is thrown away then. */
-enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 8, CANCEL_EVERY = 64 };
+/* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often (asked
+ * sooner, the cache tells of the light outside of a small room); and after so many rays a gather looks whether to stop:
+ * its sample is thrown away then. */
+enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64, CANCEL_EVERY = 64 };
 
 /* The ray ends at a diffuse place: irradiance on one side of it, picked by the lobes' shares. */
 static void read_cache(const transport *t, eye_worker *worker, const vertex *v, rgb throughput, float u_side)

@@ -112,14 +112,59 @@ static bool emit_point(const light *l, const light_target *target, rng *random, 
     return !rgb_is_black(out->flux);
 }
 
-/* A start outside all there is, on the disc of the ball that faces the way the light goes. */
-static vec3 start_from_afar(const scene *s, const light_target *ball, vec3 direction, rng *random)
+/* Where small things stand among giants, light from afar that were spread evenly over the scene would hardly find them.
+ * Balls around them, each twice as large as the one before, get equal shares of it: so photons thin out with the square
+ * of the distance, about as what far light does to the small things. The last ball is `whole`. */
+static int nested_ball_count(const scene *s, const light_target *whole)
+{
+    if (!(s->detail_radius > 0.0f) || s->detail_radius >= whole->radius)
+        return 1;
+    return 1 + (int)ceilf(log2f(whole->radius / s->detail_radius));
+}
+
+static light_target nested_ball(const scene *s, const light_target *whole, int i, int count)
+{
+    return i == count - 1 ? *whole : (light_target){s->detail_center, ldexpf(s->detail_radius, i)};
+}
+
+/* The density, per area across direction, with which rays along it come through that place. */
+static float nested_density(const scene *s, const light_target *whole, int count, vec3 place, vec3 direction)
+{
+    float density = 0.0f;
+    for (int i = 0; i < count; i++) {
+        light_target ball = nested_ball(s, whole, i, count);
+        vec3 offset = vec3_sub(place, ball.center);
+        offset = vec3_add_scaled(offset, direction, -vec3_dot(offset, direction));
+        if (i == count - 1 || vec3_dot(offset, offset) <= ball.radius * ball.radius)
+            density += 1.0f / ((float)count * AG_PI * ball.radius * ball.radius);
+    }
+    return density;
+}
+
+/* A start outside all there is, with its density per area; on the disc of the ball that faces the way the light goes,
+ * or those of balls within. False: beside the ball. */
+static bool start_from_afar(const scene *s, const light_target *whole, vec3 direction, rng *random, vec3 *out_origin,
+                            float *out_density)
 {
     frame f = frame_from_z(direction);
+    int count = nested_ball_count(s, whole), picked = count - 1;
+    if (count > 1)
+        picked = (int)fminf(rng_float(random) * (float)count, (float)count - 1.0f);
+    light_target ball = nested_ball(s, whole, picked, count);
     vec2 d = sample_disk_concentric(rng_vec2(random));
+    vec3 place = vec3_add(ball.center, frame_to_world(&f, (vec3){d.x * ball.radius, d.y * ball.radius, 0.0f}));
+    *out_density = 1.0f / (AG_PI * ball.radius * ball.radius);
+    if (count > 1) {
+        vec3 offset = vec3_sub(place, whole->center);
+        offset = vec3_add_scaled(offset, direction, -vec3_dot(offset, direction));
+        if (picked < count - 1 && vec3_dot(offset, offset) > whole->radius * whole->radius)
+            return false;
+        *out_density = nested_density(s, whole, count, place, direction);
+    }
     /* the plane that touches the scene's own ball from behind */
-    float behind = vec3_dot(vec3_sub(ball->center, s->bounding_center), direction) + 1.01f * s->bounding_radius;
-    return vec3_add(ball->center, frame_to_world(&f, (vec3){d.x * ball->radius, d.y * ball->radius, -behind}));
+    float behind = vec3_dot(vec3_sub(ball.center, s->bounding_center), direction) + 1.01f * s->bounding_radius;
+    *out_origin = vec3_add(ball.center, frame_to_world(&f, (vec3){d.x * ball.radius, d.y * ball.radius, -behind}));
+    return true;
 }
 
 /* Light from infinitely far has lost in a medium that absorbs whatever that takes. The first interface that it meets
@@ -164,9 +209,11 @@ static bool emit_infinite(const scene *s, const light *l, const light_target *ba
     float pdf;
     if (!environment_sample_whole(l, rng_vec2(random), &to_light, &radiance, &pdf))
         return false;
+    float density;
     out->direction = vec3_negate(to_light);
-    out->origin = start_from_afar(s, ball, out->direction, random);
-    out->flux = rgb_scale(radiance, AG_PI * ball->radius * ball->radius / pdf);
+    if (!start_from_afar(s, ball, out->direction, random, &out->origin, &density))
+        return false;
+    out->flux = rgb_scale(radiance, 1.0f / (density * pdf));
     return come_through_space(s, l, out);
 }
 
@@ -176,13 +223,15 @@ bool light_sample_emission(const scene *s, const light *l, const light_target *t
     light_emission *out = out_emission;
     light_target whole = {s->bounding_center, s->bounding_radius};
     const light_target *ball = target && target->radius < whole.radius ? target : &whole;
+    float density;
     out->medium = l->medium; /* of area lights: by the side */
     switch (l->kind) {
     case LIGHT_AREA: return emit_area(s, l, target, random, out);
     case LIGHT_DISTANT:
-        out->origin = start_from_afar(s, ball, l->direction, random);
+        if (!start_from_afar(s, ball, l->direction, random, &out->origin, &density))
+            return false;
         out->direction = l->direction;
-        out->flux = rgb_scale(l->radiance, AG_PI * ball->radius * ball->radius);
+        out->flux = rgb_scale(l->radiance, 1.0f / density);
         return come_through_space(s, l, out) && !rgb_is_black(out->flux);
     case LIGHT_INFINITE:
         return l->portal ? emit_through_portal(s, l, target, random, out) : emit_infinite(s, l, ball, random, out);

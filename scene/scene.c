@@ -271,7 +271,7 @@ static ag_status find_bounds(scene *s, log_sink *log)
     }
     s->bounding_center = vec3_scale(vec3_add(s->bounds_min, s->bounds_max), 0.5f);
     s->bounding_radius = vec3_length(vec3_sub(s->bounds_max, s->bounding_center)) * 1.00001f;
-    return AG_OK;
+    return scene_find_detail(s, &s->detail_center, &s->detail_radius);
 }
 
 /* Which shapes each object has. */

@@ -75,8 +75,10 @@ typedef struct scene {
     vec3 bounds_min, bounds_max; /* of all shapes, where instances put them; min > max when there is none */
     vec3 bounding_center;
     float bounding_radius;
-    float surface_area; /* m^2, of all shapes where photons may lie: but interfaces and curves, in all instances */
-    rgb light_power;    /* W, of all lights */
+    vec3 detail_center;  /* of a ball around all but a few giants */
+    float detail_radius; /* 0: there are no such */
+    float surface_area;  /* m^2, of all shapes where photons may lie: but interfaces and curves, in all instances */
+    rgb light_power;     /* W, of all lights */
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */

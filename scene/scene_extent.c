@@ -75,6 +75,95 @@ ag_status scene_find_bounds(const scene *s, bool (*is_wanted)(const scene *s, co
     return AG_OK;
 }
 
+/* --- detail --- */
+
+/* Giants are this many octaves larger than all else, at least; and so is the scene than the ball around that. */
+enum { GIANT_OCTAVES = 4, OCTAVES = 320, OCTAVE_OF_ONE = 160 };
+
+/* How many things there are by the octave of their size, and a box around those below an octave. */
+typedef struct size_census {
+    uint32_t count[OCTAVES];
+    int below;
+    box small;
+} size_census;
+
+static void take_in(size_census *c, const box *b)
+{
+    float size = vec3_length(vec3_sub(b->high, b->low));
+    if (!(size > 0.0f))
+        return;
+    int octave = ilogbf(size) + OCTAVE_OF_ONE;
+    octave = octave < 0 ? 0 : octave >= OCTAVES ? OCTAVES - 1 : octave;
+    c->count[octave]++;
+    if (octave < c->below)
+        include(&c->small, b);
+}
+
+/* The shape; where it is a mesh that is not small itself, its triangles one by one. At `a`, NULL: as it stands. */
+static void take_in_shape(size_census *c, const shape *item, const affine *a, float small)
+{
+    box b;
+    shape_bounds(item, &b.low, &b.high);
+    if (a)
+        b = place_box(a, &b);
+    if (item->kind != SHAPE_MESH || vec3_length(vec3_sub(b.high, b.low)) <= small) {
+        take_in(c, &b);
+        return;
+    }
+    const mesh *m = &item->as.mesh;
+    for (uint32_t i = 0; i < m->triangle_count; i++) {
+        const uint32_t *index = m->indices + 3 * (size_t)i;
+        vec3 p = m->positions[index[0]], q = m->positions[index[1]], r = m->positions[index[2]];
+        b = (box){vec3_min(p, vec3_min(q, r)), vec3_max(p, vec3_max(q, r))};
+        if (a)
+            b = place_box(a, &b);
+        take_in(c, &b);
+    }
+}
+
+static void take_in_all(const scene *s, size_census *c, float small)
+{
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        if (s->shapes[i].object_index == SCENE_NO_OBJECT)
+            take_in_shape(c, &s->shapes[i], NULL, small);
+    for (uint32_t i = 0; i < s->instance_count; i++) {
+        const scene_object *o = &s->objects[s->instances[i].object_index];
+        for (uint32_t k = 0; k < o->shape_count; k++)
+            take_in_shape(c, &s->shapes[s->object_shapes[o->first_shape + k]],
+                          &s->instance_steps[s->instances[i].first_step], small);
+    }
+}
+
+ag_status scene_find_detail(const scene *s, vec3 *out_center, float *out_radius)
+{
+    *out_center = (vec3){0.0f, 0.0f, 0.0f};
+    *out_radius = 0.0f;
+    float whole = vec3_length(vec3_sub(s->bounds_max, s->bounds_min)), small = ldexpf(whole, -2 * GIANT_OCTAVES);
+    size_census *c = calloc(1, sizeof *c);
+    if (!c)
+        return AG_ERROR_MEMORY;
+    c->small = NOTHING;
+    take_in_all(s, c, small);
+    int octave = OCTAVES - 1, empty = 0;
+    while (octave >= 0 && c->count[octave] == 0)
+        octave--;
+    for (; octave >= 0 && empty < GIANT_OCTAVES; octave--)
+        empty = c->count[octave] == 0 ? empty + 1 : 0;
+    while (octave >= 0 && c->count[octave] == 0)
+        octave--;
+    if (octave >= 0 && empty >= GIANT_OCTAVES) {
+        c->below = octave + 1;
+        take_in_all(s, c, small);
+        float radius = 0.5f * vec3_length(vec3_sub(c->small.high, c->small.low));
+        if (ldexpf(radius, GIANT_OCTAVES) <= 0.5f * whole) {
+            *out_center = vec3_scale(vec3_add(c->small.low, c->small.high), 0.5f);
+            *out_radius = radius * 1.0001f;
+        }
+    }
+    free(c);
+    return AG_OK;
+}
+
 /* --- area --- */
 
 /* An object's area vectors, summed over those of like direction: each direction and its opposite by its largest

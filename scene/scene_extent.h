@@ -10,6 +10,10 @@
 ag_status scene_find_bounds(const scene *s, bool (*is_wanted)(const scene *s, const shape *item), vec3 *out_min,
                             vec3 *out_max);
 
+/* A ball around what is small beside a few giants (a ground of kilometres, a dome), where there is such: nothing is of
+ * a size between. Radius 0 where there is not. Needs bounds_min and bounds_max. Errors: AG_ERROR_MEMORY. */
+ag_status scene_find_detail(const scene *s, vec3 *out_center, float *out_radius);
+
 /* m^2, of all shapes that are to be seen, as they stand when the shutter opens. Of objects that an instance stretches
  * more one way than another it is right where they have flat sides, and within some hundredths where they are round.
  * Needs committed shapes and object_shapes. Errors: AG_ERROR_MEMORY. */

@@ -172,7 +172,8 @@ static bool meets_ball(const light_emission *e, const light_target *ball)
 {
     vec3 to_center = vec3_sub(ball->center, e->origin);
     float along = vec3_dot(to_center, e->direction);
-    return along > 0.0f && vec3_length_squared(to_center) - along * along <= ball->radius * ball->radius;
+    vec3 beside = vec3_add_scaled(to_center, e->direction, -along);
+    return along > 0.0f && vec3_dot(beside, beside) <= ball->radius * ball->radius;
 }
 
 /* The flux through the ball is the same whether all of the light is sampled, or only what goes there; and what is aimed
@@ -224,6 +225,62 @@ static void aimed_light_carries_the_same_flux(void **state)
     }
 }
 
+/* A ball on a ground ten thousand times as large: light from afar finds it often, and carries no more there, nor in
+ * all, than it should. */
+static void light_from_afar_finds_what_is_small(void **state)
+{
+    (void)state;
+    static const char *const LIGHTS[] = {"LightSource \"infinite\" \"rgb L\" [1 2 3]\n",
+                                         "LightSource \"distant\" \"point3 from\" [1 2 9] \"rgb L\" [1 2 3]\n"};
+    for (int k = 0; k < 2; k++) {
+        test_run r;
+        test_run_init(&r, 1);
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "%sShape \"disk\" \"float radius\" [5000]\nTranslate 1000 30 1\nShape \"sphere\" \"float radius\" "
+                 "[0.5]\n",
+                 LIGHTS[k]);
+        scene *s = test_scene_create(&r, text);
+        assert_relative(s->detail_radius, 0.5 * sqrt(3.0), 1e-3);
+        assert_close(s->detail_center.x, 1000.0, 1e-3);
+        const light_target ball = {s->detail_center, 0.5f};
+        double flux = 0.0, all = 0.0, square = 0.0, square_all = 0.0;
+        enum { COUNT = 400000 / FEWER };
+        uint32_t met = 0;
+        rng random = test_random(9);
+        for (int i = 0; i < COUNT; i++) {
+            light_emission e;
+            if (!light_sample_emission(s, &s->lights[0], NULL, &random, &e))
+                continue;
+            all += (double)e.flux.g / COUNT;
+            square_all += (double)e.flux.g * (double)e.flux.g / COUNT;
+            if (!meets_ball(&e, &ball))
+                continue;
+            met++;
+            flux += (double)e.flux.g / COUNT;
+            square += (double)e.flux.g * (double)e.flux.g / COUNT;
+        }
+        assert_true(met > COUNT / 50); /* spread evenly: one in 10^8 */
+        double expected = 2.0 * PI * 0.25 * (k == 0 ? 4.0 * PI : 1.0);
+        assert_relative(flux, expected, 5.0 * sqrt(square / COUNT) / expected);
+        assert_relative(all, s->lights[0].power.g, 5.0 * sqrt(square_all / COUNT) / all);
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
+}
+
+static void a_room_has_no_giants(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, "LightSource \"infinite\"\nShape \"disk\" \"float radius\" [5]\n"
+                                     "Shape \"sphere\" \"float radius\" [0.5]\n");
+    assert_true(s->detail_radius == 0.0f);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +288,8 @@ int main(void)
         cmocka_unit_test(directions_are_spread_as_they_should),
         cmocka_unit_test(distant_light_fills_the_disc_around_the_scene),
         cmocka_unit_test(aimed_light_carries_the_same_flux),
+        cmocka_unit_test(light_from_afar_finds_what_is_small),
+        cmocka_unit_test(a_room_has_no_giants),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -128,6 +128,46 @@ static void coincident_photons_give_finite_values(void **state)
     test_run_reset(&r);
 }
 
+/* A caustic behind a small glass in a large scene: a hundred-thousandth of the largest disc. */
+static void a_very_small_disc_is_not_enlarged(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    photon_set set = few_photons(10);
+    vec3 up = {0.0f, 0.0f, 1.0f};
+    for (int i = 1; i <= 10; i++)
+        field_add(&set, (vec3){1e-5f * (float)i, 0.0f, 0.0f}, up, flux_encode(rgb_gray(128.0f), 0));
+    photon_map map = field_map(&r, &set, 4, 1.0f);
+    photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
+    rgb e = photon_map_irradiance_estimate(&map, (vec3){0.0f, 0.0f, 0.0f}, up, scratch);
+    assert_relative(e.r, 4 * 128.0 / (PI * 25e-10), 1e-5);
+    free(scratch);
+    photon_map_reset(&map);
+    test_run_reset(&r);
+}
+
+/* All photons lie on a thousandth of the scene's surface: what is dark does not enlarge the discs. */
+static void dark_surface_does_not_count_for_the_radius(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    float mean[2];
+    for (int i = 0; i < 2; i++) {
+        photon_set set = field_photons(FIELD_SPHERE, 20000, 5);
+        photon_map map;
+        photon_map_settings settings = {.nearest = 50, .surface_area = 4.0f * AG_PI * (i == 0 ? 1.0f : 1000.0f)};
+        assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
+        mean[i] = map.mean_radius;
+        assert_relative(map.max_radius, 4.0f * map.mean_radius, 1e-6);
+        photon_map_reset(&map);
+    }
+    assert_relative(mean[0], sqrt(50.0 * 4.0 / 20000), 1e-5);
+    assert_relative(mean[1], 4.0 * (double)mean[0], 0.05);
+    test_run_reset(&r);
+}
+
 static void the_order_of_the_photons_does_not_matter(void **state)
 {
     (void)state;
@@ -274,6 +314,8 @@ int main(void)
         cmocka_unit_test(the_mean_through_the_nearest_photon_is_right),
         cmocka_unit_test(an_estimate_counts_k_and_reaches_to_the_next),
         cmocka_unit_test(coincident_photons_give_finite_values),
+        cmocka_unit_test(a_very_small_disc_is_not_enlarged),
+        cmocka_unit_test(dark_surface_does_not_count_for_the_radius),
         cmocka_unit_test(the_order_of_the_photons_does_not_matter),
         cmocka_unit_test(a_wall_keeps_its_two_sides_apart),
         cmocka_unit_test(a_map_without_photons_is_dark),
