@@ -126,9 +126,13 @@ ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, 
         return pbrt_refuse(parser, list, "P", "a vertex lies beyond 1e18 units in world space");
     }
     size_t count = m->triangle_count + dropped, kept = drop_degenerate(m->positions, m->indices, m->triangle_count);
-    if (kept < count && !expects_degenerate)
+    if (kept == 0 && count > 0 && !expects_degenerate)
         log_at(parser->log, AG_LOG_WARNING, list->where,
-               "Shape \"%s\": %zu of %zu triangles have no area and are left out", list->name, count - kept, count);
+               "Shape \"%s\": %zu of %zu triangles have no area and are left out", list->name, count, count);
+    else if (kept < count && !expects_degenerate) /* scanned and cut models have some in each mesh */
+        log_at_once(parser->log, AG_LOG_WARNING, list->where, "no area",
+                    "Shape \"%s\": %zu of %zu triangles have no area and are left out, as are any others", list->name,
+                    count - kept, count);
     if (kept == 0) {
         log_at(parser->log, AG_LOG_WARNING, list->where, "Shape \"%s\" is empty and is left out%s", list->name,
                state->area_light.is_set ? ", and its area light with it" : "");

@@ -613,7 +613,7 @@ static void plymesh_says_what_is_wrong_and_where(void **state)
                ":2:1: warning: Shape \"plymesh\": 1 of 1 triangles have no area and are left out\n");
     write_file("line.ply", LINE, strlen(LINE));
     check_said(PLYMESH "\"line.ply\"", AG_OK, AG_LOG_WARNING,
-               ":2:1: warning: Shape \"plymesh\": 2 of 3 triangles have no area and are left out\n");
+               ":2:1: warning: Shape \"plymesh\": 2 of 3 triangles have no area and are left out, as are any others\n");
     check_said("Scale 1e30 1e30 1e30 " PLYMESH "\"line.ply\"", AG_ERROR_SCENE, AG_LOG_ERROR,
                ":2:22: error: a vertex lies beyond 1e18 units in world space");
     check_said(PLYMESH "\"line.ply\" \"float edgelength\" 2 \"texture displacement\" \"d\"", AG_OK, AG_LOG_WARNING,
