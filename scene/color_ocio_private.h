@@ -1,7 +1,7 @@
 /* color_ocio_private.h: what the files that know OpenColorIO share: color_ocio.cpp (configs), color_space_ocio.cpp
  * (what a config has, by its names), color_cycle_ocio.cpp (what would not end), color_log_ocio.cpp (what OpenColorIO
- * says) and color_view_ocio.cpp (ways from space to space, and to displays). Its exceptions end in guarded. Threads:
- * see color.h; OpenColorIO's const objects may be shared. */
+ * says), color_view_ocio.cpp (ways from space to space, and to displays) and color_table_ocio.cpp (these, quicker).
+ * Its exceptions end in guarded. Threads: see color.h; OpenColorIO's const objects may be shared. */
 #ifndef AFTERGLOW_COLOR_OCIO_PRIVATE_H
 #define AFTERGLOW_COLOR_OCIO_PRIVATE_H
 
@@ -10,6 +10,7 @@
 #include <OpenColorIO/OpenColorIO.h>
 
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
@@ -95,6 +96,26 @@ OCIO::ConstCPUProcessorRcPtr exact_processor(const OCIO::ConstConfigRcPtr &confi
 /* The matrix of a transform, row by row; false where it is none. */
 bool find_matrix(const OCIO::ConstCPUProcessorRcPtr &cpu, double out_matrix[9]);
 void set_unit_matrix(double matrix[9]);
+
+/* --- color_table_ocio.cpp --- */
+
+struct curve_table;
+
+/* What a processor does, one thing after the other, quicker where it may be. */
+class stages
+{
+  public:
+    stages() = default;
+    stages(const OCIO::ConstConfigRcPtr &config, const OCIO::ConstProcessorRcPtr &processor);
+    void apply(float *rgba, size_t count) const;
+
+  private:
+    struct stage {
+        OCIO::ConstCPUProcessorRcPtr cpu;
+        std::shared_ptr<const curve_table> table; /* nullptr: there is none */
+    };
+    std::vector<stage> list;
+};
 
 } // namespace ag_color
 

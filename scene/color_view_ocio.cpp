@@ -7,9 +7,12 @@
 #include <sstream>
 #include <strings.h>
 
+using namespace ag_color;
+
 struct color_processor {
-    struct log_sink *log; /* the config's */
-    OCIO::ConstCPUProcessorRcPtr cpu;
+    struct log_sink *log;             /* the config's */
+    OCIO::ConstCPUProcessorRcPtr cpu; /* nullptr: the stages do it */
+    stages in_stages;
     float factor; /* of the values that go in */
 };
 
@@ -66,8 +69,6 @@ bool find_matrix(const OCIO::ConstCPUProcessorRcPtr &cpu, double out_matrix[9])
 }
 
 } // namespace ag_color
-
-using namespace ag_color;
 
 namespace
 {
@@ -187,7 +188,7 @@ extern "C" ag_status color_processor_create(const color_config *config, const co
                                             size_t message_size, color_processor **out_processor)
 {
     return create_processor(config, message, message_size, out_processor, [config, view](color_processor &self) {
-        self.cpu = display_processor(config, *view)->getDefaultCPUProcessor();
+        self.in_stages = stages(config->config, display_processor(config, *view));
         self.factor = std::exp2(view->exposure);
     });
 }
@@ -230,8 +231,12 @@ extern "C" ag_status color_processor_apply(const color_processor *processor, flo
                     row[4 * i + c] = factor * pixels[3 * i + c];
                 row[4 * i + 3] = 1.0f;
             }
-            OCIO::PackedImageDesc description(row, static_cast<long>(size), 1, 4);
-            processor->cpu->apply(description);
+            if (processor->cpu) {
+                OCIO::PackedImageDesc description(row, static_cast<long>(size), 1, 4);
+                processor->cpu->apply(description);
+            } else {
+                processor->in_stages.apply(row, size);
+            }
             for (size_t i = 0; i < size; i++)
                 std::copy(row + 4 * i, row + 4 * i + 3, pixels + 3 * i);
         }

@@ -63,13 +63,13 @@ static image read_picture(const char *name)
     return read;
 }
 
-/* From deep shadow to far above white, and beyond Rec. 709's gamut. */
+/* From deep shadow, and below, to far above white, and beyond Rec. 709's gamut. */
 static void make_input(const char *config_path)
 {
     char command[1024];
     snprintf(command, sizeof command,
-             "cd '%s' && oiiotool --colorconfig '%s' --pattern fill:topleft=0.001,0.002,0.004:topright=0.9,0.2,0.05:"
-             "bottomleft=0.02,1.5,0.3:bottomright=14,9,20 %dx%d 3 -d float -o in.exr",
+             "cd '%s' && oiiotool --colorconfig '%s' --pattern fill:topleft=-0.05,0,0.000004:topright=0.9,0.2,0.05:"
+             "bottomleft=0.02,1.5,0.3:bottomright=14,9,90000 %dx%d 3 -d float -o in.exr",
              folder, config_path, WIDTH, HEIGHT);
     run(command);
 }
@@ -85,7 +85,7 @@ static double compare(const color_config *config, const color_view *view, const 
     assert_int_equal(color_processor_apply(processor, ours.pixels, WIDTH * HEIGHT, message, sizeof message), AG_OK);
     assert_int_equal(theirs.channel_count, 3);
     for (int i = 0; i < VALUES; i++) {
-        double distance = fabs((double)ours.pixels[i] - (double)theirs.pixels[i]);
+        double distance = fabs((double)ours.pixels[i] - (double)theirs.pixels[i]) / fmax(1.0, fabs(theirs.pixels[i]));
         worst = distance <= worst ? worst : distance; /* NaN counts */
     }
     color_processor_destroy(processor);
