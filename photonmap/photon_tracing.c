@@ -303,7 +303,9 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
     block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
     set.photons = photon_records_create(settings->wanted);
     ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
-    uint64_t next_path = 0, block_count = BLOCKS_PER_FIRST_ROUND;
+    uint64_t next_path = 0, block_count = settings->wanted / PATHS_PER_BLOCK + 1; /* a photon a path */
+    if (block_count > BLOCKS_PER_FIRST_ROUND)
+        block_count = BLOCKS_PER_FIRST_ROUND;
     while (status == AG_OK && set.count < settings->wanted) {
         round_job job = {s, caustic_target, settings, blocks, next_path, run};
         status = parallel_for(run, block_count * PATHS_PER_BLOCK, PATHS_PER_BLOCK, trace_block, &job, AG_PHASE_PHOTONS,
