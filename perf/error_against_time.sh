@@ -25,9 +25,11 @@ while ((${#suite_rest[@]} > 0)); do
     suite_rest=("${suite_rest[@]:2}")
 done
 
-# photons-caustic photons-samples a pixel-gather rays a sample; and samples a pixel of path tracing
+# photons-caustic photons-samples a pixel-gather rays a sample, and where they differ from 1 and the scene's own: -fraction
+# that bears irradiance-photons of an estimate; and samples a pixel of path tracing
 photon_map_steps=(1000-100-4-1 3000-300-4-1 10000-1000-4-4 10000-1000-16-1 30000-3000-16-4 100000-10000-16-4
-    100000-10000-64-4 300000-30000-64-8)
+    100000-10000-64-4 300000-30000-64-8
+    6000-100-1-4-0.25-25 20000-1000-4-4-0.125-25 10000-1000-16-2-0.125-25 30000-3000-16-4-0.125-25)
 path_steps=(1 4 16 64 256) parts=(all indirect)
 if [[ $quick == yes ]]; then photon_map_steps=(1000-100-4-1) path_steps=(64) parts=(indirect); fi
 
@@ -85,9 +87,10 @@ for ((r = 1; r <= repeats; r++)); do
                 one_run "$name" "$part" path "$step" "$r" "${part_options[@]}" --spp "$step"
             done
             for step in "${photon_map_steps[@]}"; do
-                IFS=- read -r photons caustic spp gather <<<"$step"
+                IFS=- read -r photons caustic spp gather fraction nearest <<<"$step"
                 one_run "$name" "$part" photonmap "$step" "$r" "${part_options[@]}" --photons "$photons" \
-                    --caustic-photons "$caustic" --spp "$spp" --gather-samples "$gather"
+                    --caustic-photons "$caustic" --spp "$spp" --gather-samples "$gather" \
+                    --irradiance-fraction "${fraction:-1}" ${nearest:+--nearest "$nearest"}
             done
         done
     done
