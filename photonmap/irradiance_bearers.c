@@ -1,14 +1,25 @@
 /* irradiance_bearers.c: see irradiance_bearers.h. */
 #include "irradiance_bearers.h"
 
-enum { CANCEL_MASK = 0xffff };
-
-uint32_t irradiance_bearers_count(uint32_t photon_count, float fraction)
+uint32_t irradiance_bearers_runs(uint32_t photon_count, float fraction)
 {
     if (photon_count == 0 || fraction >= 1.0f)
         return photon_count;
     uint32_t count = (uint32_t)((double)photon_count * (double)fraction + 0.5);
     return count > 0 ? count : 1;
+}
+
+typedef struct choice {
+    const photon_tree *photons;
+    uint32_t runs;
+    float reach_squared, min_cos;
+} choice;
+
+static bool stands_for(const choice *c, vec3 position, vec3 normal, uint32_t other)
+{
+    vec3 its_normal = direction_decode(photon_block_normal(c->photons->blocks, other));
+    return vec3_distance_squared(position, photon_block_position(c->photons->blocks, other)) <= c->reach_squared &&
+           vec3_dot(normal, its_normal) > c->min_cos;
 }
 
 static photon record_of(const photon_tree *photons, uint32_t index)
@@ -25,23 +36,51 @@ static photon record_of(const photon_tree *photons, uint32_t index)
     return p;
 }
 
-ag_status irradiance_bearers_create(run_context *run, const photon_tree *photons, float fraction, double progress,
-                                    photon_tree *out_bearers)
+/* The bearers of a run of photons, as records, where there is room for them. Returns how many they are. */
+static uint32_t choose(const choice *c, uint32_t run, photon *records)
 {
-    uint64_t all = photons->count;
-    uint32_t count = irradiance_bearers_count(photons->count, fraction);
+    const photon_block *blocks = c->photons->blocks;
+    uint64_t all = c->photons->count, begin = run * all / c->runs, end = (run + 1) * all / c->runs;
+    uint32_t pick = (uint32_t)(begin + ((hash_mix64(run + UINT64_C(0x62656172)) >> 32) * (end - begin) >> 32));
+    vec3 position = photon_block_position(blocks, pick), normal = direction_decode(photon_block_normal(blocks, pick));
+    uint32_t count = 0;
+    for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
+        if (i != pick && stands_for(c, position, normal, i))
+            continue;
+        if (records)
+            records[count] = record_of(c->photons, i);
+        count++;
+    }
+    return count;
+}
+
+/* All of them in a row; false when cancelled. */
+static bool choose_all(const run_context *run, const choice *c, photon *records, uint32_t *out_count)
+{
+    enum { CANCEL_EVERY = 1 << 12 };
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < c->runs; i++) {
+        if (i % CANCEL_EVERY == 0 && run_is_cancelled(run))
+            return false;
+        count += choose(c, i, records ? records + count : NULL);
+    }
+    *out_count = count;
+    return true;
+}
+
+ag_status irradiance_bearers_create(run_context *run, const photon_tree *photons, float fraction, float reach,
+                                    float min_cos, double progress, photon_tree *out_bearers)
+{
+    choice c = {photons, irradiance_bearers_runs(photons->count, fraction), reach * reach, min_cos};
+    uint32_t count;
+    if (!choose_all(run, &c, NULL, &count))
+        return AG_CANCELLED;
     photon *records = photon_records_create(count);
     if (!records)
         return AG_ERROR_MEMORY;
-    for (uint32_t i = 0; i < count; i++) {
-        if ((i & CANCEL_MASK) == 0 && run_is_cancelled(run))
-            break;
-        uint64_t begin = i * all / count, end = (i + 1) * all / count;
-        uint64_t pick = (hash_mix64(i + UINT64_C(0x62656172)) >> 32) * (end - begin) >> 32;
-        records[i] = record_of(photons, (uint32_t)(begin + pick));
-    }
-    ag_status status =
-        run_is_cancelled(run) ? AG_CANCELLED : photon_tree_build(run, records, count, progress, progress, out_bearers);
+    ag_status status = AG_CANCELLED;
+    if (choose_all(run, &c, records, &count))
+        status = photon_tree_build(run, records, count, progress, progress, out_bearers);
     if (status != AG_OK)
         free(records);
     return status;

@@ -62,6 +62,13 @@ static float smallest_radius(const photon_map *map)
     return ldexpf(map->max_radius, -octaves);
 }
 
+/* A bearer stands for places up to the mean radius away; in the dark, where estimates are of all photons of the largest
+ * disc, up to this share of that disc's radius. The light through the nearest photon is right on average as long as the
+ * disc around the place that holds no photon lies within the photon's own, which ends here. */
+static const float NEAREST_SHARE = 0.5f;
+
+static float nearest_reach(const photon_map *map) { return fmaxf(map->mean_radius, NEAREST_SHARE * map->max_radius); }
+
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
                             double progress_begin, double progress_end, photon_map *out_map)
 {
@@ -85,7 +92,8 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
     ag_status status = photon_tree_build(run, records, map.set.count, progress_begin, progress_end, &map.tree);
     map.bearers = map.tree;
     if (status == AG_OK && settings->bearing > 0.0f && settings->bearing < 1.0f)
-        status = irradiance_bearers_create(run, &map.tree, settings->bearing, progress_end, &map.bearers);
+        status = irradiance_bearers_create(run, &map.tree, settings->bearing, nearest_reach(&map),
+                                           PHOTON_NEAREST_MIN_COS, progress_end, &map.bearers);
     if (status != AG_OK) {
         photon_map_reset(&map);
         return status;
@@ -177,10 +185,11 @@ static bool is_lopsided(const photon_map *map, vec3 position, const photon_neigh
 static bool is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
                            uint32_t index)
 {
-    vec3 at = photon_block_position(blocks, index);
-    float lift = sqrtf(vec3_distance_squared(position, at)) * (1.0f / 32.0f);
-    vec3 from = vec3_add_scaled(position, normal, lift),
-         to = vec3_add_scaled(at, direction_decode(photon_block_normal(blocks, index)), lift);
+    vec3 at = photon_block_position(blocks, index), its_normal = direction_decode(photon_block_normal(blocks, index));
+    /* and over what a curved surface bulges between the two: on a sphere an eighth of the angle */
+    float share = 1.0f / 32.0f + 0.125f * sqrtf(vec3_distance_squared(normal, its_normal));
+    float lift = sqrtf(vec3_distance_squared(position, at)) * share;
+    vec3 from = vec3_add_scaled(position, normal, lift), to = vec3_add_scaled(at, its_normal, lift);
     return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
@@ -288,8 +297,8 @@ uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_
 {
     float distance_squared, photons_each = (float)map->set.count / (float)map->bearers.count;
     float spacings_squared = FAR_SPACINGS * FAR_SPACINGS / (float)map->nearest * photons_each;
-    uint32_t found =
-        photon_walk_nearest(walk, place, position, normal, PHOTON_NEAREST_MIN_COS, map->mean_radius, &distance_squared);
+    uint32_t found = photon_walk_nearest(walk, place, position, normal, PHOTON_NEAREST_MIN_COS, nearest_reach(map),
+                                         &distance_squared);
     if (found == PHOTON_NONE || !map->surfaces ||
         distance_squared <= spacings_squared * map->mean_radius * map->mean_radius)
         return found;

@@ -72,7 +72,8 @@ uint32_t photon_map_scratch_count(const photon_map *map);
 rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch);
 
 /* The bearer whose irradiance stands for the place; PHOTON_NONE where none with a like normal is near enough,
- * or the one that is stands behind a wall. */
+ * or the one that is stands behind a wall. Near enough is what is no farther than the mean radius, or than half the
+ * largest one, by which the dark is estimated anyway. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal);
 
 /* Where in the bearers' order a place is: lookups at places with like numbers touch the same memory. */

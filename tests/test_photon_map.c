@@ -307,6 +307,70 @@ static void irradiance_survives_without_bias(void **state)
     test_run_reset(&r);
 }
 
+/* Where photons lie farther apart than the mean tells, most places still have one that stands for them, and what they
+ * are told is right on average. */
+static void in_the_dark_the_nearest_photon_is_farther(void **state)
+{
+    (void)state;
+    enum { COUNT = 2000, MAPS = 60 / (FEWER > 1 ? 6 : 1), PLACES = 4000 / (FEWER > 1 ? 4 : 1) };
+    test_run r;
+    test_run_init(&r, 2);
+    /* eight photons in the largest disc, half a one in the mean's */
+    const double radius = sqrt(8.0 * 4.0 / COUNT);
+    double mean = 0.0, uncached = 0.0;
+    for (int m = 0; m < MAPS; m++) {
+        photon_set set = field_photons(FIELD_SPHERE, COUNT, (uint64_t)m);
+        photon_map map;
+        photon_map_settings settings = {.nearest = 50,
+                                        .max_radius = (float)radius,
+                                        .surface_area = (float)(COUNT * PI * radius * radius / 16.0 / 50.0)};
+        assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
+        assert_relative(map.mean_radius, radius / 4.0, 1e-4);
+        irradiance_cache cache;
+        assert_int_equal(irradiance_cache_create(&map, IRRADIANCE_ON_DEMAND, 1, &cache), AG_OK);
+        rng random = test_random((uint64_t)(500 + m));
+        for (int i = 0; i < PLACES; i++) {
+            irradiance_request request;
+            field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
+            irradiance_cache_get(&cache, at.position, at.normal, 0, &request);
+            mean += (double)request.irradiance.r / (MAPS * (double)PLACES);
+        }
+        uncached += (double)irradiance_cache_counters(&cache).uncached / (MAPS * (double)PLACES);
+        irradiance_cache_reset(&cache);
+        photon_map_reset(&map);
+    }
+    double expected = (double)FIELD_FLUX.r * field_irradiance(FIELD_SPHERE);
+    print_message("in the dark: %+.2f %%, %.1f %% of the places without a photon\n", 100.0 * (mean / expected - 1.0),
+                  100.0 * uncached);
+    assert_relative(mean, expected, 0.01 * WIDER);
+    assert_true(fabs(uncached - exp(-2.0)) < 0.02 * WIDER);
+    test_run_reset(&r);
+}
+
+/* A ball does not hide a photon of its own whose normal is similar; a wall does. */
+static void a_ball_is_no_wall(void **state)
+{
+    (void)state;
+    static const char *const WORLDS[] = {"Shape \"sphere\" \"float radius\" 1",
+                                         "Shape \"sphere\" \"float radius\" 1 "
+                                         "Shape \"bilinearmesh\" \"point3 P\" [0.17 -1 0 0.17 1 0 0.17 -1 2 0.17 1 2]"};
+    for (int i = 0; i < 2; i++) {
+        test_run r;
+        test_run_init(&r, 1);
+        scene *s = test_scene_create(&r, WORLDS[i]);
+        photon_set set = few_photons(1);
+        vec3 up = {0.0f, 0.0f, 1.0f}, aside = {sinf(0.4f), 0.0f, cosf(0.4f)};
+        field_add(&set, up, up, flux_encode(rgb_gray(128.0f), 0));
+        photon_map_settings settings = {.nearest = 1, .max_radius = 1.0f, .surface_area = 0.02f, .surfaces = s};
+        photon_map map;
+        assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
+        assert_int_equal(photon_map_nearest(&map, aside, aside), i == 0 ? 0 : PHOTON_NONE);
+        photon_map_reset(&map);
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -320,6 +384,8 @@ int main(void)
         cmocka_unit_test(a_wall_keeps_its_two_sides_apart),
         cmocka_unit_test(a_map_without_photons_is_dark),
         cmocka_unit_test(the_automatic_radius_and_the_size),
+        cmocka_unit_test(in_the_dark_the_nearest_photon_is_farther),
+        cmocka_unit_test(a_ball_is_no_wall),
         cmocka_unit_test(irradiance_survives_without_bias),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

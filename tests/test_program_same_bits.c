@@ -40,15 +40,16 @@ static void expect_same(const char *what, const picture *p, const picture *refer
                      (double)p->pixels[i], (double)reference->pixels[i]);
 }
 
-/* What must hold of every picture by photon map. */
-static void expect_books(const char *stats_file, long long photons)
+/* What must hold of every picture by photon map. bearers: photons at most that bear irradiance in a tree of their own.
+ */
+static void expect_books(const char *stats_file, long long photons, long long bearers)
 {
     json_t *stats = stats_read(in_folder(stats_file));
     long long global = stats_integer(stats, "photons.stored_global"),
               caustic = stats_integer(stats, "photons.stored_caustic");
     long long computed = stats_integer(stats, "irradiance.computed");
     assert_int_equal(global, photons);
-    assert_true(stats_integer(stats, "photons.bytes") <= 28 * (global + caustic) + 2048);
+    assert_true(stats_integer(stats, "photons.bytes") <= 28 * (global + caustic + bearers) + 2048);
     assert_true(computed > 0);
     assert_int_equal(computed, stats_integer(stats, "irradiance.distinct"));
     assert_int_equal(stats_integer(stats, "irradiance.duplicated"), 0);
@@ -81,7 +82,7 @@ static void expect_same_for_all_threads(const char *scene, const char *more)
                 snprintf(what, sizeof what, "%s %s", THREADS[i], CACHES[cache]);
                 picture p = render_map(scene, THREADS[i], CACHES[cache], more);
                 expect_same(what, &p, &reference);
-                expect_books("stats.json", PHOTON_COUNT);
+                expect_books("stats.json", PHOTON_COUNT, more ? PHOTON_COUNT / 4 : 0);
                 picture_reset(&p);
             }
     picture_reset(&reference);
@@ -104,7 +105,8 @@ static void test_few_bearers(void **state)
     (void)state;
     expect_same_for_all_threads(BOX, "--irradiance-fraction=0.125");
     json_t *stats = stats_read(in_folder("stats.json")); /* of the last picture, precomputed */
-    assert_int_equal(stats_integer(stats, "irradiance.computed"), PHOTON_COUNT / 8);
+    long long computed = stats_integer(stats, "irradiance.computed");
+    assert_true(computed >= PHOTON_COUNT / 8 && computed < PHOTON_COUNT / 4);
     json_decref(stats);
 }
 
@@ -122,7 +124,7 @@ static void test_few_photons_for_many_threads(void **state)
     for (int i = 0; i < 4; i++) {
         picture p = RENDER(COINCIDENCES, SIZE, "--spp=2", "--gather-samples=16", "--photons=50", "--caustic-photons=10",
                            "--radius=3", "--stats=stats.json", i == 0 ? "--nthreads=1" : "--nthreads=64");
-        expect_books("stats.json", 50);
+        expect_books("stats.json", 50, 0);
         if (i == 0) {
             reference = p;
             continue;

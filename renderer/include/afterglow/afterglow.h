@@ -167,8 +167,8 @@ typedef struct ag_render_settings {
     float radius;              /* largest radius of an estimate, scene units; 0: from the photons' density */
     float irradiance_fraction; /* of the photons, how many bear irradiance, (0, 1]: gather rays look for the nearest of
                                   those, and each estimate is still of all photons. Less is faster, and blurs by about
-                                  what the bearers are apart; below some 4 / nearest it saves nothing more, as places
-                                  then lack a bearer nearby. Default 1 */
+                                  what the bearers are apart. Where photons lie far apart, and where surfaces turn, more
+                                  of them bear, so that all places have a bearer that stands for them. Default 1 */
     uint32_t layers;           /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
     bool denoise;              /* ag_film_denoise will be asked for: the film keeps what it needs */
     bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */
