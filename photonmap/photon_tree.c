@@ -13,6 +13,9 @@ enum { PARALLEL_LEVELS = 9 };
 enum { CANCEL_MASK = 0xffff };
 /* Shorter ranges take their own middle as the pivot. */
 enum { SAMPLED_MIN = 600 };
+/* What rounding does to the places of a flat surface, relative to their largest coordinate: some units in the last
+ * place. */
+static const float ON_PLANE_RELATIVE = 5e-7f;
 
 /* --- build --- */
 
@@ -78,6 +81,27 @@ static void select_middle(const run_context *run, photon *p, int64_t low, int64_
     }
 }
 
+/* Whether the plane lies in a surface: more than an eighth of the photons are on it, but for what rounding did to them.
+ * They would be shared out to both sides at random, and every search near them would have to look at both. */
+static bool lies_in_surface(const photon *p, range r, photon_tree_node plane, float hair)
+{
+    uint32_t on_it = 0;
+    for (uint32_t i = r.low; i < r.high; i++)
+        on_it += fabsf(p[i].position[plane.axis] - plane.split) <= hair;
+    return on_it > (r.high - r.low) / 8;
+}
+
+/* The longest first. */
+static void sort_axes(const float extent[3], uint32_t out_axes[3])
+{
+    for (uint32_t a = 0; a < 3; a++) {
+        uint32_t place = a;
+        for (; place > 0 && extent[a] > extent[out_axes[place - 1]]; place--)
+            out_axes[place] = out_axes[place - 1];
+        out_axes[place] = a;
+    }
+}
+
 static void split_node(const run_context *run, photon_tree *tree, photon *p, uint32_t level, uint64_t place)
 {
     range r = node_range(tree, level, place);
@@ -98,12 +122,21 @@ static void split_node(const run_context *run, photon_tree *tree, photon *p, uin
             high[a] = at[a] > high[a] ? at[a] : high[a];
         }
     }
-    uint32_t axis = 0;
-    for (uint32_t a = 1; a < 3; a++)
-        if (high[a] - low[a] > high[axis] - low[axis])
-            axis = a;
-    select_middle(run, p, r.low, (int64_t)r.high - 1, middle, axis);
-    tree->nodes[node] = (photon_tree_node){p[middle].position[axis], axis};
+    float size = 0.0f;
+    for (int a = 0; a < 3; a++)
+        size = fmaxf(size, fmaxf(fabsf(low[a]), fabsf(high[a])));
+    /* across the longest way that does not lie in a surface; where all do, across the longest */
+    const float extent[3] = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+    uint32_t axes[4], tried = 0;
+    sort_axes(extent, axes);
+    axes[3] = axes[0];
+    photon_tree_node plane;
+    do {
+        plane.axis = axes[tried];
+        select_middle(run, p, r.low, (int64_t)r.high - 1, middle, plane.axis);
+        plane.split = p[middle].position[plane.axis];
+    } while (tried++ < 3 && lies_in_surface(p, r, plane, ON_PLANE_RELATIVE * size));
+    tree->nodes[node] = plane;
 }
 
 static void split_subtree(const run_context *run, photon_tree *tree, photon *p, uint32_t level, uint64_t place)

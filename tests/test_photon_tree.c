@@ -244,6 +244,43 @@ static void any_number_of_threads_builds_the_same_tree(void **state)
     }
 }
 
+/* Half of the photons lie on a wall across the longest way, a quarter on a floor: what is on a plane stays together. */
+static void planes_do_not_part_a_wall(void **state)
+{
+    (void)state;
+    enum { COUNT = 20000, ULPS = 3 };
+    test_run r;
+    test_run_init(&r, 2);
+    photon *p = photon_records_create(COUNT);
+    rng random = test_random(5);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        vec3 at = random_in_box(&random, (vec3){0.0f, 0.0f, 0.0f}, (vec3){40.0f, 30.0f, 30.0f});
+        if (i % 2)
+            at.x = 40.0f - (float)(rng_next(&random) % ULPS) * 0x1p-18f;
+        else if (i % 4 == 0)
+            at.y = 0.0f;
+        p[i] = (photon){.position = {at.x, at.y, at.z}};
+    }
+    photon_tree tree;
+    assert_int_equal(photon_tree_build(&r.run, p, COUNT, 0.0, 1.0, &tree), AG_OK);
+    for (uint32_t level = 0; level < tree.depth; level++) {
+        uint32_t each = PHOTON_BLOCK_LANES << (tree.depth - level);
+        for (uint32_t low = 0; low + each / 2 < COUNT; low += each) {
+            uint32_t high = low + each < COUNT ? low + each : COUNT, on_it = 0;
+            photon_tree_node n = tree.nodes[(1u << level) - 1 + low / each];
+            for (uint32_t i = low; i < high; i++) {
+                vec3 at = photon_block_position(tree.blocks, i);
+                float along = n.axis == 0 ? at.x : n.axis == 1 ? at.y : at.z;
+                on_it += fabsf(along - n.split) < 1e-5f;
+            }
+            assert_true(on_it <= (high - low) / 8);
+        }
+    }
+    photon_tree_reset(&tree);
+    free(p);
+    test_run_reset(&r);
+}
+
 static void a_cancelled_build_says_so(void **state)
 {
     (void)state;
@@ -264,6 +301,7 @@ int main(void)
         cmocka_unit_test(the_radius_is_inclusive),
         cmocka_unit_test(normals_are_tested_inside_the_search),
         cmocka_unit_test(any_number_of_threads_builds_the_same_tree),
+        cmocka_unit_test(planes_do_not_part_a_wall),
         cmocka_unit_test(a_cancelled_build_says_so),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
