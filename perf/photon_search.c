@@ -82,14 +82,22 @@ static uint32_t nearest_as_they_come(bench *b)
 /* As irradiance_cache_get_many does it, once the queries are in order. */
 static uint32_t nearest_sorted(bench *b)
 {
-    enum { AHEAD = 6 };
     photon_walk walk;
-    photon_walk_init(&walk, &b->map.tree);
-    for (uint32_t i = 0; i < b->hit_count; i++) {
-        const ray_hit *h = &b->sorted_hits[i];
-        if (i + AHEAD < b->hit_count)
-            photon_block_prefetch(&b->map.blocks[(uint32_t)h[AHEAD].order]);
-        b->sink += (double)photon_map_nearest_at(&b->map, &walk, (uint32_t)h->order, h->position, h->normal);
+    photon_walk_init(&walk, &b->map.bearers);
+    uint32_t end;
+    for (uint32_t begin = 0; begin < b->hit_count; begin = end) {
+        /* those of one tile are in order */
+        photon_lookup lookups[PHOTON_LOOKUPS_MAX];
+        uint32_t photons[PHOTON_LOOKUPS_MAX], count = 0;
+        uint64_t tile = b->sorted_hits[begin].order >> 32;
+        for (end = begin; end < b->hit_count && count < PHOTON_LOOKUPS_MAX && b->sorted_hits[end].order >> 32 == tile;
+             end++) {
+            const ray_hit *h = &b->sorted_hits[end];
+            lookups[count++] = (photon_lookup){h->position, h->normal, (uint32_t)h->order};
+        }
+        photon_map_nearest_many(&b->map, &walk, lookups, count, photons);
+        for (uint32_t i = 0; i < count; i++)
+            b->sink += (double)photons[i];
     }
     return b->hit_count;
 }

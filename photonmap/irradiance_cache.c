@@ -206,10 +206,14 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
 static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch, const irradiance_query *queries,
                               uint32_t count)
 {
-    enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS };
+    enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS, PLACES = 256 };
     uint64_t *from = scratch->order[0], *to = scratch->order[1];
-    for (uint32_t i = 0; i < count; i++)
-        from[i] = (uint64_t)photon_map_place(map, queries[i].position) << 32 | i;
+    for (uint32_t i = 0; i < count; i += PLACES) {
+        uint32_t places[PLACES], some = count - i < PLACES ? count - i : PLACES;
+        photon_map_places(map, &queries[i].position.x, sizeof *queries / sizeof(float), some, places);
+        for (uint32_t k = 0; k < some; k++)
+            from[i + k] = (uint64_t)places[k] << 32 | (i + k);
+    }
     for (uint32_t shift = 32; shift < 32 + map->bearers.depth; shift += DIGIT_BITS) {
         uint32_t begin[DIGITS] = {0}, sum = 0;
         for (uint32_t i = 0; i < count; i++)
@@ -228,35 +232,50 @@ static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch
     return from;
 }
 
+/* The bearers that stand for up to PHOTON_LOOKUPS_MAX queries, by their places and numbers in order. */
+static void find_bearers(const photon_map *map, photon_walk *walk, const irradiance_query *queries,
+                         const uint64_t *order, uint32_t count, uint32_t *out_bearers)
+{
+    photon_lookup lookups[PHOTON_LOOKUPS_MAX];
+    for (uint32_t k = 0; k < count; k++) {
+        const irradiance_query *q = &queries[(uint32_t)order[k]];
+        lookups[k] = (photon_lookup){q->position, q->normal, (uint32_t)(order[k] >> 32)};
+    }
+    photon_map_nearest_many(map, walk, lookups, count, out_bearers);
+    for (uint32_t k = 0; k < count; k++)
+        if (out_bearers[k] != PHOTON_NONE)
+            __builtin_prefetch(photon_map_slot(map, out_bearers[k]));
+}
+
 void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
                                uint32_t count, unsigned worker_index, rgb *out_irradiance)
 {
-    enum { AHEAD = 6, CANCEL_EVERY = 64 };
+    enum { AT_ONCE = PHOTON_LOOKUPS_MAX };
     const photon_map *map = cache->map;
     irradiance_scratch *scratch = &cache->scratch[worker_index];
     uint64_t *order = put_in_order(map, scratch, queries, count);
     bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->bearers.count > 0;
-    uint32_t waiting = 0;
+    uint32_t waiting = 0, bearers[AT_ONCE];
     photon_walk walk;
     photon_walk_init(&walk, &map->bearers);
-    for (uint32_t k = 0; k < count; k++) {
-        uint32_t i = (uint32_t)order[k], index = PHOTON_NONE;
-        const irradiance_query *q = &queries[i];
-        irradiance_request request;
-        if (k % CANCEL_EVERY == 0 && run_is_cancelled(run))
+    for (uint32_t begin = 0; begin < count; begin += AT_ONCE) {
+        uint32_t end = count - begin < AT_ONCE ? count : begin + AT_ONCE;
+        if (run_is_cancelled(run))
             return;
         if (is_cached) {
-            /* what a query a little later needs, and itself */
-            if (k + 2 * AHEAD < count)
-                __builtin_prefetch(&queries[(uint32_t)order[k + 2 * AHEAD]]);
-            if (k + AHEAD < count)
-                photon_block_prefetch(&map->bearers.blocks[order[k + AHEAD] >> 32]);
-            index = photon_map_nearest_at(map, &walk, (uint32_t)(order[k] >> 32), q->position, q->normal);
+            find_bearers(map, &walk, queries, order + begin, end - begin, bearers);
+            for (uint32_t k = end; k < end + AT_ONCE && k < count; k++) /* the next ones */
+                __builtin_prefetch(&queries[(uint32_t)order[k]]);
         }
-        ask(cache, index, q->position, q->normal, worker_index, &request);
-        out_irradiance[i] = request.irradiance;
-        if (request.bearer != PHOTON_NONE) /* its place in the order is free by now */
-            order[waiting++] = (uint64_t)request.bearer << 32 | i;
+        for (uint32_t k = begin; k < end; k++) {
+            uint32_t i = (uint32_t)order[k];
+            irradiance_request request;
+            ask(cache, is_cached ? bearers[k - begin] : PHOTON_NONE, queries[i].position, queries[i].normal,
+                worker_index, &request);
+            out_irradiance[i] = request.irradiance;
+            if (request.bearer != PHOTON_NONE) /* its place in the order is free by now */
+                order[waiting++] = (uint64_t)request.bearer << 32 | i;
+        }
     }
     for (uint32_t k = 0; k < waiting; k++) {
         irradiance_request request = {.bearer = (uint32_t)(order[k] >> 32)};

@@ -98,10 +98,8 @@ static inline uint32_t photon_block_nearest_lane(const float distance_squared[PH
     return best;
 }
 
-/* The nearest of all lanes that are no farther than the limit, of equally near ones the first; false where there is
- * none. All squared distances are given, too. */
-static inline bool photon_block_nearest(const photon_block *b, const float position[3], float limit,
-                                        float out_distance_squared[PHOTON_BLOCK_LANES], uint32_t *out_lane)
+/* The squared distance of the nearest lane, and of equally near ones the first. */
+static inline float photon_block_nearest(const photon_block *b, const float position[3], uint32_t *out_lane)
 {
 #if defined(__SSE2__)
     enum { VECTORS = PHOTON_BLOCK_LANES / 4 };
@@ -112,32 +110,34 @@ static inline bool photon_block_nearest(const photon_block *b, const float posit
         __m128 y = _mm_sub_ps(_mm_load_ps(&b->position[1][4 * i]), py);
         __m128 z = _mm_sub_ps(_mm_load_ps(&b->position[2][4 * i]), pz);
         d[i] = _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, x), _mm_mul_ps(y, y)), _mm_mul_ps(z, z));
-        _mm_store_ps(&out_distance_squared[4 * i], d[i]);
         least = _mm_min_ps(d[i], least); /* of what is no number, the second */
     }
     least = _mm_min_ps(least, _mm_shuffle_ps(least, least, _MM_SHUFFLE(1, 0, 3, 2)));
     least = _mm_min_ps(least, _mm_shuffle_ps(least, least, _MM_SHUFFLE(2, 3, 0, 1)));
-    if (!(_mm_cvtss_f32(least) <= limit))
-        return false;
     uint32_t lanes = 0;
     for (uint32_t i = 0; i < VECTORS; i++)
         lanes |= (uint32_t)_mm_movemask_ps(_mm_cmpeq_ps(d[i], least)) << 4 * i;
     *out_lane = (uint32_t)__builtin_ctz(lanes | 1u << (PHOTON_BLOCK_LANES - 1));
-    return true;
+    return _mm_cvtss_f32(least);
 #else
-    uint32_t within = photon_block_within(b, position, limit, out_distance_squared);
-    *out_lane = within ? photon_block_nearest_lane(out_distance_squared, within) : 0;
-    return within != 0;
+    float least = INFINITY;
+    *out_lane = PHOTON_BLOCK_LANES - 1;
+    for (uint32_t i = 0; i < PHOTON_BLOCK_LANES; i++) {
+        float x = b->position[0][i] - position[0], y = b->position[1][i] - position[1],
+              z = b->position[2][i] - position[2], d = x * x + y * y + z * z;
+        *out_lane = d < least ? i : *out_lane;
+        least = d < least ? d : least;
+    }
+    return least;
 #endif
 }
 
-/* Asks for what a search of the block reads, but the flux. */
+/* Asks for what a search of the block reads: positions and normals. */
 static inline void photon_block_prefetch(const photon_block *b)
 {
     for (int a = 0; a < 3; a++)
         __builtin_prefetch(b->position[a]);
     __builtin_prefetch(b->normal);
-    __builtin_prefetch(b->slot);
 }
 
 /* As bits, which lanes have just that normal. */

@@ -5,9 +5,11 @@
 
 #include "parallel_for.h"
 #include "passage.h"
+#include "photon_kernels.h"
 #include "surface_region.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* The automatic radius: this many times what an estimate needs where the light is spread evenly. Darker places then
  * take the photons of the whole disc, which is right, only noisier. */
@@ -30,9 +32,8 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The radius of the estimate at every so-manieth photon: the median; max_radius where that many have no k neighbours.
- */
-static ag_status find_median_radius(const photon_map *map, float *out_radius)
+/* By the radii of the estimates at every so-manieth photon: max_radius where it has no k neighbours. */
+static ag_status bound_radii(photon_map *map)
 {
     float radius[MEDIAN_OF];
     uint32_t count = map->set.count < MEDIAN_OF ? map->set.count : MEDIAN_OF;
@@ -51,7 +52,9 @@ static ag_status find_median_radius(const photon_map *map, float *out_radius)
     }
     free(scratch);
     qsort(radius, count, sizeof *radius, compare_floats);
-    *out_radius = radius[count / 2];
+    float median = fmaxf(radius[count / 2], LEAST_MEDIAN * map->max_radius);
+    map->mean_radius = fminf(map->mean_radius, MEDIAN_FACTOR * median);
+    map->max_radius = fminf(map->max_radius, RADIUS_FACTOR * map->mean_radius);
     return AG_OK;
 }
 
@@ -91,23 +94,14 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
     map.blocks = (photon_block *)(void *)records;
     ag_status status = photon_tree_build(run, records, map.set.count, progress_begin, progress_end, &map.tree);
     map.bearers = map.tree;
+    if (status == AG_OK && settings->max_radius == 0.0f && !(settings->radius_bound > 0.0f))
+        status = bound_radii(&map);
     if (status == AG_OK && settings->bearing > 0.0f && settings->bearing < 1.0f)
         status = irradiance_bearers_create(run, &map.tree, settings->bearing, nearest_reach(&map),
                                            PHOTON_NEAREST_MIN_COS, progress_end, &map.bearers);
     if (status != AG_OK) {
         photon_map_reset(&map);
         return status;
-    }
-    float median;
-    if (settings->max_radius == 0.0f && !(settings->radius_bound > 0.0f)) {
-        status = find_median_radius(&map, &median);
-        if (status != AG_OK) {
-            photon_map_reset(&map);
-            return status;
-        }
-        median = fmaxf(median, LEAST_MEDIAN * map.max_radius);
-        map.mean_radius = fminf(map.mean_radius, MEDIAN_FACTOR * median);
-        map.max_radius = fminf(map.max_radius, RADIUS_FACTOR * map.mean_radius);
     }
     float min_radius = smallest_radius(&map);
     map.min_radius_squared = min_radius * min_radius;
@@ -293,12 +287,11 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
  * square. */
 static const float FAR_SPACINGS = 1.4f;
 
-uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_t place, vec3 position, vec3 normal)
+/* What was found, or PHOTON_NONE where it does not stand for the place. */
+static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint32_t found, float distance_squared)
 {
-    float distance_squared, photons_each = (float)map->set.count / (float)map->bearers.count;
+    float photons_each = (float)map->set.count / (float)map->bearers.count;
     float spacings_squared = FAR_SPACINGS * FAR_SPACINGS / (float)map->nearest * photons_each;
-    uint32_t found = photon_walk_nearest(walk, place, position, normal, PHOTON_NEAREST_MIN_COS, nearest_reach(map),
-                                         &distance_squared);
     if (found == PHOTON_NONE || !map->surfaces ||
         distance_squared <= spacings_squared * map->mean_radius * map->mean_radius)
         return found;
@@ -307,14 +300,34 @@ uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_
 
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
 {
-    photon_walk walk;
-    photon_walk_init(&walk, &map->bearers);
-    return photon_map_nearest_at(map, &walk, photon_map_place(map, position), position, normal);
+    float d;
+    uint32_t found =
+        photon_tree_nearest(&map->bearers, position, normal, PHOTON_NEAREST_MIN_COS, nearest_reach(map), &d);
+    return in_sight(map, position, normal, found, d);
+}
+
+void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
+                             uint32_t *out_bearers)
+{
+    photon_neighbor nearest[PHOTON_LOOKUPS_MAX];
+    photon_walk_nearest_many(walk, lookups, count, PHOTON_NEAREST_MIN_COS, nearest_reach(map), nearest);
+    for (uint32_t i = 0; i < count; i++)
+        out_bearers[i] = in_sight(map, lookups[i].position, lookups[i].normal, photon_neighbor_index(nearest[i]),
+                                  photon_neighbor_distance_squared(nearest[i]));
 }
 
 uint32_t photon_map_place(const photon_map *map, vec3 position)
 {
     return map->bearers.count > 0 ? photon_tree_leaf(&map->bearers, position) : 0;
+}
+
+void photon_map_places(const photon_map *map, const float *positions, uint32_t stride, uint32_t count,
+                       uint32_t *out_places)
+{
+    if (map->bearers.count > 0)
+        photon_kernels_best()->find_leaves(&map->bearers, positions, stride, count, out_places);
+    else
+        memset(out_places, 0, count * sizeof *out_places);
 }
 
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key)

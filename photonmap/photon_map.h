@@ -79,9 +79,14 @@ uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal);
 /* Where in the bearers' order a place is: lookups at places with like numbers touch the same memory. */
 uint32_t photon_map_place(const photon_map *map, vec3 position);
 
-/* The same at a place of that number, walk being one over map->bearers: cheap for one place after the other in order.
- */
-uint32_t photon_map_nearest_at(const photon_map *map, photon_walk *walk, uint32_t place, vec3 position, vec3 normal);
+/* The same of many; x, y, z of each stand side by side, and `stride` floats on those of the next one. */
+void photon_map_places(const photon_map *map, const float *positions, uint32_t stride, uint32_t count,
+                       uint32_t *out_places);
+
+/* photon_map_nearest of many, as photon_walk_nearest_many has them, their leaves being their places; walk is one over
+ * map->bearers. */
+void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
+                             uint32_t *out_bearers);
 
 /* Irradiance as a slot's 30 bits. key decides the rounding: the bearer's index. */
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);

@@ -2,6 +2,7 @@
  * From the query's leaf upwards: mostly its cell holds all that may be nearer than what the leaf has. The way down to a
  * leaf, with the cells along it, is kept from one query to the next.
  * Threads: read only, but for the caller's walk. */
+#include "photon_kernels.h"
 #include "photon_query.h"
 
 #include <string.h>
@@ -9,6 +10,7 @@
 void photon_walk_init(photon_walk *walk, const photon_tree *tree)
 {
     walk->tree = tree;
+    walk->kernels = photon_kernels_best();
     walk->way = 0;
     walk->normal = (vec3){0.0f, 0.0f, 0.0f};
     walk->min_cos = 0.0f;
@@ -67,36 +69,12 @@ static inline bool cell_holds(const photon_walk *walk, uint32_t level, photon_la
 #endif
 }
 
-/* The nearest so far. */
-typedef struct nearest {
-    float distance_squared;
-    uint32_t index;
-} nearest;
-
-static inline void scan_for_nearest(photon_query *q, uint32_t block, nearest *best)
+static inline void scan_for_nearest(photon_query *q, uint32_t block, photon_neighbor *nearest)
 {
-    const photon_block *b = &q->tree->blocks[block];
-    _Alignas(16) float d[PHOTON_BLOCK_LANES];
     uint32_t lane;
-    if (!photon_block_nearest(b, q->position, best->distance_squared, d, &lane))
-        return;
-    uint16_t code = b->normal[lane];
-    if (!photon_query_has_similar_normal(q, code)) {
-        /* the nearest of the rest, normal by normal */
-        uint32_t within = photon_block_within(b, q->position, best->distance_squared, d);
-        for (;;) {
-            within &= ~photon_block_with_normal(b, code);
-            if (!within)
-                return;
-            lane = photon_block_nearest_lane(d, within);
-            code = b->normal[lane];
-            if (photon_query_has_similar_normal(q, code))
-                break;
-        }
-    }
-    uint32_t index = block * PHOTON_BLOCK_LANES + lane;
-    if (d[lane] < best->distance_squared || index < best->index)
-        *best = (nearest){d[lane], index};
+    float d = photon_block_nearest(&q->tree->blocks[block], q->position, &lane);
+    if (d <= photon_neighbor_distance_squared(*nearest))
+        photon_query_offer(q, block, lane, d, nearest);
 }
 
 uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, vec3 normal, float min_cos, float radius,
@@ -104,8 +82,9 @@ uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, ve
 {
     photon_query q;
     const photon_tree *tree = walk->tree;
-    nearest best = {radius * radius, PHOTON_NONE};
-    *out_distance_squared = best.distance_squared;
+    float limit = radius * radius;
+    photon_neighbor nearest = photon_neighbor_make(limit, PHOTON_NONE);
+    *out_distance_squared = limit;
     if (tree->count == 0)
         return PHOTON_NONE;
     walk_to(walk, leaf);
@@ -115,22 +94,25 @@ uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, ve
         q.similar_code = walk->similar_code;
         q.other_code = walk->other_code;
     }
-    scan_for_nearest(&q, leaf, &best);
-    for (uint32_t level = tree->depth; level > 0 && !cell_holds(walk, level, q.at, best.distance_squared); level--) {
+    scan_for_nearest(&q, leaf, &nearest);
+    for (uint32_t level = tree->depth; level > 0; level--) {
+        limit = photon_neighbor_distance_squared(nearest);
+        if (cell_holds(walk, level, q.at, limit))
+            break;
         uint32_t child = walk->way >> (tree->depth - level), block;
         photon_tree_node n = tree->nodes[(child >> 1) - 1];
         q.visits = 0;
         photon_query_push(&q, photon_lanes_fill(0.0f), q.at - photon_lanes_fill(n.split), n.axis, (child ^ 1) - 1,
-                          photon_query_hair_beyond(best.distance_squared));
-        while (photon_query_next_leaf(&q, best.distance_squared, &block))
-            scan_for_nearest(&q, block, &best);
+                          photon_query_hair_beyond(limit));
+        while (photon_query_next_leaf(&q, photon_neighbor_distance_squared(nearest), &block))
+            scan_for_nearest(&q, block, &nearest);
     }
     walk->normal = normal;
     walk->min_cos = min_cos;
     walk->similar_code = q.similar_code;
     walk->other_code = q.other_code;
-    *out_distance_squared = best.distance_squared;
-    return best.index;
+    *out_distance_squared = photon_neighbor_distance_squared(nearest);
+    return photon_neighbor_index(nearest);
 }
 
 uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,

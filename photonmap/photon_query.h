@@ -1,5 +1,5 @@
 /* photon_query.h: a way through the photon tree: the query, what is still to visit, and which normals count. Private
- * to the two searches. Rests on: Arya, Mount, "Algorithms for Fast Vector Quantization", 1993.
+ * to the searches. Rests on: Arya, Mount, "Algorithms for Fast Vector Quantization", 1993.
  * Depth first, near side first; a stack entry carries its box's offset from the query along each axis.
  * Threads: a query belongs to one. */
 #ifndef AFTERGLOW_PHOTON_QUERY_H
@@ -103,6 +103,30 @@ static inline bool photon_query_has_similar_normal(photon_query *q, uint16_t cod
     q->other_code = code;
     q->other_is_behind = d < 0.0f && d * d > 0.25f * square;
     return false;
+}
+
+/* Offers a block whose nearest photon is that lane, no farther than the nearest so far: it becomes that, or, should its
+ * normal not count, the nearest of the block whose normal does. */
+static inline void photon_query_offer(photon_query *q, uint32_t block, uint32_t lane, float distance_squared,
+                                      photon_neighbor *nearest)
+{
+    const photon_block *b = &q->tree->blocks[block];
+    uint16_t code = b->normal[lane];
+    if (!photon_query_has_similar_normal(q, code)) {
+        /* the nearest of the rest, normal by normal */
+        _Alignas(16) float d[PHOTON_BLOCK_LANES];
+        uint32_t within = photon_block_within(b, q->position, photon_neighbor_distance_squared(*nearest), d);
+        do {
+            within &= ~photon_block_with_normal(b, code);
+            if (!within)
+                return;
+            lane = photon_block_nearest_lane(d, within);
+            code = b->normal[lane];
+        } while (!photon_query_has_similar_normal(q, code));
+        distance_squared = d[lane];
+    }
+    photon_neighbor found = photon_neighbor_make(distance_squared, block * PHOTON_BLOCK_LANES + lane);
+    *nearest = found < *nearest ? found : *nearest;
 }
 
 static inline void photon_query_init(photon_query *q, const photon_tree *tree, vec3 position, vec3 normal,

@@ -33,34 +33,6 @@ ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, d
 void photon_tree_reset(photon_tree *tree);
 uint64_t photon_tree_bytes(const photon_tree *tree); /* of the nodes */
 
-/* The nearest photon within radius (inclusive) whose normal has a dot product above min_cos (>= 0) with `normal`;
- * PHOTON_NONE where there is none. */
-uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
-                             float *out_distance_squared);
-
-/* The block of the leaf that a place falls into; of a tree that is not empty. */
-uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
-
-enum { PHOTON_TREE_DEPTH_MAX = 32, PHOTON_WALK_AXES = 4 };
-
-/* The way to a leaf, with the cells of the nodes along it: kept for the next lookup, which is cheap where its leaf is
- * not far. The fourth axis has no bounds. */
-typedef struct photon_walk {
-    const photon_tree *tree;
-    uint32_t way;                      /* to the leaf of the last lookup; 0: there was none */
-    vec3 normal;                       /* of that lookup */
-    float min_cos;                     /* likewise */
-    uint32_t similar_code, other_code; /* normals that were last found similar to it, and not */
-    _Alignas(16) float low[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES], high[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES];
-} photon_walk;
-
-void photon_walk_init(photon_walk *walk, const photon_tree *tree); /* borrows the tree */
-
-/* photon_tree_nearest at a place of the leaf that photon_tree_leaf tells: the same photon, whatever was looked up
- * before. */
-uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, vec3 normal, float min_cos, float radius,
-                             float *out_distance_squared);
-
 /* A photon found: its squared distance as the high half, its index as the low half. Distances are not negative, so
  * their bits order as integers do: comparing two neighbours compares (distance squared, index). */
 typedef uint64_t photon_neighbor;
@@ -79,6 +51,47 @@ static inline float photon_neighbor_distance_squared(photon_neighbor n)
     __builtin_memcpy(&distance_squared, &bits, sizeof bits);
     return distance_squared;
 }
+
+/* The nearest photon within radius (inclusive) whose normal has a dot product above min_cos (>= 0) with `normal`;
+ * PHOTON_NONE where there is none. */
+uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                             float *out_distance_squared);
+
+/* The block of the leaf that a place falls into; of a tree that is not empty. */
+uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
+
+enum { PHOTON_TREE_DEPTH_MAX = 32, PHOTON_WALK_AXES = 4 };
+
+/* The way to a leaf, with the cells of the nodes along it: kept for the next lookup, which is cheap where its leaf is
+ * not far. The fourth axis has no bounds. */
+typedef struct photon_walk {
+    const photon_tree *tree;
+    const struct photon_kernels *kernels; /* for many at once: photon_kernels.h; they make no difference but in time */
+    uint32_t way;                         /* to the leaf of the last lookup; 0: there was none */
+    vec3 normal;                          /* of that lookup */
+    float min_cos;                        /* likewise */
+    uint32_t similar_code, other_code;    /* normals that were last found similar to it, and not */
+    _Alignas(16) float low[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES], high[PHOTON_TREE_DEPTH_MAX][PHOTON_WALK_AXES];
+} photon_walk;
+
+void photon_walk_init(photon_walk *walk, const photon_tree *tree); /* borrows the tree */
+
+/* photon_tree_nearest at a place of the leaf that photon_tree_leaf tells: the same photon, whatever was looked up
+ * before. */
+uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, vec3 normal, float min_cos, float radius,
+                             float *out_distance_squared);
+
+/* A place to find the nearest photon of: position, unit normal, and the leaf that photon_tree_leaf tells. */
+enum { PHOTON_LOOKUPS_MAX = 64 };
+typedef struct photon_lookup {
+    vec3 position, normal;
+    uint32_t leaf;
+} photon_lookup;
+
+/* The same for `count` places, from 1 to PHOTON_LOOKUPS_MAX, in the order of their leaves: much cheaper. Where there is
+ * none, the index is PHOTON_NONE. */
+void photon_walk_nearest_many(photon_walk *walk, const photon_lookup *lookups, uint32_t count, float min_cos,
+                              float radius, photon_neighbor *out_nearest);
 
 /* The `wanted` nearest photons within radius, in no order, but with the farthest of them last when all were found.
  * neighbors: room for photon_neighbors_capacity(wanted). *out_other_squared: how far, squared, the nearest

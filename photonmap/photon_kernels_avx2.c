@@ -1,0 +1,169 @@
+/* photon_kernels_avx2.c: eight at a time; see photon_kernels.h. No fused multiplications: their rounding is another.
+ * Threads: see photon_kernels.h. */
+#include "photon_kernels.h"
+
+#if defined(__x86_64__)
+
+#include <immintrin.h>
+
+#define AVX2 __attribute__((target("avx2,popcnt")))
+
+enum { WIDTH = 8 };
+
+AVX2 static inline __m256i load(const uint32_t *eight)
+{
+    return _mm256_loadu_si256((const __m256i *)(const void *)eight);
+}
+AVX2 static inline void store(uint32_t *eight, __m256i v) { _mm256_storeu_si256((__m256i *)(void *)eight, v); }
+
+typedef struct nodes_8 {
+    __m256 split;
+    __m256i axis;
+} nodes_8;
+
+AVX2 static inline nodes_8 gather_nodes(const photon_tree *tree, __m256i node)
+{
+    const photon_tree_node *n = tree->nodes;
+    return (nodes_8){_mm256_i32gather_ps(&n->split, node, sizeof *n),
+                     _mm256_i32gather_epi32((const int *)(const void *)&n->axis, node, sizeof *n)};
+}
+
+AVX2 static void find_leaves(const photon_tree *tree, const float *positions, uint32_t stride, uint32_t count,
+                             uint32_t *out_leaves)
+{
+    __m256i one = _mm256_set1_epi32(1), base = _mm256_set1_epi32((int)(1u << tree->depth) - 1);
+    __m256i offset = _mm256_mullo_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7), _mm256_set1_epi32((int)stride));
+    uint32_t i = 0;
+    for (; i + WIDTH <= count; i += WIDTH, positions += (size_t)WIDTH * stride) {
+        __m256 x = _mm256_i32gather_ps(positions, offset, 4), y = _mm256_i32gather_ps(positions + 1, offset, 4),
+               z = _mm256_i32gather_ps(positions + 2, offset, 4);
+        __m256i node = _mm256_setzero_si256();
+        for (uint32_t level = 0; level < tree->depth; level++) {
+            nodes_8 n = gather_nodes(tree, node);
+            /* axes 1 and 2 by their bits, as the sign */
+            __m256 at = _mm256_blendv_ps(x, y, _mm256_castsi256_ps(_mm256_slli_epi32(n.axis, 31)));
+            at = _mm256_blendv_ps(at, z, _mm256_castsi256_ps(_mm256_slli_epi32(n.axis, 30)));
+            __m256i is_right = _mm256_castps_si256(_mm256_cmp_ps(at, n.split, _CMP_GE_OQ)); /* -1 */
+            node = _mm256_sub_epi32(_mm256_add_epi32(_mm256_add_epi32(node, node), one), is_right);
+        }
+        store(out_leaves + i, _mm256_sub_epi32(node, base));
+    }
+    for (; i < count; i++, positions += stride)
+        out_leaves[i] = photon_tree_leaf(tree, (vec3){positions[0], positions[1], positions[2]});
+}
+
+AVX2 static uint64_t meet_plane(const photon_reach *reach, photon_tree_node plane)
+{
+    const float *at = reach->column[plane.axis], *most = reach->column[PHOTON_REACH_SQUARED];
+    __m256 split = _mm256_set1_ps(plane.split);
+    uint64_t met = 0;
+    for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i += WIDTH) {
+        __m256 off = _mm256_sub_ps(_mm256_load_ps(at + i), split);
+        __m256 is_met = _mm256_cmp_ps(_mm256_mul_ps(off, off), _mm256_load_ps(most + i), _CMP_LE_OQ);
+        met |= (uint64_t)(uint32_t)_mm256_movemask_ps(is_met) << i;
+    }
+    return met;
+}
+
+/* The lanes of four that have their bits set, in front; returns how many. */
+AVX2 static inline uint32_t store_some(uint32_t *out, __m128i four, uint32_t bits)
+{
+    static const uint8_t IN_FRONT[16][4] = {{0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
+                                            {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
+    int lanes;
+    __builtin_memcpy(&lanes, IN_FRONT[bits], sizeof lanes);
+    __m128 moved = _mm_permutevar_ps(_mm_castsi128_ps(four), _mm_cvtepu8_epi32(_mm_cvtsi32_si128(lanes)));
+    _mm_storeu_ps((float *)(void *)out, moved);
+    return (uint32_t)__builtin_popcount(bits);
+}
+
+AVX2 static inline uint32_t store_some_of_8(uint32_t *out, __m256i eight, uint32_t bits)
+{
+    uint32_t low = store_some(out, _mm256_castsi256_si128(eight), bits & 15);
+    return low + store_some(out + low, _mm256_extracti128_si256(eight, 1), bits >> 4);
+}
+
+AVX2 static void descend(const photon_tree *tree, const photon_reach *reach, const photon_visits *nodes,
+                         photon_visits *out_children)
+{
+    const float *columns = reach->column[0];
+    __m256i one = _mm256_set1_epi32(1), height = _mm256_set1_epi32(PHOTON_LOOKUPS_MAX),
+            lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < nodes->count; i += WIDTH) {
+        /* beyond the last there is rubbish: place 0 at the root instead */
+        uint32_t left = nodes->count - i;
+        __m256i is_there = _mm256_cmpgt_epi32(_mm256_set1_epi32((int)left), lanes);
+        __m256i place = _mm256_and_si256(load(&nodes->place[i]), is_there);
+        __m256i node = _mm256_and_si256(load(&nodes->node[i]), is_there);
+        nodes_8 n = gather_nodes(tree, node);
+        __m256 at = _mm256_i32gather_ps(columns, _mm256_add_epi32(_mm256_mullo_epi32(n.axis, height), place), 4);
+        __m256 most = _mm256_i32gather_ps(reach->column[PHOTON_REACH_SQUARED], place, 4);
+        __m256 off = _mm256_sub_ps(at, n.split);
+        __m256i is_right = _mm256_castps_si256(_mm256_cmp_ps(at, n.split, _CMP_GE_OQ)); /* -1 */
+        __m256i first_child = _mm256_add_epi32(_mm256_add_epi32(node, node), one);
+        store(&out_children->place[count], place);
+        store(&out_children->node[count], _mm256_sub_epi32(first_child, is_right));
+        count += left < WIDTH ? left : WIDTH;
+        __m256 is_met =
+            _mm256_and_ps(_mm256_cmp_ps(_mm256_mul_ps(off, off), most, _CMP_LE_OQ), _mm256_castsi256_ps(is_there));
+        uint32_t met = (uint32_t)_mm256_movemask_ps(is_met);
+        store_some_of_8(&out_children->place[count], place, met);
+        __m256i other = _mm256_add_epi32(_mm256_add_epi32(first_child, one), is_right);
+        count += store_some_of_8(&out_children->node[count], other, met);
+    }
+    out_children->count = count;
+}
+
+/* photon_block_nearest. */
+AVX2 static inline float block_nearest(const photon_block *b, __m256 px, __m256 py, __m256 pz, uint32_t *out_lane)
+{
+    __m256 d[2];
+    for (uint32_t i = 0; i < 2; i++) {
+        __m256 x = _mm256_sub_ps(_mm256_load_ps(&b->position[0][WIDTH * i]), px);
+        __m256 y = _mm256_sub_ps(_mm256_load_ps(&b->position[1][WIDTH * i]), py);
+        __m256 z = _mm256_sub_ps(_mm256_load_ps(&b->position[2][WIDTH * i]), pz);
+        d[i] = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(x, x), _mm256_mul_ps(y, y)), _mm256_mul_ps(z, z));
+    }
+    /* of what is no number, the second */
+    __m256 least = _mm256_min_ps(d[1], _mm256_min_ps(d[0], _mm256_set1_ps(INFINITY)));
+    least = _mm256_min_ps(least, _mm256_permute2f128_ps(least, least, 1));
+    least = _mm256_min_ps(least, _mm256_permute_ps(least, _MM_SHUFFLE(1, 0, 3, 2)));
+    least = _mm256_min_ps(least, _mm256_permute_ps(least, _MM_SHUFFLE(2, 3, 0, 1)));
+    uint32_t lanes = (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(d[0], least, _CMP_EQ_OQ)) |
+                     (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(d[1], least, _CMP_EQ_OQ)) << WIDTH;
+    *out_lane = (uint32_t)__builtin_ctz(lanes | 1u << (PHOTON_BLOCK_LANES - 1));
+    return _mm256_cvtss_f32(least);
+}
+
+AVX2 static void scan(const photon_block *blocks, const photon_reach *reach, const photon_visits *leaves,
+                      photon_visits *out_photons, float *out_distances_squared)
+{
+    enum { AHEAD = 6 };
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < leaves->count; i++) {
+        uint32_t lane, place = leaves->place[i], leaf = leaves->node[i];
+        if (i + AHEAD < leaves->count)
+            photon_block_prefetch(&blocks[leaves->node[i + AHEAD]]);
+        float d = block_nearest(&blocks[leaf], _mm256_broadcast_ss(&reach->column[0][place]),
+                                _mm256_broadcast_ss(&reach->column[1][place]),
+                                _mm256_broadcast_ss(&reach->column[2][place]), &lane);
+        out_photons->place[count] = place;
+        out_photons->node[count] = leaf * PHOTON_BLOCK_LANES + lane;
+        out_distances_squared[count] = d;
+        count += d <= reach->column[PHOTON_REACH_SQUARED][place];
+    }
+    out_photons->count = count;
+}
+
+const photon_kernels *photon_kernels_avx2(void)
+{
+    static const photon_kernels KERNELS = {find_leaves, meet_plane, descend, scan};
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") ? &KERNELS : NULL;
+}
+
+#else
+
+const photon_kernels *photon_kernels_avx2(void) { return NULL; }
+
+#endif
