@@ -264,7 +264,7 @@ static void planes_do_not_part_a_wall(void **state)
     photon_tree tree;
     assert_int_equal(photon_tree_build(&r.run, p, COUNT, 0.0, 1.0, &tree), AG_OK);
     for (uint32_t level = 0; level < tree.depth; level++) {
-        uint32_t each = PHOTON_BLOCK_LANES << (tree.depth - level);
+        uint32_t each = (uint32_t)PHOTON_BLOCK_LANES << (tree.depth - level);
         for (uint32_t low = 0; low + each / 2 < COUNT; low += each) {
             uint32_t high = low + each < COUNT ? low + each : COUNT, on_it = 0;
             photon_tree_node n = tree.nodes[(1u << level) - 1 + low / each];
