@@ -75,6 +75,29 @@ ag_status scene_find_bounds(const scene *s, bool (*is_wanted)(const scene *s, co
     return AG_OK;
 }
 
+/* The first instance of each object and the next one of each instance, SCENE_NO_INSTANCE at the end; to be freed. False
+ * when out of memory. */
+static bool chain_instances(const scene *s, uint32_t **out_first, uint32_t **out_next)
+{
+    uint32_t *first = malloc(((size_t)s->object_count + 1) * sizeof *first),
+             *next = malloc(((size_t)s->instance_count + 1) * sizeof *next);
+    if (!first || !next) {
+        free(first);
+        free(next);
+        return false;
+    }
+    for (uint32_t i = 0; i < s->object_count; i++)
+        first[i] = SCENE_NO_INSTANCE;
+    for (uint32_t i = s->instance_count; i-- > 0;) {
+        uint32_t object = s->instances[i].object_index;
+        next[i] = first[object];
+        first[object] = i;
+    }
+    *out_first = first;
+    *out_next = next;
+    return true;
+}
+
 /* --- detail --- */
 
 /* Giants are this many octaves larger than all else, at least; and so is the scene than the ball around that. */
@@ -87,50 +110,99 @@ typedef struct size_census {
     box small;
 } size_census;
 
-static void take_in(size_census *c, const box *b)
+/* -1: it has none. */
+static int octave_of(float size)
 {
-    float size = vec3_length(vec3_sub(b->high, b->low));
     if (!(size > 0.0f))
-        return;
+        return -1;
     int octave = ilogbf(size) + OCTAVE_OF_ONE;
-    octave = octave < 0 ? 0 : octave >= OCTAVES ? OCTAVES - 1 : octave;
+    return octave < 0 ? 0 : octave >= OCTAVES ? OCTAVES - 1 : octave;
+}
+
+static float size_of(const box *b) { return vec3_length(vec3_sub(b->high, b->low)); }
+
+static void take_in(size_census *c, const box *b, int octave)
+{
+    if (octave < 0)
+        return;
     c->count[octave]++;
     if (octave < c->below)
         include(&c->small, b);
 }
 
-/* The shape; where it is a mesh that is not small itself, its triangles one by one. At `a`, NULL: as it stands. */
-static void take_in_shape(size_census *c, const shape *item, const affine *a, float small)
+static box triangle_box(const mesh *m, uint32_t triangle)
+{
+    const uint32_t *index = m->indices + 3 * (size_t)triangle;
+    vec3 p = m->positions[index[0]], q = m->positions[index[1]], r = m->positions[index[2]];
+    return (box){vec3_min(p, vec3_min(q, r)), vec3_max(p, vec3_max(q, r))};
+}
+
+/* The shape; where it is a mesh that is not small itself, its triangles one by one. */
+static void take_in_shape(size_census *c, const shape *item, float small)
 {
     box b;
     shape_bounds(item, &b.low, &b.high);
-    if (a)
-        b = place_box(a, &b);
-    if (item->kind != SHAPE_MESH || vec3_length(vec3_sub(b.high, b.low)) <= small) {
-        take_in(c, &b);
+    if (item->kind != SHAPE_MESH || size_of(&b) <= small) {
+        take_in(c, &b, octave_of(size_of(&b)));
         return;
     }
-    const mesh *m = &item->as.mesh;
-    for (uint32_t i = 0; i < m->triangle_count; i++) {
-        const uint32_t *index = m->indices + 3 * (size_t)i;
-        vec3 p = m->positions[index[0]], q = m->positions[index[1]], r = m->positions[index[2]];
-        b = (box){vec3_min(p, vec3_min(q, r)), vec3_max(p, vec3_max(q, r))};
-        if (a)
-            b = place_box(a, &b);
-        take_in(c, &b);
+    for (uint32_t i = 0; i < item->as.mesh.triangle_count; i++) {
+        b = triangle_box(&item->as.mesh, i);
+        take_in(c, &b, octave_of(size_of(&b)));
     }
 }
 
-static void take_in_all(const scene *s, size_census *c, float small)
+/* The boxes around a mesh's triangles of each octave: many instances of many triangles would take minutes one by one.
+ */
+static void sort_triangles(const mesh *m, box by_octave[OCTAVES])
 {
-    for (uint32_t i = 0; i < s->shape_count; i++)
-        if (s->shapes[i].object_index == SCENE_NO_OBJECT)
-            take_in_shape(c, &s->shapes[i], NULL, small);
-    for (uint32_t i = 0; i < s->instance_count; i++) {
-        const scene_object *o = &s->objects[s->instances[i].object_index];
-        for (uint32_t k = 0; k < o->shape_count; k++)
-            take_in_shape(c, &s->shapes[s->object_shapes[o->first_shape + k]],
-                          &s->instance_steps[s->instances[i].first_step], small);
+    for (int i = 0; i < OCTAVES; i++)
+        by_octave[i] = NOTHING;
+    for (uint32_t i = 0; i < m->triangle_count; i++) {
+        box b = triangle_box(m, i);
+        int octave = octave_of(size_of(&b));
+        if (octave >= 0)
+            include(&by_octave[octave], &b);
+    }
+}
+
+/* A shape of an object at all its instances, a chain; a mesh that is not small there by the octaves of its triangles.
+ * by_octave: room for them. */
+static void take_in_instances(const scene *s, size_census *c, const shape *item, uint32_t first, const uint32_t *next,
+                              float small, box by_octave[OCTAVES])
+{
+    bool is_sorted = false;
+    box own;
+    shape_bounds(item, &own.low, &own.high);
+    for (uint32_t k = first; k != SCENE_NO_INSTANCE; k = next[k]) {
+        const affine *a = &s->instance_steps[s->instances[k].first_step];
+        box placed = place_box(a, &own);
+        float size = size_of(&placed), scale = size / size_of(&own);
+        if (item->kind != SHAPE_MESH || size <= small) {
+            take_in(c, &placed, octave_of(size));
+            continue;
+        }
+        if (!is_sorted)
+            sort_triangles(&item->as.mesh, by_octave);
+        is_sorted = true;
+        for (int i = 0; i < OCTAVES; i++)
+            if (by_octave[i].low.x <= by_octave[i].high.x) {
+                placed = place_box(a, &by_octave[i]);
+                take_in(c, &placed, octave_of(ldexpf(1.5f, i - OCTAVE_OF_ONE) * scale));
+            }
+    }
+}
+
+/* first, next: of chain_instances. */
+static void take_in_all(const scene *s, size_census *c, const uint32_t *first, const uint32_t *next, float small,
+                        box by_octave[OCTAVES])
+{
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        const shape *item = &s->shapes[i];
+        if (item->object_index == SCENE_NO_OBJECT)
+            take_in_shape(c, item, small);
+        else
+            take_in_instances(s, c, item, first[item->object_index], next, small, by_octave);
     }
 }
 
@@ -140,10 +212,15 @@ ag_status scene_find_detail(const scene *s, vec3 *out_center, float *out_radius)
     *out_radius = 0.0f;
     float whole = vec3_length(vec3_sub(s->bounds_max, s->bounds_min)), small = ldexpf(whole, -2 * GIANT_OCTAVES);
     size_census *c = calloc(1, sizeof *c);
-    if (!c)
+    box *by_octave = malloc(OCTAVES * sizeof *by_octave);
+    uint32_t *first = NULL, *next = NULL;
+    if (!c || !by_octave || !chain_instances(s, &first, &next)) {
+        free(c);
+        free(by_octave);
         return AG_ERROR_MEMORY;
+    }
     c->small = NOTHING;
-    take_in_all(s, c, small);
+    take_in_all(s, c, first, next, small, by_octave);
     int octave = OCTAVES - 1, empty = 0;
     while (octave >= 0 && c->count[octave] == 0)
         octave--;
@@ -153,13 +230,16 @@ ag_status scene_find_detail(const scene *s, vec3 *out_center, float *out_radius)
         octave--;
     if (octave >= 0 && empty >= GIANT_OCTAVES) {
         c->below = octave + 1;
-        take_in_all(s, c, small);
+        take_in_all(s, c, first, next, small, by_octave);
         float radius = 0.5f * vec3_length(vec3_sub(c->small.high, c->small.low));
         if (ldexpf(radius, GIANT_OCTAVES) <= 0.5f * whole) {
             *out_center = vec3_scale(vec3_add(c->small.low, c->small.high), 0.5f);
             *out_radius = radius * 1.0001f;
         }
     }
+    free(first);
+    free(next);
+    free(by_octave);
     free(c);
     return AG_OK;
 }
@@ -264,20 +344,9 @@ ag_status scene_find_area(const scene *s, float *out_area)
     *out_area = area;
     if (s->instance_count == 0)
         return AG_OK;
-    /* object by object: chains of their instances */
-    uint32_t *first = malloc(s->object_count * sizeof *first), *next = malloc(s->instance_count * sizeof *next);
-    if (!first || !next) {
-        free(first);
-        free(next);
+    uint32_t *first, *next;
+    if (!chain_instances(s, &first, &next))
         return AG_ERROR_MEMORY;
-    }
-    for (uint32_t i = 0; i < s->object_count; i++)
-        first[i] = SCENE_NO_INSTANCE;
-    for (uint32_t i = s->instance_count; i-- > 0;) {
-        uint32_t object = s->instances[i].object_index;
-        next[i] = first[object];
-        first[object] = i;
-    }
     for (uint32_t i = 0; i < s->object_count; i++) {
         area_vectors vectors;
         if (first[i] == SCENE_NO_INSTANCE)

@@ -269,6 +269,31 @@ static void light_from_afar_finds_what_is_small(void **state)
     }
 }
 
+/* A ground and a pyramid on it in one mesh, as it stands and in an object, here and elsewhere, twice as large. */
+static void what_is_small_is_found_in_instances(void **state)
+{
+    (void)state;
+    static const char MESH[] = "Shape \"trianglemesh\" \"point3 P\" [-5000 -5000 0  5000 -5000 0  0 5000 0  "
+                               "100 100 0  101 100 0  100 101 0  100 100 1]\n"
+                               "\"integer indices\" [0 1 2  3 4 6  4 5 6  5 3 6]\n";
+    static const char *const BEFORE[] = {"", "ObjectBegin \"it\"", "ObjectBegin \"it\""};
+    static const char *const BEHIND[] = {"", "ObjectEnd ObjectInstance \"it\"",
+                                         "ObjectEnd Translate 50 0 0 Scale 2 2 2 ObjectInstance \"it\""};
+    for (int k = 0; k < 3; k++) {
+        test_run r;
+        test_run_init(&r, 1);
+        char text[1024];
+        snprintf(text, sizeof text, "%s %s %s", BEFORE[k], MESH, BEHIND[k]);
+        scene *s = test_scene_create(&r, text);
+        double scale = k == 2 ? 2.0 : 1.0;
+        assert_relative(s->detail_radius, scale * 0.5 * sqrt(3.0), 1e-3);
+        assert_close(s->detail_center.x, k == 2 ? 251.0 : 100.5, 1e-3);
+        assert_close(s->detail_center.z, scale * 0.5, 1e-3);
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
+}
+
 static void a_room_has_no_giants(void **state)
 {
     (void)state;
@@ -289,6 +314,7 @@ int main(void)
         cmocka_unit_test(distant_light_fills_the_disc_around_the_scene),
         cmocka_unit_test(aimed_light_carries_the_same_flux),
         cmocka_unit_test(light_from_afar_finds_what_is_small),
+        cmocka_unit_test(what_is_small_is_found_in_instances),
         cmocka_unit_test(a_room_has_no_giants),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
