@@ -9,7 +9,11 @@ uint32_t irradiance_bearers_runs(uint32_t photon_count, float fraction)
     return count > 0 ? count : 1;
 }
 
+/* How often long loops look whether to stop: a run may be of all photons. */
+enum { CANCEL_MASK = 0xffff };
+
 typedef struct choice {
+    const run_context *run;
     const photon_tree *photons;
     uint32_t runs;
     float reach_squared, min_cos;
@@ -36,7 +40,8 @@ static photon record_of(const photon_tree *photons, uint32_t index)
     return p;
 }
 
-/* The bearers of a run of photons, as records, where there is room for them. Returns how many they are. */
+/* The bearers of a run of photons, as records, where there is room for them. Returns how many they are; when cancelled,
+ * how many it got to. */
 static uint32_t choose(const choice *c, uint32_t run, photon *records)
 {
     const photon_block *blocks = c->photons->blocks;
@@ -45,6 +50,8 @@ static uint32_t choose(const choice *c, uint32_t run, photon *records)
     vec3 position = photon_block_position(blocks, pick), normal = direction_decode(photon_block_normal(blocks, pick));
     uint32_t count = 0;
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
+        if ((i & CANCEL_MASK) == 0 && run_is_cancelled(c->run))
+            break;
         if (i != pick && stands_for(c, position, normal, i))
             continue;
         if (records)
@@ -55,31 +62,27 @@ static uint32_t choose(const choice *c, uint32_t run, photon *records)
 }
 
 /* All of them in a row; false when cancelled. */
-static bool choose_all(const run_context *run, const choice *c, photon *records, uint32_t *out_count)
+static bool choose_all(const choice *c, photon *records, uint32_t *out_count)
 {
-    enum { CANCEL_EVERY = 1 << 12 };
     uint32_t count = 0;
-    for (uint32_t i = 0; i < c->runs; i++) {
-        if (i % CANCEL_EVERY == 0 && run_is_cancelled(run))
-            return false;
+    for (uint32_t i = 0; i < c->runs && !run_is_cancelled(c->run); i++)
         count += choose(c, i, records ? records + count : NULL);
-    }
     *out_count = count;
-    return true;
+    return !run_is_cancelled(c->run);
 }
 
 ag_status irradiance_bearers_create(run_context *run, const photon_tree *photons, float fraction, float reach,
                                     float min_cos, double progress, photon_tree *out_bearers)
 {
-    choice c = {photons, irradiance_bearers_runs(photons->count, fraction), reach * reach, min_cos};
+    choice c = {run, photons, irradiance_bearers_runs(photons->count, fraction), reach * reach, min_cos};
     uint32_t count;
-    if (!choose_all(run, &c, NULL, &count))
+    if (!choose_all(&c, NULL, &count))
         return AG_CANCELLED;
     photon *records = photon_records_create(count);
     if (!records)
         return AG_ERROR_MEMORY;
     ag_status status = AG_CANCELLED;
-    if (choose_all(run, &c, records, &count))
+    if (choose_all(&c, records, &count))
         status = photon_tree_build(run, records, count, progress, progress, out_bearers);
     if (status != AG_OK)
         free(records);
