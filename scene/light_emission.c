@@ -119,7 +119,10 @@ static int nested_ball_count(const scene *s, const light_target *whole)
 {
     if (!(s->detail_radius > 0.0f) || s->detail_radius >= whole->radius)
         return 1;
-    return 1 + (int)ceilf(log2f(whole->radius / s->detail_radius));
+    /* the octaves, rounded up: by its bits, since no two machines agree on logarithms */
+    int octaves;
+    float fraction = frexpf(fminf(whole->radius / s->detail_radius, 0x1p100f), &octaves);
+    return 1 + octaves - (fraction == 0.5f);
 }
 
 static light_target nested_ball(const scene *s, const light_target *whole, int i, int count)
