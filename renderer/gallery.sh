@@ -45,7 +45,8 @@ sunroom=$root/renderer/examples/sunroom.pbrt
 size=(--size 480x300)
 say "# Gallery" "" \
     "Made by \`renderer/gallery.sh\`, which runs the commands below: what they say is what was done. The PNG files" \
-    "are shown as JPEG." ""
+    "are shown as JPEG. They are for the folder of the sources, with \`build/release/bin\` in \`\$PATH\`; \`afterglow-rooms\` is" \
+    "built there, and not installed." ""
 
 say "## Bounced light" "" \
     "The sun shines through a window, and what is not in its patch of light is lit by what that patch and the sky send on." \
