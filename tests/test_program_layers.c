@@ -186,6 +186,10 @@ static void test_what_is_said(void **state)
         expect_said(&run, wrong[i].said);
         program_run_reset(&run);
     }
+    program_run idle = RUN("--aov=Z", "-o", "p.png", PROGRAM_SCENES "floor.pbrt");
+    expect_exit(&idle, 2);
+    expect_said(&idle, "--aov is for .exr files, and there is none");
+    program_run_reset(&idle);
     const char *scene = write_text("group.pbrt", "Camera \"perspective\" WorldBegin\n"
                                                  "LightSource \"point\" \"string lightgroup\" \"a b\"");
     program_run run = RUN("-o", "p.exr", scene);

@@ -57,7 +57,6 @@ enum {
     OPT_MIN_SPP,
     OPT_PROGRESS,
     OPT_ISA,
-    OPT_HELP,
     OPT_VERSION
 };
 
@@ -144,7 +143,7 @@ static const option_line LINES[] = {
      "bits"},
     {'q', "quiet", NULL, "errors only"},
     {'v', "verbose", NULL, "also say what was done; twice: also what is harmless in the scene"},
-    {OPT_HELP, "help", NULL, "this text"},
+    {'h', "help", NULL, "this text"},
     {OPT_VERSION, "version", NULL, "the program's version"},
 };
 enum { LINE_COUNT = sizeof LINES / sizeof *LINES };
@@ -482,7 +481,7 @@ static char *join_arguments(int argc, char **argv)
 }
 
 /* What is asked for must be for one of the files, where they are known. */
-static bool has_idle_color_option(const options *o)
+static bool has_idle_picture_option(const options *o)
 {
     int exr_count = 0;
     for (int i = 0; i < o->outfile_count; i++) {
@@ -501,6 +500,8 @@ static bool has_idle_color_option(const options *o)
         fprintf(stderr, "afterglow: --%s is for pictures that are not .exr, and there is none\n", of_displays);
     else if (s->color_space && exr_count == 0)
         fprintf(stderr, "afterglow: --output-space is for .exr files, and there is none\n");
+    else if (o->render.layers && exr_count == 0)
+        fprintf(stderr, "afterglow: --aov is for .exr files, and there is none\n");
     else
         return false;
     return true;
@@ -553,10 +554,10 @@ options_result options_parse(int argc, char **argv, options *out_options)
     }
     options_result result = OPTIONS_RUN;
     int code;
-    while (result == OPTIONS_RUN && (code = getopt_long(argc, argv, "o:D:t:qv", longs, NULL)) != -1) {
+    while (result == OPTIONS_RUN && (code = getopt_long(argc, argv, "o:D:t:qvh", longs, NULL)) != -1) {
         if (code == '?') {
             result = OPTIONS_EXIT_USAGE; /* getopt has said what is wrong */
-        } else if (code == OPT_HELP) {
+        } else if (code == 'h') {
             print_help();
             result = OPTIONS_EXIT_OK;
         } else if (code == OPT_VERSION) {
@@ -580,7 +581,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
     }
     if (result == OPTIONS_RUN && o.frames.count > 1 && has_frames_in_one_file(&o))
         result = OPTIONS_EXIT_USAGE;
-    if (result == OPTIONS_RUN && (has_file_twice(&o) || has_idle_color_option(&o) || has_picture_of_photons_only(&o)))
+    if (result == OPTIONS_RUN && (has_file_twice(&o) || has_idle_picture_option(&o) || has_picture_of_photons_only(&o)))
         result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
         fprintf(stderr, "Try 'afterglow --help'.\n");
