@@ -66,7 +66,7 @@ cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
 ./use_c open.pbrt no.png 2>told && fail "a scene with a name left open was rendered"
 grep -q 'open.pbrt:.*\$rho has no value' told || fail "of the name it says: $(<told)"
 ./use_c nothing.pbrt no.png 2>told && fail "a scene that is not there was rendered"
-grep -q 'error: nothing.pbrt' told || fail "of the scene it says: $(<told)"
+grep -q 'nothing.pbrt: error: ' told || fail "of the scene it says: $(<told)"
 # Ctrl-C while it renders.
 sed 's/"integer xresolution" 16 "integer yresolution" 12/"integer xresolution" 4096 "integer yresolution" 4096/' room.pbrt >large.pbrt
 ./use_c large.pbrt no.png 2>told &

@@ -23,8 +23,9 @@ static void on_interrupt(int number)
 static void on_log(void *user, ag_log_level level, const char *message)
 {
     (void)user;
-    if (level <= AG_LOG_WARNING)
-        fprintf(stderr, "\r%s: %s\n", level == AG_LOG_ERROR ? "error" : "warning", message);
+    const char *kind = level == AG_LOG_ERROR ? "error: " : "warning: ";
+    if (level <= AG_LOG_WARNING) /* those about a place in a file say themselves what they are */
+        fprintf(stderr, "\r%s%s\n", strstr(message, kind) ? "" : kind, message);
 }
 
 static void on_progress(void *user, ag_phase phase, double fraction)

@@ -43,7 +43,9 @@ AG_API const char *ag_status_text(ag_status status);
  */
 typedef enum ag_log_level { AG_LOG_ERROR, AG_LOG_WARNING, AG_LOG_INFO, AG_LOG_DEBUG } ag_log_level;
 
-/* Receives one message without a line end. Calls are serialised; the thread is the one that speaks. */
+/* Receives one message without a line end. An error or warning about a place in a file says so itself,
+ * "FILE:LINE:COLUMN: error: ..."; others do not say their level. Calls are serialised; the thread is the one that
+ * speaks. */
 typedef void ag_log_fn(void *user, ag_log_level level, const char *message);
 
 /* The phases of a run, in their order. */
