@@ -78,7 +78,8 @@ std::vector<std::string> all_views(const OCIO::ConstConfigRcPtr &config, const c
 std::vector<std::string> all_looks(const OCIO::ConstConfigRcPtr &config);
 
 /* The config's own spelling of name among names; unknown: an error that lists them. */
-std::string chosen(const char *what, const char *name, const std::vector<std::string> &names);
+std::string chosen(const char *what, const char *name, const std::vector<std::string> &names,
+                   const std::string &holder = "the OpenColorIO config");
 
 /* By name, alias or role; unknown: an error that lists the config's. */
 OCIO::ConstColorSpaceRcPtr space_of(const OCIO::ConstConfigRcPtr &config, const char *name);

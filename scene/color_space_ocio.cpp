@@ -78,13 +78,13 @@ std::string described(const color_config *self)
 
 } // namespace
 
-std::string chosen(const char *what, const char *name, const std::vector<std::string> &names)
+std::string chosen(const char *what, const char *name, const std::vector<std::string> &names, const std::string &holder)
 {
     const auto same = [name](const std::string &other) { return strcasecmp(other.c_str(), name) == 0; };
     const auto found = std::find_if(names.begin(), names.end(), same);
     if (found == names.end())
         throw OCIO::Exception(
-            (std::string("unknown ") + what + " '" + name + "'; the OpenColorIO config has: " + joined(names)).c_str());
+            (std::string("unknown ") + what + " '" + name + "'; " + holder + " has: " + joined(names)).c_str());
     return *found;
 }
 

@@ -98,9 +98,8 @@ OCIO::ConstProcessorRcPtr display_processor(const color_config *self, const colo
     const std::string display =
         chosen("display", wanted.display ? wanted.display : config->getDefaultDisplay(), displays);
     const std::string default_view = config->getDefaultView(display.c_str(), self->working_space.c_str());
-    const std::string view =
-        chosen(("view of display '" + display + "'").c_str(), wanted.view ? wanted.view : default_view.c_str(),
-               all_views(config, display.c_str()));
+    const std::string view = chosen("view", wanted.view ? wanted.view : default_view.c_str(),
+                                    all_views(config, display.c_str()), "display '" + display + "'");
     const OCIO::DisplayViewTransformRcPtr to_display = OCIO::DisplayViewTransform::Create();
     to_display->setSrc(self->working_space.c_str());
     to_display->setDisplay(display.c_str());

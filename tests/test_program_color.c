@@ -383,6 +383,7 @@ static void options_that_make_no_sense(void **state)
         {{"--output-space=AP0", "-o", "a.png"}, "--output-space is for .exr files", 2},
         {{"--list-displays"}, "--list-displays renders nothing", 2},
         {{"--look=Cold", "-o", "a.png"}, "unknown look 'Cold'; the OpenColorIO config has: 'Warm', 'Flat'", 1},
+        {{"--view=Bright", "-o", "a.png"}, "unknown view 'Bright'; display 'Monitor' has: ", 1},
         {{"--output-space=AP9", "-o", "a.exr"}, "unknown colour space 'AP9'; the OpenColorIO config has: ", 1},
         {{"--working-space=AP9", "-o", "a.exr"}, "unknown colour space 'AP9'; the OpenColorIO config has: ", 1},
         {{"--working-space=Log", "-o", "a.exr"}, "the working space 'Log' is not linear", 1},
