@@ -72,7 +72,13 @@ static ag_status load(run_context *run, const char *path, scene *out_scene)
             return READERS[k].load(run, path, out_scene);
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     bool is_assimps = dot && dot[1] != '\0' && assimp_reads_extension(dot);
-    return is_assimps ? assimp_load_file(run, path, out_scene) : pbrt_parse_file(run, path, out_scene);
+    if (is_assimps)
+        return assimp_load_file(run, path, out_scene);
+    ag_status status = pbrt_parse_file(run, path, out_scene);
+    if (status == AG_ERROR_SCENE && dot && strcasecmp(dot, ".gz") != 0) /* may be of another renderer */
+        log_message(run->log, AG_LOG_WARNING, "no reader knows files that end in %s: this one was read as pbrt text",
+                    dot);
+    return status;
 }
 
 ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)

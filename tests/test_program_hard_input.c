@@ -83,6 +83,11 @@ static void test_no_scenes(void **state)
     expect_refused("wide.pbrt", "wide.pbrt:1:1: error: ", "the file is UTF-16; only ASCII and UTF-8 can be read");
     write_bytes("nul.pbrt", "Camera\0", 7);
     expect_refused("nul.pbrt", "nul.pbrt:1:7: error: ", "NUL byte: this is not a text file");
+    program_run run = RUN("-o", "a.exr", write_text("stage.usda", "#usda 1.0\ndef Xform"));
+    expect_exit(&run, 1);
+    expect_said(&run, "stage.usda:2:1: error: unknown directive def");
+    expect_said(&run, "warning: no reader knows files that end in .usda");
+    program_run_reset(&run);
 }
 
 static void test_byte_order_mark_and_line_ends(void **state)
