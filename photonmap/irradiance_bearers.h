@@ -1,7 +1,8 @@
 /* irradiance_bearers.h: the photons of a map that bear irradiance, where that is not all of them: a tree of their own,
  * so that the nearest is looked for among few.
  * Rests on: Christensen, "Faster Photon Map Global Illumination", 1999 (irradiance at a fraction of the photons).
- * Flow: photon_tree -> [here] -> photon_map. Threads: built by the run's workers; then read-only, but for the slots.
+ * Flow: photon_tree -> [here] -> photon_map. Threads: picked by one, their tree built by the run's workers; then
+ * read-only, but for the slots.
  *
  * Of every so many photons that follow each other in the map's order, and so lie together, one bears, picked by a hash:
  * a lane of its own in each block would favour the planes that blocks were parted by. So bearers are as dense as light
