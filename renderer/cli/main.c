@@ -148,7 +148,7 @@ static void tell_end(const options *o, ag_status status, const passes_result *re
         else
             fprintf(stderr, "afterglow: interrupted: no picture was written\n");
     }
-    if (status == AG_ERROR_MEMORY || status == AG_ERROR_SYSTEM)
+    if (status == AG_ERROR_MEMORY) /* the log says what else there is to say */
         fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
 }
 
