@@ -27,7 +27,9 @@ run() {
 show() {
     if [[ -n $work ]]; then
         mkdir -p "$pictures"
-        oiiotool "$work/$1.png" -d uint8 --compression jpeg:85 -o "$pictures/$1.jpg"
+        # without the history that oiiotool writes: it names folders of the machine
+        oiiotool "$work/$1.png" -d uint8 --compression jpeg:85 --nosoftwareattrib \
+            --eraseattrib "Software|Exif:ImageHistory" -o "$pictures/$1.jpg"
     fi
     say "" "![$2](gallery/$1.jpg)" ""
 }
