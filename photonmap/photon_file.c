@@ -62,10 +62,7 @@ static uint64_t to_page(uint64_t bytes) { return (bytes + PAGE - 1) / PAGE * PAG
 
 static uint64_t blocks_bytes(const tree_record *t) { return photon_block_count(t->count) * sizeof(photon_block); }
 
-static uint64_t nodes_bytes(const tree_record *t)
-{
-    return t->depth ? (((uint64_t)1 << t->depth) - 1) * sizeof(photon_tree_node) : 0;
-}
+static uint64_t nodes_bytes(const tree_record *t) { return photon_tree_bytes(&(photon_tree){.depth = t->depth}); }
 
 /* Where all lies, from counts and depths. Returns the file's size. */
 static uint64_t lay_out(tree_record trees[TREE_COUNT])
@@ -94,14 +91,13 @@ static bool hash_content(const run_context *run, const photon_tree trees[TREE_CO
 {
     hash128 hash = hash128_begin();
     for (int i = 0; i < TREE_COUNT; i++) {
-        const tree_record record = {.count = trees[i].count, .depth = trees[i].depth};
         uint64_t count = photon_block_count(trees[i].count);
         for (uint64_t k = 0; k < count; k++) {
             if ((k & 0xfff) == 0 && run_is_cancelled(run))
                 return false;
             hash128_add(&hash, &trees[i].blocks[k], offsetof(photon_block, slot));
         }
-        uint64_t size = nodes_bytes(&record);
+        uint64_t size = photon_tree_bytes(&trees[i]);
         for (uint64_t at = 0; at < size; at += CHUNK_BYTES) {
             if (run_is_cancelled(run))
                 return false;
