@@ -12,16 +12,10 @@
 static inline reading gltf_read_file(const char *name)
 {
     reading r;
-    memset(&r, 0, sizeof r);
-    log_sink *log = log_create(reading_hear, &r);
     run_context run;
-    run_context_init(&run, NULL, log, NULL, NULL);
-    r.scene = scene_create();
-    assert_non_null(log);
-    assert_non_null(r.scene);
+    reading_begin(&r, &run);
     r.status = gltf_load_file(&run, in_folder(name), r.scene);
-    run_context_reset(&run);
-    log_destroy(log);
+    reading_end(&run);
     return r;
 }
 

@@ -25,16 +25,10 @@ static inline const char *model_write_text(const char *name, const char *text)
 static inline reading model_read(const char *path)
 {
     reading r;
-    memset(&r, 0, sizeof r);
-    log_sink *log = log_create(reading_hear, &r);
     run_context run;
-    run_context_init(&run, NULL, log, NULL, NULL);
-    r.scene = scene_create();
-    assert_non_null(log);
-    assert_non_null(r.scene);
+    reading_begin(&r, &run);
     r.status = scene_file_load(&run, path, r.scene);
-    run_context_reset(&run);
-    log_destroy(log);
+    reading_end(&run);
     return r;
 }
 

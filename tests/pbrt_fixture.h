@@ -33,20 +33,31 @@ static void reading_hear(void *user, ag_log_level level, const char *message)
     r->count[level]++;
 }
 
+/* An empty scene, and a run whose log the reading hears, until reading_end. */
+static inline void reading_begin(reading *r, run_context *run)
+{
+    memset(r, 0, sizeof *r);
+    log_sink *log = log_create(reading_hear, r);
+    r->scene = scene_create();
+    assert_non_null(log);
+    assert_non_null(r->scene);
+    run_context_init(run, NULL, log, NULL, NULL);
+}
+
+static inline void reading_end(run_context *run)
+{
+    log_destroy(run->log);
+    run_context_reset(run);
+}
+
 /* path NULL: reads text, called "t" in messages. */
-static reading reading_create(const char *path, const char *text, size_t size)
+static inline reading reading_create(const char *path, const char *text, size_t size)
 {
     reading r;
-    memset(&r, 0, sizeof r);
-    log_sink *log = log_create(reading_hear, &r);
     run_context run;
-    run_context_init(&run, NULL, log, NULL, NULL);
-    r.scene = scene_create();
-    assert_non_null(log);
-    assert_non_null(r.scene);
+    reading_begin(&r, &run);
     r.status = path ? pbrt_parse_file(&run, path, r.scene) : pbrt_parse_text(&run, "t", text, size, r.scene);
-    run_context_reset(&run);
-    log_destroy(log);
+    reading_end(&run);
     return r;
 }
 

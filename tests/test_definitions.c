@@ -103,16 +103,11 @@ static void what_is_used_is_known(void **state)
 static reading reading_with(const definitions *d, const char *text)
 {
     reading r;
-    memset(&r, 0, sizeof r);
-    log_sink *log = log_create(reading_hear, &r);
     run_context run;
-    run_context_init(&run, NULL, log, NULL, NULL);
-    r.scene = scene_create();
-    assert_non_null(r.scene);
+    reading_begin(&r, &run);
     r.scene->definitions = d;
     r.status = pbrt_parse_text(&run, "t", text, strlen(text), r.scene);
-    run_context_reset(&run);
-    log_destroy(log);
+    reading_end(&run);
     return r;
 }
 

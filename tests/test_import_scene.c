@@ -85,15 +85,10 @@ static void put_all(buffer *b)
 static reading fill(const unsigned char *bytes, size_t size)
 {
     reading r;
-    memset(&r, 0, sizeof r);
-    log_sink *log = log_create(reading_hear, &r);
     run_context run;
-    run_context_init(&run, NULL, log, NULL, NULL);
-    r.scene = scene_create();
-    assert_non_null(r.scene);
+    reading_begin(&r, &run);
     r.status = import_scene_fill(&run, "file", bytes, size, r.scene);
-    run_context_reset(&run);
-    log_destroy(log);
+    reading_end(&run);
     return r;
 }
 

@@ -83,6 +83,15 @@ static void close_map(opened *o)
     photon_file_close(&o->file);
 }
 
+/* A run, a map's file, and that opened. Gives its path. */
+static const char *open_new_map(test_run *r, opened *o)
+{
+    test_run_init(r, 1);
+    const char *path = write_map(r);
+    open_map(o, path);
+    return path;
+}
+
 static rgb ask(opened *o, uint32_t index)
 {
     irradiance_request request = {.bearer = index};
@@ -297,10 +306,8 @@ static void slots_may_hold_anything(void **state)
 {
     (void)state;
     test_run r;
-    test_run_init(&r, 1);
-    const char *path = write_map(&r);
     opened o;
-    open_map(&o, path);
+    open_new_map(&r, &o);
     rng random = test_random(8);
     uint64_t not_ready = 0;
     for (uint32_t i = 0; i < PHOTONS; i++) {
@@ -332,10 +339,8 @@ static void a_copy_has_no_claims(void **state)
 {
     (void)state;
     test_run r;
-    test_run_init(&r, 1);
-    const char *path = write_map(&r);
     opened first, copy;
-    open_map(&first, path);
+    const char *path = open_new_map(&r, &first);
     ask(&first, 1);
     uint32_t word;
     assert_true(irradiance_slot_try_claim(photon_block_slot(first.map.blocks, 2), first.file.owners.claimer, &word));
@@ -422,10 +427,8 @@ static void a_dead_process_leaves_no_claim(void **state)
 {
     (void)state;
     test_run r;
-    test_run_init(&r, 1);
-    const char *path = write_map(&r);
     opened o;
-    open_map(&o, path);
+    const char *path = open_new_map(&r, &o);
     int ready, order;
     pid_t id = start_holder(path, &ready, &order);
     uint32_t word = irradiance_slot_read(photon_block_slot(o.map.blocks, 0));
@@ -459,10 +462,8 @@ static void a_stopped_process_is_not_waited_for(void **state)
 {
     (void)state;
     test_run r;
-    test_run_init(&r, 1);
-    const char *path = write_map(&r);
     opened o;
-    open_map(&o, path);
+    const char *path = open_new_map(&r, &o);
     int ready, order, ended;
     pid_t id = start_holder(path, &ready, &order);
     assert_int_equal(kill(id, SIGSTOP), 0);
