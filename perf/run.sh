@@ -40,7 +40,7 @@ failures=()
 
 slug() { tr '[:upper:]' '[:lower:]' | sed "s/[^a-z0-9]\{1,\}/_/g; s/^_//; s/_\$//"; }
 
-# The two programs know their own bounds; a line of theirs that misses one is a failure by its name.
+# These programs know their own bounds; a line of theirs that misses one is a failure by its name.
 run_micro() {
     mkdir -p "$out/micro"
     [[ -x $suite_bin/afterglow-photon-search ]] || { echo "run: no afterglow-photon-search: it wants nanoflann" >&2 && return; }
