@@ -1,6 +1,6 @@
 /* photon_k_nearest.c: the k nearest photons; see photon_tree.h.
  * Threads: read only. */
-#include "photon_query.h"
+#include "disc_kernels.h"
 
 #include <string.h>
 
@@ -24,68 +24,9 @@ static void stack_other_sides(photon_query *q, uint32_t first_block, float limit
     }
 }
 
-/* Quickselect over neighbours, which are all different: the `wanted` nearest come first, the farthest of them at
- * wanted - 1. */
-static void quickselect(photon_neighbor *n, uint32_t count, uint32_t wanted)
-{
-    int64_t low = 0, high = (int64_t)count - 1, target = (int64_t)wanted - 1;
-    while (low < high) {
-        photon_neighbor a = n[low], b = n[low + (high - low) / 2], c = n[high];
-        photon_neighbor pivot = a < b ? (b < c ? b : (a < c ? c : a)) : (a < c ? a : (b < c ? c : b));
-        int64_t i = low, j = high;
-        while (i <= j) {
-            while (n[i] < pivot)
-                i++;
-            while (n[j] > pivot)
-                j--;
-            if (i <= j) {
-                photon_neighbor hold = n[i];
-                n[i++] = n[j];
-                n[j--] = hold;
-            }
-        }
-        if (target <= j)
-            high = j;
-        else if (target >= i)
-            low = i;
-        else
-            return;
-    }
-}
-
-/* The same, for neighbours within the limit. On a surface the squared distances are spread evenly, so a histogram of
- * them leaves only a few to be compared; all else moves without a branch to be mispredicted. */
-static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, float limit)
-{
-    enum { BINS = 256, BIN_MAX = 64 };
-    uint32_t histogram[BINS] = {0};
-    float scale = limit > 0x1p-100f ? (float)(BINS - 1) / limit : 0.0f; /* smaller ones share a bin: no overflow */
-    for (uint32_t i = 0; i < count; i++)
-        histogram[(uint32_t)(photon_neighbor_distance_squared(n[i]) * scale)]++;
-    uint32_t before = 0, bin = 0; /* the bin of the last one wanted, and how many lie in those before it */
-    while (before + histogram[bin] < wanted)
-        before += histogram[bin++];
-    if (histogram[bin] > BIN_MAX) {
-        quickselect(n, count, wanted);
-        return;
-    }
-    photon_neighbor in_bin[BIN_MAX + 1];
-    uint32_t kept = 0, in_bin_count = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        photon_neighbor x = n[i];
-        uint32_t its_bin = (uint32_t)(photon_neighbor_distance_squared(x) * scale);
-        n[kept] = x;
-        kept += its_bin < bin;
-        in_bin[in_bin_count] = x;
-        in_bin_count += its_bin == bin;
-    }
-    quickselect(in_bin, in_bin_count, wanted - kept);
-    for (uint32_t i = 0; kept < wanted; i++)
-        n[kept++] = in_bin[i];
-}
-
 /* What has been collected: those of the `wanted` nearest that lie within the limit, which shrinks. */
 typedef struct collection {
+    const disc_kernels *kernels;
     photon_neighbor *neighbors;
     uint32_t count, wanted, capacity;
     float limit;
@@ -94,32 +35,13 @@ typedef struct collection {
 
 static void keep_nearest(collection *c)
 {
-    select_nearest(c->neighbors, c->count, c->wanted, c->limit);
+    c->kernels->select(c->neighbors, c->count, c->wanted, c->limit);
     c->count = c->wanted;
 }
 
 static void scan_for_all(photon_query *q, uint32_t block, collection *c)
 {
-    const photon_block *b = &q->tree->blocks[block];
-    _Alignas(16) float d[PHOTON_BLOCK_LANES];
-    uint32_t within = photon_block_within(b, q->position, c->limit, d);
-    uint32_t similar =
-        q->similar_code == PHOTON_QUERY_NO_CODE ? 0 : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
-    uint32_t rest = within & ~similar;
-    while (rest) {
-        uint32_t lane = (uint32_t)__builtin_ctz(rest);
-        rest &= rest - 1;
-        if (photon_query_has_similar_normal(q, b->normal[lane]))
-            similar |= 1u << lane;
-        else if (!q->other_is_behind)
-            c->other = d[lane] < c->other ? d[lane] : c->other;
-    }
-    photon_neighbor *end = c->neighbors + c->count;
-    for (; similar; similar &= similar - 1) {
-        uint32_t lane = (uint32_t)__builtin_ctz(similar);
-        *end++ = photon_neighbor_make(d[lane], block * PHOTON_BLOCK_LANES + lane);
-    }
-    c->count = (uint32_t)(end - c->neighbors);
+    c->count += c->kernels->collect(q, block, c->limit, c->neighbors + c->count, &c->other);
     if (c->count + PHOTON_BLOCK_LANES > c->capacity) {
         /* full: keep the nearest, and look no farther than they reach */
         keep_nearest(c);
@@ -187,13 +109,17 @@ uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 norm
     *out_other_squared = INFINITY;
     if (tree->count == 0)
         return 0;
+    const disc_kernels *kernels = disc_kernels_best();
     photon_query q;
     photon_query_init(&q, tree, position, normal, min_cos);
     uint32_t block = first_leaf(&q);
     float largest = radius * radius, limit = guess_radius_squared(&q, block, wanted, largest);
     for (;;) {
-        collection c = {
-            .neighbors = neighbors, .wanted = wanted, .capacity = photon_neighbors_capacity(wanted), .limit = limit};
+        collection c = {.kernels = kernels,
+                        .neighbors = neighbors,
+                        .wanted = wanted,
+                        .capacity = photon_neighbors_capacity(wanted),
+                        .limit = limit};
         collect(&q, block, &c);
         *out_other_squared = c.other;
         if (c.count == wanted || limit >= largest)

@@ -3,6 +3,7 @@
  * Threads: see photon_map.h. */
 #include "photon_map.h"
 
+#include "disc_kernels.h"
 #include "parallel_for.h"
 #include "passage.h"
 #include "photon_kernels.h"
@@ -156,23 +157,17 @@ uint64_t photon_map_bytes(const photon_map *map)
 
 uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbors_capacity(map->nearest + 1); }
 
+/* Photons this much higher or lower than the place, as a share of the radius, may lie on another surface. */
+static const float LEVEL = 1.0f / 32.0f;
+
 /* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */
 static const float LOPSIDED = 0.15f;
 
-/* By whole numbers, so that the order in which photons were found does not matter. */
-static bool is_lopsided(const photon_map *map, vec3 position, const photon_neighbor *n, uint32_t count, float radius)
+static bool is_lopsided(const photon_disc_sums *sums, uint32_t count)
 {
-    int64_t sum[3] = {0, 0, 0};
-    float scale = 0x1p20f / radius;
-    for (uint32_t i = 0; i < count; i++) {
-        vec3 offset = vec3_sub(photon_block_position(map->blocks, photon_neighbor_index(n[i])), position);
-        sum[0] += (int64_t)(offset.x * scale);
-        sum[1] += (int64_t)(offset.y * scale);
-        sum[2] += (int64_t)(offset.z * scale);
-    }
     double share = 0.0;
-    for (int i = 0; i < 3; i++)
-        share += (double)sum[i] * 0x1p-20 * ((double)sum[i] * 0x1p-20);
+    for (int a = 0; a < 3; a++)
+        share += (double)sums->offset[a] * 0x1p-20 * ((double)sums->offset[a] * 0x1p-20);
     return share > (double)LOPSIDED * (double)LOPSIDED * count * count;
 }
 
@@ -187,68 +182,28 @@ static bool is_behind_wall(const photon_map *map, const photon_block *blocks, ve
     return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
-/* Photons this much higher or lower than the place, as a share of the radius, may lie on another surface. */
-static const float LEVEL = 1.0f / 32.0f;
-
-/* Whether a photon within the radius lies on a floor above or below, not on the surface at the place. */
-static bool is_of_other_level(const photon_map *map, vec3 position, vec3 normal, uint32_t index, float radius)
+/* Whether a photon within the radius, so high or low that it may lie on a floor above or below, lies on that at the
+ * place. */
+static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uint32_t index)
 {
-    vec3 at = photon_block_position(map->blocks, index), offset = vec3_sub(at, position);
-    float height = vec3_dot(offset, normal), level = radius * LEVEL;
-    if (fabsf(height) <= level)
-        return false;
+    vec3 at = photon_block_position(map->blocks, index);
+    float height = vec3_dot(vec3_sub(at, disc->position), disc->normal);
     if (height > 0.0f)
-        return is_behind_wall(map, map->blocks, position, normal, index);
-    /* as low as a convex surface goes that has the two normals; if lower, what is straight above must be open */
-    float cosine = vec3_dot(direction_decode(photon_block_normal(map->blocks, index)), normal);
-    float lateral = sqrtf(fmaxf(0.0f, vec3_dot(offset, offset) - height * height));
-    if (-height <= lateral * sqrtf(fmaxf(0.0f, 1.0f - cosine * cosine)) / cosine + level)
-        return false;
-    return passage_is_blocked(
-        map->surfaces, scene_ray_make(vec3_add_scaled(at, normal, 0.5f * level), vec3_scale(normal, -height)), 1.0f);
+        return !is_behind_wall(map, map->blocks, disc->position, disc->normal, index);
+    /* what is straight above a low one must be open */
+    scene_ray up =
+        scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->level), vec3_scale(disc->normal, -height));
+    return !passage_is_blocked(map->surfaces, up, 1.0f);
 }
 
-/* Keeps the photons that lie on the surface at the place, in their order. */
-static uint32_t keep_on_level(const photon_map *map, vec3 position, vec3 normal, float radius, photon_neighbor *n,
-                              uint32_t count)
+/* Sums the photons of the disc that are in the region. */
+static void sum_in_region(const photon_disc *disc, const surface_region *region, const photon_neighbor *n,
+                          uint32_t count, photon_disc_sums *out_sums)
 {
-    uint32_t kept = 0;
+    *out_sums = (photon_disc_sums){{0}, {0}};
     for (uint32_t i = 0; i < count; i++)
-        if (!is_of_other_level(map, position, normal, photon_neighbor_index(n[i]), radius))
-            n[kept++] = n[i];
-    return kept;
-}
-
-/* Keeps the photons of the disc that are in the region, in their order. */
-static uint32_t keep_in_region(const photon_map *map, const surface_region *region, photon_neighbor *n, uint32_t count)
-{
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < count; i++)
-        if (surface_region_contains(region, photon_block_position(map->blocks, photon_neighbor_index(n[i]))))
-            n[kept++] = n[i];
-    return kept;
-}
-
-/* The photons' flux in units of 2^(flux_exponent_max - 32). Mantissas are summed by exponent, the three side by side in
- * one word; of photons that are 63 octaves weaker than the strongest nothing is left. */
-static void sum_flux(const photon_map *map, const photon_neighbor *n, uint32_t count, int64_t out_sum[3])
-{
-    enum { OCTAVES = 63, CHANNEL_BITS = 21, SAFE = 1 << (CHANNEL_BITS - 8) };
-    const uint64_t channel = (1u << CHANNEL_BITS) - 1;
-    out_sum[0] = out_sum[1] = out_sum[2] = 0;
-    for (uint32_t begin = 0; begin < count; begin += SAFE) {
-        uint64_t packed[OCTAVES + 1] = {0};
-        uint32_t end = count - begin > SAFE ? begin + SAFE : count;
-        for (uint32_t i = begin; i < end; i++) {
-            uint64_t code = photon_block_flux(map->blocks, photon_neighbor_index(n[i]));
-            int below = map->flux_exponent_max - flux_exponent((uint32_t)code);
-            packed[below < OCTAVES ? below : OCTAVES] +=
-                (code & 255) | (code & 0xff00) << (CHANNEL_BITS - 8) | (code & 0xff0000) << (2 * CHANNEL_BITS - 16);
-        }
-        for (int below = 0; below < OCTAVES; below++)
-            for (int c = 0; packed[below] && c < 3; c++)
-                out_sum[c] += (int64_t)((packed[below] >> (2 - c) * CHANNEL_BITS & channel) << 32) >> below;
-    }
+        if (surface_region_contains(region, photon_block_position(disc->blocks, photon_neighbor_index(n[i]))))
+            photon_disc_add(disc, n[i], out_sums);
 }
 
 rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
@@ -261,25 +216,31 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
     float radius_squared = map->max_radius * map->max_radius;
     uint32_t count = found;
     if (found == map->nearest + 1) {
-        count = map->nearest;
+        count = map->nearest; /* the farthest is the last */
         radius_squared = photon_neighbor_distance_squared(scratch[count]);
     }
     radius_squared = fmaxf(radius_squared, map->min_radius_squared);
     float radius = sqrtf(radius_squared);
     double area = (double)AG_PI * (double)radius_squared;
+    photon_disc disc = {map->blocks,           position, normal, radius, map->surfaces ? radius * LEVEL : INFINITY,
+                        map->flux_exponent_max};
+    photon_neighbor *doubtful = scratch + count;
+    photon_disc_sums sums;
+    uint32_t kept = disc_kernels_best()->sum_on_level(&disc, scratch, count, &sums, doubtful);
+    for (uint32_t i = 0, doubtful_count = count - kept; i < doubtful_count; i++)
+        if (is_of_this_level(map, &disc, photon_neighbor_index(doubtful[i]))) {
+            photon_disc_add(&disc, doubtful[i], &sums);
+            scratch[kept++] = doubtful[i];
+        }
     surface_region region;
-    if (map->surfaces)
-        count = keep_on_level(map, position, normal, radius, scratch, count);
-    if (map->surfaces && count > 0 &&
-        (other_squared <= radius_squared || is_lopsided(map, position, scratch, count, radius)) &&
+    if (map->surfaces && kept > 0 && (other_squared <= radius_squared || is_lopsided(&sums, kept)) &&
         surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, &region)) {
-        count = keep_in_region(map, &region, scratch, count);
+        sum_in_region(&disc, &region, scratch, kept, &sums);
         area = surface_region_area(&region, radius);
     }
-    int64_t sum[3];
-    sum_flux(map, scratch, count, sum);
     double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
-    return (rgb){(float)((double)sum[0] * scale), (float)((double)sum[1] * scale), (float)((double)sum[2] * scale)};
+    return (rgb){(float)((double)sums.flux[0] * scale), (float)((double)sums.flux[1] * scale),
+                 (float)((double)sums.flux[2] * scale)};
 }
 
 /* In a dark room the nearest bearer is the bright next room's. One farther away than this many mean spacings must

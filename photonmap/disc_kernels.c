@@ -1,0 +1,104 @@
+/* disc_kernels.c: for any processor, and which ones to take; see disc_kernels.h.
+ * Threads: see disc_kernels.h. */
+#include "disc_kernels.h"
+
+static uint32_t collect(photon_query *q, uint32_t block, float limit, photon_neighbor *neighbors, float *in_out_other)
+{
+    const photon_block *b = &q->tree->blocks[block];
+    _Alignas(16) float d[PHOTON_BLOCK_LANES];
+    uint32_t within = photon_block_within(b, q->position, limit, d);
+    uint32_t similar =
+        q->similar_code == PHOTON_QUERY_NO_CODE ? 0 : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
+    for (uint32_t rest = within & ~similar; rest; rest &= rest - 1) {
+        uint32_t lane = (uint32_t)__builtin_ctz(rest);
+        if (photon_query_has_similar_normal(q, b->normal[lane]))
+            similar |= 1u << lane;
+        else if (!q->other_is_behind)
+            *in_out_other = d[lane] < *in_out_other ? d[lane] : *in_out_other;
+    }
+    uint32_t count = 0;
+    for (; similar; similar &= similar - 1) {
+        uint32_t lane = (uint32_t)__builtin_ctz(similar);
+        neighbors[count++] = photon_neighbor_make(d[lane], block * PHOTON_BLOCK_LANES + lane);
+    }
+    return count;
+}
+
+void photon_neighbors_quickselect(photon_neighbor *n, uint32_t count, uint32_t wanted)
+{
+    int64_t low = 0, high = (int64_t)count - 1, target = (int64_t)wanted - 1;
+    while (low < high) {
+        photon_neighbor a = n[low], b = n[low + (high - low) / 2], c = n[high];
+        photon_neighbor pivot = a < b ? (b < c ? b : (a < c ? c : a)) : (a < c ? a : (b < c ? c : b));
+        int64_t i = low, j = high;
+        while (i <= j) {
+            while (n[i] < pivot)
+                i++;
+            while (n[j] > pivot)
+                j--;
+            if (i <= j) {
+                photon_neighbor hold = n[i];
+                n[i++] = n[j];
+                n[j--] = hold;
+            }
+        }
+        if (target <= j)
+            high = j;
+        else if (target >= i)
+            low = i;
+        else
+            return;
+    }
+}
+
+/* On a surface the squared distances are spread evenly, so a histogram of them leaves only a few to be compared; all
+ * else moves without a branch to be mispredicted. */
+static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, float limit)
+{
+    uint32_t histogram[DISC_BINS] = {0};
+    float scale = limit > 0x1p-100f ? (float)(DISC_BINS - 1) / limit : 0.0f; /* smaller ones share a bin: no overflow */
+    for (uint32_t i = 0; i < count; i++)
+        histogram[(uint32_t)(photon_neighbor_distance_squared(n[i]) * scale)]++;
+    uint32_t before = 0, bin = 0; /* the bin of the last one wanted, and how many lie in those before it */
+    while (before + histogram[bin] < wanted)
+        before += histogram[bin++];
+    if (histogram[bin] > DISC_BIN_MAX) {
+        photon_neighbors_quickselect(n, count, wanted);
+        return;
+    }
+    photon_neighbor in_bin[DISC_BIN_MAX + 1];
+    uint32_t kept = 0, in_bin_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        photon_neighbor x = n[i];
+        uint32_t its_bin = (uint32_t)(photon_neighbor_distance_squared(x) * scale);
+        n[kept] = x;
+        kept += its_bin < bin;
+        in_bin[in_bin_count] = x;
+        in_bin_count += its_bin == bin;
+    }
+    photon_neighbors_quickselect(in_bin, in_bin_count, wanted - kept);
+    for (uint32_t i = 0; kept < wanted; i++)
+        n[kept++] = in_bin[i];
+}
+
+static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, uint32_t count, photon_disc_sums *out_sums,
+                             photon_neighbor *out_doubtful)
+{
+    uint32_t kept = 0, doubtful = 0;
+    *out_sums = (photon_disc_sums){{0}, {0}};
+    for (uint32_t i = 0; i < count; i++) {
+        bool keeps = photon_disc_keep(disc, n[i], out_sums);
+        n[kept] = out_doubtful[doubtful] = n[i];
+        kept += keeps;
+        doubtful += !keeps;
+    }
+    return kept;
+}
+
+const disc_kernels disc_kernels_plain = {collect, select_nearest, sum_on_level};
+
+const disc_kernels *disc_kernels_best(void)
+{
+    const disc_kernels *wide = disc_kernels_avx2();
+    return wide ? wide : &disc_kernels_plain;
+}

@@ -1,0 +1,96 @@
+/* disc_kernels.h: the inner loops of an estimate, once for any processor and once for AVX2: which photons of a leaf
+ * count, the nearest of many, and what the photons of a disc add up to. Both do the same operations on the same
+ * numbers, so what they give is the same, to the bit.
+ * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2 (gathers, compaction by
+ * permutation). Flow: photon_k_nearest, irradiance_estimate -> [here]. Threads: pure but for what the caller owns. */
+#ifndef AFTERGLOW_DISC_KERNELS_H
+#define AFTERGLOW_DISC_KERNELS_H
+
+#include "photon_query.h"
+
+/* What the photons of a disc add up to, in whole numbers, so that their order does not matter. */
+typedef struct photon_disc_sums {
+    int64_t flux[3];   /* in units of 2^(flux_exponent_max - 32); red, green, blue */
+    int64_t offset[3]; /* from the place, in units of the radius over 2^20 */
+} photon_disc_sums;
+
+typedef struct photon_disc {
+    const photon_block *blocks;
+    vec3 position, normal;
+    float radius;          /* > 0 */
+    float level;           /* photons no higher and no lower than this over the place's plane lie on its surface */
+    int flux_exponent_max; /* of any photon of the map */
+} photon_disc;
+
+typedef struct disc_kernels {
+    /* Appends the photons of a block that lie within the limit and whose normals are similar; returns how many, at most
+     * PHOTON_BLOCK_LANES. neighbors has room for so many. *in_out_other: squared distance of the nearest photon within
+     * the limit that has another normal, but none about the opposite. */
+    uint32_t (*collect)(photon_query *query, uint32_t block, float limit, photon_neighbor *neighbors,
+                        float *in_out_other);
+
+    /* Puts the `wanted` nearest of `count` neighbours in front, the farthest of them last, and wants 1 <= wanted <=
+     * count; all within the limit, a squared distance. */
+    void (*select)(photon_neighbor *neighbors, uint32_t count, uint32_t wanted, float limit);
+
+    /* Sums those that lie on the place's surface, as far as heights and normals tell, and keeps them in front, in their
+     * order; the others go to out_doubtful, in theirs, which has room for count + 4. Returns how many were kept. */
+    uint32_t (*sum_on_level)(const photon_disc *disc, photon_neighbor *neighbors, uint32_t count,
+                             photon_disc_sums *out_sums, photon_neighbor *out_doubtful);
+} disc_kernels;
+
+/* Whether a photon lies on the surface of the place, as far as heights and normals tell: no lower than a convex surface
+ * goes that has the two normals, and no higher than the level. */
+static inline bool photon_disc_is_on_level(const photon_disc *disc, vec3 offset, uint16_t normal_code)
+{
+    float height = vec3_dot(offset, disc->normal), below = -height - disc->level;
+    if (fabsf(height) <= disc->level)
+        return true;
+    /* below <= lateral tan(angle between the normals), squared; the angle is less than 90 degrees */
+    vec3 n = direction_decode_unnormalized(normal_code);
+    float d = vec3_dot(n, disc->normal), square = d * d;
+    float lateral_squared = vec3_dot(offset, offset) - height * height;
+    return below > 0.0f && below * below * square <= lateral_squared * (vec3_dot(n, n) - square);
+}
+
+/* A photon's share of the sums. */
+static inline void photon_disc_add(const photon_disc *disc, photon_neighbor n, photon_disc_sums *sums)
+{
+    uint32_t index = photon_neighbor_index(n), code = photon_block_flux(disc->blocks, index);
+    uint32_t below = (uint32_t)(disc->flux_exponent_max - flux_exponent(code));
+    for (int c = 0; c < 3 && below < 64; c++) /* of weaker ones nothing is left */
+        sums->flux[c] += (int64_t)((uint64_t)(code >> (16 - 8 * c) & 255) << 32 >> below);
+    vec3 offset = vec3_sub(photon_block_position(disc->blocks, index), disc->position);
+    float scale = 0x1p20f / disc->radius;
+    sums->offset[0] += (int32_t)(offset.x * scale);
+    sums->offset[1] += (int32_t)(offset.y * scale);
+    sums->offset[2] += (int32_t)(offset.z * scale);
+}
+
+/* The same for one that is on the level; false for another. */
+static inline bool photon_disc_keep(const photon_disc *disc, photon_neighbor n, photon_disc_sums *sums)
+{
+    uint32_t index = photon_neighbor_index(n);
+    vec3 offset = vec3_sub(photon_block_position(disc->blocks, index), disc->position);
+    if (!photon_disc_is_on_level(disc, offset, photon_block_normal(disc->blocks, index)))
+        return false;
+    photon_disc_add(disc, n, sums);
+    return true;
+}
+
+/* The `wanted` nearest, as disc_kernels.select has them, by comparisons alone. */
+void photon_neighbors_quickselect(photon_neighbor *neighbors, uint32_t count, uint32_t wanted);
+
+/* Neighbours are told apart by so many steps of squared distance before they are compared; where more than BIN_MAX
+ * share the step of the last one wanted, all are compared. */
+enum { DISC_BINS = 256, DISC_BIN_MAX = 64 };
+
+extern const disc_kernels disc_kernels_plain;
+
+/* NULL where the compiler or the processor does not know AVX2. */
+const disc_kernels *disc_kernels_avx2(void);
+
+/* The fastest that this processor has. */
+const disc_kernels *disc_kernels_best(void);
+
+#endif
