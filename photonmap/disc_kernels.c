@@ -2,11 +2,11 @@
  * Threads: see disc_kernels.h. */
 #include "disc_kernels.h"
 
-static uint32_t collect(photon_query *q, uint32_t block, float limit, photon_neighbor *neighbors, float *in_out_other)
+static void collect_leaf(photon_query *q, uint32_t leaf, photon_collection *c)
 {
-    const photon_block *b = &q->tree->blocks[block];
+    const photon_block *b = &q->tree->blocks[leaf];
     _Alignas(16) float d[PHOTON_BLOCK_LANES];
-    uint32_t within = photon_block_within(b, q->position, limit, d);
+    uint32_t within = photon_block_within(b, q->position, c->limit, d);
     uint32_t similar =
         q->similar_code == PHOTON_QUERY_NO_CODE ? 0 : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
     for (uint32_t rest = within & ~similar; rest; rest &= rest - 1) {
@@ -14,14 +14,20 @@ static uint32_t collect(photon_query *q, uint32_t block, float limit, photon_nei
         if (photon_query_has_similar_normal(q, b->normal[lane]))
             similar |= 1u << lane;
         else if (!q->other_is_behind)
-            *in_out_other = d[lane] < *in_out_other ? d[lane] : *in_out_other;
+            c->other = d[lane] < c->other ? d[lane] : c->other;
     }
-    uint32_t count = 0;
     for (; similar; similar &= similar - 1) {
         uint32_t lane = (uint32_t)__builtin_ctz(similar);
-        neighbors[count++] = photon_neighbor_make(d[lane], block * PHOTON_BLOCK_LANES + lane);
+        c->neighbors[c->count++] = photon_neighbor_make(d[lane], leaf * PHOTON_BLOCK_LANES + lane);
     }
-    return count;
+}
+
+static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t leaf_count, photon_collection *c)
+{
+    uint32_t i = 0;
+    while (i < leaf_count && c->count + PHOTON_BLOCK_LANES <= c->capacity)
+        collect_leaf(q, leaves[i++], c);
+    return i;
 }
 
 void photon_neighbors_quickselect(photon_neighbor *n, uint32_t count, uint32_t wanted)

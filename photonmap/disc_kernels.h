@@ -8,6 +8,14 @@
 
 #include "photon_query.h"
 
+/* Photons found so far. */
+typedef struct photon_collection {
+    photon_neighbor *neighbors;
+    uint32_t count, capacity; /* at least PHOTON_BLOCK_LANES are left to the capacity */
+    float limit;              /* squared distance */
+    float other; /* squared distance of the nearest photon with another normal, but none about the opposite */
+} photon_collection;
+
 /* What the photons of a disc add up to, in whole numbers, so that their order does not matter. */
 typedef struct photon_disc_sums {
     int64_t flux[3];   /* in units of 2^(flux_exponent_max - 32); red, green, blue */
@@ -23,11 +31,10 @@ typedef struct photon_disc {
 } photon_disc;
 
 typedef struct disc_kernels {
-    /* Appends the photons of a block that lie within the limit and whose normals are similar; returns how many, at most
-     * PHOTON_BLOCK_LANES. neighbors has room for so many. *in_out_other: squared distance of the nearest photon within
-     * the limit that has another normal, but none about the opposite. */
-    uint32_t (*collect)(photon_query *query, uint32_t block, float limit, photon_neighbor *neighbors,
-                        float *in_out_other);
+    /* Appends the photons of leaves that lie within the limit and whose normals are similar. Returns how many leaves it
+     * looked into: not all where there was no room for another one. */
+    uint32_t (*collect)(photon_query *query, const uint32_t *leaves, uint32_t leaf_count,
+                        photon_collection *collection);
 
     /* Puts the `wanted` nearest of `count` neighbours in front, the farthest of them last, and wants 1 <= wanted <=
      * count; all within the limit, a squared distance. */

@@ -74,65 +74,75 @@ AVX2 static inline uint32_t store_some(photon_neighbor *out, __m256i four, uint3
     return (uint32_t)__builtin_popcount(bits);
 }
 
-/* photon_block_within, and from there on as the plain one does. */
-AVX2 static uint32_t collect(photon_query *q, uint32_t block, float limit, photon_neighbor *neighbors,
-                             float *in_out_other)
+/* photon_query_has_similar_normal of a block's photons, as bits; and of those of the others that are within the limit
+ * but not behind, the least distance. */
+AVX2 static inline uint32_t find_similar(const photon_query *q, const photon_block *b, const __m256 d[2], __m256 limit,
+                                         float *in_out_other)
 {
-    const photon_block *b = &q->tree->blocks[block];
+    vec3_8 wanted = fill(q->normal);
+    __m256 zero = _mm256_setzero_ps(), min_squared = _mm256_set1_ps(q->min_cos * q->min_cos),
+           quarter = _mm256_set1_ps(0.25f), others = _mm256_set1_ps(*in_out_other);
+    uint32_t similar = 0;
+    for (uint32_t i = 0; i < 2; i++) {
+        __m128i codes = _mm_load_si128((const __m128i *)(const void *)&b->normal[WIDTH * i]);
+        vec3_8 n = decode(_mm256_cvtepu16_epi32(codes));
+        __m256 cosine = dot(n, wanted), square = dot(n, n), cosine_squared = _mm256_mul_ps(cosine, cosine);
+        __m256 is_similar =
+            _mm256_and_ps(_mm256_cmp_ps(cosine, zero, _CMP_GT_OQ),
+                          _mm256_cmp_ps(cosine_squared, _mm256_mul_ps(min_squared, square), _CMP_GT_OQ));
+        __m256 is_behind = _mm256_and_ps(_mm256_cmp_ps(cosine, zero, _CMP_LT_OQ),
+                                         _mm256_cmp_ps(cosine_squared, _mm256_mul_ps(quarter, square), _CMP_GT_OQ));
+        __m256 is_other = _mm256_andnot_ps(_mm256_or_ps(is_similar, is_behind), _mm256_cmp_ps(d[i], limit, _CMP_LE_OQ));
+        others = _mm256_min_ps(_mm256_blendv_ps(others, d[i], is_other), others);
+        similar |= (uint32_t)_mm256_movemask_ps(is_similar) << WIDTH * i;
+    }
+    __m128 least = _mm_min_ps(_mm256_castps256_ps128(others), _mm256_extractf128_ps(others, 1));
+    least = _mm_min_ps(least, _mm_movehl_ps(least, least));
+    least = _mm_min_ss(least, _mm_movehdup_ps(least));
+    *in_out_other = _mm_cvtss_f32(least);
+    return similar;
+}
+
+AVX2 static uint32_t collect(photon_query *q, const uint32_t *leaves, uint32_t leaf_count, photon_collection *c)
+{
+    const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     vec3_8 at = {_mm256_set1_ps(q->position[0]), _mm256_set1_ps(q->position[1]), _mm256_set1_ps(q->position[2])};
-    __m256 d[2], most = _mm256_set1_ps(limit);
-    uint32_t within = 0;
-    for (uint32_t i = 0; i < 2; i++) {
-        vec3_8 p = {_mm256_load_ps(&b->position[0][WIDTH * i]), _mm256_load_ps(&b->position[1][WIDTH * i]),
-                    _mm256_load_ps(&b->position[2][WIDTH * i])};
-        vec3_8 off = sub(p, at);
-        d[i] = dot(off, off);
-        within |= (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(d[i], most, _CMP_LE_OQ)) << WIDTH * i;
-    }
-    if (!within)
-        return 0;
-    uint32_t similar =
-        q->similar_code == PHOTON_QUERY_NO_CODE ? 0 : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
-    if (within & ~similar) {
-        /* photon_query_has_similar_normal of all */
-        vec3_8 wanted = fill(q->normal);
-        __m256 zero = _mm256_setzero_ps(), min_squared = _mm256_set1_ps(q->min_cos * q->min_cos),
-               quarter = _mm256_set1_ps(0.25f), others = _mm256_set1_ps(INFINITY);
-        similar = 0;
-        for (uint32_t i = 0; i < 2; i++) {
-            __m128i codes = _mm_load_si128((const __m128i *)(const void *)&b->normal[WIDTH * i]);
-            vec3_8 n = decode(_mm256_cvtepu16_epi32(codes));
-            __m256 cosine = dot(n, wanted), square = dot(n, n), cosine_squared = _mm256_mul_ps(cosine, cosine);
-            __m256 is_similar =
-                _mm256_and_ps(_mm256_cmp_ps(cosine, zero, _CMP_GT_OQ),
-                              _mm256_cmp_ps(cosine_squared, _mm256_mul_ps(min_squared, square), _CMP_GT_OQ));
-            __m256 is_behind = _mm256_and_ps(_mm256_cmp_ps(cosine, zero, _CMP_LT_OQ),
-                                             _mm256_cmp_ps(cosine_squared, _mm256_mul_ps(quarter, square), _CMP_GT_OQ));
-            __m256 is_other =
-                _mm256_andnot_ps(_mm256_or_ps(is_similar, is_behind), _mm256_cmp_ps(d[i], most, _CMP_LE_OQ));
-            others = _mm256_min_ps(_mm256_blendv_ps(others, d[i], is_other), others);
-            similar |= (uint32_t)_mm256_movemask_ps(is_similar) << WIDTH * i;
+    __m256 limit = _mm256_set1_ps(c->limit);
+    photon_neighbor *end = c->neighbors + c->count, *last = c->neighbors + c->capacity - PHOTON_BLOCK_LANES;
+    uint32_t i = 0;
+    for (; i < leaf_count && end <= last; i++) {
+        const photon_block *b = &q->tree->blocks[leaves[i]];
+        __m256 d[2];
+        uint32_t within = 0;
+        for (uint32_t k = 0; k < 2; k++) {
+            vec3_8 p = {_mm256_load_ps(&b->position[0][WIDTH * k]), _mm256_load_ps(&b->position[1][WIDTH * k]),
+                        _mm256_load_ps(&b->position[2][WIDTH * k])};
+            vec3_8 off = sub(p, at);
+            d[k] = dot(off, off);
+            within |= (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(d[k], limit, _CMP_LE_OQ)) << WIDTH * k;
         }
-        similar &= within;
-        if (similar)
-            q->similar_code = b->normal[__builtin_ctz(similar)];
-        __m128 least = _mm_min_ps(_mm256_castps256_ps128(others), _mm256_extractf128_ps(others, 1));
-        least = _mm_min_ps(least, _mm_movehl_ps(least, least));
-        least = _mm_min_ss(least, _mm_movehdup_ps(least));
-        float other = _mm_cvtss_f32(least);
-        *in_out_other = other < *in_out_other ? other : *in_out_other;
+        if (!within)
+            continue;
+        uint32_t similar = q->similar_code == PHOTON_QUERY_NO_CODE
+                               ? 0
+                               : within & photon_block_with_normal(b, (uint16_t)q->similar_code);
+        if (within & ~similar) {
+            similar = within & find_similar(q, b, d, limit, &c->other);
+            if (similar)
+                q->similar_code = b->normal[__builtin_ctz(similar)];
+        }
+        __m256i index = _mm256_add_epi32(_mm256_set1_epi32((int)(leaves[i] * PHOTON_BLOCK_LANES)), lanes);
+        for (uint32_t k = 0; k < 2; k++) {
+            /* pairs of index and distance: lanes 0 1 4 5, and 2 3 6 7 */
+            __m256i bits = _mm256_castps_si256(d[k]);
+            __m256i a = _mm256_unpacklo_epi32(index, bits), e = _mm256_unpackhi_epi32(index, bits);
+            end += store_some(end, _mm256_permute2x128_si256(a, e, 0x20), similar >> WIDTH * k & 15);
+            end += store_some(end, _mm256_permute2x128_si256(a, e, 0x31), similar >> (WIDTH * k + 4) & 15);
+            index = _mm256_add_epi32(index, _mm256_set1_epi32(WIDTH));
+        }
     }
-    uint32_t count = 0, first = block * PHOTON_BLOCK_LANES;
-    __m256i index = _mm256_add_epi32(_mm256_set1_epi32((int)first), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-    for (uint32_t i = 0; i < 2; i++) {
-        /* pairs of index and distance: lanes 0 1 4 5, and 2 3 6 7 */
-        __m256i bits = _mm256_castps_si256(d[i]);
-        __m256i a = _mm256_unpacklo_epi32(index, bits), c = _mm256_unpackhi_epi32(index, bits);
-        count += store_some(neighbors + count, _mm256_permute2x128_si256(a, c, 0x20), similar >> WIDTH * i & 15);
-        count += store_some(neighbors + count, _mm256_permute2x128_si256(a, c, 0x31), similar >> (WIDTH * i + 4) & 15);
-        index = _mm256_add_epi32(index, _mm256_set1_epi32(WIDTH));
-    }
-    return count;
+    c->count = (uint32_t)(end - c->neighbors);
+    return i;
 }
 
 /* The squared distances of eight neighbours, but in the order 0 1 4 5 2 3 6 7 of theirs. */

@@ -24,42 +24,32 @@ static void stack_other_sides(photon_query *q, uint32_t first_block, float limit
     }
 }
 
-/* What has been collected: those of the `wanted` nearest that lie within the limit, which shrinks. */
-typedef struct collection {
-    const disc_kernels *kernels;
-    photon_neighbor *neighbors;
-    uint32_t count, wanted, capacity;
-    float limit;
-    float other; /* squared distance of the nearest photon with another normal, but none about the opposite */
-} collection;
-
-static void keep_nearest(collection *c)
+static void keep_nearest(const disc_kernels *kernels, uint32_t wanted, photon_collection *c)
 {
-    c->kernels->select(c->neighbors, c->count, c->wanted, c->limit);
-    c->count = c->wanted;
+    kernels->select(c->neighbors, c->count, wanted, c->limit);
+    c->count = wanted;
 }
 
-static void scan_for_all(photon_query *q, uint32_t block, collection *c)
+/* Collects the photons within the limit; where there are too many, the nearest, and the limit shrinks. Leaves are
+ * fetched from memory while more of them are found. */
+static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first_leaf, uint32_t wanted,
+                    photon_collection *c)
 {
-    c->count += c->kernels->collect(q, block, c->limit, c->neighbors + c->count, &c->other);
-    if (c->count + PHOTON_BLOCK_LANES > c->capacity) {
-        /* full: keep the nearest, and look no farther than they reach */
-        keep_nearest(c);
-        c->limit = photon_neighbor_distance_squared(c->neighbors[c->wanted - 1]);
+    enum { LEAVES = 32 };
+    uint32_t leaves[LEAVES] = {first_leaf}, count = 1;
+    stack_other_sides(q, first_leaf, c->limit);
+    for (bool is_last = false; !is_last; count = 0) {
+        for (; count < LEAVES && photon_query_next_leaf(q, c->limit, &leaves[count]); count++)
+            photon_block_prefetch(&q->tree->blocks[leaves[count]]);
+        uint32_t done = kernels->collect(q, leaves, count, c);
+        for (; done < count; done += kernels->collect(q, leaves + done, count - done, c)) {
+            keep_nearest(kernels, wanted, c);
+            c->limit = photon_neighbor_distance_squared(c->neighbors[wanted - 1]);
+        }
+        is_last = count < LEAVES;
     }
-}
-
-static void collect(photon_query *q, uint32_t first_block, collection *c)
-{
-    uint32_t block;
-    c->count = 0;
-    c->other = INFINITY;
-    scan_for_all(q, first_block, c);
-    stack_other_sides(q, first_block, c->limit);
-    while (photon_query_next_leaf(q, c->limit, &block))
-        scan_for_all(q, block, c);
-    if (c->count >= c->wanted)
-        keep_nearest(c);
+    if (c->count >= wanted)
+        keep_nearest(kernels, wanted, c);
 }
 
 /* A first radius squared, within which the wanted photons may be expected: the few leaves around the query tell how
@@ -112,15 +102,12 @@ uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 norm
     const disc_kernels *kernels = disc_kernels_best();
     photon_query q;
     photon_query_init(&q, tree, position, normal, min_cos);
-    uint32_t block = first_leaf(&q);
-    float largest = radius * radius, limit = guess_radius_squared(&q, block, wanted, largest);
+    uint32_t leaf = first_leaf(&q);
+    float largest = radius * radius, limit = guess_radius_squared(&q, leaf, wanted, largest);
     for (;;) {
-        collection c = {.kernels = kernels,
-                        .neighbors = neighbors,
-                        .wanted = wanted,
-                        .capacity = photon_neighbors_capacity(wanted),
-                        .limit = limit};
-        collect(&q, block, &c);
+        photon_collection c = {
+            .neighbors = neighbors, .capacity = photon_neighbors_capacity(wanted), .limit = limit, .other = INFINITY};
+        collect(kernels, &q, leaf, wanted, &c);
         *out_other_squared = c.other;
         if (c.count == wanted || limit >= largest)
             return c.count;

@@ -163,12 +163,17 @@ static const float LEVEL = 1.0f / 32.0f;
 /* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */
 static const float LOPSIDED = 0.15f;
 
-static bool is_lopsided(const photon_disc_sums *sums, uint32_t count)
+/* Along the surface, as far as that is its place's plane: on a sphere all photons lie below it. */
+static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t count)
 {
-    double share = 0.0;
+    double sum[3], n[3] = {(double)normal.x, (double)normal.y, (double)normal.z}, along = 0.0, square = 0.0;
+    for (int a = 0; a < 3; a++) {
+        sum[a] = (double)sums->offset[a] * 0x1p-20;
+        along += sum[a] * n[a];
+    }
     for (int a = 0; a < 3; a++)
-        share += (double)sums->offset[a] * 0x1p-20 * ((double)sums->offset[a] * 0x1p-20);
-    return share > (double)LOPSIDED * (double)LOPSIDED * count * count;
+        square += (sum[a] - along * n[a]) * (sum[a] - along * n[a]);
+    return square > (double)LOPSIDED * (double)LOPSIDED * count * count;
 }
 
 static bool is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
@@ -233,7 +238,7 @@ rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 no
             scratch[kept++] = doubtful[i];
         }
     surface_region region;
-    if (map->surfaces && kept > 0 && (other_squared <= radius_squared || is_lopsided(&sums, kept)) &&
+    if (map->surfaces && kept > 0 && (other_squared <= radius_squared || is_lopsided(&sums, normal, kept)) &&
         surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, &region)) {
         sum_in_region(&disc, &region, scratch, kept, &sums);
         area = surface_region_area(&region, radius);
