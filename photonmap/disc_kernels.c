@@ -2,6 +2,27 @@
  * Threads: see disc_kernels.h. */
 #include "disc_kernels.h"
 
+static uint32_t find_leaves(const photon_query *q, photon_subtree subtree, float most, uint32_t *out_leaves)
+{
+    uint32_t count = 0, base = (1u << q->tree->depth) - 1;
+    for (uint32_t way = 0; way < DISC_SUBTREE_LEAVES; way++) {
+        photon_lanes offset = subtree.offset;
+        uint32_t node = subtree.node;
+        for (uint32_t level = DISC_SUBTREE_LEVELS; level-- > 0;) {
+            photon_tree_node n = q->tree->nodes[node];
+            uint32_t goes_right = way >> level & 1;
+            if (goes_right != (q->position[n.axis] >= n.split))
+                offset = photon_lanes_replace(offset, q->at - photon_lanes_fill(n.split), n.axis);
+            node = 2 * node + 1 + goes_right;
+        }
+        photon_lanes square = offset * offset;
+        float beyond = square[0] + square[1] + square[2];
+        if (beyond <= most && beyond < INFINITY) /* beyond a plane at infinity there is nothing */
+            out_leaves[count++] = node - base;
+    }
+    return count;
+}
+
 static void collect_leaf(photon_query *q, uint32_t leaf, photon_collection *c)
 {
     const photon_block *b = &q->tree->blocks[leaf];
@@ -101,7 +122,7 @@ static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, uint32
     return kept;
 }
 
-const disc_kernels disc_kernels_plain = {collect, select_nearest, sum_on_level};
+const disc_kernels disc_kernels_plain = {find_leaves, collect, select_nearest, sum_on_level};
 
 const disc_kernels *disc_kernels_best(void)
 {

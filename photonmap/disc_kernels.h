@@ -19,8 +19,10 @@ typedef struct photon_collection {
 /* What the photons of a disc add up to, in whole numbers, so that their order does not matter. */
 typedef struct photon_disc_sums {
     int64_t flux[3];   /* in units of 2^(flux_exponent_max - 32); red, green, blue */
-    int64_t offset[3]; /* from the place, in units of the radius over 2^20 */
+    int32_t offset[3]; /* from the place, in units of the radius over 2^12: 2^19 photons and no fewer fit */
 } photon_disc_sums;
+
+#define PHOTON_DISC_OFFSET_UNIT 0x1p12f
 
 typedef struct photon_disc {
     const photon_block *blocks;
@@ -30,7 +32,14 @@ typedef struct photon_disc {
     int flux_exponent_max; /* of any photon of the map */
 } photon_disc;
 
+/* Leaves are found by subtrees of so many levels. */
+enum { DISC_SUBTREE_LEVELS = 3, DISC_SUBTREE_LEAVES = 1 << DISC_SUBTREE_LEVELS };
+
 typedef struct disc_kernels {
+    /* The leaves below a node that stands DISC_SUBTREE_LEVELS above them whose boxes are no farther than `most`, a
+     * squared distance; out_leaves has room for all of them. Returns how many. */
+    uint32_t (*find_leaves)(const photon_query *query, photon_subtree subtree, float most, uint32_t *out_leaves);
+
     /* Appends the photons of leaves that lie within the limit and whose normals are similar. Returns how many leaves it
      * looked into: not all where there was no room for another one. */
     uint32_t (*collect)(photon_query *query, const uint32_t *leaves, uint32_t leaf_count,
@@ -68,7 +77,7 @@ static inline void photon_disc_add(const photon_disc *disc, photon_neighbor n, p
     for (int c = 0; c < 3 && below < 64; c++) /* of weaker ones nothing is left */
         sums->flux[c] += (int64_t)((uint64_t)(code >> (16 - 8 * c) & 255) << 32 >> below);
     vec3 offset = vec3_sub(photon_block_position(disc->blocks, index), disc->position);
-    float scale = 0x1p20f / disc->radius;
+    float scale = PHOTON_DISC_OFFSET_UNIT / disc->radius;
     sums->offset[0] += (int32_t)(offset.x * scale);
     sums->offset[1] += (int32_t)(offset.y * scale);
     sums->offset[2] += (int32_t)(offset.z * scale);
@@ -90,7 +99,7 @@ void photon_neighbors_quickselect(photon_neighbor *neighbors, uint32_t count, ui
 
 /* Neighbours are told apart by so many steps of squared distance before they are compared; where more than BIN_MAX
  * share the step of the last one wanted, all are compared. */
-enum { DISC_BINS = 256, DISC_BIN_MAX = 64 };
+enum { DISC_BINS = 64, DISC_BIN_MAX = 64 };
 
 extern const disc_kernels disc_kernels_plain;
 
@@ -99,5 +108,10 @@ const disc_kernels *disc_kernels_avx2(void);
 
 /* The fastest that this processor has. */
 const disc_kernels *disc_kernels_best(void);
+
+/* photon_tree_k_nearest by these kernels. */
+uint32_t disc_kernels_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 position, vec3 normal,
+                                float min_cos, float radius, uint32_t wanted, photon_neighbor *neighbors,
+                                float *out_other_squared);
 
 #endif

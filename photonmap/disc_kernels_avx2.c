@@ -48,6 +48,58 @@ AVX2 static inline vec3_8 decode(__m256i code)
     return (vec3_8){_mm256_sub_ps(x, with_sign_of(fold, x)), _mm256_sub_ps(y, with_sign_of(fold, y)), z};
 }
 
+/* One level of a subtree: the planes that its eight leaves, by their lanes, lie beside, and which of them on the right.
+ * Where that is not the query's side, the leaf is as far off along the axis as the plane. */
+AVX2 static inline void go_down(vec3_8 at, __m256 split, __m256i axis, __m256i is_right, vec3_8 *in_out_offset)
+{
+    /* axes 1 and 2 by their bits, as the sign */
+    __m256 is_y = _mm256_castsi256_ps(_mm256_slli_epi32(axis, 31)),
+           is_z = _mm256_castsi256_ps(_mm256_slli_epi32(axis, 30));
+    __m256 off = _mm256_blendv_ps(_mm256_blendv_ps(at.x, at.y, is_y), at.z, is_z);
+    __m256 query_is_right = _mm256_cmp_ps(off, split, _CMP_GE_OQ);
+    __m256 is_other = _mm256_xor_ps(query_is_right, _mm256_castsi256_ps(is_right));
+    off = _mm256_sub_ps(off, split);
+    in_out_offset->x =
+        _mm256_blendv_ps(in_out_offset->x, off, _mm256_andnot_ps(is_y, _mm256_andnot_ps(is_z, is_other)));
+    in_out_offset->y = _mm256_blendv_ps(in_out_offset->y, off, _mm256_and_ps(is_y, is_other));
+    in_out_offset->z = _mm256_blendv_ps(in_out_offset->z, off, _mm256_and_ps(is_z, is_other));
+}
+
+AVX2 static uint32_t find_leaves(const photon_query *q, photon_subtree subtree, float most, uint32_t *out_leaves)
+{
+    const photon_tree_node *nodes = q->tree->nodes;
+    const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    uint32_t first = subtree.node, second = 2 * first + 1, third = 2 * second + 1, leaf = 2 * third + 1;
+    vec3_8 at = {_mm256_set1_ps(q->position[0]), _mm256_set1_ps(q->position[1]), _mm256_set1_ps(q->position[2])};
+    vec3_8 offset = {_mm256_set1_ps(subtree.offset[0]), _mm256_set1_ps(subtree.offset[1]),
+                     _mm256_set1_ps(subtree.offset[2])};
+
+    __m256i is_right = _mm256_srai_epi32(_mm256_slli_epi32(lanes, 29), 31); /* by bit 2 */
+    go_down(at, _mm256_set1_ps(nodes[first].split), _mm256_set1_epi32((int)nodes[first].axis), is_right, &offset);
+
+    /* pairs of split and axis, each for as many lanes as lie below */
+    __m256i planes = _mm256_castsi128_si256(_mm_loadu_si128((const __m128i *)(const void *)&nodes[second]));
+    __m256i half = _mm256_srli_epi32(_mm256_and_si256(lanes, _mm256_set1_epi32(4)), 1); /* 0 or 2 */
+    is_right = _mm256_srai_epi32(_mm256_slli_epi32(lanes, 30), 31);
+    go_down(at, _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(planes, half)),
+            _mm256_permutevar8x32_epi32(planes, _mm256_or_si256(half, _mm256_set1_epi32(1))), is_right, &offset);
+
+    planes = load(&nodes[third]);
+    __m256i quarter = _mm256_and_si256(lanes, _mm256_set1_epi32(6)); /* 0, 2, 4 or 6 */
+    is_right = _mm256_srai_epi32(_mm256_slli_epi32(lanes, 31), 31);
+    go_down(at, _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(planes, quarter)),
+            _mm256_permutevar8x32_epi32(planes, _mm256_or_si256(quarter, _mm256_set1_epi32(1))), is_right, &offset);
+
+    __m256 beyond = dot(offset, offset);
+    uint32_t met =
+        (uint32_t)_mm256_movemask_ps(_mm256_and_ps(_mm256_cmp_ps(beyond, _mm256_set1_ps(most), _CMP_LE_OQ),
+                                                   _mm256_cmp_ps(beyond, _mm256_set1_ps(INFINITY), _CMP_LT_OQ)));
+    uint32_t count = 0, base = leaf - ((1u << q->tree->depth) - 1);
+    for (; met; met &= met - 1)
+        out_leaves[count++] = base + (uint32_t)__builtin_ctz(met);
+    return count;
+}
+
 /* The neighbours of four that have their bits set, in front of `out`, which has room for four; returns how many. */
 AVX2 static inline uint32_t store_some(photon_neighbor *out, __m256i four, uint32_t bits)
 {
@@ -201,16 +253,17 @@ AVX2 static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wan
         n[kept++] = in_bin[i];
 }
 
-AVX2 static inline __m256i add_64(__m256i sum, __m256i eight_32)
-{
-    sum = _mm256_add_epi64(sum, _mm256_cvtepi32_epi64(_mm256_castsi256_si128(eight_32)));
-    return _mm256_add_epi64(sum, _mm256_cvtepi32_epi64(_mm256_extracti128_si256(eight_32, 1)));
-}
-
 AVX2 static inline int64_t sum_of(__m256i v)
 {
     __m128i two = _mm_add_epi64(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
     return _mm_cvtsi128_si64(_mm_add_epi64(two, _mm_unpackhi_epi64(two, two)));
+}
+
+AVX2 static inline int32_t sum_of_32(__m256i v)
+{
+    __m128i four = _mm_add_epi32(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
+    __m128i two = _mm_add_epi32(four, _mm_unpackhi_epi64(four, four));
+    return _mm_cvtsi128_si32(_mm_add_epi32(two, _mm_shuffle_epi32(two, 1)));
 }
 
 /* Mantissas, in the lowest bytes, times 2^32 and shifted down; of those 64 octaves below nothing is left. */
@@ -286,7 +339,7 @@ AVX2 static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, u
 {
     const photon_block *blocks = disc->blocks;
     vec3_8 position = fill(disc->position);
-    __m256 scale = _mm256_set1_ps(0x1p20f / disc->radius);
+    __m256 scale = _mm256_set1_ps(PHOTON_DISC_OFFSET_UNIT / disc->radius);
     __m256i byte = _mm256_set1_epi32(255), most = _mm256_set1_epi32(disc->flux_exponent_max + 128),
             none = _mm256_setzero_si256(), flux[3] = {none, none, none}, offsets[3] = {none, none, none},
             bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
@@ -310,8 +363,8 @@ AVX2 static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, u
             flux[c] = add_shifted(flux[c], _mm256_and_si256(_mm256_srli_epi32(code, 16 - 8 * c), byte), below);
         const __m256 column[3] = {offset.x, offset.y, offset.z};
         for (int a = 0; a < 3; a++)
-            offsets[a] =
-                add_64(offsets[a], _mm256_and_si256(_mm256_cvttps_epi32(_mm256_mul_ps(column[a], scale)), keeps));
+            offsets[a] = _mm256_add_epi32(
+                offsets[a], _mm256_and_si256(_mm256_cvttps_epi32(_mm256_mul_ps(column[a], scale)), keeps));
 
         if (on_level == 255) {
             _mm256_storeu_si256((__m256i *)(void *)(n + kept), first);
@@ -326,7 +379,7 @@ AVX2 static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, u
     }
     for (int c = 0; c < 3; c++) {
         out_sums->flux[c] = sum_of(flux[c]);
-        out_sums->offset[c] = sum_of(offsets[c]);
+        out_sums->offset[c] = sum_of_32(offsets[c]);
     }
     for (; i < count; i++) {
         bool keeps = photon_disc_keep(disc, n[i], out_sums);
@@ -339,7 +392,7 @@ AVX2 static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, u
 
 const disc_kernels *disc_kernels_avx2(void)
 {
-    static const disc_kernels KERNELS = {collect, select_nearest, sum_on_level};
+    static const disc_kernels KERNELS = {find_leaves, collect, select_nearest, sum_on_level};
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") ? &KERNELS : NULL;
 }
 

@@ -10,14 +10,15 @@ static uint32_t first_leaf(const photon_query *q)
     return photon_tree_leaf(q->tree, (vec3){q->position[0], q->position[1], q->position[2]});
 }
 
-/* Puts on the stack the sides that the way to the first leaf left aside, as far as they are within the limit; the
- * nearest to the leaf on top. By the offset from their plane alone, which may be too little, and is never too much. */
-static void stack_other_sides(photon_query *q, uint32_t first_block, float limit)
+/* Puts on the stack the sides that the way to a node so many levels above the leaves left aside, as far as they are
+ * within the limit; the nearest to the node on top. By the offset from their plane alone, which may be too little, and
+ * is never too much. */
+static void stack_other_sides(photon_query *q, uint32_t node, uint32_t height, float limit)
 {
-    uint32_t way = (1u << q->tree->depth) + first_block; /* the heap's order: the ancestor `up` levels above the leaf */
+    uint32_t way = node + 1; /* the heap's order: the ancestor `up` levels above is way >> up */
     float most = photon_query_hair_beyond(limit);
     q->visits = 0;
-    for (uint32_t up = q->tree->depth; up > 0; up--) {
+    for (uint32_t up = q->tree->depth - height; up > 0; up--) {
         photon_tree_node n = q->tree->nodes[(way >> up) - 1];
         photon_query_push(q, photon_lanes_fill(0.0f), q->at - photon_lanes_fill(n.split), n.axis,
                           ((way >> (up - 1)) ^ 1) - 1, most);
@@ -35,18 +36,26 @@ static void keep_nearest(const disc_kernels *kernels, uint32_t wanted, photon_co
 static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first_leaf, uint32_t wanted,
                     photon_collection *c)
 {
-    enum { LEAVES = 32 };
-    uint32_t leaves[LEAVES] = {first_leaf}, count = 1;
-    stack_other_sides(q, first_leaf, c->limit);
-    for (bool is_last = false; !is_last; count = 0) {
-        for (; count < LEAVES && photon_query_next_leaf(q, c->limit, &leaves[count]); count++)
-            photon_block_prefetch(&q->tree->blocks[leaves[count]]);
+    enum { LEAVES = 4 * DISC_SUBTREE_LEAVES };
+    uint32_t leaves[LEAVES], depth = q->tree->depth, height = depth < DISC_SUBTREE_LEVELS ? 0 : DISC_SUBTREE_LEVELS;
+    photon_subtree next = {photon_lanes_fill(0.0f), (((1u << depth) + first_leaf) >> height) - 1};
+    stack_other_sides(q, next.node, height, c->limit);
+    for (bool is_left = true; is_left;) {
+        uint32_t count = 0, before = 0;
+        do {
+            if (height > 0)
+                count += kernels->find_leaves(q, next, photon_query_hair_beyond(c->limit), leaves + count);
+            else
+                leaves[count++] = next.node - ((1u << depth) - 1);
+            for (; before < count; before++)
+                photon_block_prefetch(&q->tree->blocks[leaves[before]]);
+            is_left = photon_query_next(q, c->limit, height, &next);
+        } while (is_left && count + DISC_SUBTREE_LEAVES <= LEAVES);
         uint32_t done = kernels->collect(q, leaves, count, c);
         for (; done < count; done += kernels->collect(q, leaves + done, count - done, c)) {
             keep_nearest(kernels, wanted, c);
             c->limit = photon_neighbor_distance_squared(c->neighbors[wanted - 1]);
         }
-        is_last = count < LEAVES;
     }
     if (c->count >= wanted)
         keep_nearest(kernels, wanted, c);
@@ -93,13 +102,13 @@ static float guess_radius_squared(const photon_query *q, uint32_t first_block, u
     return guess > 0.0f && guess < largest ? guess : largest;
 }
 
-uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
-                               uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
+uint32_t disc_kernels_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 position, vec3 normal,
+                                float min_cos, float radius, uint32_t wanted, photon_neighbor *neighbors,
+                                float *out_other_squared)
 {
     *out_other_squared = INFINITY;
     if (tree->count == 0)
         return 0;
-    const disc_kernels *kernels = disc_kernels_best();
     photon_query q;
     photon_query_init(&q, tree, position, normal, min_cos);
     uint32_t leaf = first_leaf(&q);
@@ -114,4 +123,11 @@ uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 norm
         /* too few: by how many tells how much farther to look */
         limit = fminf(limit * fminf(4.0f, 1.3f * (float)wanted / (float)(c.count + 1)), largest);
     }
+}
+
+uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
+                               uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared)
+{
+    return disc_kernels_k_nearest(disc_kernels_best(), tree, position, normal, min_cos, radius, wanted, neighbors,
+                                  out_other_squared);
 }

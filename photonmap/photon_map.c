@@ -168,7 +168,7 @@ static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t coun
 {
     double sum[3], n[3] = {(double)normal.x, (double)normal.y, (double)normal.z}, along = 0.0, square = 0.0;
     for (int a = 0; a < 3; a++) {
-        sum[a] = (double)sums->offset[a] * 0x1p-20;
+        sum[a] = (double)sums->offset[a] * (1.0 / (double)PHOTON_DISC_OFFSET_UNIT);
         along += sum[a] * n[a];
     }
     for (int a = 0; a < 3; a++)

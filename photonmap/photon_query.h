@@ -56,34 +56,50 @@ static inline void photon_query_push(photon_query *q, photon_lanes offset, photo
         q->stack[q->visits++] = (photon_visit){far, beyond, node};
 }
 
-/* Goes down to the leaf on the query's side, leaving on the stack the other sides that are within the limit. Returns
- * the leaf's block. */
-static inline uint32_t photon_query_descend(photon_query *q, photon_lanes offset, uint32_t node, float limit)
+/* A part of the tree, and the query's offset from its box. */
+typedef struct photon_subtree {
+    photon_lanes offset;
+    uint32_t node;
+} photon_subtree;
+
+/* Goes down to the node so many levels above the leaves that is on the query's side, leaving on the stack the other
+ * sides that are within the limit. */
+static inline photon_subtree photon_query_descend(photon_query *q, photon_lanes offset, uint32_t node, uint32_t height,
+                                                  float limit)
 {
-    uint32_t leaf_base = (1u << q->tree->depth) - 1;
+    uint32_t base = (1u << (q->tree->depth - height)) - 1;
     float most = photon_query_hair_beyond(limit);
-    while (node < leaf_base) {
+    while (node < base) {
         photon_tree_node n = q->tree->nodes[node];
         photon_lanes from_plane = q->at - photon_lanes_fill(n.split);
         uint32_t is_right = q->position[n.axis] >= n.split;
         photon_query_push(q, offset, from_plane, n.axis, 2 * node + 2 - is_right, most);
         node = 2 * node + 1 + is_right;
     }
-    return node - leaf_base;
+    return (photon_subtree){offset, node};
 }
 
-/* Takes the next visit from the stack and goes down to its leaf; false when nothing within the limit is left. */
-static inline bool photon_query_next_leaf(photon_query *q, float limit, uint32_t *out_block)
+/* Takes the next visit from the stack and goes down from it, as above; false when nothing within the limit is left. */
+static inline bool photon_query_next(photon_query *q, float limit, uint32_t height, photon_subtree *out_subtree)
 {
     float most = photon_query_hair_beyond(limit);
     while (q->visits > 0) {
         const photon_visit *v = &q->stack[--q->visits];
         if (v->distance_squared > most)
             continue;
-        *out_block = photon_query_descend(q, v->offset, v->node, limit);
+        *out_subtree = photon_query_descend(q, v->offset, v->node, height, limit);
         return true;
     }
     return false;
+}
+
+/* The same, down to a leaf's block. */
+static inline bool photon_query_next_leaf(photon_query *q, float limit, uint32_t *out_block)
+{
+    photon_subtree leaf;
+    bool is_found = photon_query_next(q, limit, 0, &leaf);
+    *out_block = is_found ? leaf.node - ((1u << q->tree->depth) - 1) : 0;
+    return is_found;
 }
 
 /* Neighbours mostly share a normal: the last answers are kept. */
