@@ -1,6 +1,6 @@
 /* test_photon_tree.c: the kd-tree against brute force, and the same tree for any number of threads.
  * Threads: the build's. */
-#include "photon_tree.h"
+#include "disc_kernels.h"
 
 #include "test_scene.h"
 
@@ -71,18 +71,13 @@ static float other_by_brute_force(const photon_tree *tree, vec3 at, vec3 normal,
     return nearest;
 }
 
-static void check_query(const photon_tree *tree, vec3 at, vec3 normal, float min_cos, float radius, uint32_t wanted,
-                        photon_neighbor *expected, photon_neighbor *found)
+/* By one set of kernels. */
+static void check_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 at, vec3 normal, float min_cos,
+                            float radius, uint32_t wanted, const photon_neighbor *expected, uint32_t all,
+                            photon_neighbor *found)
 {
-    uint32_t all = brute_force(tree, at, normal, min_cos, radius, expected);
-    float d;
-    uint32_t nearest = photon_tree_nearest(tree, at, normal, min_cos, radius, &d);
-    assert_int_equal(nearest, all > 0 ? photon_neighbor_index(expected[0]) : PHOTON_NONE);
-    if (all > 0)
-        assert_true(d == photon_neighbor_distance_squared(expected[0]));
-
     float other, nearest_other = other_by_brute_force(tree, at, normal, min_cos);
-    uint32_t count = photon_tree_k_nearest(tree, at, normal, min_cos, radius, wanted, found, &other);
+    uint32_t count = disc_kernels_k_nearest(kernels, tree, at, normal, min_cos, radius, wanted, found, &other);
     assert_int_equal(count, all < wanted ? all : wanted);
     photon_neighbor last = found[count > 0 ? count - 1 : 0];
     float searched = count < wanted ? radius * radius : photon_neighbor_distance_squared(last);
@@ -96,6 +91,20 @@ static void check_query(const photon_tree *tree, vec3 at, vec3 normal, float min
         assert_true(found[i] == expected[i]);
     if (count == wanted)
         assert_true(last == expected[wanted - 1]);
+}
+
+static void check_query(const photon_tree *tree, vec3 at, vec3 normal, float min_cos, float radius, uint32_t wanted,
+                        photon_neighbor *expected, photon_neighbor *found)
+{
+    uint32_t all = brute_force(tree, at, normal, min_cos, radius, expected);
+    float d;
+    uint32_t nearest = photon_tree_nearest(tree, at, normal, min_cos, radius, &d);
+    assert_int_equal(nearest, all > 0 ? photon_neighbor_index(expected[0]) : PHOTON_NONE);
+    if (all > 0)
+        assert_true(d == photon_neighbor_distance_squared(expected[0]));
+    check_k_nearest(&disc_kernels_plain, tree, at, normal, min_cos, radius, wanted, expected, all, found);
+    if (disc_kernels_avx2())
+        check_k_nearest(disc_kernels_avx2(), tree, at, normal, min_cos, radius, wanted, expected, all, found);
 }
 
 static void searches_find_what_brute_force_finds(void **state)
