@@ -95,9 +95,9 @@ static double estimates(bench *b)
 {
     uint32_t step = b->map.set.count / ESTIMATES + 1, count = 0;
     for (uint32_t i = 0; i < b->map.set.count; i += step, count++)
-        b->sink += (double)photon_map_irradiance_estimate(&b->map, photon_block_position(b->map.blocks, i),
-                                                          direction_decode(photon_block_normal(b->map.blocks, i)),
-                                                          b->cache.scratch[0].neighbors)
+        b->sink += (double)irradiance_estimate(&b->map, photon_block_position(b->map.blocks, i),
+                                               direction_decode(photon_block_normal(b->map.blocks, i)),
+                                               b->cache.scratch[0].neighbors)
                        .g;
     return count;
 }

@@ -47,7 +47,7 @@ static uint32_t estimates(bench *b, const uint32_t *order)
     for (uint32_t i = 0; i < QUERIES; i++) {
         vec3 at = photon_block_position(b->map.blocks, order[i]);
         vec3 normal = direction_decode(photon_block_normal(b->map.blocks, order[i]));
-        b->sink += (double)photon_map_irradiance_estimate(&b->map, at, normal, b->scratch).g;
+        b->sink += (double)irradiance_estimate(&b->map, at, normal, b->scratch).g;
     }
     return QUERIES;
 }

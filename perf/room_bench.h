@@ -4,7 +4,7 @@
 #ifndef AFTERGLOW_ROOM_BENCH_H
 #define AFTERGLOW_ROOM_BENCH_H
 
-#include "photon_map.h"
+#include "irradiance_estimate.h"
 
 enum { ROOM_BENCH_NEAREST = 300, ROOM_BENCH_GATHER_RAYS = 64, ROOM_BENCH_ROUNDS = 9 };
 

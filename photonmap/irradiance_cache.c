@@ -64,9 +64,9 @@ static rgb estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigne
     irradiance_counters *counters = &cache->counters[worker_index];
     photon_neighbor *scratch = cache->scratch[worker_index].neighbors;
     if ((counters->computed + counters->uncached) % TIMED_EVERY != 0)
-        return photon_map_irradiance_estimate(cache->map, position, normal, scratch);
+        return irradiance_estimate(cache->map, position, normal, scratch);
     double begin = clock_thread_cpu_seconds();
-    rgb irradiance = photon_map_irradiance_estimate(cache->map, position, normal, scratch);
+    rgb irradiance = irradiance_estimate(cache->map, position, normal, scratch);
     counters->timed_seconds += clock_thread_cpu_seconds() - begin;
     counters->timed++;
     return irradiance;

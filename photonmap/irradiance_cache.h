@@ -8,7 +8,7 @@
 #define AFTERGLOW_IRRADIANCE_CACHE_H
 
 #include "claim_owners.h"
-#include "photon_map.h"
+#include "irradiance_estimate.h"
 
 /* Places that can be asked for at once. */
 enum { IRRADIANCE_BATCH_MAX = 1 << 16 };

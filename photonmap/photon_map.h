@@ -1,8 +1,7 @@
-/* photon_map.h: photons, their tree, and what they say of the light at a place.
- * Rests on: Jensen 2001, ch. 6, 7 (density estimates); Neilson, Yang, TR 04-21, 2004; Christensen, "Faster Photon Map
- * Global Illumination", 1999 (irradiance at the photons).
- * Flow: photon_tracing, photon_tree -> [here] -> irradiance_cache, caustics. Threads: built by one caller on the run's
- * workers; then read-only, but for the slots. */
+/* photon_map.h: photons, their tree, and which of them stands for a place.
+ * Rests on: Neilson, Yang, TR 04-21, 2004; Christensen, "Faster Photon Map Global Illumination", 1999 (irradiance at
+ * the photons). Flow: photon_tracing, photon_tree -> [here] -> irradiance_estimate, irradiance_cache. Threads: built by
+ * one caller on the run's workers; then read-only, but for the slots. */
 #ifndef AFTERGLOW_PHOTON_MAP_H
 #define AFTERGLOW_PHOTON_MAP_H
 
@@ -66,10 +65,9 @@ uint32_t photon_map_scratch_count(const photon_map *map);
 #define PHOTON_ESTIMATE_MIN_COS 0.5f
 #define PHOTON_NEAREST_MIN_COS  0.9f
 
-/* Irradiance [W/m^2] on the side of `normal` (unit), from the k nearest photons: their flux over the area out to the
- * next one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Near an edge, of either as far
- * as there is surface. Does not fail, does not allocate. */
-rgb photon_map_irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch);
+/* Whether something stands between a place, with its normal, and a photon of the blocks. */
+bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
+                               uint32_t index);
 
 /* The bearer whose irradiance stands for the place; PHOTON_NONE where none with a like normal is near enough,
  * or the one that is stands behind a wall. Near enough is what is no farther than the mean radius, or than half the

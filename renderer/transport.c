@@ -51,9 +51,9 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
     photon_neighbor *neighbors =
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
-    rgb sum = rgb_mul(reflected, photon_map_irradiance_estimate(t->caustic, at.position, at.facing_normal, neighbors));
+    rgb sum = rgb_mul(reflected, irradiance_estimate(t->caustic, at.position, at.facing_normal, neighbors));
     if (!rgb_is_black(transmitted)) {
-        rgb behind = photon_map_irradiance_estimate(t->caustic, at.position, vec3_negate(at.facing_normal), neighbors);
+        rgb behind = irradiance_estimate(t->caustic, at.position, vec3_negate(at.facing_normal), neighbors);
         sum = rgb_add(sum, rgb_mul(transmitted, behind));
     }
     arena_restore(worker->scratch, mark);

@@ -69,7 +69,7 @@ static void uncached_answers_at_the_place(void **state)
         field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
         irradiance_request request;
         irradiance_cache_get(&f.cache, at.position, at.normal, 0, &request);
-        rgb expected = photon_map_irradiance_estimate(&f.map, at.position, at.normal, f.cache.scratch[0].neighbors);
+        rgb expected = irradiance_estimate(&f.map, at.position, at.normal, f.cache.scratch[0].neighbors);
         assert_int_equal(request.bearer, PHOTON_NONE);
         assert_memory_equal(&request.irradiance, &expected, sizeof expected);
     }

@@ -111,7 +111,7 @@ static rgb expected_at(const photon_map *map, uint32_t index)
 {
     static photon_neighbor scratch[2 * (NEAREST + 1) + 64];
     field_place p = field_photon(map, index);
-    rgb estimate = photon_map_irradiance_estimate(map, p.position, p.normal, scratch);
+    rgb estimate = irradiance_estimate(map, p.position, p.normal, scratch);
     return photon_map_decode_irradiance(map, photon_map_encode_irradiance(map, estimate, index));
 }
 

@@ -89,17 +89,17 @@ static void an_estimate_counts_k_and_reaches_to_the_next(void **state)
         field_add(&set, (vec3){(float)i, 0.0f, 0.0f}, up, flux_encode(rgb_gray(128.0f), 0));
     photon_map map = field_map(&r, &set, 4, 7.5f);
     photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
-    rgb e = photon_map_irradiance_estimate(&map, (vec3){0.0f, 0.0f, 0.0f}, up, scratch);
+    rgb e = irradiance_estimate(&map, (vec3){0.0f, 0.0f, 0.0f}, up, scratch);
     assert_relative(e.r, 4 * 128.0 / (PI * 25.0), 1e-6);
     /* where fewer are in reach: their flux over the whole disc */
-    e = photon_map_irradiance_estimate(&map, (vec3){-4.0f, 0.0f, 0.0f}, up, scratch);
+    e = irradiance_estimate(&map, (vec3){-4.0f, 0.0f, 0.0f}, up, scratch);
     assert_relative(e.r, 3 * 128.0 / (PI * 7.5 * 7.5), 1e-6);
     /* exactly k: the same */
-    e = photon_map_irradiance_estimate(&map, (vec3){-3.0f, 0.0f, 0.0f}, up, scratch);
+    e = irradiance_estimate(&map, (vec3){-3.0f, 0.0f, 0.0f}, up, scratch);
     assert_relative(e.r, 4 * 128.0 / (PI * 7.5 * 7.5), 1e-6);
     /* out of reach, and on the other side */
-    assert_true(rgb_is_black(photon_map_irradiance_estimate(&map, (vec3){-40.0f, 0.0f, 0.0f}, up, scratch)));
-    assert_true(rgb_is_black(photon_map_irradiance_estimate(&map, (vec3){0.0f, 0.0f, 0.0f}, vec3_negate(up), scratch)));
+    assert_true(rgb_is_black(irradiance_estimate(&map, (vec3){-40.0f, 0.0f, 0.0f}, up, scratch)));
+    assert_true(rgb_is_black(irradiance_estimate(&map, (vec3){0.0f, 0.0f, 0.0f}, vec3_negate(up), scratch)));
     free(scratch);
     photon_map_reset(&map);
     test_run_reset(&r);
@@ -117,7 +117,7 @@ static void coincident_photons_give_finite_values(void **state)
         field_add(&set, at, up, flux_encode(rgb_gray(128.0f), (uint64_t)i));
     photon_map map = field_map(&r, &set, NEAREST, 0.5f);
     photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
-    rgb e = photon_map_irradiance_estimate(&map, at, up, scratch);
+    rgb e = irradiance_estimate(&map, at, up, scratch);
     assert_true(rgb_is_finite(e));
     assert_relative(e.g, NEAREST * 128.0 / (PI * (double)map.min_radius_squared), 1e-5);
     /* and the slot can hold it */
@@ -140,7 +140,7 @@ static void a_very_small_disc_is_not_enlarged(void **state)
         field_add(&set, (vec3){1e-5f * (float)i, 0.0f, 0.0f}, up, flux_encode(rgb_gray(128.0f), 0));
     photon_map map = field_map(&r, &set, 4, 1.0f);
     photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
-    rgb e = photon_map_irradiance_estimate(&map, (vec3){0.0f, 0.0f, 0.0f}, up, scratch);
+    rgb e = irradiance_estimate(&map, (vec3){0.0f, 0.0f, 0.0f}, up, scratch);
     assert_relative(e.r, 4 * 128.0 / (PI * 25e-10), 1e-5);
     free(scratch);
     photon_map_reset(&map);
@@ -191,8 +191,8 @@ static void the_order_of_the_photons_does_not_matter(void **state)
     photon_neighbor *scratch = malloc(photon_map_scratch_count(&map_a) * sizeof *scratch);
     for (int i = 0; i < 500; i++) {
         field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
-        rgb x = photon_map_irradiance_estimate(&map_a, at.position, at.normal, scratch);
-        rgb y = photon_map_irradiance_estimate(&map_b, at.position, at.normal, scratch);
+        rgb x = irradiance_estimate(&map_a, at.position, at.normal, scratch);
+        rgb y = irradiance_estimate(&map_b, at.position, at.normal, scratch);
         assert_memory_equal(&x, &y, sizeof x);
         assert_true(x.r > 0.0f);
     }
@@ -218,8 +218,8 @@ static void a_wall_keeps_its_two_sides_apart(void **state)
     photon_map map = field_map(&r, &set, 100, 0.4f);
     photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
     vec3 middle = {0.5f, 0.5f, 0.0f};
-    assert_relative(photon_map_irradiance_estimate(&map, middle, up, scratch).r, 1000.0, 0.3);
-    assert_relative(photon_map_irradiance_estimate(&map, middle, vec3_negate(up), scratch).r, 100000.0, 0.3);
+    assert_relative(irradiance_estimate(&map, middle, up, scratch).r, 1000.0, 0.3);
+    assert_relative(irradiance_estimate(&map, middle, vec3_negate(up), scratch).r, 100000.0, 0.3);
     uint32_t front = photon_map_nearest(&map, middle, up), back = photon_map_nearest(&map, middle, vec3_negate(up));
     assert_true(direction_decode(photon_block_normal(map.blocks, front)).z > 0.9f);
     assert_true(direction_decode(photon_block_normal(map.blocks, back)).z < -0.9f);
@@ -238,7 +238,7 @@ static void a_map_without_photons_is_dark(void **state)
     photon_neighbor scratch[256];
     vec3 at = {0.0f, 0.0f, 0.0f}, up = {0.0f, 0.0f, 1.0f};
     assert_true(photon_map_scratch_count(&map) <= 256);
-    assert_true(rgb_is_black(photon_map_irradiance_estimate(&map, at, up, scratch)));
+    assert_true(rgb_is_black(irradiance_estimate(&map, at, up, scratch)));
     assert_int_equal(photon_map_nearest(&map, at, up), PHOTON_NONE);
     assert_int_equal(photon_map_bytes(&map), 0);
     photon_map_reset(&map);

@@ -3,7 +3,7 @@
  * Threads: one at a time. */
 #include "surface_region.h"
 
-#include "photon_map.h"
+#include "irradiance_estimate.h"
 
 #include "test_scene.h"
 
@@ -152,7 +152,7 @@ static void estimates_hold_up_to_the_edge(void **state)
         there /= strip * PHOTONS;
         for (int i = 0; i < QUERIES; i++) {
             vec3 at = {rng_float(&random) * (float)strip, 0.0f, rng_float(&random)};
-            sum += (double)photon_map_irradiance_estimate(&map, at, UP, scratch).g;
+            sum += (double)irradiance_estimate(&map, at, UP, scratch).g;
         }
         mean[knows] = sum / QUERIES / there;
         free(scratch);

@@ -1,0 +1,87 @@
+/* irradiance_estimate.c: see irradiance_estimate.h. Flux is summed in whole numbers, so its bits do not depend on the
+ * order in which photons are found. */
+#include "irradiance_estimate.h"
+
+#include "disc_kernels.h"
+#include "passage.h"
+#include "surface_region.h"
+
+/* Photons this much higher or lower than the place, as a share of the radius, may lie on another surface. */
+static const float LEVEL = 1.0f / 32.0f;
+
+/* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */
+static const float LOPSIDED = 0.15f;
+
+/* Along the surface, as far as that is its place's plane: on a sphere all photons lie below it. */
+static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t count)
+{
+    double sum[3], n[3] = {(double)normal.x, (double)normal.y, (double)normal.z}, along = 0.0, square = 0.0;
+    for (int a = 0; a < 3; a++) {
+        sum[a] = (double)sums->offset[a] * (1.0 / (double)PHOTON_DISC_OFFSET_UNIT);
+        along += sum[a] * n[a];
+    }
+    for (int a = 0; a < 3; a++)
+        square += (sum[a] - along * n[a]) * (sum[a] - along * n[a]);
+    return square > (double)LOPSIDED * (double)LOPSIDED * count * count;
+}
+
+/* Whether a photon within the radius, so high or low that it may lie on a floor above or below, lies on that at the
+ * place. */
+static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uint32_t index)
+{
+    vec3 at = photon_block_position(map->blocks, index);
+    float height = vec3_dot(vec3_sub(at, disc->position), disc->normal);
+    if (height > 0.0f)
+        return !photon_map_is_behind_wall(map, map->blocks, disc->position, disc->normal, index);
+    /* what is straight above a low one must be open */
+    scene_ray up =
+        scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->level), vec3_scale(disc->normal, -height));
+    return !passage_is_blocked(map->surfaces, up, 1.0f);
+}
+
+/* Sums the photons of the disc that are in the region. */
+static void sum_in_region(const photon_disc *disc, const surface_region *region, const photon_neighbor *n,
+                          uint32_t count, photon_disc_sums *out_sums)
+{
+    *out_sums = (photon_disc_sums){{0}, {0}};
+    for (uint32_t i = 0; i < count; i++)
+        if (surface_region_contains(region, photon_block_position(disc->blocks, photon_neighbor_index(n[i]))))
+            photon_disc_add(disc, n[i], out_sums);
+}
+
+rgb irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
+{
+    if (map->set.count == 0)
+        return rgb_gray(0.0f);
+    float other_squared;
+    uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
+                                           map->nearest + 1, scratch, &other_squared);
+    float radius_squared = map->max_radius * map->max_radius;
+    uint32_t count = found;
+    if (found == map->nearest + 1) {
+        count = map->nearest; /* the farthest is the last */
+        radius_squared = photon_neighbor_distance_squared(scratch[count]);
+    }
+    radius_squared = fmaxf(radius_squared, map->min_radius_squared);
+    float radius = sqrtf(radius_squared);
+    double area = (double)AG_PI * (double)radius_squared;
+    photon_disc disc = {map->blocks,           position, normal, radius, map->surfaces ? radius * LEVEL : INFINITY,
+                        map->flux_exponent_max};
+    photon_neighbor *doubtful = scratch + count;
+    photon_disc_sums sums;
+    uint32_t kept = disc_kernels_best()->sum_on_level(&disc, scratch, count, &sums, doubtful);
+    for (uint32_t i = 0, doubtful_count = count - kept; i < doubtful_count; i++)
+        if (is_of_this_level(map, &disc, photon_neighbor_index(doubtful[i]))) {
+            photon_disc_add(&disc, doubtful[i], &sums);
+            scratch[kept++] = doubtful[i];
+        }
+    surface_region region;
+    if (map->surfaces && kept > 0 && (other_squared <= radius_squared || is_lopsided(&sums, normal, kept)) &&
+        surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, &region)) {
+        sum_in_region(&disc, &region, scratch, kept, &sums);
+        area = surface_region_area(&region, radius);
+    }
+    double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
+    return (rgb){(float)((double)sums.flux[0] * scale), (float)((double)sums.flux[1] * scale),
+                 (float)((double)sums.flux[2] * scale)};
+}

@@ -1,0 +1,16 @@
+/* irradiance_estimate.h: what the photons around a place say of the light there.
+ * Rests on: Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, ch. 7 (density estimates).
+ * Flow: photon_k_nearest, disc_kernels, surface_region -> [here] -> irradiance_cache, caustics.
+ * Threads: pure functions, but for the caller's scratch memory. */
+#ifndef AFTERGLOW_IRRADIANCE_ESTIMATE_H
+#define AFTERGLOW_IRRADIANCE_ESTIMATE_H
+
+#include "photon_map.h"
+
+/* Irradiance [W/m^2] on the side of `normal` (unit), from the k nearest photons: their flux over the area out to the
+ * next one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Near an edge, of either as far
+ * as there is surface. scratch: photon_map_scratch_count(map) of them. Does not fail, does not
+ * allocate. */
+rgb irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch);
+
+#endif
