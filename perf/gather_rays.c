@@ -103,8 +103,8 @@ static double estimates(bench *b)
 }
 
 static room_bench_row rows[] = {
-    {.name = "Embree alone"}, {.name = "whole gather ray", .most_ratio = 2.4},   {.name = "ray and hit"},
-    {.name = "direction"},    {.name = "lookup, warm cache", .most_ratio = 1.0}, {.name = "estimate, scattered"},
+    {.name = "Embree alone"}, {.name = "whole gather ray", .most_ratio = 2.4},    {.name = "ray and hit"},
+    {.name = "direction"},    {.name = "lookup (warm cache)", .most_ratio = 1.0}, {.name = "estimate (scattered)"},
 };
 enum { ROWS = sizeof rows / sizeof *rows };
 static double (*const measured[ROWS])(bench *b) = {embree, whole, hits, directions, lookups, estimates};

@@ -88,10 +88,10 @@ static double tree_on_one(bench *b) { return tree(b, &b->one, clock_process_cpu_
 static double tree_on_all(bench *b) { return tree(b, &b->all, clock_seconds); }
 
 static room_bench_row rows[] = {
-    {.name = "Embree alone, a ray"},
-    {.name = "photon tracing, a ray", .most_ratio = 2.0},
-    {.name = "tree, one thread, a photon"},
-    {.name = "tree, all threads, a photon", .most_us = 0.2}, /* 0.1 s for 500,000, on two */
+    {.name = "Embree alone (a ray)"},
+    {.name = "photon tracing (a ray)", .most_ratio = 2.0},
+    {.name = "tree on one thread (a photon)"},
+    {.name = "tree on all threads (a photon)", .most_us = 0.2}, /* 0.1 s for 500,000, on two */
 };
 enum { ROWS = sizeof rows / sizeof *rows };
 static double (*const measured[ROWS])(bench *b) = {embree, tracing, tree_on_one, tree_on_all};

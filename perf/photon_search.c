@@ -20,7 +20,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { QUERIES = 20000, RAYS = 200000, ROUNDS = 7, NEAREST = ROOM_BENCH_NEAREST };
+enum { QUERIES = 20000, RAYS = 200000, NEAREST = ROOM_BENCH_NEAREST };
 
 typedef struct ray_hit {
     scene_ray ray;
@@ -123,27 +123,44 @@ static uint32_t rays(bench *b)
     return b->hit_count;
 }
 
-typedef struct measurement {
-    const char *name;
-    uint32_t (*run)(bench *b);
-    const char *rival; /* what it is held against, or NULL */
-    double wanted;     /* at most this share of it */
-    double us[ROUNDS];
-} measurement;
-
-static measurement measurements[] = {
-    {"nanoflann: estimate, random order", rival_estimate_random, NULL, 0.0, {0}},
-    {"estimate, random order", estimate_random, "nanoflann: estimate, random order", 1.0 / 5, {0}},
-    {"nanoflann: estimate, map's order", rival_estimate_ordered, NULL, 0.0, {0}},
-    {"estimate, map's order", estimate_ordered, "nanoflann: estimate, map's order", 1.0 / 3, {0}},
-    {"Embree: gather rays", rays, NULL, 0.0, {0}},
-    {"nanoflann: nearest, as they come", rival_nearest_as_they_come, NULL, 0.0, {0}},
-    {"nearest, as they come", nearest_as_they_come, "nanoflann: nearest, as they come", 1.0 / 3, {0}},
-    {"nanoflann: nearest, sorted", rival_nearest_sorted, NULL, 0.0, {0}},
-    {"nearest, sorted", nearest_sorted, "nanoflann: nearest, sorted", 1.0 / 3, {0}},
-    {"nearest, sorted (against the ray)", nearest_sorted, "Embree: gather rays", 1.0, {0}},
+/* Each after what it is held against. As they come, gather rays are not looked up: no bound. */
+enum {
+    RIVAL_RANDOM,
+    RANDOM,
+    RIVAL_ORDERED,
+    ORDERED,
+    RAY,
+    RIVAL_LOOSE,
+    LOOSE,
+    RIVAL_SORTED,
+    SORTED,
+    SORTED_TO_RAY,
+    ROWS
 };
-enum { MEASUREMENTS = sizeof measurements / sizeof *measurements };
+static room_bench_row rows[ROWS] = {
+    [RIVAL_RANDOM] = {.name = "nanoflann: estimate in random order", .rival = RIVAL_RANDOM},
+    [RANDOM] = {.name = "estimate in random order", .rival = RIVAL_RANDOM, .most_ratio = 1.0 / 5},
+    [RIVAL_ORDERED] = {.name = "nanoflann: estimate in the map's order", .rival = RIVAL_ORDERED},
+    [ORDERED] = {.name = "estimate in the map's order", .rival = RIVAL_ORDERED, .most_ratio = 1.0 / 3},
+    [RAY] = {.name = "Embree: gather ray", .rival = RAY},
+    [RIVAL_LOOSE] = {.name = "nanoflann: nearest as they come", .rival = RIVAL_LOOSE},
+    [LOOSE] = {.name = "nearest as they come", .rival = RIVAL_LOOSE},
+    [RIVAL_SORTED] = {.name = "nanoflann: nearest sorted", .rival = RIVAL_SORTED},
+    [SORTED] = {.name = "nearest sorted", .rival = RIVAL_SORTED, .most_ratio = 1.0 / 3},
+    [SORTED_TO_RAY] = {.name = "nearest sorted (against the ray)", .rival = RAY, .most_ratio = 1.0},
+};
+static uint32_t (*const measured[ROWS])(bench *b) = {
+    [RIVAL_RANDOM] = rival_estimate_random,
+    [RANDOM] = estimate_random,
+    [RIVAL_ORDERED] = rival_estimate_ordered,
+    [ORDERED] = estimate_ordered,
+    [RAY] = rays,
+    [RIVAL_LOOSE] = rival_nearest_as_they_come,
+    [LOOSE] = nearest_as_they_come,
+    [RIVAL_SORTED] = rival_nearest_sorted,
+    [SORTED] = nearest_sorted,
+    [SORTED_TO_RAY] = nearest_sorted,
+};
 
 /* --- what they work on --- */
 
@@ -203,33 +220,6 @@ static bool make_orders(bench *b)
     return b->rival != NULL;
 }
 
-static double median(const double *values)
-{
-    double sorted[ROUNDS];
-    memcpy(sorted, values, sizeof sorted);
-    return room_bench_median(sorted, ROUNDS);
-}
-
-/* The median of the rounds' ratios: both halves of a ratio have seen the same noise. */
-static void report(void)
-{
-    printf("%-36s %10s  %s\n", "", "us each", "share of (at most)");
-    for (int i = 0; i < MEASUREMENTS; i++) {
-        measurement *m = &measurements[i];
-        printf("%-36s %10.3f", m->name, median(m->us));
-        for (int k = 0; m->rival && k < MEASUREMENTS; k++) {
-            if (strcmp(measurements[k].name, m->rival) != 0)
-                continue;
-            double ratio[ROUNDS];
-            for (int r = 0; r < ROUNDS; r++)
-                ratio[r] = m->us[r] / measurements[k].us[r];
-            printf("  %.3f of %s (%.3f)%s", median(ratio), m->rival, m->wanted,
-                   median(ratio) <= m->wanted ? "" : " MISSED");
-        }
-        printf("\n");
-    }
-}
-
 int main(int argc, char **argv)
 {
     bench b = {0};
@@ -250,16 +240,16 @@ int main(int argc, char **argv)
         return 1;
     }
     unsigned arithmetic = floating_point_enter();
-    for (int round = 0; round < ROUNDS; round++)
-        for (int i = 0; i < MEASUREMENTS; i++) {
+    for (int round = 0; round < ROOM_BENCH_ROUNDS; round++)
+        for (int i = 0; i < ROWS; i++) {
             double begin = clock_thread_cpu_seconds();
-            uint32_t count = measurements[i].run(&b);
-            measurements[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
+            uint32_t count = measured[i](&b);
+            rows[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
         }
     floating_point_leave(arithmetic);
-    printf("%u photons, %u estimates, %u rays, %d rounds (checksum %g)\n", b.map.set.count, (unsigned)QUERIES,
-           b.hit_count, ROUNDS, b.sink);
-    report();
+    fprintf(stderr, "%u photons, %u estimates, %u rays, %d rounds (checksum %g)\n", b.map.set.count, (unsigned)QUERIES,
+            b.hit_count, ROOM_BENCH_ROUNDS, b.sink);
+    room_bench_report(rows, ROWS);
     nanoflann_tree_destroy(b.rival);
     photon_map_reset(&b.map);
     scene_destroy(b.s);

@@ -78,17 +78,17 @@ double room_bench_median(double *values, size_t count)
 
 void room_bench_report(const room_bench_row *rows, size_t count)
 {
-    printf("what,us,us_least,embree_rays,at_most,holds\n");
+    printf("what,us,us_least,ratio,of,at_most,holds\n");
     for (const room_bench_row *row = rows; row < rows + count; row++) {
         double us[ROOM_BENCH_ROUNDS], ratios[ROOM_BENCH_ROUNDS];
         for (int r = 0; r < ROOM_BENCH_ROUNDS; r++) {
             us[r] = row->us[r];
-            ratios[r] = row->us[r] / rows->us[r];
+            ratios[r] = row->us[r] / rows[row->rival].us[r];
         }
         double ratio = room_bench_median(ratios, ROOM_BENCH_ROUNDS), middle = room_bench_median(us, ROOM_BENCH_ROUNDS);
-        printf("\"%s\",%.4f,%.4f,%.3f,", row->name, middle, us[0], ratio);
+        printf("%s,%.4f,%.4f,%.3f,%s,", row->name, middle, us[0], ratio, rows[row->rival].name);
         if (row->most_ratio > 0.0)
-            printf("%.2f,%s\n", row->most_ratio, ratio <= row->most_ratio ? "yes" : "no");
+            printf("%.3f,%s\n", row->most_ratio, ratio <= row->most_ratio ? "yes" : "no");
         else if (row->most_us > 0.0)
             printf("%.2f us,%s\n", row->most_us, middle <= row->most_us ? "yes" : "no");
         else

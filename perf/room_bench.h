@@ -25,13 +25,13 @@ ag_status room_bench_map(run_context *run, const scene *s, photon_map *out_map);
 double room_bench_median(double *values, size_t count);
 
 typedef struct room_bench_row {
-    const char *name;
-    double most_ratio,
-        most_us; /* how much is wanted at most, of the first row's time and in microseconds; 0: not said */
+    const char *name;           /* without commas */
+    size_t rival;               /* the row that it is held against: the first, where nothing is said */
+    double most_ratio, most_us; /* how much is wanted at most, of the rival's time and in microseconds; 0: not said */
     double us[ROOM_BENCH_ROUNDS];
 } room_bench_row;
 
-/* CSV: medians of the rounds' ratios to the first row: both halves of a ratio have seen the same noise. */
+/* CSV: medians of the rounds' ratios to the rival: both halves of a ratio have seen the same noise. */
 void room_bench_report(const room_bench_row *rows, size_t count);
 
 #endif

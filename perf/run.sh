@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run.sh: the whole benchmark: microbenchmarks, gather rays and whole frames against Embree's, forty rooms, thread scaling by phase,
+# run.sh: the whole benchmark: searches, gather rays and whole frames against Embree's, forty rooms, thread scaling by phase,
 # scale, contention, memory, error against time. One page of report, tables by machine, and a verdict.
 # Use: perf/run.sh [--quick] [--repeats N] [--out DIR] [--results DIR] [--parts LIST] [--report-only] [--all-rooms]
 # Exit code 1 when a bound of README.md's table is not met, or a part fails; which one, is named.
@@ -9,12 +9,12 @@ set -euo pipefail
 
 suite_begin run "usage: perf/run.sh [options]
 All benchmarks, one report, judged by the table of perf/README.md. Hours; with --quick minutes.
-  --parts L      of micro, photon_making, gather_rays, frame, forty_rooms, thread_scaling, scale, contention,
-                 memory, error_against_time (all; with --quick the last five, and frame)
+  --parts L      of photon_search, photon_making, gather_rays, frame, forty_rooms, thread_scaling, scale,
+                 contention, memory, error_against_time (all; with --quick the last five, and frame)
   --results DIR  where tables, figures and report go (perf/results/MACHINE; with --quick: report/ in the folder of --out)
   --report-only  measure nothing: report and verdict of what is in the folder of --out
   --all-rooms    all forty rooms (rooms 1, 10, 20, 30, 33, 40)" "$@"
-parts=micro,photon_making,gather_rays,frame,forty_rooms,thread_scaling,scale,contention,memory,error_against_time
+parts=photon_search,photon_making,gather_rays,frame,forty_rooms,thread_scaling,scale,contention,memory,error_against_time
 [[ $quick == yes ]] && parts=frame,thread_scaling,scale,contention,memory,error_against_time
 rooms=1,10,20,30,33,40 results='' report_only=no
 while ((${#suite_rest[@]} > 0)); do
@@ -41,32 +41,12 @@ failures=()
 slug() { tr '[:upper:]' '[:lower:]' | sed "s/[^a-z0-9]\{1,\}/_/g; s/^_//; s/_\$//"; }
 
 # These programs know their own bounds; a line of theirs that misses one is a failure by its name.
-run_micro() {
-    mkdir -p "$out/micro"
-    [[ -x $suite_bin/afterglow-photon-search ]] || { echo "run: no afterglow-photon-search: it wants nanoflann" >&2 && return; }
-    "$suite_bin/afterglow-photon-search" >"$out/micro/photon_search.txt"
-    echo "what,us_each,share,of,at_most,holds" >"$out/micro/micro.csv"
-    # name (36 wide), microseconds, and where it is held against something: "share of NAME (bound)"
-    sed -n '2,$p' "$out/micro/photon_search.txt" | while IFS= read -r line; do
-        [[ ${line:36} =~ ^\ +([0-9.]+)(\ +([0-9.]+)\ of\ (.*)\ \(([0-9.]+)\)(\ MISSED)?)?$ ]] || continue
-        what=$(sed 's/ *$//; s/,/;/g' <<<"${line:0:36}")
-        if [[ -n ${BASH_REMATCH[2]} ]]; then
-            holds=yes
-            [[ -n ${BASH_REMATCH[6]} ]] && holds=no
-            echo "$what,${BASH_REMATCH[1]},${BASH_REMATCH[3]},${BASH_REMATCH[4]//,/;},${BASH_REMATCH[5]},$holds"
-        else
-            echo "$what,${BASH_REMATCH[1]},,,,"
-        fi
-    done >>"$out/micro/micro.csv"
-    awk -F, '$6 != "" && NR > 1 { print $1 "," $3 "," $5 "," $6 }' "$out/micro/micro.csv" | own_verdicts micro
-}
-
 run_rows() { # PART: the CSV of a program afterglow-PART, and its own bounds
     mkdir -p "$out/$1"
     local program=$suite_bin/afterglow-${1//_/-}
-    [[ -x $program ]] || { echo "run: no $program" >&2 && return; }
-    "$program" | sed ':a; s/^\("[^",]*\),\([^"]*"\)/\1;\2/; ta; s/"//g' >"$out/$1/$1.csv"
-    awk -F, '$5 != "" && NR > 1 { print $1 "," ($5 ~ / us$/ ? $2 " us" : $4) "," $5 "," $6 }' "$out/$1/$1.csv" | own_verdicts "$1"
+    [[ -x $program ]] || { echo "run: no $program" >&2 && return; } # photon_search wants nanoflann
+    "$program" >"$out/$1/$1.csv"
+    awk -F, '$6 != "" && NR > 1 { print $1 "," ($6 ~ / us$/ ? $2 " us" : $4) "," $6 "," $7 }' "$out/$1/$1.csv" | own_verdicts "$1"
 }
 
 own_verdicts() { # lines NAME,VALUE,BOUND,yes|no
@@ -101,8 +81,8 @@ for part in ${parts//,/ }; do
     [[ $report_only == no ]] || continue
     echo "run: $part" >&2
     case $part in
-    micro | forty_rooms) "run_$part" || failures+=("$part failed") ;;
-    photon_making | gather_rays) run_rows "$part" || failures+=("$part failed") ;;
+    forty_rooms) run_forty_rooms || failures+=("$part failed") ;;
+    photon_search | photon_making | gather_rays) run_rows "$part" || failures+=("$part failed") ;;
     frame | thread_scaling | scale | contention | memory | error_against_time)
         "$suite_root/perf/$part.sh" "${options[@]}" --out "$out/$part" >"$out/$part.txt" || failures+=("$part failed")
         ;;
@@ -178,7 +158,7 @@ section() { # TITLE PART TABLE... : tables and figures are copied beside the rep
     fi
     printf '\n'
     table "$results/verdicts.csv"
-    section "Photon map against nanoflann" micro micro.csv
+    section "Photon map against nanoflann" photon_search photon_search.csv
     section "Making the photon map" photon_making photon_making.csv
     section "Gather rays against Embree's" gather_rays gather_rays.csv
     section "A whole frame against Embree's rays" frame frame.csv
