@@ -11,6 +11,7 @@
 #include "math/vec3.h"
 
 #include <stdint.h>
+#include <string.h>
 
 #define PHOTON_NONE UINT32_MAX
 
@@ -26,19 +27,30 @@ _Static_assert(sizeof(photon) == 24, "a photon is 24 bytes, as in the paper");
 
 /* --- shared exponents: value = mantissa 2^exponent, mantissas of 8 bits --- */
 
-/* Picks the exponent so that the largest mantissa is in [127.5, 255]. */
+/* 2^exponent, by its bits, for libm's ldexpf is slow; 0 where it would be denormal, infinite where it is too large. */
+static inline float power_of_two(int exponent)
+{
+    uint32_t bits = exponent < -126 ? 0 : exponent > 127 ? UINT32_C(0xff) << 23 : (uint32_t)(exponent + 127) << 23;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* Picks the exponent so that the largest mantissa is in [127.5, 255]. largest: finite, >= 0. */
 static inline int shared_exponent_of(float largest)
 {
-    int exponent;
-    float fraction = frexpf(largest, &exponent); /* largest = fraction 2^exponent, fraction in [0.5, 1) */
-    return exponent - 8 + (fraction * 256.0f > 255.0f ? 1 : 0);
+    uint32_t bits;
+    memcpy(&bits, &largest, sizeof bits);
+    /* largest = fraction 2^exponent, fraction in [0.5, 1): more than 255/256? */
+    int exponent = (int)(bits >> 23) - 126;
+    return exponent - 8 + ((bits & 0x7fffff) > 0x7f0000);
 }
 
 /* Rounds up with probability equal to the fraction, so that the mean over many photons is right also on the weak
  * channels of a saturated colour; each channel has 21 of the random bits. */
 static inline uint32_t shared_mantissas(rgb value, int exponent, uint64_t bits)
 {
-    float scale = ldexpf(1.0f, -exponent);
+    float scale = power_of_two(-exponent);
     float u[3] = {(float)(bits & 0x1fffff) * 0x1p-21f, (float)(bits >> 21 & 0x1fffff) * 0x1p-21f,
                   (float)(bits >> 42 & 0x1fffff) * 0x1p-21f};
     uint32_t r = (uint32_t)(value.r * scale + u[0]), g = (uint32_t)(value.g * scale + u[1]),
@@ -66,7 +78,7 @@ static inline int flux_exponent(uint32_t code) { return (int)(code >> 24) - 128;
 
 static inline rgb flux_decode(uint32_t code)
 {
-    float scale = ldexpf(1.0f, flux_exponent(code));
+    float scale = power_of_two(flux_exponent(code));
     return (rgb){(float)(code >> 16 & 255) * scale, (float)(code >> 8 & 255) * scale, (float)(code & 255) * scale};
 }
 

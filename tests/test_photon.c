@@ -54,6 +54,22 @@ static void flux_at_the_ends_of_its_range(void **state)
         }
 }
 
+/* Without libm, and the same. */
+static void exponents_are_read_from_the_bits(void **state)
+{
+    (void)state;
+    for (int e = -126; e <= 127; e++)
+        assert_true(power_of_two(e) == ldexpf(1.0f, e));
+    assert_true(power_of_two(-127) == 0.0f && isinf(power_of_two(128)));
+    for (uint32_t bits = 0x00800000; bits < 0x7f800000; bits += 2048 - 1) {
+        float v;
+        memcpy(&v, &bits, sizeof v);
+        int exponent;
+        float fraction = frexpf(v, &exponent);
+        assert_int_equal(shared_exponent_of(v), exponent - 8 + (fraction * 256.0f > 255.0f));
+    }
+}
+
 static void expect_unbiased(rgb flux, bool keys_are_hashes, uint64_t count)
 {
     double sum[3] = {0.0, 0.0, 0.0};
@@ -118,6 +134,7 @@ int main(void)
         cmocka_unit_test(a_photon_is_24_bytes),
         cmocka_unit_test(flux_survives_within_a_step),
         cmocka_unit_test(flux_at_the_ends_of_its_range),
+        cmocka_unit_test(exponents_are_read_from_the_bits),
         cmocka_unit_test(the_mean_flux_of_equal_photons_is_right),
         cmocka_unit_test(directions_survive_within_a_degree),
         cmocka_unit_test(axes_survive_exactly),
