@@ -55,7 +55,19 @@ bool scene_occluded(const scene *s, scene_ray ray, float max_distance);
  * starts off the surface. On meshes, moving also against (or, when passing through, along) the way of arrival keeps
  * starts in the corners of closed rooms inside. On round surfaces it would turn the path a little each time, and let
  * out light that is trapped in glass. */
-scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction);
+static inline scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction)
+{
+    vec3 n = vec3_face_forward(hit->geometric_normal, direction);
+    bool passes_through = vec3_dot(arrived.direction, n) > 0.0f;
+    scene_ray next = arrived;
+    next.origin = vec3_add_scaled(hit->position, n, hit->epsilon);
+    next.direction = direction;
+    if (hit->has_medium_interface)
+        next.medium = vec3_dot(hit->geometric_normal, direction) > 0.0f ? hit->medium_outside : hit->medium_inside;
+    if (hit->is_flat)
+        next.origin = vec3_add_scaled(next.origin, arrived.direction, passes_through ? hit->epsilon : -hit->epsilon);
+    return next;
+}
 
 /* Along which the surface's u and v grow there, in world space, unless it is a mesh with tangents of its own: those,
  * and across them on v's side. Worked out anew at each call. Where there are none, any that lie in the surface. */

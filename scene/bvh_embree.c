@@ -468,17 +468,3 @@ bool scene_occluded(const scene *s, scene_ray ray, float max_distance)
     embree_occluded(s->bvh->scene, &cast);
     return cast.tfar < 0.0f;
 }
-
-scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction)
-{
-    vec3 n = vec3_face_forward(hit->geometric_normal, direction);
-    bool passes_through = vec3_dot(arrived.direction, n) > 0.0f;
-    scene_ray next = arrived;
-    next.origin = vec3_add_scaled(hit->position, n, hit->epsilon);
-    next.direction = direction;
-    if (hit->has_medium_interface)
-        next.medium = vec3_dot(hit->geometric_normal, direction) > 0.0f ? hit->medium_outside : hit->medium_inside;
-    if (hit->is_flat)
-        next.origin = vec3_add_scaled(next.origin, arrived.direction, passes_through ? hit->epsilon : -hit->epsilon);
-    return next;
-}

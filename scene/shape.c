@@ -91,11 +91,10 @@ static vec3 mesh_vertex(const mesh *m, uint32_t triangle, int corner)
 }
 
 /* Twice the triangle's area as a vector, in double so that slivers keep a direction. */
-static vec3 mesh_area_vector(const mesh *m, uint32_t triangle, double *out_length)
+static inline vec3 area_vector(vec3 a, vec3 b, vec3 c, double *out_length)
 {
-    vec3 p[3] = {mesh_vertex(m, triangle, 0), mesh_vertex(m, triangle, 1), mesh_vertex(m, triangle, 2)};
-    double e1[3] = {(double)p[1].x - p[0].x, (double)p[1].y - p[0].y, (double)p[1].z - p[0].z};
-    double e2[3] = {(double)p[2].x - p[0].x, (double)p[2].y - p[0].y, (double)p[2].z - p[0].z};
+    double e1[3] = {(double)b.x - a.x, (double)b.y - a.y, (double)b.z - a.z};
+    double e2[3] = {(double)c.x - a.x, (double)c.y - a.y, (double)c.z - a.z};
     double n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]};
     double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     *out_length = length;
@@ -103,16 +102,17 @@ static vec3 mesh_area_vector(const mesh *m, uint32_t triangle, double *out_lengt
     return (vec3){(float)(n[0] * inverse), (float)(n[1] * inverse), (float)(n[2] * inverse)};
 }
 
-static float mesh_epsilon(const mesh *m, uint32_t triangle)
+static vec3 mesh_area_vector(const mesh *m, uint32_t triangle, double *out_length)
 {
-    float largest = 0.0f;
-    for (int c = 0; c < 3; c++) {
-        vec3 p = mesh_vertex(m, triangle, c);
-        const float size[3] = {fabsf(p.x), fabsf(p.y), fabsf(p.z)};
-        for (int a = 0; a < 3; a++)
-            largest = size[a] > largest ? size[a] : largest; /* of fmaxf the compiler makes a call */
-    }
-    return largest * SHAPE_EPSILON_RELATIVE;
+    return area_vector(mesh_vertex(m, triangle, 0), mesh_vertex(m, triangle, 1), mesh_vertex(m, triangle, 2),
+                       out_length);
+}
+
+/* Of fmaxf the compiler makes a call. */
+static inline float larger_size(float a, float b) { return fabsf(b) > a ? fabsf(b) : a; }
+static inline float largest_size(vec3 a, float at_least)
+{
+    return larger_size(larger_size(larger_size(at_least, a.x), a.y), a.z);
 }
 
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
@@ -241,8 +241,9 @@ static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, f
     vec3 p0 = m->positions[index[0]], p1 = m->positions[index[1]], p2 = m->positions[index[2]];
     float w = 1.0f - u - v;
     h->position = vec3_add_scaled(vec3_add_scaled(vec3_scale(p0, w), p1, u), p2, v);
+    h->epsilon = largest_size(p2, largest_size(p1, largest_size(p0, 0.0f))) * SHAPE_EPSILON_RELATIVE;
     double length;
-    vec3 n = mesh_area_vector(m, primitive_index, &length);
+    vec3 n = area_vector(p0, p1, p2, &length);
     if (s->flip_normal)
         n = vec3_negate(n);
     h->shading_normal = n;
@@ -261,7 +262,6 @@ static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, f
         h->uv.x = t[index[0]].x * w + t[index[1]].x * u + t[index[2]].x * v;
         h->uv.y = t[index[0]].y * w + t[index[1]].y * u + t[index[2]].y * v;
     }
-    h->epsilon = mesh_epsilon(m, primitive_index);
     h->is_flat = true;
 }
 

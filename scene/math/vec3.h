@@ -56,7 +56,13 @@ static inline rgb rgb_add(rgb a, rgb b) { return (rgb){a.r + b.r, a.g + b.g, a.b
 static inline rgb rgb_sub(rgb a, rgb b) { return (rgb){a.r - b.r, a.g - b.g, a.b - b.b}; }
 static inline rgb rgb_mul(rgb a, rgb b) { return (rgb){a.r * b.r, a.g * b.g, a.b * b.b}; }
 static inline rgb rgb_scale(rgb a, float s) { return (rgb){a.r * s, a.g * s, a.b * s}; }
-static inline float rgb_max(rgb a) { return fmaxf(a.r, fmaxf(a.g, a.b)); }
+/* As fmaxf, of which the compiler would make a call: what is no number does not count. */
+static inline float float_max(float a, float b)
+{
+    float larger = a > b ? a : b;
+    return larger == larger ? larger : a;
+}
+static inline float rgb_max(rgb a) { return float_max(a.r, float_max(a.g, a.b)); }
 static inline bool rgb_is_black(rgb a) { return a.r == 0.0f && a.g == 0.0f && a.b == 0.0f; }
 static inline bool rgb_is_finite(rgb a) { return isfinite(a.r) && isfinite(a.g) && isfinite(a.b); }
 /* Relative luminance, Rec. 709 primaries (ITU-R BT.709-6). */
