@@ -4,7 +4,7 @@
 #include "photon_tracing.h"
 
 #include "alpha.h"
-#include "bsdf.h"
+#include "lambert.h"
 #include "parallel_for.h"
 #include "passage.h"
 #include "scene_extent.h"
@@ -47,36 +47,47 @@ static void book(double entry[3], rgb flux)
     entry[2] += (double)flux.b;
 }
 
-static void store(tracer *t, const surface_hit *hit, const bsdf *b, vec3 direction, rgb flux, uint64_t key)
+static photon *place_for_photon(block *out)
 {
-    block *out = t->out;
-    float alpha = alpha_at_hit(t->s, hit);
-    surface_rest at = surface_at_opening(t->s, hit);
-    flux = rgb_scale(flux, alpha > 0.0f ? bsdf_arrival_factor(b) * at.area_ratio / alpha : 0.0f);
-    book(out->books.arrived, flux);
-    if (out->count == t->limit) {
-        book(out->books.cut, flux);
-        return;
-    }
     if (out->count == out->capacity) {
         uint32_t capacity = out->capacity ? 2 * out->capacity : 4 * PATHS_PER_BLOCK;
         photon *larger = realloc(out->photons, capacity * sizeof *larger);
         if (!larger) {
             out->out_of_memory = true;
-            return;
+            return NULL;
         }
         out->photons = larger;
         out->capacity = capacity;
     }
-    photon *p = &out->photons[out->count++];
-    memset(p, 0, sizeof *p);
+    return &out->photons[out->count++];
+}
+
+static void store(tracer *t, const surface_hit *hit, float arrival_factor, vec3 direction, rgb flux, uint64_t key)
+{
+    block *out = t->out;
+    surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
+    float alpha = 1.0f;
+    if (hit->instance_index != SCENE_NO_INSTANCE)
+        at = surface_at_opening(t->s, hit);
+    if (!shape_is_opaque(&t->s->shapes[hit->shape_index]))
+        alpha = alpha_at_hit(t->s, hit);
+    flux = rgb_scale(flux, alpha > 0.0f ? arrival_factor * at.area_ratio / alpha : 0.0f);
+    book(out->books.arrived, flux);
+    if (out->count == t->limit) {
+        book(out->books.cut, flux);
+        return;
+    }
+    photon *p = place_for_photon(out);
+    if (!p)
+        return;
+    bool is_outside = !(vec3_dot(hit->geometric_normal, direction) > 0.0f);
     p->position[0] = at.position.x;
     p->position[1] = at.position.y;
     p->position[2] = at.position.z;
     p->flux = flux_encode(flux, key);
     p->direction = direction_encode(direction);
-    bool is_outside = !(vec3_dot(hit->geometric_normal, direction) > 0.0f);
     p->normal = direction_encode(is_outside ? at.geometric_normal : vec3_negate(at.geometric_normal));
+    memset(&p->slot, 0, sizeof p->slot);
     book(out->books.stored, flux_decode(p->flux));
 }
 
@@ -100,77 +111,144 @@ static bool pass_media(photon_books *books, rgb transmittance, rng *random, rgb 
     return true;
 }
 
-static void trace_path(tracer *t, uint64_t path)
+/* --- a path --- */
+
+typedef struct photon_path {
+    scene_ray ray;
+    rgb flux;
+    rng random;
+    uint64_t key;
+    int scatterings;
+} photon_path;
+
+/* Leaves a lamp, picked by its power, at a time of the path's own where that matters. false: nothing leaves. */
+static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
 {
     const scene *s = t->s;
     const photon_tracing_settings *settings = t->settings;
-    photon_books *books = &t->out->books;
-    rng random = rng_make(settings->seed, settings->kind == PHOTON_GLOBAL ? STREAM_GLOBAL : STREAM_CAUSTIC, path);
+    rng random = rng_make(settings->seed, settings->kind == PHOTON_GLOBAL ? STREAM_GLOBAL : STREAM_CAUSTIC, number);
     uint64_t key = hash_combine(random.state, 0x70686f746f6eu);
-
-    /* leave a lamp, picked by its power, at a time of the path's own where that matters */
     float probability, time = s->has_motion ? rng_float(&random) : 0.0f;
     const light *lamp = &s->lights[scene_pick_light_by_power(s, rng_float(&random), &probability)];
     light_emission start;
     if (!(probability > 0.0f) || !light_sample_emission(s, lamp, t->target, &random, &start))
-        return;
+        return false;
     scene_ray ray = scene_ray_make(start.origin, start.direction);
     ray.skips_uv = true;
     ray.medium = start.medium;
     ray.time = time;
-    rgb flux = rgb_scale(start.flux, 1.0f / probability);
-    book(books->emitted, flux);
+    *out_path = (photon_path){ray, rgb_scale(start.flux, 1.0f / probability), random, key, 0};
+    book(t->out->books.emitted, out_path->flux);
+    return true;
+}
 
-    for (int scatterings = 0;; scatterings++) {
+/* What a path has arrived at. */
+typedef struct matter {
+    const rgb *albedo; /* of a Lambertian place; else NULL, and: */
+    bsdf scattering;
+} matter;
+
+static void matter_find(const scene *s, const surface_hit *hit, vec3 arrived, matter *out_matter)
+{
+    out_matter->albedo = lambert_albedo(s, hit);
+    if (!out_matter->albedo)
+        out_matter->scattering = bsdf_create(s, hit, vec3_negate(arrived));
+}
+
+static bool matter_has(const matter *m, bsdf_lobes lobes)
+{
+    return m->albedo ? (lobes & BSDF_GATHERED) != 0 : bsdf_has(&m->scattering, lobes);
+}
+
+static bool matter_sample(const matter *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes, float u_lobe, vec2 u,
+                          vec3 *out_direction, rgb *out_weight)
+{
+    bsdf_sample next;
+    float correction;
+    if (m->albedo) {
+        if (!lambert_sample_flux(hit, arrived, u, out_direction, &correction))
+            return false;
+        *out_weight = rgb_scale(*m->albedo, correction);
+        return true;
+    }
+    if (!bsdf_sample_direction(&m->scattering, lobes, BSDF_FLUX, u_lobe, u, &next))
+        return false;
+    *out_direction = next.direction;
+    *out_weight = next.weight;
+    return true;
+}
+
+/* Stores a photon and sends the path on, from where its ray has arrived. false: the path ends. */
+static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
+{
+    const photon_tracing_settings *settings = t->settings;
+    photon_books *books = &t->out->books;
+    vec3 arrived = path->ray.direction;
+    rgb flux = path->flux;
+    matter m;
+    matter_find(t->s, hit, arrived, &m);
+
+    /* store at gathered lobes */
+    bool is_global = settings->kind == PHOTON_GLOBAL;
+    if ((is_global || path->scatterings > 0) && matter_has(&m, BSDF_GATHERED)) {
+        float factor = m.albedo ? lambert_arrival_factor(hit, arrived) : bsdf_arrival_factor(&m.scattering);
+        store(t, hit, factor, arrived, flux, hash_combine(path->key, (uint64_t)path->scatterings));
+    }
+    if (path->scatterings >= settings->max_scatterings || path->scatterings >= SCATTERING_CAP) {
+        book(books->truncated, flux);
+        return false;
+    }
+
+    /* scatter; a caustic map follows traced lobes alone */
+    bsdf_lobes lobes = is_global ? BSDF_ALL : BSDF_TRACED;
+    if (!matter_has(&m, lobes)) {
+        book(books->lost, flux);
+        return false;
+    }
+    float u_lobe = rng_float(&path->random), u_roulette = rng_float(&path->random);
+    vec2 u = rng_vec2(&path->random);
+    vec3 direction;
+    rgb weight;
+    if (!matter_sample(&m, hit, arrived, lobes, u_lobe, u, &direction, &weight)) {
+        book(books->absorbed, flux);
+        return false;
+    }
+    rgb scattered = rgb_mul(flux, weight);
+    book(books->absorbed, rgb_sub(flux, scattered));
+
+    /* roulette keeps the flux of the survivors about what it was */
+    float largest = rgb_max(scattered), survival = largest > 0.0f ? largest / rgb_max(flux) : 0.0f;
+    survival = survival < 1.0f ? survival : 1.0f;
+    if (u_roulette >= survival) {
+        book(books->lost, scattered);
+        return false;
+    }
+    path->flux = rgb_scale(scattered, 1.0f / survival);
+    book(books->gained, rgb_sub(path->flux, scattered));
+    path->ray = surface_ray(hit, path->ray, direction);
+    path->scatterings++;
+    return true;
+}
+
+static void trace_path(tracer *t, uint64_t number)
+{
+    photon_path path;
+    photon_books *books = &t->out->books;
+    bool goes_on = begin_path(t, number, &path);
+    while (goes_on) {
         surface_hit hit;
         rgb transmittance;
         t->out->rays++;
-        bool is_met = passage_intersect(s, &ray, &t->out->passages_cut, &hit, &transmittance);
-        if (!pass_media(books, transmittance, &random, &flux))
+        bool is_met = passage_intersect(t->s, &path.ray, &t->out->passages_cut, &hit, &transmittance);
+        if (!pass_media(books, transmittance, &path.random, &path.flux))
             return;
-        if (!is_met) {
-            book(books->escaped, flux);
-            return;
-        }
-        bsdf b = bsdf_create(s, &hit, vec3_negate(ray.direction));
-
-        /* store at gathered lobes */
-        if (bsdf_has(&b, BSDF_GATHERED)) {
-            if (settings->kind == PHOTON_GLOBAL || scatterings > 0)
-                store(t, &hit, &b, ray.direction, flux, hash_combine(key, (uint64_t)scatterings));
-        }
-        if (scatterings >= settings->max_scatterings || scatterings >= SCATTERING_CAP) {
-            book(books->truncated, flux);
-            return;
-        }
-
-        /* scatter; a caustic map follows traced lobes alone */
-        bsdf_lobes lobes = settings->kind == PHOTON_GLOBAL ? BSDF_ALL : BSDF_TRACED;
-        if (!bsdf_has(&b, lobes)) {
-            book(books->lost, flux);
-            return;
-        }
-        float u_lobe = rng_float(&random), u_roulette = rng_float(&random);
-        vec2 u = rng_vec2(&random);
-        bsdf_sample next;
-        if (!bsdf_sample_direction(&b, lobes, BSDF_FLUX, u_lobe, u, &next)) {
-            book(books->absorbed, flux);
-            return;
-        }
-        rgb scattered = rgb_mul(flux, next.weight);
-        book(books->absorbed, rgb_sub(flux, scattered));
-
-        /* roulette keeps the flux of the survivors about what it was */
-        float survival = rgb_max(scattered) > 0.0f ? fminf(1.0f, rgb_max(scattered) / rgb_max(flux)) : 0.0f;
-        if (u_roulette >= survival) {
-            book(books->lost, scattered);
-            return;
-        }
-        flux = rgb_scale(scattered, 1.0f / survival);
-        book(books->gained, rgb_sub(flux, scattered));
-        ray = surface_ray(&hit, ray, next.direction);
+        if (!is_met)
+            book(books->escaped, path.flux);
+        goes_on = is_met && scatter(t, &path, &hit);
     }
 }
+
+/* --- rounds of blocks --- */
 
 typedef struct round_job {
     const scene *s;

@@ -10,8 +10,6 @@
 #include "scene.h"
 #include "shading_frame.h"
 
-/* The largest factor that shading normals may add to a photon: beyond it lie grazing silhouettes only. */
-static const float CORRECTION_MAX = 8.0f;
 /* No lobe of two is picked more rarely. */
 static const float PROBABILITY_MIN = 0.1f;
 
@@ -215,7 +213,7 @@ static float flux_correction(const bsdf *b, vec3 direction)
 {
     float numerator = fabsf(vec3_dot(b->out, b->shading.z) * vec3_dot(direction, b->geometric_normal));
     float denominator = fabsf(vec3_dot(b->out, b->geometric_normal) * vec3_dot(direction, b->shading.z));
-    return denominator > 0.0f ? fminf(numerator / denominator, CORRECTION_MAX) : 0.0f;
+    return denominator > 0.0f ? fminf(numerator / denominator, BSDF_CORRECTION_MAX) : 0.0f;
 }
 
 float bsdf_arrival_factor(const bsdf *b)
@@ -223,7 +221,7 @@ float bsdf_arrival_factor(const bsdf *b)
     float shading = vec3_dot(b->out, b->shading.z), geometric = vec3_dot(b->out, b->geometric_normal);
     if (shading * geometric <= 0.0f)
         return 0.0f; /* behind the horizon of one of the normals: no light by either reckoning */
-    return fminf(shading / geometric, CORRECTION_MAX) * bsdf_lobe_transmittance(&b->matter, shading);
+    return fminf(shading / geometric, BSDF_CORRECTION_MAX) * bsdf_lobe_transmittance(&b->matter, shading);
 }
 
 rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)

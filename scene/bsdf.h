@@ -17,6 +17,9 @@
 #include "bvh.h"
 #include "material.h"
 
+/* The largest factor that shading normals may add to a photon: beyond it lie grazing silhouettes only. */
+#define BSDF_CORRECTION_MAX 8.0f
+
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
 
 /* What travels: radiance is scaled by the square of the relative index when it enters another medium, flux is not. */

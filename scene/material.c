@@ -70,6 +70,9 @@ void material_prepare(material *m)
     make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
     if (m->kind == MATERIAL_COATED_DIFFUSE || m->kind == MATERIAL_COATED_CONDUCTOR)
         coat_prepare(m);
+    m->is_lambertian = m->kind == MATERIAL_DIFFUSE && !m->is_textured && m->alpha_u == m->alpha_v &&
+                       m->base_alpha_u == m->base_alpha_v && m->displacement_texture == SCENE_NO_TEXTURE &&
+                       m->normal_map_texture == SCENE_NO_TEXTURE;
 }
 
 bool material_is_traced(const scene *s, uint32_t material_index)

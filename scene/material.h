@@ -78,6 +78,10 @@ typedef struct material {
     uint32_t displacement_texture; /* a float: how far the surface seems raised, along its normal */
     uint32_t normal_map_texture;   /* a colour: 2 c - 1 is the normal along dp/du, dp/dv and the shading normal */
     float normal_scale;            /* what its first two components are multiplied by, mostly 1 */
+
+    /* Lambertian and nothing else, the same all over, and nothing turns its shading normal: see lambert.h. Set by
+     * scene_add_material. */
+    bool is_lambertian;
 } material;
 
 /* The k with which a conductor of index 1 reflects r at normal incidence, as pbrt-v4 has it. */

@@ -105,6 +105,7 @@ static void add_material(hash128 *h, const material *m)
     ADD(m->displacement_texture);
     ADD(m->normal_map_texture);
     ADD(m->normal_scale);
+    ADD(m->is_lambertian);
 }
 
 /* --- shapes --- */

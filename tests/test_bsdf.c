@@ -2,6 +2,8 @@
  * material alike is in test_bsdf_table.c. Threads: one. */
 #include "bsdf_fixture.h"
 
+#include "lambert.h"
+
 enum { SAMPLES = 200000 / FEWER };
 
 static const rgb WHITE = {1.0f, 1.0f, 1.0f};
@@ -264,6 +266,61 @@ static void leaning_normals_claim_what_is_drawn(void **state)
         }
 }
 
+/* Photons meet most surfaces without a bsdf: what it would have said must come out. */
+static void lambert_alone_is_the_same(void **state)
+{
+    (void)state;
+    material m = diffuse();
+    rng random = test_random(12);
+    int absorbed = 0, dark = 0;
+    for (int i = 0; i < 20000; i++) {
+        surface_hit hit = {.geometric_normal = random_direction(&random)};
+        hit.shading_normal = vec3_face_forward(random_direction(&random), hit.geometric_normal);
+        if (i % 2)
+            hit.shading_normal = hit.geometric_normal;
+        vec3 arrived = random_direction(&random), direction;
+        bsdf b = bsdf_create_of(&m, &hit, vec3_negate(arrived));
+        assert_relative(lambert_arrival_factor(&hit, arrived), bsdf_arrival_factor(&b), 1e-6);
+        dark += bsdf_arrival_factor(&b) == 0.0f;
+        vec2 u = rng_vec2(&random);
+        bsdf_sample s;
+        float correction;
+        bool goes_on = bsdf_sample_direction(&b, BSDF_ALL, BSDF_FLUX, 0.0f, u, &s);
+        assert_true(lambert_sample_flux(&hit, arrived, u, &direction, &correction) == goes_on);
+        absorbed += !goes_on;
+        if (!goes_on)
+            continue;
+        assert_close(vec3_length(vec3_sub(direction, s.direction)), 0.0, 1e-6);
+        assert_close(correction, s.weight.r / m.reflectance.r, 1e-4);
+    }
+    assert_true(absorbed > 1000 && dark > 1000);
+}
+
+static void what_is_lambertian(void **state)
+{
+    (void)state;
+    scene s = {0};
+    shape at = shape_make(SHAPE_DISK);
+    material m = diffuse();
+    s.shapes = &at, s.materials = &m;
+    surface_hit hit = {.distance = 1.0f};
+    material_prepare(&m);
+    assert_ptr_equal(lambert_albedo(&s, &hit), &m.reflectance);
+    hit.is_strand = true;
+    assert_null(lambert_albedo(&s, &hit));
+    hit.is_strand = false;
+    uint32_t *const textures[] = {&m.reflectance_texture, &m.displacement_texture, &m.normal_map_texture};
+    for (int i = 0; i < 3; i++) {
+        *textures[i] = 0;
+        material_prepare(&m);
+        assert_null(lambert_albedo(&s, &hit));
+        *textures[i] = SCENE_NO_TEXTURE;
+    }
+    m = diffuse_transmission();
+    material_prepare(&m);
+    assert_null(lambert_albedo(&s, &hit));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -276,6 +333,8 @@ int main(void)
         cmocka_unit_test(shading_normals_never_let_diffuse_light_through),
         cmocka_unit_test(diffuse_light_ends_at_the_shading_horizon),
         cmocka_unit_test(leaning_normals_claim_what_is_drawn),
+        cmocka_unit_test(lambert_alone_is_the_same),
+        cmocka_unit_test(what_is_lambertian),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
