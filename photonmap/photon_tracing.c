@@ -263,10 +263,14 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
 {
     (void)worker;
     round_job *job = user;
-    tracer t = {job->s, job->target, job->settings, &job->blocks[block_index], UINT32_MAX};
+    /* each photon changes the books, which lie beside those of another worker's block: a copy has its lines to itself
+     */
+    block out = job->blocks[block_index];
+    tracer t = {job->s, job->target, job->settings, &out, UINT32_MAX};
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
         trace_path(&t, job->first_path + i);
-    t.out->paths = end - begin;
+    out.paths = end - begin;
+    job->blocks[block_index] = out;
 }
 
 static void add_books(photon_books *sum, const photon_books *part)
