@@ -66,8 +66,10 @@ typedef struct tile_job {
     tile_scheduler *tiles;
     eye_worker *workers;
     ag_film *film;
-    uint32_t wanted;                     /* samples of each pixel */
-    double sample_count;                 /* all that are still to be taken */
+    uint32_t wanted;          /* samples of each pixel */
+    double sample_count;      /* all that are still to be taken */
+    double samples_per_pixel; /* of those, in the mean */
+    unsigned worker_count;
     atomic_u64 samples_done;             /* for the progress alone: relaxed */
     double progress_begin, progress_end; /* of the phase, before and after this pass */
 } tile_job;
@@ -140,6 +142,15 @@ static void render_pixel(tile_job *job, eye_worker *worker, int x, int y)
     }
 }
 
+/* Whether a worker that is through with the tile completes its samples, although there is room for more: when it has
+ * so many under way that the others, done with all that is left, might wait for it. The share gets smaller with what is
+ * left, down to a smallest tile's. A worker alone keeps nobody waiting. */
+static bool should_share_out(const tile_job *job, const eye_worker *worker, uint64_t pixels_left)
+{
+    double left = (double)pixels_left * job->samples_per_pixel;
+    return job->worker_count > 1 && worker->queue->count > left / (2.0 * job->worker_count);
+}
+
 static void add_tile_time(ag_film *film, tile area, float seconds)
 {
     for (int y = area.y0; y < area.y1; y++)
@@ -166,10 +177,10 @@ static void work_on_tiles(void *user, unsigned worker_index)
             if (!worker->batch) /* nothing is waited for */
                 finish_samples(job, worker);
         }
-        if (times) {
+        if (times || should_share_out(job, worker, area.left))
             finish_samples(job, worker);
+        if (times)
             add_tile_time(job->film, area, (float)(clock_seconds() - begin));
-        }
     }
     finish_samples(job, worker);
 }
@@ -184,6 +195,7 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
                     .film = film,
                     .workers = r->workers,
                     .wanted = wanted,
+                    .worker_count = context->statistics.threads,
                     .progress_begin = film_count_samples(film).mean / most,
                     .progress_end = (double)wanted / most};
     ag_status status = tile_scheduler_create(film->x0, film->y0, film->x0 + film->width, film->y0 + film->height,
@@ -194,6 +206,7 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
         uint32_t goal = film_goal(film, i, wanted);
         job.sample_count += film->counts[i] < goal ? (double)(goal - film->counts[i]) : 0.0;
     }
+    job.samples_per_pixel = job.sample_count / ((double)film->width * (double)film->height);
     run_progress(&context->run, AG_PHASE_RENDER, job.progress_begin); /* the first pixels may take long */
     run_allow_pause(&context->run);
     thread_pool_run(context->pool, work_on_tiles, &job);

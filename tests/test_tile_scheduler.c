@@ -148,6 +148,7 @@ static void test_small_at_the_end(void **state)
         tile_scheduler *s = create(0, 0, 1024, 1024, 32, worker_count);
         uint32_t count = tile_scheduler_count(s);
         int before = 32;
+        uint64_t left = 1024 * 1024;
         for (uint32_t i = 0; i < count; i++) {
             tile t;
             assert_true(tile_scheduler_next(s, &t));
@@ -156,6 +157,8 @@ static void test_small_at_the_end(void **state)
             assert_int_equal(t.y1 - t.y0, edge);
             assert_true(edge == 32 || edge == 16 || edge == 8);
             assert_true(edge <= before);
+            left -= (uint64_t)edge * (uint64_t)edge;
+            assert_true(t.left == left);
             /* as long as a tile is large, each worker still finds several small ones after it */
             if (edge == 32)
                 assert_true(count - 1 - i >= 8 * worker_count);
@@ -177,7 +180,7 @@ static void test_parts(void **state)
         int expected_edge = tile_size / 4 < 4 ? 4 : tile_size / 4;
         int parts = (tile_size / expected_edge) * (tile_size / expected_edge);
         assert_int_equal(tile_scheduler_count(s), parts);
-        tile t, before = {0, 0, 0, 0, 0};
+        tile t, before = {.index = 0};
         for (int i = 0; tile_scheduler_next(s, &t); i++) {
             assert_int_equal(t.x1 - t.x0, expected_edge);
             if (i % 4 != 0)

@@ -136,6 +136,12 @@ ag_status tile_scheduler_create(int x0, int y0, int x1, int y1, int tile_size, u
         walk(&l, origin, right, columns, down, rows);
     else
         walk(&l, origin, down, rows, right, columns);
+    uint64_t left = 0;
+    for (uint32_t i = s->count; i-- > 0;) {
+        tile *t = &s->tiles[i];
+        t->left = left;
+        left += (uint64_t)(t->x1 - t->x0) * (uint64_t)(t->y1 - t->y0);
+    }
     *out_scheduler = s;
     return AG_OK;
 }
