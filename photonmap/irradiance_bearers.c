@@ -1,6 +1,10 @@
 /* irradiance_bearers.c: see irradiance_bearers.h. */
 #include "irradiance_bearers.h"
 
+#include "parallel_for.h"
+
+#include <stdlib.h>
+
 uint32_t irradiance_bearers_runs(uint32_t photon_count, float fraction)
 {
     if (photon_count == 0 || fraction >= 1.0f)
@@ -61,29 +65,63 @@ static uint32_t choose(const choice *c, uint32_t run, photon *records)
     return count;
 }
 
-/* All of them in a row; false when cancelled. */
-static bool choose_all(const choice *c, photon *records, uint32_t *out_count)
+/* --- all runs, in blocks --- */
+
+enum { RUNS_PER_BLOCK = 256 };
+
+typedef struct choice_job {
+    const choice *c;
+    uint32_t *places; /* by block: how many its bearers are, then where the first one lies */
+    photon *records;  /* NULL while they are counted */
+} choice_job;
+
+static void choose_block(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
 {
+    (void)worker;
+    const choice_job *job = user;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < c->runs && !run_is_cancelled(c->run); i++)
-        count += choose(c, i, records ? records + count : NULL);
-    *out_count = count;
-    return !run_is_cancelled(c->run);
+    for (uint64_t i = begin; i < end && !run_is_cancelled(job->c->run); i++)
+        count += choose(job->c, (uint32_t)i, job->records ? job->records + job->places[block] + count : NULL);
+    if (!job->records)
+        job->places[block] = count;
+}
+
+static ag_status choose_all(run_context *run, choice_job *job)
+{
+    ag_status status = parallel_for(run, job->c->runs, RUNS_PER_BLOCK, choose_block, job, AG_PHASE_MAP, 0.0, 0.0);
+    return status == AG_OK && run_is_cancelled(run) ? AG_CANCELLED : status; /* the last blocks may be incomplete */
+}
+
+/* Makes places of counts; gives how many bearers there are. */
+static uint32_t place_blocks(uint32_t *places, uint32_t block_count)
+{
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < block_count; i++) {
+        uint32_t count = places[i];
+        places[i] = sum;
+        sum += count;
+    }
+    return sum;
 }
 
 ag_status irradiance_bearers_create(run_context *run, const photon_tree *photons, float fraction, float reach,
                                     float min_cos, double progress, photon_tree *out_bearers)
 {
     choice c = {run, photons, irradiance_bearers_runs(photons->count, fraction), reach * reach, min_cos};
-    uint32_t count;
-    if (!choose_all(&c, NULL, &count))
-        return AG_CANCELLED;
-    photon *records = photon_records_create(count);
-    if (!records)
+    uint32_t block_count = c.runs / RUNS_PER_BLOCK + 1;
+    choice_job job = {&c, calloc(block_count, sizeof *job.places), NULL};
+    if (!job.places)
         return AG_ERROR_MEMORY;
-    ag_status status = AG_CANCELLED;
-    if (choose_all(&c, records, &count))
-        status = photon_tree_build(run, records, count, progress, progress, out_bearers);
+    ag_status status = choose_all(run, &job);
+    photon *records = NULL;
+    if (status == AG_OK) {
+        uint32_t count = place_blocks(job.places, block_count);
+        records = job.records = photon_records_create(count);
+        status = records ? choose_all(run, &job) : AG_ERROR_MEMORY;
+        if (status == AG_OK)
+            status = photon_tree_build(run, records, count, progress, progress, out_bearers);
+    }
+    free(job.places);
     if (status != AG_OK)
         free(records);
     return status;

@@ -1,7 +1,7 @@
 /* irradiance_bearers.h: the photons of a map that bear irradiance, where that is not all of them: a tree of their own,
  * so that the nearest is looked for among few.
  * Rests on: Christensen, "Faster Photon Map Global Illumination", 1999 (irradiance at a fraction of the photons).
- * Flow: photon_tree -> [here] -> photon_map. Threads: picked by one, their tree built by the run's workers; then
+ * Flow: photon_tree -> [here] -> photon_map. Threads: picked, and their tree built, by the run's workers; then
  * read-only, but for the slots.
  *
  * Of every so many photons that follow each other in the map's order, and so lie together, one bears, picked by a hash:
