@@ -30,7 +30,8 @@ _Static_assert(sizeof(photon) == 24, "a photon is 24 bytes, as in the paper");
 /* 2^exponent, by its bits, for libm's ldexpf is slow; 0 where it would be denormal, infinite where it is too large. */
 static inline float power_of_two(int exponent)
 {
-    uint32_t bits = exponent < -126 ? 0 : exponent > 127 ? UINT32_C(0xff) << 23 : (uint32_t)(exponent + 127) << 23;
+    int at_least = exponent > -127 ? exponent : -127, within = at_least < 128 ? at_least : 128;
+    uint32_t bits = (uint32_t)(within + 127) << 23;
     float value;
     memcpy(&value, &bits, sizeof value);
     return value;
@@ -87,11 +88,10 @@ static inline rgb flux_decode(uint32_t code)
 static inline uint16_t direction_encode(vec3 d)
 {
     float sum = fabsf(d.x) + fabsf(d.y) + fabsf(d.z), x = d.x / sum, y = d.y / sum;
-    if (d.z < 0.0f) {
-        float folded = (1.0f - fabsf(y)) * copysignf(1.0f, x);
-        y = (1.0f - fabsf(x)) * copysignf(1.0f, y);
-        x = folded;
-    }
+    /* half of all directions are below: no branch could be guessed */
+    float folded_x = (1.0f - fabsf(y)) * copysignf(1.0f, x), folded_y = (1.0f - fabsf(x)) * copysignf(1.0f, y);
+    x = float_select(d.z < 0.0f, folded_x, x);
+    y = float_select(d.z < 0.0f, folded_y, y);
     /* 255 steps from -1 to 1, so that the axes are met exactly */
     uint32_t i = (uint32_t)(x * 127.0f + 127.5f), j = (uint32_t)(y * 127.0f + 127.5f);
     return (uint16_t)(i << 8 | j);

@@ -42,8 +42,7 @@ static inline bool lambert_sample_flux(const surface_hit *hit, vec3 arrived, vec
     vec3 i = sample_cosine_hemisphere(u), n = hit->geometric_normal;
     frame shading = frame_from_z(hit->shading_normal);
     float before = vec3_dot(arrived, n);
-    if (before > 0.0f)
-        i.z = -i.z;
+    i.z = float_select(before > 0.0f, -i.z, i.z);
     vec3 direction = vec3_normalize(frame_to_world(&shading, i));
     float after = vec3_dot(direction, n);
     *out_direction = direction;

@@ -110,10 +110,7 @@ static vec3 mesh_area_vector(const mesh *m, uint32_t triangle, double *out_lengt
 
 /* Of fmaxf the compiler makes a call. */
 static inline float larger_size(float a, float b) { return fabsf(b) > a ? fabsf(b) : a; }
-static inline float largest_size(vec3 a, float at_least)
-{
-    return larger_size(larger_size(larger_size(at_least, a.x), a.y), a.z);
-}
+static inline float largest_size(vec3 a) { return larger_size(larger_size(fabsf(a.x), a.y), a.z); }
 
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
 {
@@ -241,7 +238,8 @@ static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, f
     vec3 p0 = m->positions[index[0]], p1 = m->positions[index[1]], p2 = m->positions[index[2]];
     float w = 1.0f - u - v;
     h->position = vec3_add_scaled(vec3_add_scaled(vec3_scale(p0, w), p1, u), p2, v);
-    h->epsilon = largest_size(p2, largest_size(p1, largest_size(p0, 0.0f))) * SHAPE_EPSILON_RELATIVE;
+    h->epsilon =
+        larger_size(larger_size(largest_size(p0), largest_size(p1)), largest_size(p2)) * SHAPE_EPSILON_RELATIVE;
     double length;
     vec3 n = area_vector(p0, p1, p2, &length);
     if (s->flip_normal)

@@ -30,12 +30,12 @@ static inline vec2 sample_disk_concentric(vec2 u)
 {
     float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
     bool is_wide = fabsf(x) > fabsf(y);
-    float r = is_wide ? x : y, other = is_wide ? y : x;
+    float r = float_select(is_wide, x, y), other = float_select(is_wide, y, x);
     /* an eighth of a turn at most: Taylor's series, as above */
     double a = r != 0.0f ? (double)(other / r) * 0.78539816339744831 : 0.0, a2 = a * a;
     float s = (float)(a * (1.0 + a2 * (-1.0 / 6 + a2 * (1.0 / 120 + a2 * (-1.0 / 5040 + a2 * (1.0 / 362880))))));
     float c = (float)(1.0 + a2 * (-0.5 + a2 * (1.0 / 24 + a2 * (-1.0 / 720 + a2 * (1.0 / 40320)))));
-    return is_wide ? (vec2){r * c, r * s} : (vec2){r * s, r * c};
+    return (vec2){r * float_select(is_wide, c, s), r * float_select(is_wide, s, c)};
 }
 
 /* Cosine-distributed around +z; density cos / pi per solid angle. */

@@ -6,6 +6,8 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
 
 #define AG_PI     3.14159265358979323846f
 #define AG_INV_PI 0.31830988618379067154f
@@ -61,6 +63,16 @@ static inline float float_max(float a, float b)
 {
     float larger = a > b ? a : b;
     return larger == larger ? larger : a;
+}
+/* which ? a : b without a branch, for where it would be guessed wrong: by their bits. */
+static inline float float_select(bool which, float a, float b)
+{
+    uint32_t a_bits, b_bits, mask = 0u - (uint32_t)which;
+    memcpy(&a_bits, &a, sizeof a);
+    memcpy(&b_bits, &b, sizeof b);
+    a_bits = (a_bits & mask) | (b_bits & ~mask);
+    memcpy(&a, &a_bits, sizeof a);
+    return a;
 }
 static inline float rgb_max(rgb a) { return float_max(a.r, float_max(a.g, a.b)); }
 static inline bool rgb_is_black(rgb a) { return a.r == 0.0f && a.g == 0.0f && a.b == 0.0f; }
