@@ -39,12 +39,6 @@ void gather_batch_end(gather_batch *b, rgb known)
     b->is_open = false;
 }
 
-void gather_batch_ask(gather_batch *b, irradiance_query query, rgb weight)
-{
-    b->queries[b->query_count] = query;
-    b->weights[b->query_count++] = weight;
-}
-
 void gather_batch_resolve(gather_batch *b, irradiance_cache *cache, const run_context *run, unsigned worker_index)
 {
     irradiance_cache_get_many(cache, run, b->queries, b->query_count, worker_index, b->irradiance);

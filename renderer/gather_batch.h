@@ -44,17 +44,22 @@ gather_batch *gather_batch_create(float most_indirect);
 void gather_batch_reset(gather_batch *b);   /* empty again, whatever it was left with */
 void gather_batch_destroy(gather_batch *b); /* NULL is fine */
 
-static inline bool gather_batch_is_full(const gather_batch *b)
+/* Whether there is room for one more gather, and so many queries. */
+static inline bool gather_batch_has_room(const gather_batch *b, uint32_t query_count)
 {
-    return b->query_count == IRRADIANCE_BATCH_MAX || b->gather_count == GATHER_BATCH_GATHERS;
+    return b->query_count + query_count <= IRRADIANCE_BATCH_MAX && b->gather_count < GATHER_BATCH_GATHERS;
 }
 
-/* Begins a gather, in a batch that is not full, and ends it: known is the sum of what its rays brought themselves. */
+/* Begins a gather, in a batch that has room, and ends it: known is the sum of what its rays brought themselves. */
 void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput);
 void gather_batch_end(gather_batch *b, rgb known);
 
-/* Asks for the irradiance at a place, for the open gather, in a batch that is not full. */
-void gather_batch_ask(gather_batch *b, irradiance_query query, rgb weight);
+/* Asks for the irradiance at a place, for the open gather, in a batch that has room. */
+static inline void gather_batch_ask(gather_batch *b, vec3 position, vec3 normal, rgb weight)
+{
+    b->queries[b->query_count] = (irradiance_query){position, normal};
+    b->weights[b->query_count++] = weight;
+}
 
 /* Gets all irradiance that was asked for, and adds the gathers that are over to their samples; an open one
  * stays, alone. Nothing is right any more once the run is cancelled. */

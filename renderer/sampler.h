@@ -61,7 +61,8 @@ static inline sampler sampler_make(uint64_t seed, int x, int y, uint32_t sample,
 
 static inline uint32_t sampler_reverse_bits(uint32_t x)
 {
-    x = __builtin_bswap32(x);
+    x = x << 16 | x >> 16; /* which compilers turn into vectors, a swap of bytes they do not all */
+    x = (x & 0x00ff00ffu) << 8 | (x >> 8 & 0x00ff00ffu);
     x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
     x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
     return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
@@ -122,16 +123,22 @@ static inline sampler_sequence sampler_sequence_make(const sampler *s, sample_us
     return made;
 }
 
+/* What is at an index of the whole sequence, of which these are the low bits. */
+static inline vec2 sampler_sequence_of_index(const sampler_sequence *s, uint32_t index)
+{
+    uint32_t shuffled = sampler_scramble(index, s->shuffle);
+    uint32_t x = sampler_reverse_bits(sampler_scramble_reversed(shuffled, s->scramble_x));
+    uint32_t y = sampler_reverse_bits(sampler_scramble_reversed(sampler_sobol_1_reversed(shuffled), s->scramble_y));
+    return (vec2){(float)(int32_t)(x >> 8) * 0x1p-24f, (float)(int32_t)(y >> 8) * 0x1p-24f};
+}
+
 /* Number i of them, in [0,1)^2. */
 static inline vec2 sampler_sequence_at(sampler_sequence *s, uint32_t i)
 {
     uint64_t index = s->first + i;
     if (index >> 32 != s->high)
         sampler_sequence_enter(s, index >> 32);
-    uint32_t shuffled = sampler_scramble((uint32_t)index, s->shuffle);
-    uint32_t x = sampler_reverse_bits(sampler_scramble_reversed(shuffled, s->scramble_x));
-    uint32_t y = sampler_reverse_bits(sampler_scramble_reversed(sampler_sobol_1_reversed(shuffled), s->scramble_y));
-    return (vec2){(float)(x >> 8) * 0x1p-24f, (float)(y >> 8) * 0x1p-24f};
+    return sampler_sequence_of_index(s, (uint32_t)index);
 }
 
 /* Number i of the `count` that the sample draws for a use at a vertex of the path, in [0,1)^2. */

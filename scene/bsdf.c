@@ -279,9 +279,9 @@ static bool sample_plain(const bsdf *b, bsdf_transport transport, vec2 u, bsdf_s
 {
     vec3 i = sample_cosine_hemisphere(u);
     out->pdf_solid_angle = i.z * AG_INV_PI;
-    if (vec3_dot(b->out, b->geometric_normal) < 0.0f)
+    if (bsdf_is_below(b))
         i.z = -i.z;
-    out->direction = vec3_normalize(frame_to_world(&b->shading, i));
+    out->direction = frame_to_world(&b->shading, i); /* unit to rounding, as the frame and i are */
     if (!bsdf_is_same_side(b, out->direction))
         return false;
     out->weight = b->matter.reflectance;

@@ -77,6 +77,9 @@ static inline bool bsdf_is_plain(const bsdf *b)
     return b->matter.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;
 }
 
+/* Whether `out` is on the inside, by the geometric normal: what does not go through stays there. */
+static inline bool bsdf_is_below(const bsdf *b) { return vec3_dot(b->out, b->geometric_normal) < 0.0f; }
+
 /* Whether light can find these lobes by sampling a lamp: they are not all perfectly smooth. */
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);
 

@@ -43,6 +43,38 @@ typedef struct surface_hit {
  * that is not of finite numbers below 1.8e18 meets nothing. */
 bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 
+/* Rays of unit direction from one place, many at once: those that go about the same way share theirs through the
+ * scene's tree. Whether and how they are put together depends on them alone. */
+enum { RAY_FAN_MAX = 64 };
+
+/* What a ray of a fan meets, as the tree says it; for ray_fan_hit. */
+typedef struct ray_meeting {
+    float distance; /* INFINITY: nothing */
+    float u, v;
+    uint32_t geometry, primitive, instance;
+} ray_meeting;
+
+typedef struct ray_fan {
+    scene_ray common; /* all of each ray but its direction */
+    uint32_t count;
+    _Alignas(32) float direction[3][RAY_FAN_MAX]; /* x, y, z */
+    ray_meeting met[RAY_FAN_MAX];                 /* set by scene_intersect_fan */
+} ray_fan;
+
+static inline vec3 ray_fan_direction(const ray_fan *f, uint32_t i)
+{
+    return (vec3){f->direction[0][i], f->direction[1][i], f->direction[2][i]};
+}
+
+/* scene_intersect of them all, without an end; and what one of those that met something has hit. */
+void scene_intersect_fan(const scene *s, ray_fan *f);
+void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_hit);
+
+/* The short way for a ray that met a Lambertian surface and nothing else: its reflectance, where the ray hit, and the
+ * geometric normal on the ray's side. NULL: it is not to be told so easily, and ray_fan_hit tells all there is. */
+const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, vec3 *out_position,
+                               vec3 *out_facing_normal);
+
 /* How far along the ray the nearest surface is, INFINITY where there is none: traversal alone, without looking at what
  * was hit, which is the physical limit that benchmarks compare with. */
 float scene_first_distance(const scene *s, scene_ray ray);
@@ -107,6 +139,9 @@ void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v
 /* The same, but uv may be missing. */
 void shape_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
                     surface_hit *out_hit);
+/* Position and geometric normal alone, as the same have them; false: not of this kind of shape. */
+bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 *out_position,
+                         vec3 *out_geometric_normal);
 /* Nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */
 bool shape_intersect_quadric(const shape *s, vec3 origin, vec3 direction, float t_min, float t_max, float *out_t);
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);

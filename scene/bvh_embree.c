@@ -74,66 +74,91 @@ static void quadric_bounds(const struct RTCBoundsFunctionArguments *arguments)
     order_before_library(&embree_threads);
 }
 
-static bool quadric_hit(const void *user, const struct RTCRay *ray, float *out_t)
+/* The numbers of a ray or hit that comes as one of N side by side, in the order of RTCRay and RTCHit. */
+enum { RAY_ORIGIN = 0, RAY_NEAR = 3, RAY_DIRECTION = 4, RAY_FAR = 8, RAY_ID = 10 };
+enum { HIT_NORMAL = 0, HIT_U = 3, HIT_V = 4, HIT_PRIMITIVE = 5, HIT_GEOMETRY = 6, HIT_INSTANCE = 7 };
+
+typedef struct lane {
+    unsigned stride, at; /* N, and which of them */
+} lane;
+
+static float *lane_float(void *first, lane l, unsigned number) { return (float *)first + number * l.stride + l.at; }
+static uint32_t *lane_uint(void *first, lane l, unsigned number)
+{
+    return (uint32_t *)first + number * l.stride + l.at;
+}
+static vec3 lane_vec3(void *first, lane l, unsigned number)
+{
+    return (vec3){*lane_float(first, l, number), *lane_float(first, l, number + 1), *lane_float(first, l, number + 2)};
+}
+
+static bool quadric_hit(const void *user, void *ray, lane l, float *out_t)
 {
     const attached *a = user;
-    vec3 origin = {ray->org_x, ray->org_y, ray->org_z}, direction = {ray->dir_x, ray->dir_y, ray->dir_z};
-    float from = ray->tnear;
-    for (uint32_t crossing = 0; shape_intersect_quadric(a->shape, origin, direction, from, ray->tfar, out_t);
-         crossing++) {
-        if (shape_is_opaque(a->shape) ||
-            alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction, *out_t, ray->id))
+    vec3 origin = lane_vec3(ray, l, RAY_ORIGIN), direction = lane_vec3(ray, l, RAY_DIRECTION);
+    float from = *lane_float(ray, l, RAY_NEAR), to = *lane_float(ray, l, RAY_FAR);
+    for (uint32_t crossing = 0; shape_intersect_quadric(a->shape, origin, direction, from, to, out_t); crossing++) {
+        if (shape_is_opaque(a->shape) || alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction,
+                                                         *out_t, *lane_uint(ray, l, RAY_ID)))
             return true;
         from = *out_t;
     }
     return false;
 }
 
-/* Only rtcIntersect1 and rtcOccluded1 are used, so N is 1 in both. */
 static void quadric_intersect(const struct RTCIntersectFunctionNArguments *arguments)
 {
-    if (!arguments->valid[0])
-        return;
-    struct RTCRayHit *ray_hit = (struct RTCRayHit *)(void *)arguments->rayhit;
-    float t;
-    bool was_hit = quadric_hit(arguments->geometryUserPtr, &ray_hit->ray, &t);
-    if (was_hit) {
-        ray_hit->ray.tfar = t;
-        ray_hit->hit.u = ray_hit->hit.v = 0.0f;
-        ray_hit->hit.Ng_x = ray_hit->hit.Ng_y = 0.0f, ray_hit->hit.Ng_z = 1.0f;
-        ray_hit->hit.geomID = arguments->geomID;
-        ray_hit->hit.primID = arguments->primID;
-        ray_hit->hit.instID[0] = arguments->context->instID[0];
+    /* RTCRayHitN is the rays, and then the hits */
+    void *ray = arguments->rayhit, *hit = (float *)ray + sizeof(struct RTCRay) / sizeof(float) * arguments->N;
+    for (lane l = {arguments->N, 0}; l.at < l.stride; l.at++) {
+        float t;
+        if (!arguments->valid[l.at])
+            continue;
+        bool was_hit = quadric_hit(arguments->geometryUserPtr, ray, l, &t);
+        if (was_hit) {
+            *lane_float(ray, l, RAY_FAR) = t;
+            *lane_float(hit, l, HIT_U) = *lane_float(hit, l, HIT_V) = 0.0f;
+            *lane_float(hit, l, HIT_NORMAL) = *lane_float(hit, l, HIT_NORMAL + 1) = 0.0f;
+            *lane_float(hit, l, HIT_NORMAL + 2) = 1.0f;
+            *lane_uint(hit, l, HIT_GEOMETRY) = arguments->geomID;
+            *lane_uint(hit, l, HIT_PRIMITIVE) = arguments->primID;
+            *lane_uint(hit, l, HIT_INSTANCE) = arguments->context->instID[0];
+        }
+        EMBREE_REPORT(arguments, l.at, was_hit);
     }
-    EMBREE_REPORT(arguments, was_hit);
 }
 
 static void quadric_occluded(const struct RTCOccludedFunctionNArguments *arguments)
 {
-    if (!arguments->valid[0])
-        return;
-    struct RTCRay *ray = (struct RTCRay *)(void *)arguments->ray;
-    float t;
-    bool was_hit = quadric_hit(arguments->geometryUserPtr, ray, &t);
-    if (was_hit)
-        ray->tfar = -INFINITY;
-    EMBREE_REPORT(arguments, was_hit);
+    for (lane l = {arguments->N, 0}; l.at < l.stride; l.at++) {
+        float t;
+        if (!arguments->valid[l.at])
+            continue;
+        bool was_hit = quadric_hit(arguments->geometryUserPtr, arguments->ray, l, &t);
+        if (was_hit)
+            *lane_float(arguments->ray, l, RAY_FAR) = -INFINITY;
+        EMBREE_REPORT(arguments, l.at, was_hit);
+    }
 }
 
 /* --- triangles and curves that are not wholly there --- */
 
-/* N is 1 here too. Embree has put the hit's distance into the ray. A tube is crossed twice, in and out. */
+/* Embree has put the hit's distance into the ray. A tube is crossed twice, in and out. */
 static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
 {
     const attached *a = arguments->geometryUserPtr;
-    const struct RTCRay *ray = (const struct RTCRay *)(const void *)arguments->ray;
-    const struct RTCHit *hit = (const struct RTCHit *)(const void *)arguments->hit;
-    vec3 origin = {ray->org_x, ray->org_y, ray->org_z}, direction = {ray->dir_x, ray->dir_y, ray->dir_z};
-    uint32_t crossing = a->shape->kind == SHAPE_CURVES && a->shape->as.curves.type == CURVES_CYLINDER &&
-                        vec3_dot((vec3){hit->Ng_x, hit->Ng_y, hit->Ng_z}, direction) > 0.0f;
-    if (arguments->valid[0] &&
-        !alpha_stops_ray(a->s, a->shape, hit->primID, hit->u, hit->v, crossing, origin, direction, ray->tfar, ray->id))
-        arguments->valid[0] = 0;
+    void *ray = arguments->ray, *hit = arguments->hit;
+    for (lane l = {arguments->N, 0}; l.at < l.stride; l.at++) {
+        if (!arguments->valid[l.at])
+            continue;
+        vec3 origin = lane_vec3(ray, l, RAY_ORIGIN), direction = lane_vec3(ray, l, RAY_DIRECTION);
+        uint32_t crossing = a->shape->kind == SHAPE_CURVES && a->shape->as.curves.type == CURVES_CYLINDER &&
+                            vec3_dot(lane_vec3(hit, l, HIT_NORMAL), direction) > 0.0f;
+        if (!alpha_stops_ray(a->s, a->shape, *lane_uint(hit, l, HIT_PRIMITIVE), *lane_float(hit, l, HIT_U),
+                             *lane_float(hit, l, HIT_V), crossing, origin, direction, *lane_float(ray, l, RAY_FAR),
+                             *lane_uint(ray, l, RAY_ID)))
+            arguments->valid[l.at] = 0;
+    }
 }
 
 /* --- build --- */
@@ -391,24 +416,43 @@ static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
     return ray;
 }
 
-static void place_instance_hit(const scene *s, const scene_ray *ray, const struct RTCRayHit *met, surface_hit *out_hit)
+static void place_instance_hit(const scene *s, const scene_ray *ray, const ray_meeting *met, surface_hit *out_hit)
 {
-    uint32_t index = met->hit.instID[0] - s->shape_count;
+    uint32_t index = met->instance - s->shape_count;
     const scene_object *o = &s->objects[s->instances[index].object_index];
     affine world_from_object = instance_at(s, index, ray->time);
-    double t = (double)met->ray.tfar;
+    double t = (double)met->distance;
     const double world[3] = {(double)ray->origin.x + t * (double)ray->direction.x,
                              (double)ray->origin.y + t * (double)ray->direction.y,
                              (double)ray->origin.z + t * (double)ray->direction.z};
     out_hit->instance_index = index;
-    out_hit->shape_index = s->object_shapes[o->first_shape + met->hit.geomID];
+    out_hit->shape_index = s->object_shapes[o->first_shape + met->geometry];
     const shape *at = &s->shapes[out_hit->shape_index];
     vec3 direction = ray->direction;
     if (at->kind == SHAPE_CURVES)
         direction = instance_direction_in_object(&world_from_object, direction);
-    shape_surface_at(at, met->hit.primID, met->hit.u, met->hit.v, instance_point_in_object(&world_from_object, world),
-                     direction, out_hit);
+    shape_surface_at(at, met->primitive, met->u, met->v, instance_point_in_object(&world_from_object, world), direction,
+                     out_hit);
     instance_place_hit(&world_from_object, out_hit);
+}
+
+static void place_hit(const scene *s, const scene_ray *ray, const ray_meeting *met, surface_hit *out_hit)
+{
+    out_hit->distance = met->distance;
+    out_hit->primitive_index = met->primitive;
+    out_hit->time = ray->time;
+    if (met->instance != RTC_INVALID_GEOMETRY_ID) {
+        place_instance_hit(s, ray, met, out_hit);
+        return;
+    }
+    out_hit->shape_index = met->geometry;
+    out_hit->instance_index = SCENE_NO_INSTANCE;
+    vec3 position = vec3_add_scaled(ray->origin, ray->direction, met->distance);
+    const shape *at = &s->shapes[met->geometry];
+    if (ray->skips_uv && s->texture_count == 0)
+        shape_place_at(at, met->primitive, met->u, met->v, position, ray->direction, out_hit);
+    else
+        shape_surface_at(at, met->primitive, met->u, met->v, position, ray->direction, out_hit);
 }
 
 /* Embree takes nothing beyond 1.8e18, and where it was built with its asserts, as Debian's is, ends the process.
@@ -420,34 +464,143 @@ static bool can_be_cast(const scene_ray *r, float max_distance)
     return is_in_reach(r->origin) && is_in_reach(r->direction) && max_distance >= 0.0f;
 }
 
-bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
+static void cast_one(const scene *s, const scene_ray *ray, float max_distance, ray_meeting *out_met)
 {
-    if (!can_be_cast(&ray, max_distance))
-        return false;
     struct RTCRayHit ray_hit;
-    ray_hit.ray = embree_ray(&ray, max_distance);
+    ray_hit.ray = embree_ray(ray, max_distance);
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     embree_intersect(s->bvh->scene, &ray_hit);
-    if (ray_hit.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    const struct RTCHit *h = &ray_hit.hit;
+    bool is_met = h->geomID != RTC_INVALID_GEOMETRY_ID;
+    *out_met = (ray_meeting){is_met ? ray_hit.ray.tfar : INFINITY, h->u, h->v, h->geomID, h->primID, h->instID[0]};
+}
+
+bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
+{
+    ray_meeting met;
+    if (!can_be_cast(&ray, max_distance))
         return false;
-    out_hit->distance = ray_hit.ray.tfar;
-    out_hit->primitive_index = ray_hit.hit.primID;
-    out_hit->time = ray.time;
-    if (ray_hit.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
-        out_hit->shape_index = ray_hit.hit.geomID;
-        out_hit->instance_index = SCENE_NO_INSTANCE;
-        vec3 position = vec3_add_scaled(ray.origin, ray.direction, ray_hit.ray.tfar);
-        const shape *met = &s->shapes[ray_hit.hit.geomID];
-        const struct RTCHit *h = &ray_hit.hit;
-        if (ray.skips_uv && s->texture_count == 0)
-            shape_place_at(met, h->primID, h->u, h->v, position, ray.direction, out_hit);
-        else
-            shape_surface_at(met, h->primID, h->u, h->v, position, ray.direction, out_hit);
-    } else {
-        place_instance_hit(s, &ray, &ray_hit, out_hit);
-    }
+    cast_one(s, &ray, max_distance, &met);
+    if (met.geometry == RTC_INVALID_GEOMETRY_ID)
+        return false;
+    place_hit(s, &ray, &met, out_hit);
     return true;
+}
+
+/* --- fans --- */
+
+/* So few are cast one by one. */
+enum { PACKET = 8, SINGLES_MAX = 3 };
+
+/* Those of one octant side by side, and there by one coordinate: what goes about the same way is cast together. */
+static void put_in_order(const ray_fan *f, uint8_t out_order[RAY_FAN_MAX])
+{
+    enum { SLICES = 8, KEYS = 8 * SLICES };
+    uint8_t keys[RAY_FAN_MAX], places[KEYS] = {0}, sum = 0;
+    for (uint32_t i = 0; i < f->count; i++) {
+        float x = f->direction[0][i], y = f->direction[1][i], z = f->direction[2][i];
+        float above = (z + 1.0f) * (0.5f * SLICES);
+        int slice = above >= SLICES - 1 ? SLICES - 1 : above > 0.0f ? (int)above : 0;
+        keys[i] = (uint8_t)(((x < 0.0f) | (y < 0.0f) << 1 | (z < 0.0f) << 2) * SLICES + slice);
+    }
+    for (uint32_t i = 0; i < f->count; i++)
+        places[keys[i]]++;
+    for (uint32_t k = 0; k < KEYS; k++) {
+        uint8_t of_key = places[k];
+        places[k] = sum;
+        sum = (uint8_t)(sum + of_key);
+    }
+    for (uint32_t i = 0; i < f->count; i++)
+        out_order[places[keys[i]]++] = (uint8_t)i;
+}
+
+static void fill(float lanes[PACKET], float value)
+{
+    for (int k = 0; k < PACKET; k++)
+        lanes[k] = value;
+}
+
+static void cast_packet(const scene *s, ray_fan *f, const uint8_t *numbers, uint32_t count)
+{
+    _Alignas(32) int valid[PACKET];
+    struct RTCRayHit8 p;
+    const scene_ray *c = &f->common;
+    fill(p.ray.org_x, c->origin.x), fill(p.ray.org_y, c->origin.y), fill(p.ray.org_z, c->origin.z);
+    fill(p.ray.tnear, 0.0f), fill(p.ray.tfar, INFINITY), fill(p.ray.time, c->time);
+    for (uint32_t k = 0; k < PACKET; k++) {
+        p.ray.mask[k] = 0xffffffffu;
+        p.ray.id[k] = c->meets_veils;
+        p.ray.flags[k] = 0;
+        p.hit.geomID[k] = p.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+        vec3 d = ray_fan_direction(f, numbers[k < count ? k : 0]);
+        bool is_good = is_in_reach(d);
+        p.ray.dir_x[k] = is_good ? d.x : 1.0f, p.ray.dir_y[k] = is_good ? d.y : 1.0f;
+        p.ray.dir_z[k] = is_good ? d.z : 1.0f;
+        valid[k] = k < count && is_good ? -1 : 0;
+    }
+    embree_intersect_8(valid, s->bvh->scene, &p);
+    for (uint32_t k = 0; k < count; k++) {
+        bool is_met = valid[k] && p.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+        f->met[numbers[k]] = (ray_meeting){is_met ? p.ray.tfar[k] : INFINITY,
+                                           p.hit.u[k],
+                                           p.hit.v[k],
+                                           p.hit.geomID[k],
+                                           p.hit.primID[k],
+                                           p.hit.instID[0][k]};
+    }
+}
+
+static scene_ray ray_of(const ray_fan *f, uint32_t i)
+{
+    scene_ray ray = f->common;
+    ray.direction = ray_fan_direction(f, i);
+    return ray;
+}
+
+void scene_intersect_fan(const scene *s, ray_fan *f)
+{
+    uint8_t order[RAY_FAN_MAX];
+    if (!is_in_reach(f->common.origin)) {
+        for (uint32_t i = 0; i < f->count; i++)
+            f->met[i].distance = INFINITY;
+        return;
+    }
+    if (f->count <= SINGLES_MAX) {
+        for (uint32_t i = 0; i < f->count; i++) {
+            scene_ray ray = ray_of(f, i);
+            if (is_in_reach(ray.direction))
+                cast_one(s, &ray, INFINITY, &f->met[i]);
+            else
+                f->met[i].distance = INFINITY;
+        }
+        return;
+    }
+    put_in_order(f, order);
+    for (uint32_t i = 0; i < f->count; i += PACKET)
+        cast_packet(s, f, order + i, f->count - i < PACKET ? f->count - i : PACKET);
+}
+
+void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_hit)
+{
+    scene_ray ray = ray_of(f, i);
+    place_hit(s, &ray, &f->met[i], out_hit);
+}
+
+const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, vec3 *out_position,
+                               vec3 *out_facing_normal)
+{
+    const ray_meeting *met = &f->met[i];
+    if (met->instance != RTC_INVALID_GEOMETRY_ID)
+        return NULL;
+    const shape *at = &s->shapes[met->geometry];
+    const rgb *albedo = material_plain_albedo(s, at->material_index);
+    vec3 direction = ray_fan_direction(f, i), n;
+    vec3 position = vec3_add_scaled(f->common.origin, direction, met->distance);
+    if (!albedo || !shape_bare_place_at(at, met->primitive, met->u, met->v, position, out_position, &n))
+        return NULL;
+    *out_facing_normal = vec3_dot(n, direction) > 0.0f ? vec3_negate(n) : n;
+    return albedo;
 }
 
 float scene_first_distance(const scene *s, scene_ray ray)

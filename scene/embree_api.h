@@ -12,8 +12,15 @@
 #if RTC_VERSION_MAJOR >= 4
 static inline void embree_intersect(RTCScene world, struct RTCRayHit *ray_hit) { rtcIntersect1(world, ray_hit, NULL); }
 static inline void embree_occluded(RTCScene world, struct RTCRay *ray) { rtcOccluded1(world, ray, NULL); }
-/* A user geometry of Embree 4 must say whether it was hit. */
-#define EMBREE_REPORT(arguments, was_hit) ((arguments)->valid[0] = (was_hit) ? -1 : 0)
+static inline void embree_intersect_8(const int *valid, RTCScene world, struct RTCRayHit8 *ray_hits)
+{
+    struct RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid, world, ray_hits, &arguments);
+}
+/* A user geometry of Embree 4 must say of each ray whether it was hit. */
+#define EMBREE_REPORT(arguments, lane, was_hit) ((arguments)->valid[lane] = (was_hit) ? -1 : 0)
 #else
 static inline void embree_intersect(RTCScene world, struct RTCRayHit *ray_hit)
 {
@@ -27,7 +34,14 @@ static inline void embree_occluded(RTCScene world, struct RTCRay *ray)
     rtcInitIntersectContext(&context);
     rtcOccluded1(world, &context, ray);
 }
-#define EMBREE_REPORT(arguments, was_hit) ((void)0)
+static inline void embree_intersect_8(const int *valid, RTCScene world, struct RTCRayHit8 *ray_hits)
+{
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(valid, world, &context, ray_hits);
+}
+#define EMBREE_REPORT(arguments, lane, was_hit) ((void)0)
 #endif
 
 #endif

@@ -112,10 +112,10 @@ bool material_is_interface(const scene *s, const surface_hit *hit)
     return m->kind == MATERIAL_INTERFACE;
 }
 
-const rgb *material_plain_albedo(const scene *s, const surface_hit *hit)
+const rgb *material_plain_albedo(const scene *s, uint32_t material_index)
 {
-    const material *m = &s->materials[s->shapes[hit->shape_index].material_index];
-    return m->kind == MATERIAL_DIFFUSE && !m->is_textured && !hit->is_strand ? &m->reflectance : NULL;
+    const material *m = &s->materials[material_index];
+    return m->kind == MATERIAL_DIFFUSE && !m->is_textured ? &m->reflectance : NULL;
 }
 
 bool material_may_be_interface(const scene *s, uint32_t material_index)

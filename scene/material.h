@@ -115,8 +115,8 @@ bool material_is_interface(const struct scene *s, const struct surface_hit *hit)
 /* Whether that is so anywhere on surfaces of the material. */
 bool material_may_be_interface(const struct scene *s, uint32_t material_index);
 
-/* The albedo where the surface is Lambertian, its material the same all over, and it no curve; NULL elsewhere. */
-const rgb *material_plain_albedo(const struct scene *s, const struct surface_hit *hit);
+/* The albedo of a material that is Lambertian, and the same all over; NULL of others. Not for curves: see bsdf.h. */
+const rgb *material_plain_albedo(const struct scene *s, uint32_t material_index);
 
 /* The material at a place: mixes picked, textures looked up. */
 void material_at(const struct scene *s, const struct surface_hit *hit, material *out_material);

@@ -17,6 +17,12 @@ enum { PASSAGE_CROSSINGS_MAX = 256 };
 bool passage_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, surface_hit *out_hit,
                        rgb *out_transmittance);
 
+/* Whether passage_intersect of such a ray is scene_intersect, for nothing takes of its light on the way. */
+static inline bool passage_is_clear(const scene *s, const scene_ray *ray)
+{
+    return !s->has_interfaces && ray->medium == SCENE_NO_MEDIUM;
+}
+
 /* The share of light that is left on a ray's way up to reach (in lengths of its direction, INFINITY is fine); 0 where a
  * surface stands in it. */
 rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);

@@ -211,6 +211,18 @@ static vec3 normalize_or_z(vec3 v)
     return square > 0.0f ? vec3_scale(v, 1.0f / sqrtf(square)) : (vec3){0.0f, 0.0f, 1.0f};
 }
 
+bool quadric_bare_place_at(const shape *s, vec3 position, vec3 *out_position, vec3 *out_geometric_normal)
+{
+    const quadric *q = &s->as.quadric;
+    if (!(q->uniform_radius > 0.0f))
+        return false;
+    /* onto the true sphere: the traversal's distance loses up to 1e-4 radii far away */
+    vec3 n = normalize_or_z(vec3_sub(position, q->center));
+    *out_position = vec3_add_scaled(q->center, n, q->uniform_radius);
+    *out_geometric_normal = s->flip_normal ? vec3_negate(n) : n;
+    return true;
+}
+
 void quadric_surface_at(const shape *s, vec3 position, bool with_uv, surface_hit *out_hit)
 {
     const quadric *q = &s->as.quadric;
@@ -219,15 +231,11 @@ void quadric_surface_at(const shape *s, vec3 position, bool with_uv, surface_hit
     h->epsilon = q->epsilon;
     h->uv = (vec2){0.0f, 0.0f};
     h->is_flat = s->kind == SHAPE_DISK;
-    if (q->uniform_radius > 0.0f) {
-        /* onto the true sphere: the traversal's distance loses up to 1e-4 radii far away */
-        vec3 n = normalize_or_z(vec3_sub(position, q->center));
-        h->position = vec3_add_scaled(q->center, n, q->uniform_radius);
-        h->geometric_normal = s->flip_normal ? vec3_negate(n) : n;
-        h->uv = (vec2){0.0f, 0.0f};
+    if (quadric_bare_place_at(s, position, &h->position, &h->geometric_normal)) {
         h->shading_normal = h->geometric_normal;
         if (!with_uv)
             return;
+        vec3 n = s->flip_normal ? vec3_negate(h->geometric_normal) : h->geometric_normal;
         double p[3];
         for (int i = 0; i < 3; i++)
             p[i] = w[i][0] * (double)n.x + w[i][1] * (double)n.y + w[i][2] * (double)n.z;

@@ -230,37 +230,63 @@ float shape_pdf_area(const shape *s, vec3 geometric_normal)
     return s->kind == SHAPE_MESH ? 1.0f / s->area : quadric_pdf_area(s, geometric_normal);
 }
 
+/* The geometric normal, and the shading normal (the same where the mesh has none). */
+static vec3 mesh_normals(const shape *s, uint32_t primitive_index, float u, float v, vec3 *out_shading)
+{
+    const mesh *m = &s->as.mesh;
+    const uint32_t *index = m->indices + 3 * (size_t)primitive_index;
+    double length;
+    vec3 n = mesh_area_vector(m, primitive_index, &length);
+    if (s->flip_normal)
+        n = vec3_negate(n);
+    *out_shading = n;
+    if (!m->normals)
+        return n;
+    vec3 ns = vec3_add_scaled(vec3_add_scaled(vec3_scale(m->normals[index[0]], 1.0f - u - v), m->normals[index[1]], u),
+                              m->normals[index[2]], v);
+    float square = vec3_length_squared(ns);
+    if (!(square > 0.0f))
+        return n;
+    *out_shading = vec3_scale(ns, 1.0f / sqrtf(square));
+    return vec3_face_forward(n, *out_shading); /* as pbrt: the given normals say where outside is */
+}
+
+static vec3 mesh_position(const mesh *m, uint32_t triangle, float u, float v)
+{
+    vec3 p0 = mesh_vertex(m, triangle, 0), p1 = mesh_vertex(m, triangle, 1), p2 = mesh_vertex(m, triangle, 2);
+    return vec3_add_scaled(vec3_add_scaled(vec3_scale(p0, 1.0f - u - v), p1, u), p2, v);
+}
+
 static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, float v, surface_hit *h)
 {
     h->uv = (vec2){u + v, v}; /* as pbrt: (0, 0), (1, 0), (1, 1) */
     const mesh *m = &s->as.mesh;
     const uint32_t *index = m->indices + 3 * (size_t)primitive_index;
-    vec3 p0 = m->positions[index[0]], p1 = m->positions[index[1]], p2 = m->positions[index[2]];
     float w = 1.0f - u - v;
-    h->position = vec3_add_scaled(vec3_add_scaled(vec3_scale(p0, w), p1, u), p2, v);
+    vec3 p0 = mesh_vertex(m, primitive_index, 0), p1 = mesh_vertex(m, primitive_index, 1),
+         p2 = mesh_vertex(m, primitive_index, 2);
+    h->position = mesh_position(m, primitive_index, u, v);
     h->epsilon =
         larger_size(larger_size(largest_size(p0), largest_size(p1)), largest_size(p2)) * SHAPE_EPSILON_RELATIVE;
-    double length;
-    vec3 n = area_vector(p0, p1, p2, &length);
-    if (s->flip_normal)
-        n = vec3_negate(n);
-    h->shading_normal = n;
-    if (m->normals) {
-        vec3 ns = vec3_add_scaled(vec3_add_scaled(vec3_scale(m->normals[index[0]], w), m->normals[index[1]], u),
-                                  m->normals[index[2]], v);
-        float square = vec3_length_squared(ns);
-        if (square > 0.0f) {
-            h->shading_normal = vec3_scale(ns, 1.0f / sqrtf(square));
-            n = vec3_face_forward(n, h->shading_normal); /* as pbrt: the given normals say where outside is */
-        }
-    }
-    h->geometric_normal = n;
+    h->geometric_normal = mesh_normals(s, primitive_index, u, v, &h->shading_normal);
     if (m->uvs) {
         const vec2 *t = m->uvs;
         h->uv.x = t[index[0]].x * w + t[index[1]].x * u + t[index[2]].x * v;
         h->uv.y = t[index[0]].y * w + t[index[1]].y * u + t[index[2]].y * v;
     }
     h->is_flat = true;
+}
+
+bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 *out_position,
+                         vec3 *out_geometric_normal)
+{
+    if (s->kind == SHAPE_MESH) {
+        vec3 shading;
+        *out_position = mesh_position(&s->as.mesh, primitive_index, u, v);
+        *out_geometric_normal = mesh_normals(s, primitive_index, u, v, &shading);
+        return true;
+    }
+    return s->kind != SHAPE_CURVES && quadric_bare_place_at(s, position, out_position, out_geometric_normal);
 }
 
 static void surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,

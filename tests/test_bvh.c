@@ -222,6 +222,168 @@ static void a_cancelled_build_says_so(void **state)
     test_run_reset(&r);
 }
 
+/* --- fans --- */
+
+static ray_fan fan_from(vec3 from, uint32_t count, rng *random)
+{
+    ray_fan f;
+    f.common = scene_ray_make(from, (vec3){0.0f, 0.0f, 0.0f});
+    f.count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        vec3 d = random_direction(random);
+        f.direction[0][i] = d.x, f.direction[1][i] = d.y, f.direction[2][i] = d.z;
+    }
+    return f;
+}
+
+static scene_ray fan_ray(const ray_fan *f, uint32_t i)
+{
+    scene_ray ray = f->common;
+    ray.direction = ray_fan_direction(f, i);
+    return ray;
+}
+
+/* Whether ray i met what the ray alone does, but for rounding. */
+static bool meets_the_same(const scene *s, const ray_fan *f, uint32_t i)
+{
+    surface_hit alone, hit;
+    bool is_met = scene_intersect(s, fan_ray(f, i), INFINITY, &alone);
+    if (!is_met || f->met[i].distance == INFINITY)
+        return !is_met && f->met[i].distance == INFINITY;
+    ray_fan_hit(s, f, i, &hit);
+    if (hit.shape_index != alone.shape_index || hit.instance_index != alone.instance_index)
+        return false;
+    vec3 position, normal, off = vec3_sub(hit.position, alone.position);
+    const rgb *albedo = ray_fan_plain_place(s, f, i, &position, &normal);
+    if (albedo) { /* the same, and on the ray's side */
+        assert_ptr_equal(albedo, &s->materials[s->shapes[hit.shape_index].material_index].reflectance);
+        assert_memory_equal(&position, &hit.position, sizeof position);
+        vec3 facing = vec3_face_forward(hit.geometric_normal, vec3_negate(ray_fan_direction(f, i)));
+        assert_memory_equal(&normal, &facing, sizeof normal);
+    }
+    return vec3_length(off) < 1e-3f && fabsf(hit.distance - alone.distance) < 1e-3f &&
+           vec3_dot(hit.geometric_normal, alone.geometric_normal) > 0.999f;
+}
+
+/* All that there is: meshes with and without holes, both kinds of round shapes, curves, instances, in a box. */
+static char *fan_world(void)
+{
+    static const char *const REST =
+        "AttributeBegin Translate 2 0 0 Scale 0.5 1 0.7 Shape \"sphere\" AttributeEnd\n"
+        "AttributeBegin Translate -2 0 0 ReverseOrientation Shape \"sphere\" \"float radius\" 0.7 AttributeEnd\n"
+        "AttributeBegin Translate 0 2 0 Shape \"cylinder\" \"float radius\" 0.5 AttributeEnd\n"
+        "AttributeBegin Translate 0 -2 0 Shape \"disk\" AttributeEnd\n"
+        "Texture \"holes\" \"float\" \"checkerboard\" \"float tex1\" 0 \"float tex2\" 1 \"float uscale\" 6 \"float "
+        "vscale\" 6\n"
+        "AttributeBegin Translate 0 0 2.5 Shape \"sphere\" \"texture alpha\" \"holes\" AttributeEnd\n"
+        "Shape \"trianglemesh\" \"point3 P\" [-3 -3 -2 3 -3 -2 3 3 -2 -3 3 -2] \"integer indices\" [0 1 2 0 2 3] \"point2 "
+        "uv\" [0 0 1 0 1 1 0 1] \"texture alpha\" \"holes\"\n"
+        "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-3 1 1 -1 2 1 1 0 1 3 1 1] \"float width\" 0.3\n"
+        "ObjectBegin \"o\" Shape \"sphere\" Shape \"disk\" \"float radius\" 2 ObjectEnd\n"
+        "AttributeBegin Translate 2 2 -1 Scale 0.4 0.5 0.6 ObjectInstance \"o\" AttributeEnd\n"
+        "AttributeBegin Translate -2 2 -1 Rotate 40 1 2 3 Scale 0.4 0.4 0.4 ObjectInstance \"o\" AttributeEnd\n";
+    char *ball = ball_text(20, 30, "Scale 6 6 6");
+    size_t size = strlen(ball) + strlen(REST) + 64;
+    char *text = malloc(size);
+    assert_non_null(text);
+    snprintf(text, size, "AttributeBegin %s AttributeEnd\n%s", ball, REST);
+    free(ball);
+    return text;
+}
+
+static void a_fan_meets_what_its_rays_meet_alone(void **state)
+{
+    (void)state;
+    static const char *const ISAS[] = {"sse2", "sse4.2", "avx", "avx2"};
+    char *text = fan_world();
+    for (size_t k = 0; k < sizeof ISAS / sizeof *ISAS; k++) {
+        test_run r;
+        test_run_init(&r, 1);
+        scene *s = scene_create();
+        char *world = malloc(strlen(text) + 16);
+        assert_non_null(world);
+        sprintf(world, "WorldBegin\n%s", text);
+        assert_int_equal(pbrt_parse_text(&r.run, "t", world, strlen(world), s), AG_OK);
+        assert_int_equal(scene_commit(s, &r.run, ISAS[k]), AG_OK);
+        free(world);
+        rng random = test_random(4);
+        uint32_t rays = 0, others = 0, seen[16] = {0}, in_instances = 0;
+        for (uint32_t round = 0; round < 1200 / FEWER; round++) {
+            uint32_t count = round % (RAY_FAN_MAX + 1);
+            ray_fan f = fan_from(random_in_box(&random, (vec3){-3, -3, -3}, (vec3){3, 3, 3}), count, &random);
+            f.common.meets_veils = round % 2;
+            scene_intersect_fan(s, &f);
+            for (uint32_t i = 0; i < count; i++) {
+                rays++;
+                others += !meets_the_same(s, &f, i); /* at an outline, rounding decides */
+                assert_true(f.met[i].distance < INFINITY);
+                seen[f.met[i].geometry]++;
+                surface_hit hit;
+                ray_fan_hit(s, &f, i, &hit);
+                in_instances += hit.instance_index != SCENE_NO_INSTANCE;
+            }
+        }
+        assert_true(others <= rays / 2000);
+        for (int i = 0; i < 8; i++)
+            assert_true(seen[i] > 0);
+        assert_true(in_instances > rays / 100);
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
+    free(text);
+}
+
+static void fans_do_not_leave_closed_surfaces(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    char *text = ball_text(40, 60, "Translate 30 -40 100 Rotate 35 1 2 3 Scale 3 2 5");
+    scene *s = test_scene_create(&r, text);
+    const mesh *m = &s->shapes[0].as.mesh;
+    rng random = test_random(5);
+    for (uint32_t round = 0; round < 4000 / FEWER; round++) {
+        vec3 from = vec3_add_scaled(s->bounding_center, random_direction(&random), 0.03f * s->bounding_radius);
+        ray_fan f = fan_from(from, RAY_FAN_MAX, &random);
+        for (uint32_t i = 0; i < RAY_FAN_MAX / 2; i++) { /* half of them at edges */
+            const uint32_t *index = m->indices + 3 * (rng_next(&random) % m->triangle_count);
+            vec3 a = m->positions[index[0]], b = m->positions[index[1]];
+            vec3 d = vec3_normalize(vec3_sub(vec3_add_scaled(a, vec3_sub(b, a), rng_float(&random)), from));
+            f.direction[0][i] = d.x, f.direction[1][i] = d.y, f.direction[2][i] = d.z;
+        }
+        scene_intersect_fan(s, &f);
+        for (uint32_t i = 0; i < RAY_FAN_MAX; i++)
+            assert_true(f.met[i].distance < 6.0f);
+    }
+    free(text);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+static void rays_of_a_fan_beyond_reach_meet_nothing(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, "Shape \"sphere\"");
+    static const float BAD[] = {NAN, INFINITY, -INFINITY, 2e18f};
+    rng random = test_random(6);
+    for (uint32_t count = 1; count <= RAY_FAN_MAX; count++)
+        for (size_t k = 0; k < sizeof BAD / sizeof *BAD; k++) {
+            ray_fan f = fan_from((vec3){0.1f, 0.2f, 0.3f}, count, &random);
+            f.direction[k % 3][count / 2] = BAD[k];
+            scene_intersect_fan(s, &f);
+            for (uint32_t i = 0; i < count; i++)
+                assert_int_equal(f.met[i].distance < INFINITY, i != count / 2);
+            f.common.origin.y = BAD[k];
+            scene_intersect_fan(s, &f);
+            for (uint32_t i = 0; i < count; i++)
+                assert_true(f.met[i].distance == INFINITY);
+        }
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 static void the_instruction_set_can_be_chosen(void **state)
 {
     (void)state;
@@ -249,6 +411,9 @@ int main(void)
         cmocka_unit_test(closed_surfaces_let_nothing_through),
         cmocka_unit_test(any_number_of_builders_gives_the_same_hits),
         cmocka_unit_test(a_cancelled_build_says_so),
+        cmocka_unit_test(a_fan_meets_what_its_rays_meet_alone),
+        cmocka_unit_test(fans_do_not_leave_closed_surfaces),
+        cmocka_unit_test(rays_of_a_fan_beyond_reach_meet_nothing),
         cmocka_unit_test(the_instruction_set_can_be_chosen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
