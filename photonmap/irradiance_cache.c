@@ -18,7 +18,8 @@ static bool scratch_create(irradiance_scratch *s, const photon_map *map)
     s->neighbors = malloc(photon_map_scratch_count(map) * sizeof *s->neighbors);
     s->order[0] = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->order[0]);
     s->order[1] = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->order[1]);
-    return s->neighbors && s->order[0] && s->order[1];
+    s->places = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->places);
+    return s->neighbors && s->order[0] && s->order[1] && s->places;
 }
 
 static void scratch_reset(irradiance_scratch *s)
@@ -26,6 +27,7 @@ static void scratch_reset(irradiance_scratch *s)
     free(s->neighbors);
     free(s->order[0]);
     free(s->order[1]);
+    free(s->places);
 }
 
 ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
@@ -202,29 +204,30 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
     ask(cache, index, position, normal, worker_index, out_request);
 }
 
-/* The queries' numbers in the map's order, as the low halves; the high ones are places. By digits, from the lowest. */
+/* The queries' numbers in the map's order, as the low halves; the high ones are places. By digits, from the lowest: as
+ * few as their counts fit the first cache. */
 static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch, const irradiance_query *queries,
                               uint32_t count)
 {
-    enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS, PLACES = 256 };
-    uint64_t *from = scratch->order[0], *to = scratch->order[1];
-    for (uint32_t i = 0; i < count; i += PLACES) {
-        uint32_t places[PLACES], some = count - i < PLACES ? count - i : PLACES;
-        photon_map_places(map, &queries[i].position.x, sizeof *queries / sizeof(float), some, places);
-        for (uint32_t k = 0; k < some; k++)
-            from[i + k] = (uint64_t)places[k] << 32 | (i + k);
-    }
-    for (uint32_t shift = 32; shift < 32 + map->bearers.depth; shift += DIGIT_BITS) {
-        uint32_t begin[DIGITS] = {0}, sum = 0;
+    enum { DIGIT_BITS_MAX = 12 };
+    const uint32_t *places = scratch->places;
+    uint32_t depth = map->bearers.depth, digits = (depth + DIGIT_BITS_MAX - 1) / DIGIT_BITS_MAX;
+    uint32_t bits = digits > 0 ? (depth + digits - 1) / digits : 1, mask = (1u << bits) - 1;
+    uint64_t *from = scratch->order[1], *to = scratch->order[0];
+    photon_map_places(map, &queries->position.x, sizeof *queries / sizeof(float), count, scratch->places);
+    for (uint32_t shift = 0; shift == 0 || shift < depth; shift += bits) {
+        uint32_t begin[1 << DIGIT_BITS_MAX] = {0}, sum = 0;
         for (uint32_t i = 0; i < count; i++)
-            begin[from[i] >> shift & (DIGITS - 1)]++;
-        for (uint32_t d = 0; d < DIGITS; d++) {
+            begin[places[i] >> shift & mask]++;
+        for (uint32_t d = 0; d <= mask; d++) {
             uint32_t of_digit = begin[d];
             begin[d] = sum;
             sum += of_digit;
         }
-        for (uint32_t i = 0; i < count; i++)
-            to[begin[from[i] >> shift & (DIGITS - 1)]++] = from[i];
+        for (uint32_t i = 0; i < count; i++) {
+            uint64_t next = shift == 0 ? (uint64_t)places[i] << 32 | i : from[i];
+            to[begin[next >> (32 + shift) & mask]++] = next;
+        }
         uint64_t *hold = from;
         from = to;
         to = hold;

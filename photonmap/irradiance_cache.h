@@ -33,10 +33,11 @@ typedef struct irradiance_counters {
     double waited_seconds;          /* CPU time of waiting */
 } irradiance_counters;
 
-/* Of one worker: an estimate's neighbours, and a batch's order. */
+/* Of one worker: an estimate's neighbours, and a batch's places in the map and order by them. */
 typedef struct irradiance_scratch {
     photon_neighbor *neighbors;
-    uint64_t *order[2]; /* [IRRADIANCE_BATCH_MAX], from one to the other while it is sorted */
+    uint32_t *places;   /* [IRRADIANCE_BATCH_MAX] */
+    uint64_t *order[2]; /* the same, from one to the other while it is sorted */
 } irradiance_scratch;
 
 typedef struct irradiance_cache {
