@@ -7,6 +7,7 @@
 #include "clock.h"
 #include "final_gather.h"
 #include "floating_point.h"
+#include "gather_directions.h"
 #include "room_bench.h"
 
 #include <stdio.h>
@@ -15,6 +16,7 @@
 #include <unistd.h>
 
 enum { PICTURE = 400, TILE = 32, TILES = 5, GATHER_RAYS = ROOM_BENCH_GATHER_RAYS, ESTIMATES = 20000 };
+_Static_assert((int)GATHER_RAYS <= (int)RAY_FAN_MAX, "a place's rays are one fan");
 enum { PLACES_MAX = TILES * TILE * TILE, RAYS_MAX = PLACES_MAX * GATHER_RAYS };
 
 typedef struct place {
@@ -66,16 +68,36 @@ static double lookups(bench *b)
     return b->query_count;
 }
 
+static void make_fan(const place *p, ray_fan *out_fan)
+{
+    const bsdf *b = &p->v.scattering;
+    sampler_sequence sequence = sampler_sequence_make(&p->where, SAMPLE_GATHER, 0, GATHER_RAYS);
+    out_fan->common = surface_ray(&p->v.hit, p->v.arrived, transport_facing_normal(&p->v));
+    out_fan->common.skips_uv = true;
+    out_fan->count = GATHER_RAYS;
+    gather_directions(&sequence, 0, GATHER_RAYS, &b->shading, bsdf_is_below(b), out_fan->direction);
+}
+
 static double directions(bench *b)
 {
+    ray_fan fan;
     for (uint32_t i = 0; i < b->place_count; i++) {
-        const place *p = &b->places[i];
-        sampler_sequence sequence = sampler_sequence_make(&p->where, SAMPLE_GATHER, 0, GATHER_RAYS);
+        make_fan(&b->places[i], &fan);
+        b->sink += (double)fan.direction[0][i % GATHER_RAYS];
+    }
+    return (double)b->place_count * GATHER_RAYS;
+}
+
+static double fans(bench *b)
+{
+    ray_fan fan;
+    for (uint32_t i = 0; i < b->place_count; i++) {
+        make_fan(&b->places[i], &fan);
+        scene_intersect_fan(b->s, &fan);
         for (uint32_t k = 0; k < GATHER_RAYS; k++) {
-            bsdf_sample first;
-            if (bsdf_sample_direction(&p->v.scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f,
-                                      sampler_sequence_at(&sequence, k), &first))
-                b->sink += (double)surface_ray(&p->v.hit, p->v.arrived, first.direction).direction.x;
+            vec3 position, normal;
+            if (fan.met[k].distance < INFINITY && ray_fan_plain_place(b->s, &fan, k, &position, &normal))
+                b->sink += (double)position.x;
         }
     }
     return (double)b->place_count * GATHER_RAYS;
@@ -103,11 +125,16 @@ static double estimates(bench *b)
 }
 
 static room_bench_row rows[] = {
-    {.name = "Embree alone"}, {.name = "whole gather ray", .most_ratio = 2.4},    {.name = "ray and hit"},
-    {.name = "direction"},    {.name = "lookup (warm cache)", .most_ratio = 1.0}, {.name = "estimate (scattered)"},
+    {.name = "Embree alone"},
+    {.name = "whole gather ray", .most_ratio = 2.4},
+    {.name = "direction"},
+    {.name = "direction with ray and end (64 together)"},
+    {.name = "ray and hit (alone)"},
+    {.name = "lookup (warm cache)", .most_ratio = 1.0},
+    {.name = "estimate (scattered)"},
 };
 enum { ROWS = sizeof rows / sizeof *rows };
-static double (*const measured[ROWS])(bench *b) = {embree, whole, hits, directions, lookups, estimates};
+static double (*const measured[ROWS])(bench *b) = {embree, whole, directions, fans, hits, lookups, estimates};
 
 /* --- what they work on --- */
 
