@@ -18,7 +18,7 @@
 typedef struct photon {
     float position[3];    /* world */
     uint32_t flux;        /* W per emitted path's share (times the number of paths emitted), shared exponent */
-    uint16_t direction;   /* the way the light goes, octahedral; for guiding gathers, nothing reads it yet */
+    uint16_t direction;   /* the way the light goes, and whether by way of a diffuse place: arrival_encode */
     uint16_t normal;      /* geometric, on the side it arrived at, octahedral */
     irradiance_slot slot; /* the irradiance here, once someone has asked for it */
 } photon;
@@ -85,28 +85,65 @@ static inline rgb flux_decode(uint32_t code)
 
 /* --- directions: octahedral, 8 + 8 bits; within 1 degree --- */
 
-static inline uint16_t direction_encode(vec3 d)
+/* Both in [-1, 1]. */
+static inline vec2 octahedral_encode(vec3 d)
 {
     float sum = fabsf(d.x) + fabsf(d.y) + fabsf(d.z), x = d.x / sum, y = d.y / sum;
     /* half of all directions are below: no branch could be guessed */
     float folded_x = (1.0f - fabsf(y)) * copysignf(1.0f, x), folded_y = (1.0f - fabsf(x)) * copysignf(1.0f, y);
     x = float_select(d.z < 0.0f, folded_x, x);
     y = float_select(d.z < 0.0f, folded_y, y);
-    /* 255 steps from -1 to 1, so that the axes are met exactly */
-    uint32_t i = (uint32_t)(x * 127.0f + 127.5f), j = (uint32_t)(y * 127.0f + 127.5f);
-    return (uint16_t)(i << 8 | j);
+    return (vec2){x, y};
 }
 
-/* Of any length from 0.57 to 1: enough to compare angles with. */
-static inline vec3 direction_decode_unnormalized(uint16_t code)
+/* Of any length from 0.57 to 1. */
+static inline vec3 octahedral_decode(float x, float y)
 {
-    float x = ((float)(code >> 8) - 127.0f) * (1.0f / 127.0f), y = ((float)(code & 255) - 127.0f) * (1.0f / 127.0f);
     float z = 1.0f - fabsf(x) - fabsf(y), fold = z < 0.0f ? -z : 0.0f;
     x -= copysignf(fold, x);
     y -= copysignf(fold, y);
     return (vec3){x, y, z};
 }
 
+static inline uint16_t direction_encode(vec3 d)
+{
+    /* 255 steps from -1 to 1, so that the axes are met exactly */
+    vec2 p = octahedral_encode(d);
+    uint32_t i = (uint32_t)(p.x * 127.0f + 127.5f), j = (uint32_t)(p.y * 127.0f + 127.5f);
+    return (uint16_t)(i << 8 | j);
+}
+
+/* Of any length from 0.57 to 1: enough to compare angles with. */
+static inline vec3 direction_decode_unnormalized(uint16_t code)
+{
+    return octahedral_decode(((float)(code >> 8) - 127.0f) * (1.0f / 127.0f),
+                             ((float)(code & 255) - 127.0f) * (1.0f / 127.0f));
+}
+
 static inline vec3 direction_decode(uint16_t code) { return vec3_normalize(direction_decode_unnormalized(code)); }
+
+/* --- how a photon arrived: by way of a diffuse place or not, 1 bit; direction, 181 x 181 steps; within 1.5 degrees ---
+ */
+
+enum { ARRIVAL_IS_DIFFUSE = 0x8000, ARRIVAL_STEPS = 181 };
+
+static inline uint16_t arrival_encode(vec3 d, bool is_diffuse)
+{
+    const float half = (ARRIVAL_STEPS - 1) / 2; /* a whole number, so that the axes are met exactly */
+    vec2 p = octahedral_encode(d);
+    uint32_t i = (uint32_t)(p.x * half + half + 0.5f), j = (uint32_t)(p.y * half + half + 0.5f);
+    return (uint16_t)((is_diffuse ? ARRIVAL_IS_DIFFUSE : 0) | (i * ARRIVAL_STEPS + j));
+}
+
+/* Whether a gather ray could have brought this light: it had met a diffuse place since it left its lamp. */
+static inline bool arrival_is_diffuse(uint16_t code) { return code & ARRIVAL_IS_DIFFUSE; }
+
+static inline vec3 arrival_direction(uint16_t code)
+{
+    const float half = (ARRIVAL_STEPS - 1) / 2, step = 1.0f / half;
+    uint32_t place = code & (ARRIVAL_IS_DIFFUSE - 1u);
+    return vec3_normalize(octahedral_decode(((float)(place / ARRIVAL_STEPS) - half) * step,
+                                            ((float)(place % ARRIVAL_STEPS) - half) * step));
+}
 
 #endif

@@ -62,7 +62,8 @@ static photon *place_for_photon(block *out)
     return &out->photons[out->count++];
 }
 
-static void store(tracer *t, const surface_hit *hit, float arrival_factor, vec3 direction, rgb flux, uint64_t key)
+static void store(tracer *t, const surface_hit *hit, float arrival_factor, vec3 direction, bool is_diffuse, rgb flux,
+                  uint64_t key)
 {
     block *out = t->out;
     surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
@@ -85,7 +86,7 @@ static void store(tracer *t, const surface_hit *hit, float arrival_factor, vec3 
     p->position[1] = at.position.y;
     p->position[2] = at.position.z;
     p->flux = flux_encode(flux, key);
-    p->direction = direction_encode(direction);
+    p->direction = arrival_encode(direction, is_diffuse);
     p->normal = direction_encode(is_outside ? at.geometric_normal : vec3_negate(at.geometric_normal));
     memset(&p->slot, 0, sizeof p->slot);
     book(out->books.stored, flux_decode(p->flux));
@@ -119,6 +120,7 @@ typedef struct photon_path {
     rng random;
     uint64_t key;
     int scatterings;
+    bool is_diffuse; /* has gone on from a place by its gathered lobes */
 } photon_path;
 
 /* Leaves a lamp, picked by its power, at a time of the path's own where that matters. false: nothing leaves. */
@@ -137,7 +139,7 @@ static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
     ray.skips_uv = true;
     ray.medium = start.medium;
     ray.time = time;
-    *out_path = (photon_path){ray, rgb_scale(start.flux, 1.0f / probability), random, key, 0};
+    *out_path = (photon_path){ray, rgb_scale(start.flux, 1.0f / probability), random, key, 0, false};
     book(t->out->books.emitted, out_path->flux);
     return true;
 }
@@ -161,7 +163,7 @@ static bool matter_has(const matter *m, bsdf_lobes lobes)
 }
 
 static bool matter_sample(const matter *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes, float u_lobe, vec2 u,
-                          vec3 *out_direction, rgb *out_weight)
+                          vec3 *out_direction, rgb *out_weight, bool *out_is_gathered)
 {
     bsdf_sample next;
     float correction;
@@ -169,12 +171,14 @@ static bool matter_sample(const matter *m, const surface_hit *hit, vec3 arrived,
         if (!lambert_sample_flux(hit, arrived, u, out_direction, &correction))
             return false;
         *out_weight = rgb_scale(*m->albedo, correction);
+        *out_is_gathered = true;
         return true;
     }
     if (!bsdf_sample_direction(&m->scattering, lobes, BSDF_FLUX, u_lobe, u, &next))
         return false;
     *out_direction = next.direction;
     *out_weight = next.weight;
+    *out_is_gathered = next.group == BSDF_GATHERED;
     return true;
 }
 
@@ -192,7 +196,7 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
     bool is_global = settings->kind == PHOTON_GLOBAL;
     if ((is_global || path->scatterings > 0) && matter_has(&m, BSDF_GATHERED)) {
         float factor = m.albedo ? lambert_arrival_factor(hit, arrived) : bsdf_arrival_factor(&m.scattering);
-        store(t, hit, factor, arrived, flux, hash_combine(path->key, (uint64_t)path->scatterings));
+        store(t, hit, factor, arrived, path->is_diffuse, flux, hash_combine(path->key, (uint64_t)path->scatterings));
     }
     if (path->scatterings >= settings->max_scatterings || path->scatterings >= SCATTERING_CAP) {
         book(books->truncated, flux);
@@ -209,7 +213,8 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
     vec2 u = rng_vec2(&path->random);
     vec3 direction;
     rgb weight;
-    if (!matter_sample(&m, hit, arrived, lobes, u_lobe, u, &direction, &weight)) {
+    bool is_gathered;
+    if (!matter_sample(&m, hit, arrived, lobes, u_lobe, u, &direction, &weight, &is_gathered)) {
         book(books->absorbed, flux);
         return false;
     }
@@ -227,6 +232,7 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
     book(books->gained, rgb_sub(path->flux, scattered));
     path->ray = surface_ray(hit, path->ray, direction);
     path->scatterings++;
+    path->is_diffuse = path->is_diffuse || is_gathered;
     return true;
 }
 

@@ -42,6 +42,7 @@ static const struct {
     SETTING(nearest, "number of nearest photons"),
     SETTING(radius, "radius"),
     SETTING(irradiance_fraction, "fraction of photons that bear irradiance"),
+    SETTING(gather_guiding, "guiding of gather rays"),
     SETTING(layers, "set of layers"),
     SETTING(denoise, "choice of denoising"),
     SETTING(layers_in_camera_space, "space of layers"),

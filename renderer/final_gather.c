@@ -3,6 +3,7 @@
 
 #include "direct_lighting.h"
 #include "gather_directions.h"
+#include "math/sampling.h"
 #include "passage.h"
 
 /* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often (asked
@@ -201,6 +202,38 @@ static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin
     }
 }
 
+/* The place is plain; what is found is for the side that it is seen from. */
+static bool find_guide(const transport *t, const vertex *v, incident_guide *out_guide)
+{
+    const bsdf *b = &v->scattering;
+    if (!t->incident)
+        return false;
+    bool is_inside = vec3_dot(b->out, b->geometric_normal) < 0.0f;
+    return incident_light_find(t->incident, transport_map_place(t, v).position,
+                               is_inside ? vec3_negate(b->shading.z) : b->shading.z, out_guide);
+}
+
+/* The rays of a Lambertian place, by the guide and the cosine together. */
+static void sample_guided(const gathering *g, const incident_guide *guide, sampler_sequence *numbers, uint32_t begin,
+                          uint32_t end, gather_rays *r)
+{
+    const bsdf *b = &g->from->scattering;
+    vec3 n = transport_facing_normal(g->from);
+    ray_fan *fan = &r->fan;
+    for (uint32_t i = begin; i < end; i++) {
+        vec2 u = sampler_sequence_at(numbers, i);
+        float weight = incident_guide_warp(guide, &u);
+        vec3 direction = vec3_normalize(frame_to_world(&guide->around, sample_cosine_hemisphere(u)));
+        uint32_t k = fan->count;
+        fan->direction[0][k] = direction.x;
+        fan->direction[1][k] = direction.y;
+        fan->direction[2][k] = direction.z;
+        r->number[k] = i;
+        r->weight[k] = rgb_scale(b->matter.reflectance, weight);
+        fan->count += vec3_dot(direction, n) > 0.0f; /* as by the cosine alone */
+    }
+}
+
 void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
                   int scatterings_left, rgb throughput)
 {
@@ -212,6 +245,8 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
     gather_batch_begin(batch, worker->sample, path_vertex == 0, rgb_scale(throughput, 1.0f / (float)count));
     sampler_sequence numbers = sampler_sequence_make(where, SAMPLE_GATHER, path_vertex, count);
     bool is_plain = bsdf_is_plain(&v->scattering);
+    incident_guide guide;
+    bool is_guided = is_plain && find_guide(t, v, &guide);
     gather_rays rays;
     rays.fan.common = surface_ray(&v->hit, v->arrived, transport_facing_normal(v));
     rays.fan.common.skips_uv = true;
@@ -221,7 +256,9 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
         if (!gather_batch_has_room(batch, end - begin))
             gather_batch_resolve(batch, t->cache, t->run, worker->index);
         rays.fan.count = 0;
-        if (is_plain)
+        if (is_guided)
+            sample_guided(&g, &guide, &numbers, begin, end, &rays);
+        else if (is_plain)
             sample_cosine(&g, &numbers, begin, end, &rays);
         else
             sample_lobes(&g, &numbers, begin, end, &rays);

@@ -28,7 +28,7 @@ static unsigned char *write_map(const photon_map *map, unsigned char kind, unsig
         const photon_block *block = &map->blocks[i / PHOTON_BLOCK_LANES];
         vec3 position = photon_block_position(map->blocks, i);
         vec3 normal = direction_decode(photon_block_normal(map->blocks, i));
-        vec3 direction = direction_decode(block->direction[i % PHOTON_BLOCK_LANES]);
+        vec3 direction = arrival_direction(block->direction[i % PHOTON_BLOCK_LANES]);
         rgb flux = flux_decode(photon_block_flux(map->blocks, i));
         float share = 1.0f / (float)map->set.emitted_paths;
         const float values[FLOATS] = {position.x,  position.y,     position.z,     normal.x,

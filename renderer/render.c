@@ -73,6 +73,7 @@ static transport make_transport(const ag_context *context, const scene *s, const
     if (settings->integrator == AG_INTEGRATOR_PHOTONMAP) {
         t.caustic = &m->caustic;
         t.cache = &m->cache;
+        t.incident = m->incident.cells ? &m->incident : NULL;
         t.gather_min_distance = GATHER_MIN_DISTANCE_RADII * m->global.mean_radius;
     }
     return t;

@@ -7,6 +7,7 @@
 void maps_reset(maps *m)
 {
     irradiance_cache_reset(&m->cache);
+    incident_light_reset(&m->incident);
     photon_map_reset(&m->global);
     photon_map_reset(&m->caustic);
     photon_file_close(&m->file);
@@ -101,7 +102,13 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
         status = trace_maps(context, s, settings, &out_maps->global, &out_maps->caustic);
     if (status != AG_OK)
         return status;
-    statistics->photon_bytes += photon_map_bytes(&out_maps->global) + photon_map_bytes(&out_maps->caustic);
+    phase_begin guiding = context_begin_phase();
+    status = incident_light_create(&context->run, &out_maps->global, settings->gather_guiding, &out_maps->incident);
+    if (status != AG_OK)
+        return status;
+    context_add_to_phase(context, AG_PHASE_MAP, guiding);
+    statistics->photon_bytes += photon_map_bytes(&out_maps->global) + photon_map_bytes(&out_maps->caustic) +
+                                incident_light_bytes(&out_maps->incident);
     log_message(context->log, AG_LOG_INFO, "estimates: %u nearest, %.4g at most, %.4g where light is spread evenly",
                 out_maps->global.nearest, (double)out_maps->global.max_radius, (double)out_maps->global.mean_radius);
 

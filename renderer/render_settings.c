@@ -19,6 +19,7 @@ static const ag_render_settings DEFAULTS = {
     .caustic_photon_count = 500000,
     .nearest = 50,
     .irradiance_fraction = 1.0f,
+    .gather_guiding = 0.5f,
 };
 
 /* An integer parameter within a range. */
@@ -325,6 +326,8 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "radius must be finite and not negative";
     else if (!(s->irradiance_fraction > 0.0f) || s->irradiance_fraction > 1.0f)
         wrong = "the fraction of photons that bear irradiance must be above 0, and 1 at most";
+    else if (!(s->gather_guiding >= 0.0f) || s->gather_guiding > 1.0f)
+        wrong = "the guiding of gather rays must be from 0 to 1";
     if (!wrong)
         return AG_OK;
     log_message(context->log, AG_LOG_ERROR, "%s", wrong);

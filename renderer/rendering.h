@@ -4,13 +4,15 @@
 #define AFTERGLOW_RENDERING_H
 
 #include "context.h"
+#include "incident_light.h"
 #include "photon_file.h"
 #include "transport.h"
 
 typedef struct maps {
     photon_map global, caustic;
     irradiance_cache cache;
-    photon_file file; /* that the maps are in, where they last */
+    incident_light incident; /* over the global map */
+    photon_file file;        /* that the maps are in, where they last */
 } maps;
 
 struct ag_rendering {

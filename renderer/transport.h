@@ -10,13 +10,15 @@
 #include "arena.h"
 #include "bsdf.h"
 #include "gather_batch.h"
+#include "incident_light.h"
 #include "sampler.h"
 
 typedef struct transport {
     const scene *s;
-    const run_context *run;    /* whether to stop */
-    const photon_map *caustic; /* may be empty */
-    irradiance_cache *cache;   /* over the global map; NULL for path tracing */
+    const run_context *run;         /* whether to stop */
+    const photon_map *caustic;      /* may be empty */
+    irradiance_cache *cache;        /* over the global map; NULL for path tracing */
+    const incident_light *incident; /* likewise, what guides gathers; NULL: nothing */
     const ag_render_settings *settings;
     const aov_layout *layout;  /* what the film wants beside radiance */
     bool wants_layers;         /* anything */

@@ -35,7 +35,7 @@ static inline void field_add(photon_set *set, vec3 position, vec3 normal, uint32
     memset(p, 0, sizeof *p);
     p->position[0] = position.x, p->position[1] = position.y, p->position[2] = position.z;
     p->normal = direction_encode(normal);
-    p->direction = direction_encode(vec3_negate(normal));
+    p->direction = arrival_encode(vec3_negate(normal), false);
     p->flux = flux;
 }
 

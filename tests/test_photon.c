@@ -128,6 +128,30 @@ static void axes_survive_exactly(void **state)
     }
 }
 
+/* By 181 x 181 steps, beside a mark. */
+static void arrivals_survive_within_two_degrees(void **state)
+{
+    (void)state;
+    rng random = test_random(3);
+    double worst = 0.0;
+    for (int i = 0; i < 1000000 / FEWER; i++) {
+        vec3 d = random_direction(&random);
+        uint16_t code = arrival_encode(d, i & 1);
+        vec3 back = arrival_direction(code);
+        assert_int_equal(arrival_is_diffuse(code), i & 1);
+        assert_close(vec3_length(back), 1.0, 1e-6);
+        worst = fmax(worst, 2.0 * asin(0.5 * vec3_length(vec3_sub(d, back))) * 180.0 / PI);
+    }
+    assert_true(worst < 1.5);
+    for (int axis = 0; axis < 3; axis++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            float d[3] = {0.0f, 0.0f, 0.0f};
+            d[axis] = (float)sign;
+            vec3 back = arrival_direction(arrival_encode((vec3){d[0], d[1], d[2]}, sign > 0));
+            assert_true(back.x == d[0] && back.y == d[1] && back.z == d[2]);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -138,6 +162,7 @@ int main(void)
         cmocka_unit_test(the_mean_flux_of_equal_photons_is_right),
         cmocka_unit_test(directions_survive_within_a_degree),
         cmocka_unit_test(axes_survive_exactly),
+        cmocka_unit_test(arrivals_survive_within_two_degrees),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -117,6 +117,12 @@ static void test_motion(void **state)
     expect_same_for_all_threads(MOTION, NULL);
 }
 
+static void test_unguided(void **state)
+{
+    (void)state;
+    expect_same_for_all_threads(BOX, "--gather-guiding=0");
+}
+
 /* All photons on one spot of a floor, and few of them asked for by many threads at once. */
 static void test_few_photons_for_many_threads(void **state)
 {
@@ -226,7 +232,7 @@ int main(void)
         TEST_IN_FOLDER(test_motion),      TEST_IN_FOLDER(test_few_photons_for_many_threads),
         TEST_IN_FOLDER(test_path_tracer), TEST_IN_FOLDER(test_crop),
         TEST_IN_FOLDER(test_seed),        TEST_IN_FOLDER(test_cache_off),
-        TEST_IN_FOLDER(test_few_bearers),
+        TEST_IN_FOLDER(test_few_bearers), TEST_IN_FOLDER(test_unguided),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,6 +24,7 @@ enum {
     OPT_NEAREST,
     OPT_RADIUS,
     OPT_IRRADIANCE_FRACTION,
+    OPT_GATHER_GUIDING,
     OPT_GATHER,
     OPT_MAX_DEPTH,
     OPT_TYPE,
@@ -95,6 +96,8 @@ static const option_line LINES[] = {
      "irradiance is borne by this fraction of the photons, above 0, 1 at\nmost (default 1): 0.125 is faster, and a "
      "little more blurred"},
     {OPT_GATHER, "gather-samples", "N", "gather rays for each camera sample (default: 256 a pixel in all)"},
+    {OPT_GATHER_GUIDING, "gather-guiding", "F",
+     "how much photons decide where gather rays go, from 0 (not at all) to 1\n(default 0.5); the rest is the cosine"},
     {OPT_MAX_DEPTH, "max-depth", "N", "scatterings between lamp and eye at most, up to 100 (default: roulette)"},
     {OPT_CLAMP_DIRECT, "clamp-direct", "V", "no sample gets more than V of direct light; 0 (default): unbounded"},
     {OPT_CLAMP_INDIRECT, "clamp-indirect", "V", "the same of indirect light"},
@@ -232,6 +235,14 @@ static bool parse_fraction(const char *text, float *out_value)
     return end != text && !*end && *out_value > 0.0f && *out_value <= 1.0f;
 }
 
+/* From 0 to 1. */
+static bool parse_share(const char *text, float *out_value)
+{
+    char *end;
+    *out_value = strtof(text, &end);
+    return end != text && !*end && *out_value >= 0.0f && *out_value <= 1.0f;
+}
+
 /* Above 0 and finite. */
 static bool parse_seconds(const char *text, double *out_seconds)
 {
@@ -358,6 +369,7 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_IRRADIANCE_FRACTION:
         is_valid = o->has_irradiance_fraction = parse_fraction(value, &r->irradiance_fraction);
         break;
+    case OPT_GATHER_GUIDING: is_valid = o->has_gather_guiding = parse_share(value, &r->gather_guiding); break;
     case OPT_AOV: {
         uint32_t layers = 0;
         is_valid = ag_layers_parse(value, &layers) == AG_OK;
@@ -659,6 +671,8 @@ bool options_override(const options *o, ag_render_settings *settings)
         settings->max_depth = r->max_depth;
     if (o->has_spp)
         settings->samples_per_pixel = r->samples_per_pixel;
+    if (o->has_gather_guiding)
+        settings->gather_guiding = r->gather_guiding;
     if (o->has_gather_samples)
         settings->gather_samples = r->gather_samples;
     return o->tile_count == 0 || take_tile(o, settings);

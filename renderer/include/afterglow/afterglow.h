@@ -169,6 +169,9 @@ typedef struct ag_render_settings {
                                   those, and each estimate is still of all photons. Less is faster, and blurs by about
                                   what the bearers are apart. Where photons lie far apart, and where surfaces turn, more
                                   of them bear, so that all places have a bearer that stands for them. Default 1 */
+    float gather_guiding;      /* how much the photons' directions decide where gather rays go, [0, 1]: the share of the
+                                  rays that goes where light comes from, where photons are many; the rest goes by the
+                                  cosine. 0: all. Less noise or more, the same light. Default 0.5 */
     uint32_t layers;           /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
     bool denoise;              /* ag_film_denoise will be asked for: the film keeps what it needs */
     bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */

@@ -1,0 +1,52 @@
+/* incident_light.h: from where light comes, as the photons around a place tell: to send gather rays there.
+ * Rests on: Jensen, "Importance Driven Path Tracing using the Photon Map", 1995 (directions from a histogram of photons
+ * over the square that the cosine's distribution is warped from); Guo et al., "Primary Sample Space Path Sampling",
+ * 2018 (that square as the domain of guiding); Veach, Guibas, "Optimally Combining Sampling Techniques", 1995.
+ * Flow: photon_map -> [here] -> final_gather. Threads: built by one caller on the run's workers; then read-only.
+ *
+ * A cell is a run of neighbours in the map's order: all of a subtree. In each, photons are parted by the axis that
+ * their normal is nearest to, six ways; whatever else mixes there only costs some of the gain. Each part is a histogram
+ * over the unit square that sample_cosine_hemisphere warps to directions: flux already holds the cosine, so that light
+ * from everywhere alike fills it evenly, and nothing lies below the horizon. A share of each bin is even, whatever the
+ * photons say: what is drawn is the mixture of the two, the density is the mixture's (the balance heuristic), and no
+ * ray weighs more than 1 / that share. Light straight from lamps is left out: gather rays do not bring it. */
+#ifndef AFTERGLOW_INCIDENT_LIGHT_H
+#define AFTERGLOW_INCIDENT_LIGHT_H
+
+#include "photon_map.h"
+
+enum { INCIDENT_SIDE = 8, INCIDENT_BINS = INCIDENT_SIDE * INCIDENT_SIDE, INCIDENT_ONE = 1 << 16 };
+
+/* Where each bin begins in [0, INCIDENT_ONE), strictly ascending from 0; row by row. */
+typedef struct incident_histogram {
+    uint16_t begins[INCIDENT_BINS];
+} incident_histogram;
+
+typedef struct incident_light {
+    photon_tree tree;               /* the map's, borrowed; empty: no place is guided */
+    uint32_t cell_depth;            /* cells are the nodes so deep in it */
+    uint32_t *cells;                /* owned: of each the first histogram << 6, and as bits which ways there are */
+    incident_histogram *histograms; /* owned */
+    uint32_t histogram_count;
+} incident_light;
+
+/* Of the map's photons, which must not move before it is reset. share, [0, 1]: how much photons decide where they are
+ * many; 0 makes none. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ag_status incident_light_create(run_context *run, const photon_map *map, float share, incident_light *out_light);
+void incident_light_reset(incident_light *l);
+uint64_t incident_light_bytes(const incident_light *l);
+
+/* What guides rays from a place. */
+typedef struct incident_guide {
+    frame around; /* z: the normal */
+    const incident_histogram *histogram;
+} incident_guide;
+
+/* Whether the photons there tell anything. normal: unit, on the side that the light arrives at. */
+bool incident_light_find(const incident_light *l, vec3 position, vec3 normal, incident_guide *out_guide);
+
+/* Warps a place of the unit square to one by the guide's density; returns 1 / that density: what a ray by the new
+ * place, warped on by sample_cosine_hemisphere in the guide's frame, weighs more than one by the cosine alone. */
+float incident_guide_warp(const incident_guide *guide, vec2 *in_out_u);
+
+#endif
