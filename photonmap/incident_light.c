@@ -38,6 +38,24 @@ static frame frame_around(vec3 normal, uint32_t way)
     return (frame){x, vec3_cross(normal, x), normal};
 }
 
+/* A photon's normal, kept for the next photon, which often has the same one. */
+typedef struct facing {
+    uint32_t code; /* FACING_NONE: there was none */
+    uint32_t way;
+    frame around;
+} facing;
+#define FACING_NONE UINT32_MAX
+
+static void face(facing *f, uint16_t code)
+{
+    if (f->code == code)
+        return;
+    vec3 normal = direction_decode(code);
+    f->code = code;
+    f->way = way_of(normal);
+    f->around = frame_around(normal, f->way);
+}
+
 /* The inverse of sample_disk_concentric, nearly: which bin a photon counts in need not be right to the edge. */
 static vec2 square_from_disk(float x, float y)
 {
@@ -82,12 +100,15 @@ static void find_ways(void *user, uint64_t begin, uint64_t end, uint64_t block, 
 {
     (void)block, (void)worker;
     const job *j = user;
+    facing f = {.code = FACING_NONE};
     for (uint64_t cell = begin; cell < end; cell++) {
         range r = cell_photons(j, cell);
         uint32_t counts[WAYS] = {0}, mask = 0;
         for (uint32_t i = r.begin; i < r.end; i++)
-            if (arrival_is_diffuse(arrival_of(j, i)))
-                counts[way_of(direction_decode_unnormalized(photon_block_normal(j->map->blocks, i)))]++;
+            if (arrival_is_diffuse(arrival_of(j, i))) {
+                face(&f, photon_block_normal(j->map->blocks, i));
+                counts[f.way]++;
+            }
         for (int w = 0; w < WAYS; w++)
             mask |= (uint32_t)(counts[w] >= LEAST) << w;
         j->light->cells[cell] = mask;
@@ -122,32 +143,33 @@ static void finish(const float flux[INCIDENT_BINS], float share, incident_histog
     }
 }
 
-static void count_in(const job *j, uint32_t photon_index, float flux[WAYS][INCIDENT_BINS], uint32_t counts[WAYS])
+static void count_in(const job *j, uint32_t photon_index, facing *f, float flux[WAYS][INCIDENT_BINS],
+                     uint32_t counts[WAYS])
 {
     const photon_block *blocks = j->map->blocks;
     uint16_t code = arrival_of(j, photon_index);
     if (!arrival_is_diffuse(code))
         return;
-    vec3 normal = direction_decode(photon_block_normal(blocks, photon_index)), going = arrival_direction(code);
-    uint32_t way = way_of(normal);
-    frame around = frame_around(normal, way);
-    vec2 u = square_from_disk(-vec3_dot(going, around.x), -vec3_dot(going, around.y));
+    face(f, photon_block_normal(blocks, photon_index));
+    vec3 going = arrival_direction(code);
+    vec2 u = square_from_disk(-vec3_dot(going, f->around.x), -vec3_dot(going, f->around.y));
     rgb carried = flux_decode(photon_block_flux(blocks, photon_index));
-    flux[way][bin_at(u.x) * INCIDENT_SIDE + bin_at(u.y)] += fminf(carried.r + carried.g + carried.b, FLUX_MAX);
-    counts[way]++;
+    flux[f->way][bin_at(u.x) * INCIDENT_SIDE + bin_at(u.y)] += fminf(carried.r + carried.g + carried.b, FLUX_MAX);
+    counts[f->way]++;
 }
 
 static void fill(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
 {
     (void)block, (void)worker;
     const job *j = user;
+    facing f = {.code = FACING_NONE};
     for (uint64_t cell = begin; cell < end; cell++) {
         range r = cell_photons(j, cell);
         uint32_t counts[WAYS] = {0}, entry = j->light->cells[cell];
         float flux[WAYS][INCIDENT_BINS];
         memset(flux, 0, sizeof flux);
         for (uint32_t i = r.begin; i < r.end; i++)
-            count_in(j, i, flux, counts);
+            count_in(j, i, &f, flux, counts);
         incident_histogram *out = &j->light->histograms[entry >> WAYS];
         for (int way = 0; way < WAYS; way++)
             if (entry >> way & 1)
