@@ -75,7 +75,9 @@ static void make_fan(const place *p, ray_fan *out_fan)
     out_fan->common = surface_ray(&p->v.hit, p->v.arrived, transport_facing_normal(&p->v));
     out_fan->common.skips_uv = true;
     out_fan->count = GATHER_RAYS;
-    gather_directions(&sequence, 0, GATHER_RAYS, &b->shading, bsdf_is_below(b), out_fan->direction);
+    float u[2][RAY_FAN_MAX];
+    gather_numbers(&sequence, 0, GATHER_RAYS, u);
+    gather_directions(u, GATHER_RAYS, &b->shading, bsdf_is_below(b), out_fan->direction);
 }
 
 static double directions(bench *b)

@@ -137,7 +137,7 @@ static void finish(const float flux[INCIDENT_BINS], float share, incident_histog
     for (int i = 0; i < INCIDENT_BINS; i++)
         sum += (double)smooth[i];
     for (int i = 0; i < INCIDENT_BINS; i++) {
-        out->begins[i] = (uint16_t)(before * INCIDENT_ONE);
+        out->begins[i % INCIDENT_SIDE][i / INCIDENT_SIDE] = (uint16_t)(before * INCIDENT_ONE);
         double even = 1.0 / INCIDENT_BINS, told = sum > 0.0 ? (double)smooth[i] / sum : even;
         before += even + (double)share * (told - even);
     }
@@ -237,27 +237,115 @@ bool incident_light_find(const incident_light *l, vec3 position, vec3 normal, in
     return true;
 }
 
-static uint32_t end_of(const incident_histogram *h, uint32_t bin)
+/* In what [low, high) of ascending beginnings, which end at INCIDENT_ONE, a number falls, and in the how-manieth. */
+typedef struct step {
+    uint32_t number;
+    float low, high;
+} step;
+
+static step find_step(const float begins[INCIDENT_SIDE], float end, float x)
 {
-    return bin + 1 < INCIDENT_BINS ? h->begins[bin + 1] : INCIDENT_ONE;
+    step s = {0, begins[0], end};
+    for (uint32_t i = 1; i < INCIDENT_SIDE; i++) {
+        s.number += begins[i] <= x;
+        s.low = begins[i] <= x ? begins[i] : s.low;
+    }
+    s.high = s.number + 1 < INCIDENT_SIDE ? begins[s.number + 1] : end;
+    return s;
 }
 
-float incident_guide_warp(const incident_guide *guide, vec2 *in_out_u)
+static const float BIN_WIDTH = 1.0f / INCIDENT_SIDE, BELOW_ONE = 0x1.fffffep-1f;
+
+float incident_guide_warp_one(const incident_guide *guide, vec2 *in_out_u)
 {
     const incident_histogram *h = guide->histogram;
-    float x = in_out_u->x * INCIDENT_ONE;
-    uint32_t whole = (uint32_t)x, row = 0, column = 0;
-    for (uint32_t i = 1; i < INCIDENT_SIDE; i++)
-        row += h->begins[i * INCIDENT_SIDE] <= whole;
-    const uint16_t *begins = &h->begins[row * INCIDENT_SIDE];
-    float low = begins[0], high = (float)end_of(h, row * INCIDENT_SIDE + INCIDENT_SIDE - 1);
-    float y = low + in_out_u->y * (high - low);
-    whole = (uint32_t)y;
-    for (uint32_t i = 1; i < INCIDENT_SIDE; i++)
-        column += begins[i] <= whole;
-    float bin_low = begins[column], bin_high = (float)end_of(h, row * INCIDENT_SIDE + column);
-    const float step = 1.0f / INCIDENT_SIDE, last = 0x1.fffffep-1f;
-    in_out_u->x = fminf(((float)row + (x - low) / (high - low)) * step, last);
-    in_out_u->y = fminf(((float)column + (y - bin_low) / (bin_high - bin_low)) * step, last);
-    return (float)(INCIDENT_ONE / INCIDENT_BINS) / (bin_high - bin_low);
+    float rows[INCIDENT_SIDE], bins[INCIDENT_SIDE], x = in_out_u->x * INCIDENT_ONE;
+    for (int i = 0; i < INCIDENT_SIDE; i++)
+        rows[i] = h->begins[0][i];
+    step row = find_step(rows, INCIDENT_ONE, x);
+    for (int i = 0; i < INCIDENT_SIDE; i++)
+        bins[i] = h->begins[i][row.number];
+    float y = row.low + in_out_u->y * (row.high - row.low);
+    step bin = find_step(bins, row.high, y);
+    in_out_u->x = fminf(((float)row.number + (x - row.low) / (row.high - row.low)) * BIN_WIDTH, BELOW_ONE);
+    in_out_u->y = fminf(((float)bin.number + (y - bin.low) / (bin.high - bin.low)) * BIN_WIDTH, BELOW_ONE);
+    return (float)(INCIDENT_ONE / INCIDENT_BINS) / (bin.high - bin.low);
 }
+
+static void warp_plain(const incident_guide *guide, uint32_t count, float u[2][INCIDENT_WARPS_MAX],
+                       float weights[INCIDENT_WARPS_MAX])
+{
+    for (uint32_t i = 0; i < count; i++) {
+        vec2 place = {u[0][i], u[1][i]};
+        weights[i] = incident_guide_warp_one(guide, &place);
+        u[0][i] = place.x;
+        u[1][i] = place.y;
+    }
+}
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#define AVX2 __attribute__((target("avx2")))
+
+/* find_step for eight: begins and end of each. */
+typedef struct step_8 {
+    __m256 number, low, high;
+} step_8;
+
+AVX2 static inline void try_begin(step_8 *s, __m256 begin, __m256 x)
+{
+    __m256 is_passed = _mm256_cmp_ps(begin, x, _CMP_LE_OQ);
+    s->number = _mm256_add_ps(s->number, _mm256_and_ps(is_passed, _mm256_set1_ps(1.0f)));
+    s->low = _mm256_blendv_ps(s->low, begin, is_passed);
+    /* of those that are not passed the first, which is the least */
+    s->high = _mm256_min_ps(s->high, _mm256_blendv_ps(begin, s->high, is_passed));
+}
+
+/* Where in the unit square's side, by a step's number and the place in it. */
+AVX2 static inline __m256 place_in(step_8 s, __m256 x)
+{
+    __m256 share = _mm256_div_ps(_mm256_sub_ps(x, s.low), _mm256_sub_ps(s.high, s.low));
+    __m256 place = _mm256_mul_ps(_mm256_add_ps(s.number, share), _mm256_set1_ps(BIN_WIDTH));
+    return _mm256_min_ps(place, _mm256_set1_ps(BELOW_ONE));
+}
+
+AVX2 static void warp_avx2(const incident_guide *guide, uint32_t count, float u[2][INCIDENT_WARPS_MAX],
+                           float weights[INCIDENT_WARPS_MAX])
+{
+    __m256 columns[INCIDENT_SIDE], one = _mm256_set1_ps(INCIDENT_ONE);
+    for (int i = 0; i < INCIDENT_SIDE; i++) {
+        __m128i begins = _mm_loadu_si128((const __m128i *)(const void *)guide->histogram->begins[i]);
+        columns[i] = _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(begins));
+    }
+    for (uint32_t i = 0; i < count; i += 8) {
+        __m256 x = _mm256_mul_ps(_mm256_loadu_ps(&u[0][i]), one);
+        step_8 row = {_mm256_setzero_ps(), _mm256_setzero_ps(), one};
+        for (int k = 1; k < INCIDENT_SIDE; k++)
+            try_begin(&row, _mm256_permutevar8x32_ps(columns[0], _mm256_set1_epi32(k)), x);
+        __m256i number = _mm256_cvttps_epi32(row.number);
+        __m256 y = _mm256_add_ps(row.low, _mm256_mul_ps(_mm256_loadu_ps(&u[1][i]), _mm256_sub_ps(row.high, row.low)));
+        step_8 bin = {_mm256_setzero_ps(), row.low, row.high};
+        for (int k = 1; k < INCIDENT_SIDE; k++)
+            try_begin(&bin, _mm256_permutevar8x32_ps(columns[k], number), y);
+        _mm256_storeu_ps(&u[0][i], place_in(row, x));
+        _mm256_storeu_ps(&u[1][i], place_in(bin, y));
+        _mm256_storeu_ps(&weights[i], _mm256_div_ps(_mm256_set1_ps((float)(INCIDENT_ONE / INCIDENT_BINS)),
+                                                    _mm256_sub_ps(bin.high, bin.low)));
+    }
+}
+
+void incident_guide_warp(const incident_guide *guide, uint32_t count, float in_out_u[2][INCIDENT_WARPS_MAX],
+                         float out_weights[INCIDENT_WARPS_MAX])
+{
+    if (__builtin_cpu_supports("avx2"))
+        warp_avx2(guide, count, in_out_u, out_weights);
+    else
+        warp_plain(guide, count, in_out_u, out_weights);
+}
+#else
+void incident_guide_warp(const incident_guide *guide, uint32_t count, float in_out_u[2][INCIDENT_WARPS_MAX],
+                         float out_weights[INCIDENT_WARPS_MAX])
+{
+    warp_plain(guide, count, in_out_u, out_weights);
+}
+#endif

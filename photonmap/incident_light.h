@@ -17,9 +17,10 @@
 
 enum { INCIDENT_SIDE = 8, INCIDENT_BINS = INCIDENT_SIDE * INCIDENT_SIDE, INCIDENT_ONE = 1 << 16 };
 
-/* Where each bin begins in [0, INCIDENT_ONE), strictly ascending from 0; row by row. */
+/* Where each bin begins in [0, INCIDENT_ONE): strictly ascending from 0, row by row; by column and row, so that a
+ * column is what a vector holds. */
 typedef struct incident_histogram {
-    uint16_t begins[INCIDENT_BINS];
+    uint16_t begins[INCIDENT_SIDE][INCIDENT_SIDE];
 } incident_histogram;
 
 typedef struct incident_light {
@@ -45,8 +46,15 @@ typedef struct incident_guide {
 /* Whether the photons there tell anything. normal: unit, on the side that the light arrives at. */
 bool incident_light_find(const incident_light *l, vec3 position, vec3 normal, incident_guide *out_guide);
 
-/* Warps a place of the unit square to one by the guide's density; returns 1 / that density: what a ray by the new
- * place, warped on by sample_cosine_hemisphere in the guide's frame, weighs more than one by the cosine alone. */
-float incident_guide_warp(const incident_guide *guide, vec2 *in_out_u);
+/* Warps places of the unit square, up to INCIDENT_WARPS_MAX, to ones by the guide's density. out_weights: 1 / that
+ * density: what a ray by the new place, warped on by sample_cosine_hemisphere in the guide's frame, weighs more than
+ * one by the cosine alone. All of the columns up to a multiple of eight is overwritten, and must be numbers of [0, 1).
+ */
+enum { INCIDENT_WARPS_MAX = 64 };
+void incident_guide_warp(const incident_guide *guide, uint32_t count, float in_out_u[2][INCIDENT_WARPS_MAX],
+                         float out_weights[INCIDENT_WARPS_MAX]);
+
+/* The same for any processor, one by one: to the bit what incident_guide_warp does. */
+float incident_guide_warp_one(const incident_guide *guide, vec2 *in_out_u);
 
 #endif

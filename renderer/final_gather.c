@@ -159,20 +159,26 @@ static void follow_together(gathering *g, gather_rays *r)
     }
 }
 
-/* The rays `begin` to `end` of a Lambertian place: by the cosine, so that each weighs the albedo. */
-static void sample_cosine(const gathering *g, sampler_sequence *numbers, uint32_t begin, uint32_t end, gather_rays *r)
+/* The rays `begin` to `end` of a Lambertian place: by the cosine, so that each weighs the albedo; where there is a
+ * guide, by both. */
+static void sample_plain(const gathering *g, const incident_guide *guide, sampler_sequence *numbers, uint32_t begin,
+                         uint32_t end, gather_rays *r)
 {
     const bsdf *b = &g->from->scattering;
     vec3 n = transport_facing_normal(g->from);
     ray_fan *fan = &r->fan;
-    gather_directions(numbers, begin, end - begin, &b->shading, bsdf_is_below(b), fan->direction);
+    float u[2][RAY_FAN_MAX], weights[RAY_FAN_MAX];
+    gather_numbers(numbers, begin, end - begin, u);
+    if (guide)
+        incident_guide_warp(guide, end - begin, u, weights);
+    gather_directions(u, end - begin, guide ? &guide->around : &b->shading, !guide && bsdf_is_below(b), fan->direction);
     for (uint32_t i = 0; i < end - begin; i++) {
         vec3 direction = ray_fan_direction(fan, i);
         uint32_t k = fan->count;
         for (int a = 0; a < 3; a++)
             fan->direction[a][k] = fan->direction[a][i];
         r->number[k] = begin + i;
-        r->weight[k] = b->matter.reflectance;
+        r->weight[k] = guide ? rgb_scale(b->matter.reflectance, weights[i]) : b->matter.reflectance;
         fan->count +=
             vec3_dot(direction, n) > 0.0f; /* a shading normal sends some through the surface: they are lost */
     }
@@ -213,27 +219,6 @@ static bool find_guide(const transport *t, const vertex *v, incident_guide *out_
                                is_inside ? vec3_negate(b->shading.z) : b->shading.z, out_guide);
 }
 
-/* The rays of a Lambertian place, by the guide and the cosine together. */
-static void sample_guided(const gathering *g, const incident_guide *guide, sampler_sequence *numbers, uint32_t begin,
-                          uint32_t end, gather_rays *r)
-{
-    const bsdf *b = &g->from->scattering;
-    vec3 n = transport_facing_normal(g->from);
-    ray_fan *fan = &r->fan;
-    for (uint32_t i = begin; i < end; i++) {
-        vec2 u = sampler_sequence_at(numbers, i);
-        float weight = incident_guide_warp(guide, &u);
-        vec3 direction = vec3_normalize(frame_to_world(&guide->around, sample_cosine_hemisphere(u)));
-        uint32_t k = fan->count;
-        fan->direction[0][k] = direction.x;
-        fan->direction[1][k] = direction.y;
-        fan->direction[2][k] = direction.z;
-        r->number[k] = i;
-        r->weight[k] = rgb_scale(b->matter.reflectance, weight);
-        fan->count += vec3_dot(direction, n) > 0.0f; /* as by the cosine alone */
-    }
-}
-
 void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
                   int scatterings_left, rgb throughput)
 {
@@ -256,10 +241,8 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
         if (!gather_batch_has_room(batch, end - begin))
             gather_batch_resolve(batch, t->cache, t->run, worker->index);
         rays.fan.count = 0;
-        if (is_guided)
-            sample_guided(&g, &guide, &numbers, begin, end, &rays);
-        else if (is_plain)
-            sample_cosine(&g, &numbers, begin, end, &rays);
+        if (is_plain)
+            sample_plain(&g, is_guided ? &guide : NULL, &numbers, begin, end, &rays);
         else
             sample_lobes(&g, &numbers, begin, end, &rays);
         if (passage_is_clear(t->s, &rays.fan.common)) {

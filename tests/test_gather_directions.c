@@ -16,8 +16,11 @@ static void expect_the_same(const sampler_sequence *sequence, uint32_t first, ui
     frame around = frame_from_z(z);
     sampler_sequence alone = *sequence, together = *sequence, plainly = *sequence;
     float best[3][RAY_FAN_MAX], plain[3][RAY_FAN_MAX];
-    gather_directions(&together, first, count, &around, is_below, best);
-    gather_directions_plain(&plainly, first, count, &around, is_below, plain);
+    float u[2][RAY_FAN_MAX];
+    gather_numbers(&together, first, count, u);
+    gather_directions(u, count, &around, is_below, best);
+    gather_numbers_plain(&plainly, first, count, u);
+    gather_directions_plain(u, count, &around, is_below, plain);
     for (uint32_t i = 0; i < count; i++) {
         vec3 d = direction_alone(&alone, first + i, &around, is_below);
         const float expected[3] = {d.x, d.y, d.z};
@@ -65,7 +68,9 @@ static void they_are_spread_by_the_cosine(void **state)
     double cosines = 0.0, squares = 0.0, x = 0.0, y = 0.0;
     float d[3][RAY_FAN_MAX];
     for (uint32_t first = 0; first < 1 << 12; first += RAY_FAN_MAX) {
-        gather_directions(&sequence, first, RAY_FAN_MAX, &around, false, d);
+        float u[2][RAY_FAN_MAX];
+        gather_numbers(&sequence, first, RAY_FAN_MAX, u);
+        gather_directions(u, RAY_FAN_MAX, &around, false, d);
         for (uint32_t i = 0; i < RAY_FAN_MAX; i++) {
             vec3 local = frame_to_local(&around, (vec3){d[0][i], d[1][i], d[2][i]});
             cosines += (double)local.z, squares += (double)local.z * (double)local.z;

@@ -53,7 +53,7 @@ static void put_out(lit *l)
 
 static vec3 guided(const incident_guide *g, vec2 u, float *out_weight)
 {
-    *out_weight = incident_guide_warp(g, &u);
+    *out_weight = incident_guide_warp_one(g, &u);
     return frame_to_world(&g->around, sample_cosine_hemisphere(u));
 }
 
@@ -79,7 +79,7 @@ static void the_density_integrates_to_one(void **state)
         float least = INFINITY, most = 0.0f;
         for (int k = 0; k < STEPS * STEPS; k++) {
             vec2 u = {((float)(k / STEPS) + 0.5f) / STEPS, ((float)(k % STEPS) + 0.5f) / STEPS}, v = u;
-            float weight, again = incident_guide_warp(&g, &v);
+            float weight, again = incident_guide_warp_one(&g, &v);
             assert_true(v.x >= 0.0f && v.x < 1.0f && v.y >= 0.0f && v.y < 1.0f);
             vec3 d = guided(&g, u, &weight), even = frame_to_world(&g.around, sample_cosine_hemisphere(u));
             assert_true(weight == again && vec3_dot(d, UP) > 0.0f);
@@ -101,6 +101,38 @@ static void the_density_integrates_to_one(void **state)
     }
 }
 
+/* To the bit, with any instructions, and for any number of places. */
+static void many_are_warped_as_each_alone(void **state)
+{
+    (void)state;
+    rng random = test_random(7);
+    photon_set set = set_for(FEW_PHOTONS);
+    vec3 from = vec3_normalize((vec3){0.6f, -0.3f, 0.7f});
+    for (uint32_t k = 0; k < FEW_PHOTONS; k++)
+        add(&set, &random, UP, k % 3 ? from : cosine_around(UP, &random), true);
+    lit l;
+    light_up(&l, &set, 0.9f, 1);
+    incident_guide g;
+    assert_true(incident_light_find(&l.light, MIDDLE, UP, &g));
+    for (uint32_t round = 0; round < 40 * INCIDENT_WARPS_MAX / FEWER; round++) {
+        float u[2][INCIDENT_WARPS_MAX], many[2][INCIDENT_WARPS_MAX], weights[INCIDENT_WARPS_MAX];
+        uint32_t count = 1 + round % INCIDENT_WARPS_MAX;
+        for (uint32_t i = 0; i < INCIDENT_WARPS_MAX; i++) {
+            vec2 place = rng_vec2(&random);
+            u[0][i] = i % 16 == 3 ? 0x1.fffffep-1f : i % 16 == 4 ? 0.0f : place.x;
+            u[1][i] = i % 16 == 5 ? 0x1.fffffep-1f : i % 16 == 4 ? 0.0f : place.y;
+        }
+        memcpy(many, u, sizeof u);
+        incident_guide_warp(&g, count, many, weights);
+        for (uint32_t i = 0; i < count; i++) {
+            vec2 alone = {u[0][i], u[1][i]};
+            float weight = incident_guide_warp_one(&g, &alone);
+            assert_true(many[0][i] == alone.x && many[1][i] == alone.y && weights[i] == weight);
+        }
+    }
+    put_out(&l);
+}
+
 /* Places in order stay in order: what is stratified stays so. */
 static void the_warp_keeps_order(void **state)
 {
@@ -116,8 +148,8 @@ static void the_warp_keeps_order(void **state)
     vec2 before_x = {-1.0f, 0.0f}, before_y = {0.0f, -1.0f};
     for (int k = 0; k < 4096; k++) {
         vec2 x = {(float)k / 4096.0f, 0.3f}, y = {0.7f, (float)k / 4096.0f};
-        incident_guide_warp(&g, &x);
-        incident_guide_warp(&g, &y);
+        incident_guide_warp_one(&g, &x);
+        incident_guide_warp_one(&g, &y);
         assert_true(x.x >= before_x.x && y.y >= before_y.y);
         before_x = x, before_y = y;
     }
@@ -226,7 +258,7 @@ static void without_photons_or_share_there_is_nothing(void **state)
     /* photons without power say nothing: the cosine */
     assert_true(incident_light_find(&black.light, MIDDLE, UP, &g));
     vec2 u = {0.3f, 0.8f};
-    assert_close(incident_guide_warp(&g, &u), 1.0, 1e-3);
+    assert_close(incident_guide_warp_one(&g, &u), 1.0, 1e-3);
     assert_close(u.x, 0.3, 1e-3);
     assert_close(u.y, 0.8, 1e-3);
     put_out(&none);
@@ -261,6 +293,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_density_integrates_to_one),
+        cmocka_unit_test(many_are_warped_as_each_alone),
         cmocka_unit_test(the_warp_keeps_order),
         cmocka_unit_test(rays_go_where_photons_came_from),
         cmocka_unit_test(light_straight_from_lamps_does_not_guide),
