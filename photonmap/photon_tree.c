@@ -3,6 +3,7 @@
  * Threads: built by the run's workers. */
 #include "photon_tree.h"
 
+#include "disc_kernels.h"
 #include "parallel_for.h"
 
 #include <assert.h>
@@ -142,10 +143,14 @@ static void split_node(const run_context *run, photon_tree *tree, photon *p, uin
 static void split_subtree(const run_context *run, photon_tree *tree, photon *p, uint32_t level, uint64_t place)
 {
     range r = node_range(tree, level, place);
-    if (r.low == r.high || run_is_cancelled(run))
+    bool is_empty = r.low == r.high;
+    /* searches look at the lowest levels as a whole: what is empty there is to lie beyond planes at infinity, all the
+     * way down */
+    if (run_is_cancelled(run) || (is_empty && tree->depth - level >= DISC_SUBTREE_LEVELS))
         return;
     if (level == tree->depth) {
-        photon_block_from_records(&tree->blocks[place], r.high - r.low);
+        if (!is_empty)
+            photon_block_from_records(&tree->blocks[place], r.high - r.low);
         return;
     }
     split_node(run, tree, p, level, place);
@@ -180,7 +185,7 @@ ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, d
         tree.depth++;
     assert(tree.depth < PHOTON_TREE_DEPTH_MAX);
     if (tree.depth > 0) {
-        tree.nodes = calloc(((size_t)1 << tree.depth) - 1, sizeof *tree.nodes); /* zeros where nothing is below */
+        tree.nodes = calloc(((size_t)1 << tree.depth) - 1, sizeof *tree.nodes); /* zeros where nothing is near */
         if (!tree.nodes)
             return AG_ERROR_MEMORY;
     }

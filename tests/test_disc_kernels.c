@@ -178,12 +178,57 @@ static void leaves_of_subtrees_are_found(void **state)
     test_run_reset(&r);
 }
 
+/* Trees of all fillings of the last subtree, with blocks behind the last one that are not theirs: of another map, they
+ * would be found. */
+static void nothing_behind_the_last_leaf_is_found(void **state)
+{
+    (void)state;
+    enum { BLOCKS_MIN = 513, BLOCKS_MAX = 528, BEHIND = 8, WANTED = 20 }; /* deep: the tree's parts are built apart */
+    const disc_kernels *kernels[] = {&disc_kernels_plain, disc_kernels_best()};
+    const vec3 up = {0.0f, 0.0f, 1.0f}, low = {-1.0f, -0.1f, 0.0f}, high = {0.02f, 0.0f, 0.0f};
+    test_run r;
+    test_run_init(&r, 1);
+    rng random = test_random(5);
+    for (uint32_t blocks = BLOCKS_MIN; blocks <= BLOCKS_MAX; blocks++) {
+        uint32_t count = blocks * PHOTON_BLOCK_LANES - blocks % 3;
+        photon *p = photon_records_create((blocks + BEHIND) * PHOTON_BLOCK_LANES);
+        assert_non_null(p);
+        for (uint32_t i = 0; i < (blocks + BEHIND) * PHOTON_BLOCK_LANES; i++) {
+            vec3 at = random_in_box(&random, low, high);
+            p[i] = (photon){.position = {at.x, at.y, at.z}, .normal = direction_encode(up)};
+        }
+        for (uint32_t i = blocks; i < blocks + BEHIND; i++)
+            photon_block_from_records((photon_block *)(void *)p + i, PHOTON_BLOCK_LANES);
+        photon_tree tree;
+        assert_int_equal(photon_tree_build(&r.run, p, count, 0.0, 1.0, &tree), AG_OK);
+        for (int round = 0; round < 200; round++) {
+            vec3 at = random_in_box(&random, low, high);
+            float radius = 0.2f * rng_float(&random);
+            for (int k = 0; k < 2; k++) {
+                photon_neighbor n[2 * WANTED + 64];
+                float other;
+                uint32_t found = disc_kernels_k_nearest(kernels[k], &tree, at, up, 0.5f, radius, WANTED, n, &other),
+                         within = 0;
+                for (uint32_t i = 0; i < count; i++)
+                    within += vec3_distance_squared(photon_block_position(tree.blocks, i), at) <= radius * radius;
+                assert_int_equal(found, within < WANTED ? within : WANTED);
+                for (uint32_t i = 0; i < found; i++)
+                    assert_true(photon_neighbor_index(n[i]) < count);
+            }
+        }
+        photon_tree_reset(&tree);
+        free(p);
+    }
+    test_run_reset(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sums_are_the_same),
         cmocka_unit_test(the_nearest_are_selected),
         cmocka_unit_test(leaves_of_subtrees_are_found),
+        cmocka_unit_test(nothing_behind_the_last_leaf_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
