@@ -281,7 +281,9 @@ static char *fan_world(void)
         "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-3 1 1 -1 2 1 1 0 1 3 1 1] \"float width\" 0.3\n"
         "ObjectBegin \"o\" Shape \"sphere\" Shape \"disk\" \"float radius\" 2 ObjectEnd\n"
         "AttributeBegin Translate 2 2 -1 Scale 0.4 0.5 0.6 ObjectInstance \"o\" AttributeEnd\n"
-        "AttributeBegin Translate -2 2 -1 Rotate 40 1 2 3 Scale 0.4 0.4 0.4 ObjectInstance \"o\" AttributeEnd\n";
+        "AttributeBegin Translate -2 2 -1 Rotate 40 1 2 3 Scale 0.4 0.4 0.4 ObjectInstance \"o\" AttributeEnd\n"
+        "AttributeBegin Translate -2 -2 1 Scale 0.4 0.4 0.4 ActiveTransform EndTime Translate 3 1 0 Rotate 150 1 2 -1 "
+        "ActiveTransform All ObjectInstance \"o\" AttributeEnd\n";
     char *ball = ball_text(20, 30, "Scale 6 6 6");
     size_t size = strlen(ball) + strlen(REST) + 64;
     char *text = malloc(size);
@@ -312,6 +314,7 @@ static void a_fan_meets_what_its_rays_meet_alone(void **state)
             uint32_t count = round % (RAY_FAN_MAX + 1);
             ray_fan f = fan_from(random_in_box(&random, (vec3){-3, -3, -3}, (vec3){3, 3, 3}), count, &random);
             f.common.meets_veils = round % 2;
+            f.common.time = rng_float(&random);
             scene_intersect_fan(s, &f);
             for (uint32_t i = 0; i < count; i++) {
                 rays++;
