@@ -78,34 +78,16 @@ void photon_neighbors_quickselect(photon_neighbor *n, uint32_t count, uint32_t w
     }
 }
 
-/* On a surface the squared distances are spread evenly, so a histogram of them leaves only a few to be compared; all
- * else moves without a branch to be mispredicted. */
+/* On a surface the squared distances are spread evenly, so a histogram of them leaves only a few to be compared. */
 static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, float limit)
 {
-    uint32_t histogram[DISC_BINS] = {0};
-    float scale = limit > 0x1p-100f ? (float)(DISC_BINS - 1) / limit : 0.0f; /* smaller ones share a bin: no overflow */
-    for (uint32_t i = 0; i < count; i++)
-        histogram[(uint32_t)(photon_neighbor_distance_squared(n[i]) * scale)]++;
-    uint32_t before = 0, bin = 0; /* the bin of the last one wanted, and how many lie in those before it */
-    while (before + histogram[bin] < wanted)
-        before += histogram[bin++];
-    if (histogram[bin] > DISC_BIN_MAX) {
-        photon_neighbors_quickselect(n, count, wanted);
+    photon_selection s;
+    photon_selection_begin(&s, limit);
+    photon_selection_count(&s, n, 0, count);
+    if (!photon_selection_find_bin(&s, n, count, wanted))
         return;
-    }
-    photon_neighbor in_bin[DISC_BIN_MAX + 1];
-    uint32_t kept = 0, in_bin_count = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        photon_neighbor x = n[i];
-        uint32_t its_bin = (uint32_t)(photon_neighbor_distance_squared(x) * scale);
-        n[kept] = x;
-        kept += its_bin < bin;
-        in_bin[in_bin_count] = x;
-        in_bin_count += its_bin == bin;
-    }
-    photon_neighbors_quickselect(in_bin, in_bin_count, wanted - kept);
-    for (uint32_t i = 0; kept < wanted; i++)
-        n[kept++] = in_bin[i];
+    photon_selection_part(&s, n, 0, count);
+    photon_selection_end(&s, n, wanted);
 }
 
 static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, uint32_t count, photon_disc_sums *out_sums,

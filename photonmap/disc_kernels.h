@@ -8,6 +8,8 @@
 
 #include "photon_query.h"
 
+#include <string.h>
+
 /* Photons found so far. */
 typedef struct photon_collection {
     photon_neighbor *neighbors;
@@ -97,9 +99,69 @@ static inline bool photon_disc_keep(const photon_disc *disc, photon_neighbor n, 
 /* The `wanted` nearest, as disc_kernels.select has them, by comparisons alone. */
 void photon_neighbors_quickselect(photon_neighbor *neighbors, uint32_t count, uint32_t wanted);
 
+/* --- what both kinds of select share --- */
+
 /* Neighbours are told apart by so many steps of squared distance before they are compared; where more than BIN_MAX
  * share the step of the last one wanted, all are compared. */
 enum { DISC_BINS = 64, DISC_BIN_MAX = 64 };
+
+typedef struct photon_selection {
+    float scale; /* from squared distance to bin */
+    uint32_t histogram[DISC_BINS];
+    uint32_t bin;                /* of the last one wanted */
+    uint32_t kept, in_bin_count; /* moved to the front; put aside, since they are of that bin */
+    photon_neighbor in_bin[DISC_BIN_MAX + 1];
+} photon_selection;
+
+static inline void photon_selection_begin(photon_selection *s, float limit)
+{
+    memset(s->histogram, 0, sizeof s->histogram);
+    s->scale = limit > 0x1p-100f ? (float)(DISC_BINS - 1) / limit : 0.0f; /* smaller ones share a bin: no overflow */
+    s->kept = s->in_bin_count = 0;
+}
+
+static inline uint32_t photon_selection_bin(const photon_selection *s, photon_neighbor n)
+{
+    return (uint32_t)(photon_neighbor_distance_squared(n) * s->scale);
+}
+
+static inline void photon_selection_count(photon_selection *s, const photon_neighbor *n, uint32_t begin, uint32_t end)
+{
+    for (uint32_t i = begin; i < end; i++)
+        s->histogram[photon_selection_bin(s, n[i])]++;
+}
+
+/* Once all are counted. false: too many share the bin, and all have been compared instead. */
+static inline bool photon_selection_find_bin(photon_selection *s, photon_neighbor *n, uint32_t count, uint32_t wanted)
+{
+    uint32_t before = 0;
+    for (s->bin = 0; before + s->histogram[s->bin] < wanted; s->bin++)
+        before += s->histogram[s->bin];
+    if (s->histogram[s->bin] <= DISC_BIN_MAX)
+        return true;
+    photon_neighbors_quickselect(n, count, wanted);
+    return false;
+}
+
+/* All moves without a branch to be mispredicted. */
+static inline void photon_selection_part(photon_selection *s, photon_neighbor *n, uint32_t begin, uint32_t end)
+{
+    for (uint32_t i = begin; i < end; i++) {
+        photon_neighbor x = n[i];
+        uint32_t its_bin = photon_selection_bin(s, x);
+        n[s->kept] = x;
+        s->kept += its_bin < s->bin;
+        s->in_bin[s->in_bin_count] = x;
+        s->in_bin_count += its_bin == s->bin;
+    }
+}
+
+/* Once all are parted. */
+static inline void photon_selection_end(photon_selection *s, photon_neighbor *n, uint32_t wanted)
+{
+    photon_neighbors_quickselect(s->in_bin, s->in_bin_count, wanted - s->kept);
+    memcpy(n + s->kept, s->in_bin, (wanted - s->kept) * sizeof *n);
+}
 
 extern const disc_kernels disc_kernels_plain;
 

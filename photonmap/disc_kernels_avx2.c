@@ -205,52 +205,35 @@ AVX2 static inline __m256 distances(__m256i low, __m256i high)
 
 AVX2 static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, float limit)
 {
-    uint32_t histogram[DISC_BINS] = {0};
-    float scale = limit > 0x1p-100f ? (float)(DISC_BINS - 1) / limit : 0.0f; /* smaller ones share a bin: no overflow */
-    __m256 scales = _mm256_set1_ps(scale);
+    photon_selection s;
+    photon_selection_begin(&s, limit);
+    __m256 scale = _mm256_set1_ps(s.scale);
     uint32_t whole = count & ~(uint32_t)(WIDTH - 1);
     for (uint32_t i = 0; i < whole; i += WIDTH) {
         _Alignas(32) uint32_t bin[WIDTH];
         __m256 d = distances(load(&n[i]), load(&n[i + 4]));
-        _mm256_store_si256((__m256i *)(void *)bin, _mm256_cvttps_epi32(_mm256_mul_ps(d, scales)));
+        _mm256_store_si256((__m256i *)(void *)bin, _mm256_cvttps_epi32(_mm256_mul_ps(d, scale)));
         for (uint32_t k = 0; k < WIDTH; k++)
-            histogram[bin[k]]++;
+            s.histogram[bin[k]]++;
     }
-    for (uint32_t i = whole; i < count; i++)
-        histogram[(uint32_t)(photon_neighbor_distance_squared(n[i]) * scale)]++;
-    uint32_t before = 0, bin = 0; /* the bin of the last one wanted, and how many lie in those before it */
-    while (before + histogram[bin] < wanted)
-        before += histogram[bin++];
-    if (histogram[bin] > DISC_BIN_MAX) {
-        photon_neighbors_quickselect(n, count, wanted);
+    photon_selection_count(&s, n, whole, count);
+    if (!photon_selection_find_bin(&s, n, count, wanted))
         return;
-    }
-    photon_neighbor in_bin[DISC_BIN_MAX + 1];
-    uint32_t kept = 0, in_bin_count = 0;
-    __m256i chosen = _mm256_set1_epi32((int)bin);
+    __m256i chosen = _mm256_set1_epi32((int)s.bin);
     for (uint32_t i = 0; i < whole; i += WIDTH) {
         /* both are read before either is written over */
         __m256i low = load(&n[i]), high = load(&n[i + 4]);
-        __m256i its_bin = _mm256_cvttps_epi32(_mm256_mul_ps(distances(low, high), scales));
+        __m256i its_bin = _mm256_cvttps_epi32(_mm256_mul_ps(distances(low, high), scale));
         its_bin = _mm256_permute4x64_epi64(its_bin, _MM_SHUFFLE(3, 1, 2, 0));
         uint32_t nearer = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(chosen, its_bin)));
         uint32_t in = (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(chosen, its_bin)));
         for (; in; in &= in - 1)
-            in_bin[in_bin_count++] = n[i + (uint32_t)__builtin_ctz(in)];
-        kept += store_some(n + kept, low, nearer & 15);
-        kept += store_some(n + kept, high, nearer >> 4);
+            s.in_bin[s.in_bin_count++] = n[i + (uint32_t)__builtin_ctz(in)];
+        s.kept += store_some(n + s.kept, low, nearer & 15);
+        s.kept += store_some(n + s.kept, high, nearer >> 4);
     }
-    for (uint32_t i = whole; i < count; i++) {
-        photon_neighbor x = n[i];
-        uint32_t its_bin = (uint32_t)(photon_neighbor_distance_squared(x) * scale);
-        n[kept] = x;
-        kept += its_bin < bin;
-        in_bin[in_bin_count] = x;
-        in_bin_count += its_bin == bin;
-    }
-    photon_neighbors_quickselect(in_bin, in_bin_count, wanted - kept);
-    for (uint32_t i = 0; kept < wanted; i++)
-        n[kept++] = in_bin[i];
+    photon_selection_part(&s, n, whole, count);
+    photon_selection_end(&s, n, wanted);
 }
 
 AVX2 static inline int64_t sum_of(__m256i v)
