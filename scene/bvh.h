@@ -1,4 +1,4 @@
-/* bvh.h: casting rays into the scene; bvh_embree.c is the only file that knows how.
+/* bvh.h: casting rays into the scene; only bvh_embree.c and rays_embree.c know how.
  * Flow: scene_commit builds it; photon tracing and rendering cast rays.
  * Threads: built by the run's workers; then any number cast rays at once. */
 #ifndef AFTERGLOW_BVH_H
@@ -131,7 +131,7 @@ bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u);
 /* The density of shape_sample_area at a place on the shape with that geometric normal. */
 float shape_pdf_area(const shape *s, vec3 geometric_normal);
 
-/* shape.c's side of an intersection, for bvh_embree.c: fills in everything but distance, indices and time. u, v:
+/* shape.c's side of an intersection, for rays_embree.c: fills in everything but distance, indices and time. u, v:
  * Embree's barycentrics for meshes, u along curves; for all but meshes `position` comes in as the ray's point and is
  * put onto the surface. direction: the ray's, of any length; read for curves alone. */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,

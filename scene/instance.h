@@ -1,6 +1,6 @@
 /* instance.h: objects, which are kept once, and instances, which put them into the world, at rest or moving while the
  * shutter is open.
- * Flow: the scene file makes them; bvh_embree casts rays at them and asks here where in the world a hit lies.
+ * Flow: the scene file makes them; rays_embree casts rays at them and asks here where in the world a hit lies.
  * Threads: read-only once the scene is committed. */
 #ifndef AFTERGLOW_INSTANCE_H
 #define AFTERGLOW_INSTANCE_H

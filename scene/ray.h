@@ -1,5 +1,5 @@
 /* ray.h: a ray through the scene, with what it carries along.
- * Flow: the camera, lamps and surfaces start them; bvh_embree casts them. Threads: plain values. */
+ * Flow: the camera, lamps and surfaces start them; rays_embree casts them. Threads: plain values. */
 #ifndef AFTERGLOW_RAY_H
 #define AFTERGLOW_RAY_H
 

@@ -1,7 +1,7 @@
 /* shape.h: surfaces in world space: triangle meshes, spheres, cylinders, disks and curves.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6; orientation follows pbrt's:
  * a shape's outside is where its geometric normal points, ReverseOrientation turns it over.
- * Flow: the scene file makes shapes; bvh_embree casts rays at them; lights sample points on them.
+ * Flow: the scene file makes shapes; rays_embree casts rays at them; lights sample points on them.
  * Threads: read-only once the scene is committed. */
 #ifndef AFTERGLOW_SHAPE_H
 #define AFTERGLOW_SHAPE_H
