@@ -1,7 +1,6 @@
 /* rays_embree.c: rays cast at the scene's shapes, one by one and as fans, and what they hit. With bvh_embree.c the only
  * file that knows Embree. Rests on: Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing", 2014.
  * Flow: bvh_embree -> [here] -> passage. Threads: rays may be cast from any. */
-#define _GNU_SOURCE
 #include "bvh_embree.h"
 
 static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
