@@ -235,51 +235,67 @@ static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch
     return from;
 }
 
-/* The bearers that stand for up to PHOTON_LOOKUPS_MAX queries, by their places and numbers in order. */
-static void find_bearers(const photon_map *map, photon_walk *walk, const irradiance_query *queries,
-                         const uint64_t *order, uint32_t count, uint32_t *out_bearers)
-{
-    photon_lookup lookups[PHOTON_LOOKUPS_MAX];
-    for (uint32_t k = 0; k < count; k++) {
-        const irradiance_query *q = &queries[(uint32_t)order[k]];
-        lookups[k] = (photon_lookup){q->position, q->normal, (uint32_t)(order[k] >> 32)};
-    }
-    photon_map_nearest_many(map, walk, lookups, count, out_bearers);
-    for (uint32_t k = 0; k < count; k++)
-        if (out_bearers[k] != PHOTON_NONE)
-            __builtin_prefetch(photon_map_slot(map, out_bearers[k]));
-}
-
-void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
-                               uint32_t count, unsigned worker_index, rgb *out_irradiance)
+/* The bearers that stand for the queries, in their order; each takes the place in the high half of its query's entry.
+ */
+static void find_bearers(const photon_map *map, const irradiance_query *queries, uint64_t *order, uint32_t count)
 {
     enum { AT_ONCE = PHOTON_LOOKUPS_MAX };
-    const photon_map *map = cache->map;
-    irradiance_scratch *scratch = &cache->scratch[worker_index];
-    uint64_t *order = put_in_order(map, scratch, queries, count);
-    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->bearers.count > 0;
-    uint32_t waiting = 0, bearers[AT_ONCE];
     photon_walk walk;
     photon_walk_init(&walk, &map->bearers);
     for (uint32_t begin = 0; begin < count; begin += AT_ONCE) {
-        uint32_t end = count - begin < AT_ONCE ? count : begin + AT_ONCE;
-        if (run_is_cancelled(run))
-            return;
-        if (is_cached) {
-            find_bearers(map, &walk, queries, order + begin, end - begin, bearers);
-            for (uint32_t k = end; k < end + AT_ONCE && k < count; k++) /* the next ones */
-                __builtin_prefetch(&queries[(uint32_t)order[k]]);
+        uint32_t some = count - begin < AT_ONCE ? count - begin : AT_ONCE, bearers[AT_ONCE];
+        photon_lookup lookups[AT_ONCE];
+        for (uint32_t k = 0; k < some; k++) {
+            const irradiance_query *q = &queries[(uint32_t)order[begin + k]];
+            lookups[k] = (photon_lookup){q->position, q->normal, (uint32_t)(order[begin + k] >> 32)};
         }
-        for (uint32_t k = begin; k < end; k++) {
-            uint32_t i = (uint32_t)order[k];
-            irradiance_request request;
-            ask(cache, is_cached ? bearers[k - begin] : PHOTON_NONE, queries[i].position, queries[i].normal,
-                worker_index, &request);
-            out_irradiance[i] = request.irradiance;
-            if (request.bearer != PHOTON_NONE) /* its place in the order is free by now */
-                order[waiting++] = (uint64_t)request.bearer << 32 | i;
-        }
+        for (uint32_t k = begin + some; k < begin + some + AT_ONCE && k < count; k++) /* the next ones */
+            __builtin_prefetch(&queries[(uint32_t)order[k]]);
+        photon_map_nearest_many(map, &walk, lookups, some, bearers);
+        for (uint32_t k = 0; k < some; k++)
+            order[begin + k] = (uint64_t)bearers[k] << 32 | (uint32_t)order[begin + k];
     }
+}
+
+/* In three sweeps, each of which has the processor's caches to itself: looking up, computing what nobody has claimed,
+ * and reading. */
+void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
+                               uint32_t count, unsigned worker_index, rgb *out_irradiance)
+{
+    enum { AHEAD = 16 };
+    const photon_map *map = cache->map;
+    irradiance_counters *counters = &cache->counters[worker_index];
+    uint64_t *order = put_in_order(map, &cache->scratch[worker_index], queries, count);
+    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->bearers.count > 0;
+    counters->requests += count;
+    if (is_cached)
+        find_bearers(map, queries, order, count);
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t i = (uint32_t)order[k], bearer = is_cached ? (uint32_t)(order[k] >> 32) : PHOTON_NONE, word;
+        if (k % AHEAD == 0 && run_is_cancelled(run))
+            return;
+        if (bearer == PHOTON_NONE) {
+            order[k] = (uint64_t)PHOTON_NONE << 32 | i;
+            out_irradiance[i] = irradiance_cache_estimate(cache, queries[i].position, queries[i].normal, worker_index);
+            continue;
+        }
+        irradiance_slot *slot = photon_map_slot(map, bearer);
+        if (irradiance_word_state(irradiance_slot_read(slot)) == IRRADIANCE_EMPTY &&
+            irradiance_slot_try_claim(slot, claimer_of(cache, worker_index), &word))
+            compute(cache, bearer, worker_index);
+    }
+    uint32_t waiting = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t i = (uint32_t)order[k], bearer = (uint32_t)(order[k] >> 32);
+        if (bearer == PHOTON_NONE)
+            continue;
+        uint32_t word = irradiance_slot_read(photon_map_slot(map, bearer));
+        if (irradiance_word_state(word) == IRRADIANCE_READY)
+            out_irradiance[i] = photon_map_decode_irradiance(map, word & IRRADIANCE_VALUE_MASK);
+        else
+            order[waiting++] = order[k]; /* its place in the order is free by now */
+    }
+    counters->deferred += waiting;
     for (uint32_t k = 0; k < waiting; k++) {
         irradiance_request request = {.bearer = (uint32_t)(order[k] >> 32)};
         irradiance_cache_retry(cache, &request, worker_index);
