@@ -5,10 +5,10 @@
 static uint32_t find_leaves(const photon_query *q, photon_subtree subtree, float most, uint32_t *out_leaves)
 {
     uint32_t count = 0, base = (1u << q->tree->depth) - 1;
-    for (uint32_t way = 0; way < DISC_SUBTREE_LEAVES; way++) {
+    for (uint32_t way = 0; way < PHOTON_SUBTREE_LEAVES; way++) {
         photon_lanes offset = subtree.offset;
         uint32_t node = subtree.node;
-        for (uint32_t level = DISC_SUBTREE_LEVELS; level-- > 0;) {
+        for (uint32_t level = PHOTON_SUBTREE_LEVELS; level-- > 0;) {
             photon_tree_node n = q->tree->nodes[node];
             uint32_t goes_right = way >> level & 1;
             if (goes_right != (q->position[n.axis] >= n.split))
@@ -93,14 +93,9 @@ static void select_nearest(photon_neighbor *n, uint32_t count, uint32_t wanted, 
 static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, uint32_t count, photon_disc_sums *out_sums,
                              photon_neighbor *out_doubtful)
 {
-    uint32_t kept = 0, doubtful = 0;
+    uint32_t kept = 0;
     *out_sums = (photon_disc_sums){{0}, {0}};
-    for (uint32_t i = 0; i < count; i++) {
-        bool keeps = photon_disc_keep(disc, n[i], out_sums);
-        n[kept] = out_doubtful[doubtful] = n[i];
-        kept += keeps;
-        doubtful += !keeps;
-    }
+    photon_disc_part(disc, n, 0, count, &kept, out_sums, out_doubtful);
     return kept;
 }
 

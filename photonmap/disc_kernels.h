@@ -34,11 +34,8 @@ typedef struct photon_disc {
     int flux_exponent_max; /* of any photon of the map */
 } photon_disc;
 
-/* Leaves are found by subtrees of so many levels. */
-enum { DISC_SUBTREE_LEVELS = 3, DISC_SUBTREE_LEAVES = 1 << DISC_SUBTREE_LEVELS };
-
 typedef struct disc_kernels {
-    /* The leaves below a node that stands DISC_SUBTREE_LEVELS above them whose boxes are no farther than `most`, a
+    /* The leaves below a node that stands PHOTON_SUBTREE_LEVELS above them whose boxes are no farther than `most`, a
      * squared distance; out_leaves has room for all of them. Returns how many. */
     uint32_t (*find_leaves)(const photon_query *query, photon_subtree subtree, float most, uint32_t *out_leaves);
 
@@ -94,6 +91,19 @@ static inline bool photon_disc_keep(const photon_disc *disc, photon_neighbor n, 
         return false;
     photon_disc_add(disc, n, sums);
     return true;
+}
+
+/* sum_on_level of the neighbours from `begin` to `end`, when *in_out_kept of those before have been kept. */
+static inline void photon_disc_part(const photon_disc *disc, photon_neighbor *n, uint32_t begin, uint32_t end,
+                                    uint32_t *in_out_kept, photon_disc_sums *sums, photon_neighbor *doubtful)
+{
+    for (uint32_t i = begin; i < end; i++) {
+        photon_neighbor x = n[i];
+        bool keeps = photon_disc_keep(disc, x, sums);
+        doubtful[i - *in_out_kept] = x; /* all that was not kept is there */
+        n[*in_out_kept] = x;
+        *in_out_kept += keeps;
+    }
 }
 
 /* The `wanted` nearest, as disc_kernels.select has them, by comparisons alone. */

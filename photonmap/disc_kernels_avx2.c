@@ -364,12 +364,7 @@ AVX2 static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, u
         out_sums->flux[c] = sum_of(flux[c]);
         out_sums->offset[c] = sum_of_32(offsets[c]);
     }
-    for (; i < count; i++) {
-        bool keeps = photon_disc_keep(disc, n[i], out_sums);
-        n[kept] = out_doubtful[doubtful] = n[i];
-        kept += keeps;
-        doubtful += !keeps;
-    }
+    photon_disc_part(disc, n, i, count, &kept, out_sums, out_doubtful);
     return kept;
 }
 

@@ -96,6 +96,17 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker
     return irradiance_word(IRRADIANCE_READY, value);
 }
 
+/* The word of a bearer, computed first where nobody has claimed it; where another has, it need not be ready. */
+static uint32_t demand(irradiance_cache *cache, uint32_t bearer, unsigned worker_index)
+{
+    irradiance_slot *slot = photon_map_slot(cache->map, bearer);
+    uint32_t word = irradiance_slot_read(slot);
+    if (irradiance_word_state(word) == IRRADIANCE_EMPTY &&
+        irradiance_slot_try_claim(slot, claimer_of(cache, worker_index), &word))
+        word = compute(cache, bearer, worker_index);
+    return word;
+}
+
 /* The word of a photon that somebody is computing, once it is ready. Holds no claim meanwhile, but those that it takes
  * over. */
 static uint32_t await(irradiance_cache *cache, uint32_t index, unsigned worker_index)
@@ -126,11 +137,8 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
     (void)block;
     const precompute_job *job = user;
     irradiance_cache *cache = job->cache;
-    for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++) {
-        uint32_t word;
-        if (irradiance_slot_try_claim(photon_map_slot(cache->map, (uint32_t)i), claimer_of(cache, worker_index), &word))
-            compute(cache, (uint32_t)i, worker_index);
-    }
+    for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
+        demand(cache, (uint32_t)i, worker_index);
     /* what other processes are at, or have left: nothing is held here */
     for (uint64_t i = begin; cache->owners && i < end && !run_is_cancelled(job->run); i++)
         await(cache, (uint32_t)i, worker_index);
@@ -182,11 +190,7 @@ static void ask(irradiance_cache *cache, uint32_t index, vec3 position, vec3 nor
         out_request->irradiance = irradiance_cache_estimate(cache, position, normal, worker_index);
         return;
     }
-    irradiance_slot *slot = photon_map_slot(cache->map, index);
-    uint32_t word = irradiance_slot_read(slot);
-    if (irradiance_word_state(word) == IRRADIANCE_EMPTY &&
-        irradiance_slot_try_claim(slot, claimer_of(cache, worker_index), &word))
-        word = compute(cache, index, worker_index);
+    uint32_t word = demand(cache, index, worker_index);
     if (irradiance_word_state(word) == IRRADIANCE_READY) {
         fulfil(cache, word, out_request);
         return;
@@ -262,7 +266,7 @@ static void find_bearers(const photon_map *map, const irradiance_query *queries,
 void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
                                uint32_t count, unsigned worker_index, rgb *out_irradiance)
 {
-    enum { AHEAD = 16 };
+    enum { CANCEL_EVERY = 16 };
     const photon_map *map = cache->map;
     irradiance_counters *counters = &cache->counters[worker_index];
     uint64_t *order = put_in_order(map, &cache->scratch[worker_index], queries, count);
@@ -271,18 +275,15 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
     if (is_cached)
         find_bearers(map, queries, order, count);
     for (uint32_t k = 0; k < count; k++) {
-        uint32_t i = (uint32_t)order[k], bearer = is_cached ? (uint32_t)(order[k] >> 32) : PHOTON_NONE, word;
-        if (k % AHEAD == 0 && run_is_cancelled(run))
+        uint32_t i = (uint32_t)order[k], bearer = is_cached ? (uint32_t)(order[k] >> 32) : PHOTON_NONE;
+        if (k % CANCEL_EVERY == 0 && run_is_cancelled(run))
             return;
         if (bearer == PHOTON_NONE) {
             order[k] = (uint64_t)PHOTON_NONE << 32 | i;
             out_irradiance[i] = irradiance_cache_estimate(cache, queries[i].position, queries[i].normal, worker_index);
             continue;
         }
-        irradiance_slot *slot = photon_map_slot(map, bearer);
-        if (irradiance_word_state(irradiance_slot_read(slot)) == IRRADIANCE_EMPTY &&
-            irradiance_slot_try_claim(slot, claimer_of(cache, worker_index), &word))
-            compute(cache, bearer, worker_index);
+        demand(cache, bearer, worker_index);
     }
     uint32_t waiting = 0;
     for (uint32_t k = 0; k < count; k++) {

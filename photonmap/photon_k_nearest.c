@@ -36,8 +36,8 @@ static void keep_nearest(const disc_kernels *kernels, uint32_t wanted, photon_co
 static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first_leaf, uint32_t wanted,
                     photon_collection *c)
 {
-    enum { LEAVES = 4 * DISC_SUBTREE_LEAVES };
-    uint32_t leaves[LEAVES], depth = q->tree->depth, height = depth < DISC_SUBTREE_LEVELS ? 0 : DISC_SUBTREE_LEVELS;
+    enum { LEAVES = 4 * PHOTON_SUBTREE_LEAVES };
+    uint32_t leaves[LEAVES], depth = q->tree->depth, height = depth < PHOTON_SUBTREE_LEVELS ? 0 : PHOTON_SUBTREE_LEVELS;
     photon_subtree next = {photon_lanes_fill(0.0f), (((1u << depth) + first_leaf) >> height) - 1};
     stack_other_sides(q, next.node, height, c->limit);
     for (bool is_left = true; is_left;) {
@@ -50,7 +50,7 @@ static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first
             for (; before < count; before++)
                 photon_block_prefetch(&q->tree->blocks[leaves[before]]);
             is_left = photon_query_next(q, c->limit, height, &next);
-        } while (is_left && count + DISC_SUBTREE_LEAVES <= LEAVES);
+        } while (is_left && count + PHOTON_SUBTREE_LEAVES <= LEAVES);
         uint32_t done = kernels->collect(q, leaves, count, c);
         for (; done < count; done += kernels->collect(q, leaves + done, count - done, c)) {
             keep_nearest(kernels, wanted, c);

@@ -3,7 +3,6 @@
  * Threads: built by the run's workers. */
 #include "photon_tree.h"
 
-#include "disc_kernels.h"
 #include "parallel_for.h"
 
 #include <assert.h>
@@ -146,7 +145,7 @@ static void split_subtree(const run_context *run, photon_tree *tree, photon *p, 
     bool is_empty = r.low == r.high;
     /* searches look at the lowest levels as a whole: what is empty there is to lie beyond planes at infinity, all the
      * way down */
-    if (run_is_cancelled(run) || (is_empty && tree->depth - level >= DISC_SUBTREE_LEVELS))
+    if (run_is_cancelled(run) || (is_empty && tree->depth - level >= PHOTON_SUBTREE_LEVELS))
         return;
     if (level == tree->depth) {
         if (!is_empty)

@@ -214,9 +214,8 @@ static bool find_guide(const transport *t, const vertex *v, incident_guide *out_
     const bsdf *b = &v->scattering;
     if (!t->incident)
         return false;
-    bool is_inside = vec3_dot(b->out, b->geometric_normal) < 0.0f;
     return incident_light_find(t->incident, transport_map_place(t, v).position,
-                               is_inside ? vec3_negate(b->shading.z) : b->shading.z, out_guide);
+                               bsdf_is_below(b) ? vec3_negate(b->shading.z) : b->shading.z, out_guide);
 }
 
 void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,

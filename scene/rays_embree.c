@@ -209,12 +209,9 @@ const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, vec
 
 float scene_first_distance(const scene *s, scene_ray ray)
 {
-    struct RTCRayHit ray_hit;
-    ray_hit.ray = embree_ray(&ray, INFINITY);
-    ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    embree_intersect(s->bvh->scene, &ray_hit);
-    return ray_hit.ray.tfar;
+    ray_meeting met;
+    cast_one(s, &ray, INFINITY, &met);
+    return met.distance;
 }
 
 bool scene_occluded(const scene *s, scene_ray ray, float max_distance)

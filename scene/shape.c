@@ -230,13 +230,23 @@ float shape_pdf_area(const shape *s, vec3 geometric_normal)
     return s->kind == SHAPE_MESH ? 1.0f / s->area : quadric_pdf_area(s, geometric_normal);
 }
 
+typedef struct corners {
+    vec3 p0, p1, p2;
+} corners;
+
+static corners mesh_corners(const mesh *m, uint32_t triangle)
+{
+    return (corners){mesh_vertex(m, triangle, 0), mesh_vertex(m, triangle, 1), mesh_vertex(m, triangle, 2)};
+}
+
 /* The geometric normal, and the shading normal (the same where the mesh has none). */
-static vec3 mesh_normals(const shape *s, uint32_t primitive_index, float u, float v, vec3 *out_shading)
+static vec3 mesh_normals(const shape *s, uint32_t primitive_index, const corners *c, float u, float v,
+                         vec3 *out_shading)
 {
     const mesh *m = &s->as.mesh;
     const uint32_t *index = m->indices + 3 * (size_t)primitive_index;
     double length;
-    vec3 n = mesh_area_vector(m, primitive_index, &length);
+    vec3 n = area_vector(c->p0, c->p1, c->p2, &length);
     if (s->flip_normal)
         n = vec3_negate(n);
     *out_shading = n;
@@ -251,26 +261,24 @@ static vec3 mesh_normals(const shape *s, uint32_t primitive_index, float u, floa
     return vec3_face_forward(n, *out_shading); /* as pbrt: the given normals say where outside is */
 }
 
-static vec3 mesh_position(const mesh *m, uint32_t triangle, float u, float v)
+static vec3 position_between(const corners *c, float u, float v)
 {
-    vec3 p0 = mesh_vertex(m, triangle, 0), p1 = mesh_vertex(m, triangle, 1), p2 = mesh_vertex(m, triangle, 2);
-    return vec3_add_scaled(vec3_add_scaled(vec3_scale(p0, 1.0f - u - v), p1, u), p2, v);
+    return vec3_add_scaled(vec3_add_scaled(vec3_scale(c->p0, 1.0f - u - v), c->p1, u), c->p2, v);
 }
 
 static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, float v, surface_hit *h)
 {
     h->uv = (vec2){u + v, v}; /* as pbrt: (0, 0), (1, 0), (1, 1) */
     const mesh *m = &s->as.mesh;
-    const uint32_t *index = m->indices + 3 * (size_t)primitive_index;
-    float w = 1.0f - u - v;
-    vec3 p0 = mesh_vertex(m, primitive_index, 0), p1 = mesh_vertex(m, primitive_index, 1),
-         p2 = mesh_vertex(m, primitive_index, 2);
-    h->position = mesh_position(m, primitive_index, u, v);
+    corners c = mesh_corners(m, primitive_index);
+    h->position = position_between(&c, u, v);
     h->epsilon =
-        larger_size(larger_size(largest_size(p0), largest_size(p1)), largest_size(p2)) * SHAPE_EPSILON_RELATIVE;
-    h->geometric_normal = mesh_normals(s, primitive_index, u, v, &h->shading_normal);
+        larger_size(larger_size(largest_size(c.p0), largest_size(c.p1)), largest_size(c.p2)) * SHAPE_EPSILON_RELATIVE;
+    h->geometric_normal = mesh_normals(s, primitive_index, &c, u, v, &h->shading_normal);
     if (m->uvs) {
         const vec2 *t = m->uvs;
+        const uint32_t *index = m->indices + 3 * (size_t)primitive_index;
+        float w = 1.0f - u - v;
         h->uv.x = t[index[0]].x * w + t[index[1]].x * u + t[index[2]].x * v;
         h->uv.y = t[index[0]].y * w + t[index[1]].y * u + t[index[2]].y * v;
     }
@@ -282,8 +290,9 @@ bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, floa
 {
     if (s->kind == SHAPE_MESH) {
         vec3 shading;
-        *out_position = mesh_position(&s->as.mesh, primitive_index, u, v);
-        *out_geometric_normal = mesh_normals(s, primitive_index, u, v, &shading);
+        corners c = mesh_corners(&s->as.mesh, primitive_index);
+        *out_position = position_between(&c, u, v);
+        *out_geometric_normal = mesh_normals(s, primitive_index, &c, u, v, &shading);
         return true;
     }
     return s->kind != SHAPE_CURVES && quadric_bare_place_at(s, position, out_position, out_geometric_normal);

@@ -145,16 +145,16 @@ static void leaves_of_subtrees_are_found(void **state)
     test_run_init(&r, 2);
     photon *photons;
     photon_tree tree = make_tree(&r, &photons);
-    assert_true(tree.depth > DISC_SUBTREE_LEVELS);
+    assert_true(tree.depth > PHOTON_SUBTREE_LEVELS);
     rng random = test_random(4);
-    uint32_t base = (1u << (tree.depth - DISC_SUBTREE_LEVELS)) - 1, found_sum = 0;
+    uint32_t base = (1u << (tree.depth - PHOTON_SUBTREE_LEVELS)) - 1, found_sum = 0;
     for (uint32_t place = 0; place < 60 / FEWER; place++) {
         vec3 at = random_in_box(&random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){1.0f, 1.0f, 1.5f});
         photon_query q;
         photon_query_init(&q, &tree, at, (vec3){0.0f, 0.0f, 1.0f}, 0.5f);
         float most = place % 7 == 0 ? INFINITY : rng_float(&random);
         for (uint32_t i = 0; i <= base; i++) {
-            uint32_t leaves[2][DISC_SUBTREE_LEAVES];
+            uint32_t leaves[2][PHOTON_SUBTREE_LEAVES];
             photon_subtree subtree = {photon_lanes_fill(0.0f), base + i};
             if (i % 3 == 0)
                 subtree.offset = (photon_lanes){0.1f * rng_float(&random), 0.0f, -0.2f, 0.0f};
@@ -162,7 +162,7 @@ static void leaves_of_subtrees_are_found(void **state)
             assert_int_equal(count, best->find_leaves(&q, subtree, most, leaves[1]));
             assert_memory_equal(leaves[0], leaves[1], count * sizeof **leaves);
             found_sum += count;
-            for (uint32_t leaf = i * DISC_SUBTREE_LEAVES; i % 3 && leaf < (i + 1) * DISC_SUBTREE_LEAVES; leaf++) {
+            for (uint32_t leaf = i * PHOTON_SUBTREE_LEAVES; i % 3 && leaf < (i + 1) * PHOTON_SUBTREE_LEAVES; leaf++) {
                 _Alignas(16) float d[PHOTON_BLOCK_LANES];
                 bool is_found = false;
                 for (uint32_t k = 0; k < count; k++)

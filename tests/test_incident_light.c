@@ -60,6 +60,16 @@ static vec3 guided(const incident_guide *g, vec2 u, float *out_weight)
 enum { FEW_PHOTONS = 3000, STEPS = 256 };
 static const vec3 MIDDLE = {0.5f, 0.5f, 0.0f};
 
+/* Two photons of three; the third from anywhere. */
+static photon_set mostly_from_one_side(rng *random)
+{
+    photon_set set = set_for(FEW_PHOTONS);
+    vec3 from = vec3_normalize((vec3){0.6f, -0.3f, 0.7f});
+    for (uint32_t k = 0; k < FEW_PHOTONS; k++)
+        add(&set, random, UP, k % 3 ? from : cosine_around(UP, random), true);
+    return set;
+}
+
 /* By a regular grid: the weights' mean is the density's integral, and of weighted cosines pi / pi times their means. */
 static void the_density_integrates_to_one(void **state)
 {
@@ -67,10 +77,7 @@ static void the_density_integrates_to_one(void **state)
     const float shares[] = {0.1f, 0.5f, 1.0f};
     for (int i = 0; i < 3; i++) {
         rng random = test_random(1);
-        photon_set set = set_for(FEW_PHOTONS);
-        vec3 from = vec3_normalize((vec3){0.6f, -0.3f, 0.7f});
-        for (uint32_t k = 0; k < FEW_PHOTONS; k++)
-            add(&set, &random, UP, k % 3 ? from : cosine_around(UP, &random), true);
+        photon_set set = mostly_from_one_side(&random);
         lit l;
         light_up(&l, &set, shares[i], 1);
         incident_guide g;
@@ -106,10 +113,7 @@ static void many_are_warped_as_each_alone(void **state)
 {
     (void)state;
     rng random = test_random(7);
-    photon_set set = set_for(FEW_PHOTONS);
-    vec3 from = vec3_normalize((vec3){0.6f, -0.3f, 0.7f});
-    for (uint32_t k = 0; k < FEW_PHOTONS; k++)
-        add(&set, &random, UP, k % 3 ? from : cosine_around(UP, &random), true);
+    photon_set set = mostly_from_one_side(&random);
     lit l;
     light_up(&l, &set, 0.9f, 1);
     incident_guide g;
