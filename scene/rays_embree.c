@@ -95,7 +95,7 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
 /* --- fans --- */
 
 /* So few are cast one by one. */
-enum { PACKET = 8, SINGLES_MAX = 3 };
+enum { PACKET = 8, SINGLES_MAX = 15 };
 
 /* Those of one octant side by side, and there by one coordinate: what goes about the same way is cast together. */
 static void put_in_order(const ray_fan *f, uint8_t out_order[RAY_FAN_MAX])

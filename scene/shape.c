@@ -289,10 +289,10 @@ bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, floa
                          vec3 *out_geometric_normal)
 {
     if (s->kind == SHAPE_MESH) {
-        vec3 shading;
+        double length;
         corners c = mesh_corners(&s->as.mesh, primitive_index);
         *out_position = position_between(&c, u, v);
-        *out_geometric_normal = mesh_normals(s, primitive_index, &c, u, v, &shading);
+        *out_geometric_normal = area_vector(c.p0, c.p1, c.p2, &length);
         return true;
     }
     return s->kind != SHAPE_CURVES && quadric_bare_place_at(s, position, out_position, out_geometric_normal);
