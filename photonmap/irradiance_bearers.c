@@ -23,11 +23,21 @@ typedef struct choice {
     float reach_squared, min_cos;
 } choice;
 
-static bool stands_for(const choice *c, vec3 position, vec3 normal, uint32_t other)
+/* A bearer that stands for photons around it. */
+typedef struct chosen {
+    vec3 position, normal;
+} chosen;
+
+static chosen chosen_at(const choice *c, uint32_t index)
 {
-    vec3 its_normal = direction_decode(photon_block_normal(c->photons->blocks, other));
-    return vec3_distance_squared(position, photon_block_position(c->photons->blocks, other)) <= c->reach_squared &&
-           vec3_dot(normal, its_normal) > c->min_cos;
+    const photon_block *blocks = c->photons->blocks;
+    return (chosen){photon_block_position(blocks, index), direction_decode(photon_block_normal(blocks, index))};
+}
+
+static bool stands_for(const choice *c, const chosen *bearer, const chosen *other)
+{
+    return vec3_distance_squared(bearer->position, other->position) <= c->reach_squared &&
+           vec3_dot(bearer->normal, other->normal) > c->min_cos;
 }
 
 static photon record_of(const photon_tree *photons, uint32_t index)
@@ -44,20 +54,34 @@ static photon record_of(const photon_tree *photons, uint32_t index)
     return p;
 }
 
-/* The bearers of a run of photons, as records, where there is room for them. Returns how many they are; when cancelled,
- * how many it got to. */
+/* So many of a run's bearers are asked whether they stand for a photon: its pick, and the last ones. */
+enum { ASKED = 8 };
+
+/* The bearers of a run of photons, as records, where there is room for them: its pick, and of what that does not stand
+ * for, what none before stands for. Returns how many they are; when cancelled, how many it got to. */
 static uint32_t choose(const choice *c, uint32_t run, photon *records)
 {
-    const photon_block *blocks = c->photons->blocks;
     uint64_t all = c->photons->count, begin = run * all / c->runs, end = (run + 1) * all / c->runs;
     uint32_t pick = (uint32_t)(begin + ((hash_mix64(run + UINT64_C(0x62656172)) >> 32) * (end - begin) >> 32));
-    vec3 position = photon_block_position(blocks, pick), normal = direction_decode(photon_block_normal(blocks, pick));
-    uint32_t count = 0;
+    chosen asked[ASKED] = {chosen_at(c, pick)};
+    uint32_t count = 0, asked_count = 1, oldest = 1;
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         if ((i & CANCEL_MASK) == 0 && run_is_cancelled(c->run))
             break;
-        if (i != pick && stands_for(c, position, normal, i))
-            continue;
+        if (i != pick) {
+            chosen at = chosen_at(c, i);
+            bool is_borne = false;
+            for (uint32_t k = 0; k < asked_count && !is_borne; k++)
+                is_borne = stands_for(c, &asked[k], &at);
+            if (is_borne)
+                continue;
+            if (asked_count < ASKED) {
+                asked[asked_count++] = at;
+            } else {
+                asked[oldest] = at;
+                oldest = oldest + 1 < ASKED ? oldest + 1 : 1;
+            }
+        }
         if (records)
             records[count] = record_of(c->photons, i);
         count++;

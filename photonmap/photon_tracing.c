@@ -15,6 +15,8 @@
 /* A path ends here at the latest; what it still carries is booked as truncated. */
 enum { SCATTERING_CAP = 100 };
 enum { PATHS_PER_BLOCK = 256, BLOCKS_PER_FIRST_ROUND = 32, BLOCKS_PER_ROUND_MAX = 1024 };
+/* The first round takes it that each path leaves so many photons; most leave fewer. */
+enum { FIRST_YIELD = 4 };
 /* While more blocks than this are wanted, a round does half of them: what it found lies beside the photons until it is
  * merged, and is to be small against them. */
 enum { BLOCKS_WHOLE_ROUND = 512 };
@@ -391,7 +393,7 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
     block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
     set.photons = photon_records_create(settings->wanted);
     ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
-    uint64_t next_path = 0, block_count = settings->wanted / PATHS_PER_BLOCK + 1; /* a photon a path */
+    uint64_t next_path = 0, block_count = settings->wanted / (FIRST_YIELD * PATHS_PER_BLOCK) + 1;
     if (block_count > BLOCKS_PER_FIRST_ROUND)
         block_count = BLOCKS_PER_FIRST_ROUND;
     while (status == AG_OK && set.count < settings->wanted) {

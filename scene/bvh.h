@@ -139,9 +139,10 @@ void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v
 /* The same, but uv may be missing. */
 void shape_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
                     surface_hit *out_hit);
-/* Position and geometric normal alone, as the same have them; false: not of this kind of shape. */
+/* Position and geometric normal alone, as the same have them, but for the normal's side; false: not of this kind of
+ * shape. */
 bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 *out_position,
-                         vec3 *out_geometric_normal);
+                         vec3 *out_normal);
 /* Nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */
 bool shape_intersect_quadric(const shape *s, vec3 origin, vec3 direction, float t_min, float t_max, float *out_t);
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);

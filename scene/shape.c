@@ -286,16 +286,16 @@ static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, f
 }
 
 bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 *out_position,
-                         vec3 *out_geometric_normal)
+                         vec3 *out_normal)
 {
     if (s->kind == SHAPE_MESH) {
         double length;
         corners c = mesh_corners(&s->as.mesh, primitive_index);
         *out_position = position_between(&c, u, v);
-        *out_geometric_normal = area_vector(c.p0, c.p1, c.p2, &length);
+        *out_normal = area_vector(c.p0, c.p1, c.p2, &length);
         return true;
     }
-    return s->kind != SHAPE_CURVES && quadric_bare_place_at(s, position, out_position, out_geometric_normal);
+    return s->kind != SHAPE_CURVES && quadric_bare_place_at(s, position, out_position, out_normal);
 }
 
 static void surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
