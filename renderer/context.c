@@ -130,9 +130,8 @@ static ag_status load(ag_context *context, const char *path, const definitions *
     if (status != AG_OK)
         return status;
     context_end_phase(context, AG_PHASE_BVH, begin);
-    log_message(context->log, AG_LOG_INFO, "%u shapes, %u lights, %u materials; %.1f MB in the BVH (%s)",
-                s->shape_count, s->light_count, s->material_count, (double)bvh_memory_bytes(s->bvh) / 1e6,
-                bvh_isa(s->bvh));
+    log_message(context->log, AG_LOG_INFO, "shapes: %u; lights: %u; materials: %u; BVH: %.1f MB (%s)", s->shape_count,
+                s->light_count, s->material_count, (double)bvh_memory_bytes(s->bvh) / 1e6, bvh_isa(s->bvh));
     return AG_OK;
 }
 
