@@ -23,21 +23,21 @@ typedef struct choice {
     float reach_squared, min_cos;
 } choice;
 
-/* A bearer that stands for photons around it. */
-typedef struct chosen {
+typedef struct spot {
     vec3 position, normal;
-} chosen;
+} spot;
 
-static chosen chosen_at(const choice *c, uint32_t index)
+static spot spot_of(const choice *c, uint32_t photon_index)
 {
     const photon_block *blocks = c->photons->blocks;
-    return (chosen){photon_block_position(blocks, index), direction_decode(photon_block_normal(blocks, index))};
+    return (spot){photon_block_position(blocks, photon_index),
+                  direction_decode(photon_block_normal(blocks, photon_index))};
 }
 
-static bool stands_for(const choice *c, const chosen *bearer, const chosen *other)
+static bool is_near(const choice *c, const spot *a, const spot *b, float reach_squared)
 {
-    return vec3_distance_squared(bearer->position, other->position) <= c->reach_squared &&
-           vec3_dot(bearer->normal, other->normal) > c->min_cos;
+    return vec3_distance_squared(a->position, b->position) <= reach_squared &&
+           vec3_dot(a->normal, b->normal) > c->min_cos;
 }
 
 static photon record_of(const photon_tree *photons, uint32_t index)
@@ -57,30 +57,33 @@ static photon record_of(const photon_tree *photons, uint32_t index)
 /* So many of a run's bearers are asked whether they stand for a photon: its pick, and the last ones. */
 enum { ASKED = 8 };
 
-/* The bearers of a run of photons, as records, where there is room for them: its pick, and of what that does not stand
- * for, what none before stands for. Returns how many they are; when cancelled, how many it got to. */
+/* bearers: the pick first. The others have half the reach: they lie where a place may be far from all photons. */
+static bool is_stood_for(const choice *c, const spot *bearers, uint32_t count, const spot *photon_at)
+{
+    if (is_near(c, &bearers[0], photon_at, c->reach_squared))
+        return true;
+    for (uint32_t i = 1; i < count; i++)
+        if (is_near(c, &bearers[i], photon_at, 0.25f * c->reach_squared))
+            return true;
+    return false;
+}
+
+/* The bearers of a run of photons, as records, where there is room for them: its pick, and what none of those asked
+ * stands for. Returns how many they are; when cancelled, how many it got to. */
 static uint32_t choose(const choice *c, uint32_t run, photon *records)
 {
     uint64_t all = c->photons->count, begin = run * all / c->runs, end = (run + 1) * all / c->runs;
     uint32_t pick = (uint32_t)(begin + ((hash_mix64(run + UINT64_C(0x62656172)) >> 32) * (end - begin) >> 32));
-    chosen asked[ASKED] = {chosen_at(c, pick)};
-    uint32_t count = 0, asked_count = 1, oldest = 1;
+    spot asked[ASKED] = {spot_of(c, pick)};
+    uint32_t count = 0, others = 0;
     for (uint32_t i = (uint32_t)begin; i < (uint32_t)end; i++) {
         if ((i & CANCEL_MASK) == 0 && run_is_cancelled(c->run))
             break;
         if (i != pick) {
-            chosen at = chosen_at(c, i);
-            bool is_borne = false;
-            for (uint32_t k = 0; k < asked_count && !is_borne; k++)
-                is_borne = stands_for(c, &asked[k], &at);
-            if (is_borne)
+            spot at = spot_of(c, i);
+            if (is_stood_for(c, asked, others < ASKED - 1 ? others + 1 : ASKED, &at))
                 continue;
-            if (asked_count < ASKED) {
-                asked[asked_count++] = at;
-            } else {
-                asked[oldest] = at;
-                oldest = oldest + 1 < ASKED ? oldest + 1 : 1;
-            }
+            asked[1 + others++ % (ASKED - 1)] = at;
         }
         if (records)
             records[count] = record_of(c->photons, i);

@@ -7,8 +7,8 @@
  * Of every so many photons that follow each other in the map's order, and so lie together, one bears, picked by a hash:
  * a lane of its own in each block would favour the planes that blocks were parted by. So bearers are as dense as light
  * is, more evenly spread than photons picked one by one, and depend on nothing but the map. Of those of the run that
- * the picked one cannot stand for some bear too, so that one stands for each: in the dark, where photons lie far apart,
- * and where surfaces turn. */
+ * the picked one cannot stand for some bear too, until one is near each photon: in the dark, where photons lie far
+ * apart, and where surfaces turn. */
 #ifndef AFTERGLOW_IRRADIANCE_BEARERS_H
 #define AFTERGLOW_IRRADIANCE_BEARERS_H
 

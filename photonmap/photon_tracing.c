@@ -15,8 +15,9 @@
 /* A path ends here at the latest; what it still carries is booked as truncated. */
 enum { SCATTERING_CAP = 100 };
 enum { PATHS_PER_BLOCK = 256, BLOCKS_PER_FIRST_ROUND = 32, BLOCKS_PER_ROUND_MAX = 1024 };
-/* The first round takes it that each path leaves so many photons; most leave fewer. */
-enum { FIRST_YIELD = 4 };
+/* The first round takes it that each path leaves so many photons; most leave fewer. After one that leaves none at all
+ * comes one so many times as large. */
+enum { FIRST_YIELD = 4, NO_YIELD_GROWTH = 8 };
 /* While more blocks than this are wanted, a round does half of them: what it found lies beside the photons until it is
  * merged, and is to be small against them. */
 enum { BLOCKS_WHOLE_ROUND = 512 };
@@ -413,9 +414,9 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
             break;
         }
         /* as many blocks as the yield so far lets expect are needed, and one to spare */
-        double needed =
-            set.count > 0 ? (double)(settings->wanted - set.count) * (double)set.emitted_paths / set.count : 1e18;
-        double wanted_blocks = needed / PATHS_PER_BLOCK + 1.0;
+        double needed = (double)(settings->wanted - set.count) * (double)set.emitted_paths;
+        double wanted_blocks =
+            set.count > 0 ? needed / set.count / PATHS_PER_BLOCK + 1.0 : NO_YIELD_GROWTH * (double)block_count;
         if (wanted_blocks > BLOCKS_WHOLE_ROUND)
             wanted_blocks *= 0.5;
         block_count = wanted_blocks < BLOCKS_PER_ROUND_MAX ? (uint64_t)wanted_blocks : BLOCKS_PER_ROUND_MAX;

@@ -1,7 +1,7 @@
 /* test_irradiance_bearers.c: a fraction of the photons bears irradiance: the right number of them, one of each run of
- * neighbours and those it cannot stand for, no lane before others, the same for any number of threads; and what is
- * asked for through them is right, once computed, and the same bits on demand and precomputed. Threads: the map's, up
- * to 4. */
+ * neighbours and some of those it cannot stand for, no lane before others, the same for any number of threads; and what
+ * is asked for through them is right, once computed, and the same bits on demand and precomputed. Threads: the map's,
+ * up to 4. */
 /* ctest: sanitize */
 #include "photon_field.h"
 
@@ -103,7 +103,7 @@ static void bearers_are_spread_as_the_photons_are(void **state)
 }
 
 /* Photons on a line too far apart for one to stand for another, and photons at one place that look six ways, of which
- * six bear in each run. */
+ * no more than six bear in each run. */
 static void what_cannot_be_stood_for_bears(void **state)
 {
     (void)state;

@@ -168,7 +168,7 @@ typedef struct ag_render_settings {
     float irradiance_fraction; /* of the photons, how many bear irradiance, (0, 1]: gather rays look for the nearest of
                                   those, and each estimate is still of all photons. Less is faster, and blurs by about
                                   what the bearers are apart. Where photons lie far apart, and where surfaces turn, more
-                                  of them bear, so that all places have a bearer that stands for them. Default 1 */
+                                  of them bear, so that each photon has a bearer near. Default 1 */
     float gather_guiding;      /* how much the photons' directions decide where gather rays go, [0, 1]: the share of the
                                   rays that goes where light comes from, where photons are many; the rest goes by the
                                   cosine. 0: all. Less noise or more, the same light. Default 0.5 */
