@@ -23,8 +23,9 @@ typedef struct choice {
     float reach_squared, min_cos;
 } choice;
 
+/* Where a photon lies. */
 typedef struct spot {
-    vec3 position, normal;
+    vec3 position, normal; /* of the surface there */
 } spot;
 
 static spot spot_of(const choice *c, uint32_t photon_index)

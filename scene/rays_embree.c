@@ -94,7 +94,8 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
 
 /* --- fans --- */
 
-/* So few are cast one by one. */
+/* So few are cast one by one: a packet of rays that part soon takes longer than each alone (cornell-box, 8 rays a
+ * gather: 1.15 times in all). */
 enum { PACKET = 8, SINGLES_MAX = 15 };
 
 /* Those of one octant side by side, and there by one coordinate: what goes about the same way is cast together. */
