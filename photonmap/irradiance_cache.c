@@ -179,33 +179,26 @@ static void fulfil(const irradiance_cache *cache, uint32_t word, irradiance_requ
     request->irradiance = photon_map_decode_irradiance(cache->map, word & IRRADIANCE_VALUE_MASK);
 }
 
-/* Asks for what stands for the place: a photon's, or PHOTON_NONE: an estimate at the place itself. */
-static void ask(irradiance_cache *cache, uint32_t index, vec3 position, vec3 normal, unsigned worker_index,
-                irradiance_request *out_request)
+void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
+                          irradiance_request *out_request)
 {
     irradiance_counters *counters = &cache->counters[worker_index];
+    uint32_t bearer =
+        cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
     counters->requests++;
     out_request->bearer = PHOTON_NONE;
-    if (index == PHOTON_NONE) {
+    if (bearer == PHOTON_NONE) {
         out_request->irradiance = irradiance_cache_estimate(cache, position, normal, worker_index);
         return;
     }
-    uint32_t word = demand(cache, index, worker_index);
+    uint32_t word = demand(cache, bearer, worker_index);
     if (irradiance_word_state(word) == IRRADIANCE_READY) {
         fulfil(cache, word, out_request);
         return;
     }
     counters->deferred++;
-    out_request->bearer = index;
+    out_request->bearer = bearer;
     out_request->irradiance = rgb_gray(0.0f);
-}
-
-void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
-                          irradiance_request *out_request)
-{
-    uint32_t index =
-        cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
-    ask(cache, index, position, normal, worker_index, out_request);
 }
 
 /* The queries' numbers in the map's order, as the low halves; the high ones are places. By digits, from the lowest: as

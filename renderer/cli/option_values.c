@@ -48,25 +48,26 @@ bool parse_count(const char *text, uint64_t least, uint64_t *out_value)
     return true;
 }
 
-bool parse_bound(const char *text, float *out_value)
+bool parse_float(const char *text, float *out_value)
 {
     char *end;
     *out_value = strtof(text, &end);
-    return end != text && !*end && *out_value >= 0.0f && !isinf(*out_value);
+    return end != text && !*end;
+}
+
+bool parse_bound(const char *text, float *out_value)
+{
+    return parse_float(text, out_value) && *out_value >= 0.0f && !isinf(*out_value);
 }
 
 bool parse_fraction(const char *text, float *out_value)
 {
-    char *end;
-    *out_value = strtof(text, &end);
-    return end != text && !*end && *out_value > 0.0f && *out_value <= 1.0f;
+    return parse_float(text, out_value) && *out_value > 0.0f && *out_value <= 1.0f;
 }
 
 bool parse_share(const char *text, float *out_value)
 {
-    char *end;
-    *out_value = strtof(text, &end);
-    return end != text && !*end && *out_value >= 0.0f && *out_value <= 1.0f;
+    return parse_float(text, out_value) && *out_value >= 0.0f && *out_value <= 1.0f;
 }
 
 bool parse_seconds(const char *text, double *out_seconds)

@@ -11,6 +11,8 @@ bool parse_int(const char *text, int least, int most, int *out_value);
 bool parse_unsigned(const char *text, uint64_t most, uint64_t *out_value);
 /* Counts of photons, also as 2e6: least at least, and no more than a map can hold. */
 bool parse_count(const char *text, uint64_t least, uint64_t *out_value);
+/* Any number, infinity and what is not a number among them. */
+bool parse_float(const char *text, float *out_value);
 /* A finite number that is not negative. */
 bool parse_bound(const char *text, float *out_value);
 /* Above 0, 1 at most. */

@@ -219,6 +219,7 @@ static bool take_option(int code, const char *value, options *o)
         o->context.thread_count = is_valid ? (unsigned)threads : 0;
         break;
     }
+    /* what JSON can hold as an integer */
     case OPT_SEED: is_valid = o->has_seed = parse_unsigned(value, INT64_MAX, &r->seed); break;
     case OPT_SPP: is_valid = o->has_spp = parse_int(value, 1, 1 << 20, &r->samples_per_pixel); break;
     case OPT_SIZE: is_valid = o->has_size = parse_size(value, &r->width, &r->height); break;
@@ -282,12 +283,9 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_DISPLAY: o->output.display = value; break;
     case OPT_VIEW: o->output.view = value; break;
     case OPT_LOOK: o->output.look = value; break;
-    case OPT_EXPOSURE: {
-        char *end;
-        o->output.exposure_stops = strtof(value, &end);
-        is_valid = end != value && !*end && fabsf(o->output.exposure_stops) <= 100.0f;
+    case OPT_EXPOSURE:
+        is_valid = parse_float(value, &o->output.exposure_stops) && fabsf(o->output.exposure_stops) <= 100.0f;
         break;
-    }
     case OPT_WORKING_SPACE: o->context.working_space = value; break;
     case OPT_OUTPUT_SPACE: o->output.color_space = value; break;
     case OPT_LIST_DISPLAYS: o->lists_displays = true; break;
