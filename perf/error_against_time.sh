@@ -27,20 +27,19 @@ done
 
 # photons-caustic photons-samples a pixel-gather rays a sample, and where they differ from 1 and the scene's own: -fraction
 # that bears irradiance-photons of an estimate; and samples a pixel of path tracing
-photon_map_steps=(1000-100-4-1 3000-300-4-1 10000-1000-4-4 10000-1000-16-1 30000-3000-16-4 100000-10000-16-4
-    100000-10000-64-4 300000-30000-64-8
-    6000-100-1-4-0.25-25 8000-100-4-4-0.125-16 10000-100-4-4-0.0625-25 6000-100-4-7-0.0625-30 20000-1000-4-4-0.125-25
-    6000-100-4-8-0.0625-30 6000-100-8-5-0.0625-30 10000-1000-16-2-0.125-25 30000-3000-16-4-0.125-25)
+photon_map_steps=(3000-100-4-1 10000-300-4-1 30000-1000-4-4 30000-1000-16-1 100000-3000-16-4 300000-10000-16-8
+    5000-100-1-4-0.125-16 10000-300-4-2-0.125-25 20000-300-4-4-0.0625-30 40000-1000-4-6-0.0625-50 60000-1000-4-8-0.0625-60
+    60000-1000-4-12-0.0625-60 100000-1000-8-8-0.0625-60 100000-3000-16-4-0.125-60 200000-3000-16-8-0.125-60)
 path_steps=(1 4 16 64 256) parts=(all indirect)
 if [[ $quick == yes ]]; then photon_map_steps=(1000-100-4-1) path_steps=(64) parts=(indirect); fi
 
 scene_options() { # NAME: sets scene and options; false where it is not there
     case $1 in
-    cornell-box) scene=$suite_scenes/cornell-box/scene.pbrt options=(--size 60x60) ;;
-    veach-ajar) scene=$suite_scenes/veach-ajar/scene.pbrt options=(--size 80x45) ;;
+    cornell-box) scene=$suite_scenes/cornell-box/scene.pbrt options=(--size 160x160) ;;
+    veach-ajar) scene=$suite_scenes/veach-ajar/scene.pbrt options=(--size 160x90) ;;
     room)
         suite_room 20
-        scene=$room options=(--size 60x60 --nearest 50 --radius 0)
+        scene=$room options=(--size 160x160 --nearest 50 --radius 0)
         [[ $quick == yes ]] && options=(--size 20x20 --nearest 50 --radius 0)
         ;;
     *) suite_fail "--scenes does not know '$1'" ;;

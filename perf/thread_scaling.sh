@@ -51,36 +51,53 @@ for ((r = 1; r <= repeats; r++)); do
     done
 done
 
-# Ratios are taken within a repeat, and their medians told: both halves have seen the same noise.
+# Ratios are taken within a repeat, and their medians told: both halves have seen the same noise. work: all that grows
+# with the picture, from the first photon to the last pixel. either: photons and their tree do not depend on the way of
+# caching, and short as they are, both ways' runs are looked at.
 awk -v first="$first" -v list="$threads" -v repeats="$repeats" "$suite_awk"'
 FILENAME ~ /arithmetic/ { arithmetic[$1, $2] = $3; next }
+function keep(cache, phase, run, wall_s, cpu_s) {
+    t[cache, phase, $at["threads"], run] = wall_s
+    c[cache, phase, $at["threads"], run] = cpu_s
+}
 {
+    variant = $at["variant"]; r = $at["repeat"]; work = work_cpu = 0
     for (p = 1; p <= phases; p++) {
-        t[$at["variant"], name[p], $at["threads"], $at["repeat"]] = $at[name[p] "_s"]
-        if (name[p] "_cpu_s" in at) c[$at["variant"], name[p], $at["threads"], $at["repeat"]] = $at[name[p] "_cpu_s"]
+        wall_s = $at[name[p] "_s"]
+        cpu_s = name[p] "_cpu_s" in at ? $at[name[p] "_cpu_s"] : name[p] == "total" ? $at["cpu_s"] : ""
+        keep(variant, name[p], r, wall_s, cpu_s)
+        if (name[p] ~ /^(photons|map|precompute|render)$/) { work += wall_s; work_cpu += cpu_s }
+        if (name[p] ~ /^(photons|map)$/) keep("either", name[p], 2 * r - (variant == "on-demand"), wall_s, cpu_s)
     }
-    c[$at["variant"], "total", $at["threads"], $at["repeat"]] = $at["cpu_s"]
+    keep(variant, "work", r, work, work_cpu)
 }
 function show(x) { return x == "" ? "" : sprintf("%.4g", x) }
+function tell(cache, phase, runs,    i, r, m, mg, limit_of) {
+    for (i = 1; i <= count; i++) {
+        m = mg = 0
+        for (r = 1; r <= runs; r++) {
+            limit_of = cache == "either" ? int((r + 1) / 2) : r
+            wall[r] = t[cache, phase, n[i], r]; cpu[r] = c[cache, phase, n[i], r]
+            limit[r] = arithmetic[first, limit_of] / arithmetic[n[i], limit_of]
+            if (wall[r] > 1e-6) {
+                s[++m] = t[cache, phase, first, r] / wall[r]
+                e[m] = s[m] / limit[r]
+            }
+            if (c[cache, phase, first, r] > 0) g[++mg] = cpu[r] / c[cache, phase, first, r]
+        }
+        printf "%s,%s,%d,%.6f,%s,%s,%.4g,%s,%s\n", cache, phase, n[i], median(wall, runs), show(median(cpu, runs)),
+            show(median(s, m)), median(limit, runs), show(median(e, m)), show(median(g, mg))
+    }
+}
 BEGIN { phases = split("startup,load,bvh,photons,map,precompute,render,write,total", name, ",") }
 END {
     print "cache,phase,threads,wall_s,cpu_s,speedup,limit,efficiency,cpu_growth"
     count = split(list, n, ",")
+    name[phases + 1] = "work"
     split("on-demand,precompute", caches, ",")
-    for (k = 1; k <= 2; k++) for (p = 1; p <= phases; p++) for (i = 1; i <= count; i++) {
-        m = 0; mg = 0
-        for (r = 1; r <= repeats; r++) {
-            wall[r] = t[caches[k], name[p], n[i], r]; cpu[r] = c[caches[k], name[p], n[i], r]
-            limit[r] = arithmetic[first, r] / arithmetic[n[i], r]
-            if (wall[r] > 1e-6) {
-                s[++m] = t[caches[k], name[p], first, r] / wall[r]
-                e[m] = s[m] / limit[r]
-            }
-            if (c[caches[k], name[p], first, r] > 0) g[++mg] = cpu[r] / c[caches[k], name[p], first, r]
-        }
-        printf "%s,%s,%d,%.6f,%s,%s,%.4g,%s,%s\n", caches[k], name[p], n[i], median(wall, repeats),
-            show(median(cpu, repeats)), show(median(s, m)), median(limit, repeats), show(median(e, m)), show(median(g, mg))
-    }
+    for (k = 1; k <= 2; k++) for (p = 1; p <= phases + 1; p++) tell(caches[k], name[p], repeats)
+    tell("either", "photons", 2 * repeats)
+    tell("either", "map", 2 * repeats)
 }' "$out/arithmetic.csv" "$suite_runs" >"$out/scaling.csv"
 suite_json "$out/scaling.csv"
 
@@ -122,7 +139,7 @@ PLOT
 # What run.sh judges, with as many threads as cores; and how much of a core one thread of arithmetic got.
 suite_ratio scaling.machine_share "$(awk -v first="$first" "$suite_awk"'
     $1 == first { v[++n] = $4 / ($3 * $1) } END { print median(v, n) }' "$out/arithmetic.csv")"
-for pair in precompute:photons precompute:map precompute:precompute on-demand:render; do
+for pair in either:photons either:map precompute:precompute on-demand:render on-demand:work; do
     value=$(awk -F, -v cache="${pair%:*}" -v phase="${pair#*:}" -v n="$suite_cores" \
         '$1 == cache && $2 == phase && $3 == n { print $8 }' "$out/scaling.csv")
     [[ -z $value ]] || suite_ratio "scaling.${pair#*:}" "$value"
