@@ -23,7 +23,7 @@ typedef struct reading {
     int count[4];  /* of messages */
 } reading;
 
-static void reading_hear(void *user, ag_log_level level, const char *message)
+static inline void reading_hear(void *user, ag_log_level level, const char *message)
 {
     reading *r = user;
     size_t old = r->said[level] ? strlen(r->said[level]) : 0;
@@ -61,7 +61,7 @@ static inline reading reading_create(const char *path, const char *text, size_t 
     return r;
 }
 
-static void reading_destroy(reading *r)
+static inline void reading_destroy(reading *r)
 {
     scene_destroy(r->scene);
     for (int i = 0; i < 4; i++)

@@ -48,7 +48,9 @@ for name in scaling.pixels_differing scaling.computed_differing scaling.duplicat
     [[ $(verdict $name) == 0,met ]] || fail "$name: '$(verdict $name)'"
 done
 [[ $(verdict scale.camera_rays_each) == 1,met ]] || fail "camera rays: '$(verdict scale.camera_rays_each)'"
-[[ $(verdict scaling.render) == *",not judged" ]] || fail "time is judged in the quick form"
+for name in scaling.work scaling.photons scaling.render; do
+    [[ $(verdict $name) == [0-9]*",not judged" ]] || fail "$name: '$(verdict $name)': time is judged in the quick form, or not told"
+done
 awk -F, '$1 == "64-on-2" && $2 == 64 && $6 > 0 && $9 == 0 && $10 == 0 { found = 1 } END { exit !found }' \
     "$folder/report/contention.csv" || fail "contention.csv: not 64 threads, or not each once"
 

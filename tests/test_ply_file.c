@@ -1,14 +1,12 @@
 /* test_ply_file.c: PLY files: ascii, binary of both orders and gzip give one and the same mesh; every error by its
- * message; files cut short or damaged at every byte; Shape "plymesh" as "trianglemesh" makes it.
+ * message; files cut short or damaged at every byte.
  * Threads: one. */
 #define _POSIX_C_SOURCE 200809L
-#include "pbrt_fixture.h"
 #include "ply_file.h"
+#include "ply_fixture.h"
 #include "shared_folder.h"
-#include "temporary_folder.h"
 
 #include <fcntl.h>
-#include <zlib.h>
 
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
@@ -18,84 +16,6 @@
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 #define UNDER_SANITIZER 1
 #endif
-
-/* --- writing --- */
-
-typedef enum format { ASCII, LITTLE, BIG } format;
-static const char *const FORMAT_NAMES[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-
-typedef struct text {
-    char *bytes;
-    size_t size, capacity;
-} text;
-
-static void append(text *t, const void *bytes, size_t size)
-{
-    if (t->size + size > t->capacity) {
-        t->capacity = 2 * (t->size + size);
-        t->bytes = realloc(t->bytes, t->capacity);
-        assert_non_null(t->bytes);
-    }
-    memcpy(t->bytes + t->size, bytes, size);
-    t->size += size;
-}
-
-static void append_text(text *t, const char *string) { append(t, string, strlen(string)); }
-
-/* A number of a type as PLY calls it. */
-static void append_number(text *t, format f, const char *type, double value)
-{
-    char ascii[64];
-    unsigned char bytes[8];
-    bool is_float = strncmp(type, "float", 5) == 0,
-         is_double = strcmp(type, "double") == 0 || strcmp(type, "float64") == 0;
-    size_t size = strstr(type, "char") || strstr(type, "int8")  ? 1
-                  : strstr(type, "short") || strstr(type, "16") ? 2
-                                                                : 4;
-    if (is_double)
-        size = 8;
-    if (f == ASCII) {
-        snprintf(ascii, sizeof ascii, "%.17g ", value);
-        append_text(t, ascii);
-        return;
-    }
-    uint64_t bits = (uint64_t)(int64_t)value;
-    if (is_double) {
-        memcpy(&bits, &value, sizeof bits);
-    } else if (is_float) {
-        float single = (float)value;
-        uint32_t word;
-        memcpy(&word, &single, sizeof word);
-        bits = word;
-    }
-    for (size_t i = 0; i < size; i++)
-        bytes[f == LITTLE ? i : size - 1 - i] = (unsigned char)(bits >> (8 * i));
-    append(t, bytes, size);
-}
-
-static void end_line(text *t, format f)
-{
-    if (f == ASCII)
-        append_text(t, "\n");
-}
-
-static const char *write_file(const char *name, const void *bytes, size_t size)
-{
-    const char *path = in_folder(name);
-    size_t length = strlen(name);
-    if (length > 3 && strcmp(name + length - 3, ".gz") == 0) {
-        gzFile file = gzopen(path, "wb");
-        assert_non_null(file);
-        assert_int_equal(gzwrite(file, bytes, (unsigned)size), (int)size);
-        assert_int_equal(gzclose(file), Z_OK);
-    } else {
-        FILE *file = fopen(path, "wb");
-        assert_non_null(file);
-        assert_int_equal(fwrite(bytes, 1, size, file), size);
-        assert_int_equal(fclose(file), 0);
-    }
-    return path;
-}
 
 /* Seven vertices with normals, uvs and what is passed over; a triangle, a quadrilateral, a pentagon, and an edge. */
 static text small_file(format f, const char *index_type, const char *count_type)
@@ -187,10 +107,6 @@ static ag_status read_text(const char *ply, ply_mesh *out_mesh)
 {
     return ply_file_read(write_file("a.ply", ply, strlen(ply)), NULL, message, sizeof message, out_mesh);
 }
-
-#define VERTEX(count) "element vertex " #count "\nproperty float x\nproperty float y\nproperty float z\n"
-#define FACE(count)   "element face " #count "\nproperty list uchar int vertex_indices\n"
-#define HEAD          "ply\nformat ascii 1.0\n" VERTEX(3) FACE(1) "end_header\n"
 
 static void ascii_files_may_be_laid_out_freely(void **state)
 {
@@ -526,131 +442,6 @@ static void memory_is_not_taken_by_the_headers_word(void **state)
 #endif
 }
 
-/* --- Shape "plymesh" --- */
-
-static reading read_scene(const char *name, const char *world)
-{
-    char scene_text[2048];
-    snprintf(scene_text, sizeof scene_text, "WorldBegin\n%s\n", world);
-    return reading_create(write_file(name, scene_text, strlen(scene_text)), NULL, 0);
-}
-
-#define CORNERS "0 0 0 1 0 0 0 1 0 0 0 2"
-#define NORMALS "0 0 1 0 3 4 1 0 0 0 -2 0"
-#define UVS     "0 0 1 0 0 1 .5 .25"
-
-/* The same mesh as PLY and in the scene file, moved, mirrored and reversed: the same to the last bit. */
-static void plymesh_is_as_trianglemesh(void **state)
-{
-    (void)state;
-    static const char PLY[] = "ply\nformat ascii 1.0\n" VERTEX(
-        4) "property float nx\nproperty float ny\nproperty float nz\n"
-           "property float u\nproperty float v\n" FACE(
-               2) "end_header\n"
-                  "0 0 0 0 0 1 0 0\n1 0 0 0 3 4 1 0\n0 1 0 1 0 0 0 1\n0 0 2 0 -2 0 .5 .25\n3 0 1 2\n3 0 2 3\n";
-    static const char *const STATES[] = {"", "Translate 1 2 3 Rotate 30 1 2 3 Scale 2 3 4", "Scale -1 1 1",
-                                         "ReverseOrientation", "ReverseOrientation Rotate 90 0 1 0 Scale 1 -1 3"};
-    write_file("a.ply", PLY, strlen(PLY));
-    for (int i = 0; i < 5; i++) {
-        char world[1024];
-        snprintf(world, sizeof world,
-                 "%s Shape \"plymesh\" \"string filename\" \"a.ply\" Shape \"trianglemesh\" \"point3 P\" [" CORNERS
-                 "]\n"
-                 "\"integer indices\" [0 1 2 0 2 3] \"normal N\" [" NORMALS "] \"point2 uv\" [" UVS "]",
-                 STATES[i]);
-        reading r = read_scene("s.pbrt", world);
-        assert_int_equal(r.status, AG_OK);
-        assert_int_equal(r.count[AG_LOG_WARNING], 0);
-        assert_int_equal(r.scene->shape_count, 2);
-        const shape *a = &r.scene->shapes[0], *b = &r.scene->shapes[1];
-        assert_int_equal(a->flip_normal, b->flip_normal);
-        assert_int_equal(a->as.mesh.vertex_count, 4);
-        assert_int_equal(a->as.mesh.triangle_count, 2);
-        assert_memory_equal(a->as.mesh.positions, b->as.mesh.positions, 5 * sizeof(vec3));
-        for (int k = 0; k < 4; k++) {
-            vec3 n = b->as.mesh.normals[k];
-            assert_vec3(a->as.mesh.normals[k], n.x, n.y, n.z, 1e-7);
-        }
-        assert_memory_equal(a->as.mesh.uvs, b->as.mesh.uvs, 4 * sizeof(vec2));
-        assert_memory_equal(a->as.mesh.indices, b->as.mesh.indices, 6 * sizeof(uint32_t));
-        reading_destroy(&r);
-    }
-}
-
-static void check_said(const char *world, ag_status status, ag_log_level level, const char *expected)
-{
-    char whole[1024];
-    reading r = read_scene("s.pbrt", world);
-    snprintf(whole, sizeof whole, "%s%s", in_folder("s.pbrt"), expected);
-    assert_int_equal(r.status, status);
-    if (!r.said[level] || strncmp(r.said[level], whole, strlen(whole)) != 0)
-        fail_msg("%s was not said, but %s", whole, r.said[level] ? r.said[level] : "nothing");
-    reading_destroy(&r);
-}
-
-#define PLYMESH "Shape \"plymesh\" \"string filename\" "
-
-static void plymesh_says_what_is_wrong_and_where(void **state)
-{
-    (void)state;
-    static const char DEGENERATE[] = HEAD "0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n";
-    static const char LINE[] = "ply\nformat ascii 1.0\n" VERTEX(3) FACE(3) "end_header\n0 0 0\n1 0 0\n0 1 0\n"
-                                                                           "2 0 1\n3 0 1 2\n3 0 0 1\n";
-    static const char ODD[] = "ply\nformat binary_little_endian 1.0\n" VERTEX(
-        3) "property float u\nproperty float v\n" FACE(1) "end_header\n";
-    char expected[512];
-    write_file("bad.ply", HEAD, strlen(HEAD));
-    snprintf(
-        expected, sizeof expected,
-        ":2:2: error: Shape \"plymesh\": %s:3: the header promises 3 of element \"vertex\", but the file is cut short",
-        in_folder("bad.ply"));
-    check_said(" " PLYMESH "\"bad.ply\"", AG_ERROR_INPUT, AG_LOG_ERROR, expected);
-    snprintf(expected, sizeof expected, ":2:1: error: Shape \"plymesh\": %s: No such file", in_folder("none.ply"));
-    check_said(PLYMESH "\"none.ply\"", AG_ERROR_INPUT, AG_LOG_ERROR, expected);
-    check_said("Shape \"plymesh\"", AG_ERROR_SCENE, AG_LOG_ERROR, ":2:1: error: \"string filename\" is missing");
-    write_file("flat.ply", DEGENERATE, strlen(DEGENERATE));
-    check_said(PLYMESH "\"flat.ply\"", AG_OK, AG_LOG_WARNING,
-               ":2:1: warning: Shape \"plymesh\": 1 of 1 triangles have no area and are left out\n");
-    write_file("line.ply", LINE, strlen(LINE));
-    check_said(PLYMESH "\"line.ply\"", AG_OK, AG_LOG_WARNING,
-               ":2:1: warning: Shape \"plymesh\": 2 of 3 triangles have no area and are left out, as are any others\n");
-    check_said("Scale 1e30 1e30 1e30 " PLYMESH "\"line.ply\"", AG_ERROR_SCENE, AG_LOG_ERROR,
-               ":2:22: error: a vertex lies beyond 1e18 units in world space");
-    check_said(PLYMESH "\"line.ply\" \"float edgelength\" 2 \"texture displacement\" \"d\"", AG_OK, AG_LOG_WARNING,
-               ":2:46: warning: Shape \"plymesh\": displacement is not supported yet: \"edgelength\" is ignored\n");
-    check_said(PLYMESH "\"line.ply\" \"texture displacement\" \"d\"", AG_OK, AG_LOG_WARNING,
-               ":2:46: warning: Shape \"plymesh\": displacement is not supported yet: \"displacement\" is ignored\n");
-    text t = {NULL, 0, 0};
-    append_text(&t, ODD);
-    for (int i = 0; i < 15; i++)
-        append_number(&t, LITTLE, "float", i == 8 ? (double)NAN : i * i % 7);
-    append_number(&t, LITTLE, "uchar", 3);
-    for (int i = 0; i < 3; i++)
-        append_number(&t, LITTLE, "int", i);
-    write_file("odd.ply", t.bytes, t.size);
-    free(t.bytes);
-    check_said(
-        PLYMESH "\"odd.ply\"", AG_OK, AG_LOG_WARNING,
-        ":2:1: warning: Shape \"plymesh\": 1 normals or texture coordinates in \"odd.ply\" are not finite, and are "
-        "not used\n");
-}
-
-/* Names are looked up below the first file's directory, then beside the file that has them. */
-static void plymesh_is_found_as_included_files_are(void **state)
-{
-    (void)state;
-    static const char PLY[] = HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    static const char PART[] = PLYMESH "\"beside.ply\" " PLYMESH "\"top.ply\"";
-    assert_int_equal(mkdir(in_folder("parts"), 0755), 0);
-    write_file("top.ply", PLY, strlen(PLY));
-    write_file("parts/beside.ply", PLY, strlen(PLY));
-    write_file("parts/part.pbrt", PART, strlen(PART));
-    reading r = read_scene("s.pbrt", "Include \"parts/part.pbrt\" " PLYMESH "\"parts/beside.ply\"");
-    assert_int_equal(r.status, AG_OK);
-    assert_int_equal(r.scene->shape_count, 3);
-    reading_destroy(&r);
-}
-
 /* --- the scenes there are --- */
 
 static int load_folder(const char *path)
@@ -717,9 +508,6 @@ int main(void)
         TEST_IN_FOLDER(files_cut_anywhere_are_errors),
         TEST_IN_FOLDER(files_damaged_anywhere_do_no_harm),
         TEST_IN_FOLDER(memory_is_not_taken_by_the_headers_word),
-        TEST_IN_FOLDER(plymesh_is_as_trianglemesh),
-        TEST_IN_FOLDER(plymesh_says_what_is_wrong_and_where),
-        TEST_IN_FOLDER(plymesh_is_found_as_included_files_are),
         cmocka_unit_test(scenes_of_others_load),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,94 +1,13 @@
-/* test_texture.c: textures of scenes against values known otherwise: every kind, mapping, wrap and encoding, pictures
- * written for it, and what the reader says of wrong ones.
- * Flow: tests of scene/texture*.c, scene/image_encoding.c and scene/pbrt_textures.c. Threads: one, but for the last. */
+/* test_texture.c: textures of scenes against values known otherwise: kinds, mappings, wraps and encodings, pictures
+ * written for it. Flow: tests of scene/texture*.c and scene/image_encoding.c. Threads: one, but for the last. */
 #define _GNU_SOURCE
-#include "bvh.h"
-#include "image_file.h"
-#include "pbrt_fixture.h"
-#include "temporary_folder.h"
+#include "texture_fixture.h"
 #include "texture_noise.h"
 
 #include <math.h>
 #include <pthread.h>
 
 static const double PI = 3.14159265358979323846;
-
-/* ---- helpers ---- */
-
-static surface_hit hit_at(float u, float v, float x, float y, float z)
-{
-    surface_hit hit;
-    memset(&hit, 0, sizeof hit);
-    hit.uv = (vec2){u, v};
-    hit.position = vec3_make(x, y, z);
-    hit.geometric_normal = vec3_make(0.0f, 0.6f, 0.8f);
-    hit.shading_normal = vec3_make(1.0f, 0.0f, 0.0f);
-    return hit;
-}
-
-/* What stands after WorldBegin, in a file of the temporary folder, so that pictures are found beside it. */
-static reading read_world(const char *world)
-{
-    FILE *file = fopen(in_folder("scene.pbrt"), "w");
-    assert_non_null(file);
-    assert_true(fprintf(file, "WorldBegin %s", world) > 0);
-    assert_int_equal(fclose(file), 0);
-    return reading_create(in_folder("scene.pbrt"), NULL, 0);
-}
-
-static reading good_world(const char *world)
-{
-    reading r = read_world(world);
-    for (int level = AG_LOG_ERROR; level <= AG_LOG_WARNING; level++)
-        if (r.said[level])
-            print_error("%s", r.said[level]);
-    assert_int_equal(r.status, AG_OK);
-    assert_int_equal(r.count[AG_LOG_WARNING], 0);
-    return r;
-}
-
-static rgb last_rgb(const reading *r, surface_hit hit)
-{
-    return texture_evaluate_rgb(r->scene, r->scene->texture_count - 1, &hit);
-}
-
-static float last_float(const reading *r, surface_hit hit)
-{
-    return texture_evaluate_float(r->scene, r->scene->texture_count - 1, &hit);
-}
-
-/* The last texture of the world at one hit. */
-static float float_of(const char *world, surface_hit hit)
-{
-    reading r = good_world(world);
-    float value = last_float(&r, hit);
-    reading_destroy(&r);
-    return value;
-}
-
-static rgb rgb_of(const char *world, surface_hit hit)
-{
-    reading r = good_world(world);
-    rgb value = last_rgb(&r, hit);
-    reading_destroy(&r);
-    return value;
-}
-
-static void write_image(const char *name, int width, int height, int channel_count, image_sample_type type,
-                        const float *pixels)
-{
-    static const char *const names[4] = {"R", "G", "B", "A"};
-    static const char *const grey_names[1] = {"Y"};
-    const image_description description = {.width = width,
-                                           .height = height,
-                                           .full_width = width,
-                                           .full_height = height,
-                                           .channel_count = channel_count,
-                                           .channel_names = channel_count == 1 ? grey_names : names,
-                                           .type = type};
-    if (image_file_write(in_folder(name), &description, pixels, message, sizeof message) != AG_OK)
-        fail_msg("%s", message);
-}
 
 /* 3 x 2, grey: 0 0.1 0.2 above, 0.4 0.6 1 below. */
 static const float GREYS[6] = {0.0f, 0.1f, 0.2f, 0.4f, 0.6f, 1.0f};
@@ -226,90 +145,6 @@ static void dots_fill_their_share(void **state)
     assert_true(dot_count > CELLS * CELLS / 4 && dot_count < CELLS * CELLS * 3 / 4);
     assert_near((double)inside_count / dot_count / (STEPS * STEPS), PI * 0.35 * 0.35, 0.005);
     reading_destroy(&r);
-}
-
-/* ---- noise ---- */
-
-static void noise_is_perlins(void **state)
-{
-    (void)state;
-    for (int i = -3; i < 3; i++)
-        assert_near(texture_noise(vec3_make((float)i, 2.0f, (float)(5 * i))), 0.0, 0.0);
-    /* worked out apart, in double precision, as a sum over the corners */
-    assert_near(texture_noise(vec3_make(0.5f, 0.5f, 0.5f)), -0.125, 1e-7);
-    assert_near(texture_noise(vec3_make(1.25f, 2.5f, 3.75f)), -0.03836345672607422, 1e-6);
-    assert_near(texture_noise(vec3_make(-0.3125f, 10.125f, 255.875f)), -0.14796230907450125, 1e-6);
-    assert_true(isfinite(texture_noise(vec3_make(INFINITY, NAN, 1e30f))));
-    /* period, continuity across cells, bounds, and a mean of 0 */
-    double sum = 0.0, sum_absolute = 0.0;
-    enum { COUNT = 40 };
-    for (int i = 0; i < COUNT; i++)
-        for (int j = 0; j < COUNT; j++)
-            for (int k = 0; k < COUNT; k++) {
-                const vec3 p =
-                    vec3_make((float)i * 0.78125f - 12.0f, (float)j * 0.828125f, (float)k * 0.734375f - 3.0f);
-                const float value = texture_noise(p);
-                assert_true(fabsf(value) <= 1.04f);
-                assert_near(texture_noise(vec3_add(p, vec3_make(256.0f, -512.0f, 256.0f))), value, 0.0);
-                assert_near(texture_noise(vec3_add(p, vec3_make(1e-3f, -1e-3f, 1e-3f))), value, 0.01);
-                sum += (double)value;
-                sum_absolute += fabs((double)value);
-            }
-    assert_near(sum / (COUNT * COUNT * COUNT), 0.0, 0.02);
-    assert_near(sum_absolute / (COUNT * COUNT * COUNT), 0.2, 0.06);
-    /* along an edge the noise is the two slopes there, faded into one another; slopes are -1, 0 or 1 */
-    for (int i = 0; i < 200; i++) {
-        const float x = (float)i;
-        const double slope_here = (double)texture_noise(vec3_make(x + 0x1p-10f, 7.0f, 3.0f)) * 1024.0;
-        const double slope_next = -(double)texture_noise(vec3_make(x + 1.0f - 0x1p-10f, 7.0f, 3.0f)) * 1024.0;
-        const double a = round(slope_here), b = round(slope_next);
-        assert_near(slope_here, a, 0.01);
-        assert_near(slope_next, b, 0.01);
-        assert_true(fabs(a) <= 1.0 && fabs(b) <= 1.0);
-        assert_near(texture_noise(vec3_make(x + 0.5f, 7.0f, 3.0f)), 0.25 * (a - b), 1e-6);
-    }
-}
-
-static void octaves_add_up(void **state)
-{
-    (void)state;
-    const surface_hit hit = hit_at(0, 0, 1.3f, -0.4f, 2.7f);
-    const vec3 p = vec3_make(0.65f, -0.2f, 1.35f); /* under Scale 2 2 2 */
-    double fbm = 0.0, turbulence = 0.0, frequency = 1.0, height = 1.0;
-    for (int i = 0; i < 3; i++) {
-        const float value = texture_noise(vec3_scale(p, (float)frequency));
-        fbm += height * (double)value;
-        turbulence += height * fabs((double)value);
-        frequency *= 1.99;
-        height *= 0.7;
-    }
-    assert_near(
-        float_of("Scale 2 2 2 Texture \"a\" \"float\" \"fbm\" \"integer octaves\" 3 \"float roughness\" 0.7", hit), fbm,
-        2e-6);
-    assert_near(
-        float_of("Scale 2 2 2 Texture \"a\" \"float\" \"wrinkled\" \"integer octaves\" 3 \"float roughness\" 0.7", hit),
-        turbulence + 0.2 * height, 2e-6);
-    assert_near(float_of("Texture \"a\" \"float\" \"fbm\"", hit), texture_fbm(hit.position, 0.5f, 8), 0.0);
-    assert_near(float_of("Texture \"a\" \"float\" \"fbm\" \"integer octaves\" 0", hit), 0.0, 0.0);
-    assert_near(float_of("Texture \"a\" \"float\" \"windy\"", hit),
-                fabsf(texture_fbm(vec3_scale(hit.position, 0.1f), 0.5f, 3)) * texture_fbm(hit.position, 0.5f, 6), 1e-7);
-}
-
-static void marble_follows_its_spline(void **state)
-{
-    (void)state;
-    /* without variation the curve's parameter is 0.5 + 0.5 sin(y) */
-    static const char WORLD[] = "Texture \"a\" \"spectrum\" \"marble\" \"float variation\" 0 \"float scale\" 2";
-    assert_rgb(rgb_of(WORLD, hit_at(0, 0, 5, (float)(-PI / 4), 1)), 0.87, 0.87, 0.9, 1e-5);
-    /* at the very end all of the last control point, at the end's middle (t = 11/12) Bernstein's 1 3 3 1 over 8 */
-    assert_rgb(rgb_of(WORLD, hit_at(0, 0, 5, (float)(PI / 4), 1)), 0.87, 0.87, 0.9, 1e-5);
-    const double y = asin(2.0 * 11.0 / 12.0 - 1.0) / 2.0;
-    const double r = (0.58 + 3 * 0.58 + 3 * 0.2 + 0.58) / 8, b = (0.6 + 3 * 0.6 + 3 * 0.33 + 0.6) / 8;
-    assert_rgb(rgb_of(WORLD, hit_at(0, 0, 5, (float)y, 1)), 1.5 * r, 1.5 * r, 1.5 * b, 2e-5);
-    const rgb with = rgb_of("Texture \"a\" \"spectrum\" \"marble\"", hit_at(0, 0, 0.3f, 0.7f, 0.2f));
-    const rgb without =
-        rgb_of("Texture \"a\" \"spectrum\" \"marble\" \"float variation\" 0", hit_at(0, 0, 0.3f, 0.7f, 0.2f));
-    assert_true(with.r > 0.3f && with.r < 1.0f && with.r != without.r);
 }
 
 /* ---- pictures ---- */
@@ -511,142 +346,6 @@ static void float_textures_read_one_channel(void **state)
     reading_destroy(&r);
 }
 
-/* ---- the reader ---- */
-
-static void wrong_textures_say_why(void **state)
-{
-    (void)state;
-    static float pixels[3 * 64 * 64];
-    for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++)
-        pixels[i] = texture_noise(vec3_make((float)i * 0.37f, 0.2f, 0.1f)); /* no less when packed */
-    write_image("cut.exr", 64, 64, 3, IMAGE_FLOAT, pixels);
-    assert_int_equal(truncate(in_folder("cut.exr"), 3000), 0);
-    static const struct {
-        const char *world, *at, *text; /* at: what the last of such marks */
-        ag_status status;
-    } cases[] = {
-        {"Texture \"a\" \"float\" \"scale\" \"texture tex\" \"b\"", "\"texture tex", "no float texture is named \"b\"",
-         AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"scale\" \"texture tex\" \"a\"", "\"texture tex", "no float texture is named \"a\"",
-         AG_ERROR_SCENE},
-        {"Texture \"b\" \"spectrum\" \"constant\" Texture \"a\" \"float\" \"scale\" \"texture tex\" \"b\"",
-         "\"texture tex", "\"b\" is a spectrum texture, but \"tex\" takes a float texture", AG_ERROR_SCENE},
-        {"Texture \"b\" \"float\" \"fbm\" Texture \"a\" \"spectrum\" \"scale\" \"texture tex\" \"b\"", "\"texture tex",
-         "\"b\" is a float texture, but \"tex\" takes a spectrum texture", AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"scale\" \"texture tex\" [ \"b\" \"c\" ]", "\"texture tex",
-         "\"texture tex\" should have 1 value, but has 2", AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"scale\" \"rgb tex\" [ 1 1 1 ]", "\"rgb tex", "\"rgb tex\" should be \"float tex\"",
-         AG_ERROR_SCENE},
-        {"Texture \"a\" \"colour\" \"scale\"", "\"colour",
-         "texture \"a\" should be of type \"float\" or \"spectrum\", not \"colour\"", AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"marble\"", "Texture", "there are no float textures of class \"marble\"",
-         AG_ERROR_SCENE},
-        {"Texture \"a\" \"spectrum\" \"brick\"", "Texture", "there are no spectrum textures of class \"brick\"",
-         AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"windy\" Texture \"a\" \"float\" \"windy\"", "Texture",
-         "float texture \"a\" is made twice", AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"checkerboard\" \"integer dimension\" 4", "\"integer",
-         "\"dimension\" should be 2 or 3, not 4", AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"dots\" \"string mapping\" \"cube\"", "\"string",
-         "unknown mapping \"cube\"; known are uv, spherical, cylindrical, planar", AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"directionmix\" \"vector3 dir\" [ 0 0 0 ]", "\"vector3",
-         "\"dir\" should have a length above 0", AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"fbm\" \"integer octaves\" -1", "\"integer", "\"octaves\" should not be negative",
-         AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"imagemap\"", "Texture", "Texture \"imagemap\" has no \"string filename\"",
-         AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"imagemap\" \"string wrap\" \"mirror\"", "\"string wrap",
-         "unknown wrap \"mirror\"; known are repeat, black, clamp, octahedralsphere", AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"imagemap\" \"string encoding\" \"gamma -1\"", "\"string enc",
-         "unknown encoding \"gamma -1\"; known are sRGB, linear and, with a number, gamma", AG_ERROR_SCENE},
-        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"none.png\"", "\"string file",
-         "/none.png': No such file", AG_ERROR_INPUT},
-        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \".\"", "\"string file", "it is not a regular file",
-         AG_ERROR_INPUT},
-        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"scene.pbrt\"", "\"string file",
-         "OpenImageIO cannot open it: ", AG_ERROR_INPUT},
-        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"cut.exr\"", "\"string file",
-         "/cut.exr': OpenImageIO cannot", AG_ERROR_INPUT},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        reading r = read_world(cases[i].world);
-        const char *at = cases[i].world;
-        for (const char *next = at; (next = strstr(next, cases[i].at)); next++)
-            at = next;
-        char place[64];
-        snprintf(place, sizeof place, "scene.pbrt:1:%d: error: ", (int)(at - cases[i].world) + 12);
-        if (r.status != cases[i].status || r.count[AG_LOG_ERROR] != 1 || !strstr(r.said[AG_LOG_ERROR], place) ||
-            !strstr(r.said[AG_LOG_ERROR], cases[i].text))
-            fail_msg("%s: %s, not at %s: %s", cases[i].world, r.said[AG_LOG_ERROR] ? r.said[AG_LOG_ERROR] : "(nothing)",
-                     place, cases[i].text);
-        reading_destroy(&r);
-    }
-}
-
-/* Infinities in a picture are told and are 0. */
-static void bad_values_are_told(void **state)
-{
-    (void)state;
-    static const float pixels[4] = {INFINITY, 0.5f, NAN, 0.25f};
-    write_image("bad.exr", 4, 1, 1, IMAGE_FLOAT, pixels);
-    reading r = read_world("Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"bad.exr\" "
-                           "Texture \"b\" \"float\" \"imagemap\" \"string filename\" \"bad.exr\"");
-    assert_int_equal(r.status, AG_OK);
-    assert_int_equal(r.count[AG_LOG_WARNING], 1);
-    assert_non_null(
-        strstr(r.said[AG_LOG_WARNING], "\"bad.exr\": 2 values are infinite or not a number, and count as 0"));
-    assert_near(last_float(&r, hit_at(0.25f, 0.5f, 0, 0, 0)), 0.25, 1e-6);
-    reading_destroy(&r);
-}
-
-/* What can be read all the same is told of. */
-static void doubtful_textures_are_warned_of(void **state)
-{
-    (void)state;
-    static const struct {
-        const char *world, *text;
-        double value;
-    } cases[] = {
-        {"Texture \"a\" \"color\" \"constant\" \"rgb value\" [ 2 2 2 ]",
-         "the texture type \"color\" is called \"spectrum\" in pbrt-v4 and is read as that", 2.0},
-        {"Texture \"a\" \"spectrum\" \"ptex\" \"string filename\" \"a.ptx\"",
-         "Texture \"ptex\" is not supported: a constant of 0.5 stands in", 0.5},
-        {"Texture \"a\" \"float\" \"fbm\" \"integer octaves\" 33 \"float roughness\" 0",
-         "\"octaves\" is above 32: 32 is used, what is finer cannot be seen", 0.0},
-        {"Texture \"a\" \"float\" \"windy\" \"float uscale\" 2",
-         "Texture \"windy\": \"float uscale\" is not known, or not supported yet, and is ignored", 0.0},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        reading r = read_world(cases[i].world);
-        assert_int_equal(r.status, AG_OK);
-        assert_int_equal(r.count[AG_LOG_WARNING], 1);
-        if (!strstr(r.said[AG_LOG_WARNING], cases[i].text))
-            fail_msg("%s: %s", cases[i].world, r.said[AG_LOG_WARNING]);
-        assert_near(last_rgb(&r, hit_at(0, 0, 0, 0, 0)).g, cases[i].value, 0.0);
-        reading_destroy(&r);
-    }
-}
-
-/* A texture that doubles in cost with every line would take for ever to look up. */
-static void exploding_graphs_are_refused(void **state)
-{
-    (void)state;
-    char world[4096] = "Texture \"t0\" \"float\" \"fbm\" \"integer octaves\" 1 ";
-    for (int i = 1; i <= 30; i++) {
-        const size_t used = strlen(world);
-        snprintf(world + used, sizeof world - used,
-                 "Texture \"t%d\" \"float\" \"scale\" \"texture tex\" \"t%d\" \"texture scale\" \"t%d\"\n", i, i - 1,
-                 i - 1);
-    }
-    reading r = read_world(world);
-    assert_int_equal(r.status, AG_ERROR_SCENE);
-    assert_non_null(strstr(r.said[AG_LOG_ERROR], "texture \"t12\" is made of more than 4096 others"));
-    assert_int_equal(r.scene->texture_count, 12);
-    const surface_hit hit = hit_at(0, 0, 0.3f, 0.4f, 0.6f);
-    assert_true(isfinite(last_float(&r, hit)));
-    reading_destroy(&r);
-}
-
 /* ---- the same from everywhere ---- */
 
 enum { LOOKUP_COUNT = 2000, THREAD_COUNT = 4 };
@@ -703,19 +402,12 @@ int main(void)
         TEST_IN_FOLDER(mappings),
         TEST_IN_FOLDER(checkerboards),
         TEST_IN_FOLDER(dots_fill_their_share),
-        cmocka_unit_test(noise_is_perlins),
-        TEST_IN_FOLDER(octaves_add_up),
-        TEST_IN_FOLDER(marble_follows_its_spline),
         TEST_IN_FOLDER(lookups_are_bilinear),
         TEST_IN_FOLDER(wraps),
         TEST_IN_FOLDER(scale_and_invert),
         TEST_IN_FOLDER(encodings),
         TEST_IN_FOLDER(channels_and_sharing),
         TEST_IN_FOLDER(float_textures_read_one_channel),
-        TEST_IN_FOLDER(wrong_textures_say_why),
-        TEST_IN_FOLDER(bad_values_are_told),
-        TEST_IN_FOLDER(doubtful_textures_are_warned_of),
-        TEST_IN_FOLDER(exploding_graphs_are_refused),
         TEST_IN_FOLDER(threads_and_readings_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
