@@ -14,11 +14,10 @@ suite_room 20
 arguments=("$room" --only indirect --gather-samples 16)
 [[ $quick == yes ]] && arguments=("$room" --only indirect --gather-samples 4 --size 48x48 --photons 20000)
 
-two_cores=() # the first two that we may use
-if command -v taskset >/dev/null; then
-    cores=$(taskset -cp $$ | sed 's/.*: //; s/-.*\|,.*//')
-    two_cores=(taskset -c "$cores,$((cores + 1))")
-    ((suite_cores > 1)) || two_cores=()
+two_cores=() # the first two that we may use; a list like 0-3,8
+if ((suite_cores > 2)); then
+    two_cores=(taskset -c "$(taskset -cp $$ | sed 's/.*: //' | tr , '\n' |
+        awk -F- '{ for (i = $1; i <= $NF && n < 2; i++) list = list (n++ ? "," : "") i } END { print list }')")
 fi
 renderer=$suite_program
 pinned=$suite_work/afterglow-on-two-cores

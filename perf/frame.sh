@@ -2,7 +2,7 @@
 # frame.sh: the CPU time of a whole picture, process and photons and all, against what Embree alone needs for all its
 # rays: the paper's room 20, 64 gather rays a pixel, with irradiance at all photons and at an eighth of them.
 # Use: perf/frame.sh [--quick] [--repeats N] [--out DIR]
-# Writes frame.csv and .json, runs.csv. Embree traces the picture's gather rays again (afterglow-frame-rays); camera,
+# Writes frame.csv and .json, runs.csv. Embree traces as many gather rays from the same places (afterglow-frame-rays); camera,
 # shadow and photon rays, and those that go on after a short one, count as if they took as long.
 set -euo pipefail
 # shellcheck source=perf/suite.sh
@@ -32,12 +32,13 @@ awk "$suite_awk"'
 { f = $at["fraction"]; r = ++n[f]; rays[f] = $at["rays"]; cpu[f, r] = $at["cpu_s"]; embree[f, r] = $at["embree_s"]
   ratio[f, r] = $at["ratio"] }
 END {
-    print "fraction,runs,rays,embree_s,cpu_s,ratio"
+    print "fraction,runs,rays,embree_s,cpu_s,ratio,embree_share"
     fractions = split("1,0.125", name, ",")
     for (k = 1; k <= fractions; k++) {
         f = name[k]
         for (r = 1; r <= n[f]; r++) { a[r] = embree[f, r]; b[r] = cpu[f, r]; c[r] = ratio[f, r] }
-        printf "%s,%d,%d,%.3f,%.3f,%.3f\n", f, n[f], rays[f], median(a, n[f]), median(b, n[f]), median(c, n[f])
+        ratio_of = median(c, n[f])
+        printf "%s,%d,%d,%.3f,%.3f,%.3f,%.2f\n", f, n[f], rays[f], median(a, n[f]), median(b, n[f]), ratio_of, 1 / ratio_of
     }
 }' "$out/frame_runs.csv" >"$out/frame.csv"
 suite_json "$out/frame.csv"

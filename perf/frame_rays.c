@@ -1,5 +1,6 @@
-/* frame_rays.c: the program afterglow-frame-rays: what Embree alone needs for the gather rays of a whole picture, the
- * very same ones that the renderer sends first: from each pixel's place, with the sampler of its sample 0.
+/* frame_rays.c: the program afterglow-frame-rays: what Embree alone needs for a whole picture's gather rays: as many,
+ * from the middle of each pixel, by the cosine. A picture sends half of its own where photons came from, at the same
+ * cost each (gather_rays.c replays the very same ones).
  * A tile's rays at a time are made, untimed, and then traced, timed; one line of CSV: how many, microseconds of CPU
  * each. Use: afterglow-frame-rays SCENE.pbrt [SIZE] [GATHER_RAYS]. Flow: frame.sh -> [here]. Threads: one. */
 #define _GNU_SOURCE

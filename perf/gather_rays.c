@@ -1,7 +1,8 @@
 /* gather_rays.c: the program afterglow-gather-rays: what a final gather's ray costs in all and by part, against what
  * Embree alone needs for the very same rays. Room 20 of the forty, or another scene; all take turns in one process on
  * one thread; medians of the rounds' ratios, as CSV.
- * The rays are those of some tiles of a picture of 400 x 400, 64 from each place; all irradiance is there already.
+ * The rays are those of some tiles of a picture of 400 x 400, 64 from each place, guided as the renderer guides them;
+ * all irradiance is there already. Embree casts them one by one (rtcIntersect1), and as the renderer does, 64 together.
  * Use: afterglow-gather-rays [SCENE.pbrt]. Flow: [here]. Threads: one. */
 #define _GNU_SOURCE
 #include "clock.h"
@@ -17,17 +18,20 @@
 
 enum { PICTURE = 400, TILE = 32, TILES = 5, GATHER_RAYS = ROOM_BENCH_GATHER_RAYS, ESTIMATES = 20000 };
 _Static_assert((int)GATHER_RAYS <= (int)RAY_FAN_MAX, "a place's rays are one fan");
+static const float GUIDING = 0.5f; /* the renderer's default */
 enum { PLACES_MAX = TILES * TILE * TILE, RAYS_MAX = PLACES_MAX * GATHER_RAYS };
 
 typedef struct place {
     vertex v;
     sampler where;
+    ray_fan fan; /* its rays */
 } place;
 
 typedef struct bench {
     scene *s;
     photon_map map, no_caustics;
     irradiance_cache cache;
+    incident_light incident;
     ag_render_settings settings;
     transport t;
     eye_worker worker;
@@ -45,6 +49,15 @@ static double embree(bench *b)
 {
     for (uint32_t i = 0; i < b->ray_count; i++)
         b->sink += (double)scene_first_distance(b->s, b->rays[i]);
+    return b->ray_count;
+}
+
+static double embree_together(bench *b)
+{
+    for (uint32_t i = 0; i < b->place_count; i++) {
+        scene_intersect_fan(b->s, &b->places[i].fan);
+        b->sink += (double)b->places[i].fan.met[0].distance;
+    }
     return b->ray_count;
 }
 
@@ -68,23 +81,31 @@ static double lookups(bench *b)
     return b->query_count;
 }
 
-static void make_fan(const place *p, ray_fan *out_fan)
+/* As final_gather makes them. */
+static void make_fan(const bench *b, const place *p, ray_fan *out_fan)
 {
-    const bsdf *b = &p->v.scattering;
+    const bsdf *scattering = &p->v.scattering;
+    bool is_below = bsdf_is_below(scattering);
+    vec3 side = is_below ? vec3_negate(scattering->shading.z) : scattering->shading.z;
     sampler_sequence sequence = sampler_sequence_make(&p->where, SAMPLE_GATHER, 0, GATHER_RAYS);
+    incident_guide guide;
+    bool is_guided = incident_light_find(&b->incident, transport_map_place(&b->t, &p->v).position, side, &guide);
     out_fan->common = surface_ray(&p->v.hit, p->v.arrived, transport_facing_normal(&p->v));
     out_fan->common.skips_uv = true;
     out_fan->count = GATHER_RAYS;
-    float u[2][RAY_FAN_MAX];
+    float u[2][RAY_FAN_MAX], weights[RAY_FAN_MAX];
     gather_numbers(&sequence, 0, GATHER_RAYS, u);
-    gather_directions(u, GATHER_RAYS, &b->shading, bsdf_is_below(b), out_fan->direction);
+    if (is_guided)
+        incident_guide_warp(&guide, GATHER_RAYS, u, weights);
+    gather_directions(u, GATHER_RAYS, is_guided ? &guide.around : &scattering->shading, !is_guided && is_below,
+                      out_fan->direction);
 }
 
 static double directions(bench *b)
 {
     ray_fan fan;
     for (uint32_t i = 0; i < b->place_count; i++) {
-        make_fan(&b->places[i], &fan);
+        make_fan(b, &b->places[i], &fan);
         b->sink += (double)fan.direction[0][i % GATHER_RAYS];
     }
     return (double)b->place_count * GATHER_RAYS;
@@ -94,7 +115,7 @@ static double fans(bench *b)
 {
     ray_fan fan;
     for (uint32_t i = 0; i < b->place_count; i++) {
-        make_fan(&b->places[i], &fan);
+        make_fan(b, &b->places[i], &fan);
         scene_intersect_fan(b->s, &fan);
         for (uint32_t k = 0; k < GATHER_RAYS; k++) {
             vec3 position, normal;
@@ -126,17 +147,24 @@ static double estimates(bench *b)
     return count;
 }
 
-static room_bench_row rows[] = {
-    {.name = "Embree alone"},
-    {.name = "whole gather ray", .most_ratio = 2.4},
-    {.name = "direction"},
-    {.name = "direction with ray and end (64 together)"},
-    {.name = "ray and hit (alone)"},
-    {.name = "lookup (warm cache)", .most_ratio = 1.0},
-    {.name = "estimate (scattered)"},
+enum { EMBREE, EMBREE_TOGETHER, WHOLE, WHOLE_TO_TOGETHER, DIRECTIONS, FANS, HITS, LOOKUPS, ESTIMATE, ROWS };
+static room_bench_row rows[ROWS] = {
+    [EMBREE] = {.name = "Embree alone"},
+    [EMBREE_TOGETHER] = {.name = "Embree alone (64 together)"},
+    [WHOLE] = {.name = "whole gather ray", .most_ratio = 2.4},
+    [WHOLE_TO_TOGETHER] = {.name = "whole gather ray (against 64 together)", .rival = EMBREE_TOGETHER},
+    [DIRECTIONS] = {.name = "direction"},
+    [FANS] = {.name = "direction with ray and end (64 together)"},
+    [HITS] = {.name = "ray and hit (alone)"},
+    [LOOKUPS] = {.name = "lookup (warm cache)", .most_ratio = 1.0},
+    [ESTIMATE] = {.name = "estimate (scattered)"},
 };
-enum { ROWS = sizeof rows / sizeof *rows };
-static double (*const measured[ROWS])(bench *b) = {embree, whole, directions, fans, hits, lookups, estimates};
+static double (*const measured[ROWS])(bench *b) = {
+    [EMBREE] = embree,   [EMBREE_TOGETHER] = embree_together,
+    [WHOLE] = whole,     [DIRECTIONS] = directions,
+    [FANS] = fans,       [HITS] = hits,
+    [LOOKUPS] = lookups, [ESTIMATE] = estimates,
+};
 
 /* --- what they work on --- */
 
@@ -149,13 +177,9 @@ static void add_place(bench *b, int x, int y)
     if (!transport_trace(&b->t, &b->worker, ray, &p->v) || !bsdf_is_plain(&p->v.scattering))
         return;
     b->place_count++;
-    sampler_sequence sequence = sampler_sequence_make(&p->where, SAMPLE_GATHER, 0, GATHER_RAYS);
+    make_fan(b, p, &p->fan);
     for (uint32_t k = 0; k < GATHER_RAYS; k++) {
-        bsdf_sample first;
-        if (!bsdf_sample_direction(&p->v.scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f,
-                                   sampler_sequence_at(&sequence, k), &first))
-            continue;
-        ray = surface_ray(&p->v.hit, p->v.arrived, first.direction);
+        ray = surface_ray(&p->v.hit, p->v.arrived, ray_fan_direction(&p->fan, k));
         ray.skips_uv = true;
         b->rays[b->ray_count++] = ray;
         vertex end;
@@ -193,10 +217,13 @@ static ag_status make_cache(bench *b, run_context *run)
     if (status == AG_OK)
         status = irradiance_cache_precompute(&b->cache, run);
     b->settings.gather_samples = GATHER_RAYS;
+    if (status == AG_OK)
+        status = incident_light_create(run, &b->map, GUIDING, &b->incident);
     b->t = (transport){.s = b->s,
                        .run = run,
                        .caustic = &b->no_caustics,
                        .cache = &b->cache,
+                       .incident = &b->incident,
                        .settings = &b->settings,
                        .has_lights = true,
                        .gather_min_distance = b->map.mean_radius};
@@ -206,6 +233,7 @@ static ag_status make_cache(bench *b, run_context *run)
 static void bench_reset(bench *b)
 {
     irradiance_cache_reset(&b->cache);
+    incident_light_reset(&b->incident);
     photon_map_reset(&b->map);
     scene_destroy(b->s);
     free(b->places);
@@ -238,10 +266,13 @@ int main(int argc, char **argv)
     }
     for (int round = 0; round < ROOM_BENCH_ROUNDS; round++)
         for (int i = 0; i < ROWS; i++) {
+            if (!measured[i])
+                continue;
             double begin = clock_thread_cpu_seconds(), count = measured[i](&b);
             rows[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
         }
     floating_point_leave(arithmetic);
+    memcpy(rows[WHOLE_TO_TOGETHER].us, rows[WHOLE].us, sizeof rows[WHOLE].us);
     fprintf(stderr, "%u photons, %u places, %u rays, %d rounds (checksum %g)\n", b.map.set.count, b.place_count,
             b.ray_count, ROOM_BENCH_ROUNDS, b.sink);
     room_bench_report(rows, ROWS);

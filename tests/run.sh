@@ -33,7 +33,8 @@ if ((${#presets[@]} == 0)); then
     fi
 fi
 
-packages=("${BUILD_PACKAGES[@]}" libcmocka-dev openimageio-tools opencolorio-tools spin python3 clang-format parallel)
+packages=("${BUILD_PACKAGES[@]}" libcmocka-dev openimageio-tools opencolorio-tools spin python3 clang-format parallel jq
+    libnanoflann-dev)
 case " ${presets[*]} ${build_only[*]-} " in *-clang*) packages+=(clang) ;; esac
 case " ${presets[*]} " in *" dev-clang "* | *" tsan-clang "*) packages+=(libclang-rt-14-dev) ;; esac
 install_packages "${packages[@]}" </dev/null
