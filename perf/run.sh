@@ -11,15 +11,17 @@ suite_begin run "usage: perf/run.sh [options]
 All benchmarks, one report, judged by the table of perf/README.md. Hours; with --quick minutes.
   --parts L      of photon_search, photon_making, gather_rays, frame, forty_rooms, thread_scaling, scale,
                  contention, memory, error_against_time (all; with --quick the last five, and frame)
-  --results DIR  where tables, figures and report go (perf/results/MACHINE; with --quick: report/ in the folder of --out)
+  --results DIR  where tables, figures and report go (perf/results/MACHINE; with --quick or --parts: report/ in the
+                 folder of --out)
   --report-only  measure nothing: report and verdict of what is in the folder of --out
   --all-rooms    all forty rooms (rooms 1, 10, 20, 30, 33, 40)" "$@"
 parts=photon_search,photon_making,gather_rays,frame,forty_rooms,thread_scaling,scale,contention,memory,error_against_time
+all_parts=$parts
 [[ $quick == yes ]] && parts=frame,thread_scaling,scale,contention,memory,error_against_time
-rooms=1,10,20,30,33,40 results='' report_only=no
+rooms=1,10,20,30,33,40 results='' report_only=no is_partial=$quick
 while ((${#suite_rest[@]} > 0)); do
     case ${suite_rest[0]} in
-    --parts) parts=${suite_rest[1]:?--parts wants a list} suite_rest=("${suite_rest[@]:1}") ;;
+    --parts) parts=${suite_rest[1]:?--parts wants a list} is_partial=yes suite_rest=("${suite_rest[@]:1}") ;;
     --results) results=${suite_rest[1]:?--results wants a folder} suite_rest=("${suite_rest[@]:1}") ;;
     --report-only) report_only=yes ;;
     --all-rooms) rooms=1-40 ;;
@@ -27,9 +29,12 @@ while ((${#suite_rest[@]} > 0)); do
     esac
     suite_rest=("${suite_rest[@]:1}")
 done
-if [[ -z $results ]]; then
+for part in ${parts//,/ }; do
+    [[ ,$all_parts, == *,$part,* ]] || suite_fail "--parts does not know '$part'"
+done
+if [[ -z $results ]]; then # the machine's report is of all parts: some of them must not take its place
     results=$suite_root/perf/results/$(suite_machine_name)
-    [[ $quick == yes ]] && results=$out/report
+    [[ $is_partial == yes ]] && results=$out/report
 fi
 mkdir -p "$results"
 export AG_PERF_BUILD=no # from here on: it is built
