@@ -45,28 +45,34 @@ failures=()
 
 slug() { tr '[:upper:]' '[:lower:]' | sed "s/[^a-z0-9]\{1,\}/_/g; s/^_//; s/_\$//"; }
 
+# Called with ||, which switches errexit off inside: what fails in these functions must return by itself.
+
 # These programs know their own bounds; a line of theirs that misses one is a failure by its name.
 run_rows() { # PART: the CSV of a program afterglow-PART, and its own bounds
-    mkdir -p "$out/$1"
-    local program=$suite_bin/afterglow-${1//_/-}
-    [[ -x $program ]] || { echo "run: no $program" >&2 && return; } # photon_search wants nanoflann
-    "$program" >"$out/$1/$1.csv"
-    awk -F, '$6 != "" && NR > 1 { print $1 "," ($6 ~ / us$/ ? $2 " us" : $4) "," $6 "," $7 }' "$out/$1/$1.csv" | own_verdicts "$1"
+    local program=$suite_bin/afterglow-${1//_/-} csv=$out/$1/$1.csv
+    [[ -x $program ]] || { echo "run: no $program" >&2 && return; } # photon_search wants nanoflann; told as not measured
+    "$program" >"$csv" || return 1
+    awk -F, '$6 != "" && NR > 1 { print $1 "," ($6 ~ / us$/ ? $2 " us" : $4) "," $6 "," $7 }' "$csv" |
+        own_verdicts "$1" >"$out/$1/own_verdicts.csv" || return 1
+    [[ -s $out/$1/own_verdicts.csv ]] || { echo "run: $program gave no rows" >&2 && return 1; }
 }
 
-own_verdicts() { # lines NAME,VALUE,BOUND,yes|no
+own_verdicts() { # PART; lines NAME,VALUE,BOUND,yes|no
+    local name value bound holds verdict
     while IFS=, read -r name value bound holds; do
-        name=$1.$(slug <<<"$name")
         [[ $holds == yes ]] && verdict=met || verdict=MISSED
-        echo "$name,$value,at most,$bound,time,$verdict" >>"$out/own_verdicts.csv"
+        echo "$1.$(slug <<<"$name"),$value,at most,$bound,time,$verdict"
     done
 }
 
 run_forty_rooms() {
+    local status=0
     "$suite_bin/afterglow-forty-rooms" --out "$out/forty_rooms" --rooms "$rooms" --modes on-demand,precompute \
         --repeats "$repeats" || return 1
-    ! command -v gnuplot >/dev/null || gnuplot -e "folder='$out/forty_rooms'" "$suite_root/perf/forty_rooms.gp"
-    mv "$out/forty_rooms/results.csv" "$out/forty_rooms/forty_rooms.csv"
+    if command -v gnuplot >/dev/null; then # without figures it can still be judged
+        gnuplot -e "folder='$out/forty_rooms'" "$suite_root/perf/forty_rooms.gp" || status=1
+    fi
+    mv "$out/forty_rooms/results.csv" "$out/forty_rooms/forty_rooms.csv" || return 1
     awk "$suite_awk"'
     { gathers[$at["gather"]]; cpu[$at["mode"], $at["room"], $at["gather"]] = $at["cpu_s"]; rooms[$at["room"]]
       more += $at["computed"] > $at["stored"]; differing += $at["identical"] != 1 }
@@ -78,21 +84,27 @@ run_forty_rooms() {
         }
         print "forty_rooms.computed_more", more + 0
         print "forty_rooms.differing", differing + 0
-    }' "$out/forty_rooms/forty_rooms.csv" >"$out/forty_rooms/ratios.csv"
+    }' "$out/forty_rooms/forty_rooms.csv" >"$out/forty_rooms/ratios.csv" || return 1
+    return "$status"
 }
 
-[[ $report_only == yes ]] || rm -f "$out/own_verdicts.csv"
+# The mark is there until a part has ended well, for --report-only to see: a part broken off has failed as well.
 for part in ${parts//,/ }; do
     [[ $report_only == no ]] || continue
     echo "run: $part" >&2
+    mkdir -p "$out/$part"
+    touch "$out/$part/failed"
+    rm -f "$out/$part"/{ratios,own_verdicts,"$part"}.csv # an older run's must not be judged
+    has_failed=no
     case $part in
-    forty_rooms) run_forty_rooms || failures+=("$part failed") ;;
-    photon_search | photon_making | gather_rays) run_rows "$part" || failures+=("$part failed") ;;
-    frame | thread_scaling | scale | contention | memory | error_against_time)
-        "$suite_root/perf/$part.sh" "${options[@]}" --out "$out/$part" >"$out/$part.txt" || failures+=("$part failed")
-        ;;
-    *) suite_fail "--parts does not know '$part'" ;;
+    forty_rooms) run_forty_rooms || has_failed=yes ;;
+    photon_search | photon_making | gather_rays) run_rows "$part" || has_failed=yes ;;
+    *) "$suite_root/perf/$part.sh" "${options[@]}" --out "$out/$part" >"$out/$part.txt" || has_failed=yes ;;
     esac
+    [[ $has_failed == yes ]] || rm "$out/$part/failed"
+done
+for part in ${parts//,/ }; do
+    [[ ! -e $out/$part/failed ]] || failures+=("$part failed")
 done
 
 # The table of README.md: | `name` | at most or at least | bound | time or count | what it is |
@@ -118,7 +130,14 @@ for part in ${parts//,/ }; do cat "$out/$part/ratios.csv" 2>/dev/null || true; d
         }
         print $1 "," $2 "," relation[$1] "," bound[$1] "," kind[$1] "," verdict
     }' "$suite_root/perf/README.md" - >>"$results/verdicts.csv"
-[[ ! -s $out/own_verdicts.csv ]] || cat "$out/own_verdicts.csv" >>"$results/verdicts.csv"
+for part in photon_search photon_making gather_rays; do
+    [[ ,$parts, == *,$part,* ]] || continue
+    if [[ -s $out/$part/own_verdicts.csv ]]; then
+        cat "$out/$part/own_verdicts.csv"
+    else
+        echo "$part,,,,time,NOT MEASURED"
+    fi
+done >>"$results/verdicts.csv"
 suite_json "$results/verdicts.csv"
 
 while IFS=, read -r name value relation bound _ verdict; do
