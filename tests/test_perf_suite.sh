@@ -64,3 +64,43 @@ status=0
 "$copy/perf/run.sh" --quick --parts memory --out "$folder/out2" --results "$folder/report2" 2>"$folder/errors" || status=$?
 ((status == 1)) || fail "a missed bound ended with $status"
 grep -q 'memory.bytes is .* wanted at most 1' "$folder/errors" || fail "the missed bound is not named"
+
+# a bound without a figure is not measured, which is a failure in the quick form too when it is a count
+# shellcheck disable=SC2016 # markdown's own marks
+sed -i '/^| `memory.bytes`/a | `memory.nothing` | at most | 1 | count | |' "$copy/perf/README.md"
+status=0
+"$copy/perf/run.sh" --quick --report-only --parts memory --out "$folder/out2" --results "$folder/report2" \
+    2>"$folder/errors" || status=$?
+((status == 1)) || fail "a bound without a figure ended with $status"
+grep -q 'memory.nothing is not measured' "$folder/errors" || fail "the bound without a figure is not named"
+grep -qx 'memory.nothing,,at most,1,count,NOT MEASURED' "$folder/report2/verdicts.csv" || fail "verdicts.csv lacks memory.nothing"
+if grep -q 'memory.peak_bytes' "$folder/errors"; then fail "the quick form wants the peak"; fi
+
+# programs that fail, give no rows, or are not there; --report-only still knows; the machine's report is left alone
+mkdir -p "$folder/fake/bin"
+printf '#!/bin/sh\necho what,us,us_least,ratio,of,at_most,holds\nexit 3\n' >"$folder/fake/bin/afterglow-gather-rays"
+printf '#!/bin/sh\necho what,us,us_least,ratio,of,at_most,holds\n' >"$folder/fake/bin/afterglow-photon-making"
+chmod +x "$folder/fake/bin/"*
+for only in "" --report-only; do
+    status=0
+    # shellcheck disable=SC2086 # no option where it is empty
+    AG_BUILD_DIR=$folder/fake "$copy/perf/run.sh" $only --parts gather_rays,photon_making,photon_search \
+        --out "$folder/out3" 2>"$folder/errors" || status=$?
+    ((status == 1)) || fail "failing programs ended with $status $only"
+    for what in "gather_rays failed" "photon_making failed" "photon_search is not measured"; do
+        grep -q "error: $what" "$folder/errors" || fail "not told: $what $only"
+    done
+done
+[[ -s $folder/out3/report/report.md ]] || fail "--parts: no report in the folder of --out"
+
+# what a busy machine leaves unknown is counted
+mkdir -p "$folder/out4/thread_scaling"
+{
+    echo scaling.machine_share,0.5
+    # shellcheck disable=SC2016 # markdown's own marks
+    sed -n 's/^| `\(scaling[^`]*\)` | [a-z ]* | \([0-9.]*\) |.*/\1,\2/p' "$copy/perf/README.md"
+} >"$folder/out4/thread_scaling/ratios.csv"
+"$copy/perf/run.sh" --report-only --parts thread_scaling --out "$folder/out4" || fail "a busy machine ended with $?"
+unknown=$(grep -c ',wall,not known' "$folder/out4/report/verdicts.csv") || fail "no bound is unknown"
+grep -q "^Not known.*: $unknown of" "$folder/out4/report/report.md" || fail "what is not known is not counted"
+if grep -q 'All bounds are met' "$folder/out4/report/report.md"; then fail "unknown bounds are told as met"; fi
