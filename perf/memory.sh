@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # memory.sh: bytes a photon once the map is built and at the peak on the way there, and CPU time a photon against a map
-# of one million, for 1, 10 and 100 million photons, as far as there is memory for them.
+# of one million, for 1, 10 and 100 million photons, as far as there is memory for them; bytes a triangle of ten million.
 # Use: perf/memory.sh [--quick] [--repeats N] [--out DIR] [--photons LIST]
-# Writes memory.csv and .json.
+# Writes memory.csv and .json, triangles.csv.
 set -euo pipefail
 # shellcheck source=perf/suite.sh
 . "$(dirname "${BASH_SOURCE[0]}")/suite.sh"
@@ -53,6 +53,20 @@ suite_json "$out/memory.csv"
 suite_ratio memory.bytes "$(awk -F, 'NR > 1 && $3 > max { max = $3 } END { print max }' "$out/memory.csv")"
 if [[ $quick == no ]]; then # small maps sit in pages that are large against them
     suite_ratio memory.peak_bytes "$(awk -F, 'NR > 1 && $4 > max { max = $4 } END { print max }' "$out/memory.csv")"
+fi
+
+# Triangles: what ten million take at the peak of loading and rendering more than a million do.
+if [[ $quick == no ]]; then
+    echo "triangles,peak_bytes" >"$out/triangles.csv"
+    for n in 1000000 10000000; do
+        mkdir -p "$suite_work/triangles-$n"
+        "$suite_bin/afterglow-large-scene" triangles "$n" "$suite_work/triangles-$n"
+        "$suite_program" -q --progress none --integrator path --spp 1 -o "$suite_work/run.exr" \
+            --stats "$suite_work/run.json" "$suite_work/triangles-$n/triangles.pbrt"
+        echo "$n,$(jq .memory.peak_bytes "$suite_work/run.json")" >>"$out/triangles.csv"
+    done
+    suite_ratio memory.triangle_bytes "$(awk "$suite_awk"'
+        { n[FNR] = $1; bytes[FNR] = $2 } END { printf "%.1f", (bytes[3] - bytes[2]) / (n[3] - n[2]) }' "$out/triangles.csv")"
 fi
 suite_ratio memory.time_growth "$(awk -F, 'NR > 1 && $7 > max { max = $7 } END { print max }' "$out/memory.csv")"
 column -t -s, "$out/memory.csv"
