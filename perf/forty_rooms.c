@@ -1,7 +1,7 @@
 /* forty_rooms.c: the program afterglow-forty-rooms: the paper's experiment, each room in each cache mode.
  * After Neilson & Yang, "Beyond Faster Photon Map Global Illumination" (TR 04-21, 2004).
- * Flow: room_file -> run_group -> [here] -> results.csv, summary.md. Threads: one; the renderer, run as a process of
- * its own, has the machine to itself. */
+ * Flow: room_file -> run_group -> [here] -> results.csv, runs.csv, summary.md. Threads: one; the renderer, run as a
+ * process of its own, has the machine to itself. */
 #define _DEFAULT_SOURCE /* readlink */
 #include "forty_rooms_options.h"
 #include "forty_rooms_summary.h"
@@ -19,30 +19,30 @@
 typedef struct benchmark {
     const forty_rooms_options *options;
     char program[PATH_SIZE];
-    char csv_path[PATH_SIZE], summary_path[PATH_SIZE], work_folder[PATH_SIZE];
+    char csv_path[PATH_SIZE], runs_path[PATH_SIZE], summary_path[PATH_SIZE], work_folder[PATH_SIZE];
     room_sphere spheres[ROOM_COUNT];
-    result_table table;
+    result_table table, runs;
     int failed_checks;
 } benchmark;
 
 /* Appends the table's lines from first on to the file at once, so that a benchmark which is cut short keeps what it
  * measured. */
-static ag_status keep_lines(const benchmark *bench, size_t first)
+static ag_status keep_lines(const char *path, result_form form, const result_table *table, size_t first)
 {
-    FILE *file = fopen(bench->csv_path, "a");
+    FILE *file = fopen(path, "a");
     if (file == NULL) {
-        fprintf(stderr, "%s: error: %s\n", bench->csv_path, strerror(errno));
+        fprintf(stderr, "%s: error: %s\n", path, strerror(errno));
         return AG_ERROR_OUTPUT;
     }
     if (fseek(file, 0, SEEK_END) == 0 && ftell(file) == 0) {
-        result_print_heading(file);
+        result_print_heading(file, form);
     }
-    for (size_t i = first; i < bench->table.count; ++i) {
-        result_print_row(file, &bench->table.rows[i]);
+    for (size_t i = first; i < table->count; ++i) {
+        result_print_row(file, form, &table->rows[i]);
     }
     const bool failed = ferror(file) != 0;
     if (fclose(file) != 0 || failed) {
-        fprintf(stderr, "%s: error: it cannot be written\n", bench->csv_path);
+        fprintf(stderr, "%s: error: it cannot be written\n", path);
         return AG_ERROR_OUTPUT;
     }
     return AG_OK;
@@ -76,21 +76,26 @@ static ag_status measure_group(benchmark *bench, int room, int gather, const cha
         .room = room,
         .gather = gather,
         .thread_count = options->thread_count,
+        /* Numbered on after those of an earlier call: what was not run together is never taken for a pair. */
+        .first_repeat = result_table_last_repeat(&bench->runs, room, gather) + 1,
     };
     bool anything = false;
     for (int mode = 0; mode < CACHE_MODE_COUNT; ++mode) {
         settings.modes[mode] =
-            options->modes[mode] && result_table_find(&bench->table, room, gather, (cache_mode)mode) == NULL;
+            options->modes[mode] && result_table_find(&bench->table, room, gather, (cache_mode)mode, 0) == NULL;
         settings.repeats[mode] = options->repeats[mode];
         anything = anything || settings.modes[mode];
     }
     if (!anything) {
         return AG_OK;
     }
-    const size_t first = bench->table.count;
-    ag_status status = run_group_measure(&settings, &bench->table, &bench->failed_checks);
+    const size_t first = bench->table.count, first_run = bench->runs.count;
+    ag_status status = run_group_measure(&settings, &bench->table, &bench->runs, &bench->failed_checks);
+    if (status == AG_OK) { /* the runs first: a line of results.csv is never without them */
+        status = keep_lines(bench->runs_path, RESULT_RUNS, &bench->runs, first_run);
+    }
     if (status == AG_OK) {
-        status = keep_lines(bench, first);
+        status = keep_lines(bench->csv_path, RESULT_MEDIANS, &bench->table, first);
     }
     if (status == AG_OK) {
         tell_lines(bench, first);
@@ -150,27 +155,37 @@ static bool make_folder(const char *path)
     return true;
 }
 
-/* Names, folders, the lines measured before. An old table that is not carried on is kept beside the new one. */
+/* An old table that is not carried on is kept beside the new one. */
+static bool put_aside(const char *path)
+{
+    char old_path[PATH_SIZE];
+    const int length = snprintf(old_path, sizeof old_path, "%s.old", path);
+    if (length < 0 || (size_t)length >= sizeof old_path) {
+        fprintf(stderr, "%s: error: the path is too long\n", path);
+        return false;
+    }
+    if (rename(path, old_path) != 0 && errno != ENOENT) {
+        fprintf(stderr, "%s: error: %s\n", path, strerror(errno));
+        return false;
+    }
+    return true;
+}
+
+/* Names, folders, the lines measured before. */
 static bool prepare(benchmark *bench)
 {
     const forty_rooms_options *options = bench->options;
     if (!find_program(bench) || !path_join(options->folder, "results.csv", bench->csv_path) ||
+        !path_join(options->folder, "runs.csv", bench->runs_path) ||
         !path_join(options->folder, "summary.md", bench->summary_path) ||
         !path_join(options->folder, "work", bench->work_folder) || !make_folder(options->folder)) {
         return false;
     }
     if (options->resume || options->summary_only) {
-        return result_table_read(bench->csv_path, &bench->table) == AG_OK;
+        return result_table_read(bench->csv_path, RESULT_MEDIANS, &bench->table) == AG_OK &&
+               result_table_read(bench->runs_path, RESULT_RUNS, &bench->runs) == AG_OK;
     }
-    char old_path[PATH_SIZE];
-    if (!path_join(options->folder, "results.csv.old", old_path)) {
-        return false;
-    }
-    if (rename(bench->csv_path, old_path) != 0 && errno != ENOENT) {
-        fprintf(stderr, "%s: error: %s\n", bench->csv_path, strerror(errno));
-        return false;
-    }
-    return true;
+    return put_aside(bench->csv_path) && put_aside(bench->runs_path);
 }
 
 /* Lines of the table that tell of a failure; with --resume some are from an earlier run. */
@@ -197,6 +212,7 @@ int main(int argc, char **argv)
     bench.options = &options;
     if (!prepare(&bench)) {
         result_table_reset(&bench.table);
+        result_table_reset(&bench.runs);
         return 1;
     }
     bool good = true;
@@ -205,8 +221,8 @@ int main(int argc, char **argv)
                measure_rooms(&bench) == AG_OK;
     }
     if (bench.table.count > 0) {
-        if (forty_rooms_summary_write(bench.summary_path, &bench.table) == AG_OK) {
-            printf("%s\n%s\n", bench.csv_path, bench.summary_path);
+        if (forty_rooms_summary_write(bench.summary_path, &bench.table, &bench.runs) == AG_OK) {
+            printf("%s\n%s\n%s\n", bench.csv_path, bench.runs_path, bench.summary_path);
         } else {
             fprintf(stderr, "%s: error: it cannot be written\n", bench.summary_path);
             good = false;
@@ -222,5 +238,6 @@ int main(int argc, char **argv)
         good = false;
     }
     result_table_reset(&bench.table);
+    result_table_reset(&bench.runs);
     return good ? EXIT_SUCCESS : 1;
 }

@@ -9,8 +9,8 @@
 
 static const char usage_text[] =
     "usage: afterglow-forty-rooms --out DIR [options]\n"
-    "Renders the forty rooms in each cache mode, checks that the pictures agree, and writes DIR/results.csv and\n"
-    "DIR/summary.md. Exit code 1 when a run fails or a check does not hold.\n"
+    "Renders the forty rooms in each cache mode, checks that the pictures agree, and writes DIR/results.csv,\n"
+    "DIR/runs.csv and DIR/summary.md. Exit code 1 when a run fails or a check does not hold.\n"
     "  --rooms LIST       of 1 to 40, as 1-10,33 (1-40)\n"
     "  --gathers LIST     gather rays at each gather point, each 1 to 65536 (1,4,16,64)\n"
     "  --modes LIST       of on-demand, precompute, off (all three)\n"
@@ -19,8 +19,8 @@ static const char usage_text[] =
     "  --threads N        for the renderer; 0 is its own choice (0)\n"
     "  --program FILE     the renderer (afterglow, beside this program)\n"
     "  --quick            rooms 1, 10, 20, 33, gathers 1 and 16, one run of each; later options add to it\n"
-    "  --resume           keep the lines in DIR/results.csv, and measure only what is not there\n"
-    "  --summary-only     measure nothing; write the summary of DIR/results.csv\n"
+    "  --resume           keep the lines in DIR/results.csv and DIR/runs.csv, and measure only what is not there\n"
+    "  --summary-only     measure nothing; write the summary of DIR/results.csv and DIR/runs.csv\n"
     "  --help             this text\n";
 
 enum {

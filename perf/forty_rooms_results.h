@@ -1,5 +1,5 @@
-/* forty_rooms_results.h: the measurements as a table, and the CSV file that keeps them: one line per room, number of
- * gather rays and cache mode.
+/* forty_rooms_results.h: the measurements as a table, and the CSV files that keep them: results.csv, one line per room,
+ * number of gather rays and cache mode; runs.csv, one line per run.
  * Flow: renderer_run -> forty_rooms -> [here] -> forty_rooms_summary, gnuplot. Threads: one caller at a time. */
 #ifndef AFTERGLOW_FORTY_ROOMS_RESULTS_H
 #define AFTERGLOW_FORTY_ROOMS_RESULTS_H
@@ -62,9 +62,14 @@ typedef enum result_column {
         RESULT_COLUMN_COUNT
 } result_column;
 
+/* What a file holds. The columns that need several runs are empty in a line of RESULT_RUNS. */
+typedef enum result_form { RESULT_MEDIANS, RESULT_RUNS } result_form;
+
 typedef struct result_row {
     int room, gather;
     cache_mode mode;
+    int repeat,
+        turn; /* of a single run, from 1: which repeat of its room and gather rays, and its place in it; else 0 */
     double values[RESULT_COLUMN_COUNT];
 } result_row;
 
@@ -80,14 +85,28 @@ const char *cache_mode_text(cache_mode mode);
 ag_status result_table_add(result_table *table, const result_row *row);
 void result_table_reset(result_table *table);
 
-/* NULL when there is no such line. */
-const result_row *result_table_find(const result_table *table, int room, int gather, cache_mode mode);
+/* NULL when there is no such line. repeat: 0 in a table of RESULT_MEDIANS. */
+const result_row *result_table_find(const result_table *table, int room, int gather, cache_mode mode, int repeat);
+
+/* The gather counts in the table, ascending; the list is the caller's to free. NULL when there is no memory. */
+int *result_table_gathers(const result_table *table, size_t *out_count);
+
+/* The greatest number of a repeat among the runs of a room at a gather count; 0 when there is none. */
+int result_table_last_repeat(const result_table *runs, int room, int gather);
+
+/* A room's speed-up by CPU time of the whole process: of each repeat, precompute's time / on-demand's, and of these the
+ * median. What the machine does to a repeat falls on both its runs, and cancels. NaN when no repeat has both. ratios
+ * has room for runs->count numbers. */
+double result_table_speed_up(const result_table *runs, int room, int gather, double *ratios);
+
+/* Sorts the values; of an even count the mean of the middle two; NaN of none. */
+double result_median(double *values, size_t count);
 
 /* Appends the file's lines to the table. A file that is not there adds nothing and is no error.
  * Errors: AG_ERROR_INPUT (unreadable, another heading, a malformed line), AG_ERROR_MEMORY; told on standard error. */
-ag_status result_table_read(const char *path, result_table *table);
+ag_status result_table_read(const char *path, result_form form, result_table *table);
 
-void result_print_heading(FILE *file);
-void result_print_row(FILE *file, const result_row *row);
+void result_print_heading(FILE *file, result_form form);
+void result_print_row(FILE *file, result_form form, const result_row *row);
 
 #endif

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* Numbers gathered over the rooms; capacity is the table's line count, so adding cannot fail. */
+/* Numbers gathered over rooms or lines; there is space for all of them, so adding cannot fail. */
 typedef struct sample_list {
     double *values;
     size_t count;
@@ -23,20 +23,6 @@ static void add_sample(sample_list *list, double value)
     }
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Sorts the list. */
-static double median(sample_list *list)
-{
-    qsort(list->values, list->count, sizeof *list->values, compare_doubles);
-    const size_t half = list->count / 2;
-    return list->count % 2 == 1 ? list->values[half] : 0.5 * (list->values[half - 1] + list->values[half]);
-}
-
 /* "min / median / max", or a dash. */
 static void print_spread(FILE *file, sample_list *list, const char *before, int decimals)
 {
@@ -44,7 +30,7 @@ static void print_spread(FILE *file, sample_list *list, const char *before, int 
         fprintf(file, "%s-", before);
         return;
     }
-    const double middle = median(list);
+    const double middle = result_median(list->values, list->count); /* sorts */
     fprintf(file, "%s%.*f / %.*f / %.*f", before, decimals, list->values[0], decimals, middle, decimals,
             list->values[list->count - 1]);
 }
@@ -58,29 +44,6 @@ static double time_ratio(const result_row *a, const result_row *b, result_column
     return isfinite(ratio) ? ratio : NAN;
 }
 
-/* The gather counts in the table, ascending; the list is malloc'ed, of the table's size. */
-static int *list_gathers(const result_table *table, size_t *out_count)
-{
-    int *gathers = malloc((table->count + 1) * sizeof *gathers);
-    size_t count = 0;
-    for (size_t i = 0; gathers != NULL && i < table->count; ++i) {
-        const int gather = table->rows[i].gather;
-        size_t place = 0;
-        while (place < count && gathers[place] < gather) {
-            ++place;
-        }
-        if (place == count || gathers[place] != gather) {
-            for (size_t j = count; j > place; --j) {
-                gathers[j] = gathers[j - 1];
-            }
-            gathers[place] = gather;
-            ++count;
-        }
-    }
-    *out_count = count;
-    return gathers;
-}
-
 /* The modes of one room at one gather count. */
 typedef struct room_modes {
     const result_row *on_demand, *precompute, *off;
@@ -88,9 +51,9 @@ typedef struct room_modes {
 
 static room_modes find_modes(const result_table *table, int room, int gather)
 {
-    const room_modes modes = {result_table_find(table, room, gather, CACHE_ON_DEMAND),
-                              result_table_find(table, room, gather, CACHE_PRECOMPUTE),
-                              result_table_find(table, room, gather, CACHE_OFF)};
+    const room_modes modes = {result_table_find(table, room, gather, CACHE_ON_DEMAND, 0),
+                              result_table_find(table, room, gather, CACHE_PRECOMPUTE, 0),
+                              result_table_find(table, room, gather, CACHE_OFF, 0)};
     return modes;
 }
 
@@ -109,7 +72,7 @@ static void print_on_demand(FILE *file, const result_table *table, const int *ga
             "\n## On demand against precompute\n\n"
             "Speed-up: precompute's time divided by on-demand's, for emission + map + irradiance + picture; the paper "
             "has 1.2 to 2.2.\nThree numbers: least / median / greatest of the rooms.\n\n"
-            "| gather rays | rooms | speed-up | by CPU time of the whole process | on-demand is faster in | "
+            "| gather rays | rooms | speed-up | by CPU time of these runs | on-demand is faster in | "
             "share of the photons computed | us an estimate, on demand | us an estimate, precompute | "
             "equal pictures |\n"
             "|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
@@ -140,6 +103,50 @@ static void print_on_demand(FILE *file, const result_table *table, const int *ga
         }
         print_spread(file, &cost, " | ", 1);
         fprintf(file, " | %d of %d |\n", equal, compared);
+    }
+}
+
+static double mean(const sample_list *list)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < list->count; ++i) {
+        sum += list->values[i];
+    }
+    return sum / (double)list->count;
+}
+
+static void print_repeats(FILE *file, const result_table *table, const result_table *runs, const int *gathers,
+                          size_t gather_count, double *scratch[4])
+{
+    fprintf(
+        file,
+        "\n## On demand against precompute, repeat by repeat\n\n"
+        "A room's speed-up: precompute's CPU time (of the whole process) divided by on-demand's in the same repeat; "
+        "the median of the\nrepeats. Three numbers: least / median / greatest of the rooms. What is saved ought to "
+        "grow with what is not asked for: the last two\ncolumns, means over the rooms.\n\n"
+        "| gather rays | rooms | speed-up | rooms below 1 | rooms below 1/1.05 | "
+        "1 - share of the photons computed | 1 - CPU time, on-demand / precompute |\n"
+        "|---:|---:|---:|---:|---:|---:|---:|\n");
+    for (size_t i = 0; i < gather_count; ++i) {
+        sample_list speed_up = {scratch[0], 0}, unasked = {scratch[1], 0}, saved = {scratch[2], 0};
+        int slower = 0, much_slower = 0;
+        for (int room = 1; room <= ROOM_COUNT; ++room) {
+            const double ratio = result_table_speed_up(runs, room, gathers[i], scratch[3]);
+            if (isnan(ratio)) {
+                continue;
+            }
+            slower += ratio < 1.0;
+            much_slower += ratio < 1.0 / 1.05;
+            add_sample(&speed_up, ratio);
+            add_sample(&saved, 1.0 - 1.0 / ratio);
+            add_sample(&unasked, 1.0 - value_of(find_modes(table, room, gathers[i]).on_demand, RESULT_SHARE));
+        }
+        if (speed_up.count == 0) {
+            continue;
+        }
+        fprintf(file, "| %d | %zu ", gathers[i], speed_up.count);
+        print_spread(file, &speed_up, "| ", 3);
+        fprintf(file, " | %d | %d | %.3f | %.3f |\n", slower, much_slower, mean(&unasked), mean(&saved));
     }
 }
 
@@ -279,7 +286,7 @@ static void print_checks(FILE *file, const result_table *table, double *scratch)
     }
     fprintf(file, "\n## Checks\n\n%zu lines", table->count);
     if (threads.count > 0) {
-        (void)median(&threads); /* sorts */
+        (void)result_median(threads.values, threads.count); /* sorts */
         const double least = threads.values[0], most = threads.values[threads.count - 1];
         if (least < most) {
             fprintf(file, ", measured with %.0f to %.0f threads", least, most);
@@ -293,11 +300,11 @@ static void print_checks(FILE *file, const result_table *table, double *scratch)
             computed_twice, miscounted, compared, different);
 }
 
-ag_status forty_rooms_summary_write(const char *path, const result_table *table)
+ag_status forty_rooms_summary_write(const char *path, const result_table *table, const result_table *runs)
 {
     size_t gather_count = 0;
-    int *gathers = list_gathers(table, &gather_count);
-    const size_t capacity = table->count + ROOM_COUNT; /* of each list: a line each, or a room each */
+    int *gathers = result_table_gathers(table, &gather_count);
+    const size_t capacity = table->count + runs->count + ROOM_COUNT; /* of each list: a line each, or a room each */
     double *memory = malloc(4 * capacity * sizeof *memory);
     ag_status status = AG_ERROR_MEMORY;
     if (gathers != NULL && memory != NULL) {
@@ -307,6 +314,9 @@ ag_status forty_rooms_summary_write(const char *path, const result_table *table)
         if (file != NULL) {
             fprintf(file, "# The forty rooms: summary of results.csv\n");
             print_on_demand(file, table, gathers, gather_count, scratch);
+            if (runs->count > 0) {
+                print_repeats(file, table, runs, gathers, gather_count, scratch);
+            }
             print_off(file, table, gathers, gather_count, scratch);
             print_large_sphere(file, table, gathers, gather_count);
             print_checks(file, table, memory);

@@ -5,8 +5,9 @@
 
 #include "forty_rooms_results.h"
 
-/* Replaces the file. Says of each comparison in how many rooms it could be made; what was not measured is left out.
- * Errors: AG_ERROR_OUTPUT (errno set), AG_ERROR_MEMORY. */
-ag_status forty_rooms_summary_write(const char *path, const result_table *table);
+/* Replaces the file. table: the lines of median time; runs: the single runs, none of an old measurement. Says of each
+ * comparison in how many rooms it could be made; what was not measured is left out. Errors: AG_ERROR_OUTPUT (errno
+ * set), AG_ERROR_MEMORY. */
+ag_status forty_rooms_summary_write(const char *path, const result_table *table, const result_table *runs);
 
 #endif

@@ -13,6 +13,7 @@ typedef struct run_group {
     const run_group_settings *settings;
     result_row *runs[CACHE_MODE_COUNT]; /* repeats of each mode, in the order run */
     int run_count[CACHE_MODE_COUNT];
+    result_table *all_runs; /* the caller's */
     /* The first picture of a family stands for it: on-demand and precompute are one, off is another estimator. */
     renderer_picture reference[2];
     int compared[2];
@@ -69,7 +70,8 @@ static void check_picture(run_group *group, const result_row *row, renderer_pict
     renderer_picture_reset(picture);
 }
 
-static ag_status run_once(run_group *group, cache_mode mode)
+/* repeat and turn count from 0. */
+static ag_status run_once(run_group *group, cache_mode mode, int repeat, int turn)
 {
     const run_group_settings *settings = group->settings;
     char picture_path[PATH_SIZE], stats_path[PATH_SIZE], picture_name[64], stats_name[64];
@@ -91,6 +93,8 @@ static ag_status run_once(run_group *group, cache_mode mode)
     result_row *row = &group->runs[mode][group->run_count[mode]];
     row->room = settings->room;
     row->gather = settings->gather;
+    row->repeat = settings->first_repeat + repeat;
+    row->turn = turn + 1;
     renderer_picture picture;
     const ag_status status = renderer_run(&run, row, &picture);
     if (status != AG_OK) {
@@ -100,26 +104,35 @@ static ag_status run_once(run_group *group, cache_mode mode)
     ++group->run_count[mode];
     check_run(group, row);
     check_picture(group, row, &picture);
-    return AG_OK;
+    return result_table_add(group->all_runs, row);
 }
 
-/* The modes take turns, and another begins each time: what else the machine does then falls on all of them. */
+/* The modes that have a run in this repeat, in order. Another begins each time, of those that are measured: counted
+ * over all modes, the one after a mode left out would begin twice as often. */
+static int list_turns(const run_group_settings *settings, int repeat, cache_mode out_modes[CACHE_MODE_COUNT])
+{
+    cache_mode measured[CACHE_MODE_COUNT];
+    int count = 0;
+    for (int mode = 0; mode < CACHE_MODE_COUNT; ++mode) {
+        if (settings->modes[mode] && repeat < settings->repeats[mode]) {
+            measured[count++] = (cache_mode)mode;
+        }
+    }
+    for (int turn = 0; turn < count; ++turn) {
+        out_modes[turn] = measured[(repeat + turn) % count];
+    }
+    return count;
+}
+
+/* The modes take turns: what else the machine does then falls on all of them. */
 static ag_status run_interleaved(run_group *group)
 {
     const run_group_settings *settings = group->settings;
-    int repeats = 0;
-    for (int mode = 0; mode < CACHE_MODE_COUNT; ++mode) {
-        if (settings->modes[mode] && settings->repeats[mode] > repeats) {
-            repeats = settings->repeats[mode];
-        }
-    }
-    for (int repeat = 0; repeat < repeats; ++repeat) {
-        for (int turn = 0; turn < CACHE_MODE_COUNT; ++turn) {
-            const cache_mode mode = (cache_mode)((repeat + turn) % CACHE_MODE_COUNT);
-            if (!settings->modes[mode] || repeat >= settings->repeats[mode]) {
-                continue;
-            }
-            const ag_status status = run_once(group, mode);
+    cache_mode modes[CACHE_MODE_COUNT];
+    int turn_count = 0;
+    for (int repeat = 0; (turn_count = list_turns(settings, repeat, modes)) > 0; ++repeat) {
+        for (int turn = 0; turn < turn_count; ++turn) {
+            const ag_status status = run_once(group, modes[turn], repeat, turn);
             if (status != AG_OK) {
                 return status;
             }
@@ -142,6 +155,7 @@ static result_row median_run(const run_group *group, cache_mode mode)
     const int count = group->run_count[mode];
     qsort(runs, (size_t)count, sizeof *runs, compare_by_sum);
     result_row row = runs[(count - 1) / 2];
+    row.repeat = row.turn = 0;
     row.values[RESULT_REPEATS] = count;
     row.values[RESULT_SUM_MIN_S] = runs[0].values[RESULT_SUM_S];
     row.values[RESULT_SUM_MAX_S] = runs[count - 1].values[RESULT_SUM_S];
@@ -152,9 +166,10 @@ static result_row median_run(const run_group *group, cache_mode mode)
     return row;
 }
 
-ag_status run_group_measure(const run_group_settings *settings, result_table *table, int *failed_checks)
+ag_status run_group_measure(const run_group_settings *settings, result_table *table, result_table *runs,
+                            int *failed_checks)
 {
-    run_group group = {.settings = settings, .failed_checks = failed_checks};
+    run_group group = {.settings = settings, .all_runs = runs, .failed_checks = failed_checks};
     ag_status status = AG_OK;
     for (int mode = 0; mode < CACHE_MODE_COUNT; ++mode) {
         if (settings->modes[mode]) {

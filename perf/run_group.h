@@ -1,5 +1,5 @@
-/* run_group.h: one room at one gather count, in each cache mode and several times, checked, down to one line a mode.
- * Flow: forty_rooms -> [here] -> renderer_run; lines back to forty_rooms. Threads: one. */
+/* run_group.h: one room at one gather count, in each cache mode and several times, checked: a line a run, a line a
+ * mode. Flow: forty_rooms -> [here] -> renderer_run; lines back to forty_rooms. Threads: one. */
 #ifndef AFTERGLOW_RUN_GROUP_H
 #define AFTERGLOW_RUN_GROUP_H
 
@@ -15,11 +15,14 @@ typedef struct run_group_settings {
     int thread_count;             /* 0: the renderer's own choice */
     bool modes[CACHE_MODE_COUNT]; /* which to run */
     int repeats[CACHE_MODE_COUNT];
+    int first_repeat; /* what the first repeat is numbered in the runs' lines */
 } run_group_settings;
 
-/* Appends a line for each mode to the table: of its runs the one whose time is the median, of an even count the lower
- * middle. Checks that do not hold are told on standard error and added to *failed_checks; they are no error here.
- * Errors: as renderer_run, AG_ERROR_MEMORY, AG_ERROR_ARGUMENT (a path too long); the table may then lack lines. */
-ag_status run_group_measure(const run_group_settings *settings, result_table *table, int *failed_checks);
+/* Appends a line for each run to runs, and a line for each mode to the table: of its runs the one whose time is the
+ * median, of an even count the lower middle. Checks that do not hold are told on standard error and added to
+ * *failed_checks; they are no error here. Errors: as renderer_run, AG_ERROR_MEMORY, AG_ERROR_ARGUMENT (a path too
+ * long); the tables may then lack lines. */
+ag_status run_group_measure(const run_group_settings *settings, result_table *table, result_table *runs,
+                            int *failed_checks);
 
 #endif
