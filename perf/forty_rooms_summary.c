@@ -72,7 +72,7 @@ static void print_on_demand(FILE *file, const result_table *table, const int *ga
             "\n## On demand against precompute\n\n"
             "Speed-up: precompute's time divided by on-demand's, for emission + map + irradiance + picture; the paper "
             "has 1.2 to 2.2.\nThree numbers: least / median / greatest of the rooms.\n\n"
-            "| gather rays | rooms | speed-up | by CPU time of these runs | on-demand is faster in | "
+            "| gather rays | rooms | speed-up | by CPU time of each mode's median run | on-demand is faster in | "
             "share of the photons computed | us an estimate, on demand | us an estimate, precompute | "
             "equal pictures |\n"
             "|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
