@@ -16,6 +16,7 @@ arguments=("$room" --only indirect --gather-samples 16)
 
 two_cores=() # the first two that we may use; a list like 0-3,8
 if ((suite_cores > 2)); then
+    command -v taskset >/dev/null || suite_fail "taskset is not installed (Debian: util-linux)"
     two_cores=(taskset -c "$(taskset -cp $$ | sed 's/.*: //' | tr , '\n' |
         awk -F- '{ for (i = $1; i <= $NF && n < 2; i++) list = list (n++ ? "," : "") i } END { print list }')")
 fi

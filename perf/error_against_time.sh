@@ -3,8 +3,8 @@
 # held against a long path-traced reference of another seed (kept in the build folder); all light, and indirect alone.
 # Use: perf/error_against_time.sh [--quick] [--repeats N] [--out DIR] [--reference-spp N] [--scenes LIST] [--resume]
 # Writes error.csv and .json (the curves), equal_error.csv (when the photon map has the error that path tracing has
-# after so many samples; 64 are judged), runs.csv and the figures. Pictures have half the scenes' own width: edges, which
-# only camera samples settle, have about the share of the error that they have in pictures people make.
+# after so many samples; 64 are judged), runs.csv and the figures. Pictures have half the scenes' own width (the
+# room: as many pixels as cornell-box): edges, which only camera samples settle, have about the share of the error that they have in pictures people make.
 set -euo pipefail
 # shellcheck source=perf/suite.sh
 . "$(dirname "${BASH_SOURCE[0]}")/suite.sh"
@@ -61,8 +61,9 @@ make_reference() { # NAME PART OPTIONS...: sets reference
     fi
 }
 
-if [[ $resume == no || ! -s $out/errors.csv ]]; then
-    echo "scene,part,integrator,step,repeat,size,work_cpu_s,cpu_s,error,mean_ratio" >"$out/errors.csv"
+heading=scene,part,integrator,step,repeat,size,work_cpu_s,cpu_s,error,mean_ratio
+if [[ $resume == no || ! -s $out/errors.csv || $(head -n 1 "$out/errors.csv") != "$heading" ]]; then
+    echo "$heading" >"$out/errors.csv"
 fi
 one_run() { # NAME PART INTEGRATOR STEP REPEAT OPTIONS...: the work is all but loading and writing
     local name=$1 part=$2 integrator=$3 step=$4 repeat=$5 times error

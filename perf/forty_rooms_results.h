@@ -68,8 +68,8 @@ typedef enum result_form { RESULT_MEDIANS, RESULT_RUNS } result_form;
 typedef struct result_row {
     int room, gather;
     cache_mode mode;
-    int repeat,
-        turn; /* of a single run, from 1: which repeat of its room and gather rays, and its place in it; else 0 */
+    /* of a single run, from 1: which repeat of its room and gather rays, and its place in it; else 0 */
+    int repeat, turn;
     double values[RESULT_COLUMN_COUNT];
 } result_row;
 

@@ -132,14 +132,15 @@ static void print_repeats(FILE *file, const result_table *table, const result_ta
         int slower = 0, much_slower = 0;
         for (int room = 1; room <= ROOM_COUNT; ++room) {
             const double ratio = result_table_speed_up(runs, room, gathers[i], scratch[3]);
-            if (isnan(ratio)) {
+            const result_row *on_demand = find_modes(table, room, gathers[i]).on_demand;
+            if (isnan(ratio) || on_demand == NULL) {
                 continue;
             }
             slower += ratio < 1.0;
             much_slower += ratio < 1.0 / 1.05;
             add_sample(&speed_up, ratio);
             add_sample(&saved, 1.0 - 1.0 / ratio);
-            add_sample(&unasked, 1.0 - value_of(find_modes(table, room, gathers[i]).on_demand, RESULT_SHARE));
+            add_sample(&unasked, 1.0 - value_of(on_demand, RESULT_SHARE));
         }
         if (speed_up.count == 0) {
             continue;
@@ -312,7 +313,7 @@ ag_status forty_rooms_summary_write(const char *path, const result_table *table,
         FILE *file = fopen(path, "w");
         status = AG_ERROR_OUTPUT;
         if (file != NULL) {
-            fprintf(file, "# The forty rooms: summary of results.csv\n");
+            fprintf(file, "# The forty rooms: summary of results.csv and runs.csv\n");
             print_on_demand(file, table, gathers, gather_count, scratch);
             if (runs->count > 0) {
                 print_repeats(file, table, runs, gathers, gather_count, scratch);

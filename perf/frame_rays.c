@@ -1,6 +1,6 @@
 /* frame_rays.c: the program afterglow-frame-rays: what Embree alone needs for a whole picture's gather rays: as many,
- * from the middle of each pixel, by the cosine. A picture sends half of its own where photons came from, at the same
- * cost each (gather_rays.c replays the very same ones).
+ * from the middle of each pixel, by the cosine. A picture sends half of its own where photons came from, and
+ * starts them beside the middle (gather_rays.c replays the very same ones, of five tiles).
  * A tile's rays at a time are made, untimed, and then traced, timed; one line of CSV: how many, microseconds of CPU
  * each. Use: afterglow-frame-rays SCENE.pbrt [SIZE] [GATHER_RAYS]. Flow: frame.sh -> [here]. Threads: one. */
 #define _GNU_SOURCE

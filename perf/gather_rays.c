@@ -2,8 +2,9 @@
  * Embree alone needs for the very same rays. Room 20 of the forty, or another scene; all take turns in one process on
  * one thread; medians of the rounds' ratios, as CSV.
  * The rays are those of some tiles of a picture of 400 x 400, 64 from each place, guided as the renderer guides them;
- * all irradiance is there already. Embree casts them one by one (rtcIntersect1), and as the renderer does, 64 together.
- * Use: afterglow-gather-rays [SCENE.pbrt]. Flow: [here]. Threads: one. */
+ * all irradiance is there already. Embree casts them one by one (rtcIntersect1), and the renderer's ray_fan 64
+ * together: sorted, then in packets. Where a scene has media, or normals that turn within a triangle, the renderer
+ * leaves out some of these rays. Use: afterglow-gather-rays [SCENE.pbrt]. Flow: [here]. Threads: one. */
 #define _GNU_SOURCE
 #include "clock.h"
 #include "final_gather.h"
@@ -18,7 +19,6 @@
 
 enum { PICTURE = 400, TILE = 32, TILES = 5, GATHER_RAYS = ROOM_BENCH_GATHER_RAYS, ESTIMATES = 20000 };
 _Static_assert((int)GATHER_RAYS <= (int)RAY_FAN_MAX, "a place's rays are one fan");
-static const float GUIDING = 0.5f; /* the renderer's default */
 enum { PLACES_MAX = TILES * TILE * TILE, RAYS_MAX = PLACES_MAX * GATHER_RAYS };
 
 typedef struct place {
@@ -150,9 +150,9 @@ static double estimates(bench *b)
 enum { EMBREE, EMBREE_TOGETHER, WHOLE, WHOLE_TO_TOGETHER, DIRECTIONS, FANS, HITS, LOOKUPS, ESTIMATE, ROWS };
 static room_bench_row rows[ROWS] = {
     [EMBREE] = {.name = "Embree alone"},
-    [EMBREE_TOGETHER] = {.name = "Embree alone (64 together)"},
+    [EMBREE_TOGETHER] = {.name = "rays alone (64 together)"},
     [WHOLE] = {.name = "whole gather ray", .most_ratio = 2.4},
-    [WHOLE_TO_TOGETHER] = {.name = "whole gather ray (against 64 together)", .rival = EMBREE_TOGETHER},
+    [WHOLE_TO_TOGETHER] = {.name = "whole gather ray (against rays 64 together)", .rival = EMBREE_TOGETHER},
     [DIRECTIONS] = {.name = "direction"},
     [FANS] = {.name = "direction with ray and end (64 together)"},
     [HITS] = {.name = "ray and hit (alone)"},
@@ -218,7 +218,7 @@ static ag_status make_cache(bench *b, run_context *run)
         status = irradiance_cache_precompute(&b->cache, run);
     b->settings.gather_samples = GATHER_RAYS;
     if (status == AG_OK)
-        status = incident_light_create(run, &b->map, GUIDING, &b->incident);
+        status = incident_light_create(run, &b->map, AG_DEFAULT_GATHER_GUIDING, &b->incident);
     b->t = (transport){.s = b->s,
                        .run = run,
                        .caustic = &b->no_caustics,

@@ -19,7 +19,7 @@ static const ag_render_settings DEFAULTS = {
     .caustic_photon_count = 500000,
     .nearest = 50,
     .irradiance_fraction = 1.0f,
-    .gather_guiding = 0.5f,
+    .gather_guiding = AG_DEFAULT_GATHER_GUIDING,
 };
 
 /* An integer parameter within a range. */

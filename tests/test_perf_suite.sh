@@ -92,6 +92,7 @@ for only in "" --report-only; do
     done
 done
 [[ -s $folder/out3/report/report.md ]] || fail "--parts: no report in the folder of --out"
+diff -r "$root/perf/results" "$copy/perf/results" >&2 || fail "--parts has changed the machine's report"
 
 # what a busy machine leaves unknown is counted
 mkdir -p "$folder/out4/thread_scaling"

@@ -171,7 +171,8 @@ typedef struct ag_render_settings {
                                   of them bear, so that each photon has a bearer near. Default 1 */
     float gather_guiding;      /* how much the photons' directions decide where gather rays go, [0, 1]: the share of the
                                   rays that goes where light comes from, where photons are many; the rest goes by the
-                                  cosine. 0: all. Less noise or more, the same light. Default 0.5 */
+                                  cosine. 0: all. Less noise or more, the same light. Default
+                                  AG_DEFAULT_GATHER_GUIDING */
     uint32_t layers;           /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
     bool denoise;              /* ag_film_denoise will be asked for: the film keeps what it needs */
     bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */
@@ -199,6 +200,7 @@ AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_sce
                                                ag_render_settings *out_settings);
 
 #define AG_DEFAULT_GATHER_RAYS_PER_PIXEL 256
+#define AG_DEFAULT_GATHER_GUIDING        0.5f
 
 typedef struct ag_film ag_film;
 
