@@ -2,24 +2,14 @@
  * Threads: one. */
 #define _POSIX_C_SOURCE 200809L
 #include "pbrt_fixture.h"
+#include "temporary_folder.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <zlib.h>
-
-static char directory[] = "/tmp/ag_pbrt_files_XXXXXX";
-
-static const char *path_of(const char *name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", directory, name);
-    return path;
-}
 
 static void write_file(const char *name, const char *text)
 {
-    FILE *f = fopen(path_of(name), "wb");
+    FILE *f = fopen(in_folder(name), "wb");
     assert_non_null(f);
     assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
     assert_int_equal(fclose(f), 0);
@@ -27,7 +17,7 @@ static void write_file(const char *name, const char *text)
 
 static void check_file(const char *name, uint32_t shape_count)
 {
-    reading r = reading_create(path_of(name), NULL, 0);
+    reading r = reading_create(in_folder(name), NULL, 0);
     if (r.said[AG_LOG_ERROR])
         print_error("%s", r.said[AG_LOG_ERROR]);
     assert_int_equal(r.status, AG_OK);
@@ -35,13 +25,13 @@ static void check_file(const char *name, uint32_t shape_count)
     reading_destroy(&r);
 }
 
-/* expected: the message with % where the directory stands. */
+/* expected: the message with % where the folder stands. */
 static void check_file_error(const char *name, ag_status status, const char *expected)
 {
     char text[4096] = "";
     for (const char *p = expected; *p; p++)
-        snprintf(text + strlen(text), sizeof text - strlen(text), *p == '%' ? "%s" : "%.1s", *p == '%' ? directory : p);
-    reading r = reading_create(path_of(name), NULL, 0);
+        snprintf(text + strlen(text), sizeof text - strlen(text), *p == '%' ? "%s" : "%.1s", *p == '%' ? folder : p);
+    reading r = reading_create(in_folder(name), NULL, 0);
     assert_int_equal(r.status, status);
     assert_string_equal(r.said[AG_LOG_ERROR], text);
     reading_destroy(&r);
@@ -54,7 +44,7 @@ static void included_files_are_found(void **state)
     /* a: beside itself and from the top; the transform and an open parameter list go on behind its end */
     write_file("parts/a.pbrt", "Translate 1 0 0 Include \"b.pbrt\" Include \"parts/b.pbrt\" Shape \"sphere\"");
     write_file("parts/b.pbrt", "Shape \"disk\" # no line end");
-    reading r = reading_create(path_of("top.pbrt"), NULL, 0);
+    reading r = reading_create(in_folder("top.pbrt"), NULL, 0);
     assert_int_equal(r.status, AG_OK);
     assert_int_equal(r.scene->shape_count, 5);
     assert_int_equal(r.scene->shapes[4].kind, SHAPE_DISK);
@@ -63,7 +53,7 @@ static void included_files_are_found(void **state)
     /* a parameter list may go on in the file that included its beginning */
     write_file("open.pbrt", "WorldBegin Include \"begin.pbrt\" 7 ]");
     write_file("begin.pbrt", "Shape \"sphere\" \"float radius\" [");
-    r = reading_create(path_of("open.pbrt"), NULL, 0);
+    r = reading_create(in_folder("open.pbrt"), NULL, 0);
     assert_int_equal(r.status, AG_OK);
     assert_near(r.scene->shapes[0].as.quadric.radius, 7, 0);
     reading_destroy(&r);
@@ -103,7 +93,7 @@ static void imported_files_have_a_state_of_their_own(void **state)
                "MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Include \"b.pbrt\" ColorSpace \"rec2020\"\n"
                "Attribute \"shape\" \"float radius\" 5 Shape \"sphere\" \"float zmax\" 1");
     write_file("parts/b.pbrt", "Translate 1 0 0");
-    reading r = reading_create(path_of("top.pbrt"), NULL, 0);
+    reading r = reading_create(in_folder("top.pbrt"), NULL, 0);
     if (r.said[AG_LOG_ERROR])
         print_error("%s", r.said[AG_LOG_ERROR]);
     assert_int_equal(r.status, AG_OK);
@@ -150,7 +140,7 @@ static void spectra_are_read_from_files(void **state)
                            "LightSource \"point\" \"spectrum I\" [ 300 2 900 2 ] \"float scale\" 3\n"
                            "Material \"diffuse\" \"spectrum reflectance\" [ 400 .3 700 .3 ] Shape \"sphere\"\n"
                            "LightSource \"point\" \"spectrum I\" \"stdillum-D65\"");
-    reading r = reading_create(path_of("top.pbrt"), NULL, 0);
+    reading r = reading_create(in_folder("top.pbrt"), NULL, 0);
     assert_int_equal(r.status, AG_OK);
     assert_int_equal(r.count[AG_LOG_WARNING], 0);
     const scene *s = r.scene;
@@ -186,15 +176,11 @@ static void deep_includes_are_refused(void **state)
         snprintf(text, sizeof text, "Include \"deep%d.pbrt\"", i + 1);
         write_file(name, text);
     }
-    reading r = reading_create(path_of("deep0.pbrt"), NULL, 0);
+    reading r = reading_create(in_folder("deep0.pbrt"), NULL, 0);
     assert_int_equal(r.status, AG_ERROR_SCENE);
     assert_non_null(strstr(r.said[AG_LOG_ERROR], "deep31.pbrt:1:9: error: too many files include one another: "));
     assert_non_null(strstr(r.said[AG_LOG_ERROR], "deep31.pbrt:1 < "));
     reading_destroy(&r);
-    for (int i = 0; i < 40; i++) {
-        snprintf(name, sizeof name, "deep%d.pbrt", i);
-        remove(path_of(name));
-    }
 }
 
 static void packed_files_and_standard_input_are_read(void **state)
@@ -202,17 +188,17 @@ static void packed_files_and_standard_input_are_read(void **state)
     (void)state;
     const char *text = "WorldBegin Shape \"sphere\" Include \"parts/b.pbrt\"";
     write_file("parts/b.pbrt", "Shape \"disk\"");
-    gzFile f = gzopen(path_of("packed.pbrt.gz"), "wb");
+    gzFile f = gzopen(in_folder("packed.pbrt.gz"), "wb");
     assert_non_null(f);
     assert_int_equal(gzputs(f, text), (int)strlen(text));
     assert_int_equal(gzclose(f), Z_OK);
     check_file("packed.pbrt.gz", 2);
-    assert_int_equal(truncate(path_of("packed.pbrt.gz"), 30), 0);
+    assert_int_equal(truncate(in_folder("packed.pbrt.gz"), 30), 0);
     check_file_error("packed.pbrt.gz", AG_ERROR_INPUT,
                      "%/packed.pbrt.gz: error: cannot read the file: the gzip file is cut short\n");
 
     write_file("stdin.pbrt", "WorldBegin Shape \"sphere\"\nBogus");
-    int saved = dup(STDIN_FILENO), replaced = open(path_of("stdin.pbrt"), O_RDONLY);
+    int saved = dup(STDIN_FILENO), replaced = open(in_folder("stdin.pbrt"), O_RDONLY);
     assert_true(saved >= 0 && replaced >= 0);
     dup2(replaced, STDIN_FILENO);
     reading r = reading_create("-", NULL, 0);
@@ -225,22 +211,10 @@ static void packed_files_and_standard_input_are_read(void **state)
     reading_destroy(&r);
 }
 
-static int make_directory(void **state)
+/* One folder for all: what a test leaves there does not matter to the next. */
+static int make_folders(void **state)
 {
-    (void)state;
-    return mkdtemp(directory) && mkdir(path_of("parts"), 0700) == 0 ? 0 : -1;
-}
-
-static int remove_directory(void **state)
-{
-    (void)state;
-    static const char *const NAMES[] = {"top.pbrt",       "parts/a.pbrt", "parts/b.pbrt",   "open.pbrt",  "begin.pbrt",
-                                        "missing.pbrt",   "cycle.pbrt",   "cycle2.pbrt",    "outer.pbrt", "inner.pbrt",
-                                        "packed.pbrt.gz", "stdin.pbrt",   "parts/glass.spd"};
-    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
-        remove(path_of(NAMES[i]));
-    rmdir(path_of("parts"));
-    return rmdir(directory);
+    return make_folder(state) == 0 && mkdir(in_folder("parts"), 0700) == 0 ? 0 : -1;
 }
 
 int main(void)
@@ -253,5 +227,5 @@ int main(void)
         cmocka_unit_test(deep_includes_are_refused),
         cmocka_unit_test(packed_files_and_standard_input_are_read),
     };
-    return cmocka_run_group_tests(tests, make_directory, remove_directory);
+    return cmocka_run_group_tests(tests, make_folders, remove_folder);
 }
