@@ -4,7 +4,8 @@
 # Use: perf/error_against_time.sh [--quick] [--repeats N] [--out DIR] [--reference-spp N] [--scenes LIST] [--resume]
 # Writes error.csv and .json (the curves), equal_error.csv (when the photon map has the error that path tracing has
 # after so many samples; 64 are judged), runs.csv and the figures. Pictures have half the scenes' own width (the
-# room: as many pixels as cornell-box): edges, which only camera samples settle, have about the share of the error that they have in pictures people make.
+# room: as many pixels as cornell-box): edges, which only camera samples settle, have about the share of the error that
+# they have in pictures people make.
 set -euo pipefail
 # shellcheck source=perf/suite.sh
 . "$(dirname "${BASH_SOURCE[0]}")/suite.sh"
@@ -68,7 +69,7 @@ fi
 one_run() { # NAME PART INTEGRATOR STEP REPEAT OPTIONS...: the work is all but loading and writing
     local name=$1 part=$2 integrator=$3 step=$4 repeat=$5 times error
     shift 5
-    if grep -q "^$name,$part,$integrator,$step,$repeat,${options[1]}," "$out/errors.csv"; then return; fi
+    if grep -q "^$name,$part,$integrator,$step,$repeat," "$out/errors.csv"; then return; fi
     suite_run "$name-$part" "$integrator-$step" "$repeat" "$scene" "$@" --integrator "$integrator" --seed "$repeat"
     times=$(jq -r '[.phase_cpu_s.photons + .phase_cpu_s.map + .phase_cpu_s.precompute + .phase_cpu_s.render, .cpu_s] |
         map(tostring) | join(",")' "$suite_work/run.json")
@@ -83,7 +84,7 @@ for ((r = 1; r <= repeats; r++)); do
             continue
         fi
         # what an earlier version measured at another size is not gone on with
-        sed -i "/^$name,/{/^\([^,]*,\)\{5\}${options[1]},/!d}" "$out/errors.csv"
+        ((r > 1)) || sed -i "/^$name,/{/^\([^,]*,\)\{5\}${options[1]},/!d}" "$out/errors.csv"
         for part in "${parts[@]}"; do
             part_options=("${options[@]}")
             [[ $part == indirect ]] && part_options+=(--only indirect)

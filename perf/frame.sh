@@ -2,8 +2,9 @@
 # frame.sh: the CPU time of a whole picture, process and photons and all, against what Embree alone needs for all its
 # rays: the paper's room 20, 64 gather rays a pixel, with irradiance at all photons and at an eighth of them.
 # Use: perf/frame.sh [--quick] [--repeats N] [--out DIR]
-# Writes frame.csv and .json, runs.csv; embree_share is the part of the time that is Embree's. Embree traces as many gather rays from the same pixels (afterglow-frame-rays); camera,
-# shadow and photon rays, and those that go on after a short one, count as if they took as long.
+# Writes frame.csv and .json, runs.csv; embree_share is the part of the time that is Embree's. Embree traces as many
+# gather rays from the same pixels (afterglow-frame-rays); camera, shadow and photon rays, and those that go on after a
+# short one, count as if they took as long.
 set -euo pipefail
 # shellcheck source=perf/suite.sh
 . "$(dirname "${BASH_SOURCE[0]}")/suite.sh"

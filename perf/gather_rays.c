@@ -160,10 +160,15 @@ static room_bench_row rows[ROWS] = {
     [ESTIMATE] = {.name = "estimate (scattered)"},
 };
 static double (*const measured[ROWS])(bench *b) = {
-    [EMBREE] = embree,   [EMBREE_TOGETHER] = embree_together,
-    [WHOLE] = whole,     [DIRECTIONS] = directions,
-    [FANS] = fans,       [HITS] = hits,
-    [LOOKUPS] = lookups, [ESTIMATE] = estimates,
+    [EMBREE] = embree,
+    [EMBREE_TOGETHER] = embree_together,
+    [WHOLE] = whole,
+    [WHOLE_TO_TOGETHER] = whole,
+    [DIRECTIONS] = directions,
+    [FANS] = fans,
+    [HITS] = hits,
+    [LOOKUPS] = lookups,
+    [ESTIMATE] = estimates,
 };
 
 /* --- what they work on --- */
@@ -266,13 +271,10 @@ int main(int argc, char **argv)
     }
     for (int round = 0; round < ROOM_BENCH_ROUNDS; round++)
         for (int i = 0; i < ROWS; i++) {
-            if (!measured[i])
-                continue;
             double begin = clock_thread_cpu_seconds(), count = measured[i](&b);
             rows[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
         }
     floating_point_leave(arithmetic);
-    memcpy(rows[WHOLE_TO_TOGETHER].us, rows[WHOLE].us, sizeof rows[WHOLE].us);
     fprintf(stderr, "%u photons, %u places, %u rays, %d rounds (checksum %g)\n", b.map.set.count, b.place_count,
             b.ray_count, ROOM_BENCH_ROUNDS, b.sink);
     room_bench_report(rows, ROWS);

@@ -53,10 +53,8 @@ suite_json "$out/memory.csv"
 suite_ratio memory.bytes "$(awk -F, 'NR > 1 && $3 > max { max = $3 } END { print max }' "$out/memory.csv")"
 if [[ $quick == no ]]; then # small maps sit in pages that are large against them
     suite_ratio memory.peak_bytes "$(awk -F, 'NR > 1 && $4 > max { max = $4 } END { print max }' "$out/memory.csv")"
-fi
 
-# Triangles: what ten million take at the peak of loading and rendering more than a million do.
-if [[ $quick == no ]]; then
+    # triangles: what ten million take at the peak of loading and rendering more than a million do
     echo "triangles,peak_bytes" >"$out/triangles.csv"
     for n in 1000000 10000000; do
         mkdir -p "$suite_work/triangles-$n"

@@ -53,8 +53,8 @@ done
 
 # Ratios are taken within a repeat, and their medians told: both halves have seen the same noise. work: all that grows
 # with the picture, from the first photon to the last pixel. other: what is in no phase, once a process: finding and
-# linking the image library, mostly. either: photons and their tree do not depend on the way of
-# caching, and short as they are, both ways' runs are looked at.
+# linking the image library, mostly. either: photons and their tree do not depend on the way of caching, and short as
+# they are, both ways' runs are looked at.
 awk -v first="$first" -v list="$threads" -v repeats="$repeats" "$suite_awk"'
 FILENAME ~ /\/arithmetic\.csv$/ { arithmetic[$1, $2] = $3; next }
 function keep(cache, phase, run, wall_s, cpu_s) {
@@ -88,8 +88,8 @@ function tell(cache, phase, runs,    i, r, m, mg, limit_of) {
             }
             if (c[cache, phase, first, r] > 0) g[++mg] = cpu[r] / c[cache, phase, first, r]
         }
-        printf "%s,%s,%d,%.6f,%s,%s,%.4g,%s,%s\n", cache, phase, n[i], median(wall, runs), show(cpu[1] == "" ? "" : median(cpu, runs)),
-            show(median(s, m)), median(limit, runs), show(median(e, m)), show(median(g, mg))
+        printf "%s,%s,%d,%.6f,%s,%s,%.4g,%s,%s\n", cache, phase, n[i], median(wall, runs),
+            show(cpu[1] == "" ? "" : median(cpu, runs)), show(median(s, m)), median(limit, runs), show(median(e, m)), show(median(g, mg))
     }
 }
 BEGIN { phases = split("startup,load,bvh,photons,map,precompute,render,write,total", name, ",") }
