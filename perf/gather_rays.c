@@ -39,6 +39,7 @@ typedef struct bench {
     scene_ray *rays;
     irradiance_query *queries; /* where the rays end */
     rgb *irradiance;
+    bool *holds;
     uint32_t place_count, ray_count, query_count;
     double sink; /* keeps the work from being optimised away */
 } bench;
@@ -66,7 +67,7 @@ static double whole(bench *b)
     uint64_t before = b->worker.rays_gather;
     for (uint32_t i = 0; i < b->place_count; i++)
         final_gather(&b->t, &b->worker, &b->places[i].v, &b->places[i].where, 0, 98, rgb_gray(1.0f));
-    gather_batch_resolve(b->worker.batch, &b->cache, b->t.run, 0);
+    final_gather_resolve(&b->t, &b->worker);
     b->sink += (double)b->worker.batch->gathered[0].first.g;
     return (double)(b->worker.rays_gather - before);
 }
@@ -75,7 +76,7 @@ static double lookups(bench *b)
 {
     for (uint32_t i = 0; i < b->query_count; i += IRRADIANCE_BATCH_MAX) {
         uint32_t left = b->query_count - i, count = left < IRRADIANCE_BATCH_MAX ? left : IRRADIANCE_BATCH_MAX;
-        irradiance_cache_get_many(&b->cache, b->t.run, b->queries + i, count, 0, b->irradiance);
+        irradiance_cache_get_many(&b->cache, b->t.run, b->queries + i, count, 0, b->irradiance, b->holds);
         b->sink += (double)b->irradiance[0].g;
     }
     return b->query_count;
@@ -118,9 +119,9 @@ static double fans(bench *b)
         make_fan(b, &b->places[i], &fan);
         scene_intersect_fan(b->s, &fan);
         for (uint32_t k = 0; k < GATHER_RAYS; k++) {
-            vec3 position, normal;
-            if (fan.met[k].distance < INFINITY && ray_fan_plain_place(b->s, &fan, k, &position, &normal))
-                b->sink += (double)position.x;
+            surface_place at;
+            if (fan.met[k].distance < INFINITY && ray_fan_plain_place(b->s, &fan, k, &at))
+                b->sink += (double)at.position.x;
         }
     }
     return (double)b->place_count * GATHER_RAYS;
@@ -201,9 +202,10 @@ static ag_status make_work(bench *b)
     b->rays = malloc(RAYS_MAX * sizeof *b->rays);
     b->queries = malloc(RAYS_MAX * sizeof *b->queries);
     b->irradiance = malloc(IRRADIANCE_BATCH_MAX * sizeof *b->irradiance);
+    b->holds = malloc(IRRADIANCE_BATCH_MAX * sizeof *b->holds);
     b->worker.batch = gather_batch_create(INFINITY);
     b->worker.scratch = arena_create(1 << 16);
-    if (!b->places || !b->rays || !b->queries || !b->irradiance || !b->worker.batch || !b->worker.scratch)
+    if (!b->places || !b->rays || !b->queries || !b->irradiance || !b->holds || !b->worker.batch || !b->worker.scratch)
         return AG_ERROR_MEMORY;
     for (int tile = 0; tile < TILES; tile++) { /* across the picture, from corner to corner */
         int corner = tile * (PICTURE - TILE) / (TILES - 1);
@@ -245,6 +247,7 @@ static void bench_reset(bench *b)
     free(b->rays);
     free(b->queries);
     free(b->irradiance);
+    free(b->holds);
     gather_batch_destroy(b->worker.batch);
     arena_destroy(b->worker.scratch);
 }

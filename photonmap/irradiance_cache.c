@@ -61,17 +61,27 @@ void irradiance_cache_reset(irradiance_cache *cache)
     *cache = (irradiance_cache){0};
 }
 
-static rgb estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
+static bool estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index, rgb *out_irradiance)
 {
     irradiance_counters *counters = &cache->counters[worker_index];
     photon_neighbor *scratch = cache->scratch[worker_index].neighbors;
-    if ((counters->computed + counters->uncached) % TIMED_EVERY != 0)
-        return irradiance_estimate(cache->map, position, normal, scratch);
-    double begin = clock_thread_cpu_seconds();
-    rgb irradiance = irradiance_estimate(cache->map, position, normal, scratch);
-    counters->timed_seconds += clock_thread_cpu_seconds() - begin;
-    counters->timed++;
-    return irradiance;
+    bool is_timed = (counters->computed + counters->uncached) % TIMED_EVERY == 0;
+    double begin = is_timed ? clock_thread_cpu_seconds() : 0.0;
+    bool holds = irradiance_estimate_holds(cache->map, position, normal, scratch, out_irradiance);
+    if (is_timed) {
+        counters->timed_seconds += clock_thread_cpu_seconds() - begin;
+        counters->timed++;
+    }
+    return holds;
+}
+
+/* At a place that no photon stands for. */
+static bool estimate_at_place(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
+                              rgb *out_irradiance)
+{
+    bool holds = estimate(cache, position, normal, worker_index, out_irradiance);
+    cache->counters[worker_index].uncached++;
+    return holds;
 }
 
 void irradiance_cache_share(irradiance_cache *cache, const claim_owners *owners) { cache->owners = owners; }
@@ -86,9 +96,10 @@ static uint32_t claimer_of(const irradiance_cache *cache, unsigned worker_index)
 static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker_index)
 {
     photon_block *blocks = cache->map->bearers.blocks;
-    rgb irradiance = estimate(cache, photon_block_position(blocks, index),
-                              direction_decode(photon_block_normal(blocks, index)), worker_index);
-    uint32_t value = photon_map_encode_irradiance(cache->map, irradiance, index);
+    rgb irradiance;
+    bool holds = estimate(cache, photon_block_position(blocks, index),
+                          direction_decode(photon_block_normal(blocks, index)), worker_index, &irradiance);
+    uint32_t value = holds ? photon_map_encode_irradiance(cache->map, irradiance, index) : PHOTON_NO_IRRADIANCE;
     if (irradiance_slot_publish(photon_block_slot(blocks, index), claimer_of(cache, worker_index), value))
         cache->counters[worker_index].computed++;
     else
@@ -173,10 +184,25 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
     cache->ready_before += irradiance_cache_distinct(cache) - distinct;
 }
 
-static void fulfil(const irradiance_cache *cache, uint32_t word, irradiance_request *request)
+/* The answer of an estimate at the place itself. */
+static bool answer_at_place(irradiance_cache *cache, const irradiance_query *query, unsigned worker_index,
+                            rgb *out_irradiance)
 {
-    request->bearer = PHOTON_NONE;
-    request->irradiance = photon_map_decode_irradiance(cache->map, word & IRRADIANCE_VALUE_MASK);
+    bool holds = estimate_at_place(cache, query->position, query->normal, worker_index, out_irradiance);
+    if (!holds)
+        *out_irradiance = rgb_gray(0.0f);
+    cache->counters[worker_index].refused += !holds;
+    return holds;
+}
+
+/* The answer of a word that is ready. */
+static bool answer_by_word(irradiance_cache *cache, uint32_t word, unsigned worker_index, rgb *out_irradiance)
+{
+    uint32_t value = word & IRRADIANCE_VALUE_MASK;
+    bool holds = value != PHOTON_NO_IRRADIANCE;
+    *out_irradiance = holds ? photon_map_decode_irradiance(cache->map, value) : rgb_gray(0.0f);
+    cache->counters[worker_index].refused += !holds;
+    return holds;
 }
 
 void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
@@ -186,19 +212,19 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
     uint32_t bearer =
         cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
     counters->requests++;
-    out_request->bearer = PHOTON_NONE;
+    *out_request = (irradiance_request){.bearer = PHOTON_NONE};
     if (bearer == PHOTON_NONE) {
-        out_request->irradiance = irradiance_cache_estimate(cache, position, normal, worker_index);
+        irradiance_query query = {position, normal};
+        out_request->holds = answer_at_place(cache, &query, worker_index, &out_request->irradiance);
         return;
     }
     uint32_t word = demand(cache, bearer, worker_index);
     if (irradiance_word_state(word) == IRRADIANCE_READY) {
-        fulfil(cache, word, out_request);
+        out_request->holds = answer_by_word(cache, word, worker_index, &out_request->irradiance);
         return;
     }
     counters->deferred++;
     out_request->bearer = bearer;
-    out_request->irradiance = rgb_gray(0.0f);
 }
 
 /* The queries' numbers in the map's order, as the low halves; the high ones are places. By digits, from the lowest: as
@@ -257,7 +283,7 @@ static void find_bearers(const photon_map *map, const irradiance_query *queries,
 /* In three sweeps, each of which has the processor's caches to itself: looking up, computing what nobody has claimed,
  * and reading. */
 void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
-                               uint32_t count, unsigned worker_index, rgb *out_irradiance)
+                               uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds)
 {
     enum { CANCEL_EVERY = 16 };
     const photon_map *map = cache->map;
@@ -273,7 +299,7 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
             return;
         if (bearer == PHOTON_NONE) {
             order[k] = (uint64_t)PHOTON_NONE << 32 | i;
-            out_irradiance[i] = irradiance_cache_estimate(cache, queries[i].position, queries[i].normal, worker_index);
+            out_holds[i] = answer_at_place(cache, &queries[i], worker_index, &out_irradiance[i]);
             continue;
         }
         demand(cache, bearer, worker_index);
@@ -285,15 +311,17 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
             continue;
         uint32_t word = irradiance_slot_read(photon_map_slot(map, bearer));
         if (irradiance_word_state(word) == IRRADIANCE_READY)
-            out_irradiance[i] = photon_map_decode_irradiance(map, word & IRRADIANCE_VALUE_MASK);
+            out_holds[i] = answer_by_word(cache, word, worker_index, &out_irradiance[i]);
         else
             order[waiting++] = order[k]; /* its place in the order is free by now */
     }
     counters->deferred += waiting;
     for (uint32_t k = 0; k < waiting; k++) {
+        uint32_t i = (uint32_t)order[k];
         irradiance_request request = {.bearer = (uint32_t)(order[k] >> 32)};
         irradiance_cache_retry(cache, &request, worker_index);
-        out_irradiance[(uint32_t)order[k]] = request.irradiance;
+        out_irradiance[i] = request.irradiance;
+        out_holds[i] = request.holds;
     }
 }
 
@@ -307,13 +335,14 @@ void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request
         counters->waited++;
         counters->waited_seconds += clock_thread_cpu_seconds() - begin;
     }
-    fulfil(cache, word, request);
+    request->bearer = PHOTON_NONE;
+    request->holds = answer_by_word(cache, word, worker_index, &request->irradiance);
 }
 
 rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
 {
-    rgb irradiance = estimate(cache, position, normal, worker_index);
-    cache->counters[worker_index].uncached++;
+    rgb irradiance;
+    estimate_at_place(cache, position, normal, worker_index, &irradiance);
     return irradiance;
 }
 
@@ -329,6 +358,7 @@ irradiance_counters irradiance_cache_counters(const irradiance_cache *cache)
         sum.duplicated += c->duplicated;
         sum.reclaimed += c->reclaimed;
         sum.uncached += c->uncached;
+        sum.refused += c->refused;
         sum.timed += c->timed;
         sum.timed_seconds += c->timed_seconds;
         sum.waited_seconds += c->waited_seconds;

@@ -28,6 +28,7 @@ typedef struct irradiance_counters {
     uint64_t duplicated;            /* estimates computed although another had been published: 0 */
     uint64_t reclaimed;             /* claims taken over from processes that died */
     uint64_t uncached;              /* estimates at the place itself */
+    uint64_t refused;               /* requests for places where no estimate holds */
     uint64_t timed;                 /* estimates whose time was taken */
     double timed_seconds;           /* CPU time of those */
     double waited_seconds;          /* CPU time of waiting */
@@ -66,18 +67,20 @@ void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words);
 void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words);
 
 typedef struct irradiance_request {
-    uint32_t bearer; /* PHOTON_NONE: irradiance is there already */
-    rgb irradiance;  /* W/m^2 */
+    uint32_t bearer; /* PHOTON_NONE: the request has been answered */
+    bool holds;      /* whether there is an irradiance: where none is, the caller has to follow the light itself */
+    rgb irradiance;  /* W/m^2; 0 where none holds */
 } irradiance_request;
 
-/* Asks for the irradiance at a place, on the side of the unit normal. Either it is there (request->bearer is
+/* Asks for the irradiance at a place, on the side of the unit normal. Either it is answered (request->bearer is
  * PHOTON_NONE), or another thread is computing it: then it is to be asked for again with irradiance_cache_retry, after
- * the caller's other work. */
+ * the caller's other work. Where no estimate holds (irradiance_estimate.h), neither at the photon that stands for the
+ * place nor at the place, the answer is that there is none. */
 void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                           irradiance_request *out_request);
 
-/* Comes back to a request that was set aside; waits for the claimer where it still computes. Afterwards the irradiance
- * is there. The claimer holds its claim only while computing, and takes no other meanwhile; a dead one's is taken over:
+/* Comes back to a request that was set aside; waits for the claimer where it still computes. Afterwards it is
+ * answered. The claimer holds its claim only while computing, and takes no other meanwhile; a dead one's is taken over:
  * so this ends. */
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index);
 
@@ -88,11 +91,12 @@ typedef struct irradiance_query {
 
 /* Asks for the irradiance at up to IRRADIANCE_BATCH_MAX places at once, in the map's order: what is looked up and
  * computed one after the other lies near each other. Those that another thread is computing are set aside, and come
- * last. Afterwards all are there, unless the run is cancelled meanwhile: then some are not. */
+ * last. Afterwards all are answered, unless the run is cancelled meanwhile: then some are not. out_irradiance and
+ * out_holds: [count], as in irradiance_request. */
 void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
-                               uint32_t count, unsigned worker_index, rgb *out_irradiance);
+                               uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds);
 
-/* An estimate at the place itself, not kept. */
+/* An estimate at the place itself, not kept; the value alone, also where it does not hold. */
 rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index);
 
 /* The counters of all workers. */

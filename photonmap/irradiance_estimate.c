@@ -39,20 +39,38 @@ static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uin
     return !passage_is_blocked(map->surfaces, up, 1.0f);
 }
 
-/* Sums the photons of the disc that are in the region. */
-static void sum_in_region(const photon_disc *disc, const surface_region *region, const photon_neighbor *n,
-                          uint32_t count, photon_disc_sums *out_sums)
+/* Sums the photons of the disc that are in the region. Returns how many they are. */
+static uint32_t sum_in_region(const photon_disc *disc, const surface_region *region, const photon_neighbor *n,
+                              uint32_t count, photon_disc_sums *out_sums)
 {
+    uint32_t inside = 0;
     *out_sums = (photon_disc_sums){{0}, {0}};
     for (uint32_t i = 0; i < count; i++)
-        if (surface_region_contains(region, photon_block_position(disc->blocks, photon_neighbor_index(n[i]))))
+        if (surface_region_contains(region, photon_block_position(disc->blocks, photon_neighbor_index(n[i])))) {
             photon_disc_add(disc, n[i], out_sums);
+            inside++;
+        }
+    return inside;
 }
 
-rgb irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
+/* A region holds an estimate when it is this share of the disc, and when photons as dense as they are in that disc, or
+ * in the mean of the scene where they are denser there, would leave so many in it. Three walls meet in a quarter disc.
+ */
+static const float REGION_SHARE_MIN = 0.2f, REGION_PHOTONS_MIN = 10.0f;
+
+static bool region_holds(const photon_map *map, double area, float radius)
 {
+    float share_min = fminf(fmaxf(REGION_SHARE_MIN, REGION_PHOTONS_MIN / (float)map->nearest), 1.0f);
+    float least_radius = fminf(radius, map->mean_radius);
+    return area >= (double)share_min * (double)AG_PI * (double)least_radius * (double)least_radius;
+}
+
+bool irradiance_estimate_holds(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
+                               rgb *out_irradiance)
+{
+    *out_irradiance = rgb_gray(0.0f);
     if (map->set.count == 0)
-        return rgb_gray(0.0f);
+        return true;
     float other_squared;
     uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
                                            map->nearest + 1, scratch, &other_squared);
@@ -76,12 +94,21 @@ rgb irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photo
             scratch[kept++] = doubtful[i];
         }
     surface_region region;
+    bool holds = true;
     if (map->surfaces && kept > 0 && (other_squared <= radius_squared || is_lopsided(&sums, normal, kept)) &&
         surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, &region)) {
-        sum_in_region(&disc, &region, scratch, kept, &sums);
-        area = surface_region_area(&region, radius);
+        double region_area = surface_region_area(&region, radius);
+        photon_disc_sums whole = sums;
+        uint32_t inside = sum_in_region(&disc, &region, scratch, kept, &sums);
+        bool is_k = found == map->nearest + 1 && inside == map->nearest;
+        holds = is_k || region_holds(map, region_area, radius);
+        if (holds)
+            area = region_area;
+        else
+            sums = whole;
     }
     double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
-    return (rgb){(float)((double)sums.flux[0] * scale), (float)((double)sums.flux[1] * scale),
-                 (float)((double)sums.flux[2] * scale)};
+    *out_irradiance = (rgb){(float)((double)sums.flux[0] * scale), (float)((double)sums.flux[1] * scale),
+                            (float)((double)sums.flux[2] * scale)};
+    return holds;
 }

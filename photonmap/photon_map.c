@@ -223,8 +223,9 @@ uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uin
         exponent = 0;
     if (exponent > 63)
         exponent = 63;
-    return (uint32_t)exponent << 24 |
-           shared_mantissas(irradiance, exponent + map->irradiance_bias, hash_mix64(key ^ 0x69727261u));
+    uint32_t value = (uint32_t)exponent << 24 |
+                     shared_mantissas(irradiance, exponent + map->irradiance_bias, hash_mix64(key ^ 0x69727261u));
+    return value == PHOTON_NO_IRRADIANCE ? value - 1 : value;
 }
 
 rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value)

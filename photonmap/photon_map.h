@@ -86,7 +86,11 @@ void photon_map_places(const photon_map *map, const float *positions, uint32_t s
 void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
                              uint32_t *out_bearers);
 
-/* Irradiance as a slot's 30 bits. key decides the rounding: the bearer's index. */
+/* The 30 bits of a slot whose photon has been found to stand for no place, since no estimate holds there. Final, like
+ * a value. */
+#define PHOTON_NO_IRRADIANCE IRRADIANCE_VALUE_MASK
+
+/* Irradiance as a slot's 30 bits, never PHOTON_NO_IRRADIANCE. key decides the rounding: the bearer's index. */
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);
 rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value);
 

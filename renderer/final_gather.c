@@ -1,14 +1,10 @@
 /* final_gather.c: see final_gather.h. */
 #include "final_gather.h"
 
-#include "direct_lighting.h"
 #include "gather_directions.h"
+#include "gather_path.h"
 #include "math/sampling.h"
 #include "passage.h"
-
-/* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often (asked
- * sooner, the cache tells of the light outside of a small room). */
-enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
 
 /* One gather: from where, what its rays' random numbers are keyed by, and what they brought themselves. */
 typedef struct gathering {
@@ -26,92 +22,16 @@ static rng ray_random(const gathering *g, uint32_t number)
     return rng_make(g->where->key, (uint64_t)g->path_vertex, g->where->sample * g->count + number);
 }
 
-/* The ray ends at a diffuse place: irradiance on one side of it, picked by the lobes' shares. */
-static void read_cache(const gathering *g, const vertex *v, rgb throughput, float u_side)
-{
-    map_place at = transport_map_place(g->t, v);
-    rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
-    rgb factor = reflected;
-    if (!rgb_is_black(transmitted)) {
-        float share = rgb_max(transmitted) / (rgb_max(reflected) + rgb_max(transmitted));
-        bool is_through = u_side < share;
-        factor = is_through ? rgb_scale(transmitted, 1.0f / share) : rgb_scale(reflected, 1.0f / (1.0f - share));
-        if (is_through)
-            at.facing_normal = vec3_negate(at.facing_normal);
-    }
-    gather_batch_ask(g->worker->batch, at.position, at.facing_normal,
-                     rgb_scale(rgb_mul(throughput, factor), AG_INV_PI));
-}
-
-/* Most rays end at once at a Lambertian surface far enough away: without any of what makes up a bsdf. */
-static bool ends_plainly(const gathering *g, const vertex *v, rgb throughput)
-{
-    const rgb *albedo = material_plain_albedo(g->t->s, g->t->s->shapes[v->hit.shape_index].material_index);
-    if (!albedo || v->hit.is_strand)
-        return false;
-    map_place at = transport_map_place(g->t, v);
-    gather_batch_ask(g->worker->batch, at.position, at.facing_normal,
-                     rgb_scale(rgb_mul(throughput, *albedo), AG_INV_PI));
-    return true;
-}
-
 /* What is behind a gather ray of that number, which has met *v, and weighs `first` at its start: asks for irradiance,
- * and adds to what is known. Lamps and environments add nothing: light straight from them is direct light, light from
- * them by way of traced lobes is in the caustic map. */
+ * and adds to what is known. */
 static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 {
-    const transport *t = g->t;
-    eye_worker *worker = g->worker;
-    rgb throughput = rgb_gray(1.0f);
-    float travelled = 0.0f;
-    int short_bounces = 0;
-    rng random = {0};
-    for (int depth = 0;;) {
-        throughput = rgb_mul(throughput, v->transmittance);
-        travelled += v->hit.distance;
-        bool is_far = travelled >= t->gather_min_distance || short_bounces == SHORT_BOUNCES_MAX;
-        if (is_far && ends_plainly(g, v, rgb_mul(first, throughput)))
-            return;
-        transport_complete(t, v);
-        if (depth == 0) {
-            random = ray_random(g, number);
-            rng_next(&random); /* of the lobe that the ray left by */
-        }
-        float u_lobe = rng_float(&random), u_group = rng_float(&random);
-        vec2 u = rng_vec2(&random);
-
-        /* one group of lobes, picked by its share */
-        float gathered_share = bsdf_probability(&v->scattering, BSDF_GATHERED);
-        bsdf_lobes lobes = u_group < gathered_share ? BSDF_GATHERED : BSDF_TRACED;
-        throughput = rgb_scale(throughput, 1.0f / (lobes == BSDF_GATHERED ? gathered_share : 1.0f - gathered_share));
-        if (lobes == BSDF_GATHERED) {
-            if (is_far) {
-                read_cache(g, v, rgb_mul(first, throughput), u_lobe);
-                return;
-            }
-            /* too near for an estimate that is blurred over about that distance: the light there is direct light,
-             * caustics, and what one more bounce brings */
-            float u_pick = rng_float(&random);
-            rgb local = direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, rng_vec2(&random), 1, 0);
-            local = rgb_add(local, transport_caustics(t, worker, v));
-            g->known = rgb_add(g->known, rgb_mul(rgb_mul(first, throughput), local));
-            travelled = 0.0f;
-            short_bounces++;
-        }
-        bsdf_sample next;
-        if (!bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe, u, &next))
-            return;
-        throughput = rgb_mul(throughput, next.weight);
-        if ((depth >= ROULETTE_AFTER || lobes == BSDF_GATHERED) && !transport_survives(&throughput, rng_float(&random)))
-            return;
-        if (++depth == g->scatterings_left)
-            return;
-        scene_ray ray = surface_ray(&v->hit, v->arrived, next.direction);
-        ray.skips_uv = true;
-        worker->rays_gather++;
-        if (!transport_meet(t, worker, ray, v))
-            return;
-    }
+    gather_end end;
+    rgb weight;
+    rng random = ray_random(g, number);
+    rng_next(&random); /* of the lobe that the ray left by */
+    if (gather_path_follow(g->t, g->worker, v, random, g->scatterings_left, first, &g->known, &end, &weight))
+        gather_batch_ask(g->worker->batch, &end, number, weight);
 }
 
 static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weight)
@@ -142,12 +62,13 @@ static void follow_together(gathering *g, gather_rays *r)
         float distance = fan->met[i].distance;
         if (distance == INFINITY)
             continue;
-        vec3 position, normal;
+        gather_end end = {.medium = fan->common.medium, .scatterings_left = g->scatterings_left};
         const rgb *albedo = NULL;
         if (distance >= t->gather_min_distance)
-            albedo = ray_fan_plain_place(t->s, fan, i, &position, &normal);
+            albedo = ray_fan_plain_place(t->s, fan, i, &end.place);
         if (albedo) {
-            gather_batch_ask(g->worker->batch, position, normal, rgb_scale(rgb_mul(r->weight[i], *albedo), AG_INV_PI));
+            gather_batch_ask(g->worker->batch, &end, r->number[i],
+                             rgb_scale(rgb_mul(r->weight[i], *albedo), AG_INV_PI));
             continue;
         }
         vertex v;
@@ -225,8 +146,9 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
     gathering g = {t, worker, v, where, path_vertex, scatterings_left - 1, count, rgb_gray(0.0f)};
     gather_batch *batch = worker->batch;
     if (!gather_batch_has_room(batch, RAY_FAN_MAX))
-        gather_batch_resolve(batch, t->cache, t->run, worker->index);
-    gather_batch_begin(batch, worker->sample, path_vertex == 0, rgb_scale(throughput, 1.0f / (float)count));
+        final_gather_resolve(t, worker);
+    gather_batch_begin(batch, worker->sample, path_vertex == 0, rgb_scale(throughput, 1.0f / (float)count),
+                       hash_combine(hash_combine(where->key, (uint64_t)path_vertex), where->sample));
     sampler_sequence numbers = sampler_sequence_make(where, SAMPLE_GATHER, path_vertex, count);
     bool is_plain = bsdf_is_plain(&v->scattering);
     incident_guide guide;
@@ -238,7 +160,7 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
     for (uint32_t begin = 0; begin < count && !run_is_cancelled(t->run); begin += RAY_FAN_MAX) {
         uint32_t end = count - begin < RAY_FAN_MAX ? count : begin + RAY_FAN_MAX;
         if (!gather_batch_has_room(batch, end - begin))
-            gather_batch_resolve(batch, t->cache, t->run, worker->index);
+            final_gather_resolve(t, worker);
         rays.fan.count = 0;
         if (is_plain)
             sample_plain(&g, is_guided ? &guide : NULL, &numbers, begin, end, &rays);
@@ -252,4 +174,45 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
             follow_alone(&g, rays.number[i], ray_fan_direction(&rays.fan, i), rays.weight[i]);
     }
     gather_batch_end(batch, g.known);
+}
+
+/* Bounces the detours under way until each has been answered, or ends. They ask together, so that this too is in the
+ * map's order. */
+static void follow_detours(const transport *t, eye_worker *worker, uint32_t count)
+{
+    gather_batch *b = worker->batch;
+    for (uint64_t bounce = 0; count > 0 && !run_is_cancelled(t->run); bounce++) {
+        uint32_t asking = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            gather_detour *d = &b->detours[i];
+            if (!gather_path_bounce(t, worker, rng_make(d->key, bounce, d->number), &d->end, &d->weight,
+                                    &b->irradiance[d->query]))
+                continue;
+            b->detour_queries[asking] = (irradiance_query){d->end.place.position, d->end.place.normal};
+            b->detours[asking++] = *d;
+        }
+        irradiance_cache_get_many(t->cache, t->run, b->detour_queries, asking, worker->index, b->detour_irradiance,
+                                  b->detour_holds);
+        count = 0;
+        for (uint32_t i = 0; i < asking; i++) {
+            const gather_detour *d = &b->detours[i];
+            rgb *sum = &b->irradiance[d->query];
+            if (b->detour_holds[i])
+                *sum = rgb_add(*sum, rgb_mul(d->weight, b->detour_irradiance[i]));
+            else
+                b->detours[count++] = *d;
+        }
+    }
+}
+
+void final_gather_resolve(const transport *t, eye_worker *worker)
+{
+    gather_batch *b = worker->batch;
+    irradiance_cache_get_many(t->cache, t->run, b->queries, b->query_count, worker->index, b->irradiance, b->holds);
+    if (run_is_cancelled(t->run))
+        return;
+    uint32_t query = 0, count;
+    while ((count = gather_batch_make_detours(b, &query)) > 0)
+        follow_detours(t, worker, count);
+    gather_batch_sum(b);
 }

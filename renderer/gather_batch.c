@@ -25,9 +25,10 @@ void gather_batch_reset(gather_batch *b)
 
 void gather_batch_destroy(gather_batch *b) { free(b); }
 
-void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput)
+void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, uint64_t key)
 {
-    b->gathers[b->gather_count++] = (gather){.throughput = throughput, .sample = sample, .is_first = is_first};
+    b->gathers[b->gather_count++] =
+        (gather){.throughput = throughput, .sample = sample, .is_first = is_first, .key = key};
     b->is_open = true;
 }
 
@@ -39,9 +40,40 @@ void gather_batch_end(gather_batch *b, rgb known)
     b->is_open = false;
 }
 
-void gather_batch_resolve(gather_batch *b, irradiance_cache *cache, const run_context *run, unsigned worker_index)
+/* The gather that a query belongs to: the first that ends behind it. */
+static const gather *gather_of(const gather_batch *b, uint32_t query)
 {
-    irradiance_cache_get_many(cache, run, b->queries, b->query_count, worker_index, b->irradiance);
+    uint32_t low = 0, high = b->gather_count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        bool is_open = b->is_open && middle == b->gather_count - 1;
+        if (!is_open && b->gathers[middle].query_end <= query)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return &b->gathers[low];
+}
+
+uint32_t gather_batch_make_detours(gather_batch *b, uint32_t *in_out_query)
+{
+    uint32_t count = 0, i = *in_out_query;
+    for (; i < b->query_count && count < GATHER_BATCH_DETOURS; i++) {
+        if (b->holds[i])
+            continue;
+        const gather_query_rest *rest = &b->rests[i];
+        surface_place place = {b->queries[i].position, b->queries[i].normal, rest->epsilon};
+        b->detours[count++] = (gather_detour){
+            i, rest->number, gather_of(b, i)->key, {place, rest->medium, rest->scatterings_left}, b->weights[i]};
+        b->weights[i] = rgb_gray(1.0f);
+        b->irradiance[i] = rgb_gray(0.0f);
+    }
+    *in_out_query = i;
+    return count;
+}
+
+void gather_batch_sum(gather_batch *b)
+{
     if (b->is_open)
         b->gathers[b->gather_count - 1].query_end = b->query_count;
     uint32_t query = 0, over = b->gather_count - (b->is_open ? 1 : 0);

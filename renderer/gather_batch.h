@@ -9,10 +9,18 @@
 #ifndef AFTERGLOW_GATHER_BATCH_H
 #define AFTERGLOW_GATHER_BATCH_H
 
+#include "bvh.h"
 #include "eye_sample.h"
 #include "irradiance_cache.h"
 
-enum { GATHER_BATCH_GATHERS = 1 << 14, GATHER_BATCH_SAMPLES = 1 << 14 };
+enum { GATHER_BATCH_GATHERS = 1 << 14, GATHER_BATCH_SAMPLES = 1 << 14, GATHER_BATCH_DETOURS = 1 << 12 };
+
+/* Where a gather ray ends: irradiance is asked for there, and where none holds its light is followed on. */
+typedef struct gather_end {
+    surface_place place;  /* as the photons have it: when the shutter opens */
+    uint32_t medium;      /* that the ray arrived in */
+    int scatterings_left; /* there may be between the lamp and the ray's last start; >= 1 */
+} gather_end;
 
 /* All rays from one diffuse place of a camera path. */
 typedef struct gather {
@@ -21,7 +29,23 @@ typedef struct gather {
     uint32_t sample;    /* of those under way */
     uint32_t query_end; /* its queries go up to here, from where the last gather's end */
     bool is_first;      /* the place is what the eye sees */
+    uint64_t key;       /* of the random numbers of its rays' detours */
 } gather;
+
+/* What a query leaves out of its end, and which of its gather's rays it is of. */
+typedef struct gather_query_rest {
+    float epsilon;
+    uint32_t medium, number;
+    int scatterings_left;
+} gather_query_rest;
+
+/* The way of light from a query that has no answer: by further bounces. */
+typedef struct gather_detour {
+    uint32_t query, number;
+    uint64_t key;
+    gather_end end;
+    rgb weight; /* of the irradiance at the end, 1/sr */
+} gather_detour;
 
 /* What a sample has gathered. */
 typedef struct gathered_light {
@@ -35,6 +59,12 @@ typedef struct gather_batch {
     irradiance_query queries[IRRADIANCE_BATCH_MAX];
     rgb weights[IRRADIANCE_BATCH_MAX];    /* of the irradiance, 1/sr */
     rgb irradiance[IRRADIANCE_BATCH_MAX]; /* W/m^2 */
+    bool holds[IRRADIANCE_BATCH_MAX];     /* whether there is one */
+    gather_query_rest rests[IRRADIANCE_BATCH_MAX];
+    gather_detour detours[GATHER_BATCH_DETOURS]; /* those under way, and what they ask for: */
+    irradiance_query detour_queries[GATHER_BATCH_DETOURS];
+    rgb detour_irradiance[GATHER_BATCH_DETOURS];
+    bool detour_holds[GATHER_BATCH_DETOURS];
     gather gathers[GATHER_BATCH_GATHERS];
     gathered_light gathered[GATHER_BATCH_SAMPLES]; /* by samples under way, in gathers that are over */
 } gather_batch;
@@ -51,18 +81,23 @@ static inline bool gather_batch_has_room(const gather_batch *b, uint32_t query_c
 }
 
 /* Begins a gather, in a batch that has room, and ends it: known is the sum of what its rays brought themselves. */
-void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput);
+void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, uint64_t key);
 void gather_batch_end(gather_batch *b, rgb known);
 
-/* Asks for the irradiance at a place, for the open gather, in a batch that has room. */
-static inline void gather_batch_ask(gather_batch *b, vec3 position, vec3 normal, rgb weight)
+/* Asks for the irradiance at an end, for the open gather, in a batch that has room. number: of the ray. */
+static inline void gather_batch_ask(gather_batch *b, const gather_end *end, uint32_t number, rgb weight)
 {
-    b->queries[b->query_count] = (irradiance_query){position, normal};
+    b->queries[b->query_count] = (irradiance_query){end->place.position, end->place.normal};
+    b->rests[b->query_count] = (gather_query_rest){end->place.epsilon, end->medium, number, end->scatterings_left};
     b->weights[b->query_count++] = weight;
 }
 
-/* Gets all irradiance that was asked for, and adds the gathers that are over to their samples; an open one
- * stays, alone. Nothing is right any more once the run is cancelled. */
-void gather_batch_resolve(gather_batch *b, irradiance_cache *cache, const run_context *run, unsigned worker_index);
+/* Makes detours of up to GATHER_BATCH_DETOURS queries without an answer, from the query *in_out_query on, which becomes
+ * where to go on; their irradiance is 0, to be added to, and of weight 1. Returns how many they are: 0 when no query is
+ * left. */
+uint32_t gather_batch_make_detours(gather_batch *b, uint32_t *in_out_query);
+
+/* Once all queries are answered: adds the gathers that are over to their samples; an open one stays, alone. */
+void gather_batch_sum(gather_batch *b);
 
 #endif

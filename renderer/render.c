@@ -90,6 +90,7 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
     statistics->irradiance_duplicated += c.duplicated;
     statistics->irradiance_reclaimed += c.reclaimed;
     statistics->irradiance_uncached += c.uncached;
+    statistics->irradiance_refused += c.refused;
     statistics->irradiance_estimate_s += irradiance_counters_estimate_seconds(&c);
     statistics->irradiance_wait_s += c.waited_seconds;
 }

@@ -2,6 +2,7 @@
 #include "render_tiles.h"
 
 #include "clock.h"
+#include "final_gather.h"
 #include "first_hit.h"
 #include "path_tracing.h"
 #include "sample_queue.h"
@@ -105,7 +106,7 @@ static void finish_samples(tile_job *job, eye_worker *worker)
     const transport *t = job->t;
     gather_batch *batch = worker->batch;
     if (batch && !run_is_cancelled(t->run))
-        gather_batch_resolve(batch, t->cache, t->run, worker->index);
+        final_gather_resolve(t, worker);
     uint32_t count = worker->queue->count;
     if (count == 0 || run_is_cancelled(t->run))
         return;

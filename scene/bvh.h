@@ -70,10 +70,16 @@ static inline vec3 ray_fan_direction(const ray_fan *f, uint32_t i)
 void scene_intersect_fan(const scene *s, ray_fan *f);
 void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_hit);
 
-/* The short way for a ray that met a Lambertian surface and nothing else: its reflectance, where the ray hit, and the
- * geometric normal on the ray's side. NULL: it is not to be told so easily, and ray_fan_hit tells all there is. */
-const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, vec3 *out_position,
-                               vec3 *out_facing_normal);
+/* A place on a surface, and what it takes to leave it. */
+typedef struct surface_place {
+    vec3 position;
+    vec3 normal;   /* geometric, unit */
+    float epsilon; /* as in surface_hit */
+} surface_place;
+
+/* The short way for a ray that met a Lambertian surface and nothing else: its reflectance and where the ray hit, with
+ * the normal on the ray's side. NULL: it is not to be told so easily, and ray_fan_hit tells all there is. */
+const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, surface_place *out_place);
 
 /* How far along the ray the nearest surface is, INFINITY where there is none: traversal alone, without looking at what
  * was hit, which is the physical limit that benchmarks compare with. */
@@ -139,10 +145,10 @@ void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v
 /* The same, but uv may be missing. */
 void shape_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
                     surface_hit *out_hit);
-/* Position and geometric normal alone, as the same have them, but for the normal's side; false: not of this kind of
- * shape. */
-bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 *out_position,
-                         vec3 *out_normal);
+/* Position, geometric normal and epsilon alone, as the same have them, but for the normal's side; false: not of this
+ * kind of shape. */
+bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
+                         surface_place *out_place);
 /* Nearest hit of a committed sphere, cylinder or disk in (t_min, t_max); false where there is none. */
 bool shape_intersect_quadric(const shape *s, vec3 origin, vec3 direction, float t_min, float t_max, float *out_t);
 void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);

@@ -192,19 +192,19 @@ void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_
     place_hit(s, &ray, &f->met[i], out_hit);
 }
 
-const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, vec3 *out_position,
-                               vec3 *out_facing_normal)
+const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, surface_place *out_place)
 {
     const ray_meeting *met = &f->met[i];
     if (met->instance != RTC_INVALID_GEOMETRY_ID)
         return NULL;
     const shape *at = &s->shapes[met->geometry];
     const rgb *albedo = material_plain_albedo(s, at->material_index);
-    vec3 direction = ray_fan_direction(f, i), n;
+    vec3 direction = ray_fan_direction(f, i);
     vec3 position = vec3_add_scaled(f->common.origin, direction, met->distance);
-    if (!albedo || !shape_bare_place_at(at, met->primitive, met->u, met->v, position, out_position, &n))
+    if (!albedo || !shape_bare_place_at(at, met->primitive, met->u, met->v, position, out_place))
         return NULL;
-    *out_facing_normal = vec3_dot(n, direction) > 0.0f ? vec3_negate(n) : n;
+    if (vec3_dot(out_place->normal, direction) > 0.0f)
+        out_place->normal = vec3_negate(out_place->normal);
     return albedo;
 }
 

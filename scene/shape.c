@@ -266,14 +266,19 @@ static vec3 position_between(const corners *c, float u, float v)
     return vec3_add_scaled(vec3_add_scaled(vec3_scale(c->p0, 1.0f - u - v), c->p1, u), c->p2, v);
 }
 
+static float corners_epsilon(const corners *c)
+{
+    return larger_size(larger_size(largest_size(c->p0), largest_size(c->p1)), largest_size(c->p2)) *
+           SHAPE_EPSILON_RELATIVE;
+}
+
 static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, float v, surface_hit *h)
 {
     h->uv = (vec2){u + v, v}; /* as pbrt: (0, 0), (1, 0), (1, 1) */
     const mesh *m = &s->as.mesh;
     corners c = mesh_corners(m, primitive_index);
     h->position = position_between(&c, u, v);
-    h->epsilon =
-        larger_size(larger_size(largest_size(c.p0), largest_size(c.p1)), largest_size(c.p2)) * SHAPE_EPSILON_RELATIVE;
+    h->epsilon = corners_epsilon(&c);
     h->geometric_normal = mesh_normals(s, primitive_index, &c, u, v, &h->shading_normal);
     if (m->uvs) {
         const vec2 *t = m->uvs;
@@ -285,17 +290,21 @@ static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, f
     h->is_flat = true;
 }
 
-bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 *out_position,
-                         vec3 *out_normal)
+bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
+                         surface_place *out_place)
 {
     if (s->kind == SHAPE_MESH) {
         double length;
         corners c = mesh_corners(&s->as.mesh, primitive_index);
-        *out_position = position_between(&c, u, v);
-        *out_normal = area_vector(c.p0, c.p1, c.p2, &length);
+        out_place->position = position_between(&c, u, v);
+        out_place->normal = area_vector(c.p0, c.p1, c.p2, &length);
+        out_place->epsilon = corners_epsilon(&c);
         return true;
     }
-    return s->kind != SHAPE_CURVES && quadric_bare_place_at(s, position, out_position, out_normal);
+    if (s->kind == SHAPE_CURVES)
+        return false;
+    out_place->epsilon = s->as.quadric.epsilon;
+    return quadric_bare_place_at(s, position, &out_place->position, &out_place->normal);
 }
 
 static void surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,

@@ -322,11 +322,12 @@ typedef struct ag_statistics {
     ag_map_file map_file; /* of the last picture */
     /* requests: places asked for; computed: estimates at photons; distinct: photons found ready afterwards that were
      * not before, counted by looking; deferred: set aside because another thread was computing; waited: had to wait in
-     * the end; duplicated: computed twice, 0; uncached: estimates at places themselves; ready: photons of a map from a
-     * file that were ready when it was opened; reclaimed: claims taken over from other processes that had died. Where
-     * other processes fill the map too, distinct counts what they computed as well. */
+     * the end; duplicated: computed twice, 0; uncached: estimates at places themselves; refused:
+     * requests for places where no estimate holds, whose light was followed by further bounces instead; ready: photons
+     * of a map from a file that were ready when it was opened; reclaimed: claims taken over from other processes that
+     * had died. Where other processes fill the map too, distinct counts what they computed as well. */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
-        irradiance_duplicated, irradiance_uncached, irradiance_ready, irradiance_reclaimed;
+        irradiance_duplicated, irradiance_uncached, irradiance_refused, irradiance_ready, irradiance_reclaimed;
     double irradiance_estimate_s; /* CPU seconds spent in estimates, all threads; from a sixteenth of them */
     double irradiance_wait_s;     /* CPU seconds spent in waiting for other threads' estimates, all threads */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path;
