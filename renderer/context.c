@@ -3,10 +3,10 @@
 #define _POSIX_C_SOURCE 200809L
 #include "context.h"
 
-#include "bvh.h"
 #include "clock.h"
-#include "denoise.h"
 #include "floating_point.h"
+#include "output/denoise.h"
+#include "rays/bvh.h"
 #include "scene_file.h"
 
 #include <stdio.h>

@@ -2,10 +2,10 @@
 #include "render_tiles.h"
 
 #include "clock.h"
-#include "first_hit.h"
-#include "path_tracing.h"
-#include "sample_queue.h"
-#include "shading.h"
+#include "integrator/first_hit.h"
+#include "integrator/path_tracing.h"
+#include "integrator/sample_queue.h"
+#include "integrator/shading.h"
 #include "tile_scheduler.h"
 
 #include <stdlib.h>
