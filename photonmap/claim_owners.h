@@ -2,7 +2,7 @@
  * lives. Each has a place in a table in the file, a number that its claims carry, and a lock on a byte of the file,
  * which the kernel drops when the process ends, however it ends: the lock is what tells that it lives.
  * Rests on: fcntl(2), open file description locks. Flow: photon_file joins -> irradiance_cache waits. Modelled in
- * tests/irradiance_slot_shared.pml. Threads: join and leave by one; the others by any.
+ * tests/models/irradiance_slot_shared.pml. Threads: join and leave by one; the others by any.
  *
  * A claim carries place and generation. Whoever takes a place that a dead process has left begins a new generation: so
  * no living process ever writes what a dead one's claim reads, and a claim taken over cannot be mistaken. */

@@ -3,7 +3,7 @@
 #include "irradiance_estimate.h"
 
 #include "disc_kernels.h"
-#include "passage.h"
+#include "rays/passage.h"
 #include "surface_region.h"
 
 /* Photons this much higher or lower than the place, as a share of the radius, may lie on another surface. */

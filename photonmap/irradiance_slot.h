@@ -1,7 +1,7 @@
 /* irradiance_slot.h: one atomic word per photon: who computes its irradiance, and then the irradiance. The lock-free
  * core. Rests on: Neilson, Yang, TR 04-21, 2004 (on demand, with a flag at the photon); the compare-and-swap makes it
- * safe for threads, and for processes that share a map file. Modelled in tests/irradiance_slot.pml, and with the
- * death of processes in tests/irradiance_slot_shared.pml.
+ * safe for threads, and for processes that share a map file. Modelled in tests/models/irradiance_slot.pml, and with the
+ * death of processes in tests/models/irradiance_slot_shared.pml.
  *
  *            try_claim (CAS on the flags)           publish (CAS)
  *   EMPTY ─────────────────────────────────▶ CLAIMED ─────────────▶ READY  (final)

@@ -3,8 +3,8 @@
 #include "photon_map.h"
 
 #include "parallel_for.h"
-#include "passage.h"
 #include "photon_kernels.h"
+#include "rays/passage.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,11 +3,11 @@
  * Threads: blocks by the run's workers, each into its own buffer; merged in their order. */
 #include "photon_tracing.h"
 
-#include "alpha.h"
-#include "lambert.h"
+#include "material/lambert.h"
 #include "parallel_for.h"
-#include "passage.h"
+#include "rays/passage.h"
 #include "scene_extent.h"
+#include "shape/alpha.h"
 
 #include <stdlib.h>
 #include <string.h>

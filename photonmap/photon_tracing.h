@@ -39,7 +39,7 @@ typedef struct photon_set {
     uint32_t count;
     uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
     uint64_t rays;
-    uint64_t passages_cut; /* ways across more interfaces than scene/passage.h follows: absorbed */
+    uint64_t passages_cut; /* ways across more interfaces than scene/rays/passage.h follows: absorbed */
     photon_books books;
 } photon_set;
 

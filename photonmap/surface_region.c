@@ -4,7 +4,7 @@
 
 #include "math/rng.h"
 #include "math/sampling.h"
-#include "passage.h"
+#include "rays/passage.h"
 
 #include <string.h>
 

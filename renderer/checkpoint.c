@@ -2,8 +2,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "checkpoint.h"
 
-#include "atomic_file.h"
-#include "bvh.h"
+#include "output/atomic_file.h"
+#include "rays/bvh.h"
 #include "scene_hash.h"
 
 #include <errno.h>

@@ -4,8 +4,8 @@
 #define AFTERGLOW_CONTEXT_H
 
 #include "clock.h"
-#include "color.h"
-#include "film.h"
+#include "color/color.h"
+#include "film/film.h"
 #include "run_context.h"
 #include "scene.h"
 

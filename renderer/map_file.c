@@ -4,7 +4,7 @@
 #define _GNU_SOURCE
 #include "map_file.h"
 
-#include "atomic_file.h"
+#include "output/atomic_file.h"
 #include "scene_hash.h"
 
 #include <errno.h>

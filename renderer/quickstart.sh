@@ -5,8 +5,8 @@ set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build/release
-# shellcheck source=renderer/packages.sh
-source "$root/renderer/packages.sh"
+# shellcheck source=renderer/package/packages.sh
+source "$root/renderer/package/packages.sh"
 install_packages "${BUILD_PACKAGES[@]}"
 
 cd "$root"

@@ -2,11 +2,11 @@
  * Rests on: Jensen 1996; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
  * Threads: one phase after the other, each on all of the context's workers; what a phase made is const in the next. */
 #define _POSIX_C_SOURCE 200809L
-#include "adaptive.h"
-#include "debug_views.h"
+#include "film/adaptive.h"
+#include "film/debug_views.h"
 #include "floating_point.h"
-#include "passage.h"
-#include "photon_dump.h"
+#include "output/photon_dump.h"
+#include "rays/passage.h"
 #include "render_maps.h"
 #include "render_tiles.h"
 

@@ -2,7 +2,7 @@
 #include "render_maps.h"
 
 #include "map_file.h"
-#include "passage.h"
+#include "rays/passage.h"
 
 void maps_reset(maps *m)
 {

@@ -2,11 +2,11 @@
 #include "render_tiles.h"
 
 #include "clock.h"
-#include "final_gather.h"
-#include "first_hit.h"
-#include "path_tracing.h"
-#include "sample_queue.h"
-#include "shading.h"
+#include "integrator/final_gather.h"
+#include "integrator/first_hit.h"
+#include "integrator/path_tracing.h"
+#include "integrator/sample_queue.h"
+#include "integrator/shading.h"
 #include "tile_scheduler.h"
 
 #include <stdlib.h>

@@ -5,8 +5,8 @@
 
 #include "context.h"
 #include "incident_light.h"
+#include "integrator/transport.h"
 #include "photon_file.h"
-#include "transport.h"
 
 typedef struct maps {
     photon_map global, caustic;

@@ -4,7 +4,7 @@
  * Threads: read-only. */
 #include "camera.h"
 
-#include "environment.h"
+#include "light/environment.h"
 #include "math/sampling.h"
 
 #include <string.h>

@@ -6,7 +6,7 @@
 
 #include "math/motion.h"
 #include "math/transform.h"
-#include "ray.h"
+#include "rays/ray.h"
 
 typedef enum camera_kind {
     CAMERA_PERSPECTIVE,

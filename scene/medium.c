@@ -4,7 +4,7 @@
  * Media by Dilution", 2006, as pbrt-v4 names and rounds them. Threads: pure functions. */
 #include "medium.h"
 
-#include "fresnel.h"
+#include "material/fresnel.h"
 
 #include <string.h>
 

@@ -3,10 +3,10 @@
 #define _POSIX_C_SOURCE 200809L
 #include "scene.h"
 
-#include "bsdf.h"
-#include "curves.h"
-#include "light_pick.h"
+#include "light/light_pick.h"
+#include "material/bsdf.h"
 #include "scene_extent.h"
+#include "shape/curves.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -6,17 +6,17 @@
 #define AFTERGLOW_SCENE_H
 
 #include "camera.h"
-#include "definitions.h"
-#include "instance.h"
-#include "light.h"
-#include "material.h"
+#include "color/working_space.h"
+#include "light/light.h"
+#include "material/material.h"
 #include "medium.h"
-#include "parameter_list.h"
 #include "run_context.h"
 #include "scene_names.h"
-#include "shape.h"
-#include "texture.h"
-#include "working_space.h"
+#include "shape/instance.h"
+#include "shape/shape.h"
+#include "text/definitions.h"
+#include "text/parameter_list.h"
+#include "texture/texture.h"
 
 struct bvh;
 struct color_config;

@@ -2,7 +2,7 @@
  * Threads: read-only. */
 #include "scene_extent.h"
 
-#include "bvh.h"
+#include "rays/bvh.h"
 
 #include <stdlib.h>
 #include <string.h>

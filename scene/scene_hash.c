@@ -1,10 +1,10 @@
 /* scene_hash.c: see scene_hash.h. Field by field, for what lies between the fields of a struct is anything. What
- * scene_commit works out of the rest is left out. tests/test_scene_hash.c finds the field that was forgotten. */
+ * scene_commit works out of the rest is left out. tests/scene/test_scene_hash.c finds the field that was forgotten. */
 #include "scene_hash.h"
 
-#include "environment.h"
-#include "portal.h"
-#include "projection.h"
+#include "light/environment.h"
+#include "light/portal.h"
+#include "light/projection.h"
 #include "scene.h"
 
 #define ADD(value) HASH128_ADD(h, value)

@@ -8,8 +8,8 @@ set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
-# shellcheck source=renderer/packages.sh
-source renderer/packages.sh
+# shellcheck source=renderer/package/packages.sh
+source renderer/package/packages.sh
 
 presets=()
 build_only=()

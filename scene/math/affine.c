@@ -1,6 +1,6 @@
 /* affine.c: see affine.h.
  * Threads: pure functions. */
-#include "affine.h"
+#include "math/affine.h"
 
 /* Single precision loses what is beyond. */
 static const double DETERMINANT_MIN = 1e-35, DETERMINANT_MAX = 1e35;

@@ -3,7 +3,7 @@
 #ifndef AFTERGLOW_AFFINE_H
 #define AFTERGLOW_AFFINE_H
 
-#include "transform.h"
+#include "math/transform.h"
 
 typedef struct affine {
     float m[3][4]; /* row, column */

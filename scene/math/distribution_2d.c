@@ -1,5 +1,5 @@
 /* distribution_2d.c: see distribution_2d.h. */
-#include "distribution_2d.h"
+#include "math/distribution_2d.h"
 
 #include <stdlib.h>
 

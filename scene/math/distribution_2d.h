@@ -6,7 +6,7 @@
 #define AFTERGLOW_DISTRIBUTION_2D_H
 
 #include "afterglow/base.h"
-#include "vec3.h"
+#include "math/vec3.h"
 
 #include <stddef.h>
 #include <stdint.h>

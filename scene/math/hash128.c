@@ -1,7 +1,7 @@
 /* hash128.c: see hash128.h. */
-#include "hash128.h"
+#include "math/hash128.h"
 
-#include "rng.h"
+#include "math/rng.h"
 
 #include <string.h>
 

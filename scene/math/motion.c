@@ -1,9 +1,9 @@
 /* motion.c: see motion.h. Polar decompositions by Newton's iteration, scaled (Higham, "Computing the Polar
  * Decomposition with Applications", 1986). Threads: pure functions. */
-#include "motion.h"
+#include "math/motion.h"
 
-#include "angle.h"
-#include "sampling.h"
+#include "math/angle.h"
+#include "math/sampling.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #ifndef AFTERGLOW_MOTION_H
 #define AFTERGLOW_MOTION_H
 
-#include "affine.h"
+#include "math/affine.h"
 
 #include <stdint.h>
 

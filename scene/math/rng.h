@@ -5,7 +5,7 @@
 #ifndef AFTERGLOW_RNG_H
 #define AFTERGLOW_RNG_H
 
-#include "vec3.h"
+#include "math/vec3.h"
 
 #include <stdint.h>
 

@@ -6,7 +6,7 @@
 #ifndef AFTERGLOW_SAMPLING_H
 #define AFTERGLOW_SAMPLING_H
 
-#include "vec3.h"
+#include "math/vec3.h"
 
 /* Sine and cosine of 2 pi u, u in [-1, 1]; right to float precision. Taylor series about the nearest quarter turn. */
 static inline void sincos_turns(float u, float *out_sin, float *out_cos)

@@ -1,6 +1,6 @@
 /* transform.c: see transform.h. Matrices are inverted by Gauss-Jordan elimination with full row pivoting.
  * Threads: pure functions. */
-#include "transform.h"
+#include "math/transform.h"
 
 #include <string.h>
 

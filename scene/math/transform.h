@@ -5,7 +5,7 @@
 #ifndef AFTERGLOW_TRANSFORM_H
 #define AFTERGLOW_TRANSFORM_H
 
-#include "vec3.h"
+#include "math/vec3.h"
 
 typedef struct transform {
     double m[4][4];       /* row, column */

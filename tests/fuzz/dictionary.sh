@@ -12,12 +12,12 @@ echo "# made by dictionary.sh"
 case ${1-} in
 gltf)
     # names stand in quotes
-    words scene/gltf_*.c | sed -E 's/^"(.*)"$/"\\"\1\\""/'
+    words scene/readers/gltf/*.c | sed -E 's/^"(.*)"$/"\\"\1\\""/'
     printf '"%s"\n' 'glTF\x02\x00\x00\x00' 'JSON' 'BIN\x00' 'data:image/png;base64,' 'data:;base64,' 5120 5121 5122 5123 5125 \
         5126 33071 33648 10497 null true '{}' '[]' ':{' ':[' ',' 4294967295 '%20' '../'
     ;;
 pbrt)
-    words scene/pbrt_*.c scene/parameter_list.c scene/spectra.c scene/color_space.c renderer/render_settings.c
+    words scene/readers/pbrt/*.c scene/text/parameter_list.c scene/color/spectra.c scene/color/color_space.c renderer/render_settings.c
     for type in bool integer float string rgb spectrum texture; do
         for name in alpha reflectance roughness L I scale radius filename eta displacement; do
             printf '"\\"%s %s\\""\n' "$type" "$name"

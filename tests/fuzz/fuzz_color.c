@@ -1,8 +1,8 @@
 /* fuzz_color.c: OpenColorIO configs: what is accepted lists what it has, and shows a colour on every view as finite or
  * not, but shows it. Flow: bytes -> a file -> [here] -> color_ocio. Threads: one. */
-#include "color.h"
+#include "color/color.h"
+#include "color/working_space.h"
 #include "fuzz.h"
-#include "working_space.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* fuzz_image.c: a picture as texture and as light from everywhere: OpenImageIO decodes it, what it says is ours to
  * judge. Flow: bytes -> a file -> [here] -> image_reader, texture_image, pbrt_environments. Threads: one. */
 #include "fuzz_scene.h"
-#include "image_module_loader.h"
-#include "pbrt_parser.h"
+#include "image/image_module_loader.h"
+#include "pbrt/pbrt_parser.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* fuzz_numbers.c: text files of numbers that a scene names: a spectrum, emitted and reflected, and a lens; plain and
  * gzip. Flow: bytes -> a file -> [here] -> pbrt_colors, spectra, pbrt_realistic. Threads: one. */
 #include "fuzz_scene.h"
-#include "pbrt_parser.h"
+#include "pbrt/pbrt_parser.h"
 
 #include <string.h>
 

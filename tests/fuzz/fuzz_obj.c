@@ -2,7 +2,7 @@
  * Flow: bytes -> two files -> [here] -> obj_file, mtl_file. Threads: one. */
 #define _GNU_SOURCE /* memmem */
 #include "fuzz_scene.h"
-#include "obj_file.h"
+#include "model/obj_file.h"
 
 #include <string.h>
 

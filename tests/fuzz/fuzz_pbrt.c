@@ -1,7 +1,7 @@
 /* fuzz_pbrt.c: the text of a pbrt-v4 scene: lexer, parameters, and every directive's interpreter.
  * Flow: bytes -> [here] -> pbrt_parser. Threads: one. */
 #include "fuzz_scene.h"
-#include "pbrt_parser.h"
+#include "pbrt/pbrt_parser.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* fuzz_ply.c: a PLY file: header, ascii and both binary forms, plain and gzip.
  * Flow: bytes -> a file -> [here] -> ply_file. Threads: one. */
 #include "fuzz.h"
-#include "ply_file.h"
+#include "model/ply_file.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* fuzz_scene.c: see fuzz_scene.h. Threads: one. */
 #include "fuzz_scene.h"
 
-#include "bvh.h"
+#include "rays/bvh.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,0 +1,21 @@
+/* adaptive.h: which pixels have had enough samples, by what noise is left in them and around them.
+ * Rests on: the standard error of a mean; measured as an eye sees it, of the square root of the value, which is about
+ * how displays encode. Flow: film -> [here] -> the next pass. Threads: when no tile is rendered.
+ *
+ * It is decided at fixed numbers of samples alone, when every pixel has had what it is to have: so neither threads nor
+ * the moment of a pause reach the picture. */
+#ifndef AFTERGLOW_ADAPTIVE_H
+#define AFTERGLOW_ADAPTIVE_H
+
+#include "film/film.h"
+#include "run_context.h"
+
+/* The number of samples up to which pixels are brought now: the next one at which it is decided. */
+uint32_t adaptive_barrier(const struct ag_film *film);
+
+/* To be called when all pixels have had what they are to have, and barrier is below `most`: says anew what each is to
+ * have. *out_is_done: none needs more. Errors: AG_CANCELLED. */
+ag_status adaptive_decide(struct ag_film *film, run_context *run, const ag_render_settings *settings,
+                          bool *out_is_done);
+
+#endif

@@ -1,0 +1,96 @@
+/* aov.h: the layers of a picture: their names, what the film sums for them, and the channels of a file they become.
+ * Rests on: pbrt-v4's GBufferFilm (its channel names); Cryptomatte (Friedman, Jones, Psyop); the names that EXR
+ * files of PRMan, Arnold and Cycles have in common. Flow: settings -> [here] -> film, files. Threads: read-only once
+ * made. */
+#ifndef AFTERGLOW_AOV_H
+#define AFTERGLOW_AOV_H
+
+#include "afterglow/afterglow.h"
+#include "film/cryptomatte.h"
+#include "integrator/eye_sample.h"
+
+/* What is summed over a pixel's samples, each in so many channels. */
+typedef enum film_sum {
+    SUM_RADIANCE, /* 3, always, and at 0 */
+    SUM_ALPHA,    /* 1: the ray met something */
+    SUM_PARTS,    /* 3 each */
+    SUM_GROUPS,   /* 3 each, and 3 for what came through the photon map */
+    SUM_ALBEDO,   /* 3 */
+    SUM_NORMAL,   /* 3, the shading normal */
+    SUM_GEOMETRIC_NORMAL,
+    SUM_POSITION,
+    SUM_UV,         /* 2 */
+    SUM_SLOPE,      /* 2: |dz/dx|, |dz/dy| after the mean */
+    SUM_IRRADIANCE, /* 3 */
+    SUM_SQUARES,    /* 3: of the sample as the film develops it, and that itself */
+    SUM_DEVELOPED,
+    SUM_HIT_SQUARES, /* the same of samples that met something: pbrt's Variance */
+    SUM_HIT_DEVELOPED
+} film_sum;
+enum { FILM_SUM_COUNT = SUM_HIT_DEVELOPED + 1, FILM_VALUES_MAX = 48 + 3 * (LIGHT_PART_COUNT + LIGHT_GROUPS_MAX + 1) };
+
+/* What a channel of a file is made of. */
+typedef enum channel_source {
+    CHANNEL_BEAUTY,    /* component of the picture itself */
+    CHANNEL_COLOR,     /* a radiance: component of its mean, developed as the beauty */
+    CHANNEL_MEAN,      /* over all samples */
+    CHANNEL_HIT_MEAN,  /* over those that met something */
+    CHANNEL_DIRECTION, /* normalised */
+    CHANNEL_ABSOLUTE,  /* the hit mean's absolute value */
+    CHANNEL_VARIANCE,
+    CHANNEL_RELATIVE_VARIANCE,
+    CHANNEL_SAMPLES,
+    CHANNEL_DEPTH,
+    CHANNEL_OBJECT,
+    CHANNEL_MATERIAL,
+    CHANNEL_VIEW,      /* component: of film_view */
+    CHANNEL_CRYPTO_ID, /* component: rank + CRYPTOMATTE_RANKS * cryptomatte_kind */
+    CHANNEL_CRYPTO_COVERAGE
+} channel_source;
+
+/* What is known of a pixel as a whole, see debug_views.h. */
+typedef enum film_view {
+    VIEW_PHOTON_DENSITY,
+    VIEW_CACHE_STATE,
+    VIEW_PHOTON_DISTANCE,
+    VIEW_GATHER_DISTANCE,
+    VIEW_TILE_TIME
+} film_view;
+enum { FILM_VIEW_COUNT = VIEW_TILE_TIME + 1 };
+
+typedef struct film_channel {
+    char name[64];
+    channel_source source;
+    film_sum sum;
+    int component, offset; /* within the sum; of what is summed, to the first of its components */
+    bool is_exact;         /* floats in every file: half would spoil it */
+} film_channel;
+
+typedef struct aov_layout {
+    uint32_t layers; /* AG_LAYER_... */
+    bool is_gbuffer;
+    int offset[FILM_SUM_COUNT]; /* -1: not summed */
+    int sum_count;              /* channels that are summed */
+    int group_count;
+    const char *const *group_names; /* borrowed */
+    film_channel *channels;         /* owned; R, G, B first */
+    int channel_count;
+    bool has_view[FILM_VIEW_COUNT], has_matte[CRYPTOMATTE_KIND_COUNT];
+    bool needs_first_hit, needs_nearest;
+} aov_layout;
+
+/* What is summed whether it becomes channels or not. */
+typedef struct aov_needs {
+    bool albedo_and_normal; /* for denoising */
+    bool variance;          /* for adaptive sampling */
+} aov_needs;
+
+/* group_names: of the scene's light
+ * groups, [group_count], the first "default". Errors: AG_ERROR_MEMORY. */
+ag_status aov_layout_create(uint32_t layers, aov_needs also, bool is_path, const char *const *group_names,
+                            int group_count, aov_layout *out_layout);
+void aov_layout_reset(aov_layout *layout);
+
+static inline bool aov_has(const aov_layout *layout, film_sum sum) { return layout->offset[sum] >= 0; }
+
+#endif

@@ -1,0 +1,409 @@
+/* film.c: see film.h. */
+#include "film/film.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Depth where there is nothing, as Cycles has it: far, but a number. */
+static const float DEPTH_OF_NOTHING = 1e10f;
+
+static size_t pixel_count(const ag_film *film) { return (size_t)film->width * (size_t)film->height; }
+
+/* doubles of a pixel */
+static size_t sums_of_pixel(const ag_film *film)
+{
+    return (size_t)film->layout.sum_count * (film->filter.has_signs ? 2 : 1);
+}
+
+static void set_crop(ag_film *film, const ag_render_settings *settings)
+{
+    /* as pbrt: pixels from ceil(x0 width) on; a hair less, so that pixel / width times width is that pixel */
+    const double *crop = settings->crop_window;
+    int edges[4];
+    for (int i = 0; i < 4; i++)
+        edges[i] = (int)ceil(crop[i] * (i < 2 ? settings->width : settings->height) - 1e-6);
+    film->x0 = edges[0];
+    film->y0 = edges[2];
+    film->width = edges[1] - edges[0];
+    film->height = edges[3] - edges[2];
+    film->full_width = settings->width;
+    film->full_height = settings->height;
+    if (film->width < 1 || film->height < 1)
+        film->width = film->height = 0;
+}
+
+ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
+                     aov_layout *layout)
+{
+    ag_film *film = calloc(1, sizeof *film);
+    if (!film) {
+        aov_layout_reset(layout);
+        return NULL;
+    }
+    set_crop(film, settings);
+    film->float_samples = settings->float_samples;
+    film->filter = *filter;
+    film->space = *space;
+    film->response = film_response_make(settings, space);
+    film->layout = *layout;
+    *layout = (aov_layout){0};
+    size_t count = pixel_count(film) + 1; /* never none */
+    film->sums = calloc(count, sums_of_pixel(film) * sizeof *film->sums);
+    film->counts = calloc(count, sizeof *film->counts);
+    film->pixels = calloc(count, 3 * sizeof *film->pixels);
+    bool is_whole = film->sums && film->counts && film->pixels;
+    if (filter->has_signs) {
+        film->negatives = calloc(count, sizeof *film->negatives);
+        is_whole = is_whole && film->negatives;
+    }
+    for (int i = 0; i < FILM_VIEW_COUNT; i++)
+        if (film->layout.has_view[i]) {
+            film->views[i] = calloc(count, sizeof *film->views[i]);
+            is_whole = is_whole && film->views[i];
+        }
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++)
+        if (film->layout.has_matte[i]) {
+            film->slots[i] = calloc(count, CRYPTOMATTE_SLOTS * sizeof *film->slots[i]);
+            is_whole = is_whole && film->slots[i];
+        }
+    if (settings->noise_level > 0.0f) {
+        film->wanted = calloc(count, sizeof *film->wanted);
+        is_whole = is_whole && film->wanted;
+    }
+    if (film->layout.needs_nearest) {
+        film->nearest = calloc(count, sizeof *film->nearest);
+        is_whole = is_whole && film->nearest;
+    }
+    if (is_whole)
+        return film;
+    ag_film_destroy(film);
+    return NULL;
+}
+
+void ag_film_destroy(ag_film *film)
+{
+    if (!film)
+        return;
+    free(film->sums);
+    free(film->counts);
+    free(film->wanted);
+    free(film->negatives);
+    free(film->nearest);
+    for (int i = 0; i < FILM_VIEW_COUNT; i++)
+        free(film->views[i]);
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++) {
+        free(film->slots[i]);
+        cryptomatte_reset(&film->mattes[i]);
+    }
+    free(film->pixels);
+    free(film->origin.defined);
+    aov_layout_reset(&film->layout);
+    free(film);
+}
+
+int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
+{
+    size_t pixels = pixel_count(film);
+    int count = 0;
+    out_planes[count++] = (film_plane){film->sums, pixels * sums_of_pixel(film) * sizeof *film->sums};
+    out_planes[count++] = (film_plane){film->counts, pixels * sizeof *film->counts};
+    if (film->wanted)
+        out_planes[count++] = (film_plane){film->wanted, pixels * sizeof *film->wanted};
+    if (film->negatives)
+        out_planes[count++] = (film_plane){film->negatives, pixels * sizeof *film->negatives};
+    for (int i = 0; i < FILM_VIEW_COUNT; i++)
+        if (film->views[i])
+            out_planes[count++] = (film_plane){film->views[i], pixels * sizeof *film->views[i]};
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++)
+        if (film->slots[i])
+            out_planes[count++] = (film_plane){film->slots[i], pixels * CRYPTOMATTE_SLOTS * sizeof *film->slots[i]};
+    if (film->nearest)
+        out_planes[count++] = (film_plane){film->nearest, pixels * sizeof *film->nearest};
+    return count;
+}
+
+film_count film_count_samples(const ag_film *film)
+{
+    film_count count = {.least = UINT32_MAX};
+    uint64_t sum = 0;
+    size_t pixels = pixel_count(film);
+    for (size_t i = 0; i < pixels; i++) {
+        uint32_t samples = film->counts[i];
+        sum += samples;
+        count.least = samples < count.least ? samples : count.least;
+        count.most = samples > count.most ? samples : count.most;
+    }
+    if (pixels == 0)
+        return (film_count){0};
+    count.mean = (double)sum / (double)pixels;
+    return count;
+}
+
+/* --- samples in --- */
+
+static void add_rgb(double *sums, rgb value)
+{
+    sums[0] += (double)value.r;
+    sums[1] += (double)value.g;
+    sums[2] += (double)value.b;
+}
+
+static void add_vec3(double *sums, vec3 value) { add_rgb(sums, (rgb){value.x, value.y, value.z}); }
+
+/* A sample as the film develops it, and its square. */
+static void add_squares(const ag_film *film, double *squares, double *developed, rgb radiance)
+{
+    double value[3] = {(double)radiance.r, (double)radiance.g, (double)radiance.b};
+    if (!film->response.is_plain)
+        film_response_develop(&film->response, value);
+    for (int c = 0; c < 3; c++) {
+        squares[c] += value[c] * value[c];
+        developed[c] += value[c];
+    }
+}
+
+static void add_layers(ag_film *film, size_t pixel, double *sums, const eye_sample *sample)
+{
+    const aov_layout *layout = &film->layout;
+    const sample_layers *l = sample->layers;
+    const first_hit *first = &l->first;
+    const int *offset = layout->offset;
+    for (int i = 0; aov_has(layout, SUM_PARTS) && i < LIGHT_PART_COUNT; i++)
+        add_rgb(sums + offset[SUM_PARTS] + 3 * i, l->parts[i]);
+    for (int i = 0; aov_has(layout, SUM_GROUPS) && i <= layout->group_count; i++)
+        add_rgb(sums + offset[SUM_GROUPS] + 3 * i, l->groups[i]);
+    if (aov_has(layout, SUM_SQUARES))
+        add_squares(film, sums + offset[SUM_SQUARES], sums + offset[SUM_DEVELOPED], sample->radiance);
+    if (!first->is_hit)
+        return;
+
+    if (aov_has(layout, SUM_ALPHA))
+        sums[offset[SUM_ALPHA]] += 1.0;
+    if (aov_has(layout, SUM_ALBEDO))
+        add_rgb(sums + offset[SUM_ALBEDO], first->albedo);
+    if (aov_has(layout, SUM_NORMAL))
+        add_vec3(sums + offset[SUM_NORMAL], first->normal);
+    if (aov_has(layout, SUM_GEOMETRIC_NORMAL))
+        add_vec3(sums + offset[SUM_GEOMETRIC_NORMAL], first->geometric_normal);
+    if (aov_has(layout, SUM_POSITION))
+        add_vec3(sums + offset[SUM_POSITION], first->position);
+    if (aov_has(layout, SUM_UV)) {
+        sums[offset[SUM_UV]] += (double)first->uv.x;
+        sums[offset[SUM_UV] + 1] += (double)first->uv.y;
+    }
+    if (aov_has(layout, SUM_SLOPE)) {
+        sums[offset[SUM_SLOPE]] += (double)first->dz_dx;
+        sums[offset[SUM_SLOPE] + 1] += (double)first->dz_dy;
+    }
+    if (aov_has(layout, SUM_IRRADIANCE))
+        add_rgb(sums + offset[SUM_IRRADIANCE], first->irradiance);
+    if (aov_has(layout, SUM_HIT_SQUARES))
+        add_squares(film, sums + offset[SUM_HIT_SQUARES], sums + offset[SUM_HIT_DEVELOPED], sample->radiance);
+    const uint32_t ids[CRYPTOMATTE_KIND_COUNT] = {first->object_id, first->material_id};
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++)
+        if (film->slots[i])
+            cryptomatte_add(&film->mattes[i], ids[i], sample->sign, film->slots[i] + CRYPTOMATTE_SLOTS * pixel);
+    if (film->nearest) {
+        film_nearest *nearest = &film->nearest[pixel];
+        if (nearest->object_id == 0 || first->depth < nearest->depth)
+            *nearest = (film_nearest){first->depth, first->object_id, first->material_id};
+    }
+}
+
+void film_add(ag_film *film, size_t pixel, const eye_sample *sample)
+{
+    double *sums = film->sums + pixel * sums_of_pixel(film);
+    if (sample->sign < 0) {
+        sums += film->layout.sum_count;
+        film->negatives[pixel]++;
+    }
+    film->counts[pixel]++;
+    add_rgb(sums, sample->radiance);
+    if (sample->layers)
+        add_layers(film, pixel, sums, sample);
+}
+
+/* --- the picture out --- */
+
+/* The mean of count <= 3 sums that follow each other; of filters with negative lobes with the samples' signs. */
+static void read_mean(const ag_film *film, size_t pixel, int offset, int count, double out[3])
+{
+    const double *sums = film->sums + pixel * sums_of_pixel(film) + offset;
+    uint32_t samples = film->counts[pixel];
+    out[0] = out[1] = out[2] = 0.0;
+    if (samples == 0)
+        return;
+    if (!film->filter.has_signs) {
+        for (int c = 0; c < count; c++)
+            out[c] = sums[c] / samples;
+        return;
+    }
+    pixel_sum sum = {.positive_count = samples - film->negatives[pixel], .negative_count = film->negatives[pixel]};
+    for (int c = 0; c < count; c++) {
+        sum.positive[c] = sums[c];
+        sum.negative[c] = sums[film->layout.sum_count + c];
+    }
+    pixel_filter_resolve(&film->filter, &sum, out);
+}
+
+/* The mean over the samples that met something, by their number. Signs are left out: what lies between two places is no
+ * place. */
+static double read_hit_mean(const ag_film *film, size_t pixel, int offset)
+{
+    const double *sums = film->sums + pixel * sums_of_pixel(film);
+    int alpha = film->layout.offset[SUM_ALPHA];
+    double hits = sums[alpha], value = sums[offset];
+    if (film->filter.has_signs) {
+        const double *negative = sums + film->layout.sum_count;
+        hits += negative[alpha];
+        value += negative[offset];
+    }
+    return hits > 0.0 ? value / hits : 0.0;
+}
+
+/* A sum over all samples, whatever their sign. */
+static double read_total(const ag_film *film, size_t pixel, int offset)
+{
+    const double *sums = film->sums + pixel * sums_of_pixel(film);
+    return sums[offset] + (film->filter.has_signs ? sums[film->layout.sum_count + offset] : 0.0);
+}
+
+/* Of the samples, not of their mean. */
+static double read_variance(const ag_film *film, size_t pixel, const film_channel *channel, bool is_relative)
+{
+    bool is_of_hits = channel->sum == SUM_HIT_SQUARES;
+    int developed = film->layout.offset[is_of_hits ? SUM_HIT_DEVELOPED : SUM_DEVELOPED];
+    double count = is_of_hits ? read_total(film, pixel, film->layout.offset[SUM_ALPHA]) : (double)film->counts[pixel];
+    if (count < 2.0)
+        return 0.0;
+    double sum = read_total(film, pixel, developed + channel->component), mean = sum / count;
+    double squares = read_total(film, pixel, channel->offset + channel->component);
+    double variance = fmax(squares - sum * mean, 0.0) / (count - 1.0);
+    if (!is_relative)
+        return variance;
+    return mean != 0.0 ? variance / mean : 0.0; /* as pbrt: over the mean, not its square */
+}
+
+void film_read_noise(const ag_film *film, size_t pixel, double *out_mean, double *out_variance)
+{
+    const int *offset = film->layout.offset;
+    double count = (double)film->counts[pixel], mean = 0.0, variance = 0.0;
+    for (int c = 0; c < 3 && count >= 2.0; c++) {
+        double sum = read_total(film, pixel, offset[SUM_DEVELOPED] + c);
+        double squares = read_total(film, pixel, offset[SUM_SQUARES] + c);
+        mean += sum / count;
+        variance += fmax(squares - sum * sum / count, 0.0) / ((count - 1.0) * count);
+    }
+    *out_mean = mean / 3.0;
+    *out_variance = variance / 3.0;
+}
+
+static void read_color(const ag_film *film, size_t pixel, int offset, double out[3])
+{
+    read_mean(film, pixel, offset, 3, out);
+    if (!film->response.is_plain)
+        film_response_develop(&film->response, out);
+}
+
+/* Where the parts of light are there, the picture is their sum in floats, in their order: so it is for whoever adds up
+ * a file's layers. */
+static void resolve_pixel(const ag_film *film, size_t pixel, float out[3])
+{
+    double color[3];
+    const aov_layout *layout = &film->layout;
+    if (!aov_has(layout, SUM_PARTS)) {
+        read_color(film, pixel, layout->offset[SUM_RADIANCE], color);
+        for (int c = 0; c < 3; c++)
+            out[c] = (float)color[c];
+        return;
+    }
+    for (int i = 0; i < LIGHT_PART_COUNT; i++) {
+        read_color(film, pixel, layout->offset[SUM_PARTS] + 3 * i, color);
+        for (int c = 0; c < 3; c++)
+            out[c] = i == 0 ? (float)color[c] : out[c] + (float)color[c];
+    }
+}
+
+void film_resolve(ag_film *film)
+{
+    for (size_t i = 0; i < pixel_count(film); i++)
+        resolve_pixel(film, i, film->pixels + 3 * i);
+}
+
+static float read_value(const ag_film *film, size_t pixel, const film_channel *channel)
+{
+    double value[3];
+    int component = channel->component, at = channel->offset + component;
+    const film_nearest nothing = {DEPTH_OF_NOTHING, 0, 0};
+    const film_nearest *nearest = film->nearest && film->nearest[pixel].object_id ? &film->nearest[pixel] : &nothing;
+    switch (channel->source) {
+    case CHANNEL_BEAUTY: return film->pixels[3 * pixel + (size_t)component];
+    case CHANNEL_COLOR: read_color(film, pixel, channel->offset, value); return (float)value[component];
+    case CHANNEL_MEAN: read_mean(film, pixel, at, 1, value); return (float)value[0];
+    case CHANNEL_HIT_MEAN: return (float)read_hit_mean(film, pixel, at);
+    case CHANNEL_ABSOLUTE: return (float)fabs(read_hit_mean(film, pixel, at));
+    case CHANNEL_DIRECTION: {
+        double length_squared = 0.0;
+        read_mean(film, pixel, channel->offset, 3, value);
+        for (int c = 0; c < 3; c++)
+            length_squared += value[c] * value[c];
+        return length_squared > 0.0 ? (float)(value[component] / sqrt(length_squared)) : 0.0f;
+    }
+    case CHANNEL_VARIANCE: return (float)read_variance(film, pixel, channel, false);
+    case CHANNEL_RELATIVE_VARIANCE: return (float)read_variance(film, pixel, channel, true);
+    case CHANNEL_SAMPLES: return (float)film->counts[pixel];
+    case CHANNEL_DEPTH: return nearest->depth;
+    case CHANNEL_OBJECT: return (float)nearest->object_id;
+    case CHANNEL_MATERIAL: return (float)nearest->material_id;
+    case CHANNEL_CRYPTO_ID:
+    case CHANNEL_CRYPTO_COVERAGE: {
+        float id, coverage;
+        int64_t negatives = film->negatives ? (int64_t)film->negatives[pixel] : 0;
+        cryptomatte_rank(film->slots[component / CRYPTOMATTE_RANKS] + CRYPTOMATTE_SLOTS * pixel,
+                         component % CRYPTOMATTE_RANKS, (int64_t)film->counts[pixel] - 2 * negatives, &id, &coverage);
+        return channel->source == CHANNEL_CRYPTO_ID ? id : coverage;
+    }
+    case CHANNEL_VIEW: return film->views[component][pixel];
+    }
+    return 0.0f;
+}
+
+void film_read_channel(const ag_film *film, int channel, float *out, size_t stride)
+{
+    for (size_t i = 0; i < pixel_count(film); i++)
+        out[i * stride] = read_value(film, i, &film->layout.channels[channel]);
+}
+
+void film_read_sum(const ag_film *film, film_sum sum, float *out)
+{
+    double value[3];
+    for (size_t i = 0; i < pixel_count(film); i++) {
+        read_mean(film, i, film->layout.offset[sum], 3, value);
+        for (int c = 0; c < 3; c++)
+            out[3 * i + (size_t)c] = (float)value[c];
+    }
+}
+
+/* --- as the public interface shows it --- */
+
+const float *ag_film_pixels(const ag_film *film, int *out_width, int *out_height)
+{
+    *out_width = film->width;
+    *out_height = film->height;
+    return film->pixels;
+}
+
+int ag_film_channel_count(const ag_film *film) { return film->layout.channel_count; }
+
+const char *ag_film_channel_name(const ag_film *film, int channel)
+{
+    return channel >= 0 && channel < film->layout.channel_count ? film->layout.channels[channel].name : NULL;
+}
+
+ag_status ag_film_read_channel(const ag_film *film, int channel, float *out_values)
+{
+    if (!film || !out_values || channel < 0 || channel >= film->layout.channel_count)
+        return AG_ERROR_ARGUMENT;
+    film_read_channel(film, channel, out_values, 1);
+    return AG_OK;
+}

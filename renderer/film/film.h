@@ -1,0 +1,92 @@
+/* film.h: what the samples of each pixel add up to: sums in double precision, in the order of the samples. A pixel
+ * knows how many it has had, so that rendering may stop after any sample and go on later: samples [0, a) and then [a,
+ * b) give the bits of [0, b) at once, whatever the tiles, threads or passes. Flow: eye_sample -> [here] -> the picture
+ * and its layers. Threads: a pixel belongs to one worker at a time; resolved when none is at work. */
+#ifndef AFTERGLOW_FILM_H
+#define AFTERGLOW_FILM_H
+
+#include "film/aov.h"
+#include "film/film_response.h"
+#include "film/pixel_filter.h"
+
+/* The surface nearest to the eye that a pixel's samples met, which is what depth and ids mean; no mean of them means
+ * anything. */
+typedef struct film_nearest {
+    float depth;
+    uint32_t object_id, material_id; /* 0: nothing met yet */
+} film_nearest;
+
+/* What a file says of where the picture comes from. */
+typedef struct film_origin {
+    ag_render_settings settings; /* nothing left open */
+    float world_to_camera[16];   /* as OpenEXR has it: row by row, of row vectors; when the shutter opens */
+    float world_to_ndc[16];      /* to (0, 0) in the display window's upper left corner and (1, 1) opposite */
+    bool has_ndc;
+    char *defined; /* of the scene, see scene.h; owned, or NULL */
+} film_origin;
+
+struct ag_film {
+    int x0, y0, width, height; /* the crop, in pixels of the full picture */
+    int full_width, full_height;
+    bool float_samples;  /* as in ag_render_settings */
+    working_space space; /* of all colours */
+    pixel_filter filter;
+    film_response response;
+    aov_layout layout;
+    film_origin origin;
+
+    /* Of each pixel, top row first; all owned. */
+    double *sums;                  /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
+    uint32_t *counts;              /* samples so far */
+    uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
+    uint32_t *negatives;           /* those with sign -1; NULL where the filter has no signs */
+    float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
+    cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
+    cryptomatte_slot *slots[CRYPTOMATTE_KIND_COUNT]; /* [CRYPTOMATTE_SLOTS]; NULL where not asked for */
+    film_nearest *nearest;                           /* NULL where not asked for */
+    float *pixels;                                   /* 3, RGB: set by film_resolve */
+};
+
+/* An empty film of the settings' crop; takes the layout, on failure too (it is then reset). NULL when out of memory. A
+ * crop that holds no pixel has width 0. */
+struct ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
+                            aov_layout *layout);
+
+/* The next sample of a pixel, by the number of the pixel. */
+void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);
+
+/* Makes the pixels of the sums. */
+void film_resolve(struct ag_film *film);
+
+/* All that samples have brought, for writing it down and reading it back; gives how many there are. */
+typedef struct film_plane {
+    void *bytes; /* the film's */
+    size_t size;
+} film_plane;
+enum { FILM_PLANES_MAX = 5 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
+int film_planes(const struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
+
+/* How many samples a pixel is to have in a pass that brings all to `all`. */
+static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint32_t all)
+{
+    return film->wanted && film->wanted[pixel] < all ? film->wanted[pixel] : all;
+}
+
+/* Of a pixel as the film develops it, over the three colours: the mean of their means, and of the variances of these. A
+ * film that sums SUM_SQUARES. */
+void film_read_noise(const struct ag_film *film, size_t pixel, double *out_mean, double *out_variance);
+
+/* How many samples pixels have had. */
+typedef struct film_count {
+    uint32_t least, most;
+    double mean;
+} film_count;
+film_count film_count_samples(const struct ag_film *film);
+
+/* One channel of the layout, of a resolved film: width * height floats, stride apart. */
+void film_read_channel(const struct ag_film *film, int channel, float *out, size_t stride);
+
+/* The means of a sum of 3 that the layout has, packed: 3 floats a pixel. */
+void film_read_sum(const struct ag_film *film, film_sum sum, float *out);
+
+#endif

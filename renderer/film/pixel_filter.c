@@ -1,0 +1,179 @@
+/* pixel_filter.c: see pixel_filter.h. */
+#include "film/pixel_filter.h"
+
+#include <string.h>
+
+typedef enum filter_kind { FILTER_GAUSSIAN, FILTER_BOX, FILTER_TRIANGLE, FILTER_MITCHELL, FILTER_SINC } filter_kind;
+
+/* Signs that sum up to less than this share of what they should are taken to cancel out. */
+static const double LEAST_SIGN_SHARE = 0.5;
+
+static const double PI = 3.14159265358979323846;
+
+/* What each has besides its radius. */
+typedef struct filter_shape {
+    filter_kind kind;
+    float sigma, b, c, tau;
+} filter_shape;
+
+static const struct {
+    const char *name;
+    float radius; /* default */
+} FILTERS[] = {
+    [FILTER_GAUSSIAN] = {"gaussian", 1.5f}, [FILTER_BOX] = {"box", 0.5f},   [FILTER_TRIANGLE] = {"triangle", 2.0f},
+    [FILTER_MITCHELL] = {"mitchell", 2.0f}, [FILTER_SINC] = {"sinc", 4.0f},
+};
+
+static double sinc(double x) { return x == 0.0 ? 1.0 : sin(PI * x) / (PI * x); }
+
+/* Mitchell, Netravali, "Reconstruction Filters in Computer Graphics", 1988, equation 8; zero from 2 on. */
+static double mitchell(double x, double b, double c)
+{
+    x = fabs(x);
+    if (x >= 2.0)
+        return 0.0;
+    if (x >= 1.0)
+        return (((-b - 6.0 * c) * x + 6.0 * b + 30.0 * c) * x - 12.0 * b - 48.0 * c) * x + 8.0 * b + 24.0 * c;
+    return ((12.0 - 9.0 * b - 6.0 * c) * x - 18.0 + 12.0 * b + 6.0 * c) * x * x + 6.0 - 2.0 * b;
+}
+
+/* Along one axis, up to a factor. */
+static double filter_value(const filter_shape *f, double x, double radius)
+{
+    double sigma = (double)f->sigma;
+    switch (f->kind) {
+    case FILTER_BOX: return 1.0;
+    case FILTER_TRIANGLE: return fmax(0.0, radius - fabs(x));
+    case FILTER_GAUSSIAN:
+        /* pbrt takes away the value at the edge */
+        return fmax(0.0, exp(-x * x / (2.0 * sigma * sigma)) - exp(-radius * radius / (2.0 * sigma * sigma)));
+    case FILTER_MITCHELL: return mitchell(2.0 * x / radius, (double)f->b, (double)f->c);
+    case FILTER_SINC: return sinc(x) * sinc(x / (double)f->tau);
+    }
+    return 0.0;
+}
+
+/* One axis of the filter; *out_mean_sign is its integral over that of its magnitude. false: it is nothing but rounding
+ * at this resolution, or its lobes cancel out. */
+static bool tabulate(const filter_shape *f, float radius, float *cdf, signed char *sign, double *out_mean_sign)
+{
+    double sum = 0.0, whole = 0.0, step = 2.0 * (double)radius / PIXEL_FILTER_STEPS, running[PIXEL_FILTER_STEPS + 1];
+    running[0] = 0.0;
+    for (int i = 0; i < PIXEL_FILTER_STEPS; i++) {
+        double value = filter_value(f, -(double)radius + (i + 0.5) * step, (double)radius);
+        sign[i] = value < 0.0 ? -1 : 1;
+        whole += value;
+        sum += fabs(value);
+        running[i + 1] = sum;
+    }
+    for (int i = 0; i <= PIXEL_FILTER_STEPS; i++)
+        cdf[i] = (float)(running[i] / sum);
+    *out_mean_sign = whole / sum;
+    return sum > 0.0 && *out_mean_sign > 0.05;
+}
+
+static ag_status read_shape(parameter_list *directive, log_sink *log, filter_shape *f, float radius[2])
+{
+    static const struct {
+        filter_kind kind;
+        const char *name;
+        size_t place;
+    } OWN[] = {
+        {FILTER_GAUSSIAN, "sigma", offsetof(filter_shape, sigma)},
+        {FILTER_MITCHELL, "B", offsetof(filter_shape, b)},
+        {FILTER_MITCHELL, "C", offsetof(filter_shape, c)},
+        {FILTER_SINC, "tau", offsetof(filter_shape, tau)},
+    };
+    ag_status status = parameter_get_float(directive, log, "xradius", &radius[0]);
+    if (status == AG_OK)
+        status = parameter_get_float(directive, log, "yradius", &radius[1]);
+    for (size_t i = 0; i < sizeof OWN / sizeof *OWN && status == AG_OK; i++)
+        if (OWN[i].kind == f->kind)
+            status = parameter_get_float(directive, log, OWN[i].name, (float *)((char *)f + OWN[i].place));
+    if (status != AG_OK)
+        return status;
+    if (!(radius[0] > 0.0f && radius[0] <= 64.0f && radius[1] > 0.0f && radius[1] <= 64.0f && f->sigma > 0.0f &&
+          f->tau > 0.0f)) {
+        log_at(log, AG_LOG_ERROR, directive->where, "PixelFilter: radii must be in (0, 64], sigma and tau above 0");
+        return AG_ERROR_SCENE;
+    }
+    parameter_list_warn_unused(directive, log);
+    return AG_OK;
+}
+
+ag_status pixel_filter_create(parameter_list *directive, bool is_centered, log_sink *log, pixel_filter *out_filter)
+{
+    filter_shape f = {.kind = FILTER_GAUSSIAN, .sigma = 0.5f, .b = 1.0f / 3.0f, .c = 1.0f / 3.0f, .tau = 3.0f};
+    bool is_known = !directive->name;
+    for (size_t i = 0; i < sizeof FILTERS / sizeof *FILTERS && !is_known; i++) {
+        is_known = strcmp(directive->name, FILTERS[i].name) == 0;
+        f.kind = is_known ? (filter_kind)i : FILTER_GAUSSIAN;
+    }
+    float radius[2] = {FILTERS[f.kind].radius, FILTERS[f.kind].radius};
+    if (!is_known) {
+        log_at_once(log, AG_LOG_WARNING, directive->where, "pixel filter",
+                    "PixelFilter \"%s\" is not known; pbrt's default, \"gaussian\", stands in", directive->name);
+    } else if (directive->name) {
+        ag_status status = read_shape(directive, log, &f, radius);
+        if (status != AG_OK)
+            return status;
+    }
+    out_filter->has_signs = false;
+    out_filter->mean_sign = 1.0;
+    for (int axis = 0; axis < 2; axis++) {
+        double mean_sign;
+        out_filter->radius[axis] = is_centered ? 0.0f : radius[axis];
+        if (!tabulate(&f, radius[axis], out_filter->cdf[axis], out_filter->sign[axis], &mean_sign)) {
+            log_at(log, AG_LOG_ERROR, directive->where, "PixelFilter: %s",
+                   f.kind == FILTER_GAUSSIAN ? "\"sigma\" is too small for the radius"
+                                             : "its negative lobes leave nothing of it");
+            return AG_ERROR_SCENE;
+        }
+        if (is_centered)
+            memset(out_filter->sign[axis], 1, sizeof out_filter->sign[axis]);
+        else
+            out_filter->mean_sign *= mean_sign;
+        for (int i = 0; i < PIXEL_FILTER_STEPS; i++)
+            out_filter->has_signs = out_filter->has_signs || out_filter->sign[axis][i] < 0;
+    }
+    return AG_OK;
+}
+
+static float sample_axis(const float *cdf, float radius, float u, int *out_step)
+{
+    int low = 0, high = PIXEL_FILTER_STEPS;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (cdf[middle] <= u)
+            low = middle;
+        else
+            high = middle;
+    }
+    float share = cdf[low + 1] - cdf[low], within = share > 0.0f ? (u - cdf[low]) / share : 0.5f;
+    *out_step = low;
+    return radius * (2.0f * ((float)low + within) / PIXEL_FILTER_STEPS - 1.0f);
+}
+
+vec2 pixel_filter_sample(const pixel_filter *filter, vec2 u, int *out_sign)
+{
+    int x, y;
+    vec2 offset = {sample_axis(filter->cdf[0], filter->radius[0], u.x, &x),
+                   sample_axis(filter->cdf[1], filter->radius[1], u.y, &y)};
+    *out_sign = filter->sign[0][x] * filter->sign[1][y];
+    return offset;
+}
+
+void pixel_filter_resolve(const pixel_filter *filter, const pixel_sum *sum, double out_pixel[3])
+{
+    double signs = (double)sum->positive_count - sum->negative_count,
+           count = (double)sum->positive_count + sum->negative_count;
+    bool cancels = signs < LEAST_SIGN_SHARE * filter->mean_sign * count;
+    for (int c = 0; c < 3; c++) {
+        if (!cancels)
+            out_pixel[c] = (sum->positive[c] - sum->negative[c]) / signs;
+        else if (sum->positive_count > 0)
+            out_pixel[c] = sum->positive[c] / sum->positive_count;
+        else
+            out_pixel[c] = sum->negative[c] / sum->negative_count;
+    }
+}

@@ -1,0 +1,39 @@
+/* pixel_filter.h: where in and around a pixel a sample falls, by importance sampling of the reconstruction filter.
+ * Rests on: Ernst, Stamminger, Greiner, "Filter Importance Sampling", 2006: a pixel is then made of its own samples
+ * alone, summed by one thread in a fixed order. The filters are pbrt-v4's; those with negative lobes are sampled by
+ * their magnitude, and samples count with their sign. Threads: read-only once made. */
+#ifndef AFTERGLOW_PIXEL_FILTER_H
+#define AFTERGLOW_PIXEL_FILTER_H
+
+#include "math/vec3.h"
+#include "text/parameter_list.h"
+
+enum { PIXEL_FILTER_STEPS = 256 };
+
+typedef struct pixel_filter {
+    float radius[2];                         /* pixels, x and y; 0: all samples fall on the pixel's centre */
+    float cdf[2][PIXEL_FILTER_STEPS + 1];    /* per axis, from -radius to radius */
+    signed char sign[2][PIXEL_FILTER_STEPS]; /* 1 or -1 */
+    bool has_signs;                          /* some are -1 */
+    double mean_sign;                        /* of a sample, (0, 1] */
+} pixel_filter;
+
+/* From the PixelFilter directive (box, triangle, gaussian, mitchell, sinc; .name NULL: pbrt-v4's default, gaussian).
+ * Others are named in a warning, and the default stands in. is_centered: no jitter, whatever the filter. Errors:
+ * AG_ERROR_SCENE. */
+ag_status pixel_filter_create(parameter_list *directive, bool is_centered, log_sink *log, pixel_filter *out_filter);
+
+/* Offset from the pixel's centre, in pixels; u in [0,1)^2. *out_sign is 1 or -1. */
+vec2 pixel_filter_sample(const pixel_filter *filter, vec2 u, int *out_sign);
+
+/* Sums of the samples of a pixel by their sign. */
+typedef struct pixel_sum {
+    double positive[3], negative[3];
+    uint32_t positive_count, negative_count;
+} pixel_sum;
+
+/* The pixel: the samples with their signs over the sum of the signs, as in pbrt, so that what is even stays even. Where
+ * by chance the signs all but cancel out, which would multiply the noise, only the positive samples count. */
+void pixel_filter_resolve(const pixel_filter *filter, const pixel_sum *sum, double out_pixel[3]);
+
+#endif

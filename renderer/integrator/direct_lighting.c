@@ -1,0 +1,135 @@
+/* direct_lighting.c: see direct_lighting.h. */
+#include "integrator/direct_lighting.h"
+
+#include "light/environment.h"
+#include "math/sampling.h"
+#include "rays/passage.h"
+
+vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes)
+{
+    return bsdf_scatters_through(&v->scattering, lobes) ? vec3_make(0.0f, 0.0f, 0.0f) : transport_facing_normal(v);
+}
+
+lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
+                                    float u_pick, vec2 u, int lamp_count, int scatter_count)
+{
+    const lamp_light none = {.radiance = rgb_gray(0.0f)};
+    if (!t->has_lights)
+        return none;
+    float probability;
+    uint32_t lamp = scene_pick_light(t->s, v->hit.position, direct_light_normal(v, lobes), u_pick, &probability);
+    light_sample sample;
+    if (!(probability > 0.0f) || !light_sample_from_point(t->s, &t->s->lights[lamp], v->hit.position, u, &sample))
+        return none;
+    rgb reflected = rgb_mul(bsdf_evaluate(&v->scattering, lobes, BSDF_RADIANCE, sample.direction), sample.radiance);
+    if (rgb_is_black(reflected))
+        return none;
+
+    scene_ray shadow = surface_ray(&v->hit, v->arrived, sample.direction);
+    float reach = INFINITY;
+    if (!isinf(sample.distance)) {
+        shadow.direction = vec3_sub(sample.shadow_target, shadow.origin);
+        reach = 1.0f;
+    }
+    worker->rays_shadow++;
+    rgb transmittance = passage_transmittance(t->s, shadow, reach, &worker->passages_cut);
+    if (rgb_is_black(transmittance))
+        return none;
+    float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
+    if (!sample.is_delta && scatter_count > 0)
+        weight =
+            mis_power((float)lamp_count, pdf, (float)scatter_count, bsdf_pdf(&v->scattering, lobes, sample.direction));
+    return (lamp_light){rgb_scale(rgb_mul(reflected, transmittance), weight / pdf), lamp, sample.direction};
+}
+
+rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
+                           vec2 u, int lamp_count, int scatter_count)
+{
+    return direct_light_sample_lamp(t, worker, v, lobes, u_pick, u, lamp_count, scatter_count).radiance;
+}
+
+/* by_group may be NULL. */
+static void add_to_group(rgb *by_group, const light *lamp, rgb light_brought)
+{
+    if (by_group)
+        by_group[lamp->group] = rgb_add(by_group[lamp->group], light_brought);
+}
+
+float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
+                                  float pdf_solid_angle, int lamp_count, int scatter_count)
+{
+    float pick = scene_light_probability(t->s, (uint32_t)(on_lamp->lamp - t->s->lights), from, normal);
+    float pdf = pick * light_pdf_from_point(t->s, on_lamp->lamp, from, &on_lamp->hit);
+    return mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count, pdf);
+}
+
+rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
+                         int lamp_count, int scatter_count, rgb *by_group)
+{
+    const scene *s = t->s;
+    rgb sum = rgb_gray(0.0f);
+    for (uint32_t i = 0; i < s->infinite_light_count; i++) {
+        uint32_t index = s->infinite_lights[i];
+        const light *l = &s->lights[index];
+        rgb radiance = environment_radiance(l, from, direction);
+        if (rgb_is_black(radiance))
+            continue;
+        float weight = 1.0f;
+        if (pdf_solid_angle > 0.0f)
+            weight = mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count,
+                               scene_light_probability(s, index, from, normal) * environment_pdf(l, from, direction));
+        sum = rgb_add(sum, rgb_scale(radiance, weight));
+        add_to_group(by_group, l, rgb_scale(radiance, weight));
+    }
+    return sum;
+}
+
+rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                          int path_vertex, rgb *by_group)
+{
+    rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f);
+    if (!t->has_lights)
+        return from_lamps;
+    int lamp_count = t->light_samples, scatter_count = t->scatter_samples;
+    float lamp_share = 1.0f / (float)lamp_count, scatter_share = scatter_count > 0 ? 1.0f / (float)scatter_count : 0.0f;
+    vec3 from = v->hit.position, normal = direct_light_normal(v, BSDF_GATHERED);
+    for (int i = 0; i < lamp_count; i++) {
+        float u_pick = sampler_2d_of(where, SAMPLE_LIGHT_PICK, path_vertex, (uint32_t)lamp_count, (uint32_t)i).x;
+        vec2 u = sampler_2d_of(where, SAMPLE_LIGHT, path_vertex, (uint32_t)lamp_count, (uint32_t)i);
+        lamp_light sample = direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, lamp_count, scatter_count);
+        from_lamps = rgb_add(from_lamps, sample.radiance);
+        if (by_group && !rgb_is_black(sample.radiance))
+            add_to_group(by_group, &t->s->lights[sample.lamp], rgb_scale(sample.radiance, lamp_share));
+    }
+    for (int i = 0; i < scatter_count; i++) {
+        float u_lobe = sampler_2d_of(where, SAMPLE_LOBE, path_vertex, (uint32_t)scatter_count, (uint32_t)i)
+                           .y; /* x is for the way on */
+        vec2 u = sampler_2d_of(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex, (uint32_t)scatter_count, (uint32_t)i);
+        bsdf_sample scattered;
+        if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, u_lobe, u, &scattered))
+            continue;
+        vertex met;
+        worker->rays_shadow++;
+        if (!transport_trace(t, worker, surface_ray(&v->hit, v->arrived, scattered.direction), &met)) {
+            light_group_sums groups;
+            const rgb *of_group = light_group_sums_begin(&groups, by_group != NULL);
+            rgb escaped = direct_light_escaped(t, from, normal, scattered.direction, scattered.pdf_solid_angle,
+                                               lamp_count, scatter_count, of_group ? groups.of_group : NULL);
+            by_scattering = rgb_add(by_scattering, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
+            rgb reflected = rgb_scale(rgb_mul(met.transmittance, scattered.weight), scatter_share);
+            for (int k = 0; of_group && k <= LIGHT_GROUPS_MAX; k++)
+                by_group[k] = rgb_add(by_group[k], rgb_mul(of_group[k], reflected));
+            continue;
+        }
+        rgb emitted = rgb_mul(transport_emission(t, &met), met.transmittance);
+        if (rgb_is_black(emitted))
+            continue;
+        float weight =
+            direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, lamp_count, scatter_count);
+        rgb brought = rgb_scale(rgb_mul(emitted, scattered.weight), weight);
+        by_scattering = rgb_add(by_scattering, brought);
+        add_to_group(by_group, met.lamp, rgb_scale(brought, scatter_share));
+    }
+    rgb sum = rgb_scale(from_lamps, lamp_share);
+    return scatter_count > 0 ? rgb_add(sum, rgb_scale(by_scattering, scatter_share)) : sum;
+}

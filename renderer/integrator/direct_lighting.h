@@ -1,0 +1,42 @@
+/* direct_lighting.h: light that comes straight from the lamps, by shadow rays and by scattering, weighted against
+ * each other.
+ * Rests on: Veach, Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995.
+ * Threads: pure but for the worker's counters. */
+#ifndef AFTERGLOW_DIRECT_LIGHTING_H
+#define AFTERGLOW_DIRECT_LIGHTING_H
+
+#include "integrator/transport.h"
+
+/* What picking a lamp for these lobes knows of how the surface lies: see scene_pick_light. */
+vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes);
+
+/* One sample towards a lamp picked for the place: reflected radiance. lamp_count and scatter_count: how many samples
+ * the caller takes of either technique; it divides by lamp_count itself. scatter_count 0: this technique alone. */
+rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
+                           vec2 u, int lamp_count, int scatter_count);
+
+/* The same, and whose light it is. */
+typedef struct lamp_light {
+    rgb radiance;
+    uint32_t lamp;  /* valid, like the next, where radiance is not black */
+    vec3 direction; /* towards it, unit */
+} lamp_light;
+lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
+                                    float u_pick, vec2 u, int lamp_count, int scatter_count);
+
+/* The weight of radiance met on a lamp by a ray scattered with the given density at `from`, of direct_light_normal
+ * `normal` there. */
+float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
+                                  float pdf_solid_angle, int lamp_count, int scatter_count);
+
+/* Radiance of the infinite lights that a ray from there brings which meets nothing, weighted like that.
+ * pdf_solid_angle: with which it was scattered, or 0 where no sample towards a lamp could stand for it (the eye, smooth
+ * lobes): weight 1. Here and below, by_group: also added to what each group of lamps gives; or NULL. */
+rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
+                         int lamp_count, int scatter_count, rgb *by_group);
+
+/* All of the direct light at a diffuse place: t->light_samples and t->scatter_samples samples. */
+rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                          int path_vertex, rgb *by_group);
+
+#endif

@@ -1,0 +1,218 @@
+/* final_gather.c: see final_gather.h. */
+#include "integrator/final_gather.h"
+
+#include "integrator/gather_directions.h"
+#include "integrator/gather_path.h"
+#include "math/sampling.h"
+#include "rays/passage.h"
+
+/* One gather: from where, what its rays' random numbers are keyed by, and what they brought themselves. */
+typedef struct gathering {
+    const transport *t;
+    eye_worker *worker;
+    const vertex *from;
+    const sampler *where;
+    int path_vertex, scatterings_left;
+    uint32_t count;
+    rgb known;
+} gathering;
+
+static rng ray_random(const gathering *g, uint32_t number)
+{
+    return rng_make(g->where->key, (uint64_t)g->path_vertex, g->where->sample * g->count + number);
+}
+
+/* What is behind a gather ray of that number, which has met *v, and weighs `first` at its start: asks for irradiance,
+ * and adds to what is known. */
+static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
+{
+    gather_end end;
+    rgb weight;
+    rng random = ray_random(g, number);
+    rng_next(&random); /* of the lobe that the ray left by */
+    if (gather_path_follow(g->t, g->worker, v, random, g->scatterings_left, first, &g->known, &end, &weight))
+        gather_batch_ask(g->worker->batch, &end, number, weight);
+}
+
+static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weight)
+{
+    vertex v;
+    scene_ray ray = surface_ray(&g->from->hit, g->from->arrived, direction);
+    ray.skips_uv = true;
+    g->worker->rays_gather++;
+    if (transport_meet(g->t, g->worker, ray, &v))
+        follow(g, number, weight, &v);
+}
+
+/* Some of a gather's rays, to the side that the path came from: with what weighs what is behind each, and its number.
+ */
+typedef struct gather_rays {
+    ray_fan fan;
+    rgb weight[RAY_FAN_MAX];
+    uint32_t number[RAY_FAN_MAX];
+} gather_rays;
+
+static void follow_together(gathering *g, gather_rays *r)
+{
+    const transport *t = g->t;
+    ray_fan *fan = &r->fan;
+    scene_intersect_fan(t->s, fan);
+    g->worker->rays_gather += fan->count;
+    for (uint32_t i = 0; i < fan->count; i++) {
+        float distance = fan->met[i].distance;
+        if (distance == INFINITY)
+            continue;
+        gather_end end = {.medium = fan->common.medium, .scatterings_left = g->scatterings_left};
+        const rgb *albedo = NULL;
+        if (distance >= t->gather_min_distance)
+            albedo = ray_fan_plain_place(t->s, fan, i, &end.place);
+        if (albedo) {
+            gather_batch_ask(g->worker->batch, &end, r->number[i],
+                             rgb_scale(rgb_mul(r->weight[i], *albedo), AG_INV_PI));
+            continue;
+        }
+        vertex v;
+        v.arrived = fan->common;
+        v.arrived.direction = ray_fan_direction(fan, i);
+        v.transmittance = rgb_gray(1.0f);
+        ray_fan_hit(t->s, fan, i, &v.hit);
+        follow(g, r->number[i], r->weight[i], &v);
+    }
+}
+
+/* The rays `begin` to `end` of a Lambertian place: by the cosine, so that each weighs the albedo; where there is a
+ * guide, by both. */
+static void sample_plain(const gathering *g, const incident_guide *guide, sampler_sequence *numbers, uint32_t begin,
+                         uint32_t end, gather_rays *r)
+{
+    const bsdf *b = &g->from->scattering;
+    vec3 n = transport_facing_normal(g->from);
+    ray_fan *fan = &r->fan;
+    float u[2][RAY_FAN_MAX], weights[RAY_FAN_MAX];
+    gather_numbers(numbers, begin, end - begin, u);
+    if (guide)
+        incident_guide_warp(guide, end - begin, u, weights);
+    gather_directions(u, end - begin, guide ? &guide->around : &b->shading, !guide && bsdf_is_below(b), fan->direction);
+    for (uint32_t i = 0; i < end - begin; i++) {
+        vec3 direction = ray_fan_direction(fan, i);
+        uint32_t k = fan->count;
+        for (int a = 0; a < 3; a++)
+            fan->direction[a][k] = fan->direction[a][i];
+        r->number[k] = begin + i;
+        r->weight[k] = guide ? rgb_scale(b->matter.reflectance, weights[i]) : b->matter.reflectance;
+        fan->count +=
+            vec3_dot(direction, n) > 0.0f; /* a shading normal sends some through the surface: they are lost */
+    }
+}
+
+/* Of any other place; what goes through is followed at once. */
+static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin, uint32_t end, gather_rays *r)
+{
+    const bsdf *b = &g->from->scattering;
+    vec3 n = transport_facing_normal(g->from);
+    for (uint32_t i = begin; i < end; i++) {
+        bsdf_sample s;
+        rng random = ray_random(g, i);
+        vec2 u = sampler_sequence_at(numbers, i);
+        if (!bsdf_sample_direction(b, BSDF_GATHERED, BSDF_RADIANCE, rng_float(&random), u, &s))
+            continue;
+        if (!(vec3_dot(s.direction, n) > 0.0f)) {
+            follow_alone(g, i, s.direction, s.weight);
+            continue;
+        }
+        uint32_t k = r->fan.count++;
+        r->fan.direction[0][k] = s.direction.x;
+        r->fan.direction[1][k] = s.direction.y;
+        r->fan.direction[2][k] = s.direction.z;
+        r->number[k] = i;
+        r->weight[k] = s.weight;
+    }
+}
+
+/* The place is plain; what is found is for the side that it is seen from. */
+static bool find_guide(const transport *t, const vertex *v, incident_guide *out_guide)
+{
+    const bsdf *b = &v->scattering;
+    if (!t->incident)
+        return false;
+    return incident_light_find(t->incident, transport_map_place(t, v).position,
+                               bsdf_is_below(b) ? vec3_negate(b->shading.z) : b->shading.z, out_guide);
+}
+
+void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
+                  int scatterings_left, rgb throughput)
+{
+    uint32_t count = (uint32_t)t->settings->gather_samples;
+    gathering g = {t, worker, v, where, path_vertex, scatterings_left - 1, count, rgb_gray(0.0f)};
+    gather_batch *batch = worker->batch;
+    if (!gather_batch_has_room(batch, RAY_FAN_MAX))
+        final_gather_resolve(t, worker);
+    gather_batch_begin(batch, worker->sample, path_vertex == 0, rgb_scale(throughput, 1.0f / (float)count),
+                       hash_combine(hash_combine(where->key, (uint64_t)path_vertex), where->sample));
+    sampler_sequence numbers = sampler_sequence_make(where, SAMPLE_GATHER, path_vertex, count);
+    bool is_plain = bsdf_is_plain(&v->scattering);
+    incident_guide guide;
+    bool is_guided = is_plain && find_guide(t, v, &guide);
+    gather_rays rays;
+    rays.fan.common = surface_ray(&v->hit, v->arrived, transport_facing_normal(v));
+    rays.fan.common.skips_uv = true;
+    /* cancelled, its sample is thrown away */
+    for (uint32_t begin = 0; begin < count && !run_is_cancelled(t->run); begin += RAY_FAN_MAX) {
+        uint32_t end = count - begin < RAY_FAN_MAX ? count : begin + RAY_FAN_MAX;
+        if (!gather_batch_has_room(batch, end - begin))
+            final_gather_resolve(t, worker);
+        rays.fan.count = 0;
+        if (is_plain)
+            sample_plain(&g, is_guided ? &guide : NULL, &numbers, begin, end, &rays);
+        else
+            sample_lobes(&g, &numbers, begin, end, &rays);
+        if (passage_is_clear(t->s, &rays.fan.common)) {
+            follow_together(&g, &rays);
+            continue;
+        }
+        for (uint32_t i = 0; i < rays.fan.count; i++)
+            follow_alone(&g, rays.number[i], ray_fan_direction(&rays.fan, i), rays.weight[i]);
+    }
+    gather_batch_end(batch, g.known);
+}
+
+/* Bounces the detours under way until each has been answered, or ends. They ask together, so that this too is in the
+ * map's order. */
+static void follow_detours(const transport *t, eye_worker *worker, uint32_t count)
+{
+    gather_batch *b = worker->batch;
+    for (uint64_t bounce = 0; count > 0 && !run_is_cancelled(t->run); bounce++) {
+        uint32_t asking = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            gather_detour *d = &b->detours[i];
+            if (!gather_path_bounce(t, worker, rng_make(d->key, bounce, d->number), &d->end, &d->weight,
+                                    &b->irradiance[d->query]))
+                continue;
+            b->detour_queries[asking] = (irradiance_query){d->end.place.position, d->end.place.normal};
+            b->detours[asking++] = *d;
+        }
+        irradiance_cache_get_many(t->cache, t->run, b->detour_queries, asking, worker->index, b->detour_irradiance,
+                                  b->detour_holds);
+        count = 0;
+        for (uint32_t i = 0; i < asking; i++) {
+            const gather_detour *d = &b->detours[i];
+            rgb *sum = &b->irradiance[d->query];
+            if (b->detour_holds[i])
+                *sum = rgb_add(*sum, rgb_mul(d->weight, b->detour_irradiance[i]));
+            else
+                b->detours[count++] = *d;
+        }
+    }
+}
+
+void final_gather_resolve(const transport *t, eye_worker *worker)
+{
+    gather_batch *b = worker->batch;
+    irradiance_cache_get_many(t->cache, t->run, b->queries, b->query_count, worker->index, b->irradiance, b->holds);
+    if (run_is_cancelled(t->run))
+        return;
+    uint32_t query = 0, count;
+    while ((count = gather_batch_make_detours(b, &query)) > 0)
+        follow_detours(t, worker, count);
+    gather_batch_sum(b);
+}

@@ -1,0 +1,22 @@
+/* first_hit.h: what a camera ray meets first, for layers and denoisers: where, which way it faces, what it reflects.
+ * Rests on: the documentation of Open Image Denoise (albedo of mirrors and glass, normals unscaled); pbrt-v4's
+ * VisibleSurface. Flow: shading, path_tracing -> [here] -> eye_sample. Threads: pure but for the worker's scratch. */
+#ifndef AFTERGLOW_FIRST_HIT_H
+#define AFTERGLOW_FIRST_HIT_H
+
+#include "integrator/transport.h"
+
+/* A camera ray's place on film and lens, as camera_generate_ray takes it. */
+typedef struct camera_place {
+    float film_x, film_y, aspect; /* [0, 1] */
+    vec2 lens;
+    float time;
+} camera_place;
+
+/* All but the slopes. */
+void first_hit_fill(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, first_hit *out);
+
+/* The slopes, of a film of that size in pixels; and what is to be in the camera's space is taken there. */
+void first_hit_project(const transport *t, const camera_place *place, first_hit *in_out);
+
+#endif

@@ -1,0 +1,95 @@
+/* gather_batch.c: see gather_batch.h. */
+#include "integrator/gather_batch.h"
+
+#include "large_alloc.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+gather_batch *gather_batch_create(float most_indirect)
+{
+    gather_batch *b = large_alloc(sizeof *b);
+    if (!b)
+        return NULL;
+    b->most_indirect = most_indirect;
+    gather_batch_reset(b);
+    return b;
+}
+
+void gather_batch_reset(gather_batch *b)
+{
+    b->query_count = b->gather_count = 0;
+    b->is_open = false;
+    memset(b->gathered, 0, sizeof b->gathered);
+}
+
+void gather_batch_destroy(gather_batch *b) { free(b); }
+
+void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, uint64_t key)
+{
+    b->gathers[b->gather_count++] =
+        (gather){.throughput = throughput, .sample = sample, .is_first = is_first, .key = key};
+    b->is_open = true;
+}
+
+void gather_batch_end(gather_batch *b, rgb known)
+{
+    gather *g = &b->gathers[b->gather_count - 1];
+    g->known = known;
+    g->query_end = b->query_count;
+    b->is_open = false;
+}
+
+/* The gather that a query belongs to: the first that ends behind it. */
+static const gather *gather_of(const gather_batch *b, uint32_t query)
+{
+    uint32_t low = 0, high = b->gather_count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        bool is_open = b->is_open && middle == b->gather_count - 1;
+        if (!is_open && b->gathers[middle].query_end <= query)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return &b->gathers[low];
+}
+
+uint32_t gather_batch_make_detours(gather_batch *b, uint32_t *in_out_query)
+{
+    uint32_t count = 0, i = *in_out_query;
+    for (; i < b->query_count && count < GATHER_BATCH_DETOURS; i++) {
+        if (b->holds[i])
+            continue;
+        const gather_query_rest *rest = &b->rests[i];
+        surface_place place = {b->queries[i].position, b->queries[i].normal, rest->epsilon};
+        b->detours[count++] = (gather_detour){
+            i, rest->number, gather_of(b, i)->key, {place, rest->medium, rest->scatterings_left}, b->weights[i]};
+        b->weights[i] = rgb_gray(1.0f);
+        b->irradiance[i] = rgb_gray(0.0f);
+    }
+    *in_out_query = i;
+    return count;
+}
+
+void gather_batch_sum(gather_batch *b)
+{
+    if (b->is_open)
+        b->gathers[b->gather_count - 1].query_end = b->query_count;
+    uint32_t query = 0, over = b->gather_count - (b->is_open ? 1 : 0);
+    for (uint32_t i = 0; i < b->gather_count; i++) {
+        gather *g = &b->gathers[i];
+        for (; query < g->query_end; query++)
+            g->read = rgb_add(g->read, rgb_mul(b->weights[query], b->irradiance[query]));
+        if (i >= over)
+            break;
+        gathered_light *sum = &b->gathered[g->sample];
+        rgb brought = rgb_mul(g->throughput, rgb_add(g->known, g->read)),
+            *to = g->is_first ? &sum->first : &sum->behind;
+        *to = rgb_add(*to, rgb_scale(brought, eye_bound(b->most_indirect, brought)));
+    }
+    if (b->is_open)
+        b->gathers[0] = b->gathers[over];
+    b->gather_count -= over;
+    b->query_count = 0;
+}

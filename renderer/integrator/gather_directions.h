@@ -1,0 +1,24 @@
+/* gather_directions.h: the directions of a gather's rays, many at once: the numbers of a sampler's sequence, and what
+ * the cosine makes of them. Rests on: what sampler.h and math/sampling.h rest on; to the bit what they give one by one.
+ * Flow: sampler -> [here] -> final_gather. Threads: pure functions. */
+#ifndef AFTERGLOW_GATHER_DIRECTIONS_H
+#define AFTERGLOW_GATHER_DIRECTIONS_H
+
+#include "integrator/sampler.h"
+#include "rays/bvh.h"
+
+/* The numbers from `first` on of the sequence, up to RAY_FAN_MAX of them, as columns. Of these, and of what follows,
+ * all of the columns up to a multiple of eight is overwritten. */
+void gather_numbers(sampler_sequence *sequence, uint32_t first, uint32_t count, float out_u[2][RAY_FAN_MAX]);
+
+/* What sample_cosine_hemisphere makes of them: unit directions around the frame's z, or where is_below around its
+ * opposite. Columns x, y, z. */
+void gather_directions(float u[2][RAY_FAN_MAX], uint32_t count, const frame *around, bool is_below,
+                       float out_directions[3][RAY_FAN_MAX]);
+
+/* The same for any processor, which the above are where there is nothing faster. */
+void gather_numbers_plain(sampler_sequence *sequence, uint32_t first, uint32_t count, float out_u[2][RAY_FAN_MAX]);
+void gather_directions_plain(float u[2][RAY_FAN_MAX], uint32_t count, const frame *around, bool is_below,
+                             float out_directions[3][RAY_FAN_MAX]);
+
+#endif

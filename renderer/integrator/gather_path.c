@@ -1,0 +1,133 @@
+/* gather_path.c: see gather_path.h. */
+#include "integrator/gather_path.h"
+
+#include "integrator/direct_lighting.h"
+
+/* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often (asked
+ * sooner, the cache tells of the light outside of a small room). */
+enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
+
+/* What an estimate would say of a diffuse place, but for what bounces further: radiance towards v's `out`. */
+static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, rng *random)
+{
+    float u_pick = rng_float(random);
+    rgb direct = direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, rng_vec2(random), 1, 0);
+    return rgb_add(direct, transport_caustics(t, worker, v));
+}
+
+/* The ray ends at a diffuse place: irradiance on one side of it, picked by the lobes' shares. */
+static void end_at(const transport *t, const vertex *v, int scatterings_left, rgb throughput, float u_side,
+                   gather_end *out_end, rgb *out_weight)
+{
+    map_place at = transport_map_place(t, v);
+    rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
+    rgb factor = reflected;
+    if (!rgb_is_black(transmitted)) {
+        float share = rgb_max(transmitted) / (rgb_max(reflected) + rgb_max(transmitted));
+        bool is_through = u_side < share;
+        factor = is_through ? rgb_scale(transmitted, 1.0f / share) : rgb_scale(reflected, 1.0f / (1.0f - share));
+        if (is_through)
+            at.facing_normal = vec3_negate(at.facing_normal);
+    }
+    *out_end = (gather_end){{at.position, at.facing_normal, v->hit.epsilon}, v->arrived.medium, scatterings_left};
+    *out_weight = rgb_scale(rgb_mul(throughput, factor), AG_INV_PI);
+}
+
+/* Most rays end at once at a Lambertian surface far enough away: without any of what makes up a bsdf. */
+static bool ends_plainly(const transport *t, const vertex *v, int scatterings_left, rgb throughput, gather_end *out_end,
+                         rgb *out_weight)
+{
+    const rgb *albedo = material_plain_albedo(t->s, t->s->shapes[v->hit.shape_index].material_index);
+    if (!albedo || v->hit.is_strand)
+        return false;
+    map_place at = transport_map_place(t, v);
+    *out_end = (gather_end){{at.position, at.facing_normal, v->hit.epsilon}, v->arrived.medium, scatterings_left};
+    *out_weight = rgb_scale(rgb_mul(throughput, *albedo), AG_INV_PI);
+    return true;
+}
+
+bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng random, int scatterings_left, rgb first,
+                        rgb *in_out_known, gather_end *out_end, rgb *out_weight)
+{
+    rgb throughput = rgb_gray(1.0f);
+    float travelled = 0.0f;
+    int short_bounces = 0;
+    for (int depth = 0;;) {
+        throughput = rgb_mul(throughput, v->transmittance);
+        travelled += v->hit.distance;
+        bool is_far = travelled >= t->gather_min_distance || short_bounces == SHORT_BOUNCES_MAX;
+        int left = scatterings_left - depth;
+        if (is_far && ends_plainly(t, v, left, rgb_mul(first, throughput), out_end, out_weight))
+            return true;
+        transport_complete(t, v);
+        float u_lobe = rng_float(&random), u_group = rng_float(&random);
+        vec2 u = rng_vec2(&random);
+
+        /* one group of lobes, picked by its share */
+        float gathered_share = bsdf_probability(&v->scattering, BSDF_GATHERED);
+        bsdf_lobes lobes = u_group < gathered_share ? BSDF_GATHERED : BSDF_TRACED;
+        throughput = rgb_scale(throughput, 1.0f / (lobes == BSDF_GATHERED ? gathered_share : 1.0f - gathered_share));
+        if (lobes == BSDF_GATHERED) {
+            if (is_far) {
+                end_at(t, v, left, rgb_mul(first, throughput), u_lobe, out_end, out_weight);
+                return true;
+            }
+            /* too near for an estimate that is blurred over about that distance */
+            rgb local = local_light(t, worker, v, &random);
+            *in_out_known = rgb_add(*in_out_known, rgb_mul(rgb_mul(first, throughput), local));
+            travelled = 0.0f;
+            short_bounces++;
+        }
+        bsdf_sample next;
+        if (!bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe, u, &next))
+            return false;
+        throughput = rgb_mul(throughput, next.weight);
+        if ((depth >= ROULETTE_AFTER || lobes == BSDF_GATHERED) && !transport_survives(&throughput, rng_float(&random)))
+            return false;
+        if (++depth == scatterings_left)
+            return false;
+        scene_ray ray = surface_ray(&v->hit, v->arrived, next.direction);
+        ray.skips_uv = true;
+        worker->rays_gather++;
+        if (!transport_meet(t, worker, ray, v))
+            return false;
+    }
+}
+
+/* A white Lambertian surface at an end: the radiance that leaves it is the irradiance over pi. */
+static void make_white(const gather_end *end, vertex *v)
+{
+    static const material WHITE = {.kind = MATERIAL_DIFFUSE, .reflectance = {1.0f, 1.0f, 1.0f}};
+    const surface_place *at = &end->place;
+    v->hit = (surface_hit){.position = at->position,
+                           .geometric_normal = at->normal,
+                           .shading_normal = at->normal,
+                           .epsilon = at->epsilon,
+                           .instance_index = SCENE_NO_INSTANCE};
+    v->arrived = scene_ray_make(at->position, vec3_negate(at->normal));
+    v->arrived.medium = end->medium;
+    v->arrived.skips_uv = true;
+    v->scattering = bsdf_create_of(&WHITE, &v->hit, at->normal);
+    v->transmittance = rgb_gray(1.0f);
+    v->lamp = NULL;
+}
+
+bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, gather_end *in_out_end, rgb *in_out_weight,
+                        rgb *in_out_known)
+{
+    vertex v;
+    bsdf_sample next;
+    rgb throughput = rgb_scale(*in_out_weight, AG_PI);
+    make_white(in_out_end, &v);
+    *in_out_known = rgb_add(*in_out_known, rgb_mul(throughput, local_light(t, worker, &v, &random)));
+    int left = in_out_end->scatterings_left - 1;
+    vec2 u = rng_vec2(&random);
+    if (left == 0 || !transport_survives(&throughput, rng_float(&random)) ||
+        !bsdf_sample_direction(&v.scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f, u, &next))
+        return false;
+    scene_ray ray = surface_ray(&v.hit, v.arrived, next.direction);
+    worker->rays_gather++;
+    return transport_meet(t, worker, ray, &v) &&
+           gather_path_follow(t, worker, &v, random, left, rgb_mul(throughput, next.weight), in_out_known, in_out_end,
+                              in_out_weight);
+}

@@ -1,0 +1,36 @@
+/* sample_queue.h: a worker's camera samples that wait for their gathered light, and the way of complete ones into the
+ * film. Rests on: pbrt-v4's film (a bound on each sample). Flow: shading, gather_batch -> [here] -> film.
+ * Threads: a queue belongs to one worker, as do the pixels of its samples. */
+#ifndef AFTERGLOW_SAMPLE_QUEUE_H
+#define AFTERGLOW_SAMPLE_QUEUE_H
+
+#include "film/film.h"
+#include "integrator/gather_batch.h"
+
+typedef struct queued_sample {
+    eye_sample sample;
+    size_t pixel; /* of the film */
+} queued_sample;
+
+typedef struct sample_queue {
+    uint32_t count, capacity;
+    sample_layers *layers; /* [capacity], or NULL */
+    queued_sample samples[GATHER_BATCH_SAMPLES];
+} sample_queue;
+
+/* Empty; NULL when out of memory. With layers it holds fewer samples. */
+sample_queue *sample_queue_create(bool with_layers);
+void sample_queue_destroy(sample_queue *q); /* NULL is fine */
+
+static inline bool sample_queue_is_full(const sample_queue *q) { return q->count == q->capacity; }
+
+/* The next sample, emptied, of a queue that is not full; q->count was its number. Those of a pixel are begun in their
+ * order. */
+eye_sample *sample_queue_begin(sample_queue *q, size_t pixel);
+
+/* Adds all samples to their pixels, in their order; the queue is empty then. gathered: [count], what is still to be
+ * added to each, black afterwards; or NULL. gathered_group: which group of lights it is of. Returns how many were not
+ * finite: they count as black. */
+uint32_t sample_queue_deliver(sample_queue *q, gathered_light *gathered, uint32_t gathered_group, ag_film *film);
+
+#endif

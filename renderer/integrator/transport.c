@@ -1,0 +1,61 @@
+/* transport.c: see transport.h. */
+#include "integrator/transport.h"
+
+#include "rays/passage.h"
+
+bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
+{
+    bool is_met = passage_intersect(t->s, &ray, &worker->passages_cut, &out_vertex->hit, &out_vertex->transmittance);
+    out_vertex->arrived = ray;
+    return is_met;
+}
+
+void transport_complete(const transport *t, vertex *v)
+{
+    const scene *s = t->s;
+    const shape *where = &s->shapes[v->hit.shape_index];
+    v->scattering = bsdf_create(s, &v->hit, vec3_negate(v->arrived.direction));
+    v->lamp = where->light_index == SHAPE_NO_LIGHT ? NULL : &s->lights[where->light_index];
+}
+
+bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
+{
+    if (!transport_meet(t, worker, ray, out_vertex))
+        return false;
+    transport_complete(t, out_vertex);
+    return true;
+}
+
+rgb transport_emission(const transport *t, const vertex *v)
+{
+    if (!v->lamp)
+        return rgb_gray(0.0f);
+    return light_emitted_radiance(t->s, v->lamp, &v->hit, vec3_negate(v->arrived.direction));
+}
+
+vec3 transport_facing_normal(const vertex *v) { return vec3_face_forward(v->hit.geometric_normal, v->scattering.out); }
+
+map_place transport_map_place(const transport *t, const vertex *v)
+{
+    surface_rest rest = surface_at_opening(t->s, &v->hit);
+    bool is_behind = vec3_dot(v->hit.geometric_normal, v->arrived.direction) > 0.0f;
+    return (map_place){rest.position, is_behind ? vec3_negate(rest.geometric_normal) : rest.geometric_normal};
+}
+
+rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
+{
+    if (!t->caustic || t->caustic->set.count == 0)
+        return rgb_gray(0.0f);
+    map_place at = transport_map_place(t, v);
+    arena_mark mark = arena_save(worker->scratch);
+    photon_neighbor *neighbors =
+        arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
+    rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
+    rgb sum = rgb_mul(reflected, irradiance_estimate(t->caustic, at.position, at.facing_normal, neighbors));
+    if (!rgb_is_black(transmitted)) {
+        rgb behind = irradiance_estimate(t->caustic, at.position, vec3_negate(at.facing_normal), neighbors);
+        sum = rgb_add(sum, rgb_mul(transmitted, behind));
+    }
+    arena_restore(worker->scratch, mark);
+    return rgb_scale(sum, AG_INV_PI);
+}

@@ -1,0 +1,86 @@
+/* transport.h: what the eye's side reads while tiles are rendered, and what each worker has of its own.
+ * Flow: render.c fills it; shading, final gather, direct lighting and path tracing read it.
+ * Threads: a transport is read-only while tiles run, but for the slots behind the irradiance cache; an eye_worker
+ * belongs to one worker. */
+#ifndef AFTERGLOW_TRANSPORT_H
+#define AFTERGLOW_TRANSPORT_H
+
+#include "afterglow/afterglow.h"
+#include "arena.h"
+#include "film/aov.h"
+#include "incident_light.h"
+#include "integrator/gather_batch.h"
+#include "integrator/sampler.h"
+#include "material/bsdf.h"
+
+typedef struct transport {
+    const scene *s;
+    const run_context *run;         /* whether to stop */
+    const photon_map *caustic;      /* may be empty */
+    irradiance_cache *cache;        /* over the global map; NULL for path tracing */
+    const incident_light *incident; /* likewise, what guides gathers; NULL: nothing */
+    const ag_render_settings *settings;
+    const aov_layout *layout;  /* what the film wants beside radiance */
+    bool wants_layers;         /* anything */
+    bool wants_groups;         /* light by the groups of its lamps */
+    bool has_lights;           /* any with power */
+    bool can_meet_lights;      /* area or infinite ones: those that scattered rays find */
+    int light_samples;         /* for direct light at a diffuse place, towards lamps */
+    int scatter_samples;       /* and by scattering, 0 where that cannot meet a lamp */
+    float gather_min_distance; /* a gather ray that hits nearer than this does not use the cache, scene units */
+} transport;
+
+typedef struct eye_worker {
+    _Alignas(64) unsigned index; /* the worker's */
+    uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
+    uint64_t samples_not_finite, passages_cut; /* the latter: ways across more interfaces than passage.h follows */
+    arena *scratch;                            /* for neighbours; what render.c has tried out beforehand always fits */
+    gather_batch *batch;                       /* of the samples under way; NULL for path tracing */
+    struct sample_queue *queue;                /* those samples */
+    uint32_t sample;                           /* the number there of the one whose path is being traced */
+} eye_worker;
+
+/* A place where a camera path or gather ray met a surface. */
+typedef struct vertex {
+    surface_hit hit;
+    bsdf scattering;
+    scene_ray arrived; /* of unit direction, in the medium of its last stretch */
+    rgb transmittance; /* of the way here: set also where the ray escapes, and then nothing else is */
+    const light *lamp; /* the area light that shines there, or NULL */
+} vertex;
+
+/* Follows a ray of unit direction to the first surface that scatters. */
+bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
+
+/* The same in two steps, for those who may not need the second: how the place scatters, and whether it shines. */
+bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
+void transport_complete(const transport *t, vertex *in_out_vertex);
+
+/* Radiance that the place itself sends back along the ray. */
+rgb transport_emission(const transport *t, const vertex *v);
+
+/* Roulette: whether a path that carries so much goes on, by a number in [0, 1); what survives carries the others'
+ * share. */
+static inline bool transport_survives(rgb *in_out_throughput, float u)
+{
+    float survival = fminf(1.0f, rgb_max(*in_out_throughput));
+    if (u >= survival)
+        return false;
+    *in_out_throughput = rgb_scale(*in_out_throughput, 1.0f / survival);
+    return true;
+}
+
+/* The geometric normal on the side that the ray came from. */
+vec3 transport_facing_normal(const vertex *v);
+
+/* Where the photons of a place lie, and its geometric normal there on the side that the ray came from; see
+ * photon_tracing.h. */
+typedef struct map_place {
+    vec3 position, facing_normal;
+} map_place;
+map_place transport_map_place(const transport *t, const vertex *v);
+
+/* The caustic map's light at a diffuse place: reflected radiance. */
+rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);
+
+#endif

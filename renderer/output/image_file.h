@@ -1,0 +1,46 @@
+/* image_file.h: pictures onto disk. OpenImageIO encodes to memory, inside a module that is opened when it is first
+ * needed (linking it costs half a second at every start); the bytes are written by us, beside the target, and renamed.
+ * Flow: film, colour -> [here] -> file. Threads: one caller at a time per call; no state but the loaded module. */
+#ifndef AFTERGLOW_IMAGE_FILE_H
+#define AFTERGLOW_IMAGE_FILE_H
+
+#include "afterglow/base.h"
+#include "image/image.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a file name's extension stands for. */
+typedef struct image_format {
+    const char *extension; /* lower case, without the dot */
+    bool scene_linear;     /* EXR: written as it is; the others through a display and view */
+    image_sample_type default_type;
+} image_format;
+
+/* NULL where the extension is not known. Known: exr, png, tif, tiff, jpg, jpeg. Needs no module. */
+const image_format *image_format_of(const char *path);
+
+/* The types a format can hold. */
+bool image_format_can_hold(const image_format *format, image_sample_type type);
+
+/* Encodes and writes atomically: into a temporary file in the target's folder, fsync, rename. On failure the
+ * target is as it was and nothing is left beside it. Half values are clamped to +-65504. Non-finite values must have
+ * been replaced by the caller. DateTime is set from the attributes or left out, so equal pictures give equal files.
+ * JPEG keeps the first three channels, and the attributes up to 16 KiB of text. A path that is a symbolic link writes
+ * what it points to; one that is no regular file (a FIFO, a device, /dev/stdout) is written directly.
+ * Errors: AG_ERROR_OUTPUT, AG_ERROR_SYSTEM (the module cannot be opened), AG_ERROR_MEMORY; text in message. */
+ag_status image_file_write(const char *path, const image_description *description, const float *pixels, char *message,
+                           size_t message_size);
+
+/* Whether a file could be created at path now: the extension is known, its folder exists and may be written, it is no
+ * folder itself, the module can be opened. Called before a long render. Errors: AG_ERROR_OUTPUT, AG_ERROR_SYSTEM. */
+ag_status image_file_check_target(const char *path, char *message, size_t message_size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,69 @@
+/* photon_dump.c: see photon_dump.h. */
+#include "output/photon_dump.h"
+
+#include "output/atomic_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FLOATS = 12, RECORD_BYTES = FLOATS * 4 + 2, HEAD_BYTES = 1024 };
+
+/* Photon by photon, whether its irradiance is there: at places so many bytes apart. */
+static void mark_demanded(const photon_map *map, unsigned char *first)
+{
+    for (uint32_t i = 0; i < map->bearers.count; i++) {
+        uint32_t word = irradiance_slot_read(photon_map_slot(map, i));
+        uint32_t photon_index = photon_map_all_bear(map) ? i : irradiance_bearers_photon(&map->bearers, i);
+        if (irradiance_word_state(word) == IRRADIANCE_READY && photon_index < map->set.count)
+            first[(size_t)photon_index * RECORD_BYTES] = 1;
+    }
+}
+
+/* PLY's "binary_little_endian", as this machine is. */
+static unsigned char *write_map(const photon_map *map, unsigned char kind, unsigned char *at)
+{
+    unsigned char *first_mark = at + RECORD_BYTES - 1;
+    for (uint32_t i = 0; i < map->set.count; i++) {
+        const photon_block *block = &map->blocks[i / PHOTON_BLOCK_LANES];
+        vec3 position = photon_block_position(map->blocks, i);
+        vec3 normal = direction_decode(photon_block_normal(map->blocks, i));
+        vec3 direction = arrival_direction(block->direction[i % PHOTON_BLOCK_LANES]);
+        rgb flux = flux_decode(photon_block_flux(map->blocks, i));
+        float share = 1.0f / (float)map->set.emitted_paths;
+        const float values[FLOATS] = {position.x,  position.y,     position.z,     normal.x,
+                                      normal.y,    normal.z,       direction.x,    direction.y,
+                                      direction.z, flux.r * share, flux.g * share, flux.b * share};
+        memcpy(at, values, sizeof values);
+        at[sizeof values] = kind;
+        at[sizeof values + 1] = 0;
+        at += RECORD_BYTES;
+    }
+    mark_demanded(map, first_mark);
+    return at;
+}
+
+ag_status photon_dump_write(const photon_map *global, const photon_map *caustic, const char *path, char *message,
+                            size_t message_size)
+{
+    static const char *const names[FLOATS] = {"x",  "y",  "z",  "nx",  "ny",    "nz",
+                                              "dx", "dy", "dz", "red", "green", "blue"};
+    size_t count = (size_t)global->set.count + caustic->set.count;
+    unsigned char *bytes = malloc(HEAD_BYTES + count * RECORD_BYTES);
+    if (!bytes)
+        return AG_ERROR_MEMORY;
+    char *head = (char *)bytes;
+    int length = snprintf(head, HEAD_BYTES,
+                          "ply\nformat binary_little_endian 1.0\ncomment Afterglow photons, power in W\n"
+                          "element vertex %zu\n",
+                          count);
+    for (int i = 0; i < FLOATS; i++)
+        length += snprintf(head + length, (size_t)(HEAD_BYTES - length), "property float %s\n", names[i]);
+    length += snprintf(head + length, (size_t)(HEAD_BYTES - length),
+                       "property uchar caustic\nproperty uchar demanded\nend_header\n");
+    unsigned char *at = write_map(global, 0, bytes + length);
+    at = write_map(caustic, 1, at);
+    ag_status status = atomic_file_write(path, bytes, (size_t)(at - bytes), message, message_size);
+    free(bytes);
+    return status;
+}

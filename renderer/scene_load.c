@@ -1,0 +1,105 @@
+/* scene_load.c: the scenes of the public interface: loading one from a file, destroying it. The only file above scene/
+ * that sees the readers.
+ * Flow: scene_file -> [here] -> render. Threads: as in afterglow.h. */
+#include "context.h"
+
+#include "floating_point.h"
+#include "rays/bvh.h"
+#include "scene_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Copies them for the reader, which notes there what it uses; strings stay the caller's. */
+static ag_status copy_definitions(ag_context *context, const ag_definition *given, size_t count,
+                                  definitions *out_definitions)
+{
+    for (size_t i = 0; i < count; i++) {
+        const char *wrong = !definition_name_is_valid(given[i].name) ? "is no name" : NULL;
+        for (size_t k = 0; k < i && !wrong; k++)
+            wrong = strcmp(given[k].name, given[i].name) == 0 ? "is defined twice" : NULL;
+        if (wrong) {
+            log_message(context->log, AG_LOG_ERROR, "'%s' %s", given[i].name, wrong);
+            return AG_ERROR_ARGUMENT;
+        }
+    }
+    *out_definitions = (definitions){.items = calloc(count + 1, sizeof *out_definitions->items), .count = count};
+    for (size_t i = 0; out_definitions->items && i < count; i++)
+        out_definitions->items[i] = (definition){given[i].name, given[i].value, given[i].is_optional, false};
+    return out_definitions->items ? AG_OK : AG_ERROR_MEMORY;
+}
+
+/* Reads and commits it. */
+static ag_status load(ag_context *context, const char *path, const definitions *d, scene *s)
+{
+    const color_config *colors;
+    ag_status status = context_color_config(context, &colors);
+    if (status != AG_OK)
+        return status;
+    s->space = context->working_space;
+    s->color_config = colors;
+    s->definitions = d;
+    phase_begin begin = context_begin_phase();
+    status = scene_file_load(&context->run, path, s);
+    if (status != AG_OK)
+        return status;
+    s->definitions = NULL; /* it was borrowed */
+    s->defined = definitions_describe(d);
+    if (!s->defined)
+        return AG_ERROR_MEMORY;
+    context_end_phase(context, AG_PHASE_LOAD, begin);
+    begin = context_begin_phase();
+    status = scene_commit(s, &context->run, context->isa);
+    if (status != AG_OK)
+        return status;
+    context_end_phase(context, AG_PHASE_BVH, begin);
+    log_message(context->log, AG_LOG_INFO, "shapes: %u; lights: %u; materials: %u; BVH: %.1f MB (%s)", s->shape_count,
+                s->light_count, s->material_count, (double)bvh_memory_bytes(s->bvh) / 1e6, bvh_isa(s->bvh));
+    return AG_OK;
+}
+
+ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_scene)
+{
+    return ag_scene_load_with(context, path, NULL, 0, out_scene);
+}
+
+ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_definition *given, size_t count,
+                             ag_scene **out_scene)
+{
+    bool is_whole = context && path && out_scene && (given || count == 0);
+    for (size_t i = 0; is_whole && i < count; i++)
+        is_whole = given[i].name && given[i].value;
+    if (!is_whole)
+        return AG_ERROR_ARGUMENT;
+    unsigned callers_arithmetic = floating_point_enter();
+    definitions d = {0};
+    ag_scene *loaded = calloc(1, sizeof *loaded);
+    scene *s = scene_create();
+    ag_status status = copy_definitions(context, given, count, &d);
+    if (status == AG_OK)
+        status = loaded && s ? load(context, path, &d, s) : AG_ERROR_MEMORY;
+    if (status == AG_OK) {
+        loaded->s = s;
+        *out_scene = loaded;
+    } else {
+        scene_destroy(s);
+        free(loaded);
+    }
+    free(d.items);
+    floating_point_leave(callers_arithmetic);
+    return status;
+}
+
+void ag_scene_destroy(ag_scene *scene_to_destroy)
+{
+    if (!scene_to_destroy)
+        return;
+    scene_destroy(scene_to_destroy->s);
+    free(scene_to_destroy);
+}
+
+const char *ag_scene_film_file_name(const ag_scene *loaded)
+{
+    const parameter *name = parameter_list_find(&loaded->s->film, "filename");
+    return name && name->type == PARAMETER_STRING && name->count == 1 ? name->strings[0] : NULL;
+}

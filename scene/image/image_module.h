@@ -1,0 +1,47 @@
+/* image_module.h: the one table between the program and the module that knows OpenImageIO. Private; both sides are
+ * built together.
+ * Flow: image_reader.c, image_file.c (renderer) -> [here] -> image_oiio.cpp.
+ * Threads: the functions may be called from many at once. */
+#ifndef AFTERGLOW_IMAGE_MODULE_H
+#define AFTERGLOW_IMAGE_MODULE_H
+
+#include "afterglow/base.h"
+#include "image/image.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define IMAGE_MODULE_FILE_NAME  "afterglow_image.so"
+#define IMAGE_MODULE_ENTRY_NAME "afterglow_image_module"
+
+/* Raised whenever this file or image.h changes. */
+enum { IMAGE_MODULE_INTERFACE = 4 };
+
+typedef struct image_module {
+    int interface_number; /* IMAGE_MODULE_INTERFACE of the module */
+
+    /* The picture as a file's bytes, malloc'ed. extension: of a known format, in lower case. Errors: AG_ERROR_OUTPUT,
+     * AG_ERROR_MEMORY. */
+    ag_status (*encode)(const char *extension, const image_description *description, const float *pixels,
+                        unsigned char **out_bytes, size_t *out_size, char *message, size_t message_size);
+
+    /* As image_read, or where keep_bytes is set as image_read_compact. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
+    ag_status (*decode)(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size);
+
+    /* The same of a file's bytes. extension: of their format, in lower case. */
+    ag_status (*decode_memory)(const char *extension, const unsigned char *bytes, size_t size, bool keep_bytes,
+                               image *out_image, char *message, size_t message_size);
+} image_module;
+
+/* The module's only symbol. NULL where OpenImageIO cannot be set up. */
+typedef const image_module *image_module_entry(void);
+AG_API const image_module *afterglow_image_module(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

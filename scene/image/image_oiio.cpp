@@ -1,0 +1,297 @@
+/* image_oiio.cpp: the only file that knows OpenImageIO; a module of its own, opened when the first picture is read or
+ * written. Its exceptions end here, as a status and a text. Flow: file -> [here] -> image_reader.c; image_file.c
+ * (renderer) -> [here] -> bytes in memory. Threads: any; OpenImageIO itself is told to use none of its own. */
+#include "image/image_module.h"
+
+#include <OpenImageIO/Imath.h>
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+const float largest_half = 65504.0f;
+const int tile_side = 64;
+const int largest_jpeg_side = 65500;  /* libjpeg ends the process beyond that */
+const size_t jpeg_text_limit = 16384; /* ... and when metadata do not fit into a marker of 64 KiB */
+
+/* A header may say anything: a picture of more values than the first must come of a file that can hold them. The
+ * densest there is, a blank picture in OpenEXR's DWA, puts some 30000 into a byte. */
+const std::uint64_t trusted_values = std::uint64_t(1) << 28;
+const std::uint64_t values_per_byte = std::uint64_t(1) << 16;
+
+/* Runs work and is the one place where an exception becomes a status. */
+template <typename Work>
+ag_status guarded(ag_status failure, char *message, size_t message_size, Work &&work) noexcept
+{
+    try {
+        std::snprintf(message, message_size, "%s", "");
+        work();
+        return AG_OK;
+    } catch (const std::bad_alloc &) {
+        std::snprintf(message, message_size, "out of memory");
+        return AG_ERROR_MEMORY;
+    } catch (const std::exception &exception) {
+        std::snprintf(message, message_size, "%s", exception.what());
+    } catch (...) {
+        std::snprintf(message, message_size, "OpenImageIO failed without saying why");
+    }
+    return failure;
+}
+
+/* OpenImageIO's text where it has one. */
+[[noreturn]] void fail(const std::string &what, const std::string &reason)
+{
+    throw std::runtime_error(reason.empty() ? what : what + ": " + reason);
+}
+
+OIIO::TypeDesc stored_type(image_sample_type type)
+{
+    switch (type) {
+    case IMAGE_UINT8: return OIIO::TypeUInt8;
+    case IMAGE_UINT16: return OIIO::TypeUInt16;
+    case IMAGE_HALF: return OIIO::TypeHalf;
+    case IMAGE_FLOAT: break;
+    }
+    return OIIO::TypeFloat;
+}
+
+void add_attributes(OIIO::ImageSpec &spec, const image_description &description, bool jpeg)
+{
+    size_t text_size = 0;
+    bool dated = false;
+    for (int i = 0; i < description.attribute_count; i++) {
+        const image_attribute &attribute = description.attributes[i];
+        text_size += std::strlen(attribute.name) + (attribute.text ? std::strlen(attribute.text) : 0);
+        if (jpeg && text_size > jpeg_text_limit)
+            break;
+        dated = dated || std::strcmp(attribute.name, "DateTime") == 0;
+        if (attribute.text)
+            spec.attribute(attribute.name, attribute.text);
+        else if (attribute.number_count == 1)
+            spec.attribute(attribute.name, attribute.numbers[0]);
+        else if (attribute.number_count == 16)
+            spec.attribute(attribute.name, OIIO::TypeMatrix, attribute.numbers);
+        else if (attribute.number_count > 1)
+            spec.attribute(attribute.name, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, attribute.number_count),
+                           attribute.numbers);
+    }
+    /* The writers add the time of day where there is no DateTime. One of a type that no format knows as a date keeps
+     * them from that, and is itself dropped. */
+    if (!dated) {
+        const float no_date[2] = {0.0f, 0.0f};
+        spec.attribute("DateTime", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 2), no_date);
+    }
+}
+
+OIIO::ImageSpec make_spec(const image_description &description, const std::string &extension)
+{
+    const bool jpeg = extension == "jpg" || extension == "jpeg";
+    const int channel_count = jpeg ? std::min(description.channel_count, 3) : description.channel_count;
+    OIIO::ImageSpec spec(description.width, description.height, channel_count, stored_type(description.type));
+    spec.x = description.x;
+    spec.y = description.y;
+    spec.full_x = 0;
+    spec.full_y = 0;
+    spec.full_width = description.full_width;
+    spec.full_height = description.full_height;
+    spec.channelnames.assign(description.channel_names, description.channel_names + channel_count);
+    spec.alpha_channel = spec.channelindex("A");
+    spec.z_channel = spec.channelindex("Z");
+    if (description.color_space)
+        spec.attribute("oiio:ColorSpace", description.color_space);
+    add_attributes(spec, description, jpeg);
+    if (extension == "exr") {
+        spec.attribute("compression", "zip");
+        for (int i = 0; description.channel_types && i < channel_count; i++)
+            spec.channelformats.push_back(stored_type(description.channel_types[i]));
+        if (description.is_tiled)
+            spec.tile_width = spec.tile_height = tile_side;
+    }
+    if (jpeg) {
+        if (description.width > largest_jpeg_side || description.height > largest_jpeg_side)
+            throw std::runtime_error("a JPEG picture is at most 65500 pixels wide and high");
+        spec.attribute("compression", "jpeg:95");
+        spec.attribute("jpeg:subsampling", "4:4:4");
+    }
+    return spec;
+}
+
+/* The PNG writer says that all is well whatever happened: see that the last chunk is there. */
+bool ends_as_png(const std::vector<unsigned char> &bytes)
+{
+    static const unsigned char end[] = {0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xae, 0x42, 0x60, 0x82};
+    return bytes.size() > sizeof end && std::equal(std::begin(end), std::end(end), bytes.end() - sizeof end);
+}
+
+std::vector<unsigned char> encode_to_vector(const std::string &extension, const image_description &description,
+                                            const float *pixels)
+{
+    const OIIO::ImageSpec spec = make_spec(description, extension);
+
+    /* Beyond the largest half lies infinity. */
+    std::vector<float> clamped;
+    const size_t channel_count = static_cast<size_t>(description.channel_count);
+    for (size_t channel = 0; channel < channel_count; channel++) {
+        if ((description.channel_types ? description.channel_types[channel] : description.type) != IMAGE_HALF)
+            continue;
+        const size_t count =
+            static_cast<size_t>(description.width) * static_cast<size_t>(description.height) * channel_count;
+        if (clamped.empty())
+            clamped.assign(pixels, pixels + count);
+        for (size_t i = channel; i < count; i += channel_count)
+            clamped[i] = std::min(std::max(clamped[i], -largest_half), largest_half);
+    }
+    if (!clamped.empty())
+        pixels = clamped.data();
+
+    const std::string name = "picture." + extension; /* in error texts only: everything goes to the proxy */
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput proxy(bytes);
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name);
+    if (!output)
+        fail("OpenImageIO has no writer for it", OIIO::geterror());
+    output->threads(1);
+    if (!output->supports("ioproxy") || !output->set_ioproxy(&proxy))
+        fail("OpenImageIO cannot write it to memory", output->geterror());
+    if (!output->open(name, spec))
+        fail("OpenImageIO cannot begin it", output->geterror());
+    /* By the strides the channels that JPEG does not keep are passed over. */
+    const OIIO::stride_t pixel_size = description.channel_count * static_cast<OIIO::stride_t>(sizeof(float));
+    if (!output->write_image(OIIO::TypeFloat, pixels, pixel_size, pixel_size * description.width))
+        fail("OpenImageIO cannot encode it", output->geterror());
+    if (!output->close())
+        fail("OpenImageIO cannot finish it", output->geterror());
+    if (bytes.empty() || (extension == "png" && !ends_as_png(bytes)))
+        fail("OpenImageIO encoded it only in part", output->geterror());
+    return bytes;
+}
+
+ag_status encode(const char *extension, const image_description *description, const float *pixels,
+                 unsigned char **out_bytes, size_t *out_size, char *message, size_t message_size) noexcept
+{
+    *out_bytes = nullptr;
+    *out_size = 0;
+    return guarded(AG_ERROR_OUTPUT, message, message_size, [=] {
+        const std::vector<unsigned char> bytes = encode_to_vector(extension, *description, pixels);
+        *out_bytes = static_cast<unsigned char *>(std::malloc(bytes.size()));
+        if (!*out_bytes)
+            throw std::bad_alloc();
+        std::memcpy(*out_bytes, bytes.data(), bytes.size());
+        *out_size = bytes.size();
+    });
+}
+
+image_sample_type sample_type_of(OIIO::TypeDesc format)
+{
+    switch (format.basetype) {
+    case OIIO::TypeDesc::UINT8:
+    case OIIO::TypeDesc::INT8: return IMAGE_UINT8;
+    case OIIO::TypeDesc::UINT16:
+    case OIIO::TypeDesc::INT16: return IMAGE_UINT16;
+    case OIIO::TypeDesc::HALF: return IMAGE_HALF;
+    default: return IMAGE_FLOAT;
+    }
+}
+
+/* The values of the picture. Throws where there are more than the file can hold, before they take memory. */
+std::uint64_t count_values(const OIIO::ImageSpec &spec, std::uint64_t file_size)
+{
+    const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+    const std::uint64_t channels = static_cast<std::uint64_t>(spec.nchannels);
+    if (pixels > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(float) / channels ||
+        (pixels * channels > trusted_values && pixels * channels / values_per_byte > file_size))
+        throw std::runtime_error("its header promises " + std::to_string(spec.width) + " x " +
+                                 std::to_string(spec.height) + " pixels of " + std::to_string(spec.nchannels) +
+                                 " channels, which a file of " + std::to_string(file_size) + " bytes cannot hold");
+    return pixels * channels;
+}
+
+template <typename Value>
+Value *read_values(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, std::uint64_t count, OIIO::TypeDesc type)
+{
+    std::unique_ptr<Value, decltype(&std::free)> values(static_cast<Value *>(std::malloc(count * sizeof(Value))),
+                                                        &std::free);
+    if (!values)
+        throw std::bad_alloc();
+    if (!input.read_image(0, 0, 0, spec.nchannels, type, values.get()))
+        fail("OpenImageIO cannot decode it", input.geterror());
+    return values.release();
+}
+
+/* proxy: the file's bytes, or NULL: they are read from path. */
+image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::IOProxy *proxy)
+{
+    OIIO::ImageSpec wishes;
+    wishes.attribute("oiio:UnassociatedAlpha", 1); /* colours as stored, not multiplied by alpha */
+    if (proxy)
+        wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes, proxy);
+    if (!input)
+        fail("OpenImageIO cannot open it", OIIO::geterror());
+    input->threads(1);
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
+        throw std::runtime_error("it is not a flat picture");
+    image read = image();
+    read.width = spec.width;
+    read.height = spec.height;
+    read.channel_count = spec.nchannels;
+    read.type = sample_type_of(spec.format);
+    const OIIO::ParamValue *chromaticities =
+        spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+    if (chromaticities) {
+        read.has_chromaticities = true;
+        std::memcpy(read.chromaticities, chromaticities->data(), sizeof read.chromaticities);
+    }
+    const std::uint64_t count = count_values(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path));
+    if (keep_bytes && read.type == IMAGE_UINT8)
+        read.bytes = read_values<unsigned char>(*input, spec, count, OIIO::TypeUInt8);
+    else
+        read.pixels = read_values<float>(*input, spec, count, OIIO::TypeFloat);
+    return read;
+}
+
+ag_status decode(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size) noexcept
+{
+    *out_image = image();
+    return guarded(AG_ERROR_INPUT, message, message_size,
+                   [=] { *out_image = read_picture(path, keep_bytes, nullptr); });
+}
+
+ag_status decode_memory(const char *extension, const unsigned char *bytes, size_t size, bool keep_bytes,
+                        image *out_image, char *message, size_t message_size) noexcept
+{
+    *out_image = image();
+    return guarded(AG_ERROR_INPUT, message, message_size, [=] {
+        OIIO::Filesystem::IOMemReader proxy(const_cast<unsigned char *>(bytes), size); /* which only reads */
+        *out_image = read_picture(std::string("picture.") + extension, keep_bytes, &proxy);
+    });
+}
+
+} // namespace
+
+extern "C" const image_module *afterglow_image_module(void)
+{
+    static const image_module table = {IMAGE_MODULE_INTERFACE, encode, decode, decode_memory};
+    try {
+        /* Before anything else, or OpenImageIO and OpenEXR start a thread for every CPU. And Debian's build prints
+         * debug messages to standard error unless told not to. */
+        if (OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1) && OIIO::attribute("debug", 0))
+            return &table;
+    } catch (...) {
+    }
+    return nullptr;
+}

@@ -1,0 +1,25 @@
+/* image_reader.h: pictures from disk and memory, by OpenImageIO, in a module that is opened when it is first needed.
+ * Flow: file -> [here] -> textures, lights of images, tests and tools. Threads: any; no state but the loaded module. */
+#ifndef AFTERGLOW_IMAGE_READER_H
+#define AFTERGLOW_IMAGE_READER_H
+
+#include "afterglow/base.h"
+#include "image/image.h"
+
+#include <stddef.h>
+
+/* The first picture of a file, as floats; *out_image is to be reset. On failure *out_image is empty and message says
+ * why, with OpenImageIO's text. Errors: AG_ERROR_INPUT, AG_ERROR_SYSTEM (the module cannot be opened), AG_ERROR_MEMORY.
+ */
+ag_status image_read(const char *path, image *out_image, char *message, size_t message_size);
+
+/* The same, but values of 8 bits stay bytes. */
+ag_status image_read_compact(const char *path, image *out_image, char *message, size_t message_size);
+
+/* The same of a PNG or JPEG file in memory; what it is, its first bytes say. name stands for it in messages. */
+ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t size, image *out_image, char *message,
+                            size_t message_size);
+
+void image_reset(image *picture); /* frees the pixels; leaves it zeroed */
+
+#endif

@@ -1,0 +1,243 @@
+/* light_emission.c: rays of light that leave a lamp: see light_sample_emission in light.h.
+ * Rests on: Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, ch. 5; Jensen 1996 (projection maps).
+ * Threads: read-only. */
+#include "light/environment.h"
+#include "light/portal.h"
+#include "light/projection.h"
+#include "light/radiance_map.h"
+#include "math/rng.h"
+#include "math/sampling.h"
+#include "rays/bvh.h"
+#include "rays/passage.h"
+
+/* Beyond this, 1 - cos of its half angle, a cone to the target is hardly better than sampling the light's own way. */
+static const float TARGET_CONE_MAX = 0.5f;
+
+/* A direction from a place uniformly in the cone to the target; false where the light's own way, which fills a cone of
+ * own_cone, is as good. */
+static bool aim_at(const light_target *target, vec3 origin, float own_cone, rng *random, vec3 *out_direction,
+                   float *out_pdf)
+{
+    if (!target)
+        return false;
+    float one_minus_cos;
+    if (!light_ball_cone(target->center, target->radius, origin, &one_minus_cos) ||
+        one_minus_cos > fminf(TARGET_CONE_MAX, own_cone))
+        return false;
+    vec3 to_center = vec3_sub(target->center, origin);
+    frame f = frame_from_z(vec3_scale(to_center, 1.0f / vec3_length(to_center)));
+    *out_direction = frame_to_world(&f, sample_uniform_cone(rng_vec2(random), one_minus_cos));
+    *out_pdf = 1.0f / (2.0f * AG_PI * one_minus_cos);
+    return true;
+}
+
+static bool emit_area(const scene *s, const light *l, const light_target *target, rng *random, light_emission *out)
+{
+    const shape *lamp = &s->shapes[l->shape_index];
+    vec2 u = rng_vec2(random);
+    float density = 1.0f, pdf;
+    if (l->radiance_map && !radiance_map_sample(l->radiance_map, u, &u, &density))
+        return false;
+    surface_sample at = shape_sample_area(lamp, u);
+    rgb radiance = rgb_mul(l->radiance, light_sampled_value(s, l, &at));
+    vec3 n = at.geometric_normal;
+    if (aim_at(target, at.position, 1.0f, random, &out->direction, &pdf)) {
+        float cosine = vec3_dot(n, out->direction);
+        if (l->two_sided && cosine < 0.0f) {
+            n = vec3_negate(n);
+            cosine = -cosine;
+        }
+        out->flux = rgb_scale(radiance, fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf));
+    } else {
+        if (l->two_sided && rng_float(random) < 0.5f)
+            n = vec3_negate(n);
+        frame f = frame_from_z(n);
+        out->direction = frame_to_world(&f, sample_cosine_hemisphere(rng_vec2(random)));
+        /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids, and nearly so by a radiance map */
+        out->flux = rgb_scale(radiance, AG_PI * (l->two_sided ? 2.0f : 1.0f) / (at.pdf_area * density));
+    }
+    out->origin = vec3_add_scaled(at.position, n, at.epsilon);
+    out->medium = vec3_dot(n, at.geometric_normal) > 0.0f ? lamp->medium_outside : lamp->medium_inside;
+    return !rgb_is_black(out->flux);
+}
+
+/* A direction in the cone, uniform but thinned by the falloff, so that all photons are equal: on average at least half
+ * are accepted, and what 64 trials refuse goes along the axis. */
+static vec3 sample_spot(const light *l, rng *random)
+{
+    frame f = frame_from_z(l->direction);
+    vec3 local = {0.0f, 0.0f, 1.0f};
+    float ramp = l->falloff_end - l->falloff_start;
+    for (int trial = 0; trial < 64; trial++) {
+        vec2 u = rng_vec2(random);
+        float x = ramp > 0.0f ? fminf((1.0f - u.x) * l->falloff_end / ramp, 1.0f) : 1.0f;
+        if (rng_float(random) < x * x * (3.0f - 2.0f * x)) {
+            local = sample_uniform_cone(u, l->falloff_end);
+            break;
+        }
+    }
+    return frame_to_world(&f, local);
+}
+
+/* The lights that are points. */
+static bool emit_point(const light *l, const light_target *target, rng *random, light_emission *out)
+{
+    float pdf, own_cone = 2.0f;
+    vec3 local;
+    out->origin = l->position;
+    if (l->kind == LIGHT_SPOT)
+        own_cone = l->falloff_end;
+    else if (l->kind == LIGHT_PROJECTION)
+        own_cone = 1.0f - projection_corner_cosine(l->projection);
+    if (aim_at(target, l->position, own_cone, random, &out->direction, &pdf)) {
+        out->flux = rgb_scale(light_intensity(l, out->direction), 1.0f / pdf);
+        return !rgb_is_black(out->flux);
+    }
+    switch (l->kind) {
+    case LIGHT_GONIOMETRIC:
+        if (!environment_sample_whole(l, rng_vec2(random), &out->direction, &out->flux, &pdf))
+            return false;
+        out->flux = rgb_scale(out->flux, 1.0f / pdf);
+        return true;
+    case LIGHT_PROJECTION:
+        if (!projection_sample(l->projection, rng_vec2(random), &local, &out->flux, &pdf))
+            return false;
+        out->direction = vec3_normalize(frame_to_world(&l->world_from_light, local));
+        out->flux = rgb_scale(rgb_mul(l->intensity, out->flux), 1.0f / pdf);
+        return true;
+    case LIGHT_SPOT: out->direction = sample_spot(l, random); break;
+    default: out->direction = sample_uniform_sphere(rng_vec2(random)); break;
+    }
+    out->flux = l->power;
+    return !rgb_is_black(out->flux);
+}
+
+/* Where small things stand among giants, light from afar that were spread evenly over the scene would hardly find them.
+ * Balls around them, each twice as large as the one before, get equal shares of it: so photons thin out with the square
+ * of the distance, about as what far light does to the small things. The last ball is `whole`. */
+static int nested_ball_count(const scene *s, const light_target *whole)
+{
+    if (!(s->detail_radius > 0.0f) || s->detail_radius >= whole->radius)
+        return 1;
+    /* the octaves, rounded up: by its bits, since no two machines agree on logarithms */
+    int octaves;
+    float fraction = frexpf(fminf(whole->radius / s->detail_radius, 0x1p100f), &octaves);
+    return 1 + octaves - (fraction == 0.5f);
+}
+
+static light_target nested_ball(const scene *s, const light_target *whole, int i, int count)
+{
+    return i == count - 1 ? *whole : (light_target){s->detail_center, ldexpf(s->detail_radius, i)};
+}
+
+/* The density, per area across direction, with which rays along it come through that place. */
+static float nested_density(const scene *s, const light_target *whole, int count, vec3 place, vec3 direction)
+{
+    float density = 0.0f;
+    for (int i = 0; i < count; i++) {
+        light_target ball = nested_ball(s, whole, i, count);
+        vec3 offset = vec3_sub(place, ball.center);
+        offset = vec3_add_scaled(offset, direction, -vec3_dot(offset, direction));
+        if (i == count - 1 || vec3_dot(offset, offset) <= ball.radius * ball.radius)
+            density += 1.0f / ((float)count * AG_PI * ball.radius * ball.radius);
+    }
+    return density;
+}
+
+/* A start outside all there is, with its density per area; on the disc of the ball that faces the way the light goes,
+ * or those of balls within. False: beside the ball. */
+static bool start_from_afar(const scene *s, const light_target *whole, vec3 direction, rng *random, vec3 *out_origin,
+                            float *out_density)
+{
+    frame f = frame_from_z(direction);
+    int count = nested_ball_count(s, whole), picked = count - 1;
+    if (count > 1)
+        picked = (int)fminf(rng_float(random) * (float)count, (float)count - 1.0f);
+    light_target ball = nested_ball(s, whole, picked, count);
+    vec2 d = sample_disk_concentric(rng_vec2(random));
+    vec3 place = vec3_add(ball.center, frame_to_world(&f, (vec3){d.x * ball.radius, d.y * ball.radius, 0.0f}));
+    *out_density = 1.0f / (AG_PI * ball.radius * ball.radius);
+    if (count > 1) {
+        vec3 offset = vec3_sub(place, whole->center);
+        offset = vec3_add_scaled(offset, direction, -vec3_dot(offset, direction));
+        if (picked < count - 1 && vec3_dot(offset, offset) > whole->radius * whole->radius)
+            return false;
+        *out_density = nested_density(s, whole, count, place, direction);
+    }
+    /* the plane that touches the scene's own ball from behind */
+    float behind = vec3_dot(vec3_sub(ball.center, s->bounding_center), direction) + 1.01f * s->bounding_radius;
+    *out_origin = vec3_add(ball.center, frame_to_world(&f, (vec3){d.x * ball.radius, d.y * ball.radius, -behind}));
+    return true;
+}
+
+/* Light from infinitely far has lost in a medium that absorbs whatever that takes. The first interface that it meets
+ * says what lies before it, as for shadow rays that go the other way; where there is none, the light's own medium
+ * counts. */
+static bool come_through_space(const scene *s, const light *l, light_emission *out)
+{
+    surface_hit hit;
+    if (l->medium >= s->medium_count)
+        return true;
+    if (scene_intersect(s, scene_ray_make(out->origin, out->direction), INFINITY, &hit) && hit.has_medium_interface)
+        out->medium = vec3_dot(hit.geometric_normal, out->direction) < 0.0f ? hit.medium_outside : hit.medium_inside;
+    if (out->medium < s->medium_count)
+        out->flux = rgb_mul(out->flux, medium_transmittance(&s->media[out->medium], INFINITY));
+    return !rgb_is_black(out->flux);
+}
+
+/* From a place in the portal, which is in the light's own medium, with what comes so far. */
+static bool emit_through_portal(const scene *s, const light *l, const light_target *target, rng *random,
+                                light_emission *out)
+{
+    vec3 to_light;
+    float pdf;
+    if (!portal_sample_flux(l->portal, target, random, &out->origin, &to_light, &pdf))
+        return false;
+    rgb radiance = environment_whole_radiance(l, to_light);
+    if (rgb_is_black(radiance))
+        return false;
+    scene_ray back = scene_ray_make(out->origin, to_light);
+    back.medium = l->medium;
+    uint64_t cut = 0;
+    rgb transmittance = passage_transmittance(s, back, INFINITY, &cut);
+    out->direction = vec3_negate(to_light);
+    out->flux = rgb_scale(rgb_mul(radiance, transmittance), vec3_dot(to_light, l->portal->axes.z) / pdf);
+    return !rgb_is_black(out->flux);
+}
+
+static bool emit_infinite(const scene *s, const light *l, const light_target *ball, rng *random, light_emission *out)
+{
+    vec3 to_light;
+    rgb radiance;
+    float pdf;
+    if (!environment_sample_whole(l, rng_vec2(random), &to_light, &radiance, &pdf))
+        return false;
+    float density;
+    out->direction = vec3_negate(to_light);
+    if (!start_from_afar(s, ball, out->direction, random, &out->origin, &density))
+        return false;
+    out->flux = rgb_scale(radiance, 1.0f / (density * pdf));
+    return come_through_space(s, l, out);
+}
+
+bool light_sample_emission(const scene *s, const light *l, const light_target *target, rng *random,
+                           light_emission *out_emission)
+{
+    light_emission *out = out_emission;
+    light_target whole = {s->bounding_center, s->bounding_radius};
+    const light_target *ball = target && target->radius < whole.radius ? target : &whole;
+    float density;
+    out->medium = l->medium; /* of area lights: by the side */
+    switch (l->kind) {
+    case LIGHT_AREA: return emit_area(s, l, target, random, out);
+    case LIGHT_DISTANT:
+        if (!start_from_afar(s, ball, l->direction, random, &out->origin, &density))
+            return false;
+        out->direction = l->direction;
+        out->flux = rgb_scale(l->radiance, 1.0f / density);
+        return come_through_space(s, l, out) && !rgb_is_black(out->flux);
+    case LIGHT_INFINITE:
+        return l->portal ? emit_through_portal(s, l, target, random, out) : emit_infinite(s, l, ball, random, out);
+    default: return emit_point(l, target, random, out);
+    }
+}

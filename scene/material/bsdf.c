@@ -1,0 +1,331 @@
+/* bsdf.c: see bsdf.h. Directions o (out) and i are in the shading frame, z up to the outside.
+ * Threads: pure functions. */
+#include "material/bsdf.h"
+
+#include "material/bsdf_lobe.h"
+#include "material/coat.h"
+#include "material/fresnel.h"
+#include "material/principled.h"
+#include "material/shading_frame.h"
+#include "math/sampling.h"
+#include "scene.h"
+
+/* No lobe of two is picked more rarely. */
+static const float PROBABILITY_MIN = 0.1f;
+
+static void add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_delta, float share)
+{
+    b->lobes[b->lobe_count++] = (bsdf_lobe){kind, group, is_delta, share};
+}
+
+/* Of three lobes: those that carry anything get the least share at the cost of the others. */
+static void normalize_many(bsdf *b)
+{
+    float sum = 0.0f, free_sum = 0.0f, left = 1.0f;
+    for (int k = 0; k < b->lobe_count; k++)
+        sum += b->lobes[k].probability;
+    for (int k = 0; k < b->lobe_count; k++) {
+        float *p = &b->lobes[k].probability;
+        *p = sum > 0.0f ? *p / sum : 1.0f / (float)b->lobe_count;
+        if (*p > 0.0f && *p <= PROBABILITY_MIN) {
+            *p = PROBABILITY_MIN;
+            left -= PROBABILITY_MIN;
+        } else {
+            free_sum += *p;
+        }
+    }
+    for (int k = 0; k < b->lobe_count; k++)
+        if (b->lobes[k].probability > PROBABILITY_MIN)
+            b->lobes[k].probability *= left / free_sum;
+}
+
+/* Shares become probabilities; a lobe that carries anything is not neglected. */
+static void normalize_probabilities(bsdf *b)
+{
+    if (b->lobe_count > 2) {
+        normalize_many(b);
+        return;
+    }
+    if (b->lobe_count < 2) {
+        b->lobes[0].probability = 1.0f;
+        return;
+    }
+    float a = b->lobes[0].probability, sum = a + b->lobes[1].probability;
+    float p = sum > 0.0f ? a / sum : 0.5f;
+    if (p > 0.0f && p < 1.0f)
+        p = fminf(fmaxf(p, PROBABILITY_MIN), 1.0f - PROBABILITY_MIN);
+    b->lobes[0].probability = p;
+    b->lobes[1].probability = 1.0f - p;
+}
+
+static void add_principled(bsdf *b)
+{
+    const material *m = &b->matter;
+    float cosine = vec3_dot(b->out, b->shading.z);
+    principled_shares shares = principled_shares_at(m, fminf(fabsf(cosine), 1.0f));
+    bool has_interface = principled_has_interface(m);
+    if (!rgb_is_black(principled_base_albedo(m)) || !has_interface)
+        add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, shares.base);
+    if (has_interface)
+        add_lobe(b, LOBE_PRINCIPLED, BSDF_TRACED, material_is_smooth(m->alpha_u, m->alpha_v), shares.interface);
+    float coat_alpha = m->clearcoat_roughness * m->clearcoat_roughness;
+    if (m->clearcoat > 0.0f && !(cosine < 0.0f && principled_is_solid(m)))
+        add_lobe(b, LOBE_CLEARCOAT, BSDF_TRACED, material_is_smooth(coat_alpha, coat_alpha), shares.coat);
+}
+
+static void add_lobes(bsdf *b)
+{
+    const material *m = &b->matter;
+    bool smooth = material_is_smooth(m->alpha_u, m->alpha_v);
+    float coat = m->kind == MATERIAL_COATED_DIFFUSE || m->kind == MATERIAL_COATED_CONDUCTOR
+                     ? fresnel_dielectric(fabsf(vec3_dot(b->out, b->shading.z)), m->ior)
+                     : 0.0f;
+    float trapped;
+    switch (m->kind) {
+    case MATERIAL_INTERFACE: break; /* none: rays do not stop here */
+    case MATERIAL_MIX:              /* resolved before */
+    case MATERIAL_DIFFUSE: add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, 1.0f); break;
+    case MATERIAL_DIFFUSE_TRANSMISSION:
+        add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, rgb_max(m->reflectance));
+        add_lobe(b, LOBE_DIFFUSE_THROUGH, BSDF_GATHERED, false, rgb_max(m->transmittance));
+        break;
+    case MATERIAL_CONDUCTOR: add_lobe(b, LOBE_CONDUCTOR, BSDF_TRACED, smooth, 1.0f); break;
+    case MATERIAL_DIELECTRIC:
+        /* where the index does not change nothing is bent, however rough: half vectors do not exist there */
+        add_lobe(b, LOBE_DIELECTRIC, BSDF_TRACED, smooth || m->ior == 1.0f, 1.0f);
+        break;
+    case MATERIAL_THIN_DIELECTRIC: add_lobe(b, LOBE_THIN_DIELECTRIC, BSDF_TRACED, true, 1.0f); break;
+    case MATERIAL_COATED_DIFFUSE:
+        add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, (1.0f - coat) * rgb_max(m->reflectance));
+        if (m->ior != 1.0f)
+            add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
+        break;
+    case MATERIAL_COATED_CONDUCTOR:
+        trapped = coat_has_trapped(m) ? rgb_max(coat_trapped_albedo(m, vec3_dot(b->out, b->shading.z))) : 0.0f;
+        add_lobe(b, LOBE_CONDUCTOR_UNDER_COAT, BSDF_TRACED, material_is_smooth(m->base_alpha_u, m->base_alpha_v),
+                 1.0f - coat - trapped);
+        if (m->ior != 1.0f)
+            add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
+        if (trapped > 0.0f)
+            add_lobe(b, LOBE_COAT_TRAPPED, BSDF_TRACED, false, trapped);
+        break;
+    case MATERIAL_PRINCIPLED: add_principled(b); break;
+    }
+    normalize_probabilities(b);
+}
+
+/* matter is there already: it is large, and copied once. */
+static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
+{
+    b->shading = shading;
+    b->geometric_normal = hit->geometric_normal;
+    b->out = out;
+    b->lobe_count = 0;
+    add_lobes(b);
+    for (int k = 0; hit->is_strand && k < b->lobe_count; k++)
+        b->lobes[k].group = BSDF_TRACED;
+}
+
+bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out)
+{
+    bsdf b;
+    b.matter = *matter;
+    set_up(&b, frame_from_z(hit->shading_normal), hit, out);
+    return b;
+}
+
+bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out)
+{
+    bsdf b;
+    material_at(s, hit, &b.matter);
+    set_up(&b, shading_frame_at(s, hit, &b.matter), hit, out);
+    return b;
+}
+
+bool bsdf_has(const bsdf *b, bsdf_lobes lobes)
+{
+    for (int i = 0; i < b->lobe_count; i++)
+        if (b->lobes[i].group & lobes)
+            return true;
+    return false;
+}
+
+bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
+{
+    for (int i = 0; i < b->lobe_count; i++)
+        if ((b->lobes[i].group & lobes) && !b->lobes[i].is_delta)
+            return true;
+    return false;
+}
+
+bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
+{
+    for (int i = 0; i < b->lobe_count; i++) {
+        if (!(b->lobes[i].group & lobes) || b->lobes[i].is_delta)
+            continue;
+        switch (b->lobes[i].kind) {
+        case LOBE_DIFFUSE:
+        case LOBE_CONDUCTOR:
+        case LOBE_COAT:
+        case LOBE_CLEARCOAT:
+        case LOBE_COAT_TRAPPED:
+        case LOBE_CONDUCTOR_UNDER_COAT: break;
+        case LOBE_PRINCIPLED:
+            if (principled_transmits(&b->matter))
+                return true;
+            break;
+        default: return true;
+        }
+    }
+    return false;
+}
+
+float bsdf_probability(const bsdf *b, bsdf_lobes lobes)
+{
+    float sum = 0.0f;
+    for (int i = 0; i < b->lobe_count; i++)
+        if (b->lobes[i].group & lobes)
+            sum += b->lobes[i].probability;
+    return sum;
+}
+
+rgb bsdf_gathered_reflection(const bsdf *b)
+{
+    const material *m = &b->matter;
+    switch (m->kind) {
+    case MATERIAL_DIFFUSE:
+    case MATERIAL_DIFFUSE_TRANSMISSION: return m->reflectance;
+    case MATERIAL_COATED_DIFFUSE:
+    case MATERIAL_PRINCIPLED:
+        return rgb_scale(bsdf_lobe_diffuse_albedo(m), bsdf_lobe_transmittance(m, vec3_dot(b->out, b->shading.z)));
+    default: return rgb_gray(0.0f);
+    }
+}
+
+rgb bsdf_gathered_transmission(const bsdf *b)
+{
+    return b->matter.kind == MATERIAL_DIFFUSE_TRANSMISSION ? b->matter.transmittance : rgb_gray(0.0f);
+}
+
+/* Shading normals bend the cosine of flux (Veach 1997, 5.3.2): the factor for flux that came from `out` and goes on to
+ * `direction`. */
+static float flux_correction(const bsdf *b, vec3 direction)
+{
+    float numerator = fabsf(vec3_dot(b->out, b->shading.z) * vec3_dot(direction, b->geometric_normal));
+    float denominator = fabsf(vec3_dot(b->out, b->geometric_normal) * vec3_dot(direction, b->shading.z));
+    return denominator > 0.0f ? fminf(numerator / denominator, BSDF_CORRECTION_MAX) : 0.0f;
+}
+
+float bsdf_arrival_factor(const bsdf *b)
+{
+    float shading = vec3_dot(b->out, b->shading.z), geometric = vec3_dot(b->out, b->geometric_normal);
+    if (shading * geometric <= 0.0f)
+        return 0.0f; /* behind the horizon of one of the normals: no light by either reckoning */
+    return fminf(shading / geometric, BSDF_CORRECTION_MAX) * bsdf_lobe_transmittance(&b->matter, shading);
+}
+
+rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)
+{
+    vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
+    rgb sum = rgb_gray(0.0f);
+    for (int k = 0; k < b->lobe_count; k++) {
+        rgb value;
+        float pdf;
+        if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
+            continue;
+        bsdf_lobe_evaluate(b, &b->lobes[k], transport, direction, o, i, &value, &pdf);
+        sum = rgb_add(sum, value);
+    }
+    return transport == BSDF_FLUX ? rgb_scale(sum, flux_correction(b, direction)) : sum;
+}
+
+float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 direction)
+{
+    vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
+    float sum = 0.0f;
+    for (int k = 0; k < b->lobe_count; k++) {
+        rgb value;
+        float pdf;
+        if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
+            continue;
+        bsdf_lobe_evaluate(b, &b->lobes[k], BSDF_FLUX, direction, o, i, &value, &pdf);
+        sum += pdf * b->lobes[k].probability;
+    }
+    return sum > 0.0f ? sum / bsdf_probability(b, lobes) : 0.0f;
+}
+
+/* Picks among the lobes asked for, and makes the random number fresh again. */
+static const bsdf_lobe *pick_lobe(const bsdf *b, bsdf_lobes lobes, float *in_out_u, float *out_probability)
+{
+    float total = bsdf_probability(b, lobes), before = 0.0f;
+    const bsdf_lobe *last = NULL;
+    for (int k = 0; k < b->lobe_count; k++) {
+        float p = b->lobes[k].probability / total;
+        if (!(b->lobes[k].group & lobes) || p <= 0.0f)
+            continue;
+        last = &b->lobes[k];
+        *out_probability = p;
+        if (*in_out_u < before + p) {
+            *in_out_u = fminf((*in_out_u - before) / p, 0x1.fffffep-1f);
+            return last;
+        }
+        before += p;
+    }
+    return last;
+}
+
+/* f |cos| / pdf is the albedo, without evaluating any of them. */
+static bool sample_plain(const bsdf *b, bsdf_transport transport, vec2 u, bsdf_sample *out)
+{
+    vec3 i = sample_cosine_hemisphere(u);
+    out->pdf_solid_angle = i.z * AG_INV_PI;
+    if (bsdf_is_below(b))
+        i.z = -i.z;
+    out->direction = frame_to_world(&b->shading, i); /* unit to rounding, as the frame and i are */
+    if (!bsdf_is_same_side(b, out->direction))
+        return false;
+    out->weight = b->matter.reflectance;
+    if (transport == BSDF_FLUX)
+        out->weight = rgb_scale(out->weight, flux_correction(b, out->direction));
+    out->is_delta = false;
+    out->group = BSDF_GATHERED;
+    return true;
+}
+
+bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, float u_lobe, vec2 u,
+                           bsdf_sample *out_sample)
+{
+    float probability;
+    if (bsdf_is_plain(b))
+        return (lobes & BSDF_GATHERED) && sample_plain(b, transport, u, out_sample);
+    if (!(bsdf_probability(b, lobes) > 0.0f))
+        return false;
+    const bsdf_lobe *lobe = pick_lobe(b, lobes, &u_lobe, &probability);
+    if (!lobe)
+        return false;
+    vec3 o = frame_to_local(&b->shading, b->out), i;
+    bsdf_sample *out = out_sample;
+    out->group = lobe->group;
+    out->is_delta = lobe->is_delta;
+    if (lobe->is_delta) {
+        if (!bsdf_lobe_sample_smooth(b, lobe->kind, transport, o, u_lobe, &i, &out->weight))
+            return false;
+        out->direction = vec3_normalize(frame_to_world(&b->shading, i));
+        out->pdf_solid_angle = 0.0f;
+        /* a shading normal may send it through the surface, or not: the geometry decides */
+        if (bsdf_is_same_side(b, out->direction) != (i.z * o.z > 0.0f))
+            return false;
+        out->weight = rgb_scale(out->weight, 1.0f / probability);
+        if (transport == BSDF_FLUX)
+            out->weight = rgb_scale(out->weight, flux_correction(b, out->direction));
+        return true;
+    }
+    if (!bsdf_lobe_sample_rough(b, lobe->kind, o, u_lobe, u, &i))
+        return false;
+    out->direction = vec3_normalize(frame_to_world(&b->shading, i));
+    out->pdf_solid_angle = bsdf_pdf(b, lobes, out->direction);
+    if (!(out->pdf_solid_angle > 0.0f))
+        return false;
+    out->weight = rgb_scale(bsdf_evaluate(b, lobes, transport, out->direction), 1.0f / out->pdf_solid_angle);
+    return rgb_is_finite(out->weight);
+}

@@ -1,0 +1,110 @@
+/* bsdf.h: scattering at a surface: evaluating, sampling and its density, lobe by lobe.
+ * Rests on: Lambert; Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007 (GGX); Heitz,
+ * "Sampling the GGX Distribution of Visible Normals", 2018; Pharr, Jakob, Humphreys, 4th ed., 2023, ch. 9; for coats,
+ * Weidlich, Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", 2007.
+ * Flow: material + surface hit -> [here] -> photon tracing, shading, path tracing.
+ * Threads: pure functions.
+ *
+ * One predicate splits the lobes, for photons and for the eye alike: GATHERED lobes (diffuse ones) store photons and
+ * look up irradiance; all others, rough or smooth, are TRACED on. The S of the path notation is every traced lobe. A
+ * gathered lobe is a product t(in) A t(out) / pi, where t is 1 but under a coat, which lets through 1 - Fresnel, or
+ * under an interface of which t is what it does not reflect in all (principled.h): photons carry t(in), so
+ * that irradiance times A t(out) / pi is the radiance that leaves. On curves every lobe is traced: a hair is thinner
+ * than the disc of any estimate, and a flat one has no normal of its own that photons and eye could agree on. */
+#ifndef AFTERGLOW_BSDF_H
+#define AFTERGLOW_BSDF_H
+
+#include "material/material.h"
+#include "rays/bvh.h"
+
+/* The largest factor that shading normals may add to a photon: beyond it lie grazing silhouettes only. */
+#define BSDF_CORRECTION_MAX 8.0f
+
+typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
+
+/* What travels: radiance is scaled by the square of the relative index when it enters another medium, flux is not. */
+typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
+
+typedef enum bsdf_lobe_kind {
+    LOBE_DIFFUSE,         /* to the side it came from, perhaps through a coat */
+    LOBE_DIFFUSE_THROUGH, /* to the other side */
+    LOBE_CONDUCTOR,
+    LOBE_DIELECTRIC,           /* reflection and refraction */
+    LOBE_THIN_DIELECTRIC,      /* a pane: reflection, and straight through */
+    LOBE_COAT,                 /* reflection by a dielectric coat */
+    LOBE_CONDUCTOR_UNDER_COAT, /* refracted in, reflected by the conductor, refracted out */
+    LOBE_COAT_TRAPPED,         /* what a rough conductor got out of the coat at last (coat.h) */
+    LOBE_PRINCIPLED,           /* metal's and dielectric's reflection, and transmission, straight or refracted */
+    LOBE_CLEARCOAT             /* reflection by the coat of the principled one */
+} bsdf_lobe_kind;
+
+typedef struct bsdf_lobe {
+    bsdf_lobe_kind kind;
+    bsdf_lobes group;
+    bool is_delta;
+    float probability; /* of being picked among all lobes; they sum to 1 */
+} bsdf_lobe;
+
+enum { BSDF_LOBES_MAX = 3 };
+
+typedef struct bsdf {
+    frame shading;         /* z: shading normal, to the outside */
+    vec3 geometric_normal; /* to the outside */
+    vec3 out;              /* back along the ray that arrived, unit */
+    material matter;       /* as it is at this place */
+    int lobe_count;
+    bsdf_lobe lobes[BSDF_LOBES_MAX];
+} bsdf;
+
+typedef struct bsdf_sample {
+    vec3 direction;        /* unit, away from the surface */
+    rgb weight;            /* f |cos| / pdf, shading-normal correction of flux included */
+    float pdf_solid_angle; /* of all lobes asked for together; meaningless where is_delta */
+    bool is_delta;
+    bsdf_lobes group; /* of the lobe that was picked */
+} bsdf_sample;
+
+/* out: back along the ray that met the place, unit. */
+bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out);
+/* The same of a material that is no mix, and has been prepared. */
+bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out);
+
+bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
+
+/* A Lambertian surface and nothing else: sampling it needs no u_lobe. */
+static inline bool bsdf_is_plain(const bsdf *b)
+{
+    return b->matter.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;
+}
+
+/* Whether `out` is on the inside, by the geometric normal: what does not go through stays there. */
+static inline bool bsdf_is_below(const bsdf *b) { return vec3_dot(b->out, b->geometric_normal) < 0.0f; }
+
+/* Whether light can find these lobes by sampling a lamp: they are not all perfectly smooth. */
+bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);
+
+/* Whether any of these that a lamp can find scatter light that comes from behind the surface, as `out` sees it. */
+bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes);
+
+/* With which probability bsdf_sample_direction, asked for all, picks one of these. */
+float bsdf_probability(const bsdf *b, bsdf_lobes lobes);
+
+/* The factor A t(out), of irradiance on out's side and on the other, each to be divided by pi: what leaves as radiance.
+ */
+rgb bsdf_gathered_reflection(const bsdf *b);
+rgb bsdf_gathered_transmission(const bsdf *b);
+
+/* f |cos(direction, shading normal)| for light from `direction` (unit, away from the surface) leaving to out; smooth
+ * lobes count as 0. */
+rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction);
+float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 direction);
+
+/* Samples the way on. false: absorbed. */
+bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, float u_lobe, vec2 u,
+                           bsdf_sample *out_sample);
+
+/* What arriving flux, from out, is multiplied by when it is stored: t(in), and |cos to shading normal| / |cos to
+ * geometric normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
+float bsdf_arrival_factor(const bsdf *b);
+
+#endif

@@ -1,0 +1,61 @@
+/* lambert.h: scattering at a plain Lambertian surface, which most of a scene is made of, without making a bsdf for it.
+ * Rests on: Lambert; Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3 (shading normals).
+ * Flow: bvh -> [here] -> photon tracing. It says what bsdf.c says: tests/scene/test_bsdf.c holds the two together.
+ * Threads: pure functions. */
+#ifndef AFTERGLOW_LAMBERT_H
+#define AFTERGLOW_LAMBERT_H
+
+#include "material/bsdf.h"
+#include "math/sampling.h"
+
+/* The albedo where all there is is a Lambertian lobe about the hit's own shading normal; NULL elsewhere. */
+static inline const rgb *lambert_albedo(const scene *s, const surface_hit *hit)
+{
+    const material *m = &s->materials[s->shapes[hit->shape_index].material_index];
+    return m->is_lambertian && !hit->is_strand ? &m->reflectance : NULL;
+}
+
+static inline bool lambert_is_flat_shaded(const surface_hit *hit)
+{
+    vec3 n = hit->geometric_normal, ns = hit->shading_normal;
+    return n.x == ns.x && n.y == ns.y && n.z == ns.z;
+}
+
+/* bsdf_arrival_factor. direction: of the flux, unit. */
+static inline float lambert_arrival_factor(const surface_hit *hit, vec3 direction)
+{
+    float geometric = vec3_dot(hit->geometric_normal, direction);
+    if (lambert_is_flat_shaded(hit))
+        return geometric * geometric > 0.0f ? 1.0f : 0.0f;
+    float shading = vec3_dot(hit->shading_normal, direction);
+    if (shading * geometric <= 0.0f)
+        return 0.0f;
+    float factor = shading / geometric;
+    return factor < BSDF_CORRECTION_MAX ? factor : BSDF_CORRECTION_MAX;
+}
+
+/* Samples the way on of flux that came along `arrived`, unit: bsdf_sample_direction. *out_correction: what its weight
+ * is of the albedo. false: absorbed. */
+static inline bool lambert_sample_flux(const surface_hit *hit, vec3 arrived, vec2 u, vec3 *out_direction,
+                                       float *out_correction)
+{
+    vec3 i = sample_cosine_hemisphere(u), n = hit->geometric_normal;
+    frame shading = frame_from_z(hit->shading_normal);
+    float before = vec3_dot(arrived, n);
+    i.z = float_select(before > 0.0f, -i.z, i.z);
+    vec3 direction = vec3_normalize(frame_to_world(&shading, i));
+    float after = vec3_dot(direction, n);
+    *out_direction = direction;
+    *out_correction = 1.0f;
+    if (!(before * after < 0.0f))
+        return false;
+    if (lambert_is_flat_shaded(hit))
+        return true;
+    float numerator = fabsf(vec3_dot(arrived, shading.z) * after);
+    float denominator = fabsf(before * vec3_dot(direction, shading.z));
+    float factor = denominator > 0.0f ? numerator / denominator : 0.0f;
+    *out_correction = factor < BSDF_CORRECTION_MAX ? factor : BSDF_CORRECTION_MAX;
+    return true;
+}
+
+#endif

@@ -1,0 +1,146 @@
+/* principled.c: see principled.h. Threads: pure functions. */
+#include "material/principled.h"
+
+#include "material/fresnel.h"
+#include "material/ggx_albedo.h"
+
+#include <stddef.h>
+
+/* glTF's coat has an index of 1.5. */
+static const float COAT_F0 = 0.04f;
+/* Refraction by rough facets needs half vectors, which are lost where the index does not change. */
+static const float ROUGH_IOR_MIN = 1.001f;
+
+static float clamp_to_unit(float x) { return fminf(fmaxf(x, 0.0f), 1.0f); }
+
+static float coat_alpha(const material *m) { return m->clearcoat_roughness * m->clearcoat_roughness; }
+
+/* What of the light that meets the interface may enter, and go through. */
+static float through_share(const material *m) { return m->ior > 0.0f ? (1.0f - m->metallic) * m->transmission : 0.0f; }
+
+static float base_share(const material *m) { return (1.0f - m->metallic) * (1.0f - m->transmission); }
+
+bool principled_transmits(const material *m) { return through_share(m) > 0.0f; }
+
+bool principled_is_solid(const material *m) { return !m->is_thin && principled_transmits(m); }
+
+bool principled_has_interface(const material *m)
+{
+    return m->metallic > 0.0f || m->specular > 0.0f || principled_transmits(m);
+}
+
+static rgb schlick(rgb f0, float f90, float weight)
+{
+    return rgb_add(rgb_scale(f0, 1.0f - weight), rgb_gray(f90 * weight));
+}
+
+static float coat_through(const material *m, float cosine)
+{
+    if (m->clearcoat == 0.0f)
+        return 1.0f;
+    ggx_albedo coat = ggx_albedo_of(coat_alpha(m), cosine);
+    return 1.0f - m->clearcoat * (COAT_F0 * coat.of_f0 + coat.of_f90);
+}
+
+float principled_base_transmittance(const material *m, float cosine)
+{
+    cosine = fabsf(cosine);
+    ggx_albedo interface = ggx_albedo_of(m->alpha_u, cosine);
+    /* the colour that is reflected most: the base gets no light twice, whatever its own colour */
+    float reflected = rgb_max(m->dielectric_f0) * interface.of_f0 + m->specular * interface.of_f90;
+    return fmaxf(0.0f, 1.0f - reflected) * coat_through(m, cosine);
+}
+
+/* The mean of t over the hemisphere, by Gauss's rule of 6 places. */
+static float mean_base_transmittance(const material *m)
+{
+    static const float PLACES[3] = {0.2386191861f, 0.6612093865f, 0.9324695142f};
+    static const float WEIGHTS[3] = {0.4679139346f, 0.3607615730f, 0.1713244924f};
+    float sum = 0.0f;
+    for (int i = 0; i < 3; i++)
+        for (int side = -1; side <= 1; side += 2) {
+            float cosine = 0.5f + 0.5f * (float)side * PLACES[i];
+            sum += WEIGHTS[i] * cosine * principled_base_transmittance(m, cosine);
+        }
+    return sum; /* twice the integral of t cos over cos */
+}
+
+void principled_resolve(material *m)
+{
+    rgb *const colors[2] = {&m->reflectance, &m->specular_color};
+    for (int i = 0; i < 2; i++)
+        *colors[i] = rgb_make(fmaxf(colors[i]->r, 0.0f), fmaxf(colors[i]->g, 0.0f), fmaxf(colors[i]->b, 0.0f));
+    m->reflectance =
+        rgb_make(fminf(m->reflectance.r, 1.0f), fminf(m->reflectance.g, 1.0f), fminf(m->reflectance.b, 1.0f));
+    float *const shares[] = {&m->metallic, &m->roughness, &m->transmission,
+                             &m->specular, &m->clearcoat, &m->clearcoat_roughness};
+    for (size_t i = 0; i < sizeof shares / sizeof *shares; i++)
+        *shares[i] = clamp_to_unit(*shares[i]);
+    m->alpha_u = m->alpha_v = m->roughness * m->roughness;
+    float f0 = 1.0f; /* ior 0 is glTF's word for an infinite one */
+    if (m->ior > 0.0f) {
+        m->ior = fmaxf(m->ior, 1.0f);
+        if (m->alpha_u >= MATERIAL_SMOOTH_ALPHA && principled_is_solid(m))
+            m->ior = fmaxf(m->ior, ROUGH_IOR_MIN);
+        float root = (m->ior - 1.0f) / (m->ior + 1.0f);
+        f0 = root * root;
+    }
+    rgb color = m->specular_color;
+    m->dielectric_f0 = rgb_scale(
+        rgb_make(fminf(f0 * color.r, 1.0f), fminf(f0 * color.g, 1.0f), fminf(f0 * color.b, 1.0f)), m->specular);
+    m->base_through = base_share(m) > 0.0f ? mean_base_transmittance(m) : 0.0f;
+}
+
+rgb principled_base_albedo(const material *m)
+{
+    /* nothing gets through worth a base: 0 over 0 */
+    if (m->base_through < 1e-4f)
+        return rgb_gray(0.0f);
+    return rgb_scale(m->reflectance, base_share(m) / m->base_through);
+}
+
+void principled_interface(const material *m, float cosine, bool is_inside, rgb *out_reflected, rgb *out_through)
+{
+    float weight = fresnel_schlick_weight(cosine), through = through_share(m);
+    rgb dielectric = schlick(m->dielectric_f0, m->specular, weight), from_within = dielectric;
+    if (is_inside) {
+        /* what is seen from outside at the refracted angle, so that both ways are the same; total reflection is total
+         */
+        float sin2 = (1.0f - fminf(cosine * cosine, 1.0f)) * m->ior * m->ior;
+        from_within = sin2 >= 1.0f ? rgb_gray(1.0f)
+                                   : schlick(m->dielectric_f0, m->specular, fresnel_schlick_weight(sqrtf(1.0f - sin2)));
+    }
+    *out_reflected =
+        rgb_add(rgb_scale(dielectric, fmaxf(0.0f, 1.0f - m->metallic - through)), rgb_scale(from_within, through));
+    if (m->metallic > 0.0f)
+        *out_reflected = rgb_add(*out_reflected, rgb_scale(schlick(m->reflectance, 1.0f, weight), m->metallic));
+    *out_through = rgb_scale(m->reflectance, through * (1.0f - rgb_max(from_within)));
+}
+
+float principled_coat_reflectance(const material *m, float cosine)
+{
+    return m->clearcoat * (COAT_F0 + (1.0f - COAT_F0) * fresnel_schlick_weight(cosine));
+}
+
+float principled_coat_factor(const material *m, float cos_o, float cos_i)
+{
+    if (m->clearcoat == 0.0f)
+        return 1.0f;
+    /* the lesser of both ways: reciprocal, and no more than what the coat leaves of the light that comes */
+    bool is_solid = principled_is_solid(m);
+    float o = is_solid && cos_o < 0.0f ? 1.0f : coat_through(m, fabsf(cos_o));
+    float i = is_solid && cos_i < 0.0f ? 1.0f : coat_through(m, fabsf(cos_i));
+    return fminf(o, i);
+}
+
+principled_shares principled_shares_at(const material *m, float cosine)
+{
+    ggx_albedo albedo = ggx_albedo_of(m->alpha_u, cosine);
+    float under_coat = coat_through(m, cosine), base = rgb_max(m->reflectance);
+    float dielectric = rgb_max(m->dielectric_f0) * albedo.of_f0 + m->specular * albedo.of_f90;
+    float metal = base * albedo.of_f0 + albedo.of_f90, entered = base * (1.0f - dielectric);
+    return (principled_shares){
+        1.0f - under_coat,
+        under_coat * (m->metallic * metal + (1.0f - m->metallic) * dielectric + through_share(m) * entered),
+        under_coat * base_share(m) * entered};
+}

@@ -1,0 +1,138 @@
+/* passage.c: see passage.h. A ray that crosses an interface is cast anew from its other side; what a medium takes is
+ * reckoned from surface to surface, not from where rays start.
+ * Threads: pure but for the caller's counter. */
+#include "rays/passage.h"
+
+static rgb transmittance_in(const scene *s, uint32_t medium_index, float distance)
+{
+    return medium_index < s->medium_count ? medium_transmittance(&s->media[medium_index], distance) : rgb_gray(1.0f);
+}
+
+/* Lamps with a mix of materials stay where they are: their light starts all over them. */
+static bool is_passed(const scene *s, const surface_hit *hit)
+{
+    return material_is_interface(s, hit) && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
+}
+
+/* The ray on the other side of an interface. It stays on its line, as far as the line leaves the surface soon, so that
+ * many interfaces bend it no more than one. */
+static scene_ray pass_on(const surface_hit *hit, const scene_ray *ray)
+{
+    static const float COSINE_MIN = 0.125f;
+    scene_ray next = surface_ray(hit, *ray, ray->direction);
+    vec3 n = vec3_face_forward(hit->geometric_normal, ray->direction);
+    float cosine = vec3_dot(n, ray->direction), step = hit->epsilon / fmaxf(cosine, COSINE_MIN);
+    next.origin = vec3_add_scaled(hit->position, ray->direction, step);
+    if (cosine < COSINE_MIN)
+        next.origin = vec3_add_scaled(next.origin, n, hit->epsilon - step * cosine);
+    return next;
+}
+
+static float distance_between(vec3 a, vec3 b) { return sqrtf(vec3_distance_squared(a, b)); }
+
+/* Follows a ray of unit direction up to `length` and across interfaces, to the first surface that stays. *ray becomes
+ * its last stretch. in_out_left, which may be NULL, is multiplied by what media leave of light; where that is nothing,
+ * or there are too many interfaces, the way ends in the dark: false. */
+static bool follow(const scene *s, scene_ray *ray, float length, uint64_t *in_out_cut, surface_hit *out_hit,
+                   rgb *in_out_left)
+{
+    bool is_bounded = !isinf(length);
+    vec3 from = ray->origin, end = is_bounded ? vec3_add_scaled(ray->origin, ray->direction, length) : ray->origin;
+    float travelled = 0.0f;
+    for (int crossings = 0;; crossings++) {
+        bool is_hit = scene_intersect(s, *ray, length, out_hit);
+        float to_end = is_bounded ? distance_between(from, end) : INFINITY;
+        float distance = is_hit ? distance_between(from, out_hit->position) : to_end;
+        travelled += distance;
+        if (in_out_left)
+            *in_out_left = rgb_mul(*in_out_left, transmittance_in(s, ray->medium, distance));
+        if (!is_hit || (in_out_left && rgb_is_black(*in_out_left)))
+            return false;
+        if (!is_passed(s, out_hit)) {
+            out_hit->distance = travelled;
+            return true;
+        }
+        if (crossings == PASSAGE_CROSSINGS_MAX) {
+            (*in_out_cut)++;
+            if (in_out_left)
+                *in_out_left = rgb_gray(0.0f);
+            return false;
+        }
+        from = out_hit->position;
+        *ray = pass_on(out_hit, ray);
+        if (!is_bounded)
+            continue;
+        /* to the same end from the other side; it may lie within the step there */
+        vec3 rest = vec3_sub(end, ray->origin);
+        length = vec3_length(rest);
+        if (!(vec3_dot(rest, ray->direction) > 0.0f))
+            return false;
+        ray->direction = vec3_scale(rest, 1.0f / length);
+    }
+}
+
+bool passage_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, surface_hit *out_hit,
+                       rgb *out_transmittance)
+{
+    if (s->has_interfaces) {
+        scene_ray last = *ray;
+        *out_transmittance = rgb_gray(1.0f);
+        bool is_met = follow(s, &last, INFINITY, in_out_cut, out_hit, out_transmittance);
+        ray->medium = last.medium;
+        return is_met;
+    }
+    bool is_hit = scene_intersect(s, *ray, INFINITY, out_hit);
+    *out_transmittance = transmittance_in(s, ray->medium, is_hit ? out_hit->distance : INFINITY);
+    return is_hit && !rgb_is_black(*out_transmittance);
+}
+
+/* Makes the direction unit; gives what it was long. */
+static float normalize_direction(scene_ray *ray)
+{
+    float unit = vec3_length(ray->direction);
+    ray->direction = vec3_scale(ray->direction, 1.0f / unit);
+    return unit;
+}
+
+rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut)
+{
+    if (!s->has_interfaces) {
+        if (scene_occluded(s, ray, reach))
+            return rgb_gray(0.0f);
+        return ray.medium == SCENE_NO_MEDIUM ? rgb_gray(1.0f)
+                                             : transmittance_in(s, ray.medium, reach * vec3_length(ray.direction));
+    }
+    surface_hit hit;
+    rgb left = rgb_gray(1.0f);
+    float unit = normalize_direction(&ray);
+    if (!(unit > 0.0f))
+        return left; /* from a place to itself */
+    return follow(s, &ray, reach * unit, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;
+}
+
+bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
+{
+    ray.meets_veils = ray.skips_uv = true;
+    if (!s->has_interfaces)
+        return scene_intersect(s, ray, max_distance, out_hit);
+    uint64_t cut = 0;
+    float unit = normalize_direction(&ray);
+    if (!(unit > 0.0f) || !follow(s, &ray, max_distance * unit, &cut, out_hit, NULL))
+        return false;
+    out_hit->distance /= unit;
+    return true;
+}
+
+bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance)
+{
+    surface_hit hit;
+    ray.meets_veils = true;
+    return s->has_interfaces ? passage_find_surface(s, ray, max_distance, &hit) : scene_occluded(s, ray, max_distance);
+}
+
+void passage_warn_of_cut(log_sink *log, uint64_t count)
+{
+    if (count > 0)
+        log_message(log, AG_LOG_WARNING, "%llu rays would cross more than %d interfaces: they end there, dark",
+                    (unsigned long long)count, PASSAGE_CROSSINGS_MAX);
+}

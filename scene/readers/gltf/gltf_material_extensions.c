@@ -1,0 +1,171 @@
+/* gltf_material_extensions.c: the material extensions of Khronos: transmission, volume, ior, specular, clearcoat,
+ * unlit, specular-glossiness. Rests on: Khronos, KHR_materials_… of glTF 2.0; KHR_materials_ior says how
+ * specular-glossiness is written with an index of 0. Flow: gltf_materials -> [here] -> gltf_textures. Threads: one per
+ * scene. */
+#include "gltf/gltf_private.h"
+
+static const gltf_texture_use COLOR = {.is_color = true, .is_srgb = true, .scale = 1.0f};
+static const gltf_texture_use RED = {.channel = TEXTURE_CHANNEL_R, .scale = 1.0f};
+static const gltf_texture_use GREEN = {.channel = TEXTURE_CHANNEL_G, .scale = 1.0f};
+static const gltf_texture_use ALPHA = {.channel = TEXTURE_CHANNEL_A, .scale = 1.0f};
+
+typedef ag_status reader(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
+                         gltf_material *out);
+
+static ag_status read_ior(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
+                          gltf_material *out)
+{
+    double ior = 1.5;
+    gltf_value v = gltf_member(extension, "ior");
+    (void)at, (void)out;
+    GLTF_TRY(gltf_get_double(r, extension, "ior", &ior));
+    if (!(ior == 0.0 || (ior >= 1.0 && ior <= 1e6)))
+        return gltf_error(r, &v, "%g should be 0 or from 1", ior);
+    m->ior = (float)ior;
+    return AG_OK;
+}
+
+static ag_status read_specular(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
+                               gltf_material *out)
+{
+    (void)at;
+    GLTF_TRY(gltf_get_clamped(r, extension, "specularFactor", 0.0, 1.0, &m->specular));
+    GLTF_TRY(gltf_get_color(r, extension, "specularColorFactor", 0.0, 1e6, &m->specular_color));
+    m->specular_color = working_space_light(&r->scene->space, m->specular_color);
+    GLTF_TRY(gltf_get_texture(r, extension, "specularTexture", ALPHA, &out->uv_set, &m->specular_texture));
+    return gltf_get_texture(r, extension, "specularColorTexture", COLOR, &out->uv_set, &m->specular_color_texture);
+}
+
+static ag_status read_transmission(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
+                                   gltf_material *out)
+{
+    (void)at;
+    GLTF_TRY(gltf_get_clamped(r, extension, "transmissionFactor", 0.0, 1.0, &m->transmission));
+    if (m->transmission == 0.0f)
+        return AG_OK;
+    return gltf_get_texture(r, extension, "transmissionTexture", RED, &out->uv_set, &m->transmission_texture);
+}
+
+/* Of which that share is left after that distance in the world, as the format has it. */
+static float absorption(float share, double distance) { return (float)(-log(fmax((double)share, 1e-6)) / distance); }
+
+/* How thick it is, the mesh says better than the factor: only whether there is a volume is read from that. */
+static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
+                             gltf_material *out)
+{
+    float thickness = 0.0f;
+    double distance = 0.0;
+    rgb color = rgb_gray(1.0f);
+    gltf_value v = gltf_member(extension, "attenuationDistance");
+    (void)at;
+    GLTF_TRY(gltf_get_clamped(r, extension, "thicknessFactor", 0.0, 1e30, &thickness));
+    GLTF_TRY(gltf_get_double(r, extension, "attenuationDistance", &distance));
+    GLTF_TRY(gltf_get_color(r, extension, "attenuationColor", 0.0, 1.0, &color));
+    color = working_space_reflectance(&r->scene->space, color);
+    if (v.json && !(distance > 1e-18))
+        return gltf_error(r, &v, "%g should be above 0", distance);
+    if (thickness == 0.0f || m->transmission == 0.0f)
+        return AG_OK;
+    m->is_thin = false;
+    bool absorbs = v.json && (color.r < 1.0f || color.g < 1.0f || color.b < 1.0f);
+    medium filling = {
+        .sigma_a = {absorption(color.r, distance), absorption(color.g, distance), absorption(color.b, distance)}};
+    return absorbs ? scene_add_medium(r->scene, &filling, &out->medium_inside) : AG_OK;
+}
+
+static ag_status read_clearcoat(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
+                                gltf_material *out)
+{
+    gltf_value map = gltf_member(extension, "clearcoatNormalTexture");
+    (void)at;
+    GLTF_TRY(gltf_get_clamped(r, extension, "clearcoatFactor", 0.0, 1.0, &m->clearcoat));
+    GLTF_TRY(gltf_get_clamped(r, extension, "clearcoatRoughnessFactor", 0.0, 1.0, &m->clearcoat_roughness));
+    if (m->clearcoat == 0.0f)
+        return AG_OK;
+    if (map.json)
+        gltf_warn_once(r, &map, map.key, "normal maps of clearcoats are not supported: they are as smooth as the mesh");
+    GLTF_TRY(gltf_get_texture(r, extension, "clearcoatTexture", RED, &out->uv_set, &m->clearcoat_texture));
+    return gltf_get_texture(r, extension, "clearcoatRoughnessTexture", GREEN, &out->uv_set,
+                            &m->clearcoat_roughness_texture);
+}
+
+/* A dielectric of infinite index reflects what its specular colour says, from all sides; what is left is diffuse. */
+static ag_status read_specular_glossiness(gltf_reader *r, const gltf_value *at, const gltf_value *extension,
+                                          material *m, gltf_material *out)
+{
+    float diffuse[4] = {1.0f, 1.0f, 1.0f, 1.0f}, glossiness = 1.0f;
+    GLTF_TRY(gltf_get_factors(r, extension, "diffuseFactor", 0.0, 1.0, 4, diffuse));
+    GLTF_TRY(gltf_get_color(r, extension, "specularFactor", 0.0, 1.0, &m->specular_color));
+    GLTF_TRY(gltf_get_clamped(r, extension, "glossinessFactor", 0.0, 1.0, &glossiness));
+    m->reflectance = working_space_reflectance(&r->scene->space, rgb_make(diffuse[0], diffuse[1], diffuse[2]));
+    m->specular_color = working_space_reflectance(&r->scene->space, m->specular_color);
+    m->reflectance_texture = m->metallic_texture = m->roughness_texture = SCENE_NO_TEXTURE;
+    m->metallic = 0.0f;
+    m->ior = 0.0f;
+    m->roughness = 1.0f - glossiness;
+    out->uv_set = GLTF_NONE;
+    GLTF_TRY(gltf_get_texture(r, extension, "diffuseTexture", COLOR, &out->uv_set, &m->reflectance_texture));
+    GLTF_TRY(gltf_read_alpha(r, at, extension, "diffuseTexture", diffuse[3], out));
+    GLTF_TRY(
+        gltf_get_texture(r, extension, "specularGlossinessTexture", COLOR, &out->uv_set, &m->specular_color_texture));
+    if (m->specular_color_texture == SCENE_NO_TEXTURE || glossiness == 0.0f)
+        return AG_OK;
+    /* the texture's alpha is the glossiness: roughness is 1 - factor alpha; alpha is never encoded */
+    gltf_texture_use roughness = {.is_srgb = true, .channel = TEXTURE_CHANNEL_A, .scale = glossiness, .invert = true};
+    m->roughness = 1.0f;
+    return gltf_get_texture(r, extension, "specularGlossinessTexture", roughness, &out->uv_set, &m->roughness_texture);
+}
+
+/* Shown as it is whatever light falls on it: it shines with its colour and reflects nothing. */
+static ag_status read_unlit(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
+                            gltf_material *out)
+{
+    rgb color = m->reflectance;
+    uint32_t color_texture = m->reflectance_texture;
+    gltf_warn_once(r, extension, "unlit", "unlit materials shine with their colour, and so light what is around them");
+    (void)at;
+    *m = material_make(MATERIAL_DIFFUSE);
+    m->reflectance = rgb_gray(0.0f);
+    out->radiance = color;
+    out->radiance_texture = color_texture;
+    out->only_glows = false;
+    out->is_two_sided = true;
+    return AG_OK;
+}
+
+/* What the picture can go without is named. */
+static void warn_others(const gltf_reader *r, const gltf_value *extensions)
+{
+    static const char *const OTHERS[] = {"KHR_materials_anisotropy", "KHR_materials_diffuse_transmission",
+                                         "KHR_materials_dispersion", "KHR_materials_iridescence",
+                                         "KHR_materials_sheen"};
+    for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
+        gltf_value v = gltf_member(extensions, OTHERS[i]);
+        if (v.json)
+            gltf_warn_once(r, &v, OTHERS[i], "the extension %s is not supported, and ignored", OTHERS[i]);
+    }
+}
+
+ag_status gltf_read_material_extensions(gltf_reader *r, const gltf_value *at, material *m, gltf_material *out)
+{
+    static const struct {
+        const char *name;
+        reader *read;
+    } EXTENSIONS[] = {
+        {"KHR_materials_pbrSpecularGlossiness", read_specular_glossiness}, /* replaces what was read before */
+        {"KHR_materials_ior", read_ior},
+        {"KHR_materials_specular", read_specular},
+        {"KHR_materials_transmission", read_transmission},
+        {"KHR_materials_volume", read_volume},
+        {"KHR_materials_clearcoat", read_clearcoat},
+        {"KHR_materials_unlit", read_unlit}, /* the last: replaces all */
+    };
+    gltf_value extensions, extension;
+    for (size_t i = 0; i < sizeof EXTENSIONS / sizeof *EXTENSIONS; i++) {
+        GLTF_TRY(gltf_get_extension(r, at, EXTENSIONS[i].name, &extensions, &extension));
+        if (extension.json)
+            GLTF_TRY(EXTENSIONS[i].read(r, at, &extension, m, out));
+    }
+    warn_others(r, &extensions);
+    return AG_OK;
+}

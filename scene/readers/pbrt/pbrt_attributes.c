@@ -1,0 +1,85 @@
+/* pbrt_attributes.c: Attribute of a pbrt-v4 scene: parameters for the shapes, lights, materials, media or textures that
+ * follow, until the block ends.
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Attributes". What a directive says itself comes first,
+ * then the latest Attribute. Flow: pbrt_parser -> [here] -> pbrt_parameters. Threads: one per scene. */
+#include "pbrt/pbrt_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const struct {
+    const char *directive;
+    pbrt_target target;
+} TARGETS[] = {
+    {"Shape", PBRT_TARGET_SHAPE},
+    {"LightSource", PBRT_TARGET_LIGHT},
+    {"AreaLightSource", PBRT_TARGET_LIGHT},
+    {"Material", PBRT_TARGET_MATERIAL},
+    {"MakeNamedMaterial", PBRT_TARGET_MATERIAL},
+    {"MakeNamedMedium", PBRT_TARGET_MEDIUM},
+    {"Texture", PBRT_TARGET_TEXTURE},
+};
+
+/* Each parameter is an attribute of its own, before those that were there. */
+static ag_status add_attributes(pbrt_parser *parser, const parameter_list *list, pbrt_target target)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        pbrt_attribute *added = calloc(1, sizeof *added);
+        if (!added || !parameter_copy(&list->items[i], &added->item)) {
+            free(added);
+            return AG_ERROR_MEMORY;
+        }
+        added->item.may_be_unused = true;
+        added->older = parser->state.attributes[target];
+        added->older_of_all = parser->attributes;
+        parser->state.attributes[target] = parser->attributes = added;
+    }
+    return AG_OK;
+}
+
+ag_status pbrt_attribute_directive(pbrt_parser *parser, file_location where)
+{
+    static const char *const NAMES[PBRT_TARGET_COUNT] = {"shape", "light", "material", "medium", "texture"};
+    parameter_list list;
+    PBRT_TRY(pbrt_read_named_parameters(parser, "Attribute", "a quoted target", where, &list));
+    int target = 0;
+    while (target < PBRT_TARGET_COUNT && strcmp(list.name, NAMES[target]) != 0)
+        target++;
+    ag_status status =
+        target < PBRT_TARGET_COUNT
+            ? add_attributes(parser, &list, (pbrt_target)target)
+            : pbrt_error(parser, where, strlen("Attribute"),
+                         "unknown target \"%s\"; known are shape, light, material, medium and texture", list.name);
+    parameter_list_reset(&list);
+    return status;
+}
+
+ag_status pbrt_append_attributes(pbrt_parser *parser, parameter_list *list)
+{
+    const pbrt_attribute *newest = NULL;
+    for (size_t i = 0; i < sizeof TARGETS / sizeof *TARGETS; i++)
+        if (strcmp(list->directive, TARGETS[i].directive) == 0)
+            newest = parser->state.attributes[TARGETS[i].target];
+    for (const pbrt_attribute *a = newest; a; a = a->older) {
+        if (parameter_list_find(list, a->item.name))
+            continue;
+        parameter *larger = realloc(list->items, (list->count + 1) * sizeof *larger);
+        if (!larger)
+            return AG_ERROR_MEMORY;
+        list->items = larger;
+        if (!parameter_copy(&a->item, &larger[list->count]))
+            return AG_ERROR_MEMORY;
+        list->count++;
+    }
+    return AG_OK;
+}
+
+void pbrt_free_attributes(pbrt_parser *parser)
+{
+    while (parser->attributes) {
+        pbrt_attribute *a = parser->attributes;
+        parser->attributes = a->older_of_all;
+        parameter_reset(&a->item);
+        free(a);
+    }
+}

@@ -1,0 +1,313 @@
+/* pbrt_curves.c: Shape "curve" of a pbrt-v4 scene.
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Curves"; and for what a segment is in each basis on
+ * Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 6.7; Farin, "Curves and Surfaces for CAGD",
+ * 2002 (all become cubic Bezier curves, exactly). Flow: pbrt_shapes -> [here] -> scene.shapes. Threads: one per scene.
+ */
+#include "pbrt/pbrt_private.h"
+
+#include "math/sampling.h"
+#include "shape/curves.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A flat segment is cut until its straight pieces keep within this share of its width, as pbrt does it; but into no
+ * more than so many. */
+static const double DEVIATION = 0.05;
+enum { CUTS_MAX = 16 };
+/* Sines and cosines of normals that lie opposite each other know no way between. */
+static const double OPPOSITE = -0.9999;
+
+typedef struct curve_source {
+    const double *points, *normals; /* 3 each; normals: NULL but for ribbons */
+    size_t point_count, segment_count;
+    int degree;
+    bool is_bspline;
+    double width[2]; /* at its ends */
+} curve_source;
+
+/* A segment's four control points, and its ends' radii, in object space. */
+typedef struct segment {
+    double p[4][3];
+    double radius[2];
+} segment;
+
+static void mix(const double *a, const double *b, double t, double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = a[i] * (1.0 - t) + b[i] * t;
+}
+
+/* A parabola as a cubic. */
+static void elevate(const double *a, const double *b, const double *c, double out[4][3])
+{
+    memcpy(out[0], a, 3 * sizeof(double));
+    mix(a, b, 2.0 / 3.0, out[1]);
+    mix(c, b, 2.0 / 3.0, out[2]);
+    memcpy(out[3], c, 3 * sizeof(double));
+}
+
+static segment make_segment(const curve_source *source, size_t index)
+{
+    segment s;
+    const double *q = source->points + 3 * index * (source->is_bspline ? 1 : (size_t)source->degree);
+    for (int end = 0; end < 2; end++) {
+        double t = (double)(index + (size_t)end) / (double)source->segment_count;
+        s.radius[end] = 0.5 * (source->width[0] * (1.0 - t) + source->width[1] * t);
+    }
+    if (source->degree == 2 && source->is_bspline) {
+        double first[3], last[3];
+        mix(q, q + 3, 0.5, first);
+        mix(q + 3, q + 6, 0.5, last);
+        elevate(first, q + 3, last, s.p);
+    } else if (source->degree == 2) {
+        elevate(q, q + 3, q + 6, s.p);
+    } else if (source->is_bspline) {
+        double before[3], behind[3];
+        mix(q, q + 3, 2.0 / 3.0, before);
+        mix(q + 3, q + 6, 1.0 / 3.0, s.p[1]);
+        mix(q + 3, q + 6, 2.0 / 3.0, s.p[2]);
+        mix(q + 6, q + 9, 1.0 / 3.0, behind);
+        mix(before, s.p[1], 0.5, s.p[0]);
+        mix(s.p[2], behind, 0.5, s.p[3]);
+    } else {
+        memcpy(s.p, q, sizeof s.p);
+    }
+    return s;
+}
+
+/* What of a segment lies between two of its parameters, by its blossom. */
+static segment cut(const segment *whole, double from, double to)
+{
+    segment part;
+    const double ends[2] = {from, to};
+    for (int k = 0; k < 4; k++) {
+        double at[4][3];
+        memcpy(at, whole->p, sizeof at);
+        for (int level = 0; level < 3; level++) {
+            double t = ends[level < k]; /* of three arguments the last k are the end */
+            for (int i = 0; i < 3 - level; i++)
+                mix(at[i], at[i + 1], t, at[i]);
+        }
+        memcpy(part.p[k], at[0], sizeof at[0]);
+    }
+    for (int end = 0; end < 2; end++)
+        part.radius[end] = whole->radius[0] * (1.0 - ends[end]) + whole->radius[1] * ends[end];
+    return part;
+}
+
+/* A cubic's second derivative is at most six times the largest second difference of its points; a chord over 1/n of
+ * it strays by that over 8 n^2. */
+static int count_cuts(const segment *s)
+{
+    double bend = 0.0, width = 2.0 * fmax(s->radius[0], s->radius[1]);
+    for (int k = 0; k < 2; k++) {
+        double square = 0.0;
+        for (int i = 0; i < 3; i++) {
+            double second = s->p[k][i] - 2.0 * s->p[k + 1][i] + s->p[k + 2][i];
+            square += second * second;
+        }
+        bend = fmax(bend, sqrt(square));
+    }
+    double pieces = sqrt(0.75 * bend / (DEVIATION * width));
+    return (int)fmin(fmax(ceil(pieces / CURVES_FLAT_PIECES), 1.0), CUTS_MAX);
+}
+
+/* Normals in between turn evenly; the control points here are of the cubic that agrees at thirds. */
+static void turn_normals(const double *n0, const double *n1, double out[4][3])
+{
+    double unit[2][3], length[2] = {0.0, 0.0}, cosine = 0.0, thirds[2][3];
+    for (int i = 0; i < 3; i++) {
+        length[0] += n0[i] * n0[i];
+        length[1] += n1[i] * n1[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        unit[0][i] = n0[i] / sqrt(length[0]);
+        unit[1][i] = n1[i] / sqrt(length[1]);
+        cosine += unit[0][i] * unit[1][i];
+    }
+    double angle = acos(fmin(fmax(cosine, -1.0), 1.0)), sine = sin(angle);
+    for (int k = 0; k < 2; k++) {
+        double t = (k + 1) / 3.0;
+        double a = sine > 1e-6 ? sin((1.0 - t) * angle) / sine : 1.0 - t, b = sine > 1e-6 ? sin(t * angle) / sine : t;
+        for (int i = 0; i < 3; i++)
+            thirds[k][i] = a * unit[0][i] + b * unit[1][i];
+    }
+    for (int i = 0; i < 3; i++) {
+        out[0][i] = unit[0][i];
+        out[1][i] = (-5.0 * unit[0][i] + 18.0 * thirds[0][i] - 9.0 * thirds[1][i] + 2.0 * unit[1][i]) / 6.0;
+        out[2][i] = (2.0 * unit[0][i] - 9.0 * thirds[0][i] + 18.0 * thirds[1][i] - 5.0 * unit[1][i]) / 6.0;
+        out[3][i] = unit[1][i];
+    }
+}
+
+typedef enum outcome { ADDED, IS_NOTHING, IS_OUT_OF_REACH, NO_MEMORY } outcome;
+
+/* Adds one cubic in the shape's space; what has no length, no width, or is too small for floats is nothing. */
+static outcome add_segment(curves *c, const transform *t, double scale, const segment *s, vec2 span,
+                           double (*normals)[3])
+{
+    curve_point points[4];
+    double length = 0.0, radius = scale * fmax(s->radius[0], s->radius[1]);
+    for (int k = 0; k < 4; k++) {
+        points[k].at = transform_point(t, (vec3){(float)s->p[k][0], (float)s->p[k][1], (float)s->p[k][2]});
+        points[k].radius = (float)(scale * (s->radius[0] * (3 - k) + s->radius[1] * k) / 3.0);
+        if (!(vec3_max_abs(points[k].at) + points[k].radius <= PBRT_MAX_COORDINATE) || !vec3_is_finite(points[k].at))
+            return IS_OUT_OF_REACH;
+    }
+    for (int k = 1; k < 4; k++)
+        length += sqrt((double)vec3_distance_squared(points[k].at, points[0].at));
+    if (!(radius > 1e-15 && length > 1e-15))
+        return IS_NOTHING;
+    if (curves_reserve(c, c->segment_count + 1) != AG_OK)
+        return NO_MEMORY;
+    memcpy(c->points + 4 * (size_t)c->segment_count, points, sizeof points);
+    c->spans[c->segment_count] = span;
+    for (int k = 0; normals && k < 4; k++)
+        c->normals[4 * (size_t)c->segment_count + (size_t)k] =
+            transform_normal(t, (vec3){(float)normals[k][0], (float)normals[k][1], (float)normals[k][2]});
+    c->segment_count++;
+    return ADDED;
+}
+
+static ag_status add_segments(pbrt_parser *parser, const parameter_list *list, const curve_source *source, curves *c)
+{
+    const transform *t = &parser->state.world_from_object;
+    double scale = transform_uniform_scale(t);
+    size_t nothing = 0;
+    for (size_t i = 0; i < source->segment_count; i++) {
+        segment whole = make_segment(source, i);
+        double normals[4][3];
+        if (source->normals)
+            turn_normals(source->normals + 3 * i, source->normals + 3 * (i + 1), normals);
+        int cuts = c->type == CURVES_FLAT ? count_cuts(&whole) : 1;
+        size_t lost = 0;
+        for (int k = 0; k < cuts; k++) {
+            vec2 span = {(float)k / (float)cuts, (float)(k + 1) / (float)cuts};
+            segment part = cuts > 1 ? cut(&whole, (double)k / cuts, (double)(k + 1) / cuts) : whole;
+            switch (add_segment(c, t, scale, &part, span, source->normals ? normals : NULL)) {
+            case ADDED: break;
+            case IS_NOTHING: lost = 1; break;
+            case IS_OUT_OF_REACH:
+                return pbrt_refuse(parser, list, "P", "the curve reaches beyond 1e18 units in world space");
+            case NO_MEMORY: return AG_ERROR_MEMORY;
+            }
+        }
+        nothing += lost;
+    }
+    if (nothing > 0)
+        log_at(parser->log, AG_LOG_WARNING, list->where,
+               "Shape \"curve\": %zu of %zu segments have no length or no width and are left out", nothing,
+               source->segment_count);
+    return AG_OK;
+}
+
+static ag_status read_widths(pbrt_parser *parser, parameter_list *list, curve_source *source)
+{
+    static const char *const NAMES[2] = {"width0", "width1"};
+    float width = 1.0f;
+    PBRT_TRY(parameter_get_float(list, parser->log, "width", &width));
+    for (int i = 0; i < 2; i++) {
+        float at_end = width;
+        PBRT_TRY(parameter_get_float(list, parser->log, NAMES[i], &at_end));
+        if (!(at_end >= 0.0f))
+            return pbrt_refuse(parser, list, parameter_list_find(list, NAMES[i]) ? NAMES[i] : "width",
+                               "a curve's width should not be below 0");
+        source->width[i] = (double)at_end;
+    }
+    return AG_OK;
+}
+
+static ag_status read_points(pbrt_parser *parser, parameter_list *list, curve_source *source)
+{
+    int64_t degree = 3;
+    const char *basis = "bezier";
+    PBRT_TRY(parameter_get_int(list, parser->log, "degree", &degree));
+    PBRT_TRY(parameter_get_string(list, parser->log, "basis", &basis));
+    PBRT_TRY(parameter_get_numbers(list, parser->log, "P", PARAMETER_POINT3, &source->points, &source->point_count));
+    source->point_count /= 3;
+    if (degree != 2 && degree != 3)
+        return pbrt_refuse(parser, list, "degree", "\"degree\" should be 2 or 3");
+    source->degree = (int)degree;
+    source->is_bspline = strcmp(basis, "bspline") == 0;
+    if (!source->is_bspline && strcmp(basis, "bezier") != 0)
+        return pbrt_refuse(parser, list, "basis", "unknown basis \"%s\": it should be \"bezier\" or \"bspline\"",
+                           basis);
+    size_t n = source->point_count, d = (size_t)degree;
+    if (n < d + 1 || (!source->is_bspline && (n - 1) % d != 0))
+        return pbrt_refuse(parser, list, "P",
+                           source->is_bspline ? "a B-spline of degree %d has %d points or more, not %zu"
+                                              : "Bezier curves of degree %d have %d points, and as many as the degree "
+                                                "more for each further segment, not %zu",
+                           source->degree, source->degree + 1, n);
+    source->segment_count = source->is_bspline ? n - d : (n - 1) / d;
+    return AG_OK;
+}
+
+static ag_status read_normals(pbrt_parser *parser, parameter_list *list, curves_type type, curve_source *source)
+{
+    size_t count;
+    PBRT_TRY(parameter_get_numbers(list, parser->log, "N", PARAMETER_NORMAL, &source->normals, &count));
+    count /= 3;
+    if (type != CURVES_RIBBON) {
+        if (count > 0)
+            log_at_once(parser->log, AG_LOG_WARNING, list->where, "curve normals",
+                        "Shape \"curve\": \"N\" is for curves of the type \"ribbon\" and is left out");
+        source->normals = NULL;
+        return AG_OK;
+    }
+    if (count == 0)
+        return pbrt_refuse(parser, list, "N", "a \"ribbon\" needs normals \"N\" at the ends of its segments");
+    if (count != source->segment_count + 1)
+        return pbrt_refuse(parser, list, "N", "a \"ribbon\" of %zu segments needs %zu normals, not %zu",
+                           source->segment_count, source->segment_count + 1, count);
+    for (size_t i = 0; i < count; i++) {
+        const double *n = source->normals + 3 * i, *m = n + (i + 1 < count ? 3 : 0);
+        double nn = n[0] * n[0] + n[1] * n[1] + n[2] * n[2], mm = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+        if (!(nn > 1e-60 && nn < 1e60))
+            return pbrt_refuse(parser, list, "N", "a ribbon's normal has no usable length");
+        if (mm > 1e-60 && n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < OPPOSITE * sqrt(nn) * sqrt(mm))
+            return pbrt_refuse(parser, list, "N",
+                               "two normals that follow each other are opposite: which way does the ribbon turn?");
+    }
+    return AG_OK;
+}
+
+static ag_status read_type(pbrt_parser *parser, parameter_list *list, curves_type *out_type)
+{
+    static const char *const NAMES[] = {
+        [CURVES_FLAT] = "flat", [CURVES_CYLINDER] = "cylinder", [CURVES_RIBBON] = "ribbon"};
+    const char *name = NAMES[CURVES_FLAT];
+    PBRT_TRY(parameter_get_string(list, parser->log, "type", &name));
+    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
+        if (strcmp(name, NAMES[i]) == 0) {
+            *out_type = (curves_type)i;
+            return AG_OK;
+        }
+    return pbrt_refuse(parser, list, "type", "unknown type \"%s\": it should be \"flat\", \"cylinder\" or \"ribbon\"",
+                       name);
+}
+
+ag_status pbrt_curve(pbrt_parser *parser, parameter_list *list)
+{
+    curve_source source = {0};
+    int64_t split_depth;
+    shape s = shape_make(SHAPE_CURVES);
+    curves *c = &s.as.curves;
+    PBRT_TRY(read_type(parser, list, &c->type));
+    PBRT_TRY(read_points(parser, list, &source));
+    PBRT_TRY(read_widths(parser, list, &source));
+    PBRT_TRY(read_normals(parser, list, c->type, &source));
+    /* how finely pbrt cuts curves for its tree; Embree sees to that itself */
+    PBRT_TRY(parameter_get_int(list, parser->log, "splitdepth", &split_depth));
+    parameter_list_warn_unused(list, parser->log);
+    s.flip_normal = parser->state.reverse_orientation;
+    if (c->type == CURVES_RIBBON && transform_swaps_handedness(&parser->state.world_from_object))
+        s.flip_normal = !s.flip_normal;
+    ag_status status = add_segments(parser, list, &source, c);
+    if (status != AG_OK || c->segment_count == 0) {
+        curves_reset(c);
+        return status;
+    }
+    return pbrt_add_shape(parser, list, &s);
+}

@@ -1,0 +1,279 @@
+/* pbrt_lights.c: LightSource and AreaLightSource of a pbrt-v4 scene.
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Lights". Light is linear RGB: an rgb I or L is taken as
+ * it is; "power" and "illuminance" say how much of it there is, as in pbrt, whatever its magnitude would be.
+ * Flow: pbrt_parser -> [here] -> scene. Threads: one per scene. */
+#include "pbrt/pbrt_private.h"
+
+#include <string.h>
+
+/* What all lights have. */
+typedef struct light_common {
+    rgb color; /* "I" or "L" */
+    float scale;
+    float power; /* "power" or "illuminance"; not above 0: not given */
+    vec3 from, to;
+} light_common;
+
+static const double PI = 3.14159265358979323846;
+
+static ag_status read_common(pbrt_parser *parser, parameter_list *list, const char *color_name, const char *power_name,
+                             light_common *out_common)
+{
+    light_common c = {{1.0f, 1.0f, 1.0f}, 1.0f, -1.0f, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
+    PBRT_TRY(parameter_get_rgb(list, parser->log, color_name, &c.color));
+    PBRT_TRY(parameter_get_float(list, parser->log, "scale", &c.scale));
+    PBRT_TRY(parameter_get_float(list, parser->log, power_name, &c.power));
+    if (c.scale < 0.0f)
+        return pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
+    *out_common = c;
+    return AG_OK;
+}
+
+static void tell_dark(pbrt_parser *parser, file_location where, const char *directive, const char *name, rgb emitted)
+{
+    if (rgb_is_black(emitted))
+        log_at(parser->log, AG_LOG_DEBUG, where, "%s \"%s\" has no power", directive, name);
+}
+
+/* factor is a quotient of powers: it may overflow where the scene makes no sense. */
+static ag_status scale_color(pbrt_parser *parser, const parameter_list *list, rgb color, double factor, rgb *out_color)
+{
+    *out_color = rgb_make((float)(color.r * factor), (float)(color.g * factor), (float)(color.b * factor));
+    return rgb_is_finite(*out_color) ? AG_OK
+                                     : pbrt_refuse(parser, list, "scale", "the light is too bright for a float");
+}
+
+static ag_status read_direction(pbrt_parser *parser, parameter_list *list, light_common *c, vec3 *out_direction)
+{
+    PBRT_TRY(parameter_get_vec3(list, parser->log, "from", PARAMETER_POINT3, &c->from));
+    PBRT_TRY(parameter_get_vec3(list, parser->log, "to", PARAMETER_POINT3, &c->to));
+    const transform *t = &parser->state.world_from_object;
+    double d[3] = {(double)c->to.x - c->from.x, (double)c->to.y - c->from.y, (double)c->to.z - c->from.z};
+    double w[3], square = 0.0;
+    for (int i = 0; i < 3; i++) {
+        w[i] = t->m[i][0] * d[0] + t->m[i][1] * d[1] + t->m[i][2] * d[2];
+        square += w[i] * w[i];
+    }
+    if (!(square > 0.0 && isfinite(square)))
+        return pbrt_refuse(parser, list, "to", "\"from\" and \"to\" give no direction");
+    double inverse = 1.0 / sqrt(square);
+    *out_direction = vec3_make((float)(w[0] * inverse), (float)(w[1] * inverse), (float)(w[2] * inverse));
+    return AG_OK;
+}
+
+static ag_status set_position(pbrt_parser *parser, const parameter_list *list, vec3 from, light *l)
+{
+    l->position = transform_point(&parser->state.world_from_object, from);
+    return vec3_is_finite(l->position) ? AG_OK : pbrt_refuse(parser, list, "from", "the light is too far away");
+}
+
+static ag_status read_point(pbrt_parser *parser, parameter_list *list, light *l)
+{
+    light_common c;
+    l->kind = LIGHT_POINT;
+    PBRT_TRY(read_common(parser, list, "I", "power", &c));
+    PBRT_TRY(parameter_get_vec3(list, parser->log, "from", PARAMETER_POINT3, &c.from));
+    PBRT_TRY(set_position(parser, list, c.from, l));
+    double factor = c.power > 0.0f ? c.scale * (c.power / (4.0 * PI)) : c.scale;
+    return scale_color(parser, list, c.color, factor, &l->intensity);
+}
+
+static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
+{
+    light_common c;
+    float cone = 30.0f, delta = 5.0f;
+    l->kind = LIGHT_SPOT;
+    PBRT_TRY(read_common(parser, list, "I", "power", &c));
+    PBRT_TRY(read_direction(parser, list, &c, &l->direction));
+    PBRT_TRY(set_position(parser, list, c.from, l));
+    PBRT_TRY(parameter_get_float(list, parser->log, "coneangle", &cone));
+    PBRT_TRY(parameter_get_float(list, parser->log, "conedeltaangle", &delta));
+    if (!(cone > 0.0f && cone <= 180.0f))
+        return pbrt_refuse(parser, list, "coneangle", "\"coneangle\" should be within (0, 180] degrees");
+    if (!(delta >= 0.0f && delta <= 2.0f * cone)) /* beyond the axis pbrt counts on at the other side */
+        return pbrt_refuse(parser, list, "conedeltaangle",
+                           "\"conedeltaangle\" should be from 0 to twice \"coneangle\"");
+    light_set_cone(l, ((double)cone - delta) * (PI / 180.0), cone * (PI / 180.0));
+    double cone_measure =
+        PI * ((double)l->falloff_start + l->falloff_end); /* the ramp is half of its height, on average */
+    double factor = c.power > 0.0f ? c.scale * (c.power / cone_measure) : c.scale;
+    return scale_color(parser, list, c.color, factor, &l->intensity);
+}
+
+static ag_status read_distant(pbrt_parser *parser, parameter_list *list, light *l)
+{
+    light_common c;
+    l->kind = LIGHT_DISTANT;
+    PBRT_TRY(read_common(parser, list, "L", "illuminance", &c));
+    PBRT_TRY(read_direction(parser, list, &c, &l->direction));
+    double factor = c.power > 0.0f ? (double)c.scale * c.power : c.scale;
+    return scale_color(parser, list, c.color, factor, &l->radiance);
+}
+
+/* "photons", which pbrt does not have: multiplies the light's share of them. */
+static ag_status read_photons(pbrt_parser *parser, parameter_list *list, float *out_photons)
+{
+    PBRT_TRY(parameter_get_float(list, parser->log, "photons", out_photons));
+    if (!(*out_photons >= 0.0f))
+        return pbrt_refuse(parser, list, "photons", "\"photons\" should not be negative");
+    if (*out_photons == 0.0f)
+        log_at(parser->log, AG_LOG_INFO, list->where,
+               "the light sends no photons: its indirect light and caustics are missing from the photon map");
+    return AG_OK;
+}
+
+/* "lightgroup", which pbrt does not have: a name under which layers keep the light apart. */
+static ag_status read_group(pbrt_parser *parser, parameter_list *list, uint32_t *out_group)
+{
+    const char *name = "default";
+    uint32_t unnamed;
+    PBRT_TRY(parameter_get_string(list, parser->log, "lightgroup", &name));
+    if (name[0] == '\0' || name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")] ||
+        strlen(name) > 40 || strcmp(name, "photons") == 0)
+        return pbrt_refuse(
+            parser, list, "lightgroup",
+            "\"lightgroup\" should be a name of at most 40 letters, digits, - and _, and not \"photons\"");
+    PBRT_TRY(scene_light_group(parser->scene, "default", &unnamed)); /* the first */
+    ag_status status = scene_light_group(parser->scene, name, out_group);
+    if (status == AG_ERROR_SCENE)
+        return pbrt_refuse(parser, list, "lightgroup", "there are more than %d light groups", SCENE_LIGHT_GROUPS_MAX);
+    return status;
+}
+
+static ag_status read_light(pbrt_parser *parser, parameter_list *list, light *l)
+{
+    typedef ag_status reader(pbrt_parser *, parameter_list *, light *);
+    static const struct {
+        const char *name;
+        reader *read;
+    } READERS[] = {{"point", read_point},
+                   {"spot", read_spot},
+                   {"distant", read_distant},
+                   {"infinite", pbrt_infinite_light},
+                   {"goniometric", pbrt_goniometric_light},
+                   {"projection", pbrt_projection_light}};
+    PBRT_TRY(read_photons(parser, list, &l->photons));
+    PBRT_TRY(read_group(parser, list, &l->group));
+    for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
+        if (strcmp(list->name, READERS[i].name) == 0)
+            return READERS[i].read(parser, list, l);
+    return pbrt_error(parser, list->where, strlen("LightSource"), "unknown light \"%s\"", list->name);
+}
+
+static ag_status add_light(pbrt_parser *parser, parameter_list *list)
+{
+    uint32_t index;
+    light l = light_make(LIGHT_POINT);
+    PBRT_TRY(read_light(parser, list, &l));
+    parameter_list_warn_unused(list, parser->log);
+    l.medium = pbrt_use_medium(parser, parser->state.medium_outside);
+    bool has_radiance = l.kind == LIGHT_DISTANT || l.kind == LIGHT_INFINITE;
+    tell_dark(parser, list->where, "LightSource", list->name, has_radiance ? l.radiance : l.intensity);
+    return scene_add_light(parser->scene, &l, &index);
+}
+
+ag_status pbrt_light_source(pbrt_parser *parser, file_location where)
+{
+    parameter_list list;
+    PBRT_TRY(pbrt_read_named_parameters(parser, "LightSource", "a quoted type", where, &list));
+    pbrt_warn_still(parser, where, "a light");
+    ag_status status = pbrt_is_flattened(parser, where, "LightSource") ? AG_OK : add_light(parser, &list);
+    parameter_list_reset(&list);
+    return status;
+}
+
+static double mean_luminance(const working_space *space, const texture_image *i)
+{
+    double sum = 0.0;
+    for (uint32_t y = 0; y < i->height; y++)
+        for (uint32_t x = 0; x < i->width; x++)
+            sum += (double)working_space_luminance(
+                space, texture_image_color(i, texture_wraps_same(TEXTURE_WRAP_CLAMP), TEXTURE_FILTER_POINT,
+                                           ((float)x + 0.5f) / (float)i->width, ((float)y + 0.5f) / (float)i->height));
+    return sum / ((double)i->width * i->height);
+}
+
+/* "filename": radiance by the surface's own u and v. */
+static ag_status read_area_picture(pbrt_parser *parser, parameter_list *list, pbrt_area_light *l)
+{
+    const char *name = "";
+    PBRT_TRY(parameter_get_string(list, parser->log, "filename", &name));
+    if (!name[0])
+        return AG_OK;
+    if (parameter_list_find(list, "L"))
+        return pbrt_refuse(parser, list, "L", "an area light has \"L\" or \"filename\", not both");
+    texture t = texture_make(TEXTURE_IMAGE);
+    t.is_spectrum = true;
+    t.wraps = texture_wraps_same(TEXTURE_WRAP_CLAMP);
+    PBRT_TRY(pbrt_load_image(parser, list, "filename", name, (image_encoding){0}, &t));
+    PBRT_TRY(scene_add_texture(parser->scene, &t, &l->radiance_texture));
+    if (l->power > 0.0f)
+        l->mean_luminance = mean_luminance(&parser->scene->space, parser->scene->texture_images[t.image_index]);
+    if (!(l->mean_luminance > 0.0))
+        return pbrt_refuse(parser, list, "power", "the picture is black");
+    return AG_OK;
+}
+
+static ag_status read_area_light(pbrt_parser *parser, parameter_list *list, pbrt_area_light *out_light)
+{
+    light_common c = {0};
+    pbrt_area_light l = {.is_set = true,
+                         .photons = 1.0f,
+                         .radiance_texture = SCENE_NO_TEXTURE,
+                         .mean_luminance = 1.0,
+                         .where = list->where};
+    if (strcmp(list->name, "diffuse") != 0)
+        return pbrt_error(parser, list->where, strlen("AreaLightSource"), "unknown area light \"%s\"", list->name);
+    PBRT_TRY(read_common(parser, list, "L", "power", &c));
+    PBRT_TRY(parameter_get_bool(list, parser->log, "twosided", &l.two_sided));
+    PBRT_TRY(scale_color(parser, list, c.color, c.scale, &l.radiance));
+    l.power = c.power;
+    PBRT_TRY(read_photons(parser, list, &l.photons));
+    PBRT_TRY(read_group(parser, list, &l.group));
+    PBRT_TRY(read_area_picture(parser, list, &l));
+    parameter_list_warn_unused(list, parser->log);
+    *out_light = l;
+    return AG_OK;
+}
+
+ag_status pbrt_area_light_source(pbrt_parser *parser, file_location where)
+{
+    parameter_list list;
+    PBRT_TRY(pbrt_read_named_parameters(parser, "AreaLightSource", "a quoted type", where, &list));
+    ag_status status = read_area_light(parser, &list, &parser->state.area_light);
+    parameter_list_reset(&list);
+    return status;
+}
+
+ag_status pbrt_add_area_light(pbrt_parser *parser, const pbrt_area_light *source, uint32_t shape_index,
+                              file_location where)
+{
+    float area = shape_area(&parser->scene->shapes[shape_index]);
+    if (!(area > 0.0f && isfinite(area))) {
+        log_at(parser->log, AG_LOG_WARNING, where, "the area light has a shape of area %g and is left out",
+               (double)area);
+        return AG_OK;
+    }
+    light l = light_make(LIGHT_AREA);
+    l.shape_index = shape_index;
+    l.two_sided = source->two_sided;
+    l.radiance = source->radiance;
+    l.radiance_texture = source->radiance_texture;
+    l.photons = source->photons;
+    l.group = source->group;
+    if (source->power > 0.0f) {
+        /* of a lamp with radiance 1 */
+        double power = PI * (double)area * (source->two_sided ? 2.0 : 1.0) * source->mean_luminance;
+        double factor = source->power / power;
+        l.radiance =
+            rgb_make((float)(l.radiance.r * factor), (float)(l.radiance.g * factor), (float)(l.radiance.b * factor));
+        if (!rgb_is_finite(l.radiance)) {
+            log_at(parser->log, AG_LOG_ERROR, where,
+                   "AreaLightSource \"diffuse\": the light is too bright for a float");
+            return AG_ERROR_SCENE;
+        }
+    }
+    tell_dark(parser, where, "AreaLightSource", "diffuse", l.radiance);
+    uint32_t index;
+    return scene_add_light(parser->scene, &l, &index);
+}

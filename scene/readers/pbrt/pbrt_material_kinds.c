@@ -1,0 +1,372 @@
+/* pbrt_material_kinds.c: what each kind of material of a pbrt-v4 scene is made of.
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Materials"; for what stands in for hair and flesh on
+ * Chiang et al., "A Practical and Controllable Hair and Fur Model for Production Path Tracing", 2016 (eq. 9), d'Eon et
+ * al., "An Energy-Conserving Hair Reflectance Model", 2011, and Jensen et al., "A Practical Model for Subsurface Light
+ * Transport", 2001 (the diffuse reflectance). Flow: pbrt_materials -> [here] -> material. Threads: one per scene. */
+#include "color/spectra.h"
+#include "pbrt/pbrt_private.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static rgb clamp_color(rgb c)
+{
+    return rgb_make(fminf(fmaxf(c.r, 0.0f), 1.0f), fminf(fmaxf(c.g, 0.0f), 1.0f), fminf(fmaxf(c.b, 0.0f), 1.0f));
+}
+
+static ag_status read_reflectance(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    rgb *r = &m->reflectance;
+    PBRT_TRY(pbrt_get_rgb_texture(parser, list, "reflectance", r, &m->reflectance_texture));
+    if (rgb_max(*r) > 1.0f) {
+        const parameter *p = parameter_list_find(list, "reflectance");
+        log_at(parser->log, AG_LOG_WARNING, p->where, "\"reflectance\" is above 1: 1 is used");
+        *r = clamp_color(*r);
+    }
+    return AG_OK;
+}
+
+/* "roughness" and its two axes, of the outer interface; prefix: of the parts of a coated conductor. */
+static ag_status read_roughness(pbrt_parser *parser, parameter_list *list, const char *prefix, material *m)
+{
+    float *const out_alpha[2] = {&m->alpha_u, &m->alpha_v};
+    uint32_t *const out_texture[2] = {&m->alpha_u_texture, &m->alpha_v_texture};
+    static const char *const AXES[2] = {"uroughness", "vroughness"};
+    char name[48];
+    float roughness = 0.0f;
+    uint32_t texture_index = SCENE_NO_TEXTURE;
+    bool remap = true;
+    snprintf(name, sizeof name, "%sroughness", prefix);
+    PBRT_TRY(pbrt_get_float_texture(parser, list, name, &roughness, &texture_index));
+    PBRT_TRY(parameter_get_bool(list, parser->log, "remaproughness", &remap));
+    if (roughness < 0.0f)
+        return pbrt_refuse(parser, list, name, "\"%s\" should not be negative", name);
+    for (int i = 0; i < 2; i++) {
+        float value = roughness;
+        snprintf(name, sizeof name, "%s%s", prefix, AXES[i]);
+        *out_texture[i] = texture_index;
+        if (parameter_list_find(list, name))
+            PBRT_TRY(pbrt_get_float_texture(parser, list, name, &value, out_texture[i]));
+        if (value < 0.0f)
+            return pbrt_refuse(parser, list, name, "\"%s\" should not be negative", name);
+        *out_alpha[i] = remap ? sqrtf(value) : value;
+    }
+    m->remaps_roughness = remap;
+    return AG_OK;
+}
+
+static bool is_texture(const parameter_list *list, const char *name)
+{
+    const parameter *p = parameter_list_find(list, name);
+    return p && p->type == PARAMETER_TEXTURE;
+}
+
+/* eta and k of a conductor, or those that give its reflectance; prefix as for read_roughness. */
+static ag_status read_metal(pbrt_parser *parser, parameter_list *list, const char *prefix, material *m)
+{
+    char eta[32], k[32];
+    snprintf(eta, sizeof eta, "%seta", prefix);
+    snprintf(k, sizeof k, "%sk", prefix);
+    spectra_find_named("metal-Cu-eta", NULL, &m->eta);
+    spectra_find_named("metal-Cu-k", NULL, &m->k);
+    if (!parameter_list_find(list, "reflectance")) {
+        PBRT_TRY(pbrt_get_rgb_texture(parser, list, eta, &m->eta, &m->eta_texture));
+        PBRT_TRY(pbrt_get_rgb_texture(parser, list, k, &m->k, &m->k_texture));
+        if (!(m->eta.r > 0.0f && m->eta.g > 0.0f && m->eta.b > 0.0f))
+            return pbrt_refuse(parser, list, eta, "\"%s\" should be above 0", eta);
+        if (!is_texture(list, eta) && !is_texture(list, k)) /* those are colours to their readers */
+            working_space_metal(&parser->scene->space, &m->eta, &m->k);
+        return AG_OK;
+    }
+    if (parameter_list_find(list, eta) || parameter_list_find(list, k))
+        return pbrt_refuse(parser, list, "reflectance",
+                           "\"reflectance\" and \"%s\" or \"%s\" cannot both be given to a conductor", eta, k);
+    PBRT_TRY(read_reflectance(parser, list, m));
+    rgb r = m->reflectance;
+    m->eta = rgb_gray(1.0f);
+    m->k =
+        rgb_make(material_k_from_reflectance(r.r), material_k_from_reflectance(r.g), material_k_from_reflectance(r.b));
+    return AG_OK;
+}
+
+/* One index for all light: dispersion is not simulated. */
+static ag_status read_index(pbrt_parser *parser, parameter_list *list, const char *name, float *ior)
+{
+    const parameter *eta = parameter_list_find(list, name);
+    if (eta && (eta->type == PARAMETER_SPECTRUM || eta->type == PARAMETER_RGB)) {
+        rgb value = rgb_gray(*ior);
+        PBRT_TRY(parameter_get_rgb(list, parser->log, name, &value));
+        *ior = value.g;
+    } else {
+        PBRT_TRY(parameter_get_float(list, parser->log, name, ior));
+    }
+    if (!(*ior > 0.0f))
+        return pbrt_refuse(parser, list, name, "\"%s\" should be above 0", name);
+    return AG_OK;
+}
+
+ag_status pbrt_read_conductor(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    PBRT_TRY(read_metal(parser, list, "", m));
+    return read_roughness(parser, list, "", m);
+}
+
+ag_status pbrt_read_dielectric(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    PBRT_TRY(read_index(parser, list, "eta", &m->ior));
+    return read_roughness(parser, list, "", m);
+}
+
+ag_status pbrt_read_thin_dielectric(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    return read_index(parser, list, "eta", &m->ior);
+}
+
+/* pbrt's random walk in a coat: ours is a closed form of it. Its stuff absorbs even where its albedo is 0, and the walk
+ * ends after "maxdepth" steps: both darken, so both are kept. */
+static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    float g = 0.0f;
+    m->coat_thickness = 0.01f;
+    int64_t depth = 10, samples = 1;
+    rgb albedo = rgb_gray(0.0f);
+    PBRT_TRY(parameter_get_float(list, parser->log, "thickness", &m->coat_thickness));
+    PBRT_TRY(parameter_get_float(list, parser->log, "g", &g));
+    PBRT_TRY(parameter_get_int(list, parser->log, "maxdepth", &depth));
+    PBRT_TRY(parameter_get_int(list, parser->log, "nsamples", &samples));
+    PBRT_TRY(parameter_get_rgb(list, parser->log, "albedo", &albedo));
+    if (m->coat_thickness < 0.0f)
+        return pbrt_refuse(parser, list, "thickness", "\"thickness\" should not be negative");
+    if (depth < 1 || depth > 1000)
+        return pbrt_refuse(parser, list, "maxdepth", "\"maxdepth\" should be from 1 to 1000");
+    m->coat_bounces = (int)(depth + 1) / 2; /* every other step of the walk meets the base */
+    if (!rgb_is_black(albedo))
+        log_at_once(parser->log, AG_LOG_WARNING, list->where, "coat albedo",
+                    "a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in");
+    return AG_OK;
+}
+
+ag_status pbrt_read_coated_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    PBRT_TRY(read_reflectance(parser, list, m));
+    PBRT_TRY(read_index(parser, list, "eta", &m->ior));
+    PBRT_TRY(read_coat_walk(parser, list, m));
+    return read_roughness(parser, list, "", m);
+}
+
+ag_status pbrt_read_coated_conductor(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    PBRT_TRY(read_metal(parser, list, "conductor.", m));
+    PBRT_TRY(read_index(parser, list, "interface.eta", &m->ior));
+    PBRT_TRY(read_coat_walk(parser, list, m));
+    PBRT_TRY(read_roughness(parser, list, "conductor.", m));
+    m->base_alpha_u = m->alpha_u;
+    m->base_alpha_v = m->alpha_v;
+    m->base_alpha_u_texture = m->alpha_u_texture;
+    m->base_alpha_v_texture = m->alpha_v_texture;
+    PBRT_TRY(read_roughness(parser, list, "interface.", m));
+    /* the conductor's index is relative to air; under the coat it is relative to the coat */
+    m->eta = rgb_scale(m->eta, 1.0f / m->ior);
+    m->k = rgb_scale(m->k, 1.0f / m->ior);
+    return AG_OK;
+}
+
+ag_status pbrt_read_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    return read_reflectance(parser, list, m);
+}
+
+/* A texture times a number, in place of the texture. */
+static ag_status scale_texture(pbrt_parser *parser, const parameter_list *list, float scale, uint32_t *texture_index)
+{
+    if (*texture_index == SCENE_NO_TEXTURE || scale == 1.0f)
+        return AG_OK;
+    texture t;
+    memset(&t, 0, sizeof t);
+    t.kind = TEXTURE_SCALE;
+    t.is_spectrum = true;
+    for (int i = 0; i < 4; i++)
+        t.inputs[i].texture_index = SCENE_NO_TEXTURE;
+    t.inputs[0].texture_index = *texture_index;
+    t.inputs[1].value = rgb_gray(scale);
+    ag_status status = scene_add_texture(parser->scene, &t, texture_index);
+    return status == AG_ERROR_SCENE
+               ? pbrt_refuse(parser, list, "scale", "the texture to be scaled is made of too many others")
+               : status;
+}
+
+ag_status pbrt_read_diffuse_transmission(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    float scale = 1.0f;
+    bool ignored; /* pbrt reads it, and has no use for it */
+    PBRT_TRY(pbrt_get_rgb_texture(parser, list, "reflectance", &m->reflectance, &m->reflectance_texture));
+    PBRT_TRY(pbrt_get_rgb_texture(parser, list, "transmittance", &m->transmittance, &m->transmittance_texture));
+    PBRT_TRY(parameter_get_float(list, parser->log, "scale", &scale));
+    if (scale < 0.0f)
+        return pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
+    m->reflectance = rgb_scale(m->reflectance, scale);
+    m->transmittance = rgb_scale(m->transmittance, scale);
+    PBRT_TRY(scale_texture(parser, list, scale, &m->reflectance_texture));
+    PBRT_TRY(scale_texture(parser, list, scale, &m->transmittance_texture));
+    PBRT_TRY(parameter_get_bool(list, parser->log, "remaproughness", &ignored));
+    rgb sum = rgb_add(m->reflectance, m->transmittance);
+    if (rgb_max(sum) > 1.0f) {
+        log_at(parser->log, AG_LOG_WARNING, list->where,
+               "\"reflectance\" and \"transmittance\" are above 1 together: both are scaled down");
+        m->reflectance = rgb_scale(m->reflectance, 1.0f / rgb_max(sum));
+        m->transmittance = rgb_scale(m->transmittance, 1.0f / rgb_max(sum));
+    }
+    return AG_OK;
+}
+
+/* Stand-ins. Each says once what it does. */
+
+static void tell_stand_in(pbrt_parser *parser, const parameter_list *list, const char *type, const char *stand_in)
+{
+    char key[96];
+    snprintf(key, sizeof key, "material:%s", type);
+    log_at_once(parser->log, AG_LOG_WARNING, list->where, key, "material \"%s\" is not supported: %s stands in", type,
+                stand_in);
+}
+
+/* Those that a stand-in has no use for. */
+static void pass_over(parameter_list *list, const char *const *names, size_t count)
+{
+    for (size_t i = 0; i < list->count; i++)
+        for (size_t n = 0; n < count; n++)
+            if (strcmp(list->items[i].name, names[n]) == 0)
+                list->items[i].looked_up = true;
+}
+
+/* The colour of much hair that absorbs so: the fit by which it is chosen for a colour, turned round. */
+static float hair_reflectance(float sigma_a, float beta_n)
+{
+    double b = beta_n, fit = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
+    return (float)exp(-sqrt(fmax(0.0, (double)sigma_a)) * fit);
+}
+
+static rgb hair_absorption(float eumelanin, float pheomelanin)
+{
+    float e = fmaxf(eumelanin, 0.0f), p = fmaxf(pheomelanin, 0.0f);
+    return rgb_make(0.419f * e + 0.187f * p, 0.697f * e + 0.4f * p, 1.37f * e + 1.05f * p);
+}
+
+ag_status pbrt_read_hair(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    static const char *const UNUSED[] = {"eta", "beta_m", "alpha", "sigma_a", "eumelanin", "pheomelanin", "color"};
+    float beta_n = 0.3f, eumelanin = 0.0f, pheomelanin = 0.0f;
+    const char *color = parameter_list_find(list, "reflectance") ? "reflectance" : "color";
+    tell_stand_in(parser, list, "hair", "\"diffuse\" of its colour");
+    PBRT_TRY(parameter_get_float(list, parser->log, "beta_n", &beta_n));
+    if (!parameter_list_find(list, "sigma_a") && parameter_list_find(list, color)) {
+        PBRT_TRY(pbrt_get_rgb_texture(parser, list, color, &m->reflectance, &m->reflectance_texture));
+    } else {
+        if (!parameter_list_find(list, "eumelanin") && !parameter_list_find(list, "pheomelanin"))
+            eumelanin = 1.3f;
+        PBRT_TRY(parameter_get_float(list, parser->log, "eumelanin", &eumelanin));
+        PBRT_TRY(parameter_get_float(list, parser->log, "pheomelanin", &pheomelanin));
+        rgb sigma_a = working_space_light(&parser->scene->space, hair_absorption(eumelanin, pheomelanin));
+        PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
+        m->reflectance = rgb_make(hair_reflectance(sigma_a.r, beta_n), hair_reflectance(sigma_a.g, beta_n),
+                                  hair_reflectance(sigma_a.b, beta_n));
+    }
+    m->reflectance = clamp_color(m->reflectance);
+    pass_over(list, UNUSED, sizeof UNUSED / sizeof *UNUSED);
+    return AG_OK;
+}
+
+/* What a half space that scatters and absorbs so sends back diffusely, its surface left out: that is the coat's. */
+static float half_space_reflectance(float sigma_a, float reduced_sigma_s)
+{
+    double sum = (double)sigma_a + (double)reduced_sigma_s, albedo = sum > 0.0 ? (double)reduced_sigma_s / sum : 0.0;
+    double root = sqrt(3.0 * (1.0 - albedo));
+    return (float)(0.5 * albedo * (1.0 + exp(-4.0 / 3.0 * root)) * exp(-root));
+}
+
+ag_status pbrt_read_subsurface(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    static const char *const UNUSED[] = {"name", "mfp", "g", "scale", "sigma_a", "sigma_s"};
+    float g = 0.0f;
+    m->ior = 1.33f;
+    tell_stand_in(parser, list, "subsurface",
+                  "\"coateddiffuse\" of its diffuse reflectance, which lets no light travel inside,");
+    PBRT_TRY(read_index(parser, list, "eta", &m->ior));
+    PBRT_TRY(read_roughness(parser, list, "", m));
+    if (parameter_list_find(list, "reflectance")) {
+        PBRT_TRY(read_reflectance(parser, list, m));
+    } else {
+        rgb sigma_a = working_space_light(&parser->scene->space, rgb_make(0.0011f, 0.0024f, 0.014f));
+        rgb sigma_s = working_space_light(&parser->scene->space, rgb_make(2.55f, 3.21f, 3.77f));
+        PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
+        PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
+        PBRT_TRY(parameter_get_float(list, parser->log, "g", &g));
+        if (parameter_list_find(list, "name"))
+            log_at_once(parser->log, AG_LOG_WARNING, list->where, "subsurface name",
+                        "\"name\" of \"subsurface\" is not supported: pbrt's default coefficients are used");
+        float s = 1.0f - fminf(fmaxf(g, -1.0f), 1.0f);
+        m->reflectance = clamp_color(rgb_make(half_space_reflectance(sigma_a.r, s * sigma_s.r),
+                                              half_space_reflectance(sigma_a.g, s * sigma_s.g),
+                                              half_space_reflectance(sigma_a.b, s * sigma_s.b)));
+    }
+    pass_over(list, UNUSED, sizeof UNUSED / sizeof *UNUSED);
+    return AG_OK;
+}
+
+ag_status pbrt_read_measured(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    const char *ignored = NULL;
+    (void)m;
+    tell_stand_in(parser, list, "measured", "\"diffuse\" with a reflectance of 0.5");
+    return parameter_get_string(list, parser->log, "filename", &ignored);
+}
+
+ag_status pbrt_read_unknown(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    static const char *const COLORS[] = {"reflectance", "Kd", "color", "basecolor", "base_color"};
+    char key[96], of[64] = "a reflectance of 0.5";
+    const char *type = list->name;
+    if (strcmp(list->directive, "MakeNamedMaterial") == 0)
+        PBRT_TRY(parameter_get_string(list, parser->log, "type", &type));
+    for (size_t i = 0; i < sizeof COLORS / sizeof *COLORS; i++)
+        if (parameter_list_find(list, COLORS[i])) {
+            PBRT_TRY(pbrt_get_rgb_texture(parser, list, COLORS[i], &m->reflectance, &m->reflectance_texture));
+            snprintf(of, sizeof of, "its \"%s\"", COLORS[i]);
+            break;
+        }
+    m->reflectance = clamp_color(m->reflectance);
+    for (size_t i = 0; i < list->count; i++) /* nothing is known of the others; maps are read by the caller */
+        if (strcmp(list->items[i].name, "displacement") != 0 && strcmp(list->items[i].name, "normalmap") != 0)
+            list->items[i].looked_up = true;
+    snprintf(key, sizeof key, "material:%s", type);
+    log_at_once(parser->log, AG_LOG_WARNING, list->where, key,
+                "material \"%s\" is not known: \"diffuse\" with %s stands in", type, of);
+    return AG_OK;
+}
+
+/* What tilts the shading normal, of all kinds alike. */
+
+static ag_status read_normal_map(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    const char *name = NULL;
+    PBRT_TRY(parameter_get_string(list, parser->log, "normalmap", &name));
+    if (!name || *name == '\0')
+        return AG_OK;
+    texture t = texture_make(TEXTURE_IMAGE);
+    t.is_data = true;
+    t.is_spectrum = true;
+    PBRT_TRY(pbrt_load_image(parser, list, "normalmap", name, (image_encoding){.curve = IMAGE_CURVE_LINEAR}, &t));
+    if (parser->scene->texture_images[t.image_index]->channel_count < 3)
+        return pbrt_refuse(parser, list, "normalmap", "\"%s\" is no normal map: it has no red, green and blue", name);
+    return scene_add_texture(parser->scene, &t, &m->normal_map_texture);
+}
+
+ag_status pbrt_read_maps(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    float same_everywhere = 0.0f; /* which tilts nothing */
+    PBRT_TRY(pbrt_get_float_texture(parser, list, "displacement", &same_everywhere, &m->displacement_texture));
+    PBRT_TRY(read_normal_map(parser, list, m));
+    if (m->displacement_texture != SCENE_NO_TEXTURE && m->normal_map_texture != SCENE_NO_TEXTURE)
+        log_at_once(parser->log, AG_LOG_WARNING, list->where, "both maps",
+                    "of \"displacement\" and \"normalmap\" together only the latter is used");
+    return AG_OK;
+}

@@ -1,0 +1,243 @@
+/* pbrt_meshes.c: Shape "trianglemesh" of a pbrt-v4 scene, and what all meshes have in common.
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Shapes"; and for which side is outside on Pharr, Jakob,
+ * Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6.5.
+ * Flow: pbrt_shapes, pbrt_patches, pbrt_ply, pbrt_subdivision -> [here] -> scene.shapes. Threads: one per scene. */
+#include "pbrt/pbrt_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool has_area(const vec3 *positions, const uint32_t *corners)
+{
+    vec3 a = positions[corners[0]], b = positions[corners[1]], c = positions[corners[2]];
+    double u[3] = {(double)b.x - a.x, (double)b.y - a.y, (double)b.z - a.z};
+    double v[3] = {(double)c.x - a.x, (double)c.y - a.y, (double)c.z - a.z};
+    return u[1] * v[2] - u[2] * v[1] != 0.0 || u[2] * v[0] - u[0] * v[2] != 0.0 || u[0] * v[1] - u[1] * v[0] != 0.0;
+}
+
+/* Unit length in world space, on the outside that the file and ReverseOrientation give; zero stays zero, and the
+ * triangle's own normal is then used. A mirror does not turn them over (as in pbrt). */
+static vec3 world_normal(const transform *t, bool reverse, vec3 n)
+{
+    double w[3], square = 0.0, largest = (double)vec3_max_abs(n);
+    if (!(largest > 0.0))
+        return (vec3){0.0f, 0.0f, 0.0f};
+    for (int i = 0; i < 3; i++) {
+        w[i] = (t->inverse[0][i] * (double)n.x + t->inverse[1][i] * (double)n.y + t->inverse[2][i] * (double)n.z) /
+               largest;
+        square += w[i] * w[i];
+    }
+    double inverse = (reverse ? -1.0 : 1.0) / sqrt(square);
+    vec3 unit = {(float)(w[0] * inverse), (float)(w[1] * inverse), (float)(w[2] * inverse)};
+    return vec3_is_finite(unit) ? unit : (vec3){0.0f, 0.0f, 0.0f};
+}
+
+/* Any length will do, but those of a double may be none of a float. */
+static vec3 float_direction(const double *n)
+{
+    double largest = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
+    if (!(largest > 0.0))
+        return (vec3){0.0f, 0.0f, 0.0f};
+    return (vec3){(float)(n[0] / largest), (float)(n[1] / largest), (float)(n[2] / largest)};
+}
+
+static bool allocate_arrays(const pbrt_mesh *source, mesh *m)
+{
+    m->positions = calloc(source->vertex_count + 1, sizeof *m->positions); /* room for Embree's 16 byte reads */
+    if (source->normals)
+        m->normals = malloc(source->vertex_count * sizeof *m->normals);
+    if (source->uvs)
+        m->uvs = malloc(source->vertex_count * sizeof *m->uvs);
+    if (source->tangents)
+        m->tangents = malloc(source->vertex_count * sizeof *m->tangents);
+    return m->positions && (!source->normals || m->normals) && (!source->uvs || m->uvs) &&
+           (!source->tangents || m->tangents);
+}
+
+static void free_arrays(mesh *m)
+{
+    free(m->positions);
+    free(m->normals);
+    free(m->uvs);
+    free(m->tangents);
+    free(m->indices);
+}
+
+static void copy_vertices(const pbrt_mesh *source, mesh *m)
+{
+    for (size_t i = 0; i < source->vertex_count; i++) {
+        const double *p = source->positions + 3 * i;
+        m->positions[i] = (vec3){(float)p[0], (float)p[1], (float)p[2]};
+    }
+    if (m->normals)
+        for (size_t i = 0; i < source->vertex_count; i++)
+            m->normals[i] = float_direction(source->normals + 3 * i);
+    if (m->uvs)
+        for (size_t i = 0; i < source->vertex_count; i++)
+            m->uvs[i] = (vec2){(float)source->uvs[2 * i], (float)source->uvs[2 * i + 1]};
+    if (m->tangents)
+        for (size_t i = 0; i < source->vertex_count; i++)
+            m->tangents[i] = float_direction(source->tangents + 3 * i);
+}
+
+/* From object to world space; false where a vertex is out of reach. */
+static bool transform_vertices(const pbrt_state *state, mesh *m)
+{
+    const transform *t = &state->world_from_object;
+    for (uint32_t i = 0; i < m->vertex_count; i++) {
+        vec3 world = transform_point(t, m->positions[i]);
+        if (!(vec3_max_abs(world) <= PBRT_MAX_COORDINATE) || !vec3_is_finite(world))
+            return false;
+        m->positions[i] = world;
+    }
+    if (m->normals)
+        for (uint32_t i = 0; i < m->vertex_count; i++)
+            m->normals[i] = world_normal(t, state->reverse_orientation, m->normals[i]);
+    if (m->tangents)
+        for (uint32_t i = 0; i < m->vertex_count; i++) {
+            vec3 along = transform_vector(t, m->tangents[i]);
+            m->tangents[i] = vec3_is_finite(along) ? along : (vec3){0.0f, 0.0f, 0.0f};
+        }
+    return true;
+}
+
+/* Moves the triangles that have an area together; returns how many they are. */
+static size_t drop_degenerate(const vec3 *positions, uint32_t *indices, size_t triangle_count)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < triangle_count; i++)
+        if (has_area(positions, indices + 3 * i)) {
+            memmove(indices + 3 * kept, indices + 3 * i, 3 * sizeof *indices);
+            kept++;
+        }
+    return kept;
+}
+
+ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
+                               bool expects_degenerate)
+{
+    const pbrt_state *state = &parser->state;
+    shape s = shape_make(SHAPE_MESH);
+    s.flip_normal = state->reverse_orientation != transform_swaps_handedness(&state->world_from_object);
+    s.as.mesh = *object_mesh;
+    mesh *m = &s.as.mesh;
+    if (!transform_vertices(state, m)) {
+        free_arrays(m);
+        return pbrt_refuse(parser, list, "P", "a vertex lies beyond 1e18 units in world space");
+    }
+    size_t count = m->triangle_count + dropped, kept = drop_degenerate(m->positions, m->indices, m->triangle_count);
+    if (kept == 0 && count > 0 && !expects_degenerate)
+        log_at(parser->log, AG_LOG_WARNING, list->where,
+               "Shape \"%s\": %zu of %zu triangles have no area and are left out", list->name, count, count);
+    else if (kept < count && !expects_degenerate) /* scanned and cut models have some in each mesh */
+        log_at_once(parser->log, AG_LOG_WARNING, list->where, "no area",
+                    "Shape \"%s\": %zu of %zu triangles have no area and are left out, as are any others", list->name,
+                    count - kept, count);
+    if (kept == 0) {
+        log_at(parser->log, AG_LOG_WARNING, list->where, "Shape \"%s\" is empty and is left out%s", list->name,
+               state->area_light.is_set ? ", and its area light with it" : "");
+        free_arrays(m);
+        return AG_OK;
+    }
+    m->triangle_count = (uint32_t)kept;
+    return pbrt_add_shape(parser, list, &s);
+}
+
+ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source)
+{
+    mesh m = {.indices = source->indices};
+    if (source->vertex_count >= UINT32_MAX / 4 || source->triangle_count >= UINT32_MAX / 4) {
+        free_arrays(&m);
+        return pbrt_refuse(parser, list, "P", "the mesh is too large");
+    }
+    if (!allocate_arrays(source, &m)) {
+        free_arrays(&m);
+        return AG_ERROR_MEMORY;
+    }
+    m.vertex_count = (uint32_t)source->vertex_count;
+    m.triangle_count = (uint32_t)source->triangle_count;
+    copy_vertices(source, &m);
+    return pbrt_add_object_mesh(parser, list, &m, 0, source->expects_degenerate);
+}
+
+/* Vertex data other than the positions: there is as much of it as there are positions, or it is dropped as in pbrt. */
+static ag_status read_vertex_data(pbrt_parser *parser, parameter_list *list, const char *name, parameter_type type,
+                                  size_t expected, const double **out_values)
+{
+    size_t count;
+    PBRT_TRY(parameter_get_numbers(list, parser->log, name, type, out_values, &count));
+    if (*out_values && count != expected) {
+        log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, name)->where,
+               "Shape \"%s\": \"%s\" should have %zu numbers as \"P\" goes, but has %zu, and is ignored", list->name,
+               name, expected, count);
+        *out_values = NULL;
+    }
+    if (count == 0)
+        *out_values = NULL;
+    return AG_OK;
+}
+
+static ag_status convert_indices(pbrt_parser *parser, const parameter_list *list, const double *numbers, size_t count,
+                                 size_t vertex_count, uint32_t *out_indices)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!(numbers[i] >= 0.0 && numbers[i] < (double)vertex_count))
+            return pbrt_refuse(parser, list, "indices",
+                               "index %.0f (value %zu of \"indices\") is out of range, there are %zu vertices",
+                               numbers[i], i + 1, vertex_count);
+        out_indices[i] = (uint32_t)numbers[i];
+    }
+    return AG_OK;
+}
+
+ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_t corners, pbrt_mesh *out_mesh,
+                                size_t *out_index_count)
+{
+    const double *numbers, *unused;
+    size_t number_count, position_count, unused_count;
+    memset(out_mesh, 0, sizeof *out_mesh);
+    PBRT_TRY(parameter_get_numbers(list, parser->log, "P", PARAMETER_POINT3, &out_mesh->positions, &position_count));
+    if (!parameter_list_find(list, "P"))
+        return pbrt_refuse(parser, list, "P", "\"point3 P\" is missing");
+    size_t vertex_count = out_mesh->vertex_count = position_count / 3;
+    PBRT_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, 3 * vertex_count, &out_mesh->normals));
+    PBRT_TRY(read_vertex_data(parser, list, "uv", PARAMETER_POINT2, 2 * vertex_count, &out_mesh->uvs));
+    if (corners == 3) /* patches have none */
+        PBRT_TRY(read_vertex_data(parser, list, "S", PARAMETER_VECTOR3, 3 * vertex_count, &out_mesh->tangents));
+    /* face numbers serve Ptex only */
+    PBRT_TRY(parameter_get_numbers(list, parser->log, "faceIndices", PARAMETER_INTEGER, &unused, &unused_count));
+    PBRT_TRY(parameter_get_numbers(list, parser->log, "indices", PARAMETER_INTEGER, &numbers, &number_count));
+    bool has_indices = parameter_list_find(list, "indices") != NULL;
+    if (!has_indices && vertex_count != 0 && vertex_count != corners)
+        return pbrt_refuse(parser, list, "P",
+                           "\"integer indices\" is missing (of %zu vertices; only %zu can do without)", vertex_count,
+                           corners);
+    if (number_count % corners != 0)
+        return pbrt_refuse(parser, list, "indices", "\"indices\" has %zu values, which is no multiple of %zu",
+                           number_count, corners);
+    size_t count = *out_index_count = has_indices ? number_count : vertex_count;
+    out_mesh->indices = malloc((count ? count : 1) * sizeof *out_mesh->indices);
+    if (!out_mesh->indices)
+        return AG_ERROR_MEMORY;
+    ag_status status = AG_OK;
+    if (has_indices)
+        status = convert_indices(parser, list, numbers, count, vertex_count, out_mesh->indices);
+    else
+        for (size_t i = 0; i < count; i++)
+            out_mesh->indices[i] = (uint32_t)i;
+    if (status) {
+        free(out_mesh->indices);
+        out_mesh->indices = NULL;
+    }
+    return status;
+}
+
+ag_status pbrt_triangle_mesh(pbrt_parser *parser, parameter_list *list)
+{
+    pbrt_mesh source;
+    size_t index_count;
+    PBRT_TRY(pbrt_read_mesh_arrays(parser, list, 3, &source, &index_count));
+    source.triangle_count = index_count / 3;
+    parameter_list_warn_unused(list, parser->log);
+    return pbrt_add_mesh(parser, list, &source);
+}

@@ -1,0 +1,244 @@
+/* pbrt_parser.c: the directives of a pbrt-v4 scene file: which there are and where they may stand.
+ * Rests on the format's description, pbrt.org/fileformat-v4. What is not supported yet is read to its end, named in a
+ * warning and left out.
+ * Flow: pbrt_files -> [here] -> pbrt_state, pbrt_transforms, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_media,
+ * pbrt_lights, pbrt_camera -> scene. Threads: one per scene. */
+#include "pbrt/pbrt_parser.h"
+
+#include "pbrt/pbrt_private.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Words that the renderer reads */
+
+static ag_status keep_parameters(pbrt_parser *parser, file_location where, const char *directive, parameter_list *kept)
+{
+    parameter_list list;
+    PBRT_TRY(pbrt_read_named_parameters(parser, directive, "a quoted type", where, &list));
+    parameter_list_reset(kept); /* the last one counts */
+    *kept = list;
+    kept->source = NULL; /* it outlives the text */
+    return AG_OK;
+}
+
+static ag_status integrator(pbrt_parser *parser, file_location where)
+{
+    return keep_parameters(parser, where, "Integrator", &parser->scene->integrator);
+}
+
+static ag_status sampler(pbrt_parser *parser, file_location where)
+{
+    return keep_parameters(parser, where, "Sampler", &parser->scene->sampler);
+}
+
+static ag_status film(pbrt_parser *parser, file_location where)
+{
+    if (parser->state.rgb_space != COLOR_SPACE_SRGB) /* pbrt writes the picture in it */
+        log_at_once(parser->log, AG_LOG_WARNING, where, "film colours",
+                    "the ColorSpace is not that of the picture: it is written in %s",
+                    parser->scene->space.is_rec709 ? "linear Rec. 709" : "the working space");
+    return keep_parameters(parser, where, "Film", &parser->scene->film);
+}
+
+static ag_status pixel_filter(pbrt_parser *parser, file_location where)
+{
+    return keep_parameters(parser, where, "PixelFilter", &parser->scene->pixel_filter);
+}
+
+/* Embree's BVH is used whatever the file wishes; the picture is the same. */
+static ag_status accelerator(pbrt_parser *parser, file_location where)
+{
+    parameter_list list;
+    PBRT_TRY(pbrt_read_named_parameters(parser, "Accelerator", "a quoted type", where, &list));
+    parameter_list_reset(&list);
+    return AG_OK;
+}
+
+static ag_status include(pbrt_parser *parser, file_location where)
+{
+    char *name;
+    file_location name_where;
+    (void)where;
+    PBRT_TRY(pbrt_read_string(parser, "Include", "a quoted file name", &name, &name_where));
+    ag_status status = pbrt_push_file(parser, name, name_where, strlen(name) + 2);
+    free(name);
+    return status;
+}
+
+/* The table of directives */
+
+typedef enum place { ANYWHERE, BEFORE_WORLD, IN_WORLD } place;
+
+static const struct {
+    const char *name;
+    place where;
+    pbrt_handler *handle;
+} DIRECTIVES[] = {
+    {"Shape", IN_WORLD, pbrt_shape},
+    {"AttributeBegin", IN_WORLD, pbrt_attribute_begin},
+    {"AttributeEnd", IN_WORLD, pbrt_attribute_end},
+    {"NamedMaterial", IN_WORLD, pbrt_use_named_material},
+    {"Material", IN_WORLD, pbrt_material},
+    {"Translate", ANYWHERE, pbrt_translate},
+    {"Scale", ANYWHERE, pbrt_scale},
+    {"Rotate", ANYWHERE, pbrt_rotate},
+    {"Transform", ANYWHERE, pbrt_transform},
+    {"ConcatTransform", ANYWHERE, pbrt_concat_transform},
+    {"Identity", ANYWHERE, pbrt_identity},
+    {"LookAt", ANYWHERE, pbrt_look_at},
+    {"CoordinateSystem", ANYWHERE, pbrt_coordinate_system},
+    {"CoordSysTransform", ANYWHERE, pbrt_coord_sys_transform},
+    {"ActiveTransform", ANYWHERE, pbrt_active_transform},
+    {"TransformTimes", BEFORE_WORLD, pbrt_transform_times},
+    {"ReverseOrientation", IN_WORLD, pbrt_reverse_orientation},
+    {"TransformBegin", IN_WORLD, pbrt_transform_begin},
+    {"TransformEnd", IN_WORLD, pbrt_transform_end},
+    {"MakeNamedMaterial", IN_WORLD, pbrt_make_named_material},
+    {"AreaLightSource", IN_WORLD, pbrt_area_light_source},
+    {"LightSource", IN_WORLD, pbrt_light_source},
+    {"ObjectBegin", IN_WORLD, pbrt_object_begin},
+    {"ObjectEnd", IN_WORLD, pbrt_object_end},
+    {"ObjectInstance", IN_WORLD, pbrt_object_instance},
+    {"Texture", IN_WORLD, pbrt_texture},
+    {"Import", IN_WORLD, pbrt_import},
+    {"Include", ANYWHERE, include},
+    {"Attribute", ANYWHERE, pbrt_attribute_directive},
+    {"ColorSpace", ANYWHERE, pbrt_color_space},
+    {"MakeNamedMedium", ANYWHERE, pbrt_make_named_medium},
+    {"MediumInterface", ANYWHERE, pbrt_medium_interface},
+    {"Camera", BEFORE_WORLD, pbrt_camera},
+    {"Sampler", BEFORE_WORLD, sampler},
+    {"Integrator", BEFORE_WORLD, integrator},
+    {"Film", BEFORE_WORLD, film},
+    {"PixelFilter", BEFORE_WORLD, pixel_filter},
+    {"Accelerator", BEFORE_WORLD, accelerator},
+    {"Option", BEFORE_WORLD, pbrt_option},
+    {"WorldBegin", BEFORE_WORLD, pbrt_world_begin},
+    {"WorldEnd", IN_WORLD, pbrt_world_end},
+};
+
+static ag_status do_directive(pbrt_parser *parser, const pbrt_token *token)
+{
+    enum { SHOWN = 60 };
+    for (size_t i = 0; i < sizeof DIRECTIVES / sizeof *DIRECTIVES; i++) {
+        const char *name = DIRECTIVES[i].name;
+        if (!pbrt_token_is(token, PBRT_TOKEN_WORD, name))
+            continue;
+        if (DIRECTIVES[i].where == BEFORE_WORLD && parser->in_world)
+            return pbrt_error(parser, token->where, token->width,
+                              DIRECTIVES[i].handle == pbrt_world_begin ? "%s may only stand once"
+                                                                       : "%s may only stand before WorldBegin",
+                              name);
+        if (DIRECTIVES[i].where == IN_WORLD && !parser->in_world)
+            return pbrt_error(parser, token->where, token->width, "%s may only stand after WorldBegin", name);
+        return DIRECTIVES[i].handle(parser, token->where);
+    }
+    int shown = token->length > SHOWN ? SHOWN : (int)token->length;
+    double number;
+    if (token->kind == PBRT_TOKEN_WORD && !pbrt_token_number(token, &number))
+        return pbrt_error(parser, token->where, token->width, "unknown directive %.*s%s", shown, token->text,
+                          token->length > SHOWN ? "..." : "");
+    return pbrt_error(parser, token->where, token->width, "a directive should stand here, not %s%.*s%s%s",
+                      token->kind == PBRT_TOKEN_STRING ? "\"" : "", shown, token->text,
+                      token->length > SHOWN ? "..." : "", token->kind == PBRT_TOKEN_STRING ? "\"" : "");
+}
+
+/* What only the end can tell. end: the place of the end of the first file. */
+static ag_status check_end(pbrt_parser *parser, file_location end)
+{
+    if (!parser->in_world)
+        return pbrt_error(parser, end, 1, "the file ends without WorldBegin");
+    PBRT_TRY(pbrt_check_blocks(parser, end));
+    PBRT_TRY(pbrt_end_objects(parser));
+    PBRT_TRY(pbrt_check_named_media(parser));
+    return pbrt_check_named_materials(parser);
+}
+
+static ag_status parse(pbrt_parser *parser)
+{
+    PBRT_TRY(pbrt_add_default_material(parser));
+    run_progress(parser->run, AG_PHASE_LOAD, 0.0);
+    for (;;) {
+        pbrt_token token;
+        PBRT_TRY(pbrt_tell_progress(parser));
+        PBRT_TRY(pbrt_next(parser, &token));
+        if (token.kind == PBRT_TOKEN_END && parser->files[parser->file_count - 1].is_import) {
+            PBRT_TRY(pbrt_end_import(parser, token.where));
+            continue;
+        }
+        if (token.kind == PBRT_TOKEN_END) {
+            PBRT_TRY(check_end(parser, token.where));
+            break;
+        }
+        PBRT_TRY(do_directive(parser, &token));
+    }
+    run_progress(parser->run, AG_PHASE_LOAD, 1.0);
+    return AG_OK;
+}
+
+static pbrt_parser *parser_create(run_context *run, scene *out_scene)
+{
+    pbrt_parser *parser = calloc(1, sizeof *parser);
+    if (parser) {
+        parser->run = run;
+        parser->log = run->log;
+        parser->scene = out_scene;
+        parser->state.world_from_object = parser->state.world_from_object_end = transform_identity();
+        parser->state.start_is_active = parser->state.end_is_active = true;
+        parser->transform_times[1] = 1.0;
+        parser->shapes_object_index = SCENE_NO_OBJECT;
+        parser->curves_object_index = SCENE_NO_OBJECT;
+        parser->source = (parameter_source){pbrt_excerpt, parser, &parser->scene->space};
+        parser->state.medium_inside = parser->state.medium_outside = PBRT_NO_MEDIUM;
+    }
+    return parser;
+}
+
+static void parser_destroy(pbrt_parser *parser)
+{
+    while (parser->file_count > 0)
+        pbrt_pop_file(parser);
+    for (size_t i = 0; i < parser->named_material_count; i++)
+        free(parser->named_materials[i].name);
+    for (size_t i = 0; i < parser->named_medium_count; i++)
+        free(parser->named_media[i].name);
+    pbrt_reset_objects(parser);
+    name_table_reset(&parser->material_names);
+    name_table_reset(&parser->medium_names);
+    name_table_reset(&parser->float_texture_names);
+    name_table_reset(&parser->spectrum_texture_names);
+    name_table_reset(&parser->coordinate_system_names);
+    pbrt_free_attributes(parser);
+    free(parser->named_materials);
+    free(parser->named_media);
+    free(parser->coordinate_systems);
+    free(parser->saved);
+    free(parser->top_directory);
+    free(parser);
+}
+
+ag_status pbrt_parse_file(run_context *run, const char *path, scene *out_scene)
+{
+    pbrt_parser *parser = parser_create(run, out_scene);
+    if (!parser)
+        return AG_ERROR_MEMORY;
+    ag_status status = pbrt_push_file(parser, path, (file_location){NULL, 0, 0}, 0);
+    if (!status)
+        status = parse(parser);
+    parser_destroy(parser);
+    return status;
+}
+
+ag_status pbrt_parse_text(run_context *run, const char *name, const char *text, size_t size, scene *out_scene)
+{
+    pbrt_parser *parser = parser_create(run, out_scene);
+    if (!parser)
+        return AG_ERROR_MEMORY;
+    ag_status status = pbrt_push_text(parser, name, text, size);
+    if (!status)
+        status = parse(parser);
+    parser_destroy(parser);
+    return status;
+}

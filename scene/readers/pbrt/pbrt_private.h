@@ -1,0 +1,413 @@
+/* pbrt_private.h: what the files of the pbrt-v4 reader share: the stack of files, the graphics state, and the
+ * interpreters of directives.
+ * Rests on the format's description, pbrt.org/fileformat-v4. Names and defaults are pbrt-v4's.
+ * Flow: pbrt_parser dispatches directives; pbrt_files gives tokens; pbrt_parameters reads parameter lists;
+ * pbrt_transforms, pbrt_objects, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_lights, pbrt_camera, ... interpret.
+ * Threads: one per scene. */
+#ifndef AFTERGLOW_PBRT_PRIVATE_H
+#define AFTERGLOW_PBRT_PRIVATE_H
+
+#include "color/color_space.h"
+#include "math/motion.h"
+#include "pbrt/pbrt_lexer.h"
+#include "scene.h"
+#include "text/name_table.h"
+#include "text/text_file.h"
+
+/* Passes a failure on. */
+#define PBRT_TRY(call)                                                                                                 \
+    do {                                                                                                               \
+        ag_status try_status = (call);                                                                                 \
+        if (try_status)                                                                                                \
+            return try_status;                                                                                         \
+    } while (0)
+
+/* World coordinates beyond this would overflow a float when squared. */
+#define PBRT_MAX_COORDINATE 1e18f
+
+#define PBRT_NO_MEDIUM SIZE_MAX
+
+enum { PBRT_MAX_DEPTH = 32 };         /* of files that include one another */
+enum { PBRT_MAX_PARAMETERS = 1000 };  /* of one directive */
+enum { PBRT_MAX_INCLUDES = 1000000 }; /* in all: files that include others twice multiply */
+
+/* The current transform's two ends, under a name. */
+typedef struct pbrt_named_transform {
+    transform start, end;
+} pbrt_named_transform;
+
+/* What stands in the place of $name. */
+typedef struct pbrt_value {
+    char *text;       /* owned; the last token may lie in it */
+    pbrt_lexer lexer; /* of a value that stands without quotes: tokens of its own, which come first */
+    bool has_tokens;
+    file_location where; /* of $name, and how wide that is */
+    size_t width;
+} pbrt_value;
+
+typedef struct pbrt_file {
+    text_file file;
+    pbrt_lexer lexer;
+    pbrt_value value;
+    file_location included_at; /* the Include or Import; zeroed for the first file */
+
+    bool is_import; /* its end is told to who reads, who then ends it; the rest is for what it found: */
+    pbrt_named_transform *coordinate_systems;
+    size_t coordinate_system_count;
+    name_table coordinate_system_names;
+} pbrt_file;
+
+/* What Attribute speaks to. */
+typedef enum pbrt_target {
+    PBRT_TARGET_SHAPE,
+    PBRT_TARGET_LIGHT,
+    PBRT_TARGET_MATERIAL,
+    PBRT_TARGET_MEDIUM,
+    PBRT_TARGET_TEXTURE,
+    PBRT_TARGET_COUNT
+} pbrt_target;
+
+/* One parameter of an Attribute. The parser owns all; the graphics state says which are in force. */
+typedef struct pbrt_attribute {
+    parameter item;
+    struct pbrt_attribute *older;        /* of the same target, in force with it */
+    struct pbrt_attribute *older_of_all; /* for the owner */
+} pbrt_attribute;
+
+/* AreaLightSource: what the shapes that follow emit. */
+typedef struct pbrt_area_light {
+    bool is_set;
+    rgb radiance; /* "L" times "scale" */
+    float power;  /* W, as pbrt's "power": above 0 the radiance is multiplied until a lamp of radiance 1 has it */
+    bool two_sided;
+    float photons;
+    uint32_t group;            /* of light.group */
+    uint32_t radiance_texture; /* of its picture, or SCENE_NO_TEXTURE */
+    double mean_luminance;     /* of that picture; else 1 */
+    file_location where;
+} pbrt_area_light;
+
+/* What AttributeBegin saves and AttributeEnd brings back. */
+typedef struct pbrt_state {
+    /* At the start and at the end of TransformTimes; before WorldBegin: camera_from_world. What does not move looks at
+     * the start alone. */
+    transform world_from_object, world_from_object_end;
+    bool start_is_active, end_is_active; /* whether directives change them; at least one is */
+    bool is_flattened;                   /* by a transform that cannot be undone: what it would apply to is left out */
+    bool reverse_orientation;
+    uint32_t material_index;
+    bool has_no_surface;                  /* the material is known to be "interface" */
+    size_t medium_inside, medium_outside; /* MediumInterface: of pbrt_parser.named_media, or PBRT_NO_MEDIUM */
+    pbrt_area_light area_light;
+    color_space rgb_space;                         /* of rgb parameters */
+    pbrt_attribute *attributes[PBRT_TARGET_COUNT]; /* the newest of each, or NULL */
+} pbrt_state;
+
+typedef struct pbrt_saved_state {
+    pbrt_state state;
+    file_location where; /* of the Begin */
+    bool is_object;      /* ObjectBegin, not AttributeBegin */
+    bool is_import;      /* Import: neither */
+} pbrt_saved_state;
+
+typedef struct pbrt_named_material {
+    char *name;
+    uint32_t index; /* in the scene; filled in when MakeNamedMaterial comes, which may be after its use */
+    bool is_defined;
+    file_location where; /* of its definition, or until then of its first use */
+} pbrt_named_material;
+
+typedef struct pbrt_named_medium {
+    char *name;
+    uint32_t index; /* in the scene, where it absorbs nothing until MakeNamedMedium comes, which may be after its use */
+    bool is_defined, is_used;
+    file_location where; /* of its definition, or until then of the first MediumInterface that names it */
+} pbrt_named_medium;
+
+/* A shape that shines within an object, on its way into the world. */
+typedef struct pbrt_object_lamp {
+    shape shape; /* its arrays are owned */
+    pbrt_area_light light;
+    file_location where;
+} pbrt_object_lamp;
+
+/* A shape that moves within an object: an object of its own, as Embree knows one level of instances only. */
+typedef struct pbrt_object_part {
+    uint32_t object_index; /* the scene's */
+    motion object_from_part;
+} pbrt_object_part;
+
+typedef struct pbrt_object {
+    char *name;
+    uint32_t object_index; /* the scene's, of the shapes that stand still in it */
+    bool is_defined;
+    file_location where; /* of its ObjectBegin, or until then of its first ObjectInstance */
+    pbrt_object_lamp *lamps;
+    size_t lamp_count, lamp_capacity;
+    pbrt_object_part *parts;
+    size_t part_count, part_capacity;
+} pbrt_object;
+
+/* An ObjectInstance that came before its ObjectBegin. */
+typedef struct pbrt_early_instance {
+    uint32_t object; /* the parser's */
+    transform start, end;
+    file_location where;
+} pbrt_early_instance;
+
+typedef struct pbrt_parser {
+    run_context *run;
+    log_sink *log;
+    scene *scene;
+
+    pbrt_file files[PBRT_MAX_DEPTH]; /* the innermost last */
+    int file_count, include_count;
+    char *top_directory; /* of the first file, with its slash, or "" */
+    pbrt_token peeked;
+    bool has_peeked;
+    size_t told_bytes; /* of the first file, at the last progress */
+
+    parameter_source source;    /* of the lists that are read */
+    pbrt_attribute *attributes; /* all there have been, the newest first */
+
+    double film_distance; /* m, from the lens of a realistic camera; 0: there is none */
+
+    bool in_world;
+    pbrt_state state;
+    double transform_times[2]; /* s */
+    pbrt_saved_state *saved;
+    size_t saved_count, saved_capacity;
+    pbrt_named_transform *coordinate_systems;
+    size_t coordinate_system_count;
+    name_table coordinate_system_names;
+    pbrt_named_material *named_materials;
+    size_t named_material_count;
+    name_table material_names;
+    pbrt_named_medium *named_media;
+    size_t named_medium_count;
+    name_table medium_names;
+    pbrt_object *objects;
+    size_t object_count, object_capacity;
+    name_table object_names;
+    pbrt_object *open_object;     /* between ObjectBegin and ObjectEnd, else NULL */
+    uint32_t shapes_object_index; /* where pbrt_add_shape adds to: the scene's object, SCENE_NO_OBJECT for the world */
+    /* The object that curves were last put into for a transform that moves or stretches them, with that transform and
+     * the object around it: curves that follow join it. SCENE_NO_OBJECT: none yet. */
+    uint32_t curves_object_index, curves_object_around;
+    transform curves_start, curves_end;
+    pbrt_early_instance *early_instances;
+    size_t early_instance_count, early_instance_capacity;
+    size_t lamp_copy_count, lamp_copy_vertex_count;         /* that instances have made */
+    name_table float_texture_names, spectrum_texture_names; /* to indices of the scene's */
+    float alpha;                                            /* of the shape being read */
+    uint32_t alpha_texture;                                 /* likewise */
+} pbrt_parser;
+
+/* Every handler of a directive: where is the directive's place; its name has been read, nothing behind it. */
+typedef ag_status pbrt_handler(pbrt_parser *parser, file_location where);
+
+/* pbrt_files.c: the stack of files and their tokens. The text of places: parser->source. */
+void pbrt_excerpt(const void *parser, file_location where, size_t width, char *out_text, size_t size);
+
+/* Opens a file as the innermost. name is as the user wrote it, where the place of the Include (zeroed for none). */
+ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location where, size_t width);
+ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size);
+void pbrt_pop_file(pbrt_parser *parser);
+/* Where a file that the scene names is: as pbrt has it, below the first file's directory; where there is none, below
+ * that of the file that names it. To be freed; NULL when out of memory. */
+char *pbrt_find_file(const pbrt_parser *parser, const char *name);
+/* The next token; where an included file ends, the one that included it goes on. The end of an imported file is told,
+ * as often as is asked, until it is popped. */
+ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);
+ag_status pbrt_peek(pbrt_parser *parser, pbrt_token *out_token);
+/* Tells the error with the line it is in and a mark below; always returns AG_ERROR_SCENE. */
+ag_status pbrt_error(pbrt_parser *parser, file_location where, size_t width, const char *format, ...) AG_PRINTF(4, 5);
+/* Error "DIRECTIVE expects WHAT, not TOKEN". */
+ag_status pbrt_unexpected(pbrt_parser *parser, const pbrt_token *token, const char *directive, const char *expected);
+/* A quoted string, copied: *out_text is to be freed. Errors say "DIRECTIVE expects WHAT". */
+ag_status pbrt_read_string(pbrt_parser *parser, const char *directive, const char *expected, char **out_text,
+                           file_location *out_where);
+ag_status pbrt_read_numbers(pbrt_parser *parser, const char *directive, size_t count, double *out_values);
+/* Tells progress by the bytes of the first file; AG_CANCELLED when the run is cancelled. */
+ag_status pbrt_tell_progress(pbrt_parser *parser);
+
+/* pbrt_parameters.c: "DIRECTIVE name parameters". On failure the list is reset. */
+ag_status pbrt_read_parameters(pbrt_parser *parser, const char *directive, file_location where,
+                               parameter_list *out_list);
+/* The same, with the quoted name before them. */
+ag_status pbrt_read_named_parameters(pbrt_parser *parser, const char *directive, const char *expected,
+                                     file_location where, parameter_list *out_list);
+
+/* pbrt_colors.c */
+pbrt_handler pbrt_color_space;
+/* Makes rgb parameters the working space's and reads the files of spectra. width: of the quoted "type name". Errors:
+ * AG_ERROR_SCENE, AG_ERROR_INPUT (a file cannot be read), AG_ERROR_MEMORY. */
+ag_status pbrt_settle_color(pbrt_parser *parser, parameter *p, size_t width);
+/* A text file of nothing but numbers and comments, named at that place; hint ends the message where it cannot be read.
+ * *out_numbers is to be freed. Errors: as above. */
+ag_status pbrt_read_number_file(pbrt_parser *parser, const char *name, file_location where, size_t width,
+                                const char *hint, double **out_numbers, size_t *out_count);
+
+/* pbrt_old_parameters.c: what the list says in pbrt-v3's words, said in pbrt-v4's; all but materials. Errors:
+ * AG_ERROR_SCENE, AG_ERROR_MEMORY. */
+ag_status pbrt_upgrade_parameters(pbrt_parser *parser, parameter_list *list);
+/* Where both are there the new name's value holds. */
+ag_status pbrt_rename_parameter(parameter_list *list, const char *from, const char *to);
+/* A parameter that the file has not, unless it has it. */
+ag_status pbrt_add_string(parameter_list *list, const char *name, parameter_type type, const char *value);
+
+/* pbrt_attributes.c */
+pbrt_handler pbrt_attribute_directive;
+/* Adds those in force for the list's directive, less those that it says itself. Errors: AG_ERROR_MEMORY. */
+ag_status pbrt_append_attributes(pbrt_parser *parser, parameter_list *list);
+void pbrt_free_attributes(pbrt_parser *parser);
+
+/* pbrt_options.c */
+pbrt_handler pbrt_option;
+
+/* As pbrt_error, at the parameter of that name, or where there is none at the directive. */
+ag_status pbrt_refuse(pbrt_parser *parser, const parameter_list *list, const char *name, const char *format, ...)
+    AG_PRINTF(4, 5);
+
+/* pbrt_state.c: what Begin saves and End brings back. */
+pbrt_handler pbrt_import, pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin, pbrt_attribute_end,
+    pbrt_transform_begin, pbrt_transform_end, pbrt_reverse_orientation;
+ag_status pbrt_save_state(pbrt_parser *parser, file_location where, bool is_object, bool is_import);
+ag_status pbrt_restore_state(pbrt_parser *parser, file_location where, const char *directive, bool is_object);
+/* Error where a Begin of the file that ends at that place has no End there. */
+ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end);
+/* At the end of an imported file: what is open is an error, else the state that it began with is brought back and the
+ * file popped. */
+ag_status pbrt_end_import(pbrt_parser *parser, file_location end);
+
+/* pbrt_objects.c: what is kept once, and where it is shown. */
+pbrt_handler pbrt_object_begin, pbrt_object_end, pbrt_object_instance;
+/* Keeps a shape that shines within the open object. Takes its arrays, also on failure. */
+ag_status pbrt_add_object_lamp(pbrt_parser *parser, shape *s, file_location where);
+/* Shows a scene's object along the current transform as it moves: within the open object, or in the world. */
+ag_status pbrt_show_moving_shape(pbrt_parser *parser, uint32_t object_index, file_location where);
+/* Makes the instances that came early. Error where one is of an object that never came. */
+ag_status pbrt_end_objects(pbrt_parser *parser);
+void pbrt_reset_objects(pbrt_parser *parser);
+
+/* pbrt_transforms.c */
+pbrt_handler pbrt_identity, pbrt_translate, pbrt_scale, pbrt_rotate, pbrt_look_at, pbrt_transform,
+    pbrt_concat_transform, pbrt_coordinate_system, pbrt_coord_sys_transform, pbrt_active_transform,
+    pbrt_transform_times;
+ag_status pbrt_name_coordinate_system(pbrt_parser *parser, const char *name, const transform *start,
+                                      const transform *end);
+/* Whether the current transform moves while the shutter is open, as far as its two ends tell. */
+bool pbrt_is_moving(const pbrt_parser *parser);
+/* From one transform to another in TransformTimes, seen through the camera's shutter. Errors as motion_make's, at the
+ * directive. */
+ag_status pbrt_make_motion(pbrt_parser *parser, const transform *start, const transform *end, file_location where,
+                           const char *directive, motion *out_motion);
+/* Whether the current transform cannot be undone; then a warning, once for each of what, that it is left out. */
+bool pbrt_is_flattened(pbrt_parser *parser, file_location where, const char *what);
+/* A warning, once for each of what, that it does not move. */
+void pbrt_warn_still(pbrt_parser *parser, file_location where, const char *what);
+
+/* pbrt_materials.c */
+pbrt_handler pbrt_material, pbrt_make_named_material, pbrt_use_named_material;
+ag_status pbrt_add_default_material(pbrt_parser *parser);
+/* Error where a material was used and never made. */
+ag_status pbrt_check_named_materials(pbrt_parser *parser);
+
+/* pbrt_media.c */
+pbrt_handler pbrt_make_named_medium, pbrt_medium_interface;
+/* The scene's medium for one of the state's, which something is in now. */
+uint32_t pbrt_use_medium(pbrt_parser *parser, size_t named);
+/* Error where a medium was used and never made. */
+ag_status pbrt_check_named_media(pbrt_parser *parser);
+
+/* pbrt_material_kinds.c: each reads its parameters into *m, which is made of its kind. The last are stand-ins for what
+ * is not supported, the last for any name. */
+typedef ag_status pbrt_material_reader(pbrt_parser *parser, parameter_list *list, material *m);
+pbrt_material_reader pbrt_read_diffuse, pbrt_read_diffuse_transmission, pbrt_read_conductor, pbrt_read_dielectric,
+    pbrt_read_thin_dielectric, pbrt_read_coated_diffuse, pbrt_read_coated_conductor, pbrt_read_hair,
+    pbrt_read_subsurface, pbrt_read_measured, pbrt_read_unknown, pbrt_read_principled /* pbrt_principled.c */;
+/* "displacement" and "normalmap", of all kinds but mixes. */
+pbrt_material_reader pbrt_read_maps;
+
+/* pbrt_old_materials.c: where *type is one of pbrt-v3's names, makes it pbrt-v4's, and the list's parameters with it.
+ */
+ag_status pbrt_upgrade_material(pbrt_parser *parser, parameter_list *list, const char **type);
+
+/* pbrt_textures.c */
+pbrt_handler pbrt_texture;
+/* Loads the picture that the parameter names, and sets t->image_index. */
+ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *parameter_name,
+                          const char *file_name, image_encoding encoding, texture *t);
+/* A parameter that may be a texture. *out_texture_index is the texture's, or SCENE_NO_TEXTURE; *out_constant is written
+ * where the parameter stands and has the same value everywhere (a constant texture has), else left alone.
+ * Errors: as of parameter_get_rgb and parameter_get_float, and where no such texture of the wanted type is there. */
+ag_status pbrt_get_rgb_texture(pbrt_parser *parser, parameter_list *list, const char *name, rgb *out_constant,
+                               uint32_t *out_texture_index);
+ag_status pbrt_get_float_texture(pbrt_parser *parser, parameter_list *list, const char *name, float *out_constant,
+                                 uint32_t *out_texture_index);
+
+/* pbrt_lights.c */
+pbrt_handler pbrt_light_source, pbrt_area_light_source;
+/* Makes a shape of the world shine. */
+ag_status pbrt_add_area_light(pbrt_parser *parser, const pbrt_area_light *source, uint32_t shape_index,
+                              file_location where);
+
+/* Each comes as light_make leaves it; its pictures are the caller's. */
+/* pbrt_environments.c: LightSource "infinite". */
+ag_status pbrt_infinite_light(pbrt_parser *parser, parameter_list *list, light *out_light);
+/* pbrt_light_pictures.c: LightSource "goniometric" and "projection". */
+ag_status pbrt_goniometric_light(pbrt_parser *parser, parameter_list *list, light *out_light);
+ag_status pbrt_projection_light(pbrt_parser *parser, parameter_list *list, light *out_light);
+/* world_from_light: the axes of the current transform, or with swaps_yz the light's y and z along its z and y. What is
+ * no rotation, reflection or scaling keeps the light's z axis, and x as far as it can. */
+ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, bool swaps_yz, light *l);
+/* The picture called name, "filename" of the list; its colours averaged where is_gray. */
+ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
+                                struct environment **out_environment);
+
+/* pbrt_camera.c */
+pbrt_handler pbrt_camera;
+
+/* pbrt_realistic.c: Camera "realistic"; and what is known of it when the Film is. */
+ag_status pbrt_read_realistic(pbrt_parser *parser, parameter_list *list, camera *c);
+ag_status pbrt_settle_realistic(pbrt_parser *parser);
+
+/* pbrt_shapes.c */
+pbrt_handler pbrt_shape;
+/* Adds the shape with the current material and area light. A mesh's arrays pass to the scene, also on failure. */
+ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape *s);
+
+/* pbrt_curves.c: Shape "curve". The current transform keeps angles. */
+ag_status pbrt_curve(pbrt_parser *parser, parameter_list *list);
+
+/* pbrt_meshes.c, pbrt_patches.c, pbrt_ply.c, pbrt_subdivision.c: Shape "trianglemesh", "bilinearmesh", "plymesh" and
+ * "loopsubdiv". */
+ag_status pbrt_triangle_mesh(pbrt_parser *parser, parameter_list *list);
+ag_status pbrt_bilinear_mesh(pbrt_parser *parser, parameter_list *list);
+ag_status pbrt_ply_mesh(pbrt_parser *parser, parameter_list *list);
+ag_status pbrt_loop_subdivision(pbrt_parser *parser, parameter_list *list);
+
+/* A mesh in object space as the file has it. */
+typedef struct pbrt_mesh {
+    const double *positions; /* 3 per vertex */
+    const double *normals;   /* 3 per vertex, or NULL */
+    const double *uvs;       /* 2 per vertex, or NULL */
+    const double *tangents;  /* 3 per vertex, or NULL */
+    size_t vertex_count;
+    uint32_t *indices; /* 3 per triangle, each < vertex_count; from malloc */
+    size_t triangle_count;
+    bool expects_degenerate; /* triangles without area are no fault of the file's */
+} pbrt_mesh;
+
+/* Adds it to the scene in world space, less the triangles without area. Takes source->indices, also on failure. */
+ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source);
+/* The same of a mesh whose arrays, in object space, are the scene's own already: they are transformed where they are
+ * and taken, also on failure. dropped: triangles that were left out before, for the warning. */
+ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
+                               bool expects_degenerate);
+/* The arrays that meshes have in common, all but triangle_count. There are *out_index_count indices, a multiple of
+ * corners, from malloc: those of the file, or 0, 1, 2, ... where it has none and the vertices are just one face. */
+ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_t corners, pbrt_mesh *out_mesh,
+                                size_t *out_index_count);
+
+#endif

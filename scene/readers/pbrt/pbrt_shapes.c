@@ -1,0 +1,244 @@
+/* pbrt_shapes.c: Shape of a pbrt-v4 scene.
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Shapes"; and for which side is outside on Pharr, Jakob,
+ * Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6.
+ * Flow: pbrt_parser -> [here] -> scene.shapes. Threads: one per scene. */
+#include "pbrt/pbrt_private.h"
+
+#include <string.h>
+
+ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape *s)
+{
+    uint32_t index;
+    s->medium_inside = pbrt_use_medium(parser, parser->state.medium_inside);
+    s->medium_outside = pbrt_use_medium(parser, parser->state.medium_outside);
+    s->has_medium_interface = s->medium_inside != s->medium_outside;
+    s->alpha = parser->alpha;
+    s->alpha_texture = parser->alpha_texture;
+    s->material_index = parser->state.material_index;
+    s->light_index = SHAPE_NO_LIGHT;
+    bool shines = parser->state.area_light.is_set;
+    if (shines && s->kind == SHAPE_CURVES)
+        log_at_once(parser->log, AG_LOG_WARNING, list->where, "curve light",
+                    "Shape \"curve\" cannot shine, nor can it in pbrt: its area light is left out");
+    if (s->kind == SHAPE_CURVES)
+        return scene_add_curves(parser->scene, parser->shapes_object_index, s);
+    if (shines && parser->state.has_no_surface) {
+        log_at(parser->log, AG_LOG_WARNING, list->where,
+               "a shape with the material \"interface\" cannot shine: its area light is left out");
+        shines = false;
+    }
+    if (shines && parser->open_object)
+        return pbrt_add_object_lamp(parser, s, list->where);
+    PBRT_TRY(scene_add_object_shape(parser->scene, parser->shapes_object_index, s, &index));
+    return shines ? pbrt_add_area_light(parser, &parser->state.area_light, index, list->where) : AG_OK;
+}
+
+/* Whether normals can be computed in floats, whose squares end at 1e38 and 1e-38, in object space and in the world's.
+ */
+static bool is_in_reach_of_floats(const quadric *q)
+{
+    double r = q->radius, largest = fmax(r, 1.0 / r);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            largest = fmax(largest, fabs(q->world_from_object.m[i][j]) * fmax(1.0, r));
+            largest = fmax(largest, fabs(q->world_from_object.inverse[i][j]) * fmax(1.0, 1.0 / r));
+        }
+    return largest <= (double)PBRT_MAX_COORDINATE;
+}
+
+static ag_status add_quadric(pbrt_parser *parser, parameter_list *list, shape *s)
+{
+    quadric *q = &s->as.quadric;
+    q->world_from_object = parser->state.world_from_object;
+    s->flip_normal = parser->state.reverse_orientation; /* the outward normal, transformed, is outward in any mirror */
+    double reach = fmax((double)q->radius, fabs((double)q->height));
+    reach = fmax(reach, fmax(fabs((double)q->z_min), fabs((double)q->z_max)));
+    for (int i = 0; i < 3; i++) {
+        double sum = fabs(q->world_from_object.m[i][3]);
+        for (int j = 0; j < 3; j++)
+            sum += reach * fabs(q->world_from_object.m[i][j]);
+        if (!(sum <= (double)PBRT_MAX_COORDINATE))
+            return pbrt_refuse(parser, list, "radius", "it reaches beyond 1e18 units in world space");
+    }
+    if (!is_in_reach_of_floats(q)) {
+        log_at(parser->log, AG_LOG_WARNING, list->where,
+               "Shape \"%s\" is too small, or scaled by too much or too little, for floats and is left out",
+               list->name);
+        return AG_OK;
+    }
+    return pbrt_add_shape(parser, list, s);
+}
+
+/* "radius", and "phimax" as a part of a turn; as in pbrt what is above 360 degrees is a whole one. */
+static ag_status read_round(pbrt_parser *parser, parameter_list *list, quadric *q)
+{
+    float phi_max = 360.0f;
+    q->radius = 1.0f;
+    PBRT_TRY(parameter_get_float(list, parser->log, "radius", &q->radius));
+    PBRT_TRY(parameter_get_float(list, parser->log, "phimax", &phi_max));
+    if (!(q->radius > 0.0f))
+        return pbrt_refuse(parser, list, "radius", "\"radius\" should be above 0");
+    if (!(phi_max > 0.0f))
+        return pbrt_refuse(parser, list, "phimax", "\"phimax\" should be above 0");
+    q->turn = fminf(phi_max / 360.0f, 1.0f);
+    return AG_OK;
+}
+
+/* "zmin" and "zmax", which as in pbrt may be the wrong way round. */
+static ag_status read_heights(pbrt_parser *parser, parameter_list *list, float z_min, float z_max, quadric *q)
+{
+    PBRT_TRY(parameter_get_float(list, parser->log, "zmin", &z_min));
+    PBRT_TRY(parameter_get_float(list, parser->log, "zmax", &z_max));
+    q->z_min = fminf(z_min, z_max);
+    q->z_max = fmaxf(z_min, z_max);
+    return AG_OK;
+}
+
+static ag_status read_sphere(pbrt_parser *parser, parameter_list *list)
+{
+    shape s = shape_make(SHAPE_SPHERE);
+    quadric *q = &s.as.quadric;
+    PBRT_TRY(read_round(parser, list, q));
+    PBRT_TRY(read_heights(parser, list, -q->radius, q->radius, q));
+    q->z_min = fmaxf(q->z_min, -q->radius);
+    q->z_max = fminf(q->z_max, q->radius);
+    if (!(q->z_min < q->z_max))
+        return pbrt_refuse(parser, list, "zmin", "nothing of the sphere lies between \"zmin\" and \"zmax\"");
+    parameter_list_warn_unused(list, parser->log);
+    return add_quadric(parser, list, &s);
+}
+
+static ag_status read_cylinder(pbrt_parser *parser, parameter_list *list)
+{
+    shape s = shape_make(SHAPE_CYLINDER);
+    quadric *q = &s.as.quadric;
+    PBRT_TRY(read_round(parser, list, q));
+    PBRT_TRY(read_heights(parser, list, -1.0f, 1.0f, q));
+    if (!(q->z_min < q->z_max))
+        return pbrt_refuse(parser, list, "zmin", "\"zmin\" should differ from \"zmax\"");
+    parameter_list_warn_unused(list, parser->log);
+    return add_quadric(parser, list, &s);
+}
+
+static ag_status read_disk(pbrt_parser *parser, parameter_list *list)
+{
+    shape s = shape_make(SHAPE_DISK);
+    quadric *q = &s.as.quadric;
+    PBRT_TRY(read_round(parser, list, q));
+    PBRT_TRY(parameter_get_float(list, parser->log, "innerradius", &q->inner_radius));
+    PBRT_TRY(parameter_get_float(list, parser->log, "height", &q->height));
+    if (!(q->inner_radius >= 0.0f && q->inner_radius < q->radius))
+        return pbrt_refuse(parser, list, "innerradius", "\"innerradius\" should be from 0 to below \"radius\"");
+    parameter_list_warn_unused(list, parser->log);
+    return add_quadric(parser, list, &s);
+}
+
+/* An interface with the same on both sides can be neither seen nor felt. */
+static bool is_nothing(const pbrt_parser *parser)
+{
+    return parser->state.has_no_surface && !parser->state.area_light.is_set &&
+           parser->state.medium_inside == parser->state.medium_outside;
+}
+
+/* Of the shape that is read next. */
+static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
+{
+    float alpha = 1.0f;
+    PBRT_TRY(pbrt_get_float_texture(parser, list, "alpha", &alpha, &parser->alpha_texture));
+    parser->alpha = fminf(fmaxf(alpha, 0.0f), 1.0f);
+    return AG_OK;
+}
+
+static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
+{
+    static const char *const OLD[] = {"cone", "paraboloid", "hyperboloid", "heightfield", "heightfield2", "nurbs"};
+    typedef ag_status reader(pbrt_parser *, parameter_list *);
+    static const struct {
+        const char *name;
+        reader *read;
+    } READERS[] = {{"sphere", read_sphere},
+                   {"cylinder", read_cylinder},
+                   {"disk", read_disk},
+                   {"plymesh", pbrt_ply_mesh},
+                   {"loopsubdiv", pbrt_loop_subdivision},
+                   {"trianglemesh", pbrt_triangle_mesh},
+                   {"bilinearmesh", pbrt_bilinear_mesh},
+                   {"curve", pbrt_curve}};
+    PBRT_TRY(read_alpha(parser, list));
+    for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
+        if (strcmp(list->name, READERS[i].name) == 0) {
+            if (is_nothing(parser))
+                return AG_OK;
+            return READERS[i].read(parser, list);
+        }
+    for (size_t i = 0; i < sizeof OLD / sizeof *OLD; i++)
+        if (strcmp(list->name, OLD[i]) == 0) {
+            log_at_once(parser->log, AG_LOG_WARNING, list->where, OLD[i],
+                        "Shape \"%s\" is pbrt-v3's and not part of pbrt-v4: it is left out", list->name);
+            return AG_OK;
+        }
+    return pbrt_error(parser, list->where, strlen("Shape"), "unknown shape \"%s\"", list->name);
+}
+
+static bool is_curve(const parameter_list *list) { return strcmp(list->name, "curve") == 0; }
+
+/* A curve's width is of its own space, where it is alike all round. */
+static bool is_stretched_curve(const pbrt_parser *parser, const parameter_list *list)
+{
+    return is_curve(list) && !(transform_uniform_scale(&parser->state.world_from_object) > 0.0);
+}
+
+/* Whether curves have been put there just before. */
+static bool joins_curves(const pbrt_parser *parser, const parameter_list *list)
+{
+    const pbrt_state *state = &parser->state;
+    return is_curve(list) && parser->curves_object_index != SCENE_NO_OBJECT &&
+           parser->curves_object_around == parser->shapes_object_index &&
+           memcmp(parser->curves_start.m, state->world_from_object.m, sizeof parser->curves_start.m) == 0 &&
+           memcmp(parser->curves_end.m, state->world_from_object_end.m, sizeof parser->curves_end.m) == 0;
+}
+
+/* A shape that moves is, as in pbrt, an object of its own in its own space, of which there is one instance. */
+static ag_status read_moving_shape(pbrt_parser *parser, parameter_list *list)
+{
+    pbrt_state *state = &parser->state;
+    const transform start = state->world_from_object, end = state->world_from_object_end;
+    uint32_t object_index, object_around = parser->shapes_object_index, count = parser->scene->shape_count;
+    bool is_shown = joins_curves(parser, list);
+    if (is_shown)
+        object_index = parser->curves_object_index;
+    else
+        PBRT_TRY(scene_add_object(parser->scene, &object_index));
+    state->world_from_object = state->world_from_object_end = transform_identity();
+    parser->shapes_object_index = object_index;
+    ag_status status = read_shape(parser, list);
+    parser->shapes_object_index = object_around;
+    state->world_from_object = start;
+    state->world_from_object_end = end;
+    if (status || is_shown || parser->scene->shape_count == count) /* the last: it was left out */
+        return status;
+    if (is_curve(list)) {
+        parser->curves_object_index = object_index;
+        parser->curves_object_around = object_around;
+        parser->curves_start = start;
+        parser->curves_end = end;
+    }
+    return pbrt_show_moving_shape(parser, object_index, list->where);
+}
+
+ag_status pbrt_shape(pbrt_parser *parser, file_location where)
+{
+    parameter_list list;
+    PBRT_TRY(pbrt_read_named_parameters(parser, "Shape", "a quoted type", where, &list));
+    if (pbrt_is_flattened(parser, where, "Shape")) {
+        parameter_list_reset(&list);
+        return AG_OK;
+    }
+    bool shines = parser->state.area_light.is_set && !is_curve(&list);
+    if (shines)
+        pbrt_warn_still(parser, where, "a shape with an area light");
+    bool has_own_space = (pbrt_is_moving(parser) && !shines) || is_stretched_curve(parser, &list);
+    ag_status status = has_own_space ? read_moving_shape(parser, &list) : read_shape(parser, &list);
+    parameter_list_reset(&list);
+    return status;
+}

@@ -1,0 +1,93 @@
+/* scene_file.c: see scene_file.h; and PLY files that are a scene by themselves. Threads: one per scene. */
+#include "scene_file.h"
+
+#include "gltf/gltf_reader.h"
+#include "model/importer.h"
+#include "model/mesh_import_assimp.h"
+#include "model/obj_file.h"
+#include "model/ply_file.h"
+#include "pbrt/pbrt_parser.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* A mesh alone: grey, as it stands in the file. */
+static ag_status load_ply(run_context *run, const char *path, scene *out_scene)
+{
+    importer i;
+    ply_mesh m;
+    char error[768] = "";
+    import_surface surface = {.alpha = 1.0f, .alpha_texture = SCENE_NO_TEXTURE, .radiance_texture = SCENE_NO_TEXTURE};
+    material gray = material_make(MATERIAL_DIFFUSE);
+    transform identity = transform_identity();
+    ag_status status = importer_init(&i, run, path, out_scene);
+    if (status)
+        return status;
+    run_progress(run, AG_PHASE_LOAD, 0.0);
+    status = ply_file_read(path, run, error, sizeof error, &m);
+    if (status == AG_ERROR_INPUT)
+        log_message(run->log, AG_LOG_ERROR, "%s", error); /* begins with the file's name */
+    if (!status) {
+        i.left_out_count = m.lines;
+        i.odd_vector_count = m.odd_vectors;
+        status = scene_add_material(out_scene, &gray, &surface.material_index);
+    }
+    if (!status)
+        status = importer_add_mesh(&i, "vertex", &m.mesh, &identity, &surface);
+    else
+        ply_mesh_reset(&m);
+    if (!status && out_scene->shape_count > 0)
+        status = scene_set_name(out_scene, NAMED_SHAPE, 0, path);
+    if (!status)
+        log_at(run->log, AG_LOG_INFO, i.where, "a PLY file has no materials: the mesh is grey");
+    if (!status)
+        status = importer_finish(&i);
+    if (!status)
+        run_progress(run, AG_PHASE_LOAD, 1.0);
+    return status;
+}
+
+typedef ag_status load_function(run_context *run, const char *path, scene *out_scene);
+
+/* Ahead of assimp, which reads some of them too. */
+static const struct {
+    const char *ending;
+    load_function *load;
+} READERS[] = {
+    {".pbrt", pbrt_parse_file}, {".pbrt.gz", pbrt_parse_file}, {".obj", obj_load_file},   {".obj.gz", obj_load_file},
+    {".ply", load_ply},         {".ply.gz", load_ply},         {".gltf", gltf_load_file}, {".glb", gltf_load_file},
+};
+
+static bool ends_with(const char *path, const char *ending)
+{
+    size_t length = strlen(path), ending_length = strlen(ending);
+    return length >= ending_length && strcasecmp(path + length - ending_length, ending) == 0;
+}
+
+static ag_status load(run_context *run, const char *path, scene *out_scene)
+{
+    for (size_t k = 0; k < sizeof READERS / sizeof *READERS; k++)
+        if (ends_with(path, READERS[k].ending))
+            return READERS[k].load(run, path, out_scene);
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    bool is_assimps = dot && dot[1] != '\0' && assimp_reads_extension(dot);
+    if (is_assimps)
+        return assimp_load_file(run, path, out_scene);
+    ag_status status = pbrt_parse_file(run, path, out_scene);
+    if (status == AG_ERROR_SCENE && dot && strcasecmp(dot, ".gz") != 0) /* may be of another renderer */
+        log_message(run->log, AG_LOG_WARNING, "no reader knows files that end in %s: this one was read as pbrt text",
+                    dot);
+    return status;
+}
+
+ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
+{
+    ag_status status = load(run, path, out_scene);
+    const definition *unused = status == AG_OK ? definitions_unused(out_scene->definitions) : NULL;
+    if (!unused)
+        return status;
+    log_message(run->log, AG_LOG_ERROR, "%s: error: the scene has no $%s, which -D %s=%s is for", path, unused->name,
+                unused->name, unused->value);
+    return AG_ERROR_ARGUMENT;
+}

@@ -1,0 +1,49 @@
+/* alpha.c: see alpha.h. Threads: pure functions. */
+#include "shape/alpha.h"
+
+#include "math/rng.h"
+
+#include <string.h>
+
+float alpha_at(const scene *s, const shape *at, const surface_hit *hit)
+{
+    float alpha = at->alpha;
+    if (at->alpha_texture != SCENE_NO_TEXTURE)
+        alpha *= texture_evaluate_float(s, at->alpha_texture, hit);
+    if (at->alpha_cutoff > 0.0f)
+        return alpha >= at->alpha_cutoff ? 1.0f : 0.0f;
+    return fminf(fmaxf(alpha, 0.0f), 1.0f);
+}
+
+float alpha_at_hit(const scene *s, const surface_hit *hit)
+{
+    const shape *at = &s->shapes[hit->shape_index];
+    if (shape_is_opaque(at))
+        return 1.0f;
+    surface_hit in_object = instance_hit_in_object(s, hit); /* where rays were asked */
+    return alpha_at(s, at, &in_object);
+}
+
+/* Uniform in [0, 1), another number for every ray and surface. */
+static float hash_of_ray(uint32_t shape_index, uint32_t primitive_index, uint32_t crossing, vec3 origin, vec3 direction)
+{
+    const float values[6] = {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z};
+    uint32_t bits[6];
+    memcpy(bits, values, sizeof bits);
+    uint64_t hash = hash_combine(((uint64_t)shape_index << 32) | primitive_index, crossing);
+    for (int i = 0; i < 6; i += 2)
+        hash = hash_combine(hash, ((uint64_t)bits[i] << 32) | bits[i + 1]);
+    return (float)(hash >> 40) * 0x1p-24f;
+}
+
+bool alpha_stops_ray(const scene *s, const shape *at, uint32_t primitive_index, float u, float v, uint32_t crossing,
+                     vec3 origin, vec3 direction, float t, bool is_probe)
+{
+    surface_hit hit = {.distance = t};
+    if (at->alpha_texture != SCENE_NO_TEXTURE)
+        shape_surface_at(at, primitive_index, u, v, vec3_add_scaled(origin, direction, t), direction, &hit);
+    float alpha = alpha_at(s, at, &hit); /* which reads the hit for a texture only */
+    if (alpha <= 0.0f || alpha >= 1.0f || is_probe)
+        return alpha > 0.0f;
+    return hash_of_ray((uint32_t)(at - s->shapes), primitive_index, crossing, origin, direction) < alpha;
+}

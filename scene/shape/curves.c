@@ -1,0 +1,326 @@
+/* curves.c: see curves.h. Places are found in double precision from Embree's parameter, which is a start only: it is
+ * settled by Newton's method, so that what Embree gives up for speed does not show.
+ * Threads: curves_reserve and curves_join by one thread; the rest read only. */
+#include "shape/curves.h"
+
+#include "math/sampling.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SETTLE_STEPS = 3, LENGTH_PARTS = 16, CAPACITY_MIN = 4, SEGMENTS_MAX = 1 << 28 };
+
+/* How far off a tube's surface rays start, as a share of its radius: what Embree's own search for the surface loses. */
+static const float TUBE_EPSILON_RELATIVE = 0x1p-9f;
+/* A ray that leaves a flat curve is met by the same curve as it turns to that ray: around its middle line, so half the
+ * width off its surface it is clear in every direction, and a little more for the rounding. */
+static const float FLAT_EPSILON_RELATIVE = 1.02f;
+/* Embree's ribbons have edges that are cubic themselves, ours turn evenly. */
+static const float RIBBON_EPSILON_RELATIVE = 0x1p-6f;
+
+/* --- memory --- */
+
+static bool enlarge(void *items, size_t count, size_t spare, size_t item_bytes)
+{
+    void *old, *larger;
+    memcpy(&old, items, sizeof old);
+    larger = realloc(old, (count + spare) * item_bytes);
+    if (larger)
+        memcpy(items, &larger, sizeof larger);
+    return larger != NULL;
+}
+
+ag_status curves_reserve(curves *c, uint32_t segment_count)
+{
+    if (segment_count > SEGMENTS_MAX)
+        return AG_ERROR_MEMORY;
+    if (segment_count <= c->capacity)
+        return AG_OK;
+    uint32_t capacity = c->capacity ? c->capacity : CAPACITY_MIN;
+    while (capacity < segment_count)
+        capacity *= 2;
+    size_t points = 4 * (size_t)capacity;
+    if (!enlarge(&c->points, points, 0, sizeof *c->points) || !enlarge(&c->spans, capacity, 0, sizeof *c->spans) ||
+        !enlarge(&c->first_points, capacity, 0, sizeof *c->first_points) ||
+        (c->type == CURVES_RIBBON && !enlarge(&c->normals, points, 1, sizeof *c->normals)))
+        return AG_ERROR_MEMORY;
+    for (uint32_t i = c->capacity; i < capacity; i++)
+        c->first_points[i] = 4 * i;
+    c->capacity = capacity;
+    return AG_OK;
+}
+
+void curves_reset(curves *c)
+{
+    free(c->points);
+    free(c->spans);
+    free(c->first_points);
+    free(c->normals);
+    *c = (curves){0};
+}
+
+bool curves_can_be_joined(const shape *s, const shape *with)
+{
+    return s->kind == SHAPE_CURVES && with->kind == SHAPE_CURVES && s->as.curves.type == with->as.curves.type &&
+           s->flip_normal == with->flip_normal && s->medium_inside == with->medium_inside &&
+           s->medium_outside == with->medium_outside && s->material_index == with->material_index &&
+           s->alpha == with->alpha && s->alpha_texture == with->alpha_texture &&
+           s->alpha_cutoff == with->alpha_cutoff && s->light_index == SHAPE_NO_LIGHT &&
+           with->light_index == SHAPE_NO_LIGHT && s->object_index == with->object_index &&
+           s->as.curves.segment_count + with->as.curves.segment_count <= SEGMENTS_MAX;
+}
+
+ag_status curves_join(curves *c, const curves *from)
+{
+    uint32_t before = c->segment_count;
+    ag_status status = curves_reserve(c, before + from->segment_count);
+    if (status != AG_OK)
+        return status;
+    memcpy(c->points + 4 * (size_t)before, from->points, 4 * (size_t)from->segment_count * sizeof *c->points);
+    memcpy(c->spans + before, from->spans, from->segment_count * sizeof *c->spans);
+    if (c->normals)
+        memcpy(c->normals + 4 * (size_t)before, from->normals, 4 * (size_t)from->segment_count * sizeof *c->normals);
+    c->segment_count += from->segment_count;
+    return AG_OK;
+}
+
+/* --- extent --- */
+
+void curves_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
+{
+    const curves *c = &s->as.curves;
+    vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < 4 * (size_t)c->segment_count; i++) { /* a Bezier curve is within its control points' hull */
+        curve_point p = c->points[i];
+        vec3 reach = {p.radius, p.radius, p.radius};
+        low = vec3_min(low, vec3_sub(p.at, reach));
+        high = vec3_max(high, vec3_add(p.at, reach));
+    }
+    *out_min = low;
+    *out_max = high;
+}
+
+/* --- places --- */
+
+typedef struct place {
+    double p[3], d[3], dd[3]; /* the middle line, and its derivatives by u */
+    double t[3];              /* unit, along it */
+    double speed;             /* |d| */
+    double radius, slope;     /* and its derivative by u */
+} place;
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Less its part along a unit vector. */
+static void take_across(double v[3], const double unit[3])
+{
+    double along = dot(v, unit);
+    for (int i = 0; i < 3; i++)
+        v[i] -= along * unit[i];
+}
+
+/* False where there is nothing to speak of. */
+static bool make_unit(double v[3])
+{
+    double square = dot(v, v);
+    if (!(square > 1e-60))
+        return false;
+    double inverse = 1.0 / sqrt(square);
+    for (int i = 0; i < 3; i++)
+        v[i] *= inverse;
+    return true;
+}
+
+static void any_across(const double unit[3], double out[3])
+{
+    vec3 x = frame_from_z((vec3){(float)unit[0], (float)unit[1], (float)unit[2]}).x;
+    out[0] = (double)x.x, out[1] = (double)x.y, out[2] = (double)x.z;
+}
+
+static vec3 rounded(const double v[3]) { return (vec3){(float)v[0], (float)v[1], (float)v[2]}; }
+
+static place find_place(const curves *c, uint32_t segment, double u)
+{
+    const curve_point *q = c->points + 4 * (size_t)segment;
+    const double w = 1.0 - u, b[4] = {w * w * w, 3.0 * u * w * w, 3.0 * u * u * w, u * u * u};
+    const double d[3] = {3.0 * w * w, 6.0 * u * w, 3.0 * u * u};
+    double x[4][4];
+    place at;
+    for (int k = 0; k < 4; k++) {
+        x[k][0] = (double)q[k].at.x, x[k][1] = (double)q[k].at.y, x[k][2] = (double)q[k].at.z;
+        x[k][3] = (double)q[k].radius;
+    }
+    for (int i = 0; i < 3; i++) {
+        at.p[i] = b[0] * x[0][i] + b[1] * x[1][i] + b[2] * x[2][i] + b[3] * x[3][i];
+        at.d[i] = d[0] * (x[1][i] - x[0][i]) + d[1] * (x[2][i] - x[1][i]) + d[2] * (x[3][i] - x[2][i]);
+        at.dd[i] = 6.0 * (w * (x[2][i] - 2.0 * x[1][i] + x[0][i]) + u * (x[3][i] - 2.0 * x[2][i] + x[1][i]));
+    }
+    at.radius = b[0] * x[0][3] + b[1] * x[1][3] + b[2] * x[2][3] + b[3] * x[3][3];
+    at.slope = d[0] * (x[1][3] - x[0][3]) + d[1] * (x[2][3] - x[1][3]) + d[2] * (x[3][3] - x[2][3]);
+    at.speed = sqrt(dot(at.d, at.d));
+    for (int i = 0; i < 3; i++)
+        at.t[i] = at.d[i];
+    if (!make_unit(at.t)) { /* two control points in one place: the way to the other end */
+        for (int i = 0; i < 3; i++)
+            at.t[i] = x[3][i] - x[0][i];
+        if (!make_unit(at.t))
+            at.t[0] = 1.0, at.t[1] = at.t[2] = 0.0;
+    }
+    return at;
+}
+
+/* The place whose cross-section the point is in; with a direction, the one that is nearest as seen along it. u: near
+ * it. */
+static place settle(const curves *c, uint32_t segment, const double point[3], const double *direction, double *in_out_u)
+{
+    double u = fmin(fmax(*in_out_u, 0.0), 1.0);
+    place at = find_place(c, segment, u);
+    for (int step = 0; step < SETTLE_STEPS; step++) {
+        double to[3], d[3];
+        for (int i = 0; i < 3; i++)
+            to[i] = point[i] - at.p[i], d[i] = at.d[i];
+        if (direction)
+            take_across(d, direction);
+        double slope = dot(d, d) - dot(to, at.dd);
+        if (direction)
+            slope += dot(to, direction) * dot(at.dd, direction);
+        if (!(slope > 0.25 * dot(d, d))) /* the curve bends around the point: towards it all the same */
+            slope = dot(d, d);
+        if (!(slope > 0.0))
+            break;
+        double moved = fmin(fmax(u + dot(to, d) / slope, 0.0), 1.0);
+        if (!(fabs(moved - u) < 0.25)) /* further than Embree errs: another place of the same curve */
+            break;
+        u = moved;
+        at = find_place(c, segment, u);
+    }
+    *in_out_u = u;
+    return at;
+}
+
+static void ribbon_normal(const curves *c, uint32_t segment, double u, const place *at, double out[3])
+{
+    const vec3 *n = c->normals + 4 * (size_t)segment;
+    const double w = 1.0 - u, b[4] = {w * w * w, 3.0 * u * w * w, 3.0 * u * u * w, u * u * u};
+    out[0] = out[1] = out[2] = 0.0;
+    for (int k = 0; k < 4; k++) {
+        out[0] += b[k] * (double)n[k].x;
+        out[1] += b[k] * (double)n[k].y;
+        out[2] += b[k] * (double)n[k].z;
+    }
+    take_across(out, at->t);
+    if (!make_unit(out))
+        any_across(at->t, out);
+}
+
+/* Of a tube: what is around the bend is nearer together, and a taper looks up along the curve. */
+static void tube_normal(const place *at, const double around[3], double out[3])
+{
+    double stretch = at->speed > 0.0 ? at->speed - at->radius * dot(around, at->dd) / at->speed : 0.0;
+    for (int i = 0; i < 3; i++)
+        out[i] = around[i] * stretch - at->t[i] * at->slope;
+    if (!(stretch > 0.0) || !make_unit(out)) /* bent more tightly than it is thick */
+        for (int i = 0; i < 3; i++)
+            out[i] = around[i];
+}
+
+void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 position, vec3 direction,
+                       surface_hit *out_hit)
+{
+    const curves *c = &s->as.curves;
+    surface_hit *h = out_hit;
+    double x[3] = {(double)position.x, (double)position.y, (double)position.z}, off[3], normal[3], aside[3];
+    double way[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
+    double along = (double)u, v, epsilon = 0.0;
+    bool is_seen = make_unit(way);
+    place at = settle(c, primitive_index, x, c->type == CURVES_FLAT && is_seen ? way : NULL, &along);
+    for (int i = 0; i < 3; i++)
+        off[i] = x[i] - at.p[i];
+
+    /* towards the ray's origin, across the curve; and to v's side as it is seen from there */
+    double facing[3] = {-way[0], -way[1], -way[2]};
+    take_across(facing, at.t);
+    if (!make_unit(facing))
+        any_across(at.t, facing);
+    cross(at.t, facing, aside);
+
+    if (c->type == CURVES_FLAT) {
+        double cosine = -dot(way, facing), depth = dot(off, facing);
+        for (int i = 0; i < 3; i++) {
+            normal[i] = facing[i];
+            x[i] += cosine > 1e-3 ? way[i] * (depth / cosine) : -facing[i] * depth;
+            off[i] = x[i] - at.p[i];
+        }
+        v = at.radius > 0.0 ? dot(off, aside) / at.radius : 0.0;
+        epsilon = (double)FLAT_EPSILON_RELATIVE * at.radius;
+    } else if (c->type == CURVES_CYLINDER) {
+        take_across(off, at.t);
+        if (!make_unit(off))
+            memcpy(off, facing, sizeof off);
+        for (int i = 0; i < 3; i++)
+            x[i] = at.p[i] + at.radius * off[i];
+        v = dot(off, aside);
+        tube_normal(&at, off, normal);
+        epsilon = (double)TUBE_EPSILON_RELATIVE * at.radius;
+    } else {
+        ribbon_normal(c, primitive_index, along, &at, normal);
+        cross(normal, at.t, aside);
+        v = at.radius > 0.0 ? dot(off, aside) / at.radius : 0.0;
+        epsilon = (double)RIBBON_EPSILON_RELATIVE * at.radius;
+    }
+    vec2 span = c->spans[primitive_index];
+    h->position = rounded(x);
+    h->geometric_normal = vec3_normalize(rounded(normal));
+    if (s->flip_normal)
+        h->geometric_normal = vec3_negate(h->geometric_normal);
+    h->shading_normal = h->geometric_normal;
+    h->uv = (vec2){span.x + (float)along * (span.y - span.x), (float)fmin(fmax(0.5 + 0.5 * v, 0.0), 1.0)};
+    const curve_point *q = c->points + 4 * (size_t)primitive_index;
+    float largest = 0.0f;
+    for (int k = 0; k < 4; k++)
+        largest = fmaxf(largest, vec3_max_abs(q[k].at) + q[k].radius);
+    h->epsilon = (float)epsilon + largest * SHAPE_EPSILON_RELATIVE;
+    h->is_flat = false;
+    h->is_strand = true;
+}
+
+surface_differentials curves_differentials(const shape *s, const surface_hit *hit)
+{
+    const curves *c = &s->as.curves;
+    vec2 span = c->spans[hit->primitive_index];
+    double share = (double)span.y - (double)span.x;
+    double u = fmin(fmax(((double)hit->uv.x - (double)span.x) / share, 0.0), 1.0);
+    place at = find_place(c, hit->primitive_index, u);
+    double sign = s->flip_normal ? -1.0 : 1.0, aside[3];
+    double normal[3] = {sign * (double)hit->geometric_normal.x, sign * (double)hit->geometric_normal.y,
+                        sign * (double)hit->geometric_normal.z};
+    if (c->type == CURVES_RIBBON)
+        cross(normal, at.t, aside);
+    else
+        cross(at.t, normal, aside);
+    surface_differentials d = {0};
+    d.dpdu = vec3_scale(rounded(at.t), (float)(at.speed / share));
+    d.dpdv = vec3_scale(rounded(aside), (float)(2.0 * at.radius));
+    if (c->type == CURVES_CYLINDER)
+        d.dndv = vec3_scale(rounded(aside), (float)(2.0 * sign));
+    return d;
+}
+
+float curves_area(const shape *s)
+{
+    const curves *c = &s->as.curves;
+    double area = 0.0, around = c->type == CURVES_CYLINDER ? 2.0 * (double)AG_PI : 2.0;
+    for (uint32_t k = 0; k < c->segment_count; k++)
+        for (int i = 0; i < LENGTH_PARTS; i++) {
+            place at = find_place(c, k, (i + 0.5) / LENGTH_PARTS);
+            area += around * at.radius * at.speed / LENGTH_PARTS;
+        }
+    return (float)area;
+}

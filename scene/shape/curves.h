@@ -1,0 +1,28 @@
+/* curves.h: hair, grass and thread: cubic Bezier curves with a width; what shape.c asks of them.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 6.7 (types, parametrisation); for
+ * round ones Reshetov, Luebke, "Phantom Ray-Hair Intersector", 2018: they are tubes here, which in pbrt are flat to
+ * rays. Flow: shape.c -> [here]. Embree casts the rays, places are recomputed here. Threads: read-only once committed.
+ */
+#ifndef AFTERGLOW_CURVES_H
+#define AFTERGLOW_CURVES_H
+
+#include "shape/tangents.h"
+
+/* Makes room for so many segments in all. Errors: AG_ERROR_MEMORY. */
+ag_status curves_reserve(curves *c, uint32_t segment_count);
+void curves_reset(curves *c);
+/* Whether two shapes of curves differ in nothing but their segments, and can be one. */
+bool curves_can_be_joined(const shape *s, const shape *with);
+/* Adds the segments of `from`. Errors: AG_ERROR_MEMORY. */
+ag_status curves_join(curves *c, const curves *from);
+
+float curves_area(const shape *s); /* of the side that is seen of flat ones; needs no commit */
+void curves_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
+
+/* As shape_surface_at. u: Embree's. direction: in which the ray goes, for a flat one turns to meet it. */
+void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 position, vec3 direction,
+                       surface_hit *out_hit);
+/* In the shape's own space. */
+surface_differentials curves_differentials(const shape *s, const surface_hit *hit);
+
+#endif

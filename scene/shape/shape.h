@@ -1,0 +1,104 @@
+/* shape.h: surfaces in world space: triangle meshes, spheres, cylinders, disks and curves.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6; orientation follows pbrt's:
+ * a shape's outside is where its geometric normal points, ReverseOrientation turns it over.
+ * Flow: the scene file makes shapes; rays_embree casts rays at them; lights sample points on them.
+ * Threads: read-only once the scene is committed. */
+#ifndef AFTERGLOW_SHAPE_H
+#define AFTERGLOW_SHAPE_H
+
+#include "afterglow/base.h"
+#include "math/transform.h"
+#include "shape/instance.h"
+
+#include <stdint.h>
+
+#define SHAPE_NO_LIGHT UINT32_MAX
+
+/* Rays start this far off a surface, relative to the largest coordinate at hand: some 128 units in the last place of a
+ * float, a few times what the traversal's arithmetic loses. */
+#define SHAPE_EPSILON_RELATIVE 0x1p-16f
+
+typedef enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_CURVES } shape_kind;
+
+/* World space. Arrays are owned by the shape, which is owned by the scene. Positions have room for one more vertex, so
+ * that Embree may read 16 bytes at the last one. */
+typedef struct mesh {
+    uint32_t vertex_count, triangle_count;
+    vec3 *positions;
+    vec3 *normals;     /* unit shading normals, or NULL */
+    vec2 *uvs;         /* or NULL */
+    vec3 *tangents;    /* of any length, for the shading frame alone, or NULL: then uvs say which way they go */
+    uint32_t *indices; /* 3 per triangle, each < vertex_count */
+    float *area_cdf;   /* of emissive meshes, else NULL: [triangle_count], running sum of areas over the total */
+} mesh;
+
+/* Sphere and cylinder around the z axis, of which z_min to z_max is there; disk: z = height, inner to outer radius. All
+ * from the x axis so far round the z axis as `turn` says. Under any affine map. */
+typedef struct quadric {
+    transform world_from_object;
+    float radius;
+    float inner_radius, height; /* disk only */
+    float z_min, z_max;         /* sphere, within +-radius, and cylinder; z_min < z_max */
+    float turn;                 /* phimax / 360 degrees, in (0, 1] */
+    /* set by scene_commit */
+    vec3 center;          /* world */
+    float uniform_radius; /* world radius of a whole sphere that is still a sphere, else 0 */
+    float epsilon;        /* as in surface_hit */
+    float turn_sin, turn_cos;
+    double theta_min, theta_max; /* sphere: the angles from the z axis at z_min and z_max, in turns */
+    bool has_even_area;          /* object area and world area have one ratio everywhere */
+} quadric;
+
+typedef enum curves_type {
+    CURVES_FLAT,     /* turned about its middle line to each ray; its outside is where the ray came from */
+    CURVES_CYLINDER, /* a tube, open at its ends */
+    CURVES_RIBBON    /* flat, and turned as its normals say */
+} curves_type;
+
+typedef struct curve_point {
+    vec3 at;
+    float radius; /* half the width */
+} curve_point;
+
+/* So many straight pieces does Embree make of a flat segment; the reader cuts those that need more. */
+enum { CURVES_FLAT_PIECES = 8 };
+
+/* Cubic Bezier segments, many curves in one shape. World space; arrays are owned as a mesh's. */
+typedef struct curves {
+    curves_type type;
+    uint32_t segment_count, capacity;
+    curve_point *points;    /* 4 per segment */
+    vec3 *normals;          /* of ribbons, else NULL: 4 per segment, control points too; of any length */
+    vec2 *spans;            /* per segment: the uv.x of its ends, for a curve may have been cut */
+    uint32_t *first_points; /* per segment: 4 times its number, for Embree */
+} curves;
+
+typedef struct shape {
+    shape_kind kind;
+    bool flip_normal; /* ReverseOrientation, and for meshes also a transform that swaps handedness (not both) */
+    bool has_medium_interface;              /* the two below differ: a ray that leaves it is in that of its side */
+    uint32_t medium_inside, medium_outside; /* of the scene's, or SCENE_NO_MEDIUM; without an interface only of use to
+                                             * light that starts here */
+    uint32_t material_index;
+    uint32_t light_index;   /* SHAPE_NO_LIGHT where it does not shine */
+    float alpha;            /* the share of it that is there, [0, 1]: rays pass through the rest (alpha.h) */
+    uint32_t alpha_texture; /* a float texture that multiplies it; SCENE_NO_TEXTURE: none */
+    float alpha_cutoff;     /* above 0: a place is there, wholly, where alpha is at least that */
+    uint32_t object_index;  /* the scene's object that it belongs to; SCENE_NO_OBJECT: it stands in the world itself */
+    union {
+        mesh mesh;
+        quadric quadric;
+        curves curves;
+    } as;
+    float area; /* m^2, world; set by scene_commit */
+} shape;
+
+/* A shape with nothing in it yet: opaque, dark, of the scene's first material, in no medium. */
+shape shape_make(shape_kind kind);
+/* Frees what it owns. */
+void shape_reset(shape *s);
+/* The same shape, which is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
+ * AG_ERROR_MEMORY. */
+ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
+
+#endif

@@ -1,0 +1,372 @@
+/* parameter_list.c: see parameter_list.h.
+ * Threads: one at a time. */
+#include "text/parameter_list.h"
+
+#include <float.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const LEVEL_NAMES[] = {"error", "warning", "info", "debug"};
+
+/* What the format says, in fixed if it fits, else from the heap; *out_heap is to be freed. */
+static const char *format_text(char *fixed, size_t fixed_size, const char *format, va_list arguments, char **out_heap)
+{
+    va_list again;
+    va_copy(again, arguments);
+    *out_heap = NULL;
+    int length = vsnprintf(fixed, fixed_size, format, arguments);
+    if (length >= 0 && (size_t)length >= fixed_size) {
+        *out_heap = malloc((size_t)length + 1);
+        if (*out_heap)
+            vsnprintf(*out_heap, (size_t)length + 1, format, again);
+    }
+    va_end(again);
+    return *out_heap ? *out_heap : fixed;
+}
+
+static void log_located(log_sink *log, ag_log_level level, file_location where, const char *key, const char *text)
+{
+    char place[32] = "";
+    if (where.file && where.line > 0)
+        snprintf(place, sizeof place, "%d:%d:", where.line, where.column);
+    const char *file = where.file ? where.file : "", *colon = where.file ? ":" : "", *gap = where.file ? " " : "";
+    if (key)
+        log_once(log, level, key, "%s%s%s%s%s: %s", file, colon, place, gap, LEVEL_NAMES[level], text);
+    else
+        log_message(log, level, "%s%s%s%s%s: %s", file, colon, place, gap, LEVEL_NAMES[level], text);
+}
+
+void log_at(log_sink *log, ag_log_level level, file_location where, const char *format, ...)
+{
+    char fixed[512], *heap;
+    va_list arguments;
+    va_start(arguments, format);
+    const char *text = format_text(fixed, sizeof fixed, format, arguments, &heap);
+    va_end(arguments);
+    log_located(log, level, where, NULL, text);
+    free(heap);
+}
+
+void log_at_once(log_sink *log, ag_log_level level, file_location where, const char *key, const char *format, ...)
+{
+    char fixed[512], *heap;
+    va_list arguments;
+    va_start(arguments, format);
+    const char *text = format_text(fixed, sizeof fixed, format, arguments, &heap);
+    va_end(arguments);
+    log_located(log, level, where, key, text);
+    free(heap);
+}
+
+const char *parameter_type_name(parameter_type type)
+{
+    static const char *const NAMES[] = {"float",   "integer", "string", "bool",     "point2",    "vector2", "point3",
+                                        "vector3", "normal",  "rgb",    "spectrum", "blackbody", "texture"};
+    return NAMES[type];
+}
+
+void parameter_reset(parameter *p)
+{
+    if (p->strings)
+        for (size_t i = 0; i < p->count; i++)
+            free(p->strings[i]);
+    free(p->strings);
+    free(p->numbers);
+    free(p->bools);
+    free(p->name);
+    memset(p, 0, sizeof *p);
+}
+
+void parameter_list_reset(parameter_list *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        parameter_reset(&list->items[i]);
+    free(list->items);
+    free(list->directive);
+    free(list->name);
+    memset(list, 0, sizeof *list);
+}
+
+/* NULL where there is nothing to copy, which is no failure. */
+static void *copy_values(const void *values, size_t bytes, bool *in_out_is_good)
+{
+    if (!values)
+        return NULL;
+    void *copy = malloc(bytes ? bytes : 1);
+    if (copy)
+        memcpy(copy, values, bytes);
+    *in_out_is_good = *in_out_is_good && copy;
+    return copy;
+}
+
+bool parameter_copy(const parameter *p, parameter *out_copy)
+{
+    bool is_good = true;
+    *out_copy = *p;
+    out_copy->name = copy_values(p->name, strlen(p->name) + 1, &is_good);
+    out_copy->numbers = copy_values(p->numbers, p->count * sizeof *p->numbers, &is_good);
+    out_copy->bools = copy_values(p->bools, p->count, &is_good);
+    out_copy->strings = p->strings ? calloc(p->count + 1, sizeof *p->strings) : NULL;
+    is_good = is_good && (out_copy->strings || !p->strings);
+    for (size_t i = 0; out_copy->strings && i < p->count; i++)
+        out_copy->strings[i] = copy_values(p->strings[i], strlen(p->strings[i]) + 1, &is_good);
+    if (!is_good)
+        parameter_reset(out_copy);
+    return is_good;
+}
+
+/* Tells the error with the line that the parameter is in; always returns AG_ERROR_SCENE. */
+static ag_status refuse(const parameter_list *list, log_sink *log, const parameter *p, const char *format, ...)
+    AG_PRINTF(4, 5);
+static ag_status refuse(const parameter_list *list, log_sink *log, const parameter *p, const char *format, ...)
+{
+    char fixed[512], *heap, excerpt[320] = "";
+    va_list arguments;
+    va_start(arguments, format);
+    const char *text = format_text(fixed, sizeof fixed, format, arguments, &heap);
+    va_end(arguments);
+    if (list->source)
+        list->source->excerpt(list->source->user, p->where, strlen(parameter_type_name(p->type)) + strlen(p->name) + 3,
+                              excerpt, sizeof excerpt);
+    log_at(log, AG_LOG_ERROR, p->where, "%s%s", text, excerpt);
+    free(heap);
+    return AG_ERROR_SCENE;
+}
+
+const parameter *parameter_list_find(const parameter_list *list, const char *name)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (strcmp(list->items[i].name, name) == 0)
+            return &list->items[i];
+    return NULL;
+}
+
+/* Finds the parameter and checks that it is of the type. *out_parameter is NULL where there is none to be used: it is
+ * absent, or a texture, which is told. */
+static ag_status look_up(parameter_list *list, log_sink *log, const char *name, parameter_type type,
+                         const parameter **out_parameter)
+{
+    *out_parameter = NULL;
+    parameter *p = (parameter *)parameter_list_find(list, name);
+    if (!p)
+        return AG_OK;
+    p->looked_up = true;
+    if (p->type == PARAMETER_TEXTURE && type != PARAMETER_TEXTURE) {
+        char key[160];
+        snprintf(key, sizeof key, "texture parameter:%s", name);
+        log_at_once(log, AG_LOG_WARNING, p->where, key,
+                    "\"texture %s\" is not supported here: it is ignored and the default is used", name);
+        return AG_OK;
+    }
+    if (p->type != type)
+        return refuse(list, log, p, "\"%s %s\" should be \"%s %s\"", parameter_type_name(p->type), name,
+                      parameter_type_name(type), name);
+    *out_parameter = p;
+    return AG_OK;
+}
+
+static ag_status look_up_counted(parameter_list *list, log_sink *log, const char *name, parameter_type type,
+                                 size_t count, const parameter **out_parameter)
+{
+    ag_status status = look_up(list, log, name, type, out_parameter);
+    if (status || !*out_parameter || (*out_parameter)->count == count)
+        return status;
+    return refuse(list, log, *out_parameter, "\"%s %s\" should have %zu value%s, but has %zu",
+                  parameter_type_name(type), name, count, count == 1 ? "" : "s", (*out_parameter)->count);
+}
+
+static ag_status check_float(const parameter_list *list, log_sink *log, const parameter *p)
+{
+    for (size_t i = 0; i < p->count; i++)
+        if (!(fabs(p->numbers[i]) <= (double)FLT_MAX))
+            return refuse(list, log, p, "\"%s %s\": %g is too large", parameter_type_name(p->type), p->name,
+                          p->numbers[i]);
+    return AG_OK;
+}
+
+ag_status parameter_get_float(parameter_list *list, log_sink *log, const char *name, float *out_value)
+{
+    const parameter *p;
+    ag_status status = look_up_counted(list, log, name, PARAMETER_FLOAT, 1, &p);
+    if (!status && p)
+        status = check_float(list, log, p);
+    if (!status && p)
+        *out_value = (float)p->numbers[0];
+    return status;
+}
+
+ag_status parameter_get_int(parameter_list *list, log_sink *log, const char *name, int64_t *out_value)
+{
+    const parameter *p;
+    ag_status status = look_up_counted(list, log, name, PARAMETER_INTEGER, 1, &p);
+    if (!status && p)
+        *out_value = (int64_t)p->numbers[0]; /* the reader holds integers to 32 bits */
+    return status;
+}
+
+ag_status parameter_get_bool(parameter_list *list, log_sink *log, const char *name, bool *out_value)
+{
+    const parameter *p;
+    ag_status status = look_up_counted(list, log, name, PARAMETER_BOOL, 1, &p);
+    if (!status && p)
+        *out_value = p->bools[0] != 0;
+    return status;
+}
+
+ag_status parameter_get_string(parameter_list *list, log_sink *log, const char *name, const char **out_value)
+{
+    const parameter *p;
+    ag_status status = look_up_counted(list, log, name, PARAMETER_STRING, 1, &p);
+    if (!status && p)
+        *out_value = p->strings[0];
+    return status;
+}
+
+ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char *name, const char **out_texture_name)
+{
+    const parameter *p = parameter_list_find(list, name);
+    if (!p || p->type != PARAMETER_TEXTURE)
+        return AG_OK;
+    ag_status status = look_up_counted(list, log, name, PARAMETER_TEXTURE, 1, &p);
+    if (!status)
+        *out_texture_name = p->strings[0];
+    return status;
+}
+
+ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *name, parameter_type type,
+                             vec3 *out_value)
+{
+    const parameter *p;
+    ag_status status = look_up_counted(list, log, name, type, 3, &p);
+    if (!status && p)
+        status = check_float(list, log, p);
+    if (!status && p)
+        *out_value = vec3_make((float)p->numbers[0], (float)p->numbers[1], (float)p->numbers[2]);
+    return status;
+}
+
+spectrum_use parameter_spectrum_use(const char *name)
+{
+    static const char *const EMITTED[] = {"L", "I", "Le"};
+    static const char *const INDICES[] = {"eta", "k", "conductor.eta", "conductor.k", "interface.eta"};
+    static const char *const DENSITIES[] = {"sigma_a", "sigma_s", "mfp"};
+    for (size_t i = 0; i < sizeof EMITTED / sizeof *EMITTED; i++)
+        if (strcmp(name, EMITTED[i]) == 0)
+            return SPECTRUM_LIGHT;
+    for (size_t i = 0; i < sizeof INDICES / sizeof *INDICES; i++)
+        if (strcmp(name, INDICES[i]) == 0)
+            return SPECTRUM_INDEX;
+    for (size_t i = 0; i < sizeof DENSITIES / sizeof *DENSITIES; i++)
+        if (strcmp(name, DENSITIES[i]) == 0)
+            return SPECTRUM_DENSITY;
+    return SPECTRUM_REFLECTANCE;
+}
+
+/* The reader has looked into the files of those that have no name of pbrt's. */
+static ag_status get_spectrum(const parameter_list *list, log_sink *log, const parameter *p, rgb *out_value)
+{
+    const working_space *space = list->source ? list->source->space : NULL;
+    if (p->count == 0 || (p->strings && p->count != 1))
+        return refuse(list, log, p, "\"spectrum %s\" should have %s", p->name,
+                      p->count == 0 ? "values" : "one name, or numbers");
+    if (p->strings) {
+        if (!spectra_find_named(p->strings[0], space, out_value)) {
+            char key[160];
+            snprintf(key, sizeof key, "named spectrum:%s", p->strings[0]);
+            log_at_once(log, AG_LOG_WARNING, p->where, key,
+                        "the spectrum \"%s\" is not known, or not supported yet: the default of \"%s\" is used",
+                        p->strings[0], p->name);
+        }
+        return AG_OK;
+    }
+    for (size_t i = 0; i < p->count; i += 2) {
+        if (i > 0 && !(p->numbers[i] > p->numbers[i - 2]))
+            return refuse(list, log, p, "\"spectrum %s\": the wavelengths should increase, but %g follows %g", p->name,
+                          p->numbers[i], p->numbers[i - 2]);
+        if (!(p->numbers[i + 1] >= 0.0))
+            return refuse(list, log, p, "\"spectrum %s\" has a negative value, %g", p->name, p->numbers[i + 1]);
+    }
+    ag_status status = check_float(list, log, p);
+    if (!status)
+        *out_value = spectra_sampled(p->numbers, p->count / 2, parameter_spectrum_use(p->name), space);
+    return status;
+}
+
+static ag_status get_blackbody(parameter_list *list, log_sink *log, const char *name, rgb *out_value)
+{
+    const parameter *p;
+    ag_status status = look_up_counted(list, log, name, PARAMETER_BLACKBODY, 1, &p);
+    if (status || !p)
+        return status;
+    double kelvin = p->numbers[0];
+    if (!(kelvin >= SPECTRA_MIN_KELVIN && kelvin <= SPECTRA_MAX_KELVIN))
+        return refuse(list, log, p, "\"blackbody %s\": %g is not a temperature from %g to %g kelvin", name, kelvin,
+                      SPECTRA_MIN_KELVIN, SPECTRA_MAX_KELVIN);
+    *out_value = spectra_blackbody(kelvin, list->source ? list->source->space : NULL);
+    return AG_OK;
+}
+
+ag_status parameter_get_rgb(parameter_list *list, log_sink *log, const char *name, rgb *out_value)
+{
+    parameter *found = (parameter *)parameter_list_find(list, name);
+    if (found && found->type == PARAMETER_SPECTRUM) {
+        found->looked_up = true;
+        return get_spectrum(list, log, found, out_value);
+    }
+    if (found && found->type == PARAMETER_BLACKBODY)
+        return get_blackbody(list, log, name, out_value);
+    const parameter *p;
+    ag_status status = look_up_counted(list, log, name, PARAMETER_RGB, 3, &p);
+    if (!status && p)
+        status = check_float(list, log, p);
+    if (status || !p)
+        return status;
+    for (int i = 0; i < 3; i++)
+        if (p->numbers[i] < 0.0)
+            return refuse(list, log, p, "\"rgb %s\" has a negative component, %g", name, p->numbers[i]);
+    *out_value = rgb_make((float)p->numbers[0], (float)p->numbers[1], (float)p->numbers[2]);
+    return AG_OK;
+}
+
+ag_status parameter_get_numbers(parameter_list *list, log_sink *log, const char *name, parameter_type type,
+                                const double **out_values, size_t *out_count)
+{
+    const parameter *p;
+    *out_values = NULL;
+    *out_count = 0;
+    ag_status status = look_up(list, log, name, type, &p);
+    if (!status && p)
+        status = check_float(list, log, p);
+    if (!status && p) {
+        *out_values = p->numbers;
+        *out_count = p->count;
+    }
+    return status;
+}
+
+/* "sphere", "diffuse", ...: named materials and media say it by a parameter, their name is the user's own. */
+static const char *kind_of(const parameter_list *list)
+{
+    const parameter *type = parameter_list_find(list, "type");
+    if (strncmp(list->directive, "MakeNamed", strlen("MakeNamed")) == 0 && type && type->type == PARAMETER_STRING &&
+        type->count == 1)
+        return type->strings[0];
+    return list->name ? list->name : "";
+}
+
+void parameter_list_warn_unused(const parameter_list *list, log_sink *log)
+{
+    const char *kind = kind_of(list);
+    for (size_t i = 0; i < list->count; i++) {
+        const parameter *p = &list->items[i];
+        if (p->looked_up || p->may_be_unused)
+            continue;
+        char key[160];
+        snprintf(key, sizeof key, "unused parameter:%s:%s:%s", list->directive, kind, p->name);
+        log_at_once(log, AG_LOG_WARNING, p->where, key,
+                    "%s \"%s\": \"%s %s\" is not known, or not supported yet, and is ignored", list->directive, kind,
+                    parameter_type_name(p->type), p->name);
+    }
+}

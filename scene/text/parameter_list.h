@@ -1,0 +1,108 @@
+/* parameter_list.h: the typed, named parameters of one scene directive, as they stand in the file.
+ * They follow the pbrt-v4 file format, "Parameter Lists" (pbrt.org/fileformat-v4).
+ * Flow: pbrt_parser fills them; who interprets a directive looks parameters up and so marks them as known; what nobody
+ * asked for is warned about. The scene keeps those of Integrator, Sampler, Film and PixelFilter for the renderer.
+ * Threads: one at a time. */
+#ifndef AFTERGLOW_PARAMETER_LIST_H
+#define AFTERGLOW_PARAMETER_LIST_H
+
+#include "color/spectra.h"
+#include "log.h"
+#include "math/vec3.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* file is interned by the scene and lives as long as it; line and column count from 1. */
+typedef struct file_location {
+    const char *file;
+    int line, column;
+} file_location;
+
+/* FILE:LINE:COLUMN: error|warning: message */
+void log_at(log_sink *log, ag_log_level level, file_location where, const char *format, ...) AG_PRINTF(4, 5);
+/* The same, but once for each distinct key. */
+void log_at_once(log_sink *log, ag_log_level level, file_location where, const char *key, const char *format, ...)
+    AG_PRINTF(5, 6);
+
+typedef enum parameter_type {
+    PARAMETER_FLOAT,
+    PARAMETER_INTEGER,
+    PARAMETER_STRING,
+    PARAMETER_BOOL,
+    PARAMETER_POINT2,
+    PARAMETER_VECTOR2,
+    PARAMETER_POINT3,
+    PARAMETER_VECTOR3,
+    PARAMETER_NORMAL,
+    PARAMETER_RGB,
+    PARAMETER_SPECTRUM,
+    PARAMETER_BLACKBODY,
+    PARAMETER_TEXTURE
+} parameter_type;
+
+/* As the scene file spells it: "float", "point3", ... */
+const char *parameter_type_name(parameter_type type);
+
+typedef struct parameter {
+    char *name;
+    parameter_type type;
+    file_location where; /* of the quoted "type name" */
+    size_t count;        /* numbers (3 per point3), strings or bools */
+    double *numbers;     /* floats, integers, points, ...; NULL for strings and bools */
+    char **strings;      /* strings, texture names, spectrum names */
+    unsigned char *bools;
+    bool looked_up;
+    bool may_be_unused; /* it is for whom it may concern: an Attribute's */
+} parameter;
+
+/* Where parameters come from: their text, for messages that show it, and what their colours are to become. */
+typedef struct parameter_source {
+    /* Writes a line of text with a mark below it ("\n    line\n    ^~~"), or nothing where it is no longer there. */
+    void (*excerpt)(const void *user, file_location where, size_t width, char *out_text, size_t size);
+    const void *user;
+    const working_space *space; /* of colours that are asked for; NULL: Rec. 709 */
+} parameter_source;
+
+typedef struct parameter_list {
+    parameter *items;
+    size_t count;
+    file_location where;            /* of the directive */
+    char *directive;                /* "Shape", "Integrator", ... */
+    char *name;                     /* "sphere", "photonmap", ... */
+    const parameter_source *source; /* borrowed; NULL: errors show no text */
+} parameter_list;
+
+void parameter_list_reset(parameter_list *list); /* frees what it holds; leaves it zeroed */
+/* A copy of all that it holds; false, and *out_copy zeroed, when out of memory. */
+bool parameter_copy(const parameter *p, parameter *out_copy);
+void parameter_reset(parameter *p); /* frees what it holds; leaves it zeroed */
+
+/* The parameter of that name, whatever its type, NULL where there is none. Does not mark it as looked up. */
+const parameter *parameter_list_find(const parameter_list *list, const char *name);
+
+/* Single values. Each returns AG_OK and writes the value where the parameter stands with a fitting type and count,
+ * AG_OK and leaves *out alone where it is absent, AG_ERROR_SCENE (with a message that names the parameter) where it is
+ * of another type or count. */
+ag_status parameter_get_float(parameter_list *list, log_sink *log, const char *name, float *out_value);
+ag_status parameter_get_int(parameter_list *list, log_sink *log, const char *name, int64_t *out_value);
+ag_status parameter_get_bool(parameter_list *list, log_sink *log, const char *name, bool *out_value);
+ag_status parameter_get_string(parameter_list *list, log_sink *log, const char *name, const char **out_value);
+/* The name of a texture; also left alone, and not marked as looked up, where the parameter is of another type. */
+ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char *name, const char **out_texture_name);
+ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *name, parameter_type type,
+                             vec3 *out_value);
+/* Whether a colour of that name is emitted ("L", "I", "Le"), refracts or absorbs ("eta", "k", "sigma_a", "mfp", ...),
+ * or reflects or transmits: all others. */
+spectrum_use parameter_spectrum_use(const char *name);
+/* rgb, spectrum or blackbody; a warning that names it, and *out left alone, where the spectrum is one of pbrt's that we
+ * have not. */
+ag_status parameter_get_rgb(parameter_list *list, log_sink *log, const char *name, rgb *out_value);
+/* Arrays: *out_values stays the list's; *out_count counts numbers (3 per point3), 0 where absent. */
+ag_status parameter_get_numbers(parameter_list *list, log_sink *log, const char *name, parameter_type type,
+                                const double **out_values, size_t *out_count);
+
+/* Warns, once for each directive, kind and name, of the parameters that nobody looked up. */
+void parameter_list_warn_unused(const parameter_list *list, log_sink *log);
+
+#endif

@@ -1,0 +1,47 @@
+/* image_colors.h: from the values of a picture file to colours of the working space. What the scene file says of the
+ * picture counts first; then the chromaticities that the picture itself brings; then the file rules of the colour
+ * config, but for its rule for all that no other fits; else integers are sRGB and floats linear with its primaries.
+ * Flow: image_reader -> [here] -> texture_image, environments. Threads: pure functions. */
+#ifndef AFTERGLOW_IMAGE_COLORS_H
+#define AFTERGLOW_IMAGE_COLORS_H
+
+#include "image/image_encoding.h"
+#include "math/vec3.h"
+
+struct image;
+struct scene;
+
+/* What remains to be done with values that were made linear by `encoding`. */
+typedef struct image_colors {
+    image_encoding encoding; /* never of a colour space */
+    const char *space;       /* the values are taken as they are, and decoded from this one; or NULL. The config's */
+    bool has_matrix;
+    float matrix[9]; /* of linear values, row by row */
+} image_colors;
+
+/* The encoding of a picture of colours of which the scene says nothing: as the file rules have it, else the default. */
+image_encoding image_colors_rule(const struct scene *s, const char *path);
+
+/* The encoding that a scene file names: as image_encoding_parse, or a colour space of the config. False where it is
+ * neither; what there is goes to message. */
+bool image_colors_parse(const struct scene *s, const char *text, image_encoding *out_encoding, char *message,
+                        size_t message_size);
+
+/* Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY; text in message. */
+ag_status image_colors_find(const struct scene *s, image_encoding encoding, const struct image *picture,
+                            image_colors *out_colors, char *message, size_t message_size);
+
+/* Decodes from colors->space, which is not NULL, in place. Errors: as above. */
+ag_status image_colors_decode(const struct scene *s, const image_colors *colors, float *rgb_pixels, size_t count,
+                              char *message, size_t message_size);
+
+/* By the matrix; what is outside the gamut is clipped to 0. Asked for only where has_matrix. */
+static inline rgb image_colors_convert(const image_colors *colors, rgb c)
+{
+    const float *m = colors->matrix;
+    return rgb_make(fmaxf(m[0] * c.r + m[1] * c.g + m[2] * c.b, 0.0f),
+                    fmaxf(m[3] * c.r + m[4] * c.g + m[5] * c.b, 0.0f),
+                    fmaxf(m[6] * c.r + m[7] * c.g + m[8] * c.b, 0.0f));
+}
+
+#endif

@@ -1,0 +1,173 @@
+/* texture.c: see texture.h.
+ * Rests on: Pharr, Jakob, Humphreys, 4th ed., 2023, ch. 10. Threads: pure functions. */
+#include "texture/texture.h"
+
+#include "math/sampling.h"
+#include "rays/bvh.h"
+#include "texture/texture_noise.h"
+
+#include <string.h>
+
+texture texture_make(texture_kind kind)
+{
+    texture t;
+    memset(&t, 0, sizeof t);
+    t.kind = kind;
+    t.mapping.kind = TEXTURE_MAPPING_UV;
+    t.mapping.scale = (vec2){1.0f, 1.0f};
+    t.wraps = texture_wraps_same(TEXTURE_WRAP_REPEAT);
+    t.filter = TEXTURE_FILTER_BILINEAR;
+    t.scale = 1.0f;
+    for (size_t i = 0; i < sizeof t.inputs / sizeof *t.inputs; i++)
+        t.inputs[i].texture_index = SCENE_NO_TEXTURE;
+    return t;
+}
+
+static rgb evaluate(const scene *s, const texture *t, const surface_hit *hit);
+
+static rgb input_at(const scene *s, const texture *t, int which, const surface_hit *hit)
+{
+    const texture_input *input = &t->inputs[which];
+    return input->texture_index == SCENE_NO_TEXTURE ? input->value
+                                                    : evaluate(s, &s->textures[input->texture_index], hit);
+}
+
+/* The second's share is amount. One that has no share is not asked: it may be costly. */
+static rgb mix_inputs(const scene *s, const texture *t, float amount, const surface_hit *hit)
+{
+    rgb first = amount == 1.0f ? rgb_gray(0.0f) : input_at(s, t, 0, hit);
+    rgb second = amount == 0.0f ? rgb_gray(0.0f) : input_at(s, t, 1, hit);
+    return rgb_add(rgb_scale(first, 1.0f - amount), rgb_scale(second, amount));
+}
+
+/* Whether x lies in an odd cell. No conversion to an integer, which large numbers would overflow. */
+static bool is_odd(float x)
+{
+    float half = 0.5f * x;
+    return half - floorf(half) >= 0.5f;
+}
+
+static rgb checkerboard(const scene *s, const texture *t, const surface_hit *hit)
+{
+    bool odd;
+    if (t->mapping.kind == TEXTURE_MAPPING_SOLID) {
+        vec3 p = texture_mapping_point(&t->mapping, hit->position);
+        odd = is_odd(p.x) != (is_odd(p.y) != is_odd(p.z));
+    } else {
+        vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
+        odd = is_odd(st.x) != is_odd(st.y);
+    }
+    return input_at(s, t, odd ? 1 : 0, hit);
+}
+
+static rgb image_value(const scene *s, const texture *t, const surface_hit *hit)
+{
+    const texture_image *picture = s->texture_images[t->image_index];
+    vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
+    if (!t->is_spectrum) {
+        float value = t->scale * texture_image_float(picture, t->channel, t->wraps, t->filter, st.x, 1.0f - st.y);
+        return rgb_gray(t->invert ? fmaxf(0.0f, 1.0f - value) : value);
+    }
+    rgb value = (t->is_data ? texture_image_rgb : texture_image_color)(picture, t->wraps, t->filter, st.x, 1.0f - st.y);
+    value = rgb_scale(value, t->scale);
+    if (t->invert)
+        value = rgb_sub(rgb_gray(1.0f), value);
+    return rgb_make(fmaxf(value.r, 0.0f), fmaxf(value.g, 0.0f), fmaxf(value.b, 0.0f));
+}
+
+static rgb bilerp(const texture *t, const surface_hit *hit)
+{
+    vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
+    rgb at_s0 = rgb_add(rgb_scale(t->inputs[0].value, 1.0f - st.y), rgb_scale(t->inputs[1].value, st.y));
+    rgb at_s1 = rgb_add(rgb_scale(t->inputs[2].value, 1.0f - st.y), rgb_scale(t->inputs[3].value, st.y));
+    return rgb_add(rgb_scale(at_s0, 1.0f - st.x), rgb_scale(at_s1, st.x));
+}
+
+static float noise_in_plane(float x, float y) { return texture_noise(vec3_make(x, y, 0.5f)); }
+
+/* Half of the cells around whole (s, t) have a dot, shifted as far as keeps it inside. */
+static bool is_inside_dot(vec2 st)
+{
+    const float radius = 0.35f, shift = 0.5f - radius;
+    float s = floorf(st.x + 0.5f), t = floorf(st.y + 0.5f);
+    if (!(noise_in_plane(s + 0.5f, t + 0.5f) > 0.0f))
+        return false;
+    float away_s = st.x - (s + shift * noise_in_plane(s + 1.5f, t + 2.8f));
+    float away_t = st.y - (t + shift * noise_in_plane(s + 4.5f, t + 9.8f));
+    return away_s * away_s + away_t * away_t < radius * radius;
+}
+
+static float windy(vec3 p)
+{
+    float wind_strength = texture_fbm(vec3_scale(p, 0.1f), 0.5f, 3);
+    return fabsf(wind_strength) * texture_fbm(p, 0.5f, 6);
+}
+
+/* The veins' colours along a curve of six cubic pieces, of which each begins a control point after the one before. */
+static rgb marble_color(float t)
+{
+    static const rgb CONTROL[9] = {{0.58f, 0.58f, 0.6f}, {0.58f, 0.58f, 0.6f}, {0.58f, 0.58f, 0.6f},
+                                   {0.5f, 0.5f, 0.5f},   {0.6f, 0.59f, 0.58f}, {0.58f, 0.58f, 0.6f},
+                                   {0.58f, 0.58f, 0.6f}, {0.2f, 0.2f, 0.33f},  {0.58f, 0.58f, 0.6f}};
+    enum { PIECES = 6 };
+    int piece = (int)(t * (float)PIECES);
+    piece = piece < PIECES ? piece : PIECES - 1;
+    float u = t * (float)PIECES - (float)piece, v = 1.0f - u;
+    const float weight[4] = {v * v * v, 3.0f * u * v * v, 3.0f * u * u * v, u * u * u}; /* Bernstein's */
+    rgb sum = rgb_gray(0.0f);
+    for (int i = 0; i < 4; i++)
+        sum = rgb_add(sum, rgb_scale(CONTROL[piece + i], weight[i]));
+    return rgb_scale(sum, 1.5f);
+}
+
+static rgb marble(const texture *t, vec3 place)
+{
+    vec3 p = vec3_scale(place, t->scale);
+    double turns =
+        ((double)p.y + (double)(t->variation * texture_fbm(p, t->roughness, t->octaves))) * 0.15915494309189534;
+    float sine, cosine;
+    sincos_turns(isfinite(turns) ? (float)(turns - floor(turns)) : 0.0f, &sine, &cosine);
+    return marble_color(fminf(fmaxf(0.5f + 0.5f * sine, 0.0f), 1.0f));
+}
+
+static rgb evaluate(const scene *s, const texture *t, const surface_hit *hit)
+{
+    switch (t->kind) {
+    case TEXTURE_CONSTANT: return t->inputs[0].value;
+    case TEXTURE_SCALE: { /* by a float, which is grey, or by a colour */
+        rgb factor = input_at(s, t, 1, hit);
+        return rgb_is_black(factor) ? rgb_gray(0.0f) : rgb_mul(input_at(s, t, 0, hit), factor);
+    }
+    case TEXTURE_MIX: return mix_inputs(s, t, input_at(s, t, 2, hit).r, hit);
+    case TEXTURE_DIRECTION_MIX:
+        return mix_inputs(s, t, 1.0f - fabsf(vec3_dot(hit->geometric_normal, t->direction)), hit);
+    case TEXTURE_CHECKERBOARD: return checkerboard(s, t, hit);
+    case TEXTURE_IMAGE: return image_value(s, t, hit);
+    case TEXTURE_BILERP: return bilerp(t, hit);
+    case TEXTURE_DOTS: {
+        bool inside = is_inside_dot(texture_mapping_st(&t->mapping, hit->uv, hit->position));
+        return input_at(s, t, inside ? 0 : 1, hit);
+    }
+    default: break;
+    }
+    vec3 p = texture_mapping_point(&t->mapping, hit->position);
+    switch (t->kind) {
+    case TEXTURE_FBM: return rgb_gray(texture_fbm(p, t->roughness, t->octaves));
+    case TEXTURE_WRINKLED: return rgb_gray(texture_turbulence(p, t->roughness, t->octaves));
+    case TEXTURE_WINDY: return rgb_gray(windy(p));
+    default: {
+        rgb c = marble(t, p);
+        return s->space.is_rec709 ? c : working_space_reflectance(&s->space, c);
+    }
+    }
+}
+
+rgb texture_evaluate_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit)
+{
+    return evaluate(s, &s->textures[texture_index], hit);
+}
+
+float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit)
+{
+    return evaluate(s, &s->textures[texture_index], hit).r;
+}

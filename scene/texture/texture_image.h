@@ -1,0 +1,74 @@
+/* texture_image.h: pictures as textures look them up: linear values between the middles of pixels. Pixels of 8 bits
+ * stay bytes, and are decoded by a table of 256; a picture may serve as colours and as numbers. Rests on: Pharr, Jakob,
+ * Humphreys, "Physically Based Rendering", 4th ed., 2023, 10.4 (image texture). Flow: image_reader, image_encoding ->
+ * [here] -> texture. Threads: one loads; then any number look up. */
+#ifndef AFTERGLOW_TEXTURE_IMAGE_H
+#define AFTERGLOW_TEXTURE_IMAGE_H
+
+#include "math/vec3.h"
+#include "texture/image_colors.h"
+
+#include <stdint.h>
+
+struct scene;
+
+/* What lies beyond the picture's edges. */
+typedef enum texture_wrap {
+    TEXTURE_WRAP_REPEAT,
+    TEXTURE_WRAP_BLACK,
+    TEXTURE_WRAP_CLAMP,
+    TEXTURE_WRAP_OCTAHEDRAL, /* the other half of the same edge: a sphere unfolded onto a square */
+    TEXTURE_WRAP_MIRROR      /* repeated, every other time mirrored */
+} texture_wrap;
+
+/* Along s and t; an octahedral one is so along both. */
+typedef struct texture_wraps {
+    texture_wrap s, t;
+} texture_wraps;
+
+static inline texture_wraps texture_wraps_same(texture_wrap wrap) { return (texture_wraps){wrap, wrap}; }
+
+typedef enum texture_filter { TEXTURE_FILTER_BILINEAR, TEXTURE_FILTER_POINT } texture_filter;
+
+/* Of a grey picture all three colours are the same; alpha is 1 where it has none. */
+typedef enum texture_channel {
+    TEXTURE_CHANNEL_ALL,  /* as pbrt has it: alpha of pictures that have one, else the mean of the colours */
+    TEXTURE_CHANNEL_MEAN, /* of the colours */
+    TEXTURE_CHANNEL_R,
+    TEXTURE_CHANNEL_G,
+    TEXTURE_CHANNEL_B,
+    TEXTURE_CHANNEL_A /* never encoded */
+} texture_channel;
+
+typedef struct texture_image {
+    char *path;
+    image_encoding encoding;
+    uint32_t width, height;
+    uint32_t channel_count;     /* 1 or 3 */
+    unsigned char *bytes;       /* packed, top row first; or NULL: values */
+    float *values;              /* linear */
+    float table[256];           /* linear values of the bytes */
+    unsigned char *alpha_bytes; /* with bytes, or NULL: 1 everywhere */
+    float *alpha_values;        /* the same with values */
+    image_colors colors;        /* from linear values to the working space's, of those that are colours */
+    uint64_t bad_count;         /* values that were not finite, and are 0 now */
+} texture_image;
+
+/* Loads a picture into the scene's ownership, once for each path and encoding. Three channels or more are taken for
+ * red, green, blue and alpha, one or two for grey and alpha; what is beyond is left out. Errors: as of image_read,
+ * AG_ERROR_COLOR; text in message. */
+ag_status texture_image_load(struct scene *s, const char *path, image_encoding encoding, uint32_t *out_index,
+                             char *message, size_t message_size);
+/* The same of a PNG or JPEG file in memory, once for each name, which is to differ from all paths, and encoding. */
+ag_status texture_image_load_memory(struct scene *s, const char *name, const unsigned char *bytes, size_t size,
+                                    image_encoding encoding, uint32_t *out_index, char *message, size_t message_size);
+void texture_image_destroy(texture_image *i); /* NULL is fine */
+
+/* s to the right, t down, from the top left corner (0, 0) to the bottom right one (1, 1). The first is a colour of the
+ * working space, the others are numbers as they stand in the picture, made linear. */
+rgb texture_image_color(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t);
+rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t);
+float texture_image_float(const texture_image *i, texture_channel channel, texture_wraps wraps, texture_filter filter,
+                          float s, float t);
+
+#endif

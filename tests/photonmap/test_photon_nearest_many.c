@@ -1,0 +1,206 @@
+/* test_photon_nearest_many.c: many places at once find the photons that each finds alone, and the kernels for AVX2 do
+ * what the plain ones do, to the bit. */
+#include "fixtures/test_scene.h"
+#include "photon_kernels.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { COUNT = 6000, PLACES = 61 * PHOTON_LOOKUPS_MAX / 2 };
+
+typedef enum cloud { BALL, WALLS, GRID, COINCIDENT, TWO_CLUSTERS, FEW, CLOUD_KINDS } cloud;
+
+static photon_tree make_tree(test_run *r, cloud kind, photon **out_photons)
+{
+    uint32_t count = kind == FEW ? 11 : COUNT;
+    photon *p = photon_records_create(count);
+    rng random = test_random((uint64_t)kind);
+    assert_non_null(p);
+    for (uint32_t i = 0; i < count; i++) {
+        vec3 normal = random_direction(&random), at = normal;
+        switch (kind) {
+        case WALLS:
+            at = random_in_box(&random, (vec3){-1.0f, -1.0f, -1.0f}, (vec3){1.0f, 1.0f, 1.0f});
+            normal = (vec3){0.0f, 1.0f, 0.0f};
+            if (i % 2)
+                at.y = -1.0f;
+            else
+                at.x = 1.0f, normal = (vec3){-1.0f, 0.0f, 0.0f};
+            break;
+        case GRID:
+            at = (vec3){(float)(i % 18) * 0.0625f - 0.5f, (float)(i / 18 % 18) * 0.0625f - 0.5f,
+                        (float)(i / 324) * 0.0625f - 0.5f};
+            break;
+        case COINCIDENT: at = (vec3){0.5f, 0.5f, 0.5f}; break;
+        case TWO_CLUSTERS: at = vec3_add_scaled((vec3){i % 2 ? 0.9f : -0.9f, 0.0f, 0.0f}, at, 1e-3f); break;
+        default: break;
+        }
+        p[i] = (photon){.position = {at.x, at.y, at.z}, .normal = direction_encode(normal)};
+    }
+    photon_tree tree;
+    assert_int_equal(photon_tree_build(&r->run, p, count, 0.0, 1.0, &tree), AG_OK);
+    *out_photons = p;
+    return tree;
+}
+
+static int by_leaf(const void *a, const void *b)
+{
+    uint32_t x = ((const photon_lookup *)a)->leaf, y = ((const photon_lookup *)b)->leaf;
+    return x < y ? -1 : x > y;
+}
+
+/* At photons, near them, and anywhere; half of the normals are a photon's. */
+static void make_lookups(const photon_tree *tree, uint64_t seed, photon_lookup *lookups)
+{
+    rng random = test_random(seed);
+    for (uint32_t i = 0; i < PLACES; i++) {
+        uint32_t photon_index = (uint32_t)(rng_next(&random) % tree->count);
+        vec3 at = random_in_box(&random, (vec3){-1.5f, -1.5f, -1.5f}, (vec3){1.5f, 1.5f, 1.5f});
+        if (i % 3 < 2)
+            at = vec3_add_scaled(photon_block_position(tree->blocks, photon_index), at, i % 3 ? 0.02f : 0.0f);
+        vec3 normal =
+            i % 2 ? random_direction(&random) : direction_decode(photon_block_normal(tree->blocks, photon_index));
+        lookups[i] = (photon_lookup){at, normal, photon_tree_leaf(tree, at)};
+    }
+    qsort(lookups, PLACES, sizeof *lookups, by_leaf);
+}
+
+static void check_kernels(const photon_tree *tree, const photon_kernels *kernels, const photon_lookup *lookups)
+{
+    static const float RADII[] = {0.01f, 0.3f, 5.0f, 1e18f};
+    photon_walk walk;
+    photon_walk_init(&walk, tree);
+    walk.kernels = kernels;
+    uint32_t found_count = 0, missed_count = 0;
+    for (uint32_t begin = 0, round = 0, count; begin < PLACES; begin += count, round++) {
+        photon_neighbor many[PHOTON_LOOKUPS_MAX];
+        count = round % 3 ? PHOTON_LOOKUPS_MAX : 1 + round % PHOTON_LOOKUPS_MAX;
+        count = PLACES - begin < count ? PLACES - begin : count;
+        float radius = RADII[round / 3 % 4], min_cos = round % 2 ? 0.9f : 0.0f;
+        photon_walk_nearest_many(&walk, lookups + begin, count, min_cos, radius, many);
+        for (uint32_t i = 0; i < count; i++) {
+            const photon_lookup *l = &lookups[begin + i];
+            float d;
+            uint32_t alone = photon_tree_nearest(tree, l->position, l->normal, min_cos, radius, &d);
+            assert_int_equal(photon_neighbor_index(many[i]), alone);
+            assert_true(many[i] == photon_neighbor_make(d, alone));
+            found_count += alone != PHOTON_NONE;
+            missed_count += alone == PHOTON_NONE;
+        }
+    }
+    assert_true(found_count > 0 && missed_count > 0);
+}
+
+static void many_find_what_each_finds_alone(void **state)
+{
+    (void)state;
+    static photon_lookup lookups[PLACES];
+    test_run r;
+    test_run_init(&r, 2);
+    for (int kind = 0; kind < CLOUD_KINDS; kind++) {
+        photon *photons;
+        photon_tree tree = make_tree(&r, (cloud)kind, &photons);
+        make_lookups(&tree, 100 + (uint64_t)kind, lookups);
+        check_kernels(&tree, &photon_kernels_plain, lookups);
+        if (photon_kernels_avx2())
+            check_kernels(&tree, photon_kernels_avx2(), lookups);
+        else
+            print_message("no AVX2 here\n");
+        photon_tree_reset(&tree);
+        free(photons);
+    }
+    test_run_reset(&r);
+}
+
+/* Any number of places, the ends of vectors among them. */
+static void leaves_are_those_of_each_alone(void **state)
+{
+    (void)state;
+    static photon_lookup lookups[PLACES];
+    test_run r;
+    test_run_init(&r, 2);
+    const photon_kernels *kernels[] = {&photon_kernels_plain, photon_kernels_best()};
+    for (int kind = 0; kind < CLOUD_KINDS; kind++) {
+        photon *photons;
+        photon_tree tree = make_tree(&r, (cloud)kind, &photons);
+        make_lookups(&tree, 200 + (uint64_t)kind, lookups);
+        for (int k = 0; k < 2; k++)
+            for (uint32_t count = 0; count < 70; count++) {
+                uint32_t leaves[71];
+                memset(leaves, 0xff, sizeof leaves);
+                kernels[k]->find_leaves(&tree, &lookups[7 * count].position.x, sizeof *lookups / sizeof(float), count,
+                                        leaves);
+                for (uint32_t i = 0; i < count; i++)
+                    assert_int_equal(leaves[i], lookups[7 * count + i].leaf);
+                assert_int_equal(leaves[count], UINT32_MAX);
+            }
+        photon_tree_reset(&tree);
+        free(photons);
+    }
+    test_run_reset(&r);
+}
+
+/* Each step by itself, in order: what the plain kernels write is what the others write. */
+static void kernels_write_the_same(void **state)
+{
+    (void)state;
+    const photon_kernels *plain = &photon_kernels_plain, *best = photon_kernels_best();
+    static photon_lookup lookups[PLACES];
+    static photon_visits from, to[2], found[2];
+    static float distances[2][sizeof found->node / sizeof *found->node];
+    test_run r;
+    test_run_init(&r, 2);
+    photon *photons;
+    photon_tree tree = make_tree(&r, BALL, &photons);
+    make_lookups(&tree, 3, lookups);
+    photon_reach reach;
+    rng random = test_random(4);
+    for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX; i++) {
+        vec3 at = lookups[30 * i].position;
+        reach.column[0][i] = at.x, reach.column[1][i] = at.y, reach.column[2][i] = at.z;
+        reach.column[PHOTON_REACH_SQUARED][i] = i % 5 ? 0.02f * rng_float(&random) : -1.0f;
+    }
+    for (uint32_t node = 0; node < (1u << tree.depth) - 1; node++)
+        assert_true(plain->meet_plane(&reach, tree.nodes[node]) == best->meet_plane(&reach, tree.nodes[node]));
+    from.count = 0;
+    for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX - 3; i++) {
+        from.place[from.count] = i;
+        from.node[from.count++] = 0;
+    }
+    for (uint32_t level = 0; level < tree.depth; level++) {
+        plain->descend(&tree, &reach, &from, &to[0]);
+        best->descend(&tree, &reach, &from, &to[1]);
+        assert_true(to[0].count <= PHOTON_VISITS_MAX);
+        /* in any order: that of a level does not reach the answer */
+        assert_int_equal(to[0].count, to[1].count);
+        uint64_t sums[2] = {0, 0};
+        for (int k = 0; k < 2; k++)
+            for (uint32_t i = 0; i < to[k].count; i++)
+                sums[k] += hash_mix64((uint64_t)to[k].place[i] << 32 | to[k].node[i]);
+        assert_true(sums[0] == sums[1]);
+        from = to[0];
+    }
+    assert_true(from.count > PHOTON_LOOKUPS_MAX);
+    for (uint32_t i = 0; i < from.count; i++)
+        from.node[i] -= (1u << tree.depth) - 1;
+    plain->scan(tree.blocks, &reach, &from, &found[0], distances[0]);
+    best->scan(tree.blocks, &reach, &from, &found[1], distances[1]);
+    assert_true(found[0].count > 0 && found[0].count < from.count);
+    assert_int_equal(found[0].count, found[1].count);
+    assert_memory_equal(found[0].place, found[1].place, found[0].count * sizeof *found->place);
+    assert_memory_equal(found[0].node, found[1].node, found[0].count * sizeof *found->node);
+    assert_memory_equal(distances[0], distances[1], found[0].count * sizeof **distances);
+    photon_tree_reset(&tree);
+    free(photons);
+    test_run_reset(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(many_find_what_each_finds_alone),
+        cmocka_unit_test(leaves_are_those_of_each_alone),
+        cmocka_unit_test(kernels_write_the_same),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,45 @@
+/* test_program_agreement.c: photon map and path tracer show the same light in rooms without a closed form: diffuse
+ * blocks; a room lit through an opening; media in glass and behind interfaces. All light, and indirect light alone.
+ * Flow: tests of the whole program. Threads: the program's. */
+#define _GNU_SOURCE
+#include "fixtures/program_agreement.h"
+
+static const agreement_bounds BOUNDS = {0.04, 0.025, 0.05, 0.12};
+
+static void test_box_with_blocks(void **state)
+{
+    (void)state;
+    compare_integrators("box_with_blocks", "--spp=512", NULL, BOUNDS);
+    compare_integrators("box_with_blocks", "--spp=512", "--only=indirect", BOUNDS);
+}
+
+static void test_few_bearers(void **state)
+{
+    (void)state;
+    compare_integrators_with("box_with_blocks", "--spp=512", "--only=indirect", "--irradiance-fraction=0.25", BOUNDS);
+}
+
+/* Nearly all of its light is indirect: once is enough. Few photons find the way in: twice the noise. */
+static void test_next_room(void **state)
+{
+    (void)state;
+    compare_integrators("next_room", "--spp=1024", NULL, (agreement_bounds){0.05, 0.035, 0.06, 0.15});
+}
+
+static void test_tea_in_glass(void **state)
+{
+    (void)state;
+    compare_integrators("tea_in_glass", "--spp=512", NULL, BOUNDS);
+    compare_integrators("tea_in_glass", "--spp=512", "--only=indirect", BOUNDS);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_box_with_blocks),
+        TEST_IN_FOLDER(test_few_bearers),
+        TEST_IN_FOLDER(test_next_room),
+        TEST_IN_FOLDER(test_tea_in_glass),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,38 @@
+/* test_program_agreement_surfaces.c: photon map and path tracer show the same light on surfaces that are not diffuse:
+ * glass, rough metal and a mirror; glTF's material in many ways; veils, bump maps and brushed metal. All light, and
+ * indirect light alone. Flow: tests of the whole program. Threads: the program's. */
+#define _GNU_SOURCE
+#include "fixtures/program_agreement.h"
+
+static const agreement_bounds BOUNDS = {0.04, 0.025, 0.05, 0.12};
+
+static void test_glass_and_metal(void **state)
+{
+    (void)state;
+    compare_integrators("glass_and_metal", "--spp=512", NULL, BOUNDS);
+    compare_integrators("glass_and_metal", "--spp=512", "--only=indirect", BOUNDS);
+}
+
+static void test_principled(void **state)
+{
+    (void)state;
+    compare_integrators("principled", "--spp=512", NULL, BOUNDS);
+    compare_integrators("principled", "--spp=512", "--only=indirect", BOUNDS);
+}
+
+/* What is in question is in all light. */
+static void test_veils_and_relief(void **state)
+{
+    (void)state;
+    compare_integrators("veils_and_relief", "--spp=512", NULL, BOUNDS);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_glass_and_metal),
+        TEST_IN_FOLDER(test_principled),
+        TEST_IN_FOLDER(test_veils_and_relief),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

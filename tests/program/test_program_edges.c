@@ -1,0 +1,55 @@
+/* test_program_edges.c: with default settings, where surfaces end: a thin table leg on a floor, a corner of 10 degrees,
+ * a wall without thickness between a lit room and a dark one. Estimates there must neither lose light past the edge nor
+ * find the next room's. Flow: tests of the whole program. Threads: the program's. */
+#define _GNU_SOURCE
+#include "fixtures/program_picture.h"
+
+enum { BLOCK = 8 };
+
+/* The photon map with its defaults against the path tracer: the mean, and each block. */
+static void compare(const char *name, double of_mean, double of_block)
+{
+    char scene[512];
+    snprintf(scene, sizeof scene, PROGRAM_SCENES "%s.pbrt", name);
+    picture map = RENDER(scene, "--seed=1"), path = RENDER(scene, "--integrator=path", "--spp=512");
+    expect_near(name, picture_mean(&map, 1), picture_mean(&path, 1), of_mean);
+    for (int y = 0; y + BLOCK <= path.height; y += BLOCK)
+        for (int x = 0; x + BLOCK <= path.width; x += BLOCK)
+            expect_near(name, picture_block(&map, x, y, BLOCK, 1), picture_block(&path, x, y, BLOCK, 1), of_block);
+    picture_reset(&map);
+    picture_reset(&path);
+}
+
+static void test_table_leg(void **state)
+{
+    (void)state;
+    compare("table", 0.005, 0.04);
+}
+
+static void test_narrow_corner(void **state)
+{
+    (void)state;
+    compare("narrow_corner", 0.005, 0.06);
+}
+
+static void test_thin_wall(void **state)
+{
+    (void)state;
+    picture lit = RENDER(PROGRAM_SCENES "thin_wall_lit.pbrt", "--spp=4");
+    picture dark = RENDER(PROGRAM_SCENES "thin_wall_dark.pbrt", "--spp=4");
+    double leak = picture_mean(&dark, 1) / picture_mean(&lit, 1);
+    print_message("of the lit room's light %.4f %% is seen in the dark one\n", 100.0 * leak);
+    assert_true(leak < 0.0006);
+    picture_reset(&lit);
+    picture_reset(&dark);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_table_leg),
+        TEST_IN_FOLDER(test_narrow_corner),
+        TEST_IN_FOLDER(test_thin_wall),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

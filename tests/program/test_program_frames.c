@@ -1,0 +1,127 @@
+/* test_program_frames.c: sequences of frames, what is skipped of them, tiles that are the picture's pixels, and
+ * progress as render farms read it.
+ *
+ * Flow: tests of the whole program. Threads: the program's. */
+/* ctest: sanitize */
+#define _GNU_SOURCE
+#include "fixtures/program_picture.h"
+
+#define BOX  PROGRAM_SCENES "box_with_blocks.pbrt"
+#define TINY "--integrator=path", "--size=8x8", "--spp=1", "--type=float"
+
+static void expect_end(const char *const *arguments, int code, const char *said)
+{
+    program_run run = program_execute(NULL, arguments);
+    expect_exit(&run, code);
+    expect_said(&run, said);
+    program_run_reset(&run);
+}
+
+static void test_frames(void **state)
+{
+    (void)state;
+    expect_end(
+        ARGUMENTS(TINY, "--frames=1-5x2,8,11-10", "-o", "a.####.exr", "-o", "b%d.tif", "--stats=s%03d.json", BOX), 0,
+        "");
+    expect_listing("a.0001.exr a.0003.exr a.0005.exr a.0008.exr a.0010.exr a.0011.exr b1.tif b10.tif b11.tif b3.tif "
+                   "b5.tif b8.tif s001.json s003.json s005.json s008.json s010.json s011.json");
+    json_t *stats = stats_read(in_folder("s011.json")); /* of its own frame alone */
+    assert_int_equal(stats_integer(stats, "rays.camera"), 64);
+    json_decref(stats);
+    /* the scene's name has a place too; a film that names its file gets one */
+    SCENE_WITH("floor.pbrt", "Film \"rgb\"", "Film \"rgb\" \"string filename\" \"f.exr\"");
+    assert_int_equal(rename(in_folder("floor.pbrt"), in_folder("floor.7.pbrt")), 0);
+    expect_end(ARGUMENTS(TINY, "--frames=7", "floor.#.pbrt"), 0, "");
+    assert_int_equal(access(in_folder("f.0007.exr"), F_OK), 0);
+    expect_end(ARGUMENTS(TINY, "--frames=7-8", "floor.#.pbrt"), 1, "floor.8.pbrt");
+    static const char *const wrong[] = {"--frames=",   "--frames=1-",        "--frames=x", "--frames=1-5x0",
+                                        "--frames=1,", "--frames=0-9999999", "--frames=-1"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        expect_end(ARGUMENTS(TINY, wrong[i], "-o", "a.#.exr", BOX), 2, "frames");
+    expect_end(ARGUMENTS(TINY, "--frames=1-2", "-o", "a.exr", BOX), 2, "'a.exr' has no place for the frame's number");
+}
+
+static void test_no_clobber(void **state)
+{
+    (void)state;
+    write_text("a.2.exr", "anything");
+    write_text("a.3.exr", "a part");
+    write_text("a.3.exr.afterglow-unfinished", "");
+    expect_end(ARGUMENTS(TINY, "--frames=1-3", "--no-clobber", "-o", "a.#.exr", BOX), 0, "skipped: 'a.2.exr' is there");
+    expect_text(in_folder("a.2.exr"), "anything");
+    picture p = picture_read(in_folder("a.3.exr"));
+    picture_reset(&p);
+    expect_listing("a.1.exr a.2.exr a.3.exr");
+    /* all of them must be there */
+    expect_end(ARGUMENTS(TINY, "--no-clobber", "-o", "a.2.exr", "-o", "b.exr", BOX), 0, "");
+    p = picture_read(in_folder("a.2.exr"));
+    picture_reset(&p);
+}
+
+static void test_tiles(void **state)
+{
+    (void)state;
+#define TILED "--photons=3000", "--gather-samples=4", "--size=16x13", "--spp=2"
+    picture whole = RENDER(BOX, TILED, "--cropwindow=0.25,1,0,1");
+    int row = 0;
+    for (int i = 1; i <= 4; i++) {
+        char tile[32];
+        snprintf(tile, sizeof tile, "--tile=%d/4", i);
+        picture part = RENDER(BOX, TILED, "--cropwindow=0.25,1,0,1", tile);
+        assert_int_equal(part.width, whole.width);
+        assert_memory_equal(part.pixels, whole.pixels + 3 * row * whole.width,
+                            (size_t)(3 * part.width * part.height) * sizeof *part.pixels);
+        row += part.height;
+        picture_reset(&part);
+    }
+    assert_int_equal(row, 13);
+    picture_reset(&whole);
+    expect_end(ARGUMENTS(TINY, "--tile=1/9", "-o", "a.exr", BOX), 2, "more tiles than rows");
+    static const char *const wrong[] = {"--tile=0/2", "--tile=3/2", "--tile=1", "--tile=1/2x"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        expect_end(ARGUMENTS(TINY, wrong[i], "-o", "a.exr", BOX), 2, "tile");
+}
+
+static void test_progress_for_farms(void **state)
+{
+    (void)state;
+    program_run run = RUN(TINY, "--progress=alf", "--frames=1-2", "-o", "a.#.exr", BOX);
+    expect_exit(&run, 0);
+    assert_string_equal(run.err, "");
+    int before = -1, percent, count = 0;
+    for (char *line = strtok(run.out, "\n"); line; line = strtok(NULL, "\n")) {
+        int used = 0;
+        assert_int_equal(sscanf(line, "ALF_PROGRESS %d%%%n", &percent, &used), 1);
+        assert_int_equal(line[used], '\0');
+        assert_true(percent > before);
+        before = percent;
+        count++;
+    }
+    assert_true(count >= 3);
+    assert_int_equal(before, 100);
+    program_run_reset(&run);
+    run = RUN(TINY, "--progress=lines", "-o", "a.exr", BOX);
+    expect_said(&run, "Progress: 100% (write)\n");
+    program_run_reset(&run);
+    run = RUN(TINY, "--progress=off", "-o", "a.exr", BOX);
+    assert_string_equal(run.err, "");
+    program_run_reset(&run);
+    run = RUN("--photons=2000", "--size=8x8", "--spp=1", "-v", "--progress=off", "-o", "a.exr", BOX);
+    static const char *const rows[] = {
+        "time\n",       "  photons ",           "  render ", "  total ", "rays\n", "  gather ", "irradiance\n",
+        "  asked for ", "  in the global map ", "  peak "};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        expect_said(&run, rows[i]);
+    program_run_reset(&run);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_frames),
+        TEST_IN_FOLDER(test_no_clobber),
+        TEST_IN_FOLDER(test_tiles),
+        TEST_IN_FOLDER(test_progress_for_farms),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,124 @@
+/* test_program_instances.c: a room of instances is the room of the same shapes put there by hand: walls, mirrored and
+ * stretched, glass that throws caustics, lamps; by photon map and by path tracing.
+ * Flow: tests of the whole program. Threads: the program's. */
+#define _GNU_SOURCE
+#include "fixtures/program_picture.h"
+
+#define HEAD                                                                                                           \
+    "LookAt 0 1 3.9 0 0.9 0 0 1 0 Camera \"perspective\" \"float fov\" 40\n"                                           \
+    "Film \"rgb\" \"integer xresolution\" 48 \"integer yresolution\" 48 PixelFilter \"box\" WorldBegin\n"
+
+#define SQUARE "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]"
+#define LAMP                                                                                                           \
+    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [14 13 10] Material \"diffuse\" \"rgb reflectance\" [0 0 "   \
+    "0]\n"                                                                                                             \
+    "Scale .25 .25 1 " SQUARE " AttributeEnd\n"
+#define BALL "Material \"dielectric\" Translate 0 .4 0 Shape \"sphere\" \"float radius\" .35"
+#define METAL                                                                                                          \
+    "Material \"conductor\" \"float roughness\" .1 Shape \"cylinder\" \"float radius\" .2 \"float zmin\" 0 "           \
+    "Material \"diffuse\" \"rgb reflectance\" [.2 .3 .7] Translate 0 0 1 Shape \"disk\" \"float radius\" .2"
+
+enum { PIECES = 4 };
+static const char *const PIECE[PIECES] = {"Material \"diffuse\" \"rgb reflectance\" [.7 .6 .5] " SQUARE, LAMP, BALL,
+                                          METAL};
+static const struct {
+    int piece;
+    const char *place;
+} PLACES[] = {
+    {0, "Translate 0 0 1.5 Rotate 90 1 0 0 Scale 1 2.5 1"},
+    {0, "Translate 0 2 1.5 Rotate -90 1 0 0 Scale -1 2.5 1"},
+    {0, "Translate 0 1 -1"},
+    {0, "Translate 0 1 4 Scale 1 1 -3"},
+    {0, "Translate -1 1 1.5 Rotate 90 0 1 0 Scale 2.5 1 1"},
+    {0, "Translate 1 1 1.5 Rotate -90 0 1 0 Scale 2.5 1 1"},
+    {1, "Translate -.4 1.99 0 Rotate 90 1 0 0"},
+    {1, "Translate .5 1.99 .6 Rotate 90 1 0 0 Scale .8 -.5 1"},
+    {2, "Translate -.5 0 .8"},
+    {2, "Translate .45 0 1 Scale .8 .5 .8"},
+    {3, "Translate -.4 0 -.4 Rotate -90 1 0 0"},
+    {3, "Translate .5 0 -.3 Rotate -80 1 0 0 Scale 1 -1 1.4"},
+};
+enum { PLACE_COUNT = sizeof PLACES / sizeof *PLACES };
+
+static const char *write_room(const char *name, bool is_instanced)
+{
+    static char text[16384];
+    size_t used = (size_t)snprintf(text, sizeof text, HEAD);
+    for (int i = 0; is_instanced && i < PIECES; i++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "ObjectBegin \"%d\" %s ObjectEnd\n", i, PIECE[i]);
+    for (int i = 0; i < PLACE_COUNT; i++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "AttributeBegin %s ", PLACES[i].place);
+        if (is_instanced)
+            used += (size_t)snprintf(text + used, sizeof text - used, "ObjectInstance \"%d\"", PLACES[i].piece);
+        else
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s", PIECE[PLACES[i].piece]);
+        used += (size_t)snprintf(text + used, sizeof text - used, " AttributeEnd\n");
+    }
+    assert_true(used < sizeof text);
+    return write_text(name, text);
+}
+
+/* Some rays differ by a rounding and go on differently: the same light, and all but the same noise. */
+static void expect_same_picture(const picture *a, const picture *b, double of_mean, double of_block)
+{
+    for (int c = 0; c < 3; c++)
+        expect_near("mean", picture_mean(a, c), picture_mean(b, c), of_mean);
+    for (int y = 0; y < a->height; y += 8)
+        for (int x = 0; x < a->width; x += 8)
+            expect_near("block", picture_block(a, x, y, 8, 1), picture_block(b, x, y, 8, 1), of_block);
+}
+
+static void test_path_tracer(void **state)
+{
+    (void)state;
+    picture hand = RENDER(write_room("hand.pbrt", false), "--integrator=path", "--spp=32");
+    picture instances = RENDER(write_room("instances.pbrt", true), "--integrator=path", "--spp=32");
+    expect_same_picture(&instances, &hand, 0.01, 0.1);
+    picture_reset(&hand);
+    picture_reset(&instances);
+}
+
+/* The same photons are stored: caustics are aimed at glass and metal that only instances show. */
+static void test_photon_map(void **state)
+{
+    (void)state;
+    picture p[2];
+    long long caustic_emitted[2];
+    for (int i = 0; i < 2; i++) {
+        p[i] = RENDER(write_room(i ? "instances.pbrt" : "hand.pbrt", i == 1), "--spp=8", "--gather-samples=16",
+                      "--photons=200000", "--caustic-photons=100000", "--stats=stats.json");
+        json_t *stats = stats_read(in_folder("stats.json"));
+        assert_int_equal(stats_integer(stats, "photons.stored_caustic"), 100000);
+        assert_int_equal(stats_integer(stats, "photons.stored_global"), 200000);
+        caustic_emitted[i] = stats_integer(stats, "photons.emitted");
+        json_decref(stats);
+    }
+    expect_near("paths", (double)caustic_emitted[1], (double)caustic_emitted[0], 0.03);
+    expect_same_picture(&p[1], &p[0], 0.01, 0.06);
+    picture_reset(&p[0]);
+    picture_reset(&p[1]);
+}
+
+/* Both show the same light in the room of instances. */
+static void test_agreement(void **state)
+{
+    (void)state;
+    const char *room = write_room("instances.pbrt", true);
+    picture path = RENDER(room, "--integrator=path", "--spp=512");
+    picture map =
+        RENDER(room, "--spp=32", "--gather-samples=8", "--photons=1e6", "--caustic-photons=3e5", "--nearest=30");
+    print_message("instances: %+.2f %%\n", 100.0 * (picture_mean(&map, 1) / picture_mean(&path, 1) - 1.0));
+    expect_near("mean", picture_mean(&map, 1), picture_mean(&path, 1), 0.02);
+    picture_reset(&path);
+    picture_reset(&map);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_path_tracer),
+        TEST_IN_FOLDER(test_photon_map),
+        TEST_IN_FOLDER(test_agreement),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,247 @@
+/* test_program_lights.c: lights with pictures, windows, and many lamps in a room: photon map and path tracer show the
+ * same. Flow: tests of the whole program. Threads: the program's. */
+#define _GNU_SOURCE
+#include "fixtures/program_picture.h"
+
+#include "fixtures/environment_picture.h"
+#include "light/environment.h"
+
+static const double PI = 3.14159265358979323846;
+enum { BLOCK = 8 };
+
+#define WINDOW "\"point3 portal\" [1 -0.5 0.6  1 -0.5 1.6  1 0.5 1.6  1 0.5 0.6]"
+
+static const char *room_with(const char *lights)
+{
+    return SCENE_WITH("window_room.pbrt", "THE_LIGHTS", lights, "block.pbrt", PROGRAM_SCENES "block.pbrt");
+}
+
+typedef struct effort {
+    const char *photons, *spp, *gather, *path_spp;
+} effort;
+
+static const effort USUAL = {"--photons=5e5", "--spp=16", "--gather-samples=16", "--spp=256"};
+/* Lamps that cover but a few pixels. */
+static const effort MORE = {"--photons=1e6", "--spp=64", "--gather-samples=4", "--spp=512"};
+
+static void compare(const char *what, const char *scene, effort e, const char *only, double of_mean, double of_block)
+{
+    picture map = RENDER(scene, e.photons, "--nearest=30", e.spp, e.gather, only);
+    picture path = RENDER(scene, "--integrator=path", e.path_spp, only);
+    double worst = 0.0;
+    for (int y = 0; y < path.height; y += BLOCK)
+        for (int x = 0; x < path.width; x += BLOCK) {
+            double a = picture_block(&map, x, y, BLOCK, 1), b = picture_block(&path, x, y, BLOCK, 1);
+            worst = fmax(worst, fabs(a / b - 1.0));
+        }
+    print_message("%s: mean %+.2f %%, blocks within %.2f %%\n", what,
+                  100.0 * (picture_mean(&map, 1) / picture_mean(&path, 1) - 1.0), 100.0 * worst);
+    for (int c = 0; c < 3; c++)
+        expect_near(what, picture_mean(&map, c), picture_mean(&path, c), of_mean);
+    assert_true(worst < of_block);
+    picture_reset(&map);
+    picture_reset(&path);
+}
+
+/* All light, and indirect light alone. */
+static void compare_both(const char *what, const char *lights, effort e)
+{
+    char name[64];
+    const char *scene = room_with(lights);
+    compare(what, scene, e, NULL, 0.01, 0.05);
+    snprintf(name, sizeof name, "%s, indirect", what);
+    compare(name, scene, e, "--only=indirect", 0.02, 0.06);
+}
+
+/* ---- pictures ---- */
+
+static void write_sky(void)
+{
+    enum { SIZE = 32 };
+    static float pixels[SIZE * SIZE * 3];
+    environment e = {.mapping = ENVIRONMENT_OCTAHEDRAL, .width = SIZE, .height = SIZE};
+    for (uint32_t y = 0; y < SIZE; y++)
+        for (uint32_t x = 0; x < SIZE; x++) {
+            vec3 d = environment_direction(&e, x, y, (vec2){0.5f, 0.5f});
+            float *p = pixels + 3 * (y * SIZE + x);
+            bool is_sky = d.z > 0.0f, is_sun = d.x > 0.78f && d.z > 0.5f && d.y > 0.0f && d.y < 0.2f;
+            p[0] = is_sun ? 60.0f : is_sky ? 0.5f + 0.2f * d.y : 0.3f;
+            p[1] = is_sun ? 50.0f : is_sky ? 0.7f : 0.25f;
+            p[2] = is_sun ? 30.0f : is_sky ? 1.0f - 0.4f * d.z : 0.2f;
+        }
+    write_environment("sky.exr", SIZE, SIZE, IMAGE_FLOAT, pixels);
+}
+
+/* Bright on the left, a third of that and bluer on the right. */
+static void write_two_tones(const char *name)
+{
+    enum { SIZE = 16 };
+    static float pixels[SIZE * SIZE * 3];
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        bool is_left = i % SIZE < SIZE / 2;
+        pixels[3 * i] = is_left ? 3.0f : 0.4f, pixels[3 * i + 1] = is_left ? 2.4f : 0.8f;
+        pixels[3 * i + 2] = is_left ? 1.2f : 1.0f;
+    }
+    write_environment(name, SIZE, SIZE, IMAGE_FLOAT, pixels);
+}
+
+static void test_goniometric(void **state)
+{
+    (void)state;
+    write_two_tones("lamp.exr");
+    compare_both("goniometric", "Translate 0.2 -0.3 1.4 LightSource \"goniometric\" \"string filename\" \"lamp.exr\"",
+                 USUAL);
+}
+
+static void test_projection(void **state)
+{
+    (void)state;
+    write_two_tones("slide.exr");
+    compare_both("projection",
+                 "Translate -0.5 0 1 Rotate 70 0 1 0 LightSource \"projection\" \"float fov\" 70 \"string "
+                 "filename\" \"slide.exr\"",
+                 USUAL);
+}
+
+static void test_textured_lamps(void **state)
+{
+    (void)state;
+    write_two_tones("screen.exr");
+    compare_both("textured lamps",
+                 "AreaLightSource \"diffuse\" \"string filename\" \"screen.exr\"\n"
+                 "Shape \"bilinearmesh\" \"point3 P\" [-0.5 -0.4 1.98  -0.5 0.4 1.98  0.5 -0.4 1.98  0.5 0.4 1.98]\n"
+                 "Translate -0.5 0.6 0.5 Shape \"sphere\" \"float radius\" 0.2",
+                 USUAL);
+}
+
+static void test_portal(void **state)
+{
+    (void)state;
+    write_sky();
+    compare_both("window", "LightSource \"infinite\" \"string filename\" \"sky.exr\" " WINDOW, USUAL);
+}
+
+/* Where the window is the only way in, all that the portal changes is the noise. */
+static void test_portal_adds_nothing(void **state)
+{
+    (void)state;
+    write_sky();
+    picture p[2];
+    for (int k = 0; k < 2; k++) {
+        const char *scene = room_with(k ? "LightSource \"infinite\" \"string filename\" \"sky.exr\" " WINDOW
+                                        : "LightSource \"infinite\" \"string filename\" \"sky.exr\"");
+        p[k] = RENDER(scene, "--integrator=path", k ? "--spp=256" : "--spp=1024");
+    }
+    for (int c = 0; c < 3; c++)
+        expect_near("with and without", picture_mean(&p[1], c), picture_mean(&p[0], c), 0.01);
+    picture_reset(&p[0]);
+    picture_reset(&p[1]);
+}
+
+/* A floor lit through a window of constant radiance in a plane at right angles to it: irradiance is that of an
+ * emitting rectangle, by the form factor of a small area and a rectangle (Siegel, Howell, "Thermal Radiation Heat
+ * Transfer", configuration 4 of the catalogue's differential planes). What the eye sees of the sky beside the portal is
+ * black. */
+static void test_floor_under_a_portal(void **state)
+{
+    (void)state;
+    /* z from 0 to c, y from 0 to b, at distance a: E = L / 2 (atan(b/a) - a / sqrt(a^2 + c^2) atan(b / sqrt(a^2 +
+     * c^2))) */
+    const char *scene =
+        write_text("scene.pbrt",
+                   "Include \"" PROGRAM_SCENES "floor.pbrt\"\n"
+                   "LightSource \"infinite\" \"rgb L\" [2 1 0.5] \"point3 portal\" [3 -2 0  3 -2 3  3 2 3  3 2 0]\n");
+    for (int k = 0; k < 2; k++) {
+        picture p = RENDER(scene, "--integrator", k ? "path" : "photonmap", "--spp=64", "--photons=20000");
+        double sum = 0.0;
+        for (int y = 0; y < p.height; y++)
+            for (int x = 0; x < p.width; x++) {
+                /* the picture covers x and y from -1 to 1, of which one is mirrored: of no account for y, and for x the
+                 * mean is taken over both */
+                double wx = 2.0 * (x + 0.5) / p.width - 1.0, wy = 2.0 * (y + 0.5) / p.height - 1.0;
+                double a = 3.0 - wx, c = 3.0, s = sqrt(a * a + c * c);
+                for (int side = -1; side <= 1; side += 2) {
+                    double b = 2.0 + side * wy;
+                    sum += 0.5 * (atan(b / a) - a / s * atan(b / s));
+                }
+            }
+        double expected = 0.6 / PI * sum / (p.width * p.height);
+        expect_near("red", picture_mean(&p, 0), 2.0 * expected, 0.004);
+        expect_near("blue", picture_mean(&p, 2), 0.5 * expected, 0.004);
+        picture_reset(&p);
+    }
+    /* towards the sky: through the portal, and beside it */
+    scene = write_text("sky.pbrt", "LookAt 0 0 0  1 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 90\n"
+                                   "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
+                                   "PixelFilter \"box\"\nWorldBegin\n"
+                                   "LightSource \"infinite\" \"rgb L\" [2 1 0.5]\n"
+                                   "\"point3 portal\" [2 -1 -1  2 -1 1  2 1 1  2 1 -1]\n");
+    for (int k = 0; k < 2; k++) {
+        picture p = RENDER(scene, "--integrator", k ? "path" : "photonmap", "--spp=4");
+        for (int y = 0; y < p.height; y++)
+            for (int x = 0; x < p.width; x++) {
+                bool is_through = x >= 4 && x < 12 && y >= 4 && y < 12;
+                assert_true(p.pixels[3 * (y * p.width + x)] == (is_through ? 2.0f : 0.0f));
+            }
+        picture_reset(&p);
+    }
+}
+
+/* ---- many lights ---- */
+
+/* Thirty lamps of three kinds, a faint sky at the window and a sun that falls in. */
+static void write_lamps(char *text, size_t size)
+{
+    size_t at = 0;
+    for (int i = 0; i < 30; i++) {
+        double x = -0.5 + 0.3 * (i % 5), y = -0.4 + 0.4 * (i / 5 % 3), z = 0.9 + 0.6 * (i / 15);
+        const char *kind = i % 3 == 0 ? "LightSource \"point\" \"float scale\" 0.05"
+                           : i % 3 == 1
+                               ? "AreaLightSource \"diffuse\" \"float scale\" 2 Shape \"sphere\" \"float radius\" 0.04"
+                               : "Rotate 180 1 0 0 LightSource \"spot\" \"float scale\" 0.2";
+        at += (size_t)snprintf(text + at, size - at, "AttributeBegin Translate %.3f %.3f %.3f %s AttributeEnd\n", x, y,
+                               z, kind);
+        assert_true(at < size);
+    }
+    snprintf(text + at, size - at,
+             "LightSource \"distant\" \"point3 from\" [1 0.1 0.8] \"point3 to\" [0 0 0] \"float scale\" 2\n"
+             "LightSource \"infinite\" \"rgb L\" [0.2 0.4 0.8] " WINDOW "\n");
+}
+
+static void test_many_lamps(void **state)
+{
+    (void)state;
+    char text[8192];
+    write_lamps(text, sizeof text);
+    compare("many lamps", room_with(text), MORE, NULL, 0.01, 0.05);
+}
+
+/* "photons" 0 takes a lamp's light out of the map, and leaves it in direct light; another factor changes noise alone.
+ */
+static void test_photons(void **state)
+{
+    (void)state;
+    const char *scene = room_with("LightSource \"point\" \"point3 from\" [0 0 1] \"float photons\" 0");
+    picture p = RENDER(scene, "--only=indirect", "--spp=4", "--photons=10000");
+    for (int i = 0; i < p.width * p.height * 3; i++)
+        assert_true(p.pixels[i] == 0.0f);
+    picture_reset(&p);
+    p = RENDER(scene, "--spp=4", "--photons=10000");
+    assert_true(picture_mean(&p, 0) > 0.05);
+    picture_reset(&p);
+    compare("a quarter of the photons",
+            room_with("LightSource \"point\" \"point3 from\" [0 0 1] \"float photons\" 0.25\n"
+                      "LightSource \"point\" \"point3 from\" [0.5 -0.5 0.4] \"rgb I\" [0.1 0.2 1]"),
+            USUAL, "--only=indirect", 0.02, 0.06);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_goniometric),         TEST_IN_FOLDER(test_projection),
+        TEST_IN_FOLDER(test_textured_lamps),      TEST_IN_FOLDER(test_portal),
+        TEST_IN_FOLDER(test_portal_adds_nothing), TEST_IN_FOLDER(test_floor_under_a_portal),
+        TEST_IN_FOLDER(test_many_lamps),          TEST_IN_FOLDER(test_photons),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

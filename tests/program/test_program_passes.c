@@ -1,0 +1,97 @@
+/* test_program_passes.c: renders that end by a limit of time or of noise, and those that show what they have on the
+ * way.
+ *
+ * Flow: tests of the whole program. Threads: the program's. */
+/* ctest: sanitize */
+#define _GNU_SOURCE
+#include "fixtures/program_picture.h"
+
+#define BOX   PROGRAM_SCENES "box_with_blocks.pbrt"
+#define SMALL "--integrator=path", "--size=24x24", "--type=float"
+
+/* All pixels have the same number of samples: they are the picture of so many. */
+static void test_time_limit(void **state)
+{
+    (void)state;
+    program_run run =
+        RUN(SMALL, "--spp=65536", "--max-depth=2", "--time-limit=0.5", "--checkpoint=100", "-o", "a.exr", BOX);
+    expect_exit(&run, 0);
+    int samples = 0;
+    const char *said = strstr(run.err, "time limit: the picture has ");
+    if (!said || sscanf(said, "time limit: the picture has %d of 65536 samples", &samples) != 1)
+        fail_msg("%s", run.err);
+    program_run_reset(&run);
+    assert_true(samples >= 1);
+    expect_listing("a.exr a.exr.afterglow-checkpoint");
+    run = RUN(SMALL, "--spp=65536", "--max-depth=2", "--time-limit=0.5", "--resume", "-o", "a.exr", BOX);
+    expect_exit(&run, 0);
+    expect_said(&run, "resumed from");
+    program_run_reset(&run);
+    run = RUN(SMALL, "--spp=2", "--time-limit=100:00:00", "-o", "b.exr", BOX); /* time enough */
+    expect_exit(&run, 0);
+    assert_null(strstr(run.err, "time limit"));
+    program_run_reset(&run);
+    static const char *const wrong[] = {"--time-limit=0",        "--time-limit=1:2", "--time-limit=0:60:00",
+                                        "--time-limit=00:00:00", "--noise=-1",       "--min-spp=1"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        run = RUN(wrong[i], "-o", "a.exr", BOX);
+        expect_exit(&run, 2);
+        program_run_reset(&run);
+    }
+}
+
+static void test_preview(void **state)
+{
+    (void)state;
+    const program_setting usual = {0};
+    program_process process = program_start(&usual, ARGUMENTS(SMALL, "--spp=1048576", "--preview", "-o", "a.exr", BOX));
+    while (access(in_folder("a.exr"), F_OK) != 0) {
+        assert_int_equal(kill(process.id, 0), 0);
+        program_pause();
+    }
+    picture p = picture_read(in_folder("a.exr"));
+    assert_int_equal(p.width, 24);
+    picture_reset(&p);
+    assert_int_equal(kill(process.id, SIGINT), 0);
+    program_run run = program_finish(&process);
+    expect_exit(&run, 128 + SIGINT);
+    program_run_reset(&run);
+
+    run = RUN(SMALL, "--spp=8", "--reproducible", "--preview", "-o", "a.exr", BOX);
+    expect_exit(&run, 0);
+    program_run_reset(&run);
+    run = RUN(SMALL, "--spp=8", "--reproducible", "-o", "b.exr", BOX);
+    expect_exit(&run, 0);
+    program_run_reset(&run);
+    expect_listing("a.exr b.exr");
+    size_t size, other_size;
+    unsigned char *bytes = read_bytes(in_folder("a.exr"), &size), *other = read_bytes(in_folder("b.exr"), &other_size);
+    assert_int_equal(size, other_size);
+    assert_memory_equal(bytes, other, size);
+    free(bytes);
+    free(other);
+}
+
+static void test_noise(void **state)
+{
+    (void)state;
+    program_run run = RUN(SMALL, "--spp=64", "--noise=0.05", "--min-spp=4", "-o", "a.exr", BOX);
+    expect_exit(&run, 0);
+    double mean = 0.0;
+    int least = 0, most = 0;
+    const char *said = strstr(run.err, "noise: ");
+    if (!said || sscanf(said, "noise: %lf samples per pixel, from %d to %d", &mean, &least, &most) != 3)
+        fail_msg("%s", run.err);
+    program_run_reset(&run);
+    assert_true(least >= 4 && most <= 64 && mean >= least && mean <= most && least < most);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_time_limit),
+        TEST_IN_FOLDER(test_preview),
+        TEST_IN_FOLDER(test_noise),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,195 @@
+/* test_import_process.c: the process's answer comes back whole; however it ends, that is an error and no more. */
+#define _GNU_SOURCE
+#include "model/import_process.h"
+
+#include "fixtures/temporary_folder.h"
+
+#include <pthread.h>
+#include <signal.h>
+
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
+#define UNDER_SANITIZER 1
+#endif
+#endif
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+#define UNDER_SANITIZER 1
+#endif
+
+enum { ANSWER_BYTES = 5000000, MEMORY_BYTES = 100000000 };
+
+static bool answer_much(void *user, FILE *answer)
+{
+    for (int k = 0; k < ANSWER_BYTES; k++)
+        putc((k * 7 + *(int *)user) & 0xff, answer);
+    return true;
+}
+
+static void answers_come_back_whole(void **state)
+{
+    (void)state;
+    import_answer answer;
+    int number = 3;
+    assert_int_equal(import_process_run(NULL, answer_much, &number, MEMORY_BYTES, &answer, message, sizeof message),
+                     AG_OK);
+    assert_int_equal(answer.size, ANSWER_BYTES);
+    for (int k = 0; k < ANSWER_BYTES; k++)
+        assert_true(answer.bytes[k] == ((k * 7 + 3) & 0xff));
+    import_answer_reset(&answer);
+    assert_null(answer.bytes);
+}
+
+static bool crash(void *user, FILE *answer)
+{
+    (void)answer;
+    raise(*(int *)user);
+    return true;
+}
+static bool fail_quietly(void *user, FILE *answer)
+{
+    (void)user, (void)answer;
+    return false;
+}
+static bool say_nothing(void *user, FILE *answer)
+{
+    printf("this goes nowhere");
+    fflush(stdout);
+    (void)user, (void)answer;
+    return true;
+}
+static bool leave(void *user, FILE *answer)
+{
+    (void)answer;
+    _exit(*(int *)user);
+}
+
+static void expect_error(import_task *task, int number, const char *text)
+{
+    import_answer answer;
+    ag_status status = import_process_run(NULL, task, &number, MEMORY_BYTES, &answer, message, sizeof message);
+    expect_failure(status, AG_ERROR_INPUT, text);
+    assert_null(answer.bytes);
+}
+
+static void any_end_is_an_error(void **state)
+{
+    (void)state;
+    expect_error(crash, SIGSEGV, "the importing process was ended by signal 11 (Segmentation fault)");
+    expect_error(crash, SIGABRT, "was ended by signal 6 (Aborted)");
+    expect_error(crash, SIGKILL, "was ended by signal 9 (Killed)");
+    expect_error(fail_quietly, 0, "the importing process failed");
+    expect_error(leave, 3, "the importing process failed");
+    expect_error(say_nothing, 0, "the importing process has answered nothing");
+    expect_error(leave, 0, "the importing process has answered nothing");
+}
+
+/* Handlers and masks of the caller do not reach there. */
+static void ignore(int number) { (void)number; }
+
+static void signals_have_their_default_actions(void **state)
+{
+    (void)state;
+    struct sigaction ours = {.sa_handler = ignore}, before;
+    sigset_t mask, mask_before;
+    sigaction(SIGTERM, &ours, &before);
+    sigemptyset(&mask);
+    sigaddset(&mask, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &mask, &mask_before);
+    expect_error(crash, SIGTERM, "was ended by signal 15 (Terminated)");
+    sigset_t now;
+    pthread_sigmask(SIG_SETMASK, &mask_before, &now);
+    assert_true(sigismember(&now, SIGTERM)); /* and those here are as they were */
+    sigaction(SIGTERM, &before, NULL);
+}
+
+#ifndef UNDER_SANITIZER
+static bool take_memory(void *user, FILE *answer)
+{
+    (void)user;
+    /* never touched; volatile, or a compiler sees that nobody needs them */
+    void *volatile half = malloc(MEMORY_BYTES / 2), *volatile whole = malloc(MEMORY_BYTES);
+    fprintf(answer, "%s %s", half ? "half" : "none", whole ? "whole" : "no more");
+    free(half);
+    free(whole);
+    return true;
+}
+
+static void memory_is_limited(void **state)
+{
+    (void)state;
+    import_answer answer;
+    assert_int_equal(import_process_run(NULL, take_memory, NULL, MEMORY_BYTES, &answer, message, sizeof message),
+                     AG_OK);
+    assert_int_equal(answer.size, strlen("half no more"));
+    assert_memory_equal(answer.bytes, "half no more", answer.size);
+    import_answer_reset(&answer);
+}
+#endif
+
+static bool never_end(void *user, FILE *answer)
+{
+    (void)user, (void)answer;
+    while (pause() != 0)
+        continue;
+    return true;
+}
+
+static void *cancel(void *user)
+{
+    run_cancel(user);
+    return NULL;
+}
+
+static void cancelling_ends_it(void **state)
+{
+    (void)state;
+    import_answer answer;
+    run_context run;
+    pthread_t thread;
+    run_context_init(&run, NULL, NULL, NULL, NULL);
+    assert_int_equal(pthread_create(&thread, NULL, cancel, &run), 0);
+    assert_int_equal(import_process_run(&run, never_end, NULL, MEMORY_BYTES, &answer, message, sizeof message),
+                     AG_CANCELLED);
+    pthread_join(thread, NULL);
+    run_context_reset(&run);
+}
+
+/* Many at once, each with its own. */
+static void *run_one(void *user)
+{
+    import_answer answer;
+    char text[256];
+    bool is_right = import_process_run(NULL, answer_much, user, MEMORY_BYTES, &answer, text, sizeof text) == AG_OK &&
+                    answer.size == ANSWER_BYTES && answer.bytes[0] == *(int *)user;
+    import_answer_reset(&answer);
+    return is_right ? user : NULL;
+}
+
+static void threads_may_have_one_each(void **state)
+{
+    (void)state;
+    pthread_t threads[4];
+    int numbers[4] = {1, 2, 3, 4};
+    for (int k = 0; k < 4; k++)
+        assert_int_equal(pthread_create(&threads[k], NULL, run_one, &numbers[k]), 0);
+    for (int k = 0; k < 4; k++) {
+        void *result;
+        pthread_join(threads[k], &result);
+        assert_ptr_equal(result, &numbers[k]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(answers_come_back_whole),
+        cmocka_unit_test(any_end_is_an_error),
+        cmocka_unit_test(signals_have_their_default_actions),
+#ifndef UNDER_SANITIZER
+        cmocka_unit_test(memory_is_limited),
+#endif
+        cmocka_unit_test(cancelling_ends_it),
+        cmocka_unit_test(threads_may_have_one_each),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,245 @@
+/* test_mesh_import_assimp.c: what assimp reads arrives: meshes at their places, materials, cameras, lights, up axes;
+ * files that assimp refuses, or that it dies of, are errors. */
+#define _POSIX_C_SOURCE 200809L
+#include "fixtures/collada_fixture.h"
+#include "fixtures/model_fixture.h"
+#include "model/mesh_import_assimp.h"
+
+static const double PI_D = 3.14159265358979323846;
+
+#define FACET(a, b, c) "facet normal 0 0 0\nouter loop\nvertex " a "\nvertex " b "\nvertex " c "\nendloop\nendfacet\n"
+
+static void extensions(void **state)
+{
+    (void)state;
+    static const char *const READS[] = {".stl", ".dae", ".fbx", ".3ds", ".OFF", ".x"}, *const NOT[] = {".pbrt", ".txt",
+                                                                                                       ".exr", "."};
+    for (int k = 0; k < 6; k++)
+        assert_true(assimp_reads_extension(READS[k]));
+    for (int k = 0; k < 4; k++)
+        assert_false(assimp_reads_extension(NOT[k]));
+}
+
+/* z is up in STL; it is turned to y. */
+static void stl_in_both_forms(void **state)
+{
+    (void)state;
+    reading r = model_quietly("a.stl", "solid a\n" FACET("0 0 0", "1 0 0", "0 1 0")
+                                           FACET("0 0 0", "0 1 0", "0 0 1") "endsolid a\n");
+    assert_int_equal(r.scene->shape_count, 1);
+    const mesh *m = model_mesh(&r, 0);
+    assert_int_equal(m->triangle_count, 2);
+    assert_vec3(m->positions[m->indices[1]], 1, 0, 0, 0);
+    assert_vec3(m->positions[m->indices[2]], 0, 0, -1, 0);
+    assert_vec3(m->positions[m->indices[5]], 0, 1, 0, 0);
+    assert_true(r.scene->has_camera);
+    assert_int_equal(r.scene->light_count, 2);
+    reading_destroy(&r);
+
+    unsigned char bytes[84 + 50] = {0};
+    const float corners[12] = {0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0, 3};
+    bytes[80] = 1;
+    memcpy(bytes + 84, corners, sizeof corners);
+    r = model_read(model_write("b.stl", bytes, sizeof bytes));
+    assert_int_equal(r.status, AG_OK);
+    assert_int_equal(model_mesh(&r, 0)->triangle_count, 1);
+    assert_vec3(model_mesh(&r, 0)->positions[model_mesh(&r, 0)->indices[2]], 0, 3, 0, 0);
+    reading_destroy(&r);
+}
+
+/* One mesh at two places, of which one is mirrored; a quad becomes two triangles. */
+static void nodes_place_meshes(void **state)
+{
+    (void)state;
+    reading r = model_quietly(
+        "a.dae", COLLADA("<up_axis>Y_UP</up_axis>", "",
+                         "<node id=\"a\"><translate>1 2 3</translate><node id=\"b\"><scale>2 2 -2</scale>" COLLADA_MESH
+                         "</node></node>" COLLADA_FLOOR));
+    assert_int_equal(r.scene->shape_count, 2);
+    assert_int_equal(model_mesh(&r, 0)->triangle_count, 2);
+    bool is_mirrored_first = r.scene->shapes[0].flip_normal;
+    const mesh *mirrored = model_mesh(&r, is_mirrored_first ? 0 : 1),
+               *floor = model_mesh(&r, is_mirrored_first ? 1 : 0);
+    assert_true(r.scene->shapes[0].flip_normal != r.scene->shapes[1].flip_normal);
+    assert_vec3(floor->positions[floor->indices[0]], -9, 0, 9, 0);
+    assert_vec3(mirrored->positions[mirrored->indices[0]], 1 - 18, 2, 3 - 18, 1e-5);
+    assert_int_equal(model_material(&r, 0)->kind, MATERIAL_DIFFUSE);
+    assert_rgb(model_material(&r, 0)->reflectance, .5, .25, .75, 1e-6);
+    assert_int_equal(r.scene->shapes[0].material_index, r.scene->shapes[1].material_index);
+    reading_destroy(&r);
+    r = model_of("a.dae",
+                 COLLADA("<up_axis>Y_UP</up_axis>", "",
+                         "<node id=\"b\" name=\"b\"><scale>1 0 1</scale>" COLLADA_MESH "</node>" COLLADA_FLOOR));
+    if (r.status)
+        fail_msg("%s", r.said[AG_LOG_ERROR]);
+    assert_int_equal(r.scene->shape_count, 1);
+    model_said(&r, AG_LOG_WARNING, "a.dae", ": warning: mesh \"geo\" is scaled to nothing and is left out\n");
+    reading_destroy(&r);
+}
+
+static void the_up_axis_is_turned(void **state)
+{
+    (void)state;
+    reading r = model_quietly("a.dae", COLLADA("<up_axis>Z_UP</up_axis>", "", COLLADA_FLOOR));
+    const mesh *m = model_mesh(&r, 0);
+    assert_vec3(m->positions[m->indices[0]], -9, 9, 0, 1e-5); /* z 9 is up now */
+    reading_destroy(&r);
+}
+
+#define CAMERA(place) "<node id=\"camn\" name=\"camn\">" place "<instance_camera url=\"#cam\"/></node>"
+
+/* It looks along its node's -z; 40 degrees across, 2:1, so this is its height: */
+static void cameras_look_where_the_file_says(void **state)
+{
+    (void)state;
+    reading r =
+        model_quietly("a.dae", COLLADA("<up_axis>Y_UP</up_axis>", "",
+                                       COLLADA_FLOOR CAMERA("<translate>0 5 1</translate><rotate>1 0 0 -90</rotate>")));
+    const camera *c = &r.scene->camera;
+    assert_vec3(transform_point(&c->world_from_camera, vec3_make(0, 0, 0)), 0, 5, 1, 1e-5);
+    assert_vec3(transform_vector(&c->world_from_camera, vec3_make(0, 0, 1)), 0, -1, 0, 1e-6); /* forward is down */
+    assert_vec3(transform_vector(&c->world_from_camera, vec3_make(0, 1, 0)), 0, 0, -1, 1e-6);
+    assert_vec3(transform_vector(&c->world_from_camera, vec3_make(1, 0, 0)), 1, 0, 0, 1e-6); /* not mirrored */
+    assert_near(c->fov_degrees, 2.0 * atan(tan(20.0 * PI_D / 180.0) / 2.0) * 180.0 / PI_D, 1e-4);
+    assert_null(r.said[AG_LOG_INFO] ? strstr(r.said[AG_LOG_INFO], "no camera") : NULL);
+    reading_destroy(&r);
+}
+
+#define LIGHT(kind, words)                                                                                             \
+    "<light id=\"lam\" name=\"lam\"><technique_common><" kind "><color>1 0.5 0.25</color>" words "</" kind             \
+    "></technique_common></light>"
+#define LAMP(place) "<node id=\"lamn\" name=\"lamn\">" place "<instance_light url=\"#lam\"/></node>"
+
+static reading lit(const char *lights, const char *place)
+{
+    char text[8192];
+    snprintf(text, sizeof text, COLLADA("<up_axis>Y_UP</up_axis>", "%s", "%s"), lights, place);
+    return model_quietly("a.dae", text);
+}
+
+static void lights_are_as_bright_as_the_file_says(void **state)
+{
+    (void)state;
+    reading r =
+        lit(LIGHT("point", "<constant_attenuation>0</constant_attenuation><linear_attenuation>0</linear_attenuation>"
+                           "<quadratic_attenuation>0.25</quadratic_attenuation>"),
+            COLLADA_FLOOR LAMP("<translate>1 2 3</translate>"));
+    assert_int_equal(r.scene->light_count, 1);
+    const light *l = &r.scene->lights[0];
+    assert_int_equal(l->kind, LIGHT_POINT);
+    assert_vec3(l->position, 1, 2, 3, 0);
+    assert_rgb(l->intensity, 4 * PI_D, 2 * PI_D, PI_D, 1e-5);
+    reading_destroy(&r);
+
+    /* without falloff: as at the distance of the scene's centre, 4 */
+    r = lit(LIGHT("point", "<constant_attenuation>1</constant_attenuation>"),
+            COLLADA_FLOOR LAMP("<translate>0 4 0</translate>"));
+    assert_near(r.scene->lights[0].intensity.r, 16 * PI_D, 1e-4);
+    reading_destroy(&r);
+
+    r = lit(LIGHT("directional", ""), COLLADA_FLOOR LAMP("<rotate>1 0 0 -90</rotate>"));
+    l = &r.scene->lights[0];
+    assert_int_equal(l->kind, LIGHT_DISTANT);
+    assert_vec3(l->direction, 0, -1, 0, 1e-6);
+    assert_rgb(l->radiance, PI_D, PI_D / 2, PI_D / 4, 1e-5);
+    reading_destroy(&r);
+
+    r = lit(LIGHT("ambient", ""), COLLADA_FLOOR LAMP(""));
+    l = &r.scene->lights[0];
+    assert_int_equal(l->kind, LIGHT_INFINITE);
+    assert_rgb(l->radiance, 1, .5, .25, 1e-6);
+    reading_destroy(&r);
+
+    r = lit(LIGHT("spot", "<quadratic_attenuation>1</quadratic_attenuation><falloff_angle>60</falloff_angle>"),
+            COLLADA_FLOOR LAMP("<translate>0 4 0</translate><rotate>1 0 0 -90</rotate>"));
+    l = &r.scene->lights[0];
+    assert_int_equal(l->kind, LIGHT_SPOT);
+    assert_vec3(l->direction, 0, -1, 0, 1e-6);
+    assert_near(l->falloff_start, 1 - cos(30.0 * PI_D / 180.0), 1e-6);
+    assert_true(l->falloff_end >= l->falloff_start);
+    assert_near(l->intensity.r, PI_D, 1e-5);
+    reading_destroy(&r);
+}
+
+static void what_assimp_refuses_is_an_error(void **state)
+{
+    (void)state;
+    model_refused("a.dae", "<?xml version=\"1.0\"?><nothing/>", AG_ERROR_INPUT, ": error: ");
+    model_refused("a.dae", "", AG_ERROR_INPUT, ": error: ");
+    model_refused("a.stl", "", AG_ERROR_INPUT, ": error: ");
+    model_refused("a.fbx", "Kaydara FBX Binary  ", AG_ERROR_INPUT, ": error: ");
+    model_refused("a.stl", "solid a\nendsolid a\n", AG_ERROR_INPUT, ": error: ");
+}
+
+static void vertices_are_checked_here(void **state)
+{
+    (void)state;
+    unsigned char bytes[84 + 50] = {0};
+    float corners[12] = {0, 0, 1, 0, 0, 0, NAN, 0, 0, 0, 0, 3};
+    bytes[80] = 1;
+    memcpy(bytes + 84, corners, sizeof corners);
+    reading r = model_read(model_write("a.stl", bytes, sizeof bytes));
+    assert_int_equal(r.status, AG_ERROR_INPUT);
+    model_said(&r, AG_LOG_ERROR, "a.stl", ": error: mesh \"\": vertex 1 is not a finite number\n");
+    reading_destroy(&r);
+    corners[6] = 1e20f;
+    memcpy(bytes + 84, corners, sizeof corners);
+    r = model_read(model_write("a.stl", bytes, sizeof bytes));
+    model_said(&r, AG_LOG_ERROR, "a.stl", ": error: mesh \"\": vertex 1 lies beyond 1e18 units\n");
+    reading_destroy(&r);
+}
+
+static void damaged_files_do_no_harm(void **state)
+{
+    (void)state;
+    static const char WHOLE[] =
+        COLLADA("<up_axis>Y_UP</up_axis>", LIGHT("point", ""), COLLADA_FLOOR CAMERA("") LAMP(""));
+    static const char ASE[] = "*3DSMAX_ASCIIEXPORT 200\n*GEOMOBJECT {\n*MESH {\n*MESH_NUMVERTEX 3\n*MESH_NUMFACES 1\n"
+                              "*MESH_FACE_LIST {\n*MESH_FACE 0: A: 0 B: 1 C: 99999999\n}\n}\n}\n";
+    char bytes[sizeof WHOLE];
+    for (size_t k = 0; k < 24; k++) {
+        memcpy(bytes, WHOLE, sizeof WHOLE);
+        size_t at = (k * 7919 + 13) % (sizeof WHOLE - 1);
+        bytes[at] = (char)(k % 3 == 0 ? '9' : k % 3 == 1 ? '<' : '\0');
+        reading r = model_read(model_write("a.dae", bytes, k % 4 == 3 ? at : sizeof WHOLE - 1));
+        assert_true(r.status == AG_OK || (r.status == AG_ERROR_INPUT && r.count[AG_LOG_ERROR] == 1));
+        model_is_sound(&r);
+        reading_destroy(&r);
+    }
+    reading r = model_of("a.ase", ASE);
+    assert_int_equal(r.status, AG_ERROR_INPUT);
+    assert_int_equal(r.count[AG_LOG_ERROR], 1);
+    reading_destroy(&r);
+}
+
+static void a_cancelled_run_stops(void **state)
+{
+    (void)state;
+    run_context run;
+    scene *s = scene_create();
+    run_context_init(&run, NULL, NULL, NULL, NULL);
+    run_cancel(&run);
+    assert_int_equal(
+        scene_file_load(&run, model_write_text("a.stl", "solid a\n" FACET("0 0 0", "1 0 0", "0 1 0") "endsolid a\n"),
+                        s),
+        AG_CANCELLED);
+    run_context_reset(&run);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(extensions),
+        TEST_IN_FOLDER(stl_in_both_forms),
+        TEST_IN_FOLDER(nodes_place_meshes),
+        TEST_IN_FOLDER(the_up_axis_is_turned),
+        TEST_IN_FOLDER(cameras_look_where_the_file_says),
+        TEST_IN_FOLDER(lights_are_as_bright_as_the_file_says),
+        TEST_IN_FOLDER(what_assimp_refuses_is_an_error),
+        TEST_IN_FOLDER(vertices_are_checked_here),
+        TEST_IN_FOLDER(damaged_files_do_no_harm),
+        TEST_IN_FOLDER(a_cancelled_run_stops),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,153 @@
+/* test_pbrt_textures.c: what the reader says of textures that are wrong, doubtful, or too many.
+ * Flow: tests of scene/readers/pbrt/pbrt_textures.c. Threads: one. */
+#define _GNU_SOURCE
+#include "fixtures/texture_fixture.h"
+#include "texture/texture_noise.h"
+
+#include <math.h>
+#include <unistd.h>
+
+static void wrong_textures_say_why(void **state)
+{
+    (void)state;
+    static float pixels[3 * 64 * 64];
+    for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++)
+        pixels[i] = texture_noise(vec3_make((float)i * 0.37f, 0.2f, 0.1f)); /* no less when packed */
+    write_image("cut.exr", 64, 64, 3, IMAGE_FLOAT, pixels);
+    assert_int_equal(truncate(in_folder("cut.exr"), 3000), 0);
+    static const struct {
+        const char *world, *at, *text; /* at: what the last of such marks */
+        ag_status status;
+    } cases[] = {
+        {"Texture \"a\" \"float\" \"scale\" \"texture tex\" \"b\"", "\"texture tex", "no float texture is named \"b\"",
+         AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"scale\" \"texture tex\" \"a\"", "\"texture tex", "no float texture is named \"a\"",
+         AG_ERROR_SCENE},
+        {"Texture \"b\" \"spectrum\" \"constant\" Texture \"a\" \"float\" \"scale\" \"texture tex\" \"b\"",
+         "\"texture tex", "\"b\" is a spectrum texture, but \"tex\" takes a float texture", AG_ERROR_SCENE},
+        {"Texture \"b\" \"float\" \"fbm\" Texture \"a\" \"spectrum\" \"scale\" \"texture tex\" \"b\"", "\"texture tex",
+         "\"b\" is a float texture, but \"tex\" takes a spectrum texture", AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"scale\" \"texture tex\" [ \"b\" \"c\" ]", "\"texture tex",
+         "\"texture tex\" should have 1 value, but has 2", AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"scale\" \"rgb tex\" [ 1 1 1 ]", "\"rgb tex", "\"rgb tex\" should be \"float tex\"",
+         AG_ERROR_SCENE},
+        {"Texture \"a\" \"colour\" \"scale\"", "\"colour",
+         "texture \"a\" should be of type \"float\" or \"spectrum\", not \"colour\"", AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"marble\"", "Texture", "there are no float textures of class \"marble\"",
+         AG_ERROR_SCENE},
+        {"Texture \"a\" \"spectrum\" \"brick\"", "Texture", "there are no spectrum textures of class \"brick\"",
+         AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"windy\" Texture \"a\" \"float\" \"windy\"", "Texture",
+         "float texture \"a\" is made twice", AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"checkerboard\" \"integer dimension\" 4", "\"integer",
+         "\"dimension\" should be 2 or 3, not 4", AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"dots\" \"string mapping\" \"cube\"", "\"string",
+         "unknown mapping \"cube\"; known are uv, spherical, cylindrical, planar", AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"directionmix\" \"vector3 dir\" [ 0 0 0 ]", "\"vector3",
+         "\"dir\" should have a length above 0", AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"fbm\" \"integer octaves\" -1", "\"integer", "\"octaves\" should not be negative",
+         AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"imagemap\"", "Texture", "Texture \"imagemap\" has no \"string filename\"",
+         AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"imagemap\" \"string wrap\" \"mirror\"", "\"string wrap",
+         "unknown wrap \"mirror\"; known are repeat, black, clamp, octahedralsphere", AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"imagemap\" \"string encoding\" \"gamma -1\"", "\"string enc",
+         "unknown encoding \"gamma -1\"; known are sRGB, linear and, with a number, gamma", AG_ERROR_SCENE},
+        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"none.png\"", "\"string file",
+         "/none.png': No such file", AG_ERROR_INPUT},
+        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \".\"", "\"string file", "it is not a regular file",
+         AG_ERROR_INPUT},
+        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"scene.pbrt\"", "\"string file",
+         "OpenImageIO cannot open it: ", AG_ERROR_INPUT},
+        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"cut.exr\"", "\"string file",
+         "/cut.exr': OpenImageIO cannot", AG_ERROR_INPUT},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        reading r = read_world(cases[i].world);
+        const char *at = cases[i].world;
+        for (const char *next = at; (next = strstr(next, cases[i].at)); next++)
+            at = next;
+        char place[64];
+        snprintf(place, sizeof place, "scene.pbrt:1:%d: error: ", (int)(at - cases[i].world) + 12);
+        if (r.status != cases[i].status || r.count[AG_LOG_ERROR] != 1 || !strstr(r.said[AG_LOG_ERROR], place) ||
+            !strstr(r.said[AG_LOG_ERROR], cases[i].text))
+            fail_msg("%s: %s, not at %s: %s", cases[i].world, r.said[AG_LOG_ERROR] ? r.said[AG_LOG_ERROR] : "(nothing)",
+                     place, cases[i].text);
+        reading_destroy(&r);
+    }
+}
+
+/* Infinities in a picture are told and are 0. */
+static void bad_values_are_told(void **state)
+{
+    (void)state;
+    static const float pixels[4] = {INFINITY, 0.5f, NAN, 0.25f};
+    write_image("bad.exr", 4, 1, 1, IMAGE_FLOAT, pixels);
+    reading r = read_world("Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"bad.exr\" "
+                           "Texture \"b\" \"float\" \"imagemap\" \"string filename\" \"bad.exr\"");
+    assert_int_equal(r.status, AG_OK);
+    assert_int_equal(r.count[AG_LOG_WARNING], 1);
+    assert_non_null(
+        strstr(r.said[AG_LOG_WARNING], "\"bad.exr\": 2 values are infinite or not a number, and count as 0"));
+    assert_near(last_float(&r, hit_at(0.25f, 0.5f, 0, 0, 0)), 0.25, 1e-6);
+    reading_destroy(&r);
+}
+
+/* What can be read all the same is told of. */
+static void doubtful_textures_are_warned_of(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *world, *text;
+        double value;
+    } cases[] = {
+        {"Texture \"a\" \"color\" \"constant\" \"rgb value\" [ 2 2 2 ]",
+         "the texture type \"color\" is called \"spectrum\" in pbrt-v4 and is read as that", 2.0},
+        {"Texture \"a\" \"spectrum\" \"ptex\" \"string filename\" \"a.ptx\"",
+         "Texture \"ptex\" is not supported: a constant of 0.5 stands in", 0.5},
+        {"Texture \"a\" \"float\" \"fbm\" \"integer octaves\" 33 \"float roughness\" 0",
+         "\"octaves\" is above 32: 32 is used, what is finer cannot be seen", 0.0},
+        {"Texture \"a\" \"float\" \"windy\" \"float uscale\" 2",
+         "Texture \"windy\": \"float uscale\" is not known, or not supported yet, and is ignored", 0.0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        reading r = read_world(cases[i].world);
+        assert_int_equal(r.status, AG_OK);
+        assert_int_equal(r.count[AG_LOG_WARNING], 1);
+        if (!strstr(r.said[AG_LOG_WARNING], cases[i].text))
+            fail_msg("%s: %s", cases[i].world, r.said[AG_LOG_WARNING]);
+        assert_near(last_rgb(&r, hit_at(0, 0, 0, 0, 0)).g, cases[i].value, 0.0);
+        reading_destroy(&r);
+    }
+}
+
+/* A texture that doubles in cost with every line would take for ever to look up. */
+static void exploding_graphs_are_refused(void **state)
+{
+    (void)state;
+    char world[4096] = "Texture \"t0\" \"float\" \"fbm\" \"integer octaves\" 1 ";
+    for (int i = 1; i <= 30; i++) {
+        const size_t used = strlen(world);
+        snprintf(world + used, sizeof world - used,
+                 "Texture \"t%d\" \"float\" \"scale\" \"texture tex\" \"t%d\" \"texture scale\" \"t%d\"\n", i, i - 1,
+                 i - 1);
+    }
+    reading r = read_world(world);
+    assert_int_equal(r.status, AG_ERROR_SCENE);
+    assert_non_null(strstr(r.said[AG_LOG_ERROR], "texture \"t12\" is made of more than 4096 others"));
+    assert_int_equal(r.scene->texture_count, 12);
+    const surface_hit hit = hit_at(0, 0, 0.3f, 0.4f, 0.6f);
+    assert_true(isfinite(last_float(&r, hit)));
+    reading_destroy(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(wrong_textures_say_why),
+        TEST_IN_FOLDER(bad_values_are_told),
+        TEST_IN_FOLDER(doubtful_textures_are_warned_of),
+        TEST_IN_FOLDER(exploding_graphs_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,618 @@
+/* test_image_file.c: pictures to disk and back, what their headers say, and what is left behind when writing fails.
+ * Flow: tests of renderer/output/image_file.c, and of scene/image/image_reader.c, image_oiio.cpp,
+ * image_module_loader.c. Threads: one. */
+#define _GNU_SOURCE
+#include "fixtures/temporary_folder.h"
+#include "image/image_module_loader.h"
+#include "image/image_reader.h"
+#include "output/atomic_file.h"
+#include "output/image_file.h"
+
+#include <dirent.h>
+#include <float.h>
+#include <math.h>
+#include <signal.h>
+#include <time.h>
+
+enum { WIDTH = 37, HEIGHT = 23, CHANNEL_LIMIT = 8, NOBODY = 65534 };
+
+static const char *const channel_names[] = {"R", "G", "B", "A", "Z", "albedo.R", "albedo.G", "albedo.B"};
+
+/* ---- helpers ---- */
+
+static bool holds(const unsigned char *bytes, size_t size, const char *text)
+{
+    return memmem(bytes, size, text, strlen(text)) != NULL;
+}
+
+static image_description describe(int channel_count, image_sample_type type)
+{
+    return (image_description){.width = WIDTH,
+                               .height = HEIGHT,
+                               .full_width = WIDTH,
+                               .full_height = HEIGHT,
+                               .channel_count = channel_count,
+                               .channel_names = channel_names,
+                               .type = type};
+}
+
+/* Smooth in [0, 1], every pixel and channel different; alpha is 1 at least in the middle. */
+static void fill(float *pixels, int channel_count)
+{
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        for (int c = 0; c < channel_count; c++) {
+            const float across = (float)(i % WIDTH) / WIDTH, down = (float)(i / WIDTH) / HEIGHT;
+            pixels[i * channel_count + c] = c == 3 ? 1.0f : 0.5f * across + 0.3f * down + 0.02f * (float)c + 0.05f;
+        }
+}
+
+static void write_picture(const char *path, const image_description *description, const float *pixels)
+{
+    const ag_status status = image_file_write(path, description, pixels, message, sizeof message);
+    if (status != AG_OK)
+        print_error("%s\n", message);
+    assert_int_equal(status, AG_OK);
+    assert_string_equal(message, "");
+}
+
+static float *read_picture(const char *path, int width, int height, int channel_count)
+{
+    image read;
+    const ag_status status = image_read(path, &read, message, sizeof message);
+    if (status != AG_OK)
+        print_error("%s\n", message);
+    assert_int_equal(status, AG_OK);
+    assert_int_equal(read.width, width);
+    assert_int_equal(read.height, height);
+    assert_int_equal(read.channel_count, channel_count);
+    return read.pixels;
+}
+
+/* The value of an attribute in an EXR header, or NULL. */
+static const unsigned char *exr_attribute(const unsigned char *bytes, const char *name, const char *type,
+                                          size_t *out_size)
+{
+    static const unsigned char magic[] = {0x76, 0x2f, 0x31, 0x01};
+    assert_memory_equal(bytes, magic, sizeof magic);
+    for (const unsigned char *next = bytes + 8; *next != '\0';) {
+        const char *its_name = (const char *)next;
+        const char *its_type = its_name + strlen(its_name) + 1;
+        const unsigned char *value = (const unsigned char *)its_type + strlen(its_type) + 1 + 4;
+        int32_t size;
+        memcpy(&size, value - 4, sizeof size);
+        if (strcmp(name, its_name) == 0) {
+            assert_string_equal(its_type, type);
+            *out_size = (size_t)size;
+            return value;
+        }
+        next = value + size;
+    }
+    return NULL;
+}
+
+static void expect_window(const unsigned char *bytes, const char *name, int x0, int y0, int x1, int y1)
+{
+    size_t size;
+    int32_t window[4];
+    const unsigned char *value = exr_attribute(bytes, name, "box2i", &size);
+    assert_non_null(value);
+    assert_int_equal(size, sizeof window);
+    memcpy(window, value, sizeof window);
+    assert_int_equal(window[0], x0);
+    assert_int_equal(window[1], y0);
+    assert_int_equal(window[2], x1);
+    assert_int_equal(window[3], y1);
+}
+
+/* ---- formats ---- */
+
+static void formats_by_extension(void **state)
+{
+    (void)state;
+    assert_true(image_format_of("a/b.exr")->scene_linear);
+    assert_int_equal(image_format_of("x.EXR")->default_type, IMAGE_HALF);
+    assert_false(image_format_of("x.Png")->scene_linear);
+    assert_string_equal(image_format_of("x.y.tiff")->extension, "tiff");
+    assert_non_null(image_format_of("x.jpeg"));
+    static const char *const unknown[] = {"x", "x.", "x.gif", "x.exr/y", ".png", "x.exr2", "x.ex", "", "a.b/c"};
+    for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++)
+        assert_null(image_format_of(unknown[i]));
+
+    /* rows: exr, png, tif, jpg; columns: 8, 16, half, float */
+    static const char *const names[] = {"x.exr", "x.png", "x.tif", "x.jpg"};
+    static const bool can[4][4] = {{0, 0, 1, 1}, {1, 1, 0, 0}, {1, 1, 0, 1}, {1, 0, 0, 0}};
+    for (int f = 0; f < 4; f++)
+        for (int t = 0; t < 4; t++)
+            assert_int_equal(image_format_can_hold(image_format_of(names[f]), (image_sample_type)t), can[f][t]);
+}
+
+static void bad_requests(void **state)
+{
+    (void)state;
+    float pixels[WIDTH * HEIGHT * 5];
+    fill(pixels, 5);
+    image_description description = describe(3, IMAGE_UINT8);
+    expect_failure(image_file_write(in_folder("x.gif"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
+                   ".exr, .png");
+    expect_failure(image_file_write(in_folder("x.exr"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
+                   "8-bit");
+    description = describe(3, IMAGE_FLOAT);
+    expect_failure(image_file_write(in_folder("x.png"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
+                   "float");
+    description = describe(5, IMAGE_UINT8);
+    expect_failure(image_file_write(in_folder("x.png"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
+                   "5 channels");
+    description = describe(3, IMAGE_UINT8);
+    description.width = 0;
+    expect_failure(image_file_write(in_folder("x.png"), &description, pixels, message, sizeof message),
+                   AG_ERROR_ARGUMENT, "not valid");
+    assert_int_equal(entry_count(), 0);
+}
+
+static void libjpeg_cannot_end_the_process(void **state)
+{
+    (void)state;
+    image_description description = describe(3, IMAGE_UINT8);
+    description.width = description.full_width = 65501;
+    description.height = description.full_height = 1;
+    float *pixels = calloc(65501 * 3, sizeof *pixels);
+    char *long_text = malloc(200001);
+    assert_true(pixels && long_text);
+    expect_failure(image_file_write(in_folder("x.jpg"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
+                   "65500");
+    assert_int_equal(entry_count(), 0);
+
+    memset(long_text, 'x', 200000);
+    long_text[200000] = '\0';
+    const image_attribute attributes[] = {{"Artist", "somebody", NULL, 0}, {"ImageDescription", long_text, NULL, 0}};
+    description = describe(3, IMAGE_UINT8);
+    description.attributes = attributes;
+    description.attribute_count = 2;
+    write_picture(in_folder("x.jpg"), &description, pixels);
+    size_t size;
+    unsigned char *bytes = read_bytes(in_folder("x.jpg"), &size);
+    assert_true(holds(bytes, size, "somebody"));
+    assert_true(size < 20000);
+    free(bytes);
+    free(long_text);
+    free(pixels);
+}
+
+static void round_trips(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        image_sample_type type;
+        int channel_count, read_channel_count;
+        double tolerance;
+    } cases[] = {
+        {"rgb_half.exr", IMAGE_HALF, 3, 3, 0.5 / 2048}, {"rgb.exr", IMAGE_FLOAT, 3, 3, 0.0},
+        {"rgba.exr", IMAGE_FLOAT, 4, 4, 0.0},           {"many.exr", IMAGE_FLOAT, 8, 8, 0.0},
+        {"8.png", IMAGE_UINT8, 3, 3, 0.501 / 255},      {"16.png", IMAGE_UINT16, 3, 3, 0.501 / 65535},
+        {"rgba.png", IMAGE_UINT8, 4, 4, 0.501 / 255},   {"8.tif", IMAGE_UINT8, 3, 3, 0.501 / 255},
+        {"16.tiff", IMAGE_UINT16, 4, 4, 0.501 / 65535}, {"float.tif", IMAGE_FLOAT, 3, 3, 0.0},
+        {"rgb.jpg", IMAGE_UINT8, 3, 3, 3.0 / 255},      {"rgba.jpeg", IMAGE_UINT8, 4, 3, 3.0 / 255},
+    };
+    float pixels[WIDTH * HEIGHT * CHANNEL_LIMIT];
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const image_description description = describe(cases[k].channel_count, cases[k].type);
+        fill(pixels, cases[k].channel_count);
+        write_picture(in_folder(cases[k].name), &description, pixels);
+        float *back = read_picture(in_folder(cases[k].name), WIDTH, HEIGHT, cases[k].read_channel_count);
+        for (int i = 0; i < WIDTH * HEIGHT; i++)
+            for (int c = 0; c < cases[k].read_channel_count; c++) {
+                const double error = fabs((double)back[i * cases[k].read_channel_count + c] -
+                                          (double)pixels[i * cases[k].channel_count + c]);
+                if (!(error <= cases[k].tolerance))
+                    print_error("%s: pixel %d channel %d is off by %g\n", cases[k].name, i, c, error);
+                assert_true(error <= cases[k].tolerance);
+            }
+        free(back);
+    }
+    assert_int_equal(entry_count(), (int)(sizeof cases / sizeof *cases)); /* no temporary file is left */
+}
+
+static void integers_are_rounded_and_clamped(void **state)
+{
+    (void)state;
+    const float pixels[] = {-1.0f, 0.5f, 7.0f};
+    image_description description = describe(3, IMAGE_UINT8);
+    description.width = description.height = description.full_width = description.full_height = 1;
+    write_picture(in_folder("x.png"), &description, pixels);
+    float *back = read_picture(in_folder("x.png"), 1, 1, 3);
+    assert_true(back[0] == 0.0f && back[1] == 128.0f / 255.0f && back[2] == 1.0f);
+    free(back);
+}
+
+static void half_is_clamped_float_is_not(void **state)
+{
+    (void)state;
+    const float pixels[] = {1e6f, -1e9f, 65519.0f, 6e-8f, 0.0f, 1.0f};
+    image_description description = describe(3, IMAGE_HALF);
+    description.width = description.full_width = 2;
+    description.height = description.full_height = 1;
+    write_picture(in_folder("half.exr"), &description, pixels);
+    float *back = read_picture(in_folder("half.exr"), 2, 1, 3);
+    assert_true(back[0] == 65504.0f && back[1] == -65504.0f && back[2] == 65504.0f);
+    assert_true(back[3] > 0.0f && back[4] == 0.0f && back[5] == 1.0f);
+    free(back);
+    description.type = IMAGE_FLOAT;
+    write_picture(in_folder("float.exr"), &description, pixels);
+    back = read_picture(in_folder("float.exr"), 2, 1, 3);
+    assert_memory_equal(back, pixels, sizeof pixels);
+    free(back);
+}
+
+static void crops_keep_their_windows(void **state)
+{
+    (void)state;
+    float pixels[WIDTH * HEIGHT * 3];
+    fill(pixels, 3);
+    image_description description = describe(3, IMAGE_FLOAT);
+    description.x = 100;
+    description.y = 50;
+    description.full_width = 640;
+    description.full_height = 480;
+    write_picture(in_folder("crop.exr"), &description, pixels);
+    size_t size;
+    unsigned char *bytes = read_bytes(in_folder("crop.exr"), &size);
+    expect_window(bytes, "dataWindow", 100, 50, 100 + WIDTH - 1, 50 + HEIGHT - 1);
+    expect_window(bytes, "displayWindow", 0, 0, 639, 479);
+    free(bytes);
+
+    /* The others have no display window to speak of; the pixels must be right all the same. */
+    static const struct {
+        const char *name;
+        image_sample_type type;
+    } others[] = {
+        {"crop.exr", IMAGE_FLOAT}, {"crop.png", IMAGE_UINT8}, {"crop.tif", IMAGE_FLOAT}, {"crop.jpg", IMAGE_UINT8}};
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+        description.type = others[k].type;
+        write_picture(in_folder(others[k].name), &description, pixels);
+        float *back = read_picture(in_folder(others[k].name), WIDTH, HEIGHT, 3);
+        for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+            assert_true(fabsf(back[i] - pixels[i]) <= 3.0f / 255.0f);
+        free(back);
+    }
+}
+
+static void attributes_reach_the_header(void **state)
+{
+    (void)state;
+    static const float chromaticities[] = {0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+    static const float seed = 17.0f;
+    const image_attribute attributes[] = {{"afterglow:scene", "rooms/33.pbrt", NULL, 0},
+                                          {"render:seed", NULL, &seed, 1},
+                                          {"chromaticities", NULL, chromaticities, 8},
+                                          {"DateTime", "2004:06:01 12:00:00", NULL, 0}};
+    float pixels[WIDTH * HEIGHT * 3];
+    fill(pixels, 3);
+    image_description description = describe(3, IMAGE_HALF);
+    description.attributes = attributes;
+    description.attribute_count = 4;
+    write_picture(in_folder("x.exr"), &description, pixels);
+    size_t file_size, size;
+    unsigned char *bytes = read_bytes(in_folder("x.exr"), &file_size);
+    const unsigned char *value = exr_attribute(bytes, "afterglow:scene", "string", &size);
+    assert_non_null(value);
+    assert_int_equal(size, 13);
+    assert_memory_equal(value, "rooms/33.pbrt", 13);
+    value = exr_attribute(bytes, "render:seed", "float", &size);
+    assert_non_null(value);
+    assert_memory_equal(value, &seed, sizeof seed);
+    value = exr_attribute(bytes, "chromaticities", "chromaticities", &size);
+    assert_non_null(value);
+    assert_memory_equal(value, chromaticities, sizeof chromaticities);
+    value = exr_attribute(bytes, "capDate", "string", &size);
+    assert_non_null(value);
+    assert_memory_equal(value, "2004:06:01 12:00:00", 19);
+    value = exr_attribute(bytes, "compression", "compression", &size);
+    assert_non_null(value);
+    assert_int_equal(*value, 3); /* ZIP, 16 rows */
+    free(bytes);
+
+    description.type = IMAGE_UINT8;
+    description.color_space = "sRGB";
+    write_picture(in_folder("x.png"), &description, pixels);
+    bytes = read_bytes(in_folder("x.png"), &file_size);
+    assert_true(holds(bytes, file_size, "sRGB"));
+    assert_true(holds(bytes, file_size, "rooms/33.pbrt"));
+    free(bytes);
+}
+
+/* Every component of the frame header samples each pixel. */
+static void jpeg_keeps_all_colour(void **state)
+{
+    (void)state;
+    float pixels[WIDTH * HEIGHT * 3];
+    fill(pixels, 3);
+    const image_description description = describe(3, IMAGE_UINT8);
+    write_picture(in_folder("x.jpg"), &description, pixels);
+    size_t size;
+    unsigned char *bytes = read_bytes(in_folder("x.jpg"), &size);
+    size_t at = 2;
+    while (at + 18 < size && bytes[at] == 0xff && bytes[at + 1] != 0xc0)
+        at += 2u + (size_t)bytes[at + 2] * 256u + bytes[at + 3];
+    assert_int_equal(bytes[at + 1], 0xc0);
+    assert_int_equal(bytes[at + 9], 3);
+    for (size_t c = 0; c < 3; c++)
+        assert_int_equal(bytes[at + 11 + 3 * c], 0x11);
+    free(bytes);
+}
+
+static void equal_pictures_give_equal_bytes(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"x.exr", "x.png", "x.tif", "x.jpg"};
+    float pixels[WIDTH * HEIGHT * 3];
+    char today[32], iso_today[32];
+    const time_t now = time(NULL);
+    struct tm local;
+    assert_non_null(localtime_r(&now, &local));
+    strftime(today, sizeof today, "%Y:%m:%d", &local);
+    strftime(iso_today, sizeof iso_today, "%Y-%m-%d", &local);
+    fill(pixels, 3);
+    for (size_t k = 0; k < 4; k++) {
+        const image_description description = describe(3, image_format_of(names[k])->default_type);
+        size_t first_size, second_size;
+        write_picture(in_folder(names[k]), &description, pixels);
+        unsigned char *first = read_bytes(in_folder(names[k]), &first_size);
+        write_picture(in_folder(names[k]), &description, pixels);
+        unsigned char *second = read_bytes(in_folder(names[k]), &second_size);
+        assert_int_equal(first_size, second_size);
+        assert_memory_equal(first, second, first_size);
+        /* Both may have been written within a second: there must be no date in them at all. */
+        assert_false(holds(first, first_size, "capDate") || holds(first, first_size, "tIME"));
+        assert_false(holds(first, first_size, "DateTime"));
+        assert_false(holds(first, first_size, today) || holds(first, first_size, iso_today));
+        free(first);
+        free(second);
+    }
+}
+
+static void broken_pictures_are_errors(void **state)
+{
+    (void)state;
+    image back;
+    float pixels[WIDTH * HEIGHT * 3];
+    fill(pixels, 3);
+    expect_failure(image_read(in_folder("none.exr"), &back, message, sizeof message), AG_ERROR_INPUT, "none.exr");
+    assert_null(back.pixels);
+    const image_description description = describe(3, IMAGE_FLOAT);
+    write_picture(in_folder("x.exr"), &description, pixels);
+    struct stat status;
+    assert_int_equal(stat(in_folder("x.exr"), &status), 0);
+    assert_int_equal(truncate(in_folder("x.exr"), status.st_size / 2), 0);
+    expect_failure(image_read(in_folder("x.exr"), &back, message, sizeof message), AG_ERROR_INPUT, "x.exr");
+    assert_null(back.pixels);
+    expect_failure(image_read_compact(in_folder("x.exr"), &back, message, sizeof message), AG_ERROR_INPUT, "x.exr");
+    assert_null(back.bytes);
+}
+
+/* What a file holds is told, bytes stay bytes where that is wished, and alpha is not multiplied in. */
+static void values_are_as_stored(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        image_sample_type type;
+    } kinds[] = {{"a.png", IMAGE_UINT8}, {"b.png", IMAGE_UINT16}, {"c.exr", IMAGE_HALF}, {"d.exr", IMAGE_FLOAT}};
+    static const float pixels[4 * 4] = {1.0f, 0.4f, 0.0f, 1.0f, 0.2f, 0.4f, 0.6f, 1.0f,
+                                        0.0f, 1.0f, 0.8f, 1.0f, 0.8f, 0.6f, 0.2f, 1.0f};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        image_description description = describe(4, kinds[k].type);
+        description.width = description.full_width = 4;
+        description.height = description.full_height = 1;
+        write_picture(in_folder(kinds[k].name), &description, pixels);
+        for (int compact = 0; compact < 2; compact++) {
+            image read;
+            assert_int_equal(
+                (compact ? image_read_compact : image_read)(in_folder(kinds[k].name), &read, message, sizeof message),
+                AG_OK);
+            assert_int_equal(read.type, kinds[k].type);
+            const bool is_bytes = compact && kinds[k].type == IMAGE_UINT8;
+            assert_int_equal(read.bytes != NULL, is_bytes);
+            assert_int_equal(read.pixels != NULL, !is_bytes);
+            for (int i = 0; i < 16; i++) {
+                const float value = is_bytes ? (float)read.bytes[i] / 255.0f : read.pixels[i];
+                assert_true(fabsf(value - pixels[i]) < (kinds[k].type == IMAGE_HALF ? 5e-4f : 1e-6f));
+            }
+            image_reset(&read);
+            assert_null(read.bytes);
+        }
+    }
+    /* a colour that is there where alpha is 0 */
+    char command[512];
+    snprintf(command, sizeof command,
+             "cd '%s' && oiiotool --no-autopremult --create 1x1 4 --fill:color=1,0.501961,0,0 1x1 -d uint8 "
+             "--attrib oiio:UnassociatedAlpha 1 -o alpha.png",
+             folder);
+    assert_int_equal(system(command), 0);
+    image read;
+    assert_int_equal(image_read_compact(in_folder("alpha.png"), &read, message, sizeof message), AG_OK);
+    const unsigned char expected[] = {255, 128, 0, 0};
+    assert_int_equal(read.channel_count, 4);
+    assert_memory_equal(read.bytes, expected, sizeof expected);
+    image_reset(&read);
+}
+
+/* ---- the module ---- */
+
+enum { THREAD_LIMIT = 256 };
+
+/* The ids of this process's threads. One that was joined may still be listed for a moment. */
+static int list_threads(long ids[THREAD_LIMIT])
+{
+    int count = 0;
+    DIR *directory = opendir("/proc/self/task");
+    assert_non_null(directory);
+    for (const struct dirent *entry = readdir(directory); entry && count < THREAD_LIMIT; entry = readdir(directory))
+        if (entry->d_name[0] != '.')
+            ids[count++] = strtol(entry->d_name, NULL, 10);
+    closedir(directory);
+    return count;
+}
+
+/* First of all tests, so that it is here that the module is opened. */
+static void module_opens_once_and_quietly(void **state)
+{
+    (void)state;
+    const image_module *module = image_module_get(message, sizeof message);
+    if (!module)
+        print_error("%s\n", message);
+    assert_non_null(module);
+    assert_ptr_equal(image_module_get(message, sizeof message), module);
+
+    /* Denormals still count: no library's start-up code has changed our floating-point mode. */
+    volatile float small = FLT_MIN;
+    small *= 0.5f;
+    assert_true(small > 0.0f);
+
+    /* Encoding starts no thread. */
+    long before[THREAD_LIMIT], after[THREAD_LIMIT];
+    const int before_count = list_threads(before);
+    float *pixels = calloc(512 * 512 * 3, sizeof *pixels);
+    assert_non_null(pixels);
+    image_description description = describe(3, IMAGE_HALF);
+    description.width = description.height = description.full_width = description.full_height = 512;
+    write_picture(in_folder("x.exr"), &description, pixels);
+    const int after_count = list_threads(after);
+    for (int i = 0; i < after_count; i++) {
+        bool known = false;
+        for (int k = 0; k < before_count; k++)
+            known = known || after[i] == before[k];
+        assert_true(known);
+    }
+    free(pixels);
+}
+
+static void missing_module_names_the_places(void **state)
+{
+    (void)state;
+    assert_int_equal(mkdir(in_folder("empty"), 0777), 0);
+    assert_int_equal(mkdir(in_folder("broken"), 0777), 0);
+    assert_int_equal(
+        atomic_file_write(in_folder("broken/" IMAGE_MODULE_FILE_NAME), "no library", 10, message, sizeof message),
+        AG_OK);
+    const char *const folders[] = {in_folder("empty"), in_folder("broken")};
+    assert_null(image_module_open_from(folders, 2, message, sizeof message));
+    assert_non_null(strstr(message, "/empty/" IMAGE_MODULE_FILE_NAME "' (not there)"));
+    assert_non_null(strstr(message, "/broken/" IMAGE_MODULE_FILE_NAME));
+    assert_non_null(strstr(message, "too short")); /* the loader's own words for a library of 10 bytes */
+    assert_null(image_module_open_from(folders, 0, message, sizeof message));
+    assert_true(strlen(message) > 0);
+    assert_non_null(image_module_get(message, sizeof message)); /* which is not forgotten */
+}
+
+/* ---- writing that fails ---- */
+
+static void full_disk_through_a_device(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"x.exr", "x.png", "x.tif", "x.jpg"};
+    float pixels[WIDTH * HEIGHT * 3];
+    struct stat status;
+    fill(pixels, 3);
+    for (size_t k = 0; k < 4; k++) {
+        const image_description description = describe(3, image_format_of(names[k])->default_type);
+        assert_int_equal(symlink("/dev/full", in_folder(names[k])), 0);
+        expect_failure(image_file_write(in_folder(names[k]), &description, pixels, message, sizeof message),
+                       AG_ERROR_OUTPUT, "No space left on device");
+        assert_true(lstat(in_folder(names[k]), &status) == 0 && S_ISLNK(status.st_mode));
+    }
+    assert_int_equal(entry_count(), 4);
+}
+
+static void failed_writes_leave_all_as_it_was(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"x.exr", "x.png", "x.tif", "x.jpg"};
+    enum { SIDE = 128 };
+    float *pixels = malloc(SIDE * SIDE * 3 * sizeof *pixels);
+    assert_non_null(pixels);
+    uint32_t noise = 1; /* which no format packs into 4096 bytes */
+    for (int i = 0; i < SIDE * SIDE * 3; i++) {
+        noise = noise * 1664525u + 1013904223u;
+        pixels[i] = (float)(noise >> 8) * 0x1p-24f;
+    }
+    void (*const saved_handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    for (size_t k = 0; k < 4; k++) {
+        image_description description = describe(3, image_format_of(names[k])->default_type);
+        description.width = description.height = description.full_width = description.full_height = SIDE;
+        assert_int_equal(atomic_file_write(in_folder(names[k]), "as before", 9, message, sizeof message), AG_OK);
+        struct rlimit saved;
+        set_file_limit(4096, &saved);
+        const ag_status status = image_file_write(in_folder(names[k]), &description, pixels, message, sizeof message);
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &saved), 0);
+        expect_failure(status, AG_ERROR_OUTPUT, "File too large");
+        assert_non_null(strstr(message, names[k]));
+        expect_text(in_folder(names[k]), "as before");
+        assert_int_equal(entry_count(), (int)k + 1);
+    }
+    signal(SIGXFSZ, saved_handler);
+    free(pixels);
+}
+
+static void folders_that_cannot_be_written(void **state)
+{
+    (void)state;
+    float pixels[WIDTH * HEIGHT * 3];
+    const image_description description = describe(3, IMAGE_HALF);
+    fill(pixels, 3);
+    assert_int_equal(atomic_file_write(in_folder("x.exr"), "as before", 9, message, sizeof message), AG_OK);
+    assert_int_equal(chmod(folder, 0555), 0);
+    const bool root = geteuid() == 0; /* whom permissions do not hold back */
+    if (root)
+        assert_int_equal(seteuid(NOBODY), 0);
+    const ag_status written = image_file_write(in_folder("y.exr"), &description, pixels, message, sizeof message);
+    char of_write[sizeof message];
+    memcpy(of_write, message, sizeof message);
+    const ag_status checked = image_file_check_target(in_folder("y.exr"), message, sizeof message);
+    if (root)
+        assert_int_equal(seteuid(0), 0);
+    assert_int_equal(chmod(folder, 0755), 0);
+    expect_failure(checked, AG_ERROR_OUTPUT, "Permission denied");
+    assert_int_equal(written, AG_ERROR_OUTPUT);
+    assert_non_null(strstr(of_write, "Permission denied"));
+    expect_text(in_folder("x.exr"), "as before");
+    assert_int_equal(entry_count(), 1);
+}
+
+static void targets_are_checked_beforehand(void **state)
+{
+    (void)state;
+    assert_int_equal(image_file_check_target(in_folder("x.exr"), message, sizeof message), AG_OK);
+    assert_int_equal(entry_count(), 0);
+    expect_failure(image_file_check_target(in_folder("x.bmp"), message, sizeof message), AG_ERROR_OUTPUT, ".exr");
+    expect_failure(image_file_check_target(in_folder("none/x.exr"), message, sizeof message), AG_ERROR_OUTPUT,
+                   "No such file");
+    assert_int_equal(mkdir(in_folder("d.exr"), 0777), 0);
+    expect_failure(image_file_check_target(in_folder("d.exr"), message, sizeof message), AG_ERROR_OUTPUT,
+                   "Is a directory");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(module_opens_once_and_quietly),
+        TEST_IN_FOLDER(formats_by_extension),
+        TEST_IN_FOLDER(bad_requests),
+        TEST_IN_FOLDER(libjpeg_cannot_end_the_process),
+        TEST_IN_FOLDER(round_trips),
+        TEST_IN_FOLDER(integers_are_rounded_and_clamped),
+        TEST_IN_FOLDER(half_is_clamped_float_is_not),
+        TEST_IN_FOLDER(crops_keep_their_windows),
+        TEST_IN_FOLDER(attributes_reach_the_header),
+        TEST_IN_FOLDER(jpeg_keeps_all_colour),
+        TEST_IN_FOLDER(equal_pictures_give_equal_bytes),
+        TEST_IN_FOLDER(broken_pictures_are_errors),
+        TEST_IN_FOLDER(values_are_as_stored),
+        TEST_IN_FOLDER(missing_module_names_the_places),
+        TEST_IN_FOLDER(full_disk_through_a_device),
+        TEST_IN_FOLDER(failed_writes_leave_all_as_it_was),
+        TEST_IN_FOLDER(folders_that_cannot_be_written),
+        TEST_IN_FOLDER(targets_are_checked_beforehand),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
