@@ -165,6 +165,7 @@ static void many_at_once_are_as_each_alone(void **state)
     enum { PLACES = 3000 };
     static irradiance_query queries[PLACES];
     static rgb many[PLACES];
+    static bool holds[PLACES];
     const irradiance_cache_mode modes[] = {IRRADIANCE_ON_DEMAND, IRRADIANCE_UNCACHED};
     for (int m = 0; m < 2; m++) {
         fixture f, single;
@@ -177,7 +178,7 @@ static void many_at_once_are_as_each_alone(void **state)
                 at.position = vec3_scale(at.position, 5.0f); /* no photon is near */
             queries[i] = (irradiance_query){at.position, at.normal};
         }
-        irradiance_cache_get_many(&f.cache, &f.r.run, queries, PLACES, 0, many);
+        irradiance_cache_get_many(&f.cache, &f.r.run, queries, PLACES, 0, many, holds);
         for (int i = 0; i < PLACES; i++) {
             irradiance_request request;
             irradiance_cache_get(&single.cache, queries[i].position, queries[i].normal, 0, &request);
@@ -201,6 +202,7 @@ static void many_at_once_come_back_to_what_another_computes(void **state)
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 2);
     irradiance_query queries[PLACES];
     rgb found[PLACES];
+    bool holds[PLACES];
     for (uint32_t i = 0; i < PLACES; i++) {
         field_place p = field_photon(&f.map, i * (PHOTONS / PLACES));
         queries[i] = (irradiance_query){p.position, p.normal};
@@ -213,7 +215,7 @@ static void many_at_once_come_back_to_what_another_computes(void **state)
     late_claimer late = {slot, value, &go};
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, publish_late, &late), 0);
-    irradiance_cache_get_many(&f.cache, &f.r.run, queries, PLACES, 1, found);
+    irradiance_cache_get_many(&f.cache, &f.r.run, queries, PLACES, 1, found, holds);
     void *published;
     pthread_join(thread, &published);
     assert_non_null(published);

@@ -253,13 +253,14 @@ static bool meets_the_same(const scene *s, const ray_fan *f, uint32_t i)
     ray_fan_hit(s, f, i, &hit);
     if (hit.shape_index != alone.shape_index || hit.instance_index != alone.instance_index)
         return false;
-    vec3 position, normal, off = vec3_sub(hit.position, alone.position);
-    const rgb *albedo = ray_fan_plain_place(s, f, i, &position, &normal);
+    vec3 off = vec3_sub(hit.position, alone.position);
+    surface_place place;
+    const rgb *albedo = ray_fan_plain_place(s, f, i, &place);
     if (albedo) { /* the same, and on the ray's side */
         assert_ptr_equal(albedo, &s->materials[s->shapes[hit.shape_index].material_index].reflectance);
-        assert_memory_equal(&position, &hit.position, sizeof position);
+        assert_memory_equal(&place.position, &hit.position, sizeof place.position);
         vec3 facing = vec3_face_forward(hit.geometric_normal, vec3_negate(ray_fan_direction(f, i)));
-        assert_memory_equal(&normal, &facing, sizeof normal);
+        assert_memory_equal(&place.normal, &facing, sizeof place.normal);
     }
     return vec3_length(off) < 1e-3f && fabsf(hit.distance - alone.distance) < 1e-3f &&
            vec3_dot(hit.geometric_normal, alone.geometric_normal) > 0.999f;
