@@ -3,6 +3,8 @@
 #define _GNU_SOURCE
 #include "photon_file.h"
 
+#include "descriptor.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -436,6 +438,7 @@ photon_file_result photon_file_open(const run_context *run, const char *path, co
         may_share = false;
         descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     }
+    descriptor = descriptor_beyond_standard(descriptor); /* what a host prints must not reach the map */
     if (descriptor < 0 && errno == ENOENT)
         return PHOTON_FILE_ABSENT;
     struct stat status;

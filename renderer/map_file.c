@@ -4,6 +4,7 @@
 #define _GNU_SOURCE
 #include "map_file.h"
 
+#include "descriptor.h"
 #include "output/atomic_file.h"
 #include "scene_hash.h"
 
@@ -75,6 +76,7 @@ static bool try_lock(trace_lock *lock)
 {
     struct stat ours, named;
     int descriptor = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NOCTTY, 0666);
+    descriptor = descriptor_beyond_standard(descriptor);
     if (descriptor < 0)
         return false;
     if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) {

@@ -5,6 +5,7 @@
 #include "passes.h"
 #include "progress.h"
 #include "signals.h"
+#include "standard_files.h"
 #include "summary.h"
 
 #include <stdint.h>
@@ -244,6 +245,8 @@ static ag_status run_frames(options *o, progress *told)
 int main(int argc, char **argv)
 {
     options o;
+    if (!standard_files_fill())
+        return 3; /* there is nobody to tell */
     options_result parsed = options_parse(argc, argv, &o);
     if (parsed != OPTIONS_RUN) {
         if (parsed == OPTIONS_EXIT_OK && (fflush(stdout) != 0 || ferror(stdout)))

@@ -5,6 +5,7 @@
 #include "output/atomic_file.h"
 
 #include "atomics.h"
+#include "descriptor.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -155,6 +156,7 @@ static int create_temporary(output *out)
         out->slot = show_pending(out->folder_fd, out->temporary_name);
         out->fd =
             openat(out->folder_fd, out->temporary_name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+        out->fd = descriptor_beyond_standard(out->fd);
         if (out->fd >= 0)
             return 0;
         const int error = errno;
