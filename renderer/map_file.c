@@ -139,6 +139,10 @@ static ag_status open_file(const map_request *r, opened_maps *out, bool *out_is_
         }
         log_message(log, AG_LOG_ERROR, "'%s': the map does not fit: %s (--photon-map-refresh replaces it)", path, why);
         return AG_ERROR_INPUT;
+    case PHOTON_FILE_FOREIGN:
+        log_message(log, AG_LOG_ERROR, "'%s': it is no photon map, and is never replaced by one: give another name",
+                    path);
+        return AG_ERROR_INPUT;
     case PHOTON_FILE_FAILED: log_message(log, AG_LOG_ERROR, "'%s': %s", path, why); return AG_ERROR_INPUT;
     case PHOTON_FILE_CANCELLED: break;
     }

@@ -67,11 +67,19 @@ static char *beside(const char *outfile, const char *suffix)
 
 char *passes_checkpoint_name(const char *outfile) { return beside(outfile, CHECKPOINT); }
 
+char *passes_mark_name(const char *outfile) { return beside(outfile, UNFINISHED); }
+
 /* A pipe or device takes one picture, the last one. */
 static bool is_stream(const char *outfile)
 {
     struct stat info;
     return stat(outfile, &info) == 0 && !S_ISREG(info.st_mode);
+}
+
+static bool is_pipe(const char *outfile)
+{
+    struct stat info;
+    return stat(outfile, &info) == 0 && S_ISFIFO(info.st_mode);
 }
 
 /* The mark itself; 0 or -1 with errno. */
@@ -93,7 +101,7 @@ static int write_mark(const char *name)
  * mark the picture would be taken for a finished one: it is not written. Errors: AG_ERROR_OUTPUT, AG_ERROR_MEMORY. */
 static ag_status mark_unfinished(const char *outfile)
 {
-    char *name = beside(outfile, UNFINISHED);
+    char *name = passes_mark_name(outfile);
     if (!name)
         return AG_ERROR_MEMORY;
     ag_status status = AG_OK;
@@ -111,7 +119,7 @@ static ag_status mark_unfinished(const char *outfile)
 
 static void mark_finished(const char *outfile)
 {
-    char *name = beside(outfile, UNFINISHED);
+    char *name = passes_mark_name(outfile);
     if (name && unlink(name) != 0 && errno != ENOENT)
         fprintf(stderr, "afterglow: warning: '%s' is complete, but its mark cannot be removed: '%s': %s\n", outfile,
                 name, strerror(errno));
@@ -121,7 +129,7 @@ static void mark_finished(const char *outfile)
 bool passes_is_complete(const char *outfile)
 {
     struct stat info;
-    char *mark = beside(outfile, UNFINISHED);
+    char *mark = passes_mark_name(outfile);
     bool is_marked = !mark || access(mark, F_OK) == 0;
     free(mark);
     return !is_marked && stat(outfile, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
@@ -138,6 +146,8 @@ static ag_status write_pictures(passes *p, const ag_film *film, bool is_last)
             continue;
         if (!is_last)
             status = mark_unfinished(outfile);
+        if (status == AG_OK && is_pipe(outfile) && p->o->verbosity >= 0)
+            fprintf(stderr, "afterglow: '%s' is a pipe: it is written when somebody reads it\n", outfile);
         if (status == AG_OK)
             status = ag_film_write(p->context, film, &p->o->output, outfile);
         if (is_last && status == AG_OK)
