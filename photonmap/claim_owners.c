@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <sched.h>
+#include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -26,6 +27,13 @@ static struct flock lock_of(uint32_t place)
         .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = (off_t)(LOCKS_AT + (int64_t)place), .l_len = 1};
 }
 
+/* Never 0, so that no claim is all zero. */
+static uint32_t next_generation(uint32_t generation)
+{
+    uint32_t next = (generation + 1) & GENERATION_MASK;
+    return next > 0 ? next : 1;
+}
+
 bool claim_owners_join(int file, claim_owner *table, claim_owners *out_owners)
 {
     for (uint32_t place = 0; place < CLAIM_OWNERS_MAX; place++) {
@@ -35,20 +43,37 @@ bool claim_owners_join(int file, claim_owner *table, claim_owners *out_owners)
                 continue; /* somebody lives there */
             return false;
         }
+        atomic_u32 *stalled = calloc(CLAIM_OWNERS_MAX, sizeof *stalled);
+        if (!stalled)
+            return false;
         claim_owner *own = &table[place];
-        uint32_t generation = (load_relaxed_u32(&own->generation) + 1) & GENERATION_MASK;
+        uint32_t generation = next_generation(load_relaxed_u32(&own->generation));
         store_relaxed_u32(&own->process, (uint32_t)getpid());
         /* Ordered by our claims, which release: who acquires a claim of this generation finds it in the table. */
         store_relaxed_u32(&own->generation, generation);
-        *out_owners = (claim_owners){table, file, generation << PLACE_BITS | place};
+        *out_owners = (claim_owners){table, file, generation << PLACE_BITS | place, stalled};
         return true;
     }
     return false;
 }
 
+void claim_owners_reset(claim_owners *owners)
+{
+    free(owners->stalled);
+    *owners = (claim_owners){.file = -1};
+}
+
+void claim_owners_renew(claim_owners *owners, uint32_t claimer)
+{
+    uint32_t place = claimer & (CLAIM_OWNERS_MAX - 1), before = claimer >> PLACE_BITS, next = next_generation(before);
+    /* The table first: whoever reads a claim of the new number finds it there, for our claims release. */
+    if (cas_acquire_release_u32(&owners->table[place].generation, &before, next))
+        store_relaxed_u32(&owners->claimer, next << PLACE_BITS | place);
+}
+
 bool claim_owners_is_alive(const claim_owners *owners, uint32_t claimer)
 {
-    if (claimer == owners->claimer)
+    if (claimer == load_relaxed_u32(&owners->claimer))
         return true;
     uint32_t place = claimer & (CLAIM_OWNERS_MAX - 1);
     if (load_relaxed_u32(&owners->table[place].generation) != claimer >> PLACE_BITS)
@@ -62,18 +87,26 @@ bool claim_owners_wait(const claim_owners *owners, claim_wait *wait, uint32_t wo
 {
     if (irradiance_word_state(word) != IRRADIANCE_CLAIMED)
         return true;
+    uint32_t claimer = word & IRRADIANCE_VALUE_MASK;
+    if (claimer == load_relaxed_u32(&owners->claimer)) { /* another thread of ours, which goes on as we do */
+        sched_yield();
+        return false;
+    }
+    atomic_u32 *stalled = &owners->stalled[claimer & (CLAIM_OWNERS_MAX - 1)];
+    if (load_relaxed_u32(stalled) == claimer)
+        return true;
     if (wait->word != word)
         *wait = (claim_wait){.word = word, .begin = clock_seconds()};
-    uint32_t claimer = word & IRRADIANCE_VALUE_MASK;
-    bool is_ours = claimer == owners->claimer;
-    if (++wait->rounds < ROUNDS_AWAKE || (is_ours && wait->rounds % ROUNDS_AWAKE != 0)) {
+    if (++wait->rounds < ROUNDS_AWAKE) {
         sched_yield(); /* the claimer may need this processor */
         return false;
     }
-    if (!claim_owners_is_alive(owners, claimer) || clock_seconds() - wait->begin > STANDSTILL_SECONDS)
+    if (!claim_owners_is_alive(owners, claimer))
         return true;
-    if (is_ours)
-        return false;
+    if (clock_seconds() - wait->begin > STANDSTILL_SECONDS) {
+        store_relaxed_u32(stalled, claimer);
+        return true;
+    }
     const struct timespec nap = {0, SLEEP_NANOSECONDS};
     nanosleep(&nap, NULL);
     return false;

@@ -5,7 +5,9 @@
  * tests/models/irradiance_slot_shared.pml. Threads: join and leave by one; the others by any.
  *
  * A claim carries place and generation. Whoever takes a place that a dead process has left begins a new generation: so
- * no living process ever writes what a dead one's claim reads, and a claim taken over cannot be mistaken. */
+ * no living process ever writes what a dead one's claim reads, and a claim taken over cannot be mistaken. All threads
+ * of a process share its number: none of them takes over a claim of its own process, whose holder is another thread at
+ * work, so of the threads that wait for one claim no more than one computes it. */
 #ifndef AFTERGLOW_CLAIM_OWNERS_H
 #define AFTERGLOW_CLAIM_OWNERS_H
 
@@ -20,14 +22,22 @@ typedef struct claim_owner {
 } claim_owner;
 
 typedef struct claim_owners {
-    claim_owner *table; /* [CLAIM_OWNERS_MAX], borrowed */
-    int file;           /* borrowed: an open file description of our own, whose locks are ours */
-    uint32_t claimer;   /* what our claims carry */
+    claim_owner *table;  /* [CLAIM_OWNERS_MAX], borrowed */
+    int file;            /* borrowed: an open file description of our own, whose locks are ours */
+    atomic_u32 claimer;  /* what our claims carry, never 0; stands alone, so relaxed */
+    atomic_u32 *stalled; /* [CLAIM_OWNERS_MAX], owned: for each place the claimer there that was seen to stand still, 0:
+                            none; stand alone, so relaxed */
 } claim_owners;
 
-/* Takes a place. False where all are taken, or the file system has no such locks. The place is left when the file is
- * closed. */
+/* Takes a place. False where all are taken, the file system has no such locks, or memory is short. The place is left
+ * when the file is closed. */
 bool claim_owners_join(int file, claim_owner *table, claim_owners *out_owners);
+void claim_owners_reset(claim_owners *owners); /* frees what is owned; all zero is fine */
+
+/* After a claim of ours, which carried this number, turned out to have been taken over: we have stood still, and others
+ * remember it. Our further claims carry a new number, and are waited for again. By any thread; the first one does it.
+ */
+void claim_owners_renew(claim_owners *owners, uint32_t claimer);
 
 /* Whether the process that a claim names still lives. */
 bool claim_owners_is_alive(const claim_owners *owners, uint32_t claimer);
@@ -39,9 +49,10 @@ typedef struct claim_wait {
     double begin; /* clock_seconds */
 } claim_wait;
 
-/* To be called between two looks at a slot that is not ready: lets others run, or sleeps a while. True: nobody will
- * make this word ready, so it may be taken over: its claimer is dead, or has stood still for seconds (a process that
- * was stopped: its own publishing will then fail), or it is no claim that anybody has made. */
+/* To be called between two looks at a slot that is not ready: lets others run, or sleeps for a fraction of a
+ * millisecond. True: nobody will make this word ready, so it may be taken over: its claimer is dead, or has stood still
+ * for seconds (a process that was stopped: its own publishing will then fail), or it is no claim that anybody has made.
+ * The seconds are waited for once for each claimer, not for each of its claims. */
 bool claim_owners_wait(const claim_owners *owners, claim_wait *wait, uint32_t word);
 
 #endif

@@ -84,26 +84,36 @@ static bool estimate_at_place(irradiance_cache *cache, vec3 position, vec3 norma
     return holds;
 }
 
-void irradiance_cache_share(irradiance_cache *cache, const claim_owners *owners) { cache->owners = owners; }
+void irradiance_cache_share(irradiance_cache *cache, claim_owners *owners) { cache->owners = owners; }
 
 /* What the worker's claims carry: among processes, the process is enough. */
 static uint32_t claimer_of(const irradiance_cache *cache, unsigned worker_index)
 {
-    return cache->owners ? cache->owners->claimer : worker_index;
+    return cache->owners ? load_relaxed_u32(&cache->owners->claimer) : worker_index;
 }
 
-/* Computes and publishes what the worker has claimed; gives the slot's word. */
-static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker_index)
+/* Makes a value final, its check byte first. False where the claim was not the claimer's any more. */
+static bool publish(const photon_map *map, uint32_t index, uint32_t claimer, uint32_t value)
+{
+    if (map->checks)
+        store_relaxed_u8(&map->checks[index], irradiance_word_check(index, irradiance_word(IRRADIANCE_READY, value)));
+    return irradiance_slot_publish(photon_map_slot(map, index), claimer, value);
+}
+
+/* Computes and publishes what the worker has claimed under that number; gives the slot's word. */
+static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claimer, unsigned worker_index)
 {
     photon_block *blocks = cache->map->bearers.blocks;
     rgb irradiance;
     bool holds = estimate(cache, photon_block_position(blocks, index),
                           direction_decode(photon_block_normal(blocks, index)), worker_index, &irradiance);
     uint32_t value = holds ? photon_map_encode_irradiance(cache->map, irradiance, index) : PHOTON_NO_IRRADIANCE;
-    if (irradiance_slot_publish(photon_block_slot(blocks, index), claimer_of(cache, worker_index), value))
+    if (publish(cache->map, index, claimer, value)) {
         cache->counters[worker_index].computed++;
-    else
+    } else {
         cache->counters[worker_index].duplicated++;
+        claim_owners_renew(cache->owners, claimer); /* only in a shared map can a claim be lost */
+    }
     return irradiance_word(IRRADIANCE_READY, value);
 }
 
@@ -111,27 +121,26 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker
 static uint32_t demand(irradiance_cache *cache, uint32_t bearer, unsigned worker_index)
 {
     irradiance_slot *slot = photon_map_slot(cache->map, bearer);
-    uint32_t word = irradiance_slot_read(slot);
-    if (irradiance_word_state(word) == IRRADIANCE_EMPTY &&
-        irradiance_slot_try_claim(slot, claimer_of(cache, worker_index), &word))
-        word = compute(cache, bearer, worker_index);
+    uint32_t word = irradiance_slot_read(slot), claimer = claimer_of(cache, worker_index);
+    if (irradiance_word_state(word) == IRRADIANCE_EMPTY && irradiance_slot_try_claim(slot, claimer, &word))
+        word = compute(cache, bearer, claimer, worker_index);
     return word;
 }
 
-/* The word of a photon that somebody is computing, once it is ready. Holds no claim meanwhile, but those that it takes
- * over. */
-static uint32_t await(irradiance_cache *cache, uint32_t index, unsigned worker_index)
+/* The word of a photon that somebody is computing, once it is ready; any word where the run is cancelled meanwhile.
+ * Holds no claim meanwhile, but those that it takes over. */
+static uint32_t await(irradiance_cache *cache, const run_context *run, uint32_t index, unsigned worker_index)
 {
     irradiance_slot *slot = photon_map_slot(cache->map, index);
     claim_wait wait = {0};
     uint32_t word = irradiance_slot_read(slot);
-    while (irradiance_word_state(word) != IRRADIANCE_READY) {
+    while (irradiance_word_state(word) != IRRADIANCE_READY && !(run && run_is_cancelled(run))) {
+        uint32_t claimer = claimer_of(cache, worker_index);
         if (!cache->owners) {
             sched_yield(); /* the claimer may need this processor */
-        } else if (claim_owners_wait(cache->owners, &wait, word) &&
-                   irradiance_slot_take_over(slot, &word, cache->owners->claimer)) {
+        } else if (claim_owners_wait(cache->owners, &wait, word) && irradiance_slot_take_over(slot, &word, claimer)) {
             cache->counters[worker_index].reclaimed++;
-            return compute(cache, index, worker_index);
+            return compute(cache, index, claimer, worker_index);
         }
         word = irradiance_slot_read(slot);
     }
@@ -152,7 +161,7 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
         demand(cache, (uint32_t)i, worker_index);
     /* what other processes are at, or have left: nothing is held here */
     for (uint64_t i = begin; cache->owners && i < end && !run_is_cancelled(job->run); i++)
-        await(cache, (uint32_t)i, worker_index);
+        await(cache, job->run, (uint32_t)i, worker_index);
 }
 
 ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run)
@@ -177,9 +186,9 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
     for (uint32_t i = 0; i < cache->map->bearers.count; i++) {
         uint32_t found;
         irradiance_slot *slot = photon_map_slot(cache->map, i);
-        if (irradiance_word_state(words[i]) == IRRADIANCE_READY &&
-            irradiance_slot_try_claim(slot, claimer_of(cache, 0), &found))
-            irradiance_slot_publish(slot, claimer_of(cache, 0), words[i] & IRRADIANCE_VALUE_MASK);
+        uint32_t claimer = claimer_of(cache, 0);
+        if (irradiance_word_state(words[i]) == IRRADIANCE_READY && irradiance_slot_try_claim(slot, claimer, &found))
+            publish(cache->map, i, claimer, words[i] & IRRADIANCE_VALUE_MASK);
     }
     cache->ready_before += irradiance_cache_distinct(cache) - distinct;
 }
@@ -319,22 +328,25 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
     for (uint32_t k = 0; k < waiting; k++) {
         uint32_t i = (uint32_t)order[k];
         irradiance_request request = {.bearer = (uint32_t)(order[k] >> 32)};
-        irradiance_cache_retry(cache, &request, worker_index);
+        irradiance_cache_retry(cache, run, &request, worker_index);
         out_irradiance[i] = request.irradiance;
         out_holds[i] = request.holds;
     }
 }
 
-void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index)
+void irradiance_cache_retry(irradiance_cache *cache, const run_context *run, irradiance_request *request,
+                            unsigned worker_index)
 {
     uint32_t word = irradiance_slot_read(photon_map_slot(cache->map, request->bearer));
     if (irradiance_word_state(word) != IRRADIANCE_READY) {
         irradiance_counters *counters = &cache->counters[worker_index];
         double begin = clock_thread_cpu_seconds();
-        word = await(cache, request->bearer, worker_index);
+        word = await(cache, run, request->bearer, worker_index);
         counters->waited++;
         counters->waited_seconds += clock_thread_cpu_seconds() - begin;
     }
+    if (irradiance_word_state(word) != IRRADIANCE_READY) /* cancelled */
+        word = irradiance_word(IRRADIANCE_READY, PHOTON_NO_IRRADIANCE);
     request->bearer = PHOTON_NONE;
     request->holds = answer_by_word(cache, word, worker_index, &request->irradiance);
 }

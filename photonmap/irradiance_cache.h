@@ -25,8 +25,9 @@ typedef struct irradiance_counters {
     uint64_t computed;              /* estimates at photons, published */
     uint64_t deferred;              /* requests that met a claim of another thread and were set aside */
     uint64_t waited;                /* of those, the ones that had to wait in the end */
-    uint64_t duplicated;            /* estimates computed although another had been published: 0 */
-    uint64_t reclaimed;             /* claims taken over from processes that died */
+    uint64_t duplicated;            /* estimates whose claim another process had taken over meanwhile: 0, unless this
+                                       process stood still for seconds */
+    uint64_t reclaimed;             /* claims taken over from processes that died or stood still */
     uint64_t uncached;              /* estimates at the place itself */
     uint64_t refused;               /* requests for places where no estimate holds */
     uint64_t timed;                 /* estimates whose time was taken */
@@ -47,7 +48,7 @@ typedef struct irradiance_cache {
     unsigned worker_count;
     irradiance_counters *counters; /* [worker_count] */
     irradiance_scratch *scratch;   /* [worker_count] */
-    const claim_owners *owners;    /* borrowed; of a map that other processes fill too, else NULL */
+    claim_owners *owners;          /* borrowed; of a map that other processes fill too, else NULL */
     uint64_t ready_before;         /* photons that were ready when the cache was created */
 } irradiance_cache;
 
@@ -55,7 +56,7 @@ typedef struct irradiance_cache {
 ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
                                   irradiance_cache *out_cache);
 /* Before the first request: the map is filled by other processes, too. Borrows. */
-void irradiance_cache_share(irradiance_cache *cache, const claim_owners *owners);
+void irradiance_cache_share(irradiance_cache *cache, claim_owners *owners);
 void irradiance_cache_reset(irradiance_cache *cache);
 
 /* Computes what is not ready yet, at every bearer. Errors: AG_CANCELLED. */
@@ -80,9 +81,10 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
                           irradiance_request *out_request);
 
 /* Comes back to a request that was set aside; waits for the claimer where it still computes. Afterwards it is
- * answered. The claimer holds its claim only while computing, and takes no other meanwhile; a dead one's is taken over:
- * so this ends. */
-void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index);
+ * answered, unless the run (which may be NULL) is cancelled meanwhile: then no irradiance holds. The claimer holds its
+ * claim only while computing, and takes no other meanwhile; a dead one's is taken over: so this ends. */
+void irradiance_cache_retry(irradiance_cache *cache, const run_context *run, irradiance_request *request,
+                            unsigned worker_index);
 
 /* A place, and the side of the unit normal. */
 typedef struct irradiance_query {

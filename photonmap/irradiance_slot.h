@@ -9,8 +9,9 @@
  *
  *   state    the other 30 bits          who may change the word
  *   EMPTY    0                          anybody: to CLAIMED, naming itself
- *   CLAIMED  the claimer's number       the claimer: to READY; where it is dead, anybody: to CLAIMED, naming itself
- *   READY    exponent, mantissas        nobody
+ *   CLAIMED  the claimer's number       the claimer: to READY; where it is dead, anybody else: to CLAIMED, naming
+ * itself READY    exponent, mantissas        nobody; but who opens a file empties a slot whose check byte says it is
+ * damaged
  *
  * State and value are one word, so nobody can see half of a result, and zeroed memory is a valid empty cache.
  * Threads: any, at any time. */
@@ -63,12 +64,26 @@ static inline bool irradiance_slot_take_over(irradiance_slot *slot, uint32_t *in
 }
 
 /* Makes the claimer's value (30 bits) final. Release: pairs with read. False when the claim was not the claimer's any
- * more: somebody else computed it too, which happens where a process has stood still for so long that it was thought
- * dead, and to nobody else. */
+ * more: somebody else computes it too, which happens where a process has stood still for so long that it was thought
+ * dead, and to nobody else. Its claims carry another number from then on (claim_owners_renew). */
 static inline bool irradiance_slot_publish(irradiance_slot *slot, uint32_t claimer, uint32_t value)
 {
     uint32_t expected = irradiance_word(IRRADIANCE_CLAIMED, claimer);
     return cas_release_u32(slot, &expected, irradiance_word(IRRADIANCE_READY, value));
+}
+
+/* What a map's file keeps beside a slot that is READY, to tell a word that has been damaged: never 0, and another one
+ * where one or two bits of the word or of its index differ (CRC-7 of both, polynomial x^7 + x^3 + 1). It is written
+ * before the word is published, and by several at once only where they write the same. */
+static inline uint8_t irradiance_word_check(uint32_t index, uint32_t word)
+{
+    static const uint8_t OF_NIBBLE[16] = {0x00, 0x12, 0x24, 0x36, 0x48, 0x5a, 0x6c, 0x7e,
+                                          0x90, 0x82, 0xb4, 0xa6, 0xd8, 0xca, 0xfc, 0xee};
+    uint64_t bits = (uint64_t)index << 32 | word;
+    unsigned crc = 0; /* its seven bits are the upper ones of a byte */
+    for (int shift = 60; shift >= 0; shift -= 4)
+        crc = (crc << 4 & 0xff) ^ OF_NIBBLE[crc >> 4 ^ (unsigned)(bits >> shift & 15)];
+    return (uint8_t)(0x80 | crc >> 1);
 }
 
 #endif

@@ -4,6 +4,7 @@
 #include "photon_file.h"
 
 #include "descriptor.h"
+#include "file_system.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -13,14 +14,11 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#if defined(__linux__)
-#include <sys/vfs.h>
-#endif
 
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
 
 /* To be raised whenever the layout, or what photons or irradiances are, changes. */
-enum { LAYOUT_VERSION = 5 };
+enum { LAYOUT_VERSION = 6 };
 enum { GLOBAL, CAUSTIC, MAP_COUNT, BEARERS = MAP_COUNT, TREE_COUNT };
 enum { PAGE = 4096, CHUNK_BYTES = 1 << 22 };
 static const uint32_t BYTE_ORDER_MARK = 0x01020304;
@@ -46,6 +44,7 @@ typedef struct file_header {
     uint64_t file_bytes;
     photon_file_key key;
     tree_record trees[TREE_COUNT]; /* BEARERS is empty where all photons are */
+    uint64_t checks_at;            /* of the bearers' check bytes, from the file's beginning */
     map_record maps[MAP_COUNT];
     hash128 content; /* of the photons and the nodes */
     hash128 self;    /* of all above */
@@ -66,8 +65,14 @@ static uint64_t blocks_bytes(const tree_record *t) { return photon_block_count(t
 
 static uint64_t nodes_bytes(const tree_record *t) { return photon_tree_bytes(&(photon_tree){.depth = t->depth}); }
 
+/* Of the global map. */
+static uint32_t bearer_count(const tree_record trees[TREE_COUNT])
+{
+    return trees[BEARERS].count > 0 ? trees[BEARERS].count : trees[GLOBAL].count;
+}
+
 /* Where all lies, from counts and depths. Returns the file's size. */
-static uint64_t lay_out(tree_record trees[TREE_COUNT])
+static uint64_t lay_out(tree_record trees[TREE_COUNT], uint64_t *out_checks_at)
 {
     uint64_t at = to_page(OWNERS_AT + CLAIM_OWNERS_MAX * sizeof(claim_owner));
     for (int i = 0; i < TREE_COUNT; i++) {
@@ -78,7 +83,8 @@ static uint64_t lay_out(tree_record trees[TREE_COUNT])
         trees[i].nodes_at = at;
         at += to_page(nodes_bytes(&trees[i]));
     }
-    return at;
+    *out_checks_at = at;
+    return at + to_page(bearer_count(trees));
 }
 
 static hash128 hash_of_header(const file_header *h)
@@ -145,6 +151,22 @@ static int write_at(const run_context *run, int descriptor, const void *bytes, u
     return 0;
 }
 
+/* Of all bearers, by pages; 0 where a slot is not ready, and behind the last one. */
+static int write_checks(const run_context *run, int descriptor, const photon_tree *bearers, uint64_t at)
+{
+    int error = 0;
+    for (uint32_t first = 0; first < bearers->count && error == 0; first += PAGE, at += PAGE) {
+        uint8_t checks[PAGE] = {0};
+        for (uint32_t i = 0; i < PAGE && i < bearers->count - first; i++) {
+            uint32_t word = irradiance_slot_read(photon_block_slot(bearers->blocks, first + i));
+            if (irradiance_word_state(word) == IRRADIANCE_READY)
+                checks[i] = irradiance_word_check(first + i, word);
+        }
+        error = write_at(run, descriptor, checks, PAGE, at);
+    }
+    return error;
+}
+
 int photon_file_write(const run_context *run, int descriptor, const photon_file_key *key, const photon_map *global,
                       const photon_map *caustic)
 {
@@ -164,7 +186,7 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
         trees[BEARERS] = global->bearers;
     for (int i = 0; i < TREE_COUNT; i++)
         h.trees[i] = (tree_record){.count = trees[i].count, .depth = trees[i].depth};
-    h.file_bytes = lay_out(h.trees);
+    h.file_bytes = lay_out(h.trees, &h.checks_at);
     if (!hash_content(run, trees, &h.content))
         return ECANCELED;
     h.self = hash_of_header(&h);
@@ -192,7 +214,7 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
         if (error == 0)
             error = write_at(run, descriptor, zeros, rest, t->nodes_at + size);
     }
-    return error;
+    return error == 0 ? write_checks(run, descriptor, &global->bearers, h.checks_at) : error;
 }
 
 /* --- opening --- */
@@ -260,7 +282,9 @@ static bool header_is_valid(const file_header *h, uint64_t got_bytes, uint64_t f
         if (trees[i].count == PHOTON_NONE || trees[i].depth > 28 ||
             photon_block_count(trees[i].count) > (uint64_t)1 << trees[i].depth)
             snprintf(message, message_size, "it is damaged: its counts cannot be");
-    if (!message[0] && (lay_out(trees) != h->file_bytes || memcmp(trees, h->trees, sizeof trees) != 0))
+    uint64_t checks_at;
+    if (!message[0] && (lay_out(trees, &checks_at) != h->file_bytes || checks_at != h->checks_at ||
+                        memcmp(trees, h->trees, sizeof trees) != 0))
         snprintf(message, message_size, "it is damaged: its parts do not lie where they should");
     if (!message[0])
         describe_difference(&h->key, key, message, message_size);
@@ -299,44 +323,10 @@ static photon_map map_of(const map_record *m, photon_tree tree, photon_tree bear
 }
 
 /* A network's file system: another host's processes may be at the file, whose locks or memory ours do not see. */
-static bool is_on_network(int descriptor)
-{
-#if defined(__linux__)
-    static const uint32_t NETWORKS[] = {
-        0x6969,     /* NFS */
-        0x517b,     /* SMB */
-        0xff534d42, /* CIFS */
-        0xfe534d42, /* SMB2 */
-        0x01021997, /* 9P */
-        0x65735546, /* FUSE: sshfs and many others */
-        0x00c36400, /* Ceph */
-        0x0bd00bd0, /* Lustre */
-        0x47504653, /* GPFS */
-        0x19830326, /* BeeGFS */
-        0x7461636f, /* OCFS2 */
-        0x01161970, /* GFS2 */
-        0x5346414f, /* AFS */
-        0x73757245, /* Coda */
-        0x6b414653, /* kAFS */
-        0xaad7aaea, /* PanFS */
-    };
-    struct statfs system;
-    if (fstatfs(descriptor, &system) != 0)
-        return true;
-    for (size_t i = 0; i < sizeof NETWORKS / sizeof *NETWORKS; i++)
-        if ((uint32_t)system.f_type == NETWORKS[i])
-            return true;
-    return false;
-#else
-    (void)descriptor;
-    return true;
-#endif
-}
-
 /* Maps it, and takes a place among its owners. message: where not, why. */
 static bool share(int descriptor, photon_file *file, char *message, size_t message_size)
 {
-    if (is_on_network(descriptor)) {
+    if (file_system_is_network(descriptor)) {
         snprintf(message, message_size, "it is on a network's file system");
         return false;
     }
@@ -385,6 +375,22 @@ static photon_file_result copy(const run_context *run, int descriptor, photon_fi
     return PHOTON_FILE_OPEN;
 }
 
+/* Empties what is damaged: a word that is ready and does not have its check byte, and a claim that carries our number,
+ * which is new. Others may be at work: each publishes behind its check byte, so what is ready here and whole has it. */
+static uint32_t empty_damaged(photon_map *map, const claim_owners *owners)
+{
+    uint32_t damaged = 0;
+    for (uint32_t i = 0; i < map->bearers.count; i++) {
+        irradiance_slot *slot = photon_map_slot(map, i);
+        uint32_t word = irradiance_slot_read(slot);
+        bool is_ready = irradiance_word_state(word) == IRRADIANCE_READY;
+        if ((is_ready && load_relaxed_u8(&map->checks[i]) != irradiance_word_check(i, word)) ||
+            (owners && word == irradiance_word(IRRADIANCE_CLAIMED, load_relaxed_u32(&owners->claimer))))
+            damaged += cas_acquire_release_u32(slot, &word, 0);
+    }
+    return damaged;
+}
+
 /* In a copy nobody will publish what was being computed. */
 static void drop_claims(photon_map *map)
 {
@@ -421,6 +427,8 @@ static photon_file_result open_maps(const run_context *run, int descriptor, cons
         snprintf(message, message_size, "it is damaged: its photons do not have their checksum");
         return PHOTON_FILE_REFUSED;
     }
+    maps[GLOBAL].checks = (atomic_u8 *)(void *)((char *)file->memory + h->checks_at);
+    file->damaged = empty_damaged(&maps[GLOBAL], file->is_shared ? &file->owners : NULL);
     for (int i = 0; i < MAP_COUNT && !file->is_shared; i++)
         drop_claims(&maps[i]);
     return PHOTON_FILE_OPEN;
@@ -481,6 +489,7 @@ void photon_file_close(photon_file *file)
 {
     if (file->is_shared) {
         munmap(file->memory, file->size_bytes);
+        claim_owners_reset(&file->owners);
         close(file->descriptor); /* and with it our place is free */
     } else {
         free(file->memory);

@@ -6,11 +6,14 @@
  *     header       what it is, what it was made of, constants of the maps, checksum: never changes
  *     owners       the processes at work on it (claim_owners.h)
  *     blocks       of the global map, the caustic map, and the global map's bearers where they are a part of the
- * photons: photons never change, slots do nodes        of their trees: never change
+ *                  photons: photons never change, slots do
+ *     nodes        of their trees: never change
+ *     checks       a byte for each bearer: irradiance_word_check of its slot, written before the slot is ready
  *
- * The layout is the machine's own: byte order and sizes are in the header, and another machine's file is refused. Only
- * what never changes is under the checksum. A slot says something valid whatever its bits are: READY is any 30 bits;
- * a claim that no living process holds is taken over. The checksum tells damage; it does not protect from malice. */
+ * The layout is the machine's own: byte order and sizes are in the header, and another machine's file is refused. What
+ * never changes is under a checksum. A slot that is ready without its check byte is emptied when the file is opened,
+ * and computed again; a claim that no living process holds is taken over. The checks tell damage; they do not protect
+ * from malice. */
 #ifndef AFTERGLOW_PHOTON_FILE_H
 #define AFTERGLOW_PHOTON_FILE_H
 
@@ -36,6 +39,7 @@ typedef struct photon_file {
     int descriptor; /* of the mapped file; holds our lock */
     bool is_shared; /* others see what is filled in here, and the file keeps it */
     claim_owners owners;
+    uint32_t damaged; /* irradiances that did not have their check byte when it was opened, and are computed again */
 } photon_file;
 
 typedef enum photon_file_result {

@@ -33,6 +33,7 @@ typedef struct photon_map {
     float irradiance_unit[64]; /* of a slot's mantissas, by its exponent */
     const scene *surfaces;     /* borrowed, or NULL */
     bool is_borrowed;          /* blocks and nodes are a photon_file's */
+    atomic_u8 *checks;         /* of a map from a file: irradiance_word_check of each bearer, borrowed; else NULL */
     bool has_been_cached;      /* a cache has been made over it: some slots may be ready */
 } photon_map;
 

@@ -33,6 +33,7 @@ typedef struct block {
     uint64_t paths, rays, passages_cut;
     photon_books books;
     bool out_of_memory;
+    bool is_cut; /* cancelled before all of its paths were traced */
 } block;
 
 typedef struct tracer {
@@ -279,6 +280,7 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
         trace_path(&t, job->first_path + i);
     out.paths = end - begin;
+    out.is_cut = run_is_cancelled(job->run); /* or just behind the last path, which does no harm */
     job->blocks[block_index] = out;
 }
 
@@ -297,6 +299,8 @@ static ag_status account_block(round_job *job, photon_set *set, uint64_t first_p
     uint32_t room = job->settings->wanted - set->count;
     if (b->out_of_memory)
         return AG_ERROR_MEMORY;
+    if (b->is_cut) /* all blocks may have been begun when it came: parallel_for then knows nothing of it */
+        return AG_CANCELLED;
     if (b->count >= room) {
         *b = (block){.photons = b->photons, .capacity = b->capacity};
         tracer t = {job->s, job->target, job->settings, b, room};

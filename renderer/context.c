@@ -68,6 +68,8 @@ unsigned ag_context_thread_count(const ag_context *context) { return thread_pool
 
 void ag_context_cancel(ag_context *context) { run_cancel(&context->run); }
 
+void ag_context_clear_cancel(ag_context *context) { run_clear_cancel(&context->run); }
+
 void ag_context_pause(ag_context *context) { run_pause(&context->run); }
 
 double context_add_to_phase(ag_context *context, ag_phase phase, phase_begin begin)

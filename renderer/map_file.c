@@ -128,6 +128,9 @@ static ag_status open_file(const map_request *r, opened_maps *out, bool *out_is_
         photon_file_open(&r->context->run, path, &r->key, &out->file, &out->global, &out->caustic, why, sizeof why)) {
     case PHOTON_FILE_OPEN:
         *out_is_open = true;
+        if (out->file.damaged > 0)
+            log_message(log, AG_LOG_WARNING, "'%s': %u irradiances in the map were damaged, and are computed again",
+                        path, out->file.damaged);
         if (!out->file.is_shared)
             log_message(log, AG_LOG_WARNING, "'%s': the map is used, but what is computed is not kept: %s", path, why);
         return AG_OK;

@@ -20,8 +20,12 @@ void __tsan_acquire(void *address);
 void __tsan_release(void *address);
 #endif
 
+typedef _Atomic uint8_t atomic_u8;
 typedef _Atomic uint32_t atomic_u32;
 typedef _Atomic uint64_t atomic_u64;
+
+static inline uint8_t load_relaxed_u8(const atomic_u8 *a) { return atomic_load_explicit(a, memory_order_relaxed); }
+static inline void store_relaxed_u8(atomic_u8 *a, uint8_t v) { atomic_store_explicit(a, v, memory_order_relaxed); }
 
 static inline uint32_t load_relaxed_u32(const atomic_u32 *a) { return atomic_load_explicit(a, memory_order_relaxed); }
 static inline uint32_t load_acquire_u32(const atomic_u32 *a) { return atomic_load_explicit(a, memory_order_acquire); }

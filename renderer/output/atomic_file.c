@@ -6,28 +6,36 @@
 
 #include "atomics.h"
 #include "descriptor.h"
+#include "file_system.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <poll.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
-enum { PENDING_COUNT = 8, LINK_LIMIT = 40, NAME_TRIES = 100, SUFFIX_LENGTH = 6 };
+enum { PENDING_COUNT = 8, LINK_LIMIT = 40, NAME_TRIES = 100 };
+static const char TEMPORARY[] = ".afterglow-";
+enum { LETTERS = 6, SUFFIX_LENGTH = sizeof TEMPORARY - 1 + LETTERS };
 enum { LOOK_UP_EVERY_MS = 20 }; /* while a reader is waited for */
 
 static atomic_u32 no_more_waits; /* stands alone, so relaxed */
 
 void atomic_file_end_waits(void) { store_relaxed_u32(&no_more_waits, 1); }
 
-/* A temporary file that a signal handler could remove. Whoever claims a slot fills it, then shows it. */
-enum { SLOT_FREE, SLOT_CLAIMED, SLOT_SHOWN };
+/* A temporary file that a signal handler could remove. Whoever claims a slot fills it, then shows it. A handler takes
+ * what is shown for as long as it reads it; the writer then waits with hiding it, so that neither name nor folder
+ * becomes another's meanwhile. */
+enum { SLOT_FREE, SLOT_CLAIMED, SLOT_SHOWN, SLOT_TAKEN };
 typedef struct pending_slot {
     atomic_u32 state;
     int folder_fd;
@@ -107,17 +115,25 @@ static pending_slot *show_pending(int folder_fd, const char *name)
 
 static void hide_pending(pending_slot *slot)
 {
-    if (slot)
-        store_release_u32(&slot->state, SLOT_FREE); /* pairs with the claim in show_pending */
+    for (;;) {
+        uint32_t expected = SLOT_SHOWN;
+        /* pairs with the claim in show_pending */
+        if (!slot || cas_acquire_release_u32(&slot->state, &expected, SLOT_FREE))
+            return;
+        sched_yield(); /* the handler runs on another thread, and has only to remove the file */
+    }
 }
 
 void atomic_file_unlink_pending(void)
 {
-    /* A slot that is hidden meanwhile does no harm: its name is then gone already, and unlinkat fails. */
     const int saved_errno = errno;
-    for (int i = 0; i < PENDING_COUNT; i++)
-        if (load_acquire_u32(&pending[i].state) == SLOT_SHOWN) /* pairs with the store in show_pending */
+    for (int i = 0; i < PENDING_COUNT; i++) {
+        uint32_t expected = SLOT_SHOWN;
+        if (cas_acquire_u32(&pending[i].state, &expected, SLOT_TAKEN)) { /* pairs with the store in show_pending */
             unlinkat(pending[i].folder_fd, pending[i].name, 0);
+            store_release_u32(&pending[i].state, SLOT_SHOWN); /* pairs with hide_pending */
+        }
+    }
     errno = saved_errno;
 }
 
@@ -179,10 +195,60 @@ static void make_temporary_name(const char *name, char out_name[NAME_MAX + 1])
         clock_gettime(CLOCK_MONOTONIC, &now);
         bits = ((uint64_t)now.tv_nsec ^ ((uint64_t)getpid() << 32)) * 0x9e3779b97f4a7c15u >> 8;
     }
-    char suffix[SUFFIX_LENGTH + 1] = "";
-    for (int i = 0; i < SUFFIX_LENGTH; i++, bits /= sizeof letters - 1)
+    char suffix[LETTERS + 1] = "";
+    for (int i = 0; i < LETTERS; i++, bits /= sizeof letters - 1)
         suffix[i] = letters[bits % (sizeof letters - 1)];
-    snprintf(out_name, NAME_MAX + 1, ".%.*s.%s", NAME_MAX - SUFFIX_LENGTH - 2, name, suffix);
+    snprintf(out_name, NAME_MAX + 1, ".%.*s%s%s", NAME_MAX - SUFFIX_LENGTH - 1, name, TEMPORARY, suffix);
+}
+
+/* Whether it could have been made by make_temporary_name for that name. */
+static bool is_temporary_name(const char *of_name, const char *name)
+{
+    char prefix[NAME_MAX + 1];
+    int length = snprintf(prefix, sizeof prefix, ".%.*s%s", NAME_MAX - SUFFIX_LENGTH - 1, of_name, TEMPORARY);
+    return strncmp(name, prefix, (size_t)length) == 0 && strlen(name + length) == LETTERS &&
+           strspn(name + length, "abcdefghijklmnopqrstuvwxyz0123456789") == LETTERS;
+}
+
+/* Whoever writes a temporary file holds its lock, which the kernel drops when the process ends, however it ends: one
+ * that can be locked here is nobody's any more. */
+static void remove_if_orphaned(int folder_fd, const char *name)
+{
+    struct stat status;
+    const int fd =
+        descriptor_beyond_standard(openat(folder_fd, name, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY));
+    if (fd < 0)
+        return;
+    if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
+        flock(fd, LOCK_EX | LOCK_NB) == 0)
+        unlinkat(folder_fd, name, 0);
+    close_quietly(fd);
+}
+
+/* On a network's file system the lock of another machine's process need not be seen: nothing is removed there. */
+static void remove_orphans(const output *out)
+{
+    if (file_system_is_network(out->folder_fd))
+        return;
+    const int fd = openat(out->folder_fd, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *folder = fd >= 0 ? fdopendir(fd) : NULL;
+    if (!folder) { /* it may be written, not listed */
+        close_quietly(fd);
+        return;
+    }
+    for (const struct dirent *entry = readdir(folder); entry; entry = readdir(folder))
+        if (is_temporary_name(out->name, entry->d_name))
+            remove_if_orphaned(out->folder_fd, entry->d_name);
+    closedir(folder);
+}
+
+/* Marks a new temporary file as a living process's. False: somebody took it for an orphan just before. */
+static bool lock_temporary(int fd)
+{
+    struct stat status;
+    if (flock(fd, LOCK_EX | LOCK_NB) != 0)
+        return errno != EWOULDBLOCK; /* there may be no locks: then nobody removes it either */
+    return fstat(fd, &status) != 0 || status.st_nlink > 0;
 }
 
 /* open() under a fresh name instead of mkostemp: the kernel then applies the umask, which cannot be read without
@@ -195,9 +261,12 @@ static int create_temporary(output *out)
         out->fd =
             openat(out->folder_fd, out->temporary_name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
         out->fd = descriptor_beyond_standard(out->fd);
-        if (out->fd >= 0)
+        const bool is_ours = out->fd >= 0 && lock_temporary(out->fd);
+        if (is_ours)
             return 0;
-        const int error = errno;
+        const int error = out->fd >= 0 ? EEXIST : errno;
+        close_quietly(out->fd);
+        out->fd = -1;
         hide_pending(out->slot);
         out->slot = NULL;
         errno = error;
@@ -267,6 +336,7 @@ static ag_status begin(const char *path, output *out, char *message, size_t mess
         close_quietly(out->folder_fd);
         return failure(path, "", error, message, message_size);
     }
+    remove_orphans(out);
     if (create_temporary(out) != 0) {
         const int error = errno;
         close_quietly(out->folder_fd);
@@ -325,13 +395,18 @@ static int fill_and_rename(output *out, atomic_file_fill *fill, void *user)
     }
     if (out->folder_fd >= 0 && fsync(out->fd) != 0)
         return -1;
+    const int lock_fd = fcntl(out->fd, F_DUPFD_CLOEXEC, 0); /* keeps the lock until the file has its name */
     const int closed = close_quietly(out->fd);
-    out->fd = -1;
+    out->fd = lock_fd;
     if (closed != 0) /* the last place where a network file system tells of a failed write */
         return -1;
-    if (out->folder_fd < 0)
-        return 0;
-    return renameat(out->folder_fd, out->temporary_name, out->folder_fd, out->name);
+    const int renamed =
+        out->folder_fd < 0 ? 0 : renameat(out->folder_fd, out->temporary_name, out->folder_fd, out->name);
+    const int rename_error = errno;
+    close_quietly(lock_fd);
+    out->fd = -1;
+    errno = rename_error;
+    return renamed;
 }
 
 ag_status atomic_file_write(const char *path, const void *bytes, size_t size, char *message, size_t message_size)

@@ -143,7 +143,7 @@ static void a_request_set_aside_comes_back(void **state)
     assert_int_equal(pthread_create(&thread, NULL, publish_late, &late), 0);
     irradiance_request copy = request;
     store_release_u32(&go, 1);
-    irradiance_cache_retry(&f.cache, &request, 1);
+    irradiance_cache_retry(&f.cache, NULL, &request, 1);
     void *published;
     pthread_join(thread, &published);
     assert_non_null(published);
@@ -151,7 +151,7 @@ static void a_request_set_aside_comes_back(void **state)
     assert_memory_equal(&request.irradiance, &expected, sizeof expected);
     uint64_t waited = irradiance_cache_counters(&f.cache).waited;
     assert_true(waited <= 1);
-    irradiance_cache_retry(&f.cache, &copy, 1);
+    irradiance_cache_retry(&f.cache, NULL, &copy, 1);
     assert_memory_equal(&copy.irradiance, &expected, sizeof expected);
     assert_int_equal(irradiance_cache_counters(&f.cache).waited, waited);
     assert_int_equal(irradiance_cache_counters(&f.cache).duplicated, 0);
@@ -269,7 +269,7 @@ static void demand(void *user, unsigned worker)
         for (uint32_t i = 0; i < RAYS; i++)
             if (requests[i].bearer != PHOTON_NONE) {
                 all->open[worker]++;
-                irradiance_cache_retry(&all->f->cache, &requests[i], worker);
+                irradiance_cache_retry(&all->f->cache, NULL, &requests[i], worker);
             }
         for (uint32_t i = 0; i < RAYS; i++)
             all->wrong[worker] += memcmp(&requests[i].irradiance, &all->expected[(i + round) % FEW], sizeof(rgb)) != 0;
@@ -330,7 +330,7 @@ static void ask_all(void *user, unsigned worker)
         irradiance_request request;
         irradiance_cache_get(&f->cache, p.position, p.normal, worker, &request);
         if (request.bearer != PHOTON_NONE)
-            irradiance_cache_retry(&f->cache, &request, worker);
+            irradiance_cache_retry(&f->cache, NULL, &request, worker);
     }
 }
 

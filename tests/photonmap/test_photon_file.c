@@ -3,6 +3,7 @@
  * Threads: one; processes of its own. */
 /* ctest: sanitize */
 #define _GNU_SOURCE
+#include "clock.h"
 #include "fixtures/photon_field.h"
 #include "photon_file.h"
 
@@ -10,6 +11,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -102,7 +104,7 @@ static rgb ask(opened *o, uint32_t index)
         if (request.bearer == PHOTON_NONE)
             return request.irradiance;
     }
-    irradiance_cache_retry(&o->cache, &request, 0);
+    irradiance_cache_retry(&o->cache, NULL, &request, 0);
     return request.irradiance;
 }
 
@@ -325,7 +327,7 @@ static void slots_may_hold_anything(void **state)
             irradiance_word_state(irradiance_slot_read(photon_block_slot(o.map.blocks, i))) == IRRADIANCE_READY;
         if (irradiance_slot_read(photon_block_slot(o.map.blocks, i)) ==
             irradiance_word(IRRADIANCE_CLAIMED, o.file.owners.claimer))
-            continue; /* ours, as it says: the time to lose patience is another test's */
+            continue; /* ours, as it says, which nobody takes over here */
         rgb value = ask(&o, i);
         assert_true(rgb_is_finite(value));
         if (!was_ready)
@@ -334,6 +336,83 @@ static void slots_may_hold_anything(void **state)
     assert_int_equal(irradiance_cache_counters(&o.cache).reclaimed, not_ready);
     close_map(&o);
     test_run_reset(&r);
+}
+
+/* Every slot of a map, which is ready, is as it was, or is empty and becomes so again. */
+static void expect_words(opened *o, const uint32_t *words)
+{
+    for (uint32_t i = 0; i < PHOTONS; i++) {
+        uint32_t word = irradiance_slot_read(photon_block_slot(o->map.blocks, i));
+        if (word != words[i]) {
+            assert_int_not_equal(irradiance_word_state(word), IRRADIANCE_READY);
+            ask(o, i);
+            assert_int_equal(irradiance_slot_read(photon_block_slot(o->map.blocks, i)), words[i]);
+        }
+    }
+}
+
+/* Random bits flipped anywhere in the file, the slots among it: the right irradiances, or a refusal. */
+static void flipped_bits_change_no_irradiance(void **state)
+{
+    (void)state;
+    enum { FLIPS = 10000 / FEWER };
+    test_run r;
+    opened o;
+    static uint32_t words[PHOTONS];
+    const char *path = open_new_map(&r, &o);
+    for (uint32_t i = 0; i < PHOTONS; i++) {
+        ask(&o, i);
+        words[i] = irradiance_slot_read(photon_block_slot(o.map.blocks, i));
+        assert_int_equal(irradiance_word_state(words[i]), IRRADIANCE_READY);
+    }
+    close_map(&o);
+    int file = open(path, O_RDWR);
+    struct stat status;
+    assert_int_equal(fstat(file, &status), 0);
+    rng random = test_random(21);
+    uint64_t refused = 0, damaged = 0;
+    for (int k = 0; k < FLIPS; k++) {
+        photon_file_key key = some_key();
+        off_t at = (off_t)(rng_next(&random) % (uint64_t)status.st_size);
+        unsigned char byte, before;
+        assert_int_equal(pread(file, &before, 1, at), 1);
+        byte = (unsigned char)(before ^ 1 << rng_next(&random) % 8);
+        assert_int_equal(pwrite(file, &byte, 1, at), 1);
+        photon_file_result result =
+            photon_file_open(&quiet, path, &key, &o.file, &o.map, &o.caustic, message, sizeof message);
+        if (result != PHOTON_FILE_OPEN) {
+            refused++;
+            assert_int_equal(pwrite(file, &before, 1, at), 1);
+            continue;
+        }
+        assert_int_equal(irradiance_cache_create(&o.map, IRRADIANCE_ON_DEMAND, 1, &o.cache), AG_OK);
+        irradiance_cache_share(&o.cache, &o.file.owners);
+        damaged += o.file.damaged;
+        expect_words(&o, words);
+        close_map(&o);
+    }
+    close(file);
+    assert_true(refused > FLIPS / 2); /* most of the file never changes */
+    assert_true(damaged > FLIPS / 20);
+    test_run_reset(&r);
+}
+
+/* One and two bits of a word, and of its index, make another check byte, which is never 0. */
+static void check_bytes_tell_bits(void **state)
+{
+    (void)state;
+    rng random = test_random(22);
+    for (int k = 0; k < 1000; k++) {
+        uint32_t index = (uint32_t)rng_next(&random), word = (uint32_t)rng_next(&random);
+        uint8_t check = irradiance_word_check(index, word);
+        assert_true(check >= 0x80);
+        for (int i = 0; i < 64; i++)
+            for (int j = i; j < 64; j++) {
+                uint64_t bits = (uint64_t)1 << i ^ (j > i ? (uint64_t)1 << j : 0);
+                assert_int_not_equal(irradiance_word_check(index ^ (uint32_t)(bits >> 32), word ^ (uint32_t)bits),
+                                     check);
+            }
+    }
 }
 
 /* Where all places are taken a process works on a copy, in which nobody else's claims are. */
@@ -348,10 +427,13 @@ static void a_copy_has_no_claims(void **state)
     assert_true(irradiance_slot_try_claim(photon_block_slot(first.map.blocks, 2), first.file.owners.claimer, &word));
     int files[CLAIM_OWNERS_MAX];
     claim_owners others;
+    uint32_t last = 0;
     for (int i = 1; i < CLAIM_OWNERS_MAX; i++) {
         files[i] = open(path, O_RDWR | O_CLOEXEC);
         assert_true(claim_owners_join(files[i], first.file.owners.table, &others));
-        assert_true(claim_owners_is_alive(&first.file.owners, others.claimer));
+        last = others.claimer;
+        claim_owners_reset(&others);
+        assert_true(claim_owners_is_alive(&first.file.owners, last));
     }
     open_map(&copy, path);
     assert_false(copy.file.is_shared);
@@ -363,7 +445,7 @@ static void a_copy_has_no_claims(void **state)
     close_map(&copy);
     for (int i = 1; i < CLAIM_OWNERS_MAX; i++)
         close(files[i]);
-    assert_false(claim_owners_is_alive(&first.file.owners, others.claimer));
+    assert_false(claim_owners_is_alive(&first.file.owners, last));
     close_map(&first);
     test_run_reset(&r);
 }
@@ -547,6 +629,114 @@ static void processes_are_killed_at_random(void **state)
     test_run_reset(&r);
 }
 
+/* Patience is lost once for each process that stands still, not for each of its claims; and a cancelled run waits for
+ * nobody. */
+static void one_that_stands_still_is_remembered(void **state)
+{
+    (void)state;
+    test_run r;
+    opened o;
+    const char *path = open_new_map(&r, &o);
+    int ready, order;
+    pid_t id = start_holder(path, &ready, &order);
+    assert_int_equal(kill(id, SIGSTOP), 0);
+    irradiance_request request = {.bearer = 0};
+    run_context run;
+    run_context_init(&run, NULL, NULL, NULL, NULL);
+    run_cancel(&run);
+    irradiance_cache_retry(&o.cache, &run, &request, 0);
+    assert_int_equal(request.bearer, PHOTON_NONE);
+    assert_false(request.holds);
+    assert_int_equal(irradiance_cache_counters(&o.cache).reclaimed, 0);
+    run_context_reset(&run);
+
+    ask(&o, 0); /* some seconds */
+    for (uint32_t i = 1; i < HELD; i++) {
+        claim_wait wait = {0};
+        assert_true(claim_owners_wait(&o.file.owners, &wait, irradiance_slot_read(photon_block_slot(o.map.blocks, i))));
+        expect_right(&o.map, i, ask(&o, i));
+    }
+    assert_int_equal(irradiance_cache_counters(&o.cache).reclaimed, HELD);
+    assert_int_equal(irradiance_cache_counters(&o.cache).duplicated, 0);
+    assert_int_equal(kill(id, SIGKILL), 0);
+    assert_int_equal(waitpid(id, NULL, 0), id);
+    close_map(&o);
+    close(ready);
+    close(order);
+    test_run_reset(&r);
+}
+
+/* A claim of one's own process is another thread's, at work: it is waited for, however long that takes. */
+static void own_claims_are_not_taken_over(void **state)
+{
+    (void)state;
+    test_run r;
+    opened o;
+    open_new_map(&r, &o);
+    uint32_t word, own = irradiance_word(IRRADIANCE_CLAIMED, load_relaxed_u32(&o.file.owners.claimer));
+    assert_true(
+        irradiance_slot_try_claim(photon_block_slot(o.map.blocks, 0), load_relaxed_u32(&o.file.owners.claimer), &word));
+    claim_wait wait = {.word = own, .begin = clock_seconds() - 1000.0}; /* it has taken a quarter of an hour so far */
+    for (int i = 0; i < 1000; i++)
+        assert_false(claim_owners_wait(&o.file.owners, &wait, own));
+    close_map(&o);
+    test_run_reset(&r);
+}
+
+typedef struct thief {
+    opened *victim;
+    claim_owners *own;
+    uint32_t stolen; /* claims taken over while the victim computes */
+    atomic_u32 stops;
+} thief;
+
+/* Takes every claim of the victim's over that it sees, and never publishes: as one does who thinks it dead. */
+static void *steal(void *user)
+{
+    thief *t = user;
+    uint32_t own = load_relaxed_u32(&t->own->claimer);
+    for (uint32_t i = 0; !load_relaxed_u32(&t->stops); i = (i + 1) % PHOTONS) {
+        irradiance_slot *slot = photon_block_slot(t->victim->map.blocks, i);
+        uint32_t word = irradiance_slot_read(slot);
+        if (irradiance_word_state(word) == IRRADIANCE_CLAIMED && (word & IRRADIANCE_VALUE_MASK) != own)
+            t->stolen += irradiance_slot_take_over(slot, &word, own);
+    }
+    return NULL;
+}
+
+/* An estimate whose claim was taken over meanwhile counts as duplicated, and whoever computed it gets a new number. */
+static void what_was_taken_over_is_counted(void **state)
+{
+    (void)state;
+    test_run r;
+    opened o, other;
+    const char *path = open_new_map(&r, &o);
+    open_map(&other, path);
+    thief t = {.victim = &o, .own = &other.file.owners};
+    uint32_t before = load_relaxed_u32(&o.file.owners.claimer), asked = 0;
+    pthread_t thread;
+    assert_int_equal(pthread_create(&thread, NULL, steal, &t), 0);
+    for (uint32_t i = 0; i < PHOTONS && irradiance_cache_counters(&o.cache).duplicated < 3; i++, asked++) {
+        irradiance_request request;
+        field_place p = field_photon(&o.map, i);
+        irradiance_cache_get(&o.cache, p.position, p.normal, 0, &request);
+        if (request.bearer == PHOTON_NONE)
+            expect_right(&o.map, i, request.irradiance);
+    }
+    store_relaxed_u32(&t.stops, 1);
+    pthread_join(thread, NULL);
+    irradiance_counters c = irradiance_cache_counters(&o.cache);
+    assert_true(c.duplicated > 0);
+    assert_int_equal(c.duplicated, t.stolen);
+    uint32_t after = load_relaxed_u32(&o.file.owners.claimer);
+    assert_int_not_equal(after, before);
+    assert_true(claim_owners_is_alive(&other.file.owners, after));
+    assert_false(claim_owners_is_alive(&other.file.owners, before));
+    close_map(&other);
+    close_map(&o);
+    test_run_reset(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -555,10 +745,15 @@ int main(void)
         TEST_IN_FOLDER(what_was_made_of_something_else_is_refused),
         TEST_IN_FOLDER(what_is_damaged_is_refused),
         TEST_IN_FOLDER(slots_may_hold_anything),
+        TEST_IN_FOLDER(flipped_bits_change_no_irradiance),
+        cmocka_unit_test(check_bytes_tell_bits),
         TEST_IN_FOLDER(a_copy_has_no_claims),
         TEST_IN_FOLDER(a_full_disk_is_an_error),
         TEST_IN_FOLDER(a_dead_process_leaves_no_claim),
         TEST_IN_FOLDER(a_stopped_process_is_not_waited_for),
+        TEST_IN_FOLDER(one_that_stands_still_is_remembered),
+        TEST_IN_FOLDER(own_claims_are_not_taken_over),
+        TEST_IN_FOLDER(what_was_taken_over_is_counted),
         TEST_IN_FOLDER(processes_are_killed_at_random),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -249,12 +249,49 @@ static void test_kills(void **state)
     }
 }
 
+/* --- damage --- */
+
+/* Random bits flipped anywhere in the file: the right picture, or a refusal. */
+static void test_flipped_bits(void **state)
+{
+    (void)state;
+    enum { FLIPS = 200 };
+    const char *scene = PROGRAM_SCENES ROOM;
+    expect_end(RUN(QUICK, MAP, "--cache=precompute", "-o", "fresh.exr", scene), 0, NULL);
+    size_t size;
+    unsigned char *whole = read_bytes(in_folder("a.map"), &size);
+    unsigned random = 99;
+    int refused = 0;
+    for (int k = 0; k < FLIPS; k++) {
+        random = random * 1664525u + 1013904223u;
+        size_t at = (size_t)((double)random / 4294967296.0 * (double)size);
+        random = random * 1664525u + 1013904223u;
+        int file = open(in_folder("a.map"), O_RDWR | O_CREAT | O_TRUNC, 0666);
+        assert_true(file >= 0);
+        unsigned char before = whole[at];
+        whole[at] ^= (unsigned char)(1u << (random >> 29));
+        assert_int_equal(write(file, whole, size), size);
+        assert_int_equal(close(file), 0);
+        whole[at] = before;
+        program_run run = RUN(QUICK, MAP, "-q", "-o", "flipped.exr", scene);
+        if (run.exit_code == 1)
+            refused++;
+        else {
+            expect_exit(&run, 0);
+            expect_same_files("fresh.exr", "flipped.exr");
+        }
+        program_run_reset(&run);
+    }
+    free(whole);
+    assert_in_range(refused, FLIPS / 2, FLIPS - 10);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_camera_move),  TEST_IN_FOLDER(test_dump),      TEST_IN_FOLDER(test_refusal),
         TEST_IN_FOLDER(test_photons_only), TEST_IN_FOLDER(test_full_disk), TEST_IN_FOLDER(test_read_only),
-        TEST_IN_FOLDER(test_crowd),        TEST_IN_FOLDER(test_kills),
+        TEST_IN_FOLDER(test_crowd),        TEST_IN_FOLDER(test_kills),     TEST_IN_FOLDER(test_flipped_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

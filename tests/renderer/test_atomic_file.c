@@ -4,7 +4,9 @@
 #include "fixtures/temporary_folder.h"
 #include "output/atomic_file.h"
 
+#include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -173,6 +175,120 @@ static void bare_names(void **state)
     assert_int_equal(entry_count(), 1);
 }
 
+/* --- what a killed process leaves --- */
+
+/* Says that it has begun, writes half, and waits for the end. */
+static int write_half_and_wait(void *user, int descriptor)
+{
+    const int *ends = user;
+    char byte = 0;
+    if (write(descriptor, "half", 4) != 4 || write(ends[1], &byte, 1) != 1)
+        return EIO;
+    return read(ends[2], &byte, 1) == 1 ? 0 : EIO;
+}
+
+/* A process that is in the middle of writing path; ends[3] tells it to go on. */
+static pid_t start_writer(const char *path, int ends[4])
+{
+    assert_int_equal(pipe(ends), 0);
+    assert_int_equal(pipe(ends + 2), 0);
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0)
+        _exit(atomic_file_write_by(path, write_half_and_wait, ends, message, sizeof message) == AG_OK ? 0 : 1);
+    char byte;
+    assert_int_equal(read(ends[0], &byte, 1), 1);
+    return child;
+}
+
+static void close_ends(int ends[4])
+{
+    for (int i = 0; i < 4; i++)
+        close(ends[i]);
+}
+
+static void what_the_dead_have_left_is_removed(void **state)
+{
+    (void)state;
+    int ends[4], others[4], status;
+    char path[160], other[160];
+    snprintf(path, sizeof path, "%s", in_folder("x"));
+    snprintf(other, sizeof other, "%s", in_folder("y"));
+    FILE *own = fopen(in_folder(".x.backup"), "w"), *alike = fopen(in_folder(".x.afterglow-abc"), "w");
+    assert_non_null(own);
+    assert_non_null(alike);
+    fclose(own);
+    fclose(alike);
+    const pid_t dead = start_writer(path, ends), alive = start_writer(path, others);
+    assert_int_equal(entry_count(), 4);
+    assert_int_equal(kill(dead, SIGKILL), 0);
+    assert_int_equal(waitpid(dead, &status, 0), dead);
+    assert_int_equal(atomic_file_write(other, "1", 1, message, sizeof message), AG_OK); /* another file's are left */
+    assert_int_equal(entry_count(), 5);
+    assert_int_equal(atomic_file_write(path, "1", 1, message, sizeof message), AG_OK);
+    assert_int_equal(entry_count(), 5); /* x is there, and what the dead one has left is gone */
+    expect_text(path, "1");
+    /* the living one still ends in order */
+    char byte = 0;
+    assert_int_equal(write(others[3], &byte, 1), 1);
+    assert_int_equal(waitpid(alive, &status, 0), alive);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    expect_text(path, "half");
+    assert_int_equal(entry_count(), 4);
+    close_ends(ends);
+    close_ends(others);
+}
+
+/* --- pending files --- */
+
+enum { WRITERS = 12, ROUNDS = 60 }; /* more writers than slots */
+
+typedef struct writer {
+    pthread_t thread;
+    int number, failed;
+} writer;
+
+static void *write_often(void *user)
+{
+    writer *w = user;
+    char path[160], said[512];
+    for (int k = 0; k < ROUNDS; k++) {
+        snprintf(path, sizeof path, "%s/%s%d", folder, k % 2 ? "folder/" : "", w->number);
+        w->failed += atomic_file_write(path, "whole", 5, said, sizeof said) != AG_OK;
+    }
+    return NULL;
+}
+
+/* Removing what is pending, at any moment and by another thread, hits a writer's temporary file or nothing: never a
+ * name or a folder that are just being changed. A write may fail by it; a file is whole or not there. */
+static void pending_files_are_removed_while_others_write(void **state)
+{
+    (void)state;
+    assert_int_equal(mkdir(in_folder("folder"), 0777), 0);
+    writer writers[WRITERS];
+    for (int i = 0; i < WRITERS; i++) {
+        writers[i] = (writer){.number = i};
+        assert_int_equal(pthread_create(&writers[i].thread, NULL, write_often, &writers[i]), 0);
+    }
+    for (int k = 0; k < 2000; k++)
+        atomic_file_unlink_pending();
+    for (int i = 0; i < WRITERS; i++)
+        pthread_join(writers[i].thread, NULL);
+    for (int i = 0; i < WRITERS; i++) {
+        char path[160];
+        snprintf(path, sizeof path, "%s/%d", folder, i);
+        if (access(path, F_OK) == 0)
+            expect_text(path, "whole");
+    }
+    atomic_file_unlink_pending();
+    /* nothing else is left over */
+    DIR *directory = opendir(folder);
+    assert_non_null(directory);
+    for (const struct dirent *entry = readdir(directory); entry; entry = readdir(directory))
+        assert_null(strstr(entry->d_name, ".afterglow-"));
+    closedir(directory);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -184,6 +300,8 @@ int main(void)
         TEST_IN_FOLDER(files_that_must_not_be_written),
         TEST_IN_FOLDER(targets_are_checked_beforehand),
         TEST_IN_FOLDER(bare_names),
+        TEST_IN_FOLDER(what_the_dead_have_left_is_removed),
+        TEST_IN_FOLDER(pending_files_are_removed_while_others_write),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -125,8 +125,87 @@ static void contexts_work_side_by_side(void **state)
     assert_memory_not_equal(alone[0].pixels, alone[3].pixels, sizeof alone[0].pixels); /* the other working space */
 }
 
+typedef struct canceller {
+    ag_context *context;
+    ag_phase phase; /* AG_PHASE_COUNT: nothing is cancelled */
+    bool has_cancelled;
+} canceller;
+
+/* In the middle of the phase, once. */
+static void cancel_in_phase(void *user, ag_phase phase, double fraction)
+{
+    canceller *c = user;
+    if (phase == c->phase && !c->has_cancelled && fraction < 1.0) {
+        c->has_cancelled = true;
+        ag_context_cancel(c->context);
+    }
+}
+
+/* Renders with one context and scene; what is cancelled is done again, or gone on with, by the same two. */
+static void render_cancelled(ag_phase phase, float *out_pixels)
+{
+    canceller c = {.phase = phase};
+    ag_context_settings made = ag_default_context_settings();
+    ag_render_settings settings;
+    ag_scene *loaded;
+    ag_rendering *rendering = NULL;
+    ag_film *film;
+    made.thread_count = 2;
+    made.progress = cancel_in_phase;
+    made.user = &c;
+    assert_int_equal(ag_context_create(&made, &c.context), AG_OK);
+    ag_status status = ag_scene_load(c.context, AG_SOURCE_DIR "/tests/scenes/glass_and_metal.pbrt", &loaded);
+    if (status == AG_CANCELLED) {
+        assert_int_equal(ag_scene_load(c.context, AG_SOURCE_DIR "/tests/scenes/glass_and_metal.pbrt", &loaded),
+                         AG_CANCELLED);
+        ag_context_clear_cancel(c.context);
+        status = ag_scene_load(c.context, AG_SOURCE_DIR "/tests/scenes/glass_and_metal.pbrt", &loaded);
+    }
+    assert_int_equal(status, AG_OK);
+    assert_int_equal(ag_render_settings_from_scene(c.context, loaded, &settings), AG_OK);
+    settings.width = settings.height = SIZE;
+    settings.samples_per_pixel = 4;
+    settings.gather_samples = 4;
+    settings.photon_count = 5000;
+    settings.caustic_photon_count = 500;
+    status = ag_rendering_create(c.context, loaded, &settings, &rendering);
+    if (status == AG_CANCELLED) {
+        ag_context_clear_cancel(c.context);
+        status = ag_rendering_create(c.context, loaded, &settings, &rendering);
+    }
+    assert_int_equal(status, AG_OK);
+    status = ag_rendering_continue(rendering, 4);
+    if (status == AG_CANCELLED) {
+        assert_int_equal(ag_rendering_continue(rendering, 4), AG_CANCELLED);
+        ag_context_clear_cancel(c.context);
+        status = ag_rendering_continue(rendering, 4);
+    }
+    assert_int_equal(status, AG_OK);
+    assert_true(c.has_cancelled || phase == AG_PHASE_COUNT);
+    ag_rendering_finish(rendering, &film);
+    int width, height;
+    memcpy(out_pixels, ag_film_pixels(film, &width, &height), 3 * SIZE * SIZE * sizeof *out_pixels);
+    assert_int_equal(width * height, SIZE * SIZE);
+    ag_film_destroy(film);
+    ag_scene_destroy(loaded);
+    ag_context_destroy(c.context);
+}
+
+static void what_was_cancelled_can_go_on(void **state)
+{
+    (void)state;
+    static float whole[3 * SIZE * SIZE], pixels[3 * SIZE * SIZE];
+    static const ag_phase PHASES[] = {AG_PHASE_LOAD, AG_PHASE_PHOTONS, AG_PHASE_MAP, AG_PHASE_RENDER};
+    render_cancelled(AG_PHASE_COUNT, whole);
+    for (int i = 0; i < 4; i++) {
+        render_cancelled(PHASES[i], pixels);
+        assert_memory_equal(pixels, whole, sizeof whole);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {TEST_IN_FOLDER(contexts_work_side_by_side)};
+    const struct CMUnitTest tests[] = {TEST_IN_FOLDER(contexts_work_side_by_side),
+                                       cmocka_unit_test(what_was_cancelled_can_go_on)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

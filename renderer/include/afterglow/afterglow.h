@@ -42,9 +42,12 @@ AG_API ag_context_settings ag_default_context_settings(void);
 AG_API ag_status ag_context_create(const ag_context_settings *settings, ag_context **out_context);
 AG_API void ag_context_destroy(ag_context *context); /* after all that was made with it; NULL is fine */
 AG_API unsigned ag_context_thread_count(const ag_context *context);
-/* The work under way returns AG_CANCELLED, within 50 ms; so does all later work with this context. Safe in a signal
- * handler. */
+/* The work under way returns AG_CANCELLED, within 50 ms; so does all later work with this context, until
+ * ag_context_clear_cancel. Safe in a signal handler. */
 AG_API void ag_context_cancel(ag_context *context);
+/* Work may begin again after a cancellation, with the context and the scenes that are there; so may a rendering whose
+ * ag_rendering_continue was cancelled go on, to the same bits. Not while work is under way. */
+AG_API void ag_context_clear_cancel(ag_context *context);
 /* The ag_rendering_continue under way, else the next, returns AG_PAUSED, within 50 ms and with whole samples; it may be
  * called again. No other work is touched. Safe in a signal handler. */
 AG_API void ag_context_pause(ag_context *context);
