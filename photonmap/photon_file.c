@@ -5,6 +5,8 @@
 
 #include "descriptor.h"
 #include "file_system.h"
+#include "map_guard.h"
+#include "math/rng.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -12,7 +14,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/random.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
@@ -42,6 +46,7 @@ typedef struct file_header {
     uint32_t byte_order, layout;
     uint32_t header_bytes, block_bytes, node_bytes, reserved;
     uint64_t file_bytes;
+    uint64_t nonce; /* at random: no two files have the same */
     photon_file_key key;
     tree_record trees[TREE_COUNT]; /* BEARERS is empty where all photons are */
     uint64_t checks_at;            /* of the bearers' check bytes, from the file's beginning */
@@ -186,6 +191,11 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
         trees[BEARERS] = global->bearers;
     for (int i = 0; i < TREE_COUNT; i++)
         h.trees[i] = (tree_record){.count = trees[i].count, .depth = trees[i].depth};
+    if (getrandom(&h.nonce, sizeof h.nonce, GRND_NONBLOCK) != (ssize_t)sizeof h.nonce) {
+        struct timespec now;
+        clock_gettime(CLOCK_REALTIME, &now);
+        h.nonce = hash_mix64((uint64_t)now.tv_nsec ^ (uint64_t)now.tv_sec << 30 ^ (uint64_t)getpid() << 44);
+    }
     h.file_bytes = lay_out(h.trees, &h.checks_at);
     if (!hash_content(run, trees, &h.content))
         return ECANCELED;
@@ -341,6 +351,7 @@ static bool share(int descriptor, photon_file *file, char *message, size_t messa
         munmap(memory, file->size_bytes);
         return false;
     }
+    file->guard = map_guard_add(memory, file->size_bytes);
     file->memory = memory;
     file->descriptor = descriptor;
     file->is_shared = true;
@@ -405,6 +416,7 @@ static photon_file_result open_maps(const run_context *run, int descriptor, cons
                                     photon_file *file, photon_map maps[MAP_COUNT], char *message, size_t message_size)
 {
     file->size_bytes = (size_t)h->file_bytes;
+    file->nonce = h->nonce;
     if (!may_share || !share(descriptor, file, message, message_size)) {
         if (!may_share)
             snprintf(message, message_size, "it may not be written");
@@ -423,6 +435,10 @@ static photon_file_result open_maps(const run_context *run, int descriptor, cons
     hash128 content;
     if (!hash_content(run, trees, &content))
         return PHOTON_FILE_CANCELLED;
+    if (!photon_file_is_intact(file)) {
+        snprintf(message, message_size, "it was changed while it was opened");
+        return PHOTON_FILE_REFUSED;
+    }
     if (!hash128_is_equal(content, h->content)) {
         snprintf(message, message_size, "it is damaged: its photons do not have their checksum");
         return PHOTON_FILE_REFUSED;
@@ -456,7 +472,7 @@ photon_file_result photon_file_open(const run_context *run, const char *path, co
             close(descriptor);
         return PHOTON_FILE_FAILED;
     }
-    photon_file file = {.descriptor = -1};
+    photon_file file = {.descriptor = -1, .guard = -1};
     photon_map maps[MAP_COUNT];
     photon_file_result result = PHOTON_FILE_REFUSED;
     file_header h;
@@ -485,14 +501,27 @@ photon_file_result photon_file_open(const run_context *run, const char *path, co
     return PHOTON_FILE_OPEN;
 }
 
+bool photon_file_is_intact(const photon_file *file)
+{
+    struct stat status;
+    file_header h;
+    if (!file->is_shared)
+        return true;
+    return !map_guard_is_lost(file->guard) && fstat(file->descriptor, &status) == 0 &&
+           (uint64_t)status.st_size == file->size_bytes &&
+           pread(file->descriptor, &h, sizeof h, 0) == (ssize_t)sizeof h && h.nonce == file->nonce &&
+           hash128_is_equal(h.self, hash_of_header(&h)) && !map_guard_is_lost(file->guard);
+}
+
 void photon_file_close(photon_file *file)
 {
     if (file->is_shared) {
+        map_guard_remove(file->guard);
         munmap(file->memory, file->size_bytes);
         claim_owners_reset(&file->owners);
         close(file->descriptor); /* and with it our place is free */
     } else {
         free(file->memory);
     }
-    *file = (photon_file){.descriptor = -1};
+    *file = (photon_file){.descriptor = -1, .guard = -1};
 }

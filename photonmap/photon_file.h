@@ -38,6 +38,8 @@ typedef struct photon_file {
     size_t size_bytes;
     int descriptor; /* of the mapped file; holds our lock */
     bool is_shared; /* others see what is filled in here, and the file keeps it */
+    int guard;      /* map_guard.h */
+    uint64_t nonce; /* of the file that was opened */
     claim_owners owners;
     uint32_t damaged; /* irradiances that did not have their check byte when it was opened, and are computed again */
 } photon_file;
@@ -57,6 +59,11 @@ typedef enum photon_file_result {
 photon_file_result photon_file_open(const run_context *run, const char *path, const photon_file_key *key,
                                     photon_file *out_file, photon_map *out_global, photon_map *out_caustic,
                                     char *message, size_t message_size);
+/* Whether the file is still the one that was opened. Somebody may cut it short, or copy another one over it, while it
+ * is mapped: what was read since the last time this was true need not be the maps'. A copy in memory is always intact.
+ */
+bool photon_file_is_intact(const photon_file *file);
+
 /* After the maps, and when none of our claims is held. {0} is fine. */
 void photon_file_close(photon_file *file);
 

@@ -228,7 +228,7 @@ static ag_status keep(const map_request *r, photon_map *global, photon_map *caus
         photon_map_reset(global);
         photon_map_reset(caustic);
     } else {
-        *out = (opened_maps){.file = {.descriptor = -1}, .global = *global, .caustic = *caustic};
+        *out = (opened_maps){.file = {.descriptor = -1, .guard = -1}, .global = *global, .caustic = *caustic};
     }
     return status;
 }

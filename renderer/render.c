@@ -173,6 +173,54 @@ static ag_status create_film(ag_rendering *r)
     return AG_ERROR_ARGUMENT;
 }
 
+/* --- a photon map that others can reach --- */
+
+/* Notes the film, to go back to where the map's file turns out to have been changed. Errors: AG_ERROR_MEMORY. */
+static ag_status keep_film(ag_rendering *r)
+{
+    film_plane planes[FILM_PLANES_MAX];
+    int count = film_planes(r->film, planes);
+    size_t size = 0, at = 0;
+    for (int i = 0; i < count; i++)
+        size += planes[i].size;
+    if (!r->kept)
+        r->kept = malloc(size);
+    if (!r->kept)
+        return AG_ERROR_MEMORY;
+    for (int i = 0; i < count; i++, at += planes[i - 1].size)
+        memcpy(r->kept + at, planes[i].bytes, planes[i].size);
+    return AG_OK;
+}
+
+static void restore_film(ag_rendering *r)
+{
+    film_plane planes[FILM_PLANES_MAX];
+    int count = film_planes(r->film, planes);
+    size_t at = 0;
+    for (int i = 0; i < count; i++, at += planes[i - 1].size)
+        memcpy(planes[i].bytes, r->kept + at, planes[i].size);
+    film_resolve(r->film);
+}
+
+/* Between passes: what a pass has rendered counts when the map's file is still whole behind it. status: the pass's. */
+static ag_status check_map(ag_rendering *r, ag_status status)
+{
+    if (!r->maps.file.is_shared || (status != AG_OK && status != AG_PAUSED && status != AG_CANCELLED))
+        return status;
+    if (photon_file_is_intact(&r->maps.file)) {
+        ag_status kept = keep_film(r);
+        return kept == AG_OK ? status : kept;
+    }
+    if (r->kept)
+        restore_film(r);
+    log_message(
+        r->context->log, AG_LOG_ERROR,
+        "'%s': the photon map was cut short or overwritten while it was in use; what was rendered since the last "
+        "pass is dropped: trace the map anew, and leave its file alone (moving another one to its name is fine)",
+        r->map_name ? r->map_name : "");
+    return AG_ERROR_SYSTEM;
+}
+
 static ag_status prepare(ag_rendering *r)
 {
     ag_context *context = r->context;
@@ -206,6 +254,10 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
     context->rendered.photon_map_file = NULL; /* the caller's */
     if (status == AG_OK)
         status = prepare(r);
+    if (status == AG_OK && r->settings.photon_map_file)
+        r->map_name = strdup(r->settings.photon_map_file);
+    if (status == AG_OK)
+        status = check_map(r, AG_OK);   /* caches and guides have been made of it */
     r->settings.photon_map_file = NULL; /* the caller's, and done with */
     floating_point_leave(callers_arithmetic);
     if (status == AG_OK)
@@ -228,6 +280,7 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     film_resolve(r->film);
     if (status == AG_OK)
         status = debug_views_render(&r->t, &context->run, r->workers, r->film);
+    status = check_map(r, status);
     if (status == AG_OK)
         run_progress(&context->run, AG_PHASE_RENDER, (double)wanted / (double)r->settings.samples_per_pixel);
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
@@ -242,6 +295,13 @@ ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
 {
     if (!r || !path || r->settings.integrator != AG_INTEGRATOR_PHOTONMAP)
         return AG_ERROR_ARGUMENT;
+    if (!photon_file_is_intact(&r->maps.file)) {
+        log_message(r->context->log, AG_LOG_ERROR,
+                    "'%s': the photon map was cut short or overwritten: no photons of it "
+                    "are written",
+                    r->map_name ? r->map_name : "");
+        return AG_ERROR_SYSTEM;
+    }
     char message[1024] = "";
     ag_status status = photon_dump_write(&r->maps.global, &r->maps.caustic, path, message, sizeof message);
     if (message[0])
@@ -269,6 +329,8 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
         ag_film_destroy(r->film);
     eye_workers_destroy(r->workers, r->context->statistics.threads);
     maps_reset(&r->maps);
+    free(r->map_name);
+    free(r->kept);
     free(r);
 }
 

@@ -26,6 +26,8 @@ struct ag_rendering {
     uint64_t not_finite_before;
     uint64_t camera_rays, camera_rays_met; /* of all passes; the latter met a surface */
     double seconds;                        /* of all passes */
+    char *map_name;                        /* of the photon map's file, owned, or NULL */
+    unsigned char *kept;                   /* the film's planes as of the last pass that saw that file whole, or NULL */
 };
 
 #endif

@@ -303,6 +303,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
         p.deadline = o->begun + o->time_limit;
     ag_film *film = NULL;
     ag_noise noise = {.level = -1.0};
+    ag_status failed = AG_OK;
     *out_result = (passes_result){0};
     ag_status status = begin(&p, scene, settings);
     if (status == AG_OK) {
@@ -312,19 +313,28 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
         signals_set_timer(INFINITY);
         if (status == AG_PAUSED)
             status = AG_OK;
+        if (status == AG_ERROR_SYSTEM && ag_rendering_sample_counts(p.rendering).most > 0) {
+            failed = status; /* the photon map was lost: what the passes before have rendered is shown */
+            status = AG_OK;
+        }
         if (status == AG_OK && p.checkpoint && (out_result->is_partial || p.time_is_up))
             status = write_checkpoint(&p);
         out_result->samples = ag_rendering_sample_counts(p.rendering);
         noise = ag_rendering_noise(p.rendering);
     }
-    if (status == AG_OK && o->photons_file && !out_result->is_partial)
+    if (status == AG_OK && o->photons_file && !out_result->is_partial && failed == AG_OK)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
     ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
     bool has_picture = !o->photons_only && (!out_result->is_partial || out_result->samples.most > 0);
     if (status == AG_OK && settings->denoise && has_picture)
         status = ag_film_denoise(context, film);
     if (status == AG_OK && has_picture)
-        status = write_pictures(&p, film, !out_result->is_partial);
+        status = write_pictures(&p, film, !out_result->is_partial && failed == AG_OK);
+    if (status == AG_OK && failed != AG_OK) {
+        fprintf(stderr, "afterglow: error: the picture is not complete: it has %.4g of %d samples per pixel\n",
+                out_result->samples.mean, p.final);
+        status = failed;
+    }
     if (status == AG_OK && p.checkpoint && !out_result->is_partial && !p.time_is_up)
         unlink(p.checkpoint); /* it has served */
     if (status == AG_OK && p.time_is_up && o->verbosity >= 0)

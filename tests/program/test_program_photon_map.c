@@ -286,12 +286,62 @@ static void test_flipped_bits(void **state)
     assert_in_range(refused, FLIPS / 2, FLIPS - 10);
 }
 
+enum { CUT, OVERWRITTEN, CHANGES };
+
+/* What happens to the map while it is in use: nobody is ended by a signal, and no picture shows what is not there. */
+static void test_map_lost_while_rendering(void **state)
+{
+    (void)state;
+    const char *scene = PROGRAM_SCENES ROOM;
+    const program_setting usual = {0};
+    char path[160], other[160];
+    snprintf(path, sizeof path, "%s", in_folder("a.map"));
+    snprintf(other, sizeof other, "%s", in_folder("b.map"));
+    expect_end(RUN(QUICK, "--photon-map=b.map", "--seed=5", "-o", "b.exr", scene), 0, NULL);
+    expect_end(RUN(QUICK, "--spp=1", "-o", "one.exr", scene), 0, NULL);
+    for (int change = 0; change < CHANGES; change++) {
+        unlink(path);
+        unlink(in_folder("lost.exr"));
+        program_process process = program_start(
+            &usual, ARGUMENTS("--photons=4000", "--caustic-photons=500", "--gather-samples=4", "--size=24x24",
+                              "--nthreads=2", "--type=float", "--reproducible", "--progress=json", "--spp=20000",
+                              "--photon-map=a.map", "-o", "lost.exr", scene));
+        program_wait_for(&process, "\"phase\": \"render\", \"fraction\": 0.01");
+        char command[512];
+        if (change == CUT) {
+            assert_int_equal(truncate(path, 0), 0);
+        } else {
+            snprintf(command, sizeof command, "cat '%s' >'%s'", other, path);
+            assert_int_equal(system(command), 0);
+        }
+        program_run run = program_finish(&process);
+        expect_exit(&run, 3);
+        expect_said(&run, "'a.map': the photon map was cut short or overwritten");
+        expect_said(&run, "of 20000 samples per pixel");
+        program_run_reset(&run);
+        assert_int_equal(access(in_folder("lost.exr.afterglow-unfinished"), F_OK), 0);
+        picture p = picture_read(in_folder("lost.exr")), fresh = picture_read(in_folder("one.exr"));
+        double lost = picture_mean(&p, 0), all = picture_mean(&fresh, 0);
+        if (!(lost > 0.8 * all && lost < 1.25 * all)) /* it is the room, of a pass that saw the map */
+            fail_msg("%g instead of %g", lost, all);
+        picture_reset(&p);
+        picture_reset(&fresh);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_camera_move),  TEST_IN_FOLDER(test_dump),      TEST_IN_FOLDER(test_refusal),
-        TEST_IN_FOLDER(test_photons_only), TEST_IN_FOLDER(test_full_disk), TEST_IN_FOLDER(test_read_only),
-        TEST_IN_FOLDER(test_crowd),        TEST_IN_FOLDER(test_kills),     TEST_IN_FOLDER(test_flipped_bits),
+        TEST_IN_FOLDER(test_camera_move),
+        TEST_IN_FOLDER(test_dump),
+        TEST_IN_FOLDER(test_refusal),
+        TEST_IN_FOLDER(test_photons_only),
+        TEST_IN_FOLDER(test_full_disk),
+        TEST_IN_FOLDER(test_read_only),
+        TEST_IN_FOLDER(test_crowd),
+        TEST_IN_FOLDER(test_kills),
+        TEST_IN_FOLDER(test_map_lost_while_rendering),
+        TEST_IN_FOLDER(test_flipped_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

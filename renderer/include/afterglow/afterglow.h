@@ -233,7 +233,8 @@ AG_API ag_status ag_rendering_create(ag_context *context, const ag_scene *scene,
 /* Brings every pixel to so many samples, or to fewer where the settings' noise level is reached before; those that have
  * them already stay as they are. samples_per_pixel: [1, that of
  * the settings]. Errors: AG_ERROR_ARGUMENT; AG_CANCELLED, AG_PAUSED: the film is then as good as it is, each pixel
- * with the samples that it has had. */
+ * with the samples that it has had; AG_ERROR_SYSTEM: the photon map's file was cut short or overwritten meanwhile, and
+ * the film is that of the call before. */
 AG_API ag_status ag_rendering_continue(ag_rendering *rendering, int samples_per_pixel);
 /* How many samples pixels have had so far. */
 typedef struct ag_sample_counts {

@@ -1,0 +1,81 @@
+/* map_guard.c: see map_guard.h. In the handler the whole mapping is replaced by empty memory, so that the read that
+ * failed can be made again, and those that follow do not fail one by one.
+ * Threads: any; the handler runs on the thread that touched the memory. */
+#define _GNU_SOURCE
+#include "map_guard.h"
+
+#include "atomics.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <sys/mman.h>
+
+enum { GUARDS_MAX = 64 };
+enum { GUARD_FREE, GUARD_TAKEN, GUARD_WATCHES, GUARD_LOST };
+
+typedef struct guard {
+    atomic_u32 state; /* the handler acquires GUARD_WATCHES, which is released behind the other two */
+    void *memory;
+    size_t size_bytes;
+} guard;
+
+static guard guards[GUARDS_MAX];
+static struct sigaction handled_before;
+static pthread_once_t handler_once = PTHREAD_ONCE_INIT;
+
+static void on_bus_error(int number, siginfo_t *info, void *context)
+{
+    const char *at = info->si_addr;
+    for (int i = 0; i < GUARDS_MAX; i++) {
+        guard *g = &guards[i];
+        uint32_t state = load_acquire_u32(&g->state);
+        if (state != GUARD_WATCHES && state != GUARD_LOST)
+            continue;
+        const char *begin = g->memory;
+        if (at < begin || at >= begin + g->size_bytes)
+            continue;
+        store_release_u32(&g->state, GUARD_LOST);
+        if (mmap(g->memory, g->size_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) !=
+            MAP_FAILED)
+            return;
+    }
+    /* not ours: as if this handler were not there */
+    if (handled_before.sa_flags & SA_SIGINFO) {
+        handled_before.sa_sigaction(number, info, context);
+    } else if (handled_before.sa_handler != SIG_DFL && handled_before.sa_handler != SIG_IGN) {
+        handled_before.sa_handler(number);
+    } else {
+        signal(number, SIG_DFL);
+        raise(number);
+    }
+}
+
+static void install_handler(void)
+{
+    struct sigaction action = {.sa_sigaction = on_bus_error, .sa_flags = SA_SIGINFO | SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGBUS, &action, &handled_before);
+}
+
+int map_guard_add(void *memory, size_t size_bytes)
+{
+    pthread_once(&handler_once, install_handler);
+    for (int i = 0; i < GUARDS_MAX; i++) {
+        uint32_t expected = GUARD_FREE;
+        if (!cas_acquire_u32(&guards[i].state, &expected, GUARD_TAKEN))
+            continue;
+        guards[i].memory = memory;
+        guards[i].size_bytes = size_bytes;
+        store_release_u32(&guards[i].state, GUARD_WATCHES);
+        return i;
+    }
+    return -1;
+}
+
+void map_guard_remove(int number)
+{
+    if (number >= 0)
+        store_release_u32(&guards[number].state, GUARD_FREE);
+}
+
+bool map_guard_is_lost(int number) { return number >= 0 && load_acquire_u32(&guards[number].state) == GUARD_LOST; }
