@@ -229,6 +229,20 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
     return status;
 }
 
+/* The noise that is left, against what was asked for, and what would help most. */
+static void tell_noise(const ag_noise *noise, const ag_sample_counts *samples, const ag_render_settings *settings)
+{
+    if (noise->level < 0.0)
+        return;
+    fprintf(stderr, "afterglow: noise: %.2g, where white is 1; %.4g samples per pixel", noise->level, samples->mean);
+    if (settings->noise_level > 0.0f)
+        fprintf(stderr, ", from %d to %d, for --noise %g", samples->least, samples->most,
+                (double)settings->noise_level);
+    if (noise->hint[0])
+        fprintf(stderr, "\nafterglow: noise: %s", noise->hint);
+    fputc('\n', stderr);
+}
+
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result)
 {
@@ -236,6 +250,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     if (o->time_limit > 0.0)
         p.deadline = o->begun + o->time_limit;
     ag_film *film = NULL;
+    ag_noise noise = {.level = -1.0};
     *out_result = (passes_result){0};
     ag_status status = begin(&p, scene, settings);
     if (status == AG_OK) {
@@ -248,6 +263,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
         if (status == AG_OK && p.checkpoint && (out_result->is_partial || p.time_is_up))
             status = write_checkpoint(&p);
         out_result->samples = ag_rendering_sample_counts(p.rendering);
+        noise = ag_rendering_noise(p.rendering);
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
@@ -262,9 +278,8 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     if (status == AG_OK && p.time_is_up && o->verbosity >= 0)
         fprintf(stderr, "afterglow: time limit: the picture has %.4g of %d samples per pixel\n",
                 out_result->samples.mean, p.final);
-    if (status == AG_OK && has_picture && settings->noise_level > 0.0f && o->verbosity >= 0)
-        fprintf(stderr, "afterglow: noise: %.4g samples per pixel, from %d to %d\n", out_result->samples.mean,
-                out_result->samples.least, out_result->samples.most);
+    if (status == AG_OK && has_picture && o->verbosity >= (settings->noise_level > 0.0f ? 0 : 1))
+        tell_noise(&noise, &out_result->samples, settings);
     signals_end_rendering();
     ag_film_destroy(film);
     free(p.checkpoint);

@@ -242,6 +242,26 @@ typedef struct ag_sample_counts {
     double mean;
 } ag_sample_counts;
 AG_API ag_sample_counts ag_rendering_sample_counts(const ag_rendering *rendering);
+/* Where a picture's noise comes from: the light that the camera's rays bring, by its way. */
+typedef enum ag_noise_source {
+    AG_NOISE_EMISSION, /* straight from lamps and sky to the eye: their edges */
+    AG_NOISE_LAMPS,    /* direct light of all lights but the infinite ones */
+    AG_NOISE_SKY,      /* direct light of infinite ones */
+    AG_NOISE_INDIRECT,
+    AG_NOISE_CAUSTIC,
+    AG_NOISE_SPECULAR /* by way of mirrors, glass and glossy surfaces */
+} ag_noise_source;
+#define AG_NOISE_SOURCE_COUNT 6
+
+typedef struct ag_noise {
+    double level; /* the standard error of what is shown (see noise_level), root mean square over the picture; below 0:
+                     not known, as pixels have had fewer than two samples */
+    double share[AG_NOISE_SOURCE_COUNT]; /* of the variance; they sum to 1, or are all 0 where there is no noise */
+    char hint[256];                      /* what makes most of it, and what would help most, a line; may be empty */
+} ag_noise;
+/* How noisy the picture is by now; from up to 16,384 of its pixels, spread evenly. The caustics' share counts the grain
+ * of their photons too, which more samples do not lessen. */
+AG_API ag_noise ag_rendering_noise(const ag_rendering *rendering);
 /* All that samples have brought so far, as a file; written atomically. Another process that makes the same rendering
  * reads it, and goes on to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
 AG_API ag_status ag_rendering_write_checkpoint(const ag_rendering *rendering, const char *path);
