@@ -302,6 +302,31 @@ static void test_lamp_seen(void **state)
     }
 }
 
+/* A sun behind glass that path tracing cannot find is told of. */
+static void test_warning(void **state)
+{
+    (void)state;
+    static const char *const WARNING = "suns, points and spots";
+    const struct {
+        const char *glass, *integrator, *mode;
+        bool is_told;
+    } CASES[] = {{THIN, PATH, DIRECT, false},
+                 {THIN, PATH, TRACED, true},
+                 {THIN, MAP, TRACED, false},
+                 {"Material \"dielectric\"\n", PATH, DIRECT, true},
+                 {"Material \"dielectric\" \"float roughness\" 0.5\n", PATH, DIRECT, false},
+                 {"Material \"diffuse\"\n", PATH, TRACED, false}};
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char above[1024];
+        snprintf(above, sizeof above, SUN "%s" SQUARE("50", "1"), CASES[i].glass);
+        program_run run = RUN("--size=4x4", "--spp=1", "--photons=100", "--caustic-photons=100", CASES[i].integrator,
+                              CASES[i].mode, "-o", "w.exr", scene_of(DIFFUSE_FLOOR, above));
+        expect_exit(&run, 0);
+        assert_int_equal(strstr(run.err, WARNING) != NULL, CASES[i].is_told);
+        program_run_reset(&run);
+    }
+}
+
 /* --- a room --- */
 
 typedef struct estimate {
@@ -393,6 +418,7 @@ int main(void)
         TEST_IN_FOLDER(test_between_panes),
         TEST_IN_FOLDER(test_global_map_keeps_it),
         TEST_IN_FOLDER(test_lamp_seen),
+        TEST_IN_FOLDER(test_warning),
         TEST_IN_FOLDER(test_room),
         TEST_IN_FOLDER(test_same_bits),
     };
