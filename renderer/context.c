@@ -12,6 +12,23 @@
 
 ag_context_settings ag_default_context_settings(void) { return (ag_context_settings){0}; }
 
+static bool copy_confinement(const ag_context_settings *settings, ag_context *c)
+{
+    c->is_confined = settings->is_confined;
+    c->confined_to = calloc(settings->confined_count + 1, sizeof *c->confined_to);
+    for (; c->confined_to && c->confined_count < settings->confined_count; c->confined_count++)
+        if (!(c->confined_to[c->confined_count] = strdup(settings->confined_to[c->confined_count])))
+            return false;
+    return c->confined_to != NULL;
+}
+
+static void free_confinement(ag_context *c)
+{
+    for (size_t i = 0; i < c->confined_count; i++)
+        free(c->confined_to[i]);
+    free(c->confined_to);
+}
+
 ag_status ag_context_create(const ag_context_settings *settings, ag_context **out_context)
 {
     static const char *const known_isas[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
@@ -31,8 +48,8 @@ ag_status ag_context_create(const ag_context_settings *settings, ag_context **ou
     snprintf(c->isa, sizeof c->isa, "%s", isa);
     c->color_config_path = settings->color_config ? strdup(settings->color_config) : NULL;
     c->working_space_name = settings->working_space ? strdup(settings->working_space) : NULL;
-    const bool is_copied =
-        !settings->color_config == !c->color_config_path && !settings->working_space == !c->working_space_name;
+    const bool is_copied = copy_confinement(settings, c) && !settings->color_config == !c->color_config_path &&
+                           !settings->working_space == !c->working_space_name;
     ag_status status = AG_ERROR_MEMORY;
     c->log = log_create(settings->log, settings->user);
     if (c->log && is_copied)
@@ -41,6 +58,7 @@ ag_status ag_context_create(const ag_context_settings *settings, ag_context **ou
         log_destroy(c->log);
         free(c->color_config_path);
         free(c->working_space_name);
+        free_confinement(c);
         free(c);
         return status;
     }
@@ -60,6 +78,7 @@ void ag_context_destroy(ag_context *context)
     color_config_destroy(context->color_config);
     free(context->color_config_path);
     free(context->working_space_name);
+    free_confinement(context);
     free(context->color_summary);
     free(context);
 }

@@ -21,7 +21,10 @@ struct ag_context {
     char *color_config_path, *working_space_name; /* as in ag_context_settings */
     color_config *color_config;                   /* NULL until it is asked for */
     working_space working_space;                  /* of that */
-    char *color_summary;                          /* of ag_color_summary, or NULL */
+    bool is_confined;
+    char **confined_to; /* owned */
+    size_t confined_count;
+    char *color_summary; /* of ag_color_summary, or NULL */
 };
 
 struct ag_scene {

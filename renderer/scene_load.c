@@ -40,10 +40,20 @@ static ag_status load(ag_context *context, const char *path, const definitions *
     s->space = context->working_space;
     s->color_config = colors;
     s->definitions = d;
+    const char *wrong;
+    if (context->is_confined && !input_files_confine(inputs, path, (const char *const *)(void *)context->confined_to,
+                                                     context->confined_count, &wrong)) {
+        if (!wrong)
+            return AG_ERROR_MEMORY;
+        log_message(context->log, AG_LOG_ERROR, "'%s': scenes cannot be confined to it: there is no such folder",
+                    wrong);
+        return AG_ERROR_ARGUMENT;
+    }
     phase_begin begin = context_begin_phase();
     context->run.inputs = inputs;
     status = scene_file_load(&context->run, path, s);
     context->run.inputs = NULL;
+    inputs->scene = NULL; /* it was borrowed */
     if (status != AG_OK)
         return status;
     s->definitions = NULL; /* it was borrowed */

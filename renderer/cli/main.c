@@ -36,7 +36,8 @@ static int exit_code(ag_status status)
 /* Where nothing is asked for: the scene's own file name, else the scene file's with .exr, in the working directory. */
 static void name_default_output(const options *o, const ag_scene *scene, int frame, char *out_name, size_t size)
 {
-    const char *own = ag_scene_film_file_name(scene);
+    /* where a stranger's scene is written, the stranger does not say */
+    const char *own = o->context.is_confined ? NULL : ag_scene_film_file_name(scene);
     if (own && frame < 0) {
         snprintf(out_name, size, "%s", own);
         return;

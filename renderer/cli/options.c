@@ -54,6 +54,8 @@ enum {
     OPT_PREVIEW,
     OPT_FRAMES,
     OPT_NO_CLOBBER,
+    OPT_CONFINE,
+    OPT_CONFINE_TO,
     OPT_TILE,
     OPT_NOISE,
     OPT_MIN_SPP,
@@ -140,6 +142,9 @@ static const option_line LINES[] = {
     {OPT_FRAMES, "frames", "LIST",
      "render frames, as 1-100, 1-100x2 or 1,5,9; %d, %04d and #### in names of\nfiles, SCENE too, and in -D's values are "
      "the frame's number"},
+    {OPT_CONFINE, "confine", NULL,
+     "for scenes of strangers: read files below the scene's folder alone, and\nwrite only what the command line names"},
+    {OPT_CONFINE_TO, "confine-to", "FOLDER", "the same, and files below FOLDER may be read, too; may be repeated"},
     {OPT_NO_CLOBBER, "no-clobber", NULL, "skip pictures that are there already, and complete"},
     {OPT_CHECKPOINT, "checkpoint", "SECONDS",
      "write down what there is so often, and at a signal, to OUTFILE.afterglow-checkpoint"},
@@ -286,6 +291,12 @@ static bool take_option(int code, const char *value, options *o)
         frames_reset(&o->frames);
         is_valid = frames_parse(value, &o->frames);
         break;
+    case OPT_CONFINE: o->context.is_confined = true; break;
+    case OPT_CONFINE_TO:
+        o->context.is_confined = true;
+        o->confined_to[o->context.confined_count++] = value;
+        o->context.confined_to = o->confined_to;
+        break;
     case OPT_NO_CLOBBER: o->no_clobber = true; break;
     case OPT_TILE: is_valid = parse_tile(value, &o->tile_index, &o->tile_count); break;
     case OPT_RESUME: o->resume = true; break;
@@ -419,8 +430,9 @@ options_result options_parse(int argc, char **argv, options *out_options)
 
     options o = {.context = ag_default_context_settings(), .output = ag_default_output_settings()};
     o.outfiles = calloc((size_t)argc + 1, sizeof *o.outfiles);
+    o.confined_to = calloc((size_t)argc + 1, sizeof *o.confined_to);
     o.command_line = join_arguments(argc, argv); /* before getopt moves them */
-    if (!o.outfiles || !o.command_line) {
+    if (!o.outfiles || !o.confined_to || !o.command_line) {
         options_reset(&o);
         return OPTIONS_EXIT_USAGE;
     }
@@ -479,6 +491,7 @@ void options_reset(options *o)
         options_free_definition(&o->definitions[i]);
     free(o->definitions);
     free(o->outfiles);
+    free((void *)o->confined_to);
     frames_reset(&o->frames);
     free(o->command_line);
     *o = (options){0};

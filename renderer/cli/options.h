@@ -22,7 +22,8 @@ typedef struct options {
     const char *scene;
     const char **outfiles; /* owned array, the strings are argv's */
     int outfile_count;
-    char *command_line; /* owned */
+    const char **confined_to; /* owned array, likewise */
+    char *command_line;       /* owned */
     const char *stats, *photons_file;
     bool photons_only;         /* no picture */
     bool lists_displays;       /* there is no scene then */

@@ -1,12 +1,13 @@
 /* input_file.c: see input_file.h.
  * Threads: see input_file.h. */
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE
 #include "text/input_file.h"
 
 #include "descriptor.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,9 @@
 
 void input_files_reset(input_files *files)
 {
+    for (size_t i = 0; i < files->root_count; i++)
+        free(files->roots[i]);
+    free(files->roots);
     free(files->read);
     *files = (input_files){0};
 }
@@ -25,6 +29,82 @@ bool input_files_has(const input_files *files, uint64_t device, uint64_t inode)
         if (files->read[i].inode == inode && files->read[i].device == device)
             return true;
     return false;
+}
+
+/* --- confined scenes --- */
+
+/* The folder of a path, without links; NULL with errno. To be freed. */
+static char *resolve_folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    char *resolved = folder ? realpath(folder, NULL) : NULL;
+    int error = errno;
+    free(folder);
+    errno = error;
+    return resolved;
+}
+
+bool input_files_confine(input_files *files, const char *scene, const char *const *folders, size_t count,
+                         const char **out_wrong)
+{
+    *out_wrong = NULL;
+    files->is_confined = true;
+    files->scene = scene;
+    files->roots = calloc(count + 1, sizeof *files->roots);
+    if (!files->roots)
+        return false;
+    for (size_t i = 0; i <= count; i++) {
+        bool is_scenes = i == count;
+        char *root = is_scenes ? resolve_folder_of(strcmp(scene, "-") == 0 ? "./" : scene) : realpath(folders[i], NULL);
+        if (!root && is_scenes)
+            continue; /* it cannot be read either, which is said then */
+        if (!root) {
+            *out_wrong = folders[i];
+            return false;
+        }
+        files->roots[files->root_count++] = root;
+    }
+    return true;
+}
+
+/* path: without links. */
+static bool is_below_root(const input_files *files, const char *path)
+{
+    for (size_t i = 0; i < files->root_count; i++) {
+        size_t length = strlen(files->roots[i]);
+        if (length == 1 ||
+            (strncmp(path, files->roots[i], length) == 0 && (path[length] == '/' || path[length] == '\0')))
+            return true;
+    }
+    return false;
+}
+
+/* Of what is not there, by its folder: so that nothing is told of what lies elsewhere. */
+static bool is_allowed(const input_files *files, const char *path)
+{
+    if (!files || !files->is_confined || strcmp(path, files->scene) == 0)
+        return true;
+    char *resolved = realpath(path, NULL);
+    if (!resolved)
+        resolved = resolve_folder_of(path);
+    bool is_below = resolved && is_below_root(files, resolved);
+    free(resolved);
+    return is_below;
+}
+
+/* What was opened need not be what was asked after, where somebody changes links meanwhile. */
+static bool is_opened_allowed(const input_files *files, const char *path, int descriptor)
+{
+    char link[64], target[PATH_MAX];
+    if (!files || !files->is_confined || strcmp(path, files->scene) == 0)
+        return true;
+    snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
+    ssize_t length = readlink(link, target, sizeof target - 1);
+    if (length <= 0)
+        return false;
+    target[length] = '\0';
+    return is_below_root(files, target);
 }
 
 static bool note(input_files *files, const struct stat *status)
@@ -65,6 +145,12 @@ static bool is_fit(const run_context *run, int descriptor, char *error, size_t e
 
 int input_file_open(const run_context *run, const char *path, char *error, size_t error_size)
 {
+    static const char OUTSIDE[] = "a confined scene may not read it: it lies outside of the scene's folder";
+    const input_files *files = run ? run->inputs : NULL;
+    if (!is_allowed(files, path)) {
+        snprintf(error, error_size, "%s", OUTSIDE);
+        return -1;
+    }
     /* O_NONBLOCK: a FIFO would wait for its writer; it means nothing for regular files */
     int descriptor = descriptor_beyond_standard(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (descriptor < 0) {
@@ -75,7 +161,9 @@ int input_file_open(const run_context *run, const char *path, char *error, size_
         snprintf(error, error_size, "%s", is_odd ? "it is not a regular file" : strerror(reason));
         return -1;
     }
-    if (is_fit(run, descriptor, error, error_size))
+    if (!is_opened_allowed(files, path, descriptor))
+        snprintf(error, error_size, "%s", OUTSIDE);
+    else if (is_fit(run, descriptor, error, error_size))
         return descriptor;
     close(descriptor);
     return -1;

@@ -15,14 +15,25 @@ typedef struct input_files {
         uint64_t device, inode;
     } * read; /* owned; a file may be there more than once */
     size_t count, capacity;
+    /* Of a scene that is not trusted: */
+    bool is_confined;
+    const char *scene; /* its path, which may be read wherever it lies; borrowed */
+    char **roots;      /* [root_count], owned: the folders below which files may be read, without links */
+    size_t root_count;
 } input_files;
 
 void input_files_reset(input_files *files);
+
+/* From here on files are read below the scene's own folder, and below those named, alone. scene: borrowed; "-": the
+ * working folder is its own. False: memory is short, or a folder is not there; *out_wrong is then that one, or NULL. */
+bool input_files_confine(input_files *files, const char *scene, const char *const *folders, size_t count,
+                         const char **out_wrong);
 bool input_files_has(const input_files *files, uint64_t device, uint64_t inode);
 
 /* A descriptor to read from, above the standard ones. run may be NULL; where it has input_files, the file is noted
- * there. Where it cannot be opened or is no regular file (a FIFO or a device could be waited for, or read, without end)
- * -1 is returned and error, of error_size bytes, says why, without the path. */
+ * there. Where it cannot be opened, is no regular file (a FIFO or a device could be waited for, or read, without end)
+ * or lies where a confined scene may not read, whether there is such a file or not, -1 is returned and error, of
+ * error_size bytes, says why, without the path. */
 int input_file_open(const run_context *run, const char *path, char *error, size_t error_size);
 
 /* Whether a file may be read that a library opens by its name; notes it as input_file_open does. */

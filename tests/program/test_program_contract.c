@@ -112,6 +112,8 @@ static void test_help_and_version(void **state)
                                           "--cropwindow",
                                           "--integrator",
                                           "--cache",
+                                          "--confine",
+                                          "--confine-to",
                                           "--only",
                                           "--photons",
                                           "--caustic-photons",

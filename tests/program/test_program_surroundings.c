@@ -12,6 +12,8 @@
     "--photons=2000", "--caustic-photons=300", "--spp=1", "--gather-samples=4", "--size=16x12", "--nthreads=2",        \
         "--type=float", "--reproducible"
 
+static const program_setting USUAL = {0};
+
 /* The program run by a shell in the folder of the test; gives its exit code. */
 static int run_in_shell(const char *options_and_redirections)
 {
@@ -83,11 +85,10 @@ static bool has_samples(const program_process *process)
 }
 
 /* Ends a render of minutes as soon as there is something to show. */
-static program_run interrupt(const char *name)
+static program_run interrupt(const program_setting *setting, const char *name)
 {
-    const program_setting usual = {0};
     program_process process = program_start(
-        &usual, ARGUMENTS("--progress=json", "--integrator=path", "--spp=100000", "--size=24x24", "-o", name, BOX));
+        setting, ARGUMENTS("--progress=json", "--integrator=path", "--spp=100000", "--size=24x24", "-o", name, BOX));
     while (!has_samples(&process)) {
         assert_int_equal(kill(process.id, 0), 0);
         program_pause();
@@ -103,7 +104,7 @@ static void test_mark_of_long_name(void **state)
     char name[256], path[512];
     memset(name, 'x', 255);
     memcpy(name + 251, ".exr", 5);
-    expect_end(interrupt(name), 128 + SIGTERM, "samples per pixel");
+    expect_end(interrupt(&USUAL, name), 128 + SIGTERM, "samples per pixel");
     snprintf(path, sizeof path, "%s/%s", folder, name);
     assert_int_equal(access(path, F_OK), 0);
     assert_int_equal(entry_count(), 2);
@@ -121,7 +122,7 @@ static void test_mark_that_cannot_be_made(void **state)
     (void)state;
     assert_int_equal(mkdir(in_folder("a.exr.afterglow-unfinished"), 0755), 0);
     write_text("a.exr", "what was there");
-    expect_end(interrupt("a.exr"), 3, "a.exr.afterglow-unfinished");
+    expect_end(interrupt(&USUAL, "a.exr"), 3, "a.exr.afterglow-unfinished");
     expect_text(in_folder("a.exr"), "what was there");
 }
 
@@ -375,14 +376,8 @@ static void test_small_stack(void **state)
 static void test_signal_on_small_stack(void **state)
 {
     (void)state;
-    char command[1024];
-    snprintf(command, sizeof command,
-             "cd '%s' && ulimit -s 64 && { '%s' -q --integrator=path --spp=100000 --size=24x24 -o a.exr " BOX
-             " & child=$!; sleep 1; kill -TERM $child; wait $child; }",
-             folder, program_path());
-    int how = system(command);
-    assert_true(WIFEXITED(how));
-    assert_int_equal(WEXITSTATUS(how), 128 + SIGTERM);
+    const program_setting small = {.stack_limit = 64 << 10};
+    expect_end(interrupt(&small, "a.exr"), 128 + SIGTERM, "samples per pixel");
     expect_listing("a.exr a.exr.afterglow-unfinished");
 }
 

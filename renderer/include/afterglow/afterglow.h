@@ -32,9 +32,14 @@ typedef struct ag_context_settings {
     const char *working_space; /* colour space of the config that light is carried in, by name, alias or role; NULL: its
                                   role rendering, else scene_linear (linear Rec. 709 in the one compiled in). The
                                   scene's colours, spectra and pictures are converted to it as they are read */
-    ag_log_fn *log;            /* NULL: messages are dropped */
-    ag_progress_fn *progress;  /* or NULL */
-    void *user;                /* handed to both */
+    bool is_confined; /* scenes are not trusted: of their files only those are read that lie below the scene's own
+                         folder, or below those of confined_to; of formats that assimp reads, where the kernel
+                         (Landlock) holds its process there, else none. Default false */
+    const char *const *confined_to; /* [confined_count], or NULL */
+    size_t confined_count;
+    ag_log_fn *log;           /* NULL: messages are dropped */
+    ag_progress_fn *progress; /* or NULL */
+    void *user;               /* handed to both */
 } ag_context_settings;
 
 AG_API ag_context_settings ag_default_context_settings(void);

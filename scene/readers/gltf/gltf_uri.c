@@ -83,7 +83,7 @@ char *gltf_uri_to_path(const gltf_reader *r, const char *uri, const char **out_w
 {
     *out_wrong = NULL;
     if (has_scheme(uri) || !uri[0]) {
-        *out_wrong = uri[0] ? "it does not name a file below the scene's own folder" : "it is empty";
+        *out_wrong = uri[0] ? "it has a scheme: a file's path is expected, from the scene's folder on" : "it is empty";
         return NULL;
     }
     size_t length = uri[0] == '/' ? 0 : strlen(r->directory);

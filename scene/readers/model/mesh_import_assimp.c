@@ -5,6 +5,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "model/mesh_import_assimp.h"
 
+#include "model/import_confinement.h"
 #include "model/import_model.h"
 #include "model/import_process.h"
 #include "model/import_scene.h"
@@ -372,9 +373,23 @@ static void write_scene(writer *w, const char *path)
     write_head(w, IMPORT_RECORD_END, 0);
 }
 
+typedef struct import_job {
+    const char *path;
+    const input_files *inputs; /* or NULL */
+} import_job;
+
 static bool import_in_process(void *user, FILE *answer)
 {
-    const char *path = user;
+    const import_job *job = user;
+    const char *path = job->path;
+    if (job->inputs && job->inputs->is_confined &&
+        !import_confine_process(job->inputs->roots, job->inputs->root_count)) {
+        writer refusal = {.out = answer, .is_sound = true};
+        write_text(
+            &refusal, IMPORT_RECORD_ERROR,
+            "a confined scene of this format cannot be read: the kernel has no Landlock to hold assimp in its folder");
+        return refusal.is_sound;
+    }
     writer w = {.out = answer, .is_sound = true};
     w.scene = aiImportFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate);
     if (w.scene && w.scene->mRootNode) {
@@ -422,8 +437,8 @@ ag_status assimp_load_file(run_context *run, const char *path, scene *out_scene)
     if (status)
         return status;
     run_progress(run, AG_PHASE_LOAD, 0.0);
-    status = import_process_run(run, import_in_process, (void *)(uintptr_t)path, memory_bytes, &answer, message,
-                                sizeof message);
+    import_job job = {path, run->inputs};
+    status = import_process_run(run, import_in_process, &job, memory_bytes, &answer, message, sizeof message);
     if (status && status != AG_CANCELLED && message[0] != '\0')
         refuse(run, path, "assimp cannot read the file", message);
     if (!status)
