@@ -77,6 +77,12 @@ AG_API ag_status ag_scene_load_with(ag_context *context, const char *path, const
                                     size_t definition_count, ag_scene **out_scene);
 AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
 
+/* Whether a path names one of the files that the scene was read from: its own, those that it includes, meshes,
+ * pictures; by device and inode, so that no other spelling or link hides it. To be asked before a picture is written
+ * there. What a model of a format that assimp reads brings beside the model itself is not among them, but for pictures.
+ */
+AG_API bool ag_scene_was_read_from(const ag_scene *scene, const char *path);
+
 /* The Film directive's "filename", NULL where there is none. Lives as long as the scene. */
 AG_API const char *ag_scene_film_file_name(const ag_scene *scene);
 
@@ -332,6 +338,10 @@ AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *
  * .tif, .jpg. The file appears complete or not at all. settings NULL: the defaults. */
 AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                const char *path);
+
+/* From now on no context waits for the reader of a FIFO, or of standard output, that it writes to: such a write fails
+ * where the reader is not ready. For the handler of a signal that is to end the process in order: safe in it. */
+AG_API void ag_end_waits(void);
 
 /* Removes the temporary files of writes under way, in any context. For the handler of a signal that ends the process at
  * once: safe in it. */
