@@ -113,6 +113,8 @@ static ag_status settle_settings(ag_context *context, const scene *s, const ag_r
         int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples;
         out_settings->gather_samples = rays > 0 ? rays : 1;
     }
+    if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
+        out_settings->photon_aim = out_settings->photon_map_file ? 0.0f : AG_DEFAULT_PHOTON_AIM;
     if (s->has_camera)
         return render_settings_check(context, out_settings);
     log_message(context->log, AG_LOG_ERROR, "the scene has no Camera");

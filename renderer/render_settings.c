@@ -20,6 +20,7 @@ static const ag_render_settings DEFAULTS = {
     .nearest = 50,
     .irradiance_fraction = 1.0f,
     .gather_guiding = AG_DEFAULT_GATHER_GUIDING,
+    .photon_aim = AG_PHOTON_AIM_AUTOMATIC,
 };
 
 /* An integer parameter within a range. */
@@ -336,6 +337,8 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "the fraction of photons that bear irradiance must be above 0, and 1 at most";
     else if (!(s->gather_guiding >= 0.0f) || s->gather_guiding > 1.0f)
         wrong = "the guiding of gather rays must be from 0 to 1";
+    else if (!(s->photon_aim >= 0.0f) || s->photon_aim > AG_DEFAULT_PHOTON_AIM)
+        wrong = "the aim of photons must be from 0 to 0.8";
     if (!wrong)
         return AG_OK;
     log_message(context->log, AG_LOG_ERROR, "%s", wrong);

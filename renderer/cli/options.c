@@ -25,6 +25,7 @@ enum {
     OPT_RADIUS,
     OPT_IRRADIANCE_FRACTION,
     OPT_GATHER_GUIDING,
+    OPT_PHOTON_AIM,
     OPT_GATHER,
     OPT_MAX_DEPTH,
     OPT_TYPE,
@@ -103,6 +104,9 @@ static const option_line LINES[] = {
     {OPT_GATHER, "gather-samples", "N", "gather rays for each camera sample (default: 256 a pixel in all)"},
     {OPT_GATHER_GUIDING, "gather-guiding", "F",
      "how much photons decide where gather rays go, from 0 (not at all) to 1\n(default 0.5); the rest is the cosine"},
+    {OPT_PHOTON_AIM, "photon-aim", "F",
+     "share of the photon paths that begin where they bring light to where the\npicture asks for it, from 0 to 0.8 "
+     "(default 0.8; of a map that is kept 0)"},
     {OPT_MAX_DEPTH, "max-depth", "N", "scatterings between lamp and eye at most, up to 100 (default: roulette)"},
     {OPT_CLAMP_DIRECT, "clamp-direct", "V", "no sample gets more than V of direct light; 0 (default): unbounded"},
     {OPT_CLAMP_INDIRECT, "clamp-indirect", "V", "the same of indirect light"},
@@ -251,6 +255,9 @@ static bool take_option(int code, const char *value, options *o)
         is_valid = o->has_irradiance_fraction = parse_fraction(value, &r->irradiance_fraction);
         break;
     case OPT_GATHER_GUIDING: is_valid = o->has_gather_guiding = parse_share(value, &r->gather_guiding); break;
+    case OPT_PHOTON_AIM:
+        is_valid = o->has_photon_aim = parse_share(value, &r->photon_aim) && r->photon_aim <= AG_DEFAULT_PHOTON_AIM;
+        break;
     case OPT_AOV: {
         uint32_t layers = 0;
         is_valid = ag_layers_parse(value, &layers) == AG_OK;
@@ -533,6 +540,8 @@ bool options_override(const options *o, const ag_scene *scene, ag_render_setting
         settings->samples_per_pixel = AG_DEFAULT_SAMPLES_MOST;
     if (o->has_gather_guiding)
         settings->gather_guiding = r->gather_guiding;
+    if (o->has_photon_aim)
+        settings->photon_aim = r->photon_aim;
     if (o->has_gather_samples)
         settings->gather_samples = r->gather_samples;
     return o->tile_count == 0 || take_tile(o, settings);

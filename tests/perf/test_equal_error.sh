@@ -71,12 +71,12 @@ expect_error() { # TEXT ARGUMENTS...
     ((status == 1)) || fail "$* ended with $status"
     grep -qF "$text" "$folder/errors" || fail "'$text' is not in: $(<"$folder/errors")"
 }
+expect_error "of other sizes or references" --resume --width 16 "$box"
 expect_error "'broken' failed with 3" --rival "broken=exit 3 # {scene} {out} {seed} {spp}" "$lamp"
 expect_error "has neither {seconds} nor {spp}" --rival "idle=true {scene} {out} {seed}" "$lamp"
 expect_error "the command of 'idle' has no {out}" --rival "idle=true {scene} {seed} {spp}" "$lamp"
 expect_error "with a name that is not taken" --rival "path=$path --spp {spp} {scene}" "$lamp"
 expect_error "there is no scene 'nowhere'" nowhere
-expect_error "of other sizes or references" --resume --width 16 "$box"
 
 # the arithmetic of intervals and of samples, by hand
 PYTHONPATH=$root/perf/scripts python3 -B - <<'CHECK'
