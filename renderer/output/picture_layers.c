@@ -137,12 +137,12 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
     add_text(out, "afterglow/version", "%s", ag_version());
     add_text(out, "afterglow/isa", "%s", context->isa);
     add_text(out, "afterglow/integrator", "%s", is_path ? "path" : "photonmap");
-    add_text(out, "afterglow/paneLight", "%s", r->pane_light == AG_PANE_LIGHT_DIRECT ? "direct" : "traced");
     add_text(out, "afterglow/seed", "%lld", (long long)r->seed);
     add_text(out, "afterglow/samplesPerPixel", "%d", r->samples_per_pixel);
     if (!is_path) {
         add_text(out, "afterglow/gatherSamples", "%d", r->gather_samples);
         add_text(out, "afterglow/gatherGuiding", "%g", (double)r->gather_guiding);
+        add_text(out, "afterglow/photonAim", "%g", (double)r->photon_aim);
         add_text(out, "afterglow/irradianceFraction", "%g", (double)r->irradiance_fraction);
         add_text(out, "afterglow/photonsGlobal", "%llu", (unsigned long long)s->photons_stored_global);
         add_text(out, "afterglow/photonsCaustic", "%llu", (unsigned long long)s->photons_stored_caustic);
