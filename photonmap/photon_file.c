@@ -53,7 +53,7 @@ typedef struct file_header {
 
 enum { OWNERS_AT = PAGE };
 _Static_assert(sizeof(file_header) <= OWNERS_AT, "the header has a page of its own");
-_Static_assert(sizeof(photon_file_key) == 176 && sizeof(map_record) == 264 && sizeof(tree_record) == 24,
+_Static_assert(sizeof(photon_file_key) == 192 && sizeof(map_record) == 288 && sizeof(tree_record) == 24,
                "no gaps: they are compared and hashed");
 _Static_assert(offsetof(photon_block, slot) + PHOTON_BLOCK_LANES * sizeof(irradiance_slot) == sizeof(photon_block),
                "what never changes of a block is its first part");
@@ -229,6 +229,10 @@ static void describe_difference(const photon_file_key *is, const photon_file_key
     else if (memcmp(&is->irradiance_fraction, &wanted->irradiance_fraction, sizeof is->irradiance_fraction) != 0)
         snprintf(out, size, "irradiance is borne by a fraction of %g of its photons, not %g",
                  (double)is->irradiance_fraction, (double)wanted->irradiance_fraction);
+    else if (memcmp(&is->photon_aim, &wanted->photon_aim, sizeof is->photon_aim) != 0)
+        snprintf(out, size, "%g of its photons are aimed, not %g", (double)is->photon_aim, (double)wanted->photon_aim);
+    else if (!hash128_is_equal(is->aim_view, wanted->aim_view))
+        snprintf(out, size, "its photons are aimed at another view");
 }
 
 /* Whether it is a file of ours, whole by its length, and fits the key; where not, the message says why. */

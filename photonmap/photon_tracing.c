@@ -21,10 +21,10 @@ enum { FIRST_YIELD = 4, NO_YIELD_GROWTH = 8 };
 /* While more blocks than this are wanted, a round does half of them: what it found lies beside the photons until it is
  * merged, and is to be small against them. */
 enum { BLOCKS_WHOLE_ROUND = 512 };
-/* Tracing gives up after so many paths for each photon wanted, and at once when so many have stored none at all. */
-static const uint64_t PATHS_PER_PHOTON_MAX = 16, PATHS_WITHOUT_PHOTON_MAX = 1u << 20;
+/* Tracing gives up when so many paths have stored no photon at all. */
+static const uint64_t PATHS_WITHOUT_PHOTON_MAX = 1u << 20;
 /* Random streams, apart from those of the eye. */
-enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2 };
+enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2, STREAM_TRIALS = 2 /* added to those */ };
 
 typedef struct block {
     photon *photons;
@@ -40,8 +40,21 @@ typedef struct tracer {
     const light_target *target; /* of a caustic map: what its paths must meet first; else NULL */
     const photon_tracing_settings *settings;
     block *out;
-    uint32_t limit; /* photons to store at most; paths begun are finished for the books */
+    uint32_t limit;        /* photons to store at most; paths begun are finished for the books */
+    emission_trial *trial; /* NULL, or nothing is stored, and this is valued */
+    trial_counts *counts;  /* with it */
 } tracer;
+
+typedef struct photon_path {
+    scene_ray ray;
+    rgb flux;
+    rng random;
+    uint64_t key;
+    float weight;    /* of its beginning: by power over by the guide */
+    int scatterings; /* but for panes, where they are direct */
+    int arrivals;    /* at surfaces, panes too */
+    bool is_diffuse; /* has gone on from a place by its gathered lobes */
+} photon_path;
 
 static void book(double entry[3], rgb flux)
 {
@@ -65,9 +78,25 @@ static photon *place_for_photon(block *out)
     return &out->photons[out->count++];
 }
 
-static void store(tracer *t, const surface_hit *hit, float arrival_factor, vec3 direction, bool is_diffuse, rgb flux,
-                  uint64_t key)
+/* Where no light is asked for, photons whose paths were picked more often than by power are stored as rarely as if they
+ * had not been. false: this one is left out. */
+static bool keep(tracer *t, const photon_path *path, vec3 position, vec3 normal, uint64_t key, rgb *in_out_flux)
 {
+    const place_importance *asked = t->settings->asked;
+    if (!asked || !(path->weight < 1.0f) || place_importance_at(asked, position, normal) > 0.0f)
+        return true;
+    rgb flux = *in_out_flux;
+    bool is_kept = (float)(hash_combine(key, 0x6b656570u) >> 40) * 0x1p-24f < path->weight;
+    *in_out_flux = is_kept ? rgb_scale(flux, 1.0f / path->weight) : rgb_gray(0.0f);
+    book(t->out->books.thinned, rgb_sub(flux, *in_out_flux));
+    return is_kept;
+}
+
+static void store(tracer *t, const photon_path *path, const surface_hit *hit, float arrival_factor)
+{
+    vec3 direction = path->ray.direction;
+    uint64_t key = hash_combine(path->key, (uint64_t)path->arrivals);
+    rgb flux = path->flux;
     block *out = t->out;
     surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
     float alpha = 1.0f;
@@ -76,7 +105,18 @@ static void store(tracer *t, const surface_hit *hit, float arrival_factor, vec3 
     if (!shape_is_opaque(&t->s->shapes[hit->shape_index]))
         alpha = alpha_at_hit(t->s, hit);
     flux = rgb_scale(flux, alpha > 0.0f ? arrival_factor * at.area_ratio / alpha : 0.0f);
+    bool is_outside = !(vec3_dot(hit->geometric_normal, direction) > 0.0f);
+    vec3 normal = is_outside ? at.geometric_normal : vec3_negate(at.geometric_normal);
+    if (t->trial) {
+        float importance = place_importance_at(t->settings->asked, at.position, normal);
+        t->counts->photons++;
+        t->counts->asked += importance > 0.0f;
+        t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
+        return;
+    }
     book(out->books.arrived, flux);
+    if (!keep(t, path, at.position, normal, key, &flux))
+        return;
     if (out->count == t->limit) {
         book(out->books.cut, flux);
         return;
@@ -84,13 +124,12 @@ static void store(tracer *t, const surface_hit *hit, float arrival_factor, vec3 
     photon *p = place_for_photon(out);
     if (!p)
         return;
-    bool is_outside = !(vec3_dot(hit->geometric_normal, direction) > 0.0f);
     p->position[0] = at.position.x;
     p->position[1] = at.position.y;
     p->position[2] = at.position.z;
     p->flux = flux_encode(flux, key);
-    p->direction = arrival_encode(direction, is_diffuse);
-    p->normal = direction_encode(is_outside ? at.geometric_normal : vec3_negate(at.geometric_normal));
+    p->direction = arrival_encode(direction, path->is_diffuse);
+    p->normal = direction_encode(normal);
     memset(&p->slot, 0, sizeof p->slot);
     book(out->books.stored, flux_decode(p->flux));
 }
@@ -117,33 +156,32 @@ static bool pass_media(photon_books *books, rgb transmittance, rng *random, rgb 
 
 /* --- a path --- */
 
-typedef struct photon_path {
-    scene_ray ray;
-    rgb flux;
-    rng random;
-    uint64_t key;
-    int scatterings; /* but for panes, where they are direct */
-    int arrivals;    /* at surfaces, panes too */
-    bool is_diffuse; /* has gone on from a place by its gathered lobes */
-} photon_path;
-
-/* Leaves a lamp, picked by its power, at a time of the path's own where that matters. false: nothing leaves. */
+/* Leaves a lamp, picked by its power or by the guide, at a time of the path's own where that matters. false: nothing
+ * leaves. */
 static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
 {
     const scene *s = t->s;
     const photon_tracing_settings *settings = t->settings;
-    rng random = rng_make(settings->seed, settings->kind == PHOTON_GLOBAL ? STREAM_GLOBAL : STREAM_CAUSTIC, number);
+    uint64_t stream = settings->kind == PHOTON_GLOBAL ? STREAM_GLOBAL : STREAM_CAUSTIC;
+    rng random = rng_make(settings->seed, t->trial ? stream + STREAM_TRIALS : stream, number);
     uint64_t key = hash_combine(random.state, 0x70686f746f6eu);
-    float probability, time = s->has_motion ? rng_float(&random) : 0.0f;
-    const light *lamp = &s->lights[scene_pick_light_by_power(s, rng_float(&random), &probability)];
+    float probability, density = 1.0f, time = s->has_motion ? rng_float(&random) : 0.0f;
+    emission_start begun =
+        settings->guide ? emission_guide_sample(settings->guide, &random, &density) : emission_start_draw(&random);
+    if (t->trial)
+        *t->trial = (emission_trial){begun, 0.0f, density};
+    const light *lamp = &s->lights[scene_pick_light_by_power(s, begun.u[0], &probability)];
+    emission_numbers numbers = emission_start_numbers(&begun);
     light_emission start;
-    if (!(probability > 0.0f) || !light_sample_emission(s, lamp, t->target, &random, &start))
+    if (!(probability > 0.0f) || !light_emit(s, lamp, t->target, &numbers, &random, &start))
         return false;
+    float weight = t->trial ? 1.0f : 1.0f / density;
     scene_ray ray = scene_ray_make(start.origin, start.direction);
     ray.skips_uv = true;
     ray.medium = start.medium;
     ray.time = time;
-    *out_path = (photon_path){ray, rgb_scale(start.flux, 1.0f / probability), random, key, 0, 0, false};
+    rgb flux = rgb_scale(start.flux, weight / probability);
+    *out_path = (photon_path){ray, flux, random, key, weight, 0, 0, false};
     book(t->out->books.emitted, out_path->flux);
     return true;
 }
@@ -195,7 +233,7 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
     bool is_global = settings->kind == PHOTON_GLOBAL;
     if ((is_global || path->scatterings > 0) && matter_has(&m, BSDF_GATHERED)) {
         float factor = m.albedo ? lambert_arrival_factor(hit, arrived) : bsdf_arrival_factor(&m.scattering);
-        store(t, hit, factor, arrived, path->is_diffuse, flux, hash_combine(path->key, (uint64_t)path->arrivals));
+        store(t, path, hit, factor);
     }
     bool may_go_straight = settings->panes_are_direct && !m.albedo && m.scattering.is_pane;
     bool is_last = path->scatterings >= settings->max_scatterings;
@@ -277,7 +315,7 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
     /* each photon changes the books, which lie beside those of another worker's block: a copy has its lines to itself
      */
     block out = job->blocks[block_index];
-    tracer t = {job->s, job->target, job->settings, &out, UINT32_MAX};
+    tracer t = {job->s, job->target, job->settings, &out, UINT32_MAX, NULL, NULL};
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
         trace_path(&t, job->first_path + i);
     out.paths = end - begin;
@@ -301,7 +339,7 @@ static ag_status account_block(round_job *job, photon_set *set, uint64_t first_p
         return AG_ERROR_MEMORY;
     if (b->count >= room) {
         *b = (block){.photons = b->photons, .capacity = b->capacity};
-        tracer t = {job->s, job->target, job->settings, b, room};
+        tracer t = {job->s, job->target, job->settings, b, room, NULL, NULL};
         while (b->count < room)
             trace_path(&t, first_path + b->paths++);
     }
@@ -370,27 +408,33 @@ static void explain_shortage(run_context *run, const photon_tracing_settings *se
                 emitted > 0.0 ? 100.0 * escaped / emitted : 0.0);
 }
 
+/* What a caustic map's paths are to meet first; NULL for the global map. false in *out_has_any: there is no light, or
+ * nothing that a caustic could come from. */
+static ag_status find_target(const scene *s, photon_kind kind, light_target *out_matter,
+                             const light_target **out_target, bool *out_has_any)
+{
+    *out_target = NULL;
+    *out_has_any = s->light_count > 0 && rgb_max(s->light_power) > 0.0f && scene_sends_photons(s) &&
+                   !(s->shape_count == 0 && s->infinite_light_count > 0); /* a sky alone is seen without photons */
+    if (!*out_has_any || kind == PHOTON_GLOBAL)
+        return AG_OK;
+    ag_status status = find_traced_matter(s, out_matter);
+    *out_target = out_matter;
+    *out_has_any = out_matter->radius > 0.0f; /* there may be such matter in objects without instances */
+    return status;
+}
+
 ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,
                              photon_set *out_set)
 {
     photon_set set = {0};
     *out_set = set;
-    if (s->light_count == 0 || !(rgb_max(s->light_power) > 0.0f))
-        return AG_OK;
-    if (!scene_sends_photons(s))
-        return AG_OK; /* as the file wants it */
-    if (s->shape_count == 0 && s->infinite_light_count > 0)
-        return AG_OK; /* a sky alone, which the eye sees without photons */
     light_target traced_matter;
-    const light_target *caustic_target = NULL;
-    if (settings->kind == PHOTON_CAUSTIC) {
-        ag_status found = find_traced_matter(s, &traced_matter);
-        if (found != AG_OK)
-            return found;
-        if (!(traced_matter.radius > 0.0f))
-            return AG_OK; /* there may be such matter in objects without instances */
-        caustic_target = &traced_matter;
-    }
+    const light_target *caustic_target;
+    bool has_any;
+    ag_status found = find_target(s, settings->kind, &traced_matter, &caustic_target, &has_any);
+    if (found != AG_OK || !has_any)
+        return found;
     block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
     set.photons = photon_records_create(settings->wanted);
     ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
@@ -408,7 +452,7 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         next_path += block_count * PATHS_PER_BLOCK;
 
         bool is_hopeless = set.emitted_paths >= PATHS_WITHOUT_PHOTON_MAX &&
-                           (set.count == 0 || set.emitted_paths / PATHS_PER_PHOTON_MAX >= settings->wanted);
+                           (set.count == 0 || set.emitted_paths / PHOTON_PATHS_MAX >= settings->wanted);
         if (set.count < settings->wanted && is_hopeless) {
             explain_shortage(run, settings, &set);
             break;
@@ -443,4 +487,61 @@ void photon_set_reset(photon_set *set)
 {
     free(set->photons);
     *set = (photon_set){0};
+}
+
+/* --- trials --- */
+
+enum { TRIALS_PER_BLOCK = 512 };
+
+typedef struct trial_job {
+    const scene *s;
+    const light_target *target;
+    const photon_tracing_settings *settings;
+    uint64_t first_path;
+    emission_trial *trials;
+    trial_counts *counts; /* of each block */
+    run_context *run;
+} trial_job;
+
+static void try_block(void *user, uint64_t begin, uint64_t end, uint64_t block_index, unsigned worker)
+{
+    (void)worker;
+    trial_job *job = user;
+    block out = {0};
+    trial_counts counts = {0};
+    for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++) {
+        tracer t = {job->s, job->target, job->settings, &out, 0, &job->trials[i], &counts};
+        trace_path(&t, job->first_path + i);
+    }
+    counts.paths = end - begin;
+    counts.rays = out.rays;
+    job->counts[block_index] = counts;
+}
+
+ag_status photon_tracing_try(const scene *s, run_context *run, const photon_tracing_settings *settings,
+                             uint64_t first_path, uint32_t count, emission_trial *out_trials,
+                             trial_counts *in_out_counts)
+{
+    light_target traced_matter;
+    const light_target *caustic_target;
+    bool has_any;
+    ag_status status = find_target(s, settings->kind, &traced_matter, &caustic_target, &has_any);
+    for (uint32_t i = 0; i < count; i++)
+        out_trials[i] = (emission_trial){.density = 1.0f};
+    if (status != AG_OK || !has_any)
+        return status;
+    uint64_t block_count = (count + TRIALS_PER_BLOCK - 1) / TRIALS_PER_BLOCK;
+    trial_counts *counts = calloc(block_count, sizeof *counts);
+    if (!counts)
+        return AG_ERROR_MEMORY;
+    trial_job job = {s, caustic_target, settings, first_path, out_trials, counts, run};
+    status = parallel_for(run, count, TRIALS_PER_BLOCK, try_block, &job, AG_PHASE_PHOTONS, 0.0, 0.0);
+    for (uint64_t i = 0; i < block_count; i++) {
+        in_out_counts->paths += counts[i].paths;
+        in_out_counts->rays += counts[i].rays;
+        in_out_counts->photons += counts[i].photons;
+        in_out_counts->asked += counts[i].asked;
+    }
+    free(counts);
+    return status;
 }

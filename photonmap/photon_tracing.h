@@ -15,14 +15,20 @@
 #ifndef AFTERGLOW_PHOTON_TRACING_H
 #define AFTERGLOW_PHOTON_TRACING_H
 
+#include "emission_guide.h"
 #include "photon_block.h"
+#include "place_importance.h"
 #include "run_context.h"
 #include "scene.h"
+
+/* Tracing gives up after so many paths for each photon wanted. */
+enum { PHOTON_PATHS_MAX = 16 };
 
 typedef enum photon_kind { PHOTON_GLOBAL, PHOTON_CAUSTIC } photon_kind;
 
 /* Where the flux went, W, for the whole of the emitted paths.
- * emitted + gained = absorbed + escaped + lost + truncated;  arrived = stored + cut. */
+ * emitted + gained = absorbed + escaped + lost + truncated;  arrived = stored + cut + thinned.
+ * By a guide each of them is right on average. */
 typedef struct photon_books {
     double emitted[3];   /* at the lamps */
     double gained[3];    /* by the survivors of roulette */
@@ -33,6 +39,7 @@ typedef struct photon_books {
     double arrived[3];   /* at gathered lobes where this map stores */
     double stored[3];    /* in photons, as rounded to their shared exponents */
     double cut[3];       /* arrived on the last path after the map was full */
+    double thinned[3]; /* in photons left out where no light is asked for, less what those carry that stand for them */
 } photon_books;
 
 typedef struct photon_set {
@@ -50,6 +57,9 @@ typedef struct photon_tracing_settings {
     int max_scatterings;   /* arrivals after more scatterings than this are not stored; >= 0 */
     bool panes_are_direct; /* light straight through panes (bsdf.h) counts as unscattered: no caustic */
     uint64_t seed;
+    /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
+    const emission_guide *guide;         /* where paths begin */
+    const place_importance *asked;       /* elsewhere photons are stored no denser than power alone would have them */
     double progress_begin, progress_end; /* of AG_PHASE_PHOTONS */
 } photon_tracing_settings;
 
@@ -59,5 +69,20 @@ typedef struct photon_tracing_settings {
 ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,
                              photon_set *out_set);
 void photon_set_reset(photon_set *set);
+
+/* Of all trials so far. */
+typedef struct trial_counts {
+    uint64_t paths, rays;
+    uint64_t photons, asked; /* that would be stored; and of those, where light is asked for */
+} trial_counts;
+
+/* Tries so many paths, from that number on, which store nothing: a trial's value is the sum over the photons that it
+ * would store of their flux times the root of their places' importance, so that what few ask for is not left to
+ * a handful of photons. Paths apart from those of photon_tracing_run. The
+ * caustics of a scene without traced matter, and the light of one without lamps, are of no value. Errors:
+ * AG_ERROR_MEMORY, AG_CANCELLED. */
+ag_status photon_tracing_try(const scene *s, run_context *run, const photon_tracing_settings *settings,
+                             uint64_t first_path, uint32_t count, emission_trial *out_trials,
+                             trial_counts *in_out_counts);
 
 #endif

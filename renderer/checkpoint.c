@@ -45,6 +45,7 @@ static const struct {
     SETTING(radius, "radius"),
     SETTING(irradiance_fraction, "fraction of photons that bear irradiance"),
     SETTING(gather_guiding, "guiding of gather rays"),
+    SETTING(photon_aim, "aim of photons"),
     SETTING(layers, "set of layers"),
     SETTING(denoise, "choice of denoising"),
     SETTING(layers_in_camera_space, "space of layers"),
@@ -52,6 +53,7 @@ static const struct {
     SETTING(clamp_indirect, "bound of indirect light"),
     SETTING(noise_level, "noise level"),
     SETTING(noise_min_samples, "least number of samples"),
+    SETTING(shown_exposure_stops, "exposure of what is shown"),
     SETTING(gather_samples, "number of gather rays"),
 };
 enum { SETTING_COUNT = sizeof SETTINGS / sizeof *SETTINGS };

@@ -60,6 +60,15 @@ static photon_file_key key_of(const ag_context *context, const scene *s, const a
     key.pane_light = (uint32_t)settings->pane_light;
     key.radius = settings->radius;
     key.irradiance_fraction = settings->irradiance_fraction;
+    key.photon_aim = settings->photon_aim;
+    if (settings->photon_aim > 0.0f) {
+        hash128 view = hash128_begin();
+        hash128 of_scene = scene_hash_of_view(s);
+        double frame_aspect = (double)settings->width / (double)settings->height;
+        HASH128_ADD(&view, of_scene);
+        HASH128_ADD(&view, frame_aspect);
+        key.aim_view = view;
+    }
     snprintf(key.program, sizeof key.program, "%s, %.30s", ag_version(), COMPILER);
     describe_machine(context->isa, key.machine, sizeof key.machine);
     return key;

@@ -78,13 +78,13 @@ static bool is_inside_solid(const scene *s)
 static void warn_of_scale(const struct ag_rendering *r, double value, const char *what)
 {
     const scene *s = r->s;
-    double stops = -log2(value);
+    double stops = -log2(value), asked = stops + (double)r->settings.shown_exposure_stops;
     log_once(
         r->context->log, AG_LOG_WARNING, "odd scene",
         "the picture is about %.0f stops too %s: %s %.1g, where white is 1; the scene is %.3g across and its lights "
         "emit %.3g W: are both in the same units? --exposure %.0f shows it",
         fabs(stops), stops > 0.0 ? "dark to be seen" : "bright", what, value, 2.0 * (double)s->bounding_radius,
-        (double)rgb_max(s->light_power), stops);
+        (double)rgb_max(s->light_power), asked);
 }
 
 static void warn_of_view(const struct ag_rendering *r)
@@ -148,7 +148,8 @@ void odd_scene_warn(const struct ag_rendering *r)
     }
     brightness b;
     brightness_read(film, &b);
-    double bright_part = brightness_above(&b, FEW), middle = brightness_above(&b, HALF);
+    double scale = noise_shown_scale(&r->settings);
+    double bright_part = scale * brightness_above(&b, FEW), middle = scale * brightness_above(&b, HALF);
     if ((double)(b.all - b.black) <= FEW * (double)b.all && is_inside_solid(s))
         log_once(log, AG_LOG_WARNING, "odd scene",
                  "the camera is inside of a solid: it meets the inner side of a surface in every direction, and no "

@@ -16,6 +16,9 @@
 
 /* Direct light takes one sample for so many gather rays, so that neither is much noisier than the other. */
 enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
+/* How many samples share a pixel's gather rays where it may get more: measured in four rooms, 2 to 8 rays a sample
+ * bring the same noise in the least time. */
+enum { ADAPTIVE_GATHER_SAMPLES = 64 };
 /* A gather ray shorter than this many mean radii of an estimate does not use the cache. */
 static const float GATHER_MIN_DISTANCE_RADII = 1.0f;
 
@@ -105,9 +108,14 @@ static ag_status settle_settings(ag_context *context, const scene *s, const ag_r
 {
     *out_settings = *wanted;
     if (out_settings->gather_samples == 0 && out_settings->samples_per_pixel > 0) {
-        int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / out_settings->samples_per_pixel;
+        int samples = out_settings->samples_per_pixel;
+        if (out_settings->noise_level > 0.0f && samples > ADAPTIVE_GATHER_SAMPLES)
+            samples = ADAPTIVE_GATHER_SAMPLES;
+        int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples;
         out_settings->gather_samples = rays > 0 ? rays : 1;
     }
+    if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
+        out_settings->photon_aim = out_settings->photon_map_file ? 0.0f : AG_DEFAULT_PHOTON_AIM;
     if (s->has_camera)
         return render_settings_check(context, out_settings);
     log_message(context->log, AG_LOG_ERROR, "the scene has no Camera");

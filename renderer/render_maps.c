@@ -1,7 +1,9 @@
 /* render_maps.c: see render_maps.h. */
 #include "render_maps.h"
 
+#include "integrator/eye_pilot.h"
 #include "map_file.h"
+#include "photon_aim.h"
 #include "rays/passage.h"
 
 void maps_reset(maps *m)
@@ -22,10 +24,41 @@ static bool has_traced_matter(const scene *s)
     return false;
 }
 
+/* Traces one map's photons, after trials that tell which of them are of use. asked: NULL aims at nothing. */
+static ag_status trace_aimed(ag_context *context, const scene *s, float share, const place_importance *asked,
+                             photon_tracing_settings *tracing, photon_set *out_set)
+{
+    emission_guide guide = {0};
+    trial_counts tried = {0};
+    tracing->guide = NULL;
+    tracing->asked = asked;
+    ag_statistics *statistics = &context->statistics;
+    ag_status status = AG_OK;
+    if (asked)
+        status = photon_aim_learn(s, &context->run, tracing, share, &guide, &tried, &tracing->wanted);
+    statistics->rays_photon += tried.rays;
+    if (guide.nodes)
+        log_message(context->log, AG_LOG_INFO,
+                    "photons are aimed: %u cells, %.3g times less variance expected, after %llu trials",
+                    (guide.node_count + 1) / 2, (double)guide.gain, (unsigned long long)tried.paths);
+    tracing->guide = guide.nodes ? &guide : NULL;
+    tracing->asked = guide.nodes ? asked : NULL;
+    if (status == AG_OK)
+        status = photon_tracing_run(s, &context->run, tracing, out_set);
+    tracing->guide = NULL;
+    emission_guide_reset(&guide);
+    return status;
+}
+
 static ag_status trace_photons(ag_context *context, const scene *s, const ag_render_settings *settings,
                                photon_set *out_global, photon_set *out_caustic)
 {
     bool wants_caustics = settings->caustic_photon_count > 0 && settings->max_depth >= 2 && has_traced_matter(s);
+    float share = settings->photon_aim;
+    eye_pilot pilot = {0};
+    ag_status status = AG_OK;
+    if (share > 0.0f && settings->max_depth >= 2)
+        status = eye_pilot_look(s, &context->run, settings, &pilot);
     /* an arrival after n scatterings reaches the eye after n + 2 (gathered), or n + 1 (a caustic seen) */
     photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL,
                                        .wanted = (uint32_t)settings->photon_count,
@@ -34,17 +67,17 @@ static ag_status trace_photons(ag_context *context, const scene *s, const ag_ren
                                        .seed = settings->seed,
                                        .progress_begin = 0.0,
                                        .progress_end = wants_caustics ? 0.7 : 1.0};
-    ag_status status = AG_OK;
-    if (settings->max_depth >= 2)
-        status = photon_tracing_run(s, &context->run, &tracing, out_global);
+    if (status == AG_OK && settings->max_depth >= 2)
+        status = trace_aimed(context, s, share, &pilot.gathered, &tracing, out_global);
     if (status == AG_OK && wants_caustics) {
         tracing.kind = PHOTON_CAUSTIC;
         tracing.wanted = (uint32_t)settings->caustic_photon_count;
         tracing.max_scatterings = settings->max_depth - 1;
         tracing.progress_begin = 0.7;
         tracing.progress_end = 1.0;
-        status = photon_tracing_run(s, &context->run, &tracing, out_caustic);
+        status = trace_aimed(context, s, share, &pilot.seen, &tracing, out_caustic);
     }
+    eye_pilot_reset(&pilot);
     if (status == AG_OK)
         run_progress(&context->run, AG_PHASE_PHOTONS, 1.0);
     return status;

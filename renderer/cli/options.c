@@ -26,6 +26,7 @@ enum {
     OPT_RADIUS,
     OPT_IRRADIANCE_FRACTION,
     OPT_GATHER_GUIDING,
+    OPT_PHOTON_AIM,
     OPT_GATHER,
     OPT_MAX_DEPTH,
     OPT_TYPE,
@@ -77,10 +78,13 @@ static const option_line LINES[] = {
      "frame's number"},
     {'t', "nthreads", "N", "threads (default: what affinity mask and cgroup quota allow)"},
     {OPT_SEED, "seed", "N", "seed of all random numbers (default: the scene's, else 0)"},
-    {OPT_SPP, "spp", "N", "samples per pixel (default: the scene's, else 16)"},
+    {OPT_SPP, "spp", "N",
+     "samples per pixel; with --noise the most of them (default 1024), with\n--noise 0 just as many (default: the "
+     "scene's, else 16)"},
     {OPT_NOISE, "noise", "LEVEL",
-     "as many samples up to --spp as it takes for this noise in what is\nshown, where white is 1: 0.01 is good, "
-     "0.003 clean"},
+     "as many samples up to --spp as it takes for this noise in what is\nshown, where white is 1: 0.02 is fair, 0.01 "
+     "good, 0.003 clean; the\ndefault is 0.02, but 0 with --spp, and for scenes that have Integrator\n\"photonmap\" "
+     "and a Sampler"},
     {OPT_MIN_SPP, "min-spp", "N", "samples per pixel at least, with --noise (default 16)"},
     {OPT_SIZE, "size", "WxH", "size of the full picture in pixels"},
     {OPT_CROP, "cropwindow", "X0,X1,Y0,Y1", "part of the picture to render, each in [0, 1]"},
@@ -104,6 +108,9 @@ static const option_line LINES[] = {
     {OPT_GATHER, "gather-samples", "N", "gather rays for each camera sample (default: 256 a pixel in all)"},
     {OPT_GATHER_GUIDING, "gather-guiding", "F",
      "how much photons decide where gather rays go, from 0 (not at all) to 1\n(default 0.5); the rest is the cosine"},
+    {OPT_PHOTON_AIM, "photon-aim", "F",
+     "share of the photon paths that begin where they bring light to where the\npicture asks for it, from 0 to 0.8 "
+     "(default 0.8; of a map that is kept 0)"},
     {OPT_MAX_DEPTH, "max-depth", "N", "scatterings between lamp and eye at most, up to 100 (default: roulette)"},
     {OPT_CLAMP_DIRECT, "clamp-direct", "V", "no sample gets more than V of direct light; 0 (default): unbounded"},
     {OPT_CLAMP_INDIRECT, "clamp-indirect", "V", "the same of indirect light"},
@@ -256,6 +263,9 @@ static bool take_option(int code, const char *value, options *o)
         is_valid = o->has_irradiance_fraction = parse_fraction(value, &r->irradiance_fraction);
         break;
     case OPT_GATHER_GUIDING: is_valid = o->has_gather_guiding = parse_share(value, &r->gather_guiding); break;
+    case OPT_PHOTON_AIM:
+        is_valid = o->has_photon_aim = parse_share(value, &r->photon_aim) && r->photon_aim <= AG_DEFAULT_PHOTON_AIM;
+        break;
     case OPT_AOV: {
         uint32_t layers = 0;
         is_valid = ag_layers_parse(value, &layers) == AG_OK;
@@ -280,7 +290,7 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_CHECKPOINT: is_valid = parse_seconds(value, &o->checkpoint_seconds); break;
     case OPT_TIME_LIMIT: is_valid = parse_time(value, &o->time_limit); break;
     case OPT_PREVIEW: o->preview = true; break;
-    case OPT_NOISE: is_valid = parse_bound(value, &r->noise_level); break;
+    case OPT_NOISE: is_valid = o->has_noise = parse_bound(value, &r->noise_level); break;
     case OPT_MIN_SPP: is_valid = o->has_noise_min_samples = parse_int(value, 2, 1 << 20, &r->noise_min_samples); break;
     case OPT_FRAMES:
         frames_reset(&o->frames);
@@ -496,7 +506,7 @@ static bool take_tile(const options *o, ag_render_settings *settings)
     return true;
 }
 
-bool options_override(const options *o, ag_render_settings *settings)
+bool options_override(const options *o, const ag_scene *scene, ag_render_settings *settings)
 {
     const ag_render_settings *r = &o->render;
     settings->cache = r->cache;
@@ -509,7 +519,10 @@ bool options_override(const options *o, ag_render_settings *settings)
     settings->pane_light = r->pane_light;
     settings->clamp_direct = r->clamp_direct;
     settings->clamp_indirect = r->clamp_indirect;
-    settings->noise_level = r->noise_level;
+    settings->noise_level = o->has_noise                                    ? r->noise_level
+                            : o->has_spp || ag_scene_has_own_samples(scene) ? 0.0f
+                                                                            : AG_DEFAULT_NOISE_LEVEL;
+    settings->shown_exposure_stops = o->output.exposure_stops;
     if (o->has_irradiance_fraction)
         settings->irradiance_fraction = r->irradiance_fraction;
     if (o->has_noise_min_samples)
@@ -532,8 +545,12 @@ bool options_override(const options *o, ag_render_settings *settings)
         settings->max_depth = r->max_depth;
     if (o->has_spp)
         settings->samples_per_pixel = r->samples_per_pixel;
+    else if (settings->noise_level > 0.0f)
+        settings->samples_per_pixel = AG_DEFAULT_SAMPLES_MOST;
     if (o->has_gather_guiding)
         settings->gather_guiding = r->gather_guiding;
+    if (o->has_photon_aim)
+        settings->photon_aim = r->photon_aim;
     if (o->has_gather_samples)
         settings->gather_samples = r->gather_samples;
     return o->tile_count == 0 || take_tile(o, settings);

@@ -89,8 +89,8 @@ static void view_rows(void *user, uint64_t begin, uint64_t end, uint64_t block, 
     const ag_film *film = job->film;
     for (uint64_t row = begin; row < end; row++)
         for (int x = 0; x < film->width; x++)
-            view_pixel(job, &job->workers[worker_index], row * (uint64_t)film->width + (uint64_t)x, film->x0 + x,
-                       film->y0 + (int)row);
+            view_pixel(job, &job->workers[worker_index], film_pixel_at(film, film->x0 + x, film->y0 + (int)row),
+                       film->x0 + x, film->y0 + (int)row);
 }
 
 ag_status debug_views_render(const transport *t, run_context *run, eye_worker *workers, ag_film *film)

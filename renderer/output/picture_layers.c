@@ -143,6 +143,7 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
     if (!is_path) {
         add_text(out, "afterglow/gatherSamples", "%d", r->gather_samples);
         add_text(out, "afterglow/gatherGuiding", "%g", (double)r->gather_guiding);
+        add_text(out, "afterglow/photonAim", "%g", (double)r->photon_aim);
         add_text(out, "afterglow/irradianceFraction", "%g", (double)r->irradiance_fraction);
         add_text(out, "afterglow/photonsGlobal", "%llu", (unsigned long long)s->photons_stored_global);
         add_text(out, "afterglow/photonsCaustic", "%llu", (unsigned long long)s->photons_stored_caustic);

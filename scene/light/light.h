@@ -116,10 +116,23 @@ typedef struct light_target {
     float radius; /* > 0 */
 } light_target;
 
+/* The random numbers, in [0, 1), that decide where a photon starts: neighbouring ones give neighbouring starts, so that
+ * whoever knows which parts of a light are of use can pick them by these numbers. */
+typedef struct emission_numbers {
+    vec2 direction;
+    vec2 place; /* on an area light or a portal; of lights that are far away: across the direction */
+    float part; /* side of an area light; which of the balls that are nested around small things */
+} emission_numbers;
+
 /* target NULL: all of the light. Else only that part of it is sampled, as far as is known beforehand, whose rays meet
- * the ball: every ray that does is, with the right share of the whole (Jensen 1996: projection maps). Random numbers
- * come from the path's own stream (math/rng.h). Returns false when the sample carries nothing. */
+ * the ball: every ray that does is, with the right share of the whole (Jensen 1996: projection maps). What the numbers
+ * leave open is decided by the path's own stream (math/rng.h). Returns false when the sample carries nothing. */
+bool light_emit(const struct scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                struct rng *random, light_emission *out_emission);
+
+/* The same by numbers that are drawn from the stream. */
 bool light_sample_emission(const struct scene *s, const light *l, const light_target *target, struct rng *random,
                            light_emission *out_emission);
+emission_numbers emission_numbers_draw(struct rng *random);
 
 #endif

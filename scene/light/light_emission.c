@@ -15,8 +15,7 @@ static const float TARGET_CONE_MAX = 0.5f;
 
 /* A direction from a place uniformly in the cone to the target; false where the light's own way, which fills a cone of
  * own_cone, is as good. */
-static bool aim_at(const light_target *target, vec3 origin, float own_cone, rng *random, vec3 *out_direction,
-                   float *out_pdf)
+static bool aim_at(const light_target *target, vec3 origin, float own_cone, vec2 u, vec3 *out_direction, float *out_pdf)
 {
     if (!target)
         return false;
@@ -26,22 +25,23 @@ static bool aim_at(const light_target *target, vec3 origin, float own_cone, rng 
         return false;
     vec3 to_center = vec3_sub(target->center, origin);
     frame f = frame_from_z(vec3_scale(to_center, 1.0f / vec3_length(to_center)));
-    *out_direction = frame_to_world(&f, sample_uniform_cone(rng_vec2(random), one_minus_cos));
+    *out_direction = frame_to_world(&f, sample_uniform_cone(u, one_minus_cos));
     *out_pdf = 1.0f / (2.0f * AG_PI * one_minus_cos);
     return true;
 }
 
-static bool emit_area(const scene *s, const light *l, const light_target *target, rng *random, light_emission *out)
+static bool emit_area(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                      light_emission *out)
 {
     const shape *lamp = &s->shapes[l->shape_index];
-    vec2 u = rng_vec2(random);
+    vec2 u = numbers->place;
     float density = 1.0f, pdf;
     if (l->radiance_map && !radiance_map_sample(l->radiance_map, u, &u, &density))
         return false;
     surface_sample at = shape_sample_area(lamp, u);
     rgb radiance = rgb_mul(l->radiance, light_sampled_value(s, l, &at));
     vec3 n = at.geometric_normal;
-    if (aim_at(target, at.position, 1.0f, random, &out->direction, &pdf)) {
+    if (aim_at(target, at.position, 1.0f, numbers->direction, &out->direction, &pdf)) {
         float cosine = vec3_dot(n, out->direction);
         if (l->two_sided && cosine < 0.0f) {
             n = vec3_negate(n);
@@ -49,10 +49,10 @@ static bool emit_area(const scene *s, const light *l, const light_target *target
         }
         out->flux = rgb_scale(radiance, fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf));
     } else {
-        if (l->two_sided && rng_float(random) < 0.5f)
+        if (l->two_sided && numbers->part < 0.5f)
             n = vec3_negate(n);
         frame f = frame_from_z(n);
-        out->direction = frame_to_world(&f, sample_cosine_hemisphere(rng_vec2(random)));
+        out->direction = frame_to_world(&f, sample_cosine_hemisphere(numbers->direction));
         /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids, and nearly so by a radiance map */
         out->flux = rgb_scale(radiance, AG_PI * (l->two_sided ? 2.0f : 1.0f) / (at.pdf_area * density));
     }
@@ -63,13 +63,13 @@ static bool emit_area(const scene *s, const light *l, const light_target *target
 
 /* A direction in the cone, uniform but thinned by the falloff, so that all photons are equal: on average at least half
  * are accepted, and what 64 trials refuse goes along the axis. */
-static vec3 sample_spot(const light *l, rng *random)
+static vec3 sample_spot(const light *l, const emission_numbers *numbers, rng *random)
 {
     frame f = frame_from_z(l->direction);
     vec3 local = {0.0f, 0.0f, 1.0f};
     float ramp = l->falloff_end - l->falloff_start;
     for (int trial = 0; trial < 64; trial++) {
-        vec2 u = rng_vec2(random);
+        vec2 u = trial == 0 ? numbers->direction : rng_vec2(random);
         float x = ramp > 0.0f ? fminf((1.0f - u.x) * l->falloff_end / ramp, 1.0f) : 1.0f;
         if (rng_float(random) < x * x * (3.0f - 2.0f * x)) {
             local = sample_uniform_cone(u, l->falloff_end);
@@ -80,7 +80,8 @@ static vec3 sample_spot(const light *l, rng *random)
 }
 
 /* The lights that are points. */
-static bool emit_point(const light *l, const light_target *target, rng *random, light_emission *out)
+static bool emit_point(const light *l, const light_target *target, const emission_numbers *numbers, rng *random,
+                       light_emission *out)
 {
     float pdf, own_cone = 2.0f;
     vec3 local;
@@ -89,24 +90,24 @@ static bool emit_point(const light *l, const light_target *target, rng *random, 
         own_cone = l->falloff_end;
     else if (l->kind == LIGHT_PROJECTION)
         own_cone = 1.0f - projection_corner_cosine(l->projection);
-    if (aim_at(target, l->position, own_cone, random, &out->direction, &pdf)) {
+    if (aim_at(target, l->position, own_cone, numbers->direction, &out->direction, &pdf)) {
         out->flux = rgb_scale(light_intensity(l, out->direction), 1.0f / pdf);
         return !rgb_is_black(out->flux);
     }
     switch (l->kind) {
     case LIGHT_GONIOMETRIC:
-        if (!environment_sample_whole(l, rng_vec2(random), &out->direction, &out->flux, &pdf))
+        if (!environment_sample_whole(l, numbers->direction, &out->direction, &out->flux, &pdf))
             return false;
         out->flux = rgb_scale(out->flux, 1.0f / pdf);
         return true;
     case LIGHT_PROJECTION:
-        if (!projection_sample(l->projection, rng_vec2(random), &local, &out->flux, &pdf))
+        if (!projection_sample(l->projection, numbers->direction, &local, &out->flux, &pdf))
             return false;
         out->direction = vec3_normalize(frame_to_world(&l->world_from_light, local));
         out->flux = rgb_scale(rgb_mul(l->intensity, out->flux), 1.0f / pdf);
         return true;
-    case LIGHT_SPOT: out->direction = sample_spot(l, random); break;
-    default: out->direction = sample_uniform_sphere(rng_vec2(random)); break;
+    case LIGHT_SPOT: out->direction = sample_spot(l, numbers, random); break;
+    default: out->direction = sample_uniform_sphere(numbers->direction); break;
     }
     out->flux = l->power;
     return !rgb_is_black(out->flux);
@@ -146,15 +147,15 @@ static float nested_density(const scene *s, const light_target *whole, int count
 
 /* A start outside all there is, with its density per area; on the disc of the ball that faces the way the light goes,
  * or those of balls within. False: beside the ball. */
-static bool start_from_afar(const scene *s, const light_target *whole, vec3 direction, rng *random, vec3 *out_origin,
-                            float *out_density)
+static bool start_from_afar(const scene *s, const light_target *whole, vec3 direction, const emission_numbers *numbers,
+                            vec3 *out_origin, float *out_density)
 {
     frame f = frame_from_z(direction);
     int count = nested_ball_count(s, whole), picked = count - 1;
     if (count > 1)
-        picked = (int)fminf(rng_float(random) * (float)count, (float)count - 1.0f);
+        picked = (int)fminf(numbers->part * (float)count, (float)count - 1.0f);
     light_target ball = nested_ball(s, whole, picked, count);
-    vec2 d = sample_disk_concentric(rng_vec2(random));
+    vec2 d = sample_disk_concentric(numbers->place);
     vec3 place = vec3_add(ball.center, frame_to_world(&f, (vec3){d.x * ball.radius, d.y * ball.radius, 0.0f}));
     *out_density = 1.0f / (AG_PI * ball.radius * ball.radius);
     if (count > 1) {
@@ -186,12 +187,12 @@ static bool come_through_space(const scene *s, const light *l, light_emission *o
 }
 
 /* From a place in the portal, which is in the light's own medium, with what comes so far. */
-static bool emit_through_portal(const scene *s, const light *l, const light_target *target, rng *random,
-                                light_emission *out)
+static bool emit_through_portal(const scene *s, const light *l, const light_target *target,
+                                const emission_numbers *numbers, light_emission *out)
 {
     vec3 to_light;
     float pdf;
-    if (!portal_sample_flux(l->portal, target, random, &out->origin, &to_light, &pdf))
+    if (!portal_sample_flux(l->portal, target, numbers, &out->origin, &to_light, &pdf))
         return false;
     rgb radiance = environment_whole_radiance(l, to_light);
     if (rgb_is_black(radiance))
@@ -205,23 +206,24 @@ static bool emit_through_portal(const scene *s, const light *l, const light_targ
     return !rgb_is_black(out->flux);
 }
 
-static bool emit_infinite(const scene *s, const light *l, const light_target *ball, rng *random, light_emission *out)
+static bool emit_infinite(const scene *s, const light *l, const light_target *ball, const emission_numbers *numbers,
+                          light_emission *out)
 {
     vec3 to_light;
     rgb radiance;
     float pdf;
-    if (!environment_sample_whole(l, rng_vec2(random), &to_light, &radiance, &pdf))
+    if (!environment_sample_whole(l, numbers->direction, &to_light, &radiance, &pdf))
         return false;
     float density;
     out->direction = vec3_negate(to_light);
-    if (!start_from_afar(s, ball, out->direction, random, &out->origin, &density))
+    if (!start_from_afar(s, ball, out->direction, numbers, &out->origin, &density))
         return false;
     out->flux = rgb_scale(radiance, 1.0f / (density * pdf));
     return come_through_space(s, l, out);
 }
 
-bool light_sample_emission(const scene *s, const light *l, const light_target *target, rng *random,
-                           light_emission *out_emission)
+bool light_emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                rng *random, light_emission *out_emission)
 {
     light_emission *out = out_emission;
     light_target whole = {s->bounding_center, s->bounding_radius};
@@ -229,15 +231,31 @@ bool light_sample_emission(const scene *s, const light *l, const light_target *t
     float density;
     out->medium = l->medium; /* of area lights: by the side */
     switch (l->kind) {
-    case LIGHT_AREA: return emit_area(s, l, target, random, out);
+    case LIGHT_AREA: return emit_area(s, l, target, numbers, out);
     case LIGHT_DISTANT:
-        if (!start_from_afar(s, ball, l->direction, random, &out->origin, &density))
+        if (!start_from_afar(s, ball, l->direction, numbers, &out->origin, &density))
             return false;
         out->direction = l->direction;
         out->flux = rgb_scale(l->radiance, 1.0f / density);
         return come_through_space(s, l, out) && !rgb_is_black(out->flux);
     case LIGHT_INFINITE:
-        return l->portal ? emit_through_portal(s, l, target, random, out) : emit_infinite(s, l, ball, random, out);
-    default: return emit_point(l, target, random, out);
+        return l->portal ? emit_through_portal(s, l, target, numbers, out) : emit_infinite(s, l, ball, numbers, out);
+    default: return emit_point(l, target, numbers, random, out);
     }
+}
+
+emission_numbers emission_numbers_draw(rng *random)
+{
+    emission_numbers numbers;
+    numbers.direction = rng_vec2(random);
+    numbers.place = rng_vec2(random);
+    numbers.part = rng_float(random);
+    return numbers;
+}
+
+bool light_sample_emission(const scene *s, const light *l, const light_target *target, rng *random,
+                           light_emission *out_emission)
+{
+    emission_numbers numbers = emission_numbers_draw(random);
+    return light_emit(s, l, target, &numbers, random, out_emission);
 }

@@ -3,7 +3,6 @@
 
 #include "light/environment.h"
 #include "math/angle.h"
-#include "math/rng.h"
 #include "math/sampling.h"
 
 #include <stdlib.h>
@@ -290,8 +289,8 @@ static void tangents_from_ball(double center, double radius, double length, doub
     out[1] = high / (high > 0.0 ? near : far);
 }
 
-bool portal_sample_flux(const portal *p, const light_target *target, rng *random, vec3 *out_position,
-                        vec3 *out_direction, float *out_pdf)
+bool portal_sample_flux(const portal *p, const light_target *target, const emission_numbers *numbers,
+                        vec3 *out_position, vec3 *out_direction, float *out_pdf)
 {
     double n = p->size, along_x[2] = {0.0, 0.0}, along_y[2] = {0.0, 0.0};
     window w = {0.0, n, 0.0, n};
@@ -307,7 +306,7 @@ bool portal_sample_flux(const portal *p, const light_target *target, rng *random
         }
     }
     float pdf;
-    if (!sample_window(p->flux, p->size, w, rng_vec2(random), &d, &pdf))
+    if (!sample_window(p->flux, p->size, w, numbers->direction, &d, &pdf))
         return false;
     /* all of the portal, or what the ball's shadow covers of it along that direction */
     float x0 = 0.0f, x1 = p->width, y0 = 0.0f, y1 = p->height;
@@ -320,7 +319,7 @@ bool portal_sample_flux(const portal *p, const light_target *target, rng *random
         if (!(x0 < x1 && y0 < y1))
             return false;
     }
-    vec2 u = rng_vec2(random);
+    vec2 u = numbers->place;
     vec3 place = {x0 + u.x * (x1 - x0), y0 + u.y * (y1 - y0), 0.0f};
     *out_position = vec3_add(p->corner, frame_to_world(&p->axes, place));
     *out_direction = vec3_normalize(frame_to_world(&p->axes, d));

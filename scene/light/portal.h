@@ -9,8 +9,6 @@
 #include "afterglow/base.h"
 #include "light/light.h"
 
-struct rng;
-
 typedef struct portal {
     vec3 corner;         /* world: where x and y begin */
     frame axes;          /* x, y along the edges, z out of the room, towards the light */
@@ -42,7 +40,7 @@ bool portal_sample(const portal *p, vec3 point, vec2 u, vec3 *out_direction, flo
 float portal_pdf(const portal *p, vec3 point, vec3 direction);
 /* A place on it and a direction, nearly in proportion to the flux that enters; where target is not NULL of what may
  * meet that ball. The density is per area and solid angle. false where the sample carries nothing. */
-bool portal_sample_flux(const portal *p, const light_target *target, struct rng *random, vec3 *out_position,
-                        vec3 *out_direction, float *out_pdf);
+bool portal_sample_flux(const portal *p, const light_target *target, const emission_numbers *numbers,
+                        vec3 *out_position, vec3 *out_direction, float *out_pdf);
 
 #endif

@@ -319,7 +319,7 @@ static void photons_carry_what_direct_light_says(void **state)
             check_point(&ROWS[k], s);
         for (int which = 0; which < (ROWS[k].builder == FROM_TEXT ? 1 : 2) && !ROWS[k].hides_itself; which++) {
             disc d = row_disc(&ROWS[k], l, which);
-            assert_true(expect_flux_through_disc(s, &d, (ROWS[k].builder == WINDOW ? 6 : 3) * SAMPLES) > 0.0);
+            assert_true(expect_flux_through_disc(s, &d, (ROWS[k].builder == WINDOW ? 8 : 3) * SAMPLES) > 0.0);
         }
         scene_destroy(s);
         test_run_reset(&r);

@@ -86,6 +86,10 @@ AG_API bool ag_scene_was_read_from(const ag_scene *scene, const char *path);
 /* The Film directive's "filename", NULL where there is none. Lives as long as the scene. */
 AG_API const char *ag_scene_film_file_name(const ag_scene *scene);
 
+/* Whether the scene is written for this renderer (Integrator "photonmap") and has a Sampler: then its number of samples
+ * is meant. That of other scenes is for another renderer. */
+AG_API bool ag_scene_has_own_samples(const ag_scene *scene);
+
 /* --- rendering --- */
 
 typedef enum ag_integrator { AG_INTEGRATOR_PHOTONMAP, AG_INTEGRATOR_PATH } ag_integrator;
@@ -189,18 +193,29 @@ typedef struct ag_render_settings {
                                   rays that goes where light comes from, where photons are many; the rest goes by the
                                   cosine. 0: all. Less noise or more, the same light. Default
                                   AG_DEFAULT_GATHER_GUIDING */
-    uint32_t layers;           /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
-    bool denoise;              /* ag_film_denoise will be asked for: the film keeps what it needs */
+    float photon_aim; /* share of the photon paths that begin where a pilot has found that they bring light to where
+                         this picture asks for it, [0, 0.8]: the others begin by power alone, so that no photon is more
+                         than five times as bright as without. The same light, with less noise in this picture and more
+                         in others; the pilot depends on the whole frame's view and shape, and on nothing else of the
+                         picture. Default AG_PHOTON_AIM_AUTOMATIC: AG_DEFAULT_PHOTON_AIM, but 0 for a photon_map_file,
+                         which serves all views alike; one that is aimed is refused for another view */
+    uint32_t layers;  /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
+    bool denoise;     /* ag_film_denoise will be asked for: the film keeps what it needs */
     bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */
     float clamp_direct; /* no component of what a sample gets from a lamp by way of at most one surface is above it; 0:
                            unbounded, the default */
     float clamp_indirect; /* the same of all other contributions */
-    float noise_level;    /* adaptive sampling: a pixel gets no more samples when the standard error of what is shown of
-                             it (its square root; white is 1) and of what lies around it is below this; samples_per_pixel
-                             is the most then; 0: all pixels get as many, the default */
-    int noise_min_samples; /* of each pixel then, [2, 2^20]; default 16 */
-    int gather_samples;    /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
-                              gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
+    float noise_level;    /* adaptive sampling: a block of 8 by 8 pixels gets no more samples when the standard error of
+                             what is shown of it (its square root, where white is 1; what is brighter, by its share), root
+                             mean square over the block, is below this; samples_per_pixel is the most then; 0: all pixels
+                             get as many, the default. The program takes AG_DEFAULT_NOISE_LEVEL and
+                             AG_DEFAULT_SAMPLES_MOST where neither options nor ag_scene_has_own_samples say otherwise */
+    int noise_min_samples;      /* of each pixel then, [2, 2^20]; default 16 */
+    float shown_exposure_stops; /* by which the picture will be made brighter when it is shown, [-100, 100]: noise and
+                                   warnings are of what is shown; default 0 */
+    int gather_samples;         /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
+                                   gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL; with a noise level, where samples
+                                   are not known beforehand, for 64 samples at most */
     /* A file that holds the photon map from one picture to the next, with the irradiances computed so far; NULL, the
      * default: none. Traced where there is none yet; other processes on this machine that use it meanwhile fill it
      * together with this one. The picture is the same. Borrowed until ag_rendering_create or ag_render returns. One
@@ -215,8 +230,12 @@ typedef struct ag_render_settings {
 AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *scene,
                                                ag_render_settings *out_settings);
 
+#define AG_DEFAULT_NOISE_LEVEL           0.02f
+#define AG_DEFAULT_SAMPLES_MOST          1024
 #define AG_DEFAULT_GATHER_RAYS_PER_PIXEL 256
 #define AG_DEFAULT_GATHER_GUIDING        0.5f
+#define AG_DEFAULT_PHOTON_AIM            0.8f
+#define AG_PHOTON_AIM_AUTOMATIC          (-1.0f)
 
 typedef struct ag_film ag_film;
 

@@ -1,0 +1,165 @@
+/* place_importance.c: see place_importance.h. */
+#include "place_importance.h"
+
+#include <stdlib.h>
+
+/* A cube is divided while it holds more places than LEAF_MOST: a surface that passes through leaves about a quarter of
+ * them to each part that it passes through, so that hardly any of those is empty by chance. */
+enum { WAYS = 6, LEAF_MOST = 24, DEPTH_MAX = 20, PARTS = 8 };
+/* A place counts for each way that its normal is within 60 degrees of. */
+static const float WAY_COSINE = 0.5f;
+
+struct importance_node {
+    uint32_t first_part; /* of eight side by side; 0: a leaf, since the roots come first */
+    float density;       /* of a leaf */
+};
+
+/* The nodes while they grow, and room to sort the places of one tree. */
+typedef struct builder {
+    importance_node *nodes;
+    uint32_t count, capacity;
+    vec3 *places, *scratch;
+    float unit; /* share of one place */
+} builder;
+
+static bool add_parts(builder *b, uint32_t *out_first)
+{
+    if (b->count + PARTS > b->capacity) {
+        uint32_t capacity = 2 * (b->count + PARTS);
+        importance_node *larger = realloc(b->nodes, capacity * sizeof *larger);
+        if (!larger)
+            return false;
+        b->nodes = larger;
+        b->capacity = capacity;
+    }
+    *out_first = b->count;
+    for (int i = 0; i < PARTS; i++)
+        b->nodes[b->count++] = (importance_node){0, 0.0f};
+    return true;
+}
+
+static uint32_t part_of(vec3 place, vec3 middle)
+{
+    return (uint32_t)(place.x >= middle.x) | (uint32_t)(place.y >= middle.y) << 1 |
+           (uint32_t)(place.z >= middle.z) << 2;
+}
+
+static vec3 part_corner(vec3 corner, float half, uint32_t part)
+{
+    return (vec3){corner.x + (part & 1 ? half : 0.0f), corner.y + (part & 2 ? half : 0.0f),
+                  corner.z + (part & 4 ? half : 0.0f)};
+}
+
+/* Puts the places of a cube in the order of its parts. */
+static void sort_places(builder *b, uint32_t begin, uint32_t end, vec3 middle, uint32_t out_ends[PARTS])
+{
+    uint32_t places[PARTS] = {0}, sum = begin;
+    for (uint32_t i = begin; i < end; i++)
+        places[part_of(b->places[i], middle)]++;
+    for (int i = 0; i < PARTS; i++) {
+        uint32_t count = places[i];
+        places[i] = sum;
+        sum += count;
+        out_ends[i] = sum;
+    }
+    for (uint32_t i = begin; i < end; i++)
+        b->scratch[places[part_of(b->places[i], middle)]++] = b->places[i];
+    for (uint32_t i = begin; i < end; i++)
+        b->places[i] = b->scratch[i];
+}
+
+static bool divide(builder *b, uint32_t node, uint32_t begin, uint32_t end, vec3 corner, float size, int depth)
+{
+    if (end - begin <= LEAF_MOST || depth == DEPTH_MAX) {
+        b->nodes[node].density = (float)(end - begin) * b->unit / (size * size);
+        return true;
+    }
+    float half = 0.5f * size;
+    uint32_t first, ends[PARTS];
+    sort_places(b, begin, end, part_corner(corner, half, PARTS - 1), ends);
+    if (!add_parts(b, &first))
+        return false;
+    b->nodes[node].first_part = first;
+    for (uint32_t i = 0; i < PARTS; i++) {
+        if (!divide(b, first + i, begin, ends[i], part_corner(corner, half, i), half, depth + 1))
+            return false;
+        begin = ends[i];
+    }
+    return true;
+}
+
+static float component(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+static void find_cube(const asked_place *places, uint32_t count, place_importance *out)
+{
+    vec3 low = places[0].position, high = low;
+    for (uint32_t i = 1; i < count; i++) {
+        vec3 p = places[i].position;
+        low = (vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
+        high = (vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
+    }
+    vec3 extent = vec3_sub(high, low);
+    float largest = fmaxf(fmaxf(extent.x, extent.y), extent.z);
+    /* a little larger, and with its corner a little off: what lies in the planes of walls falls on one side */
+    out->size = 1.03f * fmaxf(largest, 1e-6f * fmaxf(1.0f, vec3_length(high)));
+    out->corner = vec3_sub(low, (vec3){0.011f * out->size, 0.012f * out->size, 0.013f * out->size});
+}
+
+ag_status place_importance_create(const asked_place *places, uint32_t count, place_importance *out_importance)
+{
+    *out_importance = (place_importance){0};
+    if (count == 0)
+        return AG_OK;
+    place_importance made = {0};
+    find_cube(places, count, &made);
+    builder b = {.capacity = WAYS + 1024, .count = WAYS, .unit = 1.0f / (float)count};
+    b.nodes = calloc(b.capacity, sizeof *b.nodes);
+    b.places = malloc(count * sizeof *b.places);
+    b.scratch = malloc(count * sizeof *b.scratch);
+    bool is_made = b.nodes && b.places && b.scratch;
+    for (uint32_t way = 0; is_made && way < WAYS; way++) {
+        uint32_t facing = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            float along = component(places[i].normal, (int)way / 2);
+            if ((way % 2 ? -along : along) > WAY_COSINE)
+                b.places[facing++] = places[i].position;
+        }
+        is_made = divide(&b, way, 0, facing, made.corner, made.size, 0);
+    }
+    free(b.places);
+    free(b.scratch);
+    if (!is_made) {
+        free(b.nodes);
+        return AG_ERROR_MEMORY;
+    }
+    made.nodes = b.nodes;
+    made.node_count = b.count;
+    *out_importance = made;
+    return AG_OK;
+}
+
+void place_importance_reset(place_importance *importance)
+{
+    free(importance->nodes);
+    *importance = (place_importance){0};
+}
+
+float place_importance_at(const place_importance *importance, vec3 position, vec3 normal)
+{
+    vec3 corner = importance->corner;
+    float size = importance->size;
+    vec3 within = vec3_sub(position, corner);
+    if (!importance->nodes || !(within.x >= 0.0f && within.y >= 0.0f && within.z >= 0.0f) || within.x > size ||
+        within.y > size || within.z > size)
+        return 0.0f;
+    float x = fabsf(normal.x), y = fabsf(normal.y), z = fabsf(normal.z);
+    int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    uint32_t node = 2 * (uint32_t)axis + (component(normal, axis) < 0.0f);
+    while (importance->nodes[node].first_part != 0) {
+        size *= 0.5f;
+        uint32_t part = part_of(position, part_corner(corner, size, PARTS - 1));
+        corner = part_corner(corner, size, part);
+        node = importance->nodes[node].first_part + part;
+    }
+    return importance->nodes[node].density;
+}

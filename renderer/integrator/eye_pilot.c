@@ -1,0 +1,195 @@
+/* eye_pilot.c: see eye_pilot.h. */
+#include "integrator/eye_pilot.h"
+
+#include "integrator/gather_path.h"
+#include "parallel_for.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each place that they see.
+ */
+enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHER_RAYS = 8, GRID_MAX = 4096 };
+/* As in shading.c. */
+static const float LOW_CONTRIBUTION = 0.03f;
+enum { ROULETTE_AFTER = 4 };
+/* Sampler keys apart from the picture's own. */
+static const uint64_t PILOT_SEED = 0x70696c6f74u;
+
+typedef struct place_list {
+    asked_place *places; /* owned */
+    uint32_t count, capacity;
+    bool out_of_memory;
+} place_list;
+
+static void add_place(place_list *list, vec3 position, vec3 normal)
+{
+    if (list->count == list->capacity) {
+        uint32_t capacity = list->capacity ? 2 * list->capacity : 1024;
+        asked_place *larger = realloc(list->places, capacity * sizeof *larger);
+        if (!larger) {
+            list->out_of_memory = true;
+            return;
+        }
+        list->places = larger;
+        list->capacity = capacity;
+    }
+    list->places[list->count++] = (asked_place){position, normal};
+}
+
+typedef struct row_places {
+    place_list gathered, seen;
+} row_places;
+
+typedef struct pilot_job {
+    transport t;
+    int width, height; /* of the grid */
+    float aspect;
+    row_places *rows; /* [height] */
+} pilot_job;
+
+/* On each side that the place's diffuse lobes take light from. */
+static void add_sides(const transport *t, const vertex *v, place_list *list)
+{
+    map_place at = transport_map_place(t, v);
+    if (!rgb_is_black(bsdf_gathered_reflection(&v->scattering)))
+        add_place(list, at.position, at.facing_normal);
+    if (!rgb_is_black(bsdf_gathered_transmission(&v->scattering)))
+        add_place(list, at.position, vec3_negate(at.facing_normal));
+}
+
+static void gather_places(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                          int path_vertex, place_list *list)
+{
+    int scatterings_left = t->settings->max_depth - path_vertex - 1;
+    for (uint32_t i = 0; scatterings_left >= 1 && i < GATHER_RAYS; i++) {
+        rng random = rng_make(where->key, (uint64_t)path_vertex, i);
+        vec2 u = sampler_2d_of(where, SAMPLE_GATHER, path_vertex, GATHER_RAYS, i);
+        bsdf_sample first;
+        vertex met;
+        gather_end end;
+        rgb known = rgb_gray(0.0f), weight;
+        if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, rng_float(&random), u, &first))
+            continue;
+        scene_ray ray = surface_ray(&v->hit, v->arrived, first.direction);
+        ray.skips_uv = true;
+        if (transport_meet(t, worker, ray, &met) &&
+            gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, &known, &end, &weight))
+            add_place(list, end.place.position, end.place.normal);
+    }
+}
+
+/* As shading.c follows an eye path, but for all that is light. */
+static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_places *out)
+{
+    const transport *t = &job->t;
+    const scene *s = t->s;
+    sampler where = sampler_make(t->settings->seed ^ PILOT_SEED, x, y, 0, 0);
+    vec2 within = sampler_2d(&where, SAMPLE_PIXEL, 0);
+    float time = s->has_motion ? sampler_2d(&where, SAMPLE_TIME, 0).x : 0.0f;
+    scene_ray ray = camera_generate_ray(&s->camera, ((float)x + within.x) / (float)job->width,
+                                        ((float)y + within.y) / (float)job->height, job->aspect,
+                                        sampler_2d(&where, SAMPLE_LENS, 0), time);
+    rgb throughput = rgb_gray(1.0f);
+    for (int path_vertex = 0; path_vertex < t->settings->max_depth; path_vertex++) {
+        vertex v;
+        bsdf_sample next;
+        if (!transport_trace(t, worker, ray, &v))
+            return;
+        throughput = rgb_mul(throughput, v.transmittance);
+        if (bsdf_has(&v.scattering, BSDF_GATHERED)) {
+            if (path_vertex > 0 && rgb_max(throughput) < LOW_CONTRIBUTION) {
+                add_sides(t, &v, &out->gathered);
+            } else {
+                add_sides(t, &v, &out->seen);
+                gather_places(t, worker, &v, &where, path_vertex, &out->gathered);
+            }
+        }
+        if (!bsdf_has(&v.scattering, BSDF_TRACED) ||
+            !bsdf_sample_direction(&v.scattering, BSDF_TRACED, BSDF_RADIANCE,
+                                   sampler_2d(&where, SAMPLE_LOBE, path_vertex).x,
+                                   sampler_2d(&where, SAMPLE_SCATTER, path_vertex), &next))
+            return;
+        throughput = rgb_mul(throughput, next.weight);
+        if (path_vertex >= ROULETTE_AFTER &&
+            !transport_survives(&throughput, sampler_2d(&where, SAMPLE_ROULETTE, path_vertex).x))
+            return;
+        ray = surface_ray(&v.hit, v.arrived, next.direction);
+    }
+}
+
+static void look_along_rows(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker_index)
+{
+    (void)block;
+    const pilot_job *job = user;
+    eye_worker worker = {.index = worker_index};
+    for (uint64_t row = begin; row < end; row++)
+        for (int x = 0; x < job->width && !run_is_cancelled(job->t.run); x++)
+            look(job, &worker, x, (int)row, &job->rows[row]);
+}
+
+/* Cells about as wide as high. */
+static void divide_frame(uint64_t photon_count, float aspect, int *out_width, int *out_height)
+{
+    uint64_t wanted = photon_count / PHOTONS_PER_PATH;
+    int paths = wanted < EYE_PATHS_MIN ? EYE_PATHS_MIN : wanted > EYE_PATHS_MAX ? EYE_PATHS_MAX : (int)wanted;
+    float width = sqrtf((float)paths * aspect);
+    *out_width = (int)fminf(fmaxf(width + 0.5f, 1.0f), (float)GRID_MAX);
+    int height = paths / *out_width;
+    *out_height = height < 1 ? 1 : height > GRID_MAX ? GRID_MAX : height;
+}
+
+static ag_status merge(const row_places *rows, int row_count, bool is_seen, place_importance *out_importance)
+{
+    uint32_t count = 0, at = 0;
+    for (int i = 0; i < row_count; i++) {
+        if (rows[i].gathered.out_of_memory || rows[i].seen.out_of_memory)
+            return AG_ERROR_MEMORY;
+        count += is_seen ? rows[i].seen.count : rows[i].gathered.count;
+    }
+    asked_place *all = malloc((count + 1) * sizeof *all);
+    if (!all)
+        return AG_ERROR_MEMORY;
+    for (int i = 0; i < row_count; i++) {
+        const place_list *list = is_seen ? &rows[i].seen : &rows[i].gathered;
+        if (list->count > 0)
+            memcpy(all + at, list->places, list->count * sizeof *all);
+        at += list->count;
+    }
+    ag_status status = place_importance_create(all, count, out_importance);
+    free(all);
+    return status;
+}
+
+ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot)
+{
+    *out_pilot = (eye_pilot){0};
+    pilot_job job = {.t = {.s = s, .run = run, .settings = settings}};
+    job.aspect = (float)settings->width / (float)settings->height;
+    divide_frame(settings->photon_count, job.aspect, &job.width, &job.height);
+    job.rows = calloc((size_t)job.height, sizeof *job.rows);
+    if (!job.rows)
+        return AG_ERROR_MEMORY;
+    eye_pilot made = {0};
+    ag_status status = parallel_for(run, (uint64_t)job.height, 1, look_along_rows, &job, AG_PHASE_PHOTONS, 0.0, 0.0);
+    if (status == AG_OK)
+        status = merge(job.rows, job.height, false, &made.gathered);
+    if (status == AG_OK)
+        status = merge(job.rows, job.height, true, &made.seen);
+    for (int i = 0; i < job.height; i++) {
+        free(job.rows[i].gathered.places);
+        free(job.rows[i].seen.places);
+    }
+    free(job.rows);
+    if (status == AG_OK)
+        *out_pilot = made;
+    else
+        eye_pilot_reset(&made);
+    return status;
+}
+
+void eye_pilot_reset(eye_pilot *pilot)
+{
+    place_importance_reset(&pilot->gathered);
+    place_importance_reset(&pilot->seen);
+}

@@ -1,0 +1,23 @@
+/* eye_pilot.h: where the picture will ask for light, found out beforehand by a few eye paths and gather rays.
+ * Rests on: Peter, Pietrek, "Importance Driven Construction of Photon Maps", 1998.
+ * Flow: camera -> [here] -> place_importance -> photon tracing. Threads: rows by the run's workers, merged in order.
+ *
+ * The eye paths are spread over the whole frame, as many whatever its resolution, crop, tile and samples are: so
+ * all parts of a picture, and all its sizes of one shape, have the same photons. */
+#ifndef AFTERGLOW_EYE_PILOT_H
+#define AFTERGLOW_EYE_PILOT_H
+
+#include "afterglow/afterglow.h"
+#include "place_importance.h"
+#include "scene.h"
+
+typedef struct eye_pilot {
+    place_importance gathered; /* places where the global map will be asked */
+    place_importance seen;     /* places where the caustic map will be */
+} eye_pilot;
+
+/* Reads of the settings: width over height, depth, number of photons, seed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot);
+void eye_pilot_reset(eye_pilot *pilot);
+
+#endif

@@ -1,0 +1,262 @@
+/* test_photon_aim.c: photons aimed at the inside of a room with a small window under the sky: many more of them arrive
+ * there, the light is that of the closed form, and all is the same for any number of threads.
+ * Threads: those of the tracing. */
+#include "photon_aim.h"
+
+#include "fixtures/test_scene.h"
+
+/* A room of 2 x 2 x 2 on a ground of 8 x 8, with a window of 0.5 x 0.5 in its ceiling, under a sky of radiance 1. */
+static const char *const ROOM =
+    "%s\nMaterial \"diffuse\" \"rgb reflectance\" [0.5 0.4 0.3]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-4 -4 -0.01  4 -4 -0.01  -4 4 -0.01  4 4 -0.01]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 -1 2  1 -1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 1 0  1 1 0  -1 1 2  1 1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  -1 1 0  -1 -1 2  -1 1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [1 -1 0  1 1 0  1 -1 2  1 1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 2  1 -1 2  -1 -0.25 2  1 -0.25 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 0.25 2  1 0.25 2  -1 1 2  1 1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 -0.25 2  -0.25 -0.25 2  -1 0.25 2  -0.25 0.25 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [0.25 -0.25 2  1 -0.25 2  0.25 0.25 2  1 0.25 2]\n";
+static const char *const SKY = "LightSource \"infinite\" \"rgb L\" [1 1 1]";
+static const double THROUGH_WINDOW = 3.14159265358979 * 0.5 * 0.5; /* W: pi radiance area */
+
+enum { PLACES = 8000, PHOTONS = 100000, SEEDS = 8 };
+
+static scene *room_scene(test_run *r, const char *lights)
+{
+    char text[4096];
+    snprintf(text, sizeof text, ROOM, lights);
+    return test_scene_create(r, text);
+}
+
+/* Asked for on the floor and the walls, from inside. */
+static place_importance ask_inside(void)
+{
+    asked_place *places = malloc(PLACES * sizeof *places);
+    place_importance importance;
+    assert_non_null(places);
+    rng random = test_random(6);
+    for (int i = 0; i < PLACES; i++) {
+        vec3 p = random_in_box(&random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){1.0f, 1.0f, 2.0f});
+        vec3 n = {0.0f, 0.0f, 1.0f};
+        switch (i % 5) {
+        case 0: p.z = 0.0f; break;
+        case 1: p.x = -1.0f, n = (vec3){1.0f, 0.0f, 0.0f}; break;
+        case 2: p.x = 1.0f, n = (vec3){-1.0f, 0.0f, 0.0f}; break;
+        case 3: p.y = -1.0f, n = (vec3){0.0f, 1.0f, 0.0f}; break;
+        default: p.y = 1.0f, n = (vec3){0.0f, -1.0f, 0.0f}; break;
+        }
+        places[i] = (asked_place){p, n};
+    }
+    assert_int_equal(place_importance_create(places, PLACES, &importance), AG_OK);
+    free(places);
+    return importance;
+}
+
+static bool is_inside(const photon *p)
+{
+    vec3 at = {p->position[0], p->position[1], p->position[2]};
+    vec3 to_middle = vec3_sub((vec3){0.0f, 0.0f, 1.0f}, at);
+    return fabsf(to_middle.x) < 1.001f && fabsf(to_middle.y) < 1.001f && fabsf(to_middle.z) < 1.001f &&
+           vec3_dot(to_middle, direction_decode(p->normal)) > 0.0f;
+}
+
+static photon_set trace(test_run *r, const scene *s, const place_importance *asked, uint64_t seed)
+{
+    photon_tracing_settings settings = {
+        .kind = PHOTON_GLOBAL, .wanted = PHOTONS / FEWER, .max_scatterings = 100, .seed = seed, .progress_end = 1.0};
+    emission_guide guide = {0};
+    trial_counts tried;
+    photon_set set;
+    uint32_t wanted;
+    if (asked) {
+        settings.asked = asked;
+        assert_int_equal(photon_aim_learn(s, &r->run, &settings, 0.8f, &guide, &tried, &wanted), AG_OK);
+        assert_non_null(guide.nodes);
+        assert_true(tried.paths > 0 && tried.rays >= tried.paths / 2 && tried.photons >= tried.asked &&
+                    tried.asked > 0);
+        settings.guide = &guide;
+    }
+    assert_int_equal(photon_tracing_run(s, &r->run, &settings, &set), AG_OK);
+    emission_guide_reset(&guide);
+    return set;
+}
+
+typedef struct result {
+    double share; /* of the photons, that lie inside */
+    double direct, direct_error, all, all_error;
+} result;
+
+static result trace_seeds(test_run *r, const scene *s, const place_importance *asked)
+{
+    result sum = {0};
+    double direct_squared = 0.0, all_squared = 0.0;
+    for (int seed = 0; seed < SEEDS; seed++) {
+        photon_set set = trace(r, s, asked, (uint64_t)seed);
+        double direct = 0.0, all = 0.0;
+        for (uint32_t i = 0; i < set.count; i++) {
+            if (!is_inside(&set.photons[i]))
+                continue;
+            double flux = (double)flux_decode(set.photons[i].flux).g / (double)set.emitted_paths;
+            sum.share += 1.0 / set.count / SEEDS;
+            all += flux;
+            direct += arrival_is_diffuse(set.photons[i].direction) ? 0.0 : flux;
+        }
+        const photon_books *b = &set.books;
+        for (int c = 0; c < 3; c++) {
+            assert_relative(b->stored[c] + b->cut[c] + b->thinned[c], b->arrived[c], 1e-3 * WIDER);
+            assert_relative(b->absorbed[c] + b->escaped[c] + b->lost[c] + b->truncated[c], b->emitted[c] + b->gained[c],
+                            1e-6);
+        }
+        sum.direct += direct / SEEDS, direct_squared += direct * direct / SEEDS;
+        sum.all += all / SEEDS, all_squared += all * all / SEEDS;
+        photon_set_reset(&set);
+    }
+    sum.direct_error = sqrt((direct_squared - sum.direct * sum.direct) / (SEEDS - 1));
+    sum.all_error = sqrt((all_squared - sum.all * sum.all) / (SEEDS - 1));
+    return sum;
+}
+
+/* Straight through the window comes pi radiance area, aimed or not; by way of walls and ground both say the same, and
+ * all within 3 sigma. */
+static void a_small_window_is_found_and_its_light_is_right(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    scene *s = room_scene(&r, SKY);
+    place_importance asked = ask_inside();
+    result plain = trace_seeds(&r, s, NULL), aimed = trace_seeds(&r, s, &asked);
+    print_message("inside: share %.4f plain, %.4f aimed; direct %.4f +- %.4f, %.4f +- %.4f of %.4f; all %.4f +- %.4f, "
+                  "%.4f +- %.4f\n",
+                  plain.share, aimed.share, plain.direct, plain.direct_error, aimed.direct, aimed.direct_error,
+                  THROUGH_WINDOW, plain.all, plain.all_error, aimed.all, aimed.all_error);
+    assert_close(plain.direct, THROUGH_WINDOW, 3.0 * plain.direct_error);
+    assert_close(aimed.direct, THROUGH_WINDOW, 3.0 * aimed.direct_error);
+    assert_close(aimed.all, plain.all, 3.0 * hypot(aimed.all_error, plain.all_error));
+    assert_true(aimed.share > 10.0 * plain.share / WIDER);
+    place_importance_reset(&asked);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+static void no_photon_is_more_than_five_times_as_bright(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    scene *s = room_scene(&r, SKY);
+    place_importance asked = ask_inside();
+    photon_set plain = trace(&r, s, NULL, 1), aimed = trace(&r, s, &asked, 1);
+    float most_plain = 0.0f, most_aimed = 0.0f;
+    for (uint32_t i = 0; i < plain.count; i++)
+        most_plain = fmaxf(most_plain, rgb_max(flux_decode(plain.photons[i].flux)));
+    for (uint32_t i = 0; i < aimed.count; i++)
+        most_aimed = fmaxf(most_aimed, rgb_max(flux_decode(aimed.photons[i].flux)));
+    assert_true(most_aimed <= 5.02f * most_plain);
+    photon_set_reset(&plain);
+    photon_set_reset(&aimed);
+    place_importance_reset(&asked);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+static void any_number_of_threads_has_the_same_photons(void **state)
+{
+    (void)state;
+    photon_set first = {0};
+    place_importance asked = ask_inside();
+    for (unsigned threads = 1; threads <= 3; threads++) {
+        test_run r;
+        test_run_init(&r, threads);
+        scene *s = room_scene(&r, SKY);
+        photon_set set = trace(&r, s, &asked, 7);
+        if (threads == 1) {
+            first = set;
+        } else {
+            assert_int_equal(set.count, first.count);
+            assert_int_equal(set.emitted_paths, first.emitted_paths);
+            assert_memory_equal(set.photons, first.photons, set.count * sizeof *set.photons);
+            photon_set_reset(&set);
+        }
+        scene_destroy(s);
+        test_run_reset(&r);
+    }
+    photon_set_reset(&first);
+    place_importance_reset(&asked);
+}
+
+static void expect_no_guide(const scene *s, test_run *r, photon_kind kind, const place_importance *asked)
+{
+    photon_tracing_settings settings = {.kind = kind, .wanted = 1000, .max_scatterings = 100, .asked = asked};
+    emission_guide guide;
+    trial_counts tried;
+    uint32_t wanted;
+    assert_int_equal(photon_aim_learn(s, &r->run, &settings, 0.8f, &guide, &tried, &wanted), AG_OK);
+    assert_null(guide.nodes);
+}
+
+/* Nothing asked for, asked for where no light comes, no lamp, nothing to be met, no traced matter. */
+static void where_there_is_nothing_to_aim_at_power_decides(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    place_importance inside = ask_inside(), nothing = {0}, elsewhere;
+    const asked_place far_away = {{0.0f, 0.0f, 500.0f}, {0.0f, 0.0f, 1.0f}};
+    assert_int_equal(place_importance_create(&far_away, 1, &elsewhere), AG_OK);
+    scene *s = room_scene(&r, SKY);
+    expect_no_guide(s, &r, PHOTON_GLOBAL, &nothing);
+    expect_no_guide(s, &r, PHOTON_GLOBAL, &elsewhere);
+    expect_no_guide(s, &r, PHOTON_CAUSTIC, &inside);
+    scene_destroy(s);
+    s = room_scene(&r, "");
+    expect_no_guide(s, &r, PHOTON_GLOBAL, &inside);
+    scene_destroy(s);
+    s = test_scene_create(&r, SKY);
+    expect_no_guide(s, &r, PHOTON_GLOBAL, &inside);
+    scene_destroy(s);
+    s = test_scene_create(&r, "LightSource \"point\" \"rgb I\" [1 1 1]");
+    expect_no_guide(s, &r, PHOTON_GLOBAL, &inside);
+    scene_destroy(s);
+    place_importance_reset(&inside);
+    place_importance_reset(&elsewhere);
+    test_run_reset(&r);
+}
+
+/* In a closed room with all of it asked for alike a guide would gain nothing: there is none. */
+static void a_room_that_is_lit_from_within_needs_no_aim(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    scene *s = test_scene_create(&r, "LightSource \"point\" \"rgb I\" [1 1 1]\nMaterial \"diffuse\"\n"
+                                     "Shape \"sphere\" \"float radius\" [1]");
+    asked_place *places = malloc(PLACES * sizeof *places);
+    place_importance asked;
+    assert_non_null(places);
+    rng random = test_random(8);
+    for (int i = 0; i < PLACES; i++) {
+        vec3 d = random_direction(&random);
+        places[i] = (asked_place){d, vec3_negate(d)};
+    }
+    assert_int_equal(place_importance_create(places, PLACES, &asked), AG_OK);
+    expect_no_guide(s, &r, PHOTON_GLOBAL, &asked);
+    place_importance_reset(&asked);
+    free(places);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_small_window_is_found_and_its_light_is_right),
+        cmocka_unit_test(no_photon_is_more_than_five_times_as_bright),
+        cmocka_unit_test(any_number_of_threads_has_the_same_photons),
+        cmocka_unit_test(where_there_is_nothing_to_aim_at_power_decides),
+        cmocka_unit_test(a_room_that_is_lit_from_within_needs_no_aim),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

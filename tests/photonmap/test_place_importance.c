@@ -1,0 +1,99 @@
+/* test_place_importance.c: the importance of a place is the share of questions per area around it, on its own side of a
+ * surface, and nothing elsewhere. Threads: one. */
+#include "place_importance.h"
+
+#include "fixtures/test_scene.h"
+
+enum { COUNT = 20000 };
+
+static asked_place *field(vec3 low, vec3 high, vec3 normal, uint32_t count)
+{
+    asked_place *places = malloc(count * sizeof *places);
+    assert_non_null(places);
+    rng random = test_random(count);
+    for (uint32_t i = 0; i < count; i++)
+        places[i] = (asked_place){random_in_box(&random, low, high), normal};
+    return places;
+}
+
+/* Evenly asked for, on a square of 3 x 2 that is turned by 30 degrees about x. */
+static void an_even_field_is_even(void **state)
+{
+    (void)state;
+    const float c = 0.8660254f, s = 0.5f;
+    asked_place *places = field((vec3){0.0f, 0.0f, 5.0f}, (vec3){3.0f, 2.0f, 5.0f}, (vec3){0.0f, -s, c}, COUNT);
+    for (int i = 0; i < COUNT; i++)
+        places[i].position = (vec3){places[i].position.x, c * places[i].position.y, 5.0f + s * places[i].position.y};
+    place_importance importance;
+    assert_int_equal(place_importance_create(places, COUNT, &importance), AG_OK);
+    rng random = test_random(1);
+    double sum = 0.0;
+    int empty = 0, tries = 20000;
+    for (int i = 0; i < tries; i++) {
+        float x = 3.0f * rng_float(&random), y = 2.0f * rng_float(&random);
+        vec3 place = {x, c * y, 5.0f + s * y};
+        float at = place_importance_at(&importance, place, (vec3){0.0f, -s, c});
+        sum += (double)at / tries;
+        empty += at == 0.0f;
+        assert_true(place_importance_at(&importance, place, (vec3){0.0f, s, -c}) == 0.0f);
+        place.z += 1.0f;
+        assert_true(place_importance_at(&importance, place, (vec3){0.0f, -s, c}) == 0.0f);
+    }
+    /* a cube that is cut askew counts by its edge, not by the area of the cut: right within a factor of two */
+    assert_true(sum > 0.5 / 6.0 && sum < 2.0 / 6.0);
+    assert_true(empty < tries / 100);
+    place_importance_reset(&importance);
+    free(places);
+}
+
+/* Half of the questions on a hundredth of the area. */
+static void what_is_asked_more_counts_more(void **state)
+{
+    (void)state;
+    asked_place *places = field((vec3){0.0f, 0.0f, 0.0f}, (vec3){1.0f, 1.0f, 0.0f}, (vec3){0.0f, 0.0f, 1.0f}, COUNT);
+    for (int i = 0; i < COUNT / 2; i++)
+        places[i].position = vec3_scale(places[i].position, 0.1f);
+    place_importance importance;
+    assert_int_equal(place_importance_create(places, COUNT, &importance), AG_OK);
+    rng random = test_random(2);
+    double near = 0.0, far = 0.0;
+    for (int i = 0; i < 1000; i++) {
+        vec3 place = random_in_box(&random, (vec3){0.0f, 0.0f, 0.0f}, (vec3){1.0f, 1.0f, 0.0f});
+        near += 1e-3 * (double)place_importance_at(&importance, vec3_scale(place, 0.1f), (vec3){0.0f, 0.0f, 1.0f});
+        place.x = 0.2f + 0.8f * place.x;
+        far += 1e-3 * (double)place_importance_at(&importance, place, (vec3){0.0f, 0.0f, 1.0f});
+    }
+    assert_relative(near, 50.5, 0.3);
+    assert_relative(far, 0.5, 0.3);
+    place_importance_reset(&importance);
+    free(places);
+}
+
+static void odd_fields_are_safe(void **state)
+{
+    (void)state;
+    place_importance importance;
+    asked_place same[100];
+    const vec3 up = {0.0f, 0.0f, 1.0f}, there = {1e6f, -3.0f, 2.0f};
+    assert_int_equal(place_importance_create(NULL, 0, &importance), AG_OK);
+    assert_true(place_importance_at(&importance, there, up) == 0.0f);
+    place_importance_reset(&importance);
+    for (int i = 0; i < 100; i++)
+        same[i] = (asked_place){there, up};
+    assert_int_equal(place_importance_create(same, 100, &importance), AG_OK);
+    float at = place_importance_at(&importance, there, up);
+    assert_true(at > 0.0f && isfinite(at));
+    assert_true(place_importance_at(&importance, (vec3){NAN, 0.0f, 0.0f}, up) == 0.0f);
+    assert_true(place_importance_at(&importance, (vec3){INFINITY, 0.0f, 0.0f}, up) == 0.0f);
+    place_importance_reset(&importance);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_even_field_is_even),
+        cmocka_unit_test(what_is_asked_more_counts_more),
+        cmocka_unit_test(odd_fields_are_safe),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
