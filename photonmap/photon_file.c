@@ -18,7 +18,7 @@
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
 
 /* To be raised whenever the layout, or what photons or irradiances are, changes. */
-enum { LAYOUT_VERSION = 5 };
+enum { LAYOUT_VERSION = 6 };
 enum { GLOBAL, CAUSTIC, MAP_COUNT, BEARERS = MAP_COUNT, TREE_COUNT };
 enum { PAGE = 4096, CHUNK_BYTES = 1 << 22 };
 static const uint32_t BYTE_ORDER_MARK = 0x01020304;
@@ -388,7 +388,7 @@ static void drop_claims(photon_map *map)
 {
     for (uint32_t i = 0; i < map->bearers.count; i++) {
         irradiance_slot *slot = photon_map_slot(map, i);
-        if (irradiance_word_state(load_relaxed_u32(slot)) != IRRADIANCE_READY)
+        if (!irradiance_word_is_ready(load_relaxed_u32(slot)))
             store_relaxed_u32(slot, 0);
     }
 }
