@@ -3,6 +3,8 @@
 #define _GNU_SOURCE
 #include "photon_file.h"
 
+#include "descriptor.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -232,8 +234,8 @@ static bool header_is_valid(const file_header *h, uint64_t got_bytes, uint64_t f
                             char *message, size_t message_size)
 {
     snprintf(message, message_size, "%s", "");
-    if (got_bytes < sizeof h->magic || memcmp(h->magic, MAGIC, sizeof MAGIC) != 0)
-        snprintf(message, message_size, "it is no photon map");
+    if (got_bytes == 0)
+        snprintf(message, message_size, "it is empty");
     else if (got_bytes < sizeof *h)
         snprintf(message, message_size, "it is cut short");
     else if (h->byte_order != BYTE_ORDER_MARK)
@@ -436,6 +438,7 @@ photon_file_result photon_file_open(const run_context *run, const char *path, co
         may_share = false;
         descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     }
+    descriptor = descriptor_beyond_standard(descriptor); /* what a host prints must not reach the map */
     if (descriptor < 0 && errno == ENOENT)
         return PHOTON_FILE_ABSENT;
     struct stat status;
@@ -456,6 +459,9 @@ photon_file_result photon_file_open(const run_context *run, const char *path, co
     } else if (got < 0) {
         snprintf(message, message_size, "%s", strerror(errno));
         result = PHOTON_FILE_FAILED;
+    } else if (memcmp(h.magic, MAGIC, (size_t)got < sizeof MAGIC ? (size_t)got : sizeof MAGIC) != 0) {
+        snprintf(message, message_size, "it is no photon map");
+        result = PHOTON_FILE_FOREIGN;
     } else if (header_is_valid(&h, (uint64_t)got, (uint64_t)status.st_size, key, message, message_size)) {
         result = open_maps(run, descriptor, &h, may_share, &file, maps, message, message_size);
     }

@@ -41,6 +41,7 @@ typedef struct photon_file {
 typedef enum photon_file_result {
     PHOTON_FILE_OPEN,
     PHOTON_FILE_ABSENT,
+    PHOTON_FILE_FOREIGN,  /* no photon map at all, and not empty: not to be replaced */
     PHOTON_FILE_REFUSED,  /* damaged, or made of something else; the message says what */
     PHOTON_FILE_FAILED,   /* cannot be read, or memory is short; the message says why */
     PHOTON_FILE_CANCELLED /* no message */

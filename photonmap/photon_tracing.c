@@ -373,10 +373,8 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
 {
     photon_set set = {0};
     *out_set = set;
-    if (s->light_count == 0 || !(rgb_max(s->light_power) > 0.0f)) {
-        log_once(run->log, AG_LOG_WARNING, "no light", "the scene has no light that emits: there are no photons");
+    if (s->light_count == 0 || !(rgb_max(s->light_power) > 0.0f))
         return AG_OK;
-    }
     if (!scene_sends_photons(s))
         return AG_OK; /* as the file wants it */
     if (s->shape_count == 0 && s->infinite_light_count > 0)

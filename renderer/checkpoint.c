@@ -5,11 +5,12 @@
 #include "output/atomic_file.h"
 #include "rays/bvh.h"
 #include "scene_hash.h"
+#include "text/input_file.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <zlib.h>
 
 static const char MAGIC[8] = "AGCHKPT\n";
@@ -210,11 +211,13 @@ ag_status ag_rendering_read_checkpoint(ag_rendering *r, const char *path)
     if (!r || !path)
         return AG_ERROR_ARGUMENT;
     char text[128] = "";
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        if (strerror_r(errno, text, sizeof text) != 0)
-            text[0] = '\0';
+    int descriptor = input_file_open(NULL, path, text, sizeof text);
+    if (descriptor < 0)
         return refuse(r, path, text, "");
+    FILE *file = fdopen(descriptor, "rb");
+    if (!file) {
+        close(descriptor);
+        return AG_ERROR_MEMORY;
     }
     checkpoint_header header, ours;
     checkpoint_header_make(r, &ours);

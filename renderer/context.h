@@ -8,6 +8,7 @@
 #include "film/film.h"
 #include "run_context.h"
 #include "scene.h"
+#include "text/input_file.h"
 
 struct ag_context {
     thread_pool *pool;
@@ -25,6 +26,7 @@ struct ag_context {
 
 struct ag_scene {
     scene *s;
+    input_files inputs; /* what it was read from */
 };
 
 /* When a phase began. */

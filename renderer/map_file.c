@@ -4,6 +4,7 @@
 #define _GNU_SOURCE
 #include "map_file.h"
 
+#include "descriptor.h"
 #include "output/atomic_file.h"
 #include "scene_hash.h"
 
@@ -75,6 +76,7 @@ static bool try_lock(trace_lock *lock)
 {
     struct stat ours, named;
     int descriptor = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NOCTTY, 0666);
+    descriptor = descriptor_beyond_standard(descriptor);
     if (descriptor < 0)
         return false;
     if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
@@ -136,6 +138,10 @@ static ag_status open_file(const map_request *r, opened_maps *out, bool *out_is_
             return AG_OK;
         }
         log_message(log, AG_LOG_ERROR, "'%s': the map does not fit: %s (--photon-map-refresh replaces it)", path, why);
+        return AG_ERROR_INPUT;
+    case PHOTON_FILE_FOREIGN:
+        log_message(log, AG_LOG_ERROR, "'%s': it is no photon map, and is never replaced by one: give another name",
+                    path);
         return AG_ERROR_INPUT;
     case PHOTON_FILE_FAILED: log_message(log, AG_LOG_ERROR, "'%s': %s", path, why); return AG_ERROR_INPUT;
     case PHOTON_FILE_CANCELLED: break;

@@ -5,6 +5,7 @@
 #include "film/adaptive.h"
 #include "film/debug_views.h"
 #include "floating_point.h"
+#include "odd_scene.h"
 #include "output/photon_dump.h"
 #include "rays/passage.h"
 #include "render_maps.h"
@@ -47,9 +48,11 @@ static void collect_counts(ag_rendering *r)
         statistics->rays_shadow += w->rays_shadow;
         statistics->rays_gather += w->rays_gather;
         statistics->rays_path += w->rays_path;
+        r->camera_rays += w->rays_camera;
+        r->camera_rays_met += w->camera_rays_met;
         statistics->samples_not_finite += w->samples_not_finite;
         cut += w->passages_cut;
-        w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = 0;
+        w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = w->camera_rays_met = 0;
         w->samples_not_finite = w->passages_cut = 0;
     }
     passage_warn_of_cut(r->context->log, cut);
@@ -62,7 +65,7 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .run = &context->run,
                    .settings = settings,
                    .layout = layout,
-                   .wants_layers = layout->sum_count > 3 || layout->needs_first_hit,
+                   .wants_layers = layout->needs_layers,
                    .wants_groups = aov_has(layout, SUM_GROUPS),
                    .has_lights = rgb_max(s->light_power) > 0.0f};
     for (uint32_t i = 0; i < s->light_count; i++)
@@ -176,8 +179,6 @@ static ag_status prepare(ag_rendering *r)
     ag_status status = create_film(r);
     if (status != AG_OK)
         return status;
-    if (!(rgb_max(r->s->light_power) > 0.0f))
-        log_once(context->log, AG_LOG_WARNING, "no light", "the scene has no light that emits: the picture is black");
     if (r->settings.integrator == AG_INTEGRATOR_PHOTONMAP)
         status = maps_create(context, r->s, &r->settings, &r->maps);
     if (status != AG_OK)
@@ -260,6 +261,8 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
     if (not_finite > 0)
         log_message(r->context->log, AG_LOG_WARNING, "%llu camera samples were not finite and count as black",
                     (unsigned long long)not_finite);
+    if (out_film)
+        odd_scene_warn(r);
     if (out_film)
         *out_film = r->film;
     else

@@ -29,7 +29,7 @@ void eye_workers_destroy(eye_worker *workers, unsigned count)
 static bool eye_worker_reserve(eye_worker *worker, const transport *t)
 {
     float most_indirect = t->settings->clamp_indirect > 0.0f ? t->settings->clamp_indirect : INFINITY;
-    worker->queue = sample_queue_create(t->wants_layers);
+    worker->queue = sample_queue_create();
     if (!worker->queue || !t->cache)
         return worker->queue != NULL;
     worker->batch = gather_batch_create(most_indirect);
@@ -133,11 +133,12 @@ static void render_pixel(tile_job *job, eye_worker *worker, int x, int y)
     ag_film *film = job->film;
     size_t pixel = (size_t)(y - film->y0) * (size_t)film->width + (size_t)(x - film->x0);
     uint32_t goal = film_goal(film, pixel, job->wanted);
+    bool with_layers = job->t->wants_layers || noise_lattice_holds(&film->noise, pixel);
     for (uint32_t i = film->counts[pixel]; i < goal; i++) {
         if (run_is_cancelled(&job->context->run))
             return;
         worker->sample = worker->queue->count;
-        render_sample(job, worker, x, y, i, sample_queue_begin(worker->queue, pixel));
+        render_sample(job, worker, x, y, i, sample_queue_begin(worker->queue, pixel, with_layers));
         if (should_finish(job->t, worker))
             finish_samples(job, worker);
     }
@@ -167,7 +168,7 @@ static void work_on_tiles(void *user, unsigned worker_index)
     eye_worker *worker = &job->workers[worker_index];
     float *times = job->film->views[VIEW_TILE_TIME];
     tile area;
-    worker->queue->count = 0;
+    worker->queue->count = worker->queue->layers_count = 0;
     if (worker->batch)
         gather_batch_reset(worker->batch);
     while (!run_is_cancelled(&job->context->run) && tile_scheduler_next(job->tiles, &area)) {

@@ -24,7 +24,8 @@ struct ag_rendering {
     eye_worker *workers;
     ag_film *film;
     uint64_t not_finite_before;
-    double seconds; /* of all passes */
+    uint64_t camera_rays, camera_rays_met; /* of all passes; the latter met a surface */
+    double seconds;                        /* of all passes */
 };
 
 #endif

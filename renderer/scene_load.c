@@ -9,6 +9,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* Copies them for the reader, which notes there what it uses; strings stay the caller's. */
 static ag_status copy_definitions(ag_context *context, const ag_definition *given, size_t count,
@@ -30,7 +31,7 @@ static ag_status copy_definitions(ag_context *context, const ag_definition *give
 }
 
 /* Reads and commits it. */
-static ag_status load(ag_context *context, const char *path, const definitions *d, scene *s)
+static ag_status load(ag_context *context, const char *path, const definitions *d, scene *s, input_files *inputs)
 {
     const color_config *colors;
     ag_status status = context_color_config(context, &colors);
@@ -40,7 +41,9 @@ static ag_status load(ag_context *context, const char *path, const definitions *
     s->color_config = colors;
     s->definitions = d;
     phase_begin begin = context_begin_phase();
+    context->run.inputs = inputs;
     status = scene_file_load(&context->run, path, s);
+    context->run.inputs = NULL;
     if (status != AG_OK)
         return status;
     s->definitions = NULL; /* it was borrowed */
@@ -77,12 +80,14 @@ ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_def
     scene *s = scene_create();
     ag_status status = copy_definitions(context, given, count, &d);
     if (status == AG_OK)
-        status = loaded && s ? load(context, path, &d, s) : AG_ERROR_MEMORY;
+        status = loaded && s ? load(context, path, &d, s, &loaded->inputs) : AG_ERROR_MEMORY;
     if (status == AG_OK) {
         loaded->s = s;
         *out_scene = loaded;
     } else {
         scene_destroy(s);
+        if (loaded)
+            input_files_reset(&loaded->inputs);
         free(loaded);
     }
     free(d.items);
@@ -95,6 +100,7 @@ void ag_scene_destroy(ag_scene *scene_to_destroy)
     if (!scene_to_destroy)
         return;
     scene_destroy(scene_to_destroy->s);
+    input_files_reset(&scene_to_destroy->inputs);
     free(scene_to_destroy);
 }
 
@@ -102,4 +108,11 @@ const char *ag_scene_film_file_name(const ag_scene *loaded)
 {
     const parameter *name = parameter_list_find(&loaded->s->film, "filename");
     return name && name->type == PARAMETER_STRING && name->count == 1 ? name->strings[0] : NULL;
+}
+
+bool ag_scene_was_read_from(const ag_scene *loaded, const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode) &&
+           input_files_has(&loaded->inputs, (uint64_t)status.st_dev, (uint64_t)status.st_ino);
 }

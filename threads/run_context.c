@@ -18,6 +18,7 @@ void run_context_init(run_context *run, thread_pool *pool, log_sink *log, ag_pro
     run->progress_fraction = 0.0;
     run->progress_time = 0.0;
     run->progress_phase = AG_PHASE_COUNT; /* none yet */
+    run->inputs = NULL;
     store_relaxed_u32(&run->stop, 0);
 }
 

@@ -23,7 +23,8 @@ typedef struct run_context {
     double progress_fraction;       /* the last fraction told */
     double progress_time;           /* when, in clock_seconds */
     ag_phase progress_phase;
-    atomic_u32 stop; /* run_stop bits: set seldom, read often; orders nothing else, so relaxed */
+    struct input_files *inputs; /* borrowed, or NULL: what is known of the files of the scene that is read (scene/) */
+    atomic_u32 stop;            /* run_stop bits: set seldom, read often; orders nothing else, so relaxed */
 } run_context;
 
 /* Borrows pool and log. */

@@ -86,6 +86,8 @@ static void stop_and_free(thread_pool *pool, unsigned started_count)
     free(pool);
 }
 
+static const size_t STACK_BYTES = (size_t)8 << 20;
+
 /* Starts the threads with their signals blocked, so that the program's handlers run on its own threads. Faults stay
  * open: they belong to the thread that caused them. Returns how many threads stand. */
 static unsigned start_threads(thread_pool *pool)
@@ -97,13 +99,18 @@ static unsigned start_threads(thread_pool *pool)
         sigdelset(&blocked, faults[i]);
     pthread_sigmask(SIG_SETMASK, &blocked, &callers);
     unsigned started_count = 0;
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes,
+                              STACK_BYTES); /* the limit of `ulimit -s`, which is the default, may be small */
     for (unsigned i = 1; i < pool->worker_count; i++) {
         pool->workers[i].pool = pool;
         pool->workers[i].index = i;
-        if (pthread_create(&pool->workers[i].thread, NULL, worker_main, &pool->workers[i]) != 0)
+        if (pthread_create(&pool->workers[i].thread, &attributes, worker_main, &pool->workers[i]) != 0)
             break;
         started_count++;
     }
+    pthread_attr_destroy(&attributes);
     pthread_sigmask(SIG_SETMASK, &callers, NULL);
     return started_count;
 }

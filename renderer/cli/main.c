@@ -1,10 +1,13 @@
 /* main.c: the program: scene -> picture -> files.
  * Threads: main alone. */
 #define _POSIX_C_SOURCE 200809L
+#include "file_conflicts.h"
+#include "large_stack.h"
 #include "options.h"
 #include "passes.h"
 #include "progress.h"
 #include "signals.h"
+#include "standard_files.h"
 #include "summary.h"
 
 #include <stdint.h>
@@ -86,6 +89,8 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
     if (o->no_clobber && is_there(o))
         return AG_OK;
     /* what was asked for is checked before the work */
+    if (file_conflicts_of_options(o))
+        return AG_ERROR_ARGUMENT;
     for (int i = 0; i < o->outfile_count && status == AG_OK; i++)
         status = ag_output_check(context, &o->output, o->outfiles[i]);
     if (status == AG_OK && o->stats)
@@ -117,7 +122,11 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
         if (status == AG_ERROR_ARGUMENT)
             status = AG_ERROR_SCENE; /* the name is the scene's, not the command line's */
         is_skipped = status == AG_OK && o->no_clobber && is_there(o);
+        if (status == AG_OK && !is_skipped && file_conflicts_of_options(o))
+            status = AG_ERROR_ARGUMENT;
     }
+    if (status == AG_OK && !is_skipped && file_conflicts_with_scene(o, scene))
+        status = AG_ERROR_ARGUMENT;
     if (status == AG_OK && !is_skipped)
         status = ag_render_settings_from_scene(context, scene, &settings);
     if (status == AG_OK && !is_skipped && !options_override(o, &settings)) {
@@ -241,7 +250,7 @@ static ag_status run_frames(options *o, progress *told)
     return status;
 }
 
-int main(int argc, char **argv)
+static int run_program(int argc, char **argv)
 {
     options o;
     options_result parsed = options_parse(argc, argv, &o);
@@ -258,4 +267,12 @@ int main(int argc, char **argv)
     ag_status status = o.frames.count > 0 ? run_frames(&o, &told) : run_in_context(&o, -1, &told);
     options_reset(&o);
     return exit_code(status);
+}
+
+int main(int argc, char **argv)
+{
+    if (!standard_files_fill())
+        return 3; /* there is nobody to tell */
+    signals_catch_abort();
+    return large_stack_call(run_program, argc, argv);
 }

@@ -85,7 +85,9 @@ static const option_line LINES[] = {
     {OPT_CROP, "cropwindow", "X0,X1,Y0,Y1", "part of the picture to render, each in [0, 1]"},
     {OPT_TILE, "tile", "I/N", "the I-th of N bands of the picture, from the top, from 1 on"},
     {OPT_INTEGRATOR, "integrator", "NAME", "photonmap (default) or path"},
-    {OPT_CACHE, "cache", "MODE", "irradiance at the photons: on-demand (default), precompute, or off"},
+    {OPT_CACHE, "cache", "MODE",
+     "irradiance at the photons: on-demand (default) and precompute give the\nsame bits; off computes it at every "
+     "gather hit instead, with other bits"},
     {OPT_ONLY, "only", "indirect", "leave out emission, and direct light at the first non-specular hit"},
     {OPT_PHOTONS, "photons", "N", "photons to store in the global map (default 1000000)"},
     {OPT_CAUSTIC_PHOTONS, "caustic-photons", "N",
@@ -313,29 +315,6 @@ static const option_line *option_line_of(int code)
     return &LINES[i];
 }
 
-static bool is_same(const char *a, const char *b) { return a && b && strcmp(a, b) == 0; }
-
-/* One file cannot hold two things. */
-static bool has_file_twice(const options *o)
-{
-    const char *map = o->render.photon_map_file;
-    if (is_same(map, o->stats) || is_same(map, o->photons_file)) {
-        fprintf(stderr, "afterglow: '%s' is to be written twice\n", map);
-        return true;
-    }
-    for (int i = 0; i < o->outfile_count; i++) {
-        bool is_twice = is_same(o->stats, o->outfiles[i]) || is_same(o->photons_file, o->outfiles[i]) ||
-                        is_same(map, o->outfiles[i]);
-        for (int k = 0; k < i; k++)
-            is_twice = is_twice || strcmp(o->outfiles[k], o->outfiles[i]) == 0;
-        if (is_twice) {
-            fprintf(stderr, "afterglow: '%s' is to be written twice\n", o->outfiles[i]);
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Frames would be written one over the other. */
 static bool has_frames_in_one_file(const options *o)
 {
@@ -466,7 +445,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
     }
     if (result == OPTIONS_RUN && o.frames.count > 1 && has_frames_in_one_file(&o))
         result = OPTIONS_EXIT_USAGE;
-    if (result == OPTIONS_RUN && (has_file_twice(&o) || has_idle_picture_option(&o) || has_picture_of_photons_only(&o)))
+    if (result == OPTIONS_RUN && (has_idle_picture_option(&o) || has_picture_of_photons_only(&o)))
         result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
         fprintf(stderr, "Try 'afterglow --help'.\n");

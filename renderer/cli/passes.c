@@ -5,7 +5,10 @@
 #include "signals.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,16 +42,32 @@ double passes_seconds(void)
 
 /* --- names and marks beside a picture --- */
 
+/* The picture's name with the suffix. Where that is longer than a file's name may be, the end of the picture's name is
+ * replaced by a number made of all of it (FNV-1a). */
 static char *beside(const char *outfile, const char *suffix)
 {
-    size_t size = strlen(outfile) + strlen(suffix) + 1;
+    enum { HASH_LENGTH = 17 }; /* a hyphen and 16 digits */
+    const char *slash = strrchr(outfile, '/'), *base = slash ? slash + 1 : outfile;
+    size_t folder = (size_t)(base - outfile), length = strlen(base), suffix_length = strlen(suffix);
+    size_t kept = length;
+    char hash[HASH_LENGTH + 1] = "";
+    if (length + suffix_length > NAME_MAX) {
+        uint64_t number = 0xcbf29ce484222325u;
+        for (size_t i = 0; i < length; i++)
+            number = (number ^ (unsigned char)base[i]) * 0x100000001b3u;
+        snprintf(hash, sizeof hash, "-%016llx", (unsigned long long)number);
+        kept = NAME_MAX - suffix_length - HASH_LENGTH;
+    }
+    size_t size = folder + kept + sizeof hash + suffix_length;
     char *name = malloc(size);
     if (name)
-        snprintf(name, size, "%s%s", outfile, suffix);
+        snprintf(name, size, "%.*s%s%s", (int)(folder + kept), outfile, hash, suffix);
     return name;
 }
 
 char *passes_checkpoint_name(const char *outfile) { return beside(outfile, CHECKPOINT); }
+
+char *passes_mark_name(const char *outfile) { return beside(outfile, UNFINISHED); }
 
 /* A pipe or device takes one picture, the last one. */
 static bool is_stream(const char *outfile)
@@ -57,30 +76,60 @@ static bool is_stream(const char *outfile)
     return stat(outfile, &info) == 0 && !S_ISREG(info.st_mode);
 }
 
-/* Before the first picture that is not the last one, so that whoever looks knows, whatever happens then. */
-static void mark_unfinished(const char *outfile)
+static bool is_pipe(const char *outfile)
 {
-    char *name = beside(outfile, UNFINISHED);
-    FILE *file = name ? fopen(name, "w") : NULL;
-    if (file) {
-        fprintf(file, "The picture beside this file is what there was before its render was complete.\n");
-        fclose(file);
+    struct stat info;
+    return stat(outfile, &info) == 0 && S_ISFIFO(info.st_mode);
+}
+
+/* The mark itself; 0 or -1 with errno. */
+static int write_mark(const char *name)
+{
+    static const char TEXT[] = "The picture beside this file is what there was before its render was complete.\n";
+    int file = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666);
+    if (file < 0)
+        return -1;
+    bool is_written = write(file, TEXT, sizeof TEXT - 1) == (ssize_t)sizeof TEXT - 1 && fsync(file) == 0;
+    int error = errno;
+    if (close(file) == 0 && is_written)
+        return 0;
+    errno = is_written ? errno : error;
+    return -1;
+}
+
+/* Before the first picture that is not the last one, so that whoever looks knows, whatever happens then. Without the
+ * mark the picture would be taken for a finished one: it is not written. Errors: AG_ERROR_OUTPUT, AG_ERROR_MEMORY. */
+static ag_status mark_unfinished(const char *outfile)
+{
+    char *name = passes_mark_name(outfile);
+    if (!name)
+        return AG_ERROR_MEMORY;
+    ag_status status = AG_OK;
+    if (write_mark(name) != 0) {
+        fprintf(
+            stderr,
+            "afterglow: error: cannot write '%s': %s; without this mark '%s' would be taken for a finished picture, "
+            "so the unfinished one is not written\n",
+            name, strerror(errno), outfile);
+        status = AG_ERROR_OUTPUT;
     }
     free(name);
+    return status;
 }
 
 static void mark_finished(const char *outfile)
 {
-    char *name = beside(outfile, UNFINISHED);
-    if (name)
-        unlink(name);
+    char *name = passes_mark_name(outfile);
+    if (name && unlink(name) != 0 && errno != ENOENT)
+        fprintf(stderr, "afterglow: warning: '%s' is complete, but its mark cannot be removed: '%s': %s\n", outfile,
+                name, strerror(errno));
     free(name);
 }
 
 bool passes_is_complete(const char *outfile)
 {
     struct stat info;
-    char *mark = beside(outfile, UNFINISHED);
+    char *mark = passes_mark_name(outfile);
     bool is_marked = !mark || access(mark, F_OK) == 0;
     free(mark);
     return !is_marked && stat(outfile, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
@@ -96,8 +145,11 @@ static ag_status write_pictures(passes *p, const ag_film *film, bool is_last)
         if (!is_last && is_stream(outfile))
             continue;
         if (!is_last)
-            mark_unfinished(outfile);
-        status = ag_film_write(p->context, film, &p->o->output, outfile);
+            status = mark_unfinished(outfile);
+        if (status == AG_OK && is_pipe(outfile) && p->o->verbosity >= 0)
+            fprintf(stderr, "afterglow: '%s' is a pipe: it is written when somebody reads it\n", outfile);
+        if (status == AG_OK)
+            status = ag_film_write(p->context, film, &p->o->output, outfile);
         if (is_last && status == AG_OK)
             mark_finished(outfile);
     }
@@ -229,6 +281,20 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
     return status;
 }
 
+/* The noise that is left, against what was asked for, and what would help most. */
+static void tell_noise(const ag_noise *noise, const ag_sample_counts *samples, const ag_render_settings *settings)
+{
+    if (noise->level < 0.0)
+        return;
+    fprintf(stderr, "afterglow: noise: %.2g, where white is 1; %.4g samples per pixel", noise->level, samples->mean);
+    if (settings->noise_level > 0.0f)
+        fprintf(stderr, ", from %d to %d, for --noise %g", samples->least, samples->most,
+                (double)settings->noise_level);
+    if (noise->hint[0])
+        fprintf(stderr, "\nafterglow: noise: %s", noise->hint);
+    fputc('\n', stderr);
+}
+
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result)
 {
@@ -236,6 +302,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     if (o->time_limit > 0.0)
         p.deadline = o->begun + o->time_limit;
     ag_film *film = NULL;
+    ag_noise noise = {.level = -1.0};
     *out_result = (passes_result){0};
     ag_status status = begin(&p, scene, settings);
     if (status == AG_OK) {
@@ -248,6 +315,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
         if (status == AG_OK && p.checkpoint && (out_result->is_partial || p.time_is_up))
             status = write_checkpoint(&p);
         out_result->samples = ag_rendering_sample_counts(p.rendering);
+        noise = ag_rendering_noise(p.rendering);
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
@@ -262,9 +330,8 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     if (status == AG_OK && p.time_is_up && o->verbosity >= 0)
         fprintf(stderr, "afterglow: time limit: the picture has %.4g of %d samples per pixel\n",
                 out_result->samples.mean, p.final);
-    if (status == AG_OK && has_picture && settings->noise_level > 0.0f && o->verbosity >= 0)
-        fprintf(stderr, "afterglow: noise: %.4g samples per pixel, from %d to %d\n", out_result->samples.mean,
-                out_result->samples.least, out_result->samples.most);
+    if (status == AG_OK && has_picture && o->verbosity >= (settings->noise_level > 0.0f ? 0 : 1))
+        tell_noise(&noise, &out_result->samples, settings);
     signals_end_rendering();
     ag_film_destroy(film);
     free(p.checkpoint);

@@ -22,6 +22,7 @@ static void on_stop(int number)
         _exit(128 + number);
     }
     stop_signal = number;
+    ag_end_waits();
     if (is_rendering)
         ag_context_pause(signalled_context);
     else
@@ -50,6 +51,25 @@ static void block(int how)
     sigaddset(&caught, SIGUSR1);
     sigaddset(&caught, SIGALRM);
     sigprocmask(how, &caught, NULL);
+}
+
+/* The text is written at once, since a signal handler may not print. */
+static void on_abort(int number)
+{
+    static const char TEXT[] =
+        "afterglow: error: a library has given up, for the reason above if there is one; most often threads or memory are "
+        "limited: try -t with fewer threads, or higher limits (ulimit -u, ulimit -v)\n";
+    (void)number;
+    ssize_t ignored = write(STDERR_FILENO, TEXT, sizeof TEXT - 1);
+    (void)ignored;
+    ag_abandon_files();
+    _exit(3);
+}
+
+void signals_catch_abort(void)
+{
+    struct sigaction action = {.sa_handler = on_abort, .sa_flags = (int)SA_RESETHAND};
+    sigaction(SIGABRT, &action, NULL);
 }
 
 void signals_catch(ag_context *context)

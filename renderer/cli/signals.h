@@ -7,6 +7,9 @@
 
 #include <stdbool.h>
 
+/* A library that aborts, since it cannot have threads or memory, ends the program with 3 and a message. */
+void signals_catch_abort(void);
+
 /* The first SIGINT, SIGTERM or SIGHUP lets the work end in order: rendering pauses, all else is cancelled. The second
  * ends the process at once. */
 void signals_catch(ag_context *context);

@@ -118,6 +118,10 @@ static void lay_out_sums(aov_layout *layout, aov_needs also)
     layout->needs_first_hit = layout->needs_nearest || layout->has_matte[0] || layout->has_matte[1] ||
                               aov_has(layout, SUM_ALPHA) || aov_has(layout, SUM_ALBEDO) ||
                               aov_has(layout, SUM_NORMAL) || aov_has(layout, SUM_IRRADIANCE);
+    int of_radiance = SUM_WIDTH[SUM_RADIANCE];
+    if (aov_has(layout, SUM_SQUARES))
+        of_radiance += SUM_WIDTH[SUM_SQUARES] + SUM_WIDTH[SUM_DEVELOPED];
+    layout->needs_layers = layout->sum_count > of_radiance || layout->needs_first_hit;
 }
 
 /* --- channels --- */

@@ -76,6 +76,7 @@ typedef struct aov_layout {
     film_channel *channels;         /* owned; R, G, B first */
     int channel_count;
     bool has_view[FILM_VIEW_COUNT], has_matte[CRYPTOMATTE_KIND_COUNT];
+    bool needs_layers; /* of each sample: more than its radiance */
     bool needs_first_hit, needs_nearest;
 } aov_layout;
 

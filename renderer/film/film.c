@@ -74,6 +74,7 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
         film->nearest = calloc(count, sizeof *film->nearest);
         is_whole = is_whole && film->nearest;
     }
+    is_whole = is_whole && noise_lattice_create(film->width, film->height, &film->noise) == AG_OK;
     if (is_whole)
         return film;
     ag_film_destroy(film);
@@ -96,6 +97,7 @@ void ag_film_destroy(ag_film *film)
         cryptomatte_reset(&film->mattes[i]);
     }
     free(film->pixels);
+    noise_lattice_reset(&film->noise);
     free(film->origin.defined);
     aov_layout_reset(&film->layout);
     free(film);
@@ -119,6 +121,7 @@ int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
             out_planes[count++] = (film_plane){film->slots[i], pixels * CRYPTOMATTE_SLOTS * sizeof *film->slots[i]};
     if (film->nearest)
         out_planes[count++] = (film_plane){film->nearest, pixels * sizeof *film->nearest};
+    out_planes[count++] = (film_plane){film->noise.sums, noise_lattice_bytes(&film->noise)};
     return count;
 }
 
@@ -172,8 +175,6 @@ static void add_layers(ag_film *film, size_t pixel, double *sums, const eye_samp
         add_rgb(sums + offset[SUM_PARTS] + 3 * i, l->parts[i]);
     for (int i = 0; aov_has(layout, SUM_GROUPS) && i <= layout->group_count; i++)
         add_rgb(sums + offset[SUM_GROUPS] + 3 * i, l->groups[i]);
-    if (aov_has(layout, SUM_SQUARES))
-        add_squares(film, sums + offset[SUM_SQUARES], sums + offset[SUM_DEVELOPED], sample->radiance);
     if (!first->is_hit)
         return;
 
@@ -219,8 +220,15 @@ void film_add(ag_film *film, size_t pixel, const eye_sample *sample)
     }
     film->counts[pixel]++;
     add_rgb(sums, sample->radiance);
-    if (sample->layers)
+    const int *offset = film->layout.offset;
+    if (aov_has(&film->layout, SUM_SQUARES))
+        add_squares(film, sums + offset[SUM_SQUARES], sums + offset[SUM_DEVELOPED], sample->radiance);
+    if (!sample->layers)
+        return;
+    if (film->layout.needs_layers)
         add_layers(film, pixel, sums, sample);
+    if (noise_lattice_holds(&film->noise, pixel))
+        noise_lattice_add(&film->noise, &film->response, pixel, sample);
 }
 
 /* --- the picture out --- */

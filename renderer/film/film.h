@@ -7,6 +7,7 @@
 
 #include "film/aov.h"
 #include "film/film_response.h"
+#include "film/noise.h"
 #include "film/pixel_filter.h"
 
 /* The surface nearest to the eye that a pixel's samples met, which is what depth and ids mean; no mean of them means
@@ -45,6 +46,8 @@ struct ag_film {
     cryptomatte_slot *slots[CRYPTOMATTE_KIND_COUNT]; /* [CRYPTOMATTE_SLOTS]; NULL where not asked for */
     film_nearest *nearest;                           /* NULL where not asked for */
     float *pixels;                                   /* 3, RGB: set by film_resolve */
+
+    noise_lattice noise; /* of some of them */
 };
 
 /* An empty film of the settings' crop; takes the layout, on failure too (it is then reset). NULL when out of memory. A
@@ -52,7 +55,8 @@ struct ag_film {
 struct ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
                             aov_layout *layout);
 
-/* The next sample of a pixel, by the number of the pixel. */
+/* The next sample of a pixel, by the number of the pixel; with layers where the layout or the noise's lattice wants
+ * them. */
 void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);
 
 /* Makes the pixels of the sums. */
@@ -63,7 +67,7 @@ typedef struct film_plane {
     void *bytes; /* the film's */
     size_t size;
 } film_plane;
-enum { FILM_PLANES_MAX = 5 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
+enum { FILM_PLANES_MAX = 6 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
 int film_planes(const struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
 
 /* How many samples a pixel is to have in a pass that brings all to `all`. */

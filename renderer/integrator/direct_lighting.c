@@ -87,7 +87,8 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
 rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
                           int path_vertex, rgb *by_group)
 {
-    rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f);
+    rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f), *sky = &worker->direct_from_sky;
+    *sky = rgb_gray(0.0f);
     if (!t->has_lights)
         return from_lamps;
     int lamp_count = t->light_samples, scatter_count = t->scatter_samples;
@@ -98,6 +99,8 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
         vec2 u = sampler_2d_of(where, SAMPLE_LIGHT, path_vertex, (uint32_t)lamp_count, (uint32_t)i);
         lamp_light sample = direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, lamp_count, scatter_count);
         from_lamps = rgb_add(from_lamps, sample.radiance);
+        if (!rgb_is_black(sample.radiance) && t->s->lights[sample.lamp].kind == LIGHT_INFINITE)
+            *sky = rgb_add(*sky, rgb_scale(sample.radiance, lamp_share));
         if (by_group && !rgb_is_black(sample.radiance))
             add_to_group(by_group, &t->s->lights[sample.lamp], rgb_scale(sample.radiance, lamp_share));
     }
@@ -117,6 +120,7 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
                                                lamp_count, scatter_count, of_group ? groups.of_group : NULL);
             by_scattering = rgb_add(by_scattering, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
             rgb reflected = rgb_scale(rgb_mul(met.transmittance, scattered.weight), scatter_share);
+            *sky = rgb_add(*sky, rgb_mul(escaped, reflected));
             for (int k = 0; of_group && k <= LIGHT_GROUPS_MAX; k++)
                 by_group[k] = rgb_add(by_group[k], rgb_mul(of_group[k], reflected));
             continue;

@@ -35,6 +35,7 @@ typedef struct first_hit {
 
 typedef struct sample_layers {
     rgb parts[LIGHT_PART_COUNT];
+    rgb sky; /* of the part DIRECT, from infinite lights */
     rgb groups[LIGHT_GROUPS_MAX + 1];
     first_hit first;
 } sample_layers;

@@ -47,8 +47,8 @@ static rgb gathered_share(const bsdf *b, vec3 direction)
                  all.b > 0.0f ? gathered.b / all.b : 0.0f};
 }
 
-/* shares NULL: parts are not asked for. */
-static float add_light(eye_sample *sample, const part_shares *shares, int scatterings, rgb light_brought)
+/* shares NULL: parts are not asked for. is_sky: an infinite light's. */
+static float add_light(eye_sample *sample, const part_shares *shares, int scatterings, rgb light_brought, bool is_sky)
 {
     float kept = eye_sample_bound(sample, scatterings, light_brought);
     if (kept < 1.0f)
@@ -56,6 +56,8 @@ static float add_light(eye_sample *sample, const part_shares *shares, int scatte
     sample->radiance = rgb_add(sample->radiance, light_brought);
     for (int i = 0; shares && i < LIGHT_PART_COUNT; i++)
         eye_sample_note(sample, (light_part)i, rgb_mul(light_brought, shares->of[i]));
+    if (shares && is_sky)
+        sample->layers->sky = rgb_add(sample->layers->sky, rgb_mul(light_brought, shares->of[PART_DIRECT]));
     return kept;
 }
 
@@ -63,7 +65,7 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
                            eye_sample *in_out)
 {
     const ag_render_settings *settings = t->settings;
-    bool is_whole = settings->only == AG_ONLY_ALL, wants_parts = aov_has(t->layout, SUM_PARTS);
+    bool is_whole = settings->only == AG_ONLY_ALL, wants_parts = in_out->layers != NULL;
     rgb throughput = rgb_gray(1.0f);
     vec3 scattered_from = ray.origin, scattered_normal = {0.0f, 0.0f, 0.0f};
     float scattered_pdf = 0.0f;      /* 0: the eye or a smooth lobe */
@@ -89,11 +91,12 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
                 rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
                 rgb escaped = direct_light_escaped(t, scattered_from, scattered_normal, ray.direction, scattered_pdf, 1,
                                                    1, by_group);
-                float kept = add_light(in_out, wanted_shares, path_vertex, rgb_mul(throughput, escaped));
+                float kept = add_light(in_out, wanted_shares, path_vertex, rgb_mul(throughput, escaped), true);
                 eye_sample_add_groups(in_out, by_group, rgb_scale(throughput, kept));
             }
             return;
         }
+        worker->camera_rays_met += path_vertex == 0;
         if (path_vertex == 0 && t->wants_layers)
             first_hit_fill(t, worker, &v, where, &in_out->layers->first);
         rgb emitted = transport_emission(t, &v);
@@ -102,7 +105,7 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
             if (scattered_pdf > 0.0f)
                 weight = direct_light_scatter_weight(t, scattered_from, scattered_normal, &v, scattered_pdf, 1, 1);
             rgb light_seen = rgb_scale(rgb_mul(throughput, emitted), weight);
-            float kept = add_light(in_out, wanted_shares, path_vertex, light_seen);
+            float kept = add_light(in_out, wanted_shares, path_vertex, light_seen, false);
             if (t->wants_groups)
                 eye_sample_add_group(in_out, v.lamp->group, rgb_scale(light_seen, kept));
         }
@@ -119,7 +122,9 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
             part_shares there;
             if (wants_parts && is_lit)
                 there = part_shares_scatter(&shares, gathered_share(&v.scattering, direct.direction));
-            float kept = add_light(in_out, wants_parts && is_lit ? &there : NULL, path_vertex + 1, light_brought);
+            bool is_sky = is_lit && t->s->lights[direct.lamp].kind == LIGHT_INFINITE;
+            float kept =
+                add_light(in_out, wants_parts && is_lit ? &there : NULL, path_vertex + 1, light_brought, is_sky);
             if (t->wants_groups && is_lit)
                 eye_sample_add_group(in_out, t->s->lights[direct.lamp].group, rgb_scale(light_brought, kept));
         }

@@ -5,17 +5,14 @@
 
 #include <stdlib.h>
 
-enum { CAPACITY_WITH_LAYERS = GATHER_BATCH_SAMPLES / 8 };
-
-sample_queue *sample_queue_create(bool with_layers)
+sample_queue *sample_queue_create(void)
 {
     sample_queue *q = large_alloc(sizeof *q);
     if (!q)
         return NULL;
-    q->count = 0;
-    q->capacity = with_layers ? CAPACITY_WITH_LAYERS : GATHER_BATCH_SAMPLES;
-    q->layers = with_layers ? malloc(CAPACITY_WITH_LAYERS * sizeof *q->layers) : NULL;
-    if (!with_layers || q->layers)
+    q->count = q->layers_count = 0;
+    q->layers = malloc(SAMPLE_QUEUE_LAYERS * sizeof *q->layers);
+    if (q->layers)
         return q;
     free(q);
     return NULL;
@@ -28,13 +25,14 @@ void sample_queue_destroy(sample_queue *q)
     free(q);
 }
 
-eye_sample *sample_queue_begin(sample_queue *q, size_t pixel)
+eye_sample *sample_queue_begin(sample_queue *q, size_t pixel, bool with_layers)
 {
-    uint32_t number = q->count++;
-    queued_sample *s = &q->samples[number];
-    *s = (queued_sample){.sample = {.layers = q->layers ? &q->layers[number] : NULL}, .pixel = pixel};
-    if (q->layers)
-        q->layers[number] = (sample_layers){0};
+    queued_sample *s = &q->samples[q->count++];
+    *s = (queued_sample){.pixel = pixel};
+    if (with_layers) {
+        s->sample.layers = &q->layers[q->layers_count++];
+        *s->sample.layers = (sample_layers){0};
+    }
     return &s->sample;
 }
 
@@ -53,15 +51,17 @@ static void scale_layers(sample_layers *layers, float factor)
 {
     for (int i = 0; i < LIGHT_PART_COUNT; i++)
         layers->parts[i] = rgb_scale(layers->parts[i], factor);
+    layers->sky = rgb_scale(layers->sky, factor);
     for (int i = 0; i <= LIGHT_GROUPS_MAX; i++)
         layers->groups[i] = rgb_scale(layers->groups[i], factor);
 }
 
 /* Of samples that are too bright all parts are scaled alike. false: it was not finite. */
-static bool bound_sample(const film_response *response, eye_sample *sample)
+static bool bound_sample(const struct ag_film *film, eye_sample *sample)
 {
+    const film_response *response = &film->response;
     bool is_finite = rgb_is_finite(sample->radiance);
-    for (int i = 0; sample->layers && i < LIGHT_PART_COUNT; i++)
+    for (int i = 0; sample->layers && film->layout.needs_layers && i < LIGHT_PART_COUNT; i++)
         is_finite = is_finite && rgb_is_finite(sample->layers->parts[i]);
     if (!is_finite) {
         sample->radiance = rgb_gray(0.0f);
@@ -88,9 +88,9 @@ uint32_t sample_queue_deliver(sample_queue *q, gathered_light *gathered, uint32_
             add_gathered(s, &gathered[i], gathered_group);
             gathered[i] = (gathered_light){0};
         }
-        not_finite += !bound_sample(&film->response, s);
+        not_finite += !bound_sample(film, s);
         film_add(film, q->samples[i].pixel, s);
     }
-    q->count = 0;
+    q->count = q->layers_count = 0;
     return not_finite;
 }

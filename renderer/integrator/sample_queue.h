@@ -12,21 +12,26 @@ typedef struct queued_sample {
     size_t pixel; /* of the film */
 } queued_sample;
 
+enum { SAMPLE_QUEUE_LAYERS = GATHER_BATCH_SAMPLES / 8 }; /* samples with layers, which are large */
+
 typedef struct sample_queue {
-    uint32_t count, capacity;
-    sample_layers *layers; /* [capacity], or NULL */
+    uint32_t count, layers_count;
+    sample_layers *layers; /* [SAMPLE_QUEUE_LAYERS] */
     queued_sample samples[GATHER_BATCH_SAMPLES];
 } sample_queue;
 
-/* Empty; NULL when out of memory. With layers it holds fewer samples. */
-sample_queue *sample_queue_create(bool with_layers);
+/* Empty; NULL when out of memory. */
+sample_queue *sample_queue_create(void);
 void sample_queue_destroy(sample_queue *q); /* NULL is fine */
 
-static inline bool sample_queue_is_full(const sample_queue *q) { return q->count == q->capacity; }
+static inline bool sample_queue_is_full(const sample_queue *q)
+{
+    return q->count == GATHER_BATCH_SAMPLES || q->layers_count == SAMPLE_QUEUE_LAYERS;
+}
 
 /* The next sample, emptied, of a queue that is not full; q->count was its number. Those of a pixel are begun in their
  * order. */
-eye_sample *sample_queue_begin(sample_queue *q, size_t pixel);
+eye_sample *sample_queue_begin(sample_queue *q, size_t pixel, bool with_layers);
 
 /* Adds all samples to their pixels, in their order; the queue is empty then. gathered: [count], what is still to be
  * added to each, black afterwards; or NULL. gathered_group: which group of lights it is of. Returns how many were not

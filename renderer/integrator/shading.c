@@ -13,6 +13,7 @@ enum { ROULETTE_AFTER = 4 };
 /* What a diffuse place sends on: its parts, but for what is gathered, which comes to the sample later. */
 typedef struct diffuse_light {
     rgb direct, caustic, indirect;
+    rgb sky; /* of the direct light, from infinite lights */
 } diffuse_light;
 
 static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
@@ -21,7 +22,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
     const ag_render_settings *settings = t->settings;
     int scatterings_left = settings->max_depth - path_vertex;
     bool is_whole = settings->only == AG_ONLY_ALL;
-    diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};
+    diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};
     if (scatterings_left < 1)
         return sum;
     if (is_whole && path_vertex > 0 && rgb_max(throughput) < LOW_CONTRIBUTION) {
@@ -36,8 +37,10 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
         sum.indirect = rgb_scale(all, AG_INV_PI);
         return sum;
     }
-    if (is_whole)
+    if (is_whole) {
         sum.direct = direct_light_gathered(t, worker, v, where, path_vertex, by_group);
+        sum.sky = worker->direct_from_sky;
+    }
     sum.caustic = transport_caustics(t, worker, v);
     if (scatterings_left >= 2)
         final_gather(t, worker, v, where, path_vertex, scatterings_left, throughput);
@@ -64,6 +67,8 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
     eye_sample_note(sample, is_first ? PART_DIRECT : PART_SPECULAR, direct);
     eye_sample_note(sample, is_first ? PART_CAUSTIC : PART_SPECULAR, caustic);
     eye_sample_note(sample, is_first ? PART_INDIRECT : PART_SPECULAR, indirect);
+    if (is_first && sample->layers)
+        sample->layers->sky = rgb_scale(rgb_mul(throughput, diffuse->sky), kept_direct);
     if (by_group) {
         eye_sample_add_groups(sample, by_group, rgb_scale(throughput, kept_direct));
         eye_sample_add_group(sample, (uint32_t)t->layout->group_count, rgb_add(caustic, indirect));
@@ -98,6 +103,7 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
             }
             return;
         }
+        worker->camera_rays_met += path_vertex == 0;
         if (path_vertex == 0 && t->wants_layers)
             first_hit_fill(t, worker, &v, where, &in_out->layers->first);
 

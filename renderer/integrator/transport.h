@@ -21,7 +21,7 @@ typedef struct transport {
     const incident_light *incident; /* likewise, what guides gathers; NULL: nothing */
     const ag_render_settings *settings;
     const aov_layout *layout;  /* what the film wants beside radiance */
-    bool wants_layers;         /* anything */
+    bool wants_layers;         /* of each sample: more than its radiance */
     bool wants_groups;         /* light by the groups of its lamps */
     bool has_lights;           /* any with power */
     bool can_meet_lights;      /* area or infinite ones: those that scattered rays find */
@@ -33,6 +33,8 @@ typedef struct transport {
 typedef struct eye_worker {
     _Alignas(64) unsigned index; /* the worker's */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
+    uint64_t camera_rays_met;                  /* those that met a surface */
+    rgb direct_from_sky;                       /* of the last direct_light_gathered, what infinite lights gave */
     uint64_t samples_not_finite, passages_cut; /* the latter: ways across more interfaces than passage.h follows */
     arena *scratch;                            /* for neighbours; what render.c has tried out beforehand always fits */
     gather_batch *batch;                       /* of the samples under way; NULL for path tracing */

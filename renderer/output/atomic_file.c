@@ -5,10 +5,12 @@
 #include "output/atomic_file.h"
 
 #include "atomics.h"
+#include "descriptor.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +20,11 @@
 #include <unistd.h>
 
 enum { PENDING_COUNT = 8, LINK_LIMIT = 40, NAME_TRIES = 100, SUFFIX_LENGTH = 6 };
+enum { LOOK_UP_EVERY_MS = 20 }; /* while a reader is waited for */
+
+static atomic_u32 no_more_waits; /* stands alone, so relaxed */
+
+void atomic_file_end_waits(void) { store_relaxed_u32(&no_more_waits, 1); }
 
 /* A temporary file that a signal handler could remove. Whoever claims a slot fills it, then shows it. */
 enum { SLOT_FREE, SLOT_CLAIMED, SLOT_SHOWN };
@@ -50,6 +57,38 @@ static int close_quietly(int fd)
         return 0;
     /* On Linux the descriptor is gone after EINTR too. */
     return close(fd) == 0 || errno == EINTR ? 0 : -1;
+}
+
+/* Opens what is no regular file, without waiting in open itself, which no signal would end. */
+static int open_special(const char *path)
+{
+    for (;;) {
+        int fd = descriptor_beyond_standard(open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK));
+        if (fd >= 0 || errno != ENXIO) /* ENXIO: a FIFO that nobody reads, or a device that is not there */
+            return fd;
+        struct stat status;
+        if (load_relaxed_u32(&no_more_waits) || stat(path, &status) != 0 || !S_ISFIFO(status.st_mode)) {
+            errno = ENXIO;
+            return -1;
+        }
+        const struct timespec nap = {0, LOOK_UP_EVERY_MS * 1000000L};
+        nanosleep(&nap, NULL);
+    }
+}
+
+/* Waits until a pipe or device takes something. 0, or an errno. */
+static int wait_until_writable(int fd)
+{
+    for (;;) {
+        struct pollfd at = {.fd = fd, .events = POLLOUT};
+        int ready = poll(&at, 1, LOOK_UP_EVERY_MS);
+        if (ready > 0)
+            return 0; /* where there is an error, write says which */
+        if (ready < 0 && errno != EINTR)
+            return errno;
+        if (load_relaxed_u32(&no_more_waits))
+            return EINTR;
+    }
 }
 
 static pending_slot *show_pending(int folder_fd, const char *name)
@@ -155,6 +194,7 @@ static int create_temporary(output *out)
         out->slot = show_pending(out->folder_fd, out->temporary_name);
         out->fd =
             openat(out->folder_fd, out->temporary_name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+        out->fd = descriptor_beyond_standard(out->fd);
         if (out->fd >= 0)
             return 0;
         const int error = errno;
@@ -200,7 +240,7 @@ static ag_status begin(const char *path, output *out, char *message, size_t mess
     if (exists && S_ISDIR(status.st_mode))
         return failure(path, "", EISDIR, message, message_size);
     if (exists && !S_ISREG(status.st_mode)) {
-        out->fd = open(resolved, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+        out->fd = open_special(resolved);
         return out->fd >= 0 ? AG_OK : failure(path, "", errno, message, message_size);
     }
     if (!exists && errno != ENOENT && errno != ENOTDIR && errno != EACCES)
@@ -243,9 +283,15 @@ static ag_status begin(const char *path, output *out, char *message, size_t mess
 static int write_all(int fd, const void *bytes, size_t size)
 {
     const char *next = bytes;
+    struct stat status;
+    const bool may_wait = fstat(fd, &status) == 0 && !S_ISREG(status.st_mode);
     while (size > 0) {
-        const ssize_t written = write(fd, next, size);
-        if (written < 0 && errno == EINTR)
+        const int error = may_wait ? wait_until_writable(fd) : 0;
+        if (error != 0)
+            return error;
+        /* what poll promises fits at least PIPE_BUF bytes, also where the descriptor would wait for more */
+        const ssize_t written = write(fd, next, may_wait && size > PIPE_BUF ? PIPE_BUF : size);
+        if (written < 0 && (errno == EINTR || errno == EAGAIN))
             continue;
         if (written <= 0)
             return written < 0 ? errno : ENOSPC;

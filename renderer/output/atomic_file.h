@@ -14,8 +14,8 @@ extern "C" {
 /* Writes a temporary file ".NAME.XXXXXX" in the folder of path, fsync, rename over path, fsync of the folder. An
  * existing file keeps its permissions; a new one gets 0666 less the umask. A symbolic link stays, what it points to is
  * replaced. Where path is no regular file (a FIFO, a device) or names an open descriptor (/dev/stdout, /dev/fd/N), the
- * bytes are written to it directly. On failure nothing is left behind. Errors: AG_ERROR_OUTPUT, with path and reason in
- * message (always terminated). */
+ * bytes are written to it directly; a FIFO's reader is waited for, until atomic_file_end_waits. On failure nothing is
+ * left behind. Errors: AG_ERROR_OUTPUT, with path and reason in message (always terminated). */
 ag_status atomic_file_write(const char *path, const void *bytes, size_t size, char *message, size_t message_size);
 
 /* The same of bytes that lie apart, one behind the other. */
@@ -34,6 +34,10 @@ ag_status atomic_file_write_by(const char *path, atomic_file_fill *fill, void *u
 
 /* Whether atomic_file_write could begin now; found out by creating the temporary file and removing it. */
 ag_status atomic_file_check(const char *path, char *message, size_t message_size);
+
+/* From now on nobody waits for the reader of a FIFO or of standard output: where one is not ready, the writing fails.
+ * For the handler of a signal: async-signal-safe. */
+void atomic_file_end_waits(void);
 
 /* Removes the temporary files that are being written at this moment (of the first 8 writers). Async-signal-safe: for
  * the handler of a signal that ends the process. A write that goes on after it fails. */

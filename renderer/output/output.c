@@ -194,3 +194,5 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
 }
 
 void ag_abandon_files(void) { atomic_file_unlink_pending(); }
+
+void ag_end_waits(void) { atomic_file_end_waits(); }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
+#include <sys/stat.h>
 #include <vector>
 
 using namespace ag_color;
@@ -45,6 +46,9 @@ const std::vector<const char *> LIKELY_REC709 = {"Linear"};
 OCIO::ConstConfigRcPtr config_from_file(const char *path, const char *named_by)
 {
     try {
+        struct stat status;
+        if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) /* a FIFO would be waited for */
+            throw OCIO::Exception("it is not a regular file");
         return OCIO::Config::CreateFromFile(path);
     } catch (const OCIO::Exception &exception) {
         throw OCIO::Exception(

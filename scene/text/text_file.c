@@ -1,36 +1,99 @@
 /* text_file.c: see text_file.h. zlib reads plain and gzip files alike.
  * Threads: any. */
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE /* memfd_create */
 #include "text/text_file.h"
+
+#include "descriptor.h"
+#include "text/input_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
-/* A small gzip file can hold any amount; no scene's text is as large as this. */
 static const size_t MAX_BYTES = (size_t)16 << 30;
 static const size_t CHUNK_BYTES = (size_t)1 << 20;
+enum { LOOK_UP_EVERY_MS = 50 }; /* for cancellation */
 
-static int open_descriptor(const char *path)
+size_t text_file_max_bytes(void)
 {
-    if (strcmp(path, "-") == 0)
-        return dup(STDIN_FILENO);
-    return open(path, O_RDONLY | O_CLOEXEC);
+    long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
+    size_t half = pages > 0 && page_bytes > 0 ? (size_t)pages / 2 * (size_t)page_bytes : MAX_BYTES;
+    return half < MAX_BYTES ? half : MAX_BYTES;
+}
+
+static ag_status refuse_size(char *error, size_t error_size)
+{
+    snprintf(error, error_size, "it is larger than %zu MiB, which is the most", text_file_max_bytes() >> 20);
+    return AG_ERROR_INPUT;
+}
+
+static bool is_cancelled(const run_context *run) { return run && run_is_cancelled(run); }
+
+/* Moves what a pipe or a device brings into memory that is read like a file; zlib alone would wait for it, and not look
+ * up when the run is cancelled. */
+static ag_status take_stream(const run_context *run, int from, int to, char *error, size_t error_size)
+{
+    size_t taken = 0;
+    char chunk[1 << 14];
+    for (;;) {
+        struct pollfd at = {.fd = from, .events = POLLIN};
+        int ready = poll(&at, 1, LOOK_UP_EVERY_MS);
+        if (is_cancelled(run))
+            return AG_CANCELLED;
+        if (ready == 0 || (ready < 0 && errno == EINTR))
+            continue;
+        ssize_t got = read(from, chunk, sizeof chunk);
+        if (got < 0 && (errno == EINTR || errno == EAGAIN))
+            continue;
+        if (got == 0)
+            return lseek(to, 0, SEEK_SET) == 0 ? AG_OK : AG_ERROR_INPUT;
+        taken += got > 0 ? (size_t)got : 0;
+        if (taken > text_file_max_bytes())
+            return refuse_size(error, error_size);
+        if (got < 0 || write(to, chunk, (size_t)got) != got) {
+            snprintf(error, error_size, "%s", strerror(errno));
+            return AG_ERROR_INPUT;
+        }
+    }
+}
+
+static ag_status open_standard_input(const run_context *run, char *error, size_t error_size, int *out_descriptor)
+{
+    struct stat status;
+    *out_descriptor = fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0);
+    if (*out_descriptor < 0 || fstat(*out_descriptor, &status) != 0) {
+        snprintf(error, error_size, "%s", strerror(errno));
+        return AG_ERROR_INPUT;
+    }
+    if (S_ISREG(status.st_mode))
+        return AG_OK;
+    int memory = descriptor_beyond_standard(memfd_create("afterglow standard input", MFD_CLOEXEC));
+    ag_status result = AG_ERROR_MEMORY;
+    if (memory >= 0)
+        result = take_stream(run, *out_descriptor, memory, error, error_size);
+    close(*out_descriptor);
+    *out_descriptor = memory;
+    return result;
 }
 
 /* Reads until the end; *file holds what there is, also on failure. */
-static ag_status read_all(gzFile stream, size_t expected_bytes, char *error, size_t error_size, text_file *file)
+static ag_status read_all(const run_context *run, gzFile stream, size_t expected_bytes, char *error, size_t error_size,
+                          text_file *file)
 {
     size_t capacity = expected_bytes + CHUNK_BYTES + 1;
     file->text = malloc(capacity);
     if (!file->text)
         return AG_ERROR_MEMORY;
     for (;;) {
+        if (is_cancelled(run))
+            return AG_CANCELLED;
         if (capacity - file->size - 1 < CHUNK_BYTES) {
             capacity = 2 * capacity;
             char *larger = realloc(file->text, capacity);
@@ -56,38 +119,38 @@ static ag_status read_all(gzFile stream, size_t expected_bytes, char *error, siz
         if (count == 0)
             break;
         file->size += (size_t)count;
-        if (file->size > MAX_BYTES) {
-            snprintf(error, error_size, "it is larger than %zu GiB", MAX_BYTES >> 30);
-            return AG_ERROR_INPUT;
-        }
+        if (file->size > text_file_max_bytes())
+            return refuse_size(error, error_size);
     }
     file->text[file->size] = '\0';
     return AG_OK;
 }
 
-ag_status text_file_read(const char *path, char *error, size_t error_size, text_file *out_file)
+ag_status text_file_read(const run_context *run, const char *path, char *error, size_t error_size, text_file *out_file)
 {
     memset(out_file, 0, sizeof *out_file);
-    int descriptor = open_descriptor(path);
+    int descriptor = -1;
     struct stat status;
-    if (descriptor < 0 || fstat(descriptor, &status) != 0) {
+    ag_status result = AG_OK;
+    if (strcmp(path, "-") == 0)
+        result = open_standard_input(run, error, error_size, &descriptor);
+    else if ((descriptor = input_file_open(run, path, error, error_size)) < 0)
+        result = AG_ERROR_INPUT;
+    if (!result && fstat(descriptor, &status) != 0) {
         snprintf(error, error_size, "%s", strerror(errno));
+        result = AG_ERROR_INPUT;
+    }
+    gzFile stream = result ? NULL : gzdopen(descriptor, "rb");
+    if (!stream) {
         if (descriptor >= 0)
             close(descriptor);
-        return AG_ERROR_INPUT;
-    }
-    gzFile stream = gzdopen(descriptor, "rb");
-    if (!stream) {
-        close(descriptor);
-        return AG_ERROR_MEMORY;
+        return result ? result : AG_ERROR_MEMORY;
     }
     gzbuffer(stream, 1 << 17);
-    size_t expected_bytes = S_ISREG(status.st_mode) && status.st_size > 0 ? (size_t)status.st_size : 0;
-    ag_status result = expected_bytes > MAX_BYTES ? AG_ERROR_INPUT : AG_OK;
-    if (result)
-        snprintf(error, error_size, "it is larger than %zu GiB", MAX_BYTES >> 30);
-    else
-        result = read_all(stream, expected_bytes, error, error_size, out_file);
+    size_t expected_bytes = status.st_size > 0 ? (size_t)status.st_size : 0;
+    result = expected_bytes > text_file_max_bytes()
+                 ? refuse_size(error, error_size)
+                 : read_all(run, stream, expected_bytes, error, error_size, out_file);
     int closed = gzclose_r(stream);
     if (!result && closed != Z_OK) {
         snprintf(error, error_size,

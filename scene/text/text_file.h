@@ -3,7 +3,7 @@
 #ifndef AFTERGLOW_TEXT_FILE_H
 #define AFTERGLOW_TEXT_FILE_H
 
-#include "afterglow/base.h"
+#include "run_context.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -14,9 +14,14 @@ typedef struct text_file {
     uint64_t device, inode; /* say whether two files are the same */
 } text_file;
 
-/* path "-" is standard input. On failure *out_file is zeroed and error (of error_size bytes) says why, without the
- * path. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
-ag_status text_file_read(const char *path, char *error, size_t error_size, text_file *out_file);
+/* Text is at most so large, unpacked: 16 GiB, or half of the machine's memory where that is less. A small gzip file can
+ * hold any amount, and a device or a pipe does not end. */
+size_t text_file_max_bytes(void);
+
+/* path "-" is standard input, which may be anything; all else is a regular file (input_file.h). run may be NULL; where
+ * it is cancelled the reading ends, also while it waits for standard input. On failure *out_file is zeroed and error
+ * (of error_size bytes) says why, without the path. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY, AG_CANCELLED. */
+ag_status text_file_read(const run_context *run, const char *path, char *error, size_t error_size, text_file *out_file);
 void text_file_reset(text_file *file); /* frees the text; leaves it zeroed */
 
 #endif

@@ -405,7 +405,6 @@ static void a_scene_without_light_has_no_photons(void **state)
     photon_set set = trace(&r, s, PHOTON_GLOBAL, 1000, 100);
     assert_int_equal(set.count, 0);
     assert_null(set.photons);
-    assert_non_null(strstr(r.said, "no light"));
     scene_destroy(s);
     test_run_reset(&r);
 }

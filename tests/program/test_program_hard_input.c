@@ -237,7 +237,7 @@ static void test_pictures(void **state)
     assert_int_equal(mkdir(in_folder("folder.png"), 0755), 0);
     static const char *const CASES[][2] = {
         {"none.png", "No such file or directory"},
-        {"folder.png", "it is not a regular file"},
+        {"folder.png", "Is a directory"},
         {"garbage.exr", "cannot open it"},
         {"garbage.hdr", "cannot open it"},
         {"huge.png", "its header promises 65535 x 65535 pixels of 3 channels, which a file of 57 bytes cannot hold"}};

@@ -77,11 +77,13 @@ static void test_noise(void **state)
     (void)state;
     program_run run = RUN(SMALL, "--spp=64", "--noise=0.05", "--min-spp=4", "-o", "a.exr", BOX);
     expect_exit(&run, 0);
-    double mean = 0.0;
+    double level = 0.0, mean = 0.0;
     int least = 0, most = 0;
     const char *said = strstr(run.err, "noise: ");
-    if (!said || sscanf(said, "noise: %lf samples per pixel, from %d to %d", &mean, &least, &most) != 3)
+    if (!said || sscanf(said, "noise: %lf, where white is 1; %lf samples per pixel, from %d to %d, for --noise 0.05",
+                        &level, &mean, &least, &most) != 4)
         fail_msg("%s", run.err);
+    assert_true(level > 0.01 && level < 0.06);
     program_run_reset(&run);
     assert_true(least >= 4 && most <= 64 && mean >= least && mean <= most && least < most);
 }

@@ -142,21 +142,6 @@ static void test_writing(void **state)
     program_run_reset(&run);
 }
 
-/* Whether the program has its own handler for a signal, as the kernel says. */
-static bool is_caught(pid_t id, int number)
-{
-    char path[64], line[256];
-    unsigned long long caught = 0;
-    snprintf(path, sizeof path, "/proc/%d/status", (int)id);
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    while (fgets(line, sizeof line, file))
-        if (sscanf(line, "SigCgt: %llx", &caught) == 1)
-            break;
-    fclose(file);
-    return (caught >> (number - 1) & 1) != 0;
-}
-
 /* A second signal ends it at once; here it waits for a scene that does not come. */
 static void test_second_signal(void **state)
 {
@@ -166,7 +151,7 @@ static void test_second_signal(void **state)
     assert_true(writer >= 0);
     const program_setting piped = {.input = in_folder("pipe")};
     program_process process = program_start(&piped, ARGUMENTS(LONG, "-"));
-    while (!is_caught(process.id, SIGINT) || !is_caught(process.id, SIGTERM))
+    while (!program_catches(process.id, SIGINT) || !program_catches(process.id, SIGTERM))
         program_pause();
     assert_int_equal(kill(process.id, SIGINT), 0);
     program_pause();

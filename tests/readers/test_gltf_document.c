@@ -210,7 +210,7 @@ static void uris(void **state)
         ag_status status;
     } WRONG[] = {
         {"{'byteLength': 36, 'uri': 'none.bin'}", "buffers[0].uri: cannot read '", AG_ERROR_INPUT},
-        {"{'byteLength': 36, 'uri': '.'}", "it is not a regular file", AG_ERROR_INPUT},
+        {"{'byteLength': 36, 'uri': '.'}", "Is a directory", AG_ERROR_INPUT},
         {"{'byteLength': 37, 'uri': 'triangle.bin'}", "triangle.bin' has 36 bytes of the 37 that byteLength says",
          AG_ERROR_SCENE},
         {"{'byteLength': 36, 'uri': ''}", "buffers[0].uri: it is empty", AG_ERROR_SCENE},

@@ -55,7 +55,7 @@ static void wrong_textures_say_why(void **state)
          "unknown encoding \"gamma -1\"; known are sRGB, linear and, with a number, gamma", AG_ERROR_SCENE},
         {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"none.png\"", "\"string file",
          "/none.png': No such file", AG_ERROR_INPUT},
-        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \".\"", "\"string file", "it is not a regular file",
+        {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \".\"", "\"string file", "Is a directory",
          AG_ERROR_INPUT},
         {"Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"scene.pbrt\"", "\"string file",
          "OpenImageIO cannot open it: ", AG_ERROR_INPUT},

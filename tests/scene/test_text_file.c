@@ -52,7 +52,7 @@ static size_t write_gzip(const char *name, const char *text, size_t size)
 static void check_text(const char *path, const char *text, size_t size)
 {
     text_file file;
-    assert_int_equal(text_file_read(path, error, sizeof error, &file), AG_OK);
+    assert_int_equal(text_file_read(NULL, path, error, sizeof error, &file), AG_OK);
     assert_int_equal(file.size, size);
     assert_memory_equal(file.text, text, size);
     assert_int_equal(file.text[size], '\0');
@@ -63,7 +63,7 @@ static void check_text(const char *path, const char *text, size_t size)
 static void check_error(const char *path, const char *expected)
 {
     text_file file;
-    assert_int_equal(text_file_read(path, error, sizeof error, &file), AG_ERROR_INPUT);
+    assert_int_equal(text_file_read(NULL, path, error, sizeof error, &file), AG_ERROR_INPUT);
     assert_string_equal(error, expected);
     assert_null(file.text);
 }
@@ -126,7 +126,7 @@ static void what_cannot_be_read_is_told(void **state)
     bytes[packed - 6] ^= 1; /* the checksum */
     write_bytes("bad.gz", bytes, packed);
     text_file file;
-    assert_int_equal(text_file_read(path_of("bad.gz"), error, sizeof error, &file), AG_ERROR_INPUT);
+    assert_int_equal(text_file_read(NULL, path_of("bad.gz"), error, sizeof error, &file), AG_ERROR_INPUT);
     assert_int_equal(strncmp(error, "the gzip file is damaged (", 26), 0);
 }
 

@@ -77,6 +77,12 @@ AG_API ag_status ag_scene_load_with(ag_context *context, const char *path, const
                                     size_t definition_count, ag_scene **out_scene);
 AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
 
+/* Whether a path names one of the files that the scene was read from: its own, those that it includes, meshes,
+ * pictures; by device and inode, so that no other spelling or link hides it. To be asked before a picture is written
+ * there. What a model of a format that assimp reads brings beside the model itself is not among them, but for pictures.
+ */
+AG_API bool ag_scene_was_read_from(const ag_scene *scene, const char *path);
+
 /* The Film directive's "filename", NULL where there is none. Lives as long as the scene. */
 AG_API const char *ag_scene_film_file_name(const ag_scene *scene);
 
@@ -232,6 +238,26 @@ typedef struct ag_sample_counts {
     double mean;
 } ag_sample_counts;
 AG_API ag_sample_counts ag_rendering_sample_counts(const ag_rendering *rendering);
+/* Where a picture's noise comes from: the light that the camera's rays bring, by its way. */
+typedef enum ag_noise_source {
+    AG_NOISE_EMISSION, /* straight from lamps and sky to the eye: their edges */
+    AG_NOISE_LAMPS,    /* direct light of all lights but the infinite ones */
+    AG_NOISE_SKY,      /* direct light of infinite ones */
+    AG_NOISE_INDIRECT,
+    AG_NOISE_CAUSTIC,
+    AG_NOISE_SPECULAR /* by way of mirrors, glass and glossy surfaces */
+} ag_noise_source;
+#define AG_NOISE_SOURCE_COUNT 6
+
+typedef struct ag_noise {
+    double level; /* the standard error of what is shown (see noise_level), root mean square over the picture; below 0:
+                     not known, as pixels have had fewer than two samples */
+    double share[AG_NOISE_SOURCE_COUNT]; /* of the variance; they sum to 1, or are all 0 where there is no noise */
+    char hint[256];                      /* what makes most of it, and what would help most, a line; may be empty */
+} ag_noise;
+/* How noisy the picture is by now; from up to 16,384 of its pixels, spread evenly. The caustics' share counts the grain
+ * of their photons too, which more samples do not lessen. */
+AG_API ag_noise ag_rendering_noise(const ag_rendering *rendering);
 /* All that samples have brought so far, as a file; written atomically. Another process that makes the same rendering
  * reads it, and goes on to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
 AG_API ag_status ag_rendering_write_checkpoint(const ag_rendering *rendering, const char *path);
@@ -301,6 +327,10 @@ AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *
  * .tif, .jpg. The file appears complete or not at all. settings NULL: the defaults. */
 AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                const char *path);
+
+/* From now on no context waits for the reader of a FIFO, or of standard output, that it writes to: such a write fails
+ * where the reader is not ready. For the handler of a signal that is to end the process in order: safe in it. */
+AG_API void ag_end_waits(void);
 
 /* Removes the temporary files of writes under way, in any context. For the handler of a signal that ends the process at
  * once: safe in it. */

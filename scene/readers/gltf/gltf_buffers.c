@@ -4,26 +4,32 @@
 #define _POSIX_C_SOURCE 200809L
 #include "gltf/gltf_private.h"
 
-#include <errno.h>
+#include "text/input_file.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* The first size bytes of a file. */
 static ag_status read_file(const gltf_reader *r, const gltf_value *uri, const char *path, uint64_t size, gltf_file *out)
 {
     struct stat status;
-    if (stat(path, &status) != 0)
-        return gltf_error(r, uri, "cannot read '%s': %s", path, strerror(errno)), AG_ERROR_INPUT;
-    if (!S_ISREG(status.st_mode)) /* a pipe that nobody writes to would be waited for */
-        return gltf_error(r, uri, "cannot read '%s': it is not a regular file", path), AG_ERROR_INPUT;
-    if ((uint64_t)status.st_size < size)
+    char error[128];
+    int descriptor = input_file_open(r->run, path, error, sizeof error);
+    if (descriptor < 0)
+        return gltf_error(r, uri, "cannot read '%s': %s", path, error), AG_ERROR_INPUT;
+    FILE *file = fdopen(descriptor, "rb");
+    if (!file || fstat(descriptor, &status) != 0) {
+        close(descriptor);
+        return AG_ERROR_MEMORY;
+    }
+    if ((uint64_t)status.st_size < size) {
+        fclose(file);
         return gltf_error(r, uri, "'%s' has %lld bytes of the %llu that byteLength says", path,
                           (long long)status.st_size, (unsigned long long)size);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return gltf_error(r, uri, "cannot read '%s': %s", path, strerror(errno)), AG_ERROR_INPUT;
+    }
     out->data = malloc((size_t)size);
     bool is_read = out->data && fread(out->data, 1, (size_t)size, file) == size;
     fclose(file);

@@ -204,7 +204,7 @@ ag_status gltf_document_read(gltf_reader *r, const char *path)
 {
     char error[512];
     text_file file;
-    ag_status status = text_file_read(path, error, sizeof error, &file);
+    ag_status status = text_file_read(r->run, path, error, sizeof error, &file);
     if (status == AG_ERROR_INPUT)
         log_at(r->run->log, AG_LOG_ERROR, r->where, "cannot read the file: %s", error);
     GLTF_TRY(status);

@@ -3,6 +3,8 @@
  * Flow: gltf_textures -> [here] -> gltf_buffers, gltf_uri -> texture_image. Threads: one per scene. */
 #include "gltf/gltf_private.h"
 
+#include "text/input_file.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -14,7 +16,12 @@ static ag_status load_from_file(gltf_reader *r, const gltf_value *uri, const cha
     char *path = gltf_uri_to_path(r, text, &wrong);
     if (!path)
         return wrong ? gltf_error(r, uri, "%s", wrong) : AG_ERROR_MEMORY;
-    ag_status status = texture_image_load(r->scene, path, encoding, out_image_index, message, sizeof message);
+    ag_status status = AG_ERROR_INPUT;
+    char reason[128];
+    if (!input_file_allow(r->run, path, reason, sizeof reason))
+        snprintf(message, sizeof message, "cannot read '%s': %s", path, reason);
+    else
+        status = texture_image_load(r->scene, path, encoding, out_image_index, message, sizeof message);
     if (status)
         gltf_error(r, uri, "%s", message[0] ? message : ag_status_text(status));
     free(path);

@@ -18,6 +18,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "model/importer.h"
 
+#include "text/input_file.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -76,6 +78,11 @@ static ag_status load_picture(importer *i, const import_picture *p, image_encodi
     }
     if (encoding.curve == IMAGE_CURVE_DEFAULT) /* a colour's */
         encoding = image_colors_rule(i->scene, path);
+    char reason[128];
+    if (!input_file_allow(i->run, path, reason, sizeof reason)) {
+        snprintf(message, message_size, "cannot read the file: %s", reason);
+        return AG_ERROR_INPUT;
+    }
     return texture_image_load(i->scene, path, encoding, out_image_index, message, message_size);
 }
 

@@ -3,6 +3,8 @@
 #define _GNU_SOURCE /* memfd_create, pipe2 */
 #include "model/import_process.h"
 
+#include "descriptor.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -55,9 +57,8 @@ static void keep_to_itself(uint64_t memory_bytes)
 
 static void work_and_exit(import_task *task, void *user, uint64_t memory_bytes, int answer_descriptor)
 {
-    int beyond_standard = fcntl(answer_descriptor, F_DUPFD_CLOEXEC, 3); /* those three go nowhere from now on */
     keep_to_itself(memory_bytes);
-    FILE *answer = beyond_standard >= 0 ? fdopen(beyond_standard, "wb") : NULL;
+    FILE *answer = fdopen(answer_descriptor, "wb");
     bool is_done = answer && task(user, answer) && fflush(answer) == 0;
     _exit(is_done ? 0 : 1);
 }
@@ -141,9 +142,16 @@ ag_status import_process_run(const run_context *run, import_task *task, void *us
 {
     *out_answer = (import_answer){NULL, 0};
     snprintf(message, message_size, "%s", "");
-    int pipe_ends[2] = {-1, -1}, answer = memfd_create("afterglow import", MFD_CLOEXEC);
+    /* none of them may be one of the standard three, which go nowhere in the new process */
+    int pipe_ends[2] = {-1, -1};
+    int answer = descriptor_beyond_standard(memfd_create("afterglow import", MFD_CLOEXEC));
+    bool has_pipe = answer >= 0 && pipe2(pipe_ends, O_CLOEXEC) == 0;
+    for (int i = 0; i < 2; i++) {
+        pipe_ends[i] = descriptor_beyond_standard(pipe_ends[i]);
+        has_pipe = has_pipe && pipe_ends[i] >= 0;
+    }
     ag_status status = AG_ERROR_SYSTEM;
-    if (answer < 0 || pipe2(pipe_ends, O_CLOEXEC) != 0)
+    if (!has_pipe)
         snprintf(message, message_size, "no process can be prepared: %s", strerror(errno));
     else
         status = run_process(run, task, user, memory_bytes, answer, pipe_ends, out_answer, message, message_size);

@@ -8,6 +8,7 @@
 #include "model/import_model.h"
 #include "model/import_process.h"
 #include "model/import_scene.h"
+#include "text/input_file.h"
 
 #include <assimp/ObjMaterial.h>
 #include <assimp/cimport.h>
@@ -15,11 +16,11 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { MAX_DEPTH = 1000 }; /* of nodes within nodes */
 
@@ -399,17 +400,17 @@ static ag_status refuse(const run_context *run, const char *path, const char *wh
 static ag_status find_memory_limit(const run_context *run, const char *path, uint64_t *out_bytes)
 {
     const uint64_t base = UINT64_C(2) << 30, per_byte = 64;
-    FILE *file = fopen(path, "rb");
     struct stat info;
-    if (!file || fstat(fileno(file), &info) != 0) {
-        int error = errno;
-        if (file)
-            fclose(file);
-        return refuse(run, path, "cannot read the file", strerror(error));
-    }
-    fclose(file);
+    char error[128];
+    int file = input_file_open(run, path, error, sizeof error);
+    if (file < 0)
+        return refuse(run, path, "cannot read the file", error);
+    bool is_known = fstat(file, &info) == 0;
+    close(file);
+    if (!is_known)
+        return AG_ERROR_MEMORY;
     *out_bytes = base + per_byte * (uint64_t)(info.st_size > 0 ? info.st_size : 0);
-    return S_ISREG(info.st_mode) ? AG_OK : refuse(run, path, "cannot read the file", "it is no regular file");
+    return AG_OK;
 }
 
 ag_status assimp_load_file(run_context *run, const char *path, scene *out_scene)

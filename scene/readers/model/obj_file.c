@@ -204,7 +204,7 @@ static ag_status read_library(obj *o, text_word name, bool *out_is_there, char *
     ag_status status = AG_ERROR_INPUT;
     snprintf(error, error_size, "it is standard input's name");
     if (strcmp(path, "-") != 0) /* only the user may name that */
-        status = text_file_read(path, error, error_size, &text);
+        status = text_file_read(o->to.run, path, error, error_size, &text);
     *out_is_there = status == AG_OK;
     if (!status) {
         const char *interned = scene_intern_file_name(o->to.scene, path);
@@ -337,7 +337,7 @@ ag_status obj_load_file(run_context *run, const char *path, scene *out_scene)
     if (status)
         return status;
     run_progress(run, AG_PHASE_LOAD, 0.0);
-    status = text_file_read(path, error, sizeof error, &text);
+    status = text_file_read(run, path, error, sizeof error, &text);
     if (status == AG_ERROR_INPUT)
         importer_refuse(&o.to, "cannot read the file: %s", error);
     if (status)

@@ -4,9 +4,9 @@
 #include "model/ply_stream.h"
 
 #include "text/decimal.h"
+#include "text/input_file.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,9 +30,10 @@ ag_status ply_stream_open(const char *path, const run_context *run, char *error,
     s->error = error;
     s->error_size = error_size;
     struct stat status;
-    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    char reason[128];
+    int descriptor = input_file_open(run, path, reason, sizeof reason);
     if (descriptor < 0)
-        return fail_reading(s, strerror(errno));
+        return fail_reading(s, reason);
     if (fstat(descriptor, &status) != 0) {
         fail_reading(s, strerror(errno));
         close(descriptor);

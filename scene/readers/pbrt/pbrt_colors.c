@@ -80,7 +80,7 @@ ag_status pbrt_read_number_file(pbrt_parser *parser, const char *name, file_loca
     size_t count = 0;
     char *path = pbrt_find_file(parser, name);
     const char *interned = path ? scene_intern_file_name(parser->scene, path) : NULL;
-    ag_status status = interned ? text_file_read(path, error, sizeof error, &file) : AG_ERROR_MEMORY;
+    ag_status status = interned ? text_file_read(parser->run, path, error, sizeof error, &file) : AG_ERROR_MEMORY;
     free(path);
     if (status == AG_ERROR_INPUT)
         pbrt_error(parser, where, width, "cannot read the file \"%s\": %s%s", name, error, hint);

@@ -3,6 +3,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "pbrt/pbrt_private.h"
 
+#include "text/input_file.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -83,6 +85,15 @@ char *pbrt_find_file(const pbrt_parser *parser, const char *name)
     return path;
 }
 
+ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size)
+{
+    char reason[128];
+    if (input_file_allow(parser->run, path, reason, sizeof reason))
+        return AG_OK;
+    snprintf(message, message_size, "cannot read '%s': %s", path, reason);
+    return AG_ERROR_INPUT;
+}
+
 /* The files that are open, innermost first: "a.pbrt:3 < b.pbrt:7 < ..." */
 static void describe_chain(const pbrt_parser *parser, file_location where, char *out_text, size_t size)
 {
@@ -117,24 +128,34 @@ ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location wh
         if (!parser->top_directory)
             return AG_ERROR_MEMORY;
         const char *shown = strcmp(name, "-") == 0 ? "<stdin>" : name;
-        ag_status status = text_file_read(name, error, sizeof error, &file);
+        ag_status status = text_file_read(parser->run, name, error, sizeof error, &file);
         if (status == AG_ERROR_INPUT)
             log_at(parser->log, AG_LOG_ERROR, (file_location){shown, 0, 0}, "cannot read the file: %s", error);
         return status ? status : push(parser, shown, &file, where);
     }
-    if (parser->file_count == PBRT_MAX_DEPTH || parser->include_count++ == PBRT_MAX_INCLUDES) {
+    if (parser->file_count == PBRT_MAX_DEPTH) {
         describe_chain(parser, where, chain, sizeof chain);
-        return pbrt_error(parser, where, width, "too many files include one another: %s", chain);
+        return pbrt_error(parser, where, width, "more than %d files include one another: %s", PBRT_MAX_DEPTH, chain);
+    }
+    if (parser->include_count++ == PBRT_MAX_INCLUDES) {
+        describe_chain(parser, where, chain, sizeof chain);
+        return pbrt_error(parser, where, width, "more than %d files are included: %s", PBRT_MAX_INCLUDES, chain);
     }
     char *path = pbrt_find_file(parser, name);
-    ag_status status = path ? text_file_read(path, error, sizeof error, &file) : AG_ERROR_MEMORY;
+    ag_status status = path ? text_file_read(parser->run, path, error, sizeof error, &file) : AG_ERROR_MEMORY;
     if (status == AG_ERROR_INPUT)
         pbrt_error(parser, where, width, "cannot read the file \"%s\": %s", name, error);
     if (status) {
         free(path);
         return status;
     }
-    for (int i = 0; i < parser->file_count; i++) {
+    parser->text_bytes += file.size;
+    if (parser->text_bytes > text_file_max_bytes()) {
+        describe_chain(parser, where, chain, sizeof chain);
+        status = pbrt_error(parser, where, width, "more than %zu MiB of text are included: %s",
+                            text_file_max_bytes() >> 20, chain);
+    }
+    for (int i = 0; i < parser->file_count && !status; i++) {
         const text_file *open = &parser->files[i].file;
         if (open->inode == file.inode && open->device == file.device && open->inode != 0) {
             describe_chain(parser, where, chain, sizeof chain);

@@ -83,7 +83,9 @@ static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, co
     image picture = {0};
     image_colors colors = {0};
     char *path = pbrt_find_file(parser, name);
-    ag_status status = path ? image_read(path, &picture, message, sizeof message) : AG_ERROR_MEMORY;
+    ag_status status = path ? pbrt_allow_picture(parser, path, message, sizeof message) : AG_ERROR_MEMORY;
+    if (status == AG_OK)
+        status = image_read(path, &picture, message, sizeof message);
     *out_pixels = NULL;
     if (status == AG_OK && !is_gray)
         status = image_colors_find(parser->scene, image_colors_rule(parser->scene, path), &picture, &colors, message,

@@ -27,9 +27,10 @@
 
 #define PBRT_NO_MEDIUM SIZE_MAX
 
-enum { PBRT_MAX_DEPTH = 32 };         /* of files that include one another */
-enum { PBRT_MAX_PARAMETERS = 1000 };  /* of one directive */
-enum { PBRT_MAX_INCLUDES = 1000000 }; /* in all: files that include others twice multiply */
+enum { PBRT_MAX_DEPTH = 32 };        /* of files that include one another */
+enum { PBRT_MAX_PARAMETERS = 1000 }; /* of one directive */
+/* Files that include others twice multiply: so many are read in all, and text_file_max_bytes of text. */
+enum { PBRT_MAX_INCLUDES = 100000 };
 
 /* The current transform's two ends, under a name. */
 typedef struct pbrt_named_transform {
@@ -162,6 +163,7 @@ typedef struct pbrt_parser {
 
     pbrt_file files[PBRT_MAX_DEPTH]; /* the innermost last */
     int file_count, include_count;
+    size_t text_bytes;   /* of all files that have been included */
     char *top_directory; /* of the first file, with its slash, or "" */
     pbrt_token peeked;
     bool has_peeked;
@@ -216,6 +218,8 @@ void pbrt_pop_file(pbrt_parser *parser);
 /* Where a file that the scene names is: as pbrt has it, below the first file's directory; where there is none, below
  * that of the file that names it. To be freed; NULL when out of memory. */
 char *pbrt_find_file(const pbrt_parser *parser, const char *name);
+/* Whether a picture may be read (input_file.h); where not, message says why, with the path. Errors: AG_ERROR_INPUT. */
+ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size);
 /* The next token; where an included file ends, the one that included it goes on. The end of an imported file is told,
  * as often as is asked, until it is popped. */
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);

@@ -1,0 +1,150 @@
+/* file_conflicts.c: see file_conflicts.h.
+ * Threads: main alone. */
+#define _GNU_SOURCE
+#include "file_conflicts.h"
+
+#include "passes.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* What a path names: a file that is there, or a name in a folder. */
+typedef struct named_file {
+    const char *path;
+    bool is_there, is_regular;
+    dev_t device; /* of the file, or of its folder */
+    ino_t inode;
+    char name[NAME_MAX + 1]; /* in that folder */
+} named_file;
+
+/* A folder that is not there gives nothing to compare; the output's own check says so. */
+static named_file find(const char *path)
+{
+    named_file file = {.path = path};
+    struct stat status;
+    if (stat(path, &status) == 0) {
+        file.is_there = true;
+        file.is_regular = S_ISREG(status.st_mode);
+        file.device = status.st_dev;
+        file.inode = status.st_ino;
+        return file;
+    }
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    if (folder && stat(folder, &status) == 0) {
+        file.device = status.st_dev;
+        file.inode = status.st_ino;
+        snprintf(file.name, sizeof file.name, "%s", slash ? slash + 1 : path);
+    }
+    free(folder);
+    return file;
+}
+
+/* Devices and pipes may be named twice: nothing is replaced there. */
+static bool is_one_file(const named_file *a, const named_file *b)
+{
+    if (a->is_there && b->is_there)
+        return a->is_regular && a->device == b->device && a->inode == b->inode;
+    if (strcmp(a->path, b->path) == 0)
+        return true;
+    return !a->is_there && !b->is_there && a->name[0] != '\0' && a->device == b->device && a->inode == b->inode &&
+           strcmp(a->name, b->name) == 0;
+}
+
+/* The files to be written, those beside pictures included; ended by NULL. NULL when out of memory. */
+typedef struct output_list {
+    const char **paths; /* the first own_count are the options' own */
+    char **made;        /* owned: those beside pictures */
+    int count, made_count;
+} output_list;
+
+static void output_list_reset(output_list *list)
+{
+    for (int i = 0; i < list->made_count; i++)
+        free(list->made[i]);
+    free(list->made);
+    free((void *)list->paths);
+}
+
+static bool output_list_create(const options *o, output_list *out)
+{
+    size_t most = 3 * (size_t)o->outfile_count + 3;
+    *out = (output_list){.paths = calloc(most, sizeof *out->paths), .made = calloc(most, sizeof *out->made)};
+    bool is_whole = out->paths && out->made;
+    for (int i = 0; is_whole && i < o->outfile_count; i++) {
+        out->paths[out->count++] = o->outfiles[i];
+        char *mark = out->made[out->made_count++] = passes_mark_name(o->outfiles[i]);
+        out->paths[out->count++] = mark;
+        is_whole = mark != NULL;
+        if (is_whole && i == 0 && (o->checkpoint_seconds > 0.0 || o->resume)) {
+            char *checkpoint = out->made[out->made_count++] = passes_checkpoint_name(o->outfiles[i]);
+            out->paths[out->count++] = checkpoint;
+            is_whole = checkpoint != NULL;
+        }
+    }
+    const char *const others[] = {o->stats, o->photons_file, o->render.photon_map_file};
+    for (int i = 0; is_whole && i < 3; i++)
+        if (others[i])
+            out->paths[out->count++] = others[i];
+    return is_whole;
+}
+
+static void tell_twice(const named_file *a, const named_file *b)
+{
+    if (strcmp(a->path, b->path) == 0)
+        fprintf(stderr, "afterglow: '%s' is to be written twice: give the two different names\n", a->path);
+    else
+        fprintf(stderr, "afterglow: '%s' and '%s' are one file, which is to be written twice: give two files\n",
+                a->path, b->path);
+}
+
+static bool has_conflict(const options *o, const output_list *outputs)
+{
+    const char *config = o->context.color_config ? o->context.color_config : getenv("OCIO");
+    const char *const inputs[] = {o->scene && strcmp(o->scene, "-") != 0 ? o->scene : NULL, config};
+    for (int i = 0; i < outputs->count; i++) {
+        named_file output = find(outputs->paths[i]);
+        for (int k = 0; k < i; k++) {
+            named_file other = find(outputs->paths[k]);
+            if (is_one_file(&other, &output)) {
+                tell_twice(&other, &output);
+                return true;
+            }
+        }
+        for (int k = 0; k < 2; k++) {
+            named_file input = find(inputs[k] ? inputs[k] : "");
+            if (inputs[k] && is_one_file(&input, &output)) {
+                fprintf(stderr, "afterglow: '%s' is read, as '%s', and cannot be written as well: give another name\n",
+                        output.path, input.path);
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+bool file_conflicts_of_options(const options *o)
+{
+    output_list outputs;
+    bool has = output_list_create(o, &outputs) && has_conflict(o, &outputs);
+    output_list_reset(&outputs);
+    return has;
+}
+
+bool file_conflicts_with_scene(const options *o, const ag_scene *scene)
+{
+    output_list outputs;
+    bool has = false, is_whole = output_list_create(o, &outputs);
+    for (int i = 0; is_whole && i < outputs.count && !has; i++) {
+        has = ag_scene_was_read_from(scene, outputs.paths[i]);
+        if (has)
+            fprintf(stderr,
+                    "afterglow: '%s' is a file of the scene, and cannot be written as well: give another name\n",
+                    outputs.paths[i]);
+    }
+    output_list_reset(&outputs);
+    return has;
+}

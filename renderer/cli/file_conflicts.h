@@ -1,0 +1,16 @@
+/* file_conflicts.h: one file cannot hold two things, and what is read must not be written over: found out before the
+ * work, by name, and by device and inode where files are there.
+ * Flow: options -> [here] -> main. Threads: main alone. */
+#ifndef AFTERGLOW_FILE_CONFLICTS_H
+#define AFTERGLOW_FILE_CONFLICTS_H
+
+#include "options.h"
+
+/* Whether two of the files to be written are one, or one of them is the scene's file or the colour config. Says which,
+ * on standard error. */
+bool file_conflicts_of_options(const options *o);
+
+/* Whether a file to be written is one that the scene was read from. Says which, on standard error. */
+bool file_conflicts_with_scene(const options *o, const ag_scene *scene);
+
+#endif

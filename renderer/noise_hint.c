@@ -1,0 +1,72 @@
+/* noise_hint.c: how noisy the picture is, and what would help most, in words.
+ * Flow: film/noise.h -> [here] -> the program's last lines. Threads: as in afterglow.h. */
+#include "light/light.h"
+#include "rendering.h"
+
+#include <stdio.h>
+
+/* A part of light that brings this share of the noise is what is to be helped first. */
+static const double MOST = 0.5;
+/* Less noise than this is not worth a word: half a step of eight bits. */
+static const double NEGLIGIBLE = 0.002;
+/* Where the sky lights fewer of the samples than this, it comes in by windows. */
+static const double FEW_WINDOWS = 0.4;
+
+static bool has_open_sky(const scene *s)
+{
+    for (uint32_t i = 0; i < s->infinite_light_count; i++)
+        if (!s->lights[s->infinite_lights[i]].portal)
+            return true;
+    return false;
+}
+
+/* Where the noise is, and what helps. */
+typedef struct advice {
+    const char *where, *help;
+} advice;
+
+static advice advise(const struct ag_rendering *r, ag_noise_source source, const noise_summary *noise)
+{
+    static const char MORE_SAMPLES[] = "more samples (--spp) help most";
+    bool is_path = r->settings.integrator == AG_INTEGRATOR_PATH;
+    switch (source) {
+    case AG_NOISE_EMISSION: return (advice){"at the edges of lamps and of the sky", MORE_SAMPLES};
+    case AG_NOISE_LAMPS: return (advice){"in direct light from lamps", MORE_SAMPLES};
+    case AG_NOISE_SKY:
+        if (noise->sky_seen >= FEW_WINDOWS)
+            return (advice){"in direct light from the sky", MORE_SAMPLES};
+        return (advice){"in direct light from the sky, which comes in by few windows",
+                        has_open_sky(r->s) ? "a \"portal\" of the infinite light at each window helps most"
+                                           : MORE_SAMPLES};
+    case AG_NOISE_INDIRECT:
+        return (advice){"in indirect light", is_path ? "--integrator photonmap helps most"
+                                                     : "more gather rays (--gather-samples) help most"};
+    case AG_NOISE_CAUSTIC:
+        if (is_path)
+            return (advice){"in caustics", "--integrator photonmap helps most"};
+        return (advice){"in caustics", noise->is_caustic_grain
+                                           ? "more photons (--caustic-photons, and --nearest with them) help most"
+                                           : MORE_SAMPLES};
+    case AG_NOISE_SPECULAR: return (advice){"in reflections and glass", MORE_SAMPLES};
+    }
+    return (advice){0};
+}
+
+ag_noise ag_rendering_noise(const ag_rendering *r)
+{
+    int nearest = r->t.caustic && r->t.caustic->set.count > 0 ? r->settings.nearest : 0;
+    noise_summary summary = noise_lattice_read(&r->film->noise, 1.0, nearest);
+    ag_noise out = {.level = summary.level};
+    int most = 0;
+    for (int i = 0; i < AG_NOISE_SOURCE_COUNT; i++) {
+        out.share[i] = summary.share[i];
+        if (out.share[i] > out.share[most])
+            most = i;
+    }
+    if (!(summary.level_with_grain > NEGLIGIBLE))
+        return out;
+    advice a = advise(r, (ag_noise_source)most, &summary);
+    snprintf(out.hint, sizeof out.hint, "%s of the noise (%.0f %%) is %s: %s",
+             out.share[most] >= MOST ? "most" : "the largest part", 100.0 * out.share[most], a.where, a.help);
+    return out;
+}

@@ -1,0 +1,31 @@
+/* input_file.h: the one way in which files of a scene are opened: what is no regular file is refused, nothing is waited
+ * for, and it is noted which files were read.
+ * Rests on: open(2). Flow: readers -> [here] -> text_file, ply_stream, gltf_buffers. Threads: one per scene. */
+#ifndef AFTERGLOW_INPUT_FILE_H
+#define AFTERGLOW_INPUT_FILE_H
+
+#include "run_context.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Which files a scene was read from. A run that reads one points to it. */
+typedef struct input_files {
+    struct input_file_number {
+        uint64_t device, inode;
+    } * read; /* owned; a file may be there more than once */
+    size_t count, capacity;
+} input_files;
+
+void input_files_reset(input_files *files);
+bool input_files_has(const input_files *files, uint64_t device, uint64_t inode);
+
+/* A descriptor to read from, above the standard ones. run may be NULL; where it has input_files, the file is noted
+ * there. Where it cannot be opened or is no regular file (a FIFO or a device could be waited for, or read, without end)
+ * -1 is returned and error, of error_size bytes, says why, without the path. */
+int input_file_open(const run_context *run, const char *path, char *error, size_t error_size);
+
+/* Whether a file may be read that a library opens by its name; notes it as input_file_open does. */
+bool input_file_allow(const run_context *run, const char *path, char *error, size_t error_size);
+
+#endif
