@@ -53,7 +53,7 @@ typedef struct file_header {
 
 enum { OWNERS_AT = PAGE };
 _Static_assert(sizeof(file_header) <= OWNERS_AT, "the header has a page of its own");
-_Static_assert(sizeof(photon_file_key) == 168 && sizeof(map_record) == 264 && sizeof(tree_record) == 24,
+_Static_assert(sizeof(photon_file_key) == 176 && sizeof(map_record) == 264 && sizeof(tree_record) == 24,
                "no gaps: they are compared and hashed");
 _Static_assert(offsetof(photon_block, slot) + PHOTON_BLOCK_LANES * sizeof(irradiance_slot) == sizeof(photon_block),
                "what never changes of a block is its first part");
@@ -220,6 +220,8 @@ static void describe_difference(const photon_file_key *is, const photon_file_key
                  (number)wanted->caustic_photon_count);
     else if (is->max_depth != wanted->max_depth)
         snprintf(out, size, "it was made with a depth of %u, not %u", is->max_depth, wanted->max_depth);
+    else if (is->pane_light != wanted->pane_light)
+        snprintf(out, size, "it was made with another choice of light through panes (--pane-light)");
     else if (is->nearest != wanted->nearest)
         snprintf(out, size, "it was made for estimates of %u photons, not %u", is->nearest, wanted->nearest);
     else if (memcmp(&is->radius, &wanted->radius, sizeof is->radius) != 0)

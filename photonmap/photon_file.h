@@ -25,6 +25,8 @@ typedef struct photon_file_key {
     uint64_t seed;
     uint64_t photon_count, caustic_photon_count;
     uint32_t max_depth, nearest;
+    uint32_t pane_light; /* ag_pane_light */
+    uint32_t unused;     /* 0 */
     float radius, irradiance_fraction;
     char program[56]; /* version and compiler */
     char machine[56]; /* what may give other bits: kind and maker of the processor, instruction set of ray traversal */

@@ -237,6 +237,7 @@ static void what_was_made_of_something_else_is_refused(void **state)
     EXPECT_REFUSED(key.photon_count = 1, "not 1");
     EXPECT_REFUSED(key.caustic_photon_count = 1, "caustic photons");
     EXPECT_REFUSED(key.max_depth = 3, "depth");
+    EXPECT_REFUSED(key.pane_light = 1, "light through panes");
     EXPECT_REFUSED(key.nearest = 3, "estimates of");
     EXPECT_REFUSED(key.radius = 2.0f, "radius of 1, not 2");
     EXPECT_REFUSED(key.irradiance_fraction = 0.125f, "fraction of 1 of its photons, not 0.125");
