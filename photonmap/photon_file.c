@@ -396,7 +396,7 @@ static void drop_claims(photon_map *map)
 {
     for (uint32_t i = 0; i < map->bearers.count; i++) {
         irradiance_slot *slot = photon_map_slot(map, i);
-        if (irradiance_word_state(load_relaxed_u32(slot)) != IRRADIANCE_READY)
+        if (!irradiance_word_is_ready(load_relaxed_u32(slot)))
             store_relaxed_u32(slot, 0);
     }
 }
