@@ -164,7 +164,7 @@ static int write_checks(const run_context *run, int descriptor, const photon_tre
         uint8_t checks[PAGE] = {0};
         for (uint32_t i = 0; i < PAGE && i < bearers->count - first; i++) {
             uint32_t word = irradiance_slot_read(photon_block_slot(bearers->blocks, first + i));
-            if (irradiance_word_state(word) == IRRADIANCE_READY)
+            if (irradiance_word_is_ready(word))
                 checks[i] = irradiance_word_check(first + i, word);
         }
         error = write_at(run, descriptor, checks, PAGE, at);
@@ -252,6 +252,8 @@ static void describe_difference(const photon_file_key *is, const photon_file_key
                  (number)wanted->caustic_photon_count);
     else if (is->max_depth != wanted->max_depth)
         snprintf(out, size, "it was made with a depth of %u, not %u", is->max_depth, wanted->max_depth);
+    else if (is->pane_light != wanted->pane_light)
+        snprintf(out, size, "it was made with another choice of light through panes (--pane-light)");
     else if (is->nearest != wanted->nearest)
         snprintf(out, size, "it was made for estimates of %u photons, not %u", is->nearest, wanted->nearest);
     else if (memcmp(&is->radius, &wanted->radius, sizeof is->radius) != 0)
@@ -398,7 +400,7 @@ static uint32_t empty_damaged(photon_map *map, const claim_owners *owners)
     for (uint32_t i = 0; i < map->bearers.count; i++) {
         irradiance_slot *slot = photon_map_slot(map, i);
         uint32_t word = irradiance_slot_read(slot);
-        bool is_ready = irradiance_word_state(word) == IRRADIANCE_READY;
+        bool is_ready = irradiance_word_is_ready(word);
         if ((is_ready && load_relaxed_u8(&map->checks[i]) != irradiance_word_check(i, word)) ||
             (owners && word == irradiance_word(IRRADIANCE_CLAIMED, load_relaxed_u32(&owners->claimer))))
             damaged += cas_acquire_release_u32(slot, &word, 0);
@@ -411,7 +413,7 @@ static void drop_claims(photon_map *map)
 {
     for (uint32_t i = 0; i < map->bearers.count; i++) {
         irradiance_slot *slot = photon_map_slot(map, i);
-        if (irradiance_word_state(load_relaxed_u32(slot)) != IRRADIANCE_READY)
+        if (!irradiance_word_is_ready(load_relaxed_u32(slot)))
             store_relaxed_u32(slot, 0);
     }
 }

@@ -28,6 +28,7 @@ static const struct {
 } SETTINGS[] = {
     SETTING(integrator, "integrator"),
     SETTING(cache, "cache mode"),
+    SETTING(pane_light, "light through panes (--pane-light)"),
     SETTING(only, "choice of light (--only)"),
     SETTING(seed, "seed"),
     SETTING(width, "picture width"),

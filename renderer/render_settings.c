@@ -335,6 +335,8 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "radius must be finite and not negative";
     else if (!(s->irradiance_fraction > 0.0f) || s->irradiance_fraction > 1.0f)
         wrong = "the fraction of photons that bear irradiance must be above 0, and 1 at most";
+    else if (s->pane_light != AG_PANE_LIGHT_DIRECT && s->pane_light != AG_PANE_LIGHT_TRACED)
+        wrong = "light through panes must be direct or traced";
     else if (!(s->gather_guiding >= 0.0f) || s->gather_guiding > 1.0f)
         wrong = "the guiding of gather rays must be from 0 to 1";
     else if (!(s->photon_aim >= 0.0f) || s->photon_aim > AG_DEFAULT_PHOTON_AIM)

@@ -19,6 +19,7 @@ enum {
     OPT_INTEGRATOR,
     OPT_CACHE,
     OPT_ONLY,
+    OPT_PANE_LIGHT,
     OPT_PHOTONS,
     OPT_CAUSTIC_PHOTONS,
     OPT_NEAREST,
@@ -95,6 +96,9 @@ static const option_line LINES[] = {
      "irradiance at the photons: on-demand (default) and precompute give the\nsame bits; off computes it at every "
      "gather hit instead, with other bits"},
     {OPT_ONLY, "only", "indirect", "leave out emission, and direct light at the first non-specular hit"},
+    {OPT_PANE_LIGHT, "pane-light", "MODE",
+     "light straight through thin glass: direct (default), sampled at its\nlamp, or traced, like light through other "
+     "glass"},
     {OPT_PHOTONS, "photons", "N", "photons to store in the global map (default 1000000)"},
     {OPT_CAUSTIC_PHOTONS, "caustic-photons", "N",
      "photons to store in the caustic map (default 500000, where there is\nspecular matter)"},
@@ -249,6 +253,10 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_ONLY:
         is_valid = parse_word(value, WORDS("indirect"), &word);
         r->only = AG_ONLY_INDIRECT;
+        break;
+    case OPT_PANE_LIGHT:
+        is_valid = parse_word(value, WORDS("direct", "traced"), &word);
+        r->pane_light = (ag_pane_light)word;
         break;
     case OPT_PHOTONS: is_valid = o->has_photons = parse_count(value, 1, &r->photon_count); break;
     case OPT_CAUSTIC_PHOTONS:
@@ -521,6 +529,7 @@ bool options_override(const options *o, const ag_scene *scene, ag_render_setting
     settings->denoise = r->denoise;
     settings->photon_map_file = r->photon_map_file;
     settings->photon_map_refresh = r->photon_map_refresh;
+    settings->pane_light = r->pane_light;
     settings->clamp_direct = r->clamp_direct;
     settings->clamp_indirect = r->clamp_indirect;
     settings->noise_level = o->has_noise                                    ? r->noise_level

@@ -239,6 +239,7 @@ static void what_was_made_of_something_else_is_refused(void **state)
     EXPECT_REFUSED(key.photon_count = 1, "not 1");
     EXPECT_REFUSED(key.caustic_photon_count = 1, "caustic photons");
     EXPECT_REFUSED(key.max_depth = 3, "depth");
+    EXPECT_REFUSED(key.pane_light = 1, "light through panes");
     EXPECT_REFUSED(key.nearest = 3, "estimates of");
     EXPECT_REFUSED(key.radius = 2.0f, "radius of 1, not 2");
     EXPECT_REFUSED(key.irradiance_fraction = 0.125f, "fraction of 1 of its photons, not 0.125");
@@ -319,12 +320,11 @@ static void slots_may_hold_anything(void **state)
         if (i % 3 == 0)
             word = irradiance_word(IRRADIANCE_CLAIMED, word & 0x3ff); /* places and generations that there may be */
         store_relaxed_u32(photon_block_slot(o.map.blocks, i), word);
-        not_ready += irradiance_word_state(word) != IRRADIANCE_READY && word != 0 &&
+        not_ready += !irradiance_word_is_ready(word) && word != 0 &&
                      word != irradiance_word(IRRADIANCE_CLAIMED, o.file.owners.claimer);
     }
     for (uint32_t i = 0; i < PHOTONS; i++) {
-        bool was_ready =
-            irradiance_word_state(irradiance_slot_read(photon_block_slot(o.map.blocks, i))) == IRRADIANCE_READY;
+        bool was_ready = irradiance_word_is_ready(irradiance_slot_read(photon_block_slot(o.map.blocks, i)));
         if (irradiance_slot_read(photon_block_slot(o.map.blocks, i)) ==
             irradiance_word(IRRADIANCE_CLAIMED, o.file.owners.claimer))
             continue; /* ours, as it says, which nobody takes over here */
@@ -344,7 +344,7 @@ static void expect_words(opened *o, const uint32_t *words)
     for (uint32_t i = 0; i < PHOTONS; i++) {
         uint32_t word = irradiance_slot_read(photon_block_slot(o->map.blocks, i));
         if (word != words[i]) {
-            assert_int_not_equal(irradiance_word_state(word), IRRADIANCE_READY);
+            assert_false(irradiance_word_is_ready(word));
             ask(o, i);
             assert_int_equal(irradiance_slot_read(photon_block_slot(o->map.blocks, i)), words[i]);
         }
@@ -363,7 +363,7 @@ static void flipped_bits_change_no_irradiance(void **state)
     for (uint32_t i = 0; i < PHOTONS; i++) {
         ask(&o, i);
         words[i] = irradiance_slot_read(photon_block_slot(o.map.blocks, i));
-        assert_int_equal(irradiance_word_state(words[i]), IRRADIANCE_READY);
+        assert_true(irradiance_word_is_ready(words[i]));
     }
     close_map(&o);
     int file = open(path, O_RDWR);
@@ -495,7 +495,8 @@ static pid_t start_holder(const char *path, int *out_ready, int *out_order)
         if (write(ready[1], &byte, 1) != 1 || read(order[0], &byte, 1) != 1 || byte != TOLD_TO_PUBLISH)
             _exit(3);
         for (uint32_t i = 0; i < HELD; i++)
-            failed += !irradiance_slot_publish(photon_block_slot(o.map.blocks, i), o.file.owners.claimer, 77);
+            failed += !irradiance_slot_publish(photon_block_slot(o.map.blocks, i), o.file.owners.claimer,
+                                               irradiance_word(IRRADIANCE_READY, 77));
         _exit(failed == HELD ? 1 : 0);
     }
     close(ready[1]);
@@ -609,7 +610,7 @@ static void processes_are_killed_at_random(void **state)
             opened o;
             open_map(&o, path);
             for (uint32_t k = 0; k < PHOTONS; k++)
-                if (irradiance_word_state(irradiance_slot_read(photon_block_slot(o.map.blocks, k))) == IRRADIANCE_READY)
+                if (irradiance_word_is_ready(irradiance_slot_read(photon_block_slot(o.map.blocks, k))))
                     store_relaxed_u32(photon_block_slot(o.map.blocks, k), 0);
             close_map(&o);
             kills++;

@@ -108,6 +108,13 @@ typedef enum ag_cache_mode {
     AG_CACHE_OFF         /* an estimate at every gather hit: another estimator */
 } ag_cache_mode;
 
+/* Light that thin glass, or a smooth interface of index 1, lets through unbent. */
+typedef enum ag_pane_light {
+    AG_PANE_LIGHT_DIRECT, /* as if nothing were in its way: sampled at its lamp, by both integrators. Suns, points and
+                             spots shine through windows in the path tracer too; no caustic */
+    AG_PANE_LIGHT_TRACED  /* like light by way of any other glass */
+} ag_pane_light;
+
 typedef enum ag_only { AG_ONLY_ALL, AG_ONLY_INDIRECT } ag_only;
 
 /* Layers of a picture beside its R, G and B. Their channels have the names that other renderers give them. */
@@ -118,7 +125,9 @@ typedef enum ag_layer {
     AG_LAYER_NORMAL = 1 << 3, /* N.X, Y, Z: its shading normal on the eye's side, world space, mean over the pixel */
     AG_LAYER_POSITION = 1 << 4, /* P.X, Y, Z: world space, mean over what of the pixel is not empty */
     AG_LAYER_UV = 1 << 5,       /* u, v */
-    /* The parts of light. R, G and B are their sum in this order, in floats, to the last bit. */
+    /* The parts of light. R, G and B are their sum in this order, in floats, to the last bit. A pane whose light is
+     * direct (ag_pane_light) is no surface to what it lets through: behind it the first surface is the one that is seen
+     * through it. */
     AG_LAYER_EMISSION = 1 << 6,      /* straight from lamps and sky to the eye */
     AG_LAYER_DIRECT = 1 << 7,        /* straight from lamps, reflected by the first surface's diffuse lobes */
     AG_LAYER_INDIRECT = 1 << 8,      /* what else these reflect, but */
@@ -159,6 +168,7 @@ AG_API ag_status ag_layers_parse(const char *list, uint32_t *out_layers);
 typedef struct ag_render_settings {
     ag_integrator integrator; /* default: photonmap */
     ag_cache_mode cache;      /* default: on demand */
+    ag_pane_light pane_light; /* default: direct */
     ag_only only;             /* AG_ONLY_INDIRECT: less emission and direct light at the first non-specular hit */
     uint64_t seed;            /* default 0; statistics show it as a signed number */
 
