@@ -61,25 +61,26 @@ void irradiance_cache_reset(irradiance_cache *cache)
     *cache = (irradiance_cache){0};
 }
 
-static bool estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index, rgb *out_irradiance)
+static irradiance_extent estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
+                                  rgb *out_irradiance)
 {
     irradiance_counters *counters = &cache->counters[worker_index];
     photon_neighbor *scratch = cache->scratch[worker_index].neighbors;
     bool is_timed = (counters->computed + counters->uncached) % TIMED_EVERY == 0;
     double begin = is_timed ? clock_thread_cpu_seconds() : 0.0;
-    bool holds = irradiance_estimate_holds(cache->map, position, normal, scratch, out_irradiance);
+    irradiance_extent extent = irradiance_estimate_find(cache->map, position, normal, scratch, out_irradiance);
     if (is_timed) {
         counters->timed_seconds += clock_thread_cpu_seconds() - begin;
         counters->timed++;
     }
-    return holds;
+    return extent;
 }
 
 /* At a place that no photon stands for. */
 static bool estimate_at_place(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                               rgb *out_irradiance)
 {
-    bool holds = estimate(cache, position, normal, worker_index, out_irradiance);
+    bool holds = estimate(cache, position, normal, worker_index, out_irradiance) != IRRADIANCE_HOLDS_NOWHERE;
     cache->counters[worker_index].uncached++;
     return holds;
 }
@@ -97,14 +98,18 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, unsigned worker
 {
     photon_block *blocks = cache->map->bearers.blocks;
     rgb irradiance;
-    bool holds = estimate(cache, photon_block_position(blocks, index),
-                          direction_decode(photon_block_normal(blocks, index)), worker_index, &irradiance);
-    uint32_t value = holds ? photon_map_encode_irradiance(cache->map, irradiance, index) : PHOTON_NO_IRRADIANCE;
-    if (irradiance_slot_publish(photon_block_slot(blocks, index), claimer_of(cache, worker_index), value))
+    irradiance_extent extent =
+        estimate(cache, photon_block_position(blocks, index), direction_decode(photon_block_normal(blocks, index)),
+                 worker_index, &irradiance);
+    uint32_t word = irradiance_word(IRRADIANCE_READY, PHOTON_NO_IRRADIANCE);
+    if (extent != IRRADIANCE_HOLDS_NOWHERE)
+        word = irradiance_word(extent == IRRADIANCE_HOLDS_IN_SIGHT ? IRRADIANCE_READY_IN_SIGHT : IRRADIANCE_READY,
+                               photon_map_encode_irradiance(cache->map, irradiance, index));
+    if (irradiance_slot_publish(photon_block_slot(blocks, index), claimer_of(cache, worker_index), word))
         cache->counters[worker_index].computed++;
     else
         cache->counters[worker_index].duplicated++;
-    return irradiance_word(IRRADIANCE_READY, value);
+    return word;
 }
 
 /* The word of a bearer, computed first where nobody has claimed it; where another has, it need not be ready. */
@@ -125,7 +130,7 @@ static uint32_t await(irradiance_cache *cache, uint32_t index, unsigned worker_i
     irradiance_slot *slot = photon_map_slot(cache->map, index);
     claim_wait wait = {0};
     uint32_t word = irradiance_slot_read(slot);
-    while (irradiance_word_state(word) != IRRADIANCE_READY) {
+    while (!irradiance_word_is_ready(word)) {
         if (!cache->owners) {
             sched_yield(); /* the claimer may need this processor */
         } else if (claim_owners_wait(cache->owners, &wait, word) &&
@@ -167,7 +172,7 @@ void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words)
 {
     for (uint32_t i = 0; i < cache->map->bearers.count; i++) {
         uint32_t word = irradiance_slot_read(photon_map_slot(cache->map, i));
-        out_words[i] = irradiance_word_state(word) == IRRADIANCE_READY ? word : 0;
+        out_words[i] = irradiance_word_is_ready(word) ? word : 0;
     }
 }
 
@@ -177,29 +182,33 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
     for (uint32_t i = 0; i < cache->map->bearers.count; i++) {
         uint32_t found;
         irradiance_slot *slot = photon_map_slot(cache->map, i);
-        if (irradiance_word_state(words[i]) == IRRADIANCE_READY &&
-            irradiance_slot_try_claim(slot, claimer_of(cache, 0), &found))
-            irradiance_slot_publish(slot, claimer_of(cache, 0), words[i] & IRRADIANCE_VALUE_MASK);
+        if (irradiance_word_is_ready(words[i]) && irradiance_slot_try_claim(slot, claimer_of(cache, 0), &found))
+            irradiance_slot_publish(slot, claimer_of(cache, 0), words[i]);
     }
     cache->ready_before += irradiance_cache_distinct(cache) - distinct;
 }
 
-/* The answer of an estimate at the place itself. */
-static bool answer_at_place(irradiance_cache *cache, const irradiance_query *query, unsigned worker_index,
-                            rgb *out_irradiance)
+/* The answer where photon_map_nearest gave PHOTON_NONE or PHOTON_HIDDEN: an estimate at the place, or none. */
+static bool answer_without_bearer(irradiance_cache *cache, const irradiance_query *query, uint32_t nearest,
+                                  unsigned worker_index, rgb *out_irradiance)
 {
-    bool holds = estimate_at_place(cache, query->position, query->normal, worker_index, out_irradiance);
+    bool holds = nearest == PHOTON_NONE &&
+                 estimate_at_place(cache, query->position, query->normal, worker_index, out_irradiance);
     if (!holds)
         *out_irradiance = rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;
 }
 
-/* The answer of a word that is ready. */
-static bool answer_by_word(irradiance_cache *cache, uint32_t word, unsigned worker_index, rgb *out_irradiance)
+/* The answer of a bearer whose word is ready. */
+static bool answer_by_word(irradiance_cache *cache, const irradiance_query *query, uint32_t bearer, uint32_t word,
+                           unsigned worker_index, rgb *out_irradiance)
 {
+    const photon_map *map = cache->map;
     uint32_t value = word & IRRADIANCE_VALUE_MASK;
     bool holds = value != PHOTON_NO_IRRADIANCE;
+    if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces)
+        holds = !photon_map_is_behind_wall(map, map->bearers.blocks, query->position, query->normal, bearer);
     *out_irradiance = holds ? photon_map_decode_irradiance(cache->map, value) : rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;
@@ -212,15 +221,16 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
     uint32_t bearer =
         cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
     counters->requests++;
-    *out_request = (irradiance_request){.bearer = PHOTON_NONE};
-    if (bearer == PHOTON_NONE) {
-        irradiance_query query = {position, normal};
-        out_request->holds = answer_at_place(cache, &query, worker_index, &out_request->irradiance);
+    *out_request = (irradiance_request){.query = {position, normal}, .bearer = PHOTON_NONE};
+    if (bearer >= PHOTON_HIDDEN) {
+        out_request->holds =
+            answer_without_bearer(cache, &out_request->query, bearer, worker_index, &out_request->irradiance);
         return;
     }
     uint32_t word = demand(cache, bearer, worker_index);
-    if (irradiance_word_state(word) == IRRADIANCE_READY) {
-        out_request->holds = answer_by_word(cache, word, worker_index, &out_request->irradiance);
+    if (irradiance_word_is_ready(word)) {
+        out_request->holds =
+            answer_by_word(cache, &out_request->query, bearer, word, worker_index, &out_request->irradiance);
         return;
     }
     counters->deferred++;
@@ -297,9 +307,9 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
         uint32_t i = (uint32_t)order[k], bearer = is_cached ? (uint32_t)(order[k] >> 32) : PHOTON_NONE;
         if (k % CANCEL_EVERY == 0 && run_is_cancelled(run))
             return;
-        if (bearer == PHOTON_NONE) {
+        if (bearer >= PHOTON_HIDDEN) {
             order[k] = (uint64_t)PHOTON_NONE << 32 | i;
-            out_holds[i] = answer_at_place(cache, &queries[i], worker_index, &out_irradiance[i]);
+            out_holds[i] = answer_without_bearer(cache, &queries[i], bearer, worker_index, &out_irradiance[i]);
             continue;
         }
         demand(cache, bearer, worker_index);
@@ -310,15 +320,15 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
         if (bearer == PHOTON_NONE)
             continue;
         uint32_t word = irradiance_slot_read(photon_map_slot(map, bearer));
-        if (irradiance_word_state(word) == IRRADIANCE_READY)
-            out_holds[i] = answer_by_word(cache, word, worker_index, &out_irradiance[i]);
+        if (irradiance_word_is_ready(word))
+            out_holds[i] = answer_by_word(cache, &queries[i], bearer, word, worker_index, &out_irradiance[i]);
         else
             order[waiting++] = order[k]; /* its place in the order is free by now */
     }
     counters->deferred += waiting;
     for (uint32_t k = 0; k < waiting; k++) {
         uint32_t i = (uint32_t)order[k];
-        irradiance_request request = {.bearer = (uint32_t)(order[k] >> 32)};
+        irradiance_request request = {.query = queries[i], .bearer = (uint32_t)(order[k] >> 32)};
         irradiance_cache_retry(cache, &request, worker_index);
         out_irradiance[i] = request.irradiance;
         out_holds[i] = request.holds;
@@ -328,15 +338,15 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index)
 {
     uint32_t word = irradiance_slot_read(photon_map_slot(cache->map, request->bearer));
-    if (irradiance_word_state(word) != IRRADIANCE_READY) {
+    if (!irradiance_word_is_ready(word)) {
         irradiance_counters *counters = &cache->counters[worker_index];
         double begin = clock_thread_cpu_seconds();
         word = await(cache, request->bearer, worker_index);
         counters->waited++;
         counters->waited_seconds += clock_thread_cpu_seconds() - begin;
     }
+    request->holds = answer_by_word(cache, &request->query, request->bearer, word, worker_index, &request->irradiance);
     request->bearer = PHOTON_NONE;
-    request->holds = answer_by_word(cache, word, worker_index, &request->irradiance);
 }
 
 rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
@@ -376,7 +386,6 @@ uint64_t irradiance_cache_distinct(const irradiance_cache *cache)
 {
     uint64_t ready = 0;
     for (uint32_t i = 0; i < cache->map->bearers.count; i++)
-        ready +=
-            irradiance_word_state(irradiance_slot_read(photon_map_slot(cache->map, (uint32_t)i))) == IRRADIANCE_READY;
+        ready += irradiance_word_is_ready(irradiance_slot_read(photon_map_slot(cache->map, (uint32_t)i)));
     return ready - cache->ready_before;
 }

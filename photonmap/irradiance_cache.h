@@ -66,7 +66,13 @@ ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run)
 void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words);
 void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words);
 
+/* A place, and the side of the unit normal. */
+typedef struct irradiance_query {
+    vec3 position, normal;
+} irradiance_query;
+
 typedef struct irradiance_request {
+    irradiance_query query;
     uint32_t bearer; /* PHOTON_NONE: the request has been answered */
     bool holds;      /* whether there is an irradiance: where none is, the caller has to follow the light itself */
     rgb irradiance;  /* W/m^2; 0 where none holds */
@@ -74,8 +80,8 @@ typedef struct irradiance_request {
 
 /* Asks for the irradiance at a place, on the side of the unit normal. Either it is answered (request->bearer is
  * PHOTON_NONE), or another thread is computing it: then it is to be asked for again with irradiance_cache_retry, after
- * the caller's other work. Where no estimate holds (irradiance_estimate.h), neither at the photon that stands for the
- * place nor at the place, the answer is that there is none. */
+ * the caller's other work. Where no estimate holds (irradiance_estimate.h) at the photon that stands for the place, or
+ * the place does not see that photon and would have to, the answer is that there is none. */
 void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                           irradiance_request *out_request);
 
@@ -83,11 +89,6 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
  * answered. The claimer holds its claim only while computing, and takes no other meanwhile; a dead one's is taken over:
  * so this ends. */
 void irradiance_cache_retry(irradiance_cache *cache, irradiance_request *request, unsigned worker_index);
-
-/* A place, and the side of the unit normal. */
-typedef struct irradiance_query {
-    vec3 position, normal;
-} irradiance_query;
 
 /* Asks for the irradiance at up to IRRADIANCE_BATCH_MAX places at once, in the map's order: what is looked up and
  * computed one after the other lies near each other. Those that another thread is computing are set aside, and come

@@ -65,12 +65,20 @@ static bool region_holds(const photon_map *map, double area, float radius)
     return area >= (double)share_min * (double)AG_PI * (double)least_radius * (double)least_radius;
 }
 
-bool irradiance_estimate_holds(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
-                               rgb *out_irradiance)
+static bool reaches_rim(const photon_map *map, vec3 position, vec3 normal, float radius)
+{
+    return surface_region_reaches_rim(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius);
+}
+
+/* Of the photons found, so large a share must lie on the place's own level: the others have set the radius. */
+static const float LEVEL_SHARE_MIN = 0.5f;
+
+irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
+                                           rgb *out_irradiance)
 {
     *out_irradiance = rgb_gray(0.0f);
     if (map->set.count == 0)
-        return true;
+        return IRRADIANCE_HOLDS_EVERYWHERE;
     float other_squared;
     uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
                                            map->nearest + 1, scratch, &other_squared);
@@ -94,21 +102,29 @@ bool irradiance_estimate_holds(const photon_map *map, vec3 position, vec3 normal
             scratch[kept++] = doubtful[i];
         }
     surface_region region;
-    bool holds = true;
-    if (map->surfaces && kept > 0 && (other_squared <= radius_squared || is_lopsided(&sums, normal, kept)) &&
-        surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, &region)) {
+    irradiance_extent extent = kept < count ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
+    bool may_end = map->surfaces && (kept < count || other_squared <= radius_squared ||
+                                     is_lopsided(&sums, normal, kept) || !reaches_rim(map, position, normal, radius));
+    if (found == map->nearest + 1 && (float)kept < LEVEL_SHARE_MIN * (float)count) {
+        extent = IRRADIANCE_HOLDS_NOWHERE;
+    } else if (may_end &&
+               surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, &region)) {
         double region_area = surface_region_area(&region, radius);
         photon_disc_sums whole = sums;
         uint32_t inside = sum_in_region(&disc, &region, scratch, kept, &sums);
         bool is_k = found == map->nearest + 1 && inside == map->nearest;
-        holds = is_k || region_holds(map, region_area, radius);
-        if (holds)
+        if (is_k || region_holds(map, region_area, radius)) {
             area = region_area;
-        else
+            /* farther places must see the photon anyway */
+            if (region.nearest_end < photon_map_far(map))
+                extent = IRRADIANCE_HOLDS_IN_SIGHT;
+        } else {
+            extent = IRRADIANCE_HOLDS_NOWHERE;
             sums = whole;
+        }
     }
     double scale = ldexp(1.0, map->flux_exponent_max - 32) / ((double)map->set.emitted_paths * area);
     *out_irradiance = (rgb){(float)((double)sums.flux[0] * scale), (float)((double)sums.flux[1] * scale),
                             (float)((double)sums.flux[2] * scale)};
-    return holds;
+    return extent;
 }

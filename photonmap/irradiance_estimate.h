@@ -7,24 +7,32 @@
 
 #include "photon_map.h"
 
+/* Where an estimate holds, of the places that its photon or place is the nearest to. */
+typedef enum irradiance_extent {
+    IRRADIANCE_HOLDS_NOWHERE,
+    IRRADIANCE_HOLDS_IN_SIGHT,  /* where the place is seen from: a surface ends near by, or another level is there */
+    IRRADIANCE_HOLDS_EVERYWHERE /* no surface ends within photon_map_far */
+} irradiance_extent;
+
 /* Irradiance [W/m^2] on the side of `normal` (unit), from the k nearest photons: their flux over the area out to the
  * next one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Near an edge, of either as far
  * as there is surface. scratch: photon_map_scratch_count(map) of them.
  *
- * Returns whether the estimate holds. It does not where the surface within the disc is too small for the photons that a
+ * Returns where the estimate holds. It holds nowhere if the surface within the disc is too small for the photons that a
  * disc holds: on a strip, a moulding, a leaf. There photons per area is right in the mean only, by values that are
  * nearly always 0 and else a thousand times too large; *out_irradiance is then the whole disc's, which is not of this
- * surface alone but bounded. The answer rests on geometry, and on how dense photons are in all of the scene, never on
- * how many were found: to keep some draws of a count and not others would change the mean. Does not fail, does not
- * allocate. */
-bool irradiance_estimate_holds(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
-                               rgb *out_irradiance);
+ * surface alone but bounded. Nor does it hold if most of the photons found lie on other levels, whose density then has
+ * set the radius. The answer rests on geometry, on how dense photons are in all of the scene and on those of other
+ * surfaces, never on how many of this surface were found: to keep some draws of a count and not others would change
+ * the mean. Does not fail, does not allocate. */
+irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
+                                           rgb *out_irradiance);
 
 /* The value alone. */
 static inline rgb irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
 {
     rgb irradiance;
-    irradiance_estimate_holds(map, position, normal, scratch, &irradiance);
+    irradiance_estimate_find(map, position, normal, scratch, &irradiance);
     return irradiance;
 }
 

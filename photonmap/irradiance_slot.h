@@ -4,13 +4,16 @@
  * death of processes in tests/models/irradiance_slot_shared.pml.
  *
  *            try_claim (CAS on the flags)           publish (CAS)
- *   EMPTY ─────────────────────────────────▶ CLAIMED ─────────────▶ READY  (final)
+ *   EMPTY ─────────────────────────────────▶ CLAIMED ─────────────▶ READY or READY_IN_SIGHT  (final)
  *          exactly one thread wins            computes the estimate  everyone reads
  *
- *   state    the other 30 bits          who may change the word
- *   EMPTY    0                          anybody: to CLAIMED, naming itself
- *   CLAIMED  the claimer's number       the claimer: to READY; where it is dead, anybody: to CLAIMED, naming itself
- *   READY    exponent, mantissas        nobody
+ *   state           the other 30 bits     who may change the word
+ *   EMPTY           0                     anybody: to CLAIMED, naming itself
+ *   CLAIMED         the claimer's number  the claimer: to a ready state; where it is dead, anybody: to CLAIMED, naming
+ *                                         itself
+ *   READY           exponent, mantissas   nobody; serves every place that the photon is the nearest to
+ *   READY_IN_SIGHT  exponent, mantissas   nobody; a surface ends near by, so it serves those places only that see the
+ *                                         photon
  *
  * State and value are one word, so nobody can see half of a result, and zeroed memory is a valid empty cache.
  * Threads: any, at any time. */
@@ -21,7 +24,12 @@
 
 typedef atomic_u32 irradiance_slot;
 
-typedef enum irradiance_state { IRRADIANCE_EMPTY = 0, IRRADIANCE_CLAIMED = 1, IRRADIANCE_READY = 2 } irradiance_state;
+typedef enum irradiance_state {
+    IRRADIANCE_EMPTY = 0,
+    IRRADIANCE_CLAIMED = 1,
+    IRRADIANCE_READY = 2,
+    IRRADIANCE_READY_IN_SIGHT = 3
+} irradiance_state;
 
 #define IRRADIANCE_STATE_SHIFT 30
 #define IRRADIANCE_VALUE_MASK  0x3fffffffu
@@ -29,6 +37,12 @@ typedef enum irradiance_state { IRRADIANCE_EMPTY = 0, IRRADIANCE_CLAIMED = 1, IR
 static inline irradiance_state irradiance_word_state(uint32_t word)
 {
     return (irradiance_state)(word >> IRRADIANCE_STATE_SHIFT);
+}
+
+/* Whether the word holds a final value, of either kind. */
+static inline bool irradiance_word_is_ready(uint32_t word)
+{
+    return word >> IRRADIANCE_STATE_SHIFT >= IRRADIANCE_READY;
 }
 
 static inline uint32_t irradiance_word(irradiance_state state, uint32_t value)
@@ -62,13 +76,13 @@ static inline bool irradiance_slot_take_over(irradiance_slot *slot, uint32_t *in
     return true;
 }
 
-/* Makes the claimer's value (30 bits) final. Release: pairs with read. False when the claim was not the claimer's any
- * more: somebody else computed it too, which happens where a process has stood still for so long that it was thought
- * dead, and to nobody else. */
-static inline bool irradiance_slot_publish(irradiance_slot *slot, uint32_t claimer, uint32_t value)
+/* Makes the claimer's word, which is a ready one, final. Release: pairs with read. False when the claim was not the
+ * claimer's any more: somebody else computed it too, which happens where a process has stood still for so long that it
+ * was thought dead, and to nobody else. */
+static inline bool irradiance_slot_publish(irradiance_slot *slot, uint32_t claimer, uint32_t ready)
 {
     uint32_t expected = irradiance_word(IRRADIANCE_CLAIMED, claimer);
-    return cas_release_u32(slot, &expected, irradiance_word(IRRADIANCE_READY, value));
+    return cas_release_u32(slot, &expected, ready);
 }
 
 #endif

@@ -220,6 +220,8 @@ static void describe_difference(const photon_file_key *is, const photon_file_key
                  (number)wanted->caustic_photon_count);
     else if (is->max_depth != wanted->max_depth)
         snprintf(out, size, "it was made with a depth of %u, not %u", is->max_depth, wanted->max_depth);
+    else if (is->pane_light != wanted->pane_light)
+        snprintf(out, size, "it was made with another choice of light through panes (--pane-light)");
     else if (is->nearest != wanted->nearest)
         snprintf(out, size, "it was made for estimates of %u photons, not %u", is->nearest, wanted->nearest);
     else if (memcmp(&is->radius, &wanted->radius, sizeof is->radius) != 0)
@@ -394,7 +396,7 @@ static void drop_claims(photon_map *map)
 {
     for (uint32_t i = 0; i < map->bearers.count; i++) {
         irradiance_slot *slot = photon_map_slot(map, i);
-        if (irradiance_word_state(load_relaxed_u32(slot)) != IRRADIANCE_READY)
+        if (!irradiance_word_is_ready(load_relaxed_u32(slot)))
             store_relaxed_u32(slot, 0);
     }
 }

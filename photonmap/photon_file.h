@@ -25,10 +25,10 @@ typedef struct photon_file_key {
     uint64_t seed;
     uint64_t photon_count, caustic_photon_count;
     uint32_t max_depth, nearest;
+    uint32_t pane_light; /* ag_pane_light */
+    float photon_aim;
     float radius, irradiance_fraction;
     hash128 aim_view; /* what the photons are aimed at; zeros: at everything alike */
-    float photon_aim;
-    uint32_t reserved;
     char program[56]; /* version and compiler */
     char machine[56]; /* what may give other bits: kind and maker of the processor, instruction set of ray traversal */
 } photon_file_key;

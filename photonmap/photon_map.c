@@ -63,12 +63,13 @@ static float smallest_radius(const photon_map *map)
     return ldexpf(map->max_radius, -octaves);
 }
 
-/* A bearer stands for places up to the mean radius away; in the dark, where estimates are of all photons of the largest
- * disc, up to this share of that disc's radius. The light through the nearest photon is right on average as long as the
- * disc around the place that holds no photon lies within the photon's own, which ends here. */
+/* A bearer stands for places up to this share of the largest disc's radius away. The light through the nearest photon
+ * is right in the mean as long as the disc around the place that holds no photon lies within the photon's own, which
+ * ends here. Where the empty disc is larger, an estimate at the place misses just what the others have too much:
+ * for n photons a disc, exp(-n / 4) / 4 of n. */
 static const float NEAREST_SHARE = 0.5f;
 
-static float nearest_reach(const photon_map *map) { return fmaxf(map->mean_radius, NEAREST_SHARE * map->max_radius); }
+static float nearest_reach(const photon_map *map) { return NEAREST_SHARE * map->max_radius; }
 
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
                             double progress_begin, double progress_end, photon_map *out_map)
@@ -165,20 +166,28 @@ bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks
     return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
-/* In a dark room the nearest bearer is the bright next room's. One farther away than this many mean spacings must
- * be in sight: of evenly spread ones 1 in 7 is so far, and what still leaks through a partition goes down with the
- * square. */
+/* A bearer higher or lower than the place by this share of its distance may lie on a board or a frame. */
+static const float LEVEL_SLOPE = 0.1f;
+
+/* In mean spacings of the bearers. */
 static const float FAR_SPACINGS = 1.4f;
 
-/* What was found, or PHOTON_NONE where it does not stand for the place. */
-static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint32_t found, float distance_squared)
+float photon_map_far(const photon_map *map)
 {
     float photons_each = (float)map->set.count / (float)map->bearers.count;
-    float spacings_squared = FAR_SPACINGS * FAR_SPACINGS / (float)map->nearest * photons_each;
-    if (found == PHOTON_NONE || !map->surfaces ||
-        distance_squared <= spacings_squared * map->mean_radius * map->mean_radius)
+    return FAR_SPACINGS * map->mean_radius * sqrtf(photons_each / (float)map->nearest);
+}
+
+/* What was found, or PHOTON_HIDDEN where it does not stand for the place. */
+static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint32_t found, float distance_squared)
+{
+    if (found == PHOTON_NONE || !map->surfaces)
         return found;
-    return photon_map_is_behind_wall(map, map->bearers.blocks, position, normal, found) ? PHOTON_NONE : found;
+    float far = photon_map_far(map);
+    float height = vec3_dot(vec3_sub(photon_block_position(map->bearers.blocks, found), position), normal);
+    if (distance_squared <= far * far && height * height <= LEVEL_SLOPE * LEVEL_SLOPE * distance_squared)
+        return found;
+    return photon_map_is_behind_wall(map, map->bearers.blocks, position, normal, found) ? PHOTON_HIDDEN : found;
 }
 
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)

@@ -69,9 +69,17 @@ uint32_t photon_map_scratch_count(const photon_map *map);
 bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
                                uint32_t index);
 
-/* The bearer whose irradiance stands for the place; PHOTON_NONE where none with a like normal is near enough,
- * or the one that is stands behind a wall. Near enough is what is no farther than the mean radius, or than half the
- * largest one, by which the dark is estimated anyway. */
+/* A bearer farther than this from a place must be in sight to stand for it, scene units: in a dark room the nearest
+ * bearer is the bright next room's. Of evenly spread photons 1 in 7 is so far, and what still leaks through a partition
+ * goes down with the square. */
+float photon_map_far(const photon_map *map);
+
+/* What photon_map_nearest returns where the nearest bearer is out of sight. */
+#define PHOTON_HIDDEN (PHOTON_NONE - 1)
+
+/* The bearer whose irradiance stands for the place. PHOTON_NONE: none with a like normal is within half the largest
+ * radius. PHOTON_HIDDEN: the nearest one lies so far away, or so far off the place's tangent plane, that it must be in
+ * sight, and it is not. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal);
 
 /* Where in the bearers' order a place is: lookups at places with like numbers touch the same memory. */

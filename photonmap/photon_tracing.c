@@ -50,8 +50,9 @@ typedef struct photon_path {
     rgb flux;
     rng random;
     uint64_t key;
-    float weight; /* of its beginning: by power over by the guide */
-    int scatterings;
+    float weight;    /* of its beginning: by power over by the guide */
+    int scatterings; /* but for panes, where they are direct */
+    int arrivals;    /* at surfaces, panes too */
     bool is_diffuse; /* has gone on from a place by its gathered lobes */
 } photon_path;
 
@@ -94,7 +95,7 @@ static bool keep(tracer *t, const photon_path *path, vec3 position, vec3 normal,
 static void store(tracer *t, const photon_path *path, const surface_hit *hit, float arrival_factor)
 {
     vec3 direction = path->ray.direction;
-    uint64_t key = hash_combine(path->key, (uint64_t)path->scatterings);
+    uint64_t key = hash_combine(path->key, (uint64_t)path->arrivals);
     rgb flux = path->flux;
     block *out = t->out;
     surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
@@ -180,7 +181,7 @@ static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
     ray.medium = start.medium;
     ray.time = time;
     rgb flux = rgb_scale(start.flux, weight / probability);
-    *out_path = (photon_path){ray, flux, random, key, weight, 0, false};
+    *out_path = (photon_path){ray, flux, random, key, weight, 0, 0, false};
     book(t->out->books.emitted, out_path->flux);
     return true;
 }
@@ -203,23 +204,18 @@ static bool matter_has(const matter *m, bsdf_lobes lobes)
     return m->albedo ? (lobes & BSDF_GATHERED) != 0 : bsdf_has(&m->scattering, lobes);
 }
 
+/* Direction, weight, group and is_straight are set. */
 static bool matter_sample(const matter *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes, float u_lobe, vec2 u,
-                          vec3 *out_direction, rgb *out_weight, bool *out_is_gathered)
+                          bsdf_sample *out_next)
 {
-    bsdf_sample next;
     float correction;
-    if (m->albedo) {
-        if (!lambert_sample_flux(hit, arrived, u, out_direction, &correction))
-            return false;
-        *out_weight = rgb_scale(*m->albedo, correction);
-        *out_is_gathered = true;
-        return true;
-    }
-    if (!bsdf_sample_direction(&m->scattering, lobes, BSDF_FLUX, u_lobe, u, &next))
+    if (!m->albedo)
+        return bsdf_sample_direction(&m->scattering, lobes, BSDF_FLUX, u_lobe, u, out_next);
+    if (!lambert_sample_flux(hit, arrived, u, &out_next->direction, &correction))
         return false;
-    *out_direction = next.direction;
-    *out_weight = next.weight;
-    *out_is_gathered = next.group == BSDF_GATHERED;
+    out_next->weight = rgb_scale(*m->albedo, correction);
+    out_next->group = BSDF_GATHERED;
+    out_next->is_straight = false;
     return true;
 }
 
@@ -239,7 +235,9 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
         float factor = m.albedo ? lambert_arrival_factor(hit, arrived) : bsdf_arrival_factor(&m.scattering);
         store(t, path, hit, factor);
     }
-    if (path->scatterings >= settings->max_scatterings || path->scatterings >= SCATTERING_CAP) {
+    bool may_go_straight = settings->panes_are_direct && !m.albedo && m.scattering.is_pane;
+    bool is_last = path->scatterings >= settings->max_scatterings;
+    if (path->arrivals >= SCATTERING_CAP || (is_last && !may_go_straight)) {
         book(books->truncated, flux);
         return false;
     }
@@ -252,14 +250,17 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
     }
     float u_lobe = rng_float(&path->random), u_roulette = rng_float(&path->random);
     vec2 u = rng_vec2(&path->random);
-    vec3 direction;
-    rgb weight;
-    bool is_gathered;
-    if (!matter_sample(&m, hit, arrived, lobes, u_lobe, u, &direction, &weight, &is_gathered)) {
+    bsdf_sample next;
+    if (!matter_sample(&m, hit, arrived, lobes, u_lobe, u, &next)) {
         book(books->absorbed, flux);
         return false;
     }
-    rgb scattered = rgb_mul(flux, weight);
+    bool goes_straight = may_go_straight && next.is_straight;
+    if (is_last && !goes_straight) {
+        book(books->truncated, flux);
+        return false;
+    }
+    rgb scattered = rgb_mul(flux, next.weight);
     book(books->absorbed, rgb_sub(flux, scattered));
 
     /* roulette keeps the flux of the survivors about what it was */
@@ -271,9 +272,10 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
     }
     path->flux = rgb_scale(scattered, 1.0f / survival);
     book(books->gained, rgb_sub(path->flux, scattered));
-    path->ray = surface_ray(hit, path->ray, direction);
-    path->scatterings++;
-    path->is_diffuse = path->is_diffuse || is_gathered;
+    path->ray = goes_straight ? passage_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
+    path->scatterings += !goes_straight;
+    path->arrivals++;
+    path->is_diffuse = path->is_diffuse || next.group == BSDF_GATHERED;
     return true;
 }
 

@@ -5,7 +5,8 @@
  * cut at a prefix.
  *
  * Global map: every arrival at a gathered lobe, caustic paths included: L(S|D)*D. Caustic map: arrivals that came from
- * the lamp by way of traced lobes alone, at least one: LS+D, from an emission of its own.
+ * the lamp by way of traced lobes alone, at least one: LS+D, from an emission of its own. Where panes are direct, light
+ * that a pane lets straight through has met no S there: the eye samples it at the lamp.
  *
  * Where something moves, each path has a time of the shutter of its own, so that a map is the mean over the shutter;
  * which light comes at which time is lost. A photon on a moving surface lies where that place of the surface is when
@@ -52,8 +53,9 @@ typedef struct photon_set {
 
 typedef struct photon_tracing_settings {
     photon_kind kind;
-    uint32_t wanted;     /* photons to store, > 0 */
-    int max_scatterings; /* arrivals after more scatterings than this are not stored; >= 0 */
+    uint32_t wanted;       /* photons to store, > 0 */
+    int max_scatterings;   /* arrivals after more scatterings than this are not stored; >= 0 */
+    bool panes_are_direct; /* light straight through panes (bsdf.h) counts as unscattered: no caustic */
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
     const emission_guide *guide;         /* where paths begin */

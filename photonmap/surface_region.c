@@ -111,34 +111,52 @@ static void bound_sector(const float *extent, float radius, int i, float *out_li
     line_through(extent, i, out_line);
 }
 
+/* Two tangents at right angles, turned at random by the place, so that no direction is favoured. */
+static void find_tangents(vec3 position, vec3 normal, vec3 *out_x, vec3 *out_y)
+{
+    uint32_t bits[3];
+    memcpy(bits, &position, sizeof bits);
+    float turn = (float)(hash_combine(hash_combine(bits[0], bits[1]), bits[2]) >> 40) * 0x1p-24f, sine, cosine;
+    sincos_turns(turn, &sine, &cosine);
+    frame f = frame_from_z(normal);
+    *out_x = vec3_add_scaled(vec3_scale(f.x, cosine), f.y, sine);
+    *out_y = vec3_add_scaled(vec3_scale(f.y, cosine), f.x, -sine);
+}
+
+bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius)
+{
+    float lift = LIFT * radius, lateral = PROBE_AT * radius;
+    vec3 x, y;
+    find_tangents(position, normal, &x, &y);
+    vec3 above = vec3_add_scaled(position, normal, lift);
+    for (int i = 0; i < SURFACE_REGION_SECTORS; i += 2) {
+        vec3 tangent = vec3_add_scaled(vec3_scale(x, UNIT[i][0]), y, UNIT[i][1]);
+        if (!has_surface_below(s, vec3_add_scaled(above, tangent, lateral), normal, lift, lateral, radius, min_cos))
+            return false;
+    }
+    return true;
+}
+
 bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
                          surface_region *out_region)
 {
     float lift, extent[SURFACE_REGION_SECTORS];
     vec3 n;
+    surface_region *r = out_region;
     if (!find_foot(s, position, normal, radius, &n, &lift))
         return false;
-
-    /* turned at random by the place, so that no direction is favoured */
-    surface_region *r = out_region;
-    uint32_t bits[3];
-    memcpy(bits, &position, sizeof bits);
-    float turn = (float)(hash_combine(hash_combine(bits[0], bits[1]), bits[2]) >> 40) * 0x1p-24f, sine, cosine;
-    sincos_turns(turn, &sine, &cosine);
-    frame f = frame_from_z(n);
     r->center = position;
-    r->x = vec3_add_scaled(vec3_scale(f.x, cosine), f.y, sine);
-    r->y = vec3_add_scaled(vec3_scale(f.y, cosine), f.x, -sine);
+    find_tangents(position, n, &r->x, &r->y);
 
     vec3 above = vec3_add_scaled(position, n, lift);
-    bool is_bounded = false;
+    r->nearest_end = radius;
     for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
         vec3 tangent = vec3_add_scaled(vec3_scale(r->x, UNIT[i][0]), r->y, UNIT[i][1]);
         extent[i] = find_extent(s, above, n, lift, tangent, radius, min_cos);
-        is_bounded = is_bounded || extent[i] < radius;
+        r->nearest_end = fminf(r->nearest_end, extent[i]);
         extent[i] = fmaxf(extent[i], SHORTEST * radius);
     }
-    if (!is_bounded)
+    if (r->nearest_end >= radius)
         return false;
     for (int i = 0; i < SURFACE_REGION_SECTORS; i++)
         bound_sector(extent, radius, i, r->line[i]);

@@ -28,6 +28,7 @@ static const struct {
 } SETTINGS[] = {
     SETTING(integrator, "integrator"),
     SETTING(cache, "cache mode"),
+    SETTING(pane_light, "light through panes (--pane-light)"),
     SETTING(only, "choice of light (--only)"),
     SETTING(seed, "seed"),
     SETTING(width, "picture width"),
@@ -52,6 +53,7 @@ static const struct {
     SETTING(clamp_indirect, "bound of indirect light"),
     SETTING(noise_level, "noise level"),
     SETTING(noise_min_samples, "least number of samples"),
+    SETTING(shown_exposure_stops, "exposure of what is shown"),
     SETTING(gather_samples, "number of gather rays"),
 };
 enum { SETTING_COUNT = sizeof SETTINGS / sizeof *SETTINGS };

@@ -57,6 +57,7 @@ static photon_file_key key_of(const ag_context *context, const scene *s, const a
     key.caustic_photon_count = settings->caustic_photon_count;
     key.max_depth = (uint32_t)settings->max_depth;
     key.nearest = (uint32_t)settings->nearest;
+    key.pane_light = (uint32_t)settings->pane_light;
     key.radius = settings->radius;
     key.irradiance_fraction = settings->irradiance_fraction;
     key.photon_aim = settings->photon_aim;

@@ -55,7 +55,7 @@ static advice advise(const struct ag_rendering *r, ag_noise_source source, const
 ag_noise ag_rendering_noise(const ag_rendering *r)
 {
     int nearest = r->t.caustic && r->t.caustic->set.count > 0 ? r->settings.nearest : 0;
-    noise_summary summary = noise_lattice_read(&r->film->noise, 1.0, nearest);
+    noise_summary summary = noise_lattice_read(&r->film->noise, noise_shown_scale(&r->settings), nearest);
     ag_noise out = {.level = summary.level};
     int most = 0;
     for (int i = 0; i < AG_NOISE_SOURCE_COUNT; i++) {

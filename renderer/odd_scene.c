@@ -1,6 +1,7 @@
 /* odd_scene.c: see odd_scene.h. */
 #include "odd_scene.h"
 
+#include "material/pane.h"
 #include "math/sampling.h"
 #include "rays/passage.h"
 
@@ -77,13 +78,13 @@ static bool is_inside_solid(const scene *s)
 static void warn_of_scale(const struct ag_rendering *r, double value, const char *what)
 {
     const scene *s = r->s;
-    double stops = -log2(value);
+    double stops = -log2(value), asked = stops + (double)r->settings.shown_exposure_stops;
     log_once(
         r->context->log, AG_LOG_WARNING, "odd scene",
         "the picture is about %.0f stops too %s: %s %.1g, where white is 1; the scene is %.3g across and its lights "
         "emit %.3g W: are both in the same units? --exposure %.0f shows it",
         fabs(stops), stops > 0.0 ? "dark to be seen" : "bright", what, value, 2.0 * (double)s->bounding_radius,
-        (double)rgb_max(s->light_power), stops);
+        (double)rgb_max(s->light_power), asked);
 }
 
 static void warn_of_view(const struct ag_rendering *r)
@@ -102,6 +103,32 @@ static void warn_of_view(const struct ag_rendering *r)
              (double)s->bounds_min.z, (double)s->bounds_max.x, (double)s->bounds_max.y, (double)s->bounds_max.z);
 }
 
+/* Path tracing finds what lamps send through smooth glass by meeting the lamp, and cannot meet these. */
+static bool has_lights_without_extent(const scene *s)
+{
+    for (uint32_t i = 0; i < s->light_count; i++)
+        if (s->lights[i].kind != LIGHT_AREA && s->lights[i].kind != LIGHT_INFINITE &&
+            rgb_max(s->lights[i].power) > 0.0f)
+            return true;
+    return false;
+}
+
+static void warn_of_light_behind_glass(const struct ag_rendering *r)
+{
+    const scene *s = r->s;
+    if (r->settings.integrator != AG_INTEGRATOR_PATH || !has_lights_without_extent(s))
+        return;
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        uint32_t material_index = s->shapes[i].material_index;
+        if (!material_is_clear_glass(s, material_index) || (r->t.panes_are_direct && pane_may_be_of(s, material_index)))
+            continue;
+        log_once(r->context->log, AG_LOG_WARNING, "light behind glass",
+                 "light of suns, points and spots that comes by way of smooth glass is missing: path tracing does not "
+                 "find it, the photon map does");
+        return;
+    }
+}
+
 void odd_scene_warn(const struct ag_rendering *r)
 {
     const struct ag_film *film = r->film;
@@ -112,6 +139,7 @@ void odd_scene_warn(const struct ag_rendering *r)
         log_once(log, AG_LOG_WARNING, "odd scene", "the scene has no light that emits: the picture is black");
         return;
     }
+    warn_of_light_behind_glass(r);
     if (!is_whole || r->settings.only != AG_ONLY_ALL || film_count_samples(film).least == 0)
         return;
     if (r->camera_rays > 0 && r->camera_rays_met == 0) {
@@ -120,7 +148,8 @@ void odd_scene_warn(const struct ag_rendering *r)
     }
     brightness b;
     brightness_read(film, &b);
-    double bright_part = brightness_above(&b, FEW), middle = brightness_above(&b, HALF);
+    double scale = noise_shown_scale(&r->settings);
+    double bright_part = scale * brightness_above(&b, FEW), middle = scale * brightness_above(&b, HALF);
     if ((double)(b.all - b.black) <= FEW * (double)b.all && is_inside_solid(s))
         log_once(log, AG_LOG_WARNING, "odd scene",
                  "the camera is inside of a solid: it meets the inner side of a surface in every direction, and no "

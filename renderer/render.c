@@ -16,6 +16,9 @@
 
 /* Direct light takes one sample for so many gather rays, so that neither is much noisier than the other. */
 enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
+/* How many samples share a pixel's gather rays where it may get more: measured in four rooms, 2 to 8 rays a sample
+ * bring the same noise in the least time. */
+enum { ADAPTIVE_GATHER_SAMPLES = 64 };
 /* A gather ray shorter than this many mean radii of an estimate does not use the cache. */
 static const float GATHER_MIN_DISTANCE_RADII = 1.0f;
 
@@ -67,7 +70,8 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .layout = layout,
                    .wants_layers = layout->needs_layers,
                    .wants_groups = aov_has(layout, SUM_GROUPS),
-                   .has_lights = rgb_max(s->light_power) > 0.0f};
+                   .has_lights = rgb_max(s->light_power) > 0.0f,
+                   .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
     for (uint32_t i = 0; i < s->light_count; i++)
         t.can_meet_lights = t.can_meet_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
     t.light_samples = (settings->gather_samples + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE;
@@ -104,7 +108,10 @@ static ag_status settle_settings(ag_context *context, const scene *s, const ag_r
 {
     *out_settings = *wanted;
     if (out_settings->gather_samples == 0 && out_settings->samples_per_pixel > 0) {
-        int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / out_settings->samples_per_pixel;
+        int samples = out_settings->samples_per_pixel;
+        if (out_settings->noise_level > 0.0f && samples > ADAPTIVE_GATHER_SAMPLES)
+            samples = ADAPTIVE_GATHER_SAMPLES;
+        int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples;
         out_settings->gather_samples = rays > 0 ? rays : 1;
     }
     if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)

@@ -63,6 +63,7 @@ static ag_status trace_photons(ag_context *context, const scene *s, const ag_ren
     photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL,
                                        .wanted = (uint32_t)settings->photon_count,
                                        .max_scatterings = settings->max_depth - 2,
+                                       .panes_are_direct = settings->pane_light == AG_PANE_LIGHT_DIRECT,
                                        .seed = settings->seed,
                                        .progress_begin = 0.0,
                                        .progress_end = wants_caustics ? 0.7 : 1.0};

@@ -266,6 +266,12 @@ static void name_ignored(const parameter_list *integrator, log_sink *log)
                 parameter_list_find(integrator, "maxdepth") ? ", paths end by roulette" : "");
 }
 
+bool ag_scene_has_own_samples(const ag_scene *loaded)
+{
+    const scene *s = loaded->s;
+    return s->sampler.name && s->integrator.name && strcmp(s->integrator.name, "photonmap") == 0;
+}
+
 ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loaded, ag_render_settings *out_settings)
 {
     if (!context || !loaded || !out_settings)
@@ -319,6 +325,8 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "nearest photons must be from 1 to 65536";
     else if (!(s->noise_level >= 0.0f) || s->noise_min_samples < 2 || s->noise_min_samples > 1 << 20)
         wrong = "the noise level must not be negative, and its least samples from 2 to 1048576";
+    else if (!(fabsf(s->shown_exposure_stops) <= 100.0f))
+        wrong = "the exposure of what is shown must be from -100 to 100 stops";
     else if (!(s->clamp_direct >= 0.0f) || !(s->clamp_indirect >= 0.0f))
         wrong = "clamps must not be negative";
     else if (s->layers & ~(uint32_t)(AG_LAYERS_ALL | AG_LAYER_GBUFFER | AG_LAYER_TILE_TIME))
@@ -327,6 +335,8 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "radius must be finite and not negative";
     else if (!(s->irradiance_fraction > 0.0f) || s->irradiance_fraction > 1.0f)
         wrong = "the fraction of photons that bear irradiance must be above 0, and 1 at most";
+    else if (s->pane_light != AG_PANE_LIGHT_DIRECT && s->pane_light != AG_PANE_LIGHT_TRACED)
+        wrong = "light through panes must be direct or traced";
     else if (!(s->gather_guiding >= 0.0f) || s->gather_guiding > 1.0f)
         wrong = "the guiding of gather rays must be from 0 to 1";
     else if (!(s->photon_aim >= 0.0f) || s->photon_aim > AG_DEFAULT_PHOTON_AIM)

@@ -131,7 +131,7 @@ static bool should_finish(const transport *t, const eye_worker *worker)
 static void render_pixel(tile_job *job, eye_worker *worker, int x, int y)
 {
     ag_film *film = job->film;
-    size_t pixel = (size_t)(y - film->y0) * (size_t)film->width + (size_t)(x - film->x0);
+    size_t pixel = film_pixel_at(film, x, y);
     uint32_t goal = film_goal(film, pixel, job->wanted);
     bool with_layers = job->t->wants_layers || noise_lattice_holds(&film->noise, pixel);
     for (uint32_t i = film->counts[pixel]; i < goal; i++) {
@@ -157,8 +157,7 @@ static void add_tile_time(ag_film *film, tile area, float seconds)
 {
     for (int y = area.y0; y < area.y1; y++)
         for (int x = area.x0; x < area.x1; x++)
-            film->views[VIEW_TILE_TIME][(size_t)(y - film->y0) * (size_t)film->width + (size_t)(x - film->x0)] +=
-                seconds;
+            film->views[VIEW_TILE_TIME][film_pixel_at(film, x, y)] += seconds;
 }
 
 /* Samples under way may be of several tiles, unless each tile's time is asked for. */
@@ -200,15 +199,16 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
                     .worker_count = context->statistics.threads,
                     .progress_begin = film_count_samples(film).mean / most,
                     .progress_end = (double)wanted / most};
-    ag_status status = tile_scheduler_create(film->x0, film->y0, film->x0 + film->width, film->y0 + film->height,
+    const film_area *area = &film->area;
+    ag_status status = tile_scheduler_create(area->x0, area->y0, area->x0 + area->width, area->y0 + area->height,
                                              TILE_SIZE, context->statistics.threads, &job.tiles);
     if (status != AG_OK)
         return status;
-    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; i++) {
+    for (size_t i = 0; i < film_area_count(film); i++) {
         uint32_t goal = film_goal(film, i, wanted);
         job.sample_count += film->counts[i] < goal ? (double)(goal - film->counts[i]) : 0.0;
     }
-    job.samples_per_pixel = job.sample_count / ((double)film->width * (double)film->height);
+    job.samples_per_pixel = job.sample_count / (double)film_area_count(film);
     run_progress(&context->run, AG_PHASE_RENDER, job.progress_begin); /* the first pixels may take long */
     run_allow_pause(&context->run);
     thread_pool_run(context->pool, work_on_tiles, &job);

@@ -7,6 +7,7 @@
 #include "material/bsdf.h"
 #include "material/coat.h"
 #include "material/coat_table.h"
+#include "material/pane.h"
 #include "scene_extent.h"
 #include "shape/curves.h"
 
@@ -334,6 +335,7 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
     for (uint32_t i = 0; i < s->shape_count && status == AG_OK; i++) {
         status = shape_commit(&s->shapes[i]);
         s->has_interfaces = s->has_interfaces || material_may_be_interface(s, s->shapes[i].material_index);
+        s->has_panes = s->has_panes || pane_may_be_of(s, s->shapes[i].material_index);
     }
     if (status == AG_OK)
         status = list_object_shapes(s);

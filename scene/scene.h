@@ -84,6 +84,7 @@ typedef struct scene {
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */
+    bool has_panes;      /* any shape that lets light straight through: see pane.h */
     /* How lights are picked, see light_pick.c */
     uint32_t lit_count;          /* lights with power */
     uint32_t only_light;         /* where there is but one of them, that one */

@@ -118,7 +118,7 @@ for part in ${parts//,/ }; do
     case $part in
     forty_rooms) run_forty_rooms || has_failed=yes ;;
     photon_search | photon_making | gather_rays) run_rows "$part" || has_failed=yes ;;
-    *) "$suite_root/perf/$part.sh" "${options[@]}" --out "$out/$part" >"$out/$part.txt" || has_failed=yes ;;
+    *) "$suite_root/perf/scripts/$part.sh" "${options[@]}" --out "$out/$part" >"$out/$part.txt" || has_failed=yes ;;
     esac
     [[ $has_failed == yes ]] || rm "$out/$part/failed"
 done

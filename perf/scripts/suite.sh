@@ -79,7 +79,7 @@ suite_run() {
     fi
     rm -f "$suite_work/run.exr" "$suite_work/run.json"
     begin=$EPOCHREALTIME
-    "$suite_program" -q --progress none --reproducible -o "$suite_work/run.exr" --stats "$suite_work/run.json" "$@" ||
+    "$suite_program" -q --progress none --noise 0 --reproducible -o "$suite_work/run.exr" --stats "$suite_work/run.json" "$@" ||
         suite_fail "$suite_program failed: $*"
     end=$EPOCHREALTIME
     names=$(printf '%s, ' "${suite_columns[@]}")

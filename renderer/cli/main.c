@@ -129,7 +129,7 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
         status = AG_ERROR_ARGUMENT;
     if (status == AG_OK && !is_skipped)
         status = ag_render_settings_from_scene(context, scene, &settings);
-    if (status == AG_OK && !is_skipped && !options_override(o, &settings)) {
+    if (status == AG_OK && !is_skipped && !options_override(o, scene, &settings)) {
         fprintf(stderr, "afterglow: --tile: there are more tiles than rows\n");
         status = AG_ERROR_ARGUMENT;
     }

@@ -19,6 +19,7 @@ enum {
     OPT_INTEGRATOR,
     OPT_CACHE,
     OPT_ONLY,
+    OPT_PANE_LIGHT,
     OPT_PHOTONS,
     OPT_CAUSTIC_PHOTONS,
     OPT_NEAREST,
@@ -77,10 +78,13 @@ static const option_line LINES[] = {
      "frame's number"},
     {'t', "nthreads", "N", "threads (default: what affinity mask and cgroup quota allow)"},
     {OPT_SEED, "seed", "N", "seed of all random numbers (default: the scene's, else 0)"},
-    {OPT_SPP, "spp", "N", "samples per pixel (default: the scene's, else 16)"},
+    {OPT_SPP, "spp", "N",
+     "samples per pixel; with --noise the most of them (default 1024), with\n--noise 0 just as many (default: the "
+     "scene's, else 16)"},
     {OPT_NOISE, "noise", "LEVEL",
-     "as many samples up to --spp as it takes for this noise in what is\nshown, where white is 1: 0.01 is good, "
-     "0.003 clean"},
+     "as many samples up to --spp as it takes for this noise in what is\nshown, where white is 1: 0.02 is fair, 0.01 "
+     "good, 0.003 clean; the\ndefault is 0.02, but 0 with --spp, and for scenes that have Integrator\n\"photonmap\" "
+     "and a Sampler"},
     {OPT_MIN_SPP, "min-spp", "N", "samples per pixel at least, with --noise (default 16)"},
     {OPT_SIZE, "size", "WxH", "size of the full picture in pixels"},
     {OPT_CROP, "cropwindow", "X0,X1,Y0,Y1", "part of the picture to render, each in [0, 1]"},
@@ -90,6 +94,9 @@ static const option_line LINES[] = {
      "irradiance at the photons: on-demand (default) and precompute give the\nsame bits; off computes it at every "
      "gather hit instead, with other bits"},
     {OPT_ONLY, "only", "indirect", "leave out emission, and direct light at the first non-specular hit"},
+    {OPT_PANE_LIGHT, "pane-light", "MODE",
+     "light straight through thin glass: direct (default), sampled at its\nlamp, or traced, like light through other "
+     "glass"},
     {OPT_PHOTONS, "photons", "N", "photons to store in the global map (default 1000000)"},
     {OPT_CAUSTIC_PHOTONS, "caustic-photons", "N",
      "photons to store in the caustic map (default 500000, where there is\nspecular matter)"},
@@ -242,6 +249,10 @@ static bool take_option(int code, const char *value, options *o)
         is_valid = parse_word(value, WORDS("indirect"), &word);
         r->only = AG_ONLY_INDIRECT;
         break;
+    case OPT_PANE_LIGHT:
+        is_valid = parse_word(value, WORDS("direct", "traced"), &word);
+        r->pane_light = (ag_pane_light)word;
+        break;
     case OPT_PHOTONS: is_valid = o->has_photons = parse_count(value, 1, &r->photon_count); break;
     case OPT_CAUSTIC_PHOTONS:
         is_valid = o->has_caustic_photons = parse_count(value, 0, &r->caustic_photon_count);
@@ -279,7 +290,7 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_CHECKPOINT: is_valid = parse_seconds(value, &o->checkpoint_seconds); break;
     case OPT_TIME_LIMIT: is_valid = parse_time(value, &o->time_limit); break;
     case OPT_PREVIEW: o->preview = true; break;
-    case OPT_NOISE: is_valid = parse_bound(value, &r->noise_level); break;
+    case OPT_NOISE: is_valid = o->has_noise = parse_bound(value, &r->noise_level); break;
     case OPT_MIN_SPP: is_valid = o->has_noise_min_samples = parse_int(value, 2, 1 << 20, &r->noise_min_samples); break;
     case OPT_FRAMES:
         frames_reset(&o->frames);
@@ -495,7 +506,7 @@ static bool take_tile(const options *o, ag_render_settings *settings)
     return true;
 }
 
-bool options_override(const options *o, ag_render_settings *settings)
+bool options_override(const options *o, const ag_scene *scene, ag_render_settings *settings)
 {
     const ag_render_settings *r = &o->render;
     settings->cache = r->cache;
@@ -505,9 +516,13 @@ bool options_override(const options *o, ag_render_settings *settings)
     settings->denoise = r->denoise;
     settings->photon_map_file = r->photon_map_file;
     settings->photon_map_refresh = r->photon_map_refresh;
+    settings->pane_light = r->pane_light;
     settings->clamp_direct = r->clamp_direct;
     settings->clamp_indirect = r->clamp_indirect;
-    settings->noise_level = r->noise_level;
+    settings->noise_level = o->has_noise                                    ? r->noise_level
+                            : o->has_spp || ag_scene_has_own_samples(scene) ? 0.0f
+                                                                            : AG_DEFAULT_NOISE_LEVEL;
+    settings->shown_exposure_stops = o->output.exposure_stops;
     if (o->has_irradiance_fraction)
         settings->irradiance_fraction = r->irradiance_fraction;
     if (o->has_noise_min_samples)
@@ -530,6 +545,8 @@ bool options_override(const options *o, ag_render_settings *settings)
         settings->max_depth = r->max_depth;
     if (o->has_spp)
         settings->samples_per_pixel = r->samples_per_pixel;
+    else if (settings->noise_level > 0.0f)
+        settings->samples_per_pixel = AG_DEFAULT_SAMPLES_MOST;
     if (o->has_gather_guiding)
         settings->gather_guiding = r->gather_guiding;
     if (o->has_photon_aim)

@@ -38,8 +38,8 @@ typedef struct options {
     ag_context_settings context;
     ag_output_settings output;
     ag_render_settings render; /* fields are valid where has_… is set */
-    bool has_seed, has_spp, has_size, has_crop, has_integrator, has_photons, has_caustic_photons, has_nearest,
-        has_radius, has_irradiance_fraction, has_noise_min_samples, has_gather_samples, has_gather_guiding,
+    bool has_seed, has_spp, has_noise, has_size, has_crop, has_integrator, has_photons, has_caustic_photons,
+        has_nearest, has_radius, has_irradiance_fraction, has_noise_min_samples, has_gather_samples, has_gather_guiding,
         has_photon_aim, has_max_depth;
 } options;
 
@@ -52,6 +52,6 @@ void options_free_definition(ag_definition *definition); /* its strings */
 
 /* Puts what was given on the command line over the scene's settings. False where the picture has fewer rows than
  * tiles. */
-bool options_override(const options *o, ag_render_settings *settings);
+bool options_override(const options *o, const ag_scene *scene, ag_render_settings *settings);
 
 #endif

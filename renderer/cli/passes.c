@@ -249,7 +249,12 @@ static ag_status run_passes(passes *p)
             return served;
         if (status != AG_OK)
             continue;
-        double mean = ag_rendering_sample_counts(p->rendering).mean;
+        ag_sample_counts counts = ag_rendering_sample_counts(p->rendering);
+        double mean = counts.mean;
+        if (counts.most < samples) { /* no pixel needs more */
+            samples = p->final;
+            continue;
+        }
         samples = next_pass(p, samples, mean > before ? rendered / (mean - before) : 0.0);
         if (samples == 0) {
             p->time_is_up = true;

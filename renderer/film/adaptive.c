@@ -5,94 +5,88 @@
 
 #include <stdlib.h>
 
-/* What lies so near counts too: a bright sample that a pixel has not met may be met next door. */
-enum { NEIGHBORHOOD = 2 };
-/* In the dark, noise below this part of white is not seen. */
-static const double DARKEST = 1e-3;
-
 typedef struct decision {
     struct ag_film *film;
-    double level;
-    double *means, *variances;
+    double level_squared, scale;
     uint32_t next;
-    atomic_u64 active; /* pixels that need more; order does not matter: relaxed */
+    atomic_u64 active; /* blocks that need more; order does not matter: relaxed */
 } decision;
 
 uint32_t adaptive_barrier(const struct ag_film *film)
 {
     uint32_t most = 0;
-    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; i++)
+    for (size_t i = 0; i < film_area_count(film); i++)
         most = film->wanted[i] > most ? film->wanted[i] : most;
     return most;
 }
 
-static void read_rows(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
+/* The pixels of a block, those of the picture alone. */
+static film_area block_area(const struct ag_film *film, int column, int row)
 {
-    (void)block, (void)worker;
-    const decision *d = user;
-    size_t width = (size_t)d->film->width;
-    for (size_t i = (size_t)begin * width; i < (size_t)end * width; i++)
-        film_read_noise(d->film, i, &d->means[i], &d->variances[i]);
+    const film_area *all = &film->area;
+    int x = column * FILM_BLOCK, y = row * FILM_BLOCK;
+    int width = all->width - x < FILM_BLOCK ? all->width - x : FILM_BLOCK,
+        height = all->height - y < FILM_BLOCK ? all->height - y : FILM_BLOCK;
+    return (film_area){all->x0 + x, all->y0 + y, width, height};
 }
 
-/* The standard error of a pixel as it is shown, root mean square over the neighbourhood. */
-static double noise_at(const decision *d, int x, int y)
+/* The variance of what is shown, mean over the block. By each pixel's own brightness, for dark places beside bright
+ * ones; and by the block's, for the one pixel that a rare bright sample has made bright. */
+static double block_variance(const decision *d, film_area block)
 {
-    int width = d->film->width, height = d->film->height, count = 0;
-    double mean = 0.0, variance = 0.0;
-    for (int j = y - NEIGHBORHOOD; j <= y + NEIGHBORHOOD; j++)
-        for (int i = x - NEIGHBORHOOD; i <= x + NEIGHBORHOOD; i++)
-            if (i >= 0 && i < width && j >= 0 && j < height) {
-                size_t at = (size_t)j * (size_t)width + (size_t)i;
-                mean += d->means[at];
-                variance += d->variances[at];
-                count++;
-            }
-    mean /= count;
-    variance /= count;
-    return 0.5 * sqrt(variance / fmax(mean, DARKEST)); /* d sqrt(x) = dx / (2 sqrt(x)) */
+    double shown = 0.0, mean = 0.0, variance = 0.0, count = (double)block.width * (double)block.height;
+    for (int y = block.y0; y < block.y0 + block.height; y++)
+        for (int x = block.x0; x < block.x0 + block.width; x++) {
+            double pixel_mean, pixel_variance;
+            film_read_noise(d->film, film_pixel_at(d->film, x, y), &pixel_mean, &pixel_variance);
+            pixel_mean *= d->scale;
+            pixel_variance *= d->scale * d->scale;
+            shown += noise_shown_variance(pixel_mean, pixel_variance) / count;
+            mean += pixel_mean / count;
+            variance += pixel_variance / count;
+        }
+    return fmax(shown, noise_shown_variance(mean, variance));
 }
 
-static void decide_rows(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
+static void decide_rows(void *user, uint64_t begin, uint64_t end, uint64_t block_of_rows, unsigned worker)
 {
-    (void)block, (void)worker;
+    (void)block_of_rows, (void)worker;
     decision *d = user;
+    struct ag_film *film = d->film;
+    int columns = (film->area.width + FILM_BLOCK - 1) / FILM_BLOCK;
     uint64_t active = 0;
-    for (uint64_t y = begin; y < end; y++)
-        for (int x = 0; x < d->film->width; x++) {
-            size_t pixel = (size_t)y * (size_t)d->film->width + (size_t)x;
-            bool is_active = noise_at(d, x, (int)y) > d->level;
-            d->film->wanted[pixel] = is_active ? d->next : d->film->counts[pixel];
+    for (uint64_t row = begin; row < end; row++)
+        for (int column = 0; column < columns; column++) {
+            film_area block = block_area(film, column, (int)row);
+            bool is_active = block_variance(d, block) > d->level_squared;
             active += is_active;
+            for (int y = block.y0; y < block.y0 + block.height; y++)
+                for (int x = block.x0; x < block.x0 + block.width; x++) {
+                    size_t pixel = film_pixel_at(film, x, y);
+                    film->wanted[pixel] = is_active ? d->next : film->counts[pixel];
+                }
         }
     fetch_add_relaxed_u64(&d->active, active);
 }
 
 ag_status adaptive_decide(struct ag_film *film, run_context *run, const ag_render_settings *settings, bool *out_is_done)
 {
-    size_t count = (size_t)film->width * (size_t)film->height;
     uint32_t barrier = adaptive_barrier(film), most = (uint32_t)settings->samples_per_pixel;
     uint32_t least = (uint32_t)settings->noise_min_samples;
     *out_is_done = false;
     if (barrier == 0) {
-        for (size_t i = 0; i < count; i++)
+        for (size_t i = 0; i < film_area_count(film); i++)
             film->wanted[i] = least < most ? least : most;
         return AG_OK;
     }
     uint32_t step = barrier / 4 > 4 ? barrier / 4 : 4;
+    double level = (double)settings->noise_level, share = (double)barrier / (double)most;
     decision d = {.film = film,
-                  .level = (double)settings->noise_level,
-                  .means = malloc(count * sizeof *d.means),
-                  .variances = malloc(count * sizeof *d.variances),
+                  .level_squared = level * level,
+                  .scale = noise_shown_scale(settings),
                   .next = barrier + step < most ? barrier + step : most};
-    ag_status status = d.means && d.variances ? AG_OK : AG_ERROR_MEMORY;
-    double share = (double)barrier / (double)most;
-    if (status == AG_OK)
-        status = parallel_for(run, (uint64_t)film->height, 8, read_rows, &d, AG_PHASE_RENDER, share, share);
-    if (status == AG_OK)
-        status = parallel_for(run, (uint64_t)film->height, 8, decide_rows, &d, AG_PHASE_RENDER, share, share);
+    uint64_t rows = (uint64_t)((film->area.height + FILM_BLOCK - 1) / FILM_BLOCK);
+    ag_status status = parallel_for(run, rows, 1, decide_rows, &d, AG_PHASE_RENDER, share, share);
     *out_is_done = load_relaxed_u64(&d.active) == 0;
-    free(d.means);
-    free(d.variances);
     return status;
 }

@@ -1,9 +1,10 @@
-/* adaptive.h: which pixels have had enough samples, by what noise is left in them and around them.
- * Rests on: the standard error of a mean; measured as an eye sees it, of the square root of the value, which is about
- * how displays encode. Flow: film -> [here] -> the next pass. Threads: when no tile is rendered.
+/* adaptive.h: which pixels have had enough samples, by the noise that is left in their block.
+ * Rests on: noise.h, where the noise is told. Flow: film -> [here] -> the next pass. Threads: when no tile is rendered.
  *
- * It is decided at fixed numbers of samples alone, when every pixel has had what it is to have: so neither threads nor
- * the moment of a pause reach the picture. */
+ * A block decides as one: a bright sample that a pixel has not met may be met next door, and pixels that stop because
+ * they have met none would darken the picture. Blocks lie alike in crops and in the full picture. It is decided at
+ * fixed numbers of samples alone, when every pixel has had what it is to have: so neither threads nor the moment of a
+ * pause reach the picture. */
 #ifndef AFTERGLOW_ADAPTIVE_H
 #define AFTERGLOW_ADAPTIVE_H
 

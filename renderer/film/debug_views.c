@@ -74,10 +74,10 @@ static void view_pixel(const views_job *job, eye_worker *worker, size_t pixel, i
     if (job->film->views[VIEW_PHOTON_DENSITY])
         put(job, VIEW_PHOTON_DENSITY, pixel, photon_density(map, worker, &at));
     uint32_t nearest = photon_map_nearest(map, at.position, at.facing_normal);
-    if (nearest == PHOTON_NONE)
+    if (nearest >= PHOTON_HIDDEN)
         return;
     uint32_t word = irradiance_slot_read(photon_map_slot(map, nearest));
-    put(job, VIEW_CACHE_STATE, pixel, irradiance_word_state(word) == IRRADIANCE_READY ? 2.0f : 1.0f);
+    put(job, VIEW_CACHE_STATE, pixel, irradiance_word_is_ready(word) ? 2.0f : 1.0f);
     put(job, VIEW_PHOTON_DISTANCE, pixel,
         sqrtf(vec3_distance_squared(at.position, photon_block_position(map->bearers.blocks, nearest))));
 }
@@ -89,8 +89,8 @@ static void view_rows(void *user, uint64_t begin, uint64_t end, uint64_t block, 
     const ag_film *film = job->film;
     for (uint64_t row = begin; row < end; row++)
         for (int x = 0; x < film->width; x++)
-            view_pixel(job, &job->workers[worker_index], row * (uint64_t)film->width + (uint64_t)x, film->x0 + x,
-                       film->y0 + (int)row);
+            view_pixel(job, &job->workers[worker_index], film_pixel_at(film, film->x0 + x, film->y0 + (int)row),
+                       film->x0 + x, film->y0 + (int)row);
 }
 
 ag_status debug_views_render(const transport *t, run_context *run, eye_worker *workers, ag_film *film)

@@ -9,6 +9,13 @@ static const float DEPTH_OF_NOTHING = 1e10f;
 
 static size_t pixel_count(const ag_film *film) { return (size_t)film->width * (size_t)film->height; }
 
+/* From the crop to the area, by numbers. */
+static size_t area_pixel(const ag_film *film, size_t pixel)
+{
+    size_t width = (size_t)film->width;
+    return film_pixel_at(film, film->x0 + (int)(pixel % width), film->y0 + (int)(pixel / width));
+}
+
 /* doubles of a pixel */
 static size_t sums_of_pixel(const ag_film *film)
 {
@@ -30,6 +37,14 @@ static void set_crop(ag_film *film, const ag_render_settings *settings)
     film->full_height = settings->height;
     if (film->width < 1 || film->height < 1)
         film->width = film->height = 0;
+    film->area = (film_area){film->x0, film->y0, film->width, film->height};
+    if (settings->noise_level > 0.0f && film->width > 0) {
+        int x0 = edges[0] / FILM_BLOCK * FILM_BLOCK, y0 = edges[2] / FILM_BLOCK * FILM_BLOCK;
+        int x1 = (edges[1] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK,
+            y1 = (edges[3] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK;
+        film->area = (film_area){x0, y0, (x1 < settings->width ? x1 : settings->width) - x0,
+                                 (y1 < settings->height ? y1 : settings->height) - y0};
+    }
 }
 
 ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
@@ -47,10 +62,10 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
     film->response = film_response_make(settings, space);
     film->layout = *layout;
     *layout = (aov_layout){0};
-    size_t count = pixel_count(film) + 1; /* never none */
+    size_t count = film_area_count(film) + 1; /* never none */
     film->sums = calloc(count, sums_of_pixel(film) * sizeof *film->sums);
     film->counts = calloc(count, sizeof *film->counts);
-    film->pixels = calloc(count, 3 * sizeof *film->pixels);
+    film->pixels = calloc(pixel_count(film) + 1, 3 * sizeof *film->pixels);
     bool is_whole = film->sums && film->counts && film->pixels;
     if (filter->has_signs) {
         film->negatives = calloc(count, sizeof *film->negatives);
@@ -74,7 +89,7 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
         film->nearest = calloc(count, sizeof *film->nearest);
         is_whole = is_whole && film->nearest;
     }
-    is_whole = is_whole && noise_lattice_create(film->width, film->height, &film->noise) == AG_OK;
+    is_whole = is_whole && noise_lattice_create(film->area.width, film->area.height, &film->noise) == AG_OK;
     if (is_whole)
         return film;
     ag_film_destroy(film);
@@ -105,7 +120,7 @@ void ag_film_destroy(ag_film *film)
 
 int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
 {
-    size_t pixels = pixel_count(film);
+    size_t pixels = film_area_count(film);
     int count = 0;
     out_planes[count++] = (film_plane){film->sums, pixels * sums_of_pixel(film) * sizeof *film->sums};
     out_planes[count++] = (film_plane){film->counts, pixels * sizeof *film->counts};
@@ -131,7 +146,7 @@ film_count film_count_samples(const ag_film *film)
     uint64_t sum = 0;
     size_t pixels = pixel_count(film);
     for (size_t i = 0; i < pixels; i++) {
-        uint32_t samples = film->counts[i];
+        uint32_t samples = film->counts[area_pixel(film, i)];
         sum += samples;
         count.least = samples < count.least ? samples : count.least;
         count.most = samples > count.most ? samples : count.most;
@@ -335,17 +350,18 @@ static void resolve_pixel(const ag_film *film, size_t pixel, float out[3])
 void film_resolve(ag_film *film)
 {
     for (size_t i = 0; i < pixel_count(film); i++)
-        resolve_pixel(film, i, film->pixels + 3 * i);
+        resolve_pixel(film, area_pixel(film, i), film->pixels + 3 * i);
 }
 
-static float read_value(const ag_film *film, size_t pixel, const film_channel *channel)
+static float read_value(const ag_film *film, size_t pixel_of_crop, const film_channel *channel)
 {
+    size_t pixel = area_pixel(film, pixel_of_crop);
     double value[3];
     int component = channel->component, at = channel->offset + component;
     const film_nearest nothing = {DEPTH_OF_NOTHING, 0, 0};
     const film_nearest *nearest = film->nearest && film->nearest[pixel].object_id ? &film->nearest[pixel] : &nothing;
     switch (channel->source) {
-    case CHANNEL_BEAUTY: return film->pixels[3 * pixel + (size_t)component];
+    case CHANNEL_BEAUTY: return film->pixels[3 * pixel_of_crop + (size_t)component];
     case CHANNEL_COLOR: read_color(film, pixel, channel->offset, value); return (float)value[component];
     case CHANNEL_MEAN: read_mean(film, pixel, at, 1, value); return (float)value[0];
     case CHANNEL_HIT_MEAN: return (float)read_hit_mean(film, pixel, at);
@@ -386,7 +402,7 @@ void film_read_sum(const ag_film *film, film_sum sum, float *out)
 {
     double value[3];
     for (size_t i = 0; i < pixel_count(film); i++) {
-        read_mean(film, i, film->layout.offset[sum], 3, value);
+        read_mean(film, area_pixel(film, i), film->layout.offset[sum], 3, value);
         for (int c = 0; c < 3; c++)
             out[3 * i + (size_t)c] = (float)value[c];
     }

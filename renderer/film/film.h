@@ -26,8 +26,18 @@ typedef struct film_origin {
     char *defined; /* of the scene, see scene.h; owned, or NULL */
 } film_origin;
 
+/* Some pixels of the full picture. */
+typedef struct film_area {
+    int x0, y0, width, height;
+} film_area;
+
+/* Adaptive sampling decides for blocks of so many pixels in width and height, aligned to the full picture. */
+enum { FILM_BLOCK = 8 };
+
 struct ag_film {
     int x0, y0, width, height; /* the crop, in pixels of the full picture */
+    film_area area;            /* what is rendered: the crop; with adaptive sampling all blocks that it touches, so that
+                                  its pixels get the samples that they have in the full picture */
     int full_width, full_height;
     bool float_samples;  /* as in ag_render_settings */
     working_space space; /* of all colours */
@@ -36,7 +46,7 @@ struct ag_film {
     aov_layout layout;
     film_origin origin;
 
-    /* Of each pixel, top row first; all owned. */
+    /* Of each pixel of the area, top row first; all owned. */
     double *sums;                  /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
@@ -45,7 +55,7 @@ struct ag_film {
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
     cryptomatte_slot *slots[CRYPTOMATTE_KIND_COUNT]; /* [CRYPTOMATTE_SLOTS]; NULL where not asked for */
     film_nearest *nearest;                           /* NULL where not asked for */
-    float *pixels;                                   /* 3, RGB: set by film_resolve */
+    float *pixels;                                   /* 3, RGB, of the crop: set by film_resolve */
 
     noise_lattice noise; /* of some of them */
 };
@@ -55,8 +65,19 @@ struct ag_film {
 struct ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
                             aov_layout *layout);
 
-/* The next sample of a pixel, by the number of the pixel; with layers where the layout or the noise's lattice wants
- * them. */
+static inline size_t film_area_count(const struct ag_film *film)
+{
+    return (size_t)film->area.width * (size_t)film->area.height;
+}
+
+/* The number in the area of a pixel of the full picture. */
+static inline size_t film_pixel_at(const struct ag_film *film, int x, int y)
+{
+    return (size_t)(y - film->area.y0) * (size_t)film->area.width + (size_t)(x - film->area.x0);
+}
+
+/* The next sample of a pixel, by the number of the pixel in the area; with layers where the layout or the noise's
+ * lattice wants them. */
 void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);
 
 /* Makes the pixels of the sums. */
@@ -80,7 +101,7 @@ static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint3
  * film that sums SUM_SQUARES. */
 void film_read_noise(const struct ag_film *film, size_t pixel, double *out_mean, double *out_variance);
 
-/* How many samples pixels have had. */
+/* How many samples pixels of the crop have had. */
 typedef struct film_count {
     uint32_t least, most;
     double mean;

@@ -1,7 +1,6 @@
 /* noise.c: see noise.h. */
 #include "film/noise.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 /* What a pixel of the lattice sums: how many samples, how many that brought light, how many that the sky lit; the three

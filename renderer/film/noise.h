@@ -11,6 +11,7 @@
 #include "film/film_response.h"
 #include "integrator/eye_sample.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -39,6 +40,12 @@ void noise_lattice_add(noise_lattice *lattice, const film_response *response, si
 /* The variance of what is shown of a value that is known with this variance; white is 1. */
 double noise_shown_variance(double mean, double variance);
 
+/* Of what is shown to what the film holds, as the settings say. */
+static inline double noise_shown_scale(const ag_render_settings *settings)
+{
+    return exp2((double)settings->shown_exposure_stops);
+}
+
 typedef struct noise_summary {
     double level; /* standard error of what is shown, root mean square over the picture; negative:
                      not known, too few samples */
@@ -48,7 +55,7 @@ typedef struct noise_summary {
     bool is_caustic_grain;               /* most of the caustics' share does not get less by more samples */
 } noise_summary;
 
-/* scale: of what is shown to what the film holds. caustic_nearest: photons of a caustic's estimate, whose grain counts
+/* scale: noise_shown_scale. caustic_nearest: photons of a caustic's estimate, whose grain counts
  * as the caustics' noise; 0: there is no caustic map. The level is without the grain. */
 noise_summary noise_lattice_read(const noise_lattice *lattice, double scale, int caustic_nearest);
 

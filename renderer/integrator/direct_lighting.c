@@ -32,7 +32,8 @@ lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, cons
         reach = 1.0f;
     }
     worker->rays_shadow++;
-    rgb transmittance = passage_transmittance(t->s, shadow, reach, &worker->passages_cut);
+    rgb transmittance = t->panes_are_direct ? passage_transmittance_of_panes(t->s, shadow, reach, &worker->passages_cut)
+                                            : passage_transmittance(t->s, shadow, reach, &worker->passages_cut);
     if (rgb_is_black(transmittance))
         return none;
     float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
@@ -113,7 +114,8 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
             continue;
         vertex met;
         worker->rays_shadow++;
-        if (!transport_trace(t, worker, surface_ray(&v->hit, v->arrived, scattered.direction), &met)) {
+        scene_ray ray = surface_ray(&v->hit, v->arrived, scattered.direction);
+        if (!transport_trace_through_panes(t, worker, ray, &met)) {
             light_group_sums groups;
             const rgb *of_group = light_group_sums_begin(&groups, by_group != NULL);
             rgb escaped = direct_light_escaped(t, from, normal, scattered.direction, scattered.pdf_solid_angle,

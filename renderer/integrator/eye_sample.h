@@ -6,7 +6,7 @@
  * The parts, of the light that reaches the eye: EMISSION by no surface (LE); DIRECT by the first surface's gathered
  * lobes, straight from a lamp (LDE); CAUSTIC by the same, from a lamp by way of traced lobes alone (LS+DE); INDIRECT by
  * the same, from elsewhere; SPECULAR by the first surface's traced lobes, whatever came before. Both integrators split
- * alike. */
+ * alike. Where panes are direct (bsdf.h), one that is passed straight is no surface here. */
 #ifndef AFTERGLOW_EYE_SAMPLE_H
 #define AFTERGLOW_EYE_SAMPLE_H
 

@@ -140,14 +140,14 @@ static bool find_guide(const transport *t, const vertex *v, incident_guide *out_
 }
 
 void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
-                  int scatterings_left, rgb throughput)
+                  bool is_first, int scatterings_left, rgb throughput)
 {
     uint32_t count = (uint32_t)t->settings->gather_samples;
     gathering g = {t, worker, v, where, path_vertex, scatterings_left - 1, count, rgb_gray(0.0f)};
     gather_batch *batch = worker->batch;
     if (!gather_batch_has_room(batch, RAY_FAN_MAX))
         final_gather_resolve(t, worker);
-    gather_batch_begin(batch, worker->sample, path_vertex == 0, rgb_scale(throughput, 1.0f / (float)count),
+    gather_batch_begin(batch, worker->sample, is_first, rgb_scale(throughput, 1.0f / (float)count),
                        hash_combine(hash_combine(where->key, (uint64_t)path_vertex), where->sample));
     sampler_sequence numbers = sampler_sequence_make(where, SAMPLE_GATHER, path_vertex, count);
     bool is_plain = bsdf_is_plain(&v->scattering);

@@ -2,6 +2,7 @@
 #include "integrator/gather_path.h"
 
 #include "integrator/direct_lighting.h"
+#include "rays/passage.h"
 
 /* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often (asked
  * sooner, the cache tells of the light outside of a small room). */
@@ -84,9 +85,12 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         throughput = rgb_mul(throughput, next.weight);
         if ((depth >= ROULETTE_AFTER || lobes == BSDF_GATHERED) && !transport_survives(&throughput, rng_float(&random)))
             return false;
-        if (++depth == scatterings_left)
+        bool goes_straight = transport_is_open_pane(t, v) && next.is_straight;
+        depth += !goes_straight;
+        if (depth == scatterings_left)
             return false;
-        scene_ray ray = surface_ray(&v->hit, v->arrived, next.direction);
+        scene_ray ray =
+            goes_straight ? passage_continue(&v->hit, &v->arrived) : surface_ray(&v->hit, v->arrived, next.direction);
         ray.skips_uv = true;
         worker->rays_gather++;
         if (!transport_meet(t, worker, ray, v))

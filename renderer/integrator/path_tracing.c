@@ -3,6 +3,7 @@
 
 #include "integrator/direct_lighting.h"
 #include "integrator/first_hit.h"
+#include "rays/passage.h"
 
 enum { ROULETTE_AFTER = 3 };
 
@@ -68,8 +69,9 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
     bool is_whole = settings->only == AG_ONLY_ALL, wants_parts = in_out->layers != NULL;
     rgb throughput = rgb_gray(1.0f);
     vec3 scattered_from = ray.origin, scattered_normal = {0.0f, 0.0f, 0.0f};
-    float scattered_pdf = 0.0f;      /* 0: the eye or a smooth lobe */
-    bool has_met_diffuse = false;    /* the path has been scattered by a gathered lobe */
+    float scattered_pdf = 0.0f;   /* 0: the eye or a smooth lobe */
+    int scatterings = 0;          /* so far; going straight through a pane may be none, and changes none of all these */
+    bool has_met_diffuse = false; /* the path has been scattered by a gathered lobe */
     bool left_first_diffuse = false; /* at the vertex before, for the first time */
     part_shares shares = {.of = {[PART_EMISSION] = rgb_gray(1.0f)}};
     const part_shares *wanted_shares = wants_parts ? &shares : NULL;
@@ -91,7 +93,7 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
                 rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
                 rgb escaped = direct_light_escaped(t, scattered_from, scattered_normal, ray.direction, scattered_pdf, 1,
                                                    1, by_group);
-                float kept = add_light(in_out, wanted_shares, path_vertex, rgb_mul(throughput, escaped), true);
+                float kept = add_light(in_out, wanted_shares, scatterings, rgb_mul(throughput, escaped), true);
                 eye_sample_add_groups(in_out, by_group, rgb_scale(throughput, kept));
             }
             return;
@@ -105,15 +107,16 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
             if (scattered_pdf > 0.0f)
                 weight = direct_light_scatter_weight(t, scattered_from, scattered_normal, &v, scattered_pdf, 1, 1);
             rgb light_seen = rgb_scale(rgb_mul(throughput, emitted), weight);
-            float kept = add_light(in_out, wanted_shares, path_vertex, light_seen, false);
+            float kept = add_light(in_out, wanted_shares, scatterings, light_seen, false);
             if (t->wants_groups)
                 eye_sample_add_group(in_out, v.lamp->group, rgb_scale(light_seen, kept));
         }
-        if (path_vertex >= settings->max_depth)
+        bool is_last = scatterings >= settings->max_depth, may_go_straight = transport_is_open_pane(t, &v);
+        if (is_last && !may_go_straight)
             return;
 
         /* next-event estimation */
-        if ((is_whole || has_met_diffuse) && bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL)) {
+        if ((is_whole || has_met_diffuse) && !is_last && bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL)) {
             float u_pick = sampler_2d(where, SAMPLE_LIGHT_PICK, path_vertex).x;
             lamp_light direct = direct_light_sample_lamp(t, worker, &v, BSDF_ALL, u_pick,
                                                          sampler_2d(where, SAMPLE_LIGHT, path_vertex), 1, 1);
@@ -124,7 +127,7 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
                 there = part_shares_scatter(&shares, gathered_share(&v.scattering, direct.direction));
             bool is_sky = is_lit && t->s->lights[direct.lamp].kind == LIGHT_INFINITE;
             float kept =
-                add_light(in_out, wants_parts && is_lit ? &there : NULL, path_vertex + 1, light_brought, is_sky);
+                add_light(in_out, wants_parts && is_lit ? &there : NULL, scatterings + 1, light_brought, is_sky);
             if (t->wants_groups && is_lit)
                 eye_sample_add_group(in_out, t->s->lights[direct.lamp].group, rgb_scale(light_brought, kept));
         }
@@ -138,10 +141,18 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
         if (!bsdf_sample_direction(&v.scattering, lobes, BSDF_RADIANCE, u_lobe,
                                    sampler_2d(where, SAMPLE_SCATTER, path_vertex), &next))
             return;
+        bool goes_straight = may_go_straight && next.is_straight;
+        if (is_last && !goes_straight)
+            return;
         throughput = rgb_mul(throughput, next.weight);
         if (path_vertex >= ROULETTE_AFTER &&
             !transport_survives(&throughput, sampler_2d(where, SAMPLE_ROULETTE, path_vertex).x))
             return;
+        if (goes_straight) {
+            ray = passage_continue(&v.hit, &v.arrived);
+            continue;
+        }
+        scatterings++;
         if (wants_parts) {
             bool is_of_one = next.is_delta || lobes != BSDF_ALL;
             shares = part_shares_scatter(&shares, is_of_one ? rgb_gray(next.group == BSDF_GATHERED ? 1.0f : 0.0f)

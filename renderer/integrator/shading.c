@@ -4,6 +4,7 @@
 #include "integrator/direct_lighting.h"
 #include "integrator/final_gather.h"
 #include "integrator/first_hit.h"
+#include "rays/passage.h"
 
 /* Below this throughput a diffuse place is shown by the k-nearest estimate at it instead of being gathered (Jensen
  * 2001, 8.2: an approximate evaluation where the contribution is low). */
@@ -16,16 +17,17 @@ typedef struct diffuse_light {
     rgb sky; /* of the direct light, from infinite lights */
 } diffuse_light;
 
+/* path_vertex: which of its path's it is; scatterings: those between it and the eye, which panes may not be among. */
 static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                                      int path_vertex, rgb throughput, rgb *by_group)
+                                      int path_vertex, int scatterings, rgb throughput, rgb *by_group)
 {
     const ag_render_settings *settings = t->settings;
-    int scatterings_left = settings->max_depth - path_vertex;
+    int scatterings_left = settings->max_depth - scatterings;
     bool is_whole = settings->only == AG_ONLY_ALL;
     diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};
     if (scatterings_left < 1)
         return sum;
-    if (is_whole && path_vertex > 0 && rgb_max(throughput) < LOW_CONTRIBUTION) {
+    if (is_whole && scatterings > 0 && rgb_max(throughput) < LOW_CONTRIBUTION) {
         map_place at = transport_map_place(t, v);
         rgb transmitted = bsdf_gathered_transmission(&v->scattering);
         rgb all = rgb_mul(bsdf_gathered_reflection(&v->scattering),
@@ -43,20 +45,20 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
     }
     sum.caustic = transport_caustics(t, worker, v);
     if (scatterings_left >= 2)
-        final_gather(t, worker, v, where, path_vertex, scatterings_left, throughput);
+        final_gather(t, worker, v, where, path_vertex, scatterings == 0, scatterings_left, throughput);
     return sum;
 }
 
 /* by_group: the direct light's; the rest came through the photon map. */
-static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_light *diffuse, int path_vertex,
+static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_light *diffuse, int scatterings,
                         rgb throughput, const rgb *by_group)
 {
-    bool is_first = path_vertex == 0;
+    bool is_first = scatterings == 0;
     rgb direct = rgb_mul(throughput, diffuse->direct), caustic = rgb_mul(throughput, diffuse->caustic),
         indirect = rgb_mul(throughput, diffuse->indirect);
-    float kept_direct = eye_sample_bound(sample, path_vertex + 1, direct),
-          kept_caustic = eye_sample_bound(sample, path_vertex + 2, caustic),
-          kept_indirect = eye_sample_bound(sample, path_vertex + 2, indirect);
+    float kept_direct = eye_sample_bound(sample, scatterings + 1, direct),
+          kept_caustic = eye_sample_bound(sample, scatterings + 2, caustic),
+          kept_indirect = eye_sample_bound(sample, scatterings + 2, indirect);
     direct = rgb_scale(direct, kept_direct);
     caustic = rgb_scale(caustic, kept_caustic);
     indirect = rgb_scale(indirect, kept_indirect);
@@ -82,11 +84,12 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
     rgb throughput = rgb_gray(1.0f);
     vec3 scattered_from = ray.origin, scattered_normal = {0.0f, 0.0f, 0.0f};
     float scattered_pdf = 0.0f; /* of a rough traced lobe; 0: the eye or a smooth one, which no shadow ray can serve */
+    int scatterings = 0;        /* so far; going straight through a pane may be none, and changes none of these */
 
     for (int path_vertex = 0;; path_vertex++) {
         vertex v;
         light_group_sums groups;
-        light_part seen = path_vertex == 0 ? PART_EMISSION : PART_SPECULAR;
+        light_part seen = scatterings == 0 ? PART_EMISSION : PART_SPECULAR;
         if (path_vertex == 0)
             worker->rays_camera++;
         else
@@ -98,7 +101,7 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
                 rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
                 rgb escaped = direct_light_escaped(t, scattered_from, scattered_normal, ray.direction, scattered_pdf, 1,
                                                    1, by_group);
-                float kept = eye_sample_add(in_out, seen, path_vertex, rgb_mul(throughput, escaped));
+                float kept = eye_sample_add(in_out, seen, scatterings, rgb_mul(throughput, escaped));
                 eye_sample_add_groups(in_out, by_group, rgb_scale(throughput, kept));
             }
             return;
@@ -114,7 +117,7 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
             if (scattered_pdf > 0.0f)
                 weight = direct_light_scatter_weight(t, scattered_from, scattered_normal, &v, scattered_pdf, 1, 1);
             rgb light_seen = rgb_scale(rgb_mul(throughput, emitted), weight);
-            float kept = eye_sample_add(in_out, seen, path_vertex, light_seen);
+            float kept = eye_sample_add(in_out, seen, scatterings, light_seen);
             if (t->wants_groups)
                 eye_sample_add_group(in_out, v.lamp->group, rgb_scale(light_seen, kept));
         }
@@ -122,19 +125,21 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
         /* diffuse lobes end here */
         if (bsdf_has(&v.scattering, BSDF_GATHERED)) {
             rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
-            diffuse_light diffuse = diffuse_radiance(t, worker, &v, where, path_vertex, throughput, by_group);
-            add_diffuse(t, in_out, &diffuse, path_vertex, throughput, by_group);
+            diffuse_light diffuse =
+                diffuse_radiance(t, worker, &v, where, path_vertex, scatterings, throughput, by_group);
+            add_diffuse(t, in_out, &diffuse, scatterings, throughput, by_group);
         }
 
         /* the others are traced on */
-        if (path_vertex >= settings->max_depth || !bsdf_has(&v.scattering, BSDF_TRACED))
+        bool is_last = scatterings >= settings->max_depth, may_go_straight = transport_is_open_pane(t, &v);
+        if ((is_last && !may_go_straight) || !bsdf_has(&v.scattering, BSDF_TRACED))
             return;
-        if (is_whole && bsdf_is_sampled_from_light(&v.scattering, BSDF_TRACED)) {
+        if (is_whole && !is_last && bsdf_is_sampled_from_light(&v.scattering, BSDF_TRACED)) {
             float u_pick = sampler_2d(where, SAMPLE_LIGHT_PICK, path_vertex).x;
             lamp_light direct = direct_light_sample_lamp(t, worker, &v, BSDF_TRACED, u_pick,
                                                          sampler_2d(where, SAMPLE_LIGHT, path_vertex), 1, 1);
             rgb light_brought = rgb_mul(throughput, direct.radiance);
-            float kept = eye_sample_add(in_out, PART_SPECULAR, path_vertex + 1, light_brought);
+            float kept = eye_sample_add(in_out, PART_SPECULAR, scatterings + 1, light_brought);
             if (t->wants_groups && !rgb_is_black(light_brought))
                 eye_sample_add_group(in_out, t->s->lights[direct.lamp].group, rgb_scale(light_brought, kept));
         }
@@ -143,10 +148,18 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
                                    sampler_2d(where, SAMPLE_LOBE, path_vertex).x,
                                    sampler_2d(where, SAMPLE_SCATTER, path_vertex), &next))
             return;
+        bool goes_straight = may_go_straight && next.is_straight;
+        if (is_last && !goes_straight)
+            return;
         throughput = rgb_mul(throughput, next.weight);
         if (path_vertex >= ROULETTE_AFTER &&
             !transport_survives(&throughput, sampler_2d(where, SAMPLE_ROULETTE, path_vertex).x))
             return;
+        if (goes_straight) {
+            ray = passage_continue(&v.hit, &v.arrived);
+            continue;
+        }
+        scatterings++;
         scattered_from = v.hit.position;
         scattered_normal = direct_light_normal(&v, BSDF_TRACED);
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;

@@ -26,6 +26,28 @@ bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vert
     return true;
 }
 
+bool transport_trace_through_panes(const transport *t, eye_worker *worker, scene_ray ray, vertex *out)
+{
+    bool is_met = transport_trace(t, worker, ray, out);
+    rgb left = out->transmittance;
+    for (int crossings = 0; is_met && transport_is_open_pane(t, out); crossings++) {
+        rgb passed = bsdf_straight_transmittance(&out->scattering);
+        if (rgb_is_black(passed))
+            break;
+        bool is_cut = crossings == PASSAGE_CROSSINGS_MAX;
+        worker->passages_cut += is_cut;
+        left = is_cut ? rgb_gray(0.0f) : rgb_mul(left, passed);
+        if (rgb_is_black(left)) {
+            is_met = false;
+            break;
+        }
+        is_met = transport_trace(t, worker, passage_continue(&out->hit, &out->arrived), out);
+        left = rgb_mul(left, out->transmittance);
+    }
+    out->transmittance = left;
+    return is_met;
+}
+
 rgb transport_emission(const transport *t, const vertex *v)
 {
     if (!v->lamp)

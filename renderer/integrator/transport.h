@@ -25,6 +25,7 @@ typedef struct transport {
     bool wants_groups;         /* light by the groups of its lamps */
     bool has_lights;           /* any with power */
     bool can_meet_lights;      /* area or infinite ones: those that scattered rays find */
+    bool panes_are_direct;     /* there are panes, and light straight through them is direct light (bsdf.h) */
     int light_samples;         /* for direct light at a diffuse place, towards lamps */
     int scatter_samples;       /* and by scattering, 0 where that cannot meet a lamp */
     float gather_min_distance; /* a gather ray that hits nearer than this does not use the cache, scene units */
@@ -57,6 +58,16 @@ bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vert
 /* The same in two steps, for those who may not need the second: how the place scatters, and whether it shines. */
 bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 void transport_complete(const transport *t, vertex *in_out_vertex);
+
+/* Follows it on through panes, where they are direct, to the first other surface. transmittance is the whole way's,
+ * that of the panes with it; hit.distance that of its last stretch. false also where nothing is left of the light. */
+bool transport_trace_through_panes(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
+
+/* Whether a sample of the place that is_straight counts as no scattering. */
+static inline bool transport_is_open_pane(const transport *t, const vertex *v)
+{
+    return t->panes_are_direct && v->scattering.is_pane;
+}
 
 /* Radiance that the place itself sends back along the ray. */
 rgb transport_emission(const transport *t, const vertex *v);

@@ -15,7 +15,7 @@ static void mark_demanded(const photon_map *map, unsigned char *first)
     for (uint32_t i = 0; i < map->bearers.count; i++) {
         uint32_t word = irradiance_slot_read(photon_map_slot(map, i));
         uint32_t photon_index = photon_map_all_bear(map) ? i : irradiance_bearers_photon(&map->bearers, i);
-        if (irradiance_word_state(word) == IRRADIANCE_READY && photon_index < map->set.count)
+        if (irradiance_word_is_ready(word) && photon_index < map->set.count)
             first[(size_t)photon_index * RECORD_BYTES] = 1;
     }
 }

@@ -137,6 +137,7 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
     add_text(out, "afterglow/version", "%s", ag_version());
     add_text(out, "afterglow/isa", "%s", context->isa);
     add_text(out, "afterglow/integrator", "%s", is_path ? "path" : "photonmap");
+    add_text(out, "afterglow/paneLight", "%s", r->pane_light == AG_PANE_LIGHT_DIRECT ? "direct" : "traced");
     add_text(out, "afterglow/seed", "%lld", (long long)r->seed);
     add_text(out, "afterglow/samplesPerPixel", "%d", r->samples_per_pixel);
     if (!is_path) {

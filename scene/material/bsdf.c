@@ -5,6 +5,7 @@
 #include "material/bsdf_lobe.h"
 #include "material/coat.h"
 #include "material/fresnel.h"
+#include "material/pane.h"
 #include "material/principled.h"
 #include "material/shading_frame.h"
 #include "math/sampling.h"
@@ -124,6 +125,7 @@ static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
     b->shading = shading;
     b->geometric_normal = hit->geometric_normal;
     b->out = out;
+    b->is_pane = pane_is_of(&b->matter);
     b->lobe_count = 0;
     add_lobes(b);
     for (int k = 0; hit->is_strand && k < b->lobe_count; k++)
@@ -143,6 +145,7 @@ bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out)
     bsdf b;
     material_at(s, hit, &b.matter);
     set_up(&b, shading_frame_at(s, hit, &b.matter), hit, out);
+    b.is_pane = b.is_pane && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
     return b;
 }
 
@@ -152,6 +155,11 @@ bool bsdf_has(const bsdf *b, bsdf_lobes lobes)
         if (b->lobes[i].group & lobes)
             return true;
     return false;
+}
+
+rgb bsdf_straight_transmittance(const bsdf *b)
+{
+    return b->is_pane ? pane_transmittance(&b->matter, vec3_dot(b->out, b->shading.z)) : rgb_gray(0.0f);
 }
 
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
@@ -291,7 +299,7 @@ static bool sample_plain(const bsdf *b, bsdf_transport transport, vec2 u, bsdf_s
     out->weight = b->matter.reflectance;
     if (transport == BSDF_FLUX)
         out->weight = rgb_scale(out->weight, flux_correction(b, out->direction));
-    out->is_delta = false;
+    out->is_delta = out->is_straight = false;
     out->group = BSDF_GATHERED;
     return true;
 }
@@ -311,6 +319,7 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
     bsdf_sample *out = out_sample;
     out->group = lobe->group;
     out->is_delta = lobe->is_delta;
+    out->is_straight = false;
     if (lobe->is_delta) {
         if (!bsdf_lobe_sample_smooth(b, lobe->kind, transport, o, u_lobe, &i, &out->weight))
             return false;
@@ -319,6 +328,7 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
         /* a shading normal may send it through the surface, or not: the geometry decides */
         if (bsdf_is_same_side(b, out->direction) != (i.z * o.z > 0.0f))
             return false;
+        out->is_straight = b->is_pane && i.z * o.z < 0.0f;
         out->weight = rgb_scale(out->weight, 1.0f / probability);
         if (transport == BSDF_FLUX)
             out->weight = rgb_scale(out->weight, flux_correction(b, out->direction));

@@ -10,7 +10,10 @@
  * gathered lobe is a product t(in) A t(out) / pi, where t is 1 but under a coat, which lets through 1 - Fresnel, or
  * under an interface of which t is what it does not reflect in all (principled.h): photons carry t(in), so
  * that irradiance times A t(out) / pi is the radiance that leaves. On curves every lobe is traced: a hair is thinner
- * than the disc of any estimate, and a flat one has no normal of its own that photons and eye could agree on. */
+ * than the disc of any estimate, and a flat one has no normal of its own that photons and eye could agree on.
+ *
+ * A second predicate, is_pane and is_straight of a sample, says where light goes on as if nothing were there: for
+ * photons, eye and shadow rays alike, who may count such a place as no surface of the path. */
 #ifndef AFTERGLOW_BSDF_H
 #define AFTERGLOW_BSDF_H
 
@@ -52,6 +55,7 @@ typedef struct bsdf {
     vec3 geometric_normal; /* to the outside */
     vec3 out;              /* back along the ray that arrived, unit */
     material matter;       /* as it is at this place */
+    bool is_pane;          /* lets light straight through (pane.h), and does not shine itself */
     int lobe_count;
     bsdf_lobe lobes[BSDF_LOBES_MAX];
 } bsdf;
@@ -61,6 +65,7 @@ typedef struct bsdf_sample {
     rgb weight;            /* f |cos| / pdf, shading-normal correction of flux included */
     float pdf_solid_angle; /* of all lobes asked for together; meaningless where is_delta */
     bool is_delta;
+    bool is_straight; /* goes on through a pane, unbent */
     bsdf_lobes group; /* of the lobe that was picked */
 } bsdf_sample;
 
@@ -79,6 +84,9 @@ static inline bool bsdf_is_plain(const bsdf *b)
 
 /* Whether `out` is on the inside, by the geometric normal: what does not go through stays there. */
 static inline bool bsdf_is_below(const bsdf *b) { return vec3_dot(b->out, b->geometric_normal) < 0.0f; }
+
+/* The share of light that goes straight through the place to `out`, in [0, 1]; black where there is no pane. */
+rgb bsdf_straight_transmittance(const bsdf *b);
 
 /* Whether light can find these lobes by sampling a lamp: they are not all perfectly smooth. */
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);

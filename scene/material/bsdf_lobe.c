@@ -159,15 +159,10 @@ bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport 
         *out_weight = coat_series(m, metal, o.z);
         return true;
     }
-    case LOBE_THIN_DIELECTRIC: {
-        /* to and fro between the two faces: a geometric series */
-        float r = fresnel_dielectric(cosine, m->ior);
-        if (r < 1.0f)
-            r += (1.0f - r) * (1.0f - r) * r / (1.0f - r * r);
-        if (u_lobe >= r)
+    case LOBE_THIN_DIELECTRIC:
+        if (u_lobe >= fresnel_thin_dielectric(cosine, m->ior))
             *out_local = vec3_negate(o);
         return true;
-    }
     default: break;
     }
     if (u_lobe < fresnel_dielectric(cosine, eta))

@@ -18,6 +18,15 @@ static inline float fresnel_dielectric(float cos_in, float eta)
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
+/* Of a thin sheet, all reflections between its two faces together: a geometric series. */
+static inline float fresnel_thin_dielectric(float cos_in, float eta)
+{
+    float r = fresnel_dielectric(cos_in, eta);
+    if (r < 1.0f)
+        r += (1.0f - r) * (1.0f - r) * r / (1.0f - r * r);
+    return r;
+}
+
 /* Unpolarised reflectance of a conductor, written without complex numbers. */
 static inline float fresnel_conductor_channel(float cos_in, float eta, float k)
 {

@@ -84,6 +84,19 @@ bool material_is_traced(const scene *s, uint32_t material_index)
     return m->kind != MATERIAL_DIFFUSE && m->kind != MATERIAL_DIFFUSE_TRANSMISSION && m->kind != MATERIAL_INTERFACE;
 }
 
+bool material_is_clear_glass(const scene *s, uint32_t material_index)
+{
+    const material *m = &s->materials[material_index];
+    bool is_smooth = material_is_smooth(m->alpha_u, m->alpha_v);
+    switch (m->kind) {
+    case MATERIAL_MIX: return material_is_clear_glass(s, m->mixed[0]) || material_is_clear_glass(s, m->mixed[1]);
+    case MATERIAL_THIN_DIELECTRIC: return true;
+    case MATERIAL_DIELECTRIC: return is_smooth || m->ior == 1.0f;
+    case MATERIAL_PRINCIPLED: return is_smooth && principled_transmits(m);
+    default: return false;
+    }
+}
+
 /* A mix picks one of its two by place alone, as pbrt-v4 does: the same for all rays, so photons and eye agree. */
 static const material *resolve_mix(const scene *s, const material *m, const surface_hit *hit)
 {

@@ -102,6 +102,9 @@ void material_prepare(material *m);
 /* Whether the material has, or may pick, lobes that are traced (bsdf.h). */
 bool material_is_traced(const struct scene *s, uint32_t material_index);
 
+/* Whether the material is, or may pick, smooth glass, thin or not: light goes through it on one way alone. */
+bool material_is_clear_glass(const struct scene *s, uint32_t material_index);
+
 /* Whether rays pass the place unbent. */
 bool material_is_interface(const struct scene *s, const struct surface_hit *hit);
 

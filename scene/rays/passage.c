@@ -3,6 +3,9 @@
  * Threads: pure but for the caller's counter. */
 #include "rays/passage.h"
 
+#include "material/bsdf.h"
+#include "material/pane.h"
+
 static rgb transmittance_in(const scene *s, uint32_t medium_index, float distance)
 {
     return medium_index < s->medium_count ? medium_transmittance(&s->media[medium_index], distance) : rgb_gray(1.0f);
@@ -14,9 +17,18 @@ static bool is_passed(const scene *s, const surface_hit *hit)
     return material_is_interface(s, hit) && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
 }
 
-/* The ray on the other side of an interface. It stays on its line, as far as the line leaves the surface soon, so that
- * many interfaces bend it no more than one. */
-static scene_ray pass_on(const surface_hit *hit, const scene_ray *ray)
+/* What a place lets through of the ray that has met it, unbent: all of it, a pane's transmittance, or nothing. */
+static rgb let_through(const scene *s, const surface_hit *hit, const scene_ray *ray, bool through_panes)
+{
+    if (is_passed(s, hit))
+        return rgb_gray(1.0f);
+    if (!through_panes || !pane_may_be_of(s, s->shapes[hit->shape_index].material_index))
+        return rgb_gray(0.0f);
+    bsdf at = bsdf_create(s, hit, vec3_negate(ray->direction));
+    return bsdf_straight_transmittance(&at);
+}
+
+scene_ray passage_continue(const surface_hit *hit, const scene_ray *ray)
 {
     static const float COSINE_MIN = 0.125f;
     scene_ray next = surface_ray(hit, *ray, ray->direction);
@@ -30,11 +42,11 @@ static scene_ray pass_on(const surface_hit *hit, const scene_ray *ray)
 
 static float distance_between(vec3 a, vec3 b) { return sqrtf(vec3_distance_squared(a, b)); }
 
-/* Follows a ray of unit direction up to `length` and across interfaces, to the first surface that stays. *ray becomes
- * its last stretch. in_out_left, which may be NULL, is multiplied by what media leave of light; where that is nothing,
- * or there are too many interfaces, the way ends in the dark: false. */
-static bool follow(const scene *s, scene_ray *ray, float length, uint64_t *in_out_cut, surface_hit *out_hit,
-                   rgb *in_out_left)
+/* Follows a ray of unit direction up to `length` and across interfaces, and panes too if so wished, to the first
+ * surface that stays. *ray becomes its last stretch. in_out_left, which may be NULL, is multiplied by what media and
+ * panes leave of light; where that is nothing, or there are too many crossings, the way ends in the dark: false. */
+static bool follow(const scene *s, scene_ray *ray, float length, bool through_panes, uint64_t *in_out_cut,
+                   surface_hit *out_hit, rgb *in_out_left)
 {
     bool is_bounded = !isinf(length);
     vec3 from = ray->origin, end = is_bounded ? vec3_add_scaled(ray->origin, ray->direction, length) : ray->origin;
@@ -48,10 +60,13 @@ static bool follow(const scene *s, scene_ray *ray, float length, uint64_t *in_ou
             *in_out_left = rgb_mul(*in_out_left, transmittance_in(s, ray->medium, distance));
         if (!is_hit || (in_out_left && rgb_is_black(*in_out_left)))
             return false;
-        if (!is_passed(s, out_hit)) {
+        rgb passed = let_through(s, out_hit, ray, through_panes);
+        if (rgb_is_black(passed)) {
             out_hit->distance = travelled;
             return true;
         }
+        if (in_out_left)
+            *in_out_left = rgb_mul(*in_out_left, passed);
         if (crossings == PASSAGE_CROSSINGS_MAX) {
             (*in_out_cut)++;
             if (in_out_left)
@@ -59,7 +74,7 @@ static bool follow(const scene *s, scene_ray *ray, float length, uint64_t *in_ou
             return false;
         }
         from = out_hit->position;
-        *ray = pass_on(out_hit, ray);
+        *ray = passage_continue(out_hit, ray);
         if (!is_bounded)
             continue;
         /* to the same end from the other side; it may lie within the step there */
@@ -77,7 +92,7 @@ bool passage_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, sur
     if (s->has_interfaces) {
         scene_ray last = *ray;
         *out_transmittance = rgb_gray(1.0f);
-        bool is_met = follow(s, &last, INFINITY, in_out_cut, out_hit, out_transmittance);
+        bool is_met = follow(s, &last, INFINITY, false, in_out_cut, out_hit, out_transmittance);
         ray->medium = last.medium;
         return is_met;
     }
@@ -107,7 +122,17 @@ rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *
     float unit = normalize_direction(&ray);
     if (!(unit > 0.0f))
         return left; /* from a place to itself */
-    return follow(s, &ray, reach * unit, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;
+    return follow(s, &ray, reach * unit, false, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;
+}
+
+rgb passage_transmittance_of_panes(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut)
+{
+    surface_hit hit;
+    rgb left = rgb_gray(1.0f);
+    float unit = normalize_direction(&ray);
+    if (!(unit > 0.0f))
+        return left;
+    return follow(s, &ray, reach * unit, true, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;
 }
 
 bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
@@ -117,7 +142,7 @@ bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, sur
         return scene_intersect(s, ray, max_distance, out_hit);
     uint64_t cut = 0;
     float unit = normalize_direction(&ray);
-    if (!(unit > 0.0f) || !follow(s, &ray, max_distance * unit, &cut, out_hit, NULL))
+    if (!(unit > 0.0f) || !follow(s, &ray, max_distance * unit, false, &cut, out_hit, NULL))
         return false;
     out_hit->distance /= unit;
     return true;
@@ -133,6 +158,6 @@ bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance)
 void passage_warn_of_cut(log_sink *log, uint64_t count)
 {
     if (count > 0)
-        log_message(log, AG_LOG_WARNING, "%llu rays would cross more than %d interfaces: they end there, dark",
+        log_message(log, AG_LOG_WARNING, "%llu rays would cross more than %d interfaces or panes: they end there, dark",
                     (unsigned long long)count, PASSAGE_CROSSINGS_MAX);
 }

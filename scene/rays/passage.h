@@ -8,7 +8,7 @@
 
 #include "rays/bvh.h"
 
-/* A way ends at this many interfaces, dark; it is counted in *in_out_cut. */
+/* A way ends at this many interfaces and panes, dark; it is counted in *in_out_cut. */
 enum { PASSAGE_CROSSINGS_MAX = 256 };
 
 /* The nearest surface that scatters, along a ray of unit direction. ray->medium becomes that in which it arrives there.
@@ -31,6 +31,15 @@ rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *
  * surfaces, not light. */
 bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance);
+
+/* The same across panes too, whose transmittance (pane.h) is multiplied in: for light that is sampled at its lamp.
+ * Infinitely many reflections between the faces of one pane are in it; those between two panes, which move light
+ * sideways, are not. */
+rgb passage_transmittance_of_panes(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
+
+/* The ray of unit direction that has met a place which lets it through unbent, on the other side of it. It stays on its
+ * line, as far as the line leaves the surface soon, so that many such places bend it no more than one. */
+scene_ray passage_continue(const surface_hit *hit, const scene_ray *ray);
 
 /* Says that so many rays were cut, if any. */
 void passage_warn_of_cut(log_sink *log, uint64_t count);

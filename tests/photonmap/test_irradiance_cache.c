@@ -112,7 +112,7 @@ static void *publish_late(void *user)
         sched_yield();
     for (int i = 0; i < 100; i++)
         sched_yield(); /* the other one is likely to wait by now; it is right either way */
-    return irradiance_slot_publish(late->slot, 7, late->value) ? user : NULL;
+    return irradiance_slot_publish(late->slot, 7, irradiance_word(IRRADIANCE_READY, late->value)) ? user : NULL;
 }
 
 static void a_request_set_aside_comes_back(void **state)
@@ -236,9 +236,9 @@ static void a_second_computation_would_be_counted(void **state)
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 1);
     uint32_t word;
     assert_true(irradiance_slot_try_claim(photon_block_slot(f.map.blocks, 5), 9, &word));
-    assert_false(irradiance_slot_publish(photon_block_slot(f.map.blocks, 5), 0, 1));
+    assert_false(irradiance_slot_publish(photon_block_slot(f.map.blocks, 5), 0, irradiance_word(IRRADIANCE_READY, 1)));
     assert_int_equal(irradiance_cache_distinct(&f.cache), 0);
-    assert_true(irradiance_slot_publish(photon_block_slot(f.map.blocks, 5), 9, 1));
+    assert_true(irradiance_slot_publish(photon_block_slot(f.map.blocks, 5), 9, irradiance_word(IRRADIANCE_READY, 1)));
     assert_int_equal(irradiance_cache_distinct(&f.cache), 1); /* counted by looking, though this cache computed none */
     assert_int_equal(irradiance_cache_counters(&f.cache).computed, 0);
     fixture_reset(&f);

@@ -31,12 +31,12 @@ static void a_claim_is_published(void **state)
     assert_int_equal(word, irradiance_word(IRRADIANCE_CLAIMED, 5));
     assert_false(irradiance_slot_try_claim(&slot, 5, &word));
     /* nobody else may publish */
-    assert_false(irradiance_slot_publish(&slot, 6, 77));
+    assert_false(irradiance_slot_publish(&slot, 6, irradiance_word(IRRADIANCE_READY, 77)));
     assert_int_equal(irradiance_slot_read(&slot), irradiance_word(IRRADIANCE_CLAIMED, 5));
-    assert_true(irradiance_slot_publish(&slot, 5, IRRADIANCE_VALUE_MASK));
+    assert_true(irradiance_slot_publish(&slot, 5, irradiance_word(IRRADIANCE_READY, IRRADIANCE_VALUE_MASK)));
     assert_int_equal(irradiance_slot_read(&slot), irradiance_word(IRRADIANCE_READY, IRRADIANCE_VALUE_MASK));
     /* and ready is final */
-    assert_false(irradiance_slot_publish(&slot, 5, 1));
+    assert_false(irradiance_slot_publish(&slot, 5, irradiance_word(IRRADIANCE_READY, 1)));
     assert_false(irradiance_slot_try_claim(&slot, 5, &word));
     assert_int_equal(word, irradiance_word(IRRADIANCE_READY, IRRADIANCE_VALUE_MASK));
     assert_int_equal(irradiance_word_state(word), IRRADIANCE_READY);
@@ -45,10 +45,11 @@ static void a_claim_is_published(void **state)
 static void state_and_value_do_not_mix(void **state)
 {
     (void)state;
-    for (int s = IRRADIANCE_EMPTY; s <= IRRADIANCE_READY; s++)
+    for (int s = IRRADIANCE_EMPTY; s <= IRRADIANCE_READY_IN_SIGHT; s++)
         for (uint32_t bit = 0; bit < 32; bit++) {
             uint32_t word = irradiance_word((irradiance_state)s, 1u << bit);
             assert_int_equal(irradiance_word_state(word), s);
+            assert_int_equal(irradiance_word_is_ready(word), s >= IRRADIANCE_READY);
             assert_int_equal(word & IRRADIANCE_VALUE_MASK, bit < IRRADIANCE_STATE_SHIFT ? 1u << bit : 0);
         }
 }
@@ -62,11 +63,11 @@ static void publishing_a_stolen_claim_fails(void **state)
     uint32_t word;
     assert_true(irradiance_slot_try_claim(&slot, 1, &word));
     store_relaxed_u32(&slot, 0);
-    assert_false(irradiance_slot_publish(&slot, 1, 11));
+    assert_false(irradiance_slot_publish(&slot, 1, irradiance_word(IRRADIANCE_READY, 11)));
     assert_true(irradiance_slot_try_claim(&slot, 2, &word));
-    assert_false(irradiance_slot_publish(&slot, 1, 11));
-    assert_true(irradiance_slot_publish(&slot, 2, 22));
-    assert_false(irradiance_slot_publish(&slot, 1, 11));
+    assert_false(irradiance_slot_publish(&slot, 1, irradiance_word(IRRADIANCE_READY, 11)));
+    assert_true(irradiance_slot_publish(&slot, 2, irradiance_word(IRRADIANCE_READY, 22)));
+    assert_false(irradiance_slot_publish(&slot, 1, irradiance_word(IRRADIANCE_READY, 11)));
     assert_int_equal(irradiance_slot_read(&slot), irradiance_word(IRRADIANCE_READY, 22));
 }
 
@@ -98,7 +99,8 @@ static void *compete(void *user)
             m->all->payload[round][at] = m->number * 1000u + round;
             if (m->number % 3 == 0)
                 sched_yield(); /* others meet the claim */
-            m->lost_publishes += !irradiance_slot_publish(slot, m->number, m->number);
+            m->lost_publishes +=
+                !irradiance_slot_publish(slot, m->number, irradiance_word(IRRADIANCE_READY, m->number));
         }
         for (uint32_t at = 0; at < SLOTS; at++) {
             uint32_t word = irradiance_slot_read(&m->all->slots[round][at]);

@@ -237,6 +237,7 @@ static void what_was_made_of_something_else_is_refused(void **state)
     EXPECT_REFUSED(key.photon_count = 1, "not 1");
     EXPECT_REFUSED(key.caustic_photon_count = 1, "caustic photons");
     EXPECT_REFUSED(key.max_depth = 3, "depth");
+    EXPECT_REFUSED(key.pane_light = 1, "light through panes");
     EXPECT_REFUSED(key.nearest = 3, "estimates of");
     EXPECT_REFUSED(key.radius = 2.0f, "radius of 1, not 2");
     EXPECT_REFUSED(key.irradiance_fraction = 0.125f, "fraction of 1 of its photons, not 0.125");
@@ -317,12 +318,11 @@ static void slots_may_hold_anything(void **state)
         if (i % 3 == 0)
             word = irradiance_word(IRRADIANCE_CLAIMED, word & 0x3ff); /* places and generations that there may be */
         store_relaxed_u32(photon_block_slot(o.map.blocks, i), word);
-        not_ready += irradiance_word_state(word) != IRRADIANCE_READY && word != 0 &&
+        not_ready += !irradiance_word_is_ready(word) && word != 0 &&
                      word != irradiance_word(IRRADIANCE_CLAIMED, o.file.owners.claimer);
     }
     for (uint32_t i = 0; i < PHOTONS; i++) {
-        bool was_ready =
-            irradiance_word_state(irradiance_slot_read(photon_block_slot(o.map.blocks, i))) == IRRADIANCE_READY;
+        bool was_ready = irradiance_word_is_ready(irradiance_slot_read(photon_block_slot(o.map.blocks, i)));
         if (irradiance_slot_read(photon_block_slot(o.map.blocks, i)) ==
             irradiance_word(IRRADIANCE_CLAIMED, o.file.owners.claimer))
             continue; /* ours, as it says: the time to lose patience is another test's */
@@ -413,7 +413,8 @@ static pid_t start_holder(const char *path, int *out_ready, int *out_order)
         if (write(ready[1], &byte, 1) != 1 || read(order[0], &byte, 1) != 1 || byte != TOLD_TO_PUBLISH)
             _exit(3);
         for (uint32_t i = 0; i < HELD; i++)
-            failed += !irradiance_slot_publish(photon_block_slot(o.map.blocks, i), o.file.owners.claimer, 77);
+            failed += !irradiance_slot_publish(photon_block_slot(o.map.blocks, i), o.file.owners.claimer,
+                                               irradiance_word(IRRADIANCE_READY, 77));
         _exit(failed == HELD ? 1 : 0);
     }
     close(ready[1]);
@@ -527,7 +528,7 @@ static void processes_are_killed_at_random(void **state)
             opened o;
             open_map(&o, path);
             for (uint32_t k = 0; k < PHOTONS; k++)
-                if (irradiance_word_state(irradiance_slot_read(photon_block_slot(o.map.blocks, k))) == IRRADIANCE_READY)
+                if (irradiance_word_is_ready(irradiance_slot_read(photon_block_slot(o.map.blocks, k))))
                     store_relaxed_u32(photon_block_slot(o.map.blocks, k), 0);
             close_map(&o);
             kills++;

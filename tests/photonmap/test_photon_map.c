@@ -364,7 +364,7 @@ static void a_ball_is_no_wall(void **state)
         photon_map_settings settings = {.nearest = 1, .max_radius = 1.0f, .surface_area = 0.02f, .surfaces = s};
         photon_map map;
         assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
-        assert_int_equal(photon_map_nearest(&map, aside, aside), i == 0 ? 0 : PHOTON_NONE);
+        assert_int_equal(photon_map_nearest(&map, aside, aside), i == 0 ? 0 : PHOTON_HIDDEN);
         photon_map_reset(&map);
         scene_destroy(s);
         test_run_reset(&r);

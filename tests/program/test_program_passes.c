@@ -88,12 +88,59 @@ static void test_noise(void **state)
     assert_true(least >= 4 && most <= 64 && mean >= least && mean <= most && least < most);
 }
 
+/* How many samples a pixel has in the mean, exactly. */
+static double samples_by(const char *scene, const char *const *options, bool expects_level)
+{
+    const char *all[PROGRAM_ARGUMENTS_MAX] = {
+        SMALL, "--photons=1000", "--caustic-photons=0", "--stats=a.json", "-o", "a.exr", scene};
+    int count = 9;
+    while (*options)
+        all[count++] = *options++;
+    program_run run = program_execute(NULL, all);
+    expect_exit(&run, 0);
+    if ((strstr(run.err, ", for --noise ") != NULL) != expects_level)
+        fail_msg("%s", run.err);
+    program_run_reset(&run);
+    json_t *stats = stats_read(in_folder("a.json"));
+    double samples = (double)stats_integer(stats, "rays.camera") / (24.0 * 24.0);
+    json_decref(stats);
+    return samples;
+}
+
+#define SAMPLES_BY(expects_level, ...) samples_by("box_with_blocks.pbrt", ARGUMENTS(__VA_ARGS__), expects_level)
+
+/* A level of noise and most samples; just as many where it is said so, or the scene is written for this program. */
+static void test_default_samples(void **state)
+{
+    (void)state;
+    static const char sampler[] = "Sampler \"independent\" \"integer pixelsamples\" 2";
+    (void)SCENE_WITH("block.pbrt", "", ""); /* which the box includes */
+    (void)SCENE_WITH("box_with_blocks.pbrt", sampler,
+                     "Sampler \"zsobol\" \"integer pixelsamples\" 3 Integrator \"volpath\"");
+    double free_choice = SAMPLES_BY(true, "--seed=1"), same = SAMPLES_BY(true, "--noise=0.02", "--spp=1024"),
+           coarse = SAMPLES_BY(true, "--noise=0.1"), few = SAMPLES_BY(true, "--noise=1e-5", "--spp=20");
+    assert_true(free_choice > 20.0 && free_choice < 1024.0);
+    assert_true(fabs(same / free_choice - 1.0) < 0.1); /* another seed */
+    assert_true(coarse >= 16.0 && coarse < free_choice);
+    assert_float_equal(few, 20.0, 0.0);
+    assert_float_equal(SAMPLES_BY(false, "--spp=5"), 5.0, 0.0);
+    assert_float_equal(SAMPLES_BY(false, "--spp=5", "--noise=0"), 5.0, 0.0);
+    assert_float_equal(SAMPLES_BY(false, "--noise=0"), 3.0, 0.0);
+    (void)SCENE_WITH("box_with_blocks.pbrt", sampler,
+                     "Sampler \"zsobol\" \"integer pixelsamples\" 3 Integrator \"photonmap\"");
+    assert_float_equal(SAMPLES_BY(false, "--seed=1"), 3.0, 0.0);
+    assert_true(SAMPLES_BY(true, "--noise=0.1") >= 16.0);
+    (void)SCENE_WITH("box_with_blocks.pbrt", sampler, "Integrator \"photonmap\"");
+    assert_true(SAMPLES_BY(true, "--seed=1") > 20.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_time_limit),
         TEST_IN_FOLDER(test_preview),
         TEST_IN_FOLDER(test_noise),
+        TEST_IN_FOLDER(test_default_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -56,6 +56,57 @@ static void test_same_bits(void **state)
     studio_close(threaded);
 }
 
+/* Of crops that cut through blocks of pixels, the full picture's, samples included. */
+static void test_crops(void **state)
+{
+    (void)state;
+    studio *s = open_adaptive(2, 0.03f);
+    s->settings.width = 29, s->settings.height = 27;
+    ag_film *whole = studio_render(s);
+    static const int crops[][4] = {{5, 19, 3, 22}, {8, 16, 8, 16}, {0, 29, 13, 14}, {27, 29, 25, 27}};
+    for (size_t i = 0; i < sizeof crops / sizeof *crops; i++) {
+        const int *crop = crops[i];
+        for (int k = 0; k < 4; k++)
+            s->settings.crop_window[k] = (double)crop[k] / (k < 2 ? 29.0 : 27.0);
+        ag_film *part = studio_render(s);
+        int width = crop[1] - crop[0], height = crop[3] - crop[2], told_width, told_height;
+        ag_film_pixels(part, &told_width, &told_height);
+        assert_int_equal(told_width, width);
+        assert_int_equal(told_height, height);
+        static const char *const channels[] = {"R", "G", "B", "samples"};
+        for (int c = 0; c < 4; c++) {
+            float *a = film_channel_of(whole, channels[c]), *b = film_channel_of(part, channels[c]);
+            for (int y = 0; y < height; y++)
+                assert_memory_equal(a + (y + crop[2]) * 29 + crop[0], b + y * width, (size_t)width * sizeof *a);
+            free(a);
+            free(b);
+        }
+        ag_film_destroy(part);
+    }
+    ag_film_destroy(whole);
+    studio_close(s);
+}
+
+/* Four times as bright where it is shown is twice the noise there. */
+static void test_shown_exposure(void **state)
+{
+    (void)state;
+    studio *s = open_adaptive(2, 0.03f);
+    ag_film *plain = studio_render(s);
+    s->settings.shown_exposure_stops = -2.0f;
+    ag_film *darker = studio_render(s);
+    s->settings.noise_level = 0.015f;
+    ag_film *quiet = studio_render(s);
+    double by_plain = film_mean(plain, "samples"), by_darker = film_mean(darker, "samples"),
+           by_quiet = film_mean(quiet, "samples");
+    if (!(by_darker < 0.7 * by_plain) || !(fabs(by_quiet / by_plain - 1.0) < 0.1))
+        fail_msg("%g samples, %g when shown darker, %g for half the noise then", by_plain, by_darker, by_quiet);
+    ag_film_destroy(plain);
+    ag_film_destroy(darker);
+    ag_film_destroy(quiet);
+    studio_close(s);
+}
+
 /* The error as it is shown, root mean square over the picture, against one of many samples. */
 static double shown_error(const ag_film *film, const ag_film *truth)
 {
@@ -103,6 +154,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_same_bits),
+        TEST_IN_FOLDER(test_crops),
+        TEST_IN_FOLDER(test_shown_exposure),
         TEST_IN_FOLDER(test_noise_is_reached),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -86,6 +86,10 @@ AG_API bool ag_scene_was_read_from(const ag_scene *scene, const char *path);
 /* The Film directive's "filename", NULL where there is none. Lives as long as the scene. */
 AG_API const char *ag_scene_film_file_name(const ag_scene *scene);
 
+/* Whether the scene is written for this renderer (Integrator "photonmap") and has a Sampler: then its number of samples
+ * is meant. That of other scenes is for another renderer. */
+AG_API bool ag_scene_has_own_samples(const ag_scene *scene);
+
 /* --- rendering --- */
 
 typedef enum ag_integrator { AG_INTEGRATOR_PHOTONMAP, AG_INTEGRATOR_PATH } ag_integrator;
@@ -95,6 +99,13 @@ typedef enum ag_cache_mode {
     AG_CACHE_PRECOMPUTE, /* at every photon, before rendering; the picture is the same, bit for bit */
     AG_CACHE_OFF         /* an estimate at every gather hit: another estimator */
 } ag_cache_mode;
+
+/* Light that thin glass, or a smooth interface of index 1, lets through unbent. */
+typedef enum ag_pane_light {
+    AG_PANE_LIGHT_DIRECT, /* as if nothing were in its way: sampled at its lamp, by both integrators. Suns, points and
+                             spots shine through windows in the path tracer too; no caustic */
+    AG_PANE_LIGHT_TRACED  /* like light by way of any other glass */
+} ag_pane_light;
 
 typedef enum ag_only { AG_ONLY_ALL, AG_ONLY_INDIRECT } ag_only;
 
@@ -106,7 +117,9 @@ typedef enum ag_layer {
     AG_LAYER_NORMAL = 1 << 3, /* N.X, Y, Z: its shading normal on the eye's side, world space, mean over the pixel */
     AG_LAYER_POSITION = 1 << 4, /* P.X, Y, Z: world space, mean over what of the pixel is not empty */
     AG_LAYER_UV = 1 << 5,       /* u, v */
-    /* The parts of light. R, G and B are their sum in this order, in floats, to the last bit. */
+    /* The parts of light. R, G and B are their sum in this order, in floats, to the last bit. A pane whose light is
+     * direct (ag_pane_light) is no surface to what it lets through: behind it the first surface is the one that is seen
+     * through it. */
     AG_LAYER_EMISSION = 1 << 6,      /* straight from lamps and sky to the eye */
     AG_LAYER_DIRECT = 1 << 7,        /* straight from lamps, reflected by the first surface's diffuse lobes */
     AG_LAYER_INDIRECT = 1 << 8,      /* what else these reflect, but */
@@ -147,6 +160,7 @@ AG_API ag_status ag_layers_parse(const char *list, uint32_t *out_layers);
 typedef struct ag_render_settings {
     ag_integrator integrator; /* default: photonmap */
     ag_cache_mode cache;      /* default: on demand */
+    ag_pane_light pane_light; /* default: direct */
     ag_only only;             /* AG_ONLY_INDIRECT: less emission and direct light at the first non-specular hit */
     uint64_t seed;            /* default 0; statistics show it as a signed number */
 
@@ -191,12 +205,17 @@ typedef struct ag_render_settings {
     float clamp_direct; /* no component of what a sample gets from a lamp by way of at most one surface is above it; 0:
                            unbounded, the default */
     float clamp_indirect; /* the same of all other contributions */
-    float noise_level;    /* adaptive sampling: a pixel gets no more samples when the standard error of what is shown of
-                             it (its square root; white is 1) and of what lies around it is below this; samples_per_pixel
-                             is the most then; 0: all pixels get as many, the default */
-    int noise_min_samples; /* of each pixel then, [2, 2^20]; default 16 */
-    int gather_samples;    /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
-                              gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL */
+    float noise_level;    /* adaptive sampling: a block of 8 by 8 pixels gets no more samples when the standard error of
+                             what is shown of it (its square root, where white is 1; what is brighter, by its share), root
+                             mean square over the block, is below this; samples_per_pixel is the most then; 0: all pixels
+                             get as many, the default. The program takes AG_DEFAULT_NOISE_LEVEL and
+                             AG_DEFAULT_SAMPLES_MOST where neither options nor ag_scene_has_own_samples say otherwise */
+    int noise_min_samples;      /* of each pixel then, [2, 2^20]; default 16 */
+    float shown_exposure_stops; /* by which the picture will be made brighter when it is shown, [-100, 100]: noise and
+                                   warnings are of what is shown; default 0 */
+    int gather_samples;         /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
+                                   gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL; with a noise level, where samples
+                                   are not known beforehand, for 64 samples at most */
     /* A file that holds the photon map from one picture to the next, with the irradiances computed so far; NULL, the
      * default: none. Traced where there is none yet; other processes on this machine that use it meanwhile fill it
      * together with this one. The picture is the same. Borrowed until ag_rendering_create or ag_render returns. One
@@ -211,6 +230,8 @@ typedef struct ag_render_settings {
 AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *scene,
                                                ag_render_settings *out_settings);
 
+#define AG_DEFAULT_NOISE_LEVEL           0.02f
+#define AG_DEFAULT_SAMPLES_MOST          1024
 #define AG_DEFAULT_GATHER_RAYS_PER_PIXEL 256
 #define AG_DEFAULT_GATHER_GUIDING        0.5f
 #define AG_DEFAULT_PHOTON_AIM            0.8f

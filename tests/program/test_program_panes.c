@@ -1,0 +1,426 @@
+/* test_program_panes.c: light straight through thin glass is direct light, in both integrators: closed forms for suns,
+ * points, skies and large lamps behind it; two panes and what goes to and fro between them; a room with windows against
+ * the path tracer that knows no panes; the layers; the same bits.
+ * Flow: tests of the whole program. Threads: the program's. */
+#define _GNU_SOURCE
+#include "fixtures/program_picture.h"
+
+#define PATH   "--integrator=path"
+#define MAP    "--integrator=photonmap"
+#define TRACED "--pane-light=traced"
+#define DIRECT "--pane-light=direct"
+#define ROOM   PROGRAM_SCENES "panes.pbrt"
+
+#define SQUARE_WITH(size, y, more)                                                                                     \
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-" size " " y " -" size " " size " " y     \
+    " -" size " " size " " y " " size " -" size " " y " " size "] " more "\n"
+#define SQUARE(size, y) SQUARE_WITH(size, y, "")
+#define LAMP(radiance, size, y)                                                                                        \
+    "AttributeBegin ReverseOrientation Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n"                             \
+    "AreaLightSource \"diffuse\" \"rgb L\" [" radiance " " radiance " " radiance                                       \
+    "] \"bool twosided\" true\n" SQUARE(size, y) "AttributeEnd\n"
+#define DIFFUSE_FLOOR "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
+#define ROUGH_FLOOR   "Material \"conductor\" \"float roughness\" 0.3\n"
+#define THIN          "Material \"thindielectric\" \"float eta\" 1.5\n"
+#define SUN           "LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [0 1 0] \"point3 to\" [0 0 0]\n"
+
+static const double REFLECTANCE = 0.5, PI = 3.14159265358979323846;
+static const char *const INTEGRATORS[] = {PATH, MAP};
+
+/* A floor seen from close above, about the origin; light and panes are above the eye. */
+static const char *scene_of(const char *floor, const char *above)
+{
+    static char text[8192];
+    snprintf(text, sizeof text,
+             "LookAt 0 0.1 0 0 0 0 0 0 1 Camera \"perspective\" \"float fov\" 1\nPixelFilter \"box\"\nWorldBegin\n"
+             "%s\n%s" SQUARE("2", "0"),
+             above, floor);
+    return write_text("scene.pbrt", text);
+}
+
+/* (1 - R)^2 / (1 - R^2), R of one face, by the angles. */
+static double thin_glass(double cosine, double index)
+{
+    double in = acos(cosine), through = asin(sin(in) / index), r = pow((index - 1.0) / (index + 1.0), 2.0);
+    if (in > 1e-5) {
+        double s = sin(in - through) / sin(in + through), p = tan(in - through) / tan(in + through);
+        r = 0.5 * (s * s + p * p);
+    }
+    return (1.0 - r) * (1.0 - r) / (1.0 - r * r);
+}
+
+/* Light that was scattered once by what is no pane: none goes to and fro between floor and pane. */
+static void expect_floor(const char *what, const char *above, const double irradiance[3], double relative,
+                         const char *spp)
+{
+    for (int i = 0; i < 2; i++) {
+        picture p = RENDER(scene_of(DIFFUSE_FLOOR, above), "--max-depth=1", "--size=8x8", INTEGRATORS[i], spp);
+        for (int c = 0; c < 3; c++)
+            expect_near(what, picture_mean(&p, c), REFLECTANCE / PI * irradiance[c], relative);
+        picture_reset(&p);
+    }
+}
+
+static void expect_gray_floor(const char *what, const char *above, double irradiance, double relative, const char *spp)
+{
+    const double gray[3] = {irradiance, irradiance, irradiance};
+    expect_floor(what, above, gray, relative, spp);
+}
+
+/* E cos(theta) T(theta): the sun brings 3 W/m^2 across its way. */
+static void test_sun(void **state)
+{
+    (void)state;
+    static const double COSINES[] = {1.0, 0.6, 0.2};
+    for (int i = 0; i < 3; i++) {
+        char above[2048];
+        double c = COSINES[i], t = thin_glass(c, 1.5);
+        const struct {
+            const char *name, *panes;
+            double transmittance;
+        } PANES[] = {
+            {"no pane", "", 1.0},
+            {"a pane", THIN SQUARE("50", "1"), t},
+            {"two panes", THIN SQUARE("50", "1") SQUARE("50", "1.01"), t * t},
+            {"thin glass of index 1", "Material \"thindielectric\" \"float eta\" 1\n" SQUARE("50", "1"), 1.0},
+            {"faces of index 1", "Material \"dielectric\" \"float eta\" 1\n" SQUARE("50", "1") SQUARE("50", "2"), 1.0},
+            {"an interface and a pane", "Material \"interface\" " SQUARE("50", "0.5") THIN SQUARE("50", "1"), t},
+        };
+        for (size_t k = 0; k < sizeof PANES / sizeof *PANES; k++) {
+            snprintf(
+                above, sizeof above,
+                "LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [%.9g %.9g 0] \"point3 to\" [0 0 0]\n%s",
+                sqrt(1.0 - c * c), c, PANES[k].panes);
+            expect_gray_floor(PANES[k].name, above, 3.0 * c * PANES[k].transmittance, 2e-4, "--spp=1");
+        }
+    }
+}
+
+/* A veil of glass, of alpha 0.3, is there for that share of the rays; a tinted pane of glTF's material lets through its
+ * colour times what Schlick's formula does not reflect; of one with a chequered colour the eye's floor is under white
+ * at [0, 1) and under grey beyond. */
+static void test_other_panes(void **state)
+{
+    (void)state;
+    /* sigma of a sample: sqrt(0.21) (1 - T) = 0.035, of 64 x 256 of them 0.0003 */
+    expect_gray_floor("a veil", SUN THIN SQUARE_WITH("50", "1", "\"float alpha\" 0.3"),
+                      3.0 * (0.7 + 0.3 * thin_glass(1.0, 1.5)), 4.0 * 0.0003, "--spp=256");
+    const double tinted[3] = {3.0 * 0.96 * 0.8, 3.0 * 0.96 * 0.4, 3.0 * 0.96 * 0.2};
+    expect_floor("a tinted pane",
+                 SUN "Material \"principled\" \"rgb reflectance\" [0.8 0.4 0.2] \"float transmission\" 1 "
+                     "\"float metallic\" 0 \"float roughness\" 0\n" SQUARE("50", "1"),
+                 tinted, 2e-4, "--spp=1");
+    static const char *const FROM[2] = {"0.3", "1.3"};
+    static const double VALUE[2] = {1.0, 0.25};
+    for (int i = 0; i < 2; i++) {
+        char above[2048];
+        snprintf(above, sizeof above,
+                 "Texture \"c\" \"spectrum\" \"checkerboard\" \"string mapping\" \"planar\" \"vector3 v1\" [1 0 0] "
+                 "\"vector3 v2\" [0 0 1] \"rgb tex1\" [1 1 1] \"rgb tex2\" [0.25 0.25 0.25]\n"
+                 "LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [%s 1 0.3] \"point3 to\" [0 0 0]\n"
+                 "Material \"principled\" \"texture reflectance\" \"c\" \"float transmission\" 1 \"float metallic\" 0 "
+                 "\"float roughness\" 0\n" SQUARE("50", "1"),
+                 FROM[i]);
+        double x = atof(FROM[i]), c = 1.0 / sqrt(1.0 + x * x + 0.09);
+        double clear = 1.0 - (0.04 + 0.96 * pow(1.0 - c, 5.0));
+        expect_gray_floor("a chequered pane", above, 3.0 * c * clear * VALUE[i], 5e-4, "--spp=1");
+    }
+}
+
+/* I cos(theta) T(theta) / d^2, of a point and within the whole cone of a spot. */
+static void test_points(void **state)
+{
+    (void)state;
+    double d2 = 1.5 * 1.5 + 2.0 * 2.0, c = 2.0 / sqrt(d2), e = 7.0 * c / d2 * thin_glass(c, 1.5);
+    expect_gray_floor("a point",
+                      "LightSource \"point\" \"rgb I\" [7 7 7] \"point3 from\" [1.5 2 0]\n" THIN SQUARE("50", "1"), e,
+                      2e-3, "--spp=1");
+    expect_gray_floor("a spot",
+                      "LightSource \"spot\" \"rgb I\" [7 7 7] \"point3 from\" [1.5 2 0] \"point3 to\" [0 0 0] "
+                      "\"float coneangle\" 30 \"float conedeltaangle\" 5\n" THIN SQUARE("50", "1"),
+                      e, 2e-3, "--spp=1");
+}
+
+/* 2 pi L integral of T(c) c dc. */
+static double sky_through_glass(void)
+{
+    enum { STEPS = 4000 };
+    double sum = 0.0;
+    for (int i = 0; i < STEPS; i++) {
+        double c = (i + 0.5) / STEPS;
+        sum += thin_glass(c, 1.5) * c / STEPS;
+    }
+    return 2.0 * PI * sum;
+}
+
+/* Radiance 1 of a square of side 4 at a height of 2, about the origin: the integral of T c c' / d^2. */
+static double lamp_through_glass(bool has_glass)
+{
+    enum { STEPS = 500 };
+    double sum = 0.0, step = 4.0 / STEPS;
+    for (int i = 0; i < STEPS; i++)
+        for (int k = 0; k < STEPS; k++) {
+            double x = -2.0 + (i + 0.5) * step, z = -2.0 + (k + 0.5) * step, d2 = x * x + z * z + 4.0;
+            double c = 2.0 / sqrt(d2);
+            sum += c * c / d2 * (has_glass ? thin_glass(c, 1.5) : 1.0) * step * step;
+        }
+    return sum;
+}
+
+/* Found by sampling the lamp and by scattered rays, weighted against each other: the right mean, and the one of rays
+ * that know no panes. */
+static void test_sky_and_large_lamps(void **state)
+{
+    (void)state;
+    expect_gray_floor("a sky", "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" THIN SQUARE("50", "1"),
+                      sky_through_glass(), 0.004, "--spp=2048");
+    expect_gray_floor("a large lamp", LAMP("1", "2", "2") THIN SQUARE("50", "1"), lamp_through_glass(true), 0.004,
+                      "--spp=2048");
+    const char *scene = scene_of(DIFFUSE_FLOOR, LAMP("1", "2", "2") THIN SQUARE("50", "1"));
+    picture p = RENDER(scene, "--max-depth=2", "--size=8x8", PATH, TRACED, "--spp=2048");
+    expect_near("a large lamp, traced", picture_mean(&p, 1), REFLECTANCE / PI * lamp_through_glass(true), 0.01);
+    picture_reset(&p);
+    /* rough metal, which is traced on: its scattered rays find the lamp too */
+    scene = scene_of(ROUGH_FLOOR, LAMP("1", "2", "2") THIN SQUARE("50", "1"));
+    picture truth = RENDER(scene, "--max-depth=2", "--size=8x8", PATH, TRACED, "--spp=4096");
+    for (int i = 0; i < 2; i++) {
+        p = RENDER(scene, "--max-depth=1", "--size=8x8", INTEGRATORS[i], "--spp=4096");
+        expect_near("a large lamp on rough metal", picture_mean(&p, 1), picture_mean(&truth, 1), 0.01);
+        picture_reset(&p);
+    }
+    picture_reset(&truth);
+}
+
+/* A pane that shines is no pane: what comes through it is found by scattered rays alone, once. */
+static void test_shining_pane(void **state)
+{
+    (void)state;
+    const char *scene = scene_of(
+        DIFFUSE_FLOOR, LAMP("2", "2", "2") "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" "
+                                           "[1 1 1] \"bool twosided\" true\n" THIN SQUARE("50", "1") "AttributeEnd\n");
+    double expected = REFLECTANCE / PI * (PI + 2.0 * lamp_through_glass(true));
+    static const char *const MODES[] = {DIRECT, TRACED};
+    for (int i = 0; i < 2; i++) {
+        picture p = RENDER(scene, "--max-depth=2", "--size=8x8", PATH, MODES[i], "--spp=4096");
+        expect_near("a shining pane", picture_mean(&p, 1), expected, 0.01);
+        picture_reset(&p);
+    }
+}
+
+/* --- layers --- */
+
+typedef struct layers {
+    double caustic, direct, emission, indirect, specular; /* means, green */
+} layers;
+
+static layers layers_of(const char *scene, const char *const *arguments)
+{
+    const char *all[PROGRAM_ARGUMENTS_MAX] = {0};
+    int count = 0;
+    for (; arguments[count]; count++)
+        all[count] = arguments[count];
+    const char *const ours[] = {"-q", "--aov=light", "--type=float", "-o", "layers.exr", scene, NULL};
+    memcpy(all + count, ours, sizeof ours);
+    program_run run = program_execute(NULL, all);
+    expect_exit(&run, 0);
+    program_run_reset(&run);
+    image read;
+    if (image_read(in_folder("layers.exr"), &read, message, sizeof message) != AG_OK)
+        fail_msg("%s", message);
+    assert_int_equal(read.channel_count, 18);
+    double sums[5] = {0};
+    int pixels = read.width * read.height;
+    for (int i = 0; i < pixels; i++)
+        for (int k = 0; k < 5; k++)
+            sums[k] += (double)read.pixels[18 * i + 3 + 3 * k + 1] / pixels;
+    free(read.pixels);
+    return (layers){sums[0], sums[1], sums[2], sums[3], sums[4]};
+}
+
+#define LAYERS(scene, ...) layers_of(scene, ARGUMENTS(__VA_ARGS__))
+
+/* Two panes, each of which reflects r and lets t through: t^2 comes straight, t^2 (r^2 + r^4 + ...) after reflections
+ * between them, which is a caustic. The eye is between panes and floor. */
+static void test_between_panes(void **state)
+{
+    (void)state;
+    const char *scene = write_text(
+        "between.pbrt", "LookAt 0 0.9 0 0 0 0 0 0 1 Camera \"perspective\" \"float fov\" 80\nWorldBegin\n" SUN
+                        "Material \"thindielectric\" \"float eta\" 3\n" SQUARE("2", "1") SQUARE("2", "1.01")
+                            DIFFUSE_FLOOR SQUARE("2", "0"));
+    double t = thin_glass(1.0, 3.0), r2 = (1.0 - t) * (1.0 - t), radiance = 3.0 * REFLECTANCE / PI;
+    layers map = LAYERS(scene, "--size=24x24", "--spp=4", "--photons=1e4", "--caustic-photons=1e5");
+    expect_near("straight", map.direct, radiance * t * t, 2e-4);
+    expect_near("to and fro", map.caustic, radiance * t * t * r2 / (1.0 - r2), 0.04);
+    assert_true(map.specular == 0.0 && map.emission == 0.0);
+    layers path = LAYERS(scene, "--size=24x24", "--spp=4", PATH);
+    expect_near("straight, paths", path.direct, radiance * t * t, 2e-4);
+    /* traced, all of it is a caustic, and the path tracer finds none of a sun */
+    map = LAYERS(scene, "--size=24x24", "--spp=4", "--photons=1e4", "--caustic-photons=1e5", TRACED);
+    assert_true(map.direct == 0.0);
+    expect_near("traced", map.caustic, radiance * t * t / (1.0 - r2), 0.04);
+    path = LAYERS(scene, "--size=24x24", "--spp=4", PATH, TRACED);
+    assert_true(path.direct + path.caustic + path.indirect == 0.0);
+}
+
+#define UNDER_A_PANE(y)                                                                                                \
+    "LookAt 0 0.04 0 0 0 0 0 0 1 Camera \"perspective\" \"float fov\" 80\nWorldBegin\n" SUN THIN SQUARE("4", y)        \
+    DIFFUSE_FLOOR SQUARE("4", "0")
+
+/* One pane: no caustic at all. What floor and pane throw to and fro is indirect; the pane's reflectance of diffuse
+ * light is b / rho, so that the floor gets b + b^2 + ... of the direct light. The photon map has it of the sun's
+ * photons that came through the pane. */
+static void test_global_map_keeps_it(void **state)
+{
+    (void)state;
+    double t = thin_glass(1.0, 1.5), b = REFLECTANCE * (1.0 - sky_through_glass() / PI);
+    double radiance = 3.0 * t * REFLECTANCE / PI;
+    layers path = LAYERS(write_text("low.pbrt", UNDER_A_PANE("0.05")), "--size=16x16", "--spp=512", PATH);
+    expect_near("to and fro, paths", path.indirect, radiance * b / (1.0 - b), 0.02);
+    assert_true(path.caustic == 0.0 && path.specular == 0.0 && path.emission == 0.0);
+    const char *high = write_text("high.pbrt", UNDER_A_PANE("0.5"));
+    layers map = LAYERS(high, "--size=16x16", "--spp=32", "--gather-samples=32", "--photons=1e5", "--nearest=30");
+    expect_near("straight", map.direct, radiance, 2e-4);
+    assert_true(map.caustic == 0.0 && map.specular == 0.0 && map.emission == 0.0);
+    path = LAYERS(high, "--size=16x16", "--spp=512", PATH);
+    expect_near("to and fro", map.indirect, path.indirect, 0.04);
+}
+
+/* A lamp seen through a pane is emission, of L T; traced it comes by the pane's other lobes. */
+static void test_lamp_seen(void **state)
+{
+    (void)state;
+    const char *scene = write_text("seen.pbrt", "LookAt 0 0 0 0 1 0 0 0 1 Camera \"perspective\" \"float fov\" 1\n"
+                                                "WorldBegin\n" LAMP("2", "2", "2") THIN SQUARE("3", "1"));
+    double sigma = sqrt(0.077 * 0.923 / (64 * 512)), expected = 2.0 * thin_glass(1.0, 1.5);
+    for (int i = 0; i < 2; i++) {
+        layers direct = LAYERS(scene, "--size=8x8", "--spp=512", INTEGRATORS[i], "--photons=1e4");
+        layers traced = LAYERS(scene, "--size=8x8", "--spp=512", INTEGRATORS[i], "--photons=1e4", TRACED);
+        expect_near("seen", direct.emission, expected, 4.0 * sigma / 0.923);
+        expect_near("seen, traced", traced.specular, expected, 4.0 * sigma / 0.923);
+        assert_true(direct.specular == 0.0 && traced.emission == 0.0);
+    }
+}
+
+/* A sun behind glass that path tracing cannot find is told of. */
+static void test_warning(void **state)
+{
+    (void)state;
+    static const char *const WARNING = "suns, points and spots";
+    const struct {
+        const char *glass, *integrator, *mode;
+        bool is_told;
+    } CASES[] = {{THIN, PATH, DIRECT, false},
+                 {THIN, PATH, TRACED, true},
+                 {THIN, MAP, TRACED, false},
+                 {"Material \"dielectric\"\n", PATH, DIRECT, true},
+                 {"Material \"dielectric\" \"float roughness\" 0.5\n", PATH, DIRECT, false},
+                 {"Material \"diffuse\"\n", PATH, TRACED, false}};
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char above[1024];
+        snprintf(above, sizeof above, SUN "%s" SQUARE("50", "1"), CASES[i].glass);
+        program_run run = RUN("--size=4x4", "--spp=1", "--photons=100", "--caustic-photons=100", CASES[i].integrator,
+                              CASES[i].mode, "-o", "w.exr", scene_of(DIFFUSE_FLOOR, above));
+        expect_exit(&run, 0);
+        assert_int_equal(strstr(run.err, WARNING) != NULL, CASES[i].is_told);
+        program_run_reset(&run);
+    }
+}
+
+/* --- a room --- */
+
+typedef struct estimate {
+    double mean, sigma; /* of the mean */
+} estimate;
+
+static estimate over_seeds(const char *scene, const char *const *arguments)
+{
+    enum { SEEDS = 6 };
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < SEEDS; i++) {
+        char seed[32];
+        const char *all[PROGRAM_ARGUMENTS_MAX] = {seed, "--size=20x20"};
+        int count = 2;
+        snprintf(seed, sizeof seed, "--seed=%d", i);
+        for (int k = 0; arguments[k]; k++)
+            all[count++] = arguments[k];
+        picture p = render(scene, all);
+        double value = picture_mean(&p, 1);
+        sum += value, squares += value * value;
+        picture_reset(&p);
+    }
+    double mean = sum / SEEDS;
+    return (estimate){mean, sqrt((squares / SEEDS - mean * mean) / (SEEDS - 1))};
+}
+
+#define OVER_SEEDS(scene, ...) over_seeds(scene, ARGUMENTS(__VA_ARGS__))
+#define PATHS                  PATH, "--spp=512"
+#define PHOTONS                "--spp=24", "--gather-samples=8", "--photons=2e5", "--caustic-photons=1e5", "--nearest=16"
+
+/* Six seeds' own spread: Student's t of 10 degrees of freedom beyond 4.6 is one in a thousand. */
+static void expect_same_light(const char *what, estimate a, estimate b)
+{
+    double sigma = sqrt(a.sigma * a.sigma + b.sigma * b.sigma), z = (a.mean - b.mean) / sigma;
+    print_message("%s: %.6f +- %.6f and %.6f +- %.6f, z %+.2f\n", what, a.mean, a.sigma, b.mean, b.sigma, z);
+    assert_true(sigma < 0.02 * b.mean);
+    assert_true(fabs(z) < 4.6);
+}
+
+/* Double panes, a showcase, a mirror ball, glass; lit by sky and a lamp outside. */
+static void test_room(void **state)
+{
+    (void)state;
+    estimate truth = OVER_SEEDS(ROOM, PATHS, TRACED);
+    expect_same_light("paths", OVER_SEEDS(ROOM, PATHS), truth);
+    expect_same_light("photon map", OVER_SEEDS(ROOM, PHOTONS), truth);
+    char sunny[256];
+    snprintf(sunny, sizeof sunny, "%s",
+             SCENE_WITH("panes.pbrt", "# sun",
+                        "LightSource \"distant\" \"rgb L\" [9 9 9] \"point3 from\" "
+                        "[-3 3 -1] \"point3 to\" [0 0 0]"));
+    expect_same_light("sun, indirect", OVER_SEEDS(sunny, PHOTONS, "--only=indirect"),
+                      OVER_SEEDS(sunny, PATHS, "--only=indirect"));
+    layers map = LAYERS(sunny, "--size=20x20", "--spp=64", "--gather-samples=1"),
+           path = LAYERS(sunny, "--size=20x20", "--spp=256", PATH);
+    expect_near("direct light", map.direct, path.direct, 0.02);
+    expect_near("seen", map.emission, path.emission, 0.06);
+}
+
+static void test_same_bits(void **state)
+{
+    (void)state;
+    static const char *const WAYS[][2] = {{"--nthreads=1", "--cache=on-demand"},
+                                          {"--nthreads=2", "--cache=on-demand"},
+                                          {"--nthreads=1", "--cache=precompute"},
+                                          {"--nthreads=3", "--cache=precompute"}};
+    picture first = {0};
+    for (int i = 0; i < 4; i++) {
+        picture p = RENDER(ROOM, "--size=20x20", "--spp=4", "--gather-samples=8", "--photons=2e4",
+                           "--caustic-photons=5e3", WAYS[i][0], WAYS[i][1]);
+        if (i == 0) {
+            first = p;
+            continue;
+        }
+        assert_memory_equal(p.pixels, first.pixels, (size_t)(3 * p.width * p.height) * sizeof *p.pixels);
+        picture_reset(&p);
+    }
+    picture_reset(&first);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_sun),
+        TEST_IN_FOLDER(test_other_panes),
+        TEST_IN_FOLDER(test_points),
+        TEST_IN_FOLDER(test_sky_and_large_lamps),
+        TEST_IN_FOLDER(test_shining_pane),
+        TEST_IN_FOLDER(test_between_panes),
+        TEST_IN_FOLDER(test_global_map_keeps_it),
+        TEST_IN_FOLDER(test_lamp_seen),
+        TEST_IN_FOLDER(test_warning),
+        TEST_IN_FOLDER(test_room),
+        TEST_IN_FOLDER(test_same_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
