@@ -30,22 +30,18 @@ static film_area block_area(const struct ag_film *film, int column, int row)
     return (film_area){all->x0 + x, all->y0 + y, width, height};
 }
 
-/* The variance of what is shown, mean over the block. By each pixel's own brightness, for dark places beside bright
- * ones; and by the block's, for the one pixel that a rare bright sample has made bright. */
+/* The variance of what is shown, mean over the block. A rare bright sample keeps a block going: of a pixel that has met
+ * one alone, the variance is the square of the mean that it makes. */
 static double block_variance(const decision *d, film_area block)
 {
-    double shown = 0.0, mean = 0.0, variance = 0.0, count = (double)block.width * (double)block.height;
+    double shown = 0.0;
     for (int y = block.y0; y < block.y0 + block.height; y++)
         for (int x = block.x0; x < block.x0 + block.width; x++) {
-            double pixel_mean, pixel_variance;
-            film_read_noise(d->film, film_pixel_at(d->film, x, y), &pixel_mean, &pixel_variance);
-            pixel_mean *= d->scale;
-            pixel_variance *= d->scale * d->scale;
-            shown += noise_shown_variance(pixel_mean, pixel_variance) / count;
-            mean += pixel_mean / count;
-            variance += pixel_variance / count;
+            double mean, variance;
+            film_read_noise(d->film, film_pixel_at(d->film, x, y), &mean, &variance);
+            shown += noise_shown_variance(d->scale * mean, d->scale * d->scale * variance);
         }
-    return fmax(shown, noise_shown_variance(mean, variance));
+    return shown / ((double)block.width * (double)block.height);
 }
 
 static void decide_rows(void *user, uint64_t begin, uint64_t end, uint64_t block_of_rows, unsigned worker)

@@ -2,7 +2,6 @@
  * brings most of it, and what would help most. A scene for each hint, in which that part is noisy by its making.
  *
  * Flow: tests of the whole program. Threads: the program's. */
-/* ctest: sanitize */
 #define _GNU_SOURCE
 #include "fixtures/program_picture.h"
 
