@@ -5,6 +5,8 @@
 
 #include "light/light_pick.h"
 #include "material/bsdf.h"
+#include "material/coat.h"
+#include "material/coat_table.h"
 #include "material/pane.h"
 #include "scene_extent.h"
 #include "shape/curves.h"
@@ -53,6 +55,9 @@ void scene_destroy(scene *s)
     free(s->instance_steps);
     free(s->object_shapes);
     free(s->materials);
+    for (uint32_t i = 0; i < s->coat_table_count; i++)
+        coat_table_destroy(s->coat_tables[i]);
+    free(s->coat_tables);
     free(s->media);
     free(s->textures);
     free(s->texture_images);
@@ -108,14 +113,38 @@ const char *scene_intern_file_name(scene *s, const char *name)
     return s->file_names[s->file_name_count++] = copy;
 }
 
+/* Materials of one coat share a table. */
+static ag_status find_coat_table(scene *s, const material *m, const coat_table **out_table)
+{
+    for (uint32_t i = 0; i < s->coat_table_count; i++)
+        if (coat_table_serves(s->coat_tables[i], m)) {
+            *out_table = s->coat_tables[i];
+            return AG_OK;
+        }
+    if (!grow((void **)&s->coat_tables, s->coat_table_count, sizeof *s->coat_tables))
+        return AG_ERROR_MEMORY;
+    coat_table *table = coat_table_create(m);
+    if (!table)
+        return AG_ERROR_MEMORY;
+    s->coat_tables[s->coat_table_count++] = table;
+    *out_table = table;
+    return AG_OK;
+}
+
 ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index)
 {
     if (!grow((void **)&s->materials, s->material_count, sizeof *s->materials))
         return AG_ERROR_MEMORY;
-    *out_index = s->material_count;
-    material *m = &s->materials[s->material_count++];
+    material *m = &s->materials[s->material_count];
     *m = *item;
     material_prepare(m);
+    m->coat = NULL;
+    if (coat_needs_table(m)) {
+        ag_status status = find_coat_table(s, m, &m->coat);
+        if (status != AG_OK)
+            return status;
+    }
+    *out_index = s->material_count++;
     return AG_OK;
 }
 

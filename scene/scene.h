@@ -38,6 +38,8 @@ typedef struct scene {
     const definitions *definitions;          /* of names in its text; borrowed for as long; NULL: none */
     material *materials;
     uint32_t material_count;
+    struct coat_table **coat_tables; /* of the materials that need one (material/coat.h) */
+    uint32_t coat_table_count;
     texture *textures;
     uint32_t texture_count;
     texture_image **texture_images; /* those that textures refer to, each file and encoding once */

@@ -69,9 +69,9 @@ static void add_material(hash128 *h, const material *m)
     ADD(m->base_alpha_u);
     ADD(m->base_alpha_v);
     ADD(m->coat_thickness);
+    ADD(m->coat_albedo);
+    ADD(m->coat_g);
     ADD(m->coat_bounces);
-    ADD(m->coat_return);
-    ADD(m->coat_trap);
     ADD(m->mixed);
     ADD(m->mix_amount);
     ADD(m->metallic);

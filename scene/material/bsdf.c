@@ -81,7 +81,9 @@ static void add_lobes(bsdf *b)
     float coat = m->kind == MATERIAL_COATED_DIFFUSE || m->kind == MATERIAL_COATED_CONDUCTOR
                      ? fresnel_dielectric(fabsf(vec3_dot(b->out, b->shading.z)), m->ior)
                      : 0.0f;
-    float trapped;
+    rgb scattered = m->kind == MATERIAL_COATED_DIFFUSE || m->kind == MATERIAL_COATED_CONDUCTOR
+                        ? coat_scattered_albedo(m, vec3_dot(b->out, b->shading.z))
+                        : rgb_gray(0.0f);
     switch (m->kind) {
     case MATERIAL_INTERFACE: break; /* none: rays do not stop here */
     case MATERIAL_MIX:              /* resolved before */
@@ -100,15 +102,17 @@ static void add_lobes(bsdf *b)
         add_lobe(b, LOBE_DIFFUSE, BSDF_GATHERED, false, (1.0f - coat) * rgb_max(m->reflectance));
         if (m->ior != 1.0f)
             add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
+        if (!rgb_is_black(scattered))
+            add_lobe(b, LOBE_COAT_SCATTERED, BSDF_TRACED, false, rgb_max(scattered));
         break;
     case MATERIAL_COATED_CONDUCTOR:
-        trapped = coat_has_trapped(m) ? rgb_max(coat_trapped_albedo(m, vec3_dot(b->out, b->shading.z))) : 0.0f;
-        add_lobe(b, LOBE_CONDUCTOR_UNDER_COAT, BSDF_TRACED, material_is_smooth(m->base_alpha_u, m->base_alpha_v),
-                 1.0f - coat - trapped);
+        add_lobe(b, LOBE_CONDUCTOR_UNDER_COAT, BSDF_TRACED,
+                 coat_is_smooth(m) && material_is_smooth(m->base_alpha_u, m->base_alpha_v),
+                 rgb_max(coat_metal_lobe_albedo(m, vec3_dot(b->out, b->shading.z))));
         if (m->ior != 1.0f)
             add_lobe(b, LOBE_COAT, BSDF_TRACED, smooth, coat);
-        if (trapped > 0.0f)
-            add_lobe(b, LOBE_COAT_TRAPPED, BSDF_TRACED, false, trapped);
+        if (!rgb_is_black(scattered))
+            add_lobe(b, LOBE_COAT_SCATTERED, BSDF_TRACED, false, rgb_max(scattered));
         break;
     case MATERIAL_PRINCIPLED: add_principled(b); break;
     }
@@ -176,7 +180,7 @@ bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
         case LOBE_CONDUCTOR:
         case LOBE_COAT:
         case LOBE_CLEARCOAT:
-        case LOBE_COAT_TRAPPED:
+        case LOBE_COAT_SCATTERED:
         case LOBE_CONDUCTOR_UNDER_COAT: break;
         case LOBE_PRINCIPLED:
             if (principled_transmits(&b->matter))

@@ -36,7 +36,7 @@ typedef enum bsdf_lobe_kind {
     LOBE_THIN_DIELECTRIC,      /* a pane: reflection, and straight through */
     LOBE_COAT,                 /* reflection by a dielectric coat */
     LOBE_CONDUCTOR_UNDER_COAT, /* refracted in, reflected by the conductor, refracted out */
-    LOBE_COAT_TRAPPED,         /* what a rough conductor got out of the coat at last (coat.h) */
+    LOBE_COAT_SCATTERED,       /* what leaves a coat at any angle (coat.h) */
     LOBE_PRINCIPLED,           /* metal's and dielectric's reflection, and transmission, straight or refracted */
     LOBE_CLEARCOAT             /* reflection by the coat of the principled one */
 } bsdf_lobe_kind;

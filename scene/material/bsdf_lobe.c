@@ -13,9 +13,7 @@ float bsdf_lobe_transmittance(const material *m, float cos_theta)
 {
     if (m->kind == MATERIAL_PRINCIPLED)
         return principled_base_transmittance(m, cos_theta);
-    if (m->kind != MATERIAL_COATED_DIFFUSE && m->kind != MATERIAL_COATED_CONDUCTOR)
-        return 1.0f;
-    return coat_transmittance(m, cos_theta);
+    return m->kind == MATERIAL_COATED_DIFFUSE ? coat_entry(m, cos_theta) : 1.0f;
 }
 
 rgb bsdf_lobe_diffuse_albedo(const material *m)
@@ -88,23 +86,6 @@ static void rough_dielectric(const material *m, bsdf_transport transport, vec3 o
     *out_pdf *= share;
 }
 
-/* Under a smooth coat: the conductor's value between the refracted directions; the squared index is the change of solid
- * angles. */
-static void conductor_under_coat(const material *m, vec3 o, vec3 i, rgb *out_value, float *out_pdf)
-{
-    vec3 oc = coat_refract(m, o), ic = coat_refract(m, i);
-    if (oc.z == 0.0f || ic.z == 0.0f)
-        return; /* beyond total reflection, as above */
-    vec3 h = ggx_half_vector(oc, ic);
-    ggx facets = {m->base_alpha_u, m->base_alpha_v};
-    rgb metal = fresnel_conductor(fabsf(vec3_dot(oc, h)), m->eta, m->k);
-    rgb series = coat_series(m, metal, o.z, i.z);
-    /* f |cos i|: reflection's value has |cos ic| in it */
-    float cosines = fabsf(i.z / ic.z) / (m->ior * m->ior);
-    *out_value = rgb_scale(series, ggx_reflection(facets, oc, ic, h) * cosines);
-    *out_pdf = ggx_reflection_pdf(facets, oc, h) * cosines;
-}
-
 /* Value (f |cos|) and density of one lobe that is not smooth. */
 void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
                         rgb *out_value, float *out_pdf)
@@ -127,10 +108,10 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
         *out_value = rgb_gray(value);
         return;
     }
-    case LOBE_COAT_TRAPPED:
+    case LOBE_COAT_SCATTERED:
         *out_pdf = diffuse_cosine(b, lobe->kind, direction, i) * AG_INV_PI;
         if (*out_pdf > 0.0f)
-            *out_value = rgb_scale(coat_trapped(m, o.z, i.z), *out_pdf);
+            *out_value = rgb_scale(coat_scattered(m, o, i), *out_pdf);
         return;
     case LOBE_CONDUCTOR:
     case LOBE_COAT: {
@@ -140,14 +121,14 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
         vec3 h = ggx_half_vector(o, i);
         float cosine = fabsf(vec3_dot(o, h));
         rgb reflected = lobe->kind == LOBE_CONDUCTOR ? fresnel_conductor(cosine, m->eta, m->k)
-                                                     : rgb_gray(coat_reflectance(m, cosine, o.z, i.z));
+                                                     : rgb_gray(fresnel_dielectric(cosine, m->ior));
         *out_value = rgb_scale(reflected, ggx_reflection(facets, o, i, h));
         *out_pdf = ggx_reflection_pdf(facets, o, h);
         return;
     }
     case LOBE_CONDUCTOR_UNDER_COAT:
-        if (bsdf_is_same_side(b, direction) && o.z * i.z > 0.0f)
-            conductor_under_coat(m, o, i, out_value, out_pdf);
+        if (bsdf_is_same_side(b, direction))
+            coat_metal_lobe(m, o, i, out_value, out_pdf);
         return;
     case LOBE_PRINCIPLED:
     case LOBE_CLEARCOAT:
@@ -175,7 +156,7 @@ bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport 
     case LOBE_COAT: *out_weight = rgb_gray(fresnel_dielectric(cosine, m->ior)); return true;
     case LOBE_CONDUCTOR_UNDER_COAT: {
         rgb metal = fresnel_conductor(fabsf(coat_refract(m, o).z), m->eta, m->k);
-        *out_weight = coat_series(m, metal, o.z, o.z);
+        *out_weight = coat_series(m, metal, o.z);
         return true;
     }
     case LOBE_THIN_DIELECTRIC:
@@ -197,7 +178,7 @@ bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport 
 bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
     const material *m = &b->matter;
-    if (kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH || kind == LOBE_COAT_TRAPPED) {
+    if (kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH || kind == LOBE_COAT_SCATTERED) {
         *out_local = sample_cosine_hemisphere(u);
         if ((vec3_dot(b->out, b->geometric_normal) < 0.0f) != (kind == LOBE_DIFFUSE_THROUGH))
             out_local->z = -out_local->z;
@@ -205,15 +186,13 @@ bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_
     }
     if (kind == LOBE_PRINCIPLED || kind == LOBE_CLEARCOAT)
         return bsdf_principled_sample_rough(m, kind, o, u_lobe, u, out_local);
+    if (o.z == 0.0f)
+        return false; /* facets have no density there */
     float side = o.z >= 0.0f ? 1.0f : -1.0f;
     vec3 upper = vec3_scale(o, side), i;
     if (kind == LOBE_CONDUCTOR_UNDER_COAT) {
-        vec3 oc = coat_refract(m, upper);
-        vec3 ic = reflect_about(oc, ggx_sample_visible((ggx){m->base_alpha_u, m->base_alpha_v}, oc, u));
-        float sin2 = (1.0f - ic.z * ic.z) * m->ior * m->ior;
-        if (ic.z <= 0.0f || sin2 >= 1.0f)
-            return false; /* kept in by the coat */
-        i = (vec3){ic.x * m->ior, ic.y * m->ior, sqrtf(1.0f - sin2)};
+        if (!coat_sample_metal_lobe(m, upper, u, &i))
+            return false;
         *out_local = vec3_scale(i, side);
         return true;
     }

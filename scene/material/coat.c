@@ -1,13 +1,28 @@
 /* coat.c: see coat.h. */
 #include "material/coat.h"
 
+#include "material/coat_lobe.h"
+#include "material/coat_table.h"
 #include "material/fresnel.h"
-#include "material/microfacet.h"
 #include "texture/texture.h"
 
-/* The cosine at which the trapped lobe takes the conductor's reflectance: about its mean over the hemisphere. */
+/* The cosine at which light that has lost its direction meets the metal: about its mean over the hemisphere. */
 static const float MEAN_COSINE = 0.6f;
-static const float GOLDEN_SECTION = 0.61803399f; /* its multiples lie evenly in [0, 1) */
+
+static bool scatters(const material *m) { return !rgb_is_black(m->coat_albedo); }
+
+bool coat_is_smooth(const material *m) { return material_is_smooth(m->alpha_u, m->alpha_v) || m->ior == 1.0f; }
+
+bool coat_needs_table(const material *m)
+{
+    if (m->kind == MATERIAL_COATED_DIFFUSE)
+        return true;
+    if (m->kind != MATERIAL_COATED_CONDUCTOR)
+        return false;
+    bool varies = m->alpha_u_texture != SCENE_NO_TEXTURE || m->alpha_v_texture != SCENE_NO_TEXTURE ||
+                  m->base_alpha_u_texture != SCENE_NO_TEXTURE || m->base_alpha_v_texture != SCENE_NO_TEXTURE;
+    return varies || scatters(m) || !coat_is_smooth(m) || !material_is_smooth(m->base_alpha_u, m->base_alpha_v);
+}
 
 vec3 coat_refract(const material *m, vec3 v)
 {
@@ -15,7 +30,7 @@ vec3 coat_refract(const material *m, vec3 v)
     return (vec3){v.x / m->ior, v.y / m->ior, copysignf(sqrtf(fmaxf(0.0f, 1.0f - sin2)), v.z)};
 }
 
-float coat_transmittance(const material *m, float cos_theta)
+float coat_crossing(const material *m, float cos_theta)
 {
     float through = 1.0f - fresnel_dielectric(fabsf(cos_theta), m->ior);
     if (m->coat_thickness > 0.0f && through > 0.0f)
@@ -23,173 +38,179 @@ float coat_transmittance(const material *m, float cos_theta)
     return through;
 }
 
-/* r + r (r back) + r (r back)^2 + …: light that goes to and fro between base and coat. */
-static float diffuse_sum(const material *m, float r)
+static rgb sum_of_series(rgb first, rgb again)
 {
-    float again = r * m->coat_return, lost = 1.0f;
-    for (int i = 0; i < m->coat_bounces; i++)
-        lost *= again;
-    return r * (m->coat_bounces > 0 ? 1.0f - lost : 1.0f) / (1.0f - again);
+    return (rgb){first.r / (1.0f - again.r), first.g / (1.0f - again.g), first.b / (1.0f - again.b)};
+}
+
+/* --- a diffuse base --- */
+
+float coat_entry(const material *m, float cos_theta)
+{
+    if (coat_is_smooth(m) && !scatters(m))
+        return coat_crossing(m, cos_theta);
+    coat_blend blend = coat_table_find(m->coat, m);
+    return coat_blend_at(&blend, COAT_ENTRY, fabsf(cos_theta));
 }
 
 /* What gets out of a coat is spread over a wider solid angle: the squared index. */
 rgb coat_diffuse_albedo(const material *m)
 {
-    rgb r = m->reflectance;
-    return rgb_scale((rgb){diffuse_sum(m, r.r), diffuse_sum(m, r.g), diffuse_sum(m, r.b)}, 1.0f / (m->ior * m->ior));
-}
-
-/* A geometric series. Of the coat's two reflectances the lesser keeps light in, so that both ways are the same and no
- * more leaves than got in. */
-rgb coat_series(const material *m, rgb metal, float cos_o, float cos_i)
-{
-    float through = coat_transmittance(m, cos_o) * coat_transmittance(m, cos_i);
-    if (!(through > 0.0f))
-        return rgb_gray(0.0f); /* total reflection, by a coat of a lesser index than what is around */
-    float back = fminf(fresnel_dielectric(fabsf(cos_o), m->ior), fresnel_dielectric(fabsf(cos_i), m->ior));
-    return (rgb){through * metal.r / (1.0f - metal.r * back), through * metal.g / (1.0f - metal.g * back),
-                 through * metal.b / (1.0f - metal.b * back)};
-}
-
-float coat_reflectance(const material *m, float cos_facet, float cos_o, float cos_i)
-{
-    float facet = fresnel_dielectric(cos_facet, m->ior);
-    if (m->ior >= 1.0f)
-        return facet;
-    /* facets of a lesser index reflect totally where the surface as a whole, by which the base is reckoned, does not */
-    return fminf(facet, fminf(fresnel_dielectric(fabsf(cos_o), m->ior), fresnel_dielectric(fabsf(cos_i), m->ior)));
-}
-
-/* --- the trapped lobe --- */
-
-/* Inside, light is told by its cosine to the normal: STEPS of them. */
-enum { STEPS = 12, FACETS = 512 };
-
-/* Where light goes that meets a white conductor at a cosine inside: out, back to it at each cosine by a coat that
- * reflects in part, and by one that reflects totally. What is missing is masked, or absorbed by the coat. */
-typedef struct conductor_ways {
-    double out, back[STEPS], total[STEPS];
-} conductor_ways;
-
-static conductor_ways ways_from(const material *m, float cosine)
-{
-    conductor_ways w = {0};
-    const vec3 o = {sqrtf(fmaxf(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine};
-    const float alpha = sqrtf(m->base_alpha_u * m->base_alpha_v);
-    const ggx facets = {alpha, alpha};
-    for (int k = 0; k < FACETS; k++) {
-        vec2 u = {((float)k + 0.5f) / FACETS, (float)k * GOLDEN_SECTION - floorf((float)k * GOLDEN_SECTION)};
-        vec3 i = reflect_about(o, ggx_sample_visible(facets, o, u));
-        if (i.z <= 1e-3f)
-            continue;
-        double kept = (double)(ggx_masking_shadowing(facets, o, i) / ggx_masking(facets, o)) / FACETS;
-        float once = m->coat_thickness > 0.0f ? attenuation(m->coat_thickness / i.z) : 1.0f;
-        float reflected = fresnel_dielectric(i.z, 1.0f / m->ior);
-        int step = (int)fminf(i.z * (float)STEPS, (float)STEPS - 1.0f);
-        w.out += kept * (double)(once * (1.0f - reflected));
-        (reflected < 1.0f ? w.back : w.total)[step] += kept * (double)(once * once * reflected);
+    coat_blend blend = coat_table_find(m->coat, m);
+    rgb back = rgb_gray(0.0f), tint = rgb_gray(0.0f), r = m->reflectance;
+    for (int k = 0; k < blend.count; k++) {
+        back = rgb_add(back, rgb_scale(blend.cells[k]->back, blend.weights[k]));
+        tint = rgb_add(tint, rgb_scale(blend.cells[k]->entry_tint, blend.weights[k]));
     }
-    return w;
+    /* r + r (r back) + r (r back)^2 + ...: light that goes to and fro between base and coat */
+    rgb again = rgb_mul(r, back), lost = rgb_gray(m->coat_bounces > 0 ? 1.0f : 0.0f);
+    for (int i = 0; i < m->coat_bounces; i++)
+        lost = rgb_mul(lost, again);
+    rgb sum = sum_of_series(rgb_mul(r, rgb_sub(rgb_gray(1.0f), lost)), again);
+    return rgb_scale(rgb_mul(sum, tint), 1.0f / (m->ior * m->ior));
 }
 
-static double sum_of(const double v[STEPS])
+/* --- a metal --- */
+
+rgb coat_series(const material *m, rgb metal, float cos_theta)
 {
-    double sum = 0.0;
-    for (int k = 0; k < STEPS; k++)
-        sum += v[k];
+    float crossing = coat_crossing(m, cos_theta), back = fresnel_dielectric(fabsf(cos_theta), m->ior);
+    if (!(crossing > 0.0f))
+        return rgb_gray(0.0f); /* total reflection, by a coat of a lesser index than what is around */
+    if (m->coat_thickness > 0.0f)
+        back *= attenuation(2.0f * m->coat_thickness / fabsf(coat_refract(m, (vec3){0.0f, 0.0f, cos_theta}).z));
+    return sum_of_series(rgb_scale(metal, crossing * crossing), rgb_scale(metal, back));
+}
+
+/* Each order of reflection by its share. */
+static rgb by_orders(const rgb shares[COAT_ORDERS], rgb metal)
+{
+    rgb sum = rgb_gray(0.0f);
+    for (int n = COAT_ORDERS - 1; n >= 0; n--)
+        sum = rgb_add(rgb_mul(sum, metal), shares[n]);
     return sum;
 }
 
-/* g: of light at a cosine outside, what gets in and is caught by total reflection once a white conductor has had it. */
-static float caught(const material *m, float cos_theta)
+static rgb lobe_color(const coat_blend *blend, rgb metal)
 {
-    float place = fminf(fabsf(cos_theta), 1.0f) * (float)(COAT_TRAP_PLACES - 1);
-    int step = place < (float)(COAT_TRAP_PLACES - 2) ? (int)place : COAT_TRAP_PLACES - 2;
-    float u = place - (float)step;
-    const float *at = &m->coat_trap.caught[step];
-    return coat_transmittance(m, cos_theta) * ((1.0f - u) * at[0] + u * at[1]);
+    rgb shares[COAT_ORDERS];
+    for (int n = 0; n < COAT_ORDERS; n++) {
+        float share = 0.0f;
+        for (int k = 0; k < blend->count; k++)
+            share += blend->weights[k] * blend->cells[k]->lobe_share[n];
+        shares[n] = rgb_gray(share);
+    }
+    return by_orders(shares, metal);
 }
 
-static void prepare_trap(material *m)
+static ggx outer_facets(const material *m, const coat_blend *blend)
 {
-    conductor_ways inside[STEPS];
-    double first[STEPS] = {0.0}, escaped_first = 0.0, escaped = 0.0;
-    for (int k = 0; k < STEPS; k++)
-        inside[k] = ways_from(m, ((float)k + 0.5f) / STEPS);
-    for (int k = 0; k < STEPS; k++) {
-        float cosine = ((float)k + 0.5f) / STEPS;
-        conductor_ways w = ways_from(m, coat_refract(m, (vec3){0.0f, 0.0f, cosine}).z);
-        for (int j = 0; j < STEPS; j++)
-            first[j] += w.total[j] * (double)(cosine * coat_transmittance(m, cosine));
-    }
-    double all = sum_of(first);
-    if (!(all > 1e-3))
+    float breadth = 0.0f;
+    for (int k = 0; k < blend->count; k++)
+        breadth += blend->weights[k] * blend->cells[k]->breadth;
+    return coat_lobe_facets(m, breadth);
+}
+
+void coat_metal_lobe(const material *m, vec3 o, vec3 i, rgb *out_value, float *out_pdf)
+{
+    *out_value = rgb_gray(0.0f);
+    *out_pdf = 0.0f;
+    vec3 oc = coat_refract(m, o), ic = coat_refract(m, i);
+    if (o.z * i.z <= 0.0f)
         return;
-    /* follow 1 of what was caught until next to nothing of it is left */
-    for (int j = 0; j < STEPS; j++)
-        first[j] /= all;
-    for (int bounce = 0; bounce < 64; bounce++) {
-        double next[STEPS] = {0.0};
-        double out = 0.0;
-        for (int k = 0; k < STEPS; k++) {
-            out += first[k] * inside[k].out;
-            for (int j = 0; j < STEPS; j++)
-                next[j] += first[k] * (inside[k].back[j] + inside[k].total[j]);
-        }
-        escaped_first = bounce == 0 ? out : escaped_first;
-        escaped += out;
-        for (int j = 0; j < STEPS; j++)
-            first[j] = next[j];
+    coat_blend blend = coat_table_find(m->coat, m);
+    float scale = coat_blend_at(&blend, COAT_SCALE, fabsf(o.z)) * coat_blend_at(&blend, COAT_SCALE, fabsf(i.z));
+    float value;
+    if (coat_is_smooth(m)) {
+        if (oc.z == 0.0f || ic.z == 0.0f)
+            return; /* beyond total reflection, by a coat of a lesser index */
+        vec3 h = ggx_half_vector(oc, ic);
+        ggx facets = {m->base_alpha_u, m->base_alpha_v};
+        /* f |cos i|: reflection's value has |cos ic| in it; the squared index is the change of solid angles */
+        float cosines = fabsf(i.z / ic.z) / (m->ior * m->ior);
+        scale *= coat_crossing(m, o.z) * coat_crossing(m, i.z);
+        value = ggx_reflection(facets, oc, ic, h) * cosines;
+        *out_pdf = ggx_reflection_pdf(facets, oc, h) * cosines;
+    } else {
+        vec3 h = ggx_half_vector(o, i);
+        ggx facets = outer_facets(m, &blend);
+        value = ggx_reflection(facets, o, i, h);
+        *out_pdf = ggx_reflection_pdf(facets, o, h);
     }
-    if (!(escaped > 0.0))
-        return;
-    for (int k = 0; k < COAT_TRAP_PLACES; k++) {
-        float cosine = (float)k / (float)(COAT_TRAP_PLACES - 1);
-        conductor_ways w = ways_from(m, coat_refract(m, (vec3){0.0f, 0.0f, cosine}).z);
-        m->coat_trap.caught[k] = (float)sum_of(w.total);
-    }
-    double mean = 0.0;
-    for (int k = 0; k < 64; k++) {
-        float cosine = ((float)k + 0.5f) / 64.0f;
-        mean += 2.0 * (double)(cosine * caught(m, cosine)) / 64.0;
-    }
-    m->coat_trap.mean = (float)mean;
-    m->coat_trap.escape = (float)escaped_first;
-    m->coat_trap.retain = (float)(1.0 - escaped_first / escaped);
+    rgb metal = fresnel_conductor(fabsf(vec3_dot(oc, ggx_half_vector(oc, ic))), m->eta, m->k);
+    *out_value = rgb_scale(lobe_color(&blend, metal), scale * value);
 }
 
-void coat_prepare(material *m)
+bool coat_sample_metal_lobe(const material *m, vec3 o, vec2 u, vec3 *out_i)
 {
-    m->coat_trap = (coat_trap){{0.0f}, 0.0f, 0.0f, 0.0f};
-    if (m->kind == MATERIAL_COATED_DIFFUSE)
-        m->coat_return = fresnel_dielectric_diffuse(1.0f / m->ior, m->coat_thickness);
-    /* where the roughness varies it is not known here, and what is trapped stays lost */
-    bool varies = m->base_alpha_u_texture != SCENE_NO_TEXTURE || m->base_alpha_v_texture != SCENE_NO_TEXTURE;
-    if (m->kind == MATERIAL_COATED_CONDUCTOR && m->ior > 1.0f && m->coat_bounces != 1 && !varies &&
-        !material_is_smooth(m->base_alpha_u, m->base_alpha_v))
-        prepare_trap(m);
+
+    if (!coat_is_smooth(m)) {
+        coat_blend blend = coat_table_find(m->coat, m);
+        *out_i = reflect_about(o, ggx_sample_visible(outer_facets(m, &blend), o, u));
+        return out_i->z > 0.0f;
+    }
+    vec3 oc = coat_refract(m, o);
+    vec3 ic = reflect_about(oc, ggx_sample_visible((ggx){m->base_alpha_u, m->base_alpha_v}, oc, u));
+    float sin2 = (1.0f - ic.z * ic.z) * m->ior * m->ior;
+    if (ic.z <= 0.0f || sin2 >= 1.0f)
+        return false;
+    *out_i = (vec3){ic.x * m->ior, ic.y * m->ior, sqrtf(1.0f - sin2)};
+    return true;
 }
 
-bool coat_has_trapped(const material *m) { return m->coat_trap.mean > 0.0f; }
-
-/* The conductor takes its share twice, and at each bounce more. */
-static float trapped_sum(const material *m, float metal)
-{
-    float again = metal * m->coat_trap.retain, lost = again;
-    for (int i = 2; i < m->coat_bounces; i++)
-        lost *= again;
-    return metal * metal * m->coat_trap.escape * (m->coat_bounces > 0 ? 1.0f - lost : 1.0f) / (1.0f - again);
-}
-
-static rgb trapped_color(const material *m)
+rgb coat_metal_lobe_albedo(const material *m, float cos_o)
 {
     rgb metal = fresnel_conductor(MEAN_COSINE, m->eta, m->k);
-    return (rgb){trapped_sum(m, metal.r), trapped_sum(m, metal.g), trapped_sum(m, metal.b)};
+    if (!m->coat)
+        return coat_series(m, metal, cos_o);
+    coat_blend blend = coat_table_find(m->coat, m);
+    return rgb_scale(lobe_color(&blend, metal), coat_blend_at(&blend, COAT_ALBEDO, fabsf(cos_o)));
 }
 
-rgb coat_trapped(const material *m, float cos_o, float cos_i)
+/* --- the scattered lobe --- */
+
+rgb coat_scattered_albedo(const material *m, float cos_o)
 {
-    return rgb_scale(trapped_color(m), caught(m, cos_o) * caught(m, cos_i) / m->coat_trap.mean);
+    rgb sum = rgb_gray(0.0f);
+    if (!m->coat)
+        return sum;
+    coat_blend blend = coat_table_find(m->coat, m);
+    bool is_metal = m->kind == MATERIAL_COATED_CONDUCTOR;
+    rgb metal = is_metal ? fresnel_conductor(MEAN_COSINE, m->eta, m->k) : rgb_gray(0.0f);
+    for (int k = 0; k < blend.count; k++)
+        if (blend.cells[k]->scattered_mean > 0.0f) {
+            coat_blend one = {{blend.cells[k]}, {1.0f}, 1};
+            float share = blend.weights[k] * coat_blend_at(&one, COAT_SCATTERED, fabsf(cos_o));
+            sum = rgb_add(sum, rgb_scale(by_orders(blend.cells[k]->scattered_share, metal), share));
+        }
+    return sum;
 }
 
-rgb coat_trapped_albedo(const material *m, float cos_o) { return rgb_scale(trapped_color(m), caught(m, cos_o)); }
+/* Poisson's kernel: 1 in the mean over all turns, whatever `eccentricity`, which is the mean cosine. */
+static float turned(float eccentricity, vec3 o, vec3 i)
+{
+    float length = sqrtf((o.x * o.x + o.y * o.y) * (i.x * i.x + i.y * i.y));
+    float cosine = length > 0.0f ? -(o.x * i.x + o.y * i.y) / length : 0.0f, e = eccentricity;
+    return (1.0f - e * e) / (1.0f + e * e - 2.0f * e * cosine);
+}
+
+rgb coat_scattered(const material *m, vec3 o, vec3 i)
+{
+    rgb sum = rgb_gray(0.0f);
+    if (!m->coat)
+        return sum;
+    coat_blend blend = coat_table_find(m->coat, m);
+    bool is_metal = m->kind == MATERIAL_COATED_CONDUCTOR;
+    rgb metal = is_metal ? fresnel_conductor(MEAN_COSINE, m->eta, m->k) : rgb_gray(0.0f);
+    for (int k = 0; k < blend.count; k++)
+        if (blend.cells[k]->scattered_mean > 0.0f) {
+            coat_blend one = {{blend.cells[k]}, {1.0f}, 1};
+            float product =
+                coat_blend_at(&one, COAT_SCATTERED, fabsf(o.z)) * coat_blend_at(&one, COAT_SCATTERED, fabsf(i.z));
+            product *= turned(
+                coat_blend_at(&one, COAT_FORWARD, fabsf(o.z)) * coat_blend_at(&one, COAT_FORWARD, fabsf(i.z)), o, i);
+            product *= blend.weights[k] / blend.cells[k]->scattered_mean;
+            sum = rgb_add(sum, rgb_scale(by_orders(blend.cells[k]->scattered_share, metal), product));
+        }
+    return sum;
+}

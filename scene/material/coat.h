@@ -1,39 +1,50 @@
 /* coat.h: a dielectric coat over a base, as pbrt has it: what it lets through, what it sends back, and what of that
- * gets out in the end. Rests on: Weidlich, Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", 2007; Pharr, Jakob,
- * Humphreys, 4th ed., 2023, 14.3 (the random walk that this stands for); Kulla, Conty, "Revisiting Physically Based
- * Shading at Imageworks", 2017 (a lobe that gives back what others lose). Flow: material -> [here] -> bsdf_lobe.
- * Threads: coat_prepare while the scene is built; the rest are pure functions.
+ * gets out in the end. Rests on: Pharr, Jakob, Humphreys, 4th ed., 2023, 14.3 (the random walk that this stands for, of
+ * which it keeps the energy: coat_table.h); Weidlich, Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", 2007 (a metal
+ * under a smooth coat). Flow: material, coat_table -> [here] -> bsdf_lobe. Threads: pure functions.
  *
- * A rough conductor sends part of its light where the coat reflects totally. It comes back to the conductor until it
- * gets out, at any angle: the lobe "trapped", a product g(o) g(i) of the share that is caught, scaled to all that
- * escapes. */
+ * Under a coat a diffuse base forgets where light came from, so its lobe is a product, exactly: t(o) t(i) times a
+ * series of reflections to and fro. A metal has two lobes: light that facets reflected in part keeps a direction, and
+ * is put into the metal's own lobe under a smooth coat, into one of GGX facets outside under a rough one, scaled at
+ * both ends until the albedo is right; light that was reflected totally, or that the gap scattered, leaves at any
+ * angle: the lobe "scattered", a product g(o) g(i). */
 #ifndef AFTERGLOW_COAT_H
 #define AFTERGLOW_COAT_H
 
 #include "material/material.h"
+#include "material/microfacet.h"
 
-/* Works out coat_return and coat_trap; material_prepare calls it once the roughness is set. */
-void coat_prepare(material *m);
+/* Whether the material's values are those of a coat_table, which its `coat` must be then. */
+bool coat_needs_table(const material *m);
 
-/* A direction refracted into the coat, on the same side of the base as it was. */
+/* Whether the interface does not scatter: smooth, or of an index of 1. */
+bool coat_is_smooth(const material *m);
+
+/* A direction refracted into the coat by a smooth interface, on the same side of the base as it was. */
 vec3 coat_refract(const material *m, vec3 v);
 
-/* What the coat lets through, once, of light at that cosine outside. */
-float coat_transmittance(const material *m, float cos_theta);
+/* The share of light at that cosine outside that a smooth interface and one way through the gap leave. */
+float coat_crossing(const material *m, float cos_theta);
 
-/* Of a diffuse base: all that gets out of light that got in. */
+/* t: of light at that cosine outside, what gets to a diffuse base. */
+float coat_entry(const material *m, float cos_theta);
+
+/* Of a diffuse base: all that gets out of light that got in; f is this times t(o) t(i) / pi. */
 rgb coat_diffuse_albedo(const material *m);
 
-/* In through the coat, to and fro between conductor and coat, and out again. metal: its reflectance. */
-rgb coat_series(const material *m, rgb metal, float cos_o, float cos_i);
+/* Smooth on smooth: in through the coat, to and fro between metal and coat, and out again. metal: its reflectance. */
+rgb coat_series(const material *m, rgb metal, float cos_theta);
 
-/* What the coat's own facets reflect at a cosine to them; of light between cosines to the normal. */
-float coat_reflectance(const material *m, float cos_facet, float cos_o, float cos_i);
+/* The lobe of a metal that is not smooth on smooth: value (f |cos i|) and density of its sampling, 0 where o and i are
+ * not on one side. o, i: in the shading frame. */
+void coat_metal_lobe(const material *m, vec3 o, vec3 i, rgb *out_value, float *out_pdf);
+/* A direction of it; o is above. false: kept in by the coat. */
+bool coat_sample_metal_lobe(const material *m, vec3 o, vec2 u, vec3 *out_i);
+/* About its albedo. */
+rgb coat_metal_lobe_albedo(const material *m, float cos_o);
 
-/* f of the trapped lobe, times pi. */
-bool coat_has_trapped(const material *m);
-rgb coat_trapped(const material *m, float cos_o, float cos_i);
-/* Of light at a cosine, what leaves by it. */
-rgb coat_trapped_albedo(const material *m, float cos_o);
+/* f of the scattered lobe, times pi, and what of light at a cosine leaves by it; black where there is none. */
+rgb coat_scattered(const material *m, vec3 o, vec3 i);
+rgb coat_scattered_albedo(const material *m, float cos_o);
 
 #endif

@@ -2,7 +2,6 @@
  * Threads: material_prepare while the scene is built; the rest read only. */
 #include "material/material.h"
 
-#include "material/coat.h"
 #include "material/principled.h"
 #include "math/rng.h"
 #include "rays/bvh.h"
@@ -68,8 +67,6 @@ void material_prepare(material *m)
         principled_resolve(m);
     make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
     make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
-    if (m->kind == MATERIAL_COATED_DIFFUSE || m->kind == MATERIAL_COATED_CONDUCTOR)
-        coat_prepare(m);
     m->is_lambertian = m->kind == MATERIAL_DIFFUSE && !m->is_textured && m->alpha_u == m->alpha_v &&
                        m->base_alpha_u == m->base_alpha_v && m->displacement_texture == SCENE_NO_TEXTURE &&
                        m->normal_map_texture == SCENE_NO_TEXTURE;
@@ -82,7 +79,7 @@ bool material_is_traced(const scene *s, uint32_t material_index)
         return material_is_traced(s, m->mixed[0]) || material_is_traced(s, m->mixed[1]);
     if (m->kind == MATERIAL_PRINCIPLED)
         return principled_has_interface(m) || m->clearcoat > 0.0f;
-    if (m->kind == MATERIAL_COATED_DIFFUSE && m->ior == 1.0f)
+    if (m->kind == MATERIAL_COATED_DIFFUSE && m->ior == 1.0f && rgb_is_black(m->coat_albedo))
         return false; /* a coat that does not reflect */
     return m->kind != MATERIAL_DIFFUSE && m->kind != MATERIAL_DIFFUSE_TRANSMISSION && m->kind != MATERIAL_INTERFACE;
 }

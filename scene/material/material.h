@@ -25,14 +25,7 @@ typedef enum material_kind {
     MATERIAL_MIX               /* one of two others, picked by place */
 } material_kind;
 
-enum { COAT_TRAP_PLACES = 8 };
-
-/* Of a rough conductor under a coat: light that the coat keeps in by total reflection (coat.h). All 0: none. */
-typedef struct coat_trap {
-    float caught[COAT_TRAP_PLACES]; /* share of what got in, at even cosines outside from 0 to 1 */
-    float mean;                     /* of that times what gets in, over the hemisphere */
-    float escape, retain;           /* of a white conductor: what gets out at the next bounce, what is left for more */
-} coat_trap;
+struct coat_table;
 
 typedef struct material {
     material_kind kind;
@@ -43,12 +36,12 @@ typedef struct material {
     float alpha_u, alpha_v; /* GGX roughness after remapping, >= 0, of the outer interface */
     float base_alpha_u, base_alpha_v; /* of the conductor under a coat */
     float coat_thickness;             /* in mean free paths of the coat's stuff, which absorbs; >= 0 */
+    rgb coat_albedo;                  /* of that stuff, [0, 1]; black: it does not scatter */
+    float coat_g;                     /* mean cosine of its scattering, in (-1, 1) */
     int coat_bounces; /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
-    float
-        coat_return; /* of diffuse light from the base, the share that the coat sends back; set by scene_add_material */
-    coat_trap coat_trap; /* set by scene_add_material */
-    uint32_t mixed[2];   /* mix: indices of materials made before */
-    float mix_amount;    /* mix: the share of the second, [0, 1] */
+    const struct coat_table *coat; /* where coat_needs_table; set by scene_add_material, and the scene's own */
+    uint32_t mixed[2];             /* mix: indices of materials made before */
+    float mix_amount;              /* mix: the share of the second, [0, 1] */
 
     /* principled; reflectance is the base colour, ior >= 1 or 0 (infinite) */
     float metallic;            /* [0, 1] */

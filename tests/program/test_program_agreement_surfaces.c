@@ -1,5 +1,6 @@
 /* test_program_agreement_surfaces.c: photon map and path tracer show the same light on surfaces that are not diffuse:
- * glass, rough metal and a mirror; glTF's material in many ways; veils, bump maps and brushed metal. All light, and
+ * glass, rough metal and a mirror; rough coats; glTF's material in many ways; veils, bump maps and brushed metal. All
+ * light, and
  * indirect light alone. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
@@ -11,6 +12,13 @@ static void test_glass_and_metal(void **state)
     (void)state;
     compare_integrators("glass_and_metal", "--spp=512", NULL, BOUNDS);
     compare_integrators("glass_and_metal", "--spp=512", "--only=indirect", BOUNDS);
+}
+
+static void test_rough_coats(void **state)
+{
+    (void)state;
+    compare_integrators("rough_coats", "--spp=512", NULL, BOUNDS);
+    compare_integrators("rough_coats", "--spp=512", "--only=indirect", BOUNDS);
 }
 
 static void test_principled(void **state)
@@ -31,6 +39,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_glass_and_metal),
+        TEST_IN_FOLDER(test_rough_coats),
         TEST_IN_FOLDER(test_principled),
         TEST_IN_FOLDER(test_veils_and_relief),
     };

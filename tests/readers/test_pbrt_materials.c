@@ -41,8 +41,9 @@ static void coated_diffuse_materials(void **state)
     assert_rgb(m.reflectance, .5, .5, .5, 0);
     assert_near(m.ior, 1.5, 0);
     assert_roughness(m.alpha_u, m.alpha_v, 0, 0);
-    /* the scene has prepared it: less gets out than gets in */
-    assert_true(m.coat_return > 0.55f && m.coat_return < 0.6f);
+    assert_near(m.coat_thickness, .01, 1e-9);
+    assert_int_equal(m.coat_bounces, 5);
+    assert_true(m.coat != NULL && m.coat_g == 0.0f && rgb_is_black(m.coat_albedo));
     m = only_material("\"coateddiffuse\" \"rgb reflectance\" [ .1 .2 1 ] \"float eta\" 1.33 \"float roughness\" .04");
     assert_rgb(m.reflectance, .1, .2, 1, 1e-7);
     assert_near(m.ior, 1.33, 1e-6);
@@ -53,8 +54,12 @@ static void coated_diffuse_materials(void **state)
     assert_near(only_material("\"coateddiffuse\" \"spectrum eta\" \"glass-BK7\"").ior, 1.5168, 1e-6);
     /* what pbrt's random walk is told is taken without a word */
     m = only_material("\"coateddiffuse\" \"float thickness\" .02 \"float g\" .3 \"integer maxdepth\" 20\n"
-                      "\"integer nsamples\" 4 \"rgb albedo\" [ 0 0 0 ]");
+                      "\"integer nsamples\" 4 \"rgb albedo\" [ .1 .2 1 ]");
     assert_int_equal(m.kind, MATERIAL_COATED_DIFFUSE);
+    assert_near(m.coat_thickness, .02, 1e-8);
+    assert_near(m.coat_g, .3, 1e-7);
+    assert_int_equal(m.coat_bounces, 10);
+    assert_rgb(m.coat_albedo, .1, .2, 1, 1e-7);
 }
 
 static void coated_conductors(void **state)
@@ -261,6 +266,8 @@ static void errors_name_place_and_reason(void **state)
         {"\"principled\" \"float metallic\" 1.5", "1:34", "\"metallic\" should be from 0 to 1"},
         {"\"principled\" \"float clearcoat_roughness\" -.5", "1:34", "\"clearcoat_roughness\" should be from 0 to 1"},
         {"\"principled\" \"float ior\" .5", "1:34", "\"ior\" should be at least 1, or 0 for an infinite one"},
+        {"\"coateddiffuse\" \"float g\" 1", "1:37", "\"g\" should be between -1 and 1"},
+        {"\"coateddiffuse\" \"rgb albedo\" [ -1 0 0 ]", "1:37", "\"rgb albedo\" has a negative component, -1"},
         {"\"coateddiffuse\" \"float maxdepth\" 3", "1:37", "\"float maxdepth\" should be \"integer maxdepth\""},
         {"\"coateddiffuse\" \"integer remaproughness\" 1", "1:37",
          "\"integer remaproughness\" should be \"bool remaproughness\""},
@@ -315,12 +322,10 @@ static void warnings_are_given_once(void **state)
     static const struct {
         const char *text, *warning;
     } CASES[] = {
-        {"Material \"coateddiffuse\" \"rgb albedo\" [ .1 .2 .3 ]",
-         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands "
-         "in\n"},
-        {"Material \"coatedconductor\" \"rgb albedo\" [ .1 .2 .3 ]",
-         "t:2:1: warning: a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands "
-         "in\n"},
+        {"Material \"coateddiffuse\" \"rgb albedo\" [ .1 .2 1.3 ]",
+         "t:2:26: warning: \"albedo\" is above 1: 1 is used\n"},
+        {"Material \"coatedconductor\" \"rgb albedo\" [ .1 .2 1.3 ]",
+         "t:2:28: warning: \"albedo\" is above 1: 1 is used\n"},
         {"Material \"coateddiffuse\" \"float conductor.roughness\" .5",
          "t:2:26: warning: Material \"coateddiffuse\": \"float conductor.roughness\" is not known, or not supported "
          "yet, and is ignored\n"},

@@ -244,8 +244,6 @@ static void warnings_are_given_once(void **state)
         {"Material \"subsurface\" \"float eta\" 1.3",
          "material \"subsurface\" is not supported: \"coateddiffuse\" of its diffuse reflectance, which lets no light "
          "travel inside, stands in"},
-        {"Material \"coateddiffuse\" \"rgb albedo\" [ 1 1 1 ]",
-         "a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in"},
         {"Shape \"sphere\" \"texture radius\" \"wood\"",
          "\"texture radius\" is not supported here: it is ignored and the default is used"},
         {"Material \"conductor\" \"spectrum eta\" \"nikon_d850_r\"",

@@ -304,7 +304,7 @@ static void what_is_lambertian(void **state)
     material m = diffuse();
     s.shapes = &at, s.materials = &m;
     surface_hit hit = {.distance = 1.0f};
-    material_prepare(&m);
+    prepare(&m);
     assert_ptr_equal(lambert_albedo(&s, &hit), &m.reflectance);
     hit.is_strand = true;
     assert_null(lambert_albedo(&s, &hit));
@@ -312,12 +312,12 @@ static void what_is_lambertian(void **state)
     uint32_t *const textures[] = {&m.reflectance_texture, &m.displacement_texture, &m.normal_map_texture};
     for (int i = 0; i < 3; i++) {
         *textures[i] = 0;
-        material_prepare(&m);
+        prepare(&m);
         assert_null(lambert_albedo(&s, &hit));
         *textures[i] = SCENE_NO_TEXTURE;
     }
     m = diffuse_transmission();
-    material_prepare(&m);
+    prepare(&m);
     assert_null(lambert_albedo(&s, &hit));
 }
 

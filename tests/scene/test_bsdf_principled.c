@@ -275,7 +275,7 @@ static void wild_values_are_bounded(void **state)
     m.metallic = NAN, m.roughness = -2.0f, m.transmission = 3.0f, m.specular = 2.0f, m.clearcoat = INFINITY;
     m.specular_color = (rgb){-1.0f, NAN, INFINITY};
     m.ior = 0.3f;
-    material_prepare(&m);
+    prepare(&m);
     assert_true(m.reflectance.r == 1.0f && m.reflectance.g == 0.0f && m.reflectance.b == 0.0f);
     assert_true(m.metallic == 0.0f && m.alpha_u == 0.0f && m.transmission == 1.0f && m.specular == 1.0f);
     assert_true(m.clearcoat == 1.0f && m.ior == 1.0f);

@@ -27,7 +27,7 @@ typedef struct table {
 static void add(table *t, const char *name, material m)
 {
     assert_true(t->count < ROWS_MAX);
-    material_prepare(&m);
+    prepare(&m);
     t->rows[t->count++] = (row){.name = name, .matter = m};
 }
 

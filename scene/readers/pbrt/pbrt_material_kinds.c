@@ -122,27 +122,29 @@ ag_status pbrt_read_thin_dielectric(pbrt_parser *parser, parameter_list *list, m
     return read_index(parser, list, "eta", &m->ior);
 }
 
-/* pbrt's random walk in a coat: ours is a closed form of it. Its stuff absorbs even where its albedo is 0, and the walk
- * ends after "maxdepth" steps: both darken, so both are kept. */
+/* Of pbrt's random walk in a coat ours keeps what it comes to. Its stuff absorbs even where its albedo is 0, and the
+ * walk ends after "maxdepth" steps: both darken. "nsamples" decides pbrt's noise alone. */
 static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, material *m)
 {
-    float g = 0.0f;
     m->coat_thickness = 0.01f;
     int64_t depth = 10, samples = 1;
-    rgb albedo = rgb_gray(0.0f);
     PBRT_TRY(parameter_get_float(list, parser->log, "thickness", &m->coat_thickness));
-    PBRT_TRY(parameter_get_float(list, parser->log, "g", &g));
+    PBRT_TRY(parameter_get_float(list, parser->log, "g", &m->coat_g));
     PBRT_TRY(parameter_get_int(list, parser->log, "maxdepth", &depth));
     PBRT_TRY(parameter_get_int(list, parser->log, "nsamples", &samples));
-    PBRT_TRY(parameter_get_rgb(list, parser->log, "albedo", &albedo));
+    PBRT_TRY(parameter_get_rgb(list, parser->log, "albedo", &m->coat_albedo));
     if (m->coat_thickness < 0.0f)
         return pbrt_refuse(parser, list, "thickness", "\"thickness\" should not be negative");
     if (depth < 1 || depth > 1000)
         return pbrt_refuse(parser, list, "maxdepth", "\"maxdepth\" should be from 1 to 1000");
+    if (!(m->coat_g > -1.0f && m->coat_g < 1.0f))
+        return pbrt_refuse(parser, list, "g", "\"g\" should be between -1 and 1");
     m->coat_bounces = (int)(depth + 1) / 2; /* every other step of the walk meets the base */
-    if (!rgb_is_black(albedo))
-        log_at_once(parser->log, AG_LOG_WARNING, list->where, "coat albedo",
-                    "a coat with scattering inside (\"albedo\") is not supported: one that only absorbs stands in");
+    if (rgb_max(m->coat_albedo) > 1.0f) {
+        const parameter *p = parameter_list_find(list, "albedo");
+        log_at_once(parser->log, AG_LOG_WARNING, p->where, "coat albedo", "\"albedo\" is above 1: 1 is used");
+        m->coat_albedo = clamp_color(m->coat_albedo);
+    }
     return AG_OK;
 }
 

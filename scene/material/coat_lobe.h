@@ -1,0 +1,21 @@
+/* coat_lobe.h: the lobe of light that a metal under a coat reflects and that keeps a direction, fitted to walks.
+ * Rests on: Sinkhorn, Knopp, "Concerning Nonnegative Matrices and Doubly Stochastic Matrices", 1967 (scales on both
+ * sides until the sums are right). Flow: coat_walk -> [here] -> coat_cell, coat. Threads: pure functions. */
+#ifndef AFTERGLOW_COAT_LOBE_H
+#define AFTERGLOW_COAT_LOBE_H
+
+#include "material/coat_cell.h"
+
+/* Facets that reflect outside about as the metal does under the coat: of the lobe under a rough interface. breadth:
+ * what their roughness is multiplied by. */
+ggx coat_lobe_facets(const material *m, float breadth);
+
+/* The breadth that fits walks; key: of their random numbers. */
+float coat_lobe_fit_breadth(const material *m, const coat_layers *layers, uint64_t key);
+
+/* Sets the cell's scales, so that the lobe has its albedo. once: the albedo of walks that met the metal once. Under a
+ * smooth interface the lobe of one reflection is exact, so walks tell only how much the others add, and the cell's
+ * albedo is set anew. false: no memory. */
+bool coat_lobe_fit_scales(coat_cell *cell, const material *m, const coat_layers *layers, const float once[COAT_PLACES]);
+
+#endif
