@@ -1,0 +1,193 @@
+/* test_program_seams.c: what models have where their parts meet: thin walls, gaps of 1 mm, coplanar and overlapping
+ * faces, flipped normals, panes within panes, lamps inside of fixtures. In a room of 4 m x 3 m x 4 m the photon map has
+ * the path tracer's light. Flow: tests of the whole program. Threads: the program's. */
+#define _GNU_SOURCE
+#include "fixtures/program_picture.h"
+
+#include "math/vec3.h"
+
+#define MATTE "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]\n"
+#define THIN  "Material \"thindielectric\"\n"
+
+/* --- scenes --- */
+
+static char text[1 << 14];
+
+static void add(const char *more)
+{
+    assert_true(strlen(text) + strlen(more) < sizeof text);
+    strcat(text, more);
+}
+
+/* A rectangle from a corner along two edges. */
+static void add_face(vec3 corner, vec3 u, vec3 v)
+{
+    char face[512];
+    vec3 c[4] = {corner, vec3_add(corner, u), vec3_add(vec3_add(corner, u), v), vec3_add(corner, v)};
+    int length = snprintf(face, sizeof face, "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [");
+    for (int i = 0; i < 4; i++)
+        length += snprintf(face + length, sizeof face - (size_t)length, "%g %g %g  ", (double)c[i].x, (double)c[i].y,
+                           (double)c[i].z);
+    snprintf(face + length, sizeof face - (size_t)length, "]\n");
+    add(face);
+}
+
+enum { NO_FLOOR = 1, FLIPPED = 2 };
+
+static void add_box(vec3 low, vec3 high, int how)
+{
+    vec3 d = vec3_sub(high, low), x = {d.x, 0.0f, 0.0f}, y = {0.0f, d.y, 0.0f}, z = {0.0f, 0.0f, d.z};
+    const vec3 edges[3][2] = {{x, y}, {y, z}, {z, x}}, along[3] = {z, x, y};
+    for (int i = 0; i < 3; i++)
+        for (int far = 0; far < 2; far++) {
+            bool is_turned = (far == 1) == ((how & FLIPPED) != 0);
+            vec3 corner = far ? vec3_add(low, along[i]) : low;
+            if (!(i == 2 && !far && (how & NO_FLOOR)))
+                add_face(corner, edges[i][is_turned], edges[i][!is_turned]);
+        }
+}
+
+static vec3 at(float x, float y, float z) { return (vec3){x, y, z}; }
+
+/* The room, its faces' normals inwards or outwards, seen from its front wall. */
+static void begin_room(int how)
+{
+    text[0] = '\0';
+    add("LookAt 0 1.5 -1.9 0 1.2 0 0 1 0 Camera \"perspective\" \"float fov\" 75\nWorldBegin\n" MATTE);
+    add_box(at(-2, 0, -2), at(2, 3, 2), how);
+}
+
+static void add_ceiling_lamp(float x)
+{
+    add("AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [8 8 8] \"bool twosided\" true\n");
+    add("Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n");
+    add_face(at(x - 0.3f, 2.9f, -0.3f), at(0.6f, 0, 0), at(0, 0, 0.6f));
+    add("AttributeEnd\n");
+}
+
+static void add_ball_lamp(const char *where, const char *radius, const char *radiance)
+{
+    char lamp[512];
+    snprintf(lamp, sizeof lamp,
+             "AttributeBegin Translate %s AreaLightSource \"diffuse\" \"rgb L\" [%s %s %s] Material \"diffuse\" "
+             "\"rgb reflectance\" [0 0 0] Shape \"sphere\" \"float radius\" %s AttributeEnd\n",
+             where, radiance, radiance, radiance, radius);
+    add(lamp);
+}
+
+/* --- comparisons --- */
+
+typedef struct estimate {
+    double mean, sigma; /* of the mean */
+} estimate;
+
+static estimate over_seeds(const char *scene, const char *const *arguments)
+{
+    enum { SEEDS = 4 };
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < SEEDS; i++) {
+        char seed[32];
+        const char *all[PROGRAM_ARGUMENTS_MAX] = {seed, "--size=20x20"};
+        int count = 2;
+        snprintf(seed, sizeof seed, "--seed=%d", i + 1);
+        for (int k = 0; arguments[k]; k++)
+            all[count++] = arguments[k];
+        picture p = render(scene, all);
+        double value = (picture_mean(&p, 0) + picture_mean(&p, 1) + picture_mean(&p, 2)) / 3.0;
+        sum += value, squares += value * value;
+        picture_reset(&p);
+    }
+    double mean = sum / SEEDS;
+    return (estimate){mean, sqrt((squares / SEEDS - mean * mean) / (SEEDS - 1))};
+}
+
+/* Within 1 %, and three standard deviations of what was measured. sigma_most: of that, relative. */
+static void expect_agreement(const char *what, double sigma_most)
+{
+    char scene[256];
+    snprintf(scene, sizeof scene, "%s", write_text("scene.pbrt", text));
+    estimate path = over_seeds(scene, ARGUMENTS("--integrator=path", "--spp=256"));
+    estimate map = over_seeds(
+        scene, ARGUMENTS("--spp=16", "--gather-samples=16", "--photons=2e5", "--caustic-photons=1e5", "--nearest=30"));
+    double sigma = sqrt(path.sigma * path.sigma + map.sigma * map.sigma), off = map.mean / path.mean - 1.0;
+    print_message("%s: %.6f and %.6f, %+.2f %%, sigma %.2f %%\n", what, map.mean, path.mean, 100.0 * off,
+                  100.0 * sigma / path.mean);
+    assert_true(sigma < sigma_most * path.mean);
+    assert_true(fabs(off) < 0.01 + 3.0 * sigma / path.mean);
+}
+
+/* A wall without thickness, and two 1 mm apart, part a lit half from a dark one; a box floats 1 mm above the floor. */
+static void test_thin_walls_and_gaps(void **state)
+{
+    (void)state;
+    begin_room(0);
+    add_ceiling_lamp(-1.0f);
+    add(MATTE);
+    add_face(at(0, 0, -1.2f), at(0, 2.2f, 0), at(0, 0, 3.2f));
+    expect_agreement("a thin wall", 0.012);
+    add_face(at(0.001f, 0, -1.2f), at(0, 2.2f, 0), at(0, 0, 3.2f));
+    add_box(at(-1.5f, 0.001f, 0.2f), at(-0.5f, 0.6f, 1.2f), 0);
+    expect_agreement("gaps of 1 mm", 0.012);
+}
+
+/* Boxes stand on the floor and against the walls, face on face, one within another; a sheet lies on the floor. */
+static void test_coplanar_and_overlapping(void **state)
+{
+    (void)state;
+    begin_room(0);
+    add_ceiling_lamp(0.0f);
+    add(MATTE);
+    add_box(at(-2, 0, 1), at(-1, 0.7f, 2), 0);
+    add_box(at(-1.4f, 0, 0.6f), at(-0.4f, 0.7f, 1.6f), 0);
+    add_face(at(0.2f, 0, 0), at(1, 0, 0), at(0, 0, 1));
+    expect_agreement("coplanar and overlapping faces", 0.012);
+}
+
+static void test_flipped(void **state)
+{
+    (void)state;
+    begin_room(FLIPPED);
+    add_ceiling_lamp(0.0f);
+    add(MATTE);
+    add_box(at(-1.2f, 0, 0.5f), at(-0.3f, 0.8f, 1.4f), FLIPPED);
+    add_box(at(0.3f, 0, 0.5f), at(1.2f, 0.8f, 1.4f), 0);
+    expect_agreement("flipped normals", 0.012);
+}
+
+/* A lamp in a box of thin glass in another. */
+static void test_panes_within_panes(void **state)
+{
+    (void)state;
+    begin_room(0);
+    add(THIN);
+    add_box(at(-0.8f, 0.3f, 0), at(0.8f, 1.9f, 1.6f), 0);
+    add_box(at(-0.6f, 0.5f, 0.2f), at(0.6f, 1.7f, 1.4f), 0);
+    add_ball_lamp("0 1.1 0.8", "0.15", "12");
+    expect_agreement("panes within panes", 0.04);
+}
+
+/* A lamp in a white can below the ceiling: open, and behind thin glass. */
+static void test_fixtures(void **state)
+{
+    (void)state;
+    begin_room(0);
+    add("Material \"diffuse\" \"rgb reflectance\" [0.9 0.9 0.9]\n");
+    add_box(at(-0.3f, 2.6f, -0.3f), at(0.3f, 2.95f, 0.3f), NO_FLOOR);
+    add_ball_lamp("0 2.8 0", "0.06", "60");
+    expect_agreement("a lamp in a can", 0.012);
+    add(THIN);
+    add_face(at(-0.3f, 2.6f, -0.3f), at(0.6f, 0, 0), at(0, 0, 0.6f));
+    expect_agreement("a lamp in a can behind glass", 0.03);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_thin_walls_and_gaps),
+        TEST_IN_FOLDER(test_coplanar_and_overlapping),
+        TEST_IN_FOLDER(test_flipped),
+        TEST_IN_FOLDER(test_panes_within_panes),
+        TEST_IN_FOLDER(test_fixtures),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
