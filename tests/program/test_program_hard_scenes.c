@@ -196,7 +196,8 @@ static void test_lamp_inside_of_glass(void **state)
         "Shape \"sphere\"\nAttributeEnd\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\n"
         "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nShape \"sphere\" \"float radius\" 0.3\n");
     const double irradiance = 0.9598 * PI * 100.0 * 0.09 / 16.0;
-    picture map = RENDER(scene, INTEGRATORS[0], "--size=16x16", "--spp=4", "--photons=1000", "--caustic-photons=50000");
+    picture map = RENDER(scene, INTEGRATORS[0], "--size=16x16", "--spp=4", "--photons=1000", "--caustic-photons=50000",
+                         "--nearest=1000");
     picture path = RENDER(scene, INTEGRATORS[1], "--size=16x16", "--spp=1024");
     expect_near("photon map", picture_mean(&map, 1), 0.5 / PI * irradiance, 0.03);
     expect_near("path", picture_mean(&path, 1), 0.5 / PI * irradiance, 0.06);
