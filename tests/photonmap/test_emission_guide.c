@@ -52,7 +52,7 @@ static emission_guide learn(float (*value)(const emission_start *), uint32_t cou
 /* By what is drawn: weights are 1 in the mean, the value has the mean that it has by plain draws, within 4 sigma. */
 static void expect_right(float (*value)(const emission_start *), int rounds, double least_useful)
 {
-    emission_guide guide = learn(value, TRIALS / FEWER, rounds);
+    emission_guide guide = learn(value, TRIALS, rounds);
     rng random = test_random(4);
     int draws = DRAWS / FEWER;
     double weights = 0.0, weights_squared = 0.0, plain = 0.0, plain_squared = 0.0, guided = 0.0, guided_squared = 0.0;
@@ -73,8 +73,8 @@ static void expect_right(float (*value)(const emission_start *), int rounds, dou
         densities += at / draws, densities_squared += at * at / draws;
         plain += (double)value(&s) / draws, plain_squared += (double)value(&s) * (double)value(&s) / draws;
     }
-    double of_weights = sqrt((weights_squared - weights * weights) / draws);
-    double of_densities = sqrt((densities_squared - densities * densities) / draws);
+    double of_weights = sqrt(fmax(0.0, weights_squared - weights * weights) / draws);
+    double of_densities = sqrt(fmax(0.0, densities_squared - densities * densities) / draws);
     double variance = guided_squared - guided * guided, plain_variance = plain_squared - plain * plain;
     assert_close(weights, 1.0, 4.0 * of_weights + 1e-5);
     assert_close(densities, 1.0, 4.0 * of_densities + 1e-5);

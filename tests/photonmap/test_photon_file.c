@@ -392,7 +392,9 @@ static void flipped_bits_change_no_irradiance(void **state)
         close_map(&o);
     }
     close(file);
-    assert_true(refused > FLIPS / 2); /* most of the file never changes */
+    print_message("of %d flips %d are refused, %d irradiances computed again\n", (int)FLIPS, (int)refused,
+                  (int)damaged);
+    assert_true(refused > FLIPS / 4); /* the photons never change; the slots and the owners' table do */
     assert_true(damaged > FLIPS / 20);
     test_run_reset(&r);
 }
