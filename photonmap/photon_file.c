@@ -22,7 +22,7 @@
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
 
 /* To be raised whenever the layout, or what photons or irradiances are, changes. */
-enum { LAYOUT_VERSION = 7 };
+enum { LAYOUT_VERSION = 8 };
 enum { GLOBAL, CAUSTIC, MAP_COUNT, BEARERS = MAP_COUNT, TREE_COUNT };
 enum { PAGE = 4096, CHUNK_BYTES = 1 << 22 };
 static const uint32_t BYTE_ORDER_MARK = 0x01020304;
@@ -338,7 +338,6 @@ static photon_map map_of(const map_record *m, photon_tree tree, photon_tree bear
     return map;
 }
 
-/* A network's file system: another host's processes may be at the file, whose locks or memory ours do not see. */
 /* Maps it, and takes a place among its owners. message: where not, why. */
 static bool share(int descriptor, photon_file *file, char *message, size_t message_size)
 {

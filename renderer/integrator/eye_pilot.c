@@ -3,6 +3,7 @@
 
 #include "integrator/gather_path.h"
 #include "parallel_for.h"
+#include "rays/passage.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -59,9 +60,8 @@ static void add_sides(const transport *t, const vertex *v, place_list *list)
 }
 
 static void gather_places(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, place_list *list)
+                          int path_vertex, int scatterings_left, place_list *list)
 {
-    int scatterings_left = t->settings->max_depth - path_vertex - 1;
     for (uint32_t i = 0; scatterings_left >= 1 && i < GATHER_RAYS; i++) {
         rng random = rng_make(where->key, (uint64_t)path_vertex, i);
         vec2 u = sampler_2d_of(where, SAMPLE_GATHER, path_vertex, GATHER_RAYS, i);
@@ -91,30 +91,36 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
                                         ((float)y + within.y) / (float)job->height, job->aspect,
                                         sampler_2d(&where, SAMPLE_LENS, 0), time);
     rgb throughput = rgb_gray(1.0f);
-    for (int path_vertex = 0; path_vertex < t->settings->max_depth; path_vertex++) {
+    for (int path_vertex = 0, scatterings = 0;; path_vertex++) {
         vertex v;
         bsdf_sample next;
         if (!transport_trace(t, worker, ray, &v))
             return;
         throughput = rgb_mul(throughput, v.transmittance);
-        if (bsdf_has(&v.scattering, BSDF_GATHERED)) {
+        bool is_last = scatterings >= t->settings->max_depth, may_go_straight = transport_is_open_pane(t, &v);
+        if (!is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
             if (path_vertex > 0 && rgb_max(throughput) < LOW_CONTRIBUTION) {
                 add_sides(t, &v, &out->gathered);
             } else {
                 add_sides(t, &v, &out->seen);
-                gather_places(t, worker, &v, &where, path_vertex, &out->gathered);
+                gather_places(t, worker, &v, &where, path_vertex, t->settings->max_depth - scatterings - 1,
+                              &out->gathered);
             }
         }
-        if (!bsdf_has(&v.scattering, BSDF_TRACED) ||
+        if ((is_last && !may_go_straight) || !bsdf_has(&v.scattering, BSDF_TRACED) ||
             !bsdf_sample_direction(&v.scattering, BSDF_TRACED, BSDF_RADIANCE,
                                    sampler_2d(&where, SAMPLE_LOBE, path_vertex).x,
                                    sampler_2d(&where, SAMPLE_SCATTER, path_vertex), &next))
+            return;
+        bool goes_straight = may_go_straight && next.is_straight;
+        if (is_last && !goes_straight)
             return;
         throughput = rgb_mul(throughput, next.weight);
         if (path_vertex >= ROULETTE_AFTER &&
             !transport_survives(&throughput, sampler_2d(&where, SAMPLE_ROULETTE, path_vertex).x))
             return;
-        ray = surface_ray(&v.hit, v.arrived, next.direction);
+        scatterings += !goes_straight;
+        ray = goes_straight ? passage_continue(&v.hit, &v.arrived) : surface_ray(&v.hit, v.arrived, next.direction);
     }
 }
 
@@ -164,7 +170,8 @@ static ag_status merge(const row_places *rows, int row_count, bool is_seen, plac
 ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot)
 {
     *out_pilot = (eye_pilot){0};
-    pilot_job job = {.t = {.s = s, .run = run, .settings = settings}};
+    bool panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT;
+    pilot_job job = {.t = {.s = s, .run = run, .settings = settings, .panes_are_direct = panes_are_direct}};
     job.aspect = (float)settings->width / (float)settings->height;
     divide_frame(settings->photon_count, job.aspect, &job.width, &job.height);
     job.rows = calloc((size_t)job.height, sizeof *job.rows);

@@ -16,7 +16,8 @@ typedef struct eye_pilot {
     place_importance seen;     /* places where the caustic map will be */
 } eye_pilot;
 
-/* Reads of the settings: width over height, depth, number of photons, seed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+/* Reads of the settings: width over height, depth, light through panes, number of photons, seed. Errors:
+ * AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot);
 void eye_pilot_reset(eye_pilot *pilot);
 

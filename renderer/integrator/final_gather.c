@@ -19,7 +19,7 @@ typedef struct gathering {
 
 static rng ray_random(const gathering *g, uint32_t number)
 {
-    return rng_make(g->where->key, (uint64_t)g->path_vertex, g->where->sample * g->count + number);
+    return rng_make(g->where->key, (uint64_t)g->path_vertex, (uint64_t)g->where->sample * g->count + number);
 }
 
 /* What is behind a gather ray of that number, which has met *v, and weighs `first` at its start: asks for irradiance,
@@ -147,6 +147,8 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
     gather_batch *batch = worker->batch;
     if (!gather_batch_has_room(batch, RAY_FAN_MAX))
         final_gather_resolve(t, worker);
+    if (run_is_cancelled(t->run)) /* the batch is full still, and the sample thrown away */
+        return;
     gather_batch_begin(batch, worker->sample, is_first, rgb_scale(throughput, 1.0f / (float)count),
                        hash_combine(hash_combine(where->key, (uint64_t)path_vertex), where->sample));
     sampler_sequence numbers = sampler_sequence_make(where, SAMPLE_GATHER, path_vertex, count);
@@ -156,11 +158,12 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
     gather_rays rays;
     rays.fan.common = surface_ray(&v->hit, v->arrived, transport_facing_normal(v));
     rays.fan.common.skips_uv = true;
-    /* cancelled, its sample is thrown away */
     for (uint32_t begin = 0; begin < count && !run_is_cancelled(t->run); begin += RAY_FAN_MAX) {
         uint32_t end = count - begin < RAY_FAN_MAX ? count : begin + RAY_FAN_MAX;
         if (!gather_batch_has_room(batch, end - begin))
             final_gather_resolve(t, worker);
+        if (run_is_cancelled(t->run))
+            break;
         rays.fan.count = 0;
         if (is_plain)
             sample_plain(&g, is_guided ? &guide : NULL, &numbers, begin, end, &rays);
@@ -193,6 +196,8 @@ static void follow_detours(const transport *t, eye_worker *worker, uint32_t coun
         }
         irradiance_cache_get_many(t->cache, t->run, b->detour_queries, asking, worker->index, b->detour_irradiance,
                                   b->detour_holds);
+        if (run_is_cancelled(t->run))
+            return;
         count = 0;
         for (uint32_t i = 0; i < asking; i++) {
             const gather_detour *d = &b->detours[i];

@@ -70,7 +70,7 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
     eye_sample_note(sample, is_first ? PART_CAUSTIC : PART_SPECULAR, caustic);
     eye_sample_note(sample, is_first ? PART_INDIRECT : PART_SPECULAR, indirect);
     if (is_first && sample->layers)
-        sample->layers->sky = rgb_scale(rgb_mul(throughput, diffuse->sky), kept_direct);
+        sample->layers->sky = rgb_add(sample->layers->sky, rgb_scale(rgb_mul(throughput, diffuse->sky), kept_direct));
     if (by_group) {
         eye_sample_add_groups(sample, by_group, rgb_scale(throughput, kept_direct));
         eye_sample_add_group(sample, (uint32_t)t->layout->group_count, rgb_add(caustic, indirect));

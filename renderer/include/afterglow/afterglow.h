@@ -228,7 +228,7 @@ typedef struct ag_render_settings {
      * default: none. Traced where there is none yet; other processes on this machine that use it meanwhile fill it
      * together with this one. The picture is the same. Borrowed until ag_rendering_create or ag_render returns. One
      * that is damaged, or was made of another scene or with other settings than the photons depend on, is refused:
-     * camera, film, samples and gather rays may differ. */
+     * camera, film, samples and gather rays may differ, but the view may not where the photons are aimed. */
     const char *photon_map_file;
     bool photon_map_refresh; /* one that would be refused is traced anew, and replaced */
 } ag_render_settings;
