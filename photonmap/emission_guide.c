@@ -8,7 +8,7 @@
 enum { USEFUL_LEAST = 16, HALVINGS_MAX = 14, DEPTH_MAX = 56, QUARTERS = 4 };
 /* Sums of roots that differ by less, relatively, do not tell which axis is better. */
 static const double ALIKE = 0.03;
-/* What a leaf says counts as so many trials of what its parent says: a leaf where nothing came of a few trials is not
+/* The density of a leaf's parent counts as so many trials of the leaf: one where nothing came of a few trials is not
  * sure to be dark. */
 static const double PRIOR_TRIALS = 1.0;
 
@@ -50,7 +50,7 @@ typedef struct builder {
 /* A trial's part in the mean of the squares over all starts. */
 static double square_of(const emission_trial *t) { return (double)t->value * t->value / t->density; }
 
-/* What the useful trials of a node say, by quarters along each axis, and along each two of them together. */
+/* Sums over the useful trials of a node, by quarters along each axis, and along each two of them together. */
 typedef struct quarters {
     double one[EMISSION_DIMENSIONS][QUARTERS];
     double two[EMISSION_DIMENSIONS][EMISSION_DIMENSIONS][QUARTERS * QUARTERS]; /* of axes a < b */

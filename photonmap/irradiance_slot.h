@@ -87,9 +87,9 @@ static inline bool irradiance_slot_publish(irradiance_slot *slot, uint32_t claim
     return cas_release_u32(slot, &expected, ready);
 }
 
-/* What a map's file keeps beside a slot that is READY, to tell a word that has been damaged: never 0, and another one
- * where one or two bits of the word or of its index differ (CRC-7 of both, polynomial x^7 + x^3 + 1). It is written
- * before the word is published, and by several at once only where they write the same. */
+/* The check byte that a map's file keeps beside a ready slot, to tell a word that has been damaged: never 0, and
+ * another one where one or two bits of the word or of its index differ (CRC-7 of both, polynomial x^7 + x^3 + 1). It is
+ * written before the word is published, and by several at once only where they write the same. */
 static inline uint8_t irradiance_word_check(uint32_t index, uint32_t word)
 {
     static const uint8_t OF_NIBBLE[16] = {0x00, 0x12, 0x24, 0x36, 0x48, 0x5a, 0x6c, 0x7e,

@@ -178,7 +178,7 @@ float photon_map_far(const photon_map *map)
     return FAR_SPACINGS * map->mean_radius * sqrtf(photons_each / (float)map->nearest);
 }
 
-/* What was found, or PHOTON_HIDDEN where it does not stand for the place. */
+/* The bearer found, or PHOTON_HIDDEN where it does not stand for the place. */
 static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint32_t found, float distance_squared)
 {
     if (found == PHOTON_NONE || !map->surfaces)

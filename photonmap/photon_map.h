@@ -75,7 +75,7 @@ bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks
  * goes down with the square. */
 float photon_map_far(const photon_map *map);
 
-/* What photon_map_nearest returns where the nearest bearer is out of sight. */
+/* The nearest bearer is out of sight: an answer of photon_map_nearest. */
 #define PHOTON_HIDDEN (PHOTON_NONE - 1)
 
 /* The bearer whose irradiance stands for the place. PHOTON_NONE: none with a like normal is within half the largest

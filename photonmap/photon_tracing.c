@@ -412,8 +412,8 @@ static void explain_shortage(run_context *run, const photon_tracing_settings *se
                 emitted > 0.0 ? 100.0 * escaped / emitted : 0.0);
 }
 
-/* What a caustic map's paths are to meet first; NULL for the global map. false in *out_has_any: there is no light, or
- * nothing that a caustic could come from. */
+/* The specular matter that a caustic map's paths are to meet first; NULL for the global map. false in *out_has_any:
+ * there is no light, or nothing that a caustic could come from. */
 static ag_status find_target(const scene *s, photon_kind kind, light_target *out_matter,
                              const light_target **out_target, bool *out_has_any)
 {

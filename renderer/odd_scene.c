@@ -11,8 +11,8 @@
 enum { DIRECTIONS = 256 };
 /* Of the picture's pixels, so few may be lit, or be brighter or darker than the others, and count for nothing. */
 static const double FEW = 0.002, HALF = 0.5;
-/* What a picture shows that holds nothing above, or next to nothing below this, where white is 1. Eight bits of sRGB
- * show 3 and 255. */
+/* A picture with nothing above the first is all but black, one with next to nothing below the second all but white,
+ * where white is 1. Eight bits of sRGB show 3 and 255. */
 static const double DARKEST_BRIGHT_PART = 1e-3, BRIGHTEST_MIDDLE = 32.0;
 
 /* --- the picture's brightness --- */

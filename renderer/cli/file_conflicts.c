@@ -11,7 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* What a path names: a file that is there, or a name in a folder. */
+/* The file that a path names: one that is there, or a name in a folder. */
 typedef struct named_file {
     const char *path;
     bool is_there, is_regular;

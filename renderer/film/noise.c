@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-/* What a pixel of the lattice sums: how many samples, how many that brought light, how many that the sky lit; the three
- * colours as the film develops them, and their squares; each source, the mean of its colours, and its square. */
+/* The sums of a pixel of the lattice: how many samples, how many that brought light, how many that the sky lit; the
+ * three colours as the film develops them, and their squares; each source, the mean of its colours, and its square. */
 enum {
     SUM_COUNT,
     SUM_LIT,

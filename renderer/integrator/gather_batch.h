@@ -32,7 +32,7 @@ typedef struct gather {
     uint64_t key;       /* of the random numbers of its rays' detours */
 } gather;
 
-/* What a query leaves out of its end, and which of its gather's rays it is of. */
+/* The rest of a query's end, and which of its gather's rays it is of. */
 typedef struct gather_query_rest {
     float epsilon;
     uint32_t medium, number;

@@ -8,7 +8,7 @@
  * sooner, the cache tells of the light outside of a small room). */
 enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
 
-/* What an estimate would say of a diffuse place, but for what bounces further: radiance towards v's `out`. */
+/* Direct light and caustics at a diffuse place, as an estimate there holds them: radiance towards v's `out`. */
 static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, rng *random)
 {
     float u_pick = rng_float(random);

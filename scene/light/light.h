@@ -130,7 +130,7 @@ typedef struct emission_numbers {
 bool light_emit(const struct scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                 struct rng *random, light_emission *out_emission);
 
-/* The same by numbers that are drawn from the stream. */
+/* light_emit by numbers that are drawn from the stream. */
 bool light_sample_emission(const struct scene *s, const light *l, const light_target *target, struct rng *random,
                            light_emission *out_emission);
 emission_numbers emission_numbers_draw(struct rng *random);

@@ -53,7 +53,7 @@ float coat_entry(const material *m, float cos_theta)
     return coat_blend_at(&blend, COAT_ENTRY, fabsf(cos_theta));
 }
 
-/* What gets out of a coat is spread over a wider solid angle: the squared index. */
+/* Light that leaves a coat is spread over a wider solid angle: the squared index. */
 rgb coat_diffuse_albedo(const material *m)
 {
     coat_blend blend = coat_table_find(m->coat, m);

@@ -93,7 +93,7 @@ static bool is_allowed(const input_files *files, const char *path)
     return is_below;
 }
 
-/* What was opened need not be what was asked after, where somebody changes links meanwhile. */
+/* Links may change between the question and the opening, so the open file is asked after again. */
 static bool is_opened_allowed(const input_files *files, const char *path, int descriptor)
 {
     char link[64], target[PATH_MAX];

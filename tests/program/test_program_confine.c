@@ -26,7 +26,7 @@ static void write_files(void)
     assert_int_equal(symlink("..", in_folder("scene/up")), 0);
 }
 
-/* Whatever it says, nothing of the files is in it, and nothing but the picture was written. */
+/* Of all that the program says, nothing of the files is in it, and nothing but the picture was written. */
 static void expect_nothing_told(const program_run *run)
 {
     if (strstr(run->err, SECRET) || strstr(run->out, SECRET))

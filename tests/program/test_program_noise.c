@@ -11,7 +11,7 @@ static const char VIEW[] = "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \
                            "PixelFilter \"box\"\nWorldBegin\n";
 static const char PLANE[] = "Shape \"bilinearmesh\" \"point3 P\" [-4 -4 0  4 -4 0  -4 4 0  4 4 0]\n";
 
-/* What is said behind "noise: " in the line that has a hint. */
+/* The words behind "noise: " in the line that has a hint. */
 static void expect_hint(const char *scene, const char *const *options, const char *where, const char *help)
 {
     const char *all[PROGRAM_ARGUMENTS_MAX] = {QUICK, "-o", "a.exr", scene};

@@ -288,7 +288,8 @@ static void test_flipped_bits(void **state)
 
 enum { CUT, OVERWRITTEN, CHANGES };
 
-/* What happens to the map while it is in use: nobody is ended by a signal, and no picture shows what is not there. */
+/* A map is cut short, or overwritten, while it is in use: nobody is ended by a signal, and no picture shows what is not
+ * there. */
 static void test_map_lost_while_rendering(void **state)
 {
     (void)state;
