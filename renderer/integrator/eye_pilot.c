@@ -2,6 +2,7 @@
 #include "integrator/eye_pilot.h"
 
 #include "integrator/gather_path.h"
+#include "integrator/shading.h"
 #include "parallel_for.h"
 #include "rays/passage.h"
 
@@ -11,9 +12,6 @@
 /* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each place that they see.
  */
 enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHER_RAYS = 8, GRID_MAX = 4096 };
-/* As in shading.c. */
-static const float LOW_CONTRIBUTION = 0.03f;
-enum { ROULETTE_AFTER = 4 };
 /* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
@@ -97,9 +95,9 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
         if (!transport_trace(t, worker, ray, &v))
             return;
         throughput = rgb_mul(throughput, v.transmittance);
-        bool is_last = scatterings >= t->settings->max_depth, may_go_straight = transport_is_open_pane(t, &v);
+        bool is_last = scatterings >= t->settings->max_depth, goes_straight;
         if (!is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
-            if (path_vertex > 0 && rgb_max(throughput) < LOW_CONTRIBUTION) {
+            if (path_vertex > 0 && rgb_max(throughput) < SHADING_LOW_CONTRIBUTION) {
                 add_sides(t, &v, &out->gathered);
             } else {
                 add_sides(t, &v, &out->seen);
@@ -107,17 +105,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
                               &out->gathered);
             }
         }
-        if ((is_last && !may_go_straight) || !bsdf_has(&v.scattering, BSDF_TRACED) ||
-            !bsdf_sample_direction(&v.scattering, BSDF_TRACED, BSDF_RADIANCE,
-                                   sampler_2d(&where, SAMPLE_LOBE, path_vertex).x,
-                                   sampler_2d(&where, SAMPLE_SCATTER, path_vertex), &next))
-            return;
-        bool goes_straight = may_go_straight && next.is_straight;
-        if (is_last && !goes_straight)
-            return;
-        throughput = rgb_mul(throughput, next.weight);
-        if (path_vertex >= ROULETTE_AFTER &&
-            !transport_survives(&throughput, sampler_2d(&where, SAMPLE_ROULETTE, path_vertex).x))
+        if (!shading_go_on(t, &v, &where, path_vertex, is_last, &throughput, &next, &goes_straight))
             return;
         scatterings += !goes_straight;
         ray = goes_straight ? passage_continue(&v.hit, &v.arrived) : surface_ray(&v.hit, v.arrived, next.direction);

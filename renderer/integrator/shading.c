@@ -6,9 +6,6 @@
 #include "integrator/first_hit.h"
 #include "rays/passage.h"
 
-/* Below this throughput a diffuse place is shown by the k-nearest estimate at it instead of being gathered (Jensen
- * 2001, 8.2: an approximate evaluation where the contribution is low). */
-static const float LOW_CONTRIBUTION = 0.03f;
 enum { ROULETTE_AFTER = 4 };
 
 /* What a diffuse place sends on: its parts, but for what is gathered, which comes to the sample later. */
@@ -27,7 +24,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
     diffuse_light sum = {rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f), rgb_gray(0.0f)};
     if (scatterings_left < 1)
         return sum;
-    if (is_whole && scatterings > 0 && rgb_max(throughput) < LOW_CONTRIBUTION) {
+    if (is_whole && scatterings > 0 && rgb_max(throughput) < SHADING_LOW_CONTRIBUTION) {
         map_place at = transport_map_place(t, v);
         rgb transmitted = bsdf_gathered_transmission(&v->scattering);
         rgb all = rgb_mul(bsdf_gathered_reflection(&v->scattering),
@@ -75,6 +72,23 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
         eye_sample_add_groups(sample, by_group, rgb_scale(throughput, kept_direct));
         eye_sample_add_group(sample, (uint32_t)t->layout->group_count, rgb_add(caustic, indirect));
     }
+}
+
+bool shading_go_on(const transport *t, const vertex *v, const sampler *where, int path_vertex, bool is_last,
+                   rgb *in_out_throughput, bsdf_sample *out_next, bool *out_goes_straight)
+{
+    bool may_go_straight = transport_is_open_pane(t, v);
+    if ((is_last && !may_go_straight) || !bsdf_has(&v->scattering, BSDF_TRACED) ||
+        !bsdf_sample_direction(&v->scattering, BSDF_TRACED, BSDF_RADIANCE,
+                               sampler_2d(where, SAMPLE_LOBE, path_vertex).x,
+                               sampler_2d(where, SAMPLE_SCATTER, path_vertex), out_next))
+        return false;
+    *out_goes_straight = may_go_straight && out_next->is_straight;
+    if (is_last && !*out_goes_straight)
+        return false;
+    *in_out_throughput = rgb_mul(*in_out_throughput, out_next->weight);
+    return path_vertex < ROULETTE_AFTER ||
+           transport_survives(in_out_throughput, sampler_2d(where, SAMPLE_ROULETTE, path_vertex).x);
 }
 
 void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where, eye_sample *in_out)
@@ -131,10 +145,9 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
         }
 
         /* the others are traced on */
-        bool is_last = scatterings >= settings->max_depth, may_go_straight = transport_is_open_pane(t, &v);
-        if ((is_last && !may_go_straight) || !bsdf_has(&v.scattering, BSDF_TRACED))
-            return;
-        if (is_whole && !is_last && bsdf_is_sampled_from_light(&v.scattering, BSDF_TRACED)) {
+        bool is_last = scatterings >= settings->max_depth;
+        if (is_whole && !is_last && bsdf_has(&v.scattering, BSDF_TRACED) &&
+            bsdf_is_sampled_from_light(&v.scattering, BSDF_TRACED)) {
             float u_pick = sampler_2d(where, SAMPLE_LIGHT_PICK, path_vertex).x;
             lamp_light direct = direct_light_sample_lamp(t, worker, &v, BSDF_TRACED, u_pick,
                                                          sampler_2d(where, SAMPLE_LIGHT, path_vertex), 1, 1);
@@ -144,16 +157,8 @@ void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, con
                 eye_sample_add_group(in_out, t->s->lights[direct.lamp].group, rgb_scale(light_brought, kept));
         }
         bsdf_sample next;
-        if (!bsdf_sample_direction(&v.scattering, BSDF_TRACED, BSDF_RADIANCE,
-                                   sampler_2d(where, SAMPLE_LOBE, path_vertex).x,
-                                   sampler_2d(where, SAMPLE_SCATTER, path_vertex), &next))
-            return;
-        bool goes_straight = may_go_straight && next.is_straight;
-        if (is_last && !goes_straight)
-            return;
-        throughput = rgb_mul(throughput, next.weight);
-        if (path_vertex >= ROULETTE_AFTER &&
-            !transport_survives(&throughput, sampler_2d(where, SAMPLE_ROULETTE, path_vertex).x))
+        bool goes_straight;
+        if (!shading_go_on(t, &v, where, path_vertex, is_last, &throughput, &next, &goes_straight))
             return;
         if (goes_straight) {
             ray = passage_continue(&v.hit, &v.arrived);

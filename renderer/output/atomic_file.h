@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 /* Writes a temporary file ".NAME.afterglow-XXXXXX" in the folder of path, fsync, rename over path, fsync of the folder.
- * Those of the same NAME that no living process owns, which a process that was killed has left, are removed first. An
+ * Temporary files of the same NAME that a killed process has left, so that none living owns them, are removed first. An
  * existing file keeps its permissions; a new one gets 0666 less the umask. A symbolic link stays, what it points to is
  * replaced. Where path is no regular file (a FIFO, a device) or names an open descriptor (/dev/stdout, /dev/fd/N), the
  * bytes are written to it directly; a FIFO's reader is waited for, until atomic_file_end_waits. On failure nothing is

@@ -143,7 +143,6 @@ void coat_metal_lobe(const material *m, vec3 o, vec3 i, rgb *out_value, float *o
 
 bool coat_sample_metal_lobe(const material *m, vec3 o, vec2 u, vec3 *out_i)
 {
-
     if (!coat_is_smooth(m)) {
         coat_blend blend = coat_table_find(m->coat, m);
         *out_i = reflect_about(o, ggx_sample_visible(outer_facets(m, &blend), o, u));
@@ -169,14 +168,19 @@ rgb coat_metal_lobe_albedo(const material *m, float cos_o)
 
 /* --- the scattered lobe --- */
 
+/* The metal's reflectance at the mean cosine; 0 over a diffuse base. */
+static rgb scattering_metal(const material *m)
+{
+    return m->kind == MATERIAL_COATED_CONDUCTOR ? fresnel_conductor(MEAN_COSINE, m->eta, m->k) : rgb_gray(0.0f);
+}
+
 rgb coat_scattered_albedo(const material *m, float cos_o)
 {
     rgb sum = rgb_gray(0.0f);
     if (!m->coat)
         return sum;
     coat_blend blend = coat_table_find(m->coat, m);
-    bool is_metal = m->kind == MATERIAL_COATED_CONDUCTOR;
-    rgb metal = is_metal ? fresnel_conductor(MEAN_COSINE, m->eta, m->k) : rgb_gray(0.0f);
+    rgb metal = scattering_metal(m);
     for (int k = 0; k < blend.count; k++)
         if (blend.cells[k]->scattered_mean > 0.0f) {
             coat_blend one = {{blend.cells[k]}, {1.0f}, 1};
@@ -200,8 +204,7 @@ rgb coat_scattered(const material *m, vec3 o, vec3 i)
     if (!m->coat)
         return sum;
     coat_blend blend = coat_table_find(m->coat, m);
-    bool is_metal = m->kind == MATERIAL_COATED_CONDUCTOR;
-    rgb metal = is_metal ? fresnel_conductor(MEAN_COSINE, m->eta, m->k) : rgb_gray(0.0f);
+    rgb metal = scattering_metal(m);
     for (int k = 0; k < blend.count; k++)
         if (blend.cells[k]->scattered_mean > 0.0f) {
             coat_blend one = {{blend.cells[k]}, {1.0f}, 1};
