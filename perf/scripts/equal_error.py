@@ -34,7 +34,8 @@ def interval_of_median(values):
 
 def samples_for(seconds, tried):
     """Samples that should take so long, by tried runs [(spp, cpu_s)]: in a straight line through the two that took most
-    nearly so long, but no more than some times what has been tried; loading and photons take their time at once."""
+    nearly so long, but no more than some times what has been tried; loading and photons take their time at once. Times
+    are noisy, so the answer stays between the most samples that were clearly too quick and the fewest clearly too slow."""
     near = []
     for spp, cpu in sorted(tried, key=lambda run: abs(math.log(run[1] / seconds))):
         if all(spp != other for other, _ in near):
@@ -46,6 +47,10 @@ def samples_for(seconds, tried):
         wanted = spp + (seconds - cpu) / slope
     else:
         wanted = most if cpu < seconds else min(spp for spp, _ in tried) / 2
+    few = max((n for n, cpu in tried if cpu < (1.0 - NEAR_ENOUGH) * seconds), default=1)
+    many = min((n for n, cpu in tried if cpu > (1.0 + NEAR_ENOUGH) * seconds), default=SPP_MAX)
+    if few < many:
+        wanted = min(max(wanted, few), many)
     return max(1, min(SPP_MAX, most, round(wanted)))
 
 

@@ -39,17 +39,21 @@ figure() { # SCENE METHOD COLUMN
 holds() { awk "BEGIN { exit !($1) }" || fail "$2: $1"; }
 for scene in box_with_blocks lamp_sphere; do
     for method in photonmap path same; do
-        [[ $method == photonmap ]] || # whose photons alone may take longer
-            holds "$(figure $scene $method cpu_s) > 0.15 && $(figure $scene $method cpu_s) < 1.2" "CPU time of $scene, $method"
+        holds "$(figure $scene $method cpu_s) > 0" "CPU time of $scene, $method"
         holds "$(figure $scene $method trimmed_error) < $(figure $scene $method error)" "trimmed, $scene, $method"
         holds "$(figure $scene $method mean_ratio) > 0.9 && $(figure $scene $method mean_ratio) < 1.1" "mean of $scene"
     done
     [[ $(figure $scene photonmap over_photonmap) == 1 ]] || fail "the photon map is not as good as itself"
 done
-# the same program by another name: the noise of few runs, and what starting it costs
-for a in same,path path,same; do
-    holds "$(figure box_with_blocks ${a%,*} error) < 3 * $(figure box_with_blocks ${a#*,} error)" "a rival that is path tracing"
-done
+# the same program by another name has the same error for a sample; how many samples it got is a matter of time
+error_of_a_sample() { # METHOD: mean over the pairs of box_with_blocks
+    awk -F, -v method="$1" 'NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i }
+        $column["scene"] == "box_with_blocks" && $column["method"] == method { sum += $column["error"] * $column["spp"]; n++ }
+        END { if (n == 0) exit 1; print sum / n }' "$folder/out/runs.csv"
+}
+path_error=$(error_of_a_sample path) same_error=$(error_of_a_sample same)
+echo "error of a sample: path $path_error, rival $same_error"
+holds "$same_error < 1.5 * $path_error && $path_error < 1.5 * $same_error" "a rival that is path tracing"
 # without indirect light a closed box is too dark: nearly all of the error is bias; a floor alone has no such light
 holds "$(figure box_with_blocks dim mean_ratio) < 0.9" "direct light alone"
 holds "$(figure box_with_blocks dim bias_squared) > 0.8 * $(figure box_with_blocks dim error)" "direct light alone"
@@ -78,9 +82,12 @@ expect_error "the command of 'idle' has no {out}" --rival "idle=true {scene} {se
 expect_error "with a name that is not taken" --rival "path=$path --spp {spp} {scene}" "$lamp"
 expect_error "there is no scene 'nowhere'" nowhere
 
-# the arithmetic of intervals and of samples, by hand
-PYTHONPATH=$root/perf/scripts python3 -B - <<'CHECK'
-from equal_error import interval_of_median, samples_for
+# the arithmetic of intervals and of samples, by hand, and the search for samples with a clock that is a formula
+PYTHONPATH=$root/perf/scripts python3 -B - "$folder" <<'CHECK'
+import argparse, sys
+from pathlib import Path
+import equal_error
+from equal_error import interval_of_median, run_pair, samples_for
 # eight values: the second and the seventh hold the median with 1 - 2 (1 + 8) / 256
 assert interval_of_median([8, 1, 7, 2, 6, 3, 5, 4]) == (4.5, 2, 7, 1 - 18 / 256)
 assert interval_of_median([3]) == (3, 3, 3, 0.0)
@@ -93,4 +100,20 @@ assert samples_for(1000, [(4, 4.0), (8, 6.0)]) == 64
 assert samples_for(1, [(4, 4.0), (8, 6.0)]) == 1
 assert samples_for(3, [(4, 4.0), (2, 4.1)]) == 1 # noise: fewer
 assert samples_for(5, [(4, 4.0), (2, 4.1)]) == 32 # noise: more
+assert samples_for(5, [(4, 4.9), (6, 4.8), (30, 9.0)]) == 30 # noise, but 30 are too many
+assert samples_for(5, [(4, 4.0), (9, 5.2), (10, 5.3)]) == 7
+assert samples_for(5, [(4, 4.0), (9, 5.5), (10, 5.6)]) == 4 # no fewer than what was too quick
+class Formula: # a method that takes 0.3 s at once and 0.02 s a sample
+    name, takes_samples = "formula", True
+    def render(self, job, seed, out, seconds=0.0, spp=0):
+        Path(out).touch()
+        return 0.3 + 0.02 * spp
+equal_error.picture_errors = lambda bin_folder, pictures, references: {}
+job = argparse.Namespace(name="none", size="1x1")
+options = argparse.Namespace(work=sys.argv[1], reference_spp=1, bin="")
+known = []
+for pair, seconds in ((1, 0.5), (1, 10.0), (2, 10.0)):
+    row = run_pair(options, job, Formula(), seconds, pair, known, [])
+    assert abs(float(row["cpu_s"]) / seconds - 1.0) <= equal_error.NEAR_ENOUGH, row
+    assert float(row["cpu_s"]) == round(0.3 + 0.02 * row["spp"], 4), row
 CHECK
