@@ -33,7 +33,7 @@ if ((${#presets[@]} == 0)); then
     fi
 fi
 
-packages=("${BUILD_PACKAGES[@]}" libcmocka-dev openimageio-tools opencolorio-tools spin python3 clang-format parallel jq
+packages=("${BUILD_PACKAGES[@]}" libcmocka-dev openimageio-tools opencolorio-tools spin python3 clang-format parallel jq file
     libnanoflann-dev)
 case " ${presets[*]} ${build_only[*]-} " in *-clang*) packages+=(clang) ;; esac
 case " ${presets[*]} " in *" dev-clang "* | *" tsan-clang "*) packages+=(libclang-rt-14-dev) ;; esac

@@ -43,6 +43,14 @@ static bool take_definition(const char *text, options *o)
     return true;
 }
 
+static bool take_gltf_light_units(const char *value, options *o)
+{
+    int word;
+    bool is_valid = parse_word(value, WORDS("auto", "standard", "unitless", "raw"), &word);
+    o->asked.gltf_light_units = (ag_gltf_light_units)word;
+    return is_valid;
+}
+
 static bool take_type(const char *value, options *o)
 {
     int word;
@@ -119,14 +127,14 @@ static bool take_verbose(const char *value, options *o)
 static bool take_help(const char *value, options *o)
 {
     (void)value;
-    o->asked = OPTIONS_ASKED_HELP;
+    o->asked_text = OPTIONS_ASKED_HELP;
     return true;
 }
 
 static bool take_version(const char *value, options *o)
 {
     (void)value;
-    o->asked = OPTIONS_ASKED_VERSION;
+    o->asked_text = OPTIONS_ASKED_VERSION;
     return true;
 }
 
@@ -252,6 +260,17 @@ static const option_row ROWS[] = {
                         "Scenes in other formats than pbrt's text have no such names."},
      .letter = 'D',
      .take = take_definition},
+    {.text = {.name = "gltf-light-units",
+              .argument = "UNITS",
+              .section = "Scene",
+              .help = "what lamps of glTF files are measured in: auto (default; by the file's generator), standard (cd "
+                      "and lx at 683 lm/W), unitless (W/sr and W/m^2) or raw (W), as Blender's exporter calls them",
+              .manual = "What lamps of glTF files are measured in, beside surfaces that shine. *standard* is cd and lx "
+                        "at 683 lm/W, *unitless* W/sr and W/m^2, *raw* W over the whole sphere, and W/m^2 of suns: the "
+                        "names that the \"Lighting Mode\" of Blender's exporter has. *auto* (default) goes by the "
+                        "file's generator: Blender's from version 3.4 on is standard, before that raw, others are "
+                        "unitless."},
+     .take = take_gltf_light_units},
     {.text = {.name = "confine",
               .section = "Scene",
               .help = "for scenes of strangers: read files below the scene's folder alone, and write only what the "

@@ -149,11 +149,11 @@ static options_result take_options(int argc, char **argv, options *o)
                     option.text->name, option.text->argument, option.text->help);
             return OPTIONS_EXIT_USAGE;
         }
-        if (o->asked == OPTIONS_ASKED_HELP)
+        if (o->asked_text == OPTIONS_ASKED_HELP)
             option_help_print(stdout);
-        else if (o->asked == OPTIONS_ASKED_VERSION)
+        else if (o->asked_text == OPTIONS_ASKED_VERSION)
             printf("afterglow %s\n", ag_version());
-        if (o->asked != OPTIONS_ASKED_NOTHING)
+        if (o->asked_text != OPTIONS_ASKED_NOTHING)
             return OPTIONS_EXIT_OK;
     }
     return OPTIONS_RUN;

@@ -43,13 +43,14 @@ typedef struct options {
     int tile_index, tile_count; /* from 1 on; 0: the whole */
     double time_limit, begun;   /* s, 0: none; from when it counts, see passes_seconds */
     progress_style progress;
-    int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
+    int verbosity;           /* -1 quiet, 0, 1 verbose, 2 debug */
+    ag_scene_settings asked; /* of the scene; without the definitions, which stand above */
     ag_context_settings context;
     ag_output_settings output;
     ag_render_settings render; /* our defaults, and the given settings over them */
     given_setting *given;      /* owned array, in the order of the command line; the strings are not */
     int given_count;
-    options_asked asked;
+    options_asked asked_text;
 } options;
 
 typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE } options_result;

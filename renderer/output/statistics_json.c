@@ -7,6 +7,7 @@
 #include "settings_table.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +44,10 @@ static json_t *value_of(const setting_row *row, const ag_render_settings *settin
     case SETTING_INTEGER: return json_integer(*(const int *)value);
     case SETTING_COUNT:
     case SETTING_SEED: return count(*(const uint64_t *)value);
-    case SETTING_NUMBER: return json_real((double)*(const float *)value);
+    case SETTING_NUMBER: {
+        double number = (double)*(const float *)value;
+        return isfinite(number) ? json_real(number) : json_null(); /* JSON has no infinity */
+    }
     case SETTING_FLAG: return json_boolean(*(const bool *)value);
     case SETTING_WINDOW: return json_pack("[f, f, f, f]", window[0], window[1], window[2], window[3]);
     case SETTING_LAYERS: return layer_names(*(const uint32_t *)value);

@@ -1,11 +1,9 @@
 # The Debian package: `cpack -G DEB` in the build folder, or its target "package". Program, library, headers, module, man
 # page, examples in one; what it depends on is found in the files themselves (dpkg-shlibdeps).
-set(AG_PACKAGE_CONTACT "The Afterglow authors <root@localhost>" CACHE STRING "Maintainer of packages: NAME <MAIL>")
-
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME afterglow)
 set(CPACK_PACKAGE_VENDOR Afterglow)
-set(CPACK_PACKAGE_CONTACT ${AG_PACKAGE_CONTACT})
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/package_maintainer.cmake)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "global illumination renderer with photon mapping and final gathering")
 set(CPACK_PACKAGE_DESCRIPTION
@@ -24,6 +22,10 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT) # afterglow_VERSION-1_ARCHITECTURE.deb
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON) # and with them, that the linker's cache is renewed
+# Who links against the library depends on this package; installing it renews the linker's cache (deb-triggers(5)).
+set(control ${CMAKE_CURRENT_BINARY_DIR}/debian)
+file(WRITE ${control}/shlibs "libafterglow ${PROJECT_VERSION_MAJOR} afterglow (>= ${PROJECT_VERSION})\n")
+file(WRITE ${control}/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${control}/shlibs ${control}/triggers)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 include(CPack)

@@ -53,11 +53,11 @@ static void attribute_name(const char *json, char *out)
 static void test_statistics_and_header(void **state)
 {
     (void)state;
-    picture p = render(PROGRAM_SCENES "sphere.pbrt",
-                       ARGUMENTS("--photons=300", "--caustic-photons=20", "--spp=1", "--gather-samples=2", "--size=8x6",
-                                 "--aov=Z,light", "--nearest=31", "--max-depth=7", "--photon-aim=0.25", "--seed=12",
-                                 "--pane-light=traced", "--stats=a.json"));
-    picture_reset(&p);
+    program_run run = RUN("-q", "--photons=300", "--caustic-photons=20", "--spp=1", "--gather-samples=2", "--size=8x6",
+                          "--aov=Z,light", "--nearest=31", "--max-depth=7", "--photon-aim=0.25", "--seed=12",
+                          "--pane-light=traced", "--stats=a.json", "-o", "a.exr", PROGRAM_SCENES "sphere.pbrt");
+    expect_exit(&run, 0);
+    program_run_reset(&run);
     json_t *stats = stats_read(in_folder("a.json"));
     size_t size;
     unsigned char *file = read_bytes(in_folder("a.exr"), &size);

@@ -4,7 +4,7 @@
 # ctest: install
 set -euo pipefail
 
-for tool in dpkg-deb dpkg-shlibdeps cpack; do
+for tool in dpkg-deb dpkg-shlibdeps file cpack; do
     if ! command -v "$tool" >/dev/null; then
         echo "SKIPPED: $tool is not installed"
         exit 77
@@ -13,6 +13,7 @@ done
 # shellcheck source=tests/fixtures/installed_tree.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/installed_tree.sh"
 
+export DEBFULLNAME="Ann Packager" DEBEMAIL=ann@example.org SOURCE_DATE_EPOCH=1700000000
 cpack -G DEB --config "$AFTERGLOW_BUILD_DIR/CPackConfig.cmake" -B "$folder/made" >cpack.log 2>&1 ||
     fail "cpack: $(<cpack.log)"
 package=$(find made -maxdepth 1 -name '*.deb')
@@ -32,7 +33,7 @@ expect_field Version "${version#afterglow }-1"
 expect_field Architecture "$(dpkg --print-architecture)"
 expect_field Section graphics
 [[ $(dpkg-deb -f "$package" Description) == *photon* ]] || fail "no description"
-[[ $(dpkg-deb -f "$package" Maintainer) == *'<'*@*'>' ]] || fail "no maintainer"
+expect_field Maintainer "Ann Packager <ann@example.org>"
 
 # Each library that is linked against, also by the module, is a package of this system by name and version.
 depends=$(dpkg-deb -f "$package" Depends)
@@ -46,11 +47,14 @@ done < <(tr -d '()' <<<"${depends//, /$'\n'}")
 echo "ok: depends on $depends"
 
 for file in bin/afterglow include/afterglow/afterglow.h include/afterglow/base.h share/man/man1/afterglow.1.gz \
-    share/doc/afterglow/copyright share/doc/afterglow/examples/room.pbrt; do
+    share/doc/afterglow/copyright share/doc/afterglow/changelog.gz share/doc/afterglow/changelog.Debian.gz share/doc/afterglow/examples/room.pbrt; do
     [[ -s tree/usr/$file ]] || fail "no $file"
 done
 [[ -n $(find tree/usr -name afterglow.pc) ]] || fail "no pkg-config file"
 zcat tree/usr/share/man/man1/afterglow.1.gz | grep -q '^\.TH AFTERGLOW' || fail "the man page is none"
+changelog=$(zcat tree/usr/share/doc/afterglow/changelog.Debian.gz)
+[[ $changelog == "afterglow (${version#afterglow }-1) "* ]] || fail "changelog.Debian begins otherwise: $changelog"
+[[ $changelog == *" -- Ann Packager <ann@example.org>  Tue, 14 Nov 2023 22:13:20 +0000" ]] || fail "who and when: $changelog"
 ! grep -rlF "$AFTERGLOW_BUILD_DIR" tree || fail "these name the folder of the build"
 if find tree -perm /022 ! -type l | grep .; then
     fail "these may be written by others"
@@ -60,6 +64,8 @@ for binary in bin/afterglow lib/libafterglow.so.*.*; do
 done
 dpkg-deb --ctrl-tarfile "$package" | tar -x --to-stdout ./shlibs | grep -q '^libafterglow 0 afterglow' ||
     fail "no shlibs for libafterglow"
+dpkg-deb --ctrl-tarfile "$package" | tar -x --to-stdout ./triggers | grep -qx 'activate-noawait ldconfig' ||
+    fail "the linker's cache is not renewed"
 echo "ok: files"
 
 if command -v lintian >/dev/null; then

@@ -1,0 +1,16 @@
+# Who makes the package is its maintainer, named as for Debian's own tools (debchange(1)): $DEBFULLNAME and $DEBEMAIL, else
+# $EMAIL. CPack reads this when it begins.
+set(name "The Afterglow authors")
+if(NOT "$ENV{DEBFULLNAME}" STREQUAL "")
+  set(name "$ENV{DEBFULLNAME}")
+endif()
+set(mail root@localhost)
+foreach(variable EMAIL DEBEMAIL)
+  if(NOT "$ENV{${variable}}" STREQUAL "")
+    set(mail "$ENV{${variable}}")
+  endif()
+endforeach()
+if(mail STREQUAL root@localhost)
+  message(STATUS "The package is for this machine only: set DEBEMAIL to the address of its maintainer to pass it on.")
+endif()
+set(CPACK_PACKAGE_CONTACT "${name} <${mail}>")
