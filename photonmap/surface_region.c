@@ -28,16 +28,32 @@ static bool is_alike(const surface_hit *hit, vec3 normal, vec3 arrival, float mi
     return vec3_dot(vec3_face_forward(hit->geometric_normal, vec3_negate(arrival)), normal) > min_cos;
 }
 
+/* What is the same for all rays of a search: they begin, or end, `lift` above the plane through the place. */
+typedef struct probe {
+    const scene *s;
+    vec3 above, normal; /* the place, lifted along its normal */
+    float lift, radius, min_cos;
+    uint64_t *rays; /* counts them */
+} probe;
+
+static bool find_surface(const scene *s, vec3 origin, vec3 direction, float farthest, uint64_t *in_out_rays,
+                         surface_hit *out_hit)
+{
+    ++*in_out_rays;
+    return passage_find_surface(s, scene_ray_make(origin, direction), farthest, out_hit);
+}
+
 /* The surface at the place itself, from above: its normal, and a start above it. A narrow corner may have no room for
  * the full lift. */
-static bool find_foot(const scene *s, vec3 position, vec3 normal, float radius, vec3 *out_normal, float *out_lift)
+static bool find_foot(const scene *s, vec3 position, vec3 normal, float radius, uint64_t *in_out_rays, vec3 *out_normal,
+                      float *out_lift)
 {
     vec3 down = vec3_negate(normal);
     float lift = radius * LIFT;
     for (int trial = 0; trial < FOOT_TRIALS; trial++, lift *= 0.125f) {
         surface_hit hit;
-        scene_ray ray = scene_ray_make(vec3_add_scaled(position, normal, lift), down);
-        if (!passage_find_surface(s, ray, 2.0f * lift, &hit) || !is_alike(&hit, normal, down, 0.9f))
+        vec3 above = vec3_add_scaled(position, normal, lift);
+        if (!find_surface(s, above, down, 2.0f * lift, in_out_rays, &hit) || !is_alike(&hit, normal, down, 0.9f))
             continue;
         if (vec3_distance_squared(hit.position, position) > hit.epsilon * hit.epsilon + 0.01f * lift * lift)
             continue; /* another surface, between */
@@ -48,29 +64,28 @@ static bool find_foot(const scene *s, vec3 position, vec3 normal, float radius, 
     return false;
 }
 
-/* Whether the surface is there at that place of the plane: as deep as photons within the radius may lie. */
-static bool has_surface_below(const scene *s, vec3 above, vec3 normal, float lift, float lateral, float radius,
-                              float min_cos)
+/* Whether the surface is there so far along a unit tangent: as deep as photons within the radius may lie. */
+static bool has_surface_below(const probe *p, vec3 tangent, float lateral)
 {
     surface_hit hit;
-    vec3 down = vec3_negate(normal);
-    float depth = sqrtf(fmaxf(0.0f, radius * radius - lateral * lateral));
-    return passage_find_surface(s, scene_ray_make(above, down), lift + depth, &hit) &&
-           is_alike(&hit, normal, down, min_cos);
+    vec3 down = vec3_negate(p->normal);
+    float depth = sqrtf(fmaxf(0.0f, p->radius * p->radius - lateral * lateral));
+    return find_surface(p->s, vec3_add_scaled(p->above, tangent, lateral), down, p->lift + depth, p->rays, &hit) &&
+           is_alike(&hit, p->normal, down, p->min_cos);
 }
 
 /* How far the surface goes along a unit tangent; radius where nothing ends it. */
-static float find_extent(const scene *s, vec3 above, vec3 normal, float lift, vec3 tangent, float radius, float min_cos)
+static float find_extent(const probe *p, vec3 tangent)
 {
     surface_hit hit;
-    if (passage_find_surface(s, scene_ray_make(above, tangent), radius, &hit))
-        return is_alike(&hit, normal, tangent, min_cos) ? radius : hit.distance;
-    float high = PROBE_AT * radius, low = 0.0f;
-    if (has_surface_below(s, vec3_add_scaled(above, tangent, high), normal, lift, high, radius, min_cos))
-        return radius;
+    if (find_surface(p->s, p->above, tangent, p->radius, p->rays, &hit))
+        return is_alike(&hit, p->normal, tangent, p->min_cos) ? p->radius : hit.distance;
+    float high = PROBE_AT * p->radius, low = 0.0f;
+    if (has_surface_below(p, tangent, high))
+        return p->radius;
     for (int i = 0; i < BISECTIONS; i++) {
         float middle = 0.5f * (low + high);
-        if (has_surface_below(s, vec3_add_scaled(above, tangent, middle), normal, lift, middle, radius, min_cos))
+        if (has_surface_below(p, tangent, middle))
             low = middle;
         else
             high = middle;
@@ -123,36 +138,36 @@ static void find_tangents(vec3 position, vec3 normal, vec3 *out_x, vec3 *out_y)
     *out_y = vec3_add_scaled(vec3_scale(f.y, cosine), f.x, -sine);
 }
 
-bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius)
+bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
+                                uint64_t *in_out_rays)
 {
-    float lift = LIFT * radius, lateral = PROBE_AT * radius;
+    float lift = LIFT * radius;
+    probe p = {s, vec3_add_scaled(position, normal, lift), normal, lift, radius, min_cos, in_out_rays};
     vec3 x, y;
     find_tangents(position, normal, &x, &y);
-    vec3 above = vec3_add_scaled(position, normal, lift);
     for (int i = 0; i < SURFACE_REGION_SECTORS; i += 2) {
         vec3 tangent = vec3_add_scaled(vec3_scale(x, UNIT[i][0]), y, UNIT[i][1]);
-        if (!has_surface_below(s, vec3_add_scaled(above, tangent, lateral), normal, lift, lateral, radius, min_cos))
+        if (!has_surface_below(&p, tangent, PROBE_AT * radius))
             return false;
     }
     return true;
 }
 
-bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
+bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius, uint64_t *in_out_rays,
                          surface_region *out_region)
 {
     float lift, extent[SURFACE_REGION_SECTORS];
     vec3 n;
     surface_region *r = out_region;
-    if (!find_foot(s, position, normal, radius, &n, &lift))
+    if (!find_foot(s, position, normal, radius, in_out_rays, &n, &lift))
         return false;
     r->center = position;
     find_tangents(position, n, &r->x, &r->y);
 
-    vec3 above = vec3_add_scaled(position, n, lift);
+    probe p = {s, vec3_add_scaled(position, n, lift), n, lift, radius, min_cos, in_out_rays};
     r->nearest_end = radius;
     for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
-        vec3 tangent = vec3_add_scaled(vec3_scale(r->x, UNIT[i][0]), r->y, UNIT[i][1]);
-        extent[i] = find_extent(s, above, n, lift, tangent, radius, min_cos);
+        extent[i] = find_extent(&p, vec3_add_scaled(vec3_scale(r->x, UNIT[i][0]), r->y, UNIT[i][1]));
         r->nearest_end = fminf(r->nearest_end, extent[i]);
         extent[i] = fmaxf(extent[i], SHORTEST * radius);
     }

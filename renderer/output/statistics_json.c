@@ -35,7 +35,7 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
     json_object_set_new(times, "total", json_real(s->time_total_s));
     return json_pack(
         "{s:s, s:i, s:s, s:I, s:s, s:s, s:s, s:{s:i, s:i, s:i}, s:{s:o, s:o, s:o, s:o, s:s},"
-        " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o},"
+        " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o, s:o},"
         " s:{s:i, s:f, s:f, s:i, s:f, s:f, s:i, s:s}, s:o, s:o, s:f, s:o, s:{s:o}}",
         "version", ag_version(), "threads", (int)s->threads, "isa", isa, "seed", (json_int_t)settings->seed,
         "integrator", settings->integrator == AG_INTEGRATOR_PATH ? "path" : "photonmap", "cache",
@@ -51,7 +51,7 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
         count(s->irradiance_refused), "ready", count(s->irradiance_ready), "reclaimed", count(s->irradiance_reclaimed),
         "estimate_s", s->irradiance_estimate_s, "wait_s", s->irradiance_wait_s, /**/
         "rays", "camera", count(s->rays_camera), "shadow", count(s->rays_shadow), "gather", count(s->rays_gather),
-        "photon", count(s->rays_photon), "path", count(s->rays_path), /**/
+        "photon", count(s->rays_photon), "path", count(s->rays_path), "estimate", count(s->rays_estimate), /**/
         "settings", "nearest", settings->nearest, "radius", (double)settings->radius, "irradiance_fraction",
         (double)settings->irradiance_fraction, "gather_samples", settings->gather_samples, "gather_guiding",
         (double)settings->gather_guiding, "photon_aim", (double)settings->photon_aim, "max_depth", settings->max_depth,
