@@ -54,6 +54,7 @@ enum {
     OPT_TIME_LIMIT,
     OPT_PREVIEW,
     OPT_FRAMES,
+    OPT_GLTF_LIGHT_UNITS,
     OPT_NO_CLOBBER,
     OPT_CONFINE,
     OPT_CONFINE_TO,
@@ -78,6 +79,9 @@ static const option_line LINES[] = {
     {'D', "define", "NAME=VALUE",
      "put VALUE in the place of $NAME and ${NAME} in the scene's text; may be\nrepeated; with --frames $frame is the "
      "frame's number"},
+    {OPT_GLTF_LIGHT_UNITS, "gltf-light-units", "UNITS",
+     "what lamps of glTF files are measured in: auto (default; by the file's\ngenerator), standard (cd and lx at 683 "
+     "lm/W), unitless (W/sr and W/m^2)\nor raw (W), as Blender's exporter calls them"},
     {'t', "nthreads", "N", "threads (default: what affinity mask and cgroup quota allow)"},
     {OPT_SEED, "seed", "N", "seed of all random numbers (default: the scene's, else 0)"},
     {OPT_SPP, "spp", "N",
@@ -300,6 +304,10 @@ static bool take_option(int code, const char *value, options *o)
     case OPT_FRAMES:
         frames_reset(&o->frames);
         is_valid = frames_parse(value, &o->frames);
+        break;
+    case OPT_GLTF_LIGHT_UNITS:
+        is_valid = parse_word(value, WORDS("auto", "standard", "unitless", "raw"), &word);
+        o->asked.gltf_light_units = (ag_gltf_light_units)word;
         break;
     case OPT_CONFINE: o->context.is_confined = true; break;
     case OPT_CONFINE_TO:

@@ -83,6 +83,30 @@ typedef struct ag_definition {
  * name is not valid or given twice, or the scene does not use it; the log says which). */
 AG_API ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_definition *definitions,
                                     size_t definition_count, ag_scene **out_scene);
+
+/* What the numbers of lamps in a glTF file (KHR_lights_punctual) are, beside those of emissive surfaces. The names are
+ * those of the "Lighting Mode" of Blender's exporter, which does not write down which one it was. */
+typedef enum ag_gltf_light_units {
+    AG_GLTF_LIGHT_UNITS_AUTO,     /* as asset.generator tells: Blender from 3.4 on standard, before that raw; others
+                                   * unitless */
+    AG_GLTF_LIGHT_UNITS_STANDARD, /* cd and lx at 683 lm/W, while emission is radiance: divided by 683 */
+    AG_GLTF_LIGHT_UNITS_UNITLESS, /* taken as they are, as W/sr and W/m^2: so also cd and lx where emission is in nit */
+    AG_GLTF_LIGHT_UNITS_RAW       /* points and spots in W over the whole sphere: divided by 4 pi; suns in W/m^2 */
+} ag_gltf_light_units;
+
+/* What is asked of a scene beyond what its file says. */
+typedef struct ag_scene_settings {
+    const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
+    size_t definition_count;              /* default 0 */
+    ag_gltf_light_units gltf_light_units; /* default AG_GLTF_LIGHT_UNITS_AUTO */
+} ag_scene_settings;
+
+AG_API ag_scene_settings ag_default_scene_settings(void);
+
+/* The same with settings; NULL: the default ones. They are needed for the time of the call alone. Errors also:
+ * AG_ERROR_ARGUMENT (a setting is out of its range). */
+AG_API ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
+                                  ag_scene **out_scene);
 AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
 
 /* Whether a path names one of the files that the scene was read from: its own, those that it includes, meshes,
