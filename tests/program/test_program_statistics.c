@@ -104,15 +104,9 @@ static void test_path_tracer(void **state)
     (void)state;
     json_t *stats = stats_of(BOX, ARGUMENTS(QUICK, "--integrator=path", "--stats=a.json"));
     assert_string_equal(json_string_value(stats_find(stats, "integrator")), "path");
-    static const char *const NONE[] = {"photons.emitted",
-                                       "photons.stored_global",
-                                       "photons.stored_caustic",
-                                       "photons.bytes",
-                                       "irradiance.requests",
-                                       "irradiance.computed",
-                                       "rays.gather",
-                                       "rays.photon",
-                                       "rays.estimate"};
+    static const char *const NONE[] = {"photons.emitted", "photons.stored_global", "photons.stored_caustic",
+                                       "photons.bytes",   "irradiance.requests",   "irradiance.computed",
+                                       "rays.gather",     "rays.photon",           "rays.estimate"};
     for (size_t i = 0; i < sizeof NONE / sizeof *NONE; i++)
         assert_int_equal(stats_integer(stats, NONE[i]), 0);
     assert_int_equal(stats_integer(stats, "rays.camera"), 20 * 10 * 2);
