@@ -262,6 +262,26 @@ typedef struct ag_render_settings {
 AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *scene,
                                                ag_render_settings *out_settings);
 
+/* Our defaults alone. */
+AG_API ag_render_settings ag_default_render_settings(void);
+
+/* A setting that has a name, for command lines, dialogs and their help. The strings are the library's. */
+typedef struct ag_setting {
+    const char *name;      /* "photon-aim" */
+    const char *argument;  /* what stands for its value in help, "F"; NULL: it takes none, and is switched on */
+    const char *section;   /* "Output", "Picture" or "Light" */
+    const char *help;      /* what it does, its range and default, in a sentence without an end */
+    const char *manual;    /* the same at length, with *bold* and _italic_ words; NULL: help says it all */
+    bool is_of_photon_map; /* a kept photon map was made with one value of it, and is refused for another */
+} ag_setting;
+
+/* All of them by number, from 0 on; NULL: there are no more. */
+AG_API const ag_setting *ag_setting_at(size_t index);
+/* Sets one by its name to what a text says; numbers have a point in every locale. "aov" adds to the layers that are
+ * set. value: NULL where it takes none; "photon-map" borrows it. Errors: AG_ERROR_ARGUMENT (there is no such setting,
+ * or the text is no value of it; settings are then as they were). */
+AG_API ag_status ag_render_settings_set(ag_render_settings *settings, const char *name, const char *value);
+
 #define AG_DEFAULT_NOISE_LEVEL           0.02f
 #define AG_DEFAULT_SAMPLES_MOST          1024
 #define AG_DEFAULT_GATHER_RAYS_PER_PIXEL 256
