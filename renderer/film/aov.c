@@ -49,6 +49,14 @@ static const layer_name NAMES[] = {
     {"all", AG_LAYERS_ALL},
 };
 
+const char *aov_layer_name(uint32_t layer)
+{
+    size_t i = 0;
+    while (i + 1 < sizeof NAMES / sizeof *NAMES && NAMES[i].layers != layer)
+        i++;
+    return NAMES[i].name;
+}
+
 ag_status ag_layers_parse(const char *list, uint32_t *out_layers)
 {
     if (!list || !out_layers)

@@ -86,6 +86,9 @@ typedef struct aov_needs {
     bool variance;          /* for adaptive sampling */
 } aov_needs;
 
+/* What ag_layers_parse calls one layer. */
+const char *aov_layer_name(uint32_t layer);
+
 /* group_names: of the scene's light
  * groups, [group_count], the first "default". Errors: AG_ERROR_MEMORY. */
 ag_status aov_layout_create(uint32_t layers, aov_needs also, bool is_path, const char *const *group_names,

@@ -1,6 +1,8 @@
 /* picture_layers.c: see picture_layers.h. */
 #include "output/picture_layers.h"
 
+#include "settings_table.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,7 +73,18 @@ static void add_numbers(picture_layers *out, const char *name, const float *numb
 static void add_text(picture_layers *out, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* name lives as long as the program; what does not fit is left out. */
+/* A name that lives as long as the picture's layers; NULL: it does not fit. */
+static const char *keep_text(picture_layers *out, const char *text)
+{
+    size_t size = strlen(text) + 1;
+    if (size > out->text_capacity - out->text_length)
+        return NULL;
+    char *kept = memcpy(out->text + out->text_length, text, size);
+    out->text_length += size;
+    return kept;
+}
+
+/* name lives as long as the layers; what does not fit is left out. */
 static void add_text(picture_layers *out, const char *name, const char *format, ...)
 {
     va_list arguments;
@@ -123,11 +136,39 @@ static void describe_run(ag_context *context, const ag_output_settings *settings
     add_numbers(out, "renderTimeSeconds", &out->render_time, 1); /* as pbrt-v4 calls it */
 }
 
+/* "settings.pane_light", as the statistics call it, becomes "afterglow/paneLight". */
+static void name_attribute(const char *json, char *out, size_t size)
+{
+    const char *dot = strchr(json, '.');
+    size_t length = (size_t)snprintf(out, size, "afterglow/");
+    for (const char *c = dot ? dot + 1 : json; *c && length + 1 < size; c++) {
+        bool is_capital = *c == '_' && c[1] != '\0';
+        c += is_capital;
+        out[length++] = is_capital && *c >= 'a' && *c <= 'z' ? (char)(*c - 'a' + 'A') : *c;
+    }
+    out[length] = '\0';
+}
+
+static void describe_settings(const ag_render_settings *settings, picture_layers *out)
+{
+    for (size_t i = 0; setting_at(i); i++) {
+        const setting_row *row = setting_at(i);
+        char value[SETTING_TEXT_MAX], name[64];
+        if (!(row->marks & SETTING_IN_HEADER) ||
+            (settings->integrator == AG_INTEGRATOR_PATH && (row->marks & SETTING_OF_PHOTONS)))
+            continue;
+        name_attribute(row->json, name, sizeof name);
+        setting_format(row, settings, value);
+        const char *kept = keep_text(out, name);
+        if (kept)
+            add_text(out, kept, "%s", value);
+    }
+}
+
 static void describe(ag_context *context, const ag_film *film, const ag_output_settings *settings, picture_layers *out)
 {
     const ag_render_settings *r = &film->origin.settings;
     const ag_statistics *s = &context->statistics;
-    bool is_path = r->integrator == AG_INTEGRATOR_PATH;
     out->attributes[out->attribute_count++] = (image_attribute){.name = "Software", .text = "Afterglow"};
     add_numbers(out, "worldToCamera", film->origin.world_to_camera, 16);
     if (film->origin.has_ndc)
@@ -136,15 +177,8 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
         add_text(out, "afterglow/define", "%s", film->origin.defined);
     add_text(out, "afterglow/version", "%s", ag_version());
     add_text(out, "afterglow/isa", "%s", context->isa);
-    add_text(out, "afterglow/integrator", "%s", is_path ? "path" : "photonmap");
-    add_text(out, "afterglow/paneLight", "%s", r->pane_light == AG_PANE_LIGHT_DIRECT ? "direct" : "traced");
-    add_text(out, "afterglow/seed", "%lld", (long long)r->seed);
-    add_text(out, "afterglow/samplesPerPixel", "%d", r->samples_per_pixel);
-    if (!is_path) {
-        add_text(out, "afterglow/gatherSamples", "%d", r->gather_samples);
-        add_text(out, "afterglow/gatherGuiding", "%g", (double)r->gather_guiding);
-        add_text(out, "afterglow/photonAim", "%g", (double)r->photon_aim);
-        add_text(out, "afterglow/irradianceFraction", "%g", (double)r->irradiance_fraction);
+    describe_settings(r, out);
+    if (r->integrator == AG_INTEGRATOR_PHOTONMAP) {
         add_text(out, "afterglow/photonsGlobal", "%llu", (unsigned long long)s->photons_stored_global);
         add_text(out, "afterglow/photonsCaustic", "%llu", (unsigned long long)s->photons_stored_caustic);
         add_text(out, "afterglow/photonPathsEmitted", "%llu", (unsigned long long)s->photons_emitted);

@@ -83,6 +83,30 @@ typedef struct ag_definition {
  * name is not valid or given twice, or the scene does not use it; the log says which). */
 AG_API ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_definition *definitions,
                                     size_t definition_count, ag_scene **out_scene);
+
+/* What the numbers of lamps in a glTF file (KHR_lights_punctual) are, beside those of emissive surfaces. The names are
+ * those of the "Lighting Mode" of Blender's exporter, which does not write down which one it was. */
+typedef enum ag_gltf_light_units {
+    AG_GLTF_LIGHT_UNITS_AUTO,     /* as asset.generator tells: Blender from 3.4 on standard, before that raw; others
+                                   * unitless */
+    AG_GLTF_LIGHT_UNITS_STANDARD, /* cd and lx at 683 lm/W, while emission is radiance: divided by 683 */
+    AG_GLTF_LIGHT_UNITS_UNITLESS, /* taken as they are, as W/sr and W/m^2: so also cd and lx where emission is in nit */
+    AG_GLTF_LIGHT_UNITS_RAW       /* points and spots in W over the whole sphere: divided by 4 pi; suns in W/m^2 */
+} ag_gltf_light_units;
+
+/* What is asked of a scene beyond what its file says. */
+typedef struct ag_scene_settings {
+    const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
+    size_t definition_count;              /* default 0 */
+    ag_gltf_light_units gltf_light_units; /* default AG_GLTF_LIGHT_UNITS_AUTO */
+} ag_scene_settings;
+
+AG_API ag_scene_settings ag_default_scene_settings(void);
+
+/* The same with settings; NULL: the default ones. They are needed for the time of the call alone. Errors also:
+ * AG_ERROR_ARGUMENT (a setting is out of its range). */
+AG_API ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
+                                  ag_scene **out_scene);
 AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
 
 /* Whether a path names one of the files that the scene was read from: its own, those that it includes, meshes,
@@ -238,6 +262,26 @@ typedef struct ag_render_settings {
  * renderer's Integrator. Errors: AG_ERROR_SCENE (a value out of range, with file, line and column). */
 AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *scene,
                                                ag_render_settings *out_settings);
+
+/* Our defaults alone. */
+AG_API ag_render_settings ag_default_render_settings(void);
+
+/* A setting that has a name, for command lines, dialogs and their help. The strings are the library's. */
+typedef struct ag_setting {
+    const char *name;      /* "photon-aim" */
+    const char *argument;  /* what stands for its value in help, "F"; NULL: it takes none, and is switched on */
+    const char *section;   /* "Output", "Picture" or "Light" */
+    const char *help;      /* what it does, its range and default, in a sentence without an end */
+    const char *manual;    /* the same at length, with *bold* and _italic_ words; NULL: help says it all */
+    bool is_of_photon_map; /* a kept photon map was made with one value of it, and is refused for another */
+} ag_setting;
+
+/* All of them by number, from 0 on; NULL: there are no more. */
+AG_API const ag_setting *ag_setting_at(size_t index);
+/* Sets one by its name to what a text says; numbers have a point in every locale. "aov" adds to the layers that are
+ * set. value: NULL where it takes none; "photon-map" borrows it. Errors: AG_ERROR_ARGUMENT (there is no such setting,
+ * or the text is no value of it; settings are then as they were). */
+AG_API ag_status ag_render_settings_set(ag_render_settings *settings, const char *name, const char *value);
 
 #define AG_DEFAULT_NOISE_LEVEL           0.02f
 #define AG_DEFAULT_SAMPLES_MOST          1024

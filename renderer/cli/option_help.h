@@ -1,0 +1,13 @@
+/* option_help.h: the program's options as text: for --help, and for the man page.
+ * Flow: option_rows -> [here]. Threads: main's. */
+#ifndef AFTERGLOW_OPTION_HELP_H
+#define AFTERGLOW_OPTION_HELP_H
+
+#include <stdio.h>
+
+void option_help_print(FILE *out);
+
+/* The part OPTIONS of the man page, as roff. */
+void option_help_print_manual(FILE *out);
+
+#endif
