@@ -14,8 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Direct light takes one sample for so many gather rays, so that neither is much noisier than the other. */
-enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
 /* How many samples share a pixel's gather rays where it may get more: measured in four rooms, 2 to 8 rays a sample
  * bring the same noise in the least time. */
 enum { ADAPTIVE_GATHER_SAMPLES = 64 };
@@ -75,9 +73,6 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
     for (uint32_t i = 0; i < s->light_count; i++)
         t.can_meet_lights = t.can_meet_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
-    t.light_samples = (settings->gather_samples + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE;
-    if (t.can_meet_lights)
-        t.scatter_samples = (t.light_samples + LIGHT_SAMPLES_PER_SCATTER_SAMPLE - 1) / LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
     if (settings->integrator == AG_INTEGRATOR_PHOTONMAP) {
         t.caustic = &m->caustic;
         t.cache = &m->cache;

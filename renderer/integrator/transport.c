@@ -3,6 +3,18 @@
 
 #include "rays/passage.h"
 
+/* Direct light takes one sample for so many gather rays, so that neither is much noisier than the other. */
+enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
+
+sample_counts transport_sample_counts(const transport *t, int gather_samples)
+{
+    sample_counts n = {0};
+    n.light = (gather_samples + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE;
+    if (t->can_meet_lights)
+        n.scatter = (n.light + LIGHT_SAMPLES_PER_SCATTER_SAMPLE - 1) / LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
+    return n;
+}
+
 bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
 {
     bool is_met = passage_intersect(t->s, &ray, &worker->passages_cut, &out_vertex->hit, &out_vertex->transmittance);
@@ -83,4 +95,13 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
     }
     arena_restore(worker->scratch, mark);
     return rgb_scale(sum, AG_INV_PI);
+}
+
+/* Of what is found by chance, weighed by that, no more than this share reaches the eye. */
+static const float CAUSTIC_SHARE_MAX = 0.25f;
+
+rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float share_seen, float u)
+{
+    float probability = fminf(share_seen / CAUSTIC_SHARE_MAX, 1.0f);
+    return u < probability ? rgb_scale(transport_caustics(t, worker, v), 1.0f / probability) : rgb_gray(0.0f);
 }

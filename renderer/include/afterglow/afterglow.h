@@ -245,7 +245,8 @@ typedef struct ag_render_settings {
     int noise_min_samples;      /* of each pixel then, [2, 2^20]; default 16 */
     float shown_exposure_stops; /* by which the picture will be made brighter when it is shown, [-100, 100]: noise and
                                    warnings are of what is shown; default 0 */
-    int gather_samples;         /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
+    int gather_samples;         /* gather rays for each camera sample, [1, 65536], where it meets a diffuse surface
+                                   first; what is reflected shares about as many; 0: so many that samples times
                                    gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL; with a noise level, where samples
                                    are not known beforehand, for 64 samples at most */
     /* A file that holds the photon map from one picture to the next, with the irradiances computed so far; NULL, the
