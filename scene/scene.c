@@ -8,6 +8,7 @@
 #include "material/coat.h"
 #include "material/coat_table.h"
 #include "material/pane.h"
+#include "rays/bvh.h"
 #include "scene_extent.h"
 #include "shape/curves.h"
 

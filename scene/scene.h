@@ -139,9 +139,6 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa);
 /* Whether any light that meets it is traced on, rather than gathered: see bsdf.h. */
 bool scene_shape_is_traced(const scene *s, const shape *item);
 
-/* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
-float shape_area(const shape *s);
-
 /* For shading: picks one of the lights that may shine at a place, about in proportion to what it may bring; u in [0,
  * 1). normal: unit, of a surface that scatters only what comes from the side it points to; zero: light from all sides
  * counts. Gives its index, and the probability with which this one is picked: 0 where no light reaches the place, and

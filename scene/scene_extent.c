@@ -2,7 +2,7 @@
  * Threads: read-only. */
 #include "scene_extent.h"
 
-#include "rays/bvh.h"
+#include "scene.h"
 
 #include <stdlib.h>
 #include <string.h>

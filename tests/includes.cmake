@@ -4,6 +4,8 @@
 # ag_check_includes(TARGET [FOLDER...]): the sources of TARGET, and the headers beside them, include what lies in the
 # target's own folders (those of its sources, and each FOLDER that holds headers alone) and in those of the targets that
 # it links, as far as these pass them on. To be called after target_link_libraries.
+#
+# Within a target, the edges of `cut` below are forbidden as well: FOLDER OR FILE -> HEADER, as regular expressions.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   set(AG_INCLUDES_SCRIPT ${CMAKE_CURRENT_LIST_FILE})
 
@@ -70,6 +72,13 @@ file(READ ${STAMP}.files files)
 file(READ ${STAMP}.folders allowed)
 set(roots threads threads/include scene scene/readers photonmap renderer renderer/include tests perf)
 list(TRANSFORM roots PREPEND ${ROOT}/)
+# Surfaces and textures know places (surface.h) and rays (ray.h), not the tree nor how rays are cast.
+set(cut
+  "^scene/(shape|texture|image|color|text|math)/.*->scene/rays/(bvh|bvh_embree|rays|passage|embree_api)\\.h$"
+  "^scene/(image|color|text|math)/.*->scene/(scene|surface|shape/.*|material/.*|light/.*|texture/.*)\\.h$"
+  "^scene/(surface|rays/ray|rays/rays)\\.h->scene/scene\\.h$"
+  "^scene/shape/[a-z_]+\\.h->scene/scene\\.h$"
+  "^scene/scene\\.h->scene/rays/(bvh|rays|passage)\\.h$")
 set(is_wrong FALSE)
 foreach(file ${files})
   cmake_path(GET file PARENT_PATH own_folder)
@@ -80,12 +89,18 @@ foreach(file ${files})
       cmake_path(SET header NORMALIZE "${root}/${name}")
       if(EXISTS ${header})
         cmake_path(GET header PARENT_PATH folder)
+        cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${ROOT} OUTPUT_VARIABLE from)
+        cmake_path(RELATIVE_PATH header BASE_DIRECTORY ${ROOT} OUTPUT_VARIABLE to)
         if(NOT folder IN_LIST allowed)
-          cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${ROOT})
-          cmake_path(RELATIVE_PATH header BASE_DIRECTORY ${ROOT})
-          message(SEND_ERROR "${file} includes ${header}, which is not below ${TARGET}")
+          message(SEND_ERROR "${from} includes ${to}, which is not below ${TARGET}")
           set(is_wrong TRUE)
         endif()
+        foreach(edge ${cut})
+          if("${from}->${to}" MATCHES "${edge}")
+            message(SEND_ERROR "${from} includes ${to}: that edge is cut, see tests/includes.cmake")
+            set(is_wrong TRUE)
+          endif()
+        endforeach()
         break()
       endif()
     endforeach()

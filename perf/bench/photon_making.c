@@ -6,7 +6,8 @@
 #include "bench/room_bench.h"
 #include "clock.h"
 #include "floating_point.h"
-#include "rays/bvh.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 #include <math.h>
 #include <stdio.h>

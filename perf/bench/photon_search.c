@@ -13,7 +13,8 @@
 #include "clock.h"
 #include "floating_point.h"
 #include "math/sampling.h"
-#include "rays/bvh.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -11,7 +11,7 @@
 
 #include "integrator/eye_sample.h"
 #include "irradiance_cache.h"
-#include "rays/bvh.h"
+#include "rays/rays.h"
 
 enum { GATHER_BATCH_GATHERS = 1 << 14, GATHER_BATCH_SAMPLES = 1 << 14, GATHER_BATCH_DETOURS = 1 << 12 };
 

@@ -5,7 +5,7 @@
 #define AFTERGLOW_GATHER_DIRECTIONS_H
 
 #include "integrator/sampler.h"
-#include "rays/bvh.h"
+#include "rays/rays.h"
 
 /* The numbers from `first` on of the sequence, up to RAY_FAN_MAX of them, as columns. Of these, and of what follows,
  * all of the columns up to a multiple of eight is overwritten. */

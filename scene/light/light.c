@@ -8,6 +8,7 @@
 #include "light/projection.h"
 #include "light/radiance_map.h"
 #include "math/sampling.h"
+#include "scene.h"
 #include "shape/alpha.h"
 
 light light_make(light_kind kind)

@@ -1,7 +1,7 @@
 /* light_bounds.c: what the light tree knows of a lamp: see light_tree.h. Threads: read-only. */
 #include "light/light_tree.h"
 #include "light/projection.h"
-#include "rays/bvh.h"
+#include "scene.h"
 
 static const float ALL_AROUND = -1.0f;
 /* For rounding. */

@@ -7,8 +7,9 @@
 #include "light/radiance_map.h"
 #include "math/rng.h"
 #include "math/sampling.h"
-#include "rays/bvh.h"
 #include "rays/passage.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 /* Beyond this, 1 - cos of its half angle, a cone to the target is hardly better than sampling the light's own way. */
 static const float TARGET_CONE_MAX = 0.5f;

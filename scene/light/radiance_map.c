@@ -1,7 +1,7 @@
 /* radiance_map.c: see radiance_map.h. */
 #include "light/radiance_map.h"
 
-#include "rays/bvh.h"
+#include "scene.h"
 
 #include <stdlib.h>
 

@@ -18,7 +18,7 @@
 #define AFTERGLOW_BSDF_H
 
 #include "material/material.h"
-#include "rays/bvh.h"
+#include "scene.h"
 
 /* The largest factor that shading normals may add to a photon: beyond it lie grazing silhouettes only. */
 #define BSDF_CORRECTION_MAX 8.0f

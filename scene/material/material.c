@@ -4,7 +4,7 @@
 
 #include "material/principled.h"
 #include "math/rng.h"
-#include "rays/bvh.h"
+#include "scene.h"
 
 #include <string.h>
 

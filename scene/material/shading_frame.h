@@ -6,7 +6,7 @@
 #define AFTERGLOW_SHADING_FRAME_H
 
 #include "material/material.h"
-#include "rays/bvh.h"
+#include "scene.h"
 
 /* m: as it is at the place, no mix. z: the shading normal, on the geometric normal's side; x: along dp/du, but of
  * material that is alike all round, and has no maps, any. */

@@ -8,6 +8,7 @@
 #include "atomics.h"
 #include "cpu_count.h"
 #include "shape/alpha.h"
+#include "shape/quadric.h"
 
 #include <stdio.h>
 #include <stdlib.h>

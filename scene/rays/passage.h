@@ -1,12 +1,13 @@
 /* passage.h: the way of light between two places that scatter it: through media, which absorb, and across interfaces,
  * which it passes unbent. All rays of photon tracing and rendering are cast here.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 11.4 and 14.2 (medium interfaces).
- * Flow: transport, direct lighting, photon tracing -> [here] -> bvh.h. That is all where there is neither of them.
+ * Flow: transport, direct lighting, photon tracing -> [here] -> rays.h, which is enough where a scene has neither.
  * Threads: pure but for the caller's counter. */
 #ifndef AFTERGLOW_PASSAGE_H
 #define AFTERGLOW_PASSAGE_H
 
-#include "rays/bvh.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 /* A way ends at this many interfaces and panes, dark; it is counted in *in_out_cut. */
 enum { PASSAGE_CROSSINGS_MAX = 256 };

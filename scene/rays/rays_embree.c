@@ -2,6 +2,7 @@
  * file that knows Embree. Rests on: Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing", 2014.
  * Flow: bvh_embree -> [here] -> passage. Threads: rays may be cast from any. */
 #include "rays/bvh_embree.h"
+#include "rays/rays.h"
 
 static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
 {

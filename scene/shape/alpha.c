@@ -2,6 +2,7 @@
 #include "shape/alpha.h"
 
 #include "math/rng.h"
+#include "scene.h"
 
 #include <string.h>
 

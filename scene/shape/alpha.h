@@ -5,7 +5,8 @@
 #ifndef AFTERGLOW_ALPHA_H
 #define AFTERGLOW_ALPHA_H
 
-#include "rays/bvh.h"
+#include "shape/shape.h"
+#include "texture/texture.h"
 
 /* No ray passes through. */
 static inline bool shape_is_opaque(const shape *s)

@@ -6,6 +6,7 @@
 #ifndef AFTERGLOW_CURVES_H
 #define AFTERGLOW_CURVES_H
 
+#include "shape/shape.h"
 #include "shape/tangents.h"
 
 /* Makes room for so many segments in all. Errors: AG_ERROR_MEMORY. */

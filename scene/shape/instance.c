@@ -3,7 +3,7 @@
  * Threads: read-only. */
 #include "shape/instance.h"
 
-#include "rays/bvh.h"
+#include "scene.h"
 
 /* What the traversal loses on its way into the object's space and back, as a part of all that is added up there. */
 #define FLAT_EPSILON_RELATIVE  0x1p-19f

@@ -9,6 +9,7 @@
 #include "afterglow/base.h"
 #include "math/transform.h"
 #include "shape/instance.h"
+#include "surface.h"
 
 #include <stdint.h>
 
@@ -100,5 +101,32 @@ void shape_reset(shape *s);
 /* The same shape, which is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
  * AG_ERROR_MEMORY. */
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
+
+surface_sample shape_sample_area(const shape *s, vec2 u);
+/* All that there is to know of a sampled place; distance is 0. */
+void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit);
+/* Back from a place to the random numbers that pick it. false for shapes that are no mesh. */
+bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u);
+/* The density of shape_sample_area at a place on the shape with that geometric normal. */
+float shape_pdf_area(const shape *s, vec3 geometric_normal);
+
+/* A place that Embree has found, for rays_embree.c: fills in everything but distance, indices and time. u, v:
+ * Embree's barycentrics for meshes, u along curves; for all but meshes `position` comes in as the ray's point and is
+ * put onto the surface. direction: the ray's, of any length; read for curves alone. */
+void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                      surface_hit *out_hit);
+/* The same, but uv may be missing. */
+void shape_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                    surface_hit *out_hit);
+/* Position, geometric normal and epsilon alone, as the same have them, but for the normal's side; false: not of this
+ * kind of shape. */
+bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
+                         surface_place *out_place);
+
+/* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
+float shape_area(const shape *s);
+void shape_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
+/* Fills in what scene_commit sets: centers, areas; area_cdf when it shines. Errors: AG_ERROR_MEMORY. */
+ag_status shape_commit(shape *s);
 
 #endif

@@ -2,6 +2,7 @@
 #include "shape/tangents.h"
 
 #include "math/sampling.h"
+#include "scene.h"
 #include "shape/curves.h"
 #include "shape/quadric.h"
 

@@ -3,7 +3,7 @@
 #include "texture/texture.h"
 
 #include "math/sampling.h"
-#include "rays/bvh.h"
+#include "scene.h"
 #include "texture/texture_noise.h"
 
 #include <string.h>

@@ -1,7 +1,8 @@
 /* fuzz_scene.c: see fuzz_scene.h. Threads: one. */
 #include "fuzz_scene.h"
 
-#include "rays/bvh.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/gltf_fixture.h"
 #include "output/image_file.h"
-#include "rays/bvh.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 /* A document with one triangle of materials[0]; others are its members besides. */
 static const char *material_text(const char *material_json, const char *others)

@@ -7,7 +7,8 @@
 #include "light/environment.h"
 #include "light/portal.h"
 #include "light/projection.h"
-#include "rays/bvh.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 static const double PI = 3.14159265358979323846;
 

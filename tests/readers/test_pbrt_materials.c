@@ -3,7 +3,8 @@
  * Threads: one. */
 #include "color/spectra.h"
 #include "fixtures/pbrt_fixture.h"
-#include "rays/bvh.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 static material only_material(const char *text)
 {

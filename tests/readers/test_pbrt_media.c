@@ -1,7 +1,8 @@
 /* test_pbrt_media.c: MakeNamedMedium, MediumInterface and the material "interface": what they become in the scene, and
  * every error and warning. Threads: one. */
 #include "fixtures/pbrt_fixture.h"
-#include "rays/bvh.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 #include <math.h>
 

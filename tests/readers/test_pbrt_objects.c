@@ -2,7 +2,8 @@
  * scene. Threads: one. */
 #include "fixtures/pbrt_fixture.h"
 
-#include "rays/bvh.h"
+#include "rays/rays.h"
+#include "scene.h"
 
 #define TRIANGLE "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1 0 1 1 1 0 1] "
 

@@ -4,7 +4,7 @@
  * shine: they are copied into the world for each instance. Flow: pbrt_parser -> [here] -> scene.objects,
  * scene.instances. Threads: one per scene. */
 #include "pbrt/pbrt_private.h"
-#include "rays/bvh.h"
+#include "scene.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,0 +1,68 @@
+/* surface.h: a place on a surface: what a ray has met there, and the ray that leaves it.
+ * Flow: rays, shape -> [here] -> material, photon map, renderer. Threads: plain values. */
+#ifndef AFTERGLOW_SURFACE_H
+#define AFTERGLOW_SURFACE_H
+
+#include "rays/ray.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct scene scene; /* scene.h */
+
+/* Where a ray met a surface, recomputed from the primitive in plain IEEE steps rather than from the ray's length. */
+typedef struct surface_hit {
+    vec3 position;
+    vec3 geometric_normal; /* unit, to the shape's outside */
+    vec3 shading_normal;   /* unit, on the geometric normal's side */
+    vec2 uv;               /* pbrt's, in [0, 1] on quadrics, and curves; a mesh's own, or (0, 0), (1, 0), (1, 1) on each
+                            * triangle */
+    float distance;        /* along the ray, for a unit direction in scene units */
+    float epsilon;         /* how far off the surface a new ray must start so as not to meet it again, scene units */
+    bool is_strand;        /* part of a curve, too thin for the estimates of a photon map: see bsdf.h */
+    bool is_flat;          /* part of a mesh, whose corners a start must stay out of: see surface_ray */
+    bool has_medium_interface;              /* the shape's, for surface_ray */
+    uint32_t medium_inside, medium_outside; /* likewise */
+    uint32_t shape_index;
+    uint32_t primitive_index; /* triangle of a mesh, segment of curves */
+    uint32_t instance_index;  /* SCENE_NO_INSTANCE where the shape stands in the world itself */
+    float time;               /* of the shutter, the ray's */
+} surface_hit;
+
+/* A place on a surface, and what it takes to leave it. */
+typedef struct surface_place {
+    vec3 position;
+    vec3 normal;   /* geometric, unit */
+    float epsilon; /* as in surface_hit */
+} surface_place;
+
+/* A random place on a shape, in proportion to area. pdf_area: 1/m^2. */
+typedef struct surface_sample {
+    vec3 position;
+    vec3 geometric_normal; /* unit, outside */
+    float pdf_area;
+    float epsilon; /* as in surface_hit */
+    uint32_t primitive_index;
+    vec2 barycentrics; /* of meshes: of the triangle's second and third corner */
+} surface_sample;
+
+/* The ray that leaves a surface into `direction`, after arriving along `arrived` (of unit direction, and in the medium
+ * of its last stretch). It is in the medium of its side where the surface parts two, else in that of `arrived`; and it
+ * starts off the surface. On meshes, moving also against (or, when passing through, along) the way of arrival keeps
+ * starts in the corners of closed rooms inside. On round surfaces it would turn the path a little each time, and let
+ * out light that is trapped in glass. */
+static inline scene_ray surface_ray(const surface_hit *hit, scene_ray arrived, vec3 direction)
+{
+    vec3 n = vec3_face_forward(hit->geometric_normal, direction);
+    bool passes_through = vec3_dot(arrived.direction, n) > 0.0f;
+    scene_ray next = arrived;
+    next.origin = vec3_add_scaled(hit->position, n, hit->epsilon);
+    next.direction = direction;
+    if (hit->has_medium_interface)
+        next.medium = vec3_dot(hit->geometric_normal, direction) > 0.0f ? hit->medium_outside : hit->medium_inside;
+    if (hit->is_flat)
+        next.origin = vec3_add_scaled(next.origin, arrived.direction, passes_through ? hit->epsilon : -hit->epsilon);
+    return next;
+}
+
+#endif
