@@ -189,6 +189,17 @@ typedef enum ag_layer {
  * AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_layers_parse(const char *list, uint32_t *out_layers);
 
+/* A layer by its name, for command lines and their help. The strings are the library's. */
+typedef struct ag_layer_info {
+    ag_layer layer;
+    const char *name, *group; /* as ag_layers_parse knows them; group: of several layers, or NULL */
+    const char *about;        /* what it shows, with *bold* and _italic_ words */
+    bool is_left_out_of_all;  /* "all" is not this one, too */
+} ag_layer_info;
+
+/* All layers by number, from 0 on; NULL: there are no more. */
+AG_API const ag_layer_info *ag_layer_at(size_t index);
+
 typedef struct ag_render_settings {
     ag_integrator integrator; /* default: photonmap */
     ag_cache_mode cache;      /* default: on demand */
@@ -245,7 +256,8 @@ typedef struct ag_render_settings {
     int noise_min_samples;      /* of each pixel then, [2, 2^20]; default 16 */
     float shown_exposure_stops; /* by which the picture will be made brighter when it is shown, [-100, 100]: noise and
                                    warnings are of what is shown; default 0 */
-    int gather_samples;         /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
+    int gather_samples;         /* gather rays for each camera sample, [1, 65536], where it meets a diffuse surface
+                                   first; what is reflected shares about as many; 0: so many that samples times
                                    gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL; with a noise level, where samples
                                    are not known beforehand, for 64 samples at most */
     /* A file that holds the photon map from one picture to the next, with the irradiances computed so far; NULL, the
@@ -442,7 +454,9 @@ typedef struct ag_statistics {
         irradiance_duplicated, irradiance_uncached, irradiance_refused, irradiance_ready, irradiance_reclaimed;
     double irradiance_estimate_s; /* CPU seconds spent in estimates, all threads; from a sixteenth of them */
     double irradiance_wait_s;     /* CPU seconds spent in waiting for other threads' estimates, all threads */
-    uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path;
+    /* estimate: cast by estimates and lookups in the photon maps, to find where surfaces end and which photons are in
+     * sight */
+    uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path, rays_estimate;
     uint64_t samples_not_finite; /* camera samples dropped because they were not numbers: 0 */
     double time_s[AG_PHASE_COUNT];
     double phase_cpu_s[AG_PHASE_COUNT]; /* user + system of the whole process meanwhile */
