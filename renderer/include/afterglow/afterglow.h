@@ -99,6 +99,12 @@ typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
     size_t definition_count;              /* default 0 */
     ag_gltf_light_units gltf_light_units; /* default AG_GLTF_LIGHT_UNITS_AUTO */
+    /* A perspective camera in the place of the file's; its exposure and shutter stay. World space, as the file has it:
+     * handed as pbrt is, or as models are. Directions from and to each other, and up, must not be parallel. */
+    bool has_camera; /* default false */
+    float camera_from[3], camera_to[3];
+    float camera_up[3];       /* default 0 1 0 */
+    float camera_fov_degrees; /* across the shorter image axis, (0, 180); default 45 */
 } ag_scene_settings;
 
 AG_API ag_scene_settings ag_default_scene_settings(void);
