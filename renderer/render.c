@@ -49,12 +49,13 @@ static void collect_counts(ag_rendering *r)
         statistics->rays_shadow += w->rays_shadow;
         statistics->rays_gather += w->rays_gather;
         statistics->rays_path += w->rays_path;
+        statistics->rays_estimate += w->rays_estimate;
         r->camera_rays += w->rays_camera;
         r->camera_rays_met += w->camera_rays_met;
         statistics->samples_not_finite += w->samples_not_finite;
         cut += w->passages_cut;
-        w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = w->camera_rays_met = 0;
-        w->samples_not_finite = w->passages_cut = 0;
+        w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = w->rays_estimate = 0;
+        w->camera_rays_met = w->samples_not_finite = w->passages_cut = 0;
     }
     passage_warn_of_cut(r->context->log, cut);
 }
@@ -93,6 +94,7 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
     statistics->irradiance_reclaimed += c.reclaimed;
     statistics->irradiance_uncached += c.uncached;
     statistics->irradiance_refused += c.refused;
+    statistics->rays_estimate += c.rays;
     statistics->irradiance_estimate_s += irradiance_counters_estimate_seconds(&c);
     statistics->irradiance_wait_s += c.waited_seconds;
 }

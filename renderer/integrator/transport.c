@@ -85,10 +85,13 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
     photon_neighbor *neighbors =
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
-    rgb sum = rgb_mul(reflected, irradiance_estimate(t->caustic, at.position, at.facing_normal, neighbors));
+    rgb irradiance;
+    irradiance_estimate_find(t->caustic, at.position, at.facing_normal, neighbors, &worker->rays_estimate, &irradiance);
+    rgb sum = rgb_mul(reflected, irradiance);
     if (!rgb_is_black(transmitted)) {
-        rgb behind = irradiance_estimate(t->caustic, at.position, vec3_negate(at.facing_normal), neighbors);
-        sum = rgb_add(sum, rgb_mul(transmitted, behind));
+        irradiance_estimate_find(t->caustic, at.position, vec3_negate(at.facing_normal), neighbors,
+                                 &worker->rays_estimate, &irradiance);
+        sum = rgb_add(sum, rgb_mul(transmitted, irradiance));
     }
     arena_restore(worker->scratch, mark);
     return rgb_scale(sum, AG_INV_PI);

@@ -32,6 +32,7 @@ typedef struct transport {
 typedef struct eye_worker {
     _Alignas(64) unsigned index; /* the worker's */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
+    uint64_t rays_estimate;                    /* of photon estimates and lookups at the place itself */
     uint64_t camera_rays_met;                  /* those that met a surface */
     rgb direct_from_sky;                       /* of the last direct_light_gathered, what infinite lights gave */
     uint64_t samples_not_finite, passages_cut; /* the latter: ways across more interfaces than passage.h follows */

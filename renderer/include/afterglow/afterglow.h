@@ -443,7 +443,9 @@ typedef struct ag_statistics {
         irradiance_duplicated, irradiance_uncached, irradiance_refused, irradiance_ready, irradiance_reclaimed;
     double irradiance_estimate_s; /* CPU seconds spent in estimates, all threads; from a sixteenth of them */
     double irradiance_wait_s;     /* CPU seconds spent in waiting for other threads' estimates, all threads */
-    uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path;
+    /* estimate: cast by estimates and lookups in the photon maps, to find where surfaces end and which photons are in
+     * sight */
+    uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path, rays_estimate;
     uint64_t samples_not_finite; /* camera samples dropped because they were not numbers: 0 */
     double time_s[AG_PHASE_COUNT];
     double phase_cpu_s[AG_PHASE_COUNT]; /* user + system of the whole process meanwhile */
