@@ -1,5 +1,6 @@
 /* settings_rows.c: the rows of settings_table.h, in the order of the fields of ag_render_settings.
- * Text: help is for --help; manual is for the man page, *bold* and _italic_, where it says more than help. */
+ * Text: help is for --help; manual is for the man page, *bold* and _italic_, where it says more than help. %LAYERS% and
+ * %PHOTON_MAP_SETTINGS% are replaced by lists, see cli/option_help.c. */
 #include "settings_table.h"
 
 #include <float.h>
@@ -248,27 +249,10 @@ static const setting_row ROWS[] = {
     {.text = {.name = "aov",
               .argument = "LIST",
               .section = "Output",
-              .help = "layers of .exr files, by commas: A, Z, albedo, N, P, uv; the parts of light: emission, "
-                      "direct, indirect, caustic, specular, or all five: light; irradiance, variance, samples, id, "
-                      "lightgroups; photon_density, cache_state, photon_distance, gather_distance, tile_time; "
-                      "crypto_object, crypto_material, or both: crypto; gbuffer; or all",
-              .manual = "Layers of _.exr_ files beside R, G and B, separated by commas; may be repeated. *A* is the "
-                        "share of the pixel where there is something, *Z* the depth of the nearest surface along the "
-                        "camera's axis (1e10 where there is none). *albedo*, *N*, *P* and *uv* are what is met "
-                        "first: what it reflects, its shading normal and its place in world space, its coordinates. "
-                        "*emission*, *direct*, *indirect*, *caustic* and *specular*, together *light*, are the parts "
-                        "of light; in this order they add up to R, G and B, in float files to the last bit. To them "
-                        "thin glass that is looked through, or shone through, is not there (*--pane-light*). "
-                        "*irradiance* is the photon map's at the first surface, *variance* that of the pixel's "
-                        "samples, *samples* their number, *id* the numbers of object and material, *lightgroups* the "
-                        "light of the lamps of each group (\"string lightgroup\" of a light in the scene; the others "
-                        "are _default_), and of what came through the photon map. *photon_density*, *cache_state* (1 "
-                        "not demanded, 2 demanded, with --photon-map by any picture so far), *photon_distance* and "
-                        "*gather_distance* show how the photon map fared at what each pixel's middle shows, "
-                        "*tile_time* how long its tile took. *crypto_object* and *crypto_material*, together "
-                        "*crypto*, are Cryptomattes by the names of objects (instances, glTF nodes, mesh files) and "
-                        "materials. *gbuffer* is what pbrt's film of that name writes. *all* is all of these but "
-                        "gbuffer and tile_time."},
+              .help = "layers of .exr files, by commas: %LAYERS%",
+              .manual = "Layers of _.exr_ files beside R, G and B, separated by commas; may be repeated. %LAYERS% The "
+                        "parts of light add up to R, G and B in this order, in float files to the last bit; to them "
+                        "thin glass that is looked through, or shone through, is not there (*--pane-light*)."},
      FIELD(layers),
      .kind = SETTING_LAYERS,
      .noun = "set of layers",

@@ -1,6 +1,7 @@
 /* settings_table.c: see settings_table.h. */
 #include "settings_table.h"
 
+#include "film/aov.h"
 #include "text/decimal.h"
 
 #include <errno.h>
@@ -12,7 +13,6 @@
 
 static const double WHOLE_WINDOW[4] = {0.0, 1.0, 0.0, 1.0};
 static const int USUAL_SIZE[2] = {1280, 720};
-static const uint32_t LAYERS_KNOWN = AG_LAYERS_ALL | AG_LAYER_GBUFFER | AG_LAYER_TILE_TIME;
 
 static const void *value_of(const setting_row *row, const ag_render_settings *settings)
 {
@@ -88,7 +88,7 @@ static bool is_valid(const setting_row *row, const ag_render_settings *settings)
     case SETTING_INTEGER:
     case SETTING_COUNT:
     case SETTING_NUMBER: return is_in_range(row, number) || (row->has_automatic && number == row->automatic);
-    case SETTING_LAYERS: return (*(const uint32_t *)value & ~LAYERS_KNOWN) == 0;
+    case SETTING_LAYERS: return (*(const uint32_t *)value & ~aov_known_layers()) == 0;
     case SETTING_SIZE: return is_in_range(row, ((const int *)value)[0]) && is_in_range(row, ((const int *)value)[1]);
     case SETTING_WINDOW: {
         const double *window = value;

@@ -3,12 +3,117 @@
 
 #include "option_rows.h"
 
+#include <assert.h>
 #include <ctype.h>
+#include <stdarg.h>
 #include <string.h>
 
 enum { LEFT_COLUMNS = 34, ALL_COLUMNS = 110 };
-/* In a manual text: the names of all settings that a kept photon map depends on. */
-static const char PHOTON_MAP_SETTINGS[] = "%PHOTON_MAP_SETTINGS%";
+enum { TEXT_MAX = 8192 };
+
+/* --- lists that stand in texts --- */
+
+typedef struct text_list {
+    char text[TEXT_MAX];
+    size_t length;
+} text_list;
+
+static void append(text_list *list, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void append(text_list *list, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(list->text + list->length, sizeof list->text - list->length, format, arguments);
+    va_end(arguments);
+    assert(length >= 0 && list->length + (size_t)length < sizeof list->text);
+    list->length += (size_t)length;
+}
+
+/* The options that a kept photon map depends on. */
+static void append_photon_map_settings(text_list *list, bool is_manual)
+{
+    const ag_setting *setting;
+    const char *mark = is_manual ? "*" : "", *gap = "";
+    for (size_t i = 0; (setting = ag_setting_at(i)) != NULL; i++)
+        if (setting->is_of_photon_map) {
+            append(list, "%s%s--%s%s", gap, mark, setting->name, mark);
+            gap = ", ";
+        }
+}
+
+/* Whether this layer is the first of its group. */
+static bool begins_group(size_t index)
+{
+    const char *group = ag_layer_at(index)->group;
+    for (size_t i = 0; group && i < index; i++)
+        if (ag_layer_at(i)->group && strcmp(ag_layer_at(i)->group, group) == 0)
+            return false;
+    return group != NULL;
+}
+
+/* "light: emission, direct, ..." */
+static void append_group(text_list *list, const char *group, const char *mark)
+{
+    const ag_layer_info *layer;
+    const char *gap = "";
+    append(list, " %s%s%s: ", mark, group, mark);
+    for (size_t i = 0; (layer = ag_layer_at(i)) != NULL; i++)
+        if (layer->group && strcmp(layer->group, group) == 0) {
+            append(list, "%s%s%s%s", gap, mark, layer->name, mark);
+            gap = ", ";
+        }
+    append(list, "%s", mark[0] ? "." : ";");
+}
+
+static void append_layers(text_list *list, bool is_manual)
+{
+    const ag_layer_info *layer;
+    const char *mark = is_manual ? "*" : "", *gap = "";
+    for (size_t i = 0; (layer = ag_layer_at(i)) != NULL; i++) {
+        if (is_manual)
+            append(list, "%s*%s*: %s.", gap, layer->name, layer->about);
+        else
+            append(list, "%s%s", gap, layer->name);
+        gap = is_manual ? " " : ", ";
+    }
+    append(list, "%s", is_manual ? "" : ";");
+    for (size_t i = 0; ag_layer_at(i); i++)
+        if (begins_group(i))
+            append_group(list, ag_layer_at(i)->group, mark);
+    append(list, " %sall%s: all of these but", mark, mark);
+    gap = " ";
+    for (size_t i = 0; (layer = ag_layer_at(i)) != NULL; i++)
+        if (layer->is_left_out_of_all) {
+            append(list, "%s%s%s%s", gap, mark, layer->name, mark);
+            gap = ", ";
+        }
+    append(list, "%s", is_manual ? "." : "");
+}
+
+/* The text with lists in the place of their names. */
+static void fill_in(const char *text, bool is_manual, text_list *out)
+{
+    static const struct {
+        const char *name;
+        void (*append)(text_list *list, bool is_manual);
+    } lists[] = {{"%PHOTON_MAP_SETTINGS%", append_photon_map_settings}, {"%LAYERS%", append_layers}};
+    out->length = 0;
+    out->text[0] = '\0';
+    while (*text) {
+        size_t plain = strcspn(text, "%"), i = 0;
+        append(out, "%.*s", (int)plain, text);
+        text += plain;
+        while (i < sizeof lists / sizeof *lists && strncmp(text, lists[i].name, strlen(lists[i].name)) != 0)
+            i++;
+        if (i < sizeof lists / sizeof *lists) {
+            lists[i].append(out, is_manual);
+            text += strlen(lists[i].name);
+        } else if (*text) {
+            append(out, "%c", *text++);
+        }
+    }
+}
 
 /* --- --help --- */
 
@@ -35,6 +140,7 @@ static void print_wrapped(FILE *out, const char *text)
 void option_help_print(FILE *out)
 {
     listed_option option;
+    text_list filled;
     const char *section = "";
     fprintf(out, "usage: afterglow [options] SCENE\n"
                  "Renders a scene with photon mapping and final gathering: pbrt-v4 text (plain or gzip; - is standard "
@@ -51,10 +157,19 @@ void option_help_print(FILE *out)
         snprintf(left, sizeof left, "%s--%s%s%s", letter, option.text->name, option.text->argument ? " " : "",
                  option.text->argument ? option.text->argument : "");
         fprintf(out, "  %-*s", LEFT_COLUMNS - 2, left);
-        print_wrapped(out, option.text->help);
+        fill_in(option.text->help, false, &filled);
+        print_wrapped(out, filled.text);
     }
     fprintf(out, "\nExit status: 0 every file is complete on disk; 1 scene or input error; 2 usage; 3 system;\n"
                  "128 + n ended by signal n.\n");
+}
+
+void option_help_print_line(FILE *out, const ag_setting *option)
+{
+    text_list filled;
+    fill_in(option->help, false, &filled);
+    fprintf(out, "%s%s%s: %s\n", option->name, option->argument ? " " : "", option->argument ? option->argument : "",
+            filled.text);
 }
 
 /* --- the man page --- */
@@ -91,30 +206,17 @@ static void print_marked(FILE *out, const char *text)
     fputc('\n', out);
 }
 
-/* "*--seed*, *--photons*, ...": the settings that a kept photon map depends on. */
-static void list_photon_map_settings(char *out, size_t size)
-{
-    const ag_setting *setting;
-    size_t used = 0;
-    out[0] = '\0';
-    for (size_t i = 0; (setting = ag_setting_at(i)) != NULL; i++)
-        if (setting->is_of_photon_map && used < size)
-            used += (size_t)snprintf(out + used, size - used, "%s*--%s*", used > 0 ? ", " : "", setting->name);
-}
-
 static void print_manual_text(FILE *out, const ag_setting *setting)
 {
-    char text[8192], list[1024];
-    const char *manual = setting->manual, *place = manual ? strstr(manual, PHOTON_MAP_SETTINGS) : NULL;
-    list_photon_map_settings(list, sizeof list);
-    if (!manual) /* the help is a sentence but for its ends */
-        snprintf(text, sizeof text, "%c%s.", toupper((unsigned char)setting->help[0]), setting->help + 1);
-    else if (place)
-        snprintf(text, sizeof text, "%.*s%s%s", (int)(place - manual), manual, list,
-                 place + strlen(PHOTON_MAP_SETTINGS));
-    else
-        snprintf(text, sizeof text, "%s", manual);
-    print_marked(out, text);
+    text_list filled;
+    char sentence[1024];
+    const char *text = setting->manual;
+    if (!text) { /* the help is a sentence but for its ends */
+        snprintf(sentence, sizeof sentence, "%c%s.", toupper((unsigned char)setting->help[0]), setting->help + 1);
+        text = sentence;
+    }
+    fill_in(text, true, &filled);
+    print_marked(out, filled.text);
 }
 
 /* "--name" in bold. */

@@ -145,8 +145,8 @@ static options_result take_options(int argc, char **argv, options *o)
             return OPTIONS_EXIT_USAGE; /* getopt has said what is wrong */
         listed_option option = option_of_code(code);
         if (!option_take(&option, optarg, o)) {
-            fprintf(stderr, "afterglow: --%s: '%s' is not valid: %s %s: %s\n", option.text->name, optarg,
-                    option.text->name, option.text->argument, option.text->help);
+            fprintf(stderr, "afterglow: --%s: '%s' is not valid: ", option.text->name, optarg);
+            option_help_print_line(stderr, option.text);
             return OPTIONS_EXIT_USAGE;
         }
         if (o->asked_text == OPTIONS_ASKED_HELP)

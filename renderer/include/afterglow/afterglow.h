@@ -189,6 +189,17 @@ typedef enum ag_layer {
  * AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_layers_parse(const char *list, uint32_t *out_layers);
 
+/* A layer by its name, for command lines and their help. The strings are the library's. */
+typedef struct ag_layer_info {
+    ag_layer layer;
+    const char *name, *group; /* as ag_layers_parse knows them; group: of several layers, or NULL */
+    const char *about;        /* what it shows, with *bold* and _italic_ words */
+    bool is_left_out_of_all;  /* "all" is not this one, too */
+} ag_layer_info;
+
+/* All layers by number, from 0 on; NULL: there are no more. */
+AG_API const ag_layer_info *ag_layer_at(size_t index);
+
 typedef struct ag_render_settings {
     ag_integrator integrator; /* default: photonmap */
     ag_cache_mode cache;      /* default: on demand */
