@@ -46,6 +46,7 @@ static const struct {
     SETTING(irradiance_fraction, "fraction of photons that bear irradiance"),
     SETTING(gather_guiding, "guiding of gather rays"),
     SETTING(photon_aim, "aim of photons"),
+    SETTING(direct_guiding, "guiding of direct light"),
     SETTING(layers, "set of layers"),
     SETTING(denoise, "choice of denoising"),
     SETTING(layers_in_camera_space, "space of layers"),

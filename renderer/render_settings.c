@@ -21,6 +21,7 @@ static const ag_render_settings DEFAULTS = {
     .irradiance_fraction = 1.0f,
     .gather_guiding = AG_DEFAULT_GATHER_GUIDING,
     .photon_aim = AG_PHOTON_AIM_AUTOMATIC,
+    .direct_guiding = AG_DIRECT_GUIDING_AUTOMATIC,
 };
 
 /* An integer parameter within a range. */
@@ -341,6 +342,8 @@ ag_status render_settings_check(ag_context *context, const ag_render_settings *s
         wrong = "the guiding of gather rays must be from 0 to 1";
     else if (!(s->photon_aim >= 0.0f) || s->photon_aim > AG_DEFAULT_PHOTON_AIM)
         wrong = "the aim of photons must be from 0 to 0.8";
+    else if (!(s->direct_guiding >= 0.0f) || s->direct_guiding > AG_DEFAULT_DIRECT_GUIDING)
+        wrong = "the guiding of direct light must be from 0 to 0.8";
     if (!wrong)
         return AG_OK;
     log_message(context->log, AG_LOG_ERROR, "%s", wrong);

@@ -27,6 +27,7 @@ enum {
     OPT_IRRADIANCE_FRACTION,
     OPT_GATHER_GUIDING,
     OPT_PHOTON_AIM,
+    OPT_DIRECT_GUIDING,
     OPT_GATHER,
     OPT_MAX_DEPTH,
     OPT_TYPE,
@@ -113,6 +114,9 @@ static const option_line LINES[] = {
     {OPT_PHOTON_AIM, "photon-aim", "F",
      "share of the photon paths that begin where they bring light to where the\npicture asks for it, from 0 to 0.8 "
      "(default 0.8; of a map that is kept 0)"},
+    {OPT_DIRECT_GUIDING, "direct-guiding", "F",
+     "share of the shadow rays that go to what a pilot has seen of sun, sky and\nlamps from there, from 0 to 0.8 "
+     "(default 0.8; with --integrator path 0)"},
     {OPT_MAX_DEPTH, "max-depth", "N", "scatterings between lamp and eye at most, up to 100 (default: roulette)"},
     {OPT_CLAMP_DIRECT, "clamp-direct", "V", "no sample gets more than V of direct light; 0 (default): unbounded"},
     {OPT_CLAMP_INDIRECT, "clamp-indirect", "V", "the same of indirect light"},
@@ -268,6 +272,10 @@ static bool take_option(int code, const char *value, options *o)
         is_valid = o->has_irradiance_fraction = parse_fraction(value, &r->irradiance_fraction);
         break;
     case OPT_GATHER_GUIDING: is_valid = o->has_gather_guiding = parse_share(value, &r->gather_guiding); break;
+    case OPT_DIRECT_GUIDING:
+        is_valid = o->has_direct_guiding =
+            parse_share(value, &r->direct_guiding) && r->direct_guiding <= AG_DEFAULT_DIRECT_GUIDING;
+        break;
     case OPT_PHOTON_AIM:
         is_valid = o->has_photon_aim = parse_share(value, &r->photon_aim) && r->photon_aim <= AG_DEFAULT_PHOTON_AIM;
         break;
@@ -562,6 +570,8 @@ bool options_override(const options *o, const ag_scene *scene, ag_render_setting
         settings->samples_per_pixel = AG_DEFAULT_SAMPLES_MOST;
     if (o->has_gather_guiding)
         settings->gather_guiding = r->gather_guiding;
+    if (o->has_direct_guiding)
+        settings->direct_guiding = r->direct_guiding;
     if (o->has_photon_aim)
         settings->photon_aim = r->photon_aim;
     if (o->has_gather_samples)

@@ -41,7 +41,7 @@ typedef struct options {
     ag_render_settings render; /* fields are valid where has_… is set */
     bool has_seed, has_spp, has_noise, has_size, has_crop, has_integrator, has_photons, has_caustic_photons,
         has_nearest, has_radius, has_irradiance_fraction, has_noise_min_samples, has_gather_samples, has_gather_guiding,
-        has_photon_aim, has_max_depth;
+        has_photon_aim, has_direct_guiding, has_max_depth;
 } options;
 
 typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE } options_result;

@@ -140,6 +140,7 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
     add_text(out, "afterglow/paneLight", "%s", r->pane_light == AG_PANE_LIGHT_DIRECT ? "direct" : "traced");
     add_text(out, "afterglow/seed", "%lld", (long long)r->seed);
     add_text(out, "afterglow/samplesPerPixel", "%d", r->samples_per_pixel);
+    add_text(out, "afterglow/directGuiding", "%g", (double)r->direct_guiding);
     if (!is_path) {
         add_text(out, "afterglow/gatherSamples", "%d", r->gather_samples);
         add_text(out, "afterglow/gatherGuiding", "%g", (double)r->gather_guiding);

@@ -36,7 +36,7 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
     return json_pack(
         "{s:s, s:i, s:s, s:I, s:s, s:s, s:s, s:{s:i, s:i, s:i}, s:{s:o, s:o, s:o, s:o, s:s},"
         " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o},"
-        " s:{s:i, s:f, s:f, s:i, s:f, s:f, s:i, s:s}, s:o, s:o, s:f, s:o, s:{s:o}}",
+        " s:{s:i, s:f, s:f, s:i, s:f, s:f, s:f, s:i, s:s}, s:o, s:o, s:f, s:o, s:{s:o}}",
         "version", ag_version(), "threads", (int)s->threads, "isa", isa, "seed", (json_int_t)settings->seed,
         "integrator", settings->integrator == AG_INTEGRATOR_PATH ? "path" : "photonmap", "cache",
         cache_name(settings->cache), "only", settings->only == AG_ONLY_INDIRECT ? "indirect" : "all", /**/
@@ -54,8 +54,9 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
         "photon", count(s->rays_photon), "path", count(s->rays_path), /**/
         "settings", "nearest", settings->nearest, "radius", (double)settings->radius, "irradiance_fraction",
         (double)settings->irradiance_fraction, "gather_samples", settings->gather_samples, "gather_guiding",
-        (double)settings->gather_guiding, "photon_aim", (double)settings->photon_aim, "max_depth", settings->max_depth,
-        "pane_light", settings->pane_light == AG_PANE_LIGHT_DIRECT ? "direct" : "traced", /**/
+        (double)settings->gather_guiding, "photon_aim", (double)settings->photon_aim, "direct_guiding",
+        (double)settings->direct_guiding, "max_depth", settings->max_depth, "pane_light",
+        settings->pane_light == AG_PANE_LIGHT_DIRECT ? "direct" : "traced", /**/
         "samples_not_finite", count(s->samples_not_finite), "time_s", times, "cpu_s", s->cpu_s, "phase_cpu_s",
         cpu_times, "memory", "peak_bytes", count(s->memory_peak_bytes));
 }
