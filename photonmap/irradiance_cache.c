@@ -68,7 +68,8 @@ static irradiance_extent estimate(irradiance_cache *cache, vec3 position, vec3 n
     photon_neighbor *scratch = cache->scratch[worker_index].neighbors;
     bool is_timed = (counters->computed + counters->uncached) % TIMED_EVERY == 0;
     double begin = is_timed ? clock_thread_cpu_seconds() : 0.0;
-    irradiance_extent extent = irradiance_estimate_find(cache->map, position, normal, scratch, out_irradiance);
+    irradiance_extent extent =
+        irradiance_estimate_find(cache->map, position, normal, scratch, &counters->rays, out_irradiance);
     if (is_timed) {
         counters->timed_seconds += clock_thread_cpu_seconds() - begin;
         counters->timed++;
@@ -217,8 +218,10 @@ static bool answer_by_word(irradiance_cache *cache, const irradiance_query *quer
     const photon_map *map = cache->map;
     uint32_t value = word & IRRADIANCE_VALUE_MASK;
     bool holds = value != PHOTON_NO_IRRADIANCE;
-    if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces)
+    if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces) {
+        cache->counters[worker_index].rays++;
         holds = !photon_map_is_behind_wall(map, map->bearers.blocks, query->position, query->normal, bearer);
+    }
     *out_irradiance = holds ? photon_map_decode_irradiance(cache->map, value) : rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;
@@ -228,8 +231,9 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
                           irradiance_request *out_request)
 {
     irradiance_counters *counters = &cache->counters[worker_index];
-    uint32_t bearer =
-        cache->mode == IRRADIANCE_UNCACHED ? PHOTON_NONE : photon_map_nearest(cache->map, position, normal);
+    uint32_t bearer = PHOTON_NONE;
+    if (cache->mode != IRRADIANCE_UNCACHED)
+        bearer = photon_map_nearest(cache->map, position, normal, &counters->rays);
     counters->requests++;
     *out_request = (irradiance_request){.query = {position, normal}, .bearer = PHOTON_NONE};
     if (bearer >= PHOTON_HIDDEN) {
@@ -280,7 +284,8 @@ static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch
 
 /* The bearers that stand for the queries, in their order; each takes the place in the high half of its query's entry.
  */
-static void find_bearers(const photon_map *map, const irradiance_query *queries, uint64_t *order, uint32_t count)
+static void find_bearers(const photon_map *map, const irradiance_query *queries, uint64_t *order, uint32_t count,
+                         uint64_t *in_out_rays)
 {
     enum { AT_ONCE = PHOTON_LOOKUPS_MAX };
     photon_walk walk;
@@ -294,7 +299,7 @@ static void find_bearers(const photon_map *map, const irradiance_query *queries,
         }
         for (uint32_t k = begin + some; k < begin + some + AT_ONCE && k < count; k++) /* the next ones */
             __builtin_prefetch(&queries[(uint32_t)order[k]]);
-        photon_map_nearest_many(map, &walk, lookups, some, bearers);
+        photon_map_nearest_many(map, &walk, lookups, some, in_out_rays, bearers);
         for (uint32_t k = 0; k < some; k++)
             order[begin + k] = (uint64_t)bearers[k] << 32 | (uint32_t)order[begin + k];
     }
@@ -312,7 +317,7 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
     bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->bearers.count > 0;
     counters->requests += count;
     if (is_cached)
-        find_bearers(map, queries, order, count);
+        find_bearers(map, queries, order, count, &counters->rays);
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = (uint32_t)order[k], bearer = is_cached ? (uint32_t)(order[k] >> 32) : PHOTON_NONE;
         if (k % CANCEL_EVERY == 0 && run_is_cancelled(run))
@@ -382,6 +387,7 @@ irradiance_counters irradiance_cache_counters(const irradiance_cache *cache)
         sum.reclaimed += c->reclaimed;
         sum.uncached += c->uncached;
         sum.refused += c->refused;
+        sum.rays += c->rays;
         sum.timed += c->timed;
         sum.timed_seconds += c->timed_seconds;
         sum.waited_seconds += c->waited_seconds;

@@ -30,6 +30,7 @@ typedef struct irradiance_counters {
     uint64_t reclaimed;             /* claims taken over from processes that died or stood still */
     uint64_t uncached;              /* estimates at the place itself */
     uint64_t refused;               /* requests for places where no estimate holds */
+    uint64_t rays;                  /* cast by estimates and lookups, to find where surfaces end and what is in sight */
     uint64_t timed;                 /* estimates whose time was taken */
     double timed_seconds;           /* CPU time of those */
     double waited_seconds;          /* CPU time of waiting */

@@ -27,8 +27,9 @@ static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t coun
 
 /* Whether a photon within the radius, so high or low that it may lie on a floor above or below, lies on that at the
  * place. */
-static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uint32_t index)
+static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uint32_t index, uint64_t *in_out_rays)
 {
+    ++*in_out_rays;
     vec3 at = photon_block_position(map->blocks, index);
     float height = vec3_dot(vec3_sub(at, disc->position), disc->normal);
     if (height > 0.0f)
@@ -65,16 +66,11 @@ static bool region_holds(const photon_map *map, double area, float radius)
     return area >= (double)share_min * (double)AG_PI * (double)least_radius * (double)least_radius;
 }
 
-static bool reaches_rim(const photon_map *map, vec3 position, vec3 normal, float radius)
-{
-    return surface_region_reaches_rim(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius);
-}
-
 /* Of the photons found, so large a share must lie on the place's own level: the others have set the radius. */
 static const float LEVEL_SHARE_MIN = 0.5f;
 
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
-                                           rgb *out_irradiance)
+                                           uint64_t *in_out_rays, rgb *out_irradiance)
 {
     *out_irradiance = rgb_gray(0.0f);
     if (map->set.count == 0)
@@ -97,18 +93,20 @@ irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position,
     photon_disc_sums sums;
     uint32_t kept = disc_kernels_best()->sum_on_level(&disc, scratch, count, &sums, doubtful);
     for (uint32_t i = 0, doubtful_count = count - kept; i < doubtful_count; i++)
-        if (is_of_this_level(map, &disc, photon_neighbor_index(doubtful[i]))) {
+        if (is_of_this_level(map, &disc, photon_neighbor_index(doubtful[i]), in_out_rays)) {
             photon_disc_add(&disc, doubtful[i], &sums);
             scratch[kept++] = doubtful[i];
         }
     surface_region region;
     irradiance_extent extent = kept < count ? IRRADIANCE_HOLDS_IN_SIGHT : IRRADIANCE_HOLDS_EVERYWHERE;
-    bool may_end = map->surfaces && (kept < count || other_squared <= radius_squared ||
-                                     is_lopsided(&sums, normal, kept) || !reaches_rim(map, position, normal, radius));
+    bool may_end =
+        map->surfaces &&
+        (kept < count || other_squared <= radius_squared || is_lopsided(&sums, normal, kept) ||
+         !surface_region_reaches_rim(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, in_out_rays));
     if (found == map->nearest + 1 && (float)kept < LEVEL_SHARE_MIN * (float)count) {
         extent = IRRADIANCE_HOLDS_NOWHERE;
-    } else if (may_end &&
-               surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius, &region)) {
+    } else if (may_end && surface_region_find(map->surfaces, position, normal, PHOTON_ESTIMATE_MIN_COS, radius,
+                                              in_out_rays, &region)) {
         double region_area = surface_region_area(&region, radius);
         photon_disc_sums whole = sums;
         uint32_t inside = sum_in_region(&disc, &region, scratch, kept, &sums);

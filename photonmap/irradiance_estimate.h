@@ -16,7 +16,8 @@ typedef enum irradiance_extent {
 
 /* Irradiance [W/m^2] on the side of `normal` (unit), from the k nearest photons: their flux over the area out to the
  * next one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Near an edge, of either as far
- * as there is surface. scratch: photon_map_scratch_count(map) of them.
+ * as there is surface. scratch: photon_map_scratch_count(map) of them. The rays
+ * that it casts to find out where surfaces end are added to *in_out_rays.
  *
  * Returns where the estimate holds. It holds nowhere if the surface within the disc is too small for the photons that a
  * disc holds: on a strip, a moulding, a leaf. There photons per area is right in the mean only, by values that are
@@ -26,13 +27,14 @@ typedef enum irradiance_extent {
  * surfaces, never on how many of this surface were found: to keep some draws of a count and not others would change
  * the mean. Does not fail, does not allocate. */
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
-                                           rgb *out_irradiance);
+                                           uint64_t *in_out_rays, rgb *out_irradiance);
 
-/* The value alone. */
+/* The value alone, for which no rays are counted. */
 static inline rgb irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
 {
     rgb irradiance;
-    irradiance_estimate_find(map, position, normal, scratch, &irradiance);
+    uint64_t rays = 0;
+    irradiance_estimate_find(map, position, normal, scratch, &rays, &irradiance);
     return irradiance;
 }
 

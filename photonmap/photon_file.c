@@ -22,7 +22,7 @@
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
 
 /* To be raised whenever the layout, or what photons or irradiances are, changes. */
-enum { LAYOUT_VERSION = 8 };
+enum { LAYOUT_VERSION = 10 };
 enum { GLOBAL, CAUSTIC, MAP_COUNT, BEARERS = MAP_COUNT, TREE_COUNT };
 enum { PAGE = 4096, CHUNK_BYTES = 1 << 22 };
 static const uint32_t BYTE_ORDER_MARK = 0x01020304;
@@ -57,7 +57,7 @@ typedef struct file_header {
 
 enum { OWNERS_AT = PAGE };
 _Static_assert(sizeof(file_header) <= OWNERS_AT, "the header has a page of its own");
-_Static_assert(sizeof(photon_file_key) == 192 && sizeof(map_record) == 288 && sizeof(tree_record) == 24,
+_Static_assert(sizeof(photon_file_key) == 1168 && sizeof(map_record) == 288 && sizeof(tree_record) == 24,
                "no gaps: they are compared and hashed");
 _Static_assert(offsetof(photon_block, slot) + PHOTON_BLOCK_LANES * sizeof(irradiance_slot) == sizeof(photon_block),
                "what never changes of a block is its first part");
@@ -231,10 +231,26 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
 
 static bool is_text(const char *text, size_t size) { return memchr(text, '\0', size) != NULL; }
 
+/* The first line "NOUN: VALUE" that differs. */
+static void describe_other_setting(const char *is, const char *wanted, char *out, size_t size)
+{
+    while (strcspn(is, "\n") == strcspn(wanted, "\n") && strncmp(is, wanted, strcspn(is, "\n")) == 0 && is[0] &&
+           wanted[0]) {
+        is += strcspn(is, "\n") + (is[strcspn(is, "\n")] != '\0');
+        wanted += strcspn(wanted, "\n") + (wanted[strcspn(wanted, "\n")] != '\0');
+    }
+    size_t noun = strcspn(is, ":\n");
+    if (is[noun] == ':' && strncmp(is, wanted, noun + 2) == 0)
+        snprintf(out, size, "it was made with another %.*s: %.*s, not %.*s", (int)noun, is,
+                 (int)strcspn(is + noun + 2, "\n"), is + noun + 2, (int)strcspn(wanted + noun + 2, "\n"),
+                 wanted + noun + 2);
+    else
+        snprintf(out, size, "it was made with other kinds of settings");
+}
+
 /* What the file was made of, where it is another than the key's; "" where it fits. */
 static void describe_difference(const photon_file_key *is, const photon_file_key *wanted, char *out, size_t size)
 {
-    typedef unsigned long long number;
     snprintf(out, size, "%s", "");
     if (strncmp(is->machine, wanted->machine, sizeof is->machine) != 0)
         snprintf(out, size, "it was made on another machine: '%s', this is '%s'", is->machine, wanted->machine);
@@ -242,27 +258,8 @@ static void describe_difference(const photon_file_key *is, const photon_file_key
         snprintf(out, size, "it was made by another program: '%s', this is '%s'", is->program, wanted->program);
     else if (!hash128_is_equal(is->scene, wanted->scene))
         snprintf(out, size, "it was made of another scene: shapes, lights, materials or textures differ");
-    else if (is->seed != wanted->seed)
-        snprintf(out, size, "it was made with seed %llu, not %llu", (number)is->seed, (number)wanted->seed);
-    else if (is->photon_count != wanted->photon_count)
-        snprintf(out, size, "it was made with %llu photons, not %llu", (number)is->photon_count,
-                 (number)wanted->photon_count);
-    else if (is->caustic_photon_count != wanted->caustic_photon_count)
-        snprintf(out, size, "it was made with %llu caustic photons, not %llu", (number)is->caustic_photon_count,
-                 (number)wanted->caustic_photon_count);
-    else if (is->max_depth != wanted->max_depth)
-        snprintf(out, size, "it was made with a depth of %u, not %u", is->max_depth, wanted->max_depth);
-    else if (is->pane_light != wanted->pane_light)
-        snprintf(out, size, "it was made with another choice of light through panes (--pane-light)");
-    else if (is->nearest != wanted->nearest)
-        snprintf(out, size, "it was made for estimates of %u photons, not %u", is->nearest, wanted->nearest);
-    else if (memcmp(&is->radius, &wanted->radius, sizeof is->radius) != 0)
-        snprintf(out, size, "it was made for a radius of %g, not %g", (double)is->radius, (double)wanted->radius);
-    else if (memcmp(&is->irradiance_fraction, &wanted->irradiance_fraction, sizeof is->irradiance_fraction) != 0)
-        snprintf(out, size, "irradiance is borne by a fraction of %g of its photons, not %g",
-                 (double)is->irradiance_fraction, (double)wanted->irradiance_fraction);
-    else if (memcmp(&is->photon_aim, &wanted->photon_aim, sizeof is->photon_aim) != 0)
-        snprintf(out, size, "%g of its photons are aimed, not %g", (double)is->photon_aim, (double)wanted->photon_aim);
+    else if (strncmp(is->settings, wanted->settings, sizeof is->settings) != 0)
+        describe_other_setting(is->settings, wanted->settings, out, size);
     else if (!hash128_is_equal(is->aim_view, wanted->aim_view))
         snprintf(out, size, "its photons are aimed at another view");
 }
@@ -284,7 +281,7 @@ static bool header_is_valid(const file_header *h, uint64_t got_bytes, uint64_t f
              h->node_bytes != sizeof(photon_tree_node))
         snprintf(message, message_size, "it was made on a machine whose numbers have other sizes");
     else if (!hash128_is_equal(h->self, hash_of_header(h)) || !is_text(h->key.machine, sizeof h->key.machine) ||
-             !is_text(h->key.program, sizeof h->key.program))
+             !is_text(h->key.program, sizeof h->key.program) || !is_text(h->key.settings, sizeof h->key.settings))
         snprintf(message, message_size, "it is damaged: its header does not have its checksum");
     else if (file_bytes != h->file_bytes)
         snprintf(message, message_size, "it is %s: %llu bytes, not %llu",

@@ -21,18 +21,15 @@
 #include "math/hash128.h"
 #include "photon_map.h"
 
+enum { PHOTON_FILE_SETTINGS_MAX = 1024 };
+
 /* What photons and irradiances depend on: a file holds for one such key alone. Without gaps, and zeroed before it is
  * filled. */
 typedef struct photon_file_key {
-    hash128 scene; /* scene_hash_of_light */
-    uint64_t seed;
-    uint64_t photon_count, caustic_photon_count;
-    uint32_t max_depth, nearest;
-    uint32_t pane_light; /* ag_pane_light */
-    float photon_aim;
-    float radius, irradiance_fraction;
-    hash128 aim_view; /* what the photons are aimed at; zeros: at everything alike */
-    char program[56]; /* version and compiler */
+    hash128 scene;                           /* scene_hash_of_light */
+    hash128 aim_view;                        /* what the photons are aimed at; zeros: at everything alike */
+    char settings[PHOTON_FILE_SETTINGS_MAX]; /* all else that it depends on, lines "NOUN: VALUE" */
+    char program[56];                        /* version and compiler */
     char machine[56]; /* what may give other bits: kind and maker of the processor, instruction set of ray traversal */
 } photon_file_key;
 

@@ -179,7 +179,8 @@ float photon_map_far(const photon_map *map)
 }
 
 /* The bearer found, or PHOTON_HIDDEN where it does not stand for the place. */
-static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint32_t found, float distance_squared)
+static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint32_t found, float distance_squared,
+                         uint64_t *in_out_rays)
 {
     if (found == PHOTON_NONE || !map->surfaces)
         return found;
@@ -187,25 +188,26 @@ static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint
     float height = vec3_dot(vec3_sub(photon_block_position(map->bearers.blocks, found), position), normal);
     if (distance_squared <= far * far && height * height <= LEVEL_SLOPE * LEVEL_SLOPE * distance_squared)
         return found;
+    ++*in_out_rays;
     return photon_map_is_behind_wall(map, map->bearers.blocks, position, normal, found) ? PHOTON_HIDDEN : found;
 }
 
-uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal)
+uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, uint64_t *in_out_rays)
 {
     float d;
     uint32_t found =
         photon_tree_nearest(&map->bearers, position, normal, PHOTON_NEAREST_MIN_COS, nearest_reach(map), &d);
-    return in_sight(map, position, normal, found, d);
+    return in_sight(map, position, normal, found, d, in_out_rays);
 }
 
 void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
-                             uint32_t *out_bearers)
+                             uint64_t *in_out_rays, uint32_t *out_bearers)
 {
     photon_neighbor nearest[PHOTON_LOOKUPS_MAX];
     photon_walk_nearest_many(walk, lookups, count, PHOTON_NEAREST_MIN_COS, nearest_reach(map), nearest);
     for (uint32_t i = 0; i < count; i++)
         out_bearers[i] = in_sight(map, lookups[i].position, lookups[i].normal, photon_neighbor_index(nearest[i]),
-                                  photon_neighbor_distance_squared(nearest[i]));
+                                  photon_neighbor_distance_squared(nearest[i]), in_out_rays);
 }
 
 uint32_t photon_map_place(const photon_map *map, vec3 position)

@@ -80,8 +80,8 @@ float photon_map_far(const photon_map *map);
 
 /* The bearer whose irradiance stands for the place. PHOTON_NONE: none with a like normal is within half the largest
  * radius. PHOTON_HIDDEN: the nearest one lies so far away, or so far off the place's tangent plane, that it must be in
- * sight, and it is not. */
-uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal);
+ * sight, and it is not. The rays that find that out are added to *in_out_rays. */
+uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, uint64_t *in_out_rays);
 
 /* Where in the bearers' order a place is: lookups at places with like numbers touch the same memory. */
 uint32_t photon_map_place(const photon_map *map, vec3 position);
@@ -93,7 +93,7 @@ void photon_map_places(const photon_map *map, const float *positions, uint32_t s
 /* photon_map_nearest of many, as photon_walk_nearest_many has them, their leaves being their places; walk is one over
  * map->bearers. */
 void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
-                             uint32_t *out_bearers);
+                             uint64_t *in_out_rays, uint32_t *out_bearers);
 
 /* The 30 bits of a slot whose photon has been found to stand for no place, since no estimate holds there. Final, like
  * a value. */

@@ -205,6 +205,20 @@ static bool matter_has(const matter *m, bsdf_lobes lobes)
     return m->albedo ? (lobes & BSDF_GATHERED) != 0 : bsdf_has(&m->scattering, lobes);
 }
 
+/* Whether photons are stored there, as so much of what they carry: on surfaces that gather. */
+static bool matter_is_stored_at(const scene *s, const surface_hit *hit, vec3 arrived, const matter *m,
+                                float *out_factor)
+{
+    if (m->albedo) {
+        *out_factor = lambert_arrival_factor(hit, arrived);
+        return true;
+    }
+    if (!bsdf_has(&m->scattering, BSDF_GATHERED))
+        return bsdf_arrival_factor_beside(s, hit, &m->scattering, out_factor);
+    *out_factor = bsdf_arrival_factor(&m->scattering);
+    return true;
+}
+
 /* Direction, weight, group and is_straight are set. */
 static bool matter_sample(const matter *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes, float u_lobe, vec2 u,
                           bsdf_sample *out_next)
@@ -230,12 +244,10 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
     matter m;
     matter_find(t->s, hit, arrived, &m);
 
-    /* store at gathered lobes */
     bool is_global = settings->kind == PHOTON_GLOBAL;
-    if ((is_global || path->scatterings > 0) && matter_has(&m, BSDF_GATHERED)) {
-        float factor = m.albedo ? lambert_arrival_factor(hit, arrived) : bsdf_arrival_factor(&m.scattering);
+    float factor;
+    if ((is_global || path->scatterings > 0) && matter_is_stored_at(t->s, hit, arrived, &m, &factor))
         store(t, path, hit, factor);
-    }
     bool may_go_straight = settings->panes_are_direct && !m.albedo && m.scattering.is_pane;
     bool is_last = path->scatterings >= settings->max_scatterings;
     if (path->arrivals >= SCATTERING_CAP || (is_last && !may_go_straight)) {

@@ -28,49 +28,70 @@ static bool is_alike(const surface_hit *hit, vec3 normal, vec3 arrival, float mi
     return vec3_dot(vec3_face_forward(hit->geometric_normal, vec3_negate(arrival)), normal) > min_cos;
 }
 
-/* The surface at the place itself, from above: its normal, and a start above it. A narrow corner may have no room for
- * the full lift. */
-static bool find_foot(const scene *s, vec3 position, vec3 normal, float radius, vec3 *out_normal, float *out_lift)
+/* What is the same for all rays of a search: they begin, or end, `lift` above the plane through the place. */
+typedef struct probe {
+    const scene *s;
+    vec3 above, normal; /* the place, lifted along its normal */
+    float lift, radius, min_cos;
+    ray_veils veils;
+    uint64_t *rays; /* counts them */
+} probe;
+
+static bool find_surface(const probe *p, vec3 origin, vec3 direction, float farthest, surface_hit *out_hit)
+{
+    scene_ray ray = scene_ray_make(origin, direction);
+    ray.veils = p->veils;
+    ++*p->rays;
+    return passage_find_surface(p->s, ray, farthest, out_hit);
+}
+
+/* A picture cuts holes into it, which no photon falls on. */
+static bool has_holes(const scene *s, const surface_hit *hit)
+{
+    return s->shapes[hit->shape_index].alpha_texture != SCENE_NO_TEXTURE;
+}
+
+/* The surface at the place itself, from above: its normal, and a start above it, which become the probe's. A narrow
+ * corner may have no room for the full lift. */
+static bool find_foot(probe *p, vec3 position, vec3 normal, surface_hit *out_foot)
 {
     vec3 down = vec3_negate(normal);
-    float lift = radius * LIFT;
-    for (int trial = 0; trial < FOOT_TRIALS; trial++, lift *= 0.125f) {
-        surface_hit hit;
-        scene_ray ray = scene_ray_make(vec3_add_scaled(position, normal, lift), down);
-        if (!passage_find_surface(s, ray, 2.0f * lift, &hit) || !is_alike(&hit, normal, down, 0.9f))
+    p->lift = p->radius * LIFT;
+    for (int trial = 0; trial < FOOT_TRIALS; trial++, p->lift *= 0.125f) {
+        vec3 above = vec3_add_scaled(position, normal, p->lift);
+        if (!find_surface(p, above, down, 2.0f * p->lift, out_foot) || !is_alike(out_foot, normal, down, 0.9f))
             continue;
-        if (vec3_distance_squared(hit.position, position) > hit.epsilon * hit.epsilon + 0.01f * lift * lift)
+        if (vec3_distance_squared(out_foot->position, position) >
+            out_foot->epsilon * out_foot->epsilon + 0.01f * p->lift * p->lift)
             continue; /* another surface, between */
-        *out_normal = vec3_face_forward(hit.geometric_normal, normal);
-        *out_lift = lift;
-        return lift > 2.0f * hit.epsilon;
+        p->normal = vec3_face_forward(out_foot->geometric_normal, normal);
+        p->above = vec3_add_scaled(position, p->normal, p->lift);
+        return p->lift > 2.0f * out_foot->epsilon;
     }
     return false;
 }
 
-/* Whether the surface is there at that place of the plane: as deep as photons within the radius may lie. */
-static bool has_surface_below(const scene *s, vec3 above, vec3 normal, float lift, float lateral, float radius,
-                              float min_cos)
+/* Whether the surface is there so far along a unit tangent: as deep as photons within the radius may lie. */
+static bool find_below(const probe *p, vec3 tangent, float lateral, surface_hit *out_hit)
 {
-    surface_hit hit;
-    vec3 down = vec3_negate(normal);
-    float depth = sqrtf(fmaxf(0.0f, radius * radius - lateral * lateral));
-    return passage_find_surface(s, scene_ray_make(above, down), lift + depth, &hit) &&
-           is_alike(&hit, normal, down, min_cos);
+    vec3 down = vec3_negate(p->normal);
+    float depth = sqrtf(fmaxf(0.0f, p->radius * p->radius - lateral * lateral));
+    return find_surface(p, vec3_add_scaled(p->above, tangent, lateral), down, p->lift + depth, out_hit) &&
+           is_alike(out_hit, p->normal, down, p->min_cos);
 }
 
 /* How far the surface goes along a unit tangent; radius where nothing ends it. */
-static float find_extent(const scene *s, vec3 above, vec3 normal, float lift, vec3 tangent, float radius, float min_cos)
+static float find_extent(const probe *p, vec3 tangent)
 {
     surface_hit hit;
-    if (passage_find_surface(s, scene_ray_make(above, tangent), radius, &hit))
-        return is_alike(&hit, normal, tangent, min_cos) ? radius : hit.distance;
-    float high = PROBE_AT * radius, low = 0.0f;
-    if (has_surface_below(s, vec3_add_scaled(above, tangent, high), normal, lift, high, radius, min_cos))
-        return radius;
+    if (find_surface(p, p->above, tangent, p->radius, &hit))
+        return is_alike(&hit, p->normal, tangent, p->min_cos) ? p->radius : hit.distance;
+    float high = PROBE_AT * p->radius, low = 0.0f;
+    if (find_below(p, tangent, high, &hit))
+        return p->radius;
     for (int i = 0; i < BISECTIONS; i++) {
         float middle = 0.5f * (low + high);
-        if (has_surface_below(s, vec3_add_scaled(above, tangent, middle), normal, lift, middle, radius, min_cos))
+        if (find_below(p, tangent, middle, &hit))
             low = middle;
         else
             high = middle;
@@ -123,44 +144,78 @@ static void find_tangents(vec3 position, vec3 normal, vec3 *out_x, vec3 *out_y)
     *out_y = vec3_add_scaled(vec3_scale(f.y, cosine), f.x, -sine);
 }
 
-bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius)
+/* Of the region, how much is there: looked up at one place in each of 8 by 8 parts of the disc. */
+static float share_that_is_there(const probe *p, const surface_region *r)
 {
-    float lift = LIFT * radius, lateral = PROBE_AT * radius;
-    vec3 x, y;
+    enum { PARTS = 8 };
+    uint32_t bits[3];
+    memcpy(bits, &r->center, sizeof bits);
+    rng random = rng_make(hash_combine(bits[0], bits[1]), 0, bits[2]);
+    probe what_is_there = *p;
+    what_is_there.veils = RAY_MEETS_VEILS;
+    int all = 0, there = 0; /* with holes and without */
+    for (int i = 0; i < PARTS * PARTS; i++) {
+        vec2 u = rng_vec2(&random);
+        vec2 d = sample_disk_concentric(
+            (vec2){((float)(i % PARTS) + u.x) / (float)PARTS, ((float)(i / PARTS) + u.y) / (float)PARTS});
+        float length = sqrtf(d.x * d.x + d.y * d.y);
+        if (!(length > 0.0f))
+            continue;
+        vec3 tangent = vec3_add_scaled(vec3_scale(r->x, d.x / length), r->y, d.y / length);
+        if (!surface_region_contains(r, vec3_add_scaled(r->center, tangent, length * p->radius)))
+            continue;
+        surface_hit hit;
+        bool is_there = find_below(&what_is_there, tangent, length * p->radius, &hit);
+        there += is_there;
+        all += is_there || find_below(p, tangent, length * p->radius, &hit);
+    }
+    /* one more of each, the place itself: of a binomial count that makes the mean of 1 / share right */
+    return ((float)there + 1.0f) / ((float)all + 1.0f);
+}
+
+bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
+                                uint64_t *in_out_rays)
+{
+    float lift = LIFT * radius;
+    vec3 above = vec3_add_scaled(position, normal, lift), x, y;
+    probe p = {s, above, normal, lift, radius, min_cos, RAY_MEETS_VEILS, in_out_rays};
     find_tangents(position, normal, &x, &y);
-    vec3 above = vec3_add_scaled(position, normal, lift);
     for (int i = 0; i < SURFACE_REGION_SECTORS; i += 2) {
+        surface_hit hit;
         vec3 tangent = vec3_add_scaled(vec3_scale(x, UNIT[i][0]), y, UNIT[i][1]);
-        if (!has_surface_below(s, vec3_add_scaled(above, tangent, lateral), normal, lift, lateral, radius, min_cos))
+        if (!find_below(&p, tangent, PROBE_AT * radius, &hit) || has_holes(s, &hit))
             return false;
     }
     return true;
 }
 
-bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
+bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius, uint64_t *in_out_rays,
                          surface_region *out_region)
 {
-    float lift, extent[SURFACE_REGION_SECTORS];
-    vec3 n;
+    float extent[SURFACE_REGION_SECTORS];
     surface_region *r = out_region;
-    if (!find_foot(s, position, normal, radius, &n, &lift))
+    probe p = {s, position, normal, 0.0f, radius, min_cos, RAY_MEETS_VEILS, in_out_rays};
+    surface_hit foot;
+    if (!find_foot(&p, position, normal, &foot))
         return false;
+    bool may_be_empty = has_holes(s, &foot);
     r->center = position;
-    find_tangents(position, n, &r->x, &r->y);
+    find_tangents(position, p.normal, &r->x, &r->y);
 
-    vec3 above = vec3_add_scaled(position, n, lift);
+    if (may_be_empty)
+        p.veils = RAY_MEETS_EMPTY_VEILS; /* holes are no ends: there may be one in every direction */
     r->nearest_end = radius;
     for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
-        vec3 tangent = vec3_add_scaled(vec3_scale(r->x, UNIT[i][0]), r->y, UNIT[i][1]);
-        extent[i] = find_extent(s, above, n, lift, tangent, radius, min_cos);
+        extent[i] = find_extent(&p, vec3_add_scaled(vec3_scale(r->x, UNIT[i][0]), r->y, UNIT[i][1]));
         r->nearest_end = fminf(r->nearest_end, extent[i]);
         extent[i] = fmaxf(extent[i], SHORTEST * radius);
     }
-    if (r->nearest_end >= radius)
+    if (r->nearest_end >= radius && !may_be_empty)
         return false;
     for (int i = 0; i < SURFACE_REGION_SECTORS; i++)
         bound_sector(extent, radius, i, r->line[i]);
-    return true;
+    r->share = may_be_empty ? share_that_is_there(&p, r) : 1.0f;
+    return r->nearest_end < radius || r->share < 1.0f;
 }
 
 bool surface_region_contains(const surface_region *region, vec3 position)
@@ -189,5 +244,5 @@ double surface_region_area(const surface_region *region, float radius)
             sum += (double)reach * (double)reach;
         }
     }
-    return sum * (double)AG_PI / (SURFACE_REGION_SECTORS * PARTS);
+    return (double)region->share * sum * (double)AG_PI / (SURFACE_REGION_SECTORS * PARTS);
 }

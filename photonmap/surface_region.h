@@ -17,22 +17,25 @@ enum { SURFACE_REGION_SECTORS = 8 };
 typedef struct surface_region {
     vec3 center, x, y;
     float line[SURFACE_REGION_SECTORS][2];
+    float share;       /* of the area within those bounds that is there: below 1 where a picture cuts holes (alpha.h) */
     float nearest_end; /* from the centre to where the surface ends first, among the sectors' bounds; scene units */
 } surface_region;
 
-/* min_cos: normals more alike than this belong to the surface, as for photons. Returns false where nothing ends it
- * within radius of the place, and where there is no surface at the place. */
-bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
+/* min_cos: normals more alike than this belong to the surface, as for photons. The rays that are cast are added to
+ * *in_out_rays, here and below. Returns false where nothing ends it
+ * within radius of the place and it has no holes, and where there is no surface at the place. */
+bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius, uint64_t *in_out_rays,
                          surface_region *out_region);
 
 /* Whether surface lies below four places near the rim of the disc, a quarter turn apart: a test for edges at a quarter
  * of the search's cost, for discs in which nothing else hints at one. An edge nearer than 0.64 of the radius is
  * always found. */
-bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius);
+bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,
+                                uint64_t *in_out_rays);
 
 bool surface_region_contains(const surface_region *region, vec3 position);
 
-/* m^2, of what is within radius of the centre. */
+/* m^2, of what is there within radius of the centre. */
 double surface_region_area(const surface_region *region, float radius);
 
 #endif

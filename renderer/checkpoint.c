@@ -5,8 +5,10 @@
 #include "output/atomic_file.h"
 #include "rays/bvh.h"
 #include "scene_hash.h"
+#include "settings_table.h"
 #include "text/input_file.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,48 +18,6 @@
 static const char MAGIC[8] = "AGCHKPT\n";
 static const uint32_t BYTE_ORDER = 0x01020304u;
 enum { READ_BLOCK = 1 << 18 };
-
-/* Every setting that a picture's samples depend on, with its name for messages. */
-#define SETTING(field, name)                                                                                           \
-    {                                                                                                                  \
-        offsetof(ag_render_settings, field), sizeof(((ag_render_settings *)0)->field), name                            \
-    }
-static const struct {
-    size_t offset, size;
-    const char *name;
-} SETTINGS[] = {
-    SETTING(integrator, "integrator"),
-    SETTING(cache, "cache mode"),
-    SETTING(pane_light, "light through panes (--pane-light)"),
-    SETTING(only, "choice of light (--only)"),
-    SETTING(seed, "seed"),
-    SETTING(width, "picture width"),
-    SETTING(height, "picture height"),
-    SETTING(crop_window, "crop window"),
-    SETTING(samples_per_pixel, "number of samples per pixel"),
-    SETTING(exposure, "exposure"),
-    SETTING(max_component, "largest component"),
-    SETTING(white_balance, "white balance"),
-    SETTING(max_depth, "depth"),
-    SETTING(photon_count, "number of photons"),
-    SETTING(caustic_photon_count, "number of caustic photons"),
-    SETTING(nearest, "number of nearest photons"),
-    SETTING(radius, "radius"),
-    SETTING(irradiance_fraction, "fraction of photons that bear irradiance"),
-    SETTING(gather_guiding, "guiding of gather rays"),
-    SETTING(photon_aim, "aim of photons"),
-    SETTING(direct_guiding, "guiding of direct light"),
-    SETTING(layers, "set of layers"),
-    SETTING(denoise, "choice of denoising"),
-    SETTING(layers_in_camera_space, "space of layers"),
-    SETTING(clamp_direct, "bound of direct light"),
-    SETTING(clamp_indirect, "bound of indirect light"),
-    SETTING(noise_level, "noise level"),
-    SETTING(noise_min_samples, "least number of samples"),
-    SETTING(shown_exposure_stops, "exposure of what is shown"),
-    SETTING(gather_samples, "number of gather rays"),
-};
-enum { SETTING_COUNT = sizeof SETTINGS / sizeof *SETTINGS };
 
 /* --- headers --- */
 
@@ -94,12 +54,8 @@ void checkpoint_header_make(const struct ag_rendering *r, checkpoint_header *out
     for (int i = 0; i < count; i++)
         out->plane_sizes[i] = planes[i].size;
     out->photon_count = words_of(r);
-    size_t at = 0;
-    for (int i = 0; i < SETTING_COUNT; i++) {
-        memcpy(out->settings + at, (const unsigned char *)&r->settings + SETTINGS[i].offset, SETTINGS[i].size);
-        at += SETTINGS[i].size;
-    }
-    out->settings_size = (uint32_t)at;
+    out->settings_size = (uint32_t)settings_of_picture(&r->settings, out->settings, sizeof out->settings);
+    assert(out->settings_size <= sizeof out->settings);
 }
 
 const char *checkpoint_header_difference(const checkpoint_header *file, const checkpoint_header *ours)
@@ -108,12 +64,9 @@ const char *checkpoint_header_difference(const checkpoint_header *file, const ch
         return "version of the program";
     if (memcmp(file->isa, ours->isa, sizeof file->isa) != 0)
         return "instruction set (--isa)";
-    size_t at = 0;
-    for (int i = 0; i < SETTING_COUNT; i++) {
-        if (memcmp(file->settings + at, ours->settings + at, SETTINGS[i].size) != 0)
-            return SETTINGS[i].name;
-        at += SETTINGS[i].size;
-    }
+    const char *setting = settings_of_picture_difference(file->settings, ours->settings);
+    if (setting)
+        return setting;
     if (file->settings_size != ours->settings_size)
         return "set of settings";
     if (!hash128_is_equal(file->filter, ours->filter))

@@ -10,7 +10,7 @@
 #include "rendering.h"
 
 /* To be raised with every change of the header or of what the film's planes hold. */
-enum { CHECKPOINT_LAYOUT = 3, CHECKPOINT_SETTINGS_MAX = 512 };
+enum { CHECKPOINT_LAYOUT = 4, CHECKPOINT_SETTINGS_MAX = 512 };
 
 /* Without gaps: it is written as it is. */
 typedef struct checkpoint_header {
@@ -21,7 +21,7 @@ typedef struct checkpoint_header {
     uint64_t plane_sizes[FILM_PLANES_MAX]; /* bytes; 0 behind the last */
     uint64_t photon_count;                 /* irradiance words; 0: none */
     uint32_t settings_size, spare;
-    unsigned char settings[CHECKPOINT_SETTINGS_MAX]; /* the fields, one behind the other */
+    unsigned char settings[CHECKPOINT_SETTINGS_MAX]; /* settings_of_picture */
 } checkpoint_header;
 
 /* What a rendering's header is to be. */

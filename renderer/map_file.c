@@ -7,7 +7,9 @@
 #include "descriptor.h"
 #include "output/atomic_file.h"
 #include "scene_hash.h"
+#include "settings_table.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -52,15 +54,9 @@ static photon_file_key key_of(const ag_context *context, const scene *s, const a
     photon_file_key key;
     memset(&key, 0, sizeof key);
     key.scene = scene_hash_of_light(s);
-    key.seed = settings->seed;
-    key.photon_count = settings->photon_count;
-    key.caustic_photon_count = settings->caustic_photon_count;
-    key.max_depth = (uint32_t)settings->max_depth;
-    key.nearest = (uint32_t)settings->nearest;
-    key.pane_light = (uint32_t)settings->pane_light;
-    key.radius = settings->radius;
-    key.irradiance_fraction = settings->irradiance_fraction;
-    key.photon_aim = settings->photon_aim;
+    size_t length = settings_of_photon_map(settings, key.settings, sizeof key.settings);
+    assert(length < sizeof key.settings);
+    (void)length;
     if (settings->photon_aim > 0.0f) {
         hash128 view = hash128_begin();
         hash128 of_scene = scene_hash_of_view(s);

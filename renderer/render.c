@@ -15,8 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Direct light takes one sample for so many gather rays, so that neither is much noisier than the other. */
-enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
 /* How many samples share a pixel's gather rays where it may get more: measured in four rooms, 2 to 8 rays a sample
  * bring the same noise in the least time. */
 enum { ADAPTIVE_GATHER_SAMPLES = 64 };
@@ -52,12 +50,13 @@ static void collect_counts(ag_rendering *r)
         statistics->rays_shadow += w->rays_shadow;
         statistics->rays_gather += w->rays_gather;
         statistics->rays_path += w->rays_path;
+        statistics->rays_estimate += w->rays_estimate;
         r->camera_rays += w->rays_camera;
         r->camera_rays_met += w->camera_rays_met;
         statistics->samples_not_finite += w->samples_not_finite;
         cut += w->passages_cut;
-        w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = w->camera_rays_met = 0;
-        w->samples_not_finite = w->passages_cut = 0;
+        w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = w->rays_estimate = 0;
+        w->camera_rays_met = w->samples_not_finite = w->passages_cut = 0;
     }
     passage_warn_of_cut(r->context->log, cut);
 }
@@ -75,9 +74,6 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
     for (uint32_t i = 0; i < s->light_count; i++)
         t.can_meet_lights = t.can_meet_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
-    t.light_samples = (settings->gather_samples + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE;
-    if (t.can_meet_lights)
-        t.scatter_samples = (t.light_samples + LIGHT_SAMPLES_PER_SCATTER_SAMPLE - 1) / LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
     if (settings->integrator == AG_INTEGRATOR_PHOTONMAP) {
         t.caustic = &m->caustic;
         t.cache = &m->cache;
@@ -99,6 +95,7 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
     statistics->irradiance_reclaimed += c.reclaimed;
     statistics->irradiance_uncached += c.uncached;
     statistics->irradiance_refused += c.refused;
+    statistics->rays_estimate += c.rays;
     statistics->irradiance_estimate_s += irradiance_counters_estimate_seconds(&c);
     statistics->irradiance_wait_s += c.waited_seconds;
 }

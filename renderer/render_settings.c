@@ -1,28 +1,12 @@
-/* render_settings.c: the renderer's settings, from the scene's Integrator, Sampler and Film and from our defaults.
+/* render_settings.c: the renderer's settings, from the scene's Integrator, Sampler and Film; our defaults are in
+ * settings_rows.c.
  * Rests on: pbrt-v2's "photonmap" integrator (its parameter names); the pbrt-v4 file format (Film, Sampler).
  * Flow: scene -> [here] -> render. Threads: as in afterglow.h. */
 #include "context.h"
+#include "settings_table.h"
 
 #include <stdio.h>
 #include <string.h>
-
-/* Enough for a clean interior; with 50 nearest the loss along edges stays below a hundredth of a room's light. */
-static const ag_render_settings DEFAULTS = {
-    .width = 1280,
-    .height = 720,
-    .crop_window = {0.0, 1.0, 0.0, 1.0},
-    .samples_per_pixel = 16,
-    .exposure = 1.0f,
-    .noise_min_samples = 16,
-    .max_depth = 100,
-    .photon_count = 1000000,
-    .caustic_photon_count = 500000,
-    .nearest = 50,
-    .irradiance_fraction = 1.0f,
-    .gather_guiding = AG_DEFAULT_GATHER_GUIDING,
-    .photon_aim = AG_PHOTON_AIM_AUTOMATIC,
-    .direct_guiding = AG_DIRECT_GUIDING_AUTOMATIC,
-};
 
 /* An integer parameter within a range. */
 static ag_status get_count(parameter_list *list, log_sink *log, const char *name, int64_t least, int64_t most,
@@ -278,7 +262,7 @@ ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loa
     if (!context || !loaded || !out_settings)
         return AG_ERROR_ARGUMENT;
     scene *s = loaded->s; /* parameters are marked as looked up; nothing else changes */
-    ag_render_settings settings = DEFAULTS;
+    ag_render_settings settings = ag_default_render_settings();
     if (s->options.has_seed)
         settings.seed = (uint64_t)s->options.seed;
     if (s->camera.exposure > 0.0f)
@@ -301,50 +285,16 @@ ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loa
 
 ag_status render_settings_check(ag_context *context, const ag_render_settings *s)
 {
-    const char *wrong = NULL;
-    if (s->width < 1 || s->width > 65536 || s->height < 1 || s->height > 65536)
-        wrong = "size must be from 1 to 65536 pixels along each edge";
-    else if (!is_crop_window(s->crop_window))
-        wrong = "crop window must satisfy 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1";
-    else if (s->samples_per_pixel < 1 || s->samples_per_pixel > 1 << 20)
-        wrong = "samples per pixel must be from 1 to 1048576";
-    else if (!(s->exposure > 0.0f) || isinf(s->exposure))
-        wrong = "exposure must be finite and above 0";
-    else if (!(s->max_component >= 0.0f))
-        wrong = "the largest component must not be negative";
-    else if (s->white_balance != 0.0f && !(s->white_balance >= 1000.0f && s->white_balance <= 25000.0f))
-        wrong = "white balance must be 0 or from 1000 to 25000 kelvin";
-    else if (s->gather_samples < 0 || s->gather_samples > 65536)
-        wrong = "gather rays must be from 0 (automatic) to 65536";
-    else if ((int64_t)s->samples_per_pixel * (s->gather_samples > 0 ? s->gather_samples : 1) > UINT32_MAX)
-        wrong = "samples per pixel times gather rays must stay below 2^32";
-    else if (s->max_depth < 0 || s->max_depth > 100)
-        wrong = "depth must be from 0 to 100";
-    else if (s->photon_count < 1 || s->photon_count > UINT32_MAX - 1 || s->caustic_photon_count > UINT32_MAX - 1)
-        wrong = "photons must be from 1 to 4294967294";
-    else if (s->nearest < 1 || s->nearest > 65536)
-        wrong = "nearest photons must be from 1 to 65536";
-    else if (!(s->noise_level >= 0.0f) || s->noise_min_samples < 2 || s->noise_min_samples > 1 << 20)
-        wrong = "the noise level must not be negative, and its least samples from 2 to 1048576";
-    else if (!(fabsf(s->shown_exposure_stops) <= 100.0f))
-        wrong = "the exposure of what is shown must be from -100 to 100 stops";
-    else if (!(s->clamp_direct >= 0.0f) || !(s->clamp_indirect >= 0.0f))
-        wrong = "clamps must not be negative";
-    else if (s->layers & ~(uint32_t)(AG_LAYERS_ALL | AG_LAYER_GBUFFER | AG_LAYER_TILE_TIME))
-        wrong = "layers must be of those that there are";
-    else if (!(s->radius >= 0.0f) || isinf(s->radius))
-        wrong = "radius must be finite and not negative";
-    else if (!(s->irradiance_fraction > 0.0f) || s->irradiance_fraction > 1.0f)
-        wrong = "the fraction of photons that bear irradiance must be above 0, and 1 at most";
-    else if (s->pane_light != AG_PANE_LIGHT_DIRECT && s->pane_light != AG_PANE_LIGHT_TRACED)
-        wrong = "light through panes must be direct or traced";
-    else if (!(s->gather_guiding >= 0.0f) || s->gather_guiding > 1.0f)
-        wrong = "the guiding of gather rays must be from 0 to 1";
-    else if (!(s->photon_aim >= 0.0f) || s->photon_aim > AG_DEFAULT_PHOTON_AIM)
-        wrong = "the aim of photons must be from 0 to 0.8";
-    else if (!(s->direct_guiding >= 0.0f) || s->direct_guiding > AG_DEFAULT_DIRECT_GUIDING)
-        wrong = "the guiding of direct light must be from 0 to 0.8";
-    if (!wrong)
+    char wrong[256] = "";
+    bool is_valid = true;
+    for (size_t i = 0; is_valid && setting_at(i); i++)
+        is_valid = setting_check(setting_at(i), s, wrong, sizeof wrong);
+    /* what no row can say alone */
+    if (is_valid && (int64_t)s->samples_per_pixel * s->gather_samples > UINT32_MAX) {
+        snprintf(wrong, sizeof wrong, "samples per pixel times gather rays must stay below 2^32");
+        is_valid = false;
+    }
+    if (is_valid)
         return AG_OK;
     log_message(context->log, AG_LOG_ERROR, "%s", wrong);
     return AG_ERROR_ARGUMENT;

@@ -30,8 +30,19 @@ static ag_status copy_definitions(ag_context *context, const ag_definition *give
     return out_definitions->items ? AG_OK : AG_ERROR_MEMORY;
 }
 
+ag_scene_settings ag_default_scene_settings(void) { return (ag_scene_settings){0}; }
+
+static ag_status make_request(const ag_scene_settings *settings, scene_request *out_request)
+{
+    if ((unsigned)settings->gltf_light_units > AG_GLTF_LIGHT_UNITS_RAW)
+        return AG_ERROR_ARGUMENT;
+    *out_request = (scene_request){.gltf_light_units = (gltf_light_units)settings->gltf_light_units};
+    return AG_OK;
+}
+
 /* Reads and commits it. */
-static ag_status load(ag_context *context, const char *path, const definitions *d, scene *s, input_files *inputs)
+static ag_status load(ag_context *context, const char *path, const definitions *d, const scene_request *request,
+                      scene *s, input_files *inputs)
 {
     const color_config *colors;
     ag_status status = context_color_config(context, &colors);
@@ -40,6 +51,7 @@ static ag_status load(ag_context *context, const char *path, const definitions *
     s->space = context->working_space;
     s->color_config = colors;
     s->definitions = d;
+    s->request = request;
     const char *wrong;
     if (context->is_confined && !input_files_confine(inputs, path, (const char *const *)(void *)context->confined_to,
                                                      context->confined_count, &wrong)) {
@@ -56,7 +68,8 @@ static ag_status load(ag_context *context, const char *path, const definitions *
     inputs->scene = NULL; /* it was borrowed */
     if (status != AG_OK)
         return status;
-    s->definitions = NULL; /* it was borrowed */
+    s->definitions = NULL; /* they were borrowed */
+    s->request = NULL;
     s->defined = definitions_describe(d);
     if (!s->defined)
         return AG_ERROR_MEMORY;
@@ -73,13 +86,28 @@ static ag_status load(ag_context *context, const char *path, const definitions *
 
 ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_scene)
 {
-    return ag_scene_load_with(context, path, NULL, 0, out_scene);
+    return ag_scene_load_as(context, path, NULL, out_scene);
 }
 
 ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_definition *given, size_t count,
                              ag_scene **out_scene)
 {
-    bool is_whole = context && path && out_scene && (given || count == 0);
+    ag_scene_settings settings = ag_default_scene_settings();
+    settings.definitions = given;
+    settings.definition_count = count;
+    return ag_scene_load_as(context, path, &settings, out_scene);
+}
+
+ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
+                           ag_scene **out_scene)
+{
+    const ag_scene_settings defaults = ag_default_scene_settings();
+    if (!settings)
+        settings = &defaults;
+    const ag_definition *given = settings->definitions;
+    const size_t count = settings->definition_count;
+    scene_request request;
+    bool is_whole = context && path && out_scene && (given || count == 0) && make_request(settings, &request) == AG_OK;
     for (size_t i = 0; is_whole && i < count; i++)
         is_whole = given[i].name && given[i].value;
     if (!is_whole)
@@ -90,7 +118,7 @@ ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_def
     scene *s = scene_create();
     ag_status status = copy_definitions(context, given, count, &d);
     if (status == AG_OK)
-        status = loaded && s ? load(context, path, &d, s, &loaded->inputs) : AG_ERROR_MEMORY;
+        status = loaded && s ? load(context, path, &d, &request, s, &loaded->inputs) : AG_ERROR_MEMORY;
     if (status == AG_OK) {
         loaded->s = s;
         *out_scene = loaded;

@@ -12,6 +12,7 @@
 #include "medium.h"
 #include "run_context.h"
 #include "scene_names.h"
+#include "scene_request.h"
 #include "shape/instance.h"
 #include "shape/shape.h"
 #include "text/definitions.h"
@@ -36,6 +37,7 @@ typedef struct scene {
     const struct color_config *color_config; /* that names it, and tells how pictures are encoded; borrowed for as long
                                                 as it is read; NULL: none */
     const definitions *definitions;          /* of names in its text; borrowed for as long; NULL: none */
+    const scene_request *request;            /* likewise; NULL: nothing is asked for */
     material *materials;
     uint32_t material_count;
     struct coat_table **coat_tables; /* of the materials that need one (material/coat.h) */

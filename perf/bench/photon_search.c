@@ -74,8 +74,9 @@ static uint32_t rival_estimate_ordered(bench *b) { return rival_estimates(b, b->
 
 static uint32_t nearest_as_they_come(bench *b)
 {
+    uint64_t rays = 0;
     for (uint32_t i = 0; i < b->hit_count; i++)
-        b->sink += (double)photon_map_nearest(&b->map, b->hits[i].position, b->hits[i].normal);
+        b->sink += (double)photon_map_nearest(&b->map, b->hits[i].position, b->hits[i].normal, &rays);
     return b->hit_count;
 }
 
@@ -85,6 +86,7 @@ static uint32_t nearest_sorted(bench *b)
     photon_walk walk;
     photon_walk_init(&walk, &b->map.bearers);
     uint32_t end;
+    uint64_t rays = 0;
     for (uint32_t begin = 0; begin < b->hit_count; begin = end) {
         /* those of one tile are in order */
         photon_lookup lookups[PHOTON_LOOKUPS_MAX];
@@ -95,7 +97,7 @@ static uint32_t nearest_sorted(bench *b)
             const ray_hit *h = &b->sorted_hits[end];
             lookups[count++] = (photon_lookup){h->position, h->normal, (uint32_t)h->order};
         }
-        photon_map_nearest_many(&b->map, &walk, lookups, count, photons);
+        photon_map_nearest_many(&b->map, &walk, lookups, count, &rays, photons);
         for (uint32_t i = 0; i < count; i++)
             b->sink += (double)photons[i];
     }

@@ -115,7 +115,10 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
     ag_render_settings settings;
     char default_name[4096];
     bool is_skipped = false;
-    status = ag_scene_load_with(context, o->scene, o->definitions, o->definition_count, &scene);
+    ag_scene_settings asked = o->asked;
+    asked.definitions = o->definitions;
+    asked.definition_count = o->definition_count;
+    status = ag_scene_load_as(context, o->scene, &asked, &scene);
     if (status == AG_OK && o->outfile_count == 0 && !o->photons_only) {
         name_default_output(o, scene, frame, default_name, sizeof default_name);
         o->outfiles[o->outfile_count++] = default_name;

@@ -17,6 +17,14 @@ typedef enum progress_style {
     PROGRESS_ALF
 } progress_style;
 
+/* A text that is printed in place of all work. */
+typedef enum options_asked { OPTIONS_ASKED_NOTHING, OPTIONS_ASKED_HELP, OPTIONS_ASKED_VERSION } options_asked;
+
+/* A setting of the renderer, as ag_render_settings_set takes it. */
+typedef struct given_setting {
+    const char *name, *value;
+} given_setting;
+
 /* What the scene says holds where a value was not given. */
 typedef struct options {
     const char *scene;
@@ -35,13 +43,14 @@ typedef struct options {
     int tile_index, tile_count; /* from 1 on; 0: the whole */
     double time_limit, begun;   /* s, 0: none; from when it counts, see passes_seconds */
     progress_style progress;
-    int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
+    int verbosity;           /* -1 quiet, 0, 1 verbose, 2 debug */
+    ag_scene_settings asked; /* of the scene; without the definitions, which stand above */
     ag_context_settings context;
     ag_output_settings output;
-    ag_render_settings render; /* fields are valid where has_… is set */
-    bool has_seed, has_spp, has_noise, has_size, has_crop, has_integrator, has_photons, has_caustic_photons,
-        has_nearest, has_radius, has_irradiance_fraction, has_noise_min_samples, has_gather_samples, has_gather_guiding,
-        has_photon_aim, has_direct_guiding, has_max_depth;
+    ag_render_settings render; /* our defaults, and the given settings over them */
+    given_setting *given;      /* owned array, in the order of the command line; the strings are not */
+    int given_count;
+    options_asked asked_text;
 } options;
 
 typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE } options_result;

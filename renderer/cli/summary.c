@@ -40,6 +40,7 @@ void summary_print(FILE *file, const ag_statistics *s)
     print_count(file, "gather", s->rays_gather);
     print_count(file, "photon", s->rays_photon);
     print_count(file, "path", s->rays_path);
+    print_count(file, "estimate", s->rays_estimate);
     if (s->photons_emitted > 0) {
         fprintf(file, "photons\n");
         print_count(file, "paths", s->photons_emitted);

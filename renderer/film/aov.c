@@ -1,53 +1,49 @@
 /* aov.c: see aov.h. */
 #include "film/aov.h"
 
+#include "film/layer_table.h"
+
+#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const int SUM_WIDTH[FILM_SUM_COUNT] = {
-    [SUM_RADIANCE] = 3,    [SUM_ALPHA] = 1,        [SUM_PARTS] = 3 * LIGHT_PART_COUNT,
-    [SUM_ALBEDO] = 3,      [SUM_NORMAL] = 3,       [SUM_GEOMETRIC_NORMAL] = 3,
-    [SUM_POSITION] = 3,    [SUM_UV] = 2,           [SUM_SLOPE] = 2,
-    [SUM_IRRADIANCE] = 3,  [SUM_SQUARES] = 3,      [SUM_DEVELOPED] = 3,
-    [SUM_HIT_SQUARES] = 3, [SUM_HIT_DEVELOPED] = 3};
+/* --- names --- */
 
-typedef struct layer_name {
-    const char *name;
-    uint32_t layers;
-} layer_name;
+const char *aov_layer_name(uint32_t layer)
+{
+    for (size_t i = 0; layer_at(i); i++)
+        if ((uint32_t)layer_at(i)->info.layer == layer)
+            return layer_at(i)->info.name;
+    return "";
+}
 
-/* As the command line names them. */
-static const layer_name NAMES[] = {
-    {"A", AG_LAYER_ALPHA},
-    {"Z", AG_LAYER_DEPTH},
-    {"albedo", AG_LAYER_ALBEDO},
-    {"N", AG_LAYER_NORMAL},
-    {"P", AG_LAYER_POSITION},
-    {"uv", AG_LAYER_UV},
-    {"emission", AG_LAYER_EMISSION},
-    {"direct", AG_LAYER_DIRECT},
-    {"indirect", AG_LAYER_INDIRECT},
-    {"caustic", AG_LAYER_CAUSTIC},
-    {"specular", AG_LAYER_SPECULAR},
-    {"irradiance", AG_LAYER_IRRADIANCE},
-    {"variance", AG_LAYER_VARIANCE},
-    {"samples", AG_LAYER_SAMPLES},
-    {"id", AG_LAYER_ID},
-    {"lightgroups", AG_LAYER_LIGHT_GROUPS},
-    {"gbuffer", AG_LAYER_GBUFFER},
-    {"photon_density", AG_LAYER_PHOTON_DENSITY},
-    {"cache_state", AG_LAYER_CACHE_STATE},
-    {"photon_distance", AG_LAYER_PHOTON_DISTANCE},
-    {"gather_distance", AG_LAYER_GATHER_DISTANCE},
-    {"tile_time", AG_LAYER_TILE_TIME},
-    {"crypto_object", AG_LAYER_CRYPTO_OBJECT},
-    {"crypto_material", AG_LAYER_CRYPTO_MATERIAL},
-    {"crypto", AG_LAYER_CRYPTO_OBJECT | AG_LAYER_CRYPTO_MATERIAL},
-    {"light", AG_LAYERS_LIGHT},
-    {"all", AG_LAYERS_ALL},
-};
+uint32_t aov_known_layers(void)
+{
+    uint32_t layers = 0;
+    for (size_t i = 0; layer_at(i); i++)
+        layers |= (uint32_t)layer_at(i)->info.layer;
+    return layers;
+}
+
+static bool is_word(const char *name, const char *word, size_t length)
+{
+    return name && strlen(name) == length && strncmp(name, word, length) == 0;
+}
+
+/* The layers that a word names: one, those of a group, or all; 0: none. */
+static uint32_t layers_of_word(const char *word, size_t length)
+{
+    uint32_t layers = 0;
+    for (size_t i = 0; layer_at(i); i++) {
+        const ag_layer_info *info = &layer_at(i)->info;
+        if (is_word(info->name, word, length) || is_word(info->group, word, length) ||
+            (is_word("all", word, length) && !info->is_left_out_of_all))
+            layers |= (uint32_t)info->layer;
+    }
+    return layers;
+}
 
 ag_status ag_layers_parse(const char *list, uint32_t *out_layers)
 {
@@ -56,10 +52,7 @@ ag_status ag_layers_parse(const char *list, uint32_t *out_layers)
     uint32_t layers = 0;
     for (const char *at = list;; at++) {
         size_t length = strcspn(at, ",");
-        uint32_t found = 0;
-        for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
-            if (strlen(NAMES[i].name) == length && strncmp(NAMES[i].name, at, length) == 0)
-                found = NAMES[i].layers;
+        uint32_t found = layers_of_word(at, length);
         if (!found)
             return AG_ERROR_ARGUMENT;
         layers |= found;
@@ -71,195 +64,164 @@ ag_status ag_layers_parse(const char *list, uint32_t *out_layers)
     return AG_OK;
 }
 
-/* --- what is summed --- */
-
-static void want(aov_layout *layout, bool is_wanted, film_sum sum, int width)
-{
-    if (!is_wanted || layout->offset[sum] >= 0)
-        return;
-    layout->offset[sum] = layout->sum_count;
-    layout->sum_count += width;
-}
-
-static void lay_out_sums(aov_layout *layout, aov_needs also)
-{
-    uint32_t layers = layout->layers;
-    const struct {
-        uint32_t layers;
-        film_sum sum;
-    } needs[] = {
-        {AG_LAYERS_LIGHT, SUM_PARTS},
-        {AG_LAYER_ALPHA | AG_LAYER_POSITION | AG_LAYER_UV | AG_LAYER_GBUFFER, SUM_ALPHA},
-        {AG_LAYER_ALBEDO | AG_LAYER_GBUFFER, SUM_ALBEDO},
-        {AG_LAYER_NORMAL | AG_LAYER_GBUFFER, SUM_NORMAL},
-        {AG_LAYER_GBUFFER, SUM_GEOMETRIC_NORMAL},
-        {AG_LAYER_POSITION | AG_LAYER_GBUFFER, SUM_POSITION},
-        {AG_LAYER_UV | AG_LAYER_GBUFFER, SUM_UV},
-        {AG_LAYER_GBUFFER, SUM_SLOPE},
-        {AG_LAYER_IRRADIANCE, SUM_IRRADIANCE},
-        {AG_LAYER_VARIANCE, SUM_SQUARES},
-        {AG_LAYER_VARIANCE, SUM_DEVELOPED},
-        {AG_LAYER_GBUFFER, SUM_HIT_SQUARES},
-        {AG_LAYER_GBUFFER, SUM_HIT_DEVELOPED},
-    };
-    for (int i = 0; i < FILM_SUM_COUNT; i++)
-        layout->offset[i] = -1;
-    want(layout, true, SUM_RADIANCE, SUM_WIDTH[SUM_RADIANCE]);
-    for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
-        want(layout, layers & needs[i].layers, needs[i].sum, SUM_WIDTH[needs[i].sum]);
-    want(layout, also.albedo_and_normal, SUM_ALBEDO, SUM_WIDTH[SUM_ALBEDO]);
-    want(layout, also.albedo_and_normal, SUM_NORMAL, SUM_WIDTH[SUM_NORMAL]);
-    want(layout, also.variance, SUM_SQUARES, SUM_WIDTH[SUM_SQUARES]);
-    want(layout, also.variance, SUM_DEVELOPED, SUM_WIDTH[SUM_DEVELOPED]);
-    want(layout, layers & AG_LAYER_LIGHT_GROUPS, SUM_GROUPS, 3 * (layout->group_count + 1));
-    layout->needs_nearest = layers & (AG_LAYER_DEPTH | AG_LAYER_ID);
-    layout->has_matte[CRYPTOMATTE_OBJECT] = layers & AG_LAYER_CRYPTO_OBJECT;
-    layout->has_matte[CRYPTOMATTE_MATERIAL] = layers & AG_LAYER_CRYPTO_MATERIAL;
-    layout->needs_first_hit = layout->needs_nearest || layout->has_matte[0] || layout->has_matte[1] ||
-                              aov_has(layout, SUM_ALPHA) || aov_has(layout, SUM_ALBEDO) ||
-                              aov_has(layout, SUM_NORMAL) || aov_has(layout, SUM_IRRADIANCE);
-    int of_radiance = SUM_WIDTH[SUM_RADIANCE];
-    if (aov_has(layout, SUM_SQUARES))
-        of_radiance += SUM_WIDTH[SUM_SQUARES] + SUM_WIDTH[SUM_DEVELOPED];
-    layout->needs_layers = layout->sum_count > of_radiance || layout->needs_first_hit;
-}
-
 /* --- channels --- */
 
-typedef struct channel_style {
-    channel_source source;
-    film_sum sum;
-    int skipped; /* components of the sum that lie before */
-    bool is_exact;
-} channel_style;
+/* Those of the layers that are asked for. The first time through there is no place for any: they are counted. */
+typedef struct channel_list {
+    film_channel *channels; /* [capacity], or NULL */
+    int count, capacity;
+} channel_list;
 
-static void add_channel(aov_layout *layout, channel_style style, int component, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+static void add_channel(channel_list *list, const film_channel *style, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
-static void add_channel(aov_layout *layout, channel_style style, int component, const char *format, ...)
+/* One more, unless there is one of that name. */
+static void add_channel(channel_list *list, const film_channel *style, const char *format, ...)
 {
-    film_channel made = {.source = style.source, .sum = style.sum, .component = component, .is_exact = style.is_exact};
-    made.offset = layout->offset[style.sum] + style.skipped;
+    if (!list->channels) {
+        list->count++;
+        return;
+    }
+    film_channel made = *style;
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(made.name, sizeof made.name, format, arguments);
     va_end(arguments);
-    for (int i = 0; i < layout->channel_count; i++)
-        if (strcmp(layout->channels[i].name, made.name) == 0)
+    for (int i = 0; i < list->count; i++)
+        if (strcmp(list->channels[i].name, made.name) == 0)
             return;
-    layout->channels[layout->channel_count++] = made;
+    assert(list->count < list->capacity);
+    list->channels[list->count++] = made;
 }
 
-/* One for each letter. */
-static void add_channels(aov_layout *layout, channel_style style, const char *layer, const char *letters)
+static void add_alike(channel_list *list, const layer_channels *c)
 {
-    for (int i = 0; letters[i]; i++)
-        add_channel(layout, style, i, "%s%s%c", layer, *layer ? "." : "", letters[i]);
-}
-
-static void add_gbuffer(aov_layout *layout)
-{
-    add_channels(layout, (channel_style){CHANNEL_MEAN, SUM_ALBEDO, 0, false}, "Albedo", "RGB");
-    add_channels(layout, (channel_style){CHANNEL_HIT_MEAN, SUM_POSITION, 0, true}, "P", "XYZ");
-    add_channel(layout, (channel_style){CHANNEL_ABSOLUTE, SUM_SLOPE, 0, true}, 0, "dzdx");
-    add_channel(layout, (channel_style){CHANNEL_ABSOLUTE, SUM_SLOPE, 0, true}, 1, "dzdy");
-    add_channels(layout, (channel_style){CHANNEL_DIRECTION, SUM_GEOMETRIC_NORMAL, 0, false}, "N", "XYZ");
-    add_channels(layout, (channel_style){CHANNEL_DIRECTION, SUM_NORMAL, 0, false}, "Ns", "XYZ");
-    add_channels(layout, (channel_style){CHANNEL_HIT_MEAN, SUM_UV, 0, true}, "", "uv");
-    add_channels(layout, (channel_style){CHANNEL_VARIANCE, SUM_HIT_SQUARES, 0, true}, "Variance", "RGB");
-    add_channels(layout, (channel_style){CHANNEL_RELATIVE_VARIANCE, SUM_HIT_SQUARES, 0, true}, "RelativeVariance",
-                 "RGB");
+    film_channel style = {
+        .source = c->source, .sum = c->sum, .component = c->component, .offset = c->skipped, .is_exact = c->is_exact};
+    if (!c->letters)
+        add_channel(list, &style, "%s", c->name);
+    for (int i = 0; c->letters && c->letters[i]; i++, style.component++)
+        add_channel(list, &style, "%s%s%c", c->name, c->name[0] ? "." : "", c->letters[i]);
 }
 
 /* Two ranks to a layer: id and coverage, id and coverage. */
-static void add_cryptomatte(aov_layout *layout, cryptomatte_kind kind, const char *name)
+static void add_cryptomatte(channel_list *list, const layer_row *row)
 {
-    for (int i = 0; layout->has_matte[kind] && i < 2 * CRYPTOMATTE_RANKS; i++) {
-        channel_source source = i % 2 == 0 ? CHANNEL_CRYPTO_ID : CHANNEL_CRYPTO_COVERAGE;
-        add_channel(layout, (channel_style){source, SUM_RADIANCE, 0, true}, i / 2 + CRYPTOMATTE_RANKS * (int)kind,
-                    "%s%02d.%c", name, i / 4, "RGBA"[i % 4]);
+    for (int i = 0; i < 2 * CRYPTOMATTE_RANKS; i++) {
+        film_channel style = {.source = i % 2 == 0 ? CHANNEL_CRYPTO_ID : CHANNEL_CRYPTO_COVERAGE,
+                              .component = i / 2 + CRYPTOMATTE_RANKS * (int)row->matte,
+                              .is_exact = true};
+        add_channel(list, &style, "%s%02d.%c", row->matte_name, i / 4, "RGBA"[i % 4]);
     }
 }
 
-static void lay_out_channels(aov_layout *layout)
+static void add_light_groups(channel_list *list, const aov_layout *layout)
 {
-    static const struct {
-        uint32_t layer;
-        const char *name;
-    } parts[LIGHT_PART_COUNT] = {[PART_EMISSION] = {AG_LAYER_EMISSION, "emission"},
-                                 [PART_DIRECT] = {AG_LAYER_DIRECT, "direct"},
-                                 [PART_INDIRECT] = {AG_LAYER_INDIRECT, "indirect"},
-                                 [PART_CAUSTIC] = {AG_LAYER_CAUSTIC, "caustic"},
-                                 [PART_SPECULAR] = {AG_LAYER_SPECULAR, "specular"}};
-    const struct {
-        uint32_t layer;
-        channel_style style;
-        const char *name, *letters;
-    } simple[] = {
-        {AG_LAYER_ALBEDO, {CHANNEL_MEAN, SUM_ALBEDO, 0, false}, "albedo", "RGB"},
-        {AG_LAYER_NORMAL, {CHANNEL_MEAN, SUM_NORMAL, 0, false}, "N", "XYZ"},
-        {AG_LAYER_POSITION, {CHANNEL_HIT_MEAN, SUM_POSITION, 0, true}, "P", "XYZ"},
-        {AG_LAYER_UV, {CHANNEL_HIT_MEAN, SUM_UV, 0, true}, "", "uv"},
-        {AG_LAYER_IRRADIANCE, {CHANNEL_COLOR, SUM_IRRADIANCE, 0, false}, "irradiance", "RGB"},
-        {AG_LAYER_VARIANCE, {CHANNEL_VARIANCE, SUM_SQUARES, 0, true}, "variance", "RGB"},
-    };
-    uint32_t layers = layout->layers;
-    add_channels(layout, (channel_style){CHANNEL_BEAUTY, SUM_RADIANCE, 0, false}, "", "RGB");
-    if (layers & AG_LAYER_ALPHA)
-        add_channel(layout, (channel_style){CHANNEL_MEAN, SUM_ALPHA, 0, false}, 0, "A");
-    if (layers & AG_LAYER_GBUFFER)
-        add_gbuffer(layout); /* first: where a layer of ours has the same name, it is pbrt's */
-    if (layers & AG_LAYER_DEPTH)
-        add_channel(layout, (channel_style){CHANNEL_DEPTH, SUM_RADIANCE, 0, true}, 0, "Z");
-    for (int i = 0; i < LIGHT_PART_COUNT; i++)
-        if (layers & parts[i].layer)
-            add_channels(layout, (channel_style){CHANNEL_COLOR, SUM_PARTS, 3 * i, false}, parts[i].name, "RGB");
-    for (size_t i = 0; i < sizeof simple / sizeof *simple; i++)
-        if (layers & simple[i].layer)
-            add_channels(layout, simple[i].style, simple[i].name, simple[i].letters);
-    if (layers & AG_LAYER_SAMPLES)
-        add_channel(layout, (channel_style){CHANNEL_SAMPLES, SUM_RADIANCE, 0, true}, 0, "samples");
-    if (layers & AG_LAYER_ID) {
-        add_channel(layout, (channel_style){CHANNEL_OBJECT, SUM_RADIANCE, 0, true}, 0, "id.object");
-        add_channel(layout, (channel_style){CHANNEL_MATERIAL, SUM_RADIANCE, 0, true}, 0, "id.material");
+    for (int i = 0; i <= layout->group_count; i++) {
+        const char *group = i < layout->group_count ? layout->group_names[i] : "photons";
+        film_channel style = {.source = CHANNEL_COLOR, .sum = SUM_GROUPS, .offset = 3 * i};
+        for (; style.component < 3; style.component++)
+            add_channel(list, &style, "light_%.50s.%c", group, "RGB"[style.component]);
     }
-    static const struct {
-        uint32_t layer;
-        film_view view;
-        const char *name;
-    } views[] = {{AG_LAYER_PHOTON_DENSITY, VIEW_PHOTON_DENSITY, "photon_density"},
-                 {AG_LAYER_CACHE_STATE, VIEW_CACHE_STATE, "cache_state"},
-                 {AG_LAYER_PHOTON_DISTANCE, VIEW_PHOTON_DISTANCE, "photon_distance"},
-                 {AG_LAYER_GATHER_DISTANCE, VIEW_GATHER_DISTANCE, "gather_distance"},
-                 {AG_LAYER_TILE_TIME, VIEW_TILE_TIME, "tile_time"}};
-    for (size_t i = 0; i < sizeof views / sizeof *views; i++)
-        if (layers & views[i].layer) {
-            layout->has_view[views[i].view] = true;
-            add_channel(layout, (channel_style){CHANNEL_VIEW, SUM_RADIANCE, 0, true}, (int)views[i].view, "%s",
-                        views[i].name);
-        }
-    add_cryptomatte(layout, CRYPTOMATTE_OBJECT, "CryptoObject");
-    add_cryptomatte(layout, CRYPTOMATTE_MATERIAL, "CryptoMaterial");
-    for (int i = 0; (layers & AG_LAYER_LIGHT_GROUPS) && i <= layout->group_count; i++) {
-        char name[64];
-        snprintf(name, sizeof name, "light_%.50s", i < layout->group_count ? layout->group_names[i] : "photons");
-        add_channels(layout, (channel_style){CHANNEL_COLOR, SUM_GROUPS, 3 * i, false}, name, "RGB");
+}
+
+static void list_channels(channel_list *list, const aov_layout *layout)
+{
+    static const layer_channels beauty = {"", "RGB", CHANNEL_BEAUTY, .sum = SUM_RADIANCE};
+    add_alike(list, &beauty);
+    for (size_t i = 0; layer_at(i); i++) {
+        const layer_row *row = layer_at(i);
+        if (!(layout->layers & (uint32_t)row->info.layer))
+            continue;
+        for (const layer_channels *c = row->channels; c && c->name; c++)
+            add_alike(list, c);
+        if (row->expansion == LAYER_BY_RANK)
+            add_cryptomatte(list, row);
+        else if (row->expansion == LAYER_BY_LIGHT_GROUP)
+            add_light_groups(list, layout);
     }
+}
+
+/* --- what they need --- */
+
+/* The sums that a channel is read from, a bit each; and what else the film keeps for it. */
+static uint32_t note_needs(const film_channel *channel, aov_layout *layout)
+{
+    const uint32_t sum = 1u << channel->sum, hits = 1u << SUM_ALPHA;
+    switch (channel->source) {
+    case CHANNEL_BEAUTY:
+    case CHANNEL_COLOR:
+    case CHANNEL_MEAN:
+    case CHANNEL_DIRECTION: return sum;
+    case CHANNEL_HIT_MEAN:
+    case CHANNEL_ABSOLUTE: return sum | hits;
+    case CHANNEL_VARIANCE:
+    case CHANNEL_RELATIVE_VARIANCE:
+        return channel->sum == SUM_HIT_SQUARES ? sum | 1u << SUM_HIT_DEVELOPED | hits : sum | 1u << SUM_DEVELOPED;
+    case CHANNEL_DEPTH:
+    case CHANNEL_OBJECT:
+    case CHANNEL_MATERIAL: layout->needs_nearest = true; break;
+    case CHANNEL_VIEW: layout->has_view[channel->component] = true; break;
+    case CHANNEL_CRYPTO_ID:
+    case CHANNEL_CRYPTO_COVERAGE: layout->has_matte[channel->component / CRYPTOMATTE_RANKS] = true; break;
+    case CHANNEL_SAMPLES: break;
+    }
+    return 0;
+}
+
+static int sum_width(const aov_layout *layout, int sum)
+{
+    static const int widths[FILM_SUM_COUNT] = {
+        [SUM_RADIANCE] = 3,    [SUM_ALPHA] = 1,        [SUM_PARTS] = 3 * LIGHT_PART_COUNT,
+        [SUM_ALBEDO] = 3,      [SUM_NORMAL] = 3,       [SUM_GEOMETRIC_NORMAL] = 3,
+        [SUM_POSITION] = 3,    [SUM_UV] = 2,           [SUM_SLOPE] = 2,
+        [SUM_IRRADIANCE] = 3,  [SUM_SQUARES] = 3,      [SUM_DEVELOPED] = 3,
+        [SUM_HIT_SQUARES] = 3, [SUM_HIT_DEVELOPED] = 3};
+    return sum == SUM_GROUPS ? 3 * (layout->group_count + 1) : widths[sum];
+}
+
+static void lay_out_sums(aov_layout *layout, aov_needs also)
+{
+    uint32_t sums = 1u << SUM_RADIANCE;
+    for (int i = 0; i < layout->channel_count; i++)
+        sums |= note_needs(&layout->channels[i], layout);
+    if (also.albedo_and_normal)
+        sums |= 1u << SUM_ALBEDO | 1u << SUM_NORMAL;
+    if (also.variance)
+        sums |= 1u << SUM_SQUARES | 1u << SUM_DEVELOPED;
+    for (int i = 0; i < FILM_SUM_COUNT; i++) {
+        layout->offset[i] = sums >> i & 1u ? layout->sum_count : -1;
+        layout->sum_count += sums >> i & 1u ? sum_width(layout, i) : 0;
+    }
+    for (int i = 0; i < layout->channel_count; i++)
+        layout->channels[i].offset += layout->offset[layout->channels[i].sum];
+    layout->needs_first_hit = layout->needs_nearest || layout->has_matte[CRYPTOMATTE_OBJECT] ||
+                              layout->has_matte[CRYPTOMATTE_MATERIAL] || aov_has(layout, SUM_ALPHA) ||
+                              aov_has(layout, SUM_ALBEDO) || aov_has(layout, SUM_NORMAL) ||
+                              aov_has(layout, SUM_IRRADIANCE);
+    int of_radiance = sum_width(layout, SUM_RADIANCE);
+    if (aov_has(layout, SUM_SQUARES))
+        of_radiance += sum_width(layout, SUM_SQUARES) + sum_width(layout, SUM_DEVELOPED);
+    layout->needs_layers = layout->sum_count > of_radiance || layout->needs_first_hit;
 }
 
 ag_status aov_layout_create(uint32_t layers, aov_needs also, bool is_path, const char *const *group_names,
                             int group_count, aov_layout *out_layout)
 {
     aov_layout layout = {.layers = layers, .group_count = group_count, .group_names = group_names};
-    if (is_path) /* what only the photon map knows */
-        layout.layers &= ~(uint32_t)(AG_LAYER_IRRADIANCE | AG_LAYER_PHOTON_DENSITY | AG_LAYER_CACHE_STATE |
-                                     AG_LAYER_PHOTON_DISTANCE | AG_LAYER_GATHER_DISTANCE);
+    for (size_t i = 0; layer_at(i); i++)
+        if (is_path && layer_at(i)->is_of_photon_map)
+            layout.layers &= ~(uint32_t)layer_at(i)->info.layer;
     layout.is_gbuffer = layout.layers & AG_LAYER_GBUFFER;
-    lay_out_sums(&layout, also);
-    layout.channels = calloc((size_t)(96 + 3 * (LIGHT_PART_COUNT + group_count + 1)), sizeof *layout.channels);
-    if (!layout.channels)
+    channel_list list = {0};
+    list_channels(&list, &layout);
+    list = (channel_list){.capacity = list.count, .channels = calloc((size_t)list.count, sizeof *list.channels)};
+    if (!list.channels)
         return AG_ERROR_MEMORY;
-    lay_out_channels(&layout);
+    list_channels(&list, &layout);
+    layout.channels = list.channels;
+    layout.channel_count = list.count;
+    lay_out_sums(&layout, also);
     *out_layout = layout;
     return AG_OK;
 }

@@ -1,6 +1,5 @@
-/* aov.h: the layers of a picture: their names, what the film sums for them, and the channels of a file they become.
- * Rests on: pbrt-v4's GBufferFilm (its channel names); Cryptomatte (Friedman, Jones, Psyop); the names that EXR
- * files of PRMan, Arnold and Cycles have in common. Flow: settings -> [here] -> film, files. Threads: read-only once
+/* aov.h: what the film sums for the layers that are asked for, and the channels of a file that they become; which
+ * layers there are is in layer_table. Flow: settings, layer_table -> [here] -> film, files. Threads: read-only once
  * made. */
 #ifndef AFTERGLOW_AOV_H
 #define AFTERGLOW_AOV_H
@@ -27,7 +26,7 @@ typedef enum film_sum {
     SUM_HIT_SQUARES, /* the same of samples that met something: pbrt's Variance */
     SUM_HIT_DEVELOPED
 } film_sum;
-enum { FILM_SUM_COUNT = SUM_HIT_DEVELOPED + 1, FILM_VALUES_MAX = 48 + 3 * (LIGHT_PART_COUNT + LIGHT_GROUPS_MAX + 1) };
+enum { FILM_SUM_COUNT = SUM_HIT_DEVELOPED + 1 };
 
 /* What a channel of a file is made of. */
 typedef enum channel_source {
@@ -85,6 +84,11 @@ typedef struct aov_needs {
     bool albedo_and_normal; /* for denoising */
     bool variance;          /* for adaptive sampling */
 } aov_needs;
+
+/* What ag_layers_parse calls one layer; "" where there is none. */
+const char *aov_layer_name(uint32_t layer);
+/* All layers that there are. */
+uint32_t aov_known_layers(void);
 
 /* group_names: of the scene's light
  * groups, [group_count], the first "default". Errors: AG_ERROR_MEMORY. */

@@ -73,7 +73,7 @@ static void view_pixel(const views_job *job, eye_worker *worker, size_t pixel, i
     map_place at = transport_map_place(t, &v);
     if (job->film->views[VIEW_PHOTON_DENSITY])
         put(job, VIEW_PHOTON_DENSITY, pixel, photon_density(map, worker, &at));
-    uint32_t nearest = photon_map_nearest(map, at.position, at.facing_normal);
+    uint32_t nearest = photon_map_nearest(map, at.position, at.facing_normal, &worker->rays_estimate);
     if (nearest >= PHOTON_HIDDEN)
         return;
     uint32_t word = irradiance_slot_read(photon_map_slot(map, nearest));

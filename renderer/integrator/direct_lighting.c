@@ -117,13 +117,13 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
 }
 
 rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, rgb *by_group)
+                          int path_vertex, sample_counts counts, rgb *by_group)
 {
     rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f), *sky = &worker->direct_from_sky;
     *sky = rgb_gray(0.0f);
     if (!t->has_lights)
         return from_lamps;
-    int lamp_count = t->light_samples, scatter_count = t->scatter_samples;
+    int lamp_count = counts.light, scatter_count = counts.scatter;
     float lamp_share = 1.0f / (float)lamp_count, scatter_share = scatter_count > 0 ? 1.0f / (float)scatter_count : 0.0f;
     vec3 from = v->hit.position, normal = direct_light_normal(v, BSDF_GATHERED);
     for (int i = 0; i < lamp_count; i++) {

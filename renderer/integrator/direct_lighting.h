@@ -39,9 +39,9 @@ float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, co
 rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
                          int lamp_count, int scatter_count, rgb *by_group);
 
-/* All of the direct light at a diffuse place: t->light_samples and t->scatter_samples samples. What of it is from
+/* All of the direct light at a diffuse place, by so many samples towards lamps and by scattering. What of it is from
  * infinite lights is left in worker->direct_from_sky. */
 rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, rgb *by_group);
+                          int path_vertex, sample_counts counts, rgb *by_group);
 
 #endif

@@ -98,7 +98,7 @@ static void gather_places(const transport *t, eye_worker *worker, const vertex *
         scene_ray ray = surface_ray(&v->hit, v->arrived, first.direction);
         ray.skips_uv = true;
         if (transport_meet(t, worker, ray, &met) &&
-            gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, &known, &end, &weight))
+            gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight))
             add_place(list, end.place.position, end.place.normal);
     }
 }
@@ -133,7 +133,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
                               &out->gathered);
             }
         }
-        if (!shading_go_on(t, &v, &where, path_vertex, is_last, &throughput, &next, &goes_straight))
+        if (!shading_go_on(t, &v, &where, path_vertex, path_vertex, is_last, &throughput, &next, &goes_straight))
             return;
         scatterings += !goes_straight;
         ray = goes_straight ? passage_continue(&v.hit, &v.arrived) : surface_ray(&v.hit, v.arrived, next.direction);

@@ -14,6 +14,7 @@ typedef struct gathering {
     const sampler *where;
     int path_vertex, scatterings_left;
     uint32_t count;
+    float share_seen; /* of what a ray brings, by the eye */
     rgb known;
 } gathering;
 
@@ -30,7 +31,8 @@ static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
     rgb weight;
     rng random = ray_random(g, number);
     rng_next(&random); /* of the lobe that the ray left by */
-    if (gather_path_follow(g->t, g->worker, v, random, g->scatterings_left, first, &g->known, &end, &weight))
+    if (gather_path_follow(g->t, g->worker, v, random, g->scatterings_left, first, g->share_seen, &g->known, &end,
+                           &weight))
         gather_batch_ask(g->worker->batch, &end, number, weight);
 }
 
@@ -140,16 +142,16 @@ static bool find_guide(const transport *t, const vertex *v, incident_guide *out_
 }
 
 void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
-                  bool is_first, int scatterings_left, rgb throughput)
+                  bool is_first, int scatterings_left, uint32_t count, rgb throughput)
 {
-    uint32_t count = (uint32_t)t->settings->gather_samples;
-    gathering g = {t, worker, v, where, path_vertex, scatterings_left - 1, count, rgb_gray(0.0f)};
+    rgb one_ray = rgb_scale(throughput, 1.0f / (float)count);
+    gathering g = {t, worker, v, where, path_vertex, scatterings_left - 1, count, rgb_max(one_ray), rgb_gray(0.0f)};
     gather_batch *batch = worker->batch;
     if (!gather_batch_has_room(batch, RAY_FAN_MAX))
         final_gather_resolve(t, worker);
     if (run_is_cancelled(t->run)) /* the batch is full still, and the sample thrown away */
         return;
-    gather_batch_begin(batch, worker->sample, is_first, rgb_scale(throughput, 1.0f / (float)count),
+    gather_batch_begin(batch, worker->sample, is_first, one_ray,
                        hash_combine(hash_combine(where->key, (uint64_t)path_vertex), where->sample));
     sampler_sequence numbers = sampler_sequence_make(where, SAMPLE_GATHER, path_vertex, count);
     bool is_plain = bsdf_is_plain(&v->scattering);
@@ -188,7 +190,7 @@ static void follow_detours(const transport *t, eye_worker *worker, uint32_t coun
         uint32_t asking = 0;
         for (uint32_t i = 0; i < count; i++) {
             gather_detour *d = &b->detours[i];
-            if (!gather_path_bounce(t, worker, rng_make(d->key, bounce, d->number), &d->end, &d->weight,
+            if (!gather_path_bounce(t, worker, rng_make(d->key, bounce, d->number), d->share_seen, &d->end, &d->weight,
                                     &b->irradiance[d->query]))
                 continue;
             b->detour_queries[asking] = (irradiance_query){d->end.place.position, d->end.place.normal};

@@ -13,7 +13,7 @@
  * scatterings_left: how many there may be between here and the lamp, this one included; >= 2. Those of the photons
  * themselves are bounded where they are traced. */
 void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
-                  bool is_first, int scatterings_left, rgb throughput);
+                  bool is_first, int scatterings_left, uint32_t count, rgb throughput);
 
 /* Gets all irradiance that the worker's gather rays ask for, follows the light of those that get none, and adds the
  * gathers that are over to their samples. Nothing is right any more once the run is cancelled. */

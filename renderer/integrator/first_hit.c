@@ -23,7 +23,8 @@ static rgb irradiance_at(const transport *t, eye_worker *worker, const vertex *v
     map_place at = transport_map_place(t, v);
     arena_mark mark = arena_save(worker->scratch);
     photon_neighbor *neighbors = arena_alloc(worker->scratch, photon_map_scratch_count(map) * sizeof *neighbors);
-    rgb irradiance = irradiance_estimate(map, at.position, at.facing_normal, neighbors);
+    rgb irradiance;
+    irradiance_estimate_find(map, at.position, at.facing_normal, neighbors, &worker->rays_estimate, &irradiance);
     arena_restore(worker->scratch, mark);
     return irradiance;
 }

@@ -44,7 +44,8 @@ typedef struct gather_detour {
     uint32_t query, number;
     uint64_t key;
     gather_end end;
-    rgb weight; /* of the irradiance at the end, 1/sr */
+    rgb weight;       /* of the irradiance at the end, 1/sr */
+    float share_seen; /* of the gather's radiance, by the eye */
 } gather_detour;
 
 /* What a sample has gathered. */

@@ -9,11 +9,11 @@
 enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
 
 /* Direct light and caustics at a diffuse place, as an estimate there holds them: radiance towards v's `out`. */
-static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, rng *random)
+static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, float share_seen, rng *random)
 {
-    float u_pick = rng_float(random);
+    float u_pick = rng_float(random), u_caustic = rng_float(random);
     rgb direct = direct_light_from_lamp(t, worker, v, BSDF_GATHERED, u_pick, rng_vec2(random), 1, 0);
-    return rgb_add(direct, transport_caustics(t, worker, v));
+    return rgb_add(direct, transport_some_caustics(t, worker, v, share_seen, u_caustic));
 }
 
 /* The ray ends at a diffuse place: irradiance on one side of it, picked by the lobes' shares. */
@@ -48,7 +48,7 @@ static bool ends_plainly(const transport *t, const vertex *v, int scatterings_le
 }
 
 bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng random, int scatterings_left, rgb first,
-                        rgb *in_out_known, gather_end *out_end, rgb *out_weight)
+                        float share_seen, rgb *in_out_known, gather_end *out_end, rgb *out_weight)
 {
     rgb throughput = rgb_gray(1.0f);
     float travelled = 0.0f;
@@ -74,8 +74,9 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
                 return true;
             }
             /* too near for an estimate that is blurred over about that distance */
-            rgb local = local_light(t, worker, v, &random);
-            *in_out_known = rgb_add(*in_out_known, rgb_mul(rgb_mul(first, throughput), local));
+            rgb weight = rgb_mul(first, throughput);
+            rgb local = local_light(t, worker, v, share_seen * rgb_max(weight), &random);
+            *in_out_known = rgb_add(*in_out_known, rgb_mul(weight, local));
             travelled = 0.0f;
             short_bounces++;
         }
@@ -116,14 +117,15 @@ static void make_white(const gather_end *end, vertex *v)
     v->lamp = NULL;
 }
 
-bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, gather_end *in_out_end, rgb *in_out_weight,
-                        rgb *in_out_known)
+bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, float share_seen, gather_end *in_out_end,
+                        rgb *in_out_weight, rgb *in_out_known)
 {
     vertex v;
     bsdf_sample next;
     rgb throughput = rgb_scale(*in_out_weight, AG_PI);
     make_white(in_out_end, &v);
-    *in_out_known = rgb_add(*in_out_known, rgb_mul(throughput, local_light(t, worker, &v, &random)));
+    rgb local = local_light(t, worker, &v, share_seen * rgb_max(throughput), &random);
+    *in_out_known = rgb_add(*in_out_known, rgb_mul(throughput, local));
     int left = in_out_end->scatterings_left - 1;
     vec2 u = rng_vec2(&random);
     if (left == 0 || !transport_survives(&throughput, rng_float(&random)) ||
@@ -132,6 +134,6 @@ bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, gath
     scene_ray ray = surface_ray(&v.hit, v.arrived, next.direction);
     worker->rays_gather++;
     return transport_meet(t, worker, ray, &v) &&
-           gather_path_follow(t, worker, &v, random, left, rgb_mul(throughput, next.weight), in_out_known, in_out_end,
-                              in_out_weight);
+           gather_path_follow(t, worker, &v, random, left, rgb_mul(throughput, next.weight), share_seen, in_out_known,
+                              in_out_end, in_out_weight);
 }

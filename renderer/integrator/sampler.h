@@ -59,6 +59,16 @@ static inline sampler sampler_make(uint64_t seed, int x, int y, uint32_t sample,
                      sampler_morton(column, row), sample, sample_bits};
 }
 
+/* The sampler of one of 2^branch_bits branches that a sample's path is split into: together they run through the
+ * sequences as so many more samples would. Not for a vertex and use that the whole sample draws for. */
+static inline sampler sampler_branch(const sampler *whole, uint32_t branch_bits, uint32_t branch)
+{
+    sampler s = *whole;
+    s.sample = (whole->sample << branch_bits) + branch;
+    s.sample_bits += branch_bits;
+    return s;
+}
+
 static inline uint32_t sampler_reverse_bits(uint32_t x)
 {
     x = x << 16 | x >> 16; /* which compilers turn into vectors, a swap of bytes they do not all */

@@ -1,6 +1,7 @@
 /* shading.h: radiance along a camera ray with the photon map, as Jensen splits it.
  * Rests on: Jensen 1996; Jensen 2001, ch. 8: emitted + direct + caustics + specular and glossy traced on + final
- * gather. Threads: pure but for the worker's counters and the irradiance slots. */
+ * gather; Arvo, Kirk, "Particle Transport and Image Synthesis", 1990 (splitting, roulette).
+ * Threads: pure but for the worker's counters and the irradiance slots. */
 #ifndef AFTERGLOW_SHADING_H
 #define AFTERGLOW_SHADING_H
 
@@ -11,9 +12,10 @@
 static const float SHADING_LOW_CONTRIBUTION = 0.03f;
 
 /* Sends an eye path on from a place by its traced lobes, with roulette from the fifth vertex on. is_last: only straight
- * through a pane where that is direct light. False: the path ends. *out_goes_straight: the sample is no scattering. */
-bool shading_go_on(const transport *t, const vertex *v, const sampler *where, int path_vertex, bool is_last,
-                   rgb *in_out_throughput, bsdf_sample *out_next, bool *out_goes_straight);
+ * through a pane where that is direct light. random_vertex: at which random numbers are drawn. False: the path ends.
+ * *out_goes_straight: the sample is no scattering. */
+bool shading_go_on(const transport *t, const vertex *v, const sampler *where, int random_vertex, int path_vertex,
+                   bool is_last, rgb *in_out_throughput, bsdf_sample *out_next, bool *out_goes_straight);
 
 /* Adds to *in_out, which has nothing in it but its bounds and layers' place. */
 /* All but what is gathered: that the worker's batch has when it is resolved. */

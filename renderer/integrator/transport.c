@@ -3,6 +3,18 @@
 
 #include "rays/passage.h"
 
+/* Direct light takes one sample for so many gather rays, so that neither is much noisier than the other. */
+enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
+
+sample_counts transport_sample_counts(const transport *t, int gather_samples)
+{
+    sample_counts n = {0};
+    n.light = (gather_samples + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE;
+    if (t->can_meet_lights)
+        n.scatter = (n.light + LIGHT_SAMPLES_PER_SCATTER_SAMPLE - 1) / LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
+    return n;
+}
+
 bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
 {
     bool is_met = passage_intersect(t->s, &ray, &worker->passages_cut, &out_vertex->hit, &out_vertex->transmittance);
@@ -73,11 +85,23 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
     photon_neighbor *neighbors =
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
-    rgb sum = rgb_mul(reflected, irradiance_estimate(t->caustic, at.position, at.facing_normal, neighbors));
+    rgb irradiance;
+    irradiance_estimate_find(t->caustic, at.position, at.facing_normal, neighbors, &worker->rays_estimate, &irradiance);
+    rgb sum = rgb_mul(reflected, irradiance);
     if (!rgb_is_black(transmitted)) {
-        rgb behind = irradiance_estimate(t->caustic, at.position, vec3_negate(at.facing_normal), neighbors);
-        sum = rgb_add(sum, rgb_mul(transmitted, behind));
+        irradiance_estimate_find(t->caustic, at.position, vec3_negate(at.facing_normal), neighbors,
+                                 &worker->rays_estimate, &irradiance);
+        sum = rgb_add(sum, rgb_mul(transmitted, irradiance));
     }
     arena_restore(worker->scratch, mark);
     return rgb_scale(sum, AG_INV_PI);
+}
+
+/* Of what is found by chance, weighed by that, no more than this share reaches the eye. */
+static const float CAUSTIC_SHARE_MAX = 0.25f;
+
+rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float share_seen, float u)
+{
+    float probability = fminf(share_seen / CAUSTIC_SHARE_MAX, 1.0f);
+    return u < probability ? rgb_scale(transport_caustics(t, worker, v), 1.0f / probability) : rgb_gray(0.0f);
 }

@@ -28,14 +28,13 @@ typedef struct transport {
     bool has_lights;           /* any with power */
     bool can_meet_lights;      /* area or infinite ones: those that scattered rays find */
     bool panes_are_direct;     /* there are panes, and light straight through them is direct light (bsdf.h) */
-    int light_samples;         /* for direct light at a diffuse place, towards lamps */
-    int scatter_samples;       /* and by scattering, 0 where that cannot meet a lamp */
     float gather_min_distance; /* a gather ray that hits nearer than this does not use the cache, scene units */
 } transport;
 
 typedef struct eye_worker {
     _Alignas(64) unsigned index; /* the worker's */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
+    uint64_t rays_estimate;                    /* of photon estimates and lookups at the place itself */
     uint64_t camera_rays_met;                  /* those that met a surface */
     rgb direct_from_sky;                       /* of the last direct_light_gathered, what infinite lights gave */
     uint64_t samples_not_finite, passages_cut; /* the latter: ways across more interfaces than passage.h follows */
@@ -53,6 +52,13 @@ typedef struct vertex {
     rgb transmittance; /* of the way here: set also where the ray escapes, and then nothing else is */
     const light *lamp; /* the area light that shines there, or NULL */
 } vertex;
+
+/* How many samples direct light takes at a diffuse place that sends so many gather rays. */
+typedef struct sample_counts {
+    int light;   /* towards lamps */
+    int scatter; /* by scattering, 0 where that cannot meet a lamp */
+} sample_counts;
+sample_counts transport_sample_counts(const transport *t, int gather_samples);
 
 /* Follows a ray of unit direction to the first surface that scatters. */
 bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
@@ -97,5 +103,9 @@ map_place transport_map_place(const transport *t, const vertex *v);
 
 /* The caustic map's light at a diffuse place: reflected radiance. */
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);
+
+/* An estimate of transport_caustics, equal on average, that asks the map only as often as it matters: share_seen is how
+ * much of it reaches the eye, u a random number in [0, 1). */
+rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float share_seen, float u);
 
 #endif

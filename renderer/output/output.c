@@ -130,15 +130,14 @@ static ag_status write_picture(ag_context *context, const ag_film *film, const a
     ag_status status = AG_OK;
     if (format->scene_linear) { /* the only one that holds layers */
         status = picture_layers_create(context, film, pixels, settings, description.type, path, &layers);
-        if (status == AG_OK && settings->color_space) {
+        if (status == AG_OK && settings->color_space)
             status = convert_layers(context, film, settings, &layers);
-            if (status != AG_OK)
-                picture_layers_reset(&layers);
-        }
-        if (status != AG_OK)
+        if (status == AG_OK && tag->has_chromaticities)
+            status = picture_layers_add_numbers(&layers, "chromaticities", tag->chromaticities, 8);
+        if (status != AG_OK) {
+            picture_layers_reset(&layers);
             return status;
-        if (tag->has_chromaticities)
-            picture_layers_add_numbers(&layers, "chromaticities", tag->chromaticities, 8);
+        }
         description.channel_count = layers.channel_count;
         description.channel_names = layers.names;
         description.channel_types = layers.types;

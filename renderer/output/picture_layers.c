@@ -1,5 +1,8 @@
 /* picture_layers.c: see picture_layers.h. */
+#define _GNU_SOURCE
 #include "output/picture_layers.h"
+
+#include "settings_table.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -61,28 +64,57 @@ static ag_status fill_pixels(ag_context *context, const ag_film *film, const flo
 
 /* --- attributes --- */
 
+/* One more; where there is no memory for it, has_failed says so in the end. text, where it is not NULL, is taken. */
+static void add_attribute(picture_layers *out, image_attribute attribute, char *text)
+{
+    image_attribute *attributes = out->attributes;
+    char **texts = out->texts;
+    if (out->attribute_count == out->attribute_capacity) {
+        size_t capacity = out->attribute_capacity > 0 ? 2 * (size_t)out->attribute_capacity : 64;
+        attributes = realloc(out->attributes, capacity * sizeof *attributes);
+        out->attributes = attributes ? attributes : out->attributes;
+        texts = realloc(out->texts, capacity * sizeof *texts);
+        out->texts = texts ? texts : out->texts;
+        if (attributes && texts)
+            out->attribute_capacity = (int)capacity;
+    }
+    if (!attributes || !texts) {
+        out->has_failed = true;
+        free(text);
+        return;
+    }
+    texts[out->attribute_count] = text;
+    attributes[out->attribute_count++] = attribute;
+}
+
 static void add_numbers(picture_layers *out, const char *name, const float *numbers, int count)
 {
-    if (out->attribute_count < PICTURE_ATTRIBUTES_MAX)
-        out->attributes[out->attribute_count++] =
-            (image_attribute){.name = name, .numbers = numbers, .number_count = count};
+    add_attribute(out, (image_attribute){.name = name, .numbers = numbers, .number_count = count}, NULL);
 }
 
 static void add_text(picture_layers *out, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* name lives as long as the program; what does not fit is left out. */
+/* Name and text are copied. */
 static void add_text(picture_layers *out, const char *name, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    size_t room = out->text_capacity - out->text_length;
-    int length = vsnprintf(out->text + out->text_length, room, format, arguments);
+    char *value = NULL, *both = NULL;
+    int length = vasprintf(&value, format, arguments);
     va_end(arguments);
-    if (length < 0 || (size_t)length >= room || out->attribute_count >= PICTURE_ATTRIBUTES_MAX)
-        return;
-    out->attributes[out->attribute_count++] = (image_attribute){.name = name, .text = out->text + out->text_length};
-    out->text_length += (size_t)length + 1;
+    size_t name_size = strlen(name) + 1;
+    if (length >= 0)
+        both = malloc(name_size + (size_t)length + 1);
+    if (both) {
+        memcpy(both, name, name_size);
+        memcpy(both + name_size, value, (size_t)length + 1);
+        add_attribute(out, (image_attribute){.name = both, .text = both + name_size}, both);
+    } else {
+        out->has_failed = true;
+    }
+    if (length >= 0)
+        free(value);
 }
 
 /* "unknown" where the system does not say. */
@@ -123,12 +155,38 @@ static void describe_run(ag_context *context, const ag_output_settings *settings
     add_numbers(out, "renderTimeSeconds", &out->render_time, 1); /* as pbrt-v4 calls it */
 }
 
+/* "settings.pane_light", as the statistics call it, becomes "afterglow/paneLight". */
+static void name_attribute(const char *json, char *out, size_t size)
+{
+    const char *dot = strchr(json, '.');
+    size_t length = (size_t)snprintf(out, size, "afterglow/");
+    for (const char *c = dot ? dot + 1 : json; *c && length + 1 < size; c++) {
+        bool is_capital = *c == '_' && c[1] != '\0';
+        c += is_capital;
+        out[length++] = is_capital && *c >= 'a' && *c <= 'z' ? (char)(*c - 'a' + 'A') : *c;
+    }
+    out[length] = '\0';
+}
+
+static void describe_settings(const ag_render_settings *settings, picture_layers *out)
+{
+    for (size_t i = 0; setting_at(i); i++) {
+        const setting_row *row = setting_at(i);
+        char value[SETTING_TEXT_MAX], name[64];
+        if (!(row->marks & SETTING_IN_HEADER) ||
+            (settings->integrator == AG_INTEGRATOR_PATH && (row->marks & SETTING_OF_PHOTONS)))
+            continue;
+        name_attribute(row->json, name, sizeof name);
+        setting_format(row, settings, value);
+        add_text(out, name, "%s", value);
+    }
+}
+
 static void describe(ag_context *context, const ag_film *film, const ag_output_settings *settings, picture_layers *out)
 {
     const ag_render_settings *r = &film->origin.settings;
     const ag_statistics *s = &context->statistics;
-    bool is_path = r->integrator == AG_INTEGRATOR_PATH;
-    out->attributes[out->attribute_count++] = (image_attribute){.name = "Software", .text = "Afterglow"};
+    add_attribute(out, (image_attribute){.name = "Software", .text = "Afterglow"}, NULL);
     add_numbers(out, "worldToCamera", film->origin.world_to_camera, 16);
     if (film->origin.has_ndc)
         add_numbers(out, "worldToNDC", film->origin.world_to_ndc, 16);
@@ -136,16 +194,8 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
         add_text(out, "afterglow/define", "%s", film->origin.defined);
     add_text(out, "afterglow/version", "%s", ag_version());
     add_text(out, "afterglow/isa", "%s", context->isa);
-    add_text(out, "afterglow/integrator", "%s", is_path ? "path" : "photonmap");
-    add_text(out, "afterglow/paneLight", "%s", r->pane_light == AG_PANE_LIGHT_DIRECT ? "direct" : "traced");
-    add_text(out, "afterglow/seed", "%lld", (long long)r->seed);
-    add_text(out, "afterglow/samplesPerPixel", "%d", r->samples_per_pixel);
-    add_text(out, "afterglow/directGuiding", "%g", (double)r->direct_guiding);
-    if (!is_path) {
-        add_text(out, "afterglow/gatherSamples", "%d", r->gather_samples);
-        add_text(out, "afterglow/gatherGuiding", "%g", (double)r->gather_guiding);
-        add_text(out, "afterglow/photonAim", "%g", (double)r->photon_aim);
-        add_text(out, "afterglow/irradianceFraction", "%g", (double)r->irradiance_fraction);
+    describe_settings(r, out);
+    if (r->integrator == AG_INTEGRATOR_PHOTONMAP) {
         add_text(out, "afterglow/photonsGlobal", "%llu", (unsigned long long)s->photons_stored_global);
         add_text(out, "afterglow/photonsCaustic", "%llu", (unsigned long long)s->photons_stored_caustic);
         add_text(out, "afterglow/photonPathsEmitted", "%llu", (unsigned long long)s->photons_emitted);
@@ -154,8 +204,7 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
         const cryptomatte *m = &film->mattes[i];
         const char *const texts[4] = {m->layer, "MurmurHash3_32", "uint32_to_float32", m->manifest};
         for (int k = 0; m->layer && k < 4; k++)
-            out->attributes[out->attribute_count++] =
-                (image_attribute){.name = m->attribute_names[k], .text = texts[k]};
+            add_attribute(out, (image_attribute){.name = m->attribute_names[k], .text = texts[k]}, NULL);
     }
     if (!settings->reproducible)
         describe_run(context, settings, out);
@@ -165,32 +214,31 @@ ag_status picture_layers_create(ag_context *context, const ag_film *film, const 
                                 const ag_output_settings *settings, image_sample_type type, const char *path,
                                 picture_layers *out_layers)
 {
-    picture_layers made = {.text_capacity = PICTURE_TEXT_MAX};
-    if (settings->command_line)
-        made.text_capacity += strlen(settings->command_line);
-    if (film->origin.defined)
-        made.text_capacity += strlen(film->origin.defined) + 1;
-    made.text = malloc(made.text_capacity);
-    ag_status status = made.text ? fill_pixels(context, film, beauty, type, path, &made) : AG_ERROR_MEMORY;
-    if (status != AG_OK) {
-        picture_layers_reset(&made);
-        return status;
-    }
-    *out_layers = made;
-    describe(context, film, settings, out_layers); /* attributes point into it */
-    return AG_OK;
+    *out_layers = (picture_layers){0};
+    ag_status status = fill_pixels(context, film, beauty, type, path, out_layers);
+    if (status == AG_OK)
+        describe(context, film, settings, out_layers);
+    if (status == AG_OK && out_layers->has_failed)
+        status = AG_ERROR_MEMORY;
+    if (status != AG_OK)
+        picture_layers_reset(out_layers);
+    return status;
 }
 
-void picture_layers_add_numbers(picture_layers *layers, const char *name, const float *numbers, int count)
+ag_status picture_layers_add_numbers(picture_layers *layers, const char *name, const float *numbers, int count)
 {
     add_numbers(layers, name, numbers, count);
+    return layers->has_failed ? AG_ERROR_MEMORY : AG_OK;
 }
 
 void picture_layers_reset(picture_layers *layers)
 {
+    for (int i = 0; i < layers->attribute_count; i++)
+        free(layers->texts[i]);
     free(layers->pixels);
     free(layers->names);
     free(layers->types);
-    free(layers->text);
+    free(layers->texts);
+    free(layers->attributes);
     *layers = (picture_layers){0};
 }

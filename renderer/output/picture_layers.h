@@ -7,28 +7,27 @@
 #include "context.h"
 #include "image/image.h"
 
-enum { PICTURE_ATTRIBUTES_MAX = 64, PICTURE_TEXT_MAX = 1 << 14 };
-
 typedef struct picture_layers {
     float *pixels; /* channel_count of a pixel */
     const char **names;
     image_sample_type *types;
     int channel_count;
-    image_attribute attributes[PICTURE_ATTRIBUTES_MAX];
-    int attribute_count;
-    char *text; /* of the attributes */
-    size_t text_length, text_capacity;
+    image_attribute *attributes; /* owned, with */
+    char **texts;                /* the memory of the name and text of each, or NULL */
+    int attribute_count, attribute_capacity;
+    bool has_failed; /* there was no memory for an attribute */
     float render_time;
 } picture_layers;
 
 /* beauty: R, G and B as they are to be written. type: half or float, of the channels that may be either. What is not a
  * number becomes 0, and a warning says how many pixels had such, and how many were too bright for halves. Errors:
- * AG_ERROR_MEMORY. */
+ * AG_ERROR_MEMORY.
+ * out_layers is not to be moved: an attribute points into it. */
 ag_status picture_layers_create(ag_context *context, const ag_film *film, const float *beauty,
                                 const ag_output_settings *settings, image_sample_type type, const char *path,
                                 picture_layers *out_layers);
-/* One more attribute; name and numbers stay the caller's, and there. */
-void picture_layers_add_numbers(picture_layers *layers, const char *name, const float *numbers, int count);
+/* One more attribute; name and numbers stay the caller's, and there. Errors: AG_ERROR_MEMORY. */
+ag_status picture_layers_add_numbers(picture_layers *layers, const char *name, const float *numbers, int count);
 void picture_layers_reset(picture_layers *layers);
 
 #endif

@@ -2,18 +2,17 @@
  * Flow: after rendering. Threads: as in afterglow.h. */
 #include "context.h"
 
+#include "film/aov.h"
 #include "output/atomic_file.h"
+#include "settings_table.h"
 
 #include <jansson.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 static json_t *count(uint64_t value) { return json_integer((json_int_t)value); }
-
-static const char *cache_name(ag_cache_mode mode)
-{
-    return mode == AG_CACHE_ON_DEMAND ? "on-demand" : mode == AG_CACHE_PRECOMPUTE ? "precompute" : "off";
-}
 
 static const char *map_file_name(ag_map_file state)
 {
@@ -24,24 +23,91 @@ static const char *map_file_name(ag_map_file state)
     return names[state];
 }
 
+/* --- settings --- */
+
+static json_t *layer_names(uint32_t layers)
+{
+    json_t *names = json_array();
+    for (uint32_t bit = 1; bit; bit <<= 1)
+        if (layers & bit)
+            json_array_append_new(names, json_string(aov_layer_name(bit)));
+    return names;
+}
+
+/* SETTING_SIZE apart, whose two numbers are two values. */
+static json_t *value_of(const setting_row *row, const ag_render_settings *settings)
+{
+    const void *value = (const unsigned char *)settings + row->offset;
+    const double *window = value;
+    char text[SETTING_TEXT_MAX];
+    switch (row->kind) {
+    case SETTING_INTEGER: return json_integer(*(const int *)value);
+    case SETTING_COUNT:
+    case SETTING_SEED: return count(*(const uint64_t *)value);
+    case SETTING_NUMBER: {
+        double number = (double)*(const float *)value;
+        return isfinite(number) ? json_real(number) : json_null(); /* JSON has no infinity */
+    }
+    case SETTING_FLAG: return json_boolean(*(const bool *)value);
+    case SETTING_WINDOW: return json_pack("[f, f, f, f]", window[0], window[1], window[2], window[3]);
+    case SETTING_LAYERS: return layer_names(*(const uint32_t *)value);
+    case SETTING_WORD:
+    case SETTING_SIZE:
+    case SETTING_FILE: break;
+    }
+    setting_format(row, settings, text);
+    return json_string(text);
+}
+
+/* The object of that name in the root, made where it is not there; the root where the name is empty. */
+static json_t *object_in(json_t *root, const char *name)
+{
+    json_t *object = name[0] ? json_object_get(root, name) : root;
+    if (object)
+        return object;
+    json_object_set_new(root, name, json_object());
+    return json_object_get(root, name);
+}
+
+static void add_settings(json_t *root, const ag_render_settings *settings)
+{
+    for (size_t i = 0; setting_at(i); i++) {
+        const setting_row *row = setting_at(i);
+        if (!row->json)
+            continue;
+        const char *dot = strchr(row->json, '.');
+        char name[32] = "";
+        if (row->kind == SETTING_SIZE) {
+            json_t *size = object_in(root, row->json);
+            json_object_set_new(size, "width", json_integer(settings->width));
+            json_object_set_new(size, "height", json_integer(settings->height));
+            continue;
+        }
+        if (dot)
+            snprintf(name, sizeof name, "%.*s", (int)(dot - row->json), row->json);
+        json_object_set_new(object_in(root, name), dot ? dot + 1 : row->json, value_of(row, settings));
+    }
+}
+
+/* --- counts and times --- */
+
 /* Takes every value over; NULL when out of memory. */
 static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settings *settings, const char *isa)
 {
-    json_t *times = json_object(), *cpu_times = json_object();
+    json_t *times = json_object(), *cpu_times = json_object(), *root = json_object();
     for (int i = 0; i < AG_PHASE_COUNT; i++) {
         json_object_set_new(times, ag_phase_name((ag_phase)i), json_real(s->time_s[i]));
         json_object_set_new(cpu_times, ag_phase_name((ag_phase)i), json_real(s->phase_cpu_s[i]));
     }
     json_object_set_new(times, "total", json_real(s->time_total_s));
-    return json_pack(
-        "{s:s, s:i, s:s, s:I, s:s, s:s, s:s, s:{s:i, s:i, s:i}, s:{s:o, s:o, s:o, s:o, s:s},"
-        " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o},"
-        " s:{s:i, s:f, s:f, s:i, s:f, s:f, s:f, s:i, s:s}, s:o, s:o, s:f, s:o, s:{s:o}}",
-        "version", ag_version(), "threads", (int)s->threads, "isa", isa, "seed", (json_int_t)settings->seed,
-        "integrator", settings->integrator == AG_INTEGRATOR_PATH ? "path" : "photonmap", "cache",
-        cache_name(settings->cache), "only", settings->only == AG_ONLY_INDIRECT ? "indirect" : "all", /**/
-        "image", "width", settings->width, "height", settings->height, "samples_per_pixel",
-        settings->samples_per_pixel, /**/
+    json_object_set_new(root, "version", json_string(ag_version()));
+    json_object_set_new(root, "threads", json_integer((json_int_t)s->threads));
+    json_object_set_new(root, "isa", json_string(isa));
+    add_settings(root, settings);
+    json_t *counts = json_pack(
+        "{s:{s:o, s:o, s:o, s:o, s:s},"
+        " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o, s:o},"
+        " s:o, s:o, s:f, s:o, s:{s:o}}",
         "photons", "emitted", count(s->photons_emitted), "stored_global", count(s->photons_stored_global),
         "stored_caustic", count(s->photons_stored_caustic), "bytes", count(s->photon_bytes), "map_file",
         map_file_name(s->map_file), /**/
@@ -51,14 +117,15 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
         count(s->irradiance_refused), "ready", count(s->irradiance_ready), "reclaimed", count(s->irradiance_reclaimed),
         "estimate_s", s->irradiance_estimate_s, "wait_s", s->irradiance_wait_s, /**/
         "rays", "camera", count(s->rays_camera), "shadow", count(s->rays_shadow), "gather", count(s->rays_gather),
-        "photon", count(s->rays_photon), "path", count(s->rays_path), /**/
-        "settings", "nearest", settings->nearest, "radius", (double)settings->radius, "irradiance_fraction",
-        (double)settings->irradiance_fraction, "gather_samples", settings->gather_samples, "gather_guiding",
-        (double)settings->gather_guiding, "photon_aim", (double)settings->photon_aim, "direct_guiding",
-        (double)settings->direct_guiding, "max_depth", settings->max_depth, "pane_light",
-        settings->pane_light == AG_PANE_LIGHT_DIRECT ? "direct" : "traced", /**/
+        "photon", count(s->rays_photon), "path", count(s->rays_path), "estimate", count(s->rays_estimate), /**/
         "samples_not_finite", count(s->samples_not_finite), "time_s", times, "cpu_s", s->cpu_s, "phase_cpu_s",
         cpu_times, "memory", "peak_bytes", count(s->memory_peak_bytes));
+    bool is_whole = counts && json_object_update(root, counts) == 0;
+    json_decref(counts);
+    if (is_whole)
+        return root;
+    json_decref(root);
+    return NULL;
 }
 
 ag_status ag_statistics_write(ag_context *context, const char *path)

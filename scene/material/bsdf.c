@@ -228,12 +228,23 @@ static float flux_correction(const bsdf *b, vec3 direction)
     return denominator > 0.0f ? fminf(numerator / denominator, BSDF_CORRECTION_MAX) : 0.0f;
 }
 
-float bsdf_arrival_factor(const bsdf *b)
+static float arrival_factor(const bsdf *b, const material *base)
 {
     float shading = vec3_dot(b->out, b->shading.z), geometric = vec3_dot(b->out, b->geometric_normal);
     if (shading * geometric <= 0.0f)
-        return 0.0f; /* behind the horizon of one of the normals: no light by either reckoning */
-    return fminf(shading / geometric, BSDF_CORRECTION_MAX) * bsdf_lobe_transmittance(&b->matter, shading);
+        return 0.0f; /* behind the horizon of one of the normals: neither way of computing finds light */
+    return fminf(shading / geometric, BSDF_CORRECTION_MAX) * bsdf_lobe_transmittance(base, shading);
+}
+
+float bsdf_arrival_factor(const bsdf *b) { return arrival_factor(b, &b->matter); }
+
+bool bsdf_arrival_factor_beside(const scene *s, const surface_hit *hit, const bsdf *b, float *out_factor)
+{
+    material base;
+    if (hit->is_strand || !material_gathering_at(s, hit, &base))
+        return false;
+    *out_factor = arrival_factor(b, &base);
+    return true;
 }
 
 rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)

@@ -115,4 +115,9 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
  * geometric normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
 float bsdf_arrival_factor(const bsdf *b);
 
+/* bsdf_arrival_factor at a place that gathers nothing itself, while others of its surface do: beside the metal grains
+ * of a mix, or the black texels of a base. An estimate takes photons per area of all the surface, so photons are stored
+ * on all of it, as those others would have them. false: no place of the surface gathers. */
+bool bsdf_arrival_factor_beside(const scene *s, const surface_hit *hit, const bsdf *b, float *out_factor);
+
 #endif

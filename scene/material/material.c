@@ -204,11 +204,9 @@ static void look_up_principled(const scene *s, const surface_hit *hit, material 
 
 enum { HALF = sizeof(material) / 2 };
 
-void material_at(const scene *s, const surface_hit *hit, material *out_material)
+/* m is no mix. */
+static void evaluate_at(const scene *s, const material *m, const surface_hit *hit, material *out_material)
 {
-    const material *m = &s->materials[s->shapes[hit->shape_index].material_index];
-    if (m->kind == MATERIAL_MIX)
-        m = resolve_mix(s, m, hit);
     /* in two pieces: compilers make one string instruction of so much, which takes longer to begin than to do */
     memcpy(out_material, m, HALF);
     memcpy((char *)out_material + HALF, (const char *)m + HALF, sizeof *m - HALF);
@@ -218,4 +216,45 @@ void material_at(const scene *s, const surface_hit *hit, material *out_material)
         look_up_principled(s, hit, out_material);
     else
         look_up_textures(s, hit, out_material);
+}
+
+void material_at(const scene *s, const surface_hit *hit, material *out_material)
+{
+    const material *m = &s->materials[s->shapes[hit->shape_index].material_index];
+    if (m->kind == MATERIAL_MIX)
+        m = resolve_mix(s, m, hit);
+    evaluate_at(s, m, hit, out_material);
+}
+
+static bool has_base(const material *m)
+{
+    bool is_black = rgb_is_black(m->reflectance), is_textured = m->reflectance_texture != SCENE_NO_TEXTURE;
+    switch (m->kind) {
+    case MATERIAL_DIFFUSE: return true;
+    case MATERIAL_DIFFUSE_TRANSMISSION:
+        return !is_black || is_textured || !rgb_is_black(m->transmittance) ||
+               m->transmittance_texture != SCENE_NO_TEXTURE;
+    case MATERIAL_COATED_DIFFUSE: return !is_black || is_textured;
+    case MATERIAL_PRINCIPLED: /* whose textures are factors */
+        return !is_black && (m->metallic < 1.0f || m->metallic_texture != SCENE_NO_TEXTURE) &&
+               (m->transmission < 1.0f || m->transmission_texture != SCENE_NO_TEXTURE);
+    default: return false;
+    }
+}
+
+/* NULL: nothing in it has a diffuse base. */
+static const material *find_with_base(const scene *s, const material *m)
+{
+    if (m->kind != MATERIAL_MIX)
+        return has_base(m) ? m : NULL;
+    const material *first = find_with_base(s, &s->materials[m->mixed[0]]);
+    return first ? first : find_with_base(s, &s->materials[m->mixed[1]]);
+}
+
+bool material_gathering_at(const scene *s, const surface_hit *hit, material *out_material)
+{
+    const material *m = find_with_base(s, &s->materials[s->shapes[hit->shape_index].material_index]);
+    if (m)
+        evaluate_at(s, m, hit, out_material);
+    return m != NULL;
 }

@@ -117,4 +117,8 @@ const rgb *material_plain_albedo(const struct scene *s, uint32_t material_index)
 /* The material at a place: mixes picked, textures looked up. */
 void material_at(const struct scene *s, const struct surface_hit *hit, material *out_material);
 
+/* Of a surface that gathers light anywhere (bsdf.h), the material by which it does, at a place where that one may not
+ * have been picked or has a black texel. false: no place of the surface gathers. */
+bool material_gathering_at(const struct scene *s, const struct surface_hit *hit, material *out_material);
+
 #endif

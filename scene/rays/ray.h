@@ -9,19 +9,26 @@
 
 #define SCENE_NO_MEDIUM UINT32_MAX
 
+/* What a surface that is there in part (alpha.h) does to a ray. */
+typedef enum ray_veils {
+    RAY_PASSES_VEILS,     /* stops it by chance, as much as is there: light */
+    RAY_MEETS_VEILS,      /* stops it wherever anything is there: the ray looks for surfaces */
+    RAY_MEETS_EMPTY_VEILS /* stops it everywhere, where nothing is there too: for how far such a surface goes */
+} ray_veils;
+
 /* Named so, for a ray is what variables are called. */
 typedef struct scene_ray {
     vec3 origin, direction; /* world; whoever wants the direction unit says so */
     float time;             /* of the shutter, [0, 1] from its opening to its closing */
     uint32_t medium;        /* that it starts in; SCENE_NO_MEDIUM: nothing that absorbs */
-    bool meets_veils; /* what is there in part (alpha.h) stops it always: it looks for surfaces, and is no light */
-    bool skips_uv;    /* where no texture in the scene reads a hit's uv, nor does who casts it: it may be missing */
+    ray_veils veils;
+    bool skips_uv; /* where no texture in the scene reads a hit's uv, nor does who casts it: it may be missing */
 } scene_ray;
 
 /* When the shutter opens, in nothing. */
 static inline scene_ray scene_ray_make(vec3 origin, vec3 direction)
 {
-    return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM, false, false};
+    return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM, RAY_PASSES_VEILS, false};
 }
 
 #endif

@@ -36,6 +36,7 @@ static void a_fraction_is_rounded_and_never_none(void **state)
 
 static void at_one_the_photons_bear_themselves(void **state)
 {
+    uint64_t rays = 0;
     (void)state;
     test_run r;
     test_run_init(&r, 1);
@@ -52,7 +53,8 @@ static void at_one_the_photons_bear_themselves(void **state)
     photon_set empty = {0};
     none = bearing_map(&r, &empty, 50, 0.25f);
     assert_int_equal(none.bearers.count, 0);
-    assert_int_equal(photon_map_nearest(&none, (vec3){0.0f, 0.0f, 1.0f}, (vec3){0.0f, 0.0f, -1.0f}), PHOTON_NONE);
+    assert_int_equal(photon_map_nearest(&none, (vec3){0.0f, 0.0f, 1.0f}, (vec3){0.0f, 0.0f, -1.0f}, &rays),
+                     PHOTON_NONE);
     photon_map_reset(&all);
     photon_map_reset(&some);
     photon_map_reset(&none);

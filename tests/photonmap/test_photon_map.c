@@ -204,6 +204,7 @@ static void the_order_of_the_photons_does_not_matter(void **state)
 
 static void a_wall_keeps_its_two_sides_apart(void **state)
 {
+    uint64_t rays = 0;
     (void)state;
     test_run r;
     test_run_init(&r, 1);
@@ -220,7 +221,8 @@ static void a_wall_keeps_its_two_sides_apart(void **state)
     vec3 middle = {0.5f, 0.5f, 0.0f};
     assert_relative(irradiance_estimate(&map, middle, up, scratch).r, 1000.0, 0.3);
     assert_relative(irradiance_estimate(&map, middle, vec3_negate(up), scratch).r, 100000.0, 0.3);
-    uint32_t front = photon_map_nearest(&map, middle, up), back = photon_map_nearest(&map, middle, vec3_negate(up));
+    uint32_t front = photon_map_nearest(&map, middle, up, &rays),
+             back = photon_map_nearest(&map, middle, vec3_negate(up), &rays);
     assert_true(direction_decode(photon_block_normal(map.blocks, front)).z > 0.9f);
     assert_true(direction_decode(photon_block_normal(map.blocks, back)).z < -0.9f);
     free(scratch);
@@ -230,6 +232,7 @@ static void a_wall_keeps_its_two_sides_apart(void **state)
 
 static void a_map_without_photons_is_dark(void **state)
 {
+    uint64_t rays = 0;
     (void)state;
     test_run r;
     test_run_init(&r, 1);
@@ -239,7 +242,7 @@ static void a_map_without_photons_is_dark(void **state)
     vec3 at = {0.0f, 0.0f, 0.0f}, up = {0.0f, 0.0f, 1.0f};
     assert_true(photon_map_scratch_count(&map) <= 256);
     assert_true(rgb_is_black(irradiance_estimate(&map, at, up, scratch)));
-    assert_int_equal(photon_map_nearest(&map, at, up), PHOTON_NONE);
+    assert_int_equal(photon_map_nearest(&map, at, up, &rays), PHOTON_NONE);
     assert_int_equal(photon_map_bytes(&map), 0);
     photon_map_reset(&map);
     test_run_reset(&r);
@@ -350,6 +353,7 @@ static void in_the_dark_the_nearest_photon_is_farther(void **state)
 /* A ball does not hide a photon of its own whose normal is similar; a wall does. */
 static void a_ball_is_no_wall(void **state)
 {
+    uint64_t rays = 0;
     (void)state;
     static const char *const WORLDS[] = {"Shape \"sphere\" \"float radius\" 1",
                                          "Shape \"sphere\" \"float radius\" 1 "
@@ -364,7 +368,8 @@ static void a_ball_is_no_wall(void **state)
         photon_map_settings settings = {.nearest = 1, .max_radius = 1.0f, .surface_area = 0.02f, .surfaces = s};
         photon_map map;
         assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
-        assert_int_equal(photon_map_nearest(&map, aside, aside), i == 0 ? 0 : PHOTON_HIDDEN);
+        assert_int_equal(photon_map_nearest(&map, aside, aside, &rays), i == 0 ? 0 : PHOTON_HIDDEN);
+        assert_int_equal(rays, i + 1); /* one each */
         photon_map_reset(&map);
         scene_destroy(s);
         test_run_reset(&r);

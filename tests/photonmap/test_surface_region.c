@@ -27,6 +27,7 @@ typedef struct place {
 static void areas_are_those_of_cut_discs(void **state)
 {
     (void)state;
+    uint64_t rays = 0;
     test_run r;
     test_run_init(&r, 1);
     scene *s = test_scene_create(&r, ROOM);
@@ -45,7 +46,7 @@ static void areas_are_those_of_cut_discs(void **state)
         for (int k = 0; k < TRIALS; k++) {
             vec3 jitter = {(rng_float(&random) - 0.5f) * 2e-3f, 0.0f, (rng_float(&random) - 0.5f) * 2e-3f};
             surface_region region;
-            bool is_bounded = surface_region_find(s, vec3_add(places[i].at, jitter), UP, 0.5f, radius, &region);
+            bool is_bounded = surface_region_find(s, vec3_add(places[i].at, jitter), UP, 0.5f, radius, &rays, &region);
             assert_int_equal(is_bounded, places[i].expected > 0.0);
             sum += is_bounded ? surface_region_area(&region, radius) / ((double)radius * radius) : 0.0;
         }
@@ -62,6 +63,7 @@ static void areas_are_those_of_cut_discs(void **state)
 static void area_and_membership_agree(void **state)
 {
     (void)state;
+    uint64_t rays = 0;
     test_run r;
     test_run_init(&r, 1);
     scene *s = test_scene_create(&r, ROOM);
@@ -72,7 +74,7 @@ static void area_and_membership_agree(void **state)
     for (int i = 0; i < PLACES; i++) {
         vec3 at = {2.0f * rng_float(&random) - 1.0f, 0.0f, 2.0f * rng_float(&random) - 1.0f};
         surface_region region;
-        if (!surface_region_find(s, at, UP, 0.5f, radius, &region))
+        if (!surface_region_find(s, at, UP, 0.5f, radius, &rays, &region))
             continue;
         bounded++;
         int inside = 0, astray = 0;
@@ -102,6 +104,7 @@ static void area_and_membership_agree(void **state)
 static void a_ball_has_no_edge(void **state)
 {
     (void)state;
+    uint64_t rays = 0;
     test_run r;
     test_run_init(&r, 1);
     scene *s = test_scene_create(&r, ROOM);
@@ -109,11 +112,11 @@ static void a_ball_has_no_edge(void **state)
     for (int i = 0; i < 200; i++) {
         vec3 n = sample_uniform_sphere(rng_vec2(&random));
         surface_region region;
-        assert_false(surface_region_find(s, vec3_add((vec3){5.0f, 0.0f, 0.0f}, n), n, 0.5f, 0.4f, &region));
+        assert_false(surface_region_find(s, vec3_add((vec3){5.0f, 0.0f, 0.0f}, n), n, 0.5f, 0.4f, &rays, &region));
     }
     /* and where there is no surface there is no region */
     surface_region region;
-    assert_false(surface_region_find(s, (vec3){0.0f, 0.5f, 0.0f}, UP, 0.5f, 0.4f, &region));
+    assert_false(surface_region_find(s, (vec3){0.0f, 0.5f, 0.0f}, UP, 0.5f, 0.4f, &rays, &region));
     scene_destroy(s);
     test_run_reset(&r);
 }

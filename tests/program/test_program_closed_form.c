@@ -59,6 +59,36 @@ static void test_few_bearers(void **state)
     }
 }
 
+/* Grains or squares that reflect nothing, among others that reflect 0.8: photons per area are those of all the surface,
+ * and what it reflects is that of the mean. */
+static void test_black_among_white(void **state)
+{
+    (void)state;
+    static const char *const MATERIALS[] = {
+        "MakeNamedMaterial \"white\" \"string type\" \"diffusetransmission\" \"rgb reflectance\" [0.8 0.8 0.8] "
+        "\"rgb transmittance\" [0 0 0]\n"
+        "MakeNamedMaterial \"black\" \"string type\" \"diffusetransmission\" \"rgb reflectance\" [0 0 0] "
+        "\"rgb transmittance\" [0 0 0]\n"
+        "MakeNamedMaterial \"grains\" \"string type\" \"mix\" \"string materials\" [\"white\" \"black\"] "
+        "\"float amount\" 0.5\nNamedMaterial \"grains\"",
+        "Texture \"squares\" \"spectrum\" \"checkerboard\" \"float uscale\" 32 \"float vscale\" 32 "
+        "\"rgb tex1\" [0.8 0.8 0.8] \"rgb tex2\" [0 0 0]\n"
+        "Material \"diffusetransmission\" \"texture reflectance\" \"squares\" \"rgb transmittance\" [0 0 0]",
+        "Texture \"squares\" \"float\" \"checkerboard\" \"float uscale\" 32 \"float vscale\" 32 "
+        "\"float tex1\" 0 \"float tex2\" 1\n"
+        "MakeNamedMaterial \"white\" \"string type\" \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
+        "MakeNamedMaterial \"black\" \"string type\" \"conductor\" \"rgb eta\" [1 1 1] \"rgb k\" [0 0 0]\n"
+        "MakeNamedMaterial \"squares\" \"string type\" \"mix\" \"string materials\" [\"white\" \"black\"] "
+        "\"texture amount\" \"squares\"\nNamedMaterial \"squares\""};
+    for (size_t i = 0; i < sizeof MATERIALS / sizeof *MATERIALS; i++)
+        for (int k = 0; k < INTEGRATOR_COUNT; k++) {
+            const char *scene = SCENE_WITH("sphere.pbrt", "Material \"diffuse\" " HALF, MATERIALS[i]);
+            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], photons_of(0.4), "--spp", k == 0 ? "16" : "256");
+            expect_uniform(INTEGRATORS[k], &p, 0.4 / PI * SPHERE_DIRECT / (1.0 - 0.4), 0.01, 16, 0.08);
+            picture_reset(&p);
+        }
+}
+
 static void test_light_off_the_middle(void **state)
 {
     (void)state;
@@ -391,6 +421,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_light_in_the_middle),
         TEST_IN_FOLDER(test_few_bearers),
+        TEST_IN_FOLDER(test_black_among_white),
         TEST_IN_FOLDER(test_light_off_the_middle),
         TEST_IN_FOLDER(test_spot_in_the_sphere),
         TEST_IN_FOLDER(test_sphere_of_triangles),

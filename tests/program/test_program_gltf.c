@@ -88,6 +88,51 @@ static void point_lamp(void **state)
     picture_reset(&p);
 }
 
+/* A lamp of Blender's, 10 W or 10 W/m^2, in front of a white wall two metres off, in all ways that its exporters write
+ * it: the wall's radiance is 10 / (4 pi) / 2^2 / pi, of a sun 10 / pi. Exporters of others mean what they write. */
+static void lamp_units(void **state)
+{
+    (void)state;
+    static const double PI_ = 3.14159265358979323846;
+    static const struct {
+        const char *generator, *option;
+        double candela, lux; /* what a file by it has for 1 W and 1 W/m^2 */
+    } WAYS[] = {
+        {"Khronos glTF Blender I/O v3.4.50", "", 683 / (4 * 3.14159265358979323846), 683},
+        {"Khronos glTF Blender I/O v3.6.27", "", 683 / (4 * 3.14159265358979323846), 683},
+        {"Khronos glTF Blender I/O v4.2.57", "", 683 / (4 * 3.14159265358979323846), 683},
+        {"Khronos glTF Blender I/O v3.3.36", "", 1, 1},
+        {"Khronos glTF Blender I/O v1.8.19", "", 1, 1},
+        {"THREE.GLTFExporter r160", "", 1 / (4 * 3.14159265358979323846), 1},
+        {"Khronos glTF Blender I/O v3.4.50", "--gltf-light-units=unitless", 1 / (4 * 3.14159265358979323846), 1},
+        {"Khronos glTF Blender I/O v3.4.50", "--gltf-light-units=raw", 1, 1},
+        {"Khronos glTF Blender I/O v3.3.36", "--gltf-light-units=standard", 683 / (4 * 3.14159265358979323846), 683},
+        {"Khronos glTF Blender I/O v4.2.57", "--gltf-light-units=auto", 683 / (4 * 3.14159265358979323846), 683},
+    };
+    static const char *const LAMPS[] = {"point", "spot", "directional"};
+    for (size_t i = 0; i < sizeof WAYS / sizeof *WAYS; i++)
+        for (int lamp = 0; lamp < 3; lamp++) {
+            char text[2048];
+            const bool is_sun = lamp == 2;
+            snprintf(text, sizeof text,
+                     "{'asset': {'version': '2.0', 'generator': '%s'}, " CUBE
+                     "'extensions': {'KHR_lights_punctual': {'lights': [{'type': '%s', 'intensity': %.9g}]}},"
+                     "'materials': [{'pbrMetallicRoughness': {'metallicFactor': 0}, 'extensions': {"
+                     "'KHR_materials_specular': {'specularFactor': 0}}}],"
+                     "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}, 'indices': 7, 'material': 0}]}],"
+                     "'cameras': [{'type': 'orthographic', 'orthographic': {'xmag': 0.02, 'ymag': 0.02, 'zfar': 9,"
+                     "'znear': 0}}], 'nodes': [{'mesh': 0}, {'camera': 0, 'translation': [0, 0, 1],"
+                     "'extensions': {'KHR_lights_punctual': {'light': 0}}}]}",
+                     WAYS[i].generator, LAMPS[lamp], 10 * (is_sun ? WAYS[i].lux : WAYS[i].candela));
+            const double expected = is_sun ? 10 / PI_ : 10 / (4 * PI_) / 4 / PI_;
+            const char *scene = write_scene(text);
+            picture p = WAYS[i].option[0] ? RENDER(scene, "--integrator=path", "--size=8x8", "--spp=16", WAYS[i].option)
+                                          : RENDER(scene, "--integrator=path", "--size=8x8", "--spp=16");
+            expect_uniform(WAYS[i].generator, &p, expected, 1e-3, 8, 1e-3);
+            picture_reset(&p);
+        }
+}
+
 /* A wall that shines with 1, seen through a block that does not refract, two metres thick where half of the red and a
  * quarter of the green are left. */
 static void volume(void **state)
@@ -204,9 +249,13 @@ static void errors_end_the_program(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(furnace),      TEST_IN_FOLDER(point_lamp),
-        TEST_IN_FOLDER(volume),       TEST_IN_FOLDER(room_by_both_integrators),
-        TEST_IN_FOLDER(picture_size), TEST_IN_FOLDER(errors_end_the_program),
+        TEST_IN_FOLDER(furnace),
+        TEST_IN_FOLDER(point_lamp),
+        TEST_IN_FOLDER(lamp_units),
+        TEST_IN_FOLDER(volume),
+        TEST_IN_FOLDER(room_by_both_integrators),
+        TEST_IN_FOLDER(picture_size),
+        TEST_IN_FOLDER(errors_end_the_program),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -104,10 +104,10 @@ static void test_refusal(void **state)
     (void)state;
     const char *scene = PROGRAM_SCENES ROOM;
     expect_end(RUN(QUICK, MAP, "-o", "a.exr", scene), 0, NULL);
-    expect_end(RUN(QUICK, MAP, "--seed=3", "-o", "a.exr", scene), 1, "made with seed 0, not 3");
-    expect_end(RUN(QUICK, MAP, "--photons=4001", "-o", "a.exr", scene), 1, "made with 4000 photons, not 4001");
+    expect_end(RUN(QUICK, MAP, "--seed=3", "-o", "a.exr", scene), 1, "another seed: 0, not 3");
+    expect_end(RUN(QUICK, MAP, "--photons=4001", "-o", "a.exr", scene), 1, "another number of photons: 4000, not 4001");
     expect_end(RUN(QUICK, MAP, "--irradiance-fraction=0.5", "-o", "a.exr", scene), 1,
-               "fraction of 1 of its photons, not 0.5");
+               "another fraction of irradiance photons: 1, not 0.5");
     expect_end(RUN(QUICK, MAP, "--isa=sse2", "-o", "a.exr", scene), 1, "another machine");
     const char *paler = SCENE_WITH(ROOM, "[0.6 0.6 0.5]", "[0.6 0.6 0.51]");
     expect_end(RUN(QUICK, MAP, "-o", "a.exr", paler), 1, "another scene");

@@ -81,6 +81,10 @@ static void test_photon_map(void **state)
         assert_int_equal(stats_integer(stats, "rays.camera"), 20 * 10 * 2);
         assert_true(stats_integer(stats, "rays.gather") > 0);
         assert_true(stats_integer(stats, "rays.shadow") > 0);
+        /* each estimate looks where surfaces end, by four rays or more unless the first says so */
+        assert_true(stats_integer(stats, "rays.estimate") >=
+                    stats_integer(stats, "irradiance.computed") + stats_integer(stats, "irradiance.uncached"));
+        assert_true(stats_integer(stats, "rays.estimate") > 0);
         assert_true(stats_integer(stats, "memory.peak_bytes") > bytes);
         long long computed = stats_integer(stats, "irradiance.computed");
         assert_int_equal(computed, stats_integer(stats, "irradiance.distinct"));
@@ -100,14 +104,9 @@ static void test_path_tracer(void **state)
     (void)state;
     json_t *stats = stats_of(BOX, ARGUMENTS(QUICK, "--integrator=path", "--stats=a.json"));
     assert_string_equal(json_string_value(stats_find(stats, "integrator")), "path");
-    static const char *const NONE[] = {"photons.emitted",
-                                       "photons.stored_global",
-                                       "photons.stored_caustic",
-                                       "photons.bytes",
-                                       "irradiance.requests",
-                                       "irradiance.computed",
-                                       "rays.gather",
-                                       "rays.photon"};
+    static const char *const NONE[] = {"photons.emitted", "photons.stored_global", "photons.stored_caustic",
+                                       "photons.bytes",   "irradiance.requests",   "irradiance.computed",
+                                       "rays.gather",     "rays.photon",           "rays.estimate"};
     for (size_t i = 0; i < sizeof NONE / sizeof *NONE; i++)
         assert_int_equal(stats_integer(stats, NONE[i]), 0);
     assert_int_equal(stats_integer(stats, "rays.camera"), 20 * 10 * 2);

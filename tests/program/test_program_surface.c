@@ -19,6 +19,27 @@ static void test_veils_in_a_furnace(void **state)
     }
 }
 
+/* Holes smaller than an estimate's disc: what is there is lit as if the whole were. */
+static void test_fine_nets_in_a_furnace(void **state)
+{
+    (void)state;
+    static const char SPHERE[] = "Shape \"sphere\" \"float radius\" 2";
+    static const char NETS[] =
+        "Shape \"sphere\" \"float radius\" 2\nReverseOrientation\n"
+        "Texture \"holes\" \"float\" \"checkerboard\" \"float uscale\" 60 \"float vscale\" 60 \"float tex1\" 1 "
+        "\"float tex2\" 0\nAttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [0 0 0]\n"
+        "Material \"diffuse\" \"rgb reflectance\" [1 1 1]\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [-0.8 -0.6 0.3  0.7 -0.7 0.4  -0.8 0.7 0.2  0.6 0.7 0.5] "
+        "\"point2 uv\" [0 0 1 0 0 1 1 1] \"texture alpha\" \"holes\"\n"
+        "Translate 0.2 0 0.9\nShape \"sphere\" \"float radius\" 0.4 \"texture alpha\" \"holes\"\nAttributeEnd\n";
+    const char *scene = SCENE_WITH("furnace.pbrt", SPHERE, NETS);
+    for (int k = 0; k < INTEGRATOR_COUNT; k++) {
+        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--photons=400000", "--spp", k == 0 ? "4" : "128");
+        expect_uniform(INTEGRATORS[k], &p, 2.0, 0.01, BLOCK, 0.04);
+        picture_reset(&p);
+    }
+}
+
 /* The floor of tests/scenes/floor.pbrt, under a point lamp with these shapes between. */
 static picture floor_under(const char *between, const char *integrator)
 {
@@ -94,6 +115,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_veils_in_a_furnace),
+        TEST_IN_FOLDER(test_fine_nets_in_a_furnace),
         TEST_IN_FOLDER(test_lamp_through_veils),
         TEST_IN_FOLDER(test_lamps_that_are_veils),
     };

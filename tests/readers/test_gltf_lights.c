@@ -65,7 +65,9 @@ static void units(void **state)
         {"Khronos glTF Blender I/O v4.2.57", 1, 1},
         {"Khronos glTF Blender I/O v3.6.5", 1, 1},
         {"Khronos glTF Blender I/O v10.0.1", 1, 1},
-        {"Khronos glTF Blender I/O v3.5.30", 683 / (4 * PI_), 683},
+        {"Khronos glTF Blender I/O v3.5.30", 1, 1},
+        {"Khronos glTF Blender I/O v3.4.50", 1, 1},
+        {"Khronos glTF Blender I/O v3.3.36", 683 / (4 * PI_), 683},
         {"Khronos glTF Blender I/O v1.8.19", 683 / (4 * PI_), 683},
         {"Khronos glTF Blender I/O", 683, 683},
     };
@@ -75,6 +77,12 @@ static void units(void **state)
         reading_destroy(&r);
         r = gltf_of(lamp_text(GENERATORS[i].generator, "{'type': 'directional', 'intensity': 683}", ""));
         assert_near(r.scene->lights[0].radiance.r, GENERATORS[i].sun, 1e-5 * GENERATORS[i].sun);
+        expect_said(&r, AG_LOG_INFO,
+                    GENERATORS[i].sun == 1 ? "lamps are read as standard (cd and lx at 683 lm/W)"
+                    : GENERATORS[i].point == 683
+                        ? "lamps are read as unitless (W/sr and W/m^2, or cd and lx where emission is in nit)"
+                        : "lamps are read as raw (W, and W/m^2 of suns)");
+        expect_said(&r, AG_LOG_INFO, GENERATORS[i].generator);
         reading_destroy(&r);
     }
 }

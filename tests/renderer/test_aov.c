@@ -22,6 +22,83 @@ static void test_names(void **state)
         assert_int_equal(ag_layers_parse(wrong[i], &layers), AG_ERROR_ARGUMENT);
 }
 
+/* Every layer is a row, by a bit, a name and words of its own; "all" is what the header says. */
+static void test_table(void **state)
+{
+    (void)state;
+    uint32_t seen = 0, all = 0, layers;
+    const ag_layer_info *info;
+    for (size_t i = 0; (info = ag_layer_at(i)) != NULL; i++) {
+        uint32_t layer = (uint32_t)info->layer;
+        assert_true(layer != 0 && (layer & (layer - 1)) == 0 && !(seen & layer));
+        seen |= layer;
+        all |= info->is_left_out_of_all ? 0 : layer;
+        assert_true(strlen(info->about) > 5);
+        assert_string_equal(aov_layer_name(layer), info->name);
+        assert_int_equal(ag_layers_parse(info->name, &layers), AG_OK);
+        assert_int_equal(layers, layer);
+        if (info->group) {
+            assert_int_equal(ag_layers_parse(info->group, &layers), AG_OK);
+            assert_true((layers & layer) && layers != layer);
+        }
+        for (size_t k = 0; k < i; k++) {
+            assert_string_not_equal(info->name, ag_layer_at(k)->name);
+            assert_string_not_equal(info->name, ag_layer_at(k)->group ? ag_layer_at(k)->group : "");
+        }
+    }
+    assert_int_equal(seen, aov_known_layers());
+    assert_int_equal(all, AG_LAYERS_ALL);
+    assert_int_equal(ag_layers_parse("light", &layers), AG_OK);
+    assert_int_equal(layers, AG_LAYERS_LIGHT);
+}
+
+static void expect_layout(uint32_t layers, aov_needs also, bool is_path, int group_count)
+{
+    static const char *names[LIGHT_GROUPS_MAX] = {"default"};
+    static char spelt[LIGHT_GROUPS_MAX][8];
+    aov_layout layout;
+    for (int i = 1; i < group_count; i++) {
+        snprintf(spelt[i], sizeof spelt[i], "g%d", i);
+        names[i] = spelt[i];
+    }
+    assert_int_equal(aov_layout_create(layers, also, is_path, names, group_count, &layout), AG_OK);
+    assert_string_equal(layout.channels[0].name, "R");
+    assert_string_equal(layout.channels[2].name, "B");
+    int width = 0;
+    for (int i = 0; i < FILM_SUM_COUNT; i++)
+        width = layout.offset[i] > width ? layout.offset[i] : width;
+    assert_true(width < layout.sum_count);
+    for (int i = 0; i < layout.channel_count; i++) {
+        const film_channel *c = &layout.channels[i];
+        for (int k = 0; k < i; k++)
+            assert_string_not_equal(c->name, layout.channels[k].name);
+        bool reads_sum = c->source <= CHANNEL_RELATIVE_VARIANCE;
+        if (reads_sum && (layout.offset[c->sum] < 0 || c->offset + c->component >= layout.sum_count))
+            fail_msg("%s is read from what is not summed", c->name);
+        if (c->source == CHANNEL_VIEW)
+            assert_true(layout.has_view[c->component]);
+    }
+    assert_true(!also.variance || (aov_has(&layout, SUM_SQUARES) && aov_has(&layout, SUM_DEVELOPED)));
+    assert_true(!also.albedo_and_normal || (aov_has(&layout, SUM_ALBEDO) && aov_has(&layout, SUM_NORMAL)));
+    aov_layout_reset(&layout);
+}
+
+/* One layer alone, each two together, all: there is place for every channel, and what it is read from is summed. ASan
+ * would see a channel too many. */
+static void test_layouts(void **state)
+{
+    (void)state;
+    for (int bits = 0; bits < 4; bits++) {
+        aov_needs also = {.albedo_and_normal = bits & 1, .variance = bits & 2};
+        expect_layout(0, also, false, 1);
+        expect_layout(aov_known_layers(), also, false, LIGHT_GROUPS_MAX);
+        expect_layout(aov_known_layers(), also, true, LIGHT_GROUPS_MAX);
+        for (size_t i = 0; ag_layer_at(i); i++)
+            for (size_t k = 0; k <= i; k++)
+                expect_layout((uint32_t)ag_layer_at(i)->layer | (uint32_t)ag_layer_at(k)->layer, also, k % 2, 3);
+    }
+}
+
 static void test_parts_add_up(void **state)
 {
     (void)state;
@@ -315,6 +392,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_names),
+        cmocka_unit_test(test_table),
+        cmocka_unit_test(test_layouts),
         TEST_IN_FOLDER(test_parts_add_up),
         TEST_IN_FOLDER(test_integrators_split_alike),
         TEST_IN_FOLDER(test_first_hit),

@@ -39,7 +39,7 @@ static void add_text(table *t, const char *name, const char *text, const char *m
     snprintf(world, sizeof world, "%s Shape \"disk\" \"float radius\" 9 %s", text, more);
     r.s = test_scene_create(&t->run, world);
     scene_ray down = scene_ray_make((vec3){x, 0.3f, 2.0f}, (vec3){0.0f, 0.0f, -1.0f});
-    down.meets_veils = true;
+    down.veils = RAY_MEETS_VEILS;
     assert_true(scene_intersect(r.s, down, INFINITY, &r.hit));
     material_at(r.s, &r.hit, &r.matter);
     assert_true(t->count < ROWS_MAX);

@@ -83,6 +83,30 @@ typedef struct ag_definition {
  * name is not valid or given twice, or the scene does not use it; the log says which). */
 AG_API ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_definition *definitions,
                                     size_t definition_count, ag_scene **out_scene);
+
+/* What the numbers of lamps in a glTF file (KHR_lights_punctual) are, beside those of emissive surfaces. The names are
+ * those of the "Lighting Mode" of Blender's exporter, which does not write down which one it was. */
+typedef enum ag_gltf_light_units {
+    AG_GLTF_LIGHT_UNITS_AUTO,     /* as asset.generator tells: Blender from 3.4 on standard, before that raw; others
+                                   * unitless */
+    AG_GLTF_LIGHT_UNITS_STANDARD, /* cd and lx at 683 lm/W, while emission is radiance: divided by 683 */
+    AG_GLTF_LIGHT_UNITS_UNITLESS, /* taken as they are, as W/sr and W/m^2: so also cd and lx where emission is in nit */
+    AG_GLTF_LIGHT_UNITS_RAW       /* points and spots in W over the whole sphere: divided by 4 pi; suns in W/m^2 */
+} ag_gltf_light_units;
+
+/* What is asked of a scene beyond what its file says. */
+typedef struct ag_scene_settings {
+    const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
+    size_t definition_count;              /* default 0 */
+    ag_gltf_light_units gltf_light_units; /* default AG_GLTF_LIGHT_UNITS_AUTO */
+} ag_scene_settings;
+
+AG_API ag_scene_settings ag_default_scene_settings(void);
+
+/* The same with settings; NULL: the default ones. They are needed for the time of the call alone. Errors also:
+ * AG_ERROR_ARGUMENT (a setting is out of its range). */
+AG_API ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
+                                  ag_scene **out_scene);
 AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
 
 /* Whether a path names one of the files that the scene was read from: its own, those that it includes, meshes,
@@ -165,6 +189,17 @@ typedef enum ag_layer {
  * AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_layers_parse(const char *list, uint32_t *out_layers);
 
+/* A layer by its name, for command lines and their help. The strings are the library's. */
+typedef struct ag_layer_info {
+    ag_layer layer;
+    const char *name, *group; /* as ag_layers_parse knows them; group: of several layers, or NULL */
+    const char *about;        /* what it shows, with *bold* and _italic_ words */
+    bool is_left_out_of_all;  /* "all" is not this one, too */
+} ag_layer_info;
+
+/* All layers by number, from 0 on; NULL: there are no more. */
+AG_API const ag_layer_info *ag_layer_at(size_t index);
+
 typedef struct ag_render_settings {
     ag_integrator integrator; /* default: photonmap */
     ag_cache_mode cache;      /* default: on demand */
@@ -228,7 +263,8 @@ typedef struct ag_render_settings {
     int noise_min_samples;      /* of each pixel then, [2, 2^20]; default 16 */
     float shown_exposure_stops; /* by which the picture will be made brighter when it is shown, [-100, 100]: noise and
                                    warnings are of what is shown; default 0 */
-    int gather_samples;         /* gather rays for each camera sample, [1, 65536]; 0: so many that samples times
+    int gather_samples;         /* gather rays for each camera sample, [1, 65536], where it meets a diffuse surface
+                                   first; what is reflected shares about as many; 0: so many that samples times
                                    gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL; with a noise level, where samples
                                    are not known beforehand, for 64 samples at most */
     /* A file that holds the photon map from one picture to the next, with the irradiances computed so far; NULL, the
@@ -244,6 +280,26 @@ typedef struct ag_render_settings {
  * renderer's Integrator. Errors: AG_ERROR_SCENE (a value out of range, with file, line and column). */
 AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *scene,
                                                ag_render_settings *out_settings);
+
+/* Our defaults alone. */
+AG_API ag_render_settings ag_default_render_settings(void);
+
+/* A setting that has a name, for command lines, dialogs and their help. The strings are the library's. */
+typedef struct ag_setting {
+    const char *name;      /* "photon-aim" */
+    const char *argument;  /* what stands for its value in help, "F"; NULL: it takes none, and is switched on */
+    const char *section;   /* "Output", "Picture" or "Light" */
+    const char *help;      /* what it does, its range and default, in a sentence without an end */
+    const char *manual;    /* the same at length, with *bold* and _italic_ words; NULL: help says it all */
+    bool is_of_photon_map; /* a kept photon map was made with one value of it, and is refused for another */
+} ag_setting;
+
+/* All of them by number, from 0 on; NULL: there are no more. */
+AG_API const ag_setting *ag_setting_at(size_t index);
+/* Sets one by its name to what a text says; numbers have a point in every locale. "aov" adds to the layers that are
+ * set. value: NULL where it takes none; "photon-map" borrows it. Errors: AG_ERROR_ARGUMENT (there is no such setting,
+ * or the text is no value of it; settings are then as they were). */
+AG_API ag_status ag_render_settings_set(ag_render_settings *settings, const char *name, const char *value);
 
 #define AG_DEFAULT_NOISE_LEVEL           0.02f
 #define AG_DEFAULT_SAMPLES_MOST          1024
@@ -407,7 +463,9 @@ typedef struct ag_statistics {
         irradiance_duplicated, irradiance_uncached, irradiance_refused, irradiance_ready, irradiance_reclaimed;
     double irradiance_estimate_s; /* CPU seconds spent in estimates, all threads; from a sixteenth of them */
     double irradiance_wait_s;     /* CPU seconds spent in waiting for other threads' estimates, all threads */
-    uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path;
+    /* estimate: cast by estimates and lookups in the photon maps, to find where surfaces end and which photons are in
+     * sight */
+    uint64_t rays_camera, rays_shadow, rays_gather, rays_photon, rays_path, rays_estimate;
     uint64_t samples_not_finite; /* camera samples dropped because they were not numbers: 0 */
     double time_s[AG_PHASE_COUNT];
     double phase_cpu_s[AG_PHASE_COUNT]; /* user + system of the whole process meanwhile */

@@ -120,7 +120,10 @@ static ag_status check_asset(gltf_reader *r)
         return gltf_error(r, &asset, "it is glTF %s; known is 2.0", version);
     if (needed && strcmp(needed, "2.0") != 0)
         return gltf_error(r, &asset, "it needs glTF %s; known is 2.0", needed);
-    r->lamp_units = gltf_lamp_units_of(generator);
+    r->lamp_units = gltf_lamp_units_of(
+        r->scene->request ? r->scene->request->gltf_light_units : GLTF_LIGHTS_BY_GENERATOR, generator);
+    for (size_t i = 0; generator && generator[i] && i + 1 < sizeof r->generator; i++)
+        r->generator[i] = (unsigned char)generator[i] < ' ' || generator[i] == 127 ? '?' : generator[i];
     return AG_OK;
 }
 

@@ -5,30 +5,63 @@
  *
  * Units. Only their ratios matter to a picture, and the format's own are photometric throughout: candela and lux of
  * lamps, nits of emissive materials. Reading each as its radiometric counterpart (W/sr, W/m^2, W/m^2/sr) keeps the
- * ratios for every exporter that keeps to the format. Blender's does not, by default: from version 3.6 on it multiplies
- * the watts of lamps by 683 lm/W ("Lighting Mode: Standard"), but writes emission as it is, 1 for a radiance of 1.
- * There lamps are divided by 683, and all is as it was in Blender, where a point lamp's W are 4 pi times its W/sr, and
- * a sun's strength is in W/m^2. Earlier versions wrote those W themselves. (Files of Blender's other lighting modes
- * cannot be told apart.) */
+ * ratios for every exporter that keeps to the format. Blender's writes emission as it is, 1 for a radiance of 1, and
+ * lamps in one of three ways (its "Lighting Mode"), W being what its lamps are measured in:
+ *
+ *   lighting mode   point, spot         sun        here, times   1/sr of points   of suns
+ *   standard        W 683 / (4 pi)      683 W/m^2                1 / 683          1 / 683
+ *   unitless        W / (4 pi)          W/m^2                    1                1
+ *   raw             W                   W/m^2                    1 / (4 pi)       1
+ *
+ * The choice came in October 2022 with version 3.4 (pull request 1760), standard by default; there was raw alone
+ * before. No file says which one it was, not even its extras. So the rule is: Blender from 3.4 on is standard, before
+ * that raw, all others are unitless; --gltf-light-units overrules it, and what was taken is said where there are lamps.
+ */
 #include "gltf/gltf_private.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static const double LUMENS_PER_WATT = 683.0;
+static const double SPHERE = 4.0 * 3.14159265358979323846; /* sr */
 
-gltf_lamp_units gltf_lamp_units_of(const char *generator)
+static gltf_light_units units_by_generator(const char *generator)
 {
-    gltf_lamp_units units = {1.0, 1.0};
     int major = 0, minor = 0;
     const char *blender = generator ? strstr(generator, "glTF Blender I/O v") : NULL;
     if (!blender || sscanf(blender + strlen("glTF Blender I/O v"), "%4d.%4d", &major, &minor) != 2)
-        return units;
-    if (major > 3 || (major == 3 && minor >= 6))
-        units = (gltf_lamp_units){1.0 / LUMENS_PER_WATT, 1.0 / LUMENS_PER_WATT};
-    else
-        units.per_candela = 1.0 / (4.0 * 3.14159265358979323846);
+        return GLTF_LIGHTS_UNITLESS;
+    return major > 3 || (major == 3 && minor >= 4) ? GLTF_LIGHTS_STANDARD : GLTF_LIGHTS_RAW;
+}
+
+gltf_lamp_units gltf_lamp_units_of(gltf_light_units asked, const char *generator)
+{
+    gltf_lamp_units units = {1.0, 1.0, asked == GLTF_LIGHTS_BY_GENERATOR ? units_by_generator(generator) : asked};
+    if (units.kind == GLTF_LIGHTS_STANDARD)
+        units.per_candela = units.per_lux = 1.0 / LUMENS_PER_WATT;
+    if (units.kind == GLTF_LIGHTS_RAW)
+        units.per_candela = 1.0 / SPHERE;
     return units;
+}
+
+/* Once, where the first lamp is. */
+static void tell_units(gltf_reader *r)
+{
+    static const char *const UNITS[] = {
+        [GLTF_LIGHTS_BY_GENERATOR] = "",
+        [GLTF_LIGHTS_STANDARD] = "standard (cd and lx at 683 lm/W)",
+        [GLTF_LIGHTS_UNITLESS] = "unitless (W/sr and W/m^2, or cd and lx where emission is in nit)",
+        [GLTF_LIGHTS_RAW] = "raw (W, and W/m^2 of suns)",
+    };
+    bool is_asked = r->scene->request && r->scene->request->gltf_light_units != GLTF_LIGHTS_BY_GENERATOR;
+    if (r->told_units)
+        return;
+    r->told_units = true;
+    log_at(r->run->log, AG_LOG_INFO, r->where, "lamps are read as %s, %s%s%s", UNITS[r->lamp_units.kind],
+           is_asked          ? "as --gltf-light-units says"
+           : r->generator[0] ? "as files by "
+                             : "as files that name no generator are; --gltf-light-units says otherwise",
+           is_asked ? "" : r->generator, is_asked || !r->generator[0] ? "" : " are; --gltf-light-units says otherwise");
 }
 
 static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
@@ -52,6 +85,7 @@ ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world
     double intensity = 1.0, z[3];
     uint32_t light_index;
     gltf_value at;
+    tell_units(r);
     GLTF_TRY(gltf_get_item(r, GLTF_LIGHTS, index, &at));
     GLTF_TRY(gltf_require(r, &at, "type"));
     GLTF_TRY(gltf_get_text(r, &at, "type", &type));

@@ -92,6 +92,7 @@ typedef struct gltf_matrix {
 /* How what lamps are measured in becomes W/sr and W/m^2. */
 typedef struct gltf_lamp_units {
     double per_candela, per_lux;
+    gltf_light_units kind; /* none of GLTF_LIGHTS_BY_GENERATOR */
 } gltf_lamp_units;
 
 typedef struct gltf_reader {
@@ -108,6 +109,8 @@ typedef struct gltf_reader {
     gltf_value lists[GLTF_LIST_COUNT];
     uint32_t list_counts[GLTF_LIST_COUNT];
     gltf_lamp_units lamp_units;
+    char generator[96]; /* of the file, as it can be printed; "": it names none */
+    bool told_units;
 
     gltf_file *buffers;            /* [list_counts[GLTF_BUFFERS]] */
     gltf_file *images;             /* those of data URIs; [list_counts[GLTF_IMAGES]] */
@@ -313,7 +316,8 @@ ag_status gltf_set_film(gltf_reader *r);
 bool gltf_matrix_axis(const gltf_matrix *m, int axis, double out_axis[3]);
 
 /* gltf_lights.c */
-gltf_lamp_units gltf_lamp_units_of(const char *generator);
+/* asked: what the user says of it. generator: the file's, NULL: none. */
+gltf_lamp_units gltf_lamp_units_of(gltf_light_units asked, const char *generator);
 ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world_from_node);
 
 #endif

@@ -1,0 +1,435 @@
+/* option_rows.c: see option_rows.h.
+ * Text: help is for --help; manual is for the man page, *bold* and _italic_. */
+#define _GNU_SOURCE
+#include "option_rows.h"
+
+#include "option_values.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WORDS(...)                                                                                                     \
+    (const char *const[]){__VA_ARGS__}, (int)(sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
+
+static bool take_outfile(const char *value, options *o)
+{
+    o->outfiles[o->outfile_count++] = value;
+    return true;
+}
+
+/* "NAME=VALUE"; of two with one name the last counts. Out of memory is told as not valid. */
+static bool take_definition(const char *text, options *o)
+{
+    size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"), i = 0;
+    if (text[length] != '=' || length == 0 || (text[0] >= '0' && text[0] <= '9'))
+        return false;
+    ag_definition *larger = realloc(o->definitions, (o->definition_count + 1) * sizeof *larger);
+    char *name = strndup(text, length), *value = strdup(text + length + 1);
+    if (larger)
+        o->definitions = larger;
+    if (!larger || !name || !value) {
+        free(name);
+        free(value);
+        return false;
+    }
+    while (i < o->definition_count && strcmp(o->definitions[i].name, name) != 0)
+        i++;
+    if (i == o->definition_count)
+        o->definition_count++;
+    else
+        options_free_definition(&o->definitions[i]);
+    o->definitions[i] = (ag_definition){.name = name, .value = value};
+    return true;
+}
+
+static bool take_gltf_light_units(const char *value, options *o)
+{
+    int word;
+    bool is_valid = parse_word(value, WORDS("auto", "standard", "unitless", "raw"), &word);
+    o->asked.gltf_light_units = (ag_gltf_light_units)word;
+    return is_valid;
+}
+
+static bool take_type(const char *value, options *o)
+{
+    int word;
+    bool is_valid = parse_word(value, WORDS("default", "uint8", "uint16", "half", "float"), &word);
+    o->output.type = (ag_sample_type)word;
+    return is_valid;
+}
+
+static bool take_exposure(const char *value, options *o)
+{
+    return parse_float(value, &o->output.exposure_stops) && fabsf(o->output.exposure_stops) <= 100.0f;
+}
+
+static bool take_confine_to(const char *value, options *o)
+{
+    o->context.is_confined = true;
+    o->confined_to[o->context.confined_count++] = value;
+    o->context.confined_to = o->confined_to;
+    return true;
+}
+
+static bool take_tile(const char *value, options *o) { return parse_tile(value, &o->tile_index, &o->tile_count); }
+
+static bool take_threads(const char *value, options *o)
+{
+    int threads = 0;
+    bool is_valid = parse_int(value, 1, 4096, &threads);
+    o->context.thread_count = (unsigned)threads;
+    return is_valid;
+}
+
+static bool take_isa(const char *value, options *o)
+{
+    int word;
+    o->context.isa = value;
+    return parse_word(value, WORDS("sse2", "sse4.2", "avx", "avx2", "avx512"), &word);
+}
+
+static bool take_frames(const char *value, options *o)
+{
+    frames_reset(&o->frames);
+    return frames_parse(value, &o->frames);
+}
+
+static bool take_checkpoint(const char *value, options *o) { return parse_seconds(value, &o->checkpoint_seconds); }
+
+static bool take_time_limit(const char *value, options *o) { return parse_time(value, &o->time_limit); }
+
+static bool take_progress(const char *value, options *o)
+{
+    static const progress_style styles[] = {PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_PLAIN, PROGRESS_JSON,
+                                            PROGRESS_NONE, PROGRESS_ALF, PROGRESS_PLAIN, PROGRESS_NONE};
+    int word;
+    if (!parse_word(value, WORDS("auto", "bar", "plain", "json", "none", "alf", "lines", "off"), &word))
+        return false;
+    o->progress = styles[word];
+    return true;
+}
+
+static bool take_quiet(const char *value, options *o)
+{
+    (void)value;
+    o->verbosity = -1;
+    return true;
+}
+
+static bool take_verbose(const char *value, options *o)
+{
+    (void)value;
+    o->verbosity = o->verbosity < 0 ? 1 : o->verbosity + 1;
+    return true;
+}
+
+static bool take_help(const char *value, options *o)
+{
+    (void)value;
+    o->asked_text = OPTIONS_ASKED_HELP;
+    return true;
+}
+
+static bool take_version(const char *value, options *o)
+{
+    (void)value;
+    o->asked_text = OPTIONS_ASKED_VERSION;
+    return true;
+}
+
+#define FLAG(member) .kind = OPTION_FLAG, .offset = offsetof(options, member)
+#define TEXT(member) .kind = OPTION_TEXT, .offset = offsetof(options, member)
+
+static const option_row ROWS[] = {
+    {.text = {.name = "outfile",
+              .argument = "FILE",
+              .section = "Output",
+              .help = "write the picture to FILE; may be repeated; .exr is scene-linear, .png, .tif and .jpg go "
+                      "through a display and view (default: the Film's filename, else SCENE.exr)",
+              .manual = "Write the picture to _FILE_. May be repeated. The extension chooses the format: _.exr_ is "
+                        "scene-linear; _.png_, _.tif_ and _.jpg_ go through a display and a view. A file appears "
+                        "complete or not at all. Without this option, the file that the scene's Film names is "
+                        "written, else _SCENE_ with _.exr_ for its extension, in the working directory."},
+     .letter = 'o',
+     .take = take_outfile},
+    {.text = {.name = "type",
+              .argument = "NAME",
+              .section = "Output",
+              .help = "stored samples: half, float, uint8 or uint16",
+              .manual = "How samples are stored: *half*, *float*, *uint8* or *uint16*. The default is *half* for "
+                        "OpenEXR, and *uint8* for the others."},
+     .take = take_type},
+    {.text = {.name = "tiled",
+              .section = "Output",
+              .help = "write .exr files in tiles, not in lines",
+              .manual = "Write _.exr_ files in tiles of 64 by 64 pixels, not in lines."},
+     FLAG(output.tiled)},
+    {.text = {.name = "reproducible",
+              .section = "Output",
+              .help = "leave out of .exr files what differs from run to run: times, threads, ...",
+              .manual = "Leave out of _.exr_ files what differs from run to run: command line, times, memory, CPU, "
+                        "threads. Then equal pictures are equal files."},
+     FLAG(output.reproducible)},
+    {.text = {.name = "dump-photons",
+              .argument = "FILE",
+              .section = "Output",
+              .help = "write the photons as PLY",
+              .manual = "Write the photons as PLY, with normals, directions, power, their map, and whether "
+                        "irradiance was computed there."},
+     TEXT(photons_file)},
+    {.text = {.name = "photons-only",
+              .section = "Output",
+              .help = "render no picture: for --photon-map, which later runs read, or --dump-photons",
+              .manual = "Trace the photons and render no picture: a farm's first job, whose photon map "
+                        "(*--photon-map*) the others read, or photons for a viewer (*--dump-photons*). With *--cache "
+                        "precompute* all irradiances are computed, too."},
+     FLAG(photons_only)},
+    {.text = {.name = "ocio",
+              .argument = "FILE",
+              .section = "Output",
+              .help = "OpenColorIO config (default: $OCIO, else the one built in)",
+              .manual = "OpenColorIO config. The default is *$OCIO*, else the config that is built in."},
+     TEXT(context.color_config)},
+    {.text = {.name = "display",
+              .argument = "NAME",
+              .section = "Output",
+              .help = "display of the config",
+              .manual = "Display of the config. This and the next three are for all pictures but OpenEXR."},
+     TEXT(output.display)},
+    {.text = {.name = "view",
+              .argument = "NAME",
+              .section = "Output",
+              .help = "view of the display",
+              .manual = "View of the display."},
+     TEXT(output.view)},
+    {.text = {.name = "look",
+              .argument = "NAMES",
+              .section = "Output",
+              .help = "looks of the config, with commas between them, - before one that is to be undone; none: not "
+                      "even the view's own",
+              .manual = "Looks of the config in place of the view's own, with commas between them; *-* before one "
+                        "undoes it, *none* leaves out the view's own too."},
+     TEXT(output.look)},
+    {.text = {.name = "exposure",
+              .argument = "STOPS",
+              .section = "Output",
+              .help = "of pictures for displays: light times 2^STOPS, before the view",
+              .manual = "Light is multiplied by 2 to this, before the look and the view."},
+     .take = take_exposure},
+    {.text = {.name = "working-space",
+              .argument = "NAME",
+              .section = "Output",
+              .help = "colour space that light is carried in (default: the config's role rendering, else "
+                      "scene_linear)",
+              .manual = "Colour space of the config that light is carried in, by its name, an alias or a role; it "
+                        "must be linear. Colours, spectra and pictures of the scene are converted to it as they are "
+                        "read. The default is the config's role *rendering*, else *scene_linear*, which is linear "
+                        "Rec. 709 in the config that is built in."},
+     TEXT(context.working_space)},
+    {.text = {.name = "output-space",
+              .argument = "NAME",
+              .section = "Output",
+              .help = "colour space of .exr files (default: the working space)",
+              .manual = "Colour space of OpenEXR files; the default is the working space. They say which it is, and "
+                        "the chromaticities of its primaries and white."},
+     TEXT(output.color_space)},
+    {.text = {.name = "list-displays",
+              .section = "Output",
+              .help = "print the config's displays, views, looks, colour spaces and roles",
+              .manual = "Print the displays and views, looks, colour spaces and roles of the config, and end; goes "
+                        "with no scene."},
+     FLAG(lists_displays)},
+    {.text = {.name = "stats",
+              .argument = "FILE",
+              .section = "Output",
+              .help = "write statistics as JSON",
+              .manual = "Write statistics (counts, times, memory) as JSON."},
+     TEXT(stats)},
+    {.text = {.name = "define",
+              .argument = "NAME=VALUE",
+              .section = "Scene",
+              .help = "put VALUE in the place of $NAME and ${NAME} in the scene's text; may be repeated; with "
+                      "--frames $frame is the frame's number",
+              .manual = "Put _VALUE_ in the place of $_NAME_ and ${_NAME_} in the scene's text, in strings and "
+                        "outside of them, where it may also be several numbers. May be repeated; of two with one "
+                        "name the last counts. ${_NAME_:-_OTHERWISE_} in a scene is _OTHERWISE_ where _NAME_ is not "
+                        "defined. A name of the scene's that is not defined is an error, and so is a definition that "
+                        "the scene does not use; without *-D*, strings with a $ in them stay as they are. With "
+                        "*--frames* *$frame* is the frame's number, and the places for it in _VALUE_ are filled in. "
+                        "Scenes in other formats than pbrt's text have no such names."},
+     .letter = 'D',
+     .take = take_definition},
+    {.text = {.name = "gltf-light-units",
+              .argument = "UNITS",
+              .section = "Scene",
+              .help = "what lamps of glTF files are measured in: auto (default; by the file's generator), standard (cd "
+                      "and lx at 683 lm/W), unitless (W/sr and W/m^2) or raw (W), as Blender's exporter calls them",
+              .manual = "What lamps of glTF files are measured in, beside surfaces that shine. *standard* is cd and lx "
+                        "at 683 lm/W, *unitless* W/sr and W/m^2, *raw* W over the whole sphere, and W/m^2 of suns: the "
+                        "names that the \"Lighting Mode\" of Blender's exporter has. *auto* (default) goes by the "
+                        "file's generator: Blender's from version 3.4 on is standard, before that raw, others are "
+                        "unitless."},
+     .take = take_gltf_light_units},
+    {.text = {.name = "confine",
+              .section = "Scene",
+              .help = "for scenes of strangers: read files below the scene's folder alone, and write only what the "
+                      "command line names",
+              .manual = "For scenes that are not trusted. Files are read below the scene's own folder alone, "
+                        "whatever it names and however (by \"..\", links, encoded URIs); of all else not even "
+                        "whether it is there shows in a message. The scene's own name for its picture is ignored: "
+                        "what is written is what the command line names. Formats that assimp reads are read where "
+                        "the kernel has Landlock, which holds assimp's process in those folders, else refused."},
+     FLAG(context.is_confined)},
+    {.text = {.name = "confine-to",
+              .argument = "FOLDER",
+              .section = "Scene",
+              .help = "as --confine, and files below FOLDER may be read, too; may be repeated",
+              .manual = "As with *--confine*, and files below _FOLDER_ may be read, too. May be repeated."},
+     .take = take_confine_to},
+    {.text = {.name = "tile",
+              .argument = "I/N",
+              .section = "Picture",
+              .help = "the I-th of N bands of the picture, from the top, from 1 on",
+              .manual = "The _I_-th of _N_ bands of the picture (or of its crop window), from the top, from 1 on, "
+                        "for rendering it on several machines. The pixels are those of the whole picture, to the "
+                        "last bit; in _.exr_ files the data window says where they belong, and *oiiotool* puts the "
+                        "bands together, see EXAMPLES."},
+     .take = take_tile},
+    {.text = {.name = "nthreads",
+              .argument = "N",
+              .section = "Work",
+              .help = "threads (default: what affinity mask and cgroup quota allow)",
+              .manual = "Number of threads. The default is what the affinity mask and the cgroup's quota allow."},
+     .letter = 't',
+     .take = take_threads},
+    {.text = {.name = "isa",
+              .argument = "NAME",
+              .section = "Work",
+              .help = "widest instruction set of ray traversal: sse2, sse4.2, avx, avx2 (default), avx512; another "
+                      "one may give other bits",
+              .manual = "Widest instruction set of ray traversal: *sse2*, *sse4.2*, *avx*, *avx2* (default) or "
+                        "*avx512*. Another one may give other bits."},
+     .take = take_isa},
+    {.text = {.name = "frames",
+              .argument = "LIST",
+              .section = "Work",
+              .help = "render frames, as 1-100, 1-100x2 or 1,5,9; %d, %04d and #### in names of files, SCENE too, "
+                      "and in -D's values are the frame's number",
+              .manual = "Render the frames of _LIST_, one after the other: *1-100*, *1-100x2*, *1,5,9* or several of "
+                        "these with commas between. In the names of outfiles, of _SCENE_ and of other files written, "
+                        "and in the values of *-D*, *%d*, *%04d* and runs of *#* (a digit each, at least) are the "
+                        "frame's number. Statistics and limits of time are each frame's own. The first frame that "
+                        "fails ends the work."},
+     .take = take_frames},
+    {.text = {.name = "no-clobber",
+              .section = "Work",
+              .help = "skip pictures that are there already, and complete",
+              .manual = "Skip pictures whose files are all there and complete; a message says so. What was left by a "
+                        "render that ended early is not complete."},
+     FLAG(no_clobber)},
+    {.text = {.name = "checkpoint",
+              .argument = "SECONDS",
+              .section = "Work",
+              .help = "write down what there is so often, and at a signal, to OUTFILE.afterglow-checkpoint",
+              .manual = "Write down what there is so often, and at a signal, to _OUTFILE_.afterglow-checkpoint "
+                        "beside the first outfile. It is removed when the picture is complete."},
+     .take = take_checkpoint},
+    {.text = {.name = "resume",
+              .section = "Work",
+              .help = "go on from that file, where it is there, to the same bits",
+              .manual = "Go on from that file, where it is there. The picture has the bits of one that was never "
+                        "cut, however its render ended: by a signal, SIGKILL, or a power failure. A checkpoint of "
+                        "another scene, other settings or another version, and one that is damaged, is refused, and "
+                        "the message says which; scenes are compared by what is in them, so that files may have "
+                        "moved."},
+     FLAG(resume)},
+    {.text = {.name = "time-limit",
+              .argument = "TIME",
+              .section = "Work",
+              .help = "stop after so many seconds, or HH:MM:SS, with the samples that there are",
+              .manual = "Seconds, or HH:MM:SS, from the beginning of the scene's reading on. No pass over the "
+                        "picture is begun that would not end in time, as the one before tells, so that all pixels "
+                        "have the same number of samples; one sample is always taken. The picture counts as "
+                        "complete, and a message says how many samples it has; with *--checkpoint* a checkpoint "
+                        "stays for *--resume* to go on with."},
+     .take = take_time_limit},
+    {.text = {.name = "preview",
+              .section = "Work",
+              .help = "write the picture after 1, 2, 4, ... samples per pixel, too",
+              .manual = "Write the picture after 1, 2, 4, ... samples per pixel, too."},
+     FLAG(preview)},
+    {.text = {.name = "progress",
+              .argument = "STYLE",
+              .section = "Work",
+              .help = "auto (default), bar, plain (or lines), alf, json or none (or off)",
+              .manual = "*auto* (default: a bar on a terminal, else plain), *bar*, *plain* or *lines* (whole lines "
+                        "with *Progress: NN%*), *alf* (lines with *ALF_PROGRESS NN%* on standard output, as render "
+                        "queues read them), *json* (one object per line), *none* or *off*. Where it can be told, "
+                        "each says how long the phase will take."},
+     .take = take_progress},
+    {.text = {.name = "quiet", .section = "Work", .help = "errors only", .manual = "Errors only."},
+     .letter = 'q',
+     .take = take_quiet},
+    {.text = {.name = "verbose",
+              .section = "Work",
+              .help = "also say what was done; twice: also what is harmless in the scene",
+              .manual = "Say more; twice: everything."},
+     .letter = 'v',
+     .take = take_verbose},
+    {.text = {.name = "help",
+              .section = "Work",
+              .help = "print this text",
+              .manual = "Print a summary of the options and exit."},
+     .letter = 'h',
+     .take = take_help},
+    {.text = {.name = "version",
+              .section = "Work",
+              .help = "print the program's version",
+              .manual = "Print the program's version and exit."},
+     .take = take_version},
+};
+enum { ROW_COUNT = sizeof ROWS / sizeof *ROWS };
+
+static const char *const SECTIONS[] = {"Output", "Scene", "Picture", "Light", "Work"};
+enum { SECTION_COUNT = sizeof SECTIONS / sizeof *SECTIONS };
+
+bool option_at(size_t index, listed_option *out_option)
+{
+    const ag_setting *setting;
+    for (int s = 0; s < SECTION_COUNT; s++) {
+        for (int i = 0; i < ROW_COUNT; i++)
+            if (strcmp(ROWS[i].text.section, SECTIONS[s]) == 0 && index-- == 0) {
+                *out_option = (listed_option){&ROWS[i].text, &ROWS[i]};
+                return true;
+            }
+        for (size_t i = 0; (setting = ag_setting_at(i)) != NULL; i++)
+            if (strcmp(setting->section, SECTIONS[s]) == 0 && index-- == 0) {
+                *out_option = (listed_option){setting, NULL};
+                return true;
+            }
+    }
+    return false;
+}
+
+/* A setting is tried on o->render, and noted for options_override. */
+static bool take_setting(const ag_setting *setting, const char *value, options *o)
+{
+    if (ag_render_settings_set(&o->render, setting->name, value) != AG_OK)
+        return false;
+    o->given[o->given_count++] = (given_setting){setting->name, value};
+    return true;
+}
+
+bool option_take(const listed_option *option, const char *value, options *o)
+{
+    const option_row *row = option->row;
+    if (!row)
+        return take_setting(option->text, value, o);
+    switch (row->kind) {
+    case OPTION_TAKEN: return row->take(value, o);
+    case OPTION_FLAG: *(bool *)((unsigned char *)o + row->offset) = true; break;
+    case OPTION_TEXT: *(const char **)(void *)((unsigned char *)o + row->offset) = value; break;
+    }
+    return true;
+}
