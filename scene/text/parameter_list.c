@@ -361,6 +361,8 @@ void parameter_list_warn_unused(const parameter_list *list, log_sink *log)
     const char *kind = kind_of(list);
     for (size_t i = 0; i < list->count; i++) {
         const parameter *p = &list->items[i];
+        if (p->looked_up && p->used)
+            *p->used = true;
         if (p->looked_up || p->may_be_unused)
             continue;
         char key[160];

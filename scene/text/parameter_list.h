@@ -54,6 +54,7 @@ typedef struct parameter {
     unsigned char *bools;
     bool looked_up;
     bool may_be_unused; /* it is for whom it may concern: an Attribute's */
+    bool *used;         /* set by parameter_list_warn_unused where it was looked up; borrowed; NULL: nobody asks */
 } parameter;
 
 /* Where parameters come from: their text, for messages that show it, and what their colours are to become. */

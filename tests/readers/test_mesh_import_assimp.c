@@ -161,6 +161,102 @@ static void lights_are_as_bright_as_the_file_says(void **state)
     reading_destroy(&r);
 }
 
+/* Collada by Blender: colours are W or W/m^2, and <extra> says what is an area and how a spot ends. */
+static reading blenders(const char *kind, const char *words, const char *extra)
+{
+    char text[8192];
+    snprintf(
+        text, sizeof text,
+        COLLADA("<contributor><authoring_tool>Blender 3.4.1</authoring_tool></contributor>\n<up_axis>Y_UP</up_axis>",
+                "\n<light id=\"lam-light\" name=\"lam\">\n<technique_common><%s><color>50 25 0"
+                "</color>%s</%s></technique_common>\n<extra><technique profile=\"blender\">\n%s"
+                "</technique></extra></light>\n",
+                COLLADA_FLOOR "\n<node id=\"lamn\" name=\"lamn\">\n<translate>1 2 3</translate>"
+                              "<instance_light url=\"#lam-light\"/></node>\n"),
+        kind, words, kind, extra);
+    return model_quietly("a.dae", text);
+}
+
+static void lamps_of_blenders_are_in_watts(void **state)
+{
+    (void)state;
+    reading r = blenders("point", "<quadratic_attenuation>0.0016</quadratic_attenuation>",
+                         "<type sid=\"type\" type=\"int\">0</type>\n");
+    assert_rgb(r.scene->lights[0].intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
+    reading_destroy(&r);
+
+    r = blenders("directional", "", "<type sid=\"type\" type=\"int\">1</type>\n");
+    assert_rgb(r.scene->lights[0].radiance, 50, 25, 0, 1e-5);
+    reading_destroy(&r);
+
+    r = blenders("spot", "<falloff_angle>90</falloff_angle><falloff_exponent>0.25</falloff_exponent>",
+                 "<type sid=\"type\" type=\"int\">2</type>\n<spotblend sid=\"spotblend\" type=\"float\">0.25"
+                 "</spotblend>\n");
+    const light *l = &r.scene->lights[0];
+    assert_int_equal(l->kind, LIGHT_SPOT);
+    assert_rgb(l->intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
+    assert_near(l->falloff_end, 1 - sqrt(0.5), 1e-5);
+    assert_near(l->falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
+    reading_destroy(&r);
+
+    /* 2 m by 0.5 m: a quarter of the W is what radiance times area is; it is not seen itself */
+    r = blenders("point", "",
+                 "<type sid=\"type\" type=\"int\">4</type>\n<area_shape sid=\"a\" type=\"int\">1"
+                 "</area_shape>\n<area_size sid=\"a\" type=\"float\">2</area_size>\n"
+                 "<area_sizey sid=\"a\" type=\"float\">0.5</area_sizey>\n");
+    l = &r.scene->lights[0];
+    assert_int_equal(l->kind, LIGHT_AREA);
+    assert_rgb(l->radiance, 12.5, 6.25, 0, 1e-4);
+    const shape *s = &r.scene->shapes[l->shape_index];
+    assert_near(shape_area(s), 1.0, 1e-5);
+    assert_near(s->alpha, 0, 0);
+    reading_destroy(&r);
+}
+
+/* FBX: 100 W to the W, in cm unless UnitScaleFactor says otherwise. */
+#define FBX_LAMP(unit, kind, words)                                                                                     \
+    "; FBX 7.4.0 project file\nFBXHeaderExtension: {\nFBXHeaderVersion: 1003\nFBXVersion: 7400\n"                       \
+    "Creator: \"Blender (stable FBX IO) - 3.4.1 - 4.37.1\"\n}\nCreator: \"Blender (stable FBX IO) - 3.4.1 - 4.37.1\"\n" \
+    "GlobalSettings: {\nVersion: 1000\nProperties70: {\nP: \"UpAxis\", \"int\", \"Integer\", \"\",1\n"                  \
+    "P: \"UnitScaleFactor\", \"double\", \"Number\", \"\"," unit "\n}\n}\nObjects: {\n"                                 \
+    "Geometry: 1, \"Geometry::g\", \"Mesh\" {\nVertices: *9 {\na: 0,0,0,1,0,0,0,0,-1\n}\n"                              \
+    "PolygonVertexIndex: *3 {\na: 0,1,-3\n}\nGeometryVersion: 124\n}\n"                                                 \
+    "Model: 2, \"Model::m\", \"Mesh\" {\nVersion: 232\n}\nModel: 3, \"Model::lam\", \"Light\" {\nVersion: 232\n"        \
+    "Properties70: {\nP: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\",100,200,300\n}\n}\n"                     \
+    "NodeAttribute: 4, \"NodeAttribute::lam\", \"Light\" {\nTypeFlags: \"Light\"\nGeometryVersion: 124\n"               \
+    "Properties70: {\nP: \"LightType\", \"enum\", \"\", \"\"," kind "\n"                                                \
+    "P: \"Color\", \"Color\", \"\", \"A\",1,0.5,0\nP: \"Intensity\", \"Number\", \"\", \"A\",5000\n"                    \
+    "P: \"DecayType\", \"enum\", \"\", \"\",2\nP: \"DecayStart\", \"double\", \"Number\", \"\",2500\n" words            \
+    "}\n}\n}\nConnections: {\nC: \"OO\",2,0\nC: \"OO\",1,2\nC: \"OO\",3,0\nC: \"OO\",4,3\n}\n"
+
+static void lamps_of_blenders_fbx_are_in_watts(void **state)
+{
+    (void)state;
+    reading r = model_quietly("a.fbx", FBX_LAMP("1", "0", ""));
+    assert_int_equal(r.status, AG_OK);
+    assert_rgb(r.scene->lights[0].intensity, 1e4 * 50 / (4 * PI_D), 1e4 * 25 / (4 * PI_D), 0, 0.1);
+    reading_destroy(&r);
+    r = model_quietly("a.fbx", FBX_LAMP("100", "0", ""));
+    assert_rgb(r.scene->lights[0].intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
+    reading_destroy(&r);
+    r = model_quietly("a.fbx", FBX_LAMP("1", "1", ""));
+    assert_rgb(r.scene->lights[0].radiance, 50, 25, 0, 1e-4);
+    reading_destroy(&r);
+    r = model_quietly("a.fbx", FBX_LAMP("1", "2",
+                                        "P: \"OuterAngle\", \"double\", \"Number\", \"\",90\n"
+                                        "P: \"InnerAngle\", \"double\", \"Number\", \"\",67.5\n"));
+    assert_int_equal(r.scene->lights[0].kind, LIGHT_SPOT);
+    assert_near(r.scene->lights[0].falloff_end, 1 - sqrt(0.5), 1e-5);
+    assert_near(r.scene->lights[0].falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
+    reading_destroy(&r);
+    r = model_of("a.fbx", FBX_LAMP("1", "3", ""));
+    assert_int_equal(r.status, AG_OK);
+    assert_int_equal(r.scene->lights[0].kind, LIGHT_AREA);
+    assert_near(r.scene->lights[0].radiance.r, 50 / 4.0 / 0.01, 0.1);
+    assert_non_null(strstr(r.said[AG_LOG_WARNING], "its size and shape do not stand in the file"));
+    reading_destroy(&r);
+}
+
 static void what_assimp_refuses_is_an_error(void **state)
 {
     (void)state;
@@ -236,6 +332,8 @@ int main(void)
         TEST_IN_FOLDER(the_up_axis_is_turned),
         TEST_IN_FOLDER(cameras_look_where_the_file_says),
         TEST_IN_FOLDER(lights_are_as_bright_as_the_file_says),
+        TEST_IN_FOLDER(lamps_of_blenders_are_in_watts),
+        TEST_IN_FOLDER(lamps_of_blenders_fbx_are_in_watts),
         TEST_IN_FOLDER(what_assimp_refuses_is_an_error),
         TEST_IN_FOLDER(vertices_are_checked_here),
         TEST_IN_FOLDER(damaged_files_do_no_harm),

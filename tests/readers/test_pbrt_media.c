@@ -43,7 +43,7 @@ static void absorption_is_read(void **state)
 static void absorption_is_the_same_everywhere(void **state)
 {
     (void)state;
-    static const char *const BEFORE[] = {"Scale 10 10 10", "Attribute \"medium\" \"float scale\" 3 \"float sigma\" 1"};
+    static const char *const BEFORE[] = {"Scale 10 10 10", "Attribute \"medium\" \"float scale\" 3"};
     for (int i = 0; i < 2; i++) {
         char text[512];
         snprintf(text, sizeof text,

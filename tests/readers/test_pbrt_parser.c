@@ -78,6 +78,8 @@ static void errors_name_place_and_reason(void **state)
          "\"innerradius\" should be from 0 to below \"radius\""},
         {"WorldBegin Shape \"disk\" \"float radius\" 0", "1:25", "\"radius\" should be above 0"},
         {"WorldBegin Translate 1e19 0 0 Shape \"sphere\"", "1:31", "it reaches beyond 1e18 units in world space"},
+        {"WorldBegin Material \"marzipan\" \"rgb color\" [ .9 .8 .7 ]", "1:12", "unknown material \"marzipan\""},
+        {"WorldBegin MakeNamedMaterial \"m\" \"string type\" \"marzipan\"", "1:12", "unknown material \"marzipan\""},
         {"WorldBegin Shape \"spehre\"", "1:12", "unknown shape \"spehre\""},
         {"WorldBegin Shape \"trianglemesh\"", "1:12", "\"point3 P\" is missing"},
         {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ]", "1:33",
@@ -406,14 +408,19 @@ static void attributes_are_brought_back(void **state)
 static void attributes_speak_to_what_follows(void **state)
 {
     (void)state;
-    reading r = reading_of(
+    const char *text =
         "WorldBegin Attribute \"shape\" \"float radius\" 2 \"float nobody\" 1\n"
         "Attribute \"light\" \"float scale\" 3 \"rgb L\" [ 1 2 3 ] \"string meant\" \"for others\"\n"
         "AttributeBegin Attribute \"shape\" \"float radius\" 4 Shape \"sphere\" Shape \"sphere\" \"float radius\" 5\n"
         "AttributeEnd Shape \"disk\" ColorSpace \"aces2065-1\" Attribute \"material\" \"rgb reflectance\" [ .5 .5 .5 "
         "]\n"
         "ColorSpace \"srgb\" Material \"diffuse\" AreaLightSource \"diffuse\" Shape \"sphere\"\n"
-        "Attribute \"texture\" \"float value\" .25 Texture \"t\" \"float\" \"constant\"");
+        "Attribute \"texture\" \"float value\" .25 Texture \"t\" \"float\" \"constant\"";
+    reading r = reading_create(NULL, text, strlen(text));
+    assert_int_equal(r.status, AG_OK);
+    assert_string_equal(r.said[AG_LOG_WARNING],
+                        "t:2:53: warning: Attribute \"light\": \"string meant\" is used by nothing that follows\n"
+                        "t:1:47: warning: Attribute \"shape\": \"float nobody\" is used by nothing that follows\n");
     static const double RADIUS[] = {4, 5, 2, 2};
     for (int i = 0; i < 4; i++)
         assert_near(r.scene->shapes[i].as.quadric.radius, RADIUS[i], 0);

@@ -392,12 +392,6 @@ static void stand_ins_keep_what_they_can(void **state)
                         STANDS_IN("measured", "\"diffuse\" with a reflectance of 0.5"));
     assert_int_equal(m.kind, MATERIAL_DIFFUSE);
     assert_int_equal(m.displacement_texture, 0);
-    m = warned_material("Material \"marzipan\" \"rgb color\" [ .9 .8 .7 ] \"float sugar\" 3 Material \"marzipan\"",
-                        "material \"marzipan\" is not known: \"diffuse\" with its \"color\" stands in\n");
-    assert_rgb(m.reflectance, .5, .5, .5, 0);
-    m = warned_material("MakeNamedMaterial \"m\" \"string type\" \"marzipan\"",
-                        "material \"marzipan\" is not known: \"diffuse\" with a reflectance of 0.5 stands in\n");
-    assert_rgb(m.reflectance, .5, .5, .5, 0);
 }
 
 int main(void)

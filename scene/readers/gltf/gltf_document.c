@@ -122,6 +122,7 @@ static ag_status check_asset(gltf_reader *r)
         return gltf_error(r, &asset, "it needs glTF %s; known is 2.0", needed);
     r->lamp_units = gltf_lamp_units_of(
         r->scene->request ? r->scene->request->gltf_light_units : GLTF_LIGHTS_BY_GENERATOR, generator);
+    r->is_blenders = generator && strstr(generator, "glTF Blender I/O");
     for (size_t i = 0; generator && generator[i] && i + 1 < sizeof r->generator; i++)
         r->generator[i] = (unsigned char)generator[i] < ' ' || generator[i] == 127 ? '?' : generator[i];
     return AG_OK;

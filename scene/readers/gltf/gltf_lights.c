@@ -19,6 +19,7 @@
  */
 #include "gltf/gltf_private.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -64,6 +65,9 @@ static void tell_units(gltf_reader *r)
            is_asked ? "" : r->generator, is_asked || !r->generator[0] ? "" : " are; --gltf-light-units says otherwise");
 }
 
+/* Cones: full inside the inner one, a smoothstep in the cosine out to the outer one. Blender's lamps end so too, but
+ * its exporter writes an inner angle that is the outer one less its share "blend", where Blender takes that share of
+ * what the cosine has to go: so that is undone. */
 static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
 {
     double inner = 0.0, outer = 0.78539816339744831;
@@ -74,6 +78,8 @@ static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
     if (!(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= 1.5708))
         return gltf_error(r, &spot, "its angles are %g and %g, which should be 0 <= inner < outer <= pi / 2", inner,
                           outer);
+    if (r->is_blenders && outer > 0.0)
+        inner = acos(fmin(cos(outer) + (1.0 - cos(outer)) * (1.0 - inner / outer), 1.0));
     light_set_cone(l, inner, outer);
     return AG_OK;
 }

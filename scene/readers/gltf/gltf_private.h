@@ -111,6 +111,7 @@ typedef struct gltf_reader {
     gltf_lamp_units lamp_units;
     char generator[96]; /* of the file, as it can be printed; "": it names none */
     bool told_units;
+    bool is_blenders; /* by the exporter of Blender */
 
     gltf_file *buffers;            /* [list_counts[GLTF_BUFFERS]] */
     gltf_file *images;             /* those of data URIs; [list_counts[GLTF_IMAGES]] */

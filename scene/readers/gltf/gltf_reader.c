@@ -45,6 +45,9 @@ static ag_status end(gltf_reader *r)
     GLTF_TRY(gltf_set_film(r));
     if (!r->scene->has_camera)
         GLTF_TRY(import_add_default_camera(r->scene, r->run->log));
+    if (r->scene->light_count <= r->glow_count && r->is_blenders)
+        log_at(r->run->log, AG_LOG_WARNING, r->where,
+               "there is no lamp in it: Blender leaves area lamps and the world out of glTF files");
     return r->scene->light_count > r->glow_count ? AG_OK : import_add_default_light(r->scene, r->run->log);
 }
 

@@ -85,14 +85,23 @@ typedef enum import_light_kind {
     IMPORT_LIGHT_AREA
 } import_light_kind;
 
-/* World space; in the words of rasterizers: a white surface that faces it appears as bright as color * 1 /
- * (attenuation[0] + attenuation[1] d + attenuation[2] d^2) at distance d. */
+/* What a light's colour is measured in. */
+typedef enum import_light_measure {
+    IMPORT_LIGHT_SHADED, /* as rasterizers have it, see below */
+    IMPORT_LIGHT_WATTS   /* as Blender has it: points and spots W over the whole sphere, areas W of which pi/4 goes out,
+                          * suns W/m^2 */
+} import_light_measure;
+
+/* World space; in the words of rasterizers, where IMPORT_LIGHT_SHADED: a white surface that faces it appears as bright
+ * as color * 1 / (attenuation[0] + attenuation[1] d + attenuation[2] d^2) at distance d. */
 typedef struct import_light {
     char name[IMPORT_NAME_SIZE];
     uint32_t kind;
     rgb color;
     double position[3], direction[3], up[3];
-    float attenuation[3];
+    float attenuation[3];         /* of IMPORT_LIGHT_SHADED */
+    uint32_t measure;             /* import_light_measure */
+    float units_per_metre;        /* of IMPORT_LIGHT_WATTS, > 0 */
     float inner_cone, outer_cone; /* radians, the whole cone */
     float size[2];                /* area: across and along up */
 } import_light;

@@ -1,7 +1,8 @@
 /* import_view.c: cameras and lights of foreign formats as ours; see importer.h.
  * Lights of rasterizers become physical ones of the same brightness: color c at distance d on a white surface that
  * faces the light is an irradiance of pi c, so an intensity of pi c d^2; where the light does not fall off with the
- * square of the distance, that of the centre of the scene counts. Threads: one per scene. */
+ * square of the distance, that of the centre of the scene counts. Lights of Blender's are physical already, per metre.
+ * Threads: one per scene. */
 #include "model/importer.h"
 #include "scene_extent.h"
 
@@ -89,6 +90,11 @@ void importer_add_camera(importer *i, const import_camera *source)
 /* pi d^2 / attenuation, for d far away or where the scene's centre is. */
 static ag_status find_intensity_factor(const importer *i, const import_light *source, double *out_factor)
 {
+    if (source->measure == IMPORT_LIGHT_WATTS) {
+        const double per_metre = (double)source->units_per_metre;
+        *out_factor = (source->kind == IMPORT_LIGHT_AREA ? 0.25 : 0.25 / PI) * per_metre * per_metre;
+        return AG_OK;
+    }
     double c = (double)source->attenuation[0], l = (double)source->attenuation[1], q = (double)source->attenuation[2];
     *out_factor = PI / q;
     if (q > 0.0)
@@ -160,6 +166,8 @@ static ag_status add_area_light(importer *i, const import_light *source, rgb int
             return AG_OK;
         }
     }
+    if (source->measure == IMPORT_LIGHT_WATTS)
+        s.alpha = 0.0f; /* Blender's lamps light, but are not seen */
     ag_status status = scene_add_shape(i->scene, &s, &l.shape_index);
     l.radiance = scale_color(intensity, 1.0 / area);
     return status ? status : scene_add_light(i->scene, &l, &index);
@@ -200,7 +208,7 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
     }
     case IMPORT_LIGHT_DIRECTIONAL:
         l.kind = LIGHT_DISTANT;
-        l.radiance = scale_color(source.color, PI);
+        l.radiance = scale_color(source.color, source.measure == IMPORT_LIGHT_WATTS ? 1.0 : PI);
         break;
     case IMPORT_LIGHT_AMBIENT:
         l.kind = LIGHT_INFINITE;

@@ -5,6 +5,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "model/mesh_import_assimp.h"
 
+#include "model/blender_lamps.h"
 #include "model/import_confinement.h"
 #include "model/import_model.h"
 #include "model/import_process.h"
@@ -13,10 +14,12 @@
 
 #include <assimp/ObjMaterial.h>
 #include <assimp/cimport.h>
+#include <assimp/commonMetaData.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -30,7 +33,11 @@ enum { MAX_DEPTH = 1000 }; /* of nodes within nodes */
 typedef struct writer {
     FILE *out;
     const struct aiScene *scene;
-    bool is_sound; /* all could be written */
+    bool is_sound;            /* all could be written */
+    bool is_blenders, is_fbx; /* the file is by Blender's exporter of Collada or FBX */
+    float units_per_metre;    /* of such a one */
+    blender_lamps lamps;      /* of such a one, of Collada */
+    bool has_plain_shining;   /* a material shines */
 } writer;
 
 static void write_bytes(writer *w, const void *bytes, size_t size)
@@ -135,6 +142,17 @@ static bool has_highlights(const struct aiMaterial *m)
     return get_float(m, AI_MATKEY_SHININESS, 0.0f) > 0.0f;
 }
 
+/* Blender's FBX exporter squeezes its principled material into Phong's words: specular is twice SpecularFactor and 0.08
+ * of it is reflected at normal incidence, roughness is 1 - sqrt(Shininess) / 10, metallic ReflectionFactor. */
+static void restore_surface(const struct aiMaterial *m, import_material *out)
+{
+    const double specular = 2.0 * (double)get_float(m, AI_MATKEY_SHININESS_STRENGTH, 0.25f);
+    const double normal = sqrt(fmin(fmax(0.08 * specular, 1e-6), 0.9));
+    out->metallic = fminf(fmaxf(get_float(m, AI_MATKEY_REFLECTIVITY, 0.0f), 0.0f), 1.0f);
+    out->roughness = (float)fmax(1.0 - sqrt(fmax((double)out->exponent, 0.0)) / 10.0, 0.0);
+    out->ior = (float)((1.0 + normal) / (1.0 - normal));
+}
+
 static void write_material(writer *w, const struct aiMaterial *m)
 {
     static const enum aiTextureType TYPES[IMPORT_SLOT_COUNT][3] = {
@@ -163,6 +181,7 @@ static void write_material(writer *w, const struct aiMaterial *m)
             rgb_scale(get_color(m, AI_MATKEY_COLOR_SPECULAR, black), get_float(m, AI_MATKEY_SHININESS_STRENGTH, 1.0f));
     out.emission =
         rgb_scale(get_color(m, AI_MATKEY_COLOR_EMISSIVE, black), get_float(m, AI_MATKEY_EMISSIVE_INTENSITY, 1.0f));
+    w->has_plain_shining |= out.emission.r > 0.0f || out.emission.g > 0.0f || out.emission.b > 0.0f;
     out.filter = illumination >= 0 ? get_color(m, AI_MATKEY_COLOR_TRANSPARENT, rgb_gray(1.0f)) : rgb_gray(1.0f);
     out.exponent = get_float(m, AI_MATKEY_SHININESS, -1.0f);
     out.opacity = get_float(m, AI_MATKEY_OPACITY, 1.0f);
@@ -173,8 +192,12 @@ static void write_material(writer *w, const struct aiMaterial *m)
     out.clearcoat = get_float(m, AI_MATKEY_CLEARCOAT_FACTOR, 0.0f);
     out.clearcoat_roughness = get_float(m, AI_MATKEY_CLEARCOAT_ROUGHNESS_FACTOR, 0.0f);
     out.transmission = get_float(m, AI_MATKEY_TRANSMISSION_FACTOR, 0.0f);
+    if (w->is_blenders && w->is_fbx)
+        restore_surface(m, &out);
     for (int slot = 0; slot < IMPORT_SLOT_COUNT; slot++)
         get_picture(w, m, TYPES[slot], &out.pictures[slot]);
+    if (w->is_blenders && w->is_fbx && out.pictures[IMPORT_COLOR].path[0] != '\0')
+        out.diffuse = rgb_gray(1.0f); /* a socket's value, which the picture takes the place of */
     write_record(w, IMPORT_RECORD_MATERIAL, &out, sizeof out);
 }
 
@@ -304,6 +327,73 @@ static void write_camera(writer *w, const struct aiCamera *c, matrix root)
     write_record(w, IMPORT_RECORD_CAMERA, &out, sizeof out);
 }
 
+static bool is_made_by(const struct aiScene *s, const char *maker)
+{
+    for (unsigned k = 0; s->mMetaData && k < s->mMetaData->mNumProperties; k++)
+        if (strcmp(s->mMetaData->mKeys[k].data, AI_METADATA_SOURCE_GENERATOR) == 0 &&
+            s->mMetaData->mValues[k].mType == AI_AISTRING)
+            return strncmp(((const struct aiString *)s->mMetaData->mValues[k].mData)->data, maker, strlen(maker)) == 0;
+    return false;
+}
+
+/* Whose file it is, for lamps: see blender_lamps.h. */
+static void find_maker(writer *w, const char *path)
+{
+    const struct aiScene *s = w->scene;
+    const char *dot = strrchr(path, '.');
+    const bool is_collada = dot && strcasecmp(dot, ".dae") == 0, is_fbx = dot && strcasecmp(dot, ".fbx") == 0;
+    w->is_fbx = is_fbx;
+    w->units_per_metre = is_fbx ? 100.0f : 1.0f;
+    w->is_blenders = (is_collada || is_fbx) && is_made_by(s, "Blender ");
+    for (unsigned k = 0; is_fbx && s->mMetaData && k < s->mMetaData->mNumProperties; k++) {
+        const struct aiMetadataEntry *value = &s->mMetaData->mValues[k];
+        if (strcmp(s->mMetaData->mKeys[k].data, "UnitScaleFactor") != 0)
+            continue;
+        const double factor = value->mType == AI_DOUBLE  ? *(const double *)value->mData
+                              : value->mType == AI_FLOAT ? (double)*(const float *)value->mData
+                                                         : 1.0;
+        if (factor > 1e-6 && factor < 1e6)
+            w->units_per_metre = (float)(100.0 / factor);
+    }
+    if (w->is_blenders && is_collada)
+        blender_lamps_read(path, &w->lamps);
+}
+
+/* The angle inside of which a spot of Blender's is full, from its half angle and blend: the edge takes that share of
+ * what the cosine has to go from the axis on. */
+static double full_angle(double half_angle, double blend)
+{
+    const double dark = cos(half_angle);
+    return acos(fmin(fmax(dark + (1.0 - dark) * blend, -1.0), 1.0));
+}
+
+/* What Blender means, where the file is its own. */
+static void restore_blenders(writer *w, const struct aiLight *l, matrix world, import_light *out)
+{
+    const struct aiVector3D up_of_fbx = {0, 0, 1}, up_of_collada = {0, 1, 0}, down = {0, -1, 0}, back = {0, 0, -1};
+    const blender_lamp *lamp = blender_lamps_find(&w->lamps, out->name);
+    out->measure = IMPORT_LIGHT_WATTS;
+    out->units_per_metre = w->units_per_metre;
+    if ((lamp && lamp->is_area) || l->mType == aiLightSource_UNDEFINED) {
+        char text[IMPORT_TEXT_SIZE];
+        out->kind = IMPORT_LIGHT_AREA;
+        for (int k = 0; k < 2; k++)
+            out->size[k] = (lamp ? lamp->size[k] : 0.1f) * w->units_per_metre;
+        transform_to(world, lamp ? &up_of_collada : &up_of_fbx, 0.0, out->up);
+        transform_to(world, lamp ? &back : &down, 0.0, out->direction);
+        snprintf(text, sizeof text,
+                 "area lamp \"%s\": its size and shape do not stand in the file: it is a square of 0.1 m", out->name);
+        if (!lamp)
+            write_text(w, IMPORT_RECORD_WARNING, text);
+    }
+    if (out->kind == IMPORT_LIGHT_SPOT && (lamp || w->is_fbx)) {
+        const double outer = (double)(lamp ? l->mAngleInnerCone : l->mAngleOuterCone); /* assimp widens Collada's */
+        const double blend = lamp ? (double)lamp->spot_blend : 1.0 - (double)l->mAngleInnerCone / fmax(outer, 1e-6);
+        out->outer_cone = (float)outer;
+        out->inner_cone = (float)(2.0 * full_angle(0.5 * outer, fmin(fmax(blend, 0.0), 1.0)));
+    }
+}
+
 static void write_light(writer *w, const struct aiLight *l, matrix root)
 {
     static const uint32_t KINDS[] = {
@@ -329,6 +419,8 @@ static void write_light(writer *w, const struct aiLight *l, matrix root)
     out.outer_cone = l->mAngleOuterCone;
     out.size[0] = (float)l->mSize.x;
     out.size[1] = (float)l->mSize.y;
+    if (w->is_blenders)
+        restore_blenders(w, l, world, &out);
     write_record(w, IMPORT_RECORD_LIGHT, &out, sizeof out);
 }
 
@@ -354,6 +446,7 @@ static void write_scene(writer *w, const char *path)
     static const matrix Z_UP = {{1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}, {0, 0, 0, 1}};
     int up = up_axis(s, path);
     matrix root;
+    find_maker(w, path);
     memcpy(root, up == 0 ? X_UP : up == 2 ? Z_UP : Y_UP, sizeof root);
     for (unsigned k = 0; k < s->mNumTextures; k++) {
         const struct aiTexture *t = s->mTextures[k];
@@ -363,6 +456,10 @@ static void write_scene(writer *w, const char *path)
     }
     for (unsigned k = 0; k < s->mNumMaterials; k++)
         write_material(w, s->mMaterials[k]);
+    const char *dot = strrchr(path, '.');
+    if (w->is_blenders && w->has_plain_shining && dot && strcasecmp(dot, ".dae") == 0)
+        write_text(w, IMPORT_RECORD_WARNING,
+                   "Blender writes no strength of emission to Collada files: surfaces shine with 1 times their colour");
     for (unsigned k = 0; k < s->mNumMeshes; k++)
         write_mesh(w, s->mMeshes[k]);
     write_instances(w, s->mRootNode, root, 0);

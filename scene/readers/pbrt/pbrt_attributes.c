@@ -4,6 +4,7 @@
  * then the latest Attribute. Flow: pbrt_parser -> [here] -> pbrt_parameters. Threads: one per scene. */
 #include "pbrt/pbrt_private.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +22,7 @@ static const struct {
 };
 
 /* Each parameter is an attribute of its own, before those that were there. */
-static ag_status add_attributes(pbrt_parser *parser, const parameter_list *list, pbrt_target target)
+static ag_status add_attributes(pbrt_parser *parser, const parameter_list *list, pbrt_target target, const char *name)
 {
     for (size_t i = 0; i < list->count; i++) {
         pbrt_attribute *added = calloc(1, sizeof *added);
@@ -30,6 +31,8 @@ static ag_status add_attributes(pbrt_parser *parser, const parameter_list *list,
             return AG_ERROR_MEMORY;
         }
         added->item.may_be_unused = true;
+        added->item.used = &added->is_used;
+        added->target = name;
         added->older = parser->state.attributes[target];
         added->older_of_all = parser->attributes;
         parser->state.attributes[target] = parser->attributes = added;
@@ -47,7 +50,7 @@ ag_status pbrt_attribute_directive(pbrt_parser *parser, file_location where)
         target++;
     ag_status status =
         target < PBRT_TARGET_COUNT
-            ? add_attributes(parser, &list, (pbrt_target)target)
+            ? add_attributes(parser, &list, (pbrt_target)target, NAMES[target])
             : pbrt_error(parser, where, strlen("Attribute"),
                          "unknown target \"%s\"; known are shape, light, material, medium and texture", list.name);
     parameter_list_reset(&list);
@@ -72,6 +75,18 @@ ag_status pbrt_append_attributes(pbrt_parser *parser, parameter_list *list)
         list->count++;
     }
     return AG_OK;
+}
+
+void pbrt_warn_unused_attributes(const pbrt_parser *parser)
+{
+    for (const pbrt_attribute *a = parser->attributes; a; a = a->older_of_all) {
+        char key[160];
+        snprintf(key, sizeof key, "unused attribute:%s:%s", a->target, a->item.name);
+        if (!a->is_used)
+            log_at_once(parser->log, AG_LOG_WARNING, a->item.where, key,
+                        "Attribute \"%s\": \"%s %s\" is used by nothing that follows", a->target,
+                        parameter_type_name(a->item.type), a->item.name);
+    }
 }
 
 void pbrt_free_attributes(pbrt_parser *parser)

@@ -322,29 +322,6 @@ ag_status pbrt_read_measured(pbrt_parser *parser, parameter_list *list, material
     return parameter_get_string(list, parser->log, "filename", &ignored);
 }
 
-ag_status pbrt_read_unknown(pbrt_parser *parser, parameter_list *list, material *m)
-{
-    static const char *const COLORS[] = {"reflectance", "Kd", "color", "basecolor", "base_color"};
-    char key[96], of[64] = "a reflectance of 0.5";
-    const char *type = list->name;
-    if (strcmp(list->directive, "MakeNamedMaterial") == 0)
-        PBRT_TRY(parameter_get_string(list, parser->log, "type", &type));
-    for (size_t i = 0; i < sizeof COLORS / sizeof *COLORS; i++)
-        if (parameter_list_find(list, COLORS[i])) {
-            PBRT_TRY(pbrt_get_rgb_texture(parser, list, COLORS[i], &m->reflectance, &m->reflectance_texture));
-            snprintf(of, sizeof of, "its \"%s\"", COLORS[i]);
-            break;
-        }
-    m->reflectance = clamp_color(m->reflectance);
-    for (size_t i = 0; i < list->count; i++) /* nothing is known of the others; maps are read by the caller */
-        if (strcmp(list->items[i].name, "displacement") != 0 && strcmp(list->items[i].name, "normalmap") != 0)
-            list->items[i].looked_up = true;
-    snprintf(key, sizeof key, "material:%s", type);
-    log_at_once(parser->log, AG_LOG_WARNING, list->where, key,
-                "material \"%s\" is not known: \"diffuse\" with %s stands in", type, of);
-    return AG_OK;
-}
-
 /* What tilts the shading normal, of all kinds alike. */
 
 static ag_status read_normal_map(pbrt_parser *parser, parameter_list *list, material *m)

@@ -52,16 +52,17 @@ static const material_reader READERS[] = {
     {"subsurface", MATERIAL_COATED_DIFFUSE, pbrt_read_subsurface},
     {"measured", MATERIAL_DIFFUSE, pbrt_read_measured},
 };
-static const material_reader UNKNOWN = {"", MATERIAL_DIFFUSE, pbrt_read_unknown};
 
 static ag_status read_material(pbrt_parser *parser, parameter_list *list, const char *type, material *out_material)
 {
-    const material_reader *reader = &UNKNOWN;
+    const material_reader *reader = NULL;
     *out_material = material_make(MATERIAL_DIFFUSE);
     PBRT_TRY(pbrt_upgrade_material(parser, list, &type));
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(type, READERS[i].name) == 0)
             reader = &READERS[i];
+    if (!reader)
+        return pbrt_error(parser, list->where, strlen(list->directive), "unknown material \"%s\"", type);
     *out_material = material_make(reader->kind);
     PBRT_TRY(reader->read(parser, list, out_material));
     if (reader->kind != MATERIAL_MIX && reader->kind != MATERIAL_INTERFACE) /* mixes have those of the two they mix */

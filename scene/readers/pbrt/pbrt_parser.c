@@ -227,6 +227,8 @@ ag_status pbrt_parse_file(run_context *run, const char *path, scene *out_scene)
     ag_status status = pbrt_push_file(parser, path, (file_location){NULL, 0, 0}, 0);
     if (!status)
         status = parse(parser);
+    if (!status)
+        pbrt_warn_unused_attributes(parser);
     parser_destroy(parser);
     return status;
 }
@@ -239,6 +241,8 @@ ag_status pbrt_parse_text(run_context *run, const char *name, const char *text, 
     ag_status status = pbrt_push_text(parser, name, text, size);
     if (!status)
         status = parse(parser);
+    if (!status)
+        pbrt_warn_unused_attributes(parser);
     parser_destroy(parser);
     return status;
 }

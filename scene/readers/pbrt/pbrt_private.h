@@ -73,6 +73,8 @@ typedef struct pbrt_attribute {
     parameter item;
     struct pbrt_attribute *older;        /* of the same target, in force with it */
     struct pbrt_attribute *older_of_all; /* for the owner */
+    bool is_used;                        /* by any directive that followed */
+    const char *target;                  /* "shape", ... */
 } pbrt_attribute;
 
 /* AreaLightSource: what the shapes that follow emit. */
@@ -264,6 +266,8 @@ ag_status pbrt_add_string(parameter_list *list, const char *name, parameter_type
 pbrt_handler pbrt_attribute_directive;
 /* Adds those in force for the list's directive, less those that it says itself. Errors: AG_ERROR_MEMORY. */
 ag_status pbrt_append_attributes(pbrt_parser *parser, parameter_list *list);
+/* Tells, at the end, of each that no directive has used. */
+void pbrt_warn_unused_attributes(const pbrt_parser *parser);
 void pbrt_free_attributes(pbrt_parser *parser);
 
 /* pbrt_options.c */
@@ -329,7 +333,7 @@ ag_status pbrt_check_named_media(pbrt_parser *parser);
 typedef ag_status pbrt_material_reader(pbrt_parser *parser, parameter_list *list, material *m);
 pbrt_material_reader pbrt_read_diffuse, pbrt_read_diffuse_transmission, pbrt_read_conductor, pbrt_read_dielectric,
     pbrt_read_thin_dielectric, pbrt_read_coated_diffuse, pbrt_read_coated_conductor, pbrt_read_hair,
-    pbrt_read_subsurface, pbrt_read_measured, pbrt_read_unknown, pbrt_read_principled /* pbrt_principled.c */;
+    pbrt_read_subsurface, pbrt_read_measured, pbrt_read_principled /* pbrt_principled.c */;
 /* "displacement" and "normalmap", of all kinds but mixes. */
 pbrt_material_reader pbrt_read_maps;
 
