@@ -5,6 +5,7 @@
 #include "film/adaptive.h"
 #include "film/debug_views.h"
 #include "floating_point.h"
+#include "integrator/direct_pilot.h"
 #include "odd_scene.h"
 #include "output/photon_dump.h"
 #include "rays/passage.h"
@@ -113,6 +114,9 @@ static ag_status settle_settings(ag_context *context, const scene *s, const ag_r
     }
     if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
         out_settings->photon_aim = out_settings->photon_map_file ? 0.0f : AG_DEFAULT_PHOTON_AIM;
+    if (out_settings->direct_guiding == AG_DIRECT_GUIDING_AUTOMATIC)
+        out_settings->direct_guiding =
+            out_settings->integrator == AG_INTEGRATOR_PATH ? 0.0f : AG_DEFAULT_DIRECT_GUIDING;
     if (s->has_camera)
         return render_settings_check(context, out_settings);
     log_message(context->log, AG_LOG_ERROR, "the scene has no Camera");
@@ -227,6 +231,23 @@ static ag_status check_map(ag_rendering *r, ag_status status)
     return AG_ERROR_SYSTEM;
 }
 
+/* Learns where shadow rays find light, where that is wanted and there is a choice. */
+static ag_status guide_direct_light(ag_rendering *r)
+{
+    ag_context *context = r->context;
+    phase_begin begin = context_begin_phase();
+    uint64_t rays;
+    ag_status status = direct_pilot_learn(&r->t, &context->run, &r->direct_guide, &rays);
+    if (status != AG_OK || r->direct_guide.cell_count == 0)
+        return status;
+    r->t.direct_guide = &r->direct_guide;
+    context->statistics.rays_shadow += rays;
+    r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
+    log_message(context->log, AG_LOG_INFO, "direct light is guided: %u cells, by %llu shadow rays",
+                r->direct_guide.cell_count, (unsigned long long)rays);
+    return AG_OK;
+}
+
 static ag_status prepare(ag_rendering *r)
 {
     ag_context *context = r->context;
@@ -238,6 +259,9 @@ static ag_status prepare(ag_rendering *r)
     if (status != AG_OK)
         return status;
     r->t = make_transport(context, r->s, &r->settings, &r->film->layout, &r->maps);
+    status = guide_direct_light(r);
+    if (status != AG_OK)
+        return status;
     r->workers = eye_workers_create(&r->t, context->statistics.threads);
     return r->workers ? AG_OK : AG_ERROR_MEMORY;
 }
@@ -335,6 +359,7 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
         ag_film_destroy(r->film);
     eye_workers_destroy(r->workers, r->context->statistics.threads);
     maps_reset(&r->maps);
+    direct_guide_reset(&r->direct_guide);
     free(r->map_name);
     free(r->kept);
     free(r);

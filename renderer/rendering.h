@@ -5,6 +5,7 @@
 
 #include "context.h"
 #include "incident_light.h"
+#include "integrator/direct_guide.h"
 #include "integrator/transport.h"
 #include "photon_file.h"
 
@@ -20,6 +21,7 @@ struct ag_rendering {
     scene *s;            /* borrowed; parameters are marked as looked up, nothing else changes */
     ag_render_settings settings;
     maps maps;
+    direct_guide direct_guide;
     transport t;
     eye_worker *workers;
     ag_film *film;

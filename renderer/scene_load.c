@@ -30,13 +30,23 @@ static ag_status copy_definitions(ag_context *context, const ag_definition *give
     return out_definitions->items ? AG_OK : AG_ERROR_MEMORY;
 }
 
-ag_scene_settings ag_default_scene_settings(void) { return (ag_scene_settings){0}; }
+ag_scene_settings ag_default_scene_settings(void)
+{
+    return (ag_scene_settings){.camera_up = {0.0f, 1.0f, 0.0f}, .camera_fov_degrees = 45.0f};
+}
+
+static vec3 vec3_of(const float v[3]) { return vec3_make(v[0], v[1], v[2]); }
 
 static ag_status make_request(const ag_scene_settings *settings, scene_request *out_request)
 {
     if ((unsigned)settings->gltf_light_units > AG_GLTF_LIGHT_UNITS_RAW)
         return AG_ERROR_ARGUMENT;
-    *out_request = (scene_request){.gltf_light_units = (gltf_light_units)settings->gltf_light_units};
+    *out_request = (scene_request){.gltf_light_units = (gltf_light_units)settings->gltf_light_units,
+                                   .has_camera = settings->has_camera,
+                                   .camera_from = vec3_of(settings->camera_from),
+                                   .camera_to = vec3_of(settings->camera_to),
+                                   .camera_up = vec3_of(settings->camera_up),
+                                   .fov_degrees = settings->camera_fov_degrees};
     return AG_OK;
 }
 

@@ -246,6 +246,27 @@ static const setting_row ROWS[] = {
      .noun = "aim of photons",
      .json = "settings.photon_aim",
      .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER | SETTING_OF_PHOTONS},
+    {.text = {.name = "direct-guiding",
+              .argument = "F",
+              .section = "Light",
+              .help =
+                  "share of the shadow rays that go to what a pilot has seen of sun, sky and lamps from there, from "
+                  "0 to 0.8 (default 0.8; with --integrator path 0)",
+              .manual =
+                  "The share of the shadow rays that go to the lights, and the parts of the sky, that a pilot has "
+                  "seen from about there, from 0 to 0.8; 0.8 is the default, and 0 with *--integrator path*. The "
+                  "others go to all alike: the light is the same; noise is less where it comes through windows. "
+                  "The pilot looks at the whole frame, so that crops, tiles and other sizes of one shape go by "
+                  "the same. Scenes without a sun or a sky have nothing to be guided."},
+     FIELD(direct_guiding),
+     .kind = SETTING_NUMBER,
+     .initial = AG_DIRECT_GUIDING_AUTOMATIC,
+     .most = AG_DEFAULT_DIRECT_GUIDING,
+     .has_automatic = true,
+     .automatic = AG_DIRECT_GUIDING_AUTOMATIC,
+     .noun = "guiding of direct light",
+     .json = "settings.direct_guiding",
+     .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER},
     {.text = {.name = "aov",
               .argument = "LIST",
               .section = "Output",

@@ -3,6 +3,10 @@
 #ifndef AFTERGLOW_SCENE_REQUEST_H
 #define AFTERGLOW_SCENE_REQUEST_H
 
+#include "math/vec3.h"
+
+#include <stdbool.h>
+
 /* What the numbers of lamps in a glTF file are, beside those of emissive surfaces; names as in Blender's exporter. */
 typedef enum gltf_light_units {
     GLTF_LIGHTS_BY_GENERATOR, /* what its asset.generator is known to write */
@@ -14,6 +18,9 @@ typedef enum gltf_light_units {
 /* All zero: nothing is asked for. */
 typedef struct scene_request {
     gltf_light_units gltf_light_units;
+    bool has_camera; /* in the place of the file's */
+    vec3 camera_from, camera_to, camera_up;
+    float fov_degrees; /* across the shorter image axis, (0, 180) */
 } scene_request;
 
 #endif

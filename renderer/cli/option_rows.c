@@ -6,6 +6,7 @@
 #include "option_values.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,6 +50,38 @@ static bool take_gltf_light_units(const char *value, options *o)
     bool is_valid = parse_word(value, WORDS("auto", "standard", "unitless", "raw"), &word);
     o->asked.gltf_light_units = (ag_gltf_light_units)word;
     return is_valid;
+}
+
+static bool take_vector(const char *value, float out_vector[3])
+{
+    int end = 0;
+    return sscanf(value, "%f,%f,%f%n", &out_vector[0], &out_vector[1], &out_vector[2], &end) == 3 &&
+           value[end] == '\0' && isfinite(out_vector[0]) && isfinite(out_vector[1]) && isfinite(out_vector[2]);
+}
+
+static bool take_camera_from(const char *value, options *o)
+{
+    o->asked.has_camera = o->has_camera_from = true;
+    return take_vector(value, o->asked.camera_from);
+}
+
+static bool take_camera_to(const char *value, options *o)
+{
+    o->has_camera_to = true;
+    return take_vector(value, o->asked.camera_to);
+}
+
+static bool take_camera_up(const char *value, options *o)
+{
+    o->has_camera_detail = true;
+    return take_vector(value, o->asked.camera_up);
+}
+
+static bool take_fov(const char *value, options *o)
+{
+    o->has_camera_detail = true;
+    return parse_float(value, &o->asked.camera_fov_degrees) && o->asked.camera_fov_degrees > 0.0f &&
+           o->asked.camera_fov_degrees < 180.0f;
 }
 
 static bool take_type(const char *value, options *o)
@@ -260,6 +293,34 @@ static const option_row ROWS[] = {
                         "Scenes in other formats than pbrt's text have no such names."},
      .letter = 'D',
      .take = take_definition},
+    {.text =
+         {.name = "camera-from",
+          .argument = "X,Y,Z",
+          .section = "Scene",
+          .help = "where a camera stands that takes the place of the file's; world space",
+          .manual =
+              "Where a camera stands that takes the place of the file's, in world space; it is a pinhole that looks to *--camera-to*."},
+     .take = take_camera_from},
+    {.text = {.name = "camera-to",
+              .argument = "X,Y,Z",
+              .section = "Scene",
+              .help = "what that camera looks at",
+              .manual = "What the camera of *--camera-from* looks at; the two go together."},
+     .take = take_camera_to},
+    {.text = {.name = "camera-up",
+              .argument = "X,Y,Z",
+              .section = "Scene",
+              .help = "what is up for it (default: 0,1,0)",
+              .manual = "What is up for the camera of *--camera-from*. Default: 0,1,0."},
+     .take = take_camera_up},
+    {.text =
+         {.name = "fov",
+          .argument = "DEGREES",
+          .section = "Scene",
+          .help = "its field of view across the shorter side (default: 45)",
+          .manual =
+              "The field of view of the camera of *--camera-from*, across the shorter side of the picture. Default: 45."},
+     .take = take_fov},
     {.text = {.name = "gltf-light-units",
               .argument = "UNITS",
               .section = "Scene",

@@ -44,6 +44,16 @@ static char *join_arguments(int argc, char **argv)
     return joined;
 }
 
+/* A camera is asked for by its place and what it looks at. */
+static bool has_half_a_camera(const options *o)
+{
+    const int parts = o->has_camera_from + o->has_camera_to;
+    if (parts == 2 || (parts == 0 && !o->has_camera_detail))
+        return false;
+    fprintf(stderr, "afterglow: a camera is asked for by --camera-from and --camera-to together\n");
+    return true;
+}
+
 /* What is asked for must be for one of the files, where they are known. */
 static bool has_idle_picture_option(const options *o)
 {
@@ -161,7 +171,8 @@ static options_result take_options(int argc, char **argv, options *o)
 
 options_result options_parse(int argc, char **argv, options *out_options)
 {
-    options o = {.context = ag_default_context_settings(),
+    options o = {.asked = ag_default_scene_settings(),
+                 .context = ag_default_context_settings(),
                  .output = ag_default_output_settings(),
                  .render = ag_default_render_settings()};
     o.outfiles = calloc((size_t)argc + 1, sizeof *o.outfiles);
@@ -184,7 +195,8 @@ options_result options_parse(int argc, char **argv, options *out_options)
     }
     if (result == OPTIONS_RUN && o.frames.count > 1 && has_frames_in_one_file(&o))
         result = OPTIONS_EXIT_USAGE;
-    if (result == OPTIONS_RUN && (has_idle_picture_option(&o) || has_picture_of_photons_only(&o)))
+    if (result == OPTIONS_RUN &&
+        (has_half_a_camera(&o) || has_idle_picture_option(&o) || has_picture_of_photons_only(&o)))
         result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
         fprintf(stderr, "Try 'afterglow --help'.\n");

@@ -10,6 +10,44 @@ vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes)
     return bsdf_scatters_through(&v->scattering, lobes) ? vec3_make(0.0f, 0.0f, 0.0f) : transport_facing_normal(v);
 }
 
+rgb direct_light_transmittance(const transport *t, eye_worker *worker, const surface_hit *hit, scene_ray arrived,
+                               const light_sample *sample)
+{
+    scene_ray shadow = surface_ray(hit, arrived, sample->direction);
+    float reach = INFINITY;
+    if (!isinf(sample->distance)) {
+        shadow.direction = vec3_sub(sample->shadow_target, shadow.origin);
+        reach = 1.0f;
+    }
+    worker->rays_shadow++;
+    return t->panes_are_direct ? passage_transmittance_of_panes(t->s, shadow, reach, &worker->passages_cut)
+                               : passage_transmittance(t->s, shadow, reach, &worker->passages_cut);
+}
+
+/* The lamp for a place, the numbers that sample it, and the factor by which its own density is multiplied. */
+static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pick, vec2 *in_out_u, float *out_factor)
+{
+    const direct_guide *guide = t->direct_guide;
+    uint32_t cell = direct_guide_find(guide, from, normal);
+    if (cell == DIRECT_GUIDE_NO_CELL)
+        return scene_pick_light(t->s, from, normal, u_pick, out_factor);
+    uint32_t lamp = direct_guide_pick(guide, t->s, cell, from, normal, u_pick, out_factor);
+    if (*out_factor > 0.0f)
+        *out_factor *= direct_guide_warp(guide, t->s, cell, lamp, in_out_u);
+    return lamp;
+}
+
+/* That factor of a direction, which infinite lights alone ask for. */
+static float lamp_factor(const transport *t, vec3 from, vec3 normal, uint32_t lamp, vec3 direction)
+{
+    const direct_guide *guide = t->direct_guide;
+    uint32_t cell = direct_guide_find(guide, from, normal);
+    if (cell == DIRECT_GUIDE_NO_CELL)
+        return scene_light_probability(t->s, lamp, from, normal);
+    return direct_guide_probability(guide, t->s, cell, lamp, from, normal) *
+           direct_guide_density(guide, t->s, cell, lamp, direction);
+}
+
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
                                     float u_pick, vec2 u, int lamp_count, int scatter_count)
 {
@@ -17,23 +55,15 @@ lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, cons
     if (!t->has_lights)
         return none;
     float probability;
-    uint32_t lamp = scene_pick_light(t->s, v->hit.position, direct_light_normal(v, lobes), u_pick, &probability);
     light_sample sample;
+    uint32_t lamp = pick_lamp(t, v->hit.position, direct_light_normal(v, lobes), u_pick, &u, &probability);
     if (!(probability > 0.0f) || !light_sample_from_point(t->s, &t->s->lights[lamp], v->hit.position, u, &sample))
         return none;
     rgb reflected = rgb_mul(bsdf_evaluate(&v->scattering, lobes, BSDF_RADIANCE, sample.direction), sample.radiance);
     if (rgb_is_black(reflected))
         return none;
 
-    scene_ray shadow = surface_ray(&v->hit, v->arrived, sample.direction);
-    float reach = INFINITY;
-    if (!isinf(sample.distance)) {
-        shadow.direction = vec3_sub(sample.shadow_target, shadow.origin);
-        reach = 1.0f;
-    }
-    worker->rays_shadow++;
-    rgb transmittance = t->panes_are_direct ? passage_transmittance_of_panes(t->s, shadow, reach, &worker->passages_cut)
-                                            : passage_transmittance(t->s, shadow, reach, &worker->passages_cut);
+    rgb transmittance = direct_light_transmittance(t, worker, &v->hit, v->arrived, &sample);
     if (rgb_is_black(transmittance))
         return none;
     float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
@@ -59,8 +89,9 @@ static void add_to_group(rgb *by_group, const light *lamp, rgb light_brought)
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
                                   float pdf_solid_angle, int lamp_count, int scatter_count)
 {
-    float pick = scene_light_probability(t->s, (uint32_t)(on_lamp->lamp - t->s->lights), from, normal);
-    float pdf = pick * light_pdf_from_point(t->s, on_lamp->lamp, from, &on_lamp->hit);
+    uint32_t lamp = (uint32_t)(on_lamp->lamp - t->s->lights);
+    float pdf = lamp_factor(t, from, normal, lamp, on_lamp->arrived.direction) *
+                light_pdf_from_point(t->s, on_lamp->lamp, from, &on_lamp->hit);
     return mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count, pdf);
 }
 
@@ -78,7 +109,7 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
         float weight = 1.0f;
         if (pdf_solid_angle > 0.0f)
             weight = mis_power((float)scatter_count, pdf_solid_angle, (float)lamp_count,
-                               scene_light_probability(s, index, from, normal) * environment_pdf(l, from, direction));
+                               lamp_factor(t, from, normal, index, direction) * environment_pdf(l, from, direction));
         sum = rgb_add(sum, rgb_scale(radiance, weight));
         add_to_group(by_group, l, rgb_scale(radiance, weight));
     }

@@ -10,6 +10,10 @@
 /* What picking a lamp for these lobes knows of how the surface lies: see scene_pick_light. */
 vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes);
 
+/* The share of a sample's light that reaches the place that `arrived` has met. */
+rgb direct_light_transmittance(const transport *t, eye_worker *worker, const surface_hit *hit, scene_ray arrived,
+                               const light_sample *sample);
+
 /* One sample towards a lamp picked for the place: reflected radiance. lamp_count and scatter_count: how many samples
  * the caller takes of either technique; it divides by lamp_count itself. scatter_count 0: this technique alone. */
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,

@@ -1,6 +1,7 @@
 /* eye_pilot.c: see eye_pilot.h. */
 #include "integrator/eye_pilot.h"
 
+#include "integrator/direct_lighting.h"
 #include "integrator/gather_path.h"
 #include "integrator/shading.h"
 #include "parallel_for.h"
@@ -12,6 +13,8 @@
 /* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each place that they see.
  */
 enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHER_RAYS = 8, GRID_MAX = 4096 };
+/* Those that look for places that are lit. */
+enum { LIT_PATHS = 12288 };
 /* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
@@ -36,14 +39,37 @@ static void add_place(place_list *list, vec3 position, vec3 normal)
     list->places[list->count++] = (asked_place){position, normal};
 }
 
+typedef struct lit_list {
+    lit_place *places; /* owned */
+    uint32_t count, capacity;
+    bool out_of_memory;
+} lit_list;
+
+static void add_lit(lit_list *list, const vertex *v, bsdf_lobes lobes)
+{
+    if (list->count == list->capacity) {
+        uint32_t capacity = list->capacity ? 2 * list->capacity : 256;
+        lit_place *larger = realloc(list->places, capacity * sizeof *larger);
+        if (!larger) {
+            list->out_of_memory = true;
+            return;
+        }
+        list->places = larger;
+        list->capacity = capacity;
+    }
+    list->places[list->count++] = (lit_place){v->hit, v->arrived, direct_light_normal(v, lobes)};
+}
+
 typedef struct row_places {
     place_list gathered, seen;
+    lit_list lit;
 } row_places;
 
 typedef struct pilot_job {
     transport t;
     int width, height; /* of the grid */
     float aspect;
+    bool finds_lit;   /* places of direct light, and nothing else */
     row_places *rows; /* [height] */
 } pilot_job;
 
@@ -96,7 +122,9 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
             return;
         throughput = rgb_mul(throughput, v.transmittance);
         bool is_last = scatterings >= t->settings->max_depth, goes_straight;
-        if (!is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
+        if (job->finds_lit && !is_last && bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL)) {
+            add_lit(&out->lit, &v, bsdf_has(&v.scattering, BSDF_GATHERED) ? BSDF_GATHERED : BSDF_TRACED);
+        } else if (!job->finds_lit && !is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
             if (path_vertex > 0 && rgb_max(throughput) < SHADING_LOW_CONTRIBUTION) {
                 add_sides(t, &v, &out->gathered);
             } else {
@@ -123,10 +151,8 @@ static void look_along_rows(void *user, uint64_t begin, uint64_t end, uint64_t b
 }
 
 /* Cells about as wide as high. */
-static void divide_frame(uint64_t photon_count, float aspect, int *out_width, int *out_height)
+static void divide_frame(int paths, float aspect, int *out_width, int *out_height)
 {
-    uint64_t wanted = photon_count / PHOTONS_PER_PATH;
-    int paths = wanted < EYE_PATHS_MIN ? EYE_PATHS_MIN : wanted > EYE_PATHS_MAX ? EYE_PATHS_MAX : (int)wanted;
     float width = sqrtf((float)paths * aspect);
     *out_width = (int)fminf(fmaxf(width + 0.5f, 1.0f), (float)GRID_MAX);
     int height = paths / *out_width;
@@ -155,27 +181,42 @@ static ag_status merge(const row_places *rows, int row_count, bool is_seen, plac
     return status;
 }
 
+/* The rows are to be freed by free_rows, on failure too. */
+static ag_status look_over_frame(pilot_job *job, run_context *run, int paths, const ag_render_settings *settings)
+{
+    job->t.panes_are_direct = job->t.s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT;
+    job->t.settings = settings;
+    job->aspect = (float)settings->width / (float)settings->height;
+    divide_frame(paths, job->aspect, &job->width, &job->height);
+    job->rows = calloc((size_t)job->height, sizeof *job->rows);
+    if (!job->rows)
+        return AG_ERROR_MEMORY;
+    return parallel_for(run, (uint64_t)job->height, 1, look_along_rows, job, AG_PHASE_PHOTONS, 0.0, 0.0);
+}
+
+static void free_rows(pilot_job *job)
+{
+    for (int i = 0; job->rows && i < job->height; i++) {
+        free(job->rows[i].gathered.places);
+        free(job->rows[i].seen.places);
+        free(job->rows[i].lit.places);
+    }
+    free(job->rows);
+}
+
 ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot)
 {
     *out_pilot = (eye_pilot){0};
-    bool panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT;
-    pilot_job job = {.t = {.s = s, .run = run, .settings = settings, .panes_are_direct = panes_are_direct}};
-    job.aspect = (float)settings->width / (float)settings->height;
-    divide_frame(settings->photon_count, job.aspect, &job.width, &job.height);
-    job.rows = calloc((size_t)job.height, sizeof *job.rows);
-    if (!job.rows)
-        return AG_ERROR_MEMORY;
+    uint64_t wanted = settings->photon_count / PHOTONS_PER_PATH;
+    int paths = wanted < EYE_PATHS_MIN ? EYE_PATHS_MIN : wanted > EYE_PATHS_MAX ? EYE_PATHS_MAX : (int)wanted;
+    pilot_job job = {.t = {.s = s, .run = run}};
     eye_pilot made = {0};
-    ag_status status = parallel_for(run, (uint64_t)job.height, 1, look_along_rows, &job, AG_PHASE_PHOTONS, 0.0, 0.0);
+    ag_status status = look_over_frame(&job, run, paths, settings);
     if (status == AG_OK)
         status = merge(job.rows, job.height, false, &made.gathered);
     if (status == AG_OK)
         status = merge(job.rows, job.height, true, &made.seen);
-    for (int i = 0; i < job.height; i++) {
-        free(job.rows[i].gathered.places);
-        free(job.rows[i].seen.places);
-    }
-    free(job.rows);
+    free_rows(&job);
     if (status == AG_OK)
         *out_pilot = made;
     else
@@ -187,4 +228,29 @@ void eye_pilot_reset(eye_pilot *pilot)
 {
     place_importance_reset(&pilot->gathered);
     place_importance_reset(&pilot->seen);
+}
+
+ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_settings *settings,
+                             lit_place **out_places, uint32_t *out_count)
+{
+    pilot_job job = {.t = {.s = s, .run = run}, .finds_lit = true};
+    lit_place *all = NULL;
+    uint32_t count = 0;
+    ag_status status = look_over_frame(&job, run, LIT_PATHS, settings);
+    for (int i = 0; status == AG_OK && i < job.height; i++) {
+        count += job.rows[i].lit.count;
+        status = job.rows[i].lit.out_of_memory ? AG_ERROR_MEMORY : AG_OK;
+    }
+    if (status == AG_OK && !(all = malloc((count + 1) * sizeof *all)))
+        status = AG_ERROR_MEMORY;
+    *out_places = all;
+    *out_count = 0;
+    for (int i = 0; status == AG_OK && i < job.height; i++) {
+        const lit_list *list = &job.rows[i].lit;
+        if (list->count > 0)
+            memcpy(all + *out_count, list->places, list->count * sizeof *all);
+        *out_count += list->count;
+    }
+    free_rows(&job);
+    return status;
 }

@@ -9,6 +9,7 @@
 
 #include "afterglow/afterglow.h"
 #include "place_importance.h"
+#include "rays/rays.h"
 #include "scene.h"
 
 typedef struct eye_pilot {
@@ -20,5 +21,17 @@ typedef struct eye_pilot {
  * AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot);
 void eye_pilot_reset(eye_pilot *pilot);
+
+/* A place where the picture will ask for direct light. */
+typedef struct lit_place {
+    surface_hit hit;
+    scene_ray arrived;
+    vec3 normal; /* direct_light_normal there */
+} lit_place;
+
+/* Reads of the settings: width over height, depth, light through panes, seed. Errors: AG_ERROR_MEMORY, AG_CANCELLED.
+ * out_places: to be freed by the caller, on success. */
+ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_settings *settings,
+                             lit_place **out_places, uint32_t *out_count);
 
 #endif

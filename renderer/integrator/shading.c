@@ -9,8 +9,8 @@
 enum { ROULETTE_AFTER = 4 };
 
 /* What the first glossy place sends on goes several ways at once: the diffuse places there share the gather rays, and
- * many directions say more of the light than many rays behind one. */
-enum { BRANCHES_MAX = 8 };
+ * many directions say more of the light than many rays behind one. Smooth glass has two ways at each of its faces. */
+enum { BRANCHES_MAX = 8, SMOOTH_BRANCHES_MAX = 4 };
 
 static const float SQRT_2 = 1.41421356f;
 
@@ -191,10 +191,10 @@ static void add_direct_traced(const transport *t, eye_worker *worker, const eye_
 /* Into how many branches, a power of two as bits, the path is split at the first place that it is traced on from. */
 static uint32_t branch_bits(const transport *t, const eye_path *path, const vertex *v)
 {
-    if (path->scatterings > 0 || !bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED) ||
-        transport_is_open_pane(t, v))
+    if (path->scatterings > 0 || transport_is_open_pane(t, v) || !bsdf_has_many_ways(&v->scattering, BSDF_TRACED))
         return 0;
-    int most = t->settings->gather_samples < BRANCHES_MAX ? t->settings->gather_samples : BRANCHES_MAX;
+    int most = bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED) ? BRANCHES_MAX : SMOOTH_BRANCHES_MAX;
+    most = t->settings->gather_samples < most ? t->settings->gather_samples : most;
     return nearest_bits((float)most * bsdf_probability(&v->scattering, BSDF_TRACED));
 }
 

@@ -9,16 +9,18 @@
 #include "arena.h"
 #include "film/aov.h"
 #include "incident_light.h"
+#include "integrator/direct_guide.h"
 #include "integrator/gather_batch.h"
 #include "integrator/sampler.h"
 #include "material/bsdf.h"
 
 typedef struct transport {
     const scene *s;
-    const run_context *run;         /* whether to stop */
-    const photon_map *caustic;      /* may be empty */
-    irradiance_cache *cache;        /* over the global map; NULL for path tracing */
-    const incident_light *incident; /* likewise, what guides gathers; NULL: nothing */
+    const run_context *run;           /* whether to stop */
+    const photon_map *caustic;        /* may be empty */
+    irradiance_cache *cache;          /* over the global map; NULL for path tracing */
+    const incident_light *incident;   /* likewise, what guides gathers; NULL: nothing */
+    const direct_guide *direct_guide; /* what guides shadow rays; NULL: nothing */
     const ag_render_settings *settings;
     const aov_layout *layout;  /* what the film wants beside radiance */
     bool wants_layers;         /* of each sample: more than its radiance */

@@ -83,15 +83,41 @@ static uint32_t cell_of(double place, uint32_t count)
     return cell >= count ? count - 1 : cell > 0.0 ? (uint32_t)cell : 0;
 }
 
+static void find_pixel(const environment *e, vec3 direction, double *x, double *y, uint32_t *out_x, uint32_t *out_y)
+{
+    if (e->mapping == ENVIRONMENT_OCTAHEDRAL)
+        octahedral_place(direction, x, y);
+    else
+        spherical_place(direction, x, y);
+    *out_x = cell_of(*x, e->width);
+    *out_y = cell_of(*y, e->height);
+}
+
 void environment_pixel_at(const environment *e, vec3 direction, uint32_t *out_x, uint32_t *out_y)
 {
     double x, y;
-    if (e->mapping == ENVIRONMENT_OCTAHEDRAL)
-        octahedral_place(direction, &x, &y);
-    else
-        spherical_place(direction, &x, &y);
-    *out_x = cell_of(x, e->width);
-    *out_y = cell_of(y, e->height);
+    find_pixel(e, direction, &x, &y, out_x, out_y);
+}
+
+void environment_place_at(const environment *e, vec3 direction, uint32_t *out_x, uint32_t *out_y, vec2 *out_within)
+{
+    double x, y;
+    find_pixel(e, direction, &x, &y, out_x, out_y);
+    double down = y * e->height - *out_y;
+    if (e->mapping == ENVIRONMENT_LATITUDE_LONGITUDE) {
+        /* rows of the lower half from the bottom up, as in spherical_direction */
+        bool is_low = 2 * *out_y >= e->height;
+        uint32_t row = is_low ? e->height - 1 - *out_y : *out_y;
+        double h0 = row_sine_squared(row, e->height), h1 = row_sine_squared(row + 1, e->height);
+        double cx = direction.x, cy = direction.y, cz = fabs((double)direction.z), across2 = cx * cx + cy * cy;
+        bool is_near = (direction.z < 0.0f) == is_low;
+        double h = is_near ? 0.5 * across2 / (1.0 + cz) : 0.5 * (1.0 + cz);
+        down = (h - h0) / (h1 - h0);
+        down = is_low ? 1.0 - down : down;
+    }
+    double right = x * e->width - *out_x;
+    *out_within =
+        (vec2){fminf(fmaxf((float)right, 0.0f), 0x1.fffffep-1f), fminf(fmaxf((float)down, 0.0f), 0x1.fffffep-1f)};
 }
 
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within)
@@ -183,6 +209,21 @@ bool environment_sample_whole(const light *l, vec2 u, vec3 *out_direction, rgb *
     *out_radiance = rgb_mul(factor_of(l), e->pixels[(size_t)pick.y * e->width + pick.x]);
     *out_pdf_solid_angle = pixel_pdf(e, pick.probability, pick.y);
     return true;
+}
+
+bool environment_sample_whole_numbers(const light *l, vec3 direction, vec2 *out_u)
+{
+    const environment *e = l->environment;
+    if (!e) {
+        *out_u = (vec2){fminf(fmaxf(0.5f - 0.5f * direction.z, 0.0f), 0x1.fffffep-1f),
+                        fminf((float)angle_turns(direction.y, direction.x), 0x1.fffffep-1f)};
+        return true;
+    }
+    uint32_t x, y;
+    vec2 within;
+    environment_place_at(e, frame_to_local(&l->world_from_light, direction), &x, &y, &within);
+    *out_u = distribution_2d_numbers(&e->picks, x, y, within);
+    return distribution_2d_probability(&e->picks, x, y) > 0.0f;
 }
 
 rgb environment_integral(const light *l)

@@ -35,8 +35,9 @@ void environment_destroy(environment *e); /* NULL is fine */
 vec3 environment_octahedral_direction(double x, double y);
 /* The solid angle of each pixel of a row, sr. */
 double environment_pixel_solid_angle(const environment *e, uint32_t y);
-/* The pixel that a unit direction of the light's space falls into. */
+/* The pixel that a unit direction of the light's space falls into; and environment_direction's place within it. */
 void environment_pixel_at(const environment *e, vec3 direction, uint32_t *out_x, uint32_t *out_y);
+void environment_place_at(const environment *e, vec3 direction, uint32_t *out_x, uint32_t *out_y, vec2 *out_within);
 /* A direction in the light's space, even in solid angle over each pixel for places within it in [0,1]^2. */
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within);
 
@@ -55,6 +56,9 @@ bool environment_sample(const light *l, vec3 point, vec2 u, vec3 *out_direction,
 rgb environment_whole_radiance(const light *l, vec3 direction);
 bool environment_sample_whole(const light *l, vec2 u, vec3 *out_direction, rgb *out_radiance,
                               float *out_pdf_solid_angle);
+/* The numbers for which environment_sample_whole picks the direction, up to rounding, in [0,1)^2. false where it never
+ * does. */
+bool environment_sample_whole_numbers(const light *l, vec3 direction, vec2 *out_u);
 /* Over the sphere of directions, W/m^2. */
 rgb environment_integral(const light *l);
 

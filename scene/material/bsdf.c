@@ -170,6 +170,20 @@ bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
     return false;
 }
 
+bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)
+{
+    for (int i = 0; i < b->lobe_count; i++) {
+        const bsdf_lobe *lobe = &b->lobes[i];
+        if (!(lobe->group & lobes) || !(lobe->probability > 0.0f))
+            continue;
+        bool is_two_ways = lobe->kind == LOBE_DIELECTRIC || lobe->kind == LOBE_THIN_DIELECTRIC ||
+                           (lobe->kind == LOBE_PRINCIPLED && principled_transmits(&b->matter));
+        if (!lobe->is_delta || is_two_ways) /* all others are mirrors, and of the same normal */
+            return true;
+    }
+    return false;
+}
+
 bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
 {
     for (int i = 0; i < b->lobe_count; i++) {

@@ -91,6 +91,9 @@ rgb bsdf_straight_transmittance(const bsdf *b);
 /* Whether light can find these lobes by sampling a lamp: they are not all perfectly smooth. */
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);
 
+/* Whether samples of these lobes may leave in different directions, and not all in that of one mirror. */
+bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes);
+
 /* Whether any of these that a lamp can find scatter light that comes from behind the surface, as `out` sees it. */
 bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes);
 

@@ -57,6 +57,8 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
 {
     vec3 low, high;
     double axes[3][3], center[3] = {0.0, 0.0, 0.0}, half[3] = {1.0, 1.0, 1.0}, m[4][4] = {{0.0}};
+    if (s->request && s->request->has_camera)
+        return AG_OK; /* scene_file sets the one that is asked for */
     default_axes(axes);
     ag_status status = scene_find_bounds(s, NULL, &low, &high);
     if (status)

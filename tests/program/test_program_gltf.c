@@ -133,6 +133,30 @@ static void lamp_units(void **state)
         }
 }
 
+/* A camera of the command line's in the place of the file's, which looks away: the wall at its left alone shines. */
+static void camera_of_the_command_line(void **state)
+{
+    (void)state;
+    const char *scene = write_scene(
+        "{" GLTF_ASSET CUBE "'materials': [{'emissiveFactor': [1, 1, 1]}],"
+        "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}, 'indices': 3, 'material': 0}]}],"
+        "'cameras': [{'type': 'orthographic', 'orthographic': {'xmag': 0.02, 'ymag': 0.02, 'zfar': 9, 'znear': 0}}],"
+        "'nodes': [{'mesh': 0}, {'camera': 0}]}");
+    picture p = RENDER(scene, "--integrator=path", "--size=8x8", "--spp=16");
+    expect_near("away", picture_mean(&p, 0) + 1.0, 1.0, 1e-6);
+    picture_reset(&p);
+    p = RENDER(scene, "--integrator=path", "--size=8x8", "--spp=16", "--camera-from=0.5,0,0", "--camera-to=-1,0,0",
+               "--fov=30");
+    expect_uniform("towards", &p, 1.0, 1e-6, 8, 1e-6);
+    picture_reset(&p);
+    /* along -z with the wall on the left: the left half of a view of 90 degrees from the wall's far end */
+    p = RENDER(scene, "--integrator=path", "--size=8x8", "--spp=16", "--camera-from=0,0,1", "--camera-to=0,0,0",
+               "--fov=89");
+    assert_true(picture_block(&p, 0, 0, 4, 0) + picture_block(&p, 0, 4, 4, 0) > 0.5);
+    assert_true(picture_block(&p, 4, 0, 4, 0) + picture_block(&p, 4, 4, 4, 0) < 1e-6);
+    picture_reset(&p);
+}
+
 /* A wall that shines with 1, seen through a block that does not refract, two metres thick where half of the red and a
  * quarter of the green are left. */
 static void volume(void **state)
@@ -249,13 +273,10 @@ static void errors_end_the_program(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(furnace),
-        TEST_IN_FOLDER(point_lamp),
-        TEST_IN_FOLDER(lamp_units),
-        TEST_IN_FOLDER(volume),
-        TEST_IN_FOLDER(room_by_both_integrators),
-        TEST_IN_FOLDER(picture_size),
-        TEST_IN_FOLDER(errors_end_the_program),
+        TEST_IN_FOLDER(furnace),      TEST_IN_FOLDER(point_lamp),
+        TEST_IN_FOLDER(lamp_units),   TEST_IN_FOLDER(camera_of_the_command_line),
+        TEST_IN_FOLDER(volume),       TEST_IN_FOLDER(room_by_both_integrators),
+        TEST_IN_FOLDER(picture_size), TEST_IN_FOLDER(errors_end_the_program),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

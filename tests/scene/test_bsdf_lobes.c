@@ -238,6 +238,7 @@ static void a_lacquered_mirror_obeys_the_series(void **state)
         vec3 out = direction_at(degrees, 60.0);
         bsdf b = flat(&m, out);
         assert_false(bsdf_is_sampled_from_light(&b, BSDF_ALL));
+        assert_false(bsdf_has_many_ways(&b, BSDF_ALL));
         /* red of the conductor at the refracted angle, with complex numbers avoided by its own smooth lobe */
         double sine = sin(degrees * PI / 180.0) / 1.5, inside = asin(sine) * 180.0 / PI;
         material metal = conductor(0.0f, 0.0f);

@@ -99,6 +99,12 @@ typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
     size_t definition_count;              /* default 0 */
     ag_gltf_light_units gltf_light_units; /* default AG_GLTF_LIGHT_UNITS_AUTO */
+    /* A perspective camera in the place of the file's; its exposure and shutter stay. World space, as the file has it:
+     * handed as pbrt is, or as models are. Directions from and to each other, and up, must not be parallel. */
+    bool has_camera; /* default false */
+    float camera_from[3], camera_to[3];
+    float camera_up[3];       /* default 0 1 0 */
+    float camera_fov_degrees; /* across the shorter image axis, (0, 180); default 45 */
 } ag_scene_settings;
 
 AG_API ag_scene_settings ag_default_scene_settings(void);
@@ -236,14 +242,21 @@ typedef struct ag_render_settings {
                                   rays that goes where light comes from, where photons are many; the rest goes by the
                                   cosine. 0: all. Less noise or more, the same light. Default
                                   AG_DEFAULT_GATHER_GUIDING */
-    float photon_aim; /* share of the photon paths that begin where a pilot has found that they bring light to where
-                         this picture asks for it, [0, 0.8]: the others begin by power alone, so that no photon is more
-                         than five times as bright as without. The same light, with less noise in this picture and more
-                         in others; the pilot depends on the whole frame's view and shape, and on nothing else of the
-                         picture. Default AG_PHOTON_AIM_AUTOMATIC: AG_DEFAULT_PHOTON_AIM, but 0 for a photon_map_file,
-                         which serves all views alike; one that is aimed is refused for another view */
-    uint32_t layers;  /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
-    bool denoise;     /* ag_film_denoise will be asked for: the film keeps what it needs */
+    float photon_aim;     /* share of the photon paths that begin where a pilot has found that they bring light to where
+                             this picture asks for it, [0, 0.8]: the others begin by power alone, so that no photon is more
+                             than five times as bright as without. The same light, with less noise in this picture and more
+                             in others; the pilot depends on the whole frame's view and shape, and on nothing else of the
+                             picture. Default AG_PHOTON_AIM_AUTOMATIC: AG_DEFAULT_PHOTON_AIM, but 0 for a photon_map_file,
+                             which serves all views alike; one that is aimed is refused for another view */
+    float direct_guiding; /* share of the samples of direct light that go to the lights, and the parts of the sky, that
+                             a pilot has seen from about there, [0, 0.8]: the others go to all alike, so that none
+                             counts more than five times as much as if all did. The same light, with less noise where it
+                             comes through windows; the pilot depends on the whole frame's view and shape, on depth,
+                             light through panes and seed, and on nothing else of the picture. Scenes without a distant
+                             or infinite light have none. Default AG_DIRECT_GUIDING_AUTOMATIC:
+                             AG_DEFAULT_DIRECT_GUIDING, but 0 for AG_INTEGRATOR_PATH, which others are held against */
+    uint32_t layers;      /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
+    bool denoise;         /* ag_film_denoise will be asked for: the film keeps what it needs */
     bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */
     float clamp_direct; /* no component of what a sample gets from a lamp by way of at most one surface is above it; 0:
                            unbounded, the default */
@@ -300,6 +313,8 @@ AG_API ag_status ag_render_settings_set(ag_render_settings *settings, const char
 #define AG_DEFAULT_GATHER_GUIDING        0.5f
 #define AG_DEFAULT_PHOTON_AIM            0.8f
 #define AG_PHOTON_AIM_AUTOMATIC          (-1.0f)
+#define AG_DEFAULT_DIRECT_GUIDING        0.8f
+#define AG_DIRECT_GUIDING_AUTOMATIC      (-1.0f)
 
 typedef struct ag_film ag_film;
 

@@ -1,0 +1,235 @@
+/* direct_pilot.c: see direct_pilot.h. */
+#include "integrator/direct_pilot.h"
+
+#include "integrator/direct_lighting.h"
+#include "integrator/eye_pilot.h"
+#include "light/environment.h"
+#include "light/light_tree.h"
+#include "parallel_for.h"
+
+#include <stdlib.h>
+
+/* First so many rays for each of 8 by 8 parts of the square: where most of those above the horizon see the sky, there
+ * is nothing else to be found. Then one for each bin. Lamps: rays for each place. */
+enum { COARSE_SIDE = 8, COARSE_RAYS = 2, FINE = DIRECT_GUIDE_SIDE / COARSE_SIDE, LAMP_RAYS = 2 };
+static const float OPEN_SKY = 0.6f;
+static const uint64_t PILOT_SEED = 0x646972656374u;
+
+typedef struct learning {
+    const transport *t;
+    direct_guide *guide;
+    const lit_place *places;
+    const uint32_t *order;
+    uint64_t *rays; /* [cell_count]; UINT64_MAX: out of memory */
+} learning;
+
+static float mean(rgb c) { return (c.r + c.g + c.b) * (1.0f / 3.0f); }
+
+static float cosine_at(const lit_place *place, vec3 direction)
+{
+    bool has_normal = place->normal.x != 0.0f || place->normal.y != 0.0f || place->normal.z != 0.0f;
+    return has_normal ? fmaxf(vec3_dot(place->normal, direction), 0.0f) : 1.0f;
+}
+
+/* What one sample of a light brings, over the density of its numbers. *out_possible: whether it might. */
+static float look_at(const transport *t, eye_worker *worker, const lit_place *place, uint32_t light_index, vec2 u,
+                     bool *out_possible)
+{
+    light_sample sample;
+    *out_possible = false;
+    if (!light_sample_from_point(t->s, &t->s->lights[light_index], place->hit.position, u, &sample))
+        return 0.0f;
+    float brought = cosine_at(place, sample.direction) * mean(sample.radiance) / sample.pdf_solid_angle;
+    if (!(brought > 0.0f && isfinite(brought)))
+        return 0.0f;
+    *out_possible = true;
+    return brought * mean(direct_light_transmittance(t, worker, &place->hit, place->arrived, &sample));
+}
+
+typedef struct cell_view {
+    const learning *l;
+    eye_worker worker;
+    const uint32_t *places; /* [count], of the list */
+    uint32_t count;
+    rng random;
+} cell_view;
+
+static const lit_place *place_of(const cell_view *c, uint32_t i) { return &c->l->places[c->places[i % c->count]]; }
+
+static vec2 within(cell_view *c, uint32_t x, uint32_t y, uint32_t side)
+{
+    vec2 u = rng_vec2(&c->random);
+    return (vec2){fminf(((float)x + u.x) / (float)side, 0x1.fffffep-1f),
+                  fminf(((float)y + u.y) / (float)side, 0x1.fffffep-1f)};
+}
+
+/* Root mean square over bins and their neighbours, for they are seen by one ray each, from one of many places. */
+static void blur(const float squares[DIRECT_GUIDE_SIDE][DIRECT_GUIDE_SIDE], direct_bins *out)
+{
+    for (int y = 0; y < DIRECT_GUIDE_SIDE; y++)
+        for (int x = 0; x < DIRECT_GUIDE_SIDE; x++) {
+            float sum = 0.0f, weights = 0.0f;
+            for (int dy = -1; dy <= 1; dy++)
+                for (int dx = -1; dx <= 1; dx++) {
+                    int at_x = x + dx, at_y = y + dy;
+                    if (at_x < 0 || at_y < 0 || at_x >= DIRECT_GUIDE_SIDE || at_y >= DIRECT_GUIDE_SIDE)
+                        continue;
+                    float weight = (dx == 0 ? 2.0f : 1.0f) * (dy == 0 ? 2.0f : 1.0f);
+                    sum += weight * squares[at_y][at_x];
+                    weights += weight;
+                }
+            out->of[y][x] = sqrtf(sum / weights);
+        }
+}
+
+/* An infinite light, bin by bin; gives what it brings with samples that go by the bins. */
+static float look_at_sky(cell_view *c, uint32_t light_index, direct_bins *out)
+{
+    float squares[DIRECT_GUIDE_SIDE][DIRECT_GUIDE_SIDE];
+    uint32_t possible = 0, seen = 0, number = 0;
+    for (uint32_t y = 0; y < COARSE_SIDE; y++)
+        for (uint32_t x = 0; x < COARSE_SIDE; x++) {
+            float square = 0.0f;
+            for (uint32_t i = 0; i < COARSE_RAYS; i++) {
+                bool is_possible;
+                float brought = look_at(c->l->t, &c->worker, place_of(c, number++), light_index,
+                                        within(c, x, y, COARSE_SIDE), &is_possible);
+                possible += is_possible;
+                seen += brought > 0.0f;
+                square += brought * brought / COARSE_RAYS;
+            }
+            for (uint32_t k = 0; k < FINE * FINE; k++)
+                squares[FINE * y + k / FINE][FINE * x + k % FINE] = square;
+        }
+    if ((float)seen < OPEN_SKY * (float)possible)
+        for (uint32_t y = 0; y < DIRECT_GUIDE_SIDE; y++)
+            for (uint32_t x = 0; x < DIRECT_GUIDE_SIDE; x++) {
+                bool is_possible;
+                float brought = look_at(c->l->t, &c->worker, place_of(c, number++ * 7), light_index,
+                                        within(c, x, y, DIRECT_GUIDE_SIDE), &is_possible);
+                squares[y][x] = brought * brought;
+            }
+    blur((const float(*)[DIRECT_GUIDE_SIDE])squares, out);
+    double sum = 0.0;
+    for (int y = 0; y < DIRECT_GUIDE_SIDE; y++)
+        for (int x = 0; x < DIRECT_GUIDE_SIDE; x++)
+            sum += (double)out->of[y][x];
+    return (float)(sum / (DIRECT_GUIDE_SIDE * DIRECT_GUIDE_SIDE));
+}
+
+/* Another light that is everywhere, from each place. */
+static float look_at_light(cell_view *c, uint32_t light_index)
+{
+    float square = 0.0f;
+    for (uint32_t i = 0; i < c->count; i++) {
+        bool is_possible;
+        float brought = look_at(c->l->t, &c->worker, place_of(c, i), light_index, rng_vec2(&c->random), &is_possible);
+        square += brought * brought / (float)c->count;
+    }
+    return sqrtf(square);
+}
+
+static float look_at_lamps(cell_view *c)
+{
+    const transport *t = c->l->t;
+    float square = 0.0f;
+    for (uint32_t i = 0; i < c->count * LAMP_RAYS; i++) {
+        const lit_place *place = place_of(c, i);
+        bool is_possible;
+        float probability;
+        uint32_t lamp =
+            light_tree_pick(t->s->light_tree, place->hit.position, place->normal, rng_float(&c->random), &probability);
+        vec2 u = rng_vec2(&c->random);
+        if (!(probability > 0.0f))
+            continue;
+        float brought = look_at(t, &c->worker, place, lamp, u, &is_possible) / probability;
+        square += brought * brought / (float)(c->count * LAMP_RAYS);
+    }
+    return sqrtf(square);
+}
+
+static void learn_cells(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker_index)
+{
+    (void)block;
+    learning *l = user;
+    direct_guide *g = l->guide;
+    const scene *s = l->t->s;
+    direct_bins *bins = malloc((g->histogram_count + 1) * sizeof *bins);
+    if (!bins) {
+        l->rays[begin] = UINT64_MAX;
+        return;
+    }
+    for (uint64_t cell = begin; cell < end; cell++) {
+        cell_view c = {.l = l,
+                       .worker = {.index = worker_index},
+                       .places = l->order + g->cells[cell].begin,
+                       .count = g->cells[cell].count,
+                       .random = rng_make(l->t->settings->seed ^ PILOT_SEED, 0, cell)};
+        float brought[DIRECT_GUIDE_SHARES_MAX];
+        for (uint32_t i = 0; i < g->share_count; i++) {
+            uint32_t histogram = g->histogram_of[i];
+            if (i == s->everywhere_count)
+                brought[i] = look_at_lamps(&c);
+            else if (histogram < g->histogram_count)
+                brought[i] = look_at_sky(&c, s->everywhere_lights[i], &bins[histogram]);
+            else
+                brought[i] = look_at_light(&c, s->everywhere_lights[i]);
+        }
+        direct_guide_fill(g, (uint32_t)cell, l->t->settings->direct_guiding, brought, bins);
+        l->rays[cell] = c.worker.rays_shadow;
+    }
+    free(bins);
+}
+
+/* Cells for the places, and what is seen from them. */
+static ag_status learn(learning *l, run_context *run, uint32_t count, uint64_t *out_rays)
+{
+    vec3 *positions = malloc(((size_t)count + 1) * sizeof *positions),
+         *normals = malloc(((size_t)count + 1) * sizeof *normals);
+    uint32_t *order = malloc(((size_t)count + 1) * sizeof *order);
+    ag_status status = positions && normals && order ? AG_OK : AG_ERROR_MEMORY;
+    for (uint32_t i = 0; status == AG_OK && i < count; i++) {
+        positions[i] = l->places[i].hit.position;
+        normals[i] = l->places[i].normal;
+    }
+    if (status == AG_OK)
+        status = direct_guide_create(l->t->s, positions, normals, count, order, l->guide);
+    if (status == AG_OK && !(l->rays = calloc((size_t)l->guide->cell_count + 1, sizeof *l->rays)))
+        status = AG_ERROR_MEMORY;
+    l->order = order;
+    if (status == AG_OK && l->guide->cell_count > 0)
+        status = parallel_for(run, l->guide->cell_count, 4, learn_cells, l, AG_PHASE_RENDER, 0.0, 0.0);
+    for (uint32_t i = 0; status == AG_OK && i < l->guide->cell_count; i++) {
+        if (l->rays[i] == UINT64_MAX)
+            status = AG_ERROR_MEMORY;
+        else
+            *out_rays += l->rays[i];
+    }
+    free(l->rays);
+    free(order);
+    free(positions);
+    free(normals);
+    return status;
+}
+
+ag_status direct_pilot_learn(const transport *t, run_context *run, direct_guide *out_guide, uint64_t *out_rays)
+{
+    transport unguided = *t;
+    learning l = {.t = &unguided, .guide = out_guide};
+    lit_place *places;
+    uint32_t count;
+    unguided.direct_guide = NULL;
+    *out_guide = (direct_guide){0};
+    *out_rays = 0;
+    if (!(t->settings->direct_guiding > 0.0f) || !direct_guide_serves(t->s))
+        return AG_OK;
+    ag_status status = eye_pilot_find_lit(t->s, run, t->settings, &places, &count);
+    if (status != AG_OK)
+        return status;
+    l.places = places;
+    status = learn(&l, run, count, out_rays);
+    free(places);
+    if (status != AG_OK)
+        direct_guide_reset(out_guide);
+    return status;
+}
