@@ -25,9 +25,18 @@ typedef struct advice {
     const char *where, *help;
 } advice;
 
+static const char MORE_SAMPLES[] = "more samples (--spp) help most";
+
+static const char *find_windows_help(const struct ag_rendering *r)
+{
+    if (!has_open_sky(r->s))
+        return MORE_SAMPLES;
+    return r->settings.direct_guiding > 0.0f ? "a \"portal\" of the infinite light at each window helps most"
+                                             : "guided shadow rays (--direct-guiding) help most";
+}
+
 static advice advise(const struct ag_rendering *r, ag_noise_source source, const noise_summary *noise)
 {
-    static const char MORE_SAMPLES[] = "more samples (--spp) help most";
     bool is_path = r->settings.integrator == AG_INTEGRATOR_PATH;
     switch (source) {
     case AG_NOISE_EMISSION: return (advice){"at the edges of lamps and of the sky", MORE_SAMPLES};
@@ -35,9 +44,7 @@ static advice advise(const struct ag_rendering *r, ag_noise_source source, const
     case AG_NOISE_SKY:
         if (noise->sky_seen >= FEW_WINDOWS)
             return (advice){"in direct light from the sky", MORE_SAMPLES};
-        return (advice){"in direct light from the sky, which comes in by few windows",
-                        has_open_sky(r->s) ? "a \"portal\" of the infinite light at each window helps most"
-                                           : MORE_SAMPLES};
+        return (advice){"in direct light from the sky, which comes in by few windows", find_windows_help(r)};
     case AG_NOISE_INDIRECT:
         return (advice){"in indirect light", is_path ? "--integrator photonmap helps most"
                                                      : "more gather rays (--gather-samples) help most"};

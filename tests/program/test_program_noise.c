@@ -54,8 +54,10 @@ static void test_sky(void **state)
     (void)state;
     const char *open = "LightSource \"infinite\" \"rgb L\" [1 1 1]";
     const char *scene = SCENE_WITH("window_room.pbrt", "THE_LIGHTS", open, "Include \"block.pbrt\"", "");
+    EXPECT_HINT(scene, "which comes in by few windows", "guided shadow rays (--direct-guiding)", "--spp=16",
+                "--gather-samples=64", "--direct-guiding=0");
     EXPECT_HINT(scene, "which comes in by few windows", "a \"portal\" of the infinite light", "--spp=16",
-                "--gather-samples=64");
+                "--gather-samples=64", "--direct-guiding=0.05");
     scene = SCENE_WITH("window_room.pbrt", "THE_LIGHTS",
                        "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
                        "\"point3 portal\" [1 -0.5 0.6  1 0.5 0.6  1 0.5 1.6  1 -0.5 1.6]",
