@@ -55,7 +55,7 @@ static void test_table(void **state)
 static void expect_layout(uint32_t layers, aov_needs also, bool is_path, int group_count)
 {
     static const char *names[LIGHT_GROUPS_MAX] = {"default"};
-    static char spelt[LIGHT_GROUPS_MAX][8];
+    static char spelt[LIGHT_GROUPS_MAX][16];
     aov_layout layout;
     for (int i = 1; i < group_count; i++) {
         snprintf(spelt[i], sizeof spelt[i], "g%d", i);
