@@ -28,7 +28,7 @@ static bool is_alike(const surface_hit *hit, vec3 normal, vec3 arrival, float mi
     return vec3_dot(vec3_face_forward(hit->geometric_normal, vec3_negate(arrival)), normal) > min_cos;
 }
 
-/* What is the same for all rays of a search: they begin, or end, `lift` above the plane through the place. */
+/* The constants of one search. Its rays begin, or end, `lift` above the plane through the place. */
 typedef struct probe {
     const scene *s;
     vec3 above, normal; /* the place, lifted along its normal */

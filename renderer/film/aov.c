@@ -66,7 +66,8 @@ ag_status ag_layers_parse(const char *list, uint32_t *out_layers)
 
 /* --- channels --- */
 
-/* Those of the layers that are asked for. The first time through there is no place for any: they are counted. */
+/* Adds the channels of the layers that are asked for; the first time through there is no room for any, and they are
+ * counted. */
 typedef struct channel_list {
     film_channel *channels; /* [capacity], or NULL */
     int count, capacity;

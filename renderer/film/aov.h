@@ -85,7 +85,7 @@ typedef struct aov_needs {
     bool variance;          /* for adaptive sampling */
 } aov_needs;
 
-/* What ag_layers_parse calls one layer; "" where there is none. */
+/* The name of one layer, as ag_layers_parse reads it; "" where there is none. */
 const char *aov_layer_name(uint32_t layer);
 /* All layers that there are. */
 uint32_t aov_known_layers(void);

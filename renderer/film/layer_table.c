@@ -5,7 +5,7 @@
 /* One part of light. */
 #define PART(word, part)                                                                                               \
     .info.group = "light", .channels = CHANNELS({word, "RGB", CHANNEL_COLOR, .sum = SUM_PARTS, .skipped = 3 * (part)})
-/* What is known of a pixel as a whole. */
+/* Values of a pixel as a whole. */
 #define VIEW(word, view) .channels = CHANNELS({word, NULL, CHANNEL_VIEW, .component = (view), .is_exact = true})
 
 static const layer_row ROWS[] = {

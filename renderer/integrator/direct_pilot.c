@@ -31,7 +31,8 @@ static float cosine_at(const lit_place *place, vec3 direction)
     return has_normal ? fmaxf(vec3_dot(place->normal, direction), 0.0f) : 1.0f;
 }
 
-/* What one sample of a light brings, over the density of its numbers. *out_possible: whether it might. */
+/* The light that one sample of a lamp or sky brings, over the density of its numbers. *out_possible: whether it might.
+ */
 static float look_at(const transport *t, eye_worker *worker, const lit_place *place, uint32_t light_index, vec2 u,
                      bool *out_possible)
 {

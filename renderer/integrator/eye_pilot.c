@@ -13,7 +13,7 @@
 /* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each place that they see.
  */
 enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHER_RAYS = 8, GRID_MAX = 4096 };
-/* Those that look for places that are lit. */
+/* Eye paths that look for places that are lit. */
 enum { LIT_PATHS = 12288 };
 /* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;

@@ -8,8 +8,8 @@
 
 enum { ROULETTE_AFTER = 4 };
 
-/* What the first glossy place sends on goes several ways at once: the diffuse places there share the gather rays, and
- * many directions say more of the light than many rays behind one. Smooth glass has two ways at each of its faces. */
+/* A path is split at the first glossy place: the diffuse places behind it share the gather rays, and many directions
+ * say more of the light than many rays behind one. Smooth glass has two ways at each of its faces. */
 enum { BRANCHES_MAX = 8, SMOOTH_BRANCHES_MAX = 4 };
 
 static const float SQRT_2 = 1.41421356f;
@@ -49,7 +49,8 @@ static uint32_t nearest_bits(float wanted)
     return bits;
 }
 
-/* What a place on the path has of the eye's gather rays: as many of them as of the light that the eye sees. */
+/* The share of the eye's gather rays that a place on the path has: as many of them as of the light that the eye sees.
+ */
 static uint32_t gather_count(const transport *t, const eye_path *path)
 {
     uint32_t most = (uint32_t)t->settings->gather_samples;

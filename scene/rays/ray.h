@@ -9,7 +9,7 @@
 
 #define SCENE_NO_MEDIUM UINT32_MAX
 
-/* What a surface that is there in part (alpha.h) does to a ray. */
+/* How a surface that is there in part (alpha.h) meets a ray. */
 typedef enum ray_veils {
     RAY_PASSES_VEILS,     /* stops it by chance, as much as is there: light */
     RAY_MEETS_VEILS,      /* stops it wherever anything is there: the ray looks for surfaces */

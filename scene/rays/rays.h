@@ -13,7 +13,7 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
  * scene's tree. Whether and how they are put together depends on them alone. */
 enum { RAY_FAN_MAX = 64 };
 
-/* What a ray of a fan meets, as the tree says it; for ray_fan_hit. */
+/* The place that a ray of a fan meets, as the tree says it; for ray_fan_hit. */
 typedef struct ray_meeting {
     float distance; /* INFINITY: nothing */
     float u, v;

@@ -44,7 +44,7 @@ void instance_place_hit(const affine *world_from_object, struct surface_hit *in_
  * functions that read shapes. */
 struct surface_hit instance_hit_in_object(const struct scene *s, const struct surface_hit *hit);
 
-/* The same place of the surface as it stands when the shutter opens, and how its area there is to its area now (1 where
+/* A place of the surface as it stands when the shutter opens, and how its area there is to its area now (1 where
  * nothing is stretched). The hit's own place where nothing moves. */
 typedef struct surface_rest {
     vec3 position;

@@ -115,7 +115,7 @@ float shape_pdf_area(const shape *s, vec3 geometric_normal);
  * put onto the surface. direction: the ray's, of any length; read for curves alone. */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
                       surface_hit *out_hit);
-/* The same, but uv may be missing. */
+/* shape_surface_at, but uv may be missing. */
 void shape_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
                     surface_hit *out_hit);
 /* Position, geometric normal and epsilon alone, as the same have them, but for the normal's side; false: not of this

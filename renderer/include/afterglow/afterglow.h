@@ -94,7 +94,7 @@ typedef enum ag_gltf_light_units {
     AG_GLTF_LIGHT_UNITS_RAW       /* points and spots in W over the whole sphere: divided by 4 pi; suns in W/m^2 */
 } ag_gltf_light_units;
 
-/* What is asked of a scene beyond what its file says. */
+/* Settings of a scene beyond what its file says. */
 typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
     size_t definition_count;              /* default 0 */
@@ -109,7 +109,7 @@ typedef struct ag_scene_settings {
 
 AG_API ag_scene_settings ag_default_scene_settings(void);
 
-/* The same with settings; NULL: the default ones. They are needed for the time of the call alone. Errors also:
+/* ag_scene_load with settings; NULL: the default ones. They are needed for the time of the call alone. Errors also:
  * AG_ERROR_ARGUMENT (a setting is out of its range). */
 AG_API ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
                                   ag_scene **out_scene);

@@ -85,7 +85,7 @@ typedef enum import_light_kind {
     IMPORT_LIGHT_AREA
 } import_light_kind;
 
-/* What a light's colour is measured in. */
+/* The unit of a light's colour. */
 typedef enum import_light_measure {
     IMPORT_LIGHT_SHADED, /* as rasterizers have it, see below */
     IMPORT_LIGHT_WATTS   /* as Blender has it: points and spots W over the whole sphere, areas W of which pi/4 goes out,

@@ -367,7 +367,7 @@ static double full_angle(double half_angle, double blend)
     return acos(fmin(fmax(dark + (1.0 - dark) * blend, -1.0), 1.0));
 }
 
-/* What Blender means, where the file is its own. */
+/* Restores the lamp that Blender meant, in a file of its own. */
 static void restore_blenders(writer *w, const struct aiLight *l, matrix world, import_light *out)
 {
     const struct aiVector3D up_of_fbx = {0, 0, 1}, up_of_collada = {0, 1, 0}, down = {0, -1, 0}, back = {0, 0, -1};
