@@ -91,7 +91,7 @@ static void lights_are_picked_as_they_say(void **state)
 static void expect_density(scene *s, const direct_guide *g, const direct_bins *seen)
 {
     light *sky = &s->lights[1];
-    double counts[PARTS][PARTS] = {{0}}, masses[PARTS][PARTS] = {{0}}, whole = 0.0, seen_sum = 0.0;
+    double counts[PARTS][PARTS] = {{0}}, masses[PARTS][PARTS] = {{0}}, whole = 0.0, squares = 0.0, seen_sum = 0.0;
     rng random = test_random(3);
     uint32_t elsewhere = 0, taken = 0;
     float least = 1e9f;
@@ -116,6 +116,7 @@ static void expect_density(scene *s, const direct_guide *g, const direct_bins *s
             float there = direct_guide_density(g, s, 0, 1, direction);
             masses[(int)(even.y * PARTS)][(int)(even.x * PARTS)] += (double)there;
             whole += (double)there / SAMPLES;
+            squares += (double)there * (double)there;
             least = fminf(least, there);
             double learned = (double)seen->of[(int)(even.y * 32.0f)][(int)(even.x * 32.0f)] / seen_sum;
             double floor_of = (0.2 / 3.0) / (0.2 / 3.0 + 0.4);
@@ -126,7 +127,9 @@ static void expect_density(scene *s, const direct_guide *g, const direct_bins *s
     }
     assert_int_equal(taken, SAMPLES);
     assert_true(elsewhere < SAMPLES / 2000 + 3);
-    assert_close(whole, 1.0, 0.02 * WIDER);
+    double sigma = sqrt((squares / SAMPLES - whole * whole) / SAMPLES);
+    assert_close(whole, 1.0, 4.0 * sigma);
+    assert_true(sigma < 0.01 * WIDER);
     assert_true(least > 0.95f * (0.2f / 3.0f) / (0.2f / 3.0f + 0.4f));
     double chi_square = 0.0;
     for (int y = 0; y < PARTS; y++)
