@@ -142,7 +142,7 @@ static bool find_guide(const transport *t, const vertex *v, incident_guide *out_
 }
 
 void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
-                  bool is_first, int scatterings_left, uint32_t count, rgb throughput)
+                  bool is_first, int scatterings_left, uint32_t count, rgb throughput, float share)
 {
     rgb one_ray = rgb_scale(throughput, 1.0f / (float)count);
     gathering g = {t, worker, v, where, path_vertex, scatterings_left - 1, count, rgb_max(one_ray), rgb_gray(0.0f)};
@@ -151,7 +151,7 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
         final_gather_resolve(t, worker);
     if (run_is_cancelled(t->run)) /* the batch is full still, and the sample thrown away */
         return;
-    gather_batch_begin(batch, worker->sample, is_first, one_ray,
+    gather_batch_begin(batch, worker->sample, is_first, one_ray, share,
                        hash_combine(hash_combine(where->key, (uint64_t)path_vertex), where->sample));
     sampler_sequence numbers = sampler_sequence_make(where, SAMPLE_GATHER, path_vertex, count);
     bool is_plain = bsdf_is_plain(&v->scattering);

@@ -11,9 +11,10 @@
  * the radiance, from this place, of light that met at least two surfaces before the eye, the last but one of them
  * diffuse. path_vertex: which of its path's, for random numbers; is_first: the eye sees it, but for panes, directly.
  * scatterings_left: how many there may be between here and the lamp, this one included; >= 2. Those of the photons
- * themselves are bounded where they are traced. */
+ * themselves are bounded where they are traced. share: of the camera sample, (0, 1], which the throughput contains;
+ * what is brought is bounded by so much of what bounds a sample. */
 void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
-                  bool is_first, int scatterings_left, uint32_t count, rgb throughput);
+                  bool is_first, int scatterings_left, uint32_t count, rgb throughput, float share);
 
 /* Gets all irradiance that the worker's gather rays ask for, follows the light of those that get none, and adds the
  * gathers that are over to their samples. Nothing is right any more once the run is cancelled. */

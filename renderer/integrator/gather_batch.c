@@ -25,10 +25,10 @@ void gather_batch_reset(gather_batch *b)
 
 void gather_batch_destroy(gather_batch *b) { free(b); }
 
-void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, uint64_t key)
+void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, float share, uint64_t key)
 {
-    b->gathers[b->gather_count++] =
-        (gather){.throughput = throughput, .sample = sample, .is_first = is_first, .key = key};
+    b->gathers[b->gather_count++] = (gather){
+        .throughput = throughput, .most = b->most_indirect * share, .sample = sample, .is_first = is_first, .key = key};
     b->is_open = true;
 }
 
@@ -87,7 +87,7 @@ void gather_batch_sum(gather_batch *b)
         gathered_light *sum = &b->gathered[g->sample];
         rgb brought = rgb_mul(g->throughput, rgb_add(g->known, g->read)),
             *to = g->is_first ? &sum->first : &sum->behind;
-        *to = rgb_add(*to, rgb_scale(brought, eye_bound(b->most_indirect, brought)));
+        *to = rgb_add(*to, rgb_scale(brought, eye_bound(g->most, brought)));
     }
     if (b->is_open)
         b->gathers[0] = b->gathers[over];

@@ -26,6 +26,7 @@ typedef struct gather_end {
 typedef struct gather {
     rgb throughput;     /* from the place to the eye, over the number of rays */
     rgb known, read;    /* radiance, W/m^2/sr: brought by short rays' own bounces, and what was read from the cache */
+    float most;         /* of a component of what it brings the eye; INFINITY: no bound */
     uint32_t sample;    /* of those under way */
     uint32_t query_end; /* its queries go up to here, from where the last gather's end */
     bool is_first;      /* the place is what the eye sees */
@@ -56,7 +57,7 @@ typedef struct gathered_light {
 typedef struct gather_batch {
     uint32_t query_count, gather_count;
     bool is_open;        /* the last gather still sends rays */
-    float most_indirect; /* of a component of what a gather brings the eye; INFINITY: no bound */
+    float most_indirect; /* of a component of what gathers bring the eye in one sample; INFINITY: no bound */
     irradiance_query queries[IRRADIANCE_BATCH_MAX];
     rgb weights[IRRADIANCE_BATCH_MAX];    /* of the irradiance, 1/sr */
     rgb irradiance[IRRADIANCE_BATCH_MAX]; /* W/m^2 */
@@ -82,7 +83,7 @@ static inline bool gather_batch_has_room(const gather_batch *b, uint32_t query_c
 }
 
 /* Begins a gather, in a batch that has room, and ends it: known is the sum of what its rays brought themselves. */
-void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, uint64_t key);
+void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, float share, uint64_t key);
 void gather_batch_end(gather_batch *b, rgb known);
 
 /* Asks for the irradiance at an end, for the open gather, in a batch that has room. number: of the ray. */

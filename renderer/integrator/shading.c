@@ -97,7 +97,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
                                               sampler_2d(&path->where, SAMPLE_ROULETTE, key).y);
     if (scatterings_left >= 2)
         final_gather(t, worker, v, &path->where, key, path->scatterings == 0, scatterings_left, rays,
-                     rgb_scale(throughput, path->share));
+                     rgb_scale(throughput, path->share), path->share);
     return sum;
 }
 
@@ -228,14 +228,19 @@ static void follow_branches(const transport *t, eye_worker *worker, const eye_pa
                             uint32_t bits, eye_sample *sample)
 {
     int count = 1 << bits;
+    float share = 1.0f / (float)count, most_direct = sample->most_direct, most_indirect = sample->most_indirect;
+    sample->most_direct *= share; /* together they bring no more than one would */
+    sample->most_indirect *= share;
     for (int i = 0; i < count; i++) {
         eye_path branch = *path;
         branch.where = sampler_branch(&path->where, bits, (uint32_t)i);
         branch.vertex_key = KEY_OF_BRANCHES * (int)bits;
-        branch.share = 1.0f / (float)count;
+        branch.share = share;
         if (go_on(t, v, false, count, &branch))
             follow(t, worker, branch, sample);
     }
+    sample->most_direct = most_direct;
+    sample->most_indirect = most_indirect;
 }
 
 static void follow(const transport *t, eye_worker *worker, eye_path path, eye_sample *sample)

@@ -102,6 +102,8 @@ static const float CAUSTIC_SHARE_MAX = 0.25f;
 
 rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float share_seen, float u)
 {
+    if (t->settings->clamp_indirect > 0.0f)
+        return transport_caustics(t, worker, v); /* a bound would cut what chance has made brighter */
     float probability = fminf(share_seen / CAUSTIC_SHARE_MAX, 1.0f);
     return u < probability ? rgb_scale(transport_caustics(t, worker, v), 1.0f / probability) : rgb_gray(0.0f);
 }

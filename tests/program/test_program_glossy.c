@@ -46,11 +46,27 @@ static void test_noise(void **state)
     expect_less_noise(PROGRAM_SCENES "glass_ball_room.pbrt", "--gather-samples=4", 1.4); /* 1.2 */
 }
 
+/* A path that is split brings no more than one that is not: a shadow ray, reflected lamps, and from the diffuse places
+ * that are reflected direct light, caustics and gathered light, each at most the bound. */
+static void test_bounds(void **state)
+{
+    (void)state;
+    picture p = RENDER(PROGRAM_SCENES "metal_plate.pbrt", "--photons=1e5", "--spp=1", "--gather-samples=8",
+                       "--clamp-direct=0.01", "--clamp-indirect=0.01");
+    float most = 0.0f;
+    for (int k = 0; k < 3 * p.width * p.height; k++)
+        most = fmaxf(most, p.pixels[k]);
+    print_message("at most %g\n", (double)most);
+    assert_true(most > 0.01f && most < 5.0f * 0.01f * 1.001f);
+    picture_reset(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_agreement),
         TEST_IN_FOLDER(test_noise),
+        TEST_IN_FOLDER(test_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
