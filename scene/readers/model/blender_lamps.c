@@ -61,8 +61,9 @@ static bool take_library_line(library *l, const char *line)
             return false;
         l->items = larger;
         l->items[l->count] = (extra){.type = -1};
-        if (get_attribute(line, " id=", l->items[l->count].id, sizeof l->items->id))
-            l->count++;
+        if (!get_attribute(line, " id=", l->items[l->count].id, sizeof l->items->id))
+            l->items[l->count].id[0] = '\0'; /* nobody names it, but what follows is of it */
+        l->count++;
         return true;
     }
     extra *last = l->count > 0 ? &l->items[l->count - 1] : NULL;
