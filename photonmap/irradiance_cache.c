@@ -218,10 +218,9 @@ static bool answer_by_word(irradiance_cache *cache, const irradiance_query *quer
     const photon_map *map = cache->map;
     uint32_t value = word & IRRADIANCE_VALUE_MASK;
     bool holds = value != PHOTON_NO_IRRADIANCE;
-    if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces) {
-        cache->counters[worker_index].rays++;
-        holds = !photon_map_is_behind_wall(map, map->bearers.blocks, query->position, query->normal, bearer);
-    }
+    if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces)
+        holds = !photon_map_is_behind_wall(map, map->bearers.blocks, query->position, query->normal, bearer,
+                                           &cache->counters[worker_index].rays);
     *out_irradiance = holds ? photon_map_decode_irradiance(cache->map, value) : rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;

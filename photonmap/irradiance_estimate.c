@@ -29,14 +29,14 @@ static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t coun
  * place. */
 static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uint32_t index, uint64_t *in_out_rays)
 {
-    ++*in_out_rays;
     vec3 at = photon_block_position(map->blocks, index);
     float height = vec3_dot(vec3_sub(at, disc->position), disc->normal);
     if (height > 0.0f)
-        return !photon_map_is_behind_wall(map, map->blocks, disc->position, disc->normal, index);
+        return !photon_map_is_behind_wall(map, map->blocks, disc->position, disc->normal, index, in_out_rays);
     /* what is straight above a low one must be open */
     scene_ray up =
         scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->level), vec3_scale(disc->normal, -height));
+    ++*in_out_rays;
     return !passage_is_blocked(map->surfaces, up, 1.0f);
 }
 

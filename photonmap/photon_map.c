@@ -156,8 +156,9 @@ uint64_t photon_map_bytes(const photon_map *map)
 uint32_t photon_map_scratch_count(const photon_map *map) { return photon_neighbors_capacity(map->nearest + 1); }
 
 bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
-                               uint32_t index)
+                               uint32_t index, uint64_t *in_out_rays)
 {
+    ++*in_out_rays;
     vec3 at = photon_block_position(blocks, index), its_normal = direction_decode(photon_block_normal(blocks, index));
     /* and over what a curved surface bulges between the two: on a sphere an eighth of the angle */
     float share = 1.0f / 32.0f + 0.125f * sqrtf(vec3_distance_squared(normal, its_normal));
@@ -188,8 +189,8 @@ static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint
     float height = vec3_dot(vec3_sub(photon_block_position(map->bearers.blocks, found), position), normal);
     if (distance_squared <= far * far && height * height <= LEVEL_SLOPE * LEVEL_SLOPE * distance_squared)
         return found;
-    ++*in_out_rays;
-    return photon_map_is_behind_wall(map, map->bearers.blocks, position, normal, found) ? PHOTON_HIDDEN : found;
+    return photon_map_is_behind_wall(map, map->bearers.blocks, position, normal, found, in_out_rays) ? PHOTON_HIDDEN
+                                                                                                     : found;
 }
 
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, uint64_t *in_out_rays)

@@ -66,9 +66,10 @@ uint32_t photon_map_scratch_count(const photon_map *map);
 #define PHOTON_ESTIMATE_MIN_COS 0.5f
 #define PHOTON_NEAREST_MIN_COS  0.9f
 
-/* Whether something stands between a place, with its normal, and a photon of the blocks. */
+/* Whether something stands between a place, with its normal, and a photon of the blocks: by one ray, which is added to
+ * *in_out_rays. */
 bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
-                               uint32_t index);
+                               uint32_t index, uint64_t *in_out_rays);
 
 /* A bearer farther than this from a place must be in sight to stand for it, scene units: in a dark room the nearest
  * bearer is the bright next room's. Of evenly spread photons 1 in 7 is so far, and what still leaks through a partition

@@ -58,8 +58,8 @@ size_t settings_of_picture(const ag_render_settings *settings, unsigned char *ou
 /* The noun of the first value that differs between two such; NULL: none does. */
 const char *settings_of_picture_difference(const unsigned char *one, const unsigned char *other);
 
-/* What a kept photon map depends on, a line "NOUN: VALUE" for each setting, ended by a NUL. Returns its length; out is
- * whole where that is below size. */
+/* The settings that a kept photon map depends on, a line "NOUN: VALUE" for each setting, ended by a NUL. Returns its
+ * length; out is whole where that is below size. */
 size_t settings_of_photon_map(const ag_render_settings *settings, char *out, size_t size);
 
 #endif

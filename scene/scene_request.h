@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-/* What the numbers of lamps in a glTF file are, beside those of emissive surfaces; names as in Blender's exporter. */
+/* The units of lamps in a glTF file, beside those of emissive surfaces; names as in Blender's exporter. */
 typedef enum gltf_light_units {
     GLTF_LIGHTS_BY_GENERATOR, /* what its asset.generator is known to write */
     GLTF_LIGHTS_STANDARD,     /* cd and lx at 683 lm/W, beside emission in W/m^2/sr */

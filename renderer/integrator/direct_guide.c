@@ -172,12 +172,12 @@ void direct_guide_fill(direct_guide *g, uint32_t cell, float share, const float 
     float *shares = g->shares + (size_t)cell * g->share_count;
     for (uint32_t i = 0; i < g->share_count; i++)
         total += (double)brought[i];
-    for (uint32_t i = 0; i < g->share_count && !isfinite(total); i++)
-        shares[i] = 0.0f; /* of light so strong that its square is none: not guided */
-    for (uint32_t i = 0; i < g->share_count && isfinite(total); i++) {
-        double learned = total > 0.0 ? (double)share * (double)brought[i] / total : 0.0;
+    if (!(total > 0.0 && isfinite(total)))
+        return;
+    for (uint32_t i = 0; i < g->share_count; i++) {
+        double learned = (double)share * (double)brought[i] / total;
         uint32_t histogram = g->histogram_of[i];
-        shares[i] = total > 0.0 ? (float)(equal + learned) : 0.0f;
+        shares[i] = (float)(equal + learned);
         if (histogram < g->histogram_count)
             fill_histogram(&g->histograms[(size_t)cell * g->histogram_count + histogram], &seen[histogram],
                            equal / (equal + learned));

@@ -66,11 +66,13 @@ ag_status direct_guide_create(const scene *s, const vec3 *positions, const vec3 
                               uint32_t *out_order, direct_guide *out_guide);
 void direct_guide_reset(direct_guide *g);
 
-/* What was seen in a cell. brought: [share_count], not negative, what the shares' lights bring there; seen:
- * [histogram_count], root mean squares over the bins. share: (0, 1), of the samples that follow it. */
 typedef struct direct_bins {
     float of[DIRECT_GUIDE_SIDE][DIRECT_GUIDE_SIDE]; /* by row and column */
 } direct_bins;
+
+/* Tells a cell what was seen in it; where nothing was, or light whose sum is not finite, it stays unguided. brought:
+ * [share_count], not negative, what the shares' lights bring there; seen: [histogram_count], root mean squares over the
+ * bins. share: (0, 1), of the samples that follow it. */
 void direct_guide_fill(direct_guide *g, uint32_t cell, float share, const float *brought, const direct_bins *seen);
 
 /* The cell of a place, DIRECT_GUIDE_NO_CELL where nothing is known of it. normal: as above. g: NULL is fine. */

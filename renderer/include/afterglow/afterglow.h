@@ -84,7 +84,7 @@ typedef struct ag_definition {
 AG_API ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_definition *definitions,
                                     size_t definition_count, ag_scene **out_scene);
 
-/* What the numbers of lamps in a glTF file (KHR_lights_punctual) are, beside those of emissive surfaces. The names are
+/* The units of lamps in a glTF file (KHR_lights_punctual), beside those of emissive surfaces. The names are
  * those of the "Lighting Mode" of Blender's exporter, which does not write down which one it was. */
 typedef enum ag_gltf_light_units {
     AG_GLTF_LIGHT_UNITS_AUTO,     /* as asset.generator tells: Blender from 3.4 on standard, before that raw; others
