@@ -54,10 +54,11 @@ static inline float eye_bound(float most, rgb brought)
     return largest > most ? most / largest : 1.0f;
 }
 
-/* By what light that was scattered so many times between lamp and eye is to be multiplied: mostly 1. */
-static inline float eye_sample_bound(const eye_sample *s, int scatterings, rgb brought)
+/* By what light that was scattered so many times between lamp and eye is to be multiplied: mostly 1. share: of the
+ * sample, that its path has of a path that was split; all of them together bring no more than one would. */
+static inline float eye_sample_bound(const eye_sample *s, float share, int scatterings, rgb brought)
 {
-    return eye_bound(scatterings > 1 ? s->most_indirect : s->most_direct, brought);
+    return eye_bound(share * (scatterings > 1 ? s->most_indirect : s->most_direct), brought);
 }
 
 /* Says of light that is in the radiance which part it is. */
@@ -68,9 +69,9 @@ static inline void eye_sample_note(eye_sample *s, light_part part, rgb brought)
 }
 
 /* Adds light. Gives the factor of its bound. */
-static inline float eye_sample_add(eye_sample *s, light_part part, int scatterings, rgb brought)
+static inline float eye_sample_add(eye_sample *s, light_part part, float share, int scatterings, rgb brought)
 {
-    float factor = eye_sample_bound(s, scatterings, brought);
+    float factor = eye_sample_bound(s, share, scatterings, brought);
     if (factor < 1.0f)
         brought = rgb_scale(brought, factor);
     s->radiance = rgb_add(s->radiance, brought);

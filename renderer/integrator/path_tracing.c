@@ -51,7 +51,7 @@ static rgb gathered_share(const bsdf *b, vec3 direction)
 /* shares NULL: parts are not asked for. is_sky: an infinite light's. */
 static float add_light(eye_sample *sample, const part_shares *shares, int scatterings, rgb light_brought, bool is_sky)
 {
-    float kept = eye_sample_bound(sample, scatterings, light_brought);
+    float kept = eye_sample_bound(sample, 1.0f, scatterings, light_brought);
     if (kept < 1.0f)
         light_brought = rgb_scale(light_brought, kept);
     sample->radiance = rgb_add(sample->radiance, light_brought);

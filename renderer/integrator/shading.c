@@ -102,15 +102,18 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
 }
 
 /* by_group: the direct light's; the rest came through the photon map. */
-static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_light *diffuse, int scatterings,
-                        rgb throughput, const rgb *by_group)
+static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_light *diffuse, const eye_path *path,
+                        const rgb *by_group)
 {
+    int scatterings = path->scatterings;
     bool is_first = scatterings == 0;
+    float share = path->share;
+    rgb throughput = rgb_scale(path->throughput, share);
     rgb direct = rgb_mul(throughput, diffuse->direct), caustic = rgb_mul(throughput, diffuse->caustic),
         indirect = rgb_mul(throughput, diffuse->indirect);
-    float kept_direct = eye_sample_bound(sample, scatterings + 1, direct),
-          kept_caustic = eye_sample_bound(sample, scatterings + 2, caustic),
-          kept_indirect = eye_sample_bound(sample, scatterings + 2, indirect);
+    float kept_direct = eye_sample_bound(sample, share, scatterings + 1, direct),
+          kept_caustic = eye_sample_bound(sample, share, scatterings + 2, caustic),
+          kept_indirect = eye_sample_bound(sample, share, scatterings + 2, indirect);
     direct = rgb_scale(direct, kept_direct);
     caustic = rgb_scale(caustic, kept_caustic);
     indirect = rgb_scale(indirect, kept_indirect);
@@ -153,8 +156,8 @@ static void add_escaped(const transport *t, const eye_path *path, eye_sample *sa
     rgb weight = rgb_scale(path->throughput, path->share);
     rgb escaped = direct_light_escaped(t, path->scattered_from, path->scattered_normal, path->ray.direction,
                                        path->scattered_pdf, 1, path->scatter_count, by_group);
-    float kept = eye_sample_add(sample, path->scatterings == 0 ? PART_EMISSION : PART_SPECULAR, path->scatterings,
-                                rgb_mul(weight, escaped));
+    float kept = eye_sample_add(sample, path->scatterings == 0 ? PART_EMISSION : PART_SPECULAR, path->share,
+                                path->scatterings, rgb_mul(weight, escaped));
     eye_sample_add_groups(sample, by_group, rgb_scale(weight, kept));
 }
 
@@ -169,8 +172,8 @@ static void add_emitted(const transport *t, const eye_path *path, const vertex *
         weight *= direct_light_scatter_weight(t, path->scattered_from, path->scattered_normal, v, path->scattered_pdf,
                                               1, path->scatter_count);
     rgb seen = rgb_scale(rgb_mul(path->throughput, emitted), weight);
-    float kept =
-        eye_sample_add(sample, path->scatterings == 0 ? PART_EMISSION : PART_SPECULAR, path->scatterings, seen);
+    float kept = eye_sample_add(sample, path->scatterings == 0 ? PART_EMISSION : PART_SPECULAR, path->share,
+                                path->scatterings, seen);
     if (t->wants_groups)
         eye_sample_add_group(sample, v->lamp->group, rgb_scale(seen, kept));
 }
@@ -184,7 +187,7 @@ static void add_direct_traced(const transport *t, eye_worker *worker, const eye_
     lamp_light direct = direct_light_sample_lamp(t, worker, v, BSDF_TRACED, u_pick,
                                                  sampler_2d(&path->where, SAMPLE_LIGHT, key), 1, scatter_count);
     rgb brought = rgb_mul(rgb_scale(path->throughput, path->share), direct.radiance);
-    float kept = eye_sample_add(sample, PART_SPECULAR, path->scatterings + 1, brought);
+    float kept = eye_sample_add(sample, PART_SPECULAR, path->share, path->scatterings + 1, brought);
     if (t->wants_groups && !rgb_is_black(brought))
         eye_sample_add_group(sample, t->s->lights[direct.lamp].group, rgb_scale(brought, kept));
 }
@@ -228,19 +231,14 @@ static void follow_branches(const transport *t, eye_worker *worker, const eye_pa
                             uint32_t bits, eye_sample *sample)
 {
     int count = 1 << bits;
-    float share = 1.0f / (float)count, most_direct = sample->most_direct, most_indirect = sample->most_indirect;
-    sample->most_direct *= share; /* together they bring no more than one would */
-    sample->most_indirect *= share;
     for (int i = 0; i < count; i++) {
         eye_path branch = *path;
         branch.where = sampler_branch(&path->where, bits, (uint32_t)i);
         branch.vertex_key = KEY_OF_BRANCHES * (int)bits;
-        branch.share = share;
+        branch.share = 1.0f / (float)count;
         if (go_on(t, v, false, count, &branch))
             follow(t, worker, branch, sample);
     }
-    sample->most_direct = most_direct;
-    sample->most_indirect = most_indirect;
 }
 
 static void follow(const transport *t, eye_worker *worker, eye_path path, eye_sample *sample)
@@ -271,7 +269,7 @@ static void follow(const transport *t, eye_worker *worker, eye_path path, eye_sa
             light_group_sums groups;
             rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
             diffuse_light diffuse = diffuse_radiance(t, worker, &v, &path, by_group);
-            add_diffuse(t, sample, &diffuse, path.scatterings, rgb_scale(path.throughput, path.share), by_group);
+            add_diffuse(t, sample, &diffuse, &path, by_group);
         }
 
         /* the others are traced on */
