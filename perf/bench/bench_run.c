@@ -33,13 +33,14 @@ static void see_clock(bench_run *run)
 
 /* --- levels --- */
 
-static void describe_level(const bench_machine *machine, unsigned threads, bench_level *out)
+bench_level bench_level_describe(const bench_machine *machine, unsigned threads)
 {
-    *out = (bench_level){.threads = threads,
-                         .is_oversubscribed = threads > machine->entitled,
-                         .has_all_phases = threads == 1 || threads == machine->core_count ||
-                                           threads == machine->cpu_count || threads >= machine->entitled};
-    bench_machine_span(machine, threads, &out->cores, &out->numa_nodes);
+    bench_level l = {.threads = threads,
+                     .is_oversubscribed = threads > machine->entitled,
+                     .has_all_phases = threads == 1 || threads == machine->core_count ||
+                                       threads == machine->cpu_count || threads >= machine->entitled};
+    bench_machine_span(machine, threads, &l.cores, &l.numa_nodes);
+    return l;
 }
 
 static ag_status create_context(unsigned threads, ag_log_fn *log, ag_context **out_context)
@@ -193,7 +194,7 @@ ag_status bench_run_measure(bench_machine *machine, bench_size size, const unsig
     m = (measuring){.run = out_run, .work = bench_work_of(size), .progress = progress};
     out_run->turns = m.work->turns;
     for (unsigned i = 0; i < level_count; i++)
-        describe_level(&out_run->machine, levels[i], &out_run->levels[i]);
+        out_run->levels[i] = bench_level_describe(&out_run->machine, levels[i]);
     double begin = clock_seconds();
     m.counters = bench_counters_open();
     unsigned arithmetic = floating_point_enter();

@@ -52,6 +52,9 @@ typedef struct bench_run {
     char isa[16];                           /* of ray traversal */
 } bench_run;
 
+/* A level before anything is measured on it. */
+bench_level bench_level_describe(const bench_machine *machine, unsigned threads);
+
 /* Takes the machine. levels: numbers of threads, ascending, the first one 1. progress, which may be NULL, is told what
  * is being done. Errors: those of the work; AG_ERROR_SYSTEM (threads cannot be started). */
 ag_status bench_run_measure(bench_machine *machine, bench_size size, const unsigned *levels, unsigned level_count,
