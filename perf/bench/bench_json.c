@@ -191,32 +191,33 @@ json_t *bench_json(const bench_run *run, const bench_build *build, const certifi
                      parts_json(run));
 }
 
+/* "215 on 8", or "215 (210 to 220) on 8"; "-" where there is none. */
 static void describe_score(const json_t *score, char *out, size_t size)
 {
     const json_t *whole = json_object_get(score, "whole");
     double median = json_number_value(json_object_get(whole, "median"));
-    if (!whole)
-        snprintf(out, size, "-");
-    else if (json_is_true(json_object_get(score, "steady")))
-        snprintf(out, size, "%.0f", median);
-    else
-        snprintf(out, size, "%.0f (%.0f to %.0f)", median, json_number_value(json_object_get(whole, "least")),
+    char interval[48] = "";
+    if (!json_is_true(json_object_get(score, "steady")))
+        snprintf(interval, sizeof interval, " (%.0f to %.0f)", json_number_value(json_object_get(whole, "least")),
                  json_number_value(json_object_get(whole, "most")));
+    if (whole)
+        snprintf(out, size, "%.0f%s on %d", median, interval,
+                 (int)json_integer_value(json_object_get(score, "threads")));
+    else
+        snprintf(out, size, "-");
 }
 
 void bench_line(const json_t *result, char *out_line, size_t size)
 {
-    char one[64], best[64];
+    char one[96], best[96];
     const json_t *machine = json_object_get(result, "machine"), *c = json_object_get(result, "certificate");
-    const json_t *score = json_object_get(result, "score_best");
     describe_score(json_object_get(result, "score_one"), one, sizeof one);
-    describe_score(score, best, sizeof best);
-    snprintf(out_line, size, "| %s | %d cores, %d threads | %s | %s | %s on %d | %s, %.8s |",
+    describe_score(json_object_get(result, "score_best"), best, sizeof best);
+    snprintf(out_line, size, "| %s | %d cores, %d threads | %s | %s | %s | %s, %.8s |",
              json_string_value(json_object_get(machine, "cpu")),
              (int)json_integer_value(json_object_get(machine, "cores")),
              (int)json_integer_value(json_object_get(machine, "threads")),
              json_string_value(json_object_get(result, "size")), one, best,
-             (int)json_integer_value(json_object_get(score, "threads")),
              json_is_true(json_object_get(c, "valid")) ? "valid" : "NOT VALID",
              json_string_value(json_object_get(c, "hash")));
 }

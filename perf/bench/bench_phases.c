@@ -188,7 +188,7 @@ static ag_status cast_all(bench_stage *stage, ag_context *context, bench_outcome
     hash128_add(&out->hash, stage->distances, stage->work->rays * sizeof *stage->distances);
     out->amount = stage->work->rays;
     out->count = met;
-    out->expected = stage->query_count; /* which were met when they were looked at whole */
+    out->expected = stage->met_count;
     out->is_sound = met > 0;
     return status;
 }

@@ -51,7 +51,7 @@ const bench_work *bench_work_of(bench_size size)
                          .turns = 5,
                          .turn_s = 0.5},
         [BENCH_LARGE] = {.photons = 1000000,
-                         .rays = 4000000,
+                         .rays = 2000000,
                          .frame_side = 200,
                          .gather_rays = 64,
                          .shading_side = 640,
@@ -154,8 +154,6 @@ static void write_interior(FILE *file)
                   "WorldBegin\n"
                   "LightSource \"distant\" \"point3 from\" [9 6 1] \"point3 to\" [0 0 3] \"rgb L\" [40 36 30]\n"
                   "LightSource \"infinite\" \"rgb L\" [1.2 1.5 2]\n");
-    diffuse(file, 0.3, 0.34, 0.24);
-    wall(file, 1, -0.1, -30.0, 30.0, -30.0, 30.0); /* ground */
     diffuse(file, 0.42, 0.3, 0.2);
     wall(file, 1, 0.0, 0.0, DEPTH, 0.0, WIDTH);
     diffuse(file, 0.8, 0.8, 0.78);

@@ -74,24 +74,38 @@ static ag_status make_map(bench_stage *stage, ag_context *context)
     return status;
 }
 
-/* Rays go where light comes from on its way to a photon's place; irradiance is asked for where they end, as a final
- * gather does. */
-static void make_rays(bench_stage *stage)
+/* A ray goes where light comes from on its way to a photon's place. Most photons of an interior lie on the outside of
+ * its walls, from where rays go nowhere: another photon is drawn then, up to so many times. */
+static bool draw_ray(const bench_stage *stage, uint32_t index, scene_ray *out_ray, surface_hit *out_hit)
 {
+    enum { TRIES = 32 };
     const photon_set *set = &stage->photons;
-    const scene *s = stage->scene->s;
-    for (uint32_t i = 0; i < stage->work->rays; i++) {
-        rng random = rng_make(0, STREAM_RAYS, i);
+    rng random = rng_make(0, STREAM_RAYS, index);
+    bool is_met = false;
+    for (int i = 0; i < TRIES && !is_met; i++) {
         const photon *p = &set->photons[rng_next(&random) % set->count];
         vec3 normal = direction_decode(p->normal), position = vec3_make(p->position[0], p->position[1], p->position[2]);
         frame around = frame_from_z(normal);
         vec3 direction = frame_to_world(&around, sample_cosine_hemisphere(rng_vec2(&random)));
+        *out_ray = scene_ray_make(vec3_add_scaled(position, normal, 1e-3f), vec3_normalize(direction));
+        out_ray->skips_uv = true;
+        is_met = scene_intersect(stage->scene->s, *out_ray, INFINITY, out_hit);
+    }
+    return is_met;
+}
+
+/* Irradiance is asked for where rays end, as a final gather does; not on glass and metal, where photons are far. */
+static void make_rays(bench_stage *stage)
+{
+    for (uint32_t i = 0; i < stage->work->rays; i++) {
         surface_hit hit;
-        stage->rays[i] = scene_ray_make(vec3_add_scaled(position, normal, 1e-3f), vec3_normalize(direction));
-        stage->rays[i].skips_uv = true;
-        if (scene_intersect(s, stage->rays[i], INFINITY, &hit))
-            stage->queries[stage->query_count++] = (irradiance_query){
-                hit.position, vec3_face_forward(hit.geometric_normal, vec3_negate(stage->rays[i].direction))};
+        uint64_t rays = 0;
+        if (!draw_ray(stage, i, &stage->rays[i], &hit))
+            continue;
+        stage->met_count++;
+        vec3 normal = vec3_face_forward(hit.geometric_normal, vec3_negate(stage->rays[i].direction));
+        if (photon_map_nearest(&stage->map, hit.position, normal, &rays) < PHOTON_HIDDEN)
+            stage->queries[stage->query_count++] = (irradiance_query){hit.position, normal};
     }
 }
 
