@@ -10,7 +10,9 @@ static const double REFERENCE[BENCH_SIZE_COUNT][BENCH_SCENE_COUNT][BENCH_PHASE_C
     [BENCH_SMALL] = {{27e5, 52e5, 24e4, 63e5, 48e5, 90e4, 18e6, 1.65},
                      {18e5, 49e5, 31e4, 21e5, 69e5, 100e4, 17e6, 1.3},
                      {46e4, 50e5, 42e4, 68e5, 53e5, 96e4, 18e6, 1.13}},
-    [BENCH_LARGE] = {LARGE},
+    [BENCH_LARGE] = {{27e5, 42e5, 18e4, 32e5, 43e5, 86e4, 16e6, 0.174},
+                     {20e5, 41e5, 37e4, 13e5, 69e5, 86e4, 16e6, 0.18},
+                     {48e4, 44e5, 49e4, 32e5, 47e5, 90e4, 17e6, 0.133}},
 };
 
 bench_interval bench_interval_of(const double *values, unsigned count)
