@@ -48,6 +48,7 @@ void scene_destroy(scene *s)
     parameter_list_reset(&s->pixel_filter);
     free(s->file_names);
     free(s->defined);
+    free(s->camera_names);
     free(s->light_group_names);
     scene_names_reset(&s->names);
     free(s->shapes);
@@ -282,6 +283,27 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
     s->lights[s->light_count++] = *item;
     return AG_OK;
 }
+
+/* Those of a kind, or all. The others keep their order, and shapes learn their new place. */
+static void drop_lights(scene *s, light_kind kind, bool is_any_kind)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        light *l = &s->lights[i];
+        const bool is_kept = !is_any_kind && l->kind != kind;
+        if (l->kind == LIGHT_AREA)
+            s->shapes[l->shape_index].light_index = is_kept ? kept : SHAPE_NO_LIGHT;
+        if (is_kept)
+            s->lights[kept++] = *l;
+        else
+            light_reset(l);
+    }
+    s->light_count = kept;
+}
+
+void scene_drop_lights(scene *s, light_kind kind) { drop_lights(s, kind, false); }
+
+void scene_drop_all_lights(scene *s) { drop_lights(s, LIGHT_AREA, true); }
 
 /* Beyond this a float overflows when squared. */
 static const float REACH_MAX = 1e18f;

@@ -54,6 +54,32 @@ static bool has_half_a_camera(const options *o)
     return true;
 }
 
+/* What is said of a camera, a sun or a sky must be for one that is asked for. */
+static bool has_idle_scene_option(const options *o)
+{
+    const ag_scene_settings *asked = &o->asked;
+    if (o->has_sky_detail && !asked->has_sky)
+        fprintf(stderr, "afterglow: --sky-strength and --sky-rotation are for --sky, which is not given\n");
+    else if (o->asked.up != AG_UP_AUTO && !asked->has_sky && !asked->has_sun && !asked->has_camera)
+        fprintf(stderr, "afterglow: --up is for --sun, --sky and --camera-from, and none is given\n");
+    else if (asked->camera_name && asked->has_camera)
+        fprintf(stderr, "afterglow: --camera and --camera-from are two cameras: give one\n");
+    else
+        return false;
+    return true;
+}
+
+/* What follows from several options. */
+static void settle_scene_options(options *o)
+{
+    const int up = (int)o->asked.up - AG_UP_X;
+    for (int i = 0; i < 3; i++) {
+        o->asked.sky_radiance[i] *= o->sky_strength;
+        if (o->asked.up != AG_UP_AUTO && !o->has_camera_up)
+            o->asked.camera_up[i] = up % 3 != i ? 0.0f : up < 3 ? 1.0f : -1.0f;
+    }
+}
+
 /* What is asked for must be for one of the files, where they are known. */
 static bool has_idle_picture_option(const options *o)
 {
@@ -174,7 +200,8 @@ options_result options_parse(int argc, char **argv, options *out_options)
     options o = {.asked = ag_default_scene_settings(),
                  .context = ag_default_context_settings(),
                  .output = ag_default_output_settings(),
-                 .render = ag_default_render_settings()};
+                 .render = ag_default_render_settings(),
+                 .sky_strength = 1.0f};
     o.outfiles = calloc((size_t)argc + 1, sizeof *o.outfiles);
     o.confined_to = calloc((size_t)argc + 1, sizeof *o.confined_to);
     o.given = calloc((size_t)argc + 1, sizeof *o.given);
@@ -195,8 +222,8 @@ options_result options_parse(int argc, char **argv, options *out_options)
     }
     if (result == OPTIONS_RUN && o.frames.count > 1 && has_frames_in_one_file(&o))
         result = OPTIONS_EXIT_USAGE;
-    if (result == OPTIONS_RUN &&
-        (has_half_a_camera(&o) || has_idle_picture_option(&o) || has_picture_of_photons_only(&o)))
+    if (result == OPTIONS_RUN && (has_half_a_camera(&o) || has_idle_scene_option(&o) || has_idle_picture_option(&o) ||
+                                  has_picture_of_photons_only(&o)))
         result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
         fprintf(stderr, "Try 'afterglow --help'.\n");
@@ -205,6 +232,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
         return result;
     }
     o.scene = o.lists_displays ? NULL : argv[optind];
+    settle_scene_options(&o);
     o.output.command_line = o.command_line;
     *out_options = o;
     return OPTIONS_RUN;

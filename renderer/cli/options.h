@@ -43,8 +43,11 @@ typedef struct options {
     int tile_index, tile_count; /* from 1 on; 0: the whole */
     double time_limit, begun;   /* s, 0: none; from when it counts, see passes_seconds */
     progress_style progress;
-    int verbosity;                                          /* -1 quiet, 0, 1 verbose, 2 debug */
-    bool has_camera_from, has_camera_to, has_camera_detail; /* of those; the last: up or field of view */
+    int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
+    bool has_camera_from, has_camera_to, has_camera_up;
+    bool has_camera_detail; /* its up or its field of view */
+    bool has_sky_detail;    /* its strength or its rotation */
+    float sky_strength;
     ag_scene_settings asked; /* of the scene; without the definitions, which stand above */
     ag_context_settings context;
     ag_output_settings output;

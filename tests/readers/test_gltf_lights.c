@@ -196,7 +196,7 @@ static void several_cameras(void **state)
                         "{'name': 'wide', 'type': 'perspective', 'perspective': {'yfov': 1.6}}],"
                         "'nodes': [{'children': [1]}, {'camera': 1}, {'camera': 0}]}");
     assert_near(r.scene->camera.fov_degrees, 1.6 * 180 / PI_, 1e-4);
-    expect_said(&r, AG_LOG_INFO, "cameras[0] \"\" is not the first one, and not used");
+    expect_said(&r, AG_LOG_INFO, "camera \"cameras[0]\" is not used");
     reading_destroy(&r);
 }
 

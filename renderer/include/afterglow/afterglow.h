@@ -94,6 +94,19 @@ typedef enum ag_gltf_light_units {
     AG_GLTF_LIGHT_UNITS_RAW       /* points and spots in W over the whole sphere: divided by 4 pi; suns in W/m^2 */
 } ag_gltf_light_units;
 
+/* Which axis of the world points up, for the compass that suns and skies have. North, where azimuths begin, is -z where
+ * y is up (+z in pbrt's left-handed world), so that east is +x; where z or x is up, it is +y. Azimuths go clockwise for
+ * who looks down from above. */
+typedef enum ag_up_axis {
+    AG_UP_AUTO, /* y; of pbrt's text the axis nearest to the camera's up */
+    AG_UP_X,
+    AG_UP_Y,
+    AG_UP_Z,
+    AG_UP_MINUS_X,
+    AG_UP_MINUS_Y,
+    AG_UP_MINUS_Z
+} ag_up_axis;
+
 /* Settings of a scene beyond what its file says. */
 typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
@@ -105,6 +118,23 @@ typedef struct ag_scene_settings {
     float camera_from[3], camera_to[3];
     float camera_up[3];       /* default 0 1 0 */
     float camera_fov_degrees; /* across the shorter image axis, (0, 180); default 45 */
+    /* Of the file's cameras the one of this name (glTF: its node's or its own); another one is an error that says which
+     * there are. Not with has_camera. NULL, the default: the first. */
+    const char *camera_name;
+    bool drops_lights; /* no light of the file's shines, nor any surface; nor is light made up. Default false */
+    ag_up_axis up;     /* default AG_UP_AUTO */
+    /* A sun beside the file's lights, infinitely far and without extent: its shadows are sharp. Where there is one, or
+     * a sky of the following, no light is made up. */
+    bool has_sun;                /* default false */
+    float sun_azimuth_degrees;   /* from north over east; default 0 */
+    float sun_elevation_degrees; /* above the horizon, [-90, 90]; default 45 */
+    float sun_irradiance;        /* W/m^2 on a surface that faces it, >= 0; default 3 */
+    /* A sky in the place of the file's infinite lights. */
+    bool has_sky;          /* default false */
+    float sky_radiance[3]; /* W/m^2/sr, linear Rec. 709, >= 0; a picture is multiplied by it; default 1 1 1 */
+    const char *sky_file;  /* a picture of it, latitude-longitude, its middle in the east, north to the left of that;
+                              or square, octahedral. Read wherever it lies. NULL, the default: alike everywhere */
+    float sky_rotation_degrees; /* turns the picture from north over east; default 0 */
 } ag_scene_settings;
 
 AG_API ag_scene_settings ag_default_scene_settings(void);
