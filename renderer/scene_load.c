@@ -61,13 +61,13 @@ static ag_status make_request(const ag_scene_settings *settings, scene_request *
                                    .fov_degrees = settings->camera_fov_degrees,
                                    .camera_name = settings->camera_name,
                                    .drops_lights = settings->drops_lights,
-                                   .up = (up_axis)settings->up,
+                                   .up = (scene_up)settings->up,
                                    .has_sun = settings->has_sun,
                                    .sun_azimuth_degrees = settings->sun_azimuth_degrees,
                                    .sun_elevation_degrees = settings->sun_elevation_degrees,
                                    .sun_irradiance = settings->sun_irradiance,
                                    .has_sky = settings->has_sky,
-                                   .sky_radiance = vec3_of(settings->sky_radiance),
+                                   .sky_radiance = rgb_make(sky[0], sky[1], sky[2]),
                                    .sky_file = settings->sky_file,
                                    .sky_rotation_degrees = settings->sky_rotation_degrees};
     return AG_OK;
@@ -78,6 +78,7 @@ static ag_status load(ag_context *context, const char *path, const definitions *
                       scene *s, input_files *inputs)
 {
     const color_config *colors;
+    phase_begin begin = context_begin_phase();
     ag_status status = context_color_config(context, &colors);
     if (status != AG_OK)
         return status;
@@ -94,7 +95,6 @@ static ag_status load(ag_context *context, const char *path, const definitions *
                     wrong);
         return AG_ERROR_ARGUMENT;
     }
-    phase_begin begin = context_begin_phase();
     context->run.inputs = inputs;
     status = scene_file_load(&context->run, path, s);
     context->run.inputs = NULL;

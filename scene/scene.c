@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "scene.h"
 
+#include "closed_room.h"
 #include "light/light_pick.h"
 #include "material/bsdf.h"
 #include "material/coat.h"
@@ -368,9 +369,13 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
         status = find_bounds(s, run->log);
     if (status != AG_OK)
         return status;
+    status = bvh_create(s, run, isa, &s->bvh);
+    if (status == AG_OK)
+        status = closed_room_furnish(s, run->log);
+    if (status != AG_OK)
+        return status;
     s->has_motion = s->camera.is_moving || s->instance_step_count > s->instance_count;
     s->camera.medium = s->camera_medium;
     s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
-    status = light_pick_commit(s, run->log);
-    return status == AG_OK ? bvh_create(s, run, isa, &s->bvh) : status;
+    return light_pick_commit(s, run->log);
 }

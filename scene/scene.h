@@ -64,6 +64,7 @@ typedef struct scene {
     uint32_t camera_medium; /* that the eye is in, SCENE_NO_MEDIUM: none */
     camera camera;
     bool has_camera;
+    bool is_camera_made_up, is_light_made_up; /* by import_defaults: see closed_room.h */
     char *camera_names; /* of the file's cameras, for a message: quoted, with commas; NULL: none has one */
 
     /* Directives that the renderer interprets; .name is NULL where the file has none. */

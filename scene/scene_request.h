@@ -16,7 +16,7 @@ typedef enum gltf_light_units {
 } gltf_light_units;
 
 /* The axis of the world that points up, for directions of suns and skies. */
-typedef enum up_axis {
+typedef enum scene_up {
     UP_BY_FORMAT, /* y; in pbrt's text the one nearest to the camera's up */
     UP_X,
     UP_Y,
@@ -24,7 +24,7 @@ typedef enum up_axis {
     UP_MINUS_X,
     UP_MINUS_Y,
     UP_MINUS_Z
-} up_axis;
+} scene_up;
 
 /* All zero: nothing is asked for. */
 typedef struct scene_request {
@@ -34,7 +34,7 @@ typedef struct scene_request {
     float fov_degrees;       /* across the shorter image axis, (0, 180) */
     const char *camera_name; /* of the file's cameras this one; borrowed; NULL: the first */
     bool drops_lights;       /* all of the file's */
-    up_axis up;
+    scene_up up;
     bool has_sun; /* beside the file's lights */
     float sun_azimuth_degrees, sun_elevation_degrees;
     float sun_irradiance; /* W/m^2, on a surface that faces it */

@@ -15,7 +15,20 @@
 
 static bool take_outfile(const char *value, options *o)
 {
-    o->outfiles[o->outfile_count++] = value;
+    static const char *const TYPES[] = {":uint8", ":uint16", ":half", ":float"};
+    const size_t length = strlen(value);
+    o->outfiles[o->outfile_count] = value;
+    for (int i = 0; i < 4; i++) {
+        const size_t end = strlen(TYPES[i]);
+        if (length <= end || strcmp(value + length - end, TYPES[i]) != 0)
+            continue;
+        char *name = strndup(value, length - end);
+        if (!name)
+            return false;
+        o->outfiles[o->outfile_count] = o->typed_names[o->outfile_count] = name;
+        o->outfile_types[o->outfile_count] = (ag_sample_type)(AG_SAMPLE_UINT8 + i);
+    }
+    o->outfile_count++;
     return true;
 }
 
@@ -227,12 +240,16 @@ static bool take_version(const char *value, options *o)
 
 static const option_row ROWS[] = {
     {.text = {.name = "outfile",
-              .argument = "FILE",
+              .argument = "FILE[:TYPE]",
               .section = "Output",
-              .help = "write the picture to FILE; may be repeated; .exr is scene-linear, .png, .tif and .jpg go "
-                      "through a display and view (default: the Film's filename, else SCENE.exr)",
-              .manual = "Write the picture to _FILE_. May be repeated. The extension chooses the format: _.exr_ is "
-                        "scene-linear; _.png_, _.tif_ and _.jpg_ go through a display and a view. A file appears "
+              .help = "write the picture to FILE, its samples of TYPE (default: --type); may be repeated; .exr, .hdr "
+                      "and .pfm are scene-linear, .png, .tif and .jpg go through a display and view (default: the "
+                      "Film's filename, else SCENE.exr)",
+              .manual = "Write the picture to _FILE_. May be repeated. The extension chooses the format: _.exr_, "
+                        "_.hdr_ (Radiance, shared exponents) and _.pfm_ (floats) are scene-linear, of which _.exr_ "
+                        "alone has layers and says its colour space; _.png_, _.tif_ and _.jpg_ go through a display "
+                        "and a view. _TYPE_ is one of those of *--type*, for this file alone: _a.exr:float_. A file "
+                        "appears "
                         "complete or not at all. Without this option, the file that the scene's Film names is "
                         "written, else _SCENE_ with _.exr_ for its extension, in the working directory."},
      .letter = 'o',
@@ -240,9 +257,10 @@ static const option_row ROWS[] = {
     {.text = {.name = "type",
               .argument = "NAME",
               .section = "Output",
-              .help = "stored samples: half, float, uint8 or uint16",
-              .manual = "How samples are stored: *half*, *float*, *uint8* or *uint16*. The default is *half* for "
-                        "OpenEXR, and *uint8* for the others."},
+              .help = "stored samples of files that name no type: half, float, uint8 or uint16",
+              .manual = "How samples are stored, in files of *-o* that name no type of their own: *half*, *float*, "
+                        "*uint8* or *uint16*. The default is *half* for OpenEXR, *float* for Radiance and PFM, "
+                        "*uint16* for TIFF, and *uint8* for the others."},
      .take = take_type},
     {.text = {.name = "tiled",
               .section = "Output",
@@ -501,6 +519,14 @@ static const option_row ROWS[] = {
               .manual = "Skip pictures whose files are all there and complete; a message says so. What was left by a "
                         "render that ended early is not complete."},
      FLAG(no_clobber)},
+    {.text = {.name = "seed-per-frame",
+              .section = "Work",
+              .help = "with --frames: each frame's number is added to the seed, so that noise differs from frame to "
+                      "frame",
+              .manual = "With *--frames*: each frame's number is added to the seed, so that noise does not stand still "
+                        "over the moving picture. Without it all frames have one seed; *--seed* may also have a place "
+                        "for the number, _%d_ or _####_. Does not go with *--photon-map*."},
+     FLAG(seed_per_frame)},
     {.text = {.name = "checkpoint",
               .argument = "SECONDS",
               .section = "Work",
@@ -585,9 +611,24 @@ bool option_at(size_t index, listed_option *out_option)
     return false;
 }
 
+/* A seed with a place for the frame's number is tried with one. */
+static bool take_seed_pattern(const char *value, options *o)
+{
+    char *tried = frames_name(value, 1);
+    const bool is_valid = tried && ag_render_settings_set(&o->render, "seed", tried) == AG_OK;
+    free(tried);
+    o->seed_pattern = value;
+    return is_valid;
+}
+
 /* A setting is tried on o->render, and noted for options_override. */
 static bool take_setting(const ag_setting *setting, const char *value, options *o)
 {
+    if (strcmp(setting->name, "seed") == 0) {
+        o->seed_pattern = NULL; /* the last one counts */
+        if (frames_has_place(value))
+            return take_seed_pattern(value, o);
+    }
     if (ag_render_settings_set(&o->render, setting->name, value) != AG_OK)
         return false;
     o->given[o->given_count++] = (given_setting){setting->name, value};

@@ -85,7 +85,7 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
     if (!transform_from_matrix((const double(*)[4])m, &c.world_from_camera))
         c.world_from_camera = transform_identity(); /* bounds are finite, so there is an inverse */
     s->camera = c;
-    s->has_camera = true;
+    s->has_camera = s->is_camera_made_up = true;
     log_message(log, AG_LOG_INFO, "the file has no camera: one is set at (%g, %g, %g), looking at (%g, %g, %g)",
                 m[0][3], m[1][3], m[2][3], center[0], center[1], center[2]);
     return AG_OK;
@@ -121,6 +121,7 @@ ag_status import_add_default_light(scene *s, log_sink *log)
     ag_status status = scene_add_light(s, &sky, &index);
     if (!status)
         status = scene_add_light(s, &sun, &index);
+    s->is_light_made_up = !status;
     if (!status)
         log_message(log, AG_LOG_INFO, "the file has no light: an even sky and a sun light it");
     return status;

@@ -87,6 +87,7 @@ static ag_status set_camera(run_context *run, bool is_pbrt, scene *s)
     c.is_moving = c.has_screen_window = false;
     s->camera = c;
     s->has_camera = true;
+    s->is_camera_made_up = false;
     return AG_OK;
 }
 
@@ -102,7 +103,7 @@ static vec3 axis_of(int axis, bool is_minus)
 /* The axis that points up, its number in *out_axis. */
 static vec3 find_up(const scene *s, bool is_pbrt, int *out_axis)
 {
-    const up_axis asked = s->request->up;
+    const scene_up asked = s->request->up;
     *out_axis = 1;
     if (asked != UP_BY_FORMAT) {
         *out_axis = ((int)asked - (int)UP_X) % 3;

@@ -48,18 +48,19 @@ static void a_sun_is_as_bright_as_it_says(void **state)
 {
     (void)state;
     static const char *const FILES[] = {"floor.pbrt", "floor.ply", "floor.obj", "floor.gltf", "floor.stl"};
-    const double reflectances[] = {0.5, 0.5, 0.5, 0.5, 0.6}; /* the last is assimp's, of no material */
+    const double reflectances[] = {0.5, 0.5, 0.5, 0.5, 0.6};    /* the last is assimp's, of no material */
+    const double tolerances[] = {1e-5, 1e-5, 1e-5, 3e-3, 1e-5}; /* glTF's has a little of a highlight */
     write_floors();
     for (size_t k = 0; k < sizeof FILES / sizeof *FILES; k++) {
         const double expected = reflectances[k] * 5.0 * sin(25.0 * PI_D / 180.0) / PI_D;
         const bool is_pbrt = k == 0;
         picture p = RENDER(FILES[k], PATH, "--sun=77,25,5", "--camera-from=0,5,0", "--camera-to=0,0,0",
                            "--camera-up=0,0,1", is_pbrt ? "--up=y" : "--fov=10", "--fov=10");
-        expect_uniform(FILES[k], &p, expected, 1e-5, 8, 1e-5);
+        expect_uniform(FILES[k], &p, expected, tolerances[k], 8, tolerances[k]);
         picture_reset(&p);
         p = RENDER(FILES[k], MAP, "--sun=-283,25,5", "--camera-from=0,5,0", "--camera-to=0,0,0", "--camera-up=0,0,1",
                    "--up=y", "--fov=10");
-        expect_uniform(FILES[k], &p, expected, 1e-5, 8, 1e-5);
+        expect_uniform(FILES[k], &p, expected, tolerances[k], 8, tolerances[k]);
         picture_reset(&p);
     }
 }
@@ -85,7 +86,8 @@ static void what_the_file_has_is_dropped(void **state)
 {
     (void)state;
     static const char WORLD[] = "LookAt 0 5 0 0 0 0 0 0 1 Camera \"perspective\" \"float fov\" 10 WorldBegin\n"
-                                "LightSource \"infinite\" \"rgb L\" [7 7 7] LightSource \"point\" \"rgb I\" [99 9 9]\n"
+                                "LightSource \"infinite\" \"rgb L\" [7 7 7] LightSource \"point\" \"rgb I\" [99 9 9] "
+                                "\"point3 from\" [0 3 0]\n"
                                 "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [9 9 9] Translate 0 9 0\n"
                                 "Shape \"sphere\" AttributeEnd\n" FLOOR_PBRT;
     write_text("lit.pbrt", WORLD);
@@ -123,7 +125,7 @@ static const char *write_sky(void)
         for (int x = 0; x < 8; x++)
             for (int c = 0; c < 3; c++)
                 pixels[y][x][c] = QUARTERS[x] + (y < 2 ? 10.0f : 0.0f);
-    return write_environment("sky.exr", 8, 4, IMAGE_SAMPLE_FLOAT, &pixels[0][0][0]);
+    return write_environment("sky.exr", 8, 4, IMAGE_FLOAT, &pixels[0][0][0]);
 }
 
 /* What is seen of the sky by looking just above the horizon, or just below. */
@@ -133,13 +135,13 @@ static void a_sky_stands_where_it_should(void **state)
     static const struct {
         const char *scene, *up, *north, *east, *below;
     } WAYS[] = {
-        {"floor.ply", "--up=y", "--camera-to=0,20.1,-1", "--camera-to=1,20.1,0", "--camera-to=0,19.9,1"},
-        {"floor.gltf", "--up=y", "--camera-to=0,20.1,-1", "--camera-to=1,20.1,0", "--camera-to=0,19.9,1"},
-        {"floor.ply", "--up=z", "--camera-to=0,21,0.1", "--camera-to=1,20,.1", "--camera-to=0,19,-.1"},
-        {"floor.pbrt", "--up=y", "--camera-to=0,20.1,1", "--camera-to=1,20.1,0", "--camera-to=0,19.9,-1"},
-        {"mirrored.pbrt", "--up=z", "--camera-to=0,21,0.1", "--camera-to=1,20,.1", "--camera-to=0,19,-.1"},
-        {"floor.pbrt", "--up=z", "--camera-to=0,21,0.1", "--camera-to=-1,20,.1", "--camera-to=0,19,-.1"},
-        {"floor.ply", "--up=-y", "--camera-to=0,19.9,-1", "--camera-to=-1,19.9,0", "--camera-to=0,20.1,1"},
+        {"floor.ply", "--up=y", "--camera-to=100,20.1,-1", "--camera-to=101,20.1,0", "--camera-to=100,19.9,1"},
+        {"floor.gltf", "--up=y", "--camera-to=100,20.1,-1", "--camera-to=101,20.1,0", "--camera-to=100,19.9,1"},
+        {"floor.ply", "--up=z", "--camera-to=100,21,0.1", "--camera-to=101,20,.1", "--camera-to=100,19,-.1"},
+        {"floor.pbrt", "--up=y", "--camera-to=100,20.1,1", "--camera-to=101,20.1,0", "--camera-to=100,19.9,-1"},
+        {"mirrored.pbrt", "--up=z", "--camera-to=100,21,0.1", "--camera-to=101,20,.1", "--camera-to=100,19,-.1"},
+        {"floor.pbrt", "--up=z", "--camera-to=100,21,0.1", "--camera-to=99,20,.1", "--camera-to=100,19,-.1"},
+        {"floor.ply", "--up=-y", "--camera-to=100,19.9,-1", "--camera-to=99,19.9,0", "--camera-to=100,20.1,1"},
     };
     write_floors();
     write_text("mirrored.pbrt",
@@ -147,7 +149,7 @@ static void a_sky_stands_where_it_should(void **state)
     write_sky();
     for (size_t k = 0; k < sizeof WAYS / sizeof *WAYS; k++) {
 #define LOOK(where, ...)                                                                                               \
-    RENDER(WAYS[k].scene, PATH, "--sky=sky.exr", "--fov=1", "--camera-from=0,20,0", WAYS[k].up, where, __VA_ARGS__)
+    RENDER(WAYS[k].scene, PATH, "--sky=sky.exr", "--fov=1", "--camera-from=100,20,0", WAYS[k].up, where, __VA_ARGS__)
         picture p = LOOK(WAYS[k].north, "--sky-rotation=0");
         expect_uniform("north", &p, 11.0, 1e-5, 8, 1e-5);
         picture_reset(&p);
@@ -203,7 +205,7 @@ static void a_camera_is_picked_by_its_name(void **state)
                   "  {'type': 'perspective', 'perspective': {'yfov': 0.1, 'aspectRatio': 1}}],"
                   "'nodes': [{'mesh': 0}, {'mesh': 1, 'translation': [50, 0, 0]}, {'camera': 0, 'name': 'first'},"
                   "  {'camera': 0, 'name': 'second', 'translation': [50, 0, 0]}, {'camera': 1}]}");
-    const char *scene = write_text("two.gltf", json);
+    write_text("two.gltf", json);
     free(json);
     static const struct {
         const char *name;
@@ -211,11 +213,11 @@ static void a_camera_is_picked_by_its_name(void **state)
     } NAMES[] = {
         {"--camera=first", 1.0}, {"--camera=second", 0.5}, {"--camera=wide", 1.0}, {"--camera=cameras[1]", 1.0}};
     for (size_t k = 0; k < sizeof NAMES / sizeof *NAMES; k++) {
-        picture p = RENDER(scene, PATH, NAMES[k].name);
+        picture p = RENDER("two.gltf", PATH, NAMES[k].name);
         expect_uniform(NAMES[k].name, &p, NAMES[k].expected, 1e-6, 8, 1e-6);
         picture_reset(&p);
     }
-    program_run run = RUN("--camera=third", "-o", "x.exr", scene);
+    program_run run = RUN("--camera=third", "-o", "x.exr", "two.gltf");
     expect_exit(&run, 2);
     expect_said(&run, "two.gltf: error: it has no camera \"third\", but \"first\" (\"wide\"), \"second\" (\"wide\"), "
                       "\"cameras[1]\"");
@@ -258,8 +260,8 @@ static void mistakes_are_told(void **state)
     };
     write_floors();
     static const float pixels[18] = {0};
-    write_environment("odd.exr", 2, 3, IMAGE_SAMPLE_FLOAT, pixels);
-    write_environment("o.exr", 2, 1, IMAGE_SAMPLE_FLOAT, pixels);
+    write_environment("odd.exr", 2, 3, IMAGE_FLOAT, pixels);
+    write_environment("o.exr", 2, 1, IMAGE_FLOAT, pixels);
     for (size_t k = 0; k < sizeof MISTAKES / sizeof *MISTAKES; k++) {
         const char *const *a = MISTAKES[k].arguments;
         const char *all[8] = {"-ox.exr", "floor.ply"};

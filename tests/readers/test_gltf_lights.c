@@ -18,7 +18,9 @@ static const char *lamp_text(const char *generator, const char *lamp, const char
 static void lamps(void **state)
 {
     (void)state;
-    reading r = gltf_of(lamp_text("", "{'type': 'point', 'color': [1, 0.5, 0.25], 'intensity': 8, 'range': 3}",
+    gltf_expect_warning(lamp_text("", "{'type': 'point', 'name': 'bulb', 'intensity': 8, 'range': 3}", ""),
+                        "the range of lamp \"bulb\" is not heeded");
+    reading r = gltf_of(lamp_text("", "{'type': 'point', 'color': [1, 0.5, 0.25], 'intensity': 8}",
                                   "'translation': [1, 2, 3], 'scale': [5, 5, 5],"));
     const light *l = &r.scene->lights[0];
     assert_int_equal(r.scene->light_count, 1);

@@ -195,23 +195,23 @@ typedef enum ag_layer {
     AG_LAYER_SPECULAR = 1 << 10,     /* all that comes by the first surface's other lobes */
     AG_LAYER_IRRADIANCE = 1 << 11,   /* irradiance.R, G, B: of the photon map at the first surface, W/m^2 */
     AG_LAYER_VARIANCE = 1 << 12,     /* variance.R, G, B: of the pixel's samples (not of their mean) */
-    AG_LAYER_SAMPLES = 1 << 13,      /* samples: how many */
-    AG_LAYER_ID = 1 << 14,           /* id.object, id.material: of the nearest surface, from 1 on; 0: nothing */
+    AG_LAYER_SAMPLES = 1 << 13,      /* samples.V: how many */
+    AG_LAYER_ID = 1 << 14,           /* id.object.V, id.material.V: of the nearest surface, from 1 on; 0: nothing */
     AG_LAYER_LIGHT_GROUPS = 1 << 15, /* light_NAME.R, G, B: what came from the lamps of a group to the first surface and
                                         by way of mirrors and glass; light_photons: through the photon map */
     AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N in place of the above */
     /* How the photon map fared, at what the ray through the pixel's middle meets first; 0 where that gathers nothing.
      */
-    AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density: photons per area, 1/m^2 */
-    AG_LAYER_CACHE_STATE = 1 << 18,    /* cache_state: of the photon nearest there: 1 its irradiance was not demanded, 2
+    AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density.V: photons per area, 1/m^2 */
+    AG_LAYER_CACHE_STATE = 1 << 18,    /* cache_state.V: of the photon nearest there: 1 its irradiance was not demanded, 2
                                           it was; 0: no photon is near */
-    AG_LAYER_PHOTON_DISTANCE = 1 << 19, /* photon_distance: how far that photon is */
-    AG_LAYER_GATHER_DISTANCE = 1 << 20, /* gather_distance: how far gather rays go, harmonic mean */
+    AG_LAYER_PHOTON_DISTANCE = 1 << 19, /* photon_distance.V: how far that photon is */
+    AG_LAYER_GATHER_DISTANCE = 1 << 20, /* gather_distance.V: how far gather rays go, harmonic mean */
     /* Cryptomatte for objects (instances, glTF nodes, files of meshes) and materials, by their names in the scene,
      * or by numbers; six ranks. */
     AG_LAYER_CRYPTO_OBJECT = 1 << 22,
     AG_LAYER_CRYPTO_MATERIAL = 1 << 23,
-    AG_LAYER_TILE_TIME = 1 << 21 /* tile_time: seconds that the pixel's tile took: another number in each run */
+    AG_LAYER_TILE_TIME = 1 << 21 /* tile_time.V: seconds that the pixel's tile took: another number in each run */
 } ag_layer;
 #define AG_LAYERS_LIGHT (AG_LAYER_EMISSION | AG_LAYER_DIRECT | AG_LAYER_INDIRECT | AG_LAYER_CAUSTIC | AG_LAYER_SPECULAR)
 /* All that is the same from run to run, in our names. */
