@@ -5,7 +5,7 @@
 #include "rays/passage.h"
 
 /* Places that are tried, along and across, at several heights; directions around each; and headings to look along. */
-enum { PLACES = 12, HEIGHTS = 3, DIRECTIONS = 64, HEADINGS = 32, PANES_MAX = 16 };
+enum { PLACES = 12, HEIGHTS = 3, DIRECTIONS = 64, HEADINGS = 32, OPEN_HEADINGS_MAX = 4, PANES_MAX = 16 };
 static const float HEIGHT_SHARES[HEIGHTS] = {0.45f, 0.25f, 0.7f};
 
 static const float ENCLOSED = 0.85f; /* of the directions, so many end at a surface in a room */
@@ -124,11 +124,15 @@ static void find_heading(const scene *s, vec3 eye, view *best)
 {
     float distances[HEADINGS];
     vec3 headings[HEADINGS];
+    int open_count = 0;
     for (int i = 0; i < HEADINGS; i++) {
         const double angle = 2.0 * 3.14159265358979323846 * i / HEADINGS;
         headings[i] = vec3_make((float)sin(angle), 0.0f, (float)cos(angle));
         distances[i] = free_distance(s, eye, headings[i]);
+        open_count += distances[i] < 0.0f;
     }
+    if (open_count > OPEN_HEADINGS_MAX) /* a wall is missing, by which the model is looked into */
+        return;
     for (int i = 0; i < HEADINGS; i++) { /* what is free on both sides as well: 22 degrees */
         float sum = 0.0f;
         for (int k = -2; k <= 2; k++)

@@ -203,8 +203,8 @@ typedef enum ag_layer {
     /* How the photon map fared, at what the ray through the pixel's middle meets first; 0 where that gathers nothing.
      */
     AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density.V: photons per area, 1/m^2 */
-    AG_LAYER_CACHE_STATE = 1 << 18,    /* cache_state.V: of the photon nearest there: 1 its irradiance was not demanded, 2
-                                          it was; 0: no photon is near */
+    AG_LAYER_CACHE_STATE = 1 << 18, /* cache_state.V: of the photon nearest there: 1 its irradiance was not demanded, 2
+                                       it was; 0: no photon is near */
     AG_LAYER_PHOTON_DISTANCE = 1 << 19, /* photon_distance.V: how far that photon is */
     AG_LAYER_GATHER_DISTANCE = 1 << 20, /* gather_distance.V: how far gather rays go, harmonic mean */
     /* Cryptomatte for objects (instances, glTF nodes, files of meshes) and materials, by their names in the scene,
@@ -442,11 +442,12 @@ typedef enum ag_sample_type {
 } ag_sample_type;
 
 typedef struct ag_output_settings {
-    ag_sample_type type;      /* default: half for EXR, 8 bit for the others */
+    ag_sample_type type;      /* default: half for EXR, float for Radiance and PFM, 16 bit for TIFF, 8 bit for others */
     bool tiled;               /* EXR in tiles of 64 x 64 pixels; default: in lines */
     bool reproducible;        /* EXR without what differs from run to run: equal pictures are equal files */
     const char *command_line; /* to be noted in EXR files, or NULL */
-    const char *color_space;  /* of EXR files, by the config's name, an alias or a role; NULL: the working space */
+    const char *color_space;  /* of EXR, Radiance and PFM files, by the config's name, an alias or a role; NULL: the
+                                 working space */
     /* of all others: */
     const char *display;  /* NULL: the config's default */
     const char *view;     /* NULL: the display's default */
@@ -462,8 +463,9 @@ AG_API ag_output_settings ag_default_output_settings(void);
  * or type), AG_ERROR_OUTPUT, AG_ERROR_COLOR. */
 AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *settings, const char *path);
 
-/* Writes the film: scene-linear, with its layers and chromaticities, for .exr; through look, display and view for .png,
- * .tif, .jpg. The file appears complete or not at all. settings NULL: the defaults. */
+/* Writes the film: scene-linear, with its layers and chromaticities, for .exr; scene-linear for .hdr (which clips what
+ * is below 0) and .pfm, which cannot say their colour space; through look, display and view for .png, .tif, .jpg. The
+ * file appears complete or not at all. settings NULL: the defaults. */
 AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                const char *path);
 
