@@ -171,7 +171,7 @@ static void expect_plain(const char *said)
         at = next_line(at, line, sizeof line);
         int percent, used = 0;
         assert_true(++lines <= 22); /* a log is not flooded */
-        if (!*at) { /* the last line says what was written, and how long it took */
+        if (!*at) {                 /* the last line says what was written, and how long it took */
             assert_int_equal(strncmp(line, "afterglow: wrote a.exr", 22), 0);
             assert_non_null(strstr(line, " in 0:"));
             break;
