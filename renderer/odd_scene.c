@@ -118,10 +118,10 @@ static bool shines_away(const scene *s)
         if (l->kind != LIGHT_AREA || l->two_sided)
             return false;
         for (int k = 0; k < DIRECTIONS; k++) {
-            light_emission photon;
+            light_emission start;
             surface_hit hit;
-            if (light_sample_emission(s, l, NULL, &random, &photon) &&
-                passage_find_surface(s, scene_ray_make(photon.origin, photon.direction), INFINITY, &hit) &&
+            if (light_sample_emission(s, l, NULL, &random, &start) &&
+                passage_find_surface(s, scene_ray_make(start.origin, start.direction), INFINITY, &hit) &&
                 hit.distance > RIGHT_IN_FRONT * s->bounding_radius)
                 return false;
         }
