@@ -162,7 +162,7 @@ static ag_status create_film(ag_rendering *r)
         group_count = (int)r->s->light_group_count;
     }
     ag_status status =
-        pixel_filter_create(&r->s->pixel_filter, r->s->options.disable_pixel_jitter, r->context->log, &filter);
+        pixel_filter_create(&r->s->hints.filter, r->s->hints.disable_pixel_jitter, r->context->log, &filter);
     if (status == AG_OK)
         status = aov_layout_create(settings->layers, also, settings->integrator == AG_INTEGRATOR_PATH, group_names,
                                    group_count, &layout);

@@ -82,10 +82,10 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
     const ag_render_settings *settings = t->settings;
     sampler where = sampler_make(settings->seed, x, y, index, sampler_bits((uint32_t)settings->samples_per_pixel));
     vec2 offset = pixel_filter_sample(&job->film->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), &out->sign);
-    vec2 lens = t->s->options.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
-    float time = !t->s->has_motion                    ? 0.0f
-                 : t->s->options.disable_pixel_jitter ? 0.5f
-                                                      : sampler_2d(&where, SAMPLE_TIME, 0).x;
+    vec2 lens = t->s->hints.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
+    float time = !t->s->has_motion                  ? 0.0f
+                 : t->s->hints.disable_pixel_jitter ? 0.5f
+                                                    : sampler_2d(&where, SAMPLE_TIME, 0).x;
     float width = (float)settings->width, height = (float)settings->height;
     camera_place place = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, width / height,
                           lens, time};
