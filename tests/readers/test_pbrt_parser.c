@@ -592,7 +592,7 @@ static void damaged_scenes_are_survived(void **state)
     free(copy);
 }
 
-static void cornell_box_is_read_without_a_word(void **state)
+static void cornell_box_is_read(void **state)
 {
     (void)state;
     if (!shared_folder()) {
@@ -603,7 +603,8 @@ static void cornell_box_is_read_without_a_word(void **state)
     snprintf(path, sizeof path, "%s/scenes/cornell-box/scene.pbrt", shared_folder());
     reading r = reading_create(path, NULL, 0);
     assert_int_equal(r.status, AG_OK);
-    assert_int_equal(r.count[AG_LOG_WARNING], 0);
+    assert_int_equal(r.count[AG_LOG_WARNING], 1);
+    assert_non_null(strstr(r.said[AG_LOG_WARNING], "Integrator \"path\" is another renderer's"));
     assert_int_equal(r.scene->shape_count, 8);
     assert_int_equal(r.scene->light_count, 1);
     assert_true(r.scene->has_camera);
@@ -628,7 +629,7 @@ int main(void)
         cmocka_unit_test(colour_spaces_are_part_of_the_state),
         cmocka_unit_test(progress_is_told_and_cancelling_heeded),
         cmocka_unit_test(damaged_scenes_are_survived),
-        cmocka_unit_test(cornell_box_is_read_without_a_word),
+        cmocka_unit_test(cornell_box_is_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
