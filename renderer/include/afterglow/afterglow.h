@@ -282,8 +282,8 @@ typedef struct ag_render_settings {
     bool photon_map_refresh; /* one that would be refused is traced anew, and replaced */
 } ag_render_settings;
 
-/* The scene's own settings, and our defaults for what it leaves open; says in the log what it makes of another
- * renderer's Integrator. Errors: AG_ERROR_SCENE (a value out of range, with file, line and column). */
+/* The scene's own settings, and our defaults for what it leaves open. Loading the scene has checked what its file says.
+ * Errors: AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *scene,
                                                ag_render_settings *out_settings);
 
