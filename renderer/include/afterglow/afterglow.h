@@ -231,7 +231,7 @@ typedef struct ag_render_settings {
 
     uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2] */
     uint64_t
-        caustic_photon_count;  /* photons to store in the caustic map; only where there is a specular surface; [0, …] */
+        caustic_photon_count;  /* photons to store in the caustic map; only where anything is specular; [0, …] */
     int nearest;               /* photons of an estimate, [1, 65536] */
     float radius;              /* largest radius of an estimate, scene units; 0: from the photons' density */
     float irradiance_fraction; /* of the photons, how many bear irradiance, (0, 1]: gather rays look for the nearest of
