@@ -18,7 +18,7 @@ static bool is_passed(const scene *s, const surface_hit *hit)
     return material_is_interface(s, hit) && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
 }
 
-/* The share of a ray that a place lets through unbent: all of it, a pane's transmittance, or nothing. */
+/* The share of a ray that a place lets through unbent: all of it, a pane's or slab's transmittance, or nothing. */
 static rgb let_through(const scene *s, const surface_hit *hit, const scene_ray *ray, bool through_panes)
 {
     if (is_passed(s, hit))
