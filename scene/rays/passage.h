@@ -28,9 +28,9 @@ static inline bool passage_is_clear(const scene *s, const scene_ray *ray)
  * surface stands in it. */
 rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
 
-/* passage_transmittance of a ray that goes on across panes and slabs, whose transmittance (pane.h, slab.h) is multiplied
- * in: for light that is sampled at its lamp. Infinitely many reflections between the faces of one pane are in it; those between two
- * panes, which move light sideways, are not. */
+/* passage_transmittance of a ray that goes on across panes and slabs, whose transmittance (pane.h, slab.h) is
+ * multiplied in: for light that is sampled at its lamp. Infinitely many reflections between the faces of one pane are
+ * in it; those between two panes, which move light sideways, are not. */
 rgb passage_transmittance_of_panes(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
 
 /* As scene_intersect and scene_occluded, but interfaces are not there, and veils stop all rays, RAY_MEETS_VEILS unless
