@@ -229,11 +229,10 @@ typedef struct ag_render_settings {
                               gather ray ends, max_depth - 1 before a caustic) and the eye's part apart: behind
                               mirrors and glass there may be some more. */
 
-    uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2] */
-    uint64_t
-        caustic_photon_count;  /* photons to store in the caustic map; only where there is a specular surface; [0, …] */
-    int nearest;               /* photons of an estimate, [1, 65536] */
-    float radius;              /* largest radius of an estimate, scene units; 0: from the photons' density */
+    uint64_t photon_count;         /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t caustic_photon_count; /* photons to store in the caustic map; only where anything is specular; [0, …] */
+    int nearest;                   /* photons of an estimate, [1, 65536] */
+    float radius;                  /* largest radius of an estimate, scene units; 0: from the photons' density */
     float irradiance_fraction; /* of the photons, how many bear irradiance, (0, 1]: gather rays look for the nearest of
                                   those, and each estimate is still of all photons. Less is faster, and blurs by about
                                   what those are apart. Where photons lie far apart, and where surfaces turn, more of
