@@ -11,26 +11,20 @@
 #include "material/material.h"
 #include "medium.h"
 #include "run_context.h"
+#include "scene_hints.h"
 #include "scene_names.h"
 #include "scene_request.h"
 #include "shape/instance.h"
 #include "shape/shape.h"
 #include "text/definitions.h"
-#include "text/parameter_list.h"
 #include "texture/texture.h"
 
 struct bvh;
+struct slab_faces;
 struct color_config;
 struct light_tree;
 
 enum { SCENE_LIGHT_GROUPS_MAX = 32 };
-
-/* What the file's Option directives say that the renderer heeds. */
-typedef struct scene_options {
-    bool has_seed;
-    int64_t seed;              /* of 32 bits */
-    bool disable_pixel_jitter; /* samples in the middle of pixel and lens */
-} scene_options;
 
 typedef struct scene {
     working_space space;                     /* of all its colours; settled before anything is read */
@@ -64,10 +58,10 @@ typedef struct scene {
     uint32_t camera_medium; /* that the eye is in, SCENE_NO_MEDIUM: none */
     camera camera;
     bool has_camera;
+    bool is_camera_made_up, is_light_made_up; /* by import_defaults: see closed_room.h */
+    char *camera_names; /* of the file's cameras, for a message: quoted, with commas; NULL: none has one */
 
-    /* Directives that the renderer interprets; .name is NULL where the file has none. */
-    parameter_list integrator, sampler, film, pixel_filter;
-    scene_options options;
+    scene_hints hints; /* what its file says of the picture */
 
     char *defined;     /* which definitions its text has used, see definitions_describe; NULL: it was given none */
     char **file_names; /* interned, for file_location.file */
@@ -86,7 +80,7 @@ typedef struct scene {
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */
-    bool has_panes;      /* any shape that lets light straight through: see pane.h */
+    bool has_panes;      /* any shape that lets light straight through: see pane.h, slab_faces.h */
     /* How lights are picked, see light_pick.c */
     uint32_t lit_count;          /* lights with power */
     uint32_t only_light;         /* where there is but one of them, that one */
@@ -96,6 +90,7 @@ typedef struct scene {
     float *photon_cdf;             /* [light_count], running sum of photon_probability */
     float *photon_probability;     /* [light_count], with which scene_pick_light_by_power picks it */
     struct bvh *bvh;
+    struct slab_faces *slab_faces; /* which shapes are slabs of glass that light may pass straight; NULL: none */
 } scene;
 
 scene *scene_create(void);    /* NULL when out of memory */
@@ -130,6 +125,10 @@ ag_status scene_add_instance(scene *s, uint32_t object_index, const affine *step
 /* An area light's shape must be there already, in the world itself; its light_index is set here. Pictures and tables of
  * a light pass into the scene's ownership, on failure too (they are then destroyed). */
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
+
+/* Drops the lights of one kind, or all of them; shapes that shone stay, dark. Before the commit. */
+void scene_drop_lights(scene *s, light_kind kind);
+void scene_drop_all_lights(scene *s);
 
 /* Areas, powers, bounds and the BVH (built by the run's threads and no others). isa: Embree's name of the widest
  * instruction set to use ("sse2", "sse4.2", "avx", "avx2", "avx512"), NULL for "avx2".

@@ -184,7 +184,7 @@ static ag_status cast_all(bench_stage *stage, ag_context *context, bench_outcome
         parallel_for(&context->run, stage->work->rays, RAY_BLOCK, cast, stage, AG_PHASE_RENDER, 0.0, 0.0);
     end_work(out);
     for (uint32_t i = 0; i < stage->work->rays; i++)
-        met += isfinite(stage->distances[i]);
+        met += isfinite(stage->distances[i]) ? 1 : 0;
     hash128_add(&out->hash, stage->distances, stage->work->rays * sizeof *stage->distances);
     out->amount = stage->work->rays;
     out->count = met;

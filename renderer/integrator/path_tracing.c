@@ -3,6 +3,7 @@
 
 #include "integrator/direct_lighting.h"
 #include "integrator/first_hit.h"
+#include "integrator/integrator.h"
 #include "rays/passage.h"
 
 enum { ROULETTE_AFTER = 3 };
@@ -163,6 +164,8 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
         scattered_from = v.hit.position;
         scattered_normal = direct_light_normal(&v, BSDF_ALL);
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
-        ray = surface_ray(&v.hit, v.arrived, next.direction);
+        ray = transport_scattered_ray(t, &v, next.direction, next.is_delta);
     }
 }
+
+const integrator path_integrator = {.sample = path_tracing_radiance};

@@ -6,6 +6,7 @@
 #define AFTERGLOW_GLTF_PRIVATE_H
 
 #include "gltf/gltf_reader.h"
+#include "status.h"
 
 #include <jansson.h>
 
@@ -16,12 +17,7 @@ enum { GLTF_MAX_FACTORS = 4 };
 /* Vertices lie within +-this, in world space, as those of other formats. */
 #define GLTF_MAX_COORDINATE 1e18
 
-#define GLTF_TRY(call)                                                                                                 \
-    do {                                                                                                               \
-        ag_status status_ = (call);                                                                                    \
-        if (status_ != AG_OK)                                                                                          \
-            return status_;                                                                                            \
-    } while (0)
+#define GLTF_TRY AG_TRY
 
 /* A value of the document and where it is: a chain of keys and indices up to the document itself, which is all in the
  * callers' frames. json is NULL where there is none. */
@@ -310,9 +306,10 @@ ag_status gltf_load_image(gltf_reader *r, uint32_t index, image_encoding encodin
 /* gltf_nodes.c: the default scene's nodes, and all that hangs on them. */
 ag_status gltf_add_nodes(gltf_reader *r);
 
-/* gltf_cameras.c: the camera on a node becomes the scene's if it is the first; the film has its proportions. */
-ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_matrix *world_from_node);
-ag_status gltf_set_film(gltf_reader *r);
+/* gltf_cameras.c: the camera on a node becomes the scene's if it is the one that is asked for, by its name or the
+ * node's, or the first; the picture has its proportions. */
+ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_value *node, const gltf_matrix *world_from_node);
+void gltf_set_picture_size(gltf_reader *r);
 /* The node's axis, 0 to 2, of unit length; false where the node makes nothing of it. */
 bool gltf_matrix_axis(const gltf_matrix *m, int axis, double out_axis[3]);
 

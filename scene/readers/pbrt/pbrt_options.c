@@ -1,6 +1,6 @@
 /* pbrt_options.c: Option of a pbrt-v4 scene.
  * Rests on pbrt-v4's list of options (scene.cpp); names are the same in any case, with and without '-' and '_'.
- * Flow: pbrt_parser -> [here] -> scene.options. Threads: one per scene. */
+ * Flow: pbrt_parser -> [here] -> scene.hints. Threads: one per scene. */
 #include "pbrt/pbrt_private.h"
 
 #include <stdio.h>
@@ -60,15 +60,14 @@ static ag_status set_option(pbrt_parser *parser, size_t option, file_location wh
             log_at_once(parser->log, AG_LOG_WARNING, where, key, "Option \"%s\" is not supported: %s", name, why);
         return AG_OK;
     }
-    scene_options *options = &parser->scene->options;
+    scene_hints *hints = &parser->scene->hints;
     if (strcmp(name, "disablepixeljitter") == 0) {
-        options->disable_pixel_jitter = is_true;
+        hints->disable_pixel_jitter = is_true;
         return AG_OK;
     }
     if (number != floor(number) || fabs(number) > 2147483648.0)
         return pbrt_error(parser, value->where, value->width, "the seed should be an integer of 32 bits");
-    options->has_seed = true;
-    options->seed = (int64_t)number;
+    hints->seed = (integer_hint){true, (int64_t)number};
     return AG_OK;
 }
 
@@ -77,7 +76,7 @@ ag_status pbrt_option(pbrt_parser *parser, file_location where)
     char *name, normal[64];
     file_location name_where;
     pbrt_token value;
-    PBRT_TRY(pbrt_read_string(parser, "Option", "a quoted name", &name, &name_where));
+    AG_TRY(pbrt_read_string(parser, "Option", "a quoted name", &name, &name_where));
     size_t width = strlen(name) + 2, option = 0, count = sizeof OPTIONS / sizeof *OPTIONS;
     normalize(name, normal, sizeof normal);
     free(name);
@@ -85,7 +84,7 @@ ag_status pbrt_option(pbrt_parser *parser, file_location where)
         option++;
     if (option == count)
         return pbrt_error(parser, name_where, width, "unknown option \"%s\"", normal);
-    PBRT_TRY(pbrt_next(parser, &value));
+    AG_TRY(pbrt_next(parser, &value));
     if (value.kind != PBRT_TOKEN_WORD && value.kind != PBRT_TOKEN_STRING)
         return pbrt_unexpected(parser, &value, "Option", "a value");
     return set_option(parser, option, where, &value);
