@@ -15,11 +15,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How many samples share a pixel's gather rays where it may get more: measured in four rooms, 2 to 8 rays a sample
- * bring the same noise in the least time. */
-enum { ADAPTIVE_GATHER_SAMPLES = 64 };
 /* A gather ray shorter than this many mean radii of an estimate does not use the cache. */
 static const float GATHER_MIN_DISTANCE_RADII = 1.0f;
+
+/* Brings all pixels to their samples, with stops to decide how the next are split. */
+static ag_status render_passes(ag_rendering *r, uint32_t wanted)
+{
+    ag_film *film = r->film;
+    for (;;) {
+        uint32_t next = film->splits ? splitting_decide(film, &r->settings, wanted) : wanted;
+        ag_status status = render_tiles(r, next);
+        if (status != AG_OK || next == wanted)
+            return status;
+    }
+}
 
 /* The passes between the places where it is decided which pixels need more. */
 static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
@@ -30,7 +39,7 @@ static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
     uint32_t barrier = adaptive_barrier(film);
     while (status == AG_OK && !is_done) {
         if (barrier > 0)
-            status = render_tiles(r, barrier < wanted ? barrier : wanted);
+            status = render_passes(r, barrier < wanted ? barrier : wanted);
         if (barrier >= wanted || status != AG_OK)
             break;
         status = adaptive_decide(film, &r->context->run, &r->settings, &is_done);
@@ -67,6 +76,8 @@ static transport make_transport(const ag_context *context, const scene *s, const
     transport t = {.s = s,
                    .run = &context->run,
                    .settings = settings,
+                   .split = splitting_first(settings),
+                   .ray_bits = sampler_bits(splitting_most(settings).rays),
                    .layout = layout,
                    .wants_layers = layout->needs_layers,
                    .wants_groups = aov_has(layout, SUM_GROUPS),
@@ -105,13 +116,6 @@ static ag_status settle_settings(ag_context *context, const scene *s, const ag_r
                                  ag_render_settings *out_settings)
 {
     *out_settings = *wanted;
-    if (out_settings->gather_samples == 0 && out_settings->samples_per_pixel > 0) {
-        int samples = out_settings->samples_per_pixel;
-        if (out_settings->noise_level > 0.0f && samples > ADAPTIVE_GATHER_SAMPLES)
-            samples = ADAPTIVE_GATHER_SAMPLES;
-        int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples;
-        out_settings->gather_samples = rays > 0 ? rays : 1;
-    }
     if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
         out_settings->photon_aim = out_settings->photon_map_file ? 0.0f : AG_DEFAULT_PHOTON_AIM;
     if (out_settings->direct_guiding == AG_DIRECT_GUIDING_AUTOMATIC)
@@ -306,7 +310,7 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     ag_context *context = r->context;
     uint32_t wanted = (uint32_t)samples_per_pixel;
     phase_begin begin = context_begin_phase();
-    ag_status status = r->film->wanted ? render_adaptively(r, wanted) : render_tiles(r, wanted);
+    ag_status status = r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
     film_resolve(r->film);
     if (status == AG_OK)
         status = debug_views_render(&r->t, &context->run, r->workers, r->film);
