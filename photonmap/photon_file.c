@@ -264,7 +264,7 @@ static void describe_difference(const photon_file_key *is, const photon_file_key
         snprintf(out, size, "its photons are aimed at another view");
 }
 
-/* Whether it is a file of ours, whole by its length, and fits the key; where not, the message says why. */
+/* Whether it is a file of ours, whole by its length, and fits the key, if any; where not, the message says why. */
 static bool header_is_valid(const file_header *h, uint64_t got_bytes, uint64_t file_bytes, const photon_file_key *key,
                             char *message, size_t message_size)
 {
@@ -299,7 +299,7 @@ static bool header_is_valid(const file_header *h, uint64_t got_bytes, uint64_t f
     if (!message[0] && (lay_out(trees, &checks_at) != h->file_bytes || checks_at != h->checks_at ||
                         memcmp(trees, h->trees, sizeof trees) != 0))
         snprintf(message, message_size, "it is damaged: its parts do not lie where they should");
-    if (!message[0])
+    if (!message[0] && key)
         describe_difference(&h->key, key, message, message_size);
     return message[0] == '\0';
 }
@@ -452,19 +452,26 @@ static photon_file_result open_maps(const run_context *run, int descriptor, cons
     return PHOTON_FILE_OPEN;
 }
 
-photon_file_result photon_file_open(const run_context *run, const char *path, const photon_file_key *key,
-                                    photon_file *out_file, photon_map *out_global, photon_map *out_caustic,
-                                    char *message, size_t message_size)
+/* For writing where that may be shared. may_share: false where it may not be written. */
+static int open_descriptor(const char *path, bool *in_out_may_share)
+{
+    /* O_NONBLOCK: a FIFO would wait for its writer */
+    const int flags = O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+    int descriptor = open(path, flags | (*in_out_may_share ? O_RDWR : O_RDONLY));
+    if (descriptor < 0 && *in_out_may_share && (errno == EACCES || errno == EROFS || errno == EPERM)) {
+        *in_out_may_share = false;
+        descriptor = open(path, flags | O_RDONLY);
+    }
+    return descriptor_beyond_standard(descriptor); /* what a host prints must not reach the map */
+}
+
+/* key: NULL for any. */
+static photon_file_result open_file(const run_context *run, const char *path, const photon_file_key *key,
+                                    bool may_share, file_header *out_header, photon_file *out_file,
+                                    photon_map *out_global, photon_map *out_caustic, char *message, size_t message_size)
 {
     snprintf(message, message_size, "%s", "");
-    bool may_share = true;
-    /* O_NONBLOCK: a FIFO would wait for its writer */
-    int descriptor = open(path, O_RDWR | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (descriptor < 0 && (errno == EACCES || errno == EROFS || errno == EPERM)) {
-        may_share = false;
-        descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    }
-    descriptor = descriptor_beyond_standard(descriptor); /* what a host prints must not reach the map */
+    int descriptor = open_descriptor(path, &may_share);
     if (descriptor < 0 && errno == ENOENT)
         return PHOTON_FILE_ABSENT;
     struct stat status;
@@ -477,19 +484,19 @@ photon_file_result photon_file_open(const run_context *run, const char *path, co
     photon_file file = {.descriptor = -1, .guard = -1};
     photon_map maps[MAP_COUNT];
     photon_file_result result = PHOTON_FILE_REFUSED;
-    file_header h;
-    ssize_t got = S_ISREG(status.st_mode) ? pread(descriptor, &h, sizeof h, 0) : 0;
+    file_header *h = out_header;
+    ssize_t got = S_ISREG(status.st_mode) ? pread(descriptor, h, sizeof *h, 0) : 0;
     if (!S_ISREG(status.st_mode)) {
         snprintf(message, message_size, "it is no regular file");
         result = PHOTON_FILE_FAILED;
     } else if (got < 0) {
         snprintf(message, message_size, "%s", strerror(errno));
         result = PHOTON_FILE_FAILED;
-    } else if (memcmp(h.magic, MAGIC, (size_t)got < sizeof MAGIC ? (size_t)got : sizeof MAGIC) != 0) {
+    } else if (memcmp(h->magic, MAGIC, (size_t)got < sizeof MAGIC ? (size_t)got : sizeof MAGIC) != 0) {
         snprintf(message, message_size, "it is no photon map");
         result = PHOTON_FILE_FOREIGN;
-    } else if (header_is_valid(&h, (uint64_t)got, (uint64_t)status.st_size, key, message, message_size)) {
-        result = open_maps(run, descriptor, &h, may_share, &file, maps, message, message_size);
+    } else if (header_is_valid(h, (uint64_t)got, (uint64_t)status.st_size, key, message, message_size)) {
+        result = open_maps(run, descriptor, h, may_share, &file, maps, message, message_size);
     }
     if (file.descriptor != descriptor)
         close(descriptor);
@@ -500,6 +507,29 @@ photon_file_result photon_file_open(const run_context *run, const char *path, co
     *out_file = file;
     *out_global = maps[GLOBAL];
     *out_caustic = maps[CAUSTIC];
+    return PHOTON_FILE_OPEN;
+}
+
+photon_file_result photon_file_open(const run_context *run, const char *path, const photon_file_key *key,
+                                    photon_file *out_file, photon_map *out_global, photon_map *out_caustic,
+                                    char *message, size_t message_size)
+{
+    file_header h;
+    return open_file(run, path, key, true, &h, out_file, out_global, out_caustic, message, message_size);
+}
+
+photon_file_result photon_file_read(const run_context *run, const char *path, photon_file_key *out_key,
+                                    hash128 *out_fixed, photon_file *out_file, photon_map *out_global,
+                                    photon_map *out_caustic, char *message, size_t message_size)
+{
+    file_header h;
+    photon_file_result result =
+        open_file(run, path, NULL, false, &h, out_file, out_global, out_caustic, message, message_size);
+    if (result != PHOTON_FILE_OPEN)
+        return result;
+    *out_key = h.key;
+    h.nonce = 0; /* all else is the same whoever traced it */
+    *out_fixed = hash_of_header(&h);
     return PHOTON_FILE_OPEN;
 }
 

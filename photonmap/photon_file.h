@@ -59,6 +59,13 @@ typedef enum photon_file_result {
 photon_file_result photon_file_open(const run_context *run, const char *path, const photon_file_key *key,
                                     photon_file *out_file, photon_map *out_global, photon_map *out_caustic,
                                     char *message, size_t message_size);
+/* Any photon map, whatever it was made of, as a copy in memory that nobody else sees or fills; its claims count as
+ * empty. *out_fixed: a fingerprint of all that never changes in it, what it was made of among it: maps of the same are
+ * filled with the same irradiances. Results and message as above. */
+photon_file_result photon_file_read(const run_context *run, const char *path, photon_file_key *out_key,
+                                    hash128 *out_fixed, photon_file *out_file, photon_map *out_global,
+                                    photon_map *out_caustic, char *message, size_t message_size);
+
 /* Whether the file is still the one that was opened. Somebody may cut it short, or copy another one over it, while it
  * is mapped: what was read since the last time this was true need not be the maps'. A copy in memory is always intact.
  */

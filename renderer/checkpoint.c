@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "checkpoint.h"
 
+#include "integrator/integrator.h"
 #include "output/atomic_file.h"
 #include "rays/bvh.h"
 #include "scene_hash.h"
@@ -33,7 +34,7 @@ static hash128 hash_filter(const pixel_filter *filter)
 /* The photons whose irradiance has been demanded, so that layers and dumps that show it see no difference. */
 static uint64_t words_of(const struct ag_rendering *r)
 {
-    return r->settings.integrator == AG_INTEGRATOR_PHOTONMAP && r->settings.cache == AG_CACHE_ON_DEMAND
+    return integrator_of(r->settings.integrator)->has_photon_map && r->settings.cache == AG_CACHE_ON_DEMAND
                ? r->maps.global.bearers.count
                : 0;
 }

@@ -6,6 +6,7 @@
 #include "film/debug_views.h"
 #include "floating_point.h"
 #include "integrator/direct_pilot.h"
+#include "integrator/integrator.h"
 #include "odd_scene.h"
 #include "output/photon_dump.h"
 #include "rays/passage.h"
@@ -14,9 +15,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-
-/* A gather ray shorter than this many mean radii of an estimate does not use the cache. */
-static const float GATHER_MIN_DISTANCE_RADII = 1.0f;
 
 /* Brings all pixels to their samples, with stops to decide how the next are split. */
 static ag_status render_passes(ag_rendering *r, uint32_t wanted)
@@ -71,7 +69,7 @@ static void collect_counts(ag_rendering *r)
 }
 
 static transport make_transport(const ag_context *context, const scene *s, const ag_render_settings *settings,
-                                const aov_layout *layout, maps *m)
+                                const aov_layout *layout)
 {
     transport t = {.s = s,
                    .run = &context->run,
@@ -85,12 +83,6 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
     for (uint32_t i = 0; i < s->light_count; i++)
         t.can_meet_lights = t.can_meet_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
-    if (settings->integrator == AG_INTEGRATOR_PHOTONMAP) {
-        t.caustic = &m->caustic;
-        t.cache = &m->cache;
-        t.incident = m->incident.cells ? &m->incident : NULL;
-        t.gather_min_distance = GATHER_MIN_DISTANCE_RADII * m->global.mean_radius;
-    }
     return t;
 }
 
@@ -118,9 +110,9 @@ static ag_status settle_settings(ag_context *context, const scene *s, const ag_r
     *out_settings = *wanted;
     if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
         out_settings->photon_aim = out_settings->photon_map_file ? 0.0f : AG_DEFAULT_PHOTON_AIM;
-    if (out_settings->direct_guiding == AG_DIRECT_GUIDING_AUTOMATIC)
-        out_settings->direct_guiding =
-            out_settings->integrator == AG_INTEGRATOR_PATH ? 0.0f : AG_DEFAULT_DIRECT_GUIDING;
+    const integrator *kind = integrator_of(out_settings->integrator);
+    if (kind && out_settings->direct_guiding == AG_DIRECT_GUIDING_AUTOMATIC)
+        out_settings->direct_guiding = kind->direct_guiding;
     if (s->has_camera)
         return render_settings_check(context, out_settings);
     log_message(context->log, AG_LOG_ERROR, "the scene has no Camera");
@@ -166,10 +158,10 @@ static ag_status create_film(ag_rendering *r)
         group_count = (int)r->s->light_group_count;
     }
     ag_status status =
-        pixel_filter_create(&r->s->pixel_filter, r->s->options.disable_pixel_jitter, r->context->log, &filter);
+        pixel_filter_create(&r->s->hints.filter, r->s->hints.disable_pixel_jitter, r->context->log, &filter);
     if (status == AG_OK)
-        status = aov_layout_create(settings->layers, also, settings->integrator == AG_INTEGRATOR_PATH, group_names,
-                                   group_count, &layout);
+        status = aov_layout_create(settings->layers, also, !integrator_of(settings->integrator)->has_photon_map,
+                                   group_names, group_count, &layout);
     if (status != AG_OK)
         return status;
     r->film = film_create(settings, &r->s->space, &filter, &layout);
@@ -258,12 +250,12 @@ static ag_status prepare(ag_rendering *r)
     ag_status status = create_film(r);
     if (status != AG_OK)
         return status;
-    if (r->settings.integrator == AG_INTEGRATOR_PHOTONMAP)
-        status = maps_create(context, r->s, &r->settings, &r->maps);
-    if (status != AG_OK)
-        return status;
-    r->t = make_transport(context, r->s, &r->settings, &r->film->layout, &r->maps);
-    status = guide_direct_light(r);
+    const integrator *kind = integrator_of(r->settings.integrator);
+    r->t = make_transport(context, r->s, &r->settings, &r->film->layout);
+    if (kind->prepare)
+        status = kind->prepare(r);
+    if (status == AG_OK)
+        status = guide_direct_light(r);
     if (status != AG_OK)
         return status;
     r->workers = eye_workers_create(&r->t, context->statistics.threads);
@@ -310,8 +302,13 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     ag_context *context = r->context;
     uint32_t wanted = (uint32_t)samples_per_pixel;
     phase_begin begin = context_begin_phase();
-    ag_status status = r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
+    const integrator *kind = integrator_of(r->settings.integrator);
+    ag_status status = kind->begin_pass ? kind->begin_pass(r) : AG_OK;
+    if (status == AG_OK)
+        status = r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
     film_resolve(r->film);
+    if (status == AG_OK && kind->end_pass)
+        status = kind->end_pass(r);
     if (status == AG_OK)
         status = debug_views_render(&r->t, &context->run, r->workers, r->film);
     status = check_map(r, status);
@@ -327,7 +324,7 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
 
 ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
 {
-    if (!r || !path || r->settings.integrator != AG_INTEGRATOR_PHOTONMAP)
+    if (!r || !path || !integrator_of(r->settings.integrator)->has_photon_map)
         return AG_ERROR_ARGUMENT;
     if (!photon_file_is_intact(&r->maps.file)) {
         log_message(r->context->log, AG_LOG_ERROR,

@@ -2,16 +2,14 @@
 #include "render_tiles.h"
 
 #include "clock.h"
-#include "integrator/final_gather.h"
 #include "integrator/first_hit.h"
-#include "integrator/path_tracing.h"
+#include "integrator/integrator.h"
 #include "integrator/sample_queue.h"
-#include "integrator/shading.h"
 #include "tile_scheduler.h"
 
 #include <stdlib.h>
 
-enum { TILE_SIZE = 32, ARENA_BLOCK_BYTES = 1 << 16 };
+enum { TILE_SIZE = 32 };
 
 /* --- workers --- */
 
@@ -25,23 +23,11 @@ void eye_workers_destroy(eye_worker *workers, unsigned count)
     free(workers);
 }
 
-/* What a worker has in use, tried out here, so that nothing can fail while tiles run. */
 static bool eye_worker_reserve(eye_worker *worker, const transport *t)
 {
-    float most_indirect = t->settings->clamp_indirect > 0.0f ? t->settings->clamp_indirect : INFINITY;
+    const integrator *kind = integrator_of(t->settings->integrator);
     worker->queue = sample_queue_create();
-    if (!worker->queue || !t->cache)
-        return worker->queue != NULL;
-    worker->batch = gather_batch_create(most_indirect);
-    worker->scratch = arena_create(ARENA_BLOCK_BYTES);
-    if (!worker->batch || !worker->scratch)
-        return false;
-    arena_mark mark = arena_save(worker->scratch);
-    bool fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor)) != NULL;
-    if (fits && (aov_has(t->layout, SUM_IRRADIANCE) || t->layout->has_view[VIEW_PHOTON_DENSITY])) /* alone */
-        fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->cache->map) * sizeof(photon_neighbor));
-    arena_restore(worker->scratch, mark);
-    return fits;
+    return worker->queue && (!kind->reserve || kind->reserve(t, worker));
 }
 
 eye_worker *eye_workers_create(const transport *t, unsigned count)
@@ -64,6 +50,7 @@ eye_worker *eye_workers_create(const transport *t, unsigned count)
 typedef struct tile_job {
     ag_context *context;
     const transport *t;
+    const integrator *kind;
     tile_scheduler *tiles;
     eye_worker *workers;
     ag_film *film;
@@ -92,10 +79,10 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
     const ag_render_settings *settings = t->settings;
     sampler where = sampler_make(settings->seed, x, y, index, sampler_bits((uint32_t)settings->samples_per_pixel));
     vec2 offset = pixel_filter_sample(&job->film->filter, sampler_2d(&where, SAMPLE_PIXEL, 0), &out->sign);
-    vec2 lens = t->s->options.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
-    float time = !t->s->has_motion                    ? 0.0f
-                 : t->s->options.disable_pixel_jitter ? 0.5f
-                                                      : sampler_2d(&where, SAMPLE_TIME, 0).x;
+    vec2 lens = t->s->hints.disable_pixel_jitter ? (vec2){0.5f, 0.5f} : sampler_2d(&where, SAMPLE_LENS, 0);
+    float time = !t->s->has_motion                  ? 0.0f
+                 : t->s->hints.disable_pixel_jitter ? 0.5f
+                                                    : sampler_2d(&where, SAMPLE_TIME, 0).x;
     float width = (float)settings->width, height = (float)settings->height;
     camera_place place = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, width / height,
                           lens, time};
@@ -105,10 +92,7 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
     uint64_t cost_before = eye_worker_cost(worker);
     worker->light_variance = 0.0f;
     worker->gather_cost = worker->light_cost = 0;
-    if (settings->integrator == AG_INTEGRATOR_PATH)
-        path_tracing_radiance(t, worker, ray, &where, out);
-    else
-        shading_radiance(t, worker, ray, &where, out);
+    job->kind->sample(t, worker, ray, &where, out);
     note_split(worker, cost_before, out);
     if (out->layers && t->layout->needs_first_hit)
         first_hit_project(t, &place, &out->layers->first);
@@ -119,8 +103,8 @@ static void finish_samples(tile_job *job, eye_worker *worker)
 {
     const transport *t = job->t;
     gather_batch *batch = worker->batch;
-    if (batch && !run_is_cancelled(t->run))
-        final_gather_resolve(t, worker);
+    if (job->kind->complete && !run_is_cancelled(t->run))
+        job->kind->complete(t, worker);
     uint32_t count = worker->queue->count;
     if (count == 0 || run_is_cancelled(t->run))
         return;
@@ -207,6 +191,7 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
     double most = (double)r->settings.samples_per_pixel;
     tile_job job = {.context = context,
                     .t = &r->t,
+                    .kind = integrator_of(r->settings.integrator),
                     .film = film,
                     .workers = r->workers,
                     .wanted = wanted,

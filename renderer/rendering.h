@@ -18,7 +18,7 @@ typedef struct maps {
 
 struct ag_rendering {
     ag_context *context; /* borrowed */
-    scene *s;            /* borrowed; parameters are marked as looked up, nothing else changes */
+    const scene *s;      /* borrowed */
     ag_render_settings settings;
     maps maps;
     direct_guide direct_guide;

@@ -152,11 +152,7 @@ void ag_scene_destroy(ag_scene *scene_to_destroy)
     free(scene_to_destroy);
 }
 
-const char *ag_scene_film_file_name(const ag_scene *loaded)
-{
-    const parameter *name = parameter_list_find(&loaded->s->film, "filename");
-    return name && name->type == PARAMETER_STRING && name->count == 1 ? name->strings[0] : NULL;
-}
+const char *ag_scene_film_file_name(const ag_scene *loaded) { return loaded->s->hints.file_name; }
 
 bool ag_scene_was_read_from(const ag_scene *loaded, const char *path)
 {

@@ -20,6 +20,7 @@ scene *scene_create(void)
     scene *s = calloc(1, sizeof *s);
     if (s) {
         s->space = working_space_rec709();
+        s->hints = scene_hints_default();
         s->bounds_min = (vec3){INFINITY, INFINITY, INFINITY};
         s->bounds_max = (vec3){-INFINITY, -INFINITY, -INFINITY};
         s->camera_medium = SCENE_NO_MEDIUM;
@@ -42,10 +43,7 @@ void scene_destroy(scene *s)
         free(s->file_names[i]);
     for (uint32_t i = 0; i < s->light_group_count; i++)
         free(s->light_group_names[i]);
-    parameter_list_reset(&s->integrator);
-    parameter_list_reset(&s->sampler);
-    parameter_list_reset(&s->film);
-    parameter_list_reset(&s->pixel_filter);
+    scene_hints_reset(&s->hints);
     free(s->file_names);
     free(s->defined);
     free(s->light_group_names);

@@ -11,12 +11,12 @@
 #include "material/material.h"
 #include "medium.h"
 #include "run_context.h"
+#include "scene_hints.h"
 #include "scene_names.h"
 #include "scene_request.h"
 #include "shape/instance.h"
 #include "shape/shape.h"
 #include "text/definitions.h"
-#include "text/parameter_list.h"
 #include "texture/texture.h"
 
 struct bvh;
@@ -24,13 +24,6 @@ struct color_config;
 struct light_tree;
 
 enum { SCENE_LIGHT_GROUPS_MAX = 32 };
-
-/* What the file's Option directives say that the renderer heeds. */
-typedef struct scene_options {
-    bool has_seed;
-    int64_t seed;              /* of 32 bits */
-    bool disable_pixel_jitter; /* samples in the middle of pixel and lens */
-} scene_options;
 
 typedef struct scene {
     working_space space;                     /* of all its colours; settled before anything is read */
@@ -65,9 +58,7 @@ typedef struct scene {
     camera camera;
     bool has_camera;
 
-    /* Directives that the renderer interprets; .name is NULL where the file has none. */
-    parameter_list integrator, sampler, film, pixel_filter;
-    scene_options options;
+    scene_hints hints; /* what its file says of the picture */
 
     char *defined;     /* which definitions its text has used, see definitions_describe; NULL: it was given none */
     char **file_names; /* interned, for file_location.file */

@@ -271,7 +271,7 @@ hash128 scene_hash_of_view(const scene *s)
     hash128 begun = hash128_begin(), *h = &begun;
     ADD(s->has_camera);
     add_camera(h, &s->camera);
-    ADD(s->options.disable_pixel_jitter);
+    ADD(s->hints.disable_pixel_jitter);
     ADD(s->light_group_count);
     for (uint32_t i = 0; i < s->light_group_count; i++)
         hash128_add_text(h, s->light_group_names[i]);

@@ -12,8 +12,8 @@ struct scene;
  * lights. Camera, film, names and groups of lights may differ. */
 hash128 scene_hash_of_light(const struct scene *s);
 
-/* The rest that a picture depends on: camera, options, names, groups of lights. Of the Film, Sampler, Integrator and
- * PixelFilter directives the renderer's settings tell. */
+/* The rest that a picture depends on: camera, jitter, names, groups of lights. Of the other hints the renderer's
+ * settings and the film's filter tell. */
 hash128 scene_hash_of_view(const struct scene *s);
 
 #endif

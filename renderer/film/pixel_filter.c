@@ -3,26 +3,10 @@
 
 #include <string.h>
 
-typedef enum filter_kind { FILTER_GAUSSIAN, FILTER_BOX, FILTER_TRIANGLE, FILTER_MITCHELL, FILTER_SINC } filter_kind;
-
 /* Signs that sum up to less than this share of what they should are taken to cancel out. */
 static const double LEAST_SIGN_SHARE = 0.5;
 
 static const double PI = 3.14159265358979323846;
-
-/* What each has besides its radius. */
-typedef struct filter_shape {
-    filter_kind kind;
-    float sigma, b, c, tau;
-} filter_shape;
-
-static const struct {
-    const char *name;
-    float radius; /* default */
-} FILTERS[] = {
-    [FILTER_GAUSSIAN] = {"gaussian", 1.5f}, [FILTER_BOX] = {"box", 0.5f},   [FILTER_TRIANGLE] = {"triangle", 2.0f},
-    [FILTER_MITCHELL] = {"mitchell", 2.0f}, [FILTER_SINC] = {"sinc", 4.0f},
-};
 
 static double sinc(double x) { return x == 0.0 ? 1.0 : sin(PI * x) / (PI * x); }
 
@@ -38,7 +22,7 @@ static double mitchell(double x, double b, double c)
 }
 
 /* Along one axis, up to a factor. */
-static double filter_value(const filter_shape *f, double x, double radius)
+static double filter_value(const filter_hint *f, double x, double radius)
 {
     double sigma = (double)f->sigma;
     switch (f->kind) {
@@ -55,7 +39,7 @@ static double filter_value(const filter_shape *f, double x, double radius)
 
 /* One axis of the filter; *out_mean_sign is its integral over that of its magnitude. false: it is nothing but rounding
  * at this resolution, or its lobes cancel out. */
-static bool tabulate(const filter_shape *f, float radius, float *cdf, signed char *sign, double *out_mean_sign)
+static bool tabulate(const filter_hint *f, float radius, float *cdf, signed char *sign, double *out_mean_sign)
 {
     double sum = 0.0, whole = 0.0, step = 2.0 * (double)radius / PIXEL_FILTER_STEPS, running[PIXEL_FILTER_STEPS + 1];
     running[0] = 0.0;
@@ -72,61 +56,17 @@ static bool tabulate(const filter_shape *f, float radius, float *cdf, signed cha
     return sum > 0.0 && *out_mean_sign > 0.05;
 }
 
-static ag_status read_shape(parameter_list *directive, log_sink *log, filter_shape *f, float radius[2])
+ag_status pixel_filter_create(const filter_hint *hint, bool is_centered, log_sink *log, pixel_filter *out_filter)
 {
-    static const struct {
-        filter_kind kind;
-        const char *name;
-        size_t place;
-    } OWN[] = {
-        {FILTER_GAUSSIAN, "sigma", offsetof(filter_shape, sigma)},
-        {FILTER_MITCHELL, "B", offsetof(filter_shape, b)},
-        {FILTER_MITCHELL, "C", offsetof(filter_shape, c)},
-        {FILTER_SINC, "tau", offsetof(filter_shape, tau)},
-    };
-    ag_status status = parameter_get_float(directive, log, "xradius", &radius[0]);
-    if (status == AG_OK)
-        status = parameter_get_float(directive, log, "yradius", &radius[1]);
-    for (size_t i = 0; i < sizeof OWN / sizeof *OWN && status == AG_OK; i++)
-        if (OWN[i].kind == f->kind)
-            status = parameter_get_float(directive, log, OWN[i].name, (float *)((char *)f + OWN[i].place));
-    if (status != AG_OK)
-        return status;
-    if (!(radius[0] > 0.0f && radius[0] <= 64.0f && radius[1] > 0.0f && radius[1] <= 64.0f && f->sigma > 0.0f &&
-          f->tau > 0.0f)) {
-        log_at(log, AG_LOG_ERROR, directive->where, "PixelFilter: radii must be in (0, 64], sigma and tau above 0");
-        return AG_ERROR_SCENE;
-    }
-    parameter_list_warn_unused(directive, log);
-    return AG_OK;
-}
-
-ag_status pixel_filter_create(parameter_list *directive, bool is_centered, log_sink *log, pixel_filter *out_filter)
-{
-    filter_shape f = {.kind = FILTER_GAUSSIAN, .sigma = 0.5f, .b = 1.0f / 3.0f, .c = 1.0f / 3.0f, .tau = 3.0f};
-    bool is_known = !directive->name;
-    for (size_t i = 0; i < sizeof FILTERS / sizeof *FILTERS && !is_known; i++) {
-        is_known = strcmp(directive->name, FILTERS[i].name) == 0;
-        f.kind = is_known ? (filter_kind)i : FILTER_GAUSSIAN;
-    }
-    float radius[2] = {FILTERS[f.kind].radius, FILTERS[f.kind].radius};
-    if (!is_known) {
-        log_at_once(log, AG_LOG_WARNING, directive->where, "pixel filter",
-                    "PixelFilter \"%s\" is not known; pbrt's default, \"gaussian\", stands in", directive->name);
-    } else if (directive->name) {
-        ag_status status = read_shape(directive, log, &f, radius);
-        if (status != AG_OK)
-            return status;
-    }
     out_filter->has_signs = false;
     out_filter->mean_sign = 1.0;
     for (int axis = 0; axis < 2; axis++) {
         double mean_sign;
-        out_filter->radius[axis] = is_centered ? 0.0f : radius[axis];
-        if (!tabulate(&f, radius[axis], out_filter->cdf[axis], out_filter->sign[axis], &mean_sign)) {
-            log_at(log, AG_LOG_ERROR, directive->where, "PixelFilter: %s",
-                   f.kind == FILTER_GAUSSIAN ? "\"sigma\" is too small for the radius"
-                                             : "its negative lobes leave nothing of it");
+        out_filter->radius[axis] = is_centered ? 0.0f : hint->radius[axis];
+        if (!tabulate(hint, hint->radius[axis], out_filter->cdf[axis], out_filter->sign[axis], &mean_sign)) {
+            log_at(log, AG_LOG_ERROR, hint->where, "PixelFilter: %s",
+                   hint->kind == FILTER_GAUSSIAN ? "\"sigma\" is too small for the radius"
+                                                 : "its negative lobes leave nothing of it");
             return AG_ERROR_SCENE;
         }
         if (is_centered)

@@ -6,7 +6,7 @@
 #define AFTERGLOW_PIXEL_FILTER_H
 
 #include "math/vec3.h"
-#include "text/parameter_list.h"
+#include "scene_hints.h"
 
 enum { PIXEL_FILTER_STEPS = 256 };
 
@@ -18,10 +18,9 @@ typedef struct pixel_filter {
     double mean_sign;                        /* of a sample, (0, 1] */
 } pixel_filter;
 
-/* From the PixelFilter directive (box, triangle, gaussian, mitchell, sinc; .name NULL: pbrt-v4's default, gaussian).
- * Others are named in a warning, and the default stands in. is_centered: no jitter, whatever the filter. Errors:
- * AG_ERROR_SCENE. */
-ag_status pixel_filter_create(parameter_list *directive, bool is_centered, log_sink *log, pixel_filter *out_filter);
+/* is_centered: no jitter, whatever the filter. Errors: AG_ERROR_SCENE (nothing is left of it: the Gaussian is too
+ * narrow for its table, or negative lobes cancel the rest). */
+ag_status pixel_filter_create(const filter_hint *hint, bool is_centered, log_sink *log, pixel_filter *out_filter);
 
 /* Offset from the pixel's centre, in pixels; u in [0,1)^2. *out_sign is 1 or -1. */
 vec2 pixel_filter_sample(const pixel_filter *filter, vec2 u, int *out_sign);

@@ -3,6 +3,7 @@
 
 #include "integrator/direct_lighting.h"
 #include "integrator/first_hit.h"
+#include "integrator/integrator.h"
 #include "rays/passage.h"
 
 enum { ROULETTE_AFTER = 3 };
@@ -166,3 +167,5 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
         ray = surface_ray(&v.hit, v.arrived, next.direction);
     }
 }
+
+const integrator path_integrator = {.sample = path_tracing_radiance};

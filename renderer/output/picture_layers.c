@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "output/picture_layers.h"
 
+#include "integrator/integrator.h"
 #include "settings_table.h"
 
 #include <stdarg.h>
@@ -174,7 +175,7 @@ static void describe_settings(const ag_render_settings *settings, picture_layers
         const setting_row *row = setting_at(i);
         char value[SETTING_TEXT_MAX], name[64];
         if (!(row->marks & SETTING_IN_HEADER) ||
-            (settings->integrator == AG_INTEGRATOR_PATH && (row->marks & SETTING_OF_PHOTONS)))
+            (!integrator_of(settings->integrator)->has_photon_map && (row->marks & SETTING_OF_PHOTONS)))
             continue;
         name_attribute(row->json, name, sizeof name);
         setting_format(row, settings, value);
@@ -195,7 +196,7 @@ static void describe(ag_context *context, const ag_film *film, const ag_output_s
     add_text(out, "afterglow/version", "%s", ag_version());
     add_text(out, "afterglow/isa", "%s", context->isa);
     describe_settings(r, out);
-    if (r->integrator == AG_INTEGRATOR_PHOTONMAP) {
+    if (integrator_of(r->integrator)->has_photon_map) {
         add_text(out, "afterglow/photonsGlobal", "%llu", (unsigned long long)s->photons_stored_global);
         add_text(out, "afterglow/photonsCaustic", "%llu", (unsigned long long)s->photons_stored_caustic);
         add_text(out, "afterglow/photonPathsEmitted", "%llu", (unsigned long long)s->photons_emitted);

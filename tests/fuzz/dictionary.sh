@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# dictionary.sh: the words of a format that its reader (and for pbrt the renderer) knows, for the fuzzers, from its sources.
+# dictionary.sh: the words of a format that its reader knows, for the fuzzers, from its sources.
 # Use: tests/fuzz/dictionary.sh pbrt|gltf >tests/fuzz/pbrt.dict|gltf.dict
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -17,7 +17,7 @@ gltf)
         5126 33071 33648 10497 null true '{}' '[]' ':{' ':[' ',' 4294967295 '%20' '../'
     ;;
 pbrt)
-    words scene/readers/pbrt/*.c scene/text/parameter_list.c scene/color/spectra.c scene/color/color_space.c renderer/render_settings.c
+    words scene/readers/pbrt/*.c scene/color/spectra.c scene/color/color_space.c
     for type in bool integer float string rgb spectrum texture; do
         for name in alpha reflectance roughness L I scale radius filename eta displacement; do
             printf '"\\"%s %s\\""\n' "$type" "$name"

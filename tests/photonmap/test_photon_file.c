@@ -1,7 +1,7 @@
 /* test_photon_file.c: maps in a file: the same answers, kept irradiances; what is damaged or of something else is
  * refused; processes that share it compute nothing twice, and what dead ones have left is found.
  * Threads: one; processes of its own. */
-/* ctest: sanitize */
+/* ctest: sanitize long */
 #define _GNU_SOURCE
 #include "clock.h"
 #include "fixtures/photon_field.h"

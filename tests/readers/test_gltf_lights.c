@@ -116,22 +116,20 @@ static const char *camera_text(const char *camera_json, const char *node)
 
 static void expect_film(const reading *r, double width, double height)
 {
-    const parameter *x = parameter_list_find(&r->scene->film, "xresolution");
-    const parameter *y = parameter_list_find(&r->scene->film, "yresolution");
-    assert_non_null(x);
-    assert_non_null(y);
-    assert_near(x->numbers[0], width, 0);
-    assert_near(y->numbers[0], height, 0);
+    const scene_hints *hints = &r->scene->hints;
+    assert_true(hints->width.is_given && hints->height.is_given);
+    assert_near((double)hints->width.value, width, 0);
+    assert_near((double)hints->height.value, height, 0);
 }
 
 /* Where the ray through the film's place goes, from a place on it in [0, 1]. */
 static vec3 direction_at(const reading *r, float x, float y)
 {
     camera c = r->scene->camera;
-    const double *width = parameter_list_find(&r->scene->film, "xresolution")->numbers;
-    const double *height = parameter_list_find(&r->scene->film, "yresolution")->numbers;
+    const scene_hints *hints = &r->scene->hints;
     c.tan_half_fov = (float)tan((double)c.fov_degrees * PI_ / 360.0);
-    scene_ray ray = camera_generate_ray(&c, x, y, (float)(*width / *height), (vec2){0.5f, 0.5f}, 0.0f);
+    scene_ray ray = camera_generate_ray(&c, x, y, (float)((double)hints->width.value / (double)hints->height.value),
+                                        (vec2){0.5f, 0.5f}, 0.0f);
     return ray.direction;
 }
 

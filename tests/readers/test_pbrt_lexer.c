@@ -4,6 +4,7 @@
 
 #include "text/decimal.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -19,15 +19,6 @@ static reading told(const char *text, int count, const char *const *words)
     return r;
 }
 
-static double number_of(const parameter_list *list, const char *name)
-{
-    const parameter *p = parameter_list_find(list, name);
-    assert_non_null(p);
-    assert_int_equal(p->type, PARAMETER_FLOAT);
-    assert_int_equal(p->count, 1);
-    return p->numbers[0];
-}
-
 static void options(void **state)
 {
     (void)state;
@@ -40,19 +31,20 @@ static void options(void **state)
                                    "t:1:14: warning: Film: \"scale\" is pbrt-v3's: it is read as \"iso\"",
                                    "t:2:58: warning: PixelFilter: \"alpha\"",
                                    "t:3:1: warning: Sampler: ", "t:3:22: warning: Camera: \"environment\"", NULL});
-    assert_string_equal(r.scene->film.name, "rgb");
-    assert_near(number_of(&r.scene->film, "iso"), 250, 1e-9);
-    assert_near(number_of(&r.scene->film, "maxcomponentvalue"), 9, 0);
-    assert_null(parameter_list_find(&r.scene->film, "scale"));
-    assert_near(number_of(&r.scene->pixel_filter, "xradius"), 3, 0);
-    assert_near(number_of(&r.scene->pixel_filter, "yradius"), 4, 0);
-    assert_near(number_of(&r.scene->pixel_filter, "sigma"), 0.5, 1e-12);
-    assert_string_equal(r.scene->sampler.name, "paddedsobol");
+    const scene_hints *hints = &r.scene->hints;
+    assert_near(hints->iso, 250, 1e-9);
+    assert_near(hints->max_component, 9, 0);
+    assert_int_equal(hints->filter.kind, FILTER_GAUSSIAN);
+    assert_near(hints->filter.radius[0], 3, 0);
+    assert_near(hints->filter.radius[1], 4, 0);
+    assert_near(hints->filter.sigma, 0.5, 1e-12);
+    assert_true(hints->has_sampler);
     assert_int_equal(r.scene->camera.kind, CAMERA_EQUIRECTANGULAR);
     reading_destroy(&r);
     /* where the new name is there too it holds */
-    r = told("Film \"rgb\" \"float iso\" 50 \"float scale\" 2 WorldBegin", 0, NULL);
-    assert_near(number_of(&r.scene->film, "iso"), 50, 0);
+    r = told("Film \"rgb\" \"float iso\" 50 \"float scale\" 2 WorldBegin", 1,
+             (const char *const[]){"t:1:27: warning: Film \"rgb\": \"float scale\" is not known", NULL});
+    assert_near(r.scene->hints.iso, 50, 0);
     reading_destroy(&r);
 }
 

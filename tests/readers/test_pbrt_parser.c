@@ -5,6 +5,8 @@
 #include "fixtures/pbrt_fixture.h"
 #include "fixtures/shared_folder.h"
 
+#include "color/spectra.h"
+
 static void errors_name_place_and_reason(void **state)
 {
     (void)state;
@@ -285,43 +287,104 @@ static void options_warn_where_they_matter(void **state)
         "TransformTimes 0 1 WorldBegin\nCoordSysTransform \"nowhere\"";
     reading r = reading_create(NULL, text, strlen(text));
     assert_int_equal(r.status, AG_OK);
-    assert_true(r.scene->options.has_seed && r.scene->options.seed == -8 && r.scene->options.disable_pixel_jitter);
+    assert_true(r.scene->hints.seed.is_given && r.scene->hints.disable_pixel_jitter);
+    assert_int_equal(r.scene->hints.seed.value, -8);
     assert_string_equal(r.said[AG_LOG_WARNING],
                         "t:2:1: warning: Option \"forcediffuse\" is not supported: materials stay as they are\n"
                         "t:4:1: warning: no coordinate system is named \"nowhere\": CoordSysTransform is ignored\n");
     reading_destroy(&r);
 }
 
-static void words_for_the_renderer_are_kept(void **state)
+/* A hint that is given has that value. */
+static void check_integer(integer_hint hint, int64_t value)
+{
+    assert_true(hint.is_given);
+    assert_int_equal(hint.value, value);
+}
+
+static void hints_for_the_renderer(void **state)
 {
     (void)state;
-    reading r = reading_of("Integrator \"photonmap\" \"integer nused\" [ 300 ] \"float maxdist\" 3 \"bool b\" true\n"
-                           "\"bool c\" [ \"false\" ] \"string s\" [ \"x\" \"y\" ] \"integer empty\" [ ]\n"
-                           "Sampler \"halton\" Sampler \"sobol\" \"integer pixelsamples\" 16\n"
-                           "Film \"rgb\" \"string filename\" \"a.exr\" PixelFilter \"box\" Accelerator \"bvh\"\n"
-                           "\"integer maxnodeprims\" 4 ColorSpace \"srgb\" WorldBegin");
-    parameter_list *list = &r.scene->integrator;
-    assert_string_equal(list->directive, "Integrator");
-    assert_string_equal(list->name, "photonmap");
-    assert_int_equal(list->count, 6);
-    assert_int_equal(list->where.line, 1);
-    assert_int_equal(list->where.column, 1);
-    int64_t nused = 0;
-    float maxdist = 0.0f;
-    bool b = false, c = true;
-    assert_int_equal(parameter_get_int(list, NULL, "nused", &nused), AG_OK);
-    assert_int_equal(parameter_get_float(list, NULL, "maxdist", &maxdist), AG_OK);
-    assert_int_equal(parameter_get_bool(list, NULL, "b", &b), AG_OK);
-    assert_int_equal(parameter_get_bool(list, NULL, "c", &c), AG_OK);
-    assert_true(nused == 300 && maxdist == 3.0f && b && !c);
-    assert_int_equal(parameter_list_find(list, "s")->count, 2);
-    assert_int_equal(parameter_list_find(list, "empty")->count, 0);
-    assert_null(parameter_list_find(list, "nothing"));
-    assert_string_equal(r.scene->sampler.name, "sobol");
-    assert_string_equal(r.scene->film.name, "rgb");
-    assert_string_equal(r.scene->pixel_filter.name, "box");
+    reading r =
+        reading_of("Integrator \"photonmap\" \"integer nused\" [ 300 ] \"float maxdist\" 3 \"bool finalgather\" true\n"
+                   "\"integer causticphotons\" 0 \"integer maxdepth\" 7 \"integer finalgathersamples\" 9\n"
+                   "Sampler \"stratified\" Sampler \"sobol\" \"integer pixelsamples\" 16 \"integer seed\" -3\n"
+                   "Option \"seed\" 5 Film \"gbuffer\" \"string filename\" \"a.exr\" \"bool savefp16\" false\n"
+                   "\"integer xresolution\" 40 \"integer yresolution\" 20 \"integer pixelbounds\" [ 10 20 5 99 ]\n"
+                   "\"float iso\" 200 \"float whitebalance\" 5000 \"float maxcomponentvalue\" 10\n"
+                   "PixelFilter \"box\" \"float xradius\" 2 Accelerator \"bvh\"\n"
+                   "\"integer maxnodeprims\" 4 ColorSpace \"srgb\" WorldBegin");
+    const scene_hints *hints = &r.scene->hints;
+    assert_int_equal(r.count[AG_LOG_WARNING], 0);
+    assert_true(hints->is_for_photon_map && hints->has_sampler && !hints->disable_pixel_jitter);
+    check_integer(hints->nearest, 300);
+    check_integer(hints->caustic_photon_count, 0);
+    check_integer(hints->max_depth, 7);
+    check_integer(hints->gather_samples, 9);
+    check_integer(hints->samples_per_pixel, 16);
+    check_integer(hints->seed, -3);
+    check_integer(hints->width, 40);
+    check_integer(hints->height, 20);
+    assert_false(hints->photon_count.is_given);
+    assert_true(hints->radius.is_given && hints->radius.value == 3.0f);
+    assert_string_equal(hints->file_name, "a.exr");
+    assert_true(hints->has_float_samples && hints->surface_layers == SURFACE_LAYERS_CAMERA);
+    assert_true(hints->iso == 200.0f && hints->max_component == 10.0f);
+    assert_true(hints->white_balance.is_given && hints->white_balance.value == 5000.0f);
+    assert_true(hints->has_crop_window);
+    for (int i = 0; i < 4; i++)
+        assert_near(hints->crop_window[i], (double[]){0.25, 0.5, 0.25, 1.0}[i], 1e-15);
+    assert_int_equal(hints->filter.kind, FILTER_BOX);
+    assert_true(hints->filter.radius[0] == 2.0f && hints->filter.radius[1] == 0.5f);
+    assert_int_equal(hints->filter.where.line, 7);
+    assert_int_equal(hints->filter.where.column, 1);
     assert_false(r.scene->has_camera);
     reading_destroy(&r);
+    r = reading_of("WorldBegin"); /* nothing said, nothing given */
+    hints = &r.scene->hints;
+    assert_false(hints->is_for_photon_map || hints->has_sampler || hints->has_crop_window || hints->has_float_samples);
+    assert_false(hints->width.is_given || hints->height.is_given || hints->samples_per_pixel.is_given);
+    assert_false(hints->seed.is_given || hints->white_balance.is_given || hints->radius.is_given);
+    assert_null(hints->file_name);
+    assert_true(hints->iso == 100.0f && hints->max_component == 0.0f && hints->filter.radius[0] == 1.5f);
+    reading_destroy(&r);
+    r = reading_of("Sampler \"stratified\" WorldBegin"); /* pbrt's defaults */
+    check_integer(r.scene->hints.samples_per_pixel, 16);
+    reading_destroy(&r);
+    r = reading_of("Sampler \"independent\" WorldBegin");
+    check_integer(r.scene->hints.samples_per_pixel, 4);
+    reading_destroy(&r);
+}
+
+/* WorldBegin settles them: an error names the parameter's place, and shows it. */
+static void wrong_hints(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *error;
+    } WRONG[] = {
+        {"Film \"rgb\" \"integer xresolution\" 0",
+         "t:1:12: error: Film: \"xresolution\" is 0, it must be from 1 to 65536\n"},
+        {"Film \"rgb\"\n\"float cropwindow\" [ 0 1 0 ]", "t:2:1: error: Film: \"cropwindow\" takes four numbers\n"},
+        {"Film \"rgb\" \"float cropwindow\" [ 0 1 2 3 ]",
+         "t:1:12: error: Film: \"cropwindow\" leaves no part of the picture\n"},
+        {"Film \"rgb\" \"string iso\" \"x\"", "t:1:12: error: "},
+        {"Sampler \"sobol\" \"integer pixelsamples\" 0",
+         "t:1:17: error: Sampler: \"pixelsamples\" is 0, it must be from 1 to 1048576\n"},
+        {"Integrator \"photonmap\" \"integer nused\" 0",
+         "t:1:24: error: Integrator: \"nused\" is 0, it must be from 1 to 65536\n"},
+        {"Integrator \"photonmap\" \"float maxdist\" -1",
+         "t:1:24: error: Integrator: \"maxdist\" must be finite and not negative\n"},
+    };
+    for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++) {
+        char text[256];
+        snprintf(text, sizeof text, "%s WorldBegin", WRONG[i].text);
+        reading r = reading_create(NULL, text, strlen(text));
+        assert_int_equal(r.status, AG_ERROR_SCENE);
+        if (!r.said[AG_LOG_ERROR] || strncmp(r.said[AG_LOG_ERROR], WRONG[i].error, strlen(WRONG[i].error)) != 0)
+            fail_msg("%s: %s", WRONG[i].text, r.said[AG_LOG_ERROR] ? r.said[AG_LOG_ERROR] : "nothing said");
+        reading_destroy(&r);
+    }
 }
 
 /* Where the origin of the only sphere comes to lie. */
@@ -529,7 +592,7 @@ static void damaged_scenes_are_survived(void **state)
     free(copy);
 }
 
-static void cornell_box_is_read_without_a_word(void **state)
+static void cornell_box_is_read(void **state)
 {
     (void)state;
     if (!shared_folder()) {
@@ -540,11 +603,12 @@ static void cornell_box_is_read_without_a_word(void **state)
     snprintf(path, sizeof path, "%s/scenes/cornell-box/scene.pbrt", shared_folder());
     reading r = reading_create(path, NULL, 0);
     assert_int_equal(r.status, AG_OK);
-    assert_int_equal(r.count[AG_LOG_WARNING], 0);
+    assert_int_equal(r.count[AG_LOG_WARNING], 1);
+    assert_non_null(strstr(r.said[AG_LOG_WARNING], "Integrator \"path\" is another renderer's"));
     assert_int_equal(r.scene->shape_count, 8);
     assert_int_equal(r.scene->light_count, 1);
     assert_true(r.scene->has_camera);
-    assert_string_equal(r.scene->integrator.name, "path");
+    assert_false(r.scene->hints.is_for_photon_map); /* it is for pbrt's "path" */
     reading_destroy(&r);
 }
 
@@ -556,7 +620,8 @@ int main(void)
         cmocka_unit_test(parameters_are_limited),
         cmocka_unit_test(warnings_are_given_once),
         cmocka_unit_test(options_warn_where_they_matter),
-        cmocka_unit_test(words_for_the_renderer_are_kept),
+        cmocka_unit_test(hints_for_the_renderer),
+        cmocka_unit_test(wrong_hints),
         cmocka_unit_test(transforms_compose_as_in_pbrt),
         cmocka_unit_test(singular_transforms_leave_out_what_they_hold),
         cmocka_unit_test(attributes_are_brought_back),
@@ -564,7 +629,7 @@ int main(void)
         cmocka_unit_test(colour_spaces_are_part_of_the_state),
         cmocka_unit_test(progress_is_told_and_cancelling_heeded),
         cmocka_unit_test(damaged_scenes_are_survived),
-        cmocka_unit_test(cornell_box_is_read_without_a_word),
+        cmocka_unit_test(cornell_box_is_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # renderer/examples/tiles_slurm.sh makes the picture that one process makes, from one photon map; frames_slurm.sh makes
-# frames that share one, and none twice. On a cluster of this machine alone, where it belongs to no other.
+# frames that share one, and none twice; map_slurm.sh puts copies of a map together. On a cluster of this machine alone, where it belongs to no other.
 set -euo pipefail
 
 # shellcheck source=tests/fixtures/slurm_cluster.sh
@@ -24,6 +24,20 @@ expect_tracers() { # how many of the jobs so far traced photons
 expect_one_picture tiles_slurm.sh -v
 [[ ! -e tiles.photons ]] || fail "the photon map is left"
 expect_tracers 1
+
+# eight jobs fill copies of one map: what is put together has all that the picture asks for
+export AFTERGLOW_MAP=$AFTERGLOW_BUILD_DIR/bin/afterglow-map
+scene=$root/tests/scenes/box_with_blocks.pbrt
+quick=(--size 40x30 --spp 2 --photons 3000 --gather-samples 4)
+AFTERGLOW=$AFTERGLOW_PROGRAM "$root/renderer/examples/map_slurm.sh" "$scene" eight.exr 8 "${quick[@]}" -v
+expect_tracers 1
+"$AFTERGLOW_PROGRAM" -q "${quick[@]}" --photon-aim 0 -o fresh.exr "$scene"
+"$AFTERGLOW_PROGRAM" -q "${quick[@]}" --photon-map eight.photons --stats again.json -o again.exr "$scene"
+for picture in eight again; do
+    oiiotool --fail 0 --failpercent 0 --hardfail 0 --diff fresh.exr $picture.exr || fail "$picture.exr differs"
+done
+[[ $(tr -d ' ' <again.json) =~ \"computed\":0, ]] || fail "irradiances were not in the merged map: $(<again.json)"
+[[ -z $(find . -name 'eight.p*' ! -name eight.photons) ]] || fail "parts or copies are left: $(ls)"
 
 cp "$root/tests/scenes/block.pbrt" .
 for frame in 1 3; do

@@ -46,7 +46,7 @@ while read -r name relation least; do
 done < <(tr -d '()' <<<"${depends//, /$'\n'}")
 echo "ok: depends on $depends"
 
-for file in bin/afterglow include/afterglow/afterglow.h include/afterglow/base.h share/man/man1/afterglow.1.gz \
+for file in bin/afterglow bin/afterglow-map share/man/man1/afterglow-map.1.gz include/afterglow/afterglow.h include/afterglow/base.h share/man/man1/afterglow.1.gz \
     share/doc/afterglow/copyright share/doc/afterglow/changelog.gz share/doc/afterglow/changelog.Debian.gz share/doc/afterglow/examples/room.pbrt; do
     [[ -s tree/usr/$file ]] || fail "no $file"
 done

@@ -284,8 +284,8 @@ typedef struct ag_render_settings {
     bool photon_map_refresh; /* one that would be refused is traced anew, and replaced */
 } ag_render_settings;
 
-/* The scene's own settings, and our defaults for what it leaves open; says in the log what it makes of another
- * renderer's Integrator. Errors: AG_ERROR_SCENE (a value out of range, with file, line and column). */
+/* The scene's own settings, and our defaults for what it leaves open. Loading the scene has checked what its file says.
+ * Errors: AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *scene,
                                                ag_render_settings *out_settings);
 
@@ -330,7 +330,30 @@ AG_API void ag_film_destroy(ag_film *film); /* NULL is fine */
  * is loaded. Errors: AG_ERROR_OUTPUT. */
 AG_API ag_status ag_photon_map_check(ag_context *context, const char *path);
 
-/* The same in passes over the whole picture: previews, checkpoints and limits of time are built on it. Samples [0, a)
+/* What a photon map's file holds. */
+typedef struct ag_photon_map_info {
+    char program[56], machine[56]; /* that have made it; those of others refuse it */
+    char scene[33];                /* fingerprint of what its photons depend on in the scene, 32 hexadecimals */
+    char view[33];                 /* the same of the view that they are aimed at; "": at none */
+    char settings[1024];           /* that they depend on, lines "NOUN: VALUE" */
+    uint64_t file_bytes, paths_emitted, photons_global, photons_caustic;
+    uint64_t bearers; /* photons of the global map that bear irradiance */
+    uint64_t ready;   /* of these, where it has been computed */
+    uint64_t damaged; /* where it had been and is damaged: it will be computed again */
+} ag_photon_map_info;
+
+/* Errors: AG_ERROR_INPUT (it cannot be read, is damaged, or is no photon map; the log says why), AG_ERROR_MEMORY,
+ * AG_CANCELLED. */
+AG_API ag_status ag_photon_map_read_info(ag_context *context, const char *path, ag_photon_map_info *out_info);
+/* Puts the irradiances of several files of one map together, which were filled apart, on machines of one maker: in any
+ * order, and any of them any number of times, they make the same map. Written atomically; out_path may be one of the
+ * paths, and what stands there must be a photon map. count >= 1. out_info: of the new file, or NULL. Errors:
+ * AG_ERROR_INPUT (as above; or they are of different maps, or hold different irradiances), AG_ERROR_OUTPUT,
+ * AG_ERROR_MEMORY, AG_CANCELLED. */
+AG_API ag_status ag_photon_map_merge(ag_context *context, const char *out_path, const char *const *paths, size_t count,
+                                     ag_photon_map_info *out_info);
+
+/* ag_render in passes over the whole picture: previews, checkpoints and limits of time are built on it. Samples [0, a)
  * and then [a, b) give the bits of [0, b) at once. The rendering borrows scene and context. */
 typedef struct ag_rendering ag_rendering;
 

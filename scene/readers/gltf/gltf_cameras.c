@@ -1,10 +1,8 @@
-/* gltf_cameras.c: the camera, and the film of its proportions.
+/* gltf_cameras.c: the camera, and the picture's size by its proportions.
  * Rests on: Khronos, "glTF 2.0 Specification", 2021, 3.10 (cameras look along -z, y up; yfov is across the height).
- * Flow: gltf_nodes -> [here] -> scene.camera, scene.film. Threads: one per scene. */
-#define _POSIX_C_SOURCE 200809L
+ * Flow: gltf_nodes -> [here] -> scene.camera, scene.hints. Threads: one per scene. */
 #include "gltf/gltf_private.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static const double DEFAULT_ASPECT = 16.0 / 9.0;
@@ -123,31 +121,11 @@ ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_matrix *wor
     return AG_OK;
 }
 
-/* As the film of a pbrt scene has it. */
-static bool add_integer(parameter_list *list, const char *name, int value)
-{
-    parameter *p = &list->items[list->count];
-    *p = (parameter){.type = PARAMETER_INTEGER, .where = list->where, .count = 1};
-    p->name = strdup(name);
-    p->numbers = malloc(sizeof *p->numbers);
-    list->count++;
-    if (!p->name || !p->numbers)
-        return false;
-    p->numbers[0] = value;
-    return true;
-}
-
-ag_status gltf_set_film(gltf_reader *r)
+void gltf_set_picture_size(gltf_reader *r)
 {
     double aspect = r->aspect != 0.0 ? r->aspect : DEFAULT_ASPECT;
-    int longer = (int)LONGER_SIDE, shorter = (int)fmax(1.0, round(LONGER_SIDE * fmin(aspect, 1.0 / aspect)));
-    parameter_list *film = &r->scene->film;
-    film->where = r->where;
-    film->directive = strdup("Film");
-    film->name = strdup("rgb");
-    film->items = calloc(2, sizeof *film->items);
-    bool is_whole = film->directive && film->name && film->items &&
-                    add_integer(film, "xresolution", aspect >= 1.0 ? longer : shorter) &&
-                    add_integer(film, "yresolution", aspect >= 1.0 ? shorter : longer);
-    return is_whole ? AG_OK : AG_ERROR_MEMORY;
+    int64_t longer = (int64_t)LONGER_SIDE,
+            shorter = (int64_t)fmax(1.0, round(LONGER_SIDE * fmin(aspect, 1.0 / aspect)));
+    r->scene->hints.width = (integer_hint){true, aspect >= 1.0 ? longer : shorter};
+    r->scene->hints.height = (integer_hint){true, aspect >= 1.0 ? shorter : longer};
 }

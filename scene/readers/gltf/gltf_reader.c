@@ -42,7 +42,7 @@ static ag_status end(gltf_reader *r)
     if (r->triangles_dropped > 0)
         log_at(r->run->log, AG_LOG_INFO, r->where, "%zu of %zu triangles have no area and are left out",
                r->triangles_dropped, r->triangles_read);
-    GLTF_TRY(gltf_set_film(r));
+    gltf_set_picture_size(r);
     if (!r->scene->has_camera)
         GLTF_TRY(import_add_default_camera(r->scene, r->run->log));
     if (r->scene->light_count <= r->glow_count && r->is_blenders)

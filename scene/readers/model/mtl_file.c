@@ -1,7 +1,7 @@
 /* mtl_file.c: see mtl_file.h. Threads: one per scene. */
 #include "model/mtl_file.h"
 
-#include "model/text_lines.h"
+#include "text/text_lines.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 
 #include "model/importer.h"
 #include "model/mtl_file.h"
-#include "model/text_lines.h"
+#include "text/text_lines.h"
 
 #define OBJ_NONE      UINT32_MAX
 #define OBJ_MAX_COUNT (UINT32_MAX / 4)

@@ -3,8 +3,10 @@
 #include "pbrt/pbrt_lexer.h"
 
 #include "text/decimal.h"
+#include "text/excerpt.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -205,37 +207,5 @@ bool pbrt_token_is(const pbrt_token *token, pbrt_token_kind kind, const char *te
 
 void pbrt_lexer_excerpt(const pbrt_lexer *lexer, file_location where, size_t width, char *out_text, size_t size)
 {
-    enum { CONTEXT = 60, WINDOW = 100 };
-    const char *line = lexer->line_start;
-    if (where.line != lexer->line) {
-        line = lexer->text;
-        if (lexer->end - line >= 3 && memcmp(line, "\xef\xbb\xbf", 3) == 0)
-            line += 3;
-        for (int i = 1; i < where.line && line; i++) {
-            line = memchr(line, '\n', (size_t)(lexer->end - line));
-            line = line ? line + 1 : NULL;
-        }
-    }
-    out_text[0] = '\0';
-    size_t left = line ? (size_t)(lexer->end - line) : 0, length = 0;
-    size_t column = where.column > 0 ? (size_t)where.column - 1 : 0;
-    size_t first = column > CONTEXT ? column - CONTEXT : 0;
-    if (!line || column > left)
-        return;
-    while (first + length < left && length < WINDOW && line[first + length] != '\n' && line[first + length] != '\r')
-        length++;
-    char shown[WINDOW + 1], mark[WINDOW + 2];
-    for (size_t i = 0; i < length; i++) {
-        unsigned char c = (unsigned char)line[first + i];
-        shown[i] = c == '\t' ? ' ' : c < ' ' || c == 0x7f ? '?' : (char)c;
-    }
-    shown[length] = '\0';
-    size_t marks = 0;
-    for (; marks < column - first; marks++)
-        mark[marks] = ' ';
-    mark[marks++] = '^';
-    for (size_t i = 1; i < width && marks < length; i++)
-        mark[marks++] = '~';
-    mark[marks] = '\0';
-    snprintf(out_text, size, "\n    %s\n    %s", shown, mark);
+    text_excerpt(lexer->text, (size_t)(lexer->end - lexer->text), where, width, out_text, size);
 }

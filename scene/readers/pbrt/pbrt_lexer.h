@@ -4,7 +4,9 @@
 #ifndef AFTERGLOW_PBRT_LEXER_H
 #define AFTERGLOW_PBRT_LEXER_H
 
-#include "text/parameter_list.h"
+#include "text/file_location.h"
+
+#include <stddef.h>
 
 typedef enum pbrt_token_kind {
     PBRT_TOKEN_END,
@@ -49,8 +51,7 @@ size_t pbrt_lexer_numbers(pbrt_lexer *lexer, size_t max, double *out_values);
 bool pbrt_token_number(const pbrt_token *token, double *out_value);
 bool pbrt_token_is(const pbrt_token *token, pbrt_token_kind kind, const char *text);
 
-/* The line at where with a mark below width bytes from its column on: "\n    line\n    ^~~". Long lines are cut
- * around the mark. */
+/* The line at where, with a mark: see text_excerpt. */
 void pbrt_lexer_excerpt(const pbrt_lexer *lexer, file_location where, size_t width, char *out_text, size_t size);
 
 #endif

@@ -1,6 +1,6 @@
 /* pbrt_options.c: Option of a pbrt-v4 scene.
  * Rests on pbrt-v4's list of options (scene.cpp); names are the same in any case, with and without '-' and '_'.
- * Flow: pbrt_parser -> [here] -> scene.options. Threads: one per scene. */
+ * Flow: pbrt_parser -> [here] -> scene.hints. Threads: one per scene. */
 #include "pbrt/pbrt_private.h"
 
 #include <stdio.h>
@@ -60,15 +60,14 @@ static ag_status set_option(pbrt_parser *parser, size_t option, file_location wh
             log_at_once(parser->log, AG_LOG_WARNING, where, key, "Option \"%s\" is not supported: %s", name, why);
         return AG_OK;
     }
-    scene_options *options = &parser->scene->options;
+    scene_hints *hints = &parser->scene->hints;
     if (strcmp(name, "disablepixeljitter") == 0) {
-        options->disable_pixel_jitter = is_true;
+        hints->disable_pixel_jitter = is_true;
         return AG_OK;
     }
     if (number != floor(number) || fabs(number) > 2147483648.0)
         return pbrt_error(parser, value->where, value->width, "the seed should be an integer of 32 bits");
-    options->has_seed = true;
-    options->seed = (int64_t)number;
+    hints->seed = (integer_hint){true, (int64_t)number};
     return AG_OK;
 }
 

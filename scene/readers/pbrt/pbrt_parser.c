@@ -2,7 +2,7 @@
  * Rests on the format's description, pbrt.org/fileformat-v4. What is not supported yet is read to its end, named in a
  * warning and left out.
  * Flow: pbrt_files -> [here] -> pbrt_state, pbrt_transforms, pbrt_shapes, pbrt_textures, pbrt_materials, pbrt_media,
- * pbrt_lights, pbrt_camera -> scene. Threads: one per scene. */
+ * pbrt_lights, pbrt_camera, pbrt_hints -> scene. Threads: one per scene. */
 #include "pbrt/pbrt_parser.h"
 
 #include "pbrt/pbrt_private.h"
@@ -10,42 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Words that the renderer reads */
-
-static ag_status keep_parameters(pbrt_parser *parser, file_location where, const char *directive, parameter_list *kept)
-{
-    parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, directive, "a quoted type", where, &list));
-    parameter_list_reset(kept); /* the last one counts */
-    *kept = list;
-    kept->source = NULL; /* it outlives the text */
-    return AG_OK;
-}
-
-static ag_status integrator(pbrt_parser *parser, file_location where)
-{
-    return keep_parameters(parser, where, "Integrator", &parser->scene->integrator);
-}
-
-static ag_status sampler(pbrt_parser *parser, file_location where)
-{
-    return keep_parameters(parser, where, "Sampler", &parser->scene->sampler);
-}
-
-static ag_status film(pbrt_parser *parser, file_location where)
-{
-    if (parser->state.rgb_space != COLOR_SPACE_SRGB) /* pbrt writes the picture in it */
-        log_at_once(parser->log, AG_LOG_WARNING, where, "film colours",
-                    "the ColorSpace is not that of the picture: it is written in %s",
-                    parser->scene->space.is_rec709 ? "linear Rec. 709" : "the working space");
-    return keep_parameters(parser, where, "Film", &parser->scene->film);
-}
-
-static ag_status pixel_filter(pbrt_parser *parser, file_location where)
-{
-    return keep_parameters(parser, where, "PixelFilter", &parser->scene->pixel_filter);
-}
 
 /* Embree's BVH is used whatever the file wishes; the picture is the same. */
 static ag_status accelerator(pbrt_parser *parser, file_location where)
@@ -109,10 +73,10 @@ static const struct {
     {"MakeNamedMedium", ANYWHERE, pbrt_make_named_medium},
     {"MediumInterface", ANYWHERE, pbrt_medium_interface},
     {"Camera", BEFORE_WORLD, pbrt_camera},
-    {"Sampler", BEFORE_WORLD, sampler},
-    {"Integrator", BEFORE_WORLD, integrator},
-    {"Film", BEFORE_WORLD, film},
-    {"PixelFilter", BEFORE_WORLD, pixel_filter},
+    {"Sampler", BEFORE_WORLD, pbrt_sampler},
+    {"Integrator", BEFORE_WORLD, pbrt_integrator},
+    {"Film", BEFORE_WORLD, pbrt_film},
+    {"PixelFilter", BEFORE_WORLD, pbrt_pixel_filter},
     {"Accelerator", BEFORE_WORLD, accelerator},
     {"Option", BEFORE_WORLD, pbrt_option},
     {"WorldBegin", BEFORE_WORLD, pbrt_world_begin},
@@ -210,6 +174,7 @@ static void parser_destroy(pbrt_parser *parser)
     name_table_reset(&parser->float_texture_names);
     name_table_reset(&parser->spectrum_texture_names);
     name_table_reset(&parser->coordinate_system_names);
+    pbrt_reset_hints(parser);
     pbrt_free_attributes(parser);
     free(parser->named_materials);
     free(parser->named_media);

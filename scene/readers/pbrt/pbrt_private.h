@@ -9,6 +9,7 @@
 
 #include "color/color_space.h"
 #include "math/motion.h"
+#include "pbrt/parameter_list.h"
 #include "pbrt/pbrt_lexer.h"
 #include "scene.h"
 #include "text/name_table.h"
@@ -173,6 +174,8 @@ typedef struct pbrt_parser {
 
     parameter_source source;    /* of the lists that are read */
     pbrt_attribute *attributes; /* all there have been, the newest first */
+
+    parameter_list integrator, sampler, film, pixel_filter; /* the last of each; .name is NULL where there is none */
 
     double film_distance; /* m, from the lens of a realistic camera; 0: there is none */
 
@@ -379,6 +382,19 @@ pbrt_handler pbrt_camera;
 /* pbrt_realistic.c: Camera "realistic"; and what is known of it when the Film is. */
 ag_status pbrt_read_realistic(pbrt_parser *parser, parameter_list *list, camera *c);
 ag_status pbrt_settle_realistic(pbrt_parser *parser);
+
+/* pbrt_hints.c: Integrator, Sampler, Film and PixelFilter. */
+pbrt_handler pbrt_integrator, pbrt_sampler, pbrt_film, pbrt_pixel_filter;
+/* Into scene.hints, once the last of them has been read. */
+ag_status pbrt_settle_hints(pbrt_parser *parser);
+void pbrt_reset_hints(pbrt_parser *parser); /* frees what is kept of them */
+/* An integer parameter from least to most; where it is absent the hint stays as it is. */
+ag_status pbrt_get_integer_hint(pbrt_parser *parser, parameter_list *list, const char *name, int64_t least,
+                                int64_t most, integer_hint *in_out_hint);
+
+/* pbrt_film.c */
+ag_status pbrt_settle_film(pbrt_parser *parser);
+ag_status pbrt_settle_pixel_filter(pbrt_parser *parser);
 
 /* pbrt_shapes.c */
 pbrt_handler pbrt_shape;

@@ -92,7 +92,7 @@ ag_status pbrt_read_realistic(pbrt_parser *parser, parameter_list *list, camera 
 
 ag_status pbrt_settle_realistic(pbrt_parser *parser)
 {
-    parameter_list *film = &parser->scene->film;
+    parameter_list *film = &parser->film;
     float diagonal = 35.0f; /* mm */
     int64_t size[2] = {1280, 720};
     if (!(parser->film_distance > 0.0))

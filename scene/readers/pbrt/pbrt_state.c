@@ -9,6 +9,7 @@
 ag_status pbrt_world_begin(pbrt_parser *parser, file_location where)
 {
     (void)where;
+    PBRT_TRY(pbrt_settle_hints(parser));
     PBRT_TRY(pbrt_settle_realistic(parser));
     parser->in_world = true;
     pbrt_state *state = &parser->state;

@@ -4,7 +4,10 @@
 #ifndef AFTERGLOW_TEXT_LINES_H
 #define AFTERGLOW_TEXT_LINES_H
 
-#include "text/parameter_list.h"
+#include "text/file_location.h"
+
+#include <stdbool.h>
+#include <stddef.h>
 
 typedef struct text_lines {
     log_sink *log;

@@ -1,11 +1,11 @@
 /* text_lines.c: see text_lines.h. Threads: one at a time. */
-#include "model/text_lines.h"
+#include "text/text_lines.h"
 
-#include "pbrt/pbrt_lexer.h"
 #include "text/decimal.h"
+#include "text/excerpt.h"
 
+#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -137,16 +137,13 @@ file_location text_lines_where(const text_lines *lines, const char *place)
 
 ag_status text_lines_refuse(const text_lines *lines, text_word word, const char *format, ...)
 {
-    char message[640], excerpt[320];
+    char excerpt[320];
+    file_location where = text_lines_where(lines, word.text);
+    text_excerpt(lines->text, (size_t)(lines->end - lines->text), where, word.length > 0 ? word.length : 1, excerpt,
+                 sizeof excerpt);
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
+    log_at_with_excerpt(lines->log, where, excerpt, format, arguments);
     va_end(arguments);
-    pbrt_lexer lexer; /* for its way to show a line */
-    pbrt_lexer_init(&lexer, lines->file, lines->text, (size_t)(lines->end - lines->text));
-    file_location where = text_lines_where(lines, word.text);
-    pbrt_lexer_excerpt(&lexer, where, word.length > 0 ? word.length : 1, excerpt, sizeof excerpt);
-    pbrt_lexer_reset(&lexer);
-    log_at(lines->log, AG_LOG_ERROR, where, "%s%s", message, excerpt);
     return AG_ERROR_SCENE;
 }

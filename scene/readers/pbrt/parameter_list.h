@@ -1,29 +1,16 @@
 /* parameter_list.h: the typed, named parameters of one scene directive, as they stand in the file.
- * They follow the pbrt-v4 file format, "Parameter Lists" (pbrt.org/fileformat-v4).
+ * Rests on the pbrt-v4 file format, "Parameter Lists" (pbrt.org/fileformat-v4).
  * Flow: pbrt_parser fills them; who interprets a directive looks parameters up and so marks them as known; what nobody
- * asked for is warned about. The scene keeps those of Integrator, Sampler, Film and PixelFilter for the renderer.
- * Threads: one at a time. */
+ * asked for is warned about. Threads: one at a time. */
 #ifndef AFTERGLOW_PARAMETER_LIST_H
 #define AFTERGLOW_PARAMETER_LIST_H
 
 #include "color/spectra.h"
-#include "log.h"
 #include "math/vec3.h"
+#include "text/file_location.h"
 
 #include <stddef.h>
 #include <stdint.h>
-
-/* file is interned by the scene and lives as long as it; line and column count from 1. */
-typedef struct file_location {
-    const char *file;
-    int line, column;
-} file_location;
-
-/* FILE:LINE:COLUMN: error|warning: message */
-void log_at(log_sink *log, ag_log_level level, file_location where, const char *format, ...) AG_PRINTF(4, 5);
-/* The same, but once for each distinct key. */
-void log_at_once(log_sink *log, ag_log_level level, file_location where, const char *key, const char *format, ...)
-    AG_PRINTF(5, 6);
 
 typedef enum parameter_type {
     PARAMETER_FLOAT,

@@ -1,0 +1,40 @@
+/* integrator.h: what an integrator is: how radiance along camera rays is found, and what has to be made for it first.
+ * One file and one row of integrator.c each. Flow: render, render_tiles -> [here] -> shading or path_tracing.
+ * Threads: sample and complete run on all workers at once; the others on the thread that renders. */
+#ifndef AFTERGLOW_INTEGRATOR_H
+#define AFTERGLOW_INTEGRATOR_H
+
+#include "integrator/transport.h"
+
+struct ag_rendering;
+
+/* Each function may be NULL, which does nothing, but for sample. */
+typedef struct integrator {
+    bool has_photon_map;  /* it traces photons: their settings, layers and statistics mean something */
+    float direct_guiding; /* the default of that setting */
+
+    /* Once, before all tiles: makes what they read, in the rendering, and refers to it in its transport. Errors:
+     * AG_ERROR_MEMORY, AG_CANCELLED, those of a photon map's file. */
+    ag_status (*prepare)(struct ag_rendering *r);
+    /* Makes what the worker has of its own, of full size, so that nothing can fail while tiles run; false when out of
+     * memory. eye_workers_destroy frees it. */
+    bool (*reserve)(const transport *t, eye_worker *worker);
+
+    /* Before and behind a pass, one ag_rendering_continue. Behind a whole one each pixel has as many samples as
+     * settings and film say: what is learned from them for the next is the same for any number of threads. end_pass is
+     * left out where the pass was cancelled or has failed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+    ag_status (*begin_pass)(struct ag_rendering *r);
+    ag_status (*end_pass)(struct ag_rendering *r);
+
+    /* Adds the radiance along a camera ray to the sample, but for what complete brings. */
+    void (*sample)(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where, eye_sample *in_out);
+    /* Completes all samples that the worker has under way. */
+    void (*complete)(const transport *t, eye_worker *worker);
+} integrator;
+
+extern const integrator photon_map_integrator, path_integrator;
+
+/* NULL for a number that is no integrator's, which render_settings_check refuses. */
+const integrator *integrator_of(ag_integrator kind);
+
+#endif

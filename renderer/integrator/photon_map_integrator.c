@@ -1,0 +1,47 @@
+/* photon_map_integrator.c: the integrator that gathers from a photon map: its maps and cache, its workers' batches.
+ * Rests on: Jensen 1996; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
+ * Flow: render -> [here] -> render_maps; shading, final_gather. Threads: see integrator.h. */
+#include "integrator/final_gather.h"
+#include "integrator/integrator.h"
+#include "integrator/shading.h"
+#include "render_maps.h"
+
+enum { ARENA_BLOCK_BYTES = 1 << 16 };
+
+/* A gather ray shorter than this many mean radii of an estimate does not use the cache. */
+static const float GATHER_MIN_DISTANCE_RADII = 1.0f;
+
+static ag_status prepare(struct ag_rendering *r)
+{
+    maps *m = &r->maps;
+    ag_status status = maps_create(r->context, r->s, &r->settings, m);
+    if (status != AG_OK)
+        return status;
+    r->t.caustic = &m->caustic;
+    r->t.cache = &m->cache;
+    r->t.incident = m->incident.cells ? &m->incident : NULL;
+    r->t.gather_min_distance = GATHER_MIN_DISTANCE_RADII * m->global.mean_radius;
+    return AG_OK;
+}
+
+static bool reserve(const transport *t, eye_worker *worker)
+{
+    float most_indirect = t->settings->clamp_indirect > 0.0f ? t->settings->clamp_indirect : INFINITY;
+    worker->batch = gather_batch_create(most_indirect);
+    worker->scratch = arena_create(ARENA_BLOCK_BYTES);
+    if (!worker->batch || !worker->scratch)
+        return false;
+    arena_mark mark = arena_save(worker->scratch);
+    bool fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor)) != NULL;
+    if (fits && (aov_has(t->layout, SUM_IRRADIANCE) || t->layout->has_view[VIEW_PHOTON_DENSITY])) /* alone */
+        fits = arena_alloc(worker->scratch, photon_map_scratch_count(t->cache->map) * sizeof(photon_neighbor));
+    arena_restore(worker->scratch, mark);
+    return fits;
+}
+
+const integrator photon_map_integrator = {.has_photon_map = true,
+                                          .direct_guiding = AG_DEFAULT_DIRECT_GUIDING,
+                                          .prepare = prepare,
+                                          .reserve = reserve,
+                                          .sample = shading_radiance,
+                                          .complete = final_gather_resolve};

@@ -1,0 +1,173 @@
+/* map_merge.c: what a photon map's file holds, and files of one map that were filled apart, put together.
+ * Flow: photon_file -> [here] -> photon_merge -> photon_file. Threads: one. */
+#include "context.h"
+
+#include "output/atomic_file.h"
+#include "photon_file.h"
+#include "photon_merge.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+_Static_assert(sizeof((ag_photon_map_info *)0)->settings >= PHOTON_FILE_SETTINGS_MAX &&
+                   sizeof((ag_photon_map_info *)0)->program >= sizeof((photon_file_key *)0)->program &&
+                   sizeof((ag_photon_map_info *)0)->machine >= sizeof((photon_file_key *)0)->machine,
+               "the public texts hold the file's");
+
+/* A file that has been read; all zero: none. */
+typedef struct read_map {
+    photon_file file;
+    photon_file_key key;
+    hash128 fixed;
+    photon_map global, caustic;
+} read_map;
+
+static void read_map_reset(read_map *m)
+{
+    if (!m->file.memory)
+        return;
+    photon_map_reset(&m->global);
+    photon_map_reset(&m->caustic);
+    photon_file_close(&m->file);
+    *m = (read_map){0};
+}
+
+static ag_status read_map_open(ag_context *context, const char *path, read_map *out)
+{
+    char why[512];
+    *out = (read_map){0};
+    read_map m;
+    switch (photon_file_read(&context->run, path, &m.key, &m.fixed, &m.file, &m.global, &m.caustic, why, sizeof why)) {
+    case PHOTON_FILE_OPEN: *out = m; return AG_OK;
+    case PHOTON_FILE_CANCELLED: return AG_CANCELLED;
+    case PHOTON_FILE_ABSENT: snprintf(why, sizeof why, "there is no such file"); break;
+    case PHOTON_FILE_FOREIGN:
+    case PHOTON_FILE_REFUSED:
+    case PHOTON_FILE_FAILED: break;
+    }
+    log_message(context->log, AG_LOG_ERROR, "%s: error: %s", path, why);
+    return AG_ERROR_INPUT;
+}
+
+static void hash_text(hash128 hash, char out_text[33])
+{
+    snprintf(out_text, 33, "%016" PRIx64 "%016" PRIx64, hash.bits[0], hash.bits[1]);
+}
+
+static ag_photon_map_info info_of(const read_map *m)
+{
+    ag_photon_map_info info = {.file_bytes = m->file.size_bytes,
+                               .paths_emitted = m->global.set.emitted_paths + m->caustic.set.emitted_paths,
+                               .photons_global = m->global.set.count,
+                               .photons_caustic = m->caustic.set.count,
+                               .bearers = m->global.bearers.count,
+                               .ready = photon_merge_count_ready(&m->global),
+                               .damaged = m->file.damaged};
+    static const hash128 none;
+    memcpy(info.program, m->key.program, sizeof m->key.program);
+    memcpy(info.machine, m->key.machine, sizeof m->key.machine);
+    memcpy(info.settings, m->key.settings, sizeof m->key.settings);
+    hash_text(m->key.scene, info.scene);
+    if (!hash128_is_equal(m->key.aim_view, none))
+        hash_text(m->key.aim_view, info.view);
+    return info;
+}
+
+ag_status ag_photon_map_read_info(ag_context *context, const char *path, ag_photon_map_info *out_info)
+{
+    if (!context || !path || !out_info)
+        return AG_ERROR_ARGUMENT;
+    read_map m;
+    ag_status status = read_map_open(context, path, &m);
+    if (status == AG_OK)
+        *out_info = info_of(&m);
+    read_map_reset(&m);
+    return status;
+}
+
+/* --- merging --- */
+
+/* What stands there is replaced by a photon map alone where it is one. */
+static ag_status check_output(ag_context *context, const char *path)
+{
+    char why[1024];
+    read_map m;
+    ag_status status = AG_OK;
+    switch (photon_file_read(&context->run, path, &m.key, &m.fixed, &m.file, &m.global, &m.caustic, why, sizeof why)) {
+    case PHOTON_FILE_OPEN: read_map_reset(&m); break;
+    case PHOTON_FILE_CANCELLED: return AG_CANCELLED;
+    case PHOTON_FILE_FOREIGN:
+    case PHOTON_FILE_FAILED:
+        log_message(context->log, AG_LOG_ERROR, "%s: error: it is not replaced by a photon map: %s", path, why);
+        return AG_ERROR_OUTPUT;
+    case PHOTON_FILE_ABSENT:
+    case PHOTON_FILE_REFUSED: break; /* a map that is damaged may be replaced */
+    }
+    status = atomic_file_check(path, why, sizeof why);
+    if (status != AG_OK)
+        log_message(context->log, AG_LOG_ERROR, "%s", why);
+    return status;
+}
+
+static ag_status add(ag_context *context, const char *first_path, read_map *into, const char *path)
+{
+    read_map m;
+    uint64_t added = 0;
+    uint32_t bearer;
+    ag_status status = read_map_open(context, path, &m);
+    if (status == AG_OK && !hash128_is_equal(m.fixed, into->fixed)) {
+        log_message(context->log, AG_LOG_ERROR,
+                    "%s: error: it is another map than %s: scene, settings, view, program, machine or photons differ",
+                    path, first_path);
+        status = AG_ERROR_INPUT;
+    } else if (status == AG_OK && photon_merge(&into->global, &m.global, &added, &bearer) != PHOTON_MERGE_DONE) {
+        log_message(context->log, AG_LOG_ERROR,
+                    "%s: error: irradiance %u is another one than in the files before: one of them is damaged", path,
+                    bearer);
+        status = AG_ERROR_INPUT;
+    } else if (status == AG_OK) {
+        log_message(context->log, AG_LOG_INFO, "%s: %llu irradiances added", path, (unsigned long long)added);
+    }
+    read_map_reset(&m);
+    return status;
+}
+
+typedef struct write_job {
+    const ag_context *context;
+    const read_map *map;
+} write_job;
+
+static int fill(void *user, int descriptor)
+{
+    const write_job *job = user;
+    return photon_file_write(&job->context->run, descriptor, &job->map->key, &job->map->global, &job->map->caustic);
+}
+
+ag_status ag_photon_map_merge(ag_context *context, const char *out_path, const char *const *paths, size_t count,
+                              ag_photon_map_info *out_info)
+{
+    if (!context || !out_path || !paths || count == 0)
+        return AG_ERROR_ARGUMENT;
+    char message[1024];
+    read_map merged = {0};
+    ag_status status = check_output(context, out_path);
+    if (status == AG_OK)
+        status = read_map_open(context, paths[0], &merged);
+    for (size_t i = 1; i < count && status == AG_OK; i++)
+        status = add(context, paths[0], &merged, paths[i]);
+    if (status == AG_OK) {
+        write_job job = {context, &merged};
+        status = atomic_file_write_by(out_path, fill, &job, message, sizeof message);
+        if (status != AG_OK && run_is_cancelled(&context->run))
+            status = AG_CANCELLED;
+        else if (status != AG_OK)
+            log_message(context->log, AG_LOG_ERROR, "%s", message);
+    }
+    if (status == AG_OK && out_info) {
+        *out_info = info_of(&merged);
+        out_info->damaged = 0;
+    }
+    read_map_reset(&merged);
+    return status;
+}

@@ -1,0 +1,110 @@
+/* test_final_gather.c: gather rays under a hemisphere whose irradiance is known, and eye paths that end in them.
+ * Photons lie evenly over the unit sphere, E W/m^2; what reflects rho shows rho E / pi, so a place in it receives rho
+ * E, and one that reflects sigma shows sigma rho E / pi. The field has noise of its own: of N photons half lie in the
+ * hemisphere, weighted by 2 cos, so that what is gathered has a standard deviation of sqrt(8 / 3 / N) however many rays
+ * there are. Threads: one. */
+#include "fixtures/eye_fixture.h"
+
+#include "integrator/final_gather.h"
+#include "integrator/shading.h"
+
+enum { PHOTONS = 200000 / FEWER, NEAREST = 50, GATHERS = 400, RAYS = 64, SAMPLES = 400 };
+
+#define DOME                                                                                                           \
+    "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] ReverseOrientation Shape \"sphere\" \"float radius\" 1 "
+#define PLATE                                                                                                          \
+    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8] ReverseOrientation Shape \"disk\" \"float radius\" 0.05 "
+
+static double dome_irradiance(void) { return (double)FIELD_FLUX.r * field_irradiance(FIELD_SPHERE); }
+
+/* Three standard deviations of the field, and half a percent for the blur. */
+static double field_bound(void) { return 0.005 + 3.0 * sqrt(8.0 / 3.0 / PHOTONS); }
+
+static void take_gathered(eye *e, mean_sum *sum, bool is_first)
+{
+    final_gather_resolve(&e->t, e->worker);
+    gathered_light *g = &e->worker->batch->gathered[0];
+    mean_add(sum, (double)(is_first ? g->first : g->behind).r);
+    assert_true(rgb_is_black(is_first ? g->behind : g->first));
+    *g = (gathered_light){0};
+}
+
+/* A plate in the middle of the sphere gathers from the half above it. */
+static void plate_under_a_dome(void **state)
+{
+    (void)state;
+    static const uint32_t COUNTS[] = {1, 7, RAYS};
+    eye e;
+    eye_init_with_photons(&e, DOME PLATE, PHOTONS, NEAREST);
+    vertex v = eye_meet(&e, (vec3){0.0f, 0.0f, 0.5f}, (vec3){0.0f, 0.0f, -1.0f});
+    for (size_t k = 0; k < sizeof COUNTS / sizeof *COUNTS; k++) {
+        mean_sum sum = {0};
+        for (uint32_t i = 0; i < GATHERS * RAYS / COUNTS[k]; i++) {
+            sampler where = sampler_make(i, 3, 4, 0, 0);
+            final_gather(&e.t, e.worker, &v, &where, 0, true, 100, COUNTS[k], rgb_gray(0.25f), 1.0f);
+            take_gathered(&e, &sum, true);
+        }
+        assert_mean(&sum, 0.25 * 0.8 * 0.5 * dome_irradiance() / PI, field_bound());
+    }
+    irradiance_counters c = irradiance_cache_counters(&e.cache);
+    assert_true(c.requests >= 3 * GATHERS * RAYS * 9 / 10);
+    assert_true(c.computed > 0 && c.computed <= PHOTONS);
+    assert_int_equal(c.duplicated, 0);
+    eye_reset(&e);
+}
+
+/* An eye in the sphere: its wall gathers from the rest of it. With too few scatterings nothing may be gathered: light
+ * from the lamp by way of a photon has met the wall that the ray meets, too. */
+static void wall_of_a_sphere(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init_with_photons(&e, DOME, PHOTONS, NEAREST);
+    e.settings.gather_samples = RAYS;
+    for (int most = 0; most <= 100; most += most < 2 ? 1 : 98) {
+        e.settings.max_depth = most;
+        mean_sum sum = {0};
+        for (uint32_t i = 0; i < SAMPLES; i++) {
+            rng random = test_random(i);
+            eye_sample s = {.most_direct = INFINITY, .most_indirect = INFINITY};
+            sampler where = sampler_make(i, 3, 4, 0, 0);
+            shading_radiance(&e.t, e.worker, scene_ray_make((vec3){0.2f, 0.0f, 0.0f}, random_direction(&random)),
+                             &where, &s);
+            assert_true(rgb_is_black(s.radiance)); /* no lamp, no caustic */
+            take_gathered(&e, &sum, true);
+        }
+        assert_mean(&sum, most < 2 ? 0.0 : 0.25 * dome_irradiance() / PI, field_bound());
+    }
+    eye_reset(&e);
+}
+
+/* In a mirror that reflects all, the same light is of the second kind. In a field that is the same all over it changes
+ * nothing for the gather rays that meet it. */
+static void wall_in_a_mirror(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init_with_photons(&e,
+                          DOME "Material \"conductor\" \"float roughness\" 0 \"rgb reflectance\" [1 1 1]"
+                               " ReverseOrientation Shape \"disk\" \"float radius\" 0.2",
+                          PHOTONS, NEAREST);
+    e.settings.gather_samples = RAYS;
+    mean_sum sum = {0};
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        rng random = test_random(i);
+        vec3 from = {0.1f * rng_float(&random), 0.0f, 0.6f};
+        eye_sample s = {.most_direct = INFINITY, .most_indirect = INFINITY};
+        sampler where = sampler_make(i, 3, 4, 0, 0);
+        shading_radiance(&e.t, e.worker, scene_ray_make(from, (vec3){0.0f, 0.0f, -1.0f}), &where, &s);
+        take_gathered(&e, &sum, false);
+    }
+    assert_mean(&sum, 0.25 * dome_irradiance() / PI, field_bound());
+    eye_reset(&e);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(plate_under_a_dome), cmocka_unit_test(wall_of_a_sphere),
+                                       cmocka_unit_test(wall_in_a_mirror)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
