@@ -72,12 +72,28 @@ file(READ ${STAMP}.files files)
 file(READ ${STAMP}.folders allowed)
 set(roots threads threads/include scene scene/readers photonmap renderer renderer/include tests perf)
 list(TRANSFORM roots PREPEND ${ROOT}/)
-# Surfaces and textures know places (surface.h) and rays (ray.h), not the tree nor how rays are cast.
+# Surfaces and textures know places (surface.h) and rays (ray.h), not the tree nor how rays are cast. Below them, each
+# folder of ag_image knows those before it: math and text, color, image. Materials know nothing of lights, nor the other
+# way round; what casts rays knows no lights. A format's reader knows no other's, but that meshes of pbrt may be PLY
+# files. What finds the light knows nothing of pictures' files.
 set(cut
-  "^scene/(shape|texture|image|color|text|math)/.*->scene/rays/(bvh|bvh_embree|rays|passage|embree_api)\\.h$"
+  "^scene/(shape|texture|material|image|color|text|math)/.*->scene/rays/(bvh|bvh_embree|rays|passage|embree_api)\\.h$"
   "^scene/(image|color|text|math)/.*->scene/(scene|surface|shape/.*|material/.*|light/.*|texture/.*)\\.h$"
+  "^scene/(math|text)/.*->scene/(color|image)/"
+  "^scene/math/.*->scene/text/"
+  "^scene/color/.*->scene/image/"
+  "^scene/texture/.*->scene/(shape|material|light|rays)/"
+  "^scene/shape/.*->scene/(material|light)/"
+  "^scene/material/.*->scene/light/"
+  "^scene/light/.*->scene/material/"
+  "^scene/rays/.*->scene/light/"
+  "^scene/readers/gltf/.*->scene/readers/(pbrt|model)/"
+  "^scene/readers/model/.*->scene/readers/(pbrt|gltf)/"
+  "^scene/readers/pbrt/.*->scene/readers/(gltf/|model/([^p]|p[^l]|pl[^y]|ply_[^f]))"
+  "^renderer/(film|integrator)/.*->renderer/(output|cli)/"
+  "^renderer/output/.*->renderer/cli/"
   "^scene/(surface|rays/ray|rays/rays)\\.h->scene/scene\\.h$"
-  "^scene/shape/[a-z_]+\\.h->scene/scene\\.h$"
+  "^scene/(shape|texture)/[a-z_]+\\.h->scene/scene\\.h$"
   "^scene/scene\\.h->scene/rays/(bvh|rays|passage)\\.h$")
 set(is_wrong FALSE)
 foreach(file ${files})

@@ -35,6 +35,37 @@ if ((${#presets[@]} == 0)); then
     fi
 fi
 
+# Minutes of a preset's tests: as its last run took, else as measured on two cores of a Xeon (AVX2).
+test_minutes() { # PRESET
+    local costs=build/$1/Testing/Temporary/CTestCostData.txt usual=9
+    case $1 in dev*) usual=4 ;; tsan*) usual=7 ;; esac
+    if ((${#selection[@]} > 0)); then
+        echo 2
+    elif [[ -s $costs ]]; then
+        awk -v cores="$(nproc)" 'NF == 3 { seconds += $3 } END { print int(seconds / cores / 60) + 1 }' "$costs"
+    else
+        echo "$usual"
+    fi
+}
+
+total=0
+for preset in "${presets[@]}" "${build_only[@]}"; do
+    minutes=0
+    what="build"
+    if [[ ! -f build/$preset/build.log ]]; then
+        minutes=$((12 / $(nproc) + 1))
+        what="build from nothing, $minutes min"
+    fi
+    if [[ " ${presets[*]} " == *" $preset "* ]]; then
+        tests=$(test_minutes "$preset")
+        minutes=$((minutes + tests))
+        what+="; tests, $tests min"
+    fi
+    total=$((total + minutes))
+    echo "-- $preset: $what"
+done
+echo "-- $total minutes in all, about"
+
 packages=("${BUILD_PACKAGES[@]}" libcmocka-dev openimageio-tools opencolorio-tools spin python3 clang-format parallel jq file
     libnanoflann-dev)
 case " ${presets[*]} ${build_only[*]-} " in *-clang*) packages+=(clang) ;; esac
@@ -122,37 +153,6 @@ run() { # PRESET
         notes+=("failed: $1: ctest ended with $status after $count tests")
     fi
 }
-
-# Minutes of a preset's tests: as its last run took, else as measured on two cores of a Xeon (AVX2).
-test_minutes() { # PRESET
-    local costs=build/$1/Testing/Temporary/CTestCostData.txt usual=9
-    case $1 in dev*) usual=4 ;; tsan*) usual=7 ;; esac
-    if ((${#selection[@]} > 0)); then
-        echo 2
-    elif [[ -s $costs ]]; then
-        awk -v cores="$(nproc)" 'NF == 3 { seconds += $3 } END { print int(seconds / cores / 60) + 1 }' "$costs"
-    else
-        echo "$usual"
-    fi
-}
-
-total=0
-for preset in "${presets[@]}" "${build_only[@]}"; do
-    minutes=0
-    what="build"
-    if [[ ! -f build/$preset/build.log ]]; then
-        minutes=$((12 / $(nproc) + 1))
-        what="build from nothing, $minutes min"
-    fi
-    if [[ " ${presets[*]} " == *" $preset "* ]]; then
-        tests=$(test_minutes "$preset")
-        minutes=$((minutes + tests))
-        what+="; tests, $tests min"
-    fi
-    total=$((total + minutes))
-    echo "-- $preset: $what"
-done
-echo "-- $total minutes in all, about"
 
 for preset in "${presets[@]}"; do
     if build "$preset"; then

@@ -49,14 +49,14 @@ static ag_status decode_srgb(float *values, size_t count, char *message, size_t 
     color_processor *processor = NULL;
     float *greys = malloc(3 * count * sizeof *greys);
     ag_status status = greys ? color_config_create_builtin(message, message_size, &config) : AG_ERROR_MEMORY;
-    if (!status)
+    if (status == AG_OK)
         status = color_decoder_create(config, "sRGB - Texture", message, message_size, &processor);
-    if (!status) {
+    if (status == AG_OK) {
         for (size_t i = 0; i < count; i++)
             greys[3 * i] = greys[3 * i + 1] = greys[3 * i + 2] = values[i];
         status = color_processor_apply(processor, greys, count, message, message_size);
     }
-    if (!status)
+    if (status == AG_OK)
         for (size_t i = 0; i < count; i++)
             values[i] = greys[3 * i];
     color_processor_destroy(processor);
@@ -92,7 +92,7 @@ ag_status image_linearize(struct image *picture, image_encoding encoding, char *
     const float last = (float)(size - 1);
     float *table = malloc(size * sizeof *table);
     ag_status status = table ? image_encoding_table(encoding, size, table, message, message_size) : AG_ERROR_MEMORY;
-    if (!status)
+    if (status == AG_OK)
         for (size_t i = 0; i < count; i++) /* readers give values in [0, 1] */
             picture->pixels[i] = table[(size_t)(fminf(fmaxf(picture->pixels[i], 0.0f), 1.0f) * last + 0.5f)];
     free(table);

@@ -1,4 +1,4 @@
-/* alpha.h: how much of a surface is there: leaves cut out by a picture, veils that let part of the light through.
+/* alpha.h: how much of a surface is there: leaves cut out by a picture, cloth that lets part of the light through.
  * As pbrt-v4's "alpha": of a share between 0 and 1 a hash of the ray decides, so that a ray meets the same each time.
  * Flow: bvh_embree asks of every ray alike whether it meets a surface; lamps ask how much of them shines.
  * Threads: pure functions. */
@@ -24,8 +24,8 @@ static inline bool shape_is_invisible(const shape *s)
 /* The share of the surface that is there at a place, [0, 1]; the hit's shape_index is not read. */
 float alpha_at(const scene *s, const shape *at, const surface_hit *hit);
 
-/* The same at a place that a ray has met, where it is above 0. Of the photons that come to a veil that share is stored
- * on it, while what is there is lit by all of them. */
+/* The share at a place that a ray has met, where it is above 0. Of the photons that come to such a place this share is
+ * stored there, while what is there is lit by all of them. */
 float alpha_at_hit(const scene *s, const surface_hit *hit);
 
 /* Whether a ray meets the surface where it crosses it at distance t. u, v: as of shape_surface_at; crossing: which one

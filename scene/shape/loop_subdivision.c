@@ -76,7 +76,7 @@ static ag_status find_twins(level *l, const uint32_t *names, char *error, size_t
     }
     qsort(edges, count, sizeof *edges, compare_edges);
     ag_status status = AG_OK;
-    for (size_t i = 0, end; i < count && !status; i = end) {
+    for (size_t i = 0, end; i < count && status == AG_OK; i = end) {
         uint32_t low = edges[i].low, high = edges[i].high;
         for (end = i + 1; end < count && edges[end].low == low && edges[end].high == high; end++)
             continue;
@@ -95,7 +95,7 @@ static ag_status find_twins(level *l, const uint32_t *names, char *error, size_t
                 edges[i].half_edge / 3, edges[i + 1].half_edge / 3, names[low], names[high]);
         else
             status = AG_OK;
-        if (!status && end - i == 2) {
+        if (status == AG_OK && end - i == 2) {
             l->twins[edges[i].half_edge] = edges[i + 1].half_edge;
             l->twins[edges[i + 1].half_edge] = edges[i].half_edge;
         }
@@ -122,7 +122,7 @@ static ag_status find_fans(level *l, const uint32_t *names, char *error, size_t 
             l->first[v] = h;
     }
     ag_status status = AG_OK;
-    for (size_t v = 0; v < l->vertex_count && !status; v++) {
+    for (size_t v = 0; v < l->vertex_count && status == AG_OK; v++) {
         uint32_t seen = 0, h = l->first[v];
         do {
             seen++;
@@ -163,7 +163,7 @@ static ag_status make_control_level(const double *positions, size_t vertex_count
         for (size_t i = 0; i < 3 * triangle_count; i++)
             out_level->indices[i] = numbers[indices[i]];
         status = find_twins(out_level, names, error, error_size);
-        if (!status)
+        if (status == AG_OK)
             status = find_fans(out_level, names, error, error_size);
     }
     free(numbers);
@@ -387,16 +387,16 @@ ag_status loop_subdivide(const double *positions, size_t vertex_count, const uin
     level current = {.vertex_count = 0};
     ag_status status =
         make_control_level(positions, vertex_count, indices, triangle_count, error, error_size, &current);
-    for (int i = 0; i < levels && !status; i++) {
+    for (int i = 0; i < levels && status == AG_OK; i++) {
         level fine = {.vertex_count = 0};
         status = refine(&current, &fine);
         level_reset(&current);
         current = fine;
     }
-    if (!status)
+    if (status == AG_OK)
         status = push_to_limit(&current, out_mesh);
     level_reset(&current);
-    if (status)
+    if (status != AG_OK)
         loop_mesh_reset(out_mesh);
     return status;
 }

@@ -47,7 +47,7 @@ static ag_status find_by_space(const scene *s, image_encoding encoding, bool is_
     color_curve curve;
     double m[9];
     ag_status status = color_config_study_space(s->color_config, encoding.space, message, message_size, &curve, m);
-    if (status)
+    if (status != AG_OK)
         return status;
     if (curve == COLOR_CURVE_SRGB && is_integer)
         c->encoding.curve = IMAGE_CURVE_SRGB;
@@ -88,7 +88,7 @@ ag_status image_colors_decode(const scene *s, const image_colors *colors, float 
 {
     color_processor *processor;
     ag_status status = color_decoder_create(s->color_config, colors->space, message, message_size, &processor);
-    if (!status)
+    if (status == AG_OK)
         status = color_processor_apply(processor, rgb_pixels, count, message, message_size);
     color_processor_destroy(processor);
     return status;

@@ -101,9 +101,9 @@ static ag_status take_pixels(const scene *s, texture_image *i, image *picture, c
     i->height = (uint32_t)picture->height;
     i->channel_count = (uint32_t)kept;
     ag_status status = take_alpha(i, picture, pixel_count);
-    if (!status)
+    if (status == AG_OK)
         status = image_colors_find(s, i->encoding, picture, &i->colors, message, message_size);
-    if (status)
+    if (status != AG_OK)
         return status;
     if (i->colors.space)
         return decode_pixels(s, i, picture, message, message_size);
@@ -136,7 +136,7 @@ static ag_status read_image(const scene *s, texture_image *i, const char *path, 
     image picture;
     ag_status status = file.bytes ? image_read_memory(path, file.bytes, file.size, &picture, message, message_size)
                                   : image_read_compact(path, &picture, message, message_size);
-    if (!status)
+    if (status == AG_OK)
         status = take_pixels(s, i, &picture, message, message_size);
     image_reset(&picture);
     return status;
@@ -156,7 +156,7 @@ static ag_status load(scene *s, const char *path, file_bytes file, image_encodin
         return AG_ERROR_MEMORY;
     i->encoding = encoding;
     ag_status status = read_image(s, i, path, file, message, message_size);
-    if (status)
+    if (status != AG_OK)
         texture_image_destroy(i);
     return status ? status : scene_add_texture_image(s, i, out_index);
 }

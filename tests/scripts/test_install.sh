@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The installed tree works by itself, from another place than it was configured for: program, library, image module,
-# headers, man page, and pkg-config for users in C and in C++.
+# headers, man page, pkg-config for users in C and in C++, and find_package.
 # ctest: install
 set -euo pipefail
 
@@ -62,6 +62,20 @@ for user in use_c use_cpp; do
     echo "ok: $user"
 done
 cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
+
+mkdir cmake_user
+cat >cmake_user/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(user C)
+find_package(afterglow 0.1 REQUIRED)
+add_executable(user ../use.c)
+target_link_libraries(user PRIVATE afterglow::afterglow)
+END
+{ cmake -S cmake_user -B cmake_user/build -DCMAKE_C_COMPILER="$CC" -DCMAKE_PREFIX_PATH="$prefix" &&
+    cmake --build cmake_user/build; } >cmake.log 2>&1 || fail "find_package: $(<cmake.log)"
+cmake_user/build/user open.pbrt use_cmake.png rho=0.5 >said 2>told || fail "found by find_package: $(<told)"
+cmp use_c.png use_cmake.png || fail "found by find_package: another picture"
+echo "ok: find_package"
 
 ./use_c open.pbrt no.png 2>told && fail "a scene with a name left open was rendered"
 grep -q 'open.pbrt:.*\$rho has no value' told || fail "of the name it says: $(<told)"

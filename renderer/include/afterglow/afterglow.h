@@ -229,15 +229,14 @@ typedef struct ag_render_settings {
                               gather ray ends, max_depth - 1 before a caustic) and the eye's part apart: behind
                               mirrors and glass there may be some more. */
 
-    uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2] */
-    uint64_t
-        caustic_photon_count;  /* photons to store in the caustic map; only where there is specular matter; [0, …] */
-    int nearest;               /* photons of an estimate, [1, 65536] */
-    float radius;              /* largest radius of an estimate, scene units; 0: from the photons' density */
+    uint64_t photon_count;         /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t caustic_photon_count; /* photons to store in the caustic map; only where anything is specular; [0, …] */
+    int nearest;                   /* photons of an estimate, [1, 65536] */
+    float radius;                  /* largest radius of an estimate, scene units; 0: from the photons' density */
     float irradiance_fraction; /* of the photons, how many bear irradiance, (0, 1]: gather rays look for the nearest of
                                   those, and each estimate is still of all photons. Less is faster, and blurs by about
-                                  what the bearers are apart. Where photons lie far apart, and where surfaces turn, more
-                                  of them bear, so that each photon has a bearer near. Default 1 */
+                                  what those are apart. Where photons lie far apart, and where surfaces turn, more of
+                                  them bear irradiance, so that each photon has one near that does. Default 1 */
     float gather_guiding;      /* how much the photons' directions decide where gather rays go, [0, 1]: the share of the
                                   rays that goes where light comes from, where photons are many; the rest goes by the
                                   cosine. 0: all. Less noise or more, the same light. Default

@@ -70,8 +70,8 @@ static ag_status read_component_type(const gltf_reader *r, const gltf_value *at,
 {
     uint64_t type = 0;
     gltf_value v = gltf_member(at, "componentType");
-    GLTF_TRY(gltf_require(r, at, "componentType"));
-    GLTF_TRY(gltf_get_uint(r, at, "componentType", &type));
+    AG_TRY(gltf_require(r, at, "componentType"));
+    AG_TRY(gltf_get_uint(r, at, "componentType", &type));
     if (type > INT16_MAX || component_size((int)type) == 0)
         return gltf_error(r, &v, "there is no component type %llu", (unsigned long long)type);
     *out_type = (int)type;
@@ -84,28 +84,28 @@ static ag_status open_sparse(gltf_reader *r, const gltf_value *accessor, gltf_ac
     gltf_value sparse, indices, values;
     uint64_t count = 0, index_offset = 0, value_offset = 0;
     size_t stride, element_size = component_size(a->component_type) * (size_t)a->components;
-    GLTF_TRY(gltf_get_object(r, accessor, "sparse", &sparse));
+    AG_TRY(gltf_get_object(r, accessor, "sparse", &sparse));
     if (!sparse.json)
         return AG_OK;
-    GLTF_TRY(gltf_require(r, &sparse, "count"));
-    GLTF_TRY(gltf_get_uint(r, &sparse, "count", &count));
-    GLTF_TRY(gltf_require(r, &sparse, "indices"));
-    GLTF_TRY(gltf_get_object(r, &sparse, "indices", &indices));
-    GLTF_TRY(gltf_require(r, &sparse, "values"));
-    GLTF_TRY(gltf_get_object(r, &sparse, "values", &values));
-    GLTF_TRY(read_component_type(r, &indices, &a->sparse_index_type));
-    GLTF_TRY(gltf_get_uint(r, &indices, "byteOffset", &index_offset));
-    GLTF_TRY(gltf_get_uint(r, &values, "byteOffset", &value_offset));
+    AG_TRY(gltf_require(r, &sparse, "count"));
+    AG_TRY(gltf_get_uint(r, &sparse, "count", &count));
+    AG_TRY(gltf_require(r, &sparse, "indices"));
+    AG_TRY(gltf_get_object(r, &sparse, "indices", &indices));
+    AG_TRY(gltf_require(r, &sparse, "values"));
+    AG_TRY(gltf_get_object(r, &sparse, "values", &values));
+    AG_TRY(read_component_type(r, &indices, &a->sparse_index_type));
+    AG_TRY(gltf_get_uint(r, &indices, "byteOffset", &index_offset));
+    AG_TRY(gltf_get_uint(r, &values, "byteOffset", &value_offset));
     if (count > a->count)
         return gltf_error(r, &sparse, "its count is %llu, but the accessor has %u elements", (unsigned long long)count,
                           a->count);
     if (a->sparse_index_type != UINT8 && a->sparse_index_type != UINT16 && a->sparse_index_type != UINT32)
         return gltf_error(r, &indices, "should be unsigned integers");
     size_t index_size = component_size(a->sparse_index_type);
-    GLTF_TRY(gltf_view_span(r, &indices, index_offset, count, index_size, &a->sparse_indices, &stride));
+    AG_TRY(gltf_view_span(r, &indices, index_offset, count, index_size, &a->sparse_indices, &stride));
     if (stride != index_size)
         return gltf_error(r, &indices, "their view must have no byteStride");
-    GLTF_TRY(gltf_view_span(r, &values, value_offset, count, element_size, &a->sparse_values, &stride));
+    AG_TRY(gltf_view_span(r, &values, value_offset, count, element_size, &a->sparse_values, &stride));
     if (stride != element_size)
         return gltf_error(r, &values, "their view must have no byteStride");
     a->sparse_count = (uint32_t)count;
@@ -127,14 +127,14 @@ ag_status gltf_accessor_open(gltf_reader *r, const gltf_value *at, uint32_t inde
     const char *type = "";
     uint64_t offset = 0, count = 0;
     memset(a, 0, sizeof *a);
-    GLTF_TRY(gltf_get_item(r, GLTF_ACCESSORS, index, &accessor));
-    GLTF_TRY(gltf_require(r, &accessor, "count"));
-    GLTF_TRY(gltf_require(r, &accessor, "type"));
-    GLTF_TRY(gltf_get_text(r, &accessor, "type", &type));
-    GLTF_TRY(read_component_type(r, &accessor, &a->component_type));
-    GLTF_TRY(gltf_get_bool(r, &accessor, "normalized", &a->is_normalized));
-    GLTF_TRY(gltf_get_uint(r, &accessor, "byteOffset", &offset));
-    GLTF_TRY(gltf_get_uint(r, &accessor, "count", &count));
+    AG_TRY(gltf_get_item(r, GLTF_ACCESSORS, index, &accessor));
+    AG_TRY(gltf_require(r, &accessor, "count"));
+    AG_TRY(gltf_require(r, &accessor, "type"));
+    AG_TRY(gltf_get_text(r, &accessor, "type", &type));
+    AG_TRY(read_component_type(r, &accessor, &a->component_type));
+    AG_TRY(gltf_get_bool(r, &accessor, "normalized", &a->is_normalized));
+    AG_TRY(gltf_get_uint(r, &accessor, "byteOffset", &offset));
+    AG_TRY(gltf_get_uint(r, &accessor, "count", &count));
     a->components = component_count(type);
     if (a->components == 0)
         return gltf_error(r, &accessor, "there is no type \"%s\"", type);
@@ -145,7 +145,7 @@ ag_status gltf_accessor_open(gltf_reader *r, const gltf_value *at, uint32_t inde
     a->count = (uint32_t)count;
     size_t element_size = component_size(a->component_type) * (size_t)a->components;
     if (gltf_member(&accessor, "bufferView").json)
-        GLTF_TRY(gltf_view_span(r, &accessor, offset, count, element_size, &a->bytes, &a->stride));
+        AG_TRY(gltf_view_span(r, &accessor, offset, count, element_size, &a->bytes, &a->stride));
     else if (count > MAX_ZEROS)
         return gltf_error(r, &accessor, "it has no bufferView, and %u elements are too many for that", a->count);
     return open_sparse(r, &accessor, a);

@@ -68,10 +68,10 @@ static ag_status load_buffer(gltf_reader *r, uint32_t index, gltf_bytes *out_byt
     const char *uri = NULL;
     uint64_t size = 0;
     gltf_value buffer;
-    GLTF_TRY(gltf_get_item(r, GLTF_BUFFERS, index, &buffer));
-    GLTF_TRY(gltf_require(r, &buffer, "byteLength"));
-    GLTF_TRY(gltf_get_uint(r, &buffer, "byteLength", &size));
-    GLTF_TRY(gltf_get_text(r, &buffer, "uri", &uri));
+    AG_TRY(gltf_get_item(r, GLTF_BUFFERS, index, &buffer));
+    AG_TRY(gltf_require(r, &buffer, "byteLength"));
+    AG_TRY(gltf_get_uint(r, &buffer, "byteLength", &size));
+    AG_TRY(gltf_get_text(r, &buffer, "uri", &uri));
     if (!uri) {
         if (index != 0 || !r->chunk.data)
             return gltf_error(r, &buffer, "has no uri%s", index == 0 ? ", nor the file a BIN chunk" : "");
@@ -84,7 +84,7 @@ static ag_status load_buffer(gltf_reader *r, uint32_t index, gltf_bytes *out_byt
     if (size == 0)
         return gltf_error(r, &buffer, "its byteLength is 0");
     if (!file->data)
-        GLTF_TRY(load_from_uri(r, &buffer, uri, size, file));
+        AG_TRY(load_from_uri(r, &buffer, uri, size, file));
     *out_bytes = (gltf_bytes){file->data, file->size};
     return AG_OK;
 }
@@ -95,14 +95,14 @@ ag_status gltf_buffer_view(gltf_reader *r, uint32_t index, gltf_bytes *out_bytes
     uint64_t offset = 0, size = 0, stride = 0;
     gltf_bytes buffer = {NULL, 0};
     gltf_value view;
-    GLTF_TRY(gltf_get_item(r, GLTF_BUFFER_VIEWS, index, &view));
-    GLTF_TRY(gltf_require(r, &view, "buffer"));
-    GLTF_TRY(gltf_require(r, &view, "byteLength"));
-    GLTF_TRY(gltf_get_index(r, &view, "buffer", GLTF_BUFFERS, &buffer_index));
-    GLTF_TRY(gltf_get_uint(r, &view, "byteOffset", &offset));
-    GLTF_TRY(gltf_get_uint(r, &view, "byteLength", &size));
-    GLTF_TRY(gltf_get_uint(r, &view, "byteStride", &stride));
-    GLTF_TRY(load_buffer(r, buffer_index, &buffer));
+    AG_TRY(gltf_get_item(r, GLTF_BUFFER_VIEWS, index, &view));
+    AG_TRY(gltf_require(r, &view, "buffer"));
+    AG_TRY(gltf_require(r, &view, "byteLength"));
+    AG_TRY(gltf_get_index(r, &view, "buffer", GLTF_BUFFERS, &buffer_index));
+    AG_TRY(gltf_get_uint(r, &view, "byteOffset", &offset));
+    AG_TRY(gltf_get_uint(r, &view, "byteLength", &size));
+    AG_TRY(gltf_get_uint(r, &view, "byteStride", &stride));
+    AG_TRY(load_buffer(r, buffer_index, &buffer));
     if (stride > 252)
         return gltf_error(r, &view, "its byteStride is %llu; up to 252 are allowed", (unsigned long long)stride);
     if (offset > buffer.size || size > buffer.size - offset)
@@ -118,9 +118,9 @@ ag_status gltf_view_span(gltf_reader *r, const gltf_value *at, uint64_t offset, 
 {
     uint32_t view_index = GLTF_NONE, view_stride;
     gltf_bytes view;
-    GLTF_TRY(gltf_require(r, at, "bufferView"));
-    GLTF_TRY(gltf_get_index(r, at, "bufferView", GLTF_BUFFER_VIEWS, &view_index));
-    GLTF_TRY(gltf_buffer_view(r, view_index, &view, &view_stride));
+    AG_TRY(gltf_require(r, at, "bufferView"));
+    AG_TRY(gltf_get_index(r, at, "bufferView", GLTF_BUFFER_VIEWS, &view_index));
+    AG_TRY(gltf_buffer_view(r, view_index, &view, &view_stride));
     size_t stride = view_stride ? view_stride : element_size;
     if (stride < element_size)
         return gltf_error(r, at, "an element has %zu bytes, but the view's byteStride is %zu", element_size, stride);

@@ -110,12 +110,12 @@ static ag_status check_asset(gltf_reader *r)
 {
     gltf_value asset;
     const char *version = NULL, *needed = NULL, *generator = NULL;
-    GLTF_TRY(gltf_get_object(r, &r->document, "asset", &asset));
-    GLTF_TRY(gltf_require(r, &r->document, "asset"));
-    GLTF_TRY(gltf_require(r, &asset, "version"));
-    GLTF_TRY(gltf_get_text(r, &asset, "version", &version));
-    GLTF_TRY(gltf_get_text(r, &asset, "minVersion", &needed));
-    GLTF_TRY(gltf_get_text(r, &asset, "generator", &generator));
+    AG_TRY(gltf_get_object(r, &r->document, "asset", &asset));
+    AG_TRY(gltf_require(r, &r->document, "asset"));
+    AG_TRY(gltf_require(r, &asset, "version"));
+    AG_TRY(gltf_get_text(r, &asset, "version", &version));
+    AG_TRY(gltf_get_text(r, &asset, "minVersion", &needed));
+    AG_TRY(gltf_get_text(r, &asset, "generator", &generator));
     if (strncmp(version, "2.", 2) != 0)
         return gltf_error(r, &asset, "it is glTF %s; known is 2.0", version);
     if (needed && strcmp(needed, "2.0") != 0)
@@ -170,7 +170,7 @@ static ag_status check_extensions(const gltf_reader *r)
     static const char *const KEYS[2] = {"extensionsRequired", "extensionsUsed"};
     for (int k = 0; k < 2; k++) {
         gltf_value names;
-        GLTF_TRY(gltf_get_array(r, &r->document, KEYS[k], &names));
+        AG_TRY(gltf_get_array(r, &r->document, KEYS[k], &names));
         for (size_t i = 0; names.json && i < json_array_size(names.json); i++) {
             gltf_value name = gltf_element(&names, i);
             const char *text = json_string_value(name.json);
@@ -192,10 +192,10 @@ static ag_status find_lists(gltf_reader *r)
                                                        "materials", "meshes",   "nodes",       "samplers", "scenes",
                                                        "skins",     "textures", "lights"};
     gltf_value *parents = r->lists_parents;
-    GLTF_TRY(gltf_get_extension(r, &r->document, "KHR_lights_punctual", &parents[0], &parents[1]));
+    AG_TRY(gltf_get_extension(r, &r->document, "KHR_lights_punctual", &parents[0], &parents[1]));
     for (int i = 0; i < GLTF_LIST_COUNT; i++) {
         const gltf_value *parent = i == GLTF_LIGHTS ? &parents[1] : &r->document;
-        GLTF_TRY(gltf_get_array(r, parent, NAMES[i], &r->lists[i]));
+        AG_TRY(gltf_get_array(r, parent, NAMES[i], &r->lists[i]));
         size_t count = r->lists[i].json ? json_array_size(r->lists[i].json) : 0;
         if (count >= UINT32_MAX / 4)
             return gltf_error(r, &r->lists[i], "there are too many");
@@ -211,11 +211,11 @@ ag_status gltf_document_read(gltf_reader *r, const char *path)
     ag_status status = text_file_read(r->run, path, error, sizeof error, &file);
     if (status == AG_ERROR_INPUT)
         log_at(r->run->log, AG_LOG_ERROR, r->where, "cannot read the file: %s", error);
-    GLTF_TRY(status);
+    AG_TRY(status);
     r->text = file.text;
-    GLTF_TRY(file.size >= 4 && memcmp(file.text, "glTF", 4) == 0 ? open_container(r, file.size)
-                                                                 : parse_json(r, file.text, file.size, false));
-    GLTF_TRY(check_asset(r));
-    GLTF_TRY(check_extensions(r));
+    AG_TRY(file.size >= 4 && memcmp(file.text, "glTF", 4) == 0 ? open_container(r, file.size)
+                                                               : parse_json(r, file.text, file.size, false));
+    AG_TRY(check_asset(r));
+    AG_TRY(check_extensions(r));
     return find_lists(r);
 }

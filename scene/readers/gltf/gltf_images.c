@@ -22,7 +22,7 @@ static ag_status load_from_file(gltf_reader *r, const gltf_value *uri, const cha
         snprintf(message, sizeof message, "cannot read '%s': %s", path, reason);
     else
         status = texture_image_load(r->scene, path, encoding, out_image_index, message, sizeof message);
-    if (status)
+    if (status != AG_OK)
         gltf_error(r, uri, "%s", message[0] ? message : ag_status_text(status));
     free(path);
     return status;
@@ -49,19 +49,19 @@ ag_status gltf_load_image(gltf_reader *r, uint32_t index, image_encoding encodin
     uint32_t view_index = GLTF_NONE, stride;
     gltf_bytes bytes;
     gltf_value at;
-    GLTF_TRY(gltf_get_item(r, GLTF_IMAGES, index, &at));
+    AG_TRY(gltf_get_item(r, GLTF_IMAGES, index, &at));
     gltf_value uri = gltf_member(&at, "uri");
-    GLTF_TRY(gltf_get_text(r, &at, "uri", &text));
-    GLTF_TRY(gltf_get_index(r, &at, "bufferView", GLTF_BUFFER_VIEWS, &view_index));
+    AG_TRY(gltf_get_text(r, &at, "uri", &text));
+    AG_TRY(gltf_get_index(r, &at, "bufferView", GLTF_BUFFER_VIEWS, &view_index));
     if (!text && view_index == GLTF_NONE)
         return gltf_error(r, &at, "has neither a uri nor a bufferView");
     if (text && !gltf_uri_is_data(text))
         return load_from_file(r, &uri, text, encoding, out_image_index);
-    GLTF_TRY(text ? decode_uri(r, index, &uri, text, &bytes) : gltf_buffer_view(r, view_index, &bytes, &stride));
+    AG_TRY(text ? decode_uri(r, index, &uri, text, &bytes) : gltf_buffer_view(r, view_index, &bytes, &stride));
     snprintf(name, sizeof name, "%.400s#images[%u]", r->where.file, index);
     ag_status status = texture_image_load_memory(r->scene, name, bytes.data, bytes.size, encoding, out_image_index,
                                                  message, sizeof message);
-    if (status)
+    if (status != AG_OK)
         gltf_error(r, text ? &uri : &at, "%s", message[0] ? message : ag_status_text(status));
     return status;
 }

@@ -36,7 +36,7 @@ static ag_status find_shared_mesh(const gltf_reader *r, const gltf_value *node, 
 ag_status gltf_count_mesh_use(gltf_reader *r, const gltf_value *node)
 {
     uint32_t mesh_index;
-    GLTF_TRY(find_shared_mesh(r, node, &mesh_index));
+    AG_TRY(find_shared_mesh(r, node, &mesh_index));
     if (mesh_index != GLTF_NONE)
         r->mesh_uses[mesh_index].node_count++;
     return AG_OK;
@@ -47,9 +47,9 @@ static ag_status add_posed(gltf_reader *r, const gltf_value *node, uint32_t mesh
 {
     gltf_value mesh_value;
     gltf_pose pose;
-    GLTF_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &mesh_value));
+    AG_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &mesh_value));
     ag_status status = gltf_pose_open(r, node, &mesh_value, world_from_node, &pose);
-    if (!status)
+    if (status == AG_OK)
         status = gltf_add_mesh(r, mesh_index, &pose, to);
     gltf_pose_close(&pose);
     return status;
@@ -61,8 +61,8 @@ static ag_status make_object(gltf_reader *r, const gltf_value *node, uint32_t me
     gltf_matrix identity = gltf_matrix_identity();
     uint32_t shape_count = r->scene->shape_count;
     gltf_destination to = {.part = GLTF_DARK_PART};
-    GLTF_TRY(scene_add_object(r->scene, &to.object_index));
-    GLTF_TRY(add_posed(r, node, mesh_index, &identity, to));
+    AG_TRY(scene_add_object(r->scene, &to.object_index));
+    AG_TRY(add_posed(r, node, mesh_index, &identity, to));
     use->is_made = true;
     use->object_index = r->scene->shape_count > shape_count ? to.object_index : SCENE_NO_OBJECT;
     return AG_OK;
@@ -76,15 +76,15 @@ static ag_status add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t 
     affine place;
     for (int e = 0; e < 12; e++)
         place.m[e / 4][e % 4] = (float)world_from_node->m[e / 4][e % 4];
-    GLTF_TRY(find_shared_mesh(r, node, &shared_index));
+    AG_TRY(find_shared_mesh(r, node, &shared_index));
     gltf_mesh_use *use = &r->mesh_uses[mesh_index];
     if (shared_index == GLTF_NONE || use->node_count < 2 || !affine_can_be_undone(&place) ||
         use->node_count * triangle_count(r, mesh_index) <= MAX_COPIED_TRIANGLES)
         return add_posed(r, node, mesh_index, world_from_node, world);
     if (!use->is_made)
-        GLTF_TRY(make_object(r, node, mesh_index, use));
+        AG_TRY(make_object(r, node, mesh_index, use));
     if (use->object_index != SCENE_NO_OBJECT)
-        GLTF_TRY(scene_add_instance(r->scene, use->object_index, &place, 1, &instance_index));
+        AG_TRY(scene_add_instance(r->scene, use->object_index, &place, 1, &instance_index));
     return add_posed(r, node, mesh_index, world_from_node, shining);
 }
 
@@ -96,12 +96,12 @@ ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t me
 {
     gltf_value mesh_item;
     uint32_t shape_count = r->scene->shape_count, object_count = r->scene->object_count;
-    GLTF_TRY(add_node_mesh(r, node, mesh_index, world_from_node));
-    GLTF_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &mesh_item));
+    AG_TRY(add_node_mesh(r, node, mesh_index, world_from_node));
+    AG_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &mesh_item));
     const char *mesh_name = name_of(&mesh_item), *node_name = name_of(node);
     for (uint32_t i = shape_count; i < r->scene->shape_count; i++) /* of what stands in the world itself */
-        GLTF_TRY(scene_set_name(r->scene, NAMED_SHAPE, i, node_name ? node_name : mesh_name));
+        AG_TRY(scene_set_name(r->scene, NAMED_SHAPE, i, node_name ? node_name : mesh_name));
     for (uint32_t i = object_count; i < r->scene->object_count; i++) /* which several nodes share */
-        GLTF_TRY(scene_set_name(r->scene, NAMED_OBJECT, i, mesh_name));
+        AG_TRY(scene_set_name(r->scene, NAMED_OBJECT, i, mesh_name));
     return AG_OK;
 }

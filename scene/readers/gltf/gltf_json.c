@@ -118,7 +118,7 @@ ag_status gltf_get_array(const gltf_reader *r, const gltf_value *parent, const c
 ag_status gltf_get_extension(const gltf_reader *r, const gltf_value *parent, const char *name,
                              gltf_value *extensions_frame, gltf_value *out_value)
 {
-    GLTF_TRY(gltf_get_object(r, parent, "extensions", extensions_frame));
+    AG_TRY(gltf_get_object(r, parent, "extensions", extensions_frame));
     return gltf_get_object(r, extensions_frame, name, out_value);
 }
 
@@ -190,7 +190,7 @@ ag_status gltf_get_doubles(const gltf_reader *r, const gltf_value *parent, const
                            double *values)
 {
     gltf_value array;
-    GLTF_TRY(gltf_get_array(r, parent, key, &array));
+    AG_TRY(gltf_get_array(r, parent, key, &array));
     if (!array.json)
         return AG_OK;
     if (json_array_size(array.json) != count)
@@ -217,7 +217,7 @@ ag_status gltf_get_clamped(const gltf_reader *r, const gltf_value *parent, const
 {
     double number = (double)*value;
     gltf_value v = gltf_member(parent, key);
-    GLTF_TRY(gltf_get_double(r, parent, key, &number));
+    AG_TRY(gltf_get_double(r, parent, key, &number));
     *value = clamp_with_warning(r, &v, number, low, high);
     return AG_OK;
 }
@@ -229,7 +229,7 @@ ag_status gltf_get_factors(const gltf_reader *r, const gltf_value *parent, const
     gltf_value v = gltf_member(parent, key);
     for (size_t i = 0; i < count; i++)
         numbers[i] = (double)values[i];
-    GLTF_TRY(gltf_get_doubles(r, parent, key, count, numbers));
+    AG_TRY(gltf_get_doubles(r, parent, key, count, numbers));
     for (size_t i = 0; i < count; i++)
         values[i] = clamp_with_warning(r, &v, numbers[i], low, high);
     return AG_OK;
@@ -239,7 +239,7 @@ ag_status gltf_get_color(const gltf_reader *r, const gltf_value *parent, const c
                          rgb *value)
 {
     float numbers[3] = {value->r, value->g, value->b};
-    GLTF_TRY(gltf_get_factors(r, parent, key, low, high, 3, numbers));
+    AG_TRY(gltf_get_factors(r, parent, key, low, high, 3, numbers));
     *value = rgb_make(numbers[0], numbers[1], numbers[2]);
     return AG_OK;
 }
@@ -247,7 +247,7 @@ ag_status gltf_get_color(const gltf_reader *r, const gltf_value *parent, const c
 ag_status gltf_read_index(const gltf_reader *r, const gltf_value *at, gltf_list list, uint32_t *out_index)
 {
     uint64_t number = 0;
-    GLTF_TRY(read_uint(r, at, &number));
+    AG_TRY(read_uint(r, at, &number));
     if (number >= r->list_counts[list])
         return gltf_error(r, at, "%llu is out of range: there are %u %s", (unsigned long long)number,
                           r->list_counts[list], LIST_NAMES[list]);

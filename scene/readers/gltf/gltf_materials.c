@@ -25,8 +25,8 @@ ag_status gltf_read_alpha(gltf_reader *r, const gltf_value *at, const gltf_value
     out->alpha = 1.0f;
     out->alpha_texture = SCENE_NO_TEXTURE;
     out->alpha_cutoff = 0.0f;
-    GLTF_TRY(gltf_get_text(r, at, "alphaMode", &mode));
-    GLTF_TRY(gltf_get_double(r, at, "alphaCutoff", &cutoff));
+    AG_TRY(gltf_get_text(r, at, "alphaMode", &mode));
+    AG_TRY(gltf_get_double(r, at, "alphaCutoff", &cutoff));
     bool is_mask = strcmp(mode, "MASK") == 0;
     if (!is_mask && strcmp(mode, "BLEND") != 0)
         return strcmp(mode, "OPAQUE") == 0 ? AG_OK : gltf_error(r, &v, "there is no alpha mode \"%s\"", mode);
@@ -41,17 +41,17 @@ static ag_status read_metallic_roughness(gltf_reader *r, const gltf_value *at, m
 {
     float base[4] = {1.0f, 1.0f, 1.0f, 1.0f};
     gltf_value pbr;
-    GLTF_TRY(gltf_get_object(r, at, "pbrMetallicRoughness", &pbr));
-    GLTF_TRY(gltf_get_factors(r, &pbr, "baseColorFactor", 0.0, 1.0, 4, base));
+    AG_TRY(gltf_get_object(r, at, "pbrMetallicRoughness", &pbr));
+    AG_TRY(gltf_get_factors(r, &pbr, "baseColorFactor", 0.0, 1.0, 4, base));
     m->reflectance = working_space_reflectance(&r->scene->space, rgb_make(base[0], base[1], base[2]));
-    GLTF_TRY(gltf_get_clamped(r, &pbr, "metallicFactor", 0.0, 1.0, &m->metallic));
-    GLTF_TRY(gltf_get_clamped(r, &pbr, "roughnessFactor", 0.0, 1.0, &m->roughness));
-    GLTF_TRY(gltf_get_texture(r, &pbr, "baseColorTexture", COLOR, &out->uv_set, &m->reflectance_texture));
-    GLTF_TRY(gltf_read_alpha(r, at, &pbr, "baseColorTexture", base[3], out));
+    AG_TRY(gltf_get_clamped(r, &pbr, "metallicFactor", 0.0, 1.0, &m->metallic));
+    AG_TRY(gltf_get_clamped(r, &pbr, "roughnessFactor", 0.0, 1.0, &m->roughness));
+    AG_TRY(gltf_get_texture(r, &pbr, "baseColorTexture", COLOR, &out->uv_set, &m->reflectance_texture));
+    AG_TRY(gltf_read_alpha(r, at, &pbr, "baseColorTexture", base[3], out));
     if (m->metallic > 0.0f)
-        GLTF_TRY(gltf_get_texture(r, &pbr, "metallicRoughnessTexture", METALLIC, &out->uv_set, &m->metallic_texture));
+        AG_TRY(gltf_get_texture(r, &pbr, "metallicRoughnessTexture", METALLIC, &out->uv_set, &m->metallic_texture));
     if (m->roughness > 0.0f)
-        GLTF_TRY(gltf_get_texture(r, &pbr, "metallicRoughnessTexture", ROUGHNESS, &out->uv_set, &m->roughness_texture));
+        AG_TRY(gltf_get_texture(r, &pbr, "metallicRoughnessTexture", ROUGHNESS, &out->uv_set, &m->roughness_texture));
     return AG_OK;
 }
 
@@ -59,8 +59,8 @@ static ag_status read_normal_map(gltf_reader *r, const gltf_value *at, material 
 {
     double scale = 1.0;
     gltf_value map;
-    GLTF_TRY(gltf_get_object(r, at, "normalTexture", &map));
-    GLTF_TRY(gltf_get_double(r, &map, "scale", &scale));
+    AG_TRY(gltf_get_object(r, at, "normalTexture", &map));
+    AG_TRY(gltf_get_double(r, &map, "scale", &scale));
     m->normal_scale = (float)fmin(fmax(scale, -1e6), 1e6);
     return gltf_get_texture(r, at, "normalTexture", NORMAL, &out->uv_set, &m->normal_map_texture);
 }
@@ -69,16 +69,16 @@ static ag_status read_emission(gltf_reader *r, const gltf_value *at, gltf_materi
 {
     float strength = 1.0f;
     gltf_value extensions, extension;
-    GLTF_TRY(gltf_get_color(r, at, "emissiveFactor", 0.0, 1e30, &out->radiance));
-    GLTF_TRY(gltf_get_extension(r, at, "KHR_materials_emissive_strength", &extensions, &extension));
-    GLTF_TRY(gltf_get_clamped(r, &extension, "emissiveStrength", 0.0, 1e30, &strength));
+    AG_TRY(gltf_get_color(r, at, "emissiveFactor", 0.0, 1e30, &out->radiance));
+    AG_TRY(gltf_get_extension(r, at, "KHR_materials_emissive_strength", &extensions, &extension));
+    AG_TRY(gltf_get_clamped(r, &extension, "emissiveStrength", 0.0, 1e30, &strength));
     out->radiance = rgb_scale(working_space_light(&r->scene->space, out->radiance), strength);
     if (!rgb_is_finite(out->radiance))
         return gltf_error(r, at, "it shines brighter than a float can say");
     if (rgb_is_black(out->radiance))
         return AG_OK;
-    GLTF_TRY(gltf_get_bool(r, at, "doubleSided", &out->is_two_sided));
-    GLTF_TRY(gltf_get_texture(r, at, "emissiveTexture", COLOR, &out->uv_set, &out->radiance_texture));
+    AG_TRY(gltf_get_bool(r, at, "doubleSided", &out->is_two_sided));
+    AG_TRY(gltf_get_texture(r, at, "emissiveTexture", COLOR, &out->uv_set, &out->radiance_texture));
     out->only_glows = out->radiance_texture != SCENE_NO_TEXTURE && rgb_max(out->radiance) <= 1.0f;
     return AG_OK;
 }
@@ -91,11 +91,11 @@ static ag_status load(gltf_reader *r, const gltf_value *at, gltf_material *out)
     out->medium_inside = SCENE_NO_MEDIUM;
     out->radiance = rgb_gray(0.0f);
     out->radiance_texture = SCENE_NO_TEXTURE;
-    GLTF_TRY(read_metallic_roughness(r, at, &m, out));
-    GLTF_TRY(read_normal_map(r, at, &m, out));
-    GLTF_TRY(read_emission(r, at, out));
-    GLTF_TRY(gltf_read_material_extensions(r, at, &m, out));
-    GLTF_TRY(scene_add_material(r->scene, &m, &out->material_index));
+    AG_TRY(read_metallic_roughness(r, at, &m, out));
+    AG_TRY(read_normal_map(r, at, &m, out));
+    AG_TRY(read_emission(r, at, out));
+    AG_TRY(gltf_read_material_extensions(r, at, &m, out));
+    AG_TRY(scene_add_material(r->scene, &m, &out->material_index));
     const gltf_value name = gltf_member(at, "name");
     return scene_set_name(r->scene, NAMED_MATERIAL, out->material_index, json_string_value(name.json));
 }
@@ -108,7 +108,7 @@ ag_status gltf_material_find(gltf_reader *r, uint32_t index, const gltf_material
     if (found->is_loaded)
         return AG_OK;
     if (index != GLTF_NONE)
-        GLTF_TRY(gltf_get_item(r, GLTF_MATERIALS, index, &at));
+        AG_TRY(gltf_get_item(r, GLTF_MATERIALS, index, &at));
     found->is_loaded = true;
     return load(r, &at, found);
 }

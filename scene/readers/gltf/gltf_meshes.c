@@ -45,8 +45,8 @@ static ag_status fill_vertices(gltf_reader *r, const gltf_vertices *v, const uin
     if (!m->positions || (v->has_normals && !m->normals) || ((v->has_uvs || v->needs_uvs) && !m->uvs))
         return AG_ERROR_MEMORY;
     for (uint32_t i = 0; i < m->vertex_count; i++)
-        GLTF_TRY(gltf_vertices_get(r, v, file_numbers[i], &m->positions[i], m->normals ? &m->normals[i] : NULL,
-                                   m->uvs ? &m->uvs[i] : NULL));
+        AG_TRY(gltf_vertices_get(r, v, file_numbers[i], &m->positions[i], m->normals ? &m->normals[i] : NULL,
+                                 m->uvs ? &m->uvs[i] : NULL));
     return AG_OK;
 }
 
@@ -94,7 +94,7 @@ static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const 
     s.alpha = from->alpha;
     s.alpha_texture = from->alpha_texture;
     s.alpha_cutoff = from->alpha_cutoff;
-    GLTF_TRY(scene_add_object_shape(r->scene, object_index, &s, &shape_index));
+    AG_TRY(scene_add_object_shape(r->scene, object_index, &s, &shape_index));
     if (rgb_is_black(from->radiance))
         return AG_OK;
     light l = light_make(LIGHT_AREA);
@@ -112,29 +112,29 @@ static ag_status add_primitive(gltf_reader *r, const gltf_value *primitive, cons
     const gltf_material *material_of;
     gltf_vertices v;
     gltf_triangles t;
-    GLTF_TRY(gltf_get_index(r, primitive, "material", GLTF_MATERIALS, &material_index));
-    GLTF_TRY(gltf_material_find(r, material_index, &material_of));
+    AG_TRY(gltf_get_index(r, primitive, "material", GLTF_MATERIALS, &material_index));
+    AG_TRY(gltf_material_find(r, material_index, &material_of));
     if (to.part == (rgb_is_black(material_of->radiance) ? GLTF_SHINING_PART : GLTF_DARK_PART))
         return AG_OK;
     gltf_value attributes;
-    GLTF_TRY(gltf_require(r, primitive, "attributes"));
-    GLTF_TRY(gltf_get_object(r, primitive, "attributes", &attributes));
+    AG_TRY(gltf_require(r, primitive, "attributes"));
+    AG_TRY(gltf_get_object(r, primitive, "attributes", &attributes));
     ag_status status = gltf_vertices_open(r, primitive, &attributes, material_of->uv_set, pose, &v);
     mesh m = {.vertex_count = 0};
-    if (!status && v.count > 0)
+    if (status == AG_OK && v.count > 0)
         status = gltf_read_triangles(r, primitive, v.count, &t);
-    if (!status && v.count > 0 && t.count > 0) {
+    if (status == AG_OK && v.count > 0 && t.count > 0) {
         m.indices = t.indices;
         m.triangle_count = t.count;
         status = number_vertices(&t, &file_numbers, &m.vertex_count);
-        if (!status)
+        if (status == AG_OK)
             status = fill_vertices(r, &v, file_numbers, &m);
-        if (!status)
+        if (status == AG_OK)
             drop_degenerate(r, t.is_strip, &m);
     }
     free(file_numbers);
     gltf_vertices_close(&v);
-    if (!status && m.triangle_count > 0)
+    if (status == AG_OK && m.triangle_count > 0)
         return add_shape(r, &m, pose->is_mirror, material_of, to.object_index);
     free_arrays(&m);
     return status;
@@ -143,15 +143,15 @@ static ag_status add_primitive(gltf_reader *r, const gltf_value *primitive, cons
 ag_status gltf_add_mesh(gltf_reader *r, uint32_t mesh_index, const gltf_pose *pose, gltf_destination to)
 {
     gltf_value at, primitives;
-    GLTF_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &at));
-    GLTF_TRY(gltf_require(r, &at, "primitives"));
-    GLTF_TRY(gltf_get_array(r, &at, "primitives", &primitives));
+    AG_TRY(gltf_get_item(r, GLTF_MESHES, mesh_index, &at));
+    AG_TRY(gltf_require(r, &at, "primitives"));
+    AG_TRY(gltf_get_array(r, &at, "primitives", &primitives));
     for (size_t i = 0; i < json_array_size(primitives.json); i++) {
         gltf_value primitive;
         if (run_is_cancelled(r->run))
             return AG_CANCELLED;
-        GLTF_TRY(gltf_get_element(r, &primitives, i, &primitive));
-        GLTF_TRY(add_primitive(r, &primitive, pose, to));
+        AG_TRY(gltf_get_element(r, &primitives, i, &primitive));
+        AG_TRY(add_primitive(r, &primitive, pose, to));
     }
     return AG_OK;
 }

@@ -24,9 +24,9 @@ gltf_matrix gltf_matrix_multiply(const gltf_matrix *a, const gltf_matrix *b)
 static ag_status read_weights(const gltf_reader *r, const gltf_value *node, const gltf_value *mesh_value,
                               gltf_value *out_weights)
 {
-    GLTF_TRY(gltf_get_array(r, node, "weights", out_weights));
+    AG_TRY(gltf_get_array(r, node, "weights", out_weights));
     if (!out_weights->json)
-        GLTF_TRY(gltf_get_array(r, mesh_value, "weights", out_weights));
+        AG_TRY(gltf_get_array(r, mesh_value, "weights", out_weights));
     for (size_t i = 0; i < json_array_size(out_weights->json); i++) {
         gltf_value weight = gltf_element(out_weights, i);
         if (!json_is_number(weight.json))
@@ -40,16 +40,16 @@ static ag_status read_joints(gltf_reader *r, uint32_t skin_index, gltf_pose *pos
     gltf_value skin, joints;
     gltf_accessor inverse;
     uint32_t inverse_index = GLTF_NONE;
-    GLTF_TRY(gltf_get_item(r, GLTF_SKINS, skin_index, &skin));
-    GLTF_TRY(gltf_require(r, &skin, "joints"));
-    GLTF_TRY(gltf_get_array(r, &skin, "joints", &joints));
-    GLTF_TRY(gltf_get_index(r, &skin, "inverseBindMatrices", GLTF_ACCESSORS, &inverse_index));
+    AG_TRY(gltf_get_item(r, GLTF_SKINS, skin_index, &skin));
+    AG_TRY(gltf_require(r, &skin, "joints"));
+    AG_TRY(gltf_get_array(r, &skin, "joints", &joints));
+    AG_TRY(gltf_get_index(r, &skin, "inverseBindMatrices", GLTF_ACCESSORS, &inverse_index));
     gltf_value at = gltf_member(&skin, "inverseBindMatrices");
     size_t count = json_array_size(joints.json);
     if (count == 0 || count > UINT16_MAX)
         return gltf_error(r, &joints, "there are %zu, which should be from 1 to 65535", count);
     if (inverse_index != GLTF_NONE) {
-        GLTF_TRY(gltf_accessor_open(r, &at, inverse_index, 16, 16, &inverse));
+        AG_TRY(gltf_accessor_open(r, &at, inverse_index, 16, 16, &inverse));
         if (inverse.count < count)
             return gltf_error(r, &at, "it has %u elements, but there are %zu joints", inverse.count, count);
     }
@@ -62,7 +62,7 @@ static ag_status read_joints(gltf_reader *r, uint32_t skin_index, gltf_pose *pos
         float m[16]; /* column by column */
         gltf_value joint = gltf_element(&joints, i);
         gltf_matrix joint_from_mesh = gltf_matrix_identity();
-        GLTF_TRY(gltf_read_index(r, &joint, GLTF_NODES, &node));
+        AG_TRY(gltf_read_index(r, &joint, GLTF_NODES, &node));
         if (inverse_index != GLTF_NONE) {
             gltf_accessor_get(&inverse, i, m);
             for (int e = 0; e < 12; e++)
@@ -80,10 +80,10 @@ ag_status gltf_pose_open(gltf_reader *r, const gltf_value *node, const gltf_valu
     double cofactors[3][3];
     memset(out_pose, 0, sizeof *out_pose);
     out_pose->world_from_mesh = *world_from_node;
-    GLTF_TRY(read_weights(r, node, mesh_value, &out_pose->weights));
-    GLTF_TRY(gltf_get_index(r, node, "skin", GLTF_SKINS, &skin_index));
+    AG_TRY(read_weights(r, node, mesh_value, &out_pose->weights));
+    AG_TRY(gltf_get_index(r, node, "skin", GLTF_SKINS, &skin_index));
     if (skin_index != GLTF_NONE)
-        GLTF_TRY(read_joints(r, skin_index, out_pose));
+        AG_TRY(read_joints(r, skin_index, out_pose));
     out_pose->is_mirror =
         gltf_matrix_cofactors(skin_index == GLTF_NONE ? world_from_node : &out_pose->joints[0], cofactors);
     return AG_OK;

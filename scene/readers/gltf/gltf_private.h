@@ -6,6 +6,7 @@
 #define AFTERGLOW_GLTF_PRIVATE_H
 
 #include "gltf/gltf_reader.h"
+#include "status.h"
 
 #include <jansson.h>
 
@@ -16,12 +17,7 @@ enum { GLTF_MAX_FACTORS = 4 };
 /* Vertices lie within +-this, in world space, as those of other formats. */
 #define GLTF_MAX_COORDINATE 1e18
 
-#define GLTF_TRY(call)                                                                                                 \
-    do {                                                                                                               \
-        ag_status status_ = (call);                                                                                    \
-        if (status_ != AG_OK)                                                                                          \
-            return status_;                                                                                            \
-    } while (0)
+#define GLTF_TRY AG_TRY
 
 /* A value of the document and where it is: a chain of keys and indices up to the document itself, which is all in the
  * callers' frames. json is NULL where there is none. */

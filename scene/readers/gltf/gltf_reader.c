@@ -44,7 +44,7 @@ static ag_status end(gltf_reader *r)
                r->triangles_dropped, r->triangles_read);
     gltf_set_picture_size(r);
     if (!r->scene->has_camera)
-        GLTF_TRY(import_add_default_camera(r->scene, r->run->log));
+        AG_TRY(import_add_default_camera(r->scene, r->run->log));
     if (r->scene->light_count <= r->glow_count && r->is_blenders)
         log_at(r->run->log, AG_LOG_WARNING, r->where,
                "there is no lamp in it: Blender leaves area lamps and the world out of glTF files");
@@ -75,15 +75,15 @@ ag_status gltf_load_file(run_context *run, const char *path, scene *out_scene)
     r.scene = out_scene;
     run_progress(run, AG_PHASE_LOAD, 0.0);
     ag_status status = begin(&r, path);
-    if (!status)
+    if (status == AG_OK)
         status = gltf_document_read(&r, path);
-    if (!status)
+    if (status == AG_OK)
         status = allocate_lists(&r);
-    if (!status)
+    if (status == AG_OK)
         status = gltf_add_nodes(&r);
-    if (!status)
+    if (status == AG_OK)
         status = end(&r);
-    if (!status)
+    if (status == AG_OK)
         run_progress(run, AG_PHASE_LOAD, 1.0);
     reset(&r);
     return status;

@@ -11,7 +11,7 @@ static ag_status read_wrap(const gltf_reader *r, const gltf_value *sampler, cons
 {
     uint64_t number = 10497;
     gltf_value v = gltf_member(sampler, key);
-    GLTF_TRY(gltf_get_uint(r, sampler, key, &number));
+    AG_TRY(gltf_get_uint(r, sampler, key, &number));
     if (number != 10497 && number != 33071 && number != 33648)
         return gltf_error(r, &v, "there is no wrap %llu", (unsigned long long)number);
     *wrap = number == 10497 ? TEXTURE_WRAP_REPEAT : number == 33071 ? TEXTURE_WRAP_CLAMP : TEXTURE_WRAP_MIRROR;
@@ -23,13 +23,13 @@ static ag_status read_sampler(const gltf_reader *r, const gltf_value *texture_va
     uint32_t index = GLTF_NONE;
     uint64_t filter = 9729;
     gltf_value sampler;
-    GLTF_TRY(gltf_get_index(r, texture_value, "sampler", GLTF_SAMPLERS, &index));
+    AG_TRY(gltf_get_index(r, texture_value, "sampler", GLTF_SAMPLERS, &index));
     if (index == GLTF_NONE)
         return AG_OK;
-    GLTF_TRY(gltf_get_item(r, GLTF_SAMPLERS, index, &sampler));
-    GLTF_TRY(gltf_get_uint(r, &sampler, "magFilter", &filter));
+    AG_TRY(gltf_get_item(r, GLTF_SAMPLERS, index, &sampler));
+    AG_TRY(gltf_get_uint(r, &sampler, "magFilter", &filter));
     t->filter = filter == 9728 ? TEXTURE_FILTER_POINT : TEXTURE_FILTER_BILINEAR;
-    GLTF_TRY(read_wrap(r, &sampler, "wrapS", &t->wraps.s));
+    AG_TRY(read_wrap(r, &sampler, "wrapS", &t->wraps.s));
     return read_wrap(r, &sampler, "wrapT", &t->wraps.t);
 }
 
@@ -49,13 +49,13 @@ static ag_status read_transform(const gltf_reader *r, const gltf_value *info, te
     gltf_value extensions, extension;
     m->kind = TEXTURE_MAPPING_UV;
     m->scale = (vec2){1.0f, 1.0f};
-    GLTF_TRY(gltf_get_extension(r, info, "KHR_texture_transform", &extensions, &extension));
+    AG_TRY(gltf_get_extension(r, info, "KHR_texture_transform", &extensions, &extension));
     if (!extension.json)
         return AG_OK;
-    GLTF_TRY(gltf_get_doubles(r, &extension, "offset", 2, offset));
-    GLTF_TRY(gltf_get_doubles(r, &extension, "scale", 2, scale));
-    GLTF_TRY(gltf_get_double(r, &extension, "rotation", &rotation));
-    GLTF_TRY(gltf_get_uint(r, &extension, "texCoord", uv_set));
+    AG_TRY(gltf_get_doubles(r, &extension, "offset", 2, offset));
+    AG_TRY(gltf_get_doubles(r, &extension, "scale", 2, scale));
+    AG_TRY(gltf_get_double(r, &extension, "rotation", &rotation));
+    AG_TRY(gltf_get_uint(r, &extension, "texCoord", uv_set));
     map_uv(offset, rotation, scale, m);
     vec3 largest = vec3_make(vec3_max_abs(m->axes[0]), vec3_max_abs(m->axes[1]), fabsf(m->delta.x) + fabsf(m->delta.y));
     return vec3_max_abs(largest) <= 1e18f && vec3_is_finite(largest)
@@ -88,22 +88,22 @@ ag_status gltf_get_texture(gltf_reader *r, const gltf_value *parent, const char 
     t.channel = use.channel;
     t.scale = use.scale;
     t.invert = use.invert;
-    GLTF_TRY(gltf_get_object(r, parent, key, &info));
+    AG_TRY(gltf_get_object(r, parent, key, &info));
     if (!info.json)
         return AG_OK;
-    GLTF_TRY(gltf_require(r, &info, "index"));
-    GLTF_TRY(gltf_get_index(r, &info, "index", GLTF_TEXTURES, &index));
-    GLTF_TRY(gltf_get_uint(r, &info, "texCoord", &wanted_set));
-    GLTF_TRY(read_transform(r, &info, &t.mapping, &wanted_set));
-    GLTF_TRY(gltf_get_item(r, GLTF_TEXTURES, index, &texture_value));
-    GLTF_TRY(gltf_get_index(r, &texture_value, "source", GLTF_IMAGES, &source));
+    AG_TRY(gltf_require(r, &info, "index"));
+    AG_TRY(gltf_get_index(r, &info, "index", GLTF_TEXTURES, &index));
+    AG_TRY(gltf_get_uint(r, &info, "texCoord", &wanted_set));
+    AG_TRY(read_transform(r, &info, &t.mapping, &wanted_set));
+    AG_TRY(gltf_get_item(r, GLTF_TEXTURES, index, &texture_value));
+    AG_TRY(gltf_get_index(r, &texture_value, "source", GLTF_IMAGES, &source));
     if (source == GLTF_NONE) {
         gltf_warn_once(r, &texture_value, "source", "there is no picture in a known format: the texture is left out");
         return AG_OK;
     }
-    GLTF_TRY(read_sampler(r, &texture_value, &t));
-    GLTF_TRY(choose_uv_set(r, &info, wanted_set, uv_set));
+    AG_TRY(read_sampler(r, &texture_value, &t));
+    AG_TRY(choose_uv_set(r, &info, wanted_set, uv_set));
     image_encoding encoding = {.curve = use.is_srgb ? IMAGE_CURVE_SRGB : IMAGE_CURVE_LINEAR};
-    GLTF_TRY(gltf_load_image(r, source, encoding, &t.image_index));
+    AG_TRY(gltf_load_image(r, source, encoding, &t.image_index));
     return scene_add_texture(r->scene, &t, out_texture);
 }

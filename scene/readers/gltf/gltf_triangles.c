@@ -25,10 +25,10 @@ static ag_status open_corners(gltf_reader *r, const gltf_value *primitive, uint3
     gltf_value at = gltf_member(primitive, "indices");
     list->is_indexed = false;
     list->count = vertex_count;
-    GLTF_TRY(gltf_get_index(r, primitive, "indices", GLTF_ACCESSORS, &index));
+    AG_TRY(gltf_get_index(r, primitive, "indices", GLTF_ACCESSORS, &index));
     if (index == GLTF_NONE)
         return AG_OK;
-    GLTF_TRY(gltf_accessor_open(r, &at, index, 1, 1, &list->indices));
+    AG_TRY(gltf_accessor_open(r, &at, index, 1, 1, &list->indices));
     int type = list->indices.component_type;
     if (type != 5121 && type != 5123 && type != 5125)
         return gltf_error(r, &at, "should be unsigned integers");
@@ -61,14 +61,14 @@ ag_status gltf_read_triangles(gltf_reader *r, const gltf_value *primitive, uint3
     corner_list list;
     gltf_value at = gltf_member(primitive, "mode");
     *out_triangles = (gltf_triangles){NULL, 0, false};
-    GLTF_TRY(gltf_get_uint(r, primitive, "mode", &mode));
+    AG_TRY(gltf_get_uint(r, primitive, "mode", &mode));
     if (mode > MODE_FAN)
         return gltf_error(r, &at, "there is no mode %llu", (unsigned long long)mode);
     if (mode < MODE_TRIANGLES) {
         gltf_warn_once(r, &at, OTHERS[mode], "%s have no surface, and are left out", OTHERS[mode]);
         return AG_OK;
     }
-    GLTF_TRY(open_corners(r, primitive, vertex_count, &list));
+    AG_TRY(open_corners(r, primitive, vertex_count, &list));
     uint32_t count = mode == MODE_TRIANGLES ? list.count / 3 : list.count >= 3 ? list.count - 2 : 0;
     if (mode == MODE_TRIANGLES ? list.count % 3 != 0 : list.count < 3)
         gltf_warn_once(r, primitive, "corners", "%u vertices do not make whole triangles", list.count);

@@ -14,7 +14,7 @@ static ag_status open_attribute(gltf_reader *r, const gltf_value *at, const char
 {
     uint32_t index = GLTF_NONE;
     gltf_value v = gltf_member(at, name);
-    GLTF_TRY(gltf_get_index(r, at, name, GLTF_ACCESSORS, &index));
+    AG_TRY(gltf_get_index(r, at, name, GLTF_ACCESSORS, &index));
     *out_is_there = index != GLTF_NONE;
     return *out_is_there ? gltf_accessor_open(r, &v, index, components_min, components_max, out_accessor) : AG_OK;
 }
@@ -24,7 +24,7 @@ static ag_status open_vertex_data(gltf_reader *r, const gltf_value *at, const ch
                                   uint32_t vertex_count, bool *out_is_there, gltf_accessor *out_accessor)
 {
     gltf_value v = gltf_member(at, name);
-    GLTF_TRY(open_attribute(r, at, name, components, components, out_is_there, out_accessor));
+    AG_TRY(open_attribute(r, at, name, components, components, out_is_there, out_accessor));
     if (*out_is_there && out_accessor->count < vertex_count)
         return gltf_error(r, &v, "it has %u elements, but POSITION has %u", out_accessor->count, vertex_count);
     return AG_OK;
@@ -37,7 +37,7 @@ static ag_status warn_colors(gltf_reader *r, const gltf_value *at)
     bool is_there;
     float c[16];
     gltf_value v = gltf_member(at, "COLOR_0");
-    GLTF_TRY(open_attribute(r, at, "COLOR_0", 3, 4, &is_there, &colors));
+    AG_TRY(open_attribute(r, at, "COLOR_0", 3, 4, &is_there, &colors));
     for (uint32_t i = 0; is_there && i < colors.count; i++) {
         gltf_accessor_get(&colors, i, c);
         if (c[0] != 1.0f || c[1] != 1.0f || c[2] != 1.0f) {
@@ -52,7 +52,7 @@ static ag_status warn_colors(gltf_reader *r, const gltf_value *at)
 static ag_status open_morphs(gltf_reader *r, const gltf_value *primitive, gltf_vertices *v)
 {
     gltf_value targets, weights = v->pose->weights;
-    GLTF_TRY(gltf_get_array(r, primitive, "targets", &targets));
+    AG_TRY(gltf_get_array(r, primitive, "targets", &targets));
     size_t count = json_array_size(targets.json), weight_count = json_array_size(weights.json);
     if (count == 0 || weight_count == 0)
         return AG_OK;
@@ -65,9 +65,9 @@ static ag_status open_morphs(gltf_reader *r, const gltf_value *primitive, gltf_v
         m->weight = json_number_value(json_array_get(weights.json, i));
         if (m->weight == 0.0)
             continue;
-        GLTF_TRY(gltf_get_element(r, &targets, i, &target));
-        GLTF_TRY(open_vertex_data(r, &target, "POSITION", 3, v->count, &m->has_positions, &m->positions));
-        GLTF_TRY(open_vertex_data(r, &target, "NORMAL", 3, v->count, &m->has_normals, &m->normals));
+        AG_TRY(gltf_get_element(r, &targets, i, &target));
+        AG_TRY(open_vertex_data(r, &target, "POSITION", 3, v->count, &m->has_positions, &m->positions));
+        AG_TRY(open_vertex_data(r, &target, "NORMAL", 3, v->count, &m->has_normals, &m->normals));
         v->morph_count++;
     }
     return AG_OK;
@@ -80,8 +80,8 @@ static ag_status open_influences(gltf_reader *r, const gltf_value *at, gltf_vert
         bool has_joints, has_weights;
         snprintf(joints, sizeof joints, "JOINTS_%d", set);
         snprintf(weights, sizeof weights, "WEIGHTS_%d", set);
-        GLTF_TRY(open_vertex_data(r, at, joints, 4, v->count, &has_joints, &v->joints[set]));
-        GLTF_TRY(open_vertex_data(r, at, weights, 4, v->count, &has_weights, &v->weights[set]));
+        AG_TRY(open_vertex_data(r, at, joints, 4, v->count, &has_joints, &v->joints[set]));
+        AG_TRY(open_vertex_data(r, at, weights, 4, v->count, &has_weights, &v->weights[set]));
         if (!has_joints || !has_weights)
             break;
         v->influence_count++;
@@ -99,20 +99,20 @@ ag_status gltf_vertices_open(gltf_reader *r, const gltf_value *primitive, const 
     v->attributes = attributes;
     v->pose = pose;
     v->needs_uvs = uv_set != GLTF_NONE;
-    GLTF_TRY(open_attribute(r, attributes, "POSITION", 3, 3, &is_there, &v->positions));
+    AG_TRY(open_attribute(r, attributes, "POSITION", 3, 3, &is_there, &v->positions));
     if (!is_there) {
         gltf_warn_once(r, attributes, "POSITION", "there is no POSITION, and so nothing to see");
         return AG_OK;
     }
     v->count = v->positions.count;
-    GLTF_TRY(open_vertex_data(r, attributes, "NORMAL", 3, v->count, &v->has_normals, &v->normals));
+    AG_TRY(open_vertex_data(r, attributes, "NORMAL", 3, v->count, &v->has_normals, &v->normals));
     snprintf(name, sizeof name, "TEXCOORD_%u", v->needs_uvs ? uv_set : 0);
-    GLTF_TRY(open_vertex_data(r, attributes, name, 2, v->count, &v->has_uvs, &v->uvs));
+    AG_TRY(open_vertex_data(r, attributes, name, 2, v->count, &v->has_uvs, &v->uvs));
     if (v->needs_uvs && !v->has_uvs)
         gltf_warn_once(r, attributes, "TEXCOORD",
                        "the material's textures need %s, which is missing: it is 0 everywhere", name);
-    GLTF_TRY(warn_colors(r, attributes));
-    GLTF_TRY(open_morphs(r, primitive, v));
+    AG_TRY(warn_colors(r, attributes));
+    AG_TRY(open_morphs(r, primitive, v));
     return open_influences(r, attributes, v);
 }
 
@@ -218,7 +218,7 @@ ag_status gltf_vertices_get(gltf_reader *r, const gltf_vertices *v, uint32_t i, 
     double own[3];
     float values[16];
     if (v->influence_count > 0)
-        GLTF_TRY(blend_joints(r, v, i, &matrix));
+        AG_TRY(blend_joints(r, v, i, &matrix));
     get_morphed(v, i, false, own);
     *out_position = place_point(&matrix, own);
     if (!((double)vec3_max_abs(*out_position) <= GLTF_MAX_COORDINATE) || !vec3_is_finite(*out_position)) {

@@ -121,7 +121,7 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
     ag_status status = load_picture(i, p, encoding, &t.image_index, message, sizeof message);
     if (status == AG_ERROR_MEMORY)
         return status;
-    if (status) {
+    if (status != AG_OK) {
         warn_picture(i, p, message);
         return AG_OK;
     }
@@ -269,7 +269,7 @@ static ag_status add_relief(importer *i, const import_material *source, material
     if (isfinite(normal->strength))
         m->normal_scale = normal->strength;
     float height = bump->strength * i->bump_unit;
-    if (!status && m->normal_map_texture == SCENE_NO_TEXTURE && isfinite(height))
+    if (status == AG_OK && m->normal_map_texture == SCENE_NO_TEXTURE && isfinite(height))
         status = add_picture(i, bump, PICTURE_NUMBER, height, &m->displacement_texture);
     return status;
 }
@@ -293,7 +293,7 @@ static ag_status add_emission(importer *i, const import_material *source, import
         e = rgb_gray(0.0f);
     e = working_space_light(&i->scene->space, e);
     ag_status status = add_picture(i, p, PICTURE_COLOR, 1.0f, &out->radiance_texture);
-    if (!status && out->radiance_texture != SCENE_NO_TEXTURE && rgb_is_black(e))
+    if (status == AG_OK && out->radiance_texture != SCENE_NO_TEXTURE && rgb_is_black(e))
         e = rgb_gray(1.0f);
     out->radiance = e;
     return status;
@@ -304,20 +304,20 @@ ag_status importer_add_material(importer *i, const import_material *source, impo
     import_surface surface = {.alpha = 1.0f, .alpha_texture = SCENE_NO_TEXTURE, .radiance_texture = SCENE_NO_TEXTURE};
     material m = make_material(i, source);
     ag_status status = add_color(i, source, &m);
-    if (!status && m.kind == MATERIAL_PRINCIPLED && !is_glass(&m)) {
+    if (status == AG_OK && m.kind == MATERIAL_PRINCIPLED && !is_glass(&m)) {
         status = add_picture(i, &source->pictures[IMPORT_ROUGHNESS], PICTURE_NUMBER, 1.0f, &m.roughness_texture);
-        if (!status)
+        if (status == AG_OK)
             status = add_picture(i, &source->pictures[IMPORT_METALLIC], PICTURE_NUMBER, 1.0f, &m.metallic_texture);
     }
-    if (!status)
+    if (status == AG_OK)
         status = add_relief(i, source, &m);
-    if (!status)
+    if (status == AG_OK)
         status = add_opacity(i, source, &m, &surface);
-    if (!status)
+    if (status == AG_OK)
         status = add_emission(i, source, &surface);
-    if (!status)
+    if (status == AG_OK)
         status = scene_add_material(i->scene, &m, &surface.material_index);
-    if (!status)
+    if (status == AG_OK)
         status = scene_set_name(i->scene, NAMED_MATERIAL, surface.material_index, source->name);
     *out_surface = surface;
     return status;

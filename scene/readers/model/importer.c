@@ -134,9 +134,9 @@ ag_status importer_add_mesh(importer *i, const char *name, mesh *m, const transf
                             const import_surface *surface)
 {
     ag_status status = check_indices(i, name, m);
-    if (!status)
+    if (status == AG_OK)
         status = place_vertices(i, name, world_from_mesh, m);
-    if (!status)
+    if (status == AG_OK)
         drop_degenerate(i, m);
     if (status || m->triangle_count == 0) {
         free_arrays(m);
@@ -151,7 +151,7 @@ ag_status importer_add_mesh(importer *i, const char *name, mesh *m, const transf
     s.as.mesh = *m;
     memset(m, 0, sizeof *m);
     status = scene_add_shape(i->scene, &s, &index);
-    if (!status)
+    if (status == AG_OK)
         status = scene_set_name(i->scene, NAMED_SHAPE, index, name);
     return status ? status : add_lamp(i, surface, index);
 }
@@ -173,7 +173,7 @@ ag_status importer_finish(importer *i)
     ag_status status = AG_OK;
     if (!i->scene->has_camera)
         status = import_add_default_camera(i->scene, i->log);
-    if (!status && i->scene->light_count == 0)
+    if (status == AG_OK && i->scene->light_count == 0)
         status = import_add_default_light(i->scene, i->log);
     return status;
 }

@@ -531,17 +531,17 @@ ag_status assimp_load_file(run_context *run, const char *path, scene *out_scene)
     import_answer answer;
     uint64_t memory_bytes = 0;
     ag_status status = find_memory_limit(run, path, &memory_bytes);
-    if (status)
+    if (status != AG_OK)
         return status;
     run_progress(run, AG_PHASE_LOAD, 0.0);
     import_job job = {path, run->inputs};
     status = import_process_run(run, import_in_process, &job, memory_bytes, &answer, message, sizeof message);
     if (status && status != AG_CANCELLED && message[0] != '\0')
         refuse(run, path, "assimp cannot read the file", message);
-    if (!status)
+    if (status == AG_OK)
         status = import_scene_fill(run, path, answer.bytes, answer.size, out_scene);
     import_answer_reset(&answer);
-    if (!status)
+    if (status == AG_OK)
         run_progress(run, AG_PHASE_LOAD, 1.0);
     return status;
 }

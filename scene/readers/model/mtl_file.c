@@ -55,7 +55,7 @@ static ag_status read_float(reader *r, const char *what, float *out_value)
 {
     double value = 0.0;
     ag_status status = text_lines_number(&r->lines, what, &value);
-    if (!status)
+    if (status == AG_OK)
         *out_value = (float)value;
     return status;
 }
@@ -77,10 +77,10 @@ static ag_status read_color(reader *r, const char *what, rgb *out_color, bool *o
     ag_status status = read_float(r, what, &c[0]);
     before = r->lines;
     c[1] = c[2] = c[0];
-    if (!status && text_lines_word(&r->lines, &ahead)) {
+    if (status == AG_OK && text_lines_word(&r->lines, &ahead)) {
         r->lines = before;
         status = read_float(r, what, &c[1]);
-        if (!status)
+        if (status == AG_OK)
             status = read_float(r, what, &c[2]);
     }
     *out_color = rgb_make(c[0], c[1], c[2]);
@@ -201,7 +201,7 @@ static ag_status read_value(reader *r, const text_word *word, bool *out_is_known
     }
     if (text_word_is(word, "Tr")) {
         status = read_float(r, "Tr", &value);
-        if (!status && !r->has_d)
+        if (status == AG_OK && !r->has_d)
             m->opacity = 1.0f - value;
         return status;
     }
@@ -261,7 +261,7 @@ ag_status mtl_library_read(mtl_library *library, log_sink *log, const char *file
     text_word word;
     ag_status status = AG_OK;
     text_lines_init(&r.lines, log, file, text, size);
-    while (!status && text_lines_next(&r.lines)) {
+    while (status == AG_OK && text_lines_next(&r.lines)) {
         text_lines_word(&r.lines, &word);
         if (text_word_is(&word, "newmtl"))
             finish_material(&r);

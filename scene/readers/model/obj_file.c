@@ -36,7 +36,7 @@ static ag_status read_vertex(obj *o, int least, int most, double out_values[3])
             break;
         o->lines = before;
         ag_status status = text_lines_number(&o->lines, WHAT[k], &out_values[k]);
-        if (status)
+        if (status != AG_OK)
             return status;
     }
     return AG_OK;
@@ -47,7 +47,7 @@ static ag_status read_position(obj *o)
     double v[3];
     text_word word;
     ag_status status = read_vertex(o, 3, 3, v);
-    if (status)
+    if (status != AG_OK)
         return status;
     o->positions[o->position_count++] = vec3_make((float)v[0], (float)v[1], (float)v[2]);
     int more = 0;
@@ -63,7 +63,7 @@ static ag_status read_uv(obj *o)
 {
     double v[3];
     ag_status status = read_vertex(o, 1, 2, v);
-    if (!status)
+    if (status == AG_OK)
         o->uvs[o->uv_count++] = (vec2){(float)v[0], (float)v[1]};
     return status;
 }
@@ -75,7 +75,7 @@ static ag_status read_normal(obj *o)
     ag_status status = read_vertex(o, 3, 3, v);
     double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
     double scale = largest > 0.0 ? 1.0 / largest : 0.0;
-    if (!status)
+    if (status == AG_OK)
         o->normals[o->normal_count++] = vec3_make((float)(v[0] * scale), (float)(v[1] * scale), (float)(v[2] * scale));
     return status;
 }
@@ -107,15 +107,15 @@ static ag_status read_corner(obj *o, const text_word *word)
     const char *at = word->text, *end = at + word->length;
     obj_corner c = {OBJ_NONE, OBJ_NONE, OBJ_NONE};
     ag_status status = read_reference(o, &at, end, word, "vertex", o->position_count, o->position_total, &c.position);
-    if (!status && at < end && *at == '/') {
+    if (status == AG_OK && at < end && *at == '/') {
         at++;
         status = read_reference(o, &at, end, word, "texture vertex", o->uv_count, o->uv_total, &c.uv);
-        if (!status && at < end && *at == '/') {
+        if (status == AG_OK && at < end && *at == '/') {
             at++;
             status = read_reference(o, &at, end, word, "normal", o->normal_count, o->normal_total, &c.normal);
         }
     }
-    if (status)
+    if (status != AG_OK)
         return status;
     if (at != end || c.position == OBJ_NONE)
         return text_lines_refuse(&o->lines, *word, "a corner should be V, V/T, V//N or V/T/N");
@@ -143,7 +143,7 @@ static ag_status read_face(obj *o, text_word word)
     text_word next;
     while (text_lines_word(&o->lines, &next)) {
         ag_status status = read_corner(o, &next);
-        if (status)
+        if (status != AG_OK)
             return status;
     }
     size_t count = o->corner_count - f.first_corner;
@@ -156,7 +156,7 @@ static ag_status read_face(obj *o, text_word word)
         return text_lines_refuse(&o->lines, word, "there are too many faces");
     if (o->material == OBJ_NONE) { /* before any usemtl */
         ag_status status = use_material(o, "");
-        if (status)
+        if (status != AG_OK)
             return status;
     }
     f.corner_count = (uint32_t)count;
@@ -206,7 +206,7 @@ static ag_status read_library(obj *o, text_word name, bool *out_is_there, char *
     if (strcmp(path, "-") != 0) /* only the user may name that */
         status = text_file_read(o->to.run, path, error, error_size, &text);
     *out_is_there = status == AG_OK;
-    if (!status) {
+    if (status == AG_OK) {
         const char *interned = scene_intern_file_name(o->to.scene, path);
         status = interned ? mtl_library_read(&o->library, o->to.log, interned, text.text, text.size) : AG_ERROR_MEMORY;
         text_file_reset(&text);
@@ -225,13 +225,13 @@ static ag_status read_libraries(obj *o)
     if (rest.length == 0)
         return text_lines_refuse(&o->lines, rest, "the material library's name is missing");
     ag_status status = read_library(o, rest, &is_there, error, sizeof error);
-    while (!status && !is_there && text_lines_word(&words, &word)) {
+    while (status == AG_OK && !is_there && text_lines_word(&words, &word)) {
         bool is_found = word.length == rest.length;
         if (!is_found)
             status = read_library(o, word, &is_found, error, sizeof error);
         else
             is_found = false;
-        if (!status && !is_found) {
+        if (status == AG_OK && !is_found) {
             snprintf(key, sizeof key, "mtllib:%.*s", (int)(word.length < 400 ? word.length : 400), word.text);
             log_at_once(o->to.log, AG_LOG_WARNING, text_lines_where(&o->lines, word.text), key,
                         "the material library \"%.*s\" cannot be read: %s",
@@ -305,7 +305,7 @@ static ag_status read_statements(obj *o)
     while (text_lines_next(&o->lines)) {
         text_lines_word(&o->lines, &word);
         ag_status status = read_statement(o, &word);
-        if (status)
+        if (status != AG_OK)
             return status;
         if (++lines % 4096 == 0) {
             if (run_is_cancelled(o->to.run))
@@ -319,9 +319,9 @@ static ag_status read_statements(obj *o)
 static ag_status load(obj *o)
 {
     ag_status status = count_vertices(o);
-    if (!status)
+    if (status == AG_OK)
         status = read_statements(o);
-    if (!status)
+    if (status == AG_OK)
         status = obj_add_meshes(o);
     return status ? status : importer_finish(&o->to);
 }
@@ -334,13 +334,13 @@ ag_status obj_load_file(run_context *run, const char *path, scene *out_scene)
     memset(&o, 0, sizeof o);
     o.material = OBJ_NONE;
     ag_status status = importer_init(&o.to, run, path, out_scene);
-    if (status)
+    if (status != AG_OK)
         return status;
     run_progress(run, AG_PHASE_LOAD, 0.0);
     status = text_file_read(run, path, error, sizeof error, &text);
     if (status == AG_ERROR_INPUT)
         importer_refuse(&o.to, "cannot read the file: %s", error);
-    if (status)
+    if (status != AG_OK)
         return status;
     text_lines_init(&o.lines, run->log, o.to.where.file, text.text, text.size);
     status = load(&o);
@@ -354,7 +354,7 @@ ag_status obj_load_file(run_context *run, const char *path, scene *out_scene)
     name_table_reset(&o.used_names);
     mtl_library_reset(&o.library);
     text_file_reset(&text);
-    if (!status)
+    if (status == AG_OK)
         run_progress(run, AG_PHASE_LOAD, 1.0);
     return status;
 }

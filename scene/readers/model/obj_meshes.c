@@ -79,21 +79,21 @@ static ag_status smooth_normals(obj *o)
     double(*sums)[3] = NULL;
     size_t polygon_capacity = 0, sum_capacity = 0;
     ag_status status = AG_OK;
-    for (size_t k = 0; k < o->face_count && !status; k++) {
+    for (size_t k = 0; k < o->face_count && status == AG_OK; k++) {
         const obj_face *f = &o->faces[k];
         if (f->group == 0)
             continue;
         obj_corner *c = o->corners + f->first_corner;
         double area[3];
-        for (uint32_t i = 0; i < f->corner_count && !status; i++)
+        for (uint32_t i = 0; i < f->corner_count && status == AG_OK; i++)
             if (!obj_grow(&polygon, i, &polygon_capacity, sizeof *polygon))
                 status = AG_ERROR_MEMORY;
             else
                 polygon[i] = o->positions[c[i].position];
-        if (status)
+        if (status != AG_OK)
             break;
         polygon_area_vector(polygon, f->corner_count, area);
-        for (uint32_t i = 0; i < f->corner_count && !status; i++) {
+        for (uint32_t i = 0; i < f->corner_count && status == AG_OK; i++) {
             uint32_t number;
             if (c[i].normal != OBJ_NONE)
                 continue;
@@ -113,7 +113,7 @@ static ag_status smooth_normals(obj *o)
     o->smooth = malloc((table.count + 1) * sizeof *o->smooth);
     if (!o->smooth)
         status = AG_ERROR_MEMORY;
-    for (size_t k = 0; k < table.count && !status; k++) {
+    for (size_t k = 0; k < table.count && status == AG_OK; k++) {
         const double *s = sums[k];
         double largest = fmax(fabs(s[0]), fmax(fabs(s[1]), fabs(s[2]))), scale = largest > 0.0 ? 1.0 / largest : 0.0;
         o->smooth[k] = vec3_make((float)(s[0] * scale), (float)(s[1] * scale), (float)(s[2] * scale));
@@ -132,15 +132,15 @@ static ag_status cut_faces(obj *o, const obj_material *u, corner_table *table, u
     vec3 *polygon = malloc(u->corner_count * sizeof *polygon);
     uint32_t *scratch = malloc(u->corner_count * sizeof *scratch), *numbers = malloc(u->corner_count * sizeof *numbers);
     ag_status status = polygon && scratch && numbers ? AG_OK : AG_ERROR_MEMORY;
-    for (size_t k = 0; k < u->face_count && !status; k++) {
+    for (size_t k = 0; k < u->face_count && status == AG_OK; k++) {
         const obj_face *f = &o->faces[u->first_face + k];
-        for (uint32_t i = 0; i < f->corner_count && !status; i++) {
+        for (uint32_t i = 0; i < f->corner_count && status == AG_OK; i++) {
             obj_corner c = o->corners[f->first_corner + i];
             polygon[i] = o->positions[c.position];
             if (!corner_table_number(table, c, &numbers[i]))
                 status = AG_ERROR_MEMORY;
         }
-        if (status)
+        if (status != AG_OK)
             break;
         polygon_triangulate(polygon, f->corner_count, scratch, out_indices);
         for (uint32_t i = 0; i < 3 * (f->corner_count - 2); i++)
@@ -200,14 +200,14 @@ static ag_status add_mesh(obj *o, const obj_material *u)
     transform identity = transform_identity();
     ag_status status = add_material(o, u, &surface);
     m.indices = malloc(3 * u->triangle_count * sizeof *m.indices);
-    if (!status && !m.indices)
+    if (status == AG_OK && !m.indices)
         status = AG_ERROR_MEMORY;
-    if (!status)
+    if (status == AG_OK)
         status = cut_faces(o, u, &table, m.indices);
-    if (!status)
+    if (status == AG_OK)
         status = fill_vertices(o, &table, &m);
     corner_table_reset(&table);
-    if (!status)
+    if (status == AG_OK)
         return importer_add_mesh(&o->to, u->name, &m, &identity, &surface);
     free(m.positions);
     free(m.uvs);
@@ -250,10 +250,10 @@ static void find_bump_unit(obj *o)
 ag_status obj_add_meshes(obj *o)
 {
     ag_status status = smooth_normals(o);
-    if (!status)
+    if (status == AG_OK)
         status = sort_faces(o);
     find_bump_unit(o);
-    for (size_t k = 0; k < o->used_count && !status; k++) {
+    for (size_t k = 0; k < o->used_count && status == AG_OK; k++) {
         if (run_is_cancelled(o->to.run))
             return AG_CANCELLED;
         if (o->used[k].face_count > 0)

@@ -91,7 +91,7 @@ static ag_status store_vertex(loader *l, uint64_t index, const double values[PLY
 static ag_status read_count(loader *l, const ply_property *p, uint64_t *out_count)
 {
     double count;
-    PLY_TRY(ply_read_number(&l->stream, p->count_type, &count));
+    AG_TRY(ply_read_number(&l->stream, p->count_type, &count));
     if (!(count >= 0.0 && count <= (double)UINT32_MAX && floor(count) == count))
         return ply_fail(&l->stream, "a list cannot have %.17g entries", count);
     *out_count = (uint64_t)count;
@@ -103,7 +103,7 @@ static ag_status skip_property(loader *l, const ply_property *p)
 {
     uint64_t count = 1;
     if (p->is_list)
-        PLY_TRY(read_count(l, p, &count));
+        AG_TRY(read_count(l, p, &count));
     return ply_skip_numbers(&l->stream, p->type, count);
 }
 
@@ -114,9 +114,9 @@ static ag_status read_vertex(loader *l, const ply_element *e, uint64_t index)
     for (size_t i = 0; i < e->property_count; i++) {
         const ply_property *p = &e->properties[i];
         if (p->slot == PLY_NO_SLOT)
-            PLY_TRY(skip_property(l, p));
+            AG_TRY(skip_property(l, p));
         else
-            PLY_TRY(ply_read_number(&l->stream, p->type, &values[p->slot]));
+            AG_TRY(ply_read_number(&l->stream, p->type, &values[p->slot]));
     }
     return store_vertex(l, index, values);
 }
@@ -134,19 +134,19 @@ static ag_status read_vertex_block(loader *l, const ply_element *e, uint64_t beg
         }
         at += ply_type_bytes(e->properties[i].type);
     }
-    PLY_TRY(ply_fill(s, stride));
+    AG_TRY(ply_fill(s, stride));
     uint64_t end = begin + smaller((s->end - s->next) / stride, e->count - begin);
     s->mark = s->next;
     if (end == begin)
         return ply_fail(s, "the file ends here");
-    PLY_TRY(reserve_vertices(l, end));
+    AG_TRY(reserve_vertices(l, end));
     double values[PLY_VERTEX_SLOTS] = {0.0};
     for (; begin < end; begin++, s->next += stride) {
         s->element_index = begin;
         s->mark = s->next;
         for (size_t i = 0; i < slot_count; i++)
             values[used[i]->slot] = ply_decode(s->bytes + s->next + offsets[i], used[i]->type, s->format);
-        PLY_TRY(store_vertex(l, begin, values));
+        AG_TRY(store_vertex(l, begin, values));
     }
     *out_end = end;
     return AG_OK;
@@ -155,17 +155,17 @@ static ag_status read_vertex_block(loader *l, const ply_element *e, uint64_t beg
 static ag_status read_vertices(loader *l, const ply_element *e)
 {
     uint64_t first = 0;
-    PLY_TRY(check_room(l, e, &first));
-    PLY_TRY(reserve_vertices(l, first));
+    AG_TRY(check_room(l, e, &first));
+    AG_TRY(reserve_vertices(l, first));
     bool in_blocks = l->stream.format != PLY_ASCII && !e->has_list;
     for (uint64_t i = 0; i < e->count;) {
         l->stream.element_index = i;
         if (in_blocks) {
-            PLY_TRY(read_vertex_block(l, e, i, &i));
+            AG_TRY(read_vertex_block(l, e, i, &i));
             continue;
         }
-        PLY_TRY(reserve_vertices(l, i + 1));
-        PLY_TRY(read_vertex(l, e, i++));
+        AG_TRY(reserve_vertices(l, i + 1));
+        AG_TRY(read_vertex(l, e, i++));
     }
     l->out->mesh.vertex_count = (uint32_t)e->count;
     return AG_OK;
@@ -189,7 +189,7 @@ static ag_status reserve_triangles(loader *l, size_t count)
 static ag_status read_corner(loader *l, const ply_property *p, uint32_t *out_index)
 {
     double value, vertex_count = (double)l->header.vertex->count;
-    PLY_TRY(ply_read_number(&l->stream, p->type, &value));
+    AG_TRY(ply_read_number(&l->stream, p->type, &value));
     if (!(value >= 0.0 && value < vertex_count && floor(value) == value))
         return ply_fail(&l->stream, "index %.17g is out of range, there are %.0f vertices", value, vertex_count);
     *out_index = (uint32_t)value;
@@ -200,14 +200,14 @@ static ag_status read_corners(loader *l, const ply_property *p)
 {
     uint64_t count = 0;
     uint32_t corners[3] = {0, 0, 0};
-    PLY_TRY(read_count(l, p, &count));
+    AG_TRY(read_count(l, p, &count));
     l->out->lines += count < 3;
     for (uint64_t i = 0; i < count; i++) {
         uint32_t *corner = &corners[i < 2 ? i : 2];
-        PLY_TRY(read_corner(l, p, corner));
+        AG_TRY(read_corner(l, p, corner));
         if (i < 2)
             continue;
-        PLY_TRY(reserve_triangles(l, l->triangle_count + 1));
+        AG_TRY(reserve_triangles(l, l->triangle_count + 1));
         memcpy(l->out->mesh.indices + 3 * l->triangle_count++, corners, sizeof corners);
         corners[1] = corners[2];
     }
@@ -217,8 +217,8 @@ static ag_status read_corners(loader *l, const ply_property *p)
 static ag_status read_face(loader *l, const ply_element *e)
 {
     for (size_t i = 0; i < e->property_count; i++)
-        PLY_TRY(e->properties[i].slot == PLY_CORNERS ? read_corners(l, &e->properties[i])
-                                                     : skip_property(l, &e->properties[i]));
+        AG_TRY(e->properties[i].slot == PLY_CORNERS ? read_corners(l, &e->properties[i])
+                                                    : skip_property(l, &e->properties[i]));
     return AG_OK;
 }
 
@@ -246,16 +246,16 @@ static ag_status read_faces(loader *l, const ply_element *e)
     ply_stream *s = &l->stream;
     uint64_t first = 0;
     const ply_property *p = &e->properties[e->of_slot[PLY_CORNERS]];
-    PLY_TRY(check_room(l, e, &first));
+    AG_TRY(check_room(l, e, &first));
     bool is_ascii = s->format == PLY_ASCII;
     uint64_t triangle_bytes = is_ascii ? 8 : ply_type_bytes(p->count_type) + 3 * ply_type_bytes(p->type);
-    PLY_TRY(reserve_triangles(l, (size_t)smaller(first, ply_room_for(s, triangle_bytes))));
+    AG_TRY(reserve_triangles(l, (size_t)smaller(first, ply_room_for(s, triangle_bytes))));
     bool is_plain =
         !is_ascii && e->property_count == 1 && ply_type_bytes(p->count_type) == 1 && ply_type_bytes(p->type) == 4;
     for (uint64_t i = 0; i < e->count; i++) {
         s->element_index = i;
         if (!is_plain || !read_plain_triangle(l))
-            PLY_TRY(read_face(l, e));
+            AG_TRY(read_face(l, e));
     }
     l->out->mesh.triangle_count = (uint32_t)l->triangle_count;
     return AG_OK;
@@ -266,11 +266,11 @@ static ag_status read_faces(loader *l, const ply_element *e)
 static ag_status skip_element(loader *l, const ply_element *e)
 {
     uint64_t first = 0;
-    PLY_TRY(check_room(l, e, &first));
+    AG_TRY(check_room(l, e, &first));
     for (uint64_t i = 0; i < e->count && e->property_count > 0; i++) {
         l->stream.element_index = i;
         for (size_t p = 0; p < e->property_count; p++)
-            PLY_TRY(skip_property(l, &e->properties[p]));
+            AG_TRY(skip_property(l, &e->properties[p]));
     }
     return AG_OK;
 }
@@ -286,13 +286,13 @@ static bool has_slots(const ply_element *e, int first, int last)
 static ag_status load(loader *l)
 {
     ply_header *h = &l->header;
-    PLY_TRY(ply_header_read(&l->stream, h));
+    AG_TRY(ply_header_read(&l->stream, h));
     l->has_normals = has_slots(h->vertex, PLY_NX, PLY_NZ);
     l->has_uvs = has_slots(h->vertex, PLY_U, PLY_V);
     for (size_t i = 0; i < h->element_count; i++) {
         const ply_element *e = &h->elements[i];
         l->stream.element = e->name;
-        PLY_TRY(e == h->vertex ? read_vertices(l, e) : e == h->face ? read_faces(l, e) : skip_element(l, e));
+        AG_TRY(e == h->vertex ? read_vertices(l, e) : e == h->face ? read_faces(l, e) : skip_element(l, e));
     }
     /* to the end of a gzip file, where its checksum is */
     l->stream.next = l->stream.end;
@@ -307,11 +307,11 @@ ag_status ply_file_read(const char *path, const run_context *run, char *error, s
         return AG_ERROR_MEMORY;
     l->out = out_mesh;
     ag_status status = ply_stream_open(path, run, error, error_size, &l->stream);
-    if (!status) {
+    if (status == AG_OK) {
         status = load(l);
         ply_stream_close(&l->stream);
     }
-    if (status)
+    if (status != AG_OK)
         ply_mesh_reset(out_mesh);
     free(l);
     return status;

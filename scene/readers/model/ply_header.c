@@ -143,7 +143,7 @@ static ag_status read_property(ply_stream *s, int count, char **words, ply_heade
 
 static ag_status read_magic(ply_stream *s)
 {
-    PLY_TRY(ply_fill(s, 5));
+    AG_TRY(ply_fill(s, 5));
     const unsigned char *b = s->bytes;
     if (s->end < 4 || memcmp(b, "ply", 3) != 0 || (b[3] != '\n' && b[3] != '\r'))
         return ply_fail(s, "this is no PLY file: it does not begin with a line \"ply\"");
@@ -151,7 +151,7 @@ static ag_status read_magic(ply_stream *s)
         s->line_end = '\r';
     char line[8];
     bool is_end;
-    PLY_TRY(ply_read_line(s, line, sizeof line, &is_end));
+    AG_TRY(ply_read_line(s, line, sizeof line, &is_end));
     s->line++;
     return AG_OK;
 }
@@ -176,11 +176,11 @@ static ag_status check_header(ply_stream *s, const ply_header *h)
 ag_status ply_header_read(ply_stream *s, ply_header *out_header)
 {
     memset(out_header, 0, sizeof *out_header);
-    PLY_TRY(read_magic(s));
+    AG_TRY(read_magic(s));
     for (;; s->line++) {
         char line[LINE_BYTES], *words[MAX_WORDS];
         bool is_end;
-        PLY_TRY(ply_read_line(s, line, sizeof line, &is_end));
+        AG_TRY(ply_read_line(s, line, sizeof line, &is_end));
         if (is_end)
             return ply_fail(s, "the file ends within its header");
         int count = split(line, words);
@@ -199,9 +199,9 @@ ag_status ply_header_read(ply_stream *s, ply_header *out_header)
             status = read_property(s, count, words, out_header);
         else
             status = ply_fail(s, "unknown word \"%.40s\"", words[0]);
-        PLY_TRY(status);
+        AG_TRY(status);
     }
-    PLY_TRY(check_header(s, out_header));
+    AG_TRY(check_header(s, out_header));
     s->line++;
     return AG_OK;
 }

@@ -110,7 +110,7 @@ ag_status ply_read_line(ply_stream *s, char *line, size_t size, bool *out_is_end
 {
     size_t length = 0;
     for (;;) {
-        PLY_TRY(ply_fill(s, 1));
+        AG_TRY(ply_fill(s, 1));
         *out_is_end = s->next == s->end && length == 0;
         if (s->next == s->end)
             break;
@@ -168,13 +168,13 @@ static bool is_space(unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\
 static ag_status read_decimal(ply_stream *s, double *out_value)
 {
     for (;;) {
-        PLY_TRY(ply_fill(s, NUMBER_BYTES));
+        AG_TRY(ply_fill(s, NUMBER_BYTES));
         for (; s->next < s->end && is_space(s->bytes[s->next]); s->next++)
             s->line += (char)s->bytes[s->next] == s->line_end;
         if (s->next < s->end || s->is_at_end)
             break;
     }
-    PLY_TRY(ply_fill(s, NUMBER_BYTES)); /* the number must not be cut by the buffer's end */
+    AG_TRY(ply_fill(s, NUMBER_BYTES)); /* the number must not be cut by the buffer's end */
     s->mark = s->next;
     if (s->next == s->end)
         return ply_fail(s, "the file ends here");
@@ -195,7 +195,7 @@ ag_status ply_read_number(ply_stream *s, ply_type type, double *out_value)
     if (s->format == PLY_ASCII)
         return read_decimal(s, out_value);
     size_t bytes = ply_type_bytes(type);
-    PLY_TRY(ply_fill(s, bytes));
+    AG_TRY(ply_fill(s, bytes));
     s->mark = s->next;
     if (s->end - s->next < bytes)
         return ply_fail(s, "the file ends here");
@@ -209,11 +209,11 @@ ag_status ply_skip_numbers(ply_stream *s, ply_type type, uint64_t count)
     double ignored;
     if (s->format == PLY_ASCII) {
         for (; count > 0; count--)
-            PLY_TRY(read_decimal(s, &ignored));
+            AG_TRY(read_decimal(s, &ignored));
         return AG_OK;
     }
     for (uint64_t left = count * ply_type_bytes(type); left > 0;) {
-        PLY_TRY(ply_fill(s, 1));
+        AG_TRY(ply_fill(s, 1));
         s->mark = s->next;
         uint64_t there = s->end - s->next, step = there < left ? there : left;
         if (step == 0)

@@ -5,18 +5,11 @@
 #define AFTERGLOW_PLY_STREAM_H
 
 #include "run_context.h"
+#include "status.h"
 
 #include <stddef.h>
 #include <stdint.h>
 #include <zlib.h>
-
-/* Passes a failure on. */
-#define PLY_TRY(call)                                                                                                  \
-    do {                                                                                                               \
-        ag_status try_status = (call);                                                                                 \
-        if (try_status)                                                                                                \
-            return try_status;                                                                                         \
-    } while (0)
 
 typedef enum ply_format { PLY_NO_FORMAT, PLY_ASCII, PLY_LITTLE_ENDIAN, PLY_BIG_ENDIAN } ply_format;
 

@@ -136,9 +136,9 @@ ag_status parameter_get_float(parameter_list *list, log_sink *log, const char *n
 {
     const parameter *p;
     ag_status status = look_up_counted(list, log, name, PARAMETER_FLOAT, 1, &p);
-    if (!status && p)
+    if (status == AG_OK && p)
         status = check_float(list, log, p);
-    if (!status && p)
+    if (status == AG_OK && p)
         *out_value = (float)p->numbers[0];
     return status;
 }
@@ -147,7 +147,7 @@ ag_status parameter_get_int(parameter_list *list, log_sink *log, const char *nam
 {
     const parameter *p;
     ag_status status = look_up_counted(list, log, name, PARAMETER_INTEGER, 1, &p);
-    if (!status && p)
+    if (status == AG_OK && p)
         *out_value = (int64_t)p->numbers[0]; /* the reader holds integers to 32 bits */
     return status;
 }
@@ -156,7 +156,7 @@ ag_status parameter_get_bool(parameter_list *list, log_sink *log, const char *na
 {
     const parameter *p;
     ag_status status = look_up_counted(list, log, name, PARAMETER_BOOL, 1, &p);
-    if (!status && p)
+    if (status == AG_OK && p)
         *out_value = p->bools[0] != 0;
     return status;
 }
@@ -165,7 +165,7 @@ ag_status parameter_get_string(parameter_list *list, log_sink *log, const char *
 {
     const parameter *p;
     ag_status status = look_up_counted(list, log, name, PARAMETER_STRING, 1, &p);
-    if (!status && p)
+    if (status == AG_OK && p)
         *out_value = p->strings[0];
     return status;
 }
@@ -176,7 +176,7 @@ ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char 
     if (!p || p->type != PARAMETER_TEXTURE)
         return AG_OK;
     ag_status status = look_up_counted(list, log, name, PARAMETER_TEXTURE, 1, &p);
-    if (!status)
+    if (status == AG_OK)
         *out_texture_name = p->strings[0];
     return status;
 }
@@ -186,9 +186,9 @@ ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *na
 {
     const parameter *p;
     ag_status status = look_up_counted(list, log, name, type, 3, &p);
-    if (!status && p)
+    if (status == AG_OK && p)
         status = check_float(list, log, p);
-    if (!status && p)
+    if (status == AG_OK && p)
         *out_value = vec3_make((float)p->numbers[0], (float)p->numbers[1], (float)p->numbers[2]);
     return status;
 }
@@ -235,7 +235,7 @@ static ag_status get_spectrum(const parameter_list *list, log_sink *log, const p
             return refuse(list, log, p, "\"spectrum %s\" has a negative value, %g", p->name, p->numbers[i + 1]);
     }
     ag_status status = check_float(list, log, p);
-    if (!status)
+    if (status == AG_OK)
         *out_value = spectra_sampled(p->numbers, p->count / 2, parameter_spectrum_use(p->name), space);
     return status;
 }
@@ -265,7 +265,7 @@ ag_status parameter_get_rgb(parameter_list *list, log_sink *log, const char *nam
         return get_blackbody(list, log, name, out_value);
     const parameter *p;
     ag_status status = look_up_counted(list, log, name, PARAMETER_RGB, 3, &p);
-    if (!status && p)
+    if (status == AG_OK && p)
         status = check_float(list, log, p);
     if (status || !p)
         return status;
@@ -283,9 +283,9 @@ ag_status parameter_get_numbers(parameter_list *list, log_sink *log, const char 
     *out_values = NULL;
     *out_count = 0;
     ag_status status = look_up(list, log, name, type, &p);
-    if (!status && p)
+    if (status == AG_OK && p)
         status = check_float(list, log, p);
-    if (!status && p) {
+    if (status == AG_OK && p) {
         *out_values = p->numbers;
         *out_count = p->count;
     }

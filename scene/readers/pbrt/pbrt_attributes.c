@@ -44,7 +44,7 @@ ag_status pbrt_attribute_directive(pbrt_parser *parser, file_location where)
 {
     static const char *const NAMES[PBRT_TARGET_COUNT] = {"shape", "light", "material", "medium", "texture"};
     parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "Attribute", "a quoted target", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, "Attribute", "a quoted target", where, &list));
     int target = 0;
     while (target < PBRT_TARGET_COUNT && strcmp(list.name, NAMES[target]) != 0)
         target++;

@@ -9,7 +9,7 @@ static ag_status read_screen_window(pbrt_parser *parser, parameter_list *list, c
 {
     const double *window;
     size_t count;
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "screenwindow", PARAMETER_FLOAT, &window, &count));
+    AG_TRY(parameter_get_numbers(list, parser->log, "screenwindow", PARAMETER_FLOAT, &window, &count));
     if (!window)
         return AG_OK;
     if (count != 4 || !(window[0] < window[1]) || !(window[2] < window[3]))
@@ -24,8 +24,8 @@ static ag_status read_screen_window(pbrt_parser *parser, parameter_list *list, c
 /* The shutter: how long it is open is how bright the picture is. */
 static ag_status read_shutter(pbrt_parser *parser, parameter_list *list, camera *c)
 {
-    PBRT_TRY(parameter_get_float(list, parser->log, "shutteropen", &c->shutter_open));
-    PBRT_TRY(parameter_get_float(list, parser->log, "shutterclose", &c->shutter_close));
+    AG_TRY(parameter_get_float(list, parser->log, "shutteropen", &c->shutter_open));
+    AG_TRY(parameter_get_float(list, parser->log, "shutterclose", &c->shutter_close));
     c->exposure = c->shutter_close - c->shutter_open;
     if (!(c->exposure > 0.0f && isfinite(c->exposure)))
         return pbrt_refuse(parser, list, parameter_list_find(list, "shutterclose") ? "shutterclose" : "shutteropen",
@@ -36,10 +36,10 @@ static ag_status read_shutter(pbrt_parser *parser, parameter_list *list, camera 
 static ag_status read_screen(pbrt_parser *parser, parameter_list *list, camera *c)
 {
     log_sink *log = parser->log;
-    PBRT_TRY(parameter_get_float(list, log, "frameaspectratio", &c->frame_aspect_ratio));
-    PBRT_TRY(parameter_get_float(list, log, "lensradius", &c->lens_radius));
-    PBRT_TRY(parameter_get_float(list, log, "focaldistance", &c->focal_distance));
-    PBRT_TRY(read_screen_window(parser, list, c));
+    AG_TRY(parameter_get_float(list, log, "frameaspectratio", &c->frame_aspect_ratio));
+    AG_TRY(parameter_get_float(list, log, "lensradius", &c->lens_radius));
+    AG_TRY(parameter_get_float(list, log, "focaldistance", &c->focal_distance));
+    AG_TRY(read_screen_window(parser, list, c));
     if (parameter_list_find(list, "frameaspectratio") && !(c->frame_aspect_ratio > 0.0f))
         return pbrt_refuse(parser, list, "frameaspectratio", "\"frameaspectratio\" should be above 0");
     if (!(c->lens_radius >= 0.0f))
@@ -52,9 +52,9 @@ static ag_status read_screen(pbrt_parser *parser, parameter_list *list, camera *
 static ag_status read_perspective(pbrt_parser *parser, parameter_list *list, camera *c)
 {
     float half_fov = -1.0f;
-    PBRT_TRY(parameter_get_float(list, parser->log, "fov", &c->fov_degrees));
-    PBRT_TRY(parameter_get_float(list, parser->log, "halffov", &half_fov));
-    PBRT_TRY(read_screen(parser, list, c));
+    AG_TRY(parameter_get_float(list, parser->log, "fov", &c->fov_degrees));
+    AG_TRY(parameter_get_float(list, parser->log, "halffov", &half_fov));
+    AG_TRY(read_screen(parser, list, c));
     if (half_fov > 0.0f)
         c->fov_degrees = 2.0f * half_fov;
     if (!(c->fov_degrees > 0.0f && c->fov_degrees < 180.0f))
@@ -73,8 +73,8 @@ static ag_status read_orthographic(pbrt_parser *parser, parameter_list *list, ca
 static ag_status read_spherical(pbrt_parser *parser, parameter_list *list, camera *c)
 {
     const char *mapping = "equalarea";
-    PBRT_TRY(read_screen(parser, list, c));
-    PBRT_TRY(parameter_get_string(list, parser->log, "mapping", &mapping));
+    AG_TRY(read_screen(parser, list, c));
+    AG_TRY(parameter_get_string(list, parser->log, "mapping", &mapping));
     if (strcmp(mapping, "equalarea") != 0 && strcmp(mapping, "equirectangular") != 0)
         return pbrt_refuse(parser, list, "mapping", "unknown mapping \"%s\"; known are equalarea and equirectangular",
                            mapping);
@@ -94,7 +94,7 @@ static const struct {
 
 static ag_status read_camera(pbrt_parser *parser, parameter_list *list, camera *c)
 {
-    PBRT_TRY(read_shutter(parser, list, c));
+    AG_TRY(read_shutter(parser, list, c));
     parser->film_distance = 0.0;
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(list->name, READERS[i].name) == 0)
@@ -108,7 +108,7 @@ static ag_status set_motion(pbrt_parser *parser, const transform *end, file_loca
     camera *c = &parser->scene->camera;
     if (!pbrt_is_moving(parser))
         return AG_OK;
-    PBRT_TRY(pbrt_make_motion(parser, &c->world_from_camera, end, where, "Camera", &c->motion));
+    AG_TRY(pbrt_make_motion(parser, &c->world_from_camera, end, where, "Camera", &c->motion));
     c->is_moving = true;
     return AG_OK;
 }
@@ -116,16 +116,16 @@ static ag_status set_motion(pbrt_parser *parser, const transform *end, file_loca
 ag_status pbrt_camera(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "Camera", "a quoted type", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, "Camera", "a quoted type", where, &list));
     camera c = {.world_from_camera = transform_invert(&parser->state.world_from_object),
                 .shutter_close = 1.0f,
                 .fov_degrees = 90.0f,
                 .focal_distance = 1e6f};
     transform end = transform_invert(&parser->state.world_from_object_end);
     ag_status status = read_camera(parser, &list, &c);
-    if (!status)
+    if (status == AG_OK)
         status = pbrt_name_coordinate_system(parser, "camera", &c.world_from_camera, &end);
-    if (!status) {
+    if (status == AG_OK) {
         parameter_list_warn_unused(&list, parser->log);
         parser->scene->camera = c;
         parser->scene->camera_medium = pbrt_use_medium(parser, parser->state.medium_outside);

@@ -84,14 +84,14 @@ ag_status pbrt_read_number_file(pbrt_parser *parser, const char *name, file_loca
     free(path);
     if (status == AG_ERROR_INPUT)
         pbrt_error(parser, where, width, "cannot read the file \"%s\": %s%s", name, error, hint);
-    if (status)
+    if (status != AG_OK)
         return status;
     pbrt_lexer lexer;
     pbrt_lexer_init(&lexer, interned, file.text, file.size);
     status = read_numbers(parser, &lexer, &numbers, &count);
     pbrt_lexer_reset(&lexer);
     text_file_reset(&file);
-    if (status) {
+    if (status != AG_OK) {
         free(numbers);
         return status;
     }
@@ -108,8 +108,8 @@ static ag_status read_spectrum(pbrt_parser *parser, parameter *p, size_t width)
     size_t count;
     if (p->count != 1 || spectra_find_named(p->strings[0], NULL, &ignored) || spectra_is_missing(p->strings[0]))
         return AG_OK;
-    PBRT_TRY(pbrt_read_number_file(parser, p->strings[0], p->where, width, "; nor has pbrt a spectrum of that name",
-                                   &numbers, &count));
+    AG_TRY(pbrt_read_number_file(parser, p->strings[0], p->where, width, "; nor has pbrt a spectrum of that name",
+                                 &numbers, &count));
     if (count == 0 || count % 2 != 0) {
         free(numbers);
         return pbrt_error(parser, p->where, width,
@@ -136,7 +136,7 @@ ag_status pbrt_settle_color(pbrt_parser *parser, parameter *p, size_t width)
 ag_status pbrt_color_space(pbrt_parser *parser, file_location where)
 {
     char *name;
-    PBRT_TRY(pbrt_read_string(parser, "ColorSpace", "a quoted name", &name, NULL));
+    AG_TRY(pbrt_read_string(parser, "ColorSpace", "a quoted name", &name, NULL));
     ag_status status = AG_OK;
     if (!color_space_find(name, &parser->state.rgb_space))
         status =

@@ -206,10 +206,10 @@ static ag_status read_widths(pbrt_parser *parser, parameter_list *list, curve_so
 {
     static const char *const NAMES[2] = {"width0", "width1"};
     float width = 1.0f;
-    PBRT_TRY(parameter_get_float(list, parser->log, "width", &width));
+    AG_TRY(parameter_get_float(list, parser->log, "width", &width));
     for (int i = 0; i < 2; i++) {
         float at_end = width;
-        PBRT_TRY(parameter_get_float(list, parser->log, NAMES[i], &at_end));
+        AG_TRY(parameter_get_float(list, parser->log, NAMES[i], &at_end));
         if (!(at_end >= 0.0f))
             return pbrt_refuse(parser, list, parameter_list_find(list, NAMES[i]) ? NAMES[i] : "width",
                                "a curve's width should not be below 0");
@@ -222,9 +222,9 @@ static ag_status read_points(pbrt_parser *parser, parameter_list *list, curve_so
 {
     int64_t degree = 3;
     const char *basis = "bezier";
-    PBRT_TRY(parameter_get_int(list, parser->log, "degree", &degree));
-    PBRT_TRY(parameter_get_string(list, parser->log, "basis", &basis));
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "P", PARAMETER_POINT3, &source->points, &source->point_count));
+    AG_TRY(parameter_get_int(list, parser->log, "degree", &degree));
+    AG_TRY(parameter_get_string(list, parser->log, "basis", &basis));
+    AG_TRY(parameter_get_numbers(list, parser->log, "P", PARAMETER_POINT3, &source->points, &source->point_count));
     source->point_count /= 3;
     if (degree != 2 && degree != 3)
         return pbrt_refuse(parser, list, "degree", "\"degree\" should be 2 or 3");
@@ -247,7 +247,7 @@ static ag_status read_points(pbrt_parser *parser, parameter_list *list, curve_so
 static ag_status read_normals(pbrt_parser *parser, parameter_list *list, curves_type type, curve_source *source)
 {
     size_t count;
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "N", PARAMETER_NORMAL, &source->normals, &count));
+    AG_TRY(parameter_get_numbers(list, parser->log, "N", PARAMETER_NORMAL, &source->normals, &count));
     count /= 3;
     if (type != CURVES_RIBBON) {
         if (count > 0)
@@ -278,7 +278,7 @@ static ag_status read_type(pbrt_parser *parser, parameter_list *list, curves_typ
     static const char *const NAMES[] = {
         [CURVES_FLAT] = "flat", [CURVES_CYLINDER] = "cylinder", [CURVES_RIBBON] = "ribbon"};
     const char *name = NAMES[CURVES_FLAT];
-    PBRT_TRY(parameter_get_string(list, parser->log, "type", &name));
+    AG_TRY(parameter_get_string(list, parser->log, "type", &name));
     for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
         if (strcmp(name, NAMES[i]) == 0) {
             *out_type = (curves_type)i;
@@ -294,12 +294,12 @@ ag_status pbrt_curve(pbrt_parser *parser, parameter_list *list)
     int64_t split_depth;
     shape s = shape_make(SHAPE_CURVES);
     curves *c = &s.as.curves;
-    PBRT_TRY(read_type(parser, list, &c->type));
-    PBRT_TRY(read_points(parser, list, &source));
-    PBRT_TRY(read_widths(parser, list, &source));
-    PBRT_TRY(read_normals(parser, list, c->type, &source));
+    AG_TRY(read_type(parser, list, &c->type));
+    AG_TRY(read_points(parser, list, &source));
+    AG_TRY(read_widths(parser, list, &source));
+    AG_TRY(read_normals(parser, list, c->type, &source));
     /* how finely pbrt cuts curves for its tree; Embree sees to that itself */
-    PBRT_TRY(parameter_get_int(list, parser->log, "splitdepth", &split_depth));
+    AG_TRY(parameter_get_int(list, parser->log, "splitdepth", &split_depth));
     parameter_list_warn_unused(list, parser->log);
     s.flip_normal = parser->state.reverse_orientation;
     if (c->type == CURVES_RIBBON && transform_swaps_handedness(&parser->state.world_from_object))

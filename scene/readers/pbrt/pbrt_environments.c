@@ -31,7 +31,7 @@ static ag_status read_portal(pbrt_parser *parser, parameter_list *list, bool *ou
     const double *numbers;
     size_t count;
     vec3 corners[4];
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "portal", PARAMETER_POINT3, &numbers, &count));
+    AG_TRY(parameter_get_numbers(list, parser->log, "portal", PARAMETER_POINT3, &numbers, &count));
     *out_is_given = count > 0;
     if (count == 0)
         return AG_OK;
@@ -61,20 +61,20 @@ static ag_status read_infinite(pbrt_parser *parser, parameter_list *list, light 
     portal placed;
     l->kind = LIGHT_INFINITE;
     l->radiance = rgb_gray(1.0f);
-    PBRT_TRY(parameter_get_string(list, log, "filename", &name));
+    AG_TRY(parameter_get_string(list, log, "filename", &name));
     if (name[0] && parameter_list_find(list, "L"))
         return pbrt_refuse(parser, list, "L", "an infinite light has \"L\" or \"filename\", not both");
-    PBRT_TRY(parameter_get_rgb(list, log, "L", &l->radiance));
-    PBRT_TRY(parameter_get_float(list, log, "scale", &scale));
-    PBRT_TRY(parameter_get_float(list, log, "illuminance", &illuminance));
-    PBRT_TRY(read_portal(parser, list, &has_portal, &placed));
+    AG_TRY(parameter_get_rgb(list, log, "L", &l->radiance));
+    AG_TRY(parameter_get_float(list, log, "scale", &scale));
+    AG_TRY(parameter_get_float(list, log, "illuminance", &illuminance));
+    AG_TRY(read_portal(parser, list, &has_portal, &placed));
     if (scale < 0.0f)
         return pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
 
     double factor = scale;
     if (name[0]) {
-        PBRT_TRY(pbrt_set_light_frame(parser, list, false, l));
-        PBRT_TRY(pbrt_read_environment(parser, list, name, false, &l->environment));
+        AG_TRY(pbrt_set_light_frame(parser, list, false, l));
+        AG_TRY(pbrt_read_environment(parser, list, name, false, &l->environment));
     }
     if (illuminance > 0.0f) {
         double measure = find_measure(&parser->scene->space, l, has_portal);

@@ -145,7 +145,7 @@ ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location wh
     ag_status status = path ? text_file_read(parser->run, path, error, sizeof error, &file) : AG_ERROR_MEMORY;
     if (status == AG_ERROR_INPUT)
         pbrt_error(parser, where, width, "cannot read the file \"%s\": %s", name, error);
-    if (status) {
+    if (status != AG_OK) {
         free(path);
         return status;
     }
@@ -155,14 +155,14 @@ ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location wh
         status = pbrt_error(parser, where, width, "more than %zu MiB of text are included: %s",
                             text_file_max_bytes() >> 20, chain);
     }
-    for (int i = 0; i < parser->file_count && !status; i++) {
+    for (int i = 0; i < parser->file_count && status == AG_OK; i++) {
         const text_file *open = &parser->files[i].file;
         if (open->inode == file.inode && open->device == file.device && open->inode != 0) {
             describe_chain(parser, where, chain, sizeof chain);
             status = pbrt_error(parser, where, width, "\"%s\" includes itself: %s", name, chain);
         }
     }
-    if (status)
+    if (status != AG_OK)
         text_file_reset(&file);
     else
         status = push(parser, path, &file, where);
@@ -247,7 +247,7 @@ ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
     for (;;) {
         pbrt_file *file = &parser->files[parser->file_count - 1];
         if (file->value.has_tokens) {
-            PBRT_TRY(next_of_value(parser, &file->value, out_token));
+            AG_TRY(next_of_value(parser, &file->value, out_token));
             if (file->value.has_tokens)
                 return AG_OK;
         }
@@ -256,7 +256,7 @@ ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
             return pbrt_error(parser, out_token->where, out_token->width, "%s", file->lexer.error);
         if (status == AG_OK && (out_token->kind == PBRT_TOKEN_STRING || out_token->kind == PBRT_TOKEN_WORD) &&
             out_token->length > 0 && memchr(out_token->text, '$', out_token->length)) {
-            PBRT_TRY(fill_in(parser, file, out_token));
+            AG_TRY(fill_in(parser, file, out_token));
             if (file->value.has_tokens)
                 continue;
         }
@@ -269,7 +269,7 @@ ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
 ag_status pbrt_peek(pbrt_parser *parser, pbrt_token *out_token)
 {
     if (!parser->has_peeked) {
-        PBRT_TRY(pbrt_next(parser, &parser->peeked));
+        AG_TRY(pbrt_next(parser, &parser->peeked));
         parser->has_peeked = true;
     }
     *out_token = parser->peeked;
@@ -280,7 +280,7 @@ ag_status pbrt_read_string(pbrt_parser *parser, const char *directive, const cha
                            file_location *out_where)
 {
     pbrt_token token;
-    PBRT_TRY(pbrt_next(parser, &token));
+    AG_TRY(pbrt_next(parser, &token));
     if (token.kind != PBRT_TOKEN_STRING)
         return pbrt_unexpected(parser, &token, directive, expected);
     if (out_where)
@@ -294,7 +294,7 @@ ag_status pbrt_read_numbers(pbrt_parser *parser, const char *directive, size_t c
     for (size_t i = 0; i < count; i++) {
         char expected[32];
         pbrt_token token;
-        PBRT_TRY(pbrt_next(parser, &token));
+        AG_TRY(pbrt_next(parser, &token));
         if (!pbrt_token_number(&token, &out_values[i])) {
             snprintf(expected, sizeof expected, "%zu numbers", count);
             return pbrt_unexpected(parser, &token, directive, expected);

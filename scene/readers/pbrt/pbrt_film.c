@@ -23,7 +23,7 @@ static ag_status read_kind(pbrt_parser *parser, parameter_list *film, scene_hint
         return AG_OK;
     if (strcmp(film->name, "gbuffer") == 0) {
         const char *space = "camera";
-        PBRT_TRY(parameter_get_string(film, parser->log, "coordinatesystem", &space));
+        AG_TRY(parameter_get_string(film, parser->log, "coordinatesystem", &space));
         bool is_camera = strcmp(space, "camera") == 0;
         if (!is_camera && strcmp(space, "world") != 0)
             return pbrt_refuse(parser, film, "coordinatesystem",
@@ -34,9 +34,9 @@ static ag_status read_kind(pbrt_parser *parser, parameter_list *film, scene_hint
     log_at_once(parser->log, AG_LOG_WARNING, film->where, "film", "Film \"%s\" is not supported; \"rgb\" stands in",
                 film->name);
     if (strcmp(film->name, "spectral") == 0) {
-        PBRT_TRY(parameter_get_float(film, parser->log, "lambdamin", &wavelength));
-        PBRT_TRY(parameter_get_float(film, parser->log, "lambdamax", &wavelength));
-        PBRT_TRY(parameter_get_int(film, parser->log, "nbuckets", &count));
+        AG_TRY(parameter_get_float(film, parser->log, "lambdamin", &wavelength));
+        AG_TRY(parameter_get_float(film, parser->log, "lambdamax", &wavelength));
+        AG_TRY(parameter_get_int(film, parser->log, "nbuckets", &count));
     }
     return AG_OK;
 }
@@ -46,10 +46,10 @@ static ag_status read_sensor(pbrt_parser *parser, parameter_list *film, scene_hi
 {
     const char *sensor = "cie1931";
     float balance = 0.0f, most = INFINITY;
-    PBRT_TRY(parameter_get_float(film, parser->log, "iso", &hints->iso));
-    PBRT_TRY(parameter_get_float(film, parser->log, "whitebalance", &balance));
-    PBRT_TRY(parameter_get_float(film, parser->log, "maxcomponentvalue", &most));
-    PBRT_TRY(parameter_get_string(film, parser->log, "sensor", &sensor));
+    AG_TRY(parameter_get_float(film, parser->log, "iso", &hints->iso));
+    AG_TRY(parameter_get_float(film, parser->log, "whitebalance", &balance));
+    AG_TRY(parameter_get_float(film, parser->log, "maxcomponentvalue", &most));
+    AG_TRY(parameter_get_string(film, parser->log, "sensor", &sensor));
     if (!(hints->iso > 0.0f))
         return pbrt_refuse(parser, film, "iso", "Film: \"iso\" is %g, it must be above 0", (double)hints->iso);
     if (!(most > 0.0f))
@@ -72,8 +72,8 @@ static ag_status read_window(pbrt_parser *parser, parameter_list *film, scene_hi
     static const int64_t SIZE[2] = {1280, 720}; /* pixels, where the film names none */
     const double *crop = NULL, *bounds = NULL;
     size_t crop_count = 0, bounds_count = 0;
-    PBRT_TRY(parameter_get_numbers(film, parser->log, "cropwindow", PARAMETER_FLOAT, &crop, &crop_count));
-    PBRT_TRY(parameter_get_numbers(film, parser->log, "pixelbounds", PARAMETER_INTEGER, &bounds, &bounds_count));
+    AG_TRY(parameter_get_numbers(film, parser->log, "cropwindow", PARAMETER_FLOAT, &crop, &crop_count));
+    AG_TRY(parameter_get_numbers(film, parser->log, "pixelbounds", PARAMETER_INTEGER, &bounds, &bounds_count));
     if ((crop && crop_count != 4) || (bounds && bounds_count != 4)) {
         const char *wrong = crop && crop_count != 4 ? "cropwindow" : "pixelbounds";
         return pbrt_refuse(parser, film, wrong, "Film: \"%s\" takes four numbers", wrong);
@@ -108,14 +108,14 @@ ag_status pbrt_settle_film(pbrt_parser *parser)
     bool is_half = true;
     if (!film->name)
         return AG_OK;
-    PBRT_TRY(read_kind(parser, film, hints));
-    PBRT_TRY(read_sensor(parser, film, hints));
-    PBRT_TRY(pbrt_get_integer_hint(parser, film, "xresolution", 1, 65536, &hints->width));
-    PBRT_TRY(pbrt_get_integer_hint(parser, film, "yresolution", 1, 65536, &hints->height));
-    PBRT_TRY(parameter_get_string(film, parser->log, "filename", &file_name));
-    PBRT_TRY(parameter_get_bool(film, parser->log, "savefp16", &is_half));
-    PBRT_TRY(parameter_get_float(film, parser->log, "diagonal", &diagonal)); /* a realistic camera's concern */
-    PBRT_TRY(read_window(parser, film, hints));
+    AG_TRY(read_kind(parser, film, hints));
+    AG_TRY(read_sensor(parser, film, hints));
+    AG_TRY(pbrt_get_integer_hint(parser, film, "xresolution", 1, 65536, &hints->width));
+    AG_TRY(pbrt_get_integer_hint(parser, film, "yresolution", 1, 65536, &hints->height));
+    AG_TRY(parameter_get_string(film, parser->log, "filename", &file_name));
+    AG_TRY(parameter_get_bool(film, parser->log, "savefp16", &is_half));
+    AG_TRY(parameter_get_float(film, parser->log, "diagonal", &diagonal)); /* a realistic camera's concern */
+    AG_TRY(read_window(parser, film, hints));
     hints->has_float_samples = !is_half;
     hints->file_name = file_name ? strdup(file_name) : NULL;
     if (file_name && !hints->file_name)
@@ -137,11 +137,11 @@ static ag_status read_filter(pbrt_parser *parser, parameter_list *list, filter_h
         {FILTER_MITCHELL, "C", offsetof(filter_hint, c)},
         {FILTER_SINC, "tau", offsetof(filter_hint, tau)},
     };
-    PBRT_TRY(parameter_get_float(list, parser->log, "xradius", &filter->radius[0]));
-    PBRT_TRY(parameter_get_float(list, parser->log, "yradius", &filter->radius[1]));
+    AG_TRY(parameter_get_float(list, parser->log, "xradius", &filter->radius[0]));
+    AG_TRY(parameter_get_float(list, parser->log, "yradius", &filter->radius[1]));
     for (size_t i = 0; i < sizeof OWN / sizeof *OWN; i++)
         if (OWN[i].kind == filter->kind)
-            PBRT_TRY(parameter_get_float(list, parser->log, OWN[i].name, (float *)((char *)filter + OWN[i].offset)));
+            AG_TRY(parameter_get_float(list, parser->log, OWN[i].name, (float *)((char *)filter + OWN[i].offset)));
     if (!(filter->radius[0] > 0.0f && filter->radius[0] <= 64.0f && filter->radius[1] > 0.0f &&
           filter->radius[1] <= 64.0f && filter->sigma > 0.0f && filter->tau > 0.0f))
         return pbrt_error(parser, list->where, strlen(list->directive),

@@ -10,7 +10,7 @@
 static ag_status keep_parameters(pbrt_parser *parser, file_location where, const char *directive, parameter_list *kept)
 {
     parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, directive, "a quoted type", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, directive, "a quoted type", where, &list));
     parameter_list_reset(kept);
     *kept = list;
     return AG_OK;
@@ -46,7 +46,7 @@ ag_status pbrt_get_integer_hint(pbrt_parser *parser, parameter_list *list, const
     int64_t value = 0;
     if (!parameter_list_find(list, name))
         return AG_OK;
-    PBRT_TRY(parameter_get_int(list, parser->log, name, &value));
+    AG_TRY(parameter_get_int(list, parser->log, name, &value));
     if (value < least || value > most)
         return pbrt_refuse(parser, list, name, "%s: \"%s\" is %lld, it must be from %lld to %lld", list->directive,
                            name, (long long)value, (long long)least, (long long)most);
@@ -71,18 +71,18 @@ static ag_status settle_sampler(pbrt_parser *parser)
     if (!is_known)
         log_at_once(parser->log, AG_LOG_WARNING, list->where, "sampler",
                     "Sampler \"%s\" is not known; our own stands in", list->name);
-    PBRT_TRY(pbrt_get_integer_hint(parser, list, "seed", INT64_MIN, INT64_MAX, &hints->seed));
-    PBRT_TRY(parameter_get_string(list, parser->log, "randomization", &randomization));
+    AG_TRY(pbrt_get_integer_hint(parser, list, "seed", INT64_MIN, INT64_MAX, &hints->seed));
+    AG_TRY(parameter_get_string(list, parser->log, "randomization", &randomization));
     if (strcmp(list->name, "stratified") == 0) {
         integer_hint x = {true, 4}, y = {true, 4};
-        PBRT_TRY(pbrt_get_integer_hint(parser, list, "xsamples", 1, 1 << 10, &x));
-        PBRT_TRY(pbrt_get_integer_hint(parser, list, "ysamples", 1, 1 << 10, &y));
-        PBRT_TRY(parameter_get_bool(list, parser->log, "jitter", &jitter));
+        AG_TRY(pbrt_get_integer_hint(parser, list, "xsamples", 1, 1 << 10, &x));
+        AG_TRY(pbrt_get_integer_hint(parser, list, "ysamples", 1, 1 << 10, &y));
+        AG_TRY(parameter_get_bool(list, parser->log, "jitter", &jitter));
         hints->samples_per_pixel = (integer_hint){true, x.value * y.value};
     } else {
         if (strcmp(list->name, "independent") == 0)
             hints->samples_per_pixel = (integer_hint){true, 4}; /* pbrt's default for it alone */
-        PBRT_TRY(pbrt_get_integer_hint(parser, list, "pixelsamples", 1, 1 << 20, &hints->samples_per_pixel));
+        AG_TRY(pbrt_get_integer_hint(parser, list, "pixelsamples", 1, 1 << 20, &hints->samples_per_pixel));
     }
     parameter_list_warn_unused(list, parser->log);
     return AG_OK;
@@ -115,14 +115,14 @@ static ag_status settle_integrator(pbrt_parser *parser)
         return AG_OK;
     }
     hints->is_for_photon_map = true;
-    PBRT_TRY(pbrt_get_integer_hint(parser, list, "indirectphotons", 1, UINT32_MAX - 1, &hints->photon_count));
-    PBRT_TRY(pbrt_get_integer_hint(parser, list, "causticphotons", 0, UINT32_MAX - 1, &hints->caustic_photon_count));
-    PBRT_TRY(pbrt_get_integer_hint(parser, list, "nused", 1, 65536, &hints->nearest));
+    AG_TRY(pbrt_get_integer_hint(parser, list, "indirectphotons", 1, UINT32_MAX - 1, &hints->photon_count));
+    AG_TRY(pbrt_get_integer_hint(parser, list, "causticphotons", 0, UINT32_MAX - 1, &hints->caustic_photon_count));
+    AG_TRY(pbrt_get_integer_hint(parser, list, "nused", 1, 65536, &hints->nearest));
     hints->radius.is_given = parameter_list_find(list, "maxdist") != NULL;
-    PBRT_TRY(parameter_get_float(list, parser->log, "maxdist", &hints->radius.value));
-    PBRT_TRY(pbrt_get_integer_hint(parser, list, "finalgathersamples", 1, 65536, &hints->gather_samples));
-    PBRT_TRY(pbrt_get_integer_hint(parser, list, "maxdepth", 0, 100, &hints->max_depth));
-    PBRT_TRY(parameter_get_bool(list, parser->log, "finalgather", &final_gather));
+    AG_TRY(parameter_get_float(list, parser->log, "maxdist", &hints->radius.value));
+    AG_TRY(pbrt_get_integer_hint(parser, list, "finalgathersamples", 1, 65536, &hints->gather_samples));
+    AG_TRY(pbrt_get_integer_hint(parser, list, "maxdepth", 0, 100, &hints->max_depth));
+    AG_TRY(parameter_get_bool(list, parser->log, "finalgather", &final_gather));
     if (!(hints->radius.value >= 0.0f) || isinf(hints->radius.value))
         return pbrt_refuse(parser, list, "maxdist", "Integrator: \"maxdist\" must be finite and not negative");
     if (!final_gather)
@@ -134,9 +134,9 @@ static ag_status settle_integrator(pbrt_parser *parser)
 
 ag_status pbrt_settle_hints(pbrt_parser *parser)
 {
-    PBRT_TRY(pbrt_settle_film(parser));
-    PBRT_TRY(settle_sampler(parser));
-    PBRT_TRY(settle_integrator(parser));
+    AG_TRY(pbrt_settle_film(parser));
+    AG_TRY(settle_sampler(parser));
+    AG_TRY(settle_integrator(parser));
     return pbrt_settle_pixel_filter(parser);
 }
 

@@ -20,9 +20,9 @@ static ag_status read_common(pbrt_parser *parser, parameter_list *list, const ch
                              light_common *out_common)
 {
     light_common c = {{1.0f, 1.0f, 1.0f}, 1.0f, -1.0f, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
-    PBRT_TRY(parameter_get_rgb(list, parser->log, color_name, &c.color));
-    PBRT_TRY(parameter_get_float(list, parser->log, "scale", &c.scale));
-    PBRT_TRY(parameter_get_float(list, parser->log, power_name, &c.power));
+    AG_TRY(parameter_get_rgb(list, parser->log, color_name, &c.color));
+    AG_TRY(parameter_get_float(list, parser->log, "scale", &c.scale));
+    AG_TRY(parameter_get_float(list, parser->log, power_name, &c.power));
     if (c.scale < 0.0f)
         return pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
     *out_common = c;
@@ -45,8 +45,8 @@ static ag_status scale_color(pbrt_parser *parser, const parameter_list *list, rg
 
 static ag_status read_direction(pbrt_parser *parser, parameter_list *list, light_common *c, vec3 *out_direction)
 {
-    PBRT_TRY(parameter_get_vec3(list, parser->log, "from", PARAMETER_POINT3, &c->from));
-    PBRT_TRY(parameter_get_vec3(list, parser->log, "to", PARAMETER_POINT3, &c->to));
+    AG_TRY(parameter_get_vec3(list, parser->log, "from", PARAMETER_POINT3, &c->from));
+    AG_TRY(parameter_get_vec3(list, parser->log, "to", PARAMETER_POINT3, &c->to));
     const transform *t = &parser->state.world_from_object;
     double d[3] = {(double)c->to.x - c->from.x, (double)c->to.y - c->from.y, (double)c->to.z - c->from.z};
     double w[3], square = 0.0;
@@ -71,9 +71,9 @@ static ag_status read_point(pbrt_parser *parser, parameter_list *list, light *l)
 {
     light_common c;
     l->kind = LIGHT_POINT;
-    PBRT_TRY(read_common(parser, list, "I", "power", &c));
-    PBRT_TRY(parameter_get_vec3(list, parser->log, "from", PARAMETER_POINT3, &c.from));
-    PBRT_TRY(set_position(parser, list, c.from, l));
+    AG_TRY(read_common(parser, list, "I", "power", &c));
+    AG_TRY(parameter_get_vec3(list, parser->log, "from", PARAMETER_POINT3, &c.from));
+    AG_TRY(set_position(parser, list, c.from, l));
     double factor = c.power > 0.0f ? c.scale * (c.power / (4.0 * PI)) : c.scale;
     return scale_color(parser, list, c.color, factor, &l->intensity);
 }
@@ -83,11 +83,11 @@ static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
     light_common c;
     float cone = 30.0f, delta = 5.0f;
     l->kind = LIGHT_SPOT;
-    PBRT_TRY(read_common(parser, list, "I", "power", &c));
-    PBRT_TRY(read_direction(parser, list, &c, &l->direction));
-    PBRT_TRY(set_position(parser, list, c.from, l));
-    PBRT_TRY(parameter_get_float(list, parser->log, "coneangle", &cone));
-    PBRT_TRY(parameter_get_float(list, parser->log, "conedeltaangle", &delta));
+    AG_TRY(read_common(parser, list, "I", "power", &c));
+    AG_TRY(read_direction(parser, list, &c, &l->direction));
+    AG_TRY(set_position(parser, list, c.from, l));
+    AG_TRY(parameter_get_float(list, parser->log, "coneangle", &cone));
+    AG_TRY(parameter_get_float(list, parser->log, "conedeltaangle", &delta));
     if (!(cone > 0.0f && cone <= 180.0f))
         return pbrt_refuse(parser, list, "coneangle", "\"coneangle\" should be within (0, 180] degrees");
     if (!(delta >= 0.0f && delta <= 2.0f * cone)) /* beyond the axis pbrt counts on at the other side */
@@ -104,8 +104,8 @@ static ag_status read_distant(pbrt_parser *parser, parameter_list *list, light *
 {
     light_common c;
     l->kind = LIGHT_DISTANT;
-    PBRT_TRY(read_common(parser, list, "L", "illuminance", &c));
-    PBRT_TRY(read_direction(parser, list, &c, &l->direction));
+    AG_TRY(read_common(parser, list, "L", "illuminance", &c));
+    AG_TRY(read_direction(parser, list, &c, &l->direction));
     double factor = c.power > 0.0f ? (double)c.scale * c.power : c.scale;
     return scale_color(parser, list, c.color, factor, &l->radiance);
 }
@@ -113,7 +113,7 @@ static ag_status read_distant(pbrt_parser *parser, parameter_list *list, light *
 /* "photons", which pbrt does not have: multiplies the light's share of them. */
 static ag_status read_photons(pbrt_parser *parser, parameter_list *list, float *out_photons)
 {
-    PBRT_TRY(parameter_get_float(list, parser->log, "photons", out_photons));
+    AG_TRY(parameter_get_float(list, parser->log, "photons", out_photons));
     if (!(*out_photons >= 0.0f))
         return pbrt_refuse(parser, list, "photons", "\"photons\" should not be negative");
     if (*out_photons == 0.0f)
@@ -127,13 +127,13 @@ static ag_status read_group(pbrt_parser *parser, parameter_list *list, uint32_t 
 {
     const char *name = "default";
     uint32_t unnamed;
-    PBRT_TRY(parameter_get_string(list, parser->log, "lightgroup", &name));
+    AG_TRY(parameter_get_string(list, parser->log, "lightgroup", &name));
     if (name[0] == '\0' || name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-")] ||
         strlen(name) > 40 || strcmp(name, "photons") == 0)
         return pbrt_refuse(
             parser, list, "lightgroup",
             "\"lightgroup\" should be a name of at most 40 letters, digits, - and _, and not \"photons\"");
-    PBRT_TRY(scene_light_group(parser->scene, "default", &unnamed)); /* the first */
+    AG_TRY(scene_light_group(parser->scene, "default", &unnamed)); /* the first */
     ag_status status = scene_light_group(parser->scene, name, out_group);
     if (status == AG_ERROR_SCENE)
         return pbrt_refuse(parser, list, "lightgroup", "there are more than %d light groups", SCENE_LIGHT_GROUPS_MAX);
@@ -152,8 +152,8 @@ static ag_status read_light(pbrt_parser *parser, parameter_list *list, light *l)
                    {"infinite", pbrt_infinite_light},
                    {"goniometric", pbrt_goniometric_light},
                    {"projection", pbrt_projection_light}};
-    PBRT_TRY(read_photons(parser, list, &l->photons));
-    PBRT_TRY(read_group(parser, list, &l->group));
+    AG_TRY(read_photons(parser, list, &l->photons));
+    AG_TRY(read_group(parser, list, &l->group));
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(list->name, READERS[i].name) == 0)
             return READERS[i].read(parser, list, l);
@@ -164,7 +164,7 @@ static ag_status add_light(pbrt_parser *parser, parameter_list *list)
 {
     uint32_t index;
     light l = light_make(LIGHT_POINT);
-    PBRT_TRY(read_light(parser, list, &l));
+    AG_TRY(read_light(parser, list, &l));
     parameter_list_warn_unused(list, parser->log);
     l.medium = pbrt_use_medium(parser, parser->state.medium_outside);
     bool has_radiance = l.kind == LIGHT_DISTANT || l.kind == LIGHT_INFINITE;
@@ -175,7 +175,7 @@ static ag_status add_light(pbrt_parser *parser, parameter_list *list)
 ag_status pbrt_light_source(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "LightSource", "a quoted type", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, "LightSource", "a quoted type", where, &list));
     pbrt_warn_still(parser, where, "a light");
     ag_status status = pbrt_is_flattened(parser, where, "LightSource") ? AG_OK : add_light(parser, &list);
     parameter_list_reset(&list);
@@ -197,7 +197,7 @@ static double mean_luminance(const working_space *space, const texture_image *i)
 static ag_status read_area_picture(pbrt_parser *parser, parameter_list *list, pbrt_area_light *l)
 {
     const char *name = "";
-    PBRT_TRY(parameter_get_string(list, parser->log, "filename", &name));
+    AG_TRY(parameter_get_string(list, parser->log, "filename", &name));
     if (!name[0])
         return AG_OK;
     if (parameter_list_find(list, "L"))
@@ -205,8 +205,8 @@ static ag_status read_area_picture(pbrt_parser *parser, parameter_list *list, pb
     texture t = texture_make(TEXTURE_IMAGE);
     t.is_spectrum = true;
     t.wraps = texture_wraps_same(TEXTURE_WRAP_CLAMP);
-    PBRT_TRY(pbrt_load_image(parser, list, "filename", name, (image_encoding){0}, &t));
-    PBRT_TRY(scene_add_texture(parser->scene, &t, &l->radiance_texture));
+    AG_TRY(pbrt_load_image(parser, list, "filename", name, (image_encoding){0}, &t));
+    AG_TRY(scene_add_texture(parser->scene, &t, &l->radiance_texture));
     if (l->power > 0.0f)
         l->mean_luminance = mean_luminance(&parser->scene->space, parser->scene->texture_images[t.image_index]);
     if (!(l->mean_luminance > 0.0))
@@ -224,13 +224,13 @@ static ag_status read_area_light(pbrt_parser *parser, parameter_list *list, pbrt
                          .where = list->where};
     if (strcmp(list->name, "diffuse") != 0)
         return pbrt_error(parser, list->where, strlen("AreaLightSource"), "unknown area light \"%s\"", list->name);
-    PBRT_TRY(read_common(parser, list, "L", "power", &c));
-    PBRT_TRY(parameter_get_bool(list, parser->log, "twosided", &l.two_sided));
-    PBRT_TRY(scale_color(parser, list, c.color, c.scale, &l.radiance));
+    AG_TRY(read_common(parser, list, "L", "power", &c));
+    AG_TRY(parameter_get_bool(list, parser->log, "twosided", &l.two_sided));
+    AG_TRY(scale_color(parser, list, c.color, c.scale, &l.radiance));
     l.power = c.power;
-    PBRT_TRY(read_photons(parser, list, &l.photons));
-    PBRT_TRY(read_group(parser, list, &l.group));
-    PBRT_TRY(read_area_picture(parser, list, &l));
+    AG_TRY(read_photons(parser, list, &l.photons));
+    AG_TRY(read_group(parser, list, &l.group));
+    AG_TRY(read_area_picture(parser, list, &l));
     parameter_list_warn_unused(list, parser->log);
     *out_light = l;
     return AG_OK;
@@ -239,7 +239,7 @@ static ag_status read_area_light(pbrt_parser *parser, parameter_list *list, pbrt
 ag_status pbrt_area_light_source(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "AreaLightSource", "a quoted type", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, "AreaLightSource", "a quoted type", where, &list));
     ag_status status = read_area_light(parser, &list, &parser->state.area_light);
     parameter_list_reset(&list);
     return status;

@@ -17,7 +17,7 @@ static rgb clamp_color(rgb c)
 static ag_status read_reflectance(pbrt_parser *parser, parameter_list *list, material *m)
 {
     rgb *r = &m->reflectance;
-    PBRT_TRY(pbrt_get_rgb_texture(parser, list, "reflectance", r, &m->reflectance_texture));
+    AG_TRY(pbrt_get_rgb_texture(parser, list, "reflectance", r, &m->reflectance_texture));
     if (rgb_max(*r) > 1.0f) {
         const parameter *p = parameter_list_find(list, "reflectance");
         log_at(parser->log, AG_LOG_WARNING, p->where, "\"reflectance\" is above 1: 1 is used");
@@ -37,8 +37,8 @@ static ag_status read_roughness(pbrt_parser *parser, parameter_list *list, const
     uint32_t texture_index = SCENE_NO_TEXTURE;
     bool remap = true;
     snprintf(name, sizeof name, "%sroughness", prefix);
-    PBRT_TRY(pbrt_get_float_texture(parser, list, name, &roughness, &texture_index));
-    PBRT_TRY(parameter_get_bool(list, parser->log, "remaproughness", &remap));
+    AG_TRY(pbrt_get_float_texture(parser, list, name, &roughness, &texture_index));
+    AG_TRY(parameter_get_bool(list, parser->log, "remaproughness", &remap));
     if (roughness < 0.0f)
         return pbrt_refuse(parser, list, name, "\"%s\" should not be negative", name);
     for (int i = 0; i < 2; i++) {
@@ -46,7 +46,7 @@ static ag_status read_roughness(pbrt_parser *parser, parameter_list *list, const
         snprintf(name, sizeof name, "%s%s", prefix, AXES[i]);
         *out_texture[i] = texture_index;
         if (parameter_list_find(list, name))
-            PBRT_TRY(pbrt_get_float_texture(parser, list, name, &value, out_texture[i]));
+            AG_TRY(pbrt_get_float_texture(parser, list, name, &value, out_texture[i]));
         if (value < 0.0f)
             return pbrt_refuse(parser, list, name, "\"%s\" should not be negative", name);
         *out_alpha[i] = remap ? sqrtf(value) : value;
@@ -70,8 +70,8 @@ static ag_status read_metal(pbrt_parser *parser, parameter_list *list, const cha
     spectra_find_named("metal-Cu-eta", NULL, &m->eta);
     spectra_find_named("metal-Cu-k", NULL, &m->k);
     if (!parameter_list_find(list, "reflectance")) {
-        PBRT_TRY(pbrt_get_rgb_texture(parser, list, eta, &m->eta, &m->eta_texture));
-        PBRT_TRY(pbrt_get_rgb_texture(parser, list, k, &m->k, &m->k_texture));
+        AG_TRY(pbrt_get_rgb_texture(parser, list, eta, &m->eta, &m->eta_texture));
+        AG_TRY(pbrt_get_rgb_texture(parser, list, k, &m->k, &m->k_texture));
         if (!(m->eta.r > 0.0f && m->eta.g > 0.0f && m->eta.b > 0.0f))
             return pbrt_refuse(parser, list, eta, "\"%s\" should be above 0", eta);
         if (!is_texture(list, eta) && !is_texture(list, k)) /* those are colours to their readers */
@@ -81,7 +81,7 @@ static ag_status read_metal(pbrt_parser *parser, parameter_list *list, const cha
     if (parameter_list_find(list, eta) || parameter_list_find(list, k))
         return pbrt_refuse(parser, list, "reflectance",
                            "\"reflectance\" and \"%s\" or \"%s\" cannot both be given to a conductor", eta, k);
-    PBRT_TRY(read_reflectance(parser, list, m));
+    AG_TRY(read_reflectance(parser, list, m));
     rgb r = m->reflectance;
     m->eta = rgb_gray(1.0f);
     m->k =
@@ -95,10 +95,10 @@ static ag_status read_index(pbrt_parser *parser, parameter_list *list, const cha
     const parameter *eta = parameter_list_find(list, name);
     if (eta && (eta->type == PARAMETER_SPECTRUM || eta->type == PARAMETER_RGB)) {
         rgb value = rgb_gray(*ior);
-        PBRT_TRY(parameter_get_rgb(list, parser->log, name, &value));
+        AG_TRY(parameter_get_rgb(list, parser->log, name, &value));
         *ior = value.g;
     } else {
-        PBRT_TRY(parameter_get_float(list, parser->log, name, ior));
+        AG_TRY(parameter_get_float(list, parser->log, name, ior));
     }
     if (!(*ior > 0.0f))
         return pbrt_refuse(parser, list, name, "\"%s\" should be above 0", name);
@@ -107,13 +107,13 @@ static ag_status read_index(pbrt_parser *parser, parameter_list *list, const cha
 
 ag_status pbrt_read_conductor(pbrt_parser *parser, parameter_list *list, material *m)
 {
-    PBRT_TRY(read_metal(parser, list, "", m));
+    AG_TRY(read_metal(parser, list, "", m));
     return read_roughness(parser, list, "", m);
 }
 
 ag_status pbrt_read_dielectric(pbrt_parser *parser, parameter_list *list, material *m)
 {
-    PBRT_TRY(read_index(parser, list, "eta", &m->ior));
+    AG_TRY(read_index(parser, list, "eta", &m->ior));
     return read_roughness(parser, list, "", m);
 }
 
@@ -128,11 +128,11 @@ static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, mater
 {
     m->coat_thickness = 0.01f;
     int64_t depth = 10, samples = 1;
-    PBRT_TRY(parameter_get_float(list, parser->log, "thickness", &m->coat_thickness));
-    PBRT_TRY(parameter_get_float(list, parser->log, "g", &m->coat_g));
-    PBRT_TRY(parameter_get_int(list, parser->log, "maxdepth", &depth));
-    PBRT_TRY(parameter_get_int(list, parser->log, "nsamples", &samples));
-    PBRT_TRY(parameter_get_rgb(list, parser->log, "albedo", &m->coat_albedo));
+    AG_TRY(parameter_get_float(list, parser->log, "thickness", &m->coat_thickness));
+    AG_TRY(parameter_get_float(list, parser->log, "g", &m->coat_g));
+    AG_TRY(parameter_get_int(list, parser->log, "maxdepth", &depth));
+    AG_TRY(parameter_get_int(list, parser->log, "nsamples", &samples));
+    AG_TRY(parameter_get_rgb(list, parser->log, "albedo", &m->coat_albedo));
     if (m->coat_thickness < 0.0f)
         return pbrt_refuse(parser, list, "thickness", "\"thickness\" should not be negative");
     if (depth < 1 || depth > 1000)
@@ -150,23 +150,23 @@ static ag_status read_coat_walk(pbrt_parser *parser, parameter_list *list, mater
 
 ag_status pbrt_read_coated_diffuse(pbrt_parser *parser, parameter_list *list, material *m)
 {
-    PBRT_TRY(read_reflectance(parser, list, m));
-    PBRT_TRY(read_index(parser, list, "eta", &m->ior));
-    PBRT_TRY(read_coat_walk(parser, list, m));
+    AG_TRY(read_reflectance(parser, list, m));
+    AG_TRY(read_index(parser, list, "eta", &m->ior));
+    AG_TRY(read_coat_walk(parser, list, m));
     return read_roughness(parser, list, "", m);
 }
 
 ag_status pbrt_read_coated_conductor(pbrt_parser *parser, parameter_list *list, material *m)
 {
-    PBRT_TRY(read_metal(parser, list, "conductor.", m));
-    PBRT_TRY(read_index(parser, list, "interface.eta", &m->ior));
-    PBRT_TRY(read_coat_walk(parser, list, m));
-    PBRT_TRY(read_roughness(parser, list, "conductor.", m));
+    AG_TRY(read_metal(parser, list, "conductor.", m));
+    AG_TRY(read_index(parser, list, "interface.eta", &m->ior));
+    AG_TRY(read_coat_walk(parser, list, m));
+    AG_TRY(read_roughness(parser, list, "conductor.", m));
     m->base_alpha_u = m->alpha_u;
     m->base_alpha_v = m->alpha_v;
     m->base_alpha_u_texture = m->alpha_u_texture;
     m->base_alpha_v_texture = m->alpha_v_texture;
-    PBRT_TRY(read_roughness(parser, list, "interface.", m));
+    AG_TRY(read_roughness(parser, list, "interface.", m));
     /* the conductor's index is relative to air; under the coat it is relative to the coat */
     m->eta = rgb_scale(m->eta, 1.0f / m->ior);
     m->k = rgb_scale(m->k, 1.0f / m->ior);
@@ -201,16 +201,16 @@ ag_status pbrt_read_diffuse_transmission(pbrt_parser *parser, parameter_list *li
 {
     float scale = 1.0f;
     bool ignored; /* pbrt reads it, and has no use for it */
-    PBRT_TRY(pbrt_get_rgb_texture(parser, list, "reflectance", &m->reflectance, &m->reflectance_texture));
-    PBRT_TRY(pbrt_get_rgb_texture(parser, list, "transmittance", &m->transmittance, &m->transmittance_texture));
-    PBRT_TRY(parameter_get_float(list, parser->log, "scale", &scale));
+    AG_TRY(pbrt_get_rgb_texture(parser, list, "reflectance", &m->reflectance, &m->reflectance_texture));
+    AG_TRY(pbrt_get_rgb_texture(parser, list, "transmittance", &m->transmittance, &m->transmittance_texture));
+    AG_TRY(parameter_get_float(list, parser->log, "scale", &scale));
     if (scale < 0.0f)
         return pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
     m->reflectance = rgb_scale(m->reflectance, scale);
     m->transmittance = rgb_scale(m->transmittance, scale);
-    PBRT_TRY(scale_texture(parser, list, scale, &m->reflectance_texture));
-    PBRT_TRY(scale_texture(parser, list, scale, &m->transmittance_texture));
-    PBRT_TRY(parameter_get_bool(list, parser->log, "remaproughness", &ignored));
+    AG_TRY(scale_texture(parser, list, scale, &m->reflectance_texture));
+    AG_TRY(scale_texture(parser, list, scale, &m->transmittance_texture));
+    AG_TRY(parameter_get_bool(list, parser->log, "remaproughness", &ignored));
     rgb sum = rgb_add(m->reflectance, m->transmittance);
     if (rgb_max(sum) > 1.0f) {
         log_at(parser->log, AG_LOG_WARNING, list->where,
@@ -259,16 +259,16 @@ ag_status pbrt_read_hair(pbrt_parser *parser, parameter_list *list, material *m)
     float beta_n = 0.3f, eumelanin = 0.0f, pheomelanin = 0.0f;
     const char *color = parameter_list_find(list, "reflectance") ? "reflectance" : "color";
     tell_stand_in(parser, list, "hair", "\"diffuse\" of its colour");
-    PBRT_TRY(parameter_get_float(list, parser->log, "beta_n", &beta_n));
+    AG_TRY(parameter_get_float(list, parser->log, "beta_n", &beta_n));
     if (!parameter_list_find(list, "sigma_a") && parameter_list_find(list, color)) {
-        PBRT_TRY(pbrt_get_rgb_texture(parser, list, color, &m->reflectance, &m->reflectance_texture));
+        AG_TRY(pbrt_get_rgb_texture(parser, list, color, &m->reflectance, &m->reflectance_texture));
     } else {
         if (!parameter_list_find(list, "eumelanin") && !parameter_list_find(list, "pheomelanin"))
             eumelanin = 1.3f;
-        PBRT_TRY(parameter_get_float(list, parser->log, "eumelanin", &eumelanin));
-        PBRT_TRY(parameter_get_float(list, parser->log, "pheomelanin", &pheomelanin));
+        AG_TRY(parameter_get_float(list, parser->log, "eumelanin", &eumelanin));
+        AG_TRY(parameter_get_float(list, parser->log, "pheomelanin", &pheomelanin));
         rgb sigma_a = working_space_light(&parser->scene->space, hair_absorption(eumelanin, pheomelanin));
-        PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
+        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
         m->reflectance = rgb_make(hair_reflectance(sigma_a.r, beta_n), hair_reflectance(sigma_a.g, beta_n),
                                   hair_reflectance(sigma_a.b, beta_n));
     }
@@ -292,16 +292,16 @@ ag_status pbrt_read_subsurface(pbrt_parser *parser, parameter_list *list, materi
     m->ior = 1.33f;
     tell_stand_in(parser, list, "subsurface",
                   "\"coateddiffuse\" of its diffuse reflectance, which lets no light travel inside,");
-    PBRT_TRY(read_index(parser, list, "eta", &m->ior));
-    PBRT_TRY(read_roughness(parser, list, "", m));
+    AG_TRY(read_index(parser, list, "eta", &m->ior));
+    AG_TRY(read_roughness(parser, list, "", m));
     if (parameter_list_find(list, "reflectance")) {
-        PBRT_TRY(read_reflectance(parser, list, m));
+        AG_TRY(read_reflectance(parser, list, m));
     } else {
         rgb sigma_a = working_space_light(&parser->scene->space, rgb_make(0.0011f, 0.0024f, 0.014f));
         rgb sigma_s = working_space_light(&parser->scene->space, rgb_make(2.55f, 3.21f, 3.77f));
-        PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
-        PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
-        PBRT_TRY(parameter_get_float(list, parser->log, "g", &g));
+        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
+        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
+        AG_TRY(parameter_get_float(list, parser->log, "g", &g));
         if (parameter_list_find(list, "name"))
             log_at_once(parser->log, AG_LOG_WARNING, list->where, "subsurface name",
                         "\"name\" of \"subsurface\" is not supported: pbrt's default coefficients are used");
@@ -327,13 +327,13 @@ ag_status pbrt_read_measured(pbrt_parser *parser, parameter_list *list, material
 static ag_status read_normal_map(pbrt_parser *parser, parameter_list *list, material *m)
 {
     const char *name = NULL;
-    PBRT_TRY(parameter_get_string(list, parser->log, "normalmap", &name));
+    AG_TRY(parameter_get_string(list, parser->log, "normalmap", &name));
     if (!name || *name == '\0')
         return AG_OK;
     texture t = texture_make(TEXTURE_IMAGE);
     t.is_data = true;
     t.is_spectrum = true;
-    PBRT_TRY(pbrt_load_image(parser, list, "normalmap", name, (image_encoding){.curve = IMAGE_CURVE_LINEAR}, &t));
+    AG_TRY(pbrt_load_image(parser, list, "normalmap", name, (image_encoding){.curve = IMAGE_CURVE_LINEAR}, &t));
     if (parser->scene->texture_images[t.image_index]->channel_count < 3)
         return pbrt_refuse(parser, list, "normalmap", "\"%s\" is no normal map: it has no red, green and blue", name);
     return scene_add_texture(parser->scene, &t, &m->normal_map_texture);
@@ -342,8 +342,8 @@ static ag_status read_normal_map(pbrt_parser *parser, parameter_list *list, mate
 ag_status pbrt_read_maps(pbrt_parser *parser, parameter_list *list, material *m)
 {
     float same_everywhere = 0.0f; /* which tilts nothing */
-    PBRT_TRY(pbrt_get_float_texture(parser, list, "displacement", &same_everywhere, &m->displacement_texture));
-    PBRT_TRY(read_normal_map(parser, list, m));
+    AG_TRY(pbrt_get_float_texture(parser, list, "displacement", &same_everywhere, &m->displacement_texture));
+    AG_TRY(read_normal_map(parser, list, m));
     if (m->displacement_texture != SCENE_NO_TEXTURE && m->normal_map_texture != SCENE_NO_TEXTURE)
         log_at_once(parser->log, AG_LOG_WARNING, list->where, "both maps",
                     "of \"displacement\" and \"normalmap\" together only the latter is used");

@@ -13,12 +13,12 @@ static ag_status read_mix(pbrt_parser *parser, parameter_list *list, material *m
 {
     const parameter *names = parameter_list_find(list, "materials");
     const char *ignored;
-    PBRT_TRY(pbrt_get_float_texture(parser, list, "amount", &m->mix_amount, &m->mix_amount_texture));
+    AG_TRY(pbrt_get_float_texture(parser, list, "amount", &m->mix_amount, &m->mix_amount_texture));
     if (!names || names->type != PARAMETER_STRING || names->count != 2)
         return pbrt_refuse(parser, list, "materials", "\"mix\" needs \"string materials\" with two names");
     (void)parameter_get_string(list, NULL, "materials", &ignored); /* marks it as known */
     for (int i = 0; i < 2; i++)
-        PBRT_TRY(find_or_keep_place(parser, names->strings[i], names->where, &m->mixed[i]));
+        AG_TRY(find_or_keep_place(parser, names->strings[i], names->where, &m->mixed[i]));
     return AG_OK;
 }
 
@@ -57,16 +57,16 @@ static ag_status read_material(pbrt_parser *parser, parameter_list *list, const 
 {
     const material_reader *reader = NULL;
     *out_material = material_make(MATERIAL_DIFFUSE);
-    PBRT_TRY(pbrt_upgrade_material(parser, list, &type));
+    AG_TRY(pbrt_upgrade_material(parser, list, &type));
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(type, READERS[i].name) == 0)
             reader = &READERS[i];
     if (!reader)
         return pbrt_error(parser, list->where, strlen(list->directive), "unknown material \"%s\"", type);
     *out_material = material_make(reader->kind);
-    PBRT_TRY(reader->read(parser, list, out_material));
+    AG_TRY(reader->read(parser, list, out_material));
     if (reader->kind != MATERIAL_MIX && reader->kind != MATERIAL_INTERFACE) /* mixes have those of the two they mix */
-        PBRT_TRY(pbrt_read_maps(parser, list, out_material));
+        AG_TRY(pbrt_read_maps(parser, list, out_material));
     parameter_list_warn_unused(list, parser->log);
     return AG_OK;
 }
@@ -81,10 +81,10 @@ ag_status pbrt_material(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
     material m;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "Material", "a quoted type", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, "Material", "a quoted type", where, &list));
     ag_status status = read_material(parser, &list, list.name, &m);
     parameter_list_reset(&list);
-    if (!status)
+    if (status == AG_OK)
         status = scene_add_material(parser->scene, &m, &parser->state.material_index);
     parser->state.has_no_surface = m.kind == MATERIAL_INTERFACE;
     return status;
@@ -123,7 +123,7 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
     const char *type = NULL;
     material m;
     pbrt_named_material made = {.is_defined = true, .where = list->where};
-    PBRT_TRY(parameter_get_string(list, parser->log, "type", &type));
+    AG_TRY(parameter_get_string(list, parser->log, "type", &type));
     if (!type)
         return pbrt_error(parser, list->where, strlen("MakeNamedMaterial"),
                           "MakeNamedMaterial \"%s\" has no \"string type\"", list->name);
@@ -132,8 +132,8 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
         return pbrt_error(parser, list->where, strlen("MakeNamedMaterial"),
                           "material \"%s\" is made twice, first at %s:%d:%d", list->name, named->where.file,
                           named->where.line, named->where.column);
-    PBRT_TRY(read_material(parser, list, type, &m));
-    PBRT_TRY(scene_add_material(parser->scene, &m, &made.index));
+    AG_TRY(read_material(parser, list, type, &m));
+    AG_TRY(scene_add_material(parser->scene, &m, &made.index));
     named = find_named_material(parser, list->name); /* anew: a mix may have kept places for others, or for itself */
     if (!named)
         return add_named_material(parser, list->name, made);
@@ -147,7 +147,7 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
 ag_status pbrt_make_named_material(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "MakeNamedMaterial", "a quoted name", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, "MakeNamedMaterial", "a quoted name", where, &list));
     ag_status status = make_named(parser, &list);
     parameter_list_reset(&list);
     return status;
@@ -160,8 +160,8 @@ static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_
     if (!named) {
         pbrt_named_material used = {.where = where};
         material place = material_make(MATERIAL_DIFFUSE);
-        PBRT_TRY(scene_add_material(parser->scene, &place, &used.index));
-        PBRT_TRY(add_named_material(parser, name, used));
+        AG_TRY(scene_add_material(parser->scene, &place, &used.index));
+        AG_TRY(add_named_material(parser, name, used));
         named = find_named_material(parser, name);
     }
     *out_index = named->index;
@@ -170,7 +170,7 @@ static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_
 
 static ag_status use_named(pbrt_parser *parser, const char *name, file_location where)
 {
-    PBRT_TRY(find_or_keep_place(parser, name, where, &parser->state.material_index));
+    AG_TRY(find_or_keep_place(parser, name, where, &parser->state.material_index));
     parser->state.has_no_surface = parser->scene->materials[parser->state.material_index].kind == MATERIAL_INTERFACE;
     return AG_OK;
 }
@@ -178,7 +178,7 @@ static ag_status use_named(pbrt_parser *parser, const char *name, file_location 
 ag_status pbrt_use_named_material(pbrt_parser *parser, file_location where)
 {
     char *name;
-    PBRT_TRY(pbrt_read_string(parser, "NamedMaterial", "a quoted name", &name, NULL));
+    AG_TRY(pbrt_read_string(parser, "NamedMaterial", "a quoted name", &name, NULL));
     ag_status status = use_named(parser, name, where);
     free(name);
     return status;

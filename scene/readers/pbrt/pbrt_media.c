@@ -23,8 +23,8 @@ static ag_status tell_emission(pbrt_parser *parser, parameter_list *list)
 {
     rgb emitted = rgb_gray(0.0f);
     float scale = 1.0f;
-    PBRT_TRY(parameter_get_rgb(list, parser->log, "Le", &emitted));
-    PBRT_TRY(parameter_get_float(list, parser->log, "Lescale", &scale));
+    AG_TRY(parameter_get_rgb(list, parser->log, "Le", &emitted));
+    AG_TRY(parameter_get_float(list, parser->log, "Lescale", &scale));
     if (!rgb_is_black(emitted))
         log_at_once(parser->log, AG_LOG_WARNING, list->where, "medium Le",
                     "media that emit light are not supported: \"Le\" of \"%s\" is ignored, as are any others",
@@ -35,7 +35,7 @@ static ag_status tell_emission(pbrt_parser *parser, parameter_list *list)
 static ag_status read_scale(pbrt_parser *parser, parameter_list *list, float *out_scale)
 {
     *out_scale = 1.0f;
-    PBRT_TRY(parameter_get_float(list, parser->log, "scale", out_scale));
+    AG_TRY(parameter_get_float(list, parser->log, "scale", out_scale));
     return *out_scale >= 0.0f ? AG_OK : pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
 }
 
@@ -53,19 +53,19 @@ static ag_status read_homogeneous(pbrt_parser *parser, parameter_list *list, med
     const char *preset = "";
     rgb sigma_a = rgb_gray(1.0f), sigma_s = rgb_gray(1.0f);
     float scale, g = 0.0f;
-    PBRT_TRY(parameter_get_string(list, parser->log, "preset", &preset));
+    AG_TRY(parameter_get_string(list, parser->log, "preset", &preset));
     if (!preset[0] || !medium_find_preset(preset, &sigma_a)) {
         if (preset[0])
             log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, "preset")->where,
                    "no medium has the preset \"%s\": \"sigma_a\" counts", preset);
-        PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
-        PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
+        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
+        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
     } else {
         sigma_a = working_space_light(&parser->scene->space, sigma_a);
     }
-    PBRT_TRY(read_scale(parser, list, &scale));
-    PBRT_TRY(parameter_get_float(list, parser->log, "g", &g)); /* of scattering */
-    PBRT_TRY(tell_emission(parser, list));
+    AG_TRY(read_scale(parser, list, &scale));
+    AG_TRY(parameter_get_float(list, parser->log, "g", &g)); /* of scattering */
+    AG_TRY(tell_emission(parser, list));
     if (!rgb_is_black(sigma_s) && scale > 0.0f)
         tell_scattering(parser, list);
     parameter_list_warn_unused(list, parser->log);
@@ -106,16 +106,16 @@ static ag_status read_uniform_grid(pbrt_parser *parser, parameter_list *list, me
     size_t count;
     rgb sigma_a = rgb_gray(1.0f), sigma_s = rgb_gray(1.0f);
     float scale;
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "density", PARAMETER_FLOAT, &density, &count));
+    AG_TRY(parameter_get_numbers(list, parser->log, "density", PARAMETER_FLOAT, &density, &count));
     if (count == 0)
         return pbrt_refuse(parser, list, "density", "a medium of type \"uniformgrid\" needs \"float density\"");
     for (size_t i = 0; i < count; i++)
         if (density[i] < 0.0)
             return pbrt_refuse(parser, list, "density", "\"density\" has a negative value, %g", density[i]);
-    PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
-    PBRT_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
-    PBRT_TRY(read_scale(parser, list, &scale));
-    PBRT_TRY(set_absorption(parser, list, sigma_a, (double)scale * mean_of(density, count, 1, 0), m));
+    AG_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
+    AG_TRY(parameter_get_rgb(list, parser->log, "sigma_s", &sigma_s));
+    AG_TRY(read_scale(parser, list, &scale));
+    AG_TRY(set_absorption(parser, list, sigma_a, (double)scale * mean_of(density, count, 1, 0), m));
     tell_grid(parser, list, "uniformgrid", !rgb_is_black(sigma_s), m);
     return AG_OK;
 }
@@ -127,7 +127,7 @@ static ag_status read_rgb_grid(pbrt_parser *parser, parameter_list *list, medium
     size_t count, scattering_count;
     float scale;
     rgb mean = rgb_gray(1.0f);
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "sigma_a", PARAMETER_RGB, &values, &count));
+    AG_TRY(parameter_get_numbers(list, parser->log, "sigma_a", PARAMETER_RGB, &values, &count));
     if (count == 0 && !parameter_list_find(list, "sigma_s"))
         return pbrt_refuse(parser, list, "sigma_a", "a medium of type \"rgbgrid\" needs \"sigma_a\" or \"sigma_s\"");
     for (size_t i = 0; i < count; i++)
@@ -138,12 +138,12 @@ static ag_status read_rgb_grid(pbrt_parser *parser, parameter_list *list, medium
     if (count > 0)
         mean = rgb_make((float)mean_of(values, count, 3, 0), (float)mean_of(values, count, 3, 1),
                         (float)mean_of(values, count, 3, 2));
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "sigma_s", PARAMETER_RGB, &scattering, &scattering_count));
+    AG_TRY(parameter_get_numbers(list, parser->log, "sigma_s", PARAMETER_RGB, &scattering, &scattering_count));
     bool scatters = scattering_count == 0; /* without it it is 1 */
     for (size_t i = 0; i < scattering_count; i++)
         scatters = scatters || scattering[i] != 0.0;
-    PBRT_TRY(read_scale(parser, list, &scale));
-    PBRT_TRY(set_absorption(parser, list, mean, (double)scale, m));
+    AG_TRY(read_scale(parser, list, &scale));
+    AG_TRY(set_absorption(parser, list, mean, (double)scale, m));
     tell_grid(parser, list, "rgbgrid", scatters, m);
     return AG_OK;
 }
@@ -168,7 +168,7 @@ static ag_status read_medium(pbrt_parser *parser, parameter_list *list, medium *
                    {"cloud", read_unknown_density},
                    {"nanovdb", read_unknown_density}};
     const char *type = NULL;
-    PBRT_TRY(parameter_get_string(list, parser->log, "type", &type));
+    AG_TRY(parameter_get_string(list, parser->log, "type", &type));
     if (!type)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
                           "MakeNamedMedium \"%s\" has no \"string type\"", list->name);
@@ -197,7 +197,7 @@ static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_
     }
     pbrt_named_medium added = {.where = where};
     const medium nothing = {{0.0f, 0.0f, 0.0f}};
-    PBRT_TRY(scene_add_medium(parser->scene, &nothing, &added.index));
+    AG_TRY(scene_add_medium(parser->scene, &nothing, &added.index));
     added.name = strdup(name);
     if (!added.name || name_table_set(&parser->medium_names, name, (uint32_t)count)) {
         free(added.name);
@@ -212,7 +212,7 @@ static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_
 static ag_status make_named(pbrt_parser *parser, parameter_list *list)
 {
     size_t place;
-    PBRT_TRY(find_or_keep_place(parser, list->name, list->where, &place));
+    AG_TRY(find_or_keep_place(parser, list->name, list->where, &place));
     pbrt_named_medium *named = &parser->named_media[place];
     if (named->is_defined)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
@@ -226,7 +226,7 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
 ag_status pbrt_make_named_medium(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "MakeNamedMedium", "a quoted name", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, "MakeNamedMedium", "a quoted name", where, &list));
     ag_status status = make_named(parser, &list);
     parameter_list_reset(&list);
     return status;
@@ -243,13 +243,13 @@ ag_status pbrt_medium_interface(pbrt_parser *parser, file_location where)
 {
     char *inside, *outside = NULL;
     pbrt_token second;
-    PBRT_TRY(pbrt_read_string(parser, "MediumInterface", "a quoted name", &inside, NULL));
+    AG_TRY(pbrt_read_string(parser, "MediumInterface", "a quoted name", &inside, NULL));
     ag_status status = pbrt_peek(parser, &second);
-    if (!status && second.kind == PBRT_TOKEN_STRING)
+    if (status == AG_OK && second.kind == PBRT_TOKEN_STRING)
         status = pbrt_read_string(parser, "MediumInterface", "a quoted name", &outside, NULL);
-    if (!status)
+    if (status == AG_OK)
         status = read_side(parser, inside, where, &parser->state.medium_inside);
-    if (!status) /* as pbrt: one name is that of both sides */
+    if (status == AG_OK) /* as pbrt: one name is that of both sides */
         status = read_side(parser, outside ? outside : inside, where, &parser->state.medium_outside);
     free(inside);
     free(outside);

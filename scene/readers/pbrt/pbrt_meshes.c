@@ -165,7 +165,7 @@ static ag_status read_vertex_data(pbrt_parser *parser, parameter_list *list, con
                                   size_t expected, const double **out_values)
 {
     size_t count;
-    PBRT_TRY(parameter_get_numbers(list, parser->log, name, type, out_values, &count));
+    AG_TRY(parameter_get_numbers(list, parser->log, name, type, out_values, &count));
     if (*out_values && count != expected) {
         log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, name)->where,
                "Shape \"%s\": \"%s\" should have %zu numbers as \"P\" goes, but has %zu, and is ignored", list->name,
@@ -196,17 +196,17 @@ ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_
     const double *numbers, *unused;
     size_t number_count, position_count, unused_count;
     memset(out_mesh, 0, sizeof *out_mesh);
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "P", PARAMETER_POINT3, &out_mesh->positions, &position_count));
+    AG_TRY(parameter_get_numbers(list, parser->log, "P", PARAMETER_POINT3, &out_mesh->positions, &position_count));
     if (!parameter_list_find(list, "P"))
         return pbrt_refuse(parser, list, "P", "\"point3 P\" is missing");
     size_t vertex_count = out_mesh->vertex_count = position_count / 3;
-    PBRT_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, 3 * vertex_count, &out_mesh->normals));
-    PBRT_TRY(read_vertex_data(parser, list, "uv", PARAMETER_POINT2, 2 * vertex_count, &out_mesh->uvs));
+    AG_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, 3 * vertex_count, &out_mesh->normals));
+    AG_TRY(read_vertex_data(parser, list, "uv", PARAMETER_POINT2, 2 * vertex_count, &out_mesh->uvs));
     if (corners == 3) /* patches have none */
-        PBRT_TRY(read_vertex_data(parser, list, "S", PARAMETER_VECTOR3, 3 * vertex_count, &out_mesh->tangents));
+        AG_TRY(read_vertex_data(parser, list, "S", PARAMETER_VECTOR3, 3 * vertex_count, &out_mesh->tangents));
     /* face numbers serve Ptex only */
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "faceIndices", PARAMETER_INTEGER, &unused, &unused_count));
-    PBRT_TRY(parameter_get_numbers(list, parser->log, "indices", PARAMETER_INTEGER, &numbers, &number_count));
+    AG_TRY(parameter_get_numbers(list, parser->log, "faceIndices", PARAMETER_INTEGER, &unused, &unused_count));
+    AG_TRY(parameter_get_numbers(list, parser->log, "indices", PARAMETER_INTEGER, &numbers, &number_count));
     bool has_indices = parameter_list_find(list, "indices") != NULL;
     if (!has_indices && vertex_count != 0 && vertex_count != corners)
         return pbrt_refuse(parser, list, "P",
@@ -225,7 +225,7 @@ ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_
     else
         for (size_t i = 0; i < count; i++)
             out_mesh->indices[i] = (uint32_t)i;
-    if (status) {
+    if (status != AG_OK) {
         free(out_mesh->indices);
         out_mesh->indices = NULL;
     }
@@ -236,7 +236,7 @@ ag_status pbrt_triangle_mesh(pbrt_parser *parser, parameter_list *list)
 {
     pbrt_mesh source;
     size_t index_count;
-    PBRT_TRY(pbrt_read_mesh_arrays(parser, list, 3, &source, &index_count));
+    AG_TRY(pbrt_read_mesh_arrays(parser, list, 3, &source, &index_count));
     source.triangle_count = index_count / 3;
     parameter_list_warn_unused(list, parser->log);
     return pbrt_add_mesh(parser, list, &source);

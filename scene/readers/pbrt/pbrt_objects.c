@@ -39,9 +39,9 @@ static ag_status find_object(pbrt_parser *parser, const char *name, file_locatio
         return AG_ERROR_MEMORY;
     memcpy(made.name, name, size);
     ag_status status = scene_add_object(parser->scene, &made.object_index);
-    if (!status)
+    if (status == AG_OK)
         status = name_table_set(&parser->object_names, name, (uint32_t)parser->object_count);
-    if (status) {
+    if (status != AG_OK) {
         free(made.name);
         return status;
     }
@@ -54,19 +54,19 @@ ag_status pbrt_object_begin(pbrt_parser *parser, file_location where)
 {
     char *name;
     uint32_t object;
-    PBRT_TRY(pbrt_read_string(parser, "ObjectBegin", "a quoted name", &name, NULL));
+    AG_TRY(pbrt_read_string(parser, "ObjectBegin", "a quoted name", &name, NULL));
     if (parser->open_object) {
         free(name);
         return pbrt_error(parser, where, strlen("ObjectBegin"), "ObjectBegin within another object");
     }
     ag_status status = find_object(parser, name, where, &object);
     free(name);
-    PBRT_TRY(status);
+    AG_TRY(status);
     pbrt_object *o = &parser->objects[object];
     if (o->is_defined)
         return pbrt_error(parser, where, strlen("ObjectBegin"), "object \"%s\" is there already, from %s:%d:%d",
                           o->name, o->where.file, o->where.line, o->where.column);
-    PBRT_TRY(pbrt_save_state(parser, where, true, false));
+    AG_TRY(pbrt_save_state(parser, where, true, false));
     o->is_defined = true;
     o->where = where;
     parser->open_object = o;
@@ -76,7 +76,7 @@ ag_status pbrt_object_begin(pbrt_parser *parser, file_location where)
 
 ag_status pbrt_object_end(pbrt_parser *parser, file_location where)
 {
-    PBRT_TRY(pbrt_restore_state(parser, where, "ObjectEnd", true));
+    AG_TRY(pbrt_restore_state(parser, where, "ObjectEnd", true));
     parser->open_object = NULL;
     parser->shapes_object_index = SCENE_NO_OBJECT;
     return AG_OK;
@@ -112,8 +112,8 @@ ag_status pbrt_show_moving_shape(pbrt_parser *parser, uint32_t object_index, fil
 {
     motion m;
     pbrt_object *o = parser->open_object;
-    PBRT_TRY(pbrt_make_motion(parser, &parser->state.world_from_object, &parser->state.world_from_object_end, where,
-                              "Shape", &m));
+    AG_TRY(pbrt_make_motion(parser, &parser->state.world_from_object, &parser->state.world_from_object_end, where,
+                            "Shape", &m));
     if (!o)
         return add_moving_instance(parser, object_index, &m, NULL, where, "Shape");
     if (!reserve((void **)&o->parts, o->part_count, &o->part_capacity, sizeof *o->parts))
@@ -141,7 +141,7 @@ static ag_status add_lamps(pbrt_parser *parser, const pbrt_object *o, const tran
             return pbrt_error(parser, where, strlen("ObjectInstance"),
                               "too many lamps come from the instances of objects: more than %d, or %d vertices in them",
                               LAMP_COPIES_MAX, LAMP_COPY_VERTICES_MAX);
-        PBRT_TRY(shape_copy(&lamp->shape, world_from_object, &copy));
+        AG_TRY(shape_copy(&lamp->shape, world_from_object, &copy));
         vec3 low, high;
         shape_bounds(&copy, &low, &high);
         if (!(fmaxf(vec3_max_abs(low), vec3_max_abs(high)) <= PBRT_MAX_COORDINATE)) {
@@ -149,8 +149,8 @@ static ag_status add_lamps(pbrt_parser *parser, const pbrt_object *o, const tran
             return pbrt_error(parser, where, strlen("ObjectInstance"),
                               "a lamp of object \"%s\" reaches beyond 1e18 units in world space", o->name);
         }
-        PBRT_TRY(scene_add_shape(parser->scene, &copy, &index));
-        PBRT_TRY(pbrt_add_area_light(parser, &lamp->light, index, lamp->where));
+        AG_TRY(scene_add_shape(parser->scene, &copy, &index));
+        AG_TRY(pbrt_add_area_light(parser, &lamp->light, index, lamp->where));
     }
     return AG_OK;
 }
@@ -173,18 +173,18 @@ static ag_status add_instance(pbrt_parser *parser, const pbrt_object *o, const t
                               file_location where)
 {
     bool is_moving = memcmp(start->m, end->m, sizeof start->m) != 0;
-    PBRT_TRY(add_lamps(parser, o, start, where));
+    AG_TRY(add_lamps(parser, o, start, where));
     if (!is_moving)
-        PBRT_TRY(add_resting_instance(parser, o, start, where));
+        AG_TRY(add_resting_instance(parser, o, start, where));
     if (!is_moving && o->part_count == 0)
         return AG_OK;
     motion m;
-    PBRT_TRY(pbrt_make_motion(parser, start, end, where, "ObjectInstance", &m));
+    AG_TRY(pbrt_make_motion(parser, start, end, where, "ObjectInstance", &m));
     if (is_moving)
-        PBRT_TRY(add_moving_instance(parser, o->object_index, &m, NULL, where, "ObjectInstance"));
+        AG_TRY(add_moving_instance(parser, o->object_index, &m, NULL, where, "ObjectInstance"));
     for (size_t i = 0; i < o->part_count; i++)
-        PBRT_TRY(add_moving_instance(parser, o->parts[i].object_index, &m, &o->parts[i].object_from_part, where,
-                                     "ObjectInstance"));
+        AG_TRY(add_moving_instance(parser, o->parts[i].object_index, &m, &o->parts[i].object_from_part, where,
+                                   "ObjectInstance"));
     return AG_OK;
 }
 
@@ -193,14 +193,14 @@ ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
     char *name;
     uint32_t object;
     const pbrt_state *state = &parser->state;
-    PBRT_TRY(pbrt_read_string(parser, "ObjectInstance", "a quoted name", &name, NULL));
+    AG_TRY(pbrt_read_string(parser, "ObjectInstance", "a quoted name", &name, NULL));
     if (parser->open_object) {
         free(name);
         return pbrt_error(parser, where, strlen("ObjectInstance"), "ObjectInstance within an object");
     }
     ag_status status = find_object(parser, name, where, &object);
     free(name);
-    PBRT_TRY(status);
+    AG_TRY(status);
     if (pbrt_is_flattened(parser, where, "ObjectInstance"))
         return AG_OK;
     if (parser->objects[object].is_defined)
@@ -221,7 +221,7 @@ ag_status pbrt_end_objects(pbrt_parser *parser)
         const pbrt_object *o = &parser->objects[early->object];
         if (!o->is_defined)
             return pbrt_error(parser, early->where, strlen("ObjectInstance"), "no object is named \"%s\"", o->name);
-        PBRT_TRY(add_instance(parser, o, &early->start, &early->end, early->where));
+        AG_TRY(add_instance(parser, o, &early->start, &early->end, early->where));
     }
     return AG_OK;
 }

@@ -84,7 +84,7 @@ static ag_status upgrade(pbrt_parser *parser, parameter_list *list, const char *
     *out_new = NULL;
     bool is_uber = strcmp(old, "uber") == 0, is_glass = strcmp(old, "glass") == 0;
     if (is_uber || is_glass)
-        PBRT_TRY(pbrt_rename_parameter(list, "index", "eta"));
+        AG_TRY(pbrt_rename_parameter(list, "index", "eta"));
     if (is_uber || strcmp(old, "plastic") == 0) {
         *out_new = plastic_kind(parser, list, old);
         if (is_uber) {
@@ -101,32 +101,32 @@ static ag_status upgrade(pbrt_parser *parser, parameter_list *list, const char *
     } else if (strcmp(old, "matte") == 0) {
         *out_new = "diffuse";
         drop(parser, list, old, "sigma", 0.0);
-        PBRT_TRY(pbrt_rename_parameter(list, "Kd", "reflectance"));
+        AG_TRY(pbrt_rename_parameter(list, "Kd", "reflectance"));
     } else if (strcmp(old, "substrate") == 0) {
         *out_new = "coateddiffuse";
         drop(parser, list, old, "Ks", 1.0);
-        PBRT_TRY(pbrt_rename_parameter(list, "Kd", "reflectance"));
+        AG_TRY(pbrt_rename_parameter(list, "Kd", "reflectance"));
     } else if (strcmp(old, "metal") == 0) {
         *out_new = "conductor";
         drop(parser, list, old, "Kr", 1.0);
     } else if (strcmp(old, "mirror") == 0) {
         *out_new = "conductor";
         drop(parser, list, old, "Kr", 0.0);
-        PBRT_TRY(pbrt_add_string(list, "eta", PARAMETER_SPECTRUM, "metal-Ag-eta"));
-        PBRT_TRY(pbrt_add_string(list, "k", PARAMETER_SPECTRUM, "metal-Ag-k"));
+        AG_TRY(pbrt_add_string(list, "eta", PARAMETER_SPECTRUM, "metal-Ag-eta"));
+        AG_TRY(pbrt_add_string(list, "k", PARAMETER_SPECTRUM, "metal-Ag-k"));
     } else if (strcmp(old, "translucent") == 0) {
         *out_new = "diffusetransmission";
         drop(parser, list, old, "reflect", 0.0);
         drop(parser, list, old, "transmit", 1.0);
         drop(parser, list, old, "Ks", 0.0);
         drop(parser, list, old, "roughness", 0.0);
-        PBRT_TRY(pbrt_rename_parameter(list, "Kd", "transmittance"));
+        AG_TRY(pbrt_rename_parameter(list, "Kd", "transmittance"));
     } else if (strcmp(old, "kdsubsurface") == 0) {
         *out_new = "subsurface";
-        PBRT_TRY(pbrt_rename_parameter(list, "Kd", "reflectance"));
+        AG_TRY(pbrt_rename_parameter(list, "Kd", "reflectance"));
     } else if (strcmp(old, "disney") == 0) {
         *out_new = "diffuse";
-        PBRT_TRY(pbrt_rename_parameter(list, "color", "reflectance"));
+        AG_TRY(pbrt_rename_parameter(list, "color", "reflectance"));
         for (size_t i = 0; i < list->count; i++)
             if (strcmp(list->items[i].name, "reflectance") != 0 && strcmp(list->items[i].name, "bumpmap") != 0)
                 list->items[i].looked_up = true;
@@ -139,8 +139,8 @@ ag_status pbrt_upgrade_material(pbrt_parser *parser, parameter_list *list, const
     const char *new_name, *old = *type;
     if (strcmp(old, "mix") == 0)
         return upgrade_mix(parser, list);
-    PBRT_TRY(upgrade(parser, list, old, &new_name));
-    PBRT_TRY(pbrt_rename_parameter(list, "bumpmap", "displacement"));
+    AG_TRY(upgrade(parser, list, old, &new_name));
+    AG_TRY(pbrt_rename_parameter(list, "bumpmap", "displacement"));
     if (!new_name)
         return AG_OK;
     char key[96];

@@ -52,7 +52,7 @@ ag_status pbrt_add_string(parameter_list *list, const char *name, parameter_type
     parameter *p;
     if (find(list, name))
         return AG_OK;
-    PBRT_TRY(add_parameter(list, name, type, &p));
+    AG_TRY(add_parameter(list, name, type, &p));
     p->strings = calloc(1, sizeof *p->strings);
     if (!p->strings)
         return AG_ERROR_MEMORY;
@@ -88,7 +88,7 @@ static ag_status upgrade_kind(pbrt_parser *parser, parameter_list *list)
     for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++)
         if (strcmp(list->directive, KINDS[i].directive) == 0 && strcmp(list->name, KINDS[i].old) == 0) {
             if (strcmp(list->directive, "Camera") == 0)
-                PBRT_TRY(pbrt_add_string(list, "mapping", PARAMETER_STRING, "equirectangular"));
+                AG_TRY(pbrt_add_string(list, "mapping", PARAMETER_STRING, "equirectangular"));
             tell(parser, list, list->where, KINDS[i].old, KINDS[i].new);
             return replace_text(&list->name, KINDS[i].new);
         }
@@ -126,7 +126,7 @@ static ag_status upgrade_names(pbrt_parser *parser, parameter_list *list)
             continue;
         }
         tell(parser, list, p->where, NAMES[i].old, NAMES[i].new);
-        PBRT_TRY(pbrt_rename_parameter(list, NAMES[i].old, NAMES[i].new));
+        AG_TRY(pbrt_rename_parameter(list, NAMES[i].old, NAMES[i].new));
     }
     return AG_OK;
 }
@@ -176,7 +176,7 @@ static ag_status multiply_scale(parameter_list *list, double factor)
 {
     parameter *scale = find(list, "scale");
     if (!scale) {
-        PBRT_TRY(add_parameter(list, "scale", PARAMETER_FLOAT, &scale));
+        AG_TRY(add_parameter(list, "scale", PARAMETER_FLOAT, &scale));
         scale->numbers = malloc(sizeof *scale->numbers);
         if (!scale->numbers)
             return AG_ERROR_MEMORY;
@@ -235,7 +235,7 @@ static ag_status upgrade_light(pbrt_parser *parser, parameter_list *list)
     for (size_t i = 0; i < sizeof OF_INTENSITY / sizeof *OF_INTENSITY; i++)
         if (strcmp(list->name, OF_INTENSITY[i]) == 0)
             color_name = "I";
-    PBRT_TRY(upgrade_light_scale(parser, list, color_name));
+    AG_TRY(upgrade_light_scale(parser, list, color_name));
     return upgrade_blackbody(parser, list, color_name);
 }
 
@@ -267,11 +267,11 @@ ag_status pbrt_upgrade_parameters(pbrt_parser *parser, parameter_list *list)
     if (!list->name)
         return AG_OK;
     if (strcmp(directive, "LightSource") == 0)
-        PBRT_TRY(upgrade_picture(list));
-    PBRT_TRY(upgrade_kind(parser, list));
+        AG_TRY(upgrade_picture(list));
+    AG_TRY(upgrade_kind(parser, list));
     if (list->count == 0)
         return AG_OK;
-    PBRT_TRY(upgrade_names(parser, list));
+    AG_TRY(upgrade_names(parser, list));
     if (strcmp(directive, "Shape") == 0)
         return upgrade_shape(parser, list);
     if (strcmp(directive, "LightSource") == 0 || strcmp(directive, "AreaLightSource") == 0)

@@ -76,7 +76,7 @@ ag_status pbrt_option(pbrt_parser *parser, file_location where)
     char *name, normal[64];
     file_location name_where;
     pbrt_token value;
-    PBRT_TRY(pbrt_read_string(parser, "Option", "a quoted name", &name, &name_where));
+    AG_TRY(pbrt_read_string(parser, "Option", "a quoted name", &name, &name_where));
     size_t width = strlen(name) + 2, option = 0, count = sizeof OPTIONS / sizeof *OPTIONS;
     normalize(name, normal, sizeof normal);
     free(name);
@@ -84,7 +84,7 @@ ag_status pbrt_option(pbrt_parser *parser, file_location where)
         option++;
     if (option == count)
         return pbrt_error(parser, name_where, width, "unknown option \"%s\"", normal);
-    PBRT_TRY(pbrt_next(parser, &value));
+    AG_TRY(pbrt_next(parser, &value));
     if (value.kind != PBRT_TOKEN_WORD && value.kind != PBRT_TOKEN_STRING)
         return pbrt_unexpected(parser, &value, "Option", "a value");
     return set_option(parser, option, where, &value);

@@ -85,12 +85,12 @@ static ag_status add_value(pbrt_parser *parser, builder *b, const pbrt_token *to
     bool is_false = token->length == 5 && memcmp(token->text, "false", 5) == 0;
     bool is_text = token->kind == PBRT_TOKEN_STRING || token->kind == PBRT_TOKEN_WORD;
     if (b->type->bools && is_text && (is_true || is_false)) {
-        PBRT_TRY(make_room(b, 1, (void **)&p->bools, 1));
+        AG_TRY(make_room(b, 1, (void **)&p->bools, 1));
         p->bools[p->count++] = is_true;
         return AG_OK;
     }
     if (b->type->strings && !p->numbers && token->kind == PBRT_TOKEN_STRING) {
-        PBRT_TRY(make_room(b, 1, (void **)&p->strings, sizeof *p->strings));
+        AG_TRY(make_room(b, 1, (void **)&p->strings, sizeof *p->strings));
         p->strings[p->count] = strndup(token->text, token->length);
         if (!p->strings[p->count])
             return AG_ERROR_MEMORY;
@@ -100,7 +100,7 @@ static ag_status add_value(pbrt_parser *parser, builder *b, const pbrt_token *to
     if (b->type->components && !p->strings && pbrt_token_number(token, &number)) {
         if (!isfinite(number))
             return pbrt_error(parser, token->where, token->width, "the number is too large");
-        PBRT_TRY(make_room(b, 1, (void **)&p->numbers, sizeof *p->numbers));
+        AG_TRY(make_room(b, 1, (void **)&p->numbers, sizeof *p->numbers));
         p->numbers[p->count++] = number;
         return AG_OK;
     }
@@ -117,11 +117,11 @@ static ag_status add_numbers(pbrt_parser *parser, builder *b)
     if (p->strings || file->value.has_tokens)
         return AG_OK;
     do {
-        PBRT_TRY(make_room(b, wanted, (void **)&p->numbers, sizeof *p->numbers));
+        AG_TRY(make_room(b, wanted, (void **)&p->numbers, sizeof *p->numbers));
         count = pbrt_lexer_numbers(&file->lexer, wanted, p->numbers + p->count);
         p->count += count;
         if (wanted == BLOCK)
-            PBRT_TRY(pbrt_tell_progress(parser));
+            AG_TRY(pbrt_tell_progress(parser));
         if (count < wanted)
             break;
         wanted = 4 * wanted < BLOCK ? 4 * wanted : BLOCK;
@@ -137,16 +137,16 @@ static ag_status add_numbers(pbrt_parser *parser, builder *b)
 static ag_status read_values(pbrt_parser *parser, builder *b)
 {
     pbrt_token token;
-    PBRT_TRY(pbrt_next(parser, &token));
+    AG_TRY(pbrt_next(parser, &token));
     if (token.kind != PBRT_TOKEN_OPEN)
         return add_value(parser, b, &token);
     for (;;) {
         if (b->type->components)
-            PBRT_TRY(add_numbers(parser, b));
-        PBRT_TRY(pbrt_next(parser, &token));
+            AG_TRY(add_numbers(parser, b));
+        AG_TRY(pbrt_next(parser, &token));
         if (token.kind == PBRT_TOKEN_CLOSE)
             return AG_OK;
-        PBRT_TRY(add_value(parser, b, &token));
+        AG_TRY(add_value(parser, b, &token));
     }
 }
 
@@ -224,7 +224,7 @@ static void drop_shadowed(pbrt_parser *parser, parameter_list *list)
 static ag_status read_parameter(pbrt_parser *parser, parameter_list *list)
 {
     pbrt_token token;
-    PBRT_TRY(pbrt_next(parser, &token));
+    AG_TRY(pbrt_next(parser, &token));
     if (list->count == PBRT_MAX_PARAMETERS)
         return pbrt_error(parser, token.where, token.width, "%s has more than %d parameters", list->directive,
                           PBRT_MAX_PARAMETERS);
@@ -232,10 +232,10 @@ static ag_status read_parameter(pbrt_parser *parser, parameter_list *list)
     memset(b.p, 0, sizeof *b.p);
     b.p->where = token.where;
     list->count++; /* from here on the list owns it, whatever happens */
-    PBRT_TRY(read_declaration(parser, &token, &b));
-    PBRT_TRY(read_values(parser, &b));
-    PBRT_TRY(check_values(parser, &b, token.width));
-    PBRT_TRY(pbrt_settle_color(parser, b.p, token.width));
+    AG_TRY(read_declaration(parser, &token, &b));
+    AG_TRY(read_values(parser, &b));
+    AG_TRY(check_values(parser, &b, token.width));
+    AG_TRY(pbrt_settle_color(parser, b.p, token.width));
     drop_shadowed(parser, list);
     return AG_OK;
 }
@@ -245,7 +245,7 @@ static ag_status read_all(pbrt_parser *parser, parameter_list *list)
     size_t capacity = 0;
     for (;;) {
         pbrt_token token;
-        PBRT_TRY(pbrt_peek(parser, &token));
+        AG_TRY(pbrt_peek(parser, &token));
         if (token.kind != PBRT_TOKEN_STRING)
             return AG_OK;
         if (list->count == capacity) {
@@ -255,7 +255,7 @@ static ag_status read_all(pbrt_parser *parser, parameter_list *list)
                 return AG_ERROR_MEMORY;
             list->items = larger;
         }
-        PBRT_TRY(read_parameter(parser, list));
+        AG_TRY(read_parameter(parser, list));
     }
 }
 
@@ -267,15 +267,15 @@ static ag_status read_list(pbrt_parser *parser, const char *directive, const cha
     out_list->source = &parser->source;
     out_list->directive = strdup(directive);
     ag_status status = out_list->directive ? AG_OK : AG_ERROR_MEMORY;
-    if (!status && expected)
+    if (status == AG_OK && expected)
         status = pbrt_read_string(parser, directive, expected, &out_list->name, NULL);
-    if (!status)
+    if (status == AG_OK)
         status = read_all(parser, out_list);
-    if (!status)
+    if (status == AG_OK)
         status = pbrt_append_attributes(parser, out_list);
-    if (!status)
+    if (status == AG_OK)
         status = pbrt_upgrade_parameters(parser, out_list);
-    if (status)
+    if (status != AG_OK)
         parameter_list_reset(out_list);
     return status;
 }

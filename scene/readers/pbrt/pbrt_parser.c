@@ -15,7 +15,7 @@
 static ag_status accelerator(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "Accelerator", "a quoted type", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, "Accelerator", "a quoted type", where, &list));
     parameter_list_reset(&list);
     return AG_OK;
 }
@@ -25,7 +25,7 @@ static ag_status include(pbrt_parser *parser, file_location where)
     char *name;
     file_location name_where;
     (void)where;
-    PBRT_TRY(pbrt_read_string(parser, "Include", "a quoted file name", &name, &name_where));
+    AG_TRY(pbrt_read_string(parser, "Include", "a quoted file name", &name, &name_where));
     ag_status status = pbrt_push_file(parser, name, name_where, strlen(name) + 2);
     free(name);
     return status;
@@ -114,29 +114,29 @@ static ag_status check_end(pbrt_parser *parser, file_location end)
 {
     if (!parser->in_world)
         return pbrt_error(parser, end, 1, "the file ends without WorldBegin");
-    PBRT_TRY(pbrt_check_blocks(parser, end));
-    PBRT_TRY(pbrt_end_objects(parser));
-    PBRT_TRY(pbrt_check_named_media(parser));
+    AG_TRY(pbrt_check_blocks(parser, end));
+    AG_TRY(pbrt_end_objects(parser));
+    AG_TRY(pbrt_check_named_media(parser));
     return pbrt_check_named_materials(parser);
 }
 
 static ag_status parse(pbrt_parser *parser)
 {
-    PBRT_TRY(pbrt_add_default_material(parser));
+    AG_TRY(pbrt_add_default_material(parser));
     run_progress(parser->run, AG_PHASE_LOAD, 0.0);
     for (;;) {
         pbrt_token token;
-        PBRT_TRY(pbrt_tell_progress(parser));
-        PBRT_TRY(pbrt_next(parser, &token));
+        AG_TRY(pbrt_tell_progress(parser));
+        AG_TRY(pbrt_next(parser, &token));
         if (token.kind == PBRT_TOKEN_END && parser->files[parser->file_count - 1].is_import) {
-            PBRT_TRY(pbrt_end_import(parser, token.where));
+            AG_TRY(pbrt_end_import(parser, token.where));
             continue;
         }
         if (token.kind == PBRT_TOKEN_END) {
-            PBRT_TRY(check_end(parser, token.where));
+            AG_TRY(check_end(parser, token.where));
             break;
         }
-        PBRT_TRY(do_directive(parser, &token));
+        AG_TRY(do_directive(parser, &token));
     }
     run_progress(parser->run, AG_PHASE_LOAD, 1.0);
     return AG_OK;
@@ -190,9 +190,9 @@ ag_status pbrt_parse_file(run_context *run, const char *path, scene *out_scene)
     if (!parser)
         return AG_ERROR_MEMORY;
     ag_status status = pbrt_push_file(parser, path, (file_location){NULL, 0, 0}, 0);
-    if (!status)
+    if (status == AG_OK)
         status = parse(parser);
-    if (!status)
+    if (status == AG_OK)
         pbrt_warn_unused_attributes(parser);
     parser_destroy(parser);
     return status;
@@ -204,9 +204,9 @@ ag_status pbrt_parse_text(run_context *run, const char *name, const char *text, 
     if (!parser)
         return AG_ERROR_MEMORY;
     ag_status status = pbrt_push_text(parser, name, text, size);
-    if (!status)
+    if (status == AG_OK)
         status = parse(parser);
-    if (!status)
+    if (status == AG_OK)
         pbrt_warn_unused_attributes(parser);
     parser_destroy(parser);
     return status;

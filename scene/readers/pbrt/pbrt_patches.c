@@ -225,7 +225,7 @@ static ag_status add_patches(pbrt_parser *parser, parameter_list *list, pbrt_mes
     double *arrays[3] = {NULL, NULL, NULL};
     memset(&grid, 0, sizeof grid);
     ag_status status = cut_into_grids(source, patch_count, steps, &grid, arrays);
-    if (status)
+    if (status != AG_OK)
         free(grid.indices);
     else
         status = pbrt_add_mesh(parser, list, &grid);
@@ -240,12 +240,12 @@ ag_status pbrt_bilinear_mesh(pbrt_parser *parser, parameter_list *list)
     pbrt_mesh source;
     size_t index_count;
     double *arrays[3] = {NULL, NULL, NULL};
-    PBRT_TRY(pbrt_read_mesh_arrays(parser, list, 4, &source, &index_count));
+    AG_TRY(pbrt_read_mesh_arrays(parser, list, 4, &source, &index_count));
     parameter_list_warn_unused(list, parser->log);
     source.expects_degenerate = true; /* a patch may well have two corners in one place */
     size_t patch_count = index_count / 4, steps = count_steps(&source, patch_count);
     ag_status status = give_uvs(&source, patch_count, arrays);
-    if (status)
+    if (status != AG_OK)
         free(source.indices);
     else
         status = add_patches(parser, list, &source, patch_count, steps);

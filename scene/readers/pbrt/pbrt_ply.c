@@ -26,7 +26,7 @@ ag_status pbrt_ply_mesh(pbrt_parser *parser, parameter_list *list)
     const char *name = NULL;
     char error[768] = "";
     ply_mesh m;
-    PBRT_TRY(parameter_get_string(list, parser->log, "filename", &name));
+    AG_TRY(parameter_get_string(list, parser->log, "filename", &name));
     if (!name)
         return pbrt_refuse(parser, list, "filename", "\"string filename\" is missing");
     warn_displacement(parser, list);
@@ -38,13 +38,13 @@ ag_status pbrt_ply_mesh(pbrt_parser *parser, parameter_list *list)
     free(path);
     if (status == AG_ERROR_INPUT)
         pbrt_error(parser, list->where, strlen("Shape"), "Shape \"plymesh\": %s", error);
-    PBRT_TRY(status);
+    AG_TRY(status);
     if (m.odd_vectors > 0)
         log_at(parser->log, AG_LOG_WARNING, list->where,
                "Shape \"plymesh\": %zu normals or texture coordinates in \"%s\" are not finite, and are not used",
                m.odd_vectors, name);
     uint32_t shape_count = parser->scene->shape_count;
-    PBRT_TRY(pbrt_add_object_mesh(parser, list, &m.mesh, m.lines, false));
+    AG_TRY(pbrt_add_object_mesh(parser, list, &m.mesh, m.lines, false));
     return parser->scene->shape_count > shape_count ? scene_set_name(parser->scene, NAMED_SHAPE, shape_count, name)
                                                     : AG_OK;
 }

@@ -7,7 +7,7 @@
 static ag_status read_number(pbrt_parser *parser, parameter_list *list, const char *name, float *value,
                              uint32_t *texture_index)
 {
-    PBRT_TRY(pbrt_get_float_texture(parser, list, name, value, texture_index));
+    AG_TRY(pbrt_get_float_texture(parser, list, name, value, texture_index));
     if (*texture_index != SCENE_NO_TEXTURE)
         *value = 1.0f;
     if (*value < 0.0f || *value > 1.0f)
@@ -18,7 +18,7 @@ static ag_status read_number(pbrt_parser *parser, parameter_list *list, const ch
 static ag_status read_color(pbrt_parser *parser, parameter_list *list, const char *name, rgb *value,
                             uint32_t *texture_index)
 {
-    PBRT_TRY(pbrt_get_rgb_texture(parser, list, name, value, texture_index));
+    AG_TRY(pbrt_get_rgb_texture(parser, list, name, value, texture_index));
     if (*texture_index != SCENE_NO_TEXTURE)
         *value = rgb_gray(1.0f);
     return AG_OK;
@@ -26,10 +26,10 @@ static ag_status read_color(pbrt_parser *parser, parameter_list *list, const cha
 
 ag_status pbrt_read_principled(pbrt_parser *parser, parameter_list *list, material *m)
 {
-    PBRT_TRY(read_color(parser, list, "reflectance", &m->reflectance, &m->reflectance_texture));
+    AG_TRY(read_color(parser, list, "reflectance", &m->reflectance, &m->reflectance_texture));
     if (rgb_max(m->reflectance) > 1.0f)
         return pbrt_refuse(parser, list, "reflectance", "\"reflectance\" should be from 0 to 1");
-    PBRT_TRY(read_color(parser, list, "specular_color", &m->specular_color, &m->specular_color_texture));
+    AG_TRY(read_color(parser, list, "specular_color", &m->specular_color, &m->specular_color_texture));
     const struct {
         const char *name;
         float *value;
@@ -41,9 +41,9 @@ ag_status pbrt_read_principled(pbrt_parser *parser, parameter_list *list, materi
                   {"clearcoat", &m->clearcoat, &m->clearcoat_texture},
                   {"clearcoat_roughness", &m->clearcoat_roughness, &m->clearcoat_roughness_texture}};
     for (size_t i = 0; i < sizeof FLOATS / sizeof *FLOATS; i++)
-        PBRT_TRY(read_number(parser, list, FLOATS[i].name, FLOATS[i].value, FLOATS[i].texture_index));
-    PBRT_TRY(parameter_get_bool(list, parser->log, "is_thin", &m->is_thin));
-    PBRT_TRY(parameter_get_float(list, parser->log, "ior", &m->ior));
+        AG_TRY(read_number(parser, list, FLOATS[i].name, FLOATS[i].value, FLOATS[i].texture_index));
+    AG_TRY(parameter_get_bool(list, parser->log, "is_thin", &m->is_thin));
+    AG_TRY(parameter_get_float(list, parser->log, "ior", &m->ior));
     if (!(m->ior == 0.0f || m->ior >= 1.0f))
         return pbrt_refuse(parser, list, "ior", "\"ior\" should be at least 1, or 0 for an infinite one");
     return AG_OK;

@@ -12,16 +12,11 @@
 #include "pbrt/parameter_list.h"
 #include "pbrt/pbrt_lexer.h"
 #include "scene.h"
+#include "status.h"
 #include "text/name_table.h"
 #include "text/text_file.h"
 
-/* Passes a failure on. */
-#define PBRT_TRY(call)                                                                                                 \
-    do {                                                                                                               \
-        ag_status try_status = (call);                                                                                 \
-        if (try_status)                                                                                                \
-            return try_status;                                                                                         \
-    } while (0)
+#define PBRT_TRY AG_TRY
 
 /* World coordinates beyond this would overflow a float when squared. */
 #define PBRT_MAX_COORDINATE 1e18f

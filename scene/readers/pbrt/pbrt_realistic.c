@@ -44,7 +44,7 @@ static ag_status read_lens(pbrt_parser *parser, const parameter_list *list, cons
     double *numbers;
     size_t count;
     const parameter *p = parameter_list_find(list, "lensfile");
-    PBRT_TRY(pbrt_read_number_file(parser, name, p->where, strlen("\"string lensfile\""), "", &numbers, &count));
+    AG_TRY(pbrt_read_number_file(parser, name, p->where, strlen("\"string lensfile\""), "", &numbers, &count));
     bool is_table = count > 0 && count % NUMBERS_PER_SURFACE == 0;
     bool is_lens = is_table && reduce(numbers, count / NUMBERS_PER_SURFACE, stop_diameter, out_lens);
     free(numbers);
@@ -62,15 +62,15 @@ ag_status pbrt_read_realistic(pbrt_parser *parser, parameter_list *list, camera 
     const char *file_name = NULL, *aperture = NULL;
     float diameter = 1.0f, focus = 10.0f;
     thin_lens lens = {0.0, 0.0};
-    PBRT_TRY(parameter_get_string(list, log, "lensfile", &file_name));
-    PBRT_TRY(parameter_get_string(list, log, "aperture", &aperture));
-    PBRT_TRY(parameter_get_float(list, log, "aperturediameter", &diameter));
-    PBRT_TRY(parameter_get_float(list, log, "focusdistance", &focus));
+    AG_TRY(parameter_get_string(list, log, "lensfile", &file_name));
+    AG_TRY(parameter_get_string(list, log, "aperture", &aperture));
+    AG_TRY(parameter_get_float(list, log, "aperturediameter", &diameter));
+    AG_TRY(parameter_get_float(list, log, "focusdistance", &focus));
     if (!file_name)
         return pbrt_error(parser, list->where, strlen("Camera"), "Camera \"realistic\" has no \"string lensfile\"");
     if (!(diameter > 0.0f))
         return pbrt_refuse(parser, list, "aperturediameter", "\"aperturediameter\" should be above 0");
-    PBRT_TRY(read_lens(parser, list, file_name, diameter, &lens));
+    AG_TRY(read_lens(parser, list, file_name, diameter, &lens));
     /* film and focus lie "focusdistance" apart, with the lens between them where 1/f = 1/before + 1/behind */
     double room = (double)focus * focus - 4.0 * focus * lens.focal_length;
     if (!(focus > 0.0f && room >= 0.0))
@@ -97,9 +97,9 @@ ag_status pbrt_settle_realistic(pbrt_parser *parser)
     int64_t size[2] = {1280, 720};
     if (!(parser->film_distance > 0.0))
         return AG_OK;
-    PBRT_TRY(parameter_get_float(film, parser->log, "diagonal", &diagonal));
-    PBRT_TRY(parameter_get_int(film, parser->log, "xresolution", &size[0]));
-    PBRT_TRY(parameter_get_int(film, parser->log, "yresolution", &size[1]));
+    AG_TRY(parameter_get_float(film, parser->log, "diagonal", &diagonal));
+    AG_TRY(parameter_get_int(film, parser->log, "xresolution", &size[0]));
+    AG_TRY(parameter_get_int(film, parser->log, "yresolution", &size[1]));
     if (!(diagonal > 0.0f))
         return pbrt_refuse(parser, film, "diagonal", "\"diagonal\" should be above 0");
     double x = (double)size[0], y = (double)size[1], across = 1e-3 * diagonal * fmin(x, y) / sqrt(x * x + y * y);

@@ -29,7 +29,7 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     }
     if (shines && parser->open_object)
         return pbrt_add_object_lamp(parser, s, list->where);
-    PBRT_TRY(scene_add_object_shape(parser->scene, parser->shapes_object_index, s, &index));
+    AG_TRY(scene_add_object_shape(parser->scene, parser->shapes_object_index, s, &index));
     return shines ? pbrt_add_area_light(parser, &parser->state.area_light, index, list->where) : AG_OK;
 }
 
@@ -74,8 +74,8 @@ static ag_status read_round(pbrt_parser *parser, parameter_list *list, quadric *
 {
     float phi_max = 360.0f;
     q->radius = 1.0f;
-    PBRT_TRY(parameter_get_float(list, parser->log, "radius", &q->radius));
-    PBRT_TRY(parameter_get_float(list, parser->log, "phimax", &phi_max));
+    AG_TRY(parameter_get_float(list, parser->log, "radius", &q->radius));
+    AG_TRY(parameter_get_float(list, parser->log, "phimax", &phi_max));
     if (!(q->radius > 0.0f))
         return pbrt_refuse(parser, list, "radius", "\"radius\" should be above 0");
     if (!(phi_max > 0.0f))
@@ -87,8 +87,8 @@ static ag_status read_round(pbrt_parser *parser, parameter_list *list, quadric *
 /* "zmin" and "zmax", which as in pbrt may be the wrong way round. */
 static ag_status read_heights(pbrt_parser *parser, parameter_list *list, float z_min, float z_max, quadric *q)
 {
-    PBRT_TRY(parameter_get_float(list, parser->log, "zmin", &z_min));
-    PBRT_TRY(parameter_get_float(list, parser->log, "zmax", &z_max));
+    AG_TRY(parameter_get_float(list, parser->log, "zmin", &z_min));
+    AG_TRY(parameter_get_float(list, parser->log, "zmax", &z_max));
     q->z_min = fminf(z_min, z_max);
     q->z_max = fmaxf(z_min, z_max);
     return AG_OK;
@@ -98,8 +98,8 @@ static ag_status read_sphere(pbrt_parser *parser, parameter_list *list)
 {
     shape s = shape_make(SHAPE_SPHERE);
     quadric *q = &s.as.quadric;
-    PBRT_TRY(read_round(parser, list, q));
-    PBRT_TRY(read_heights(parser, list, -q->radius, q->radius, q));
+    AG_TRY(read_round(parser, list, q));
+    AG_TRY(read_heights(parser, list, -q->radius, q->radius, q));
     q->z_min = fmaxf(q->z_min, -q->radius);
     q->z_max = fminf(q->z_max, q->radius);
     if (!(q->z_min < q->z_max))
@@ -112,8 +112,8 @@ static ag_status read_cylinder(pbrt_parser *parser, parameter_list *list)
 {
     shape s = shape_make(SHAPE_CYLINDER);
     quadric *q = &s.as.quadric;
-    PBRT_TRY(read_round(parser, list, q));
-    PBRT_TRY(read_heights(parser, list, -1.0f, 1.0f, q));
+    AG_TRY(read_round(parser, list, q));
+    AG_TRY(read_heights(parser, list, -1.0f, 1.0f, q));
     if (!(q->z_min < q->z_max))
         return pbrt_refuse(parser, list, "zmin", "\"zmin\" should differ from \"zmax\"");
     parameter_list_warn_unused(list, parser->log);
@@ -124,9 +124,9 @@ static ag_status read_disk(pbrt_parser *parser, parameter_list *list)
 {
     shape s = shape_make(SHAPE_DISK);
     quadric *q = &s.as.quadric;
-    PBRT_TRY(read_round(parser, list, q));
-    PBRT_TRY(parameter_get_float(list, parser->log, "innerradius", &q->inner_radius));
-    PBRT_TRY(parameter_get_float(list, parser->log, "height", &q->height));
+    AG_TRY(read_round(parser, list, q));
+    AG_TRY(parameter_get_float(list, parser->log, "innerradius", &q->inner_radius));
+    AG_TRY(parameter_get_float(list, parser->log, "height", &q->height));
     if (!(q->inner_radius >= 0.0f && q->inner_radius < q->radius))
         return pbrt_refuse(parser, list, "innerradius", "\"innerradius\" should be from 0 to below \"radius\"");
     parameter_list_warn_unused(list, parser->log);
@@ -144,7 +144,7 @@ static bool is_nothing(const pbrt_parser *parser)
 static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
 {
     float alpha = 1.0f;
-    PBRT_TRY(pbrt_get_float_texture(parser, list, "alpha", &alpha, &parser->alpha_texture));
+    AG_TRY(pbrt_get_float_texture(parser, list, "alpha", &alpha, &parser->alpha_texture));
     parser->alpha = fminf(fmaxf(alpha, 0.0f), 1.0f);
     return AG_OK;
 }
@@ -164,7 +164,7 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
                    {"trianglemesh", pbrt_triangle_mesh},
                    {"bilinearmesh", pbrt_bilinear_mesh},
                    {"curve", pbrt_curve}};
-    PBRT_TRY(read_alpha(parser, list));
+    AG_TRY(read_alpha(parser, list));
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(list->name, READERS[i].name) == 0) {
             if (is_nothing(parser))
@@ -208,7 +208,7 @@ static ag_status read_moving_shape(pbrt_parser *parser, parameter_list *list)
     if (is_shown)
         object_index = parser->curves_object_index;
     else
-        PBRT_TRY(scene_add_object(parser->scene, &object_index));
+        AG_TRY(scene_add_object(parser->scene, &object_index));
     state->world_from_object = state->world_from_object_end = transform_identity();
     parser->shapes_object_index = object_index;
     ag_status status = read_shape(parser, list);
@@ -229,7 +229,7 @@ static ag_status read_moving_shape(pbrt_parser *parser, parameter_list *list)
 ag_status pbrt_shape(pbrt_parser *parser, file_location where)
 {
     parameter_list list;
-    PBRT_TRY(pbrt_read_named_parameters(parser, "Shape", "a quoted type", where, &list));
+    AG_TRY(pbrt_read_named_parameters(parser, "Shape", "a quoted type", where, &list));
     if (pbrt_is_flattened(parser, where, "Shape")) {
         parameter_list_reset(&list);
         return AG_OK;

@@ -9,8 +9,8 @@
 ag_status pbrt_world_begin(pbrt_parser *parser, file_location where)
 {
     (void)where;
-    PBRT_TRY(pbrt_settle_hints(parser));
-    PBRT_TRY(pbrt_settle_realistic(parser));
+    AG_TRY(pbrt_settle_hints(parser));
+    AG_TRY(pbrt_settle_realistic(parser));
     parser->in_world = true;
     pbrt_state *state = &parser->state;
     state->world_from_object = state->world_from_object_end = transform_identity();
@@ -99,12 +99,12 @@ ag_status pbrt_import(pbrt_parser *parser, file_location where)
 {
     char *name;
     file_location name_where;
-    PBRT_TRY(pbrt_read_string(parser, "Import", "a quoted file name", &name, &name_where));
+    AG_TRY(pbrt_read_string(parser, "Import", "a quoted file name", &name, &name_where));
     ag_status status = pbrt_push_file(parser, name, name_where, strlen(name) + 2);
     free(name);
-    if (!status)
+    if (status == AG_OK)
         status = pbrt_save_state(parser, where, false, true);
-    if (status)
+    if (status != AG_OK)
         return status;
     pbrt_file *top = &parser->files[parser->file_count - 1];
     top->is_import = true;
@@ -119,7 +119,7 @@ ag_status pbrt_import(pbrt_parser *parser, file_location where)
 
 ag_status pbrt_end_import(pbrt_parser *parser, file_location end)
 {
-    PBRT_TRY(pbrt_check_blocks(parser, end));
+    AG_TRY(pbrt_check_blocks(parser, end));
     parser->state = parser->saved[--parser->saved_count].state;
     pbrt_file *top = &parser->files[parser->file_count - 1];
     free(parser->coordinate_systems);

@@ -27,11 +27,11 @@ ag_status pbrt_loop_subdivision(pbrt_parser *parser, parameter_list *list)
     const char *scheme = NULL;
     size_t index_count;
     pbrt_mesh control;
-    PBRT_TRY(parameter_get_int(list, parser->log, "levels", &levels));
-    PBRT_TRY(parameter_get_string(list, parser->log, "scheme", &scheme)); /* pbrt-v2's; there was only one */
+    AG_TRY(parameter_get_int(list, parser->log, "levels", &levels));
+    AG_TRY(parameter_get_string(list, parser->log, "scheme", &scheme)); /* pbrt-v2's; there was only one */
     if (levels < 0)
         return pbrt_refuse(parser, list, "levels", "\"levels\" should be 0 or above");
-    PBRT_TRY(pbrt_read_mesh_arrays(parser, list, 3, &control, &index_count));
+    AG_TRY(pbrt_read_mesh_arrays(parser, list, 3, &control, &index_count));
     parameter_list_warn_unused(list, parser->log);
     char error[192] = "";
     loop_mesh m;
@@ -43,7 +43,7 @@ ag_status pbrt_loop_subdivision(pbrt_parser *parser, parameter_list *list)
     if (status == AG_ERROR_ARGUMENT)
         return pbrt_refuse(parser, list, "levels", "%zu triangles subdivided %lld times are more than %zu",
                            index_count / 3, (long long)levels, LOOP_MAX_TRIANGLES);
-    PBRT_TRY(status);
+    AG_TRY(status);
     turn_over(&m);
     pbrt_mesh fine = {.positions = m.positions,
                       .normals = m.normals,

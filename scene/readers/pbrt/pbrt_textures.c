@@ -25,7 +25,7 @@ static ag_status find_texture(pbrt_parser *parser, parameter_list *list, const c
     const char *texture_name = NULL;
     uint32_t other;
     *out_is_there = false;
-    PBRT_TRY(parameter_get_texture(list, parser->log, name, &texture_name));
+    AG_TRY(parameter_get_texture(list, parser->log, name, &texture_name));
     if (!texture_name)
         return AG_OK;
     *out_is_there = true;
@@ -43,7 +43,7 @@ static ag_status get_texture(pbrt_parser *parser, parameter_list *list, const ch
 {
     uint32_t index;
     *out_texture_index = SCENE_NO_TEXTURE;
-    PBRT_TRY(find_texture(parser, list, name, is_spectrum, out_is_there, &index));
+    AG_TRY(find_texture(parser, list, name, is_spectrum, out_is_there, &index));
     if (!*out_is_there)
         return AG_OK;
     const texture *found = &parser->scene->textures[index];
@@ -58,7 +58,7 @@ ag_status pbrt_get_rgb_texture(pbrt_parser *parser, parameter_list *list, const 
                                uint32_t *out_texture_index)
 {
     bool is_there;
-    PBRT_TRY(get_texture(parser, list, name, true, &is_there, out_constant, out_texture_index));
+    AG_TRY(get_texture(parser, list, name, true, &is_there, out_constant, out_texture_index));
     return is_there ? AG_OK : parameter_get_rgb(list, parser->log, name, out_constant);
 }
 
@@ -67,7 +67,7 @@ ag_status pbrt_get_float_texture(pbrt_parser *parser, parameter_list *list, cons
 {
     bool is_there;
     rgb value = rgb_gray(*out_constant);
-    PBRT_TRY(get_texture(parser, list, name, false, &is_there, &value, out_texture_index));
+    AG_TRY(get_texture(parser, list, name, false, &is_there, &value, out_texture_index));
     if (!is_there)
         return parameter_get_float(list, parser->log, name, out_constant);
     *out_constant = value.r;
@@ -82,7 +82,7 @@ static ag_status read_value(pbrt_parser *parser, parameter_list *list, const cha
     if (is_spectrum)
         return parameter_get_rgb(list, parser->log, name, value);
     float number = value->r;
-    PBRT_TRY(parameter_get_float(list, parser->log, name, &number));
+    AG_TRY(parameter_get_float(list, parser->log, name, &number));
     *value = rgb_gray(number);
     return AG_OK;
 }
@@ -93,7 +93,7 @@ static ag_status read_input(pbrt_parser *parser, parameter_list *list, const cha
     out_input->value = rgb_gray(fallback);
     if (is_spectrum)
         return pbrt_get_rgb_texture(parser, list, name, &out_input->value, &out_input->texture_index);
-    PBRT_TRY(pbrt_get_float_texture(parser, list, name, &fallback, &out_input->texture_index));
+    AG_TRY(pbrt_get_float_texture(parser, list, name, &fallback, &out_input->texture_index));
     out_input->value = rgb_gray(fallback);
     return AG_OK;
 }
@@ -103,7 +103,7 @@ static ag_status read_word(pbrt_parser *parser, parameter_list *list, const char
                            int word_count, int *out_which)
 {
     const char *word = NULL;
-    PBRT_TRY(parameter_get_string(list, parser->log, name, &word));
+    AG_TRY(parameter_get_string(list, parser->log, name, &word));
     if (!word)
         return AG_OK;
     for (int i = 0; i < word_count; i++)
@@ -132,25 +132,25 @@ static ag_status read_mapping(pbrt_parser *parser, parameter_list *list, texture
     static const char *const KINDS[] = {"uv", "spherical", "cylindrical", "planar"}; /* as in texture_mapping_kind */
     texture_mapping *m = &t->mapping;
     int kind = TEXTURE_MAPPING_UV;
-    PBRT_TRY(read_word(parser, list, "mapping", KINDS, 4, &kind));
+    AG_TRY(read_word(parser, list, "mapping", KINDS, 4, &kind));
     m->kind = (texture_mapping_kind)kind;
     if (kind != TEXTURE_MAPPING_UV)
         pbrt_warn_still(parser, list->where, "a texture in space");
     texture_mapping_place(m, &parser->state.world_from_object);
     if (kind == TEXTURE_MAPPING_UV) {
         m->scale = (vec2){1.0f, 1.0f};
-        PBRT_TRY(parameter_get_float(list, parser->log, "uscale", &m->scale.x));
-        PBRT_TRY(parameter_get_float(list, parser->log, "vscale", &m->scale.y));
+        AG_TRY(parameter_get_float(list, parser->log, "uscale", &m->scale.x));
+        AG_TRY(parameter_get_float(list, parser->log, "vscale", &m->scale.y));
     }
     if (kind == TEXTURE_MAPPING_PLANAR) {
         m->axes[0] = vec3_make(1.0f, 0.0f, 0.0f);
         m->axes[1] = vec3_make(0.0f, 1.0f, 0.0f);
-        PBRT_TRY(parameter_get_vec3(list, parser->log, "v1", PARAMETER_VECTOR3, &m->axes[0]));
-        PBRT_TRY(parameter_get_vec3(list, parser->log, "v2", PARAMETER_VECTOR3, &m->axes[1]));
+        AG_TRY(parameter_get_vec3(list, parser->log, "v1", PARAMETER_VECTOR3, &m->axes[0]));
+        AG_TRY(parameter_get_vec3(list, parser->log, "v2", PARAMETER_VECTOR3, &m->axes[1]));
     }
     if (kind == TEXTURE_MAPPING_UV || kind == TEXTURE_MAPPING_PLANAR) {
-        PBRT_TRY(parameter_get_float(list, parser->log, "udelta", &m->delta.x));
-        PBRT_TRY(parameter_get_float(list, parser->log, "vdelta", &m->delta.y));
+        AG_TRY(parameter_get_float(list, parser->log, "udelta", &m->delta.x));
+        AG_TRY(parameter_get_float(list, parser->log, "vdelta", &m->delta.y));
     }
     return AG_OK;
 }
@@ -170,7 +170,7 @@ static ag_status read_old_scale(pbrt_parser *parser, parameter_list *list, textu
 {
     log_at_once(parser->log, AG_LOG_WARNING, list->where, "old scale",
                 "Texture \"scale\": \"tex1\" and \"tex2\" are pbrt-v3's: they are read as \"tex\" and \"scale\"");
-    PBRT_TRY(read_input(parser, list, "tex1", t->is_spectrum, 1.0f, &t->inputs[0]));
+    AG_TRY(read_input(parser, list, "tex1", t->is_spectrum, 1.0f, &t->inputs[0]));
     return read_input(parser, list, "tex2", t->is_spectrum, 1.0f, &t->inputs[1]);
 }
 
@@ -178,7 +178,7 @@ static ag_status read_scale(pbrt_parser *parser, parameter_list *list, texture *
 {
     if (parameter_list_find(list, "tex1") || parameter_list_find(list, "tex2"))
         return read_old_scale(parser, list, t);
-    PBRT_TRY(read_input(parser, list, "tex", t->is_spectrum, 1.0f, &t->inputs[0]));
+    AG_TRY(read_input(parser, list, "tex", t->is_spectrum, 1.0f, &t->inputs[0]));
     return read_input(parser, list, "scale", false, 1.0f, &t->inputs[1]);
 }
 
@@ -186,20 +186,20 @@ static ag_status read_scale(pbrt_parser *parser, parameter_list *list, texture *
 static ag_status read_pair(pbrt_parser *parser, parameter_list *list, const char *first, float first_fallback,
                            const char *second, texture *t)
 {
-    PBRT_TRY(read_input(parser, list, first, t->is_spectrum, first_fallback, &t->inputs[0]));
+    AG_TRY(read_input(parser, list, first, t->is_spectrum, first_fallback, &t->inputs[0]));
     return read_input(parser, list, second, t->is_spectrum, 1.0f - first_fallback, &t->inputs[1]);
 }
 
 static ag_status read_mix(pbrt_parser *parser, parameter_list *list, texture *t)
 {
-    PBRT_TRY(read_pair(parser, list, "tex1", 0.0f, "tex2", t));
+    AG_TRY(read_pair(parser, list, "tex1", 0.0f, "tex2", t));
     return read_input(parser, list, "amount", false, 0.5f, &t->inputs[2]);
 }
 
 static ag_status read_direction_mix(pbrt_parser *parser, parameter_list *list, texture *t)
 {
     vec3 direction = vec3_make(0.0f, 1.0f, 0.0f);
-    PBRT_TRY(parameter_get_vec3(list, parser->log, "dir", PARAMETER_VECTOR3, &direction));
+    AG_TRY(parameter_get_vec3(list, parser->log, "dir", PARAMETER_VECTOR3, &direction));
     direction = transform_vector(&parser->state.world_from_object, direction);
     float length = vec3_length(direction);
     if (!(length > 0.0f && isfinite(length)))
@@ -211,26 +211,26 @@ static ag_status read_direction_mix(pbrt_parser *parser, parameter_list *list, t
 static ag_status read_checkerboard(pbrt_parser *parser, parameter_list *list, texture *t)
 {
     int64_t dimension = 2;
-    PBRT_TRY(parameter_get_int(list, parser->log, "dimension", &dimension));
+    AG_TRY(parameter_get_int(list, parser->log, "dimension", &dimension));
     if (dimension != 2 && dimension != 3)
         return pbrt_refuse(parser, list, "dimension", "\"dimension\" should be 2 or 3, not %d", (int)dimension);
-    PBRT_TRY(dimension == 3 ? read_solid_mapping(parser, list, t) : read_mapping(parser, list, t));
+    AG_TRY(dimension == 3 ? read_solid_mapping(parser, list, t) : read_mapping(parser, list, t));
     return read_pair(parser, list, "tex1", 1.0f, "tex2", t);
 }
 
 static ag_status read_dots(pbrt_parser *parser, parameter_list *list, texture *t)
 {
-    PBRT_TRY(read_mapping(parser, list, t));
+    AG_TRY(read_mapping(parser, list, t));
     return read_pair(parser, list, "inside", 1.0f, "outside", t);
 }
 
 static ag_status read_bilerp(pbrt_parser *parser, parameter_list *list, texture *t)
 {
     static const char *const NAMES[4] = {"v00", "v01", "v10", "v11"};
-    PBRT_TRY(read_mapping(parser, list, t));
+    AG_TRY(read_mapping(parser, list, t));
     for (int i = 0; i < 4; i++) {
         t->inputs[i].value = rgb_gray((float)(i & 1));
-        PBRT_TRY(read_value(parser, list, NAMES[i], t->is_spectrum, &t->inputs[i].value));
+        AG_TRY(read_value(parser, list, NAMES[i], t->is_spectrum, &t->inputs[i].value));
     }
     return AG_OK;
 }
@@ -246,13 +246,13 @@ static ag_status read_old_encoding(pbrt_parser *parser, parameter_list *list, im
     log_at_once(parser->log, AG_LOG_WARNING, gamma->where, "old gamma",
                 "Texture \"imagemap\": \"gamma\" is pbrt-v3's: it is read as \"encoding\"");
     if (gamma->type == PARAMETER_FLOAT) {
-        PBRT_TRY(parameter_get_float(list, parser->log, "gamma", &power));
+        AG_TRY(parameter_get_float(list, parser->log, "gamma", &power));
         if (!(power > 0.0f && power <= 1000.0f))
             return pbrt_refuse(parser, list, "gamma", "\"gamma\" should be above 0");
         *encoding = (image_encoding){.curve = IMAGE_CURVE_GAMMA, .gamma = power};
         return AG_OK;
     }
-    PBRT_TRY(parameter_get_bool(list, parser->log, "gamma", &is_srgb));
+    AG_TRY(parameter_get_bool(list, parser->log, "gamma", &is_srgb));
     encoding->curve = is_srgb ? IMAGE_CURVE_SRGB : IMAGE_CURVE_LINEAR;
     return AG_OK;
 }
@@ -262,8 +262,8 @@ static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, bool i
 {
     const char *text = NULL;
     char spaces[1024] = "";
-    PBRT_TRY(read_old_encoding(parser, list, encoding));
-    PBRT_TRY(parameter_get_string(list, parser->log, "encoding", &text));
+    AG_TRY(read_old_encoding(parser, list, encoding));
+    AG_TRY(parameter_get_string(list, parser->log, "encoding", &text));
     if (!text || image_encoding_parse(text, encoding))
         return AG_OK;
     if (is_color && image_colors_parse(parser->scene, text, encoding, spaces, sizeof spaces))
@@ -283,12 +283,12 @@ ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const
     if (path && t->is_spectrum && !t->is_data && encoding.curve == IMAGE_CURVE_DEFAULT)
         encoding = image_colors_rule(s, path);
     ag_status status = path ? pbrt_allow_picture(parser, path, message, sizeof message) : AG_ERROR_MEMORY;
-    if (!status)
+    if (status == AG_OK)
         status = texture_image_load(s, path, encoding, &t->image_index, message, sizeof message);
     free(path);
     if (status && status != AG_ERROR_MEMORY)
         pbrt_refuse(parser, list, parameter_name, "%s", message);
-    if (!status && t->image_index >= known_count && s->texture_images[t->image_index]->bad_count > 0)
+    if (status == AG_OK && t->image_index >= known_count && s->texture_images[t->image_index]->bad_count > 0)
         log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, parameter_name)->where,
                "\"%s\": %llu values are infinite or not a number, and count as 0", file_name,
                (unsigned long long)s->texture_images[t->image_index]->bad_count);
@@ -306,15 +306,15 @@ static ag_status read_image(pbrt_parser *parser, parameter_list *list, texture *
     bool unused_trilinear; /* pbrt-v3's "filter" */
     image_encoding encoding = {0};
     t->scale = 1.0f;
-    PBRT_TRY(read_mapping(parser, list, t));
-    PBRT_TRY(read_word(parser, list, "wrap", WRAPS, 4, &wrap));
-    PBRT_TRY(read_word(parser, list, "filter", FILTERS, 5, &filter));
-    PBRT_TRY(parameter_get_float(list, parser->log, "maxanisotropy", &unused_anisotropy));
-    PBRT_TRY(parameter_get_bool(list, parser->log, "trilinear", &unused_trilinear));
-    PBRT_TRY(parameter_get_float(list, parser->log, "scale", &t->scale));
-    PBRT_TRY(parameter_get_bool(list, parser->log, "invert", &t->invert));
-    PBRT_TRY(read_encoding(parser, list, t->is_spectrum, &encoding));
-    PBRT_TRY(parameter_get_string(list, parser->log, "filename", &name));
+    AG_TRY(read_mapping(parser, list, t));
+    AG_TRY(read_word(parser, list, "wrap", WRAPS, 4, &wrap));
+    AG_TRY(read_word(parser, list, "filter", FILTERS, 5, &filter));
+    AG_TRY(parameter_get_float(list, parser->log, "maxanisotropy", &unused_anisotropy));
+    AG_TRY(parameter_get_bool(list, parser->log, "trilinear", &unused_trilinear));
+    AG_TRY(parameter_get_float(list, parser->log, "scale", &t->scale));
+    AG_TRY(parameter_get_bool(list, parser->log, "invert", &t->invert));
+    AG_TRY(read_encoding(parser, list, t->is_spectrum, &encoding));
+    AG_TRY(parameter_get_string(list, parser->log, "filename", &name));
     if (!name)
         return pbrt_error(parser, list->where, strlen(list->directive),
                           "Texture \"imagemap\" has no \"string filename\"");
@@ -327,8 +327,8 @@ static ag_status read_octaves(pbrt_parser *parser, parameter_list *list, texture
 {
     int64_t octaves = 8;
     t->roughness = 0.5f;
-    PBRT_TRY(parameter_get_int(list, parser->log, "octaves", &octaves));
-    PBRT_TRY(parameter_get_float(list, parser->log, "roughness", &t->roughness));
+    AG_TRY(parameter_get_int(list, parser->log, "octaves", &octaves));
+    AG_TRY(parameter_get_float(list, parser->log, "roughness", &t->roughness));
     if (octaves < 0)
         return pbrt_refuse(parser, list, "octaves", "\"octaves\" should not be negative");
     if (octaves > TEXTURE_MAX_OCTAVES)
@@ -349,8 +349,8 @@ static ag_status read_marble(pbrt_parser *parser, parameter_list *list, texture 
 {
     t->scale = 1.0f;
     t->variation = 0.2f;
-    PBRT_TRY(parameter_get_float(list, parser->log, "scale", &t->scale));
-    PBRT_TRY(parameter_get_float(list, parser->log, "variation", &t->variation));
+    AG_TRY(parameter_get_float(list, parser->log, "scale", &t->scale));
+    AG_TRY(parameter_get_float(list, parser->log, "variation", &t->variation));
     return read_octaves(parser, list, t);
 }
 
@@ -397,7 +397,7 @@ static ag_status read_texture(pbrt_parser *parser, parameter_list *list, bool is
     for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++)
         if (strcmp(list->name, KINDS[i].name) == 0 && (is_spectrum ? KINDS[i].is_spectrum : KINDS[i].is_float)) {
             out_texture->kind = KINDS[i].kind;
-            PBRT_TRY(KINDS[i].read(parser, list, out_texture));
+            AG_TRY(KINDS[i].read(parser, list, out_texture));
             parameter_list_warn_unused(list, parser->log);
             return AG_OK;
         }
@@ -412,7 +412,7 @@ static ag_status add_texture(pbrt_parser *parser, const parameter_list *list, co
     if (status == AG_ERROR_SCENE)
         return pbrt_error(parser, list->where, strlen(list->directive), "texture \"%s\" is made of more than %d others",
                           name, TEXTURE_MAX_COST);
-    if (status)
+    if (status != AG_OK)
         return status;
     return name_table_set(t->is_spectrum ? &parser->spectrum_texture_names : &parser->float_texture_names, name, index);
 }
@@ -432,7 +432,7 @@ static ag_status make_texture(pbrt_parser *parser, const char *name, const char 
     if (name_table_find(names_of(parser, is_spectrum), name, &index))
         return pbrt_error(parser, list->where, strlen(list->directive), "%s texture \"%s\" is made twice",
                           type_word(is_spectrum), name);
-    PBRT_TRY(read_texture(parser, list, is_spectrum, &t));
+    AG_TRY(read_texture(parser, list, is_spectrum, &t));
     return add_texture(parser, list, name, &t);
 }
 
@@ -441,11 +441,11 @@ ag_status pbrt_texture(pbrt_parser *parser, file_location where)
     char *name, *type = NULL;
     file_location type_where;
     parameter_list list;
-    PBRT_TRY(pbrt_read_string(parser, "Texture", "a quoted name", &name, NULL));
+    AG_TRY(pbrt_read_string(parser, "Texture", "a quoted name", &name, NULL));
     ag_status status = pbrt_read_string(parser, "Texture", "a quoted type after its name", &type, &type_where);
-    if (!status)
+    if (status == AG_OK)
         status = pbrt_read_named_parameters(parser, "Texture", "a quoted class after its type", where, &list);
-    if (!status) {
+    if (status == AG_OK) {
         status = make_texture(parser, name, type, type_where, &list);
         parameter_list_reset(&list);
     }

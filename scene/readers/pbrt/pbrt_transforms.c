@@ -30,11 +30,11 @@ static ag_status apply(pbrt_parser *parser, file_location where, const char *dir
     if (replaces)
         state->is_flattened = false;
     if (state->start_is_active)
-        PBRT_TRY(apply_to(parser, where, directive, replaces, t, &state->world_from_object));
+        AG_TRY(apply_to(parser, where, directive, replaces, t, &state->world_from_object));
     if (state->end_is_active && state->start_is_active && !is_moving)
         state->world_from_object_end = state->world_from_object;
     else if (state->end_is_active)
-        PBRT_TRY(apply_to(parser, where, directive, replaces, t, &state->world_from_object_end));
+        AG_TRY(apply_to(parser, where, directive, replaces, t, &state->world_from_object_end));
     return AG_OK;
 }
 
@@ -102,7 +102,7 @@ ag_status pbrt_identity(pbrt_parser *parser, file_location where)
 ag_status pbrt_translate(pbrt_parser *parser, file_location where)
 {
     double v[3];
-    PBRT_TRY(pbrt_read_numbers(parser, "Translate", 3, v));
+    AG_TRY(pbrt_read_numbers(parser, "Translate", 3, v));
     transform t = transform_translate(v[0], v[1], v[2]);
     return apply(parser, where, "Translate", false, &t);
 }
@@ -111,7 +111,7 @@ ag_status pbrt_scale(pbrt_parser *parser, file_location where)
 {
     double v[3];
     transform t;
-    PBRT_TRY(pbrt_read_numbers(parser, "Scale", 3, v));
+    AG_TRY(pbrt_read_numbers(parser, "Scale", 3, v));
     if (!transform_scale(v[0], v[1], v[2], &t)) {
         char what[96];
         snprintf(what, sizeof what, "Scale %g %g %g", v[0], v[1], v[2]);
@@ -124,7 +124,7 @@ ag_status pbrt_rotate(pbrt_parser *parser, file_location where)
 {
     double v[4];
     transform t;
-    PBRT_TRY(pbrt_read_numbers(parser, "Rotate", 4, v));
+    AG_TRY(pbrt_read_numbers(parser, "Rotate", 4, v));
     if (!transform_rotate(v[0], v[1], v[2], v[3], &t))
         return pbrt_error(parser, where, 6, "Rotate has no axis: %g %g %g", v[1], v[2], v[3]);
     return apply(parser, where, "Rotate", false, &t);
@@ -134,7 +134,7 @@ ag_status pbrt_look_at(pbrt_parser *parser, file_location where)
 {
     double v[9];
     transform t;
-    PBRT_TRY(pbrt_read_numbers(parser, "LookAt", 9, v));
+    AG_TRY(pbrt_read_numbers(parser, "LookAt", 9, v));
     if (!transform_look_at(v, v + 3, v + 6, &t))
         return pbrt_error(parser, where, 6,
                           v[0] == v[3] && v[1] == v[4] && v[2] == v[5]
@@ -149,11 +149,11 @@ static ag_status read_matrix(pbrt_parser *parser, const char *directive, bool *o
 {
     double v[16], m[4][4];
     pbrt_token token;
-    PBRT_TRY(pbrt_next(parser, &token));
+    AG_TRY(pbrt_next(parser, &token));
     if (token.kind != PBRT_TOKEN_OPEN)
         return pbrt_unexpected(parser, &token, directive, "[");
-    PBRT_TRY(pbrt_read_numbers(parser, directive, 16, v));
-    PBRT_TRY(pbrt_next(parser, &token));
+    AG_TRY(pbrt_read_numbers(parser, directive, 16, v));
+    AG_TRY(pbrt_next(parser, &token));
     if (token.kind != PBRT_TOKEN_CLOSE)
         return pbrt_unexpected(parser, &token, directive, "] after 16 numbers");
     for (int column = 0; column < 4; column++)
@@ -167,7 +167,7 @@ ag_status pbrt_transform(pbrt_parser *parser, file_location where)
 {
     transform t;
     bool is_singular = false;
-    PBRT_TRY(read_matrix(parser, "Transform", &is_singular, &t));
+    AG_TRY(read_matrix(parser, "Transform", &is_singular, &t));
     if (is_singular)
         return flatten(parser, where, "Transform", "the singular matrix of Transform");
     return apply(parser, where, "Transform", true, &t);
@@ -177,7 +177,7 @@ ag_status pbrt_concat_transform(pbrt_parser *parser, file_location where)
 {
     transform t;
     bool is_singular = false;
-    PBRT_TRY(read_matrix(parser, "ConcatTransform", &is_singular, &t));
+    AG_TRY(read_matrix(parser, "ConcatTransform", &is_singular, &t));
     if (is_singular)
         return flatten(parser, where, "ConcatTransform", "the singular matrix of ConcatTransform");
     return apply(parser, where, "ConcatTransform", false, &t);
@@ -199,7 +199,7 @@ ag_status pbrt_name_coordinate_system(pbrt_parser *parser, const char *name, con
             parser->coordinate_systems = larger;
         }
         index = (uint32_t)count;
-        PBRT_TRY(name_table_set(&parser->coordinate_system_names, name, index));
+        AG_TRY(name_table_set(&parser->coordinate_system_names, name, index));
         parser->coordinate_system_count++;
     }
     parser->coordinate_systems[index] = (pbrt_named_transform){*start, *end};
@@ -210,7 +210,7 @@ ag_status pbrt_coordinate_system(pbrt_parser *parser, file_location where)
 {
     char *name;
     (void)where;
-    PBRT_TRY(pbrt_read_string(parser, "CoordinateSystem", "a quoted name", &name, NULL));
+    AG_TRY(pbrt_read_string(parser, "CoordinateSystem", "a quoted name", &name, NULL));
     ag_status status = pbrt_name_coordinate_system(parser, name, &parser->state.world_from_object,
                                                    &parser->state.world_from_object_end);
     free(name);
@@ -221,7 +221,7 @@ ag_status pbrt_coord_sys_transform(pbrt_parser *parser, file_location where)
 {
     char *name;
     uint32_t index;
-    PBRT_TRY(pbrt_read_string(parser, "CoordSysTransform", "a quoted name", &name, NULL));
+    AG_TRY(pbrt_read_string(parser, "CoordSysTransform", "a quoted name", &name, NULL));
     if (name_table_find(&parser->coordinate_system_names, name, &index)) {
         parser->state.is_flattened = false;
         parser->state.world_from_object = parser->coordinate_systems[index].start;
@@ -238,7 +238,7 @@ ag_status pbrt_active_transform(pbrt_parser *parser, file_location where)
 {
     pbrt_token token;
     (void)where;
-    PBRT_TRY(pbrt_next(parser, &token));
+    AG_TRY(pbrt_next(parser, &token));
     bool is_start = pbrt_token_is(&token, PBRT_TOKEN_WORD, "StartTime");
     bool is_end = pbrt_token_is(&token, PBRT_TOKEN_WORD, "EndTime");
     if (!is_start && !is_end && !pbrt_token_is(&token, PBRT_TOKEN_WORD, "All"))
@@ -251,7 +251,7 @@ ag_status pbrt_active_transform(pbrt_parser *parser, file_location where)
 ag_status pbrt_transform_times(pbrt_parser *parser, file_location where)
 {
     double times[2];
-    PBRT_TRY(pbrt_read_numbers(parser, "TransformTimes", 2, times));
+    AG_TRY(pbrt_read_numbers(parser, "TransformTimes", 2, times));
     if (!(times[0] < times[1]))
         return pbrt_error(parser, where, strlen("TransformTimes"), "TransformTimes %g %g: the end should be later",
                           times[0], times[1]);

@@ -43,9 +43,9 @@ AG_API const char *ag_status_text(ag_status status);
  */
 typedef enum ag_log_level { AG_LOG_ERROR, AG_LOG_WARNING, AG_LOG_INFO, AG_LOG_DEBUG } ag_log_level;
 
-/* Receives one message without a line end. An error or warning about a place in a file says so itself,
- * "FILE:LINE:COLUMN: error: ..."; others do not say their level. Calls are serialised; the thread is the one that
- * speaks. */
+/* Receives one message without a line end; of a place in a file "FILE:LINE:COLUMN: error: ...", others do not say their
+ * level. Calls are serialised, on the thread that speaks. Of this interface it may call ag_context_cancel and
+ * ag_context_pause, and nothing else with the context that it is called for. */
 typedef void ag_log_fn(void *user, ag_log_level level, const char *message);
 
 /* The phases of a run, in their order. */
@@ -69,7 +69,7 @@ typedef enum ag_phase {
 AG_API const char *ag_phase_name(ag_phase phase);
 
 /* Told how far a phase is, fraction in [0, 1], never decreasing within a phase; at 1 the phase is over. Calls are
- * serialised. */
+ * serialised. It may call what an ag_log_fn may. */
 typedef void ag_progress_fn(void *user, ag_phase phase, double fraction);
 
 /* "MAJOR.MINOR.PATCH", by semantic versioning. */

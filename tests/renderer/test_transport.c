@@ -1,0 +1,119 @@
+/* test_transport.c: ways of eye paths by closed forms: Beer's law, panes, roulette, lamps that shine on one side; and
+ * caustics as often as they count. Threads: one. */
+#include "fixtures/eye_fixture.h"
+
+enum { SAMPLES = 100000 / FEWER };
+
+/* A ball 2 across stands between the eye and a wall; it absorbs 0.5 of green per unit, and 1 of blue. */
+static void absorption(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init(&e,
+             "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0.5 1] \"rgb sigma_s\" [0 0 0]"
+             " AttributeBegin MediumInterface \"m\" \"\" Material \"interface\" Translate 0 0 -3"
+             " Shape \"sphere\" \"float radius\" 1 AttributeEnd"
+             " Translate 0 0 -5 Shape \"disk\" \"float radius\" 10");
+    vertex v = eye_meet(&e, (vec3){0.0f, 0.0f, 0.0f}, (vec3){0.0f, 0.0f, -1.0f});
+    assert_close((double)v.hit.position.z, -5.0, 1e-4);
+    assert_close((double)v.transmittance.r, 1.0, 1e-6);
+    assert_close((double)v.transmittance.g, exp(-1.0), 1e-5);
+    assert_close((double)v.transmittance.b, exp(-2.0), 1e-5);
+    v = eye_meet(&e, (vec3){4.0f, 0.0f, 0.0f}, (vec3){0.0f, 0.0f, -1.0f}); /* beside it */
+    assert_close((double)v.transmittance.b, 1.0, 0.0);
+    vertex none;
+    assert_false(transport_trace(&e.t, e.worker, scene_ray_make((vec3){0}, (vec3){0.0f, 0.0f, 1.0f}), &none));
+    eye_reset(&e);
+}
+
+/* Three panes of index 1.5, met straight: each lets (1 - R) / (1 + R) through, R = 0.04. */
+static void panes(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init(&e, "AttributeBegin Material \"thindielectric\" \"float eta\" 1.5"
+                 " Translate 0 0 -1 Shape \"disk\" Translate 0 0 -1 Shape \"disk\" Translate 0 0 -1 Shape \"disk\""
+                 " AttributeEnd Translate 0 0 -9 Shape \"disk\"");
+    assert_true(e.t.panes_are_direct);
+    vertex v;
+    scene_ray ray = scene_ray_make((vec3){0.1f, 0.2f, 0.0f}, (vec3){0.0f, 0.0f, -1.0f});
+    assert_true(transport_trace(&e.t, e.worker, ray, &v));
+    assert_close((double)v.hit.position.z, -1.0, 1e-5);
+    assert_true(transport_is_open_pane(&e.t, &v));
+    assert_true(transport_trace_through_panes(&e.t, e.worker, ray, &v));
+    assert_close((double)v.hit.position.z, -9.0, 1e-5);
+    assert_close((double)v.transmittance.g, pow(0.96 / 1.04, 3.0), 1e-5);
+    e.t.panes_are_direct = false; /* they are surfaces like others */
+    assert_true(transport_trace_through_panes(&e.t, e.worker, ray, &v));
+    assert_close((double)v.hit.position.z, -1.0, 1e-5);
+    eye_reset(&e);
+}
+
+/* What survives carries the others' share: the mean is what there was. */
+static void roulette(void **state)
+{
+    (void)state;
+    static const rgb BEFORE[] = {{0.3f, 0.1f, 0.0f}, {0.01f, 0.01f, 0.02f}, {1.0f, 0.5f, 0.2f}, {3.0f, 1.0f, 1.0f}};
+    rng random = test_random(1);
+    for (size_t k = 0; k < sizeof BEFORE / sizeof *BEFORE; k++) {
+        mean_sum sum = {0};
+        for (uint32_t i = 0; i < SAMPLES; i++) {
+            rgb throughput = BEFORE[k];
+            bool survives = transport_survives(&throughput, rng_float(&random));
+            assert_true(survives || rgb_max(BEFORE[k]) < 1.0f);
+            assert_true(!survives || rgb_max(throughput) >= 0.999f);
+            mean_add(&sum, survives ? (double)throughput.r : 0.0);
+        }
+        assert_mean(&sum, (double)BEFORE[k].r, 1e-5);
+    }
+    rgb black = rgb_gray(0.0f);
+    assert_false(transport_survives(&black, 0.0f));
+}
+
+static void lamps_shine_on_their_side(void **state)
+{
+    (void)state;
+    for (int two_sided = 0; two_sided < 2; two_sided++) {
+        eye e;
+        eye_init(&e, two_sided ? "AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] \"bool twosided\" true Shape \"disk\""
+                               : "AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] Shape \"disk\"");
+        vertex front = eye_meet(&e, (vec3){0.0f, 0.0f, 1.0f}, (vec3){0.0f, 0.0f, -1.0f});
+        vertex back = eye_meet(&e, (vec3){0.0f, 0.0f, -1.0f}, (vec3){0.0f, 0.0f, 1.0f});
+        assert_true(front.lamp && back.lamp);
+        assert_close((double)transport_emission(&e.t, &front).g, 2.0, 0.0);
+        assert_close((double)transport_emission(&e.t, &back).g, two_sided ? 2.0 : 0.0, 0.0);
+        assert_true(transport_facing_normal(&front).z > 0.0f && transport_facing_normal(&back).z < 0.0f);
+        eye_reset(&e);
+    }
+}
+
+/* Reflected light of the caustic map, rho E / pi: asked for each time, and only as often as it counts. */
+static void caustics(void **state)
+{
+    (void)state;
+    enum { PHOTONS = 20000 / FEWER };
+    eye e;
+    eye_init_with_photons(
+        &e, "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] ReverseOrientation Shape \"sphere\"", PHOTONS, 50);
+    e.t.caustic = &e.global;
+    rng random = test_random(2);
+    mean_sum whole = {0}, some = {0};
+    for (uint32_t i = 0; i < 4000; i++) {
+        vertex v = eye_meet(&e, (vec3){0}, random_direction(&random));
+        mean_add(&whole, (double)transport_caustics(&e.t, e.worker, &v).r);
+        mean_add(&some, (double)transport_some_caustics(&e.t, e.worker, &v, 0.05f, rng_float(&random)).r);
+    }
+    double expected = 0.5 / PI * (double)FIELD_FLUX.r * field_irradiance(FIELD_SPHERE);
+    double field = 3.0 / sqrt(50.0 * fmin(PHOTONS / 50.0, 4000.0)); /* places nearby share their photons */
+    assert_mean(&whole, expected, 0.005 + field);
+    assert_mean(&some, expected, 0.005 + field);
+    eye_reset(&e);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(absorption), cmocka_unit_test(panes),
+                                       cmocka_unit_test(roulette), cmocka_unit_test(lamps_shine_on_their_side),
+                                       cmocka_unit_test(caustics)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
