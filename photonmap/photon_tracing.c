@@ -179,6 +179,7 @@ static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
     float weight = t->trial ? 1.0f : 1.0f / density;
     scene_ray ray = scene_ray_make(start.origin, start.direction);
     ray.skips_uv = true;
+    ray.slabs_are_panes = settings->panes_are_direct;
     ray.medium = start.medium;
     ray.time = time;
     rgb flux = rgb_scale(start.flux, weight / probability);

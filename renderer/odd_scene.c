@@ -4,6 +4,7 @@
 #include "material/pane.h"
 #include "math/sampling.h"
 #include "rays/passage.h"
+#include "rays/slab_faces.h"
 
 #include <math.h>
 
@@ -113,6 +114,13 @@ static bool has_lights_without_extent(const scene *s)
     return false;
 }
 
+/* Whether light goes straight through surfaces of the material, but for a few, as the rims of slabs are. */
+static bool is_all_panes(const scene *s, uint32_t material_index)
+{
+    static const double SLAB_SHARE = 0.75;
+    return pane_may_be_of(s, material_index) || slab_faces_share(s, material_index) > SLAB_SHARE;
+}
+
 static void warn_of_light_behind_glass(const struct ag_rendering *r)
 {
     const scene *s = r->s;
@@ -120,7 +128,7 @@ static void warn_of_light_behind_glass(const struct ag_rendering *r)
         return;
     for (uint32_t i = 0; i < s->shape_count; i++) {
         uint32_t material_index = s->shapes[i].material_index;
-        if (!material_is_clear_glass(s, material_index) || (r->t.panes_are_direct && pane_may_be_of(s, material_index)))
+        if (!material_is_clear_glass(s, material_index) || (r->t.panes_are_direct && is_all_panes(s, material_index)))
             continue;
         log_once(r->context->log, AG_LOG_WARNING, "light behind glass",
                  "light of suns, points and spots that comes by way of smooth glass is missing: path tracing does not "

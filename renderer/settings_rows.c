@@ -42,11 +42,14 @@ static const setting_row ROWS[] = {
     {.text = {.name = "pane-light",
               .argument = "MODE",
               .section = "Light",
-              .help = "light straight through thin glass: direct (default), sampled at its lamp, or traced, like "
+              .help = "light straight through panes of glass: direct (default), sampled at its lamp, or traced, like "
                       "light through other glass",
-              .manual = "Light that thin glass, or a smooth interface of index 1, lets through unbent: *direct* "
-                        "(default) samples it at its lamp, as if nothing were in its way, so that suns and points "
-                        "shine through windows; *traced* treats it like light by way of any other glass.",
+              .manual = "Light that passes panes of glass: thin glass, a smooth interface of index 1, and slabs of "
+                        "solid glass whose faces are flat, parallel and at least sixteen times as wide as the slab is "
+                        "thick. *direct* (default) samples it at its lamp, as if nothing were in its way, so that suns "
+                        "and points shine through windows; slabs then shift it sideways by nothing instead of by about "
+                        "a third of their thickness, but the eye sees them refract. *traced* treats it like light by "
+                        "way of any other glass.",
               .is_of_photon_map = true},
      FIELD(pane_light),
      .kind = SETTING_WORD,
@@ -273,7 +276,8 @@ static const setting_row ROWS[] = {
               .help = "layers of .exr files, by commas: %LAYERS%",
               .manual = "Layers of _.exr_ files beside R, G and B, separated by commas; may be repeated. %LAYERS% The "
                         "parts of light add up to R, G and B in this order, in float files to the last bit; to them "
-                        "thin glass that is looked through, or shone through, is not there (*--pane-light*)."},
+                        "thin glass that is looked through, or shone through, is not there (*--pane-light*), and a "
+                        "slab that is shone through likewise."},
      FIELD(layers),
      .kind = SETTING_LAYERS,
      .noun = "set of layers",

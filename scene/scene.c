@@ -9,6 +9,7 @@
 #include "material/coat_table.h"
 #include "material/pane.h"
 #include "rays/bvh.h"
+#include "rays/slab_faces.h"
 #include "scene_extent.h"
 #include "shape/curves.h"
 
@@ -32,6 +33,7 @@ void scene_destroy(scene *s)
 {
     if (!s)
         return;
+    slab_faces_destroy(s->slab_faces);
     bvh_destroy(s->bvh);
     for (uint32_t i = 0; i < s->shape_count; i++)
         shape_reset(&s->shapes[i]);
@@ -348,5 +350,10 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
     s->camera.medium = s->camera_medium;
     s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
     status = light_pick_commit(s, run->log);
-    return status == AG_OK ? bvh_create(s, run, isa, &s->bvh) : status;
+    if (status == AG_OK)
+        status = bvh_create(s, run, isa, &s->bvh);
+    if (status == AG_OK)
+        status = slab_faces_find(s, run, &s->slab_faces);
+    s->has_panes = s->has_panes || s->slab_faces;
+    return status;
 }

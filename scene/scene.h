@@ -20,6 +20,7 @@
 #include "texture/texture.h"
 
 struct bvh;
+struct slab_faces;
 struct color_config;
 struct light_tree;
 
@@ -77,7 +78,7 @@ typedef struct scene {
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */
-    bool has_panes;      /* any shape that lets light straight through: see pane.h */
+    bool has_panes;      /* any shape that lets light straight through: see pane.h, slab_faces.h */
     /* How lights are picked, see light_pick.c */
     uint32_t lit_count;          /* lights with power */
     uint32_t only_light;         /* where there is but one of them, that one */
@@ -87,6 +88,7 @@ typedef struct scene {
     float *photon_cdf;             /* [light_count], running sum of photon_probability */
     float *photon_probability;     /* [light_count], with which scene_pick_light_by_power picks it */
     struct bvh *bvh;
+    struct slab_faces *slab_faces; /* which shapes are slabs of glass that light may pass straight; NULL: none */
 } scene;
 
 scene *scene_create(void);    /* NULL when out of memory */

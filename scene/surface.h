@@ -10,6 +10,14 @@
 
 typedef struct scene scene; /* scene.h */
 
+/* The straight way through a slab of glass, of which a ray has met the one face (rays/slab_faces.h). */
+typedef struct slab_way {
+    vec3 exit;       /* on the other face */
+    float epsilon;   /* as in surface_hit, there */
+    float thickness; /* along the normal, scene units; 0: there is no such way */
+    uint32_t medium; /* between the faces, SCENE_NO_MEDIUM: none */
+} slab_way;
+
 /* Where a ray met a surface, recomputed from the primitive in plain IEEE steps rather than from the ray's length. */
 typedef struct surface_hit {
     vec3 position;
@@ -27,6 +35,7 @@ typedef struct surface_hit {
     uint32_t primitive_index; /* triangle of a mesh, segment of curves */
     uint32_t instance_index;  /* SCENE_NO_INSTANCE where the shape stands in the world itself */
     float time;               /* of the shutter, the ray's */
+    slab_way slab;
 } surface_hit;
 
 /* A place on a surface, and what it takes to leave it. */
@@ -45,6 +54,17 @@ typedef struct surface_sample {
     uint32_t primitive_index;
     vec2 barycentrics; /* of meshes: of the triangle's second and third corner */
 } surface_sample;
+
+/* Where a ray that passes a place straight starts on its other side: on its line, as far as the line leaves the surface
+ * soon, so that many such places bend it no more than one. normal: geometric, of either side. */
+static inline vec3 surface_place_behind(vec3 position, vec3 normal, float epsilon, vec3 direction)
+{
+    static const float COSINE_MIN = 0.125f;
+    vec3 n = vec3_face_forward(normal, direction);
+    float cosine = vec3_dot(n, direction), step = epsilon / fmaxf(cosine, COSINE_MIN);
+    vec3 behind = vec3_add_scaled(position, direction, step);
+    return cosine < COSINE_MIN ? vec3_add_scaled(behind, n, epsilon - step * cosine) : behind;
+}
 
 /* The ray that leaves a surface into `direction`, after arriving along `arrived` (of unit direction, and in the medium
  * of its last stretch). It is in the medium of its side where the surface parts two, else in that of `arrived`; and it

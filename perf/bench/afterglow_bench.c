@@ -76,6 +76,22 @@ static void print_reasons(const json_t *reasons)
     json_array_foreach(reasons, i, reason) fprintf(stderr, "afterglow-bench: %s\n", json_string_value(reason));
 }
 
+/* Beside an interval: what the clock did meanwhile. */
+static void print_clock(const json_t *result)
+{
+    const json_t *best = json_object_get(result, "score_best"), *machine = json_object_get(result, "machine");
+    double least = json_number_value(json_object_get(machine, "clock_least_mhz"));
+    if (!json_is_false(json_object_get(best, "steady")))
+        return;
+    if (least > 0.0)
+        fprintf(
+            stderr,
+            "afterglow-bench: scores of the turns are more than 2 %% apart; the clock was seen at %.0f to %.0f MHz\n",
+            least, json_number_value(json_object_get(machine, "clock_most_mhz")));
+    else
+        fputs("afterglow-bench: scores of the turns are more than 2 % apart; the clock is not told\n", stderr);
+}
+
 static int report(const bench_options *o, const json_t *result, bool is_valid)
 {
     char line[512];
@@ -85,6 +101,7 @@ static int report(const bench_options *o, const json_t *result, bool is_valid)
     puts(line);
     print_reasons(json_object_get(json_object_get(result, "certificate"), "reasons"));
     print_reasons(json_object_get(result, "refused"));
+    print_clock(result);
     if (fflush(stdout) != 0)
         return fail("standard output cannot be written");
     if (!is_valid)

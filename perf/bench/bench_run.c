@@ -70,8 +70,6 @@ static ag_status create_contexts(measuring *m, ag_log_fn *log)
     ag_status status = AG_OK;
     for (unsigned i = 0; i < m->run->level_count && status == AG_OK; i++)
         status = create_context(m->run->levels[i].threads, log, &m->contexts[i]);
-    for (unsigned i = 0; i < m->run->level_count && status == AG_OK; i++)
-        m->run->levels[i].is_pinned = bench_machine_pin(&m->run->machine, m->contexts[i]->pool);
     return status;
 }
 
@@ -155,8 +153,10 @@ static ag_status measure_turn(measuring *m, unsigned turn)
 {
     ag_status status = AG_OK;
     for (unsigned level = 0; level < m->run->level_count && status == AG_OK; level++) {
-        const bench_level *l = &m->run->levels[level];
+        bench_level *l = &m->run->levels[level];
         char what[96];
+        /* each time: the caller is a worker of all levels, and some may leave it unpinned */
+        l->is_pinned = bench_machine_pin(&m->run->machine, m->contexts[level]->pool) && !l->is_oversubscribed;
         snprintf(what, sizeof what, "turn %u of %u, %u thread%s", turn + 1, m->run->turns, l->threads,
                  l->threads == 1 ? "" : "s");
         tell(m, what);

@@ -49,7 +49,7 @@ static float gather_distance(const transport *t, eye_worker *worker, const verte
                                    sampler_2d_of(where, SAMPLE_GATHER, 0, GATHER_RAYS, i), &first))
             continue;
         count++;
-        if (transport_trace(t, worker, surface_ray(&v->hit, v->arrived, first.direction), &met))
+        if (transport_trace(t, worker, transport_scattered_ray(t, v, first.direction, false), &met))
             sum += 1.0f / fmaxf(met.hit.distance, 1e-20f);
     }
     return sum > 0.0f ? (float)count / sum : 0.0f;

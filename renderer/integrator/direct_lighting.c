@@ -157,7 +157,7 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
             continue;
         vertex met;
         worker->rays_shadow++;
-        scene_ray ray = surface_ray(&v->hit, v->arrived, scattered.direction);
+        scene_ray ray = transport_scattered_ray(t, v, scattered.direction, false);
         if (!transport_trace_through_panes(t, worker, ray, &met)) {
             light_group_sums groups;
             const rgb *of_group = light_group_sums_begin(&groups, by_group != NULL);

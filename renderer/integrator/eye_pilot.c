@@ -95,7 +95,7 @@ static void gather_places(const transport *t, eye_worker *worker, const vertex *
         rgb known = rgb_gray(0.0f), weight;
         if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, rng_float(&random), u, &first))
             continue;
-        scene_ray ray = surface_ray(&v->hit, v->arrived, first.direction);
+        scene_ray ray = transport_scattered_ray(t, v, first.direction, false);
         ray.skips_uv = true;
         if (transport_meet(t, worker, ray, &met) &&
             gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight))
@@ -136,7 +136,8 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
         if (!shading_go_on(t, &v, &where, path_vertex, path_vertex, is_last, &throughput, &next, &goes_straight))
             return;
         scatterings += !goes_straight;
-        ray = goes_straight ? passage_continue(&v.hit, &v.arrived) : surface_ray(&v.hit, v.arrived, next.direction);
+        ray = goes_straight ? passage_continue(&v.hit, &v.arrived)
+                            : transport_scattered_ray(t, &v, next.direction, next.is_delta);
     }
 }
 

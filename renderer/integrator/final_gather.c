@@ -5,6 +5,7 @@
 #include "integrator/gather_path.h"
 #include "math/sampling.h"
 #include "rays/passage.h"
+#include "rays/slab_faces.h"
 
 /* One gather: from where, what its rays' random numbers are keyed by, and what they brought themselves. */
 typedef struct gathering {
@@ -46,7 +47,7 @@ static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weight)
 {
     vertex v;
-    scene_ray ray = surface_ray(&g->from->hit, g->from->arrived, direction);
+    scene_ray ray = transport_scattered_ray(g->t, g->from, direction, false);
     ray.skips_uv = true;
     g->worker->rays_gather++;
     g->cost += EYE_COST_OF_RAY;
@@ -87,6 +88,7 @@ static void follow_together(gathering *g, gather_rays *r)
         v.arrived.direction = ray_fan_direction(fan, i);
         v.transmittance = rgb_gray(1.0f);
         ray_fan_hit(t->s, fan, i, &v.hit);
+        slab_meet(t->s, &v.arrived, &v.hit);
         follow(g, r->number[i], r->weight[i], &v);
     }
 }
@@ -167,7 +169,7 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
     incident_guide guide;
     bool is_guided = is_plain && find_guide(t, v, &guide);
     gather_rays rays;
-    rays.fan.common = surface_ray(&v->hit, v->arrived, transport_facing_normal(v));
+    rays.fan.common = transport_scattered_ray(t, v, transport_facing_normal(v), false);
     rays.fan.common.skips_uv = true;
     for (uint32_t begin = 0; begin < count && !run_is_cancelled(t->run); begin += RAY_FAN_MAX) {
         uint32_t end = count - begin < RAY_FAN_MAX ? count : begin + RAY_FAN_MAX;

@@ -90,8 +90,8 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         depth += !goes_straight;
         if (depth == scatterings_left)
             return false;
-        scene_ray ray =
-            goes_straight ? passage_continue(&v->hit, &v->arrived) : surface_ray(&v->hit, v->arrived, next.direction);
+        scene_ray ray = goes_straight ? passage_continue(&v->hit, &v->arrived)
+                                      : transport_scattered_ray(t, v, next.direction, true);
         ray.skips_uv = true;
         worker->rays_gather++;
         if (!transport_meet(t, worker, ray, v))
@@ -131,7 +131,7 @@ bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, floa
     if (left == 0 || !transport_survives(&throughput, rng_float(&random)) ||
         !bsdf_sample_direction(&v.scattering, BSDF_GATHERED, BSDF_RADIANCE, 0.0f, u, &next))
         return false;
-    scene_ray ray = surface_ray(&v.hit, v.arrived, next.direction);
+    scene_ray ray = transport_scattered_ray(t, &v, next.direction, false);
     worker->rays_gather++;
     return transport_meet(t, worker, ray, &v) &&
            gather_path_follow(t, worker, &v, random, left, rgb_mul(throughput, next.weight), share_seen, in_out_known,

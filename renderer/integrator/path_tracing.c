@@ -164,7 +164,7 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
         scattered_from = v.hit.position;
         scattered_normal = direct_light_normal(&v, BSDF_ALL);
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
-        ray = surface_ray(&v.hit, v.arrived, next.direction);
+        ray = transport_scattered_ray(t, &v, next.direction, next.is_delta);
     }
 }
 

@@ -263,7 +263,7 @@ static bool go_on(const transport *t, const vertex *v, bool is_last, int branch_
     in_out->scattered_normal = direct_light_normal(v, BSDF_TRACED);
     in_out->scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
     in_out->scatter_count = branch_count;
-    in_out->ray = surface_ray(&v->hit, v->arrived, next.direction);
+    in_out->ray = transport_scattered_ray(t, v, next.direction, next.is_delta);
     return true;
 }
 

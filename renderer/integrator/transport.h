@@ -96,6 +96,15 @@ static inline bool transport_is_open_pane(const transport *t, const vertex *v)
     return t->panes_are_direct && v->scattering.is_pane;
 }
 
+/* The ray that leaves a place by scattering. Behind the first lobe that is not smooth the way back to the lamp passes
+ * slabs straight (slab_faces.h), as shadow rays and photons do; what the eye sees directly, or in mirrors, is bent. */
+static inline scene_ray transport_scattered_ray(const transport *t, const vertex *v, vec3 direction, bool is_delta)
+{
+    scene_ray ray = surface_ray(&v->hit, v->arrived, direction);
+    ray.slabs_are_panes = ray.slabs_are_panes || (t->panes_are_direct && !is_delta);
+    return ray;
+}
+
 /* Radiance that the place itself sends back along the ray. */
 rgb transport_emission(const transport *t, const vertex *v);
 

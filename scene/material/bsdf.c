@@ -8,6 +8,7 @@
 #include "material/pane.h"
 #include "material/principled.h"
 #include "material/shading_frame.h"
+#include "material/slab.h"
 #include "math/sampling.h"
 #include "scene.h"
 
@@ -140,12 +141,25 @@ bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out)
     return b;
 }
 
+/* Both faces and what is between them as one place. */
+static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
+{
+    const medium *between = hit->slab.medium < s->medium_count ? &s->media[hit->slab.medium] : NULL;
+    b->is_pane = true;
+    b->lobe_count = 0;
+    add_lobe(b, LOBE_SLAB, BSDF_TRACED, true, 1.0f);
+    slab_find_shares(&b->matter, fabsf(vec3_dot(b->out, b->shading.z)), hit->slab.thickness, between,
+                     &b->slab_reflected, &b->slab_through);
+}
+
 bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out)
 {
     bsdf b;
     material_at(s, hit, &b.matter);
     set_up(&b, shading_frame_at(s, hit, &b.matter), hit, out);
     b.is_pane = b.is_pane && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
+    if (hit->slab.thickness > 0.0f)
+        make_slab(s, hit, &b);
     return b;
 }
 
@@ -159,6 +173,8 @@ bool bsdf_has(const bsdf *b, bsdf_lobes lobes)
 
 rgb bsdf_straight_transmittance(const bsdf *b)
 {
+    if (b->is_pane && b->lobes[0].kind == LOBE_SLAB)
+        return b->slab_through;
     return b->is_pane ? pane_transmittance(&b->matter, vec3_dot(b->out, b->shading.z)) : rgb_gray(0.0f);
 }
 
@@ -177,6 +193,7 @@ bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)
         if (!(lobe->group & lobes) || !(lobe->probability > 0.0f))
             continue;
         bool is_two_ways = lobe->kind == LOBE_DIELECTRIC || lobe->kind == LOBE_THIN_DIELECTRIC ||
+                           lobe->kind == LOBE_SLAB ||
                            (lobe->kind == LOBE_PRINCIPLED && principled_transmits(&b->matter));
         if (!lobe->is_delta || is_two_ways) /* all others are mirrors, and of the same normal */
             return true;

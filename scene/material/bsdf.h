@@ -34,6 +34,7 @@ typedef enum bsdf_lobe_kind {
     LOBE_CONDUCTOR,
     LOBE_DIELECTRIC,           /* reflection and refraction */
     LOBE_THIN_DIELECTRIC,      /* a pane: reflection, and straight through */
+    LOBE_SLAB,                 /* a slab that is passed straight: reflection by both faces, and straight through */
     LOBE_COAT,                 /* reflection by a dielectric coat */
     LOBE_CONDUCTOR_UNDER_COAT, /* refracted in, reflected by the conductor, refracted out */
     LOBE_COAT_SCATTERED,       /* what leaves a coat at any angle (coat.h) */
@@ -51,11 +52,12 @@ typedef struct bsdf_lobe {
 enum { BSDF_LOBES_MAX = 3 };
 
 typedef struct bsdf {
-    frame shading;         /* z: shading normal, to the outside */
-    vec3 geometric_normal; /* to the outside */
-    vec3 out;              /* back along the ray that arrived, unit */
-    material matter;       /* as it is at this place */
-    bool is_pane;          /* lets light straight through (pane.h), and does not shine itself */
+    frame shading;                    /* z: shading normal, to the outside */
+    vec3 geometric_normal;            /* to the outside */
+    vec3 out;                         /* back along the ray that arrived, unit */
+    material matter;                  /* as it is at this place */
+    bool is_pane;                     /* lets light straight through (pane.h, slab.h), and does not shine itself */
+    rgb slab_reflected, slab_through; /* of LOBE_SLAB, which then is the only lobe */
     int lobe_count;
     bsdf_lobe lobes[BSDF_LOBES_MAX];
 } bsdf;

@@ -134,13 +134,29 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
     case LOBE_CLEARCOAT:
         bsdf_principled_evaluate(b, lobe->kind, transport, direction, o, i, out_value, out_pdf);
         return;
-    case LOBE_THIN_DIELECTRIC: return; /* always smooth */
+    case LOBE_THIN_DIELECTRIC:
+    case LOBE_SLAB: return; /* always smooth */
     }
 }
 
 /* --- sampling --- */
 
 /* A smooth lobe's one direction, and its weight once it has been picked. */
+/* *in_out_local is the mirror's direction. false: all is absorbed. */
+static bool sample_slab(const bsdf *b, vec3 o, float u_lobe, vec3 *in_out_local, rgb *out_weight)
+{
+    float reflected = rgb_max(b->slab_reflected), all = reflected + rgb_max(b->slab_through);
+    if (!(all > 0.0f))
+        return false;
+    float share = reflected / all;
+    bool goes_through = u_lobe >= share;
+    if (goes_through)
+        *in_out_local = vec3_negate(o);
+    *out_weight =
+        goes_through ? rgb_scale(b->slab_through, 1.0f / (1.0f - share)) : rgb_scale(b->slab_reflected, 1.0f / share);
+    return true;
+}
+
 bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, float u_lobe,
                              vec3 *out_local, rgb *out_weight)
 {
@@ -163,6 +179,7 @@ bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport 
         if (u_lobe >= fresnel_thin_dielectric(cosine, m->ior))
             *out_local = vec3_negate(o);
         return true;
+    case LOBE_SLAB: return sample_slab(b, o, u_lobe, out_local, out_weight);
     default: break;
     }
     if (u_lobe < fresnel_dielectric(cosine, eta))

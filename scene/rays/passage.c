@@ -5,6 +5,7 @@
 
 #include "material/bsdf.h"
 #include "material/pane.h"
+#include "rays/slab_faces.h"
 
 static rgb transmittance_in(const scene *s, uint32_t medium_index, float distance)
 {
@@ -17,12 +18,13 @@ static bool is_passed(const scene *s, const surface_hit *hit)
     return material_is_interface(s, hit) && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
 }
 
-/* The share of a ray that a place lets through unbent: all of it, a pane's transmittance, or nothing. */
+/* The share of a ray that a place lets through unbent: all of it, a pane's or slab's transmittance, or nothing. */
 static rgb let_through(const scene *s, const surface_hit *hit, const scene_ray *ray, bool through_panes)
 {
     if (is_passed(s, hit))
         return rgb_gray(1.0f);
-    if (!through_panes || !pane_may_be_of(s, s->shapes[hit->shape_index].material_index))
+    bool is_slab = hit->slab.thickness > 0.0f;
+    if (!through_panes || !(is_slab || pane_may_be_of(s, s->shapes[hit->shape_index].material_index)))
         return rgb_gray(0.0f);
     bsdf at = bsdf_create(s, hit, vec3_negate(ray->direction));
     return bsdf_straight_transmittance(&at);
@@ -30,13 +32,13 @@ static rgb let_through(const scene *s, const surface_hit *hit, const scene_ray *
 
 scene_ray passage_continue(const surface_hit *hit, const scene_ray *ray)
 {
-    static const float COSINE_MIN = 0.125f;
-    scene_ray next = surface_ray(hit, *ray, ray->direction);
-    vec3 n = vec3_face_forward(hit->geometric_normal, ray->direction);
-    float cosine = vec3_dot(n, ray->direction), step = hit->epsilon / fmaxf(cosine, COSINE_MIN);
-    next.origin = vec3_add_scaled(hit->position, ray->direction, step);
-    if (cosine < COSINE_MIN)
-        next.origin = vec3_add_scaled(next.origin, n, hit->epsilon - step * cosine);
+    bool is_slab = hit->slab.thickness > 0.0f;
+    scene_ray next = is_slab ? *ray : surface_ray(hit, *ray, ray->direction);
+    next.origin = is_slab
+                      ? surface_place_behind(hit->slab.exit, hit->geometric_normal, hit->slab.epsilon, ray->direction)
+                      : surface_place_behind(hit->position, hit->geometric_normal, hit->epsilon, ray->direction);
+    if (is_slab && hit->has_medium_interface)
+        next.medium = hit->medium_outside;
     return next;
 }
 
@@ -60,6 +62,10 @@ static bool follow(const scene *s, scene_ray *ray, float length, bool through_pa
             *in_out_left = rgb_mul(*in_out_left, transmittance_in(s, ray->medium, distance));
         if (!is_hit || (in_out_left && rgb_is_black(*in_out_left)))
             return false;
+        slab_meet(s, ray, out_hit);
+        bool is_slab = out_hit->slab.thickness > 0.0f;
+        if (is_slab && is_bounded && !(vec3_dot(vec3_sub(end, out_hit->slab.exit), ray->direction) > 0.0f))
+            out_hit->slab.thickness = 0.0f, is_slab = false; /* the end lies in the glass */
         rgb passed = let_through(s, out_hit, ray, through_panes);
         if (rgb_is_black(passed)) {
             out_hit->distance = travelled;
@@ -73,7 +79,8 @@ static bool follow(const scene *s, scene_ray *ray, float length, bool through_pa
                 *in_out_left = rgb_gray(0.0f);
             return false;
         }
-        from = out_hit->position;
+        from = is_slab ? out_hit->slab.exit : out_hit->position;
+        travelled += is_slab ? distance_between(out_hit->position, from) : 0.0f;
         *ray = passage_continue(out_hit, ray);
         if (!is_bounded)
             continue;
@@ -97,6 +104,8 @@ bool passage_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, sur
         return is_met;
     }
     bool is_hit = scene_intersect(s, *ray, INFINITY, out_hit);
+    if (is_hit)
+        slab_meet(s, ray, out_hit);
     *out_transmittance = transmittance_in(s, ray->medium, is_hit ? out_hit->distance : INFINITY);
     return is_hit && !rgb_is_black(*out_transmittance);
 }
@@ -130,6 +139,7 @@ rgb passage_transmittance_of_panes(const scene *s, scene_ray ray, float reach, u
     surface_hit hit;
     rgb left = rgb_gray(1.0f);
     float unit = normalize_direction(&ray);
+    ray.slabs_are_panes = true;
     if (!(unit > 0.0f))
         return left;
     return follow(s, &ray, reach * unit, true, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;

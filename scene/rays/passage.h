@@ -28,9 +28,9 @@ static inline bool passage_is_clear(const scene *s, const scene_ray *ray)
  * surface stands in it. */
 rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
 
-/* passage_transmittance of a ray that goes on across panes, whose transmittance (pane.h) is multiplied in: for light
- * that is sampled at its lamp. Infinitely many reflections between the faces of one pane are in it; those between two
- * panes, which move light sideways, are not. */
+/* passage_transmittance of a ray that goes on across panes and slabs, whose transmittance (pane.h, slab.h) is
+ * multiplied in: for light that is sampled at its lamp. Infinitely many reflections between the faces of one pane are
+ * in it; those between two panes, which move light sideways, are not. */
 rgb passage_transmittance_of_panes(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
 
 /* As scene_intersect and scene_occluded, but interfaces are not there, and veils stop all rays, RAY_MEETS_VEILS unless
@@ -39,7 +39,8 @@ bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, sur
 bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance);
 
 /* The ray of unit direction that has met a place which lets it through unbent, on the other side of it. It stays on its
- * line, as far as the line leaves the surface soon, so that many such places bend it no more than one. */
+ * line, as far as the line leaves the surface soon, so that many such places bend it no more than one. Of a slab it is
+ * the other side of both faces. */
 scene_ray passage_continue(const surface_hit *hit, const scene_ray *ray);
 
 /* Says that so many rays were cut, if any. */

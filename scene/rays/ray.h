@@ -22,13 +22,14 @@ typedef struct scene_ray {
     float time;             /* of the shutter, [0, 1] from its opening to its closing */
     uint32_t medium;        /* that it starts in; SCENE_NO_MEDIUM: nothing that absorbs */
     ray_veils veils;
-    bool skips_uv; /* where no texture in the scene reads a hit's uv, nor does who casts it: it may be missing */
+    bool slabs_are_panes; /* light that may pass slabs of glass straight (slab_faces.h); else they bend it */
+    bool skips_uv;        /* where no texture in the scene reads a hit's uv, nor does who casts it: it may be missing */
 } scene_ray;
 
 /* When the shutter opens, in nothing. */
 static inline scene_ray scene_ray_make(vec3 origin, vec3 direction)
 {
-    return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM, RAY_PASSES_VEILS, false};
+    return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM, RAY_PASSES_VEILS, false, false};
 }
 
 #endif

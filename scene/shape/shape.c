@@ -221,6 +221,7 @@ void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sa
     shape_surface_at(s, sample->primitive_index, sample->barycentrics.x, sample->barycentrics.y, sample->position,
                      NOWHERE, out_hit);
     out_hit->distance = 0.0f;
+    out_hit->slab.thickness = 0.0f;
     out_hit->shape_index = shape_index;
     out_hit->primitive_index = sample->primitive_index;
 }

@@ -31,6 +31,14 @@ else
     grep -q 'image module cannot be opened' bare.log || fail "without a module: $(<bare.log)"
 fi
 
+"$prefix/bin/afterglow-map" --version >map_version || fail "afterglow-map does not run"
+[[ $(<map_version) == "afterglow-map "* ]] || fail "afterglow-map says: $(<map_version)"
+if [[ -x $AFTERGLOW_BUILD_DIR/bin/afterglow-bench ]]; then
+    "$prefix/bin/afterglow-bench" --quick -q --threads 2 -o bench.json >bench.log 2>&1 || fail "afterglow-bench: $(<bench.log)"
+    [[ -s bench.json && -s $(find "$prefix" -path '*/man/man1/afterglow-bench.1') ]] || fail "no result or man page of afterglow-bench"
+    echo "ok: afterglow-bench"
+fi
+
 [[ -s $(find "$prefix" -path '*/man/man1/afterglow.1') ]] || fail "no man page"
 pc=$(find "$prefix" -name afterglow.pc)
 [[ -s $pc ]] || fail "no pkg-config file"

@@ -138,10 +138,13 @@ typedef enum ag_cache_mode {
     AG_CACHE_OFF         /* an estimate at every gather hit: another estimator */
 } ag_cache_mode;
 
-/* Light that thin glass, or a smooth interface of index 1, lets through unbent. */
+/* Light that passes panes: thin glass and smooth interfaces of index 1, which do not bend it, and slabs of smooth solid
+ * glass, whose parallel faces do no more than shift it by about a third of their thickness. A slab's faces are flat and
+ * at least sixteen times as wide (area over diagonal) as it is thick. */
 typedef enum ag_pane_light {
     AG_PANE_LIGHT_DIRECT, /* as if nothing were in its way: sampled at its lamp, by both integrators. Suns, points and
-                             spots shine through windows in the path tracer too; no caustic */
+                             spots shine through windows in the path tracer too; no caustic. What the eye sees through
+                             a slab, directly or in mirrors, is bent all the same */
     AG_PANE_LIGHT_TRACED  /* like light by way of any other glass */
 } ag_pane_light;
 
@@ -157,7 +160,7 @@ typedef enum ag_layer {
     AG_LAYER_UV = 1 << 5,       /* u, v */
     /* The parts of light. R, G and B are their sum in this order, in floats, to the last bit. A pane whose light is
      * direct (ag_pane_light) is no surface to what it lets through: behind it the first surface is the one that is seen
-     * through it. */
+     * through it. Slabs are surfaces to the eye, and none to the light that shines through them. */
     AG_LAYER_EMISSION = 1 << 6,      /* straight from lamps and sky to the eye */
     AG_LAYER_DIRECT = 1 << 7,        /* straight from lamps, reflected by the first surface's diffuse lobes */
     AG_LAYER_INDIRECT = 1 << 8,      /* what else these reflect, but */

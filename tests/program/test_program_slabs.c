@@ -1,0 +1,257 @@
+/* test_program_slabs.c: light straight through slabs of solid glass is direct light, in both integrators: closed forms
+ * for suns, skies, points and glass that absorbs; a white furnace; what the eye sees; blocks, which bend light as ever;
+ * a room behind slabs against paths that know no panes; the same bits. Flow: tests of the whole program. Threads: the
+ * program's. */
+#define _GNU_SOURCE
+#include "fixtures/pane_light.h"
+#include "fixtures/slab_text.h"
+
+#define ROOM PROGRAM_SCENES "slabs.pbrt"
+#define SKY  "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+
+/* One after the other, each begun anew. */
+static slab_text text;
+
+static const char *box_of(const char *words, float low, float high)
+{
+    text.length = 0;
+    slab_say(&text, words);
+    slab_box(&text, vec3_make(-50.0f, low, -50.0f), vec3_make(50.0f, high, 50.0f));
+    return text.text;
+}
+
+static const char *sun_at(double cosine)
+{
+    static char words[256];
+    snprintf(words, sizeof words,
+             "LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [%.9g %.9g 0] \"point3 to\" [0 0 0]\n" GLASS,
+             sqrt(1.0 - cosine * cosine), cosine);
+    return words;
+}
+
+/* E cos(theta) T(theta) for a slab, in two faces, of double glazing (what goes to and fro between two slabs is no
+ * direct light), and of an instance on its way along its own plane; nothing below a block, which bends light. */
+static void test_sun(void **state)
+{
+    (void)state;
+    static const double COSINES[] = {1.0, 0.6, 0.2};
+    for (int i = 0; i < 3; i++) {
+        double c = COSINES[i], t = thin_glass(c, 1.5), e = 3.0 * c;
+        expect_gray_floor("a slab", box_of(sun_at(c), 1.0f, 1.5f), e * t, 3e-4, "--spp=1");
+        expect_gray_floor("a block", box_of(sun_at(c), 1.0f, 41.0f), 0.0, 0.0, "--spp=1");
+        text.length = 0;
+        slab_say(&text, sun_at(c));
+        slab_faces_of(&text, vec3_make(-50, 1, -50), vec3_make(50, 1.01f, 50), "yY");
+        expect_gray_floor("two faces", text.text, e * t, 3e-4, "--spp=1");
+        box_of(sun_at(c), 1.0f, 1.5f);
+        slab_box(&text, vec3_make(-50, 1.6f, -50), vec3_make(50, 1.9f, 50));
+        expect_gray_floor("double glazing", text.text, e * t * t, 3e-4, "--spp=1");
+        text.length = 0;
+        slab_say(&text, "ObjectBegin \"cube\"");
+        slab_say(&text, GLASS);
+        slab_box(&text, vec3_make(-1, -1, -1), vec3_make(1, 1, 1));
+        slab_say(&text, "ObjectEnd");
+        slab_say(&text, sun_at(c));
+        slab_say(&text, "AttributeBegin ActiveTransform EndTime Translate 3 0 2 ActiveTransform All\n"
+                        "Translate 0 1.5 0 Scale 50 0.2 50 ObjectInstance \"cube\" AttributeEnd");
+        expect_gray_floor("an instance that moves", text.text, e * t, 3e-4, "--spp=4");
+    }
+}
+
+/* Glass that absorbs: (1 - R)^2 a / (1 - R^2 a^2), a along the way that light takes within. */
+static void test_absorption(void **state)
+{
+    (void)state;
+    static const double COSINES[] = {1.0, 0.5}, SIGMA[] = {0.5, 1.0, 4.0};
+    for (int i = 0; i < 2; i++) {
+        double c = COSINES[i], within = sqrt(1.0 - (1.0 - c * c) / 2.25), t = thin_glass(c, 1.5),
+               r = (1.0 - t) / (1.0 + t);
+        double irradiance[3];
+        for (int k = 0; k < 3; k++) {
+            double a = exp(-0.25 * SIGMA[k] / within);
+            irradiance[k] = 3.0 * c * (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a);
+        }
+        text.length = 0;
+        slab_say(&text, "MakeNamedMedium \"green\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.5 1 4] "
+                        "\"rgb sigma_s\" [0 0 0]\nAttributeBegin MediumInterface \"green\" \"\"");
+        slab_say(&text, sun_at(c));
+        slab_box(&text, vec3_make(-50, 1, -50), vec3_make(50, 1.25f, 50));
+        slab_say(&text, "AttributeEnd");
+        expect_floor("glass that absorbs", text.text, irradiance, 5e-4, "--spp=1");
+    }
+}
+
+/* By shadow rays and scattered rays, weighed against each other; and by paths that bend at both faces. */
+static void test_sky(void **state)
+{
+    (void)state;
+    const char *above = box_of(SKY GLASS, 1.0f, 1.5f);
+    expect_gray_floor("a sky", above, sky_through_glass(), 0.004, "--spp=2048");
+    /* Of the dark floor's own light, which counts alone, in 1e-4; what the slab mirrors from below is black. */
+    slab_say(&text, "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n" SQUARE("60", "-0.1"));
+    picture p = RENDER(scene_of("Material \"diffuse\" \"rgb reflectance\" [1e-4 1e-4 1e-4]\n", text.text), "--size=8x8",
+                       PATH, TRACED, "--spp=4096");
+    expect_near("a sky, traced", 1e4 * picture_mean(&p, 1), sky_through_glass() / PI, 0.01);
+    picture_reset(&p);
+}
+
+/* A point at a height of 2 through glass of thickness d: straight, I cos T / r^2. Bent, its image is nearer by what the
+ * glass shifts it: just below by d / 3, so that light is 2 d / (3 * 2) brighter there, to first order. The photons of
+ * `traced` say so. */
+static void test_point(void **state)
+{
+    (void)state;
+    static const double THICKNESS = 0.3;
+    double t = thin_glass(1.0, 1.5), straight = 7.0 / 4.0 * t, bent = 7.0 * t / pow(2.0 - THICKNESS / 3.0, 2.0);
+    text.length = 0;
+    slab_say(&text, "LightSource \"point\" \"rgb I\" [7 7 7] \"point3 from\" [0 2 0]\n" GLASS);
+    slab_box(&text, vec3_make(-8, 1, -8), vec3_make(8, 1.3f, 8));
+    expect_gray_floor("a point", text.text, straight, 1e-3, "--spp=1");
+    picture p = RENDER(scene_of(DIFFUSE_FLOOR, text.text), "--size=8x8", MAP, TRACED, "--spp=4", "--photons=1000",
+                       "--caustic-photons=4e5", "--nearest=2000", "--only=indirect");
+    print_message("a point, bent: %.5f, straight %.5f, measured %.5f\n", bent, straight,
+                  picture_mean(&p, 1) * PI / REFLECTANCE);
+    /* 2,000 photons say it within 2.2 %; straight light has 10 % less */
+    expect_near("a point, bent", picture_mean(&p, 1) * PI / REFLECTANCE, bent, 0.066);
+    picture_reset(&p);
+}
+
+/* All that is white under an even sky is as bright as the sky, with a slab above it too. */
+static void test_furnace(void **state)
+{
+    (void)state;
+    text.length = 0;
+    slab_say(&text, SKY GLASS);
+    slab_box(&text, vec3_make(-3, 0.5f, -3), vec3_make(3, 0.6f, 3));
+    const char *scene = scene_of("Material \"diffuse\" \"rgb reflectance\" [1 1 1]\n", text.text);
+    for (int i = 0; i < 2; i++) {
+        picture p = RENDER(scene, "--size=8x8", INTEGRATORS[i], "--spp=256", "--photons=2e5", "--caustic-photons=1e5",
+                           "--nearest=64");
+        print_message("furnace, %s: %.5f\n", INTEGRATORS[i], picture_mean(&p, 1));
+        expect_near("a furnace", picture_mean(&p, 1), 1.0, i == 0 ? 0.005 : 0.01);
+        picture_reset(&p);
+    }
+}
+
+/* The eye sees slabs as glass that bends: a picture of one before a sky and a lamp, at its rims and within, is the same
+ * to the bit whether panes are known or not. */
+static void test_seen(void **state)
+{
+    (void)state;
+    static const char *const EYES[] = {"LookAt 3 0.02 0.1 0 0.02 0 0 1 0", "LookAt 0.2 2 0.3 0 0 0 0 0 1",
+                                       "LookAt 0.2 0.03 0.3 1 0.1 0 0 1 0"};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 2; k++) {
+            text.length = 0;
+            slab_say(&text, EYES[i]);
+            slab_say(&text, "Camera \"perspective\" \"float fov\" 50\nWorldBegin\n" SKY LAMP("3", "1", "-1") GLASS);
+            slab_box(&text, vec3_make(-1, 0, -1), vec3_make(1, 0.06f, 1));
+            const char *scene = write_text("seen.pbrt", text.text);
+            picture direct = RENDER(scene, "--size=16x16", "--spp=4", INTEGRATORS[k], "--photons=100", DIRECT);
+            picture traced = RENDER(scene, "--size=16x16", "--spp=4", INTEGRATORS[k], "--photons=100", TRACED);
+            assert_memory_equal(direct.pixels, traced.pixels, 3 * 16 * 16 * sizeof *direct.pixels);
+            assert_true(picture_mean(&direct, 1) > 0.1);
+            picture_reset(&direct);
+            picture_reset(&traced);
+        }
+}
+
+/* Below one slab the sun is direct light and no caustic; what floor and slab throw to and fro is indirect, and the
+ * photon map has it of photons that came straight. */
+static void test_layers(void **state)
+{
+    (void)state;
+    text.length = 0;
+    slab_say(&text, "LookAt 0 0.3 0 0 0 0 0 0 1 Camera \"perspective\" \"float fov\" 60\nWorldBegin\n" SUN GLASS);
+    slab_box(&text, vec3_make(-4, 0.5f, -4), vec3_make(4, 0.6f, 4));
+    slab_say(&text, DIFFUSE_FLOOR SQUARE("4", "0"));
+    const char *scene = write_text("layers.pbrt", text.text);
+    double radiance = 3.0 * thin_glass(1.0, 1.5) * REFLECTANCE / PI;
+    layers map = LAYERS(scene, "--size=16x16", "--spp=32", "--gather-samples=32", "--photons=1e5", "--nearest=30");
+    layers path = LAYERS(scene, "--size=16x16", "--spp=512", PATH);
+    expect_near("straight", map.direct, radiance, 3e-4);
+    expect_near("straight, paths", path.direct, radiance, 3e-4);
+    expect_near("to and fro", map.indirect, path.indirect, 0.04);
+    assert_true(map.specular == 0.0 && map.emission == 0.0 && path.specular == 0.0 && path.emission == 0.0);
+    assert_true(map.caustic < 1e-3 * map.direct); /* the rims are far away */
+}
+
+/* What path tracing cannot find it tells of: bent by blocks, not of slabs. */
+static void test_warning(void **state)
+{
+    (void)state;
+    static const float HIGH[] = {1.5f, 41.0f};
+    static const char *const MODES[] = {DIRECT, TRACED};
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 2; k++) {
+            program_run run = RUN("--size=4x4", "--spp=1", PATH, MODES[k], "-o", "w.exr",
+                                  scene_of(DIFFUSE_FLOOR, box_of(sun_at(1.0), 1.0f, HIGH[i])));
+            expect_exit(&run, 0);
+            assert_int_equal(strstr(run.err, "suns, points and spots") != NULL, i == 1 || k == 1);
+            program_run_reset(&run);
+        }
+}
+
+/* Means within 0.5 % and three of their standard errors, which seeds tell. */
+static void expect_agreement(const char *what, estimate a, estimate b)
+{
+    double sigma = sqrt(a.sigma * a.sigma + b.sigma * b.sigma), bound = 0.005 * b.mean + 3.0 * sigma;
+    print_message("%s: %.6f +- %.6f and %.6f +- %.6f\n", what, a.mean, a.sigma, b.mean, b.sigma);
+    assert_true(sigma < 0.02 * b.mean);
+    assert_true(fabs(a.mean - b.mean) <= bound);
+}
+
+/* Double glazing with a bar across it, a showcase, a ball of glass. */
+static void test_room(void **state)
+{
+    (void)state;
+    estimate truth = OVER_SEEDS(ROOM, PATHS, TRACED);
+    expect_agreement("paths", OVER_SEEDS(ROOM, PATHS), truth);
+    expect_agreement("photon map", OVER_SEEDS(ROOM, PHOTONS), truth);
+}
+
+/* Paths that know slabs find the sun behind one, as the photon map does. */
+static void test_sunny_room(void **state)
+{
+    (void)state;
+    text.length = 0;
+    slab_say(&text, GLASS);
+    slab_box(&text, vec3_make(-2.03f, 0.9f, -1.1f), vec3_make(-2.02f, 2.3f, 1.1f));
+    const char *scene = sunny_room(text.text);
+    expect_agreement("sun, indirect", OVER_SEEDS(scene, PHOTONS, "--only=indirect"),
+                     OVER_SEEDS(scene, PATHS, "--only=indirect"));
+    layers map = LAYERS(scene, "--size=20x20", "--spp=64", "--gather-samples=1"),
+           path = LAYERS(scene, "--size=20x20", "--spp=256", PATH);
+    expect_near("direct light", map.direct, path.direct, 0.02);
+}
+
+static void test_same_bits(void **state)
+{
+    (void)state;
+    static const char *const WAYS[][2] = {{"--nthreads=1", "--cache=on-demand"},
+                                          {"--nthreads=2", "--cache=on-demand"},
+                                          {"--nthreads=3", "--cache=precompute"}};
+    picture first = {0};
+    for (int i = 0; i < 3; i++) {
+        picture p = RENDER(ROOM, "--size=20x20", "--spp=4", "--gather-samples=8", "--photons=2e4",
+                           "--caustic-photons=5e3", WAYS[i][0], WAYS[i][1]);
+        if (i == 0) {
+            first = p;
+            continue;
+        }
+        assert_memory_equal(p.pixels, first.pixels, (size_t)(3 * p.width * p.height) * sizeof *p.pixels);
+        picture_reset(&p);
+    }
+    picture_reset(&first);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_sun),        TEST_IN_FOLDER(test_absorption), TEST_IN_FOLDER(test_sky),
+        TEST_IN_FOLDER(test_point),      TEST_IN_FOLDER(test_furnace),    TEST_IN_FOLDER(test_seen),
+        TEST_IN_FOLDER(test_layers),     TEST_IN_FOLDER(test_warning),    TEST_IN_FOLDER(test_room),
+        TEST_IN_FOLDER(test_sunny_room), TEST_IN_FOLDER(test_same_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
