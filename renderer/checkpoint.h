@@ -10,7 +10,7 @@
 #include "rendering.h"
 
 /* To be raised with every change of the header or of what the film's planes hold. */
-enum { CHECKPOINT_LAYOUT = 4, CHECKPOINT_SETTINGS_MAX = 512 };
+enum { CHECKPOINT_LAYOUT = 5, CHECKPOINT_SETTINGS_MAX = 512 };
 
 /* Without gaps: it is written as it is. */
 typedef struct checkpoint_header {

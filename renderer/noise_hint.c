@@ -46,8 +46,11 @@ static advice advise(const struct ag_rendering *r, ag_noise_source source, const
             return (advice){"in direct light from the sky", MORE_SAMPLES};
         return (advice){"in direct light from the sky, which comes in by few windows", find_windows_help(r)};
     case AG_NOISE_INDIRECT:
-        return (advice){"in indirect light", is_path ? "--integrator photonmap helps most"
-                                                     : "more gather rays (--gather-samples) help most"};
+        if (is_path)
+            return (advice){"in indirect light", "--integrator photonmap helps most"};
+        return (advice){"in indirect light", splitting_is_open(&r->settings)
+                                                 ? MORE_SAMPLES
+                                                 : "more gather rays (--gather-samples) help most"};
     case AG_NOISE_CAUSTIC:
         if (is_path)
             return (advice){"in caustics", "--integrator photonmap helps most"};

@@ -16,9 +16,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How many samples share a pixel's gather rays where it may get more: measured in four rooms, 2 to 8 rays a sample
- * bring the same noise in the least time. */
-enum { ADAPTIVE_GATHER_SAMPLES = 64 };
+/* Brings all pixels to their samples, with stops to decide how the next are split. */
+static ag_status render_passes(ag_rendering *r, uint32_t wanted)
+{
+    ag_film *film = r->film;
+    for (;;) {
+        uint32_t next = film->splits ? splitting_decide(film, &r->settings, wanted) : wanted;
+        ag_status status = render_tiles(r, next);
+        if (status != AG_OK || next == wanted)
+            return status;
+    }
+}
 
 /* The passes between the places where it is decided which pixels need more. */
 static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
@@ -29,7 +37,7 @@ static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
     uint32_t barrier = adaptive_barrier(film);
     while (status == AG_OK && !is_done) {
         if (barrier > 0)
-            status = render_tiles(r, barrier < wanted ? barrier : wanted);
+            status = render_passes(r, barrier < wanted ? barrier : wanted);
         if (barrier >= wanted || status != AG_OK)
             break;
         status = adaptive_decide(film, &r->context->run, &r->settings, &is_done);
@@ -66,6 +74,8 @@ static transport make_transport(const ag_context *context, const scene *s, const
     transport t = {.s = s,
                    .run = &context->run,
                    .settings = settings,
+                   .split = splitting_first(settings),
+                   .ray_bits = sampler_bits(splitting_most(settings).rays),
                    .layout = layout,
                    .wants_layers = layout->needs_layers,
                    .wants_groups = aov_has(layout, SUM_GROUPS),
@@ -98,13 +108,6 @@ static ag_status settle_settings(ag_context *context, const scene *s, const ag_r
                                  ag_render_settings *out_settings)
 {
     *out_settings = *wanted;
-    if (out_settings->gather_samples == 0 && out_settings->samples_per_pixel > 0) {
-        int samples = out_settings->samples_per_pixel;
-        if (out_settings->noise_level > 0.0f && samples > ADAPTIVE_GATHER_SAMPLES)
-            samples = ADAPTIVE_GATHER_SAMPLES;
-        int rays = AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples;
-        out_settings->gather_samples = rays > 0 ? rays : 1;
-    }
     if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
         out_settings->photon_aim = out_settings->photon_map_file ? 0.0f : AG_DEFAULT_PHOTON_AIM;
     const integrator *kind = integrator_of(out_settings->integrator);
@@ -306,7 +309,7 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     const integrator *kind = integrator_of(r->settings.integrator);
     ag_status status = kind->begin_pass ? kind->begin_pass(r) : AG_OK;
     if (status == AG_OK)
-        status = r->film->wanted ? render_adaptively(r, wanted) : render_tiles(r, wanted);
+        status = r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
     film_resolve(r->film);
     if (status == AG_OK && kind->end_pass)
         status = kind->end_pass(r);

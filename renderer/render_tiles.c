@@ -62,6 +62,16 @@ typedef struct tile_job {
     double progress_begin, progress_end; /* of the phase, before and after this pass */
 } tile_job;
 
+/* What the sample's parts have cost, and how noisy its light samples are. */
+static void note_split(const eye_worker *worker, uint64_t cost_before, eye_sample *out)
+{
+    uint64_t cost = eye_worker_cost(worker) - cost_before;
+    out->light_variance = worker->light_variance;
+    out->gather_cost = (float)worker->gather_cost;
+    out->light_cost = (float)worker->light_cost;
+    out->rest_cost = (float)(cost - worker->gather_cost - worker->light_cost);
+}
+
 /* All but the gathered light, which the worker's batch brings later. */
 static void render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index, eye_sample *out)
 {
@@ -79,7 +89,11 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
     scene_ray ray = camera_generate_ray(&t->s->camera, place.film_x, place.film_y, place.aspect, lens, time);
     out->most_direct = settings->clamp_direct > 0.0f ? settings->clamp_direct : INFINITY;
     out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
+    uint64_t cost_before = eye_worker_cost(worker);
+    worker->light_variance = 0.0f;
+    worker->gather_cost = worker->light_cost = 0;
     job->kind->sample(t, worker, ray, &where, out);
+    note_split(worker, cost_before, out);
     if (out->layers && t->layout->needs_first_hit)
         first_hit_project(t, &place, &out->layers->first);
 }
@@ -107,8 +121,7 @@ static bool should_finish(const transport *t, const eye_worker *worker)
 {
     const gather_batch *batch = worker->batch;
     return sample_queue_is_full(worker->queue) ||
-           (batch && batch->query_count > 0 &&
-            batch->query_count + (uint32_t)t->settings->gather_samples > IRRADIANCE_BATCH_MAX);
+           (batch && batch->query_count > 0 && batch->query_count + t->split.rays > IRRADIANCE_BATCH_MAX);
 }
 
 /* The samples that the pixel has not had yet, in their order, by the one thread that has its tile. */
@@ -117,6 +130,7 @@ static void render_pixel(tile_job *job, eye_worker *worker, int x, int y)
     ag_film *film = job->film;
     size_t pixel = film_pixel_at(film, x, y);
     uint32_t goal = film_goal(film, pixel, job->wanted);
+    worker->split = film->splits ? film->splits[pixel].counts : job->t->split;
     bool with_layers = job->t->wants_layers || noise_lattice_holds(&film->noise, pixel);
     for (uint32_t i = film->counts[pixel]; i < goal; i++) {
         if (run_is_cancelled(&job->context->run))

@@ -20,16 +20,6 @@ uint32_t adaptive_barrier(const struct ag_film *film)
     return most;
 }
 
-/* The pixels of a block, those of the picture alone. */
-static film_area block_area(const struct ag_film *film, int column, int row)
-{
-    const film_area *all = &film->area;
-    int x = column * FILM_BLOCK, y = row * FILM_BLOCK;
-    int width = all->width - x < FILM_BLOCK ? all->width - x : FILM_BLOCK,
-        height = all->height - y < FILM_BLOCK ? all->height - y : FILM_BLOCK;
-    return (film_area){all->x0 + x, all->y0 + y, width, height};
-}
-
 /* The variance of what is shown, mean over the block. A rare bright sample keeps a block going: of a pixel that has met
  * one alone, the variance is the square of the mean that it makes. */
 static double block_variance(const decision *d, film_area block)
@@ -53,7 +43,7 @@ static void decide_rows(void *user, uint64_t begin, uint64_t end, uint64_t block
     uint64_t active = 0;
     for (uint64_t row = begin; row < end; row++)
         for (int column = 0; column < columns; column++) {
-            film_area block = block_area(film, column, (int)row);
+            film_area block = film_block_at(film, column, (int)row);
             bool is_active = block_variance(d, block) > d->level_squared;
             active += is_active;
             for (int y = block.y0; y < block.y0 + block.height; y++)

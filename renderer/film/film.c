@@ -38,7 +38,7 @@ static void set_crop(ag_film *film, const ag_render_settings *settings)
     if (film->width < 1 || film->height < 1)
         film->width = film->height = 0;
     film->area = (film_area){film->x0, film->y0, film->width, film->height};
-    if (settings->noise_level > 0.0f && film->width > 0) {
+    if ((settings->noise_level > 0.0f || splitting_is_open(settings)) && film->width > 0) {
         int x0 = edges[0] / FILM_BLOCK * FILM_BLOCK, y0 = edges[2] / FILM_BLOCK * FILM_BLOCK;
         int x1 = (edges[1] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK,
             y1 = (edges[3] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK;
@@ -85,6 +85,12 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
         film->wanted = calloc(count, sizeof *film->wanted);
         is_whole = is_whole && film->wanted;
     }
+    if (splitting_is_open(settings)) {
+        film->splits = calloc(count, sizeof *film->splits);
+        is_whole = is_whole && film->splits;
+        for (size_t i = 0; film->splits && i < count; i++)
+            film->splits[i].counts = splitting_first(settings);
+    }
     if (film->layout.needs_nearest) {
         film->nearest = calloc(count, sizeof *film->nearest);
         is_whole = is_whole && film->nearest;
@@ -103,6 +109,7 @@ void ag_film_destroy(ag_film *film)
     free(film->sums);
     free(film->counts);
     free(film->wanted);
+    free(film->splits);
     free(film->negatives);
     free(film->nearest);
     for (int i = 0; i < FILM_VIEW_COUNT; i++)
@@ -126,6 +133,8 @@ int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
     out_planes[count++] = (film_plane){film->counts, pixels * sizeof *film->counts};
     if (film->wanted)
         out_planes[count++] = (film_plane){film->wanted, pixels * sizeof *film->wanted};
+    if (film->splits)
+        out_planes[count++] = (film_plane){film->splits, pixels * sizeof *film->splits};
     if (film->negatives)
         out_planes[count++] = (film_plane){film->negatives, pixels * sizeof *film->negatives};
     for (int i = 0; i < FILM_VIEW_COUNT; i++)
@@ -138,6 +147,15 @@ int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
         out_planes[count++] = (film_plane){film->nearest, pixels * sizeof *film->nearest};
     out_planes[count++] = (film_plane){film->noise.sums, noise_lattice_bytes(&film->noise)};
     return count;
+}
+
+film_area film_block_at(const ag_film *film, int column, int row)
+{
+    const film_area *all = &film->area;
+    int x = column * FILM_BLOCK, y = row * FILM_BLOCK;
+    int width = all->width - x < FILM_BLOCK ? all->width - x : FILM_BLOCK,
+        height = all->height - y < FILM_BLOCK ? all->height - y : FILM_BLOCK;
+    return (film_area){all->x0 + x, all->y0 + y, width, height};
 }
 
 film_count film_count_samples(const ag_film *film)
@@ -238,6 +256,8 @@ void film_add(ag_film *film, size_t pixel, const eye_sample *sample)
     const int *offset = film->layout.offset;
     if (aov_has(&film->layout, SUM_SQUARES))
         add_squares(film, sums + offset[SUM_SQUARES], sums + offset[SUM_DEVELOPED], sample->radiance);
+    if (film->splits)
+        split_trial_add(&film->splits[pixel], sample);
     if (!sample->layers)
         return;
     if (film->layout.needs_layers)

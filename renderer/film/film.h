@@ -9,6 +9,7 @@
 #include "film/film_response.h"
 #include "film/noise.h"
 #include "film/pixel_filter.h"
+#include "film/splitting.h"
 
 /* The surface nearest to the eye that a pixel's samples met, which is what depth and ids mean; no mean of them means
  * anything. */
@@ -31,12 +32,12 @@ typedef struct film_area {
     int x0, y0, width, height;
 } film_area;
 
-/* Adaptive sampling decides for blocks of so many pixels in width and height, aligned to the full picture. */
+/* What adapts to the picture does so for blocks of so many pixels in width and height, aligned to the full picture. */
 enum { FILM_BLOCK = 8 };
 
 struct ag_film {
     int x0, y0, width, height; /* the crop, in pixels of the full picture */
-    film_area area;            /* what is rendered: the crop; with adaptive sampling all blocks that it touches, so that
+    film_area area;            /* what is rendered: the crop; where blocks are decided on, all that it touches, so that
                                   its pixels get the samples that they have in the full picture */
     int full_width, full_height;
     bool float_samples;  /* as in ag_render_settings */
@@ -50,6 +51,7 @@ struct ag_film {
     double *sums;                  /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
+    split_trial *splits;           /* see splitting.h; NULL: all samples are split alike */
     uint32_t *negatives;           /* those with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
@@ -88,8 +90,11 @@ typedef struct film_plane {
     void *bytes; /* the film's */
     size_t size;
 } film_plane;
-enum { FILM_PLANES_MAX = 6 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
+enum { FILM_PLANES_MAX = 7 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
 int film_planes(const struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
+
+/* A block's pixels, those of the area alone, by its column and row there. */
+film_area film_block_at(const struct ag_film *film, int column, int row);
 
 /* How many samples a pixel is to have in a pass that brings all to `all`. */
 static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint32_t all)

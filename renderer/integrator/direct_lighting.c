@@ -116,11 +116,22 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
     return sum;
 }
 
+/* Of the mean of samples, by how they differ; of one alone it is not known: 0. */
+static float variance_of_mean(float sum, float squares, int count)
+{
+    if (count < 2)
+        return 0.0f;
+    float n = (float)count;
+    return fmaxf(squares - sum * sum / n, 0.0f) / (n * (n - 1.0f));
+}
+
 rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
                           int path_vertex, sample_counts counts, rgb *by_group)
 {
     rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f), *sky = &worker->direct_from_sky;
+    float lamp_squares = 0.0f, scatter_squares = 0.0f;
     *sky = rgb_gray(0.0f);
+    worker->direct_variance = 0.0f;
     if (!t->has_lights)
         return from_lamps;
     int lamp_count = counts.light, scatter_count = counts.scatter;
@@ -131,6 +142,7 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
         vec2 u = sampler_2d_of(where, SAMPLE_LIGHT, path_vertex, (uint32_t)lamp_count, (uint32_t)i);
         lamp_light sample = direct_light_sample_lamp(t, worker, v, BSDF_GATHERED, u_pick, u, lamp_count, scatter_count);
         from_lamps = rgb_add(from_lamps, sample.radiance);
+        lamp_squares += rgb_mean(sample.radiance) * rgb_mean(sample.radiance);
         if (!rgb_is_black(sample.radiance) && t->s->lights[sample.lamp].kind == LIGHT_INFINITE)
             *sky = rgb_add(*sky, rgb_scale(sample.radiance, lamp_share));
         if (by_group && !rgb_is_black(sample.radiance))
@@ -151,7 +163,9 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
             const rgb *of_group = light_group_sums_begin(&groups, by_group != NULL);
             rgb escaped = direct_light_escaped(t, from, normal, scattered.direction, scattered.pdf_solid_angle,
                                                lamp_count, scatter_count, of_group ? groups.of_group : NULL);
-            by_scattering = rgb_add(by_scattering, rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight));
+            rgb brought = rgb_mul(rgb_mul(escaped, met.transmittance), scattered.weight);
+            by_scattering = rgb_add(by_scattering, brought);
+            scatter_squares += rgb_mean(brought) * rgb_mean(brought);
             rgb reflected = rgb_scale(rgb_mul(met.transmittance, scattered.weight), scatter_share);
             *sky = rgb_add(*sky, rgb_mul(escaped, reflected));
             for (int k = 0; of_group && k <= LIGHT_GROUPS_MAX; k++)
@@ -165,8 +179,13 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
             direct_light_scatter_weight(t, from, normal, &met, scattered.pdf_solid_angle, lamp_count, scatter_count);
         rgb brought = rgb_scale(rgb_mul(emitted, scattered.weight), weight);
         by_scattering = rgb_add(by_scattering, brought);
+        scatter_squares += rgb_mean(brought) * rgb_mean(brought);
         add_to_group(by_group, met.lamp, rgb_scale(brought, scatter_share));
     }
+    worker->direct_variance =
+        variance_of_mean(rgb_mean(from_lamps), lamp_squares, lamp_count) +
+        (scatter_count == 1 ? 0.5f * scatter_squares
+                            : variance_of_mean(rgb_mean(by_scattering), scatter_squares, scatter_count));
     rgb sum = rgb_scale(from_lamps, lamp_share);
     return scatter_count > 0 ? rgb_add(sum, rgb_scale(by_scattering, scatter_share)) : sum;
 }

@@ -40,7 +40,7 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
                          int lamp_count, int scatter_count, rgb *by_group);
 
 /* All of the direct light at a diffuse place, by so many samples towards lamps and by scattering. What of it is from
- * infinite lights is left in worker->direct_from_sky. */
+ * infinite lights is left in worker->direct_from_sky, and how noisy it is in worker->direct_variance. */
 rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
                           int path_vertex, sample_counts counts, rgb *by_group);
 

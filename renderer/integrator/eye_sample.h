@@ -40,11 +40,22 @@ typedef struct sample_layers {
     first_hit first;
 } sample_layers;
 
+/* How many inner samples a camera sample is split into; >= 1. */
+typedef struct split_counts {
+    uint32_t rays;      /* gather rays */
+    uint32_t lights;    /* samples towards lamps where its ray meets a diffuse surface first */
+    uint32_t ray_shift; /* added, modulo 2^32, to the sample's number where its gather rays are numbered, so that those
+                           of a pixel follow each other whatever the numbers were before; see sampler_shifted */
+} split_counts;
+
 typedef struct eye_sample {
     rgb radiance;
     float most_direct, most_indirect; /* of a component of one contribution, INFINITY: unbounded */
     int sign;                         /* of the pixel filter there */
-    sample_layers *layers;            /* NULL: radiance alone is asked for */
+    float gather_variance;            /* of the mean of the three colours, by the choice of gather rays: an estimate */
+    float light_variance;             /* likewise, of light samples where the ray met a surface first */
+    float gather_cost, light_cost, rest_cost; /* of those, and of all else: see eye_worker_cost */
+    sample_layers *layers;                    /* NULL: radiance alone is asked for */
 } eye_sample;
 
 /* The factor that bounds light to a largest component. */

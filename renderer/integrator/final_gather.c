@@ -17,6 +17,7 @@ typedef struct gathering {
     uint32_t count;
     float share_seen; /* of what a ray brings, by the eye */
     rgb known;
+    uint64_t cost; /* of its rays, as eye_worker_cost has it */
 } gathering;
 
 static rng ray_random(const gathering *g, uint32_t number)
@@ -29,12 +30,18 @@ static rng ray_random(const gathering *g, uint32_t number)
 static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 {
     gather_end end;
-    rgb weight;
+    rgb weight, known = rgb_gray(0.0f);
     rng random = ray_random(g, number);
     rng_next(&random); /* of the lobe that the ray left by */
-    if (gather_path_follow(g->t, g->worker, v, random, g->scatterings_left, first, g->share_seen, &g->known, &end,
-                           &weight))
-        gather_batch_ask(g->worker->batch, &end, number, weight);
+    uint64_t before = eye_worker_cost(g->worker);
+    bool asks = gather_path_follow(g->t, g->worker, v, random, g->scatterings_left, first, g->share_seen, &known, &end,
+                                   &weight);
+    g->cost += eye_worker_cost(g->worker) - before;
+    g->known = rgb_add(g->known, known);
+    if (asks)
+        gather_batch_ask(g->worker->batch, &end, number, weight, rgb_mean(known));
+    else
+        gather_batch_note(g->worker->batch, rgb_mean(known));
 }
 
 static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weight)
@@ -43,6 +50,7 @@ static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weig
     scene_ray ray = transport_scattered_ray(g->t, g->from, direction, false);
     ray.skips_uv = true;
     g->worker->rays_gather++;
+    g->cost += EYE_COST_OF_RAY;
     if (transport_meet(g->t, g->worker, ray, &v))
         follow(g, number, weight, &v);
 }
@@ -61,6 +69,7 @@ static void follow_together(gathering *g, gather_rays *r)
     ray_fan *fan = &r->fan;
     scene_intersect_fan(t->s, fan);
     g->worker->rays_gather += fan->count;
+    g->cost += (uint64_t)EYE_COST_OF_RAY * fan->count;
     for (uint32_t i = 0; i < fan->count; i++) {
         float distance = fan->met[i].distance;
         if (distance == INFINITY)
@@ -70,8 +79,8 @@ static void follow_together(gathering *g, gather_rays *r)
         if (distance >= t->gather_min_distance)
             albedo = ray_fan_plain_place(t->s, fan, i, &end.place);
         if (albedo) {
-            gather_batch_ask(g->worker->batch, &end, r->number[i],
-                             rgb_scale(rgb_mul(r->weight[i], *albedo), AG_INV_PI));
+            gather_batch_ask(g->worker->batch, &end, r->number[i], rgb_scale(rgb_mul(r->weight[i], *albedo), AG_INV_PI),
+                             0.0f);
             continue;
         }
         vertex v;
@@ -147,14 +156,14 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
                   bool is_first, int scatterings_left, uint32_t count, rgb throughput, float share)
 {
     rgb one_ray = rgb_scale(throughput, 1.0f / (float)count);
-    gathering g = {t, worker, v, where, path_vertex, scatterings_left - 1, count, rgb_max(one_ray), rgb_gray(0.0f)};
+    gathering g = {t, worker, v, where, path_vertex, scatterings_left - 1, count, rgb_max(one_ray), rgb_gray(0.0f), 0};
     gather_batch *batch = worker->batch;
     if (!gather_batch_has_room(batch, RAY_FAN_MAX))
         final_gather_resolve(t, worker);
     if (run_is_cancelled(t->run)) /* the batch is full still, and the sample thrown away */
         return;
-    gather_batch_begin(batch, worker->sample, is_first, one_ray, share,
-                       hash_combine(hash_combine(where->key, (uint64_t)path_vertex), where->sample));
+    gather_batch_begin(batch, worker->sample, is_first, one_ray, share, count,
+                       hash_combine(hash_combine(where->key, (uint64_t)path_vertex), (uint64_t)where->sample * count));
     sampler_sequence numbers = sampler_sequence_make(where, SAMPLE_GATHER, path_vertex, count);
     bool is_plain = bsdf_is_plain(&v->scattering);
     incident_guide guide;
@@ -181,6 +190,7 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
             follow_alone(&g, rays.number[i], ray_fan_direction(&rays.fan, i), rays.weight[i]);
     }
     gather_batch_end(batch, g.known);
+    worker->gather_cost += g.cost;
 }
 
 /* Bounces the detours under way until each has been answered, or ends. They ask together, so that this too is in the
@@ -217,11 +227,13 @@ static void follow_detours(const transport *t, eye_worker *worker, uint32_t coun
 void final_gather_resolve(const transport *t, eye_worker *worker)
 {
     gather_batch *b = worker->batch;
+    uint64_t cost_before = eye_worker_cost(worker);
     irradiance_cache_get_many(t->cache, t->run, b->queries, b->query_count, worker->index, b->irradiance, b->holds);
     if (run_is_cancelled(t->run))
         return;
     uint32_t query = 0, count;
     while ((count = gather_batch_make_detours(b, &query)) > 0)
         follow_detours(t, worker, count);
+    worker->cost_apart += eye_worker_cost(worker) - cost_before;
     gather_batch_sum(b);
 }

@@ -25,10 +25,15 @@ void gather_batch_reset(gather_batch *b)
 
 void gather_batch_destroy(gather_batch *b) { free(b); }
 
-void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, float share, uint64_t key)
+void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, float share,
+                        uint32_t ray_count, uint64_t key)
 {
-    b->gathers[b->gather_count++] = (gather){
-        .throughput = throughput, .most = b->most_indirect * share, .sample = sample, .is_first = is_first, .key = key};
+    b->gathers[b->gather_count++] = (gather){.throughput = throughput,
+                                             .most = b->most_indirect * share,
+                                             .ray_count = ray_count,
+                                             .sample = sample,
+                                             .is_first = is_first,
+                                             .key = key};
     b->is_open = true;
 }
 
@@ -73,6 +78,15 @@ uint32_t gather_batch_make_detours(gather_batch *b, uint32_t *in_out_query)
     return count;
 }
 
+/* Of the sum of a gather's rays at the eye, in the mean of the three colours: by how its rays differ. A ray alone is
+ * taken to differ from others as much as it brings. */
+static float sum_variance(const gather *g)
+{
+    float count = (float)g->ray_count, sum = rgb_mean(rgb_add(g->known, g->read)), weight = rgb_mean(g->throughput);
+    float of_ray = g->ray_count > 1 ? fmaxf(g->squares - sum * sum / count, 0.0f) / (count - 1.0f) : g->squares * 0.5f;
+    return weight * weight * count * of_ray;
+}
+
 void gather_batch_sum(gather_batch *b)
 {
     if (b->is_open)
@@ -80,14 +94,19 @@ void gather_batch_sum(gather_batch *b)
     uint32_t query = 0, over = b->gather_count - (b->is_open ? 1 : 0);
     for (uint32_t i = 0; i < b->gather_count; i++) {
         gather *g = &b->gathers[i];
-        for (; query < g->query_end; query++)
-            g->read = rgb_add(g->read, rgb_mul(b->weights[query], b->irradiance[query]));
+        for (; query < g->query_end; query++) {
+            rgb read = rgb_mul(b->weights[query], b->irradiance[query]);
+            float brought = rgb_mean(read) + b->rests[query].known;
+            g->read = rgb_add(g->read, read);
+            g->squares += brought * brought;
+        }
         if (i >= over)
             break;
         gathered_light *sum = &b->gathered[g->sample];
         rgb brought = rgb_mul(g->throughput, rgb_add(g->known, g->read)),
             *to = g->is_first ? &sum->first : &sum->behind;
         *to = rgb_add(*to, rgb_scale(brought, eye_bound(g->most, brought)));
+        sum->variance += sum_variance(g);
     }
     if (b->is_open)
         b->gathers[0] = b->gathers[over];

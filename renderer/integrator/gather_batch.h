@@ -27,6 +27,8 @@ typedef struct gather {
     rgb throughput;     /* from the place to the eye, over the number of rays */
     rgb known, read;    /* radiance, W/m^2/sr: brought by short rays' own bounces, and what was read from the cache */
     float most;         /* of a component of what it brings the eye; INFINITY: no bound */
+    float squares;      /* of rays that asked for nothing: see known of gather_query_rest */
+    uint32_t ray_count; /* of those that brought nothing, too */
     uint32_t sample;    /* of those under way */
     uint32_t query_end; /* its queries go up to here, from where the last gather's end */
     bool is_first;      /* the place is what the eye sees */
@@ -38,6 +40,7 @@ typedef struct gather_query_rest {
     float epsilon;
     uint32_t medium, number;
     int scatterings_left;
+    float known; /* mean of the three colours of what the ray brought itself */
 } gather_query_rest;
 
 /* The way of light from a query that has no answer: by further bounces. */
@@ -52,6 +55,7 @@ typedef struct gather_detour {
 /* What a sample has gathered. */
 typedef struct gathered_light {
     rgb first, behind; /* radiance at the eye: where its ray met a surface first, and by way of traced lobes there */
+    float variance;    /* of the mean of the three colours of both, from ray to ray: an estimate */
 } gathered_light;
 
 typedef struct gather_batch {
@@ -82,16 +86,26 @@ static inline bool gather_batch_has_room(const gather_batch *b, uint32_t query_c
     return b->query_count + query_count <= IRRADIANCE_BATCH_MAX && b->gather_count < GATHER_BATCH_GATHERS;
 }
 
-/* Begins a gather, in a batch that has room, and ends it: known is the sum of what its rays brought themselves. */
-void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, float share, uint64_t key);
+/* Begins a gather of so many rays, in a batch that has room, and ends it: known is the sum of what its rays brought
+ * themselves. */
+void gather_batch_begin(gather_batch *b, uint32_t sample, bool is_first, rgb throughput, float share,
+                        uint32_t ray_count, uint64_t key);
 void gather_batch_end(gather_batch *b, rgb known);
 
-/* Asks for the irradiance at an end, for the open gather, in a batch that has room. number: of the ray. */
-static inline void gather_batch_ask(gather_batch *b, const gather_end *end, uint32_t number, rgb weight)
+/* Asks for the irradiance at an end, for the open gather, in a batch that has room. number: of the ray; known: mean of
+ * the three colours of what it brought already. */
+static inline void gather_batch_ask(gather_batch *b, const gather_end *end, uint32_t number, rgb weight, float known)
 {
     b->queries[b->query_count] = (irradiance_query){end->place.position, end->place.normal};
-    b->rests[b->query_count] = (gather_query_rest){end->place.epsilon, end->medium, number, end->scatterings_left};
+    b->rests[b->query_count] =
+        (gather_query_rest){end->place.epsilon, end->medium, number, end->scatterings_left, known};
     b->weights[b->query_count++] = weight;
+}
+
+/* A ray of the open gather that asks for nothing. */
+static inline void gather_batch_note(gather_batch *b, float known)
+{
+    b->gathers[b->gather_count - 1].squares += known * known;
 }
 
 /* Makes detours of up to GATHER_BATCH_DETOURS queries without an answer, from the query *in_out_query on, which becomes

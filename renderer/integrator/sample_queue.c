@@ -40,6 +40,7 @@ eye_sample *sample_queue_begin(sample_queue *q, size_t pixel, bool with_layers)
 static void add_gathered(eye_sample *s, const gathered_light *gathered, uint32_t group)
 {
     s->radiance = rgb_add(s->radiance, rgb_add(gathered->first, gathered->behind));
+    s->gather_variance = gathered->variance;
     if (!s->layers)
         return;
     eye_sample_note(s, PART_INDIRECT, gathered->first);
@@ -65,6 +66,7 @@ static bool bound_sample(const struct ag_film *film, eye_sample *sample)
         is_finite = is_finite && rgb_is_finite(sample->layers->parts[i]);
     if (!is_finite) {
         sample->radiance = rgb_gray(0.0f);
+        sample->gather_variance = sample->light_variance = 0.0f;
         if (sample->layers) {
             const first_hit first = sample->layers->first;
             *sample->layers = (sample_layers){.first = first};

@@ -69,6 +69,16 @@ static inline sampler sampler_branch(const sampler *whole, uint32_t branch_bits,
     return s;
 }
 
+/* The sampler of a sample whose number is shifted, of a pixel that has up to 2^number_bits numbers of count each: those
+ * that it draws then follow the ones that its pixel drew by other counts. */
+static inline sampler sampler_shifted(const sampler *whole, uint32_t shift, uint32_t number_bits, uint32_t count)
+{
+    sampler s = *whole;
+    s.sample += shift;
+    s.sample_bits = number_bits - sampler_bits(count);
+    return s;
+}
+
 static inline uint32_t sampler_reverse_bits(uint32_t x)
 {
     x = x << 16 | x >> 16; /* which compilers turn into vectors, a swap of bytes they do not all */

@@ -9,14 +9,15 @@
 enum { ROULETTE_AFTER = 4 };
 
 /* A path is split at the first glossy place: the diffuse places behind it share the gather rays, and many directions
- * say more of the light than many rays behind one. Smooth glass has two ways at each of its faces. */
+ * say more of the light than many rays behind one; so there may be more branches than gather rays. Smooth glass has two
+ * ways at each of its faces. */
 enum { BRANCHES_MAX = 8, SMOOTH_BRANCHES_MAX = 4 };
 
 static const float SQRT_2 = 1.41421356f;
 
 /* Added to the vertex where random numbers are drawn: those of paths with other numbers of branches or of gather rays
- * are of other sequences. */
-enum { KEY_OF_BRANCHES = 1 << 16, KEY_OF_RAYS = 1 << 24 };
+ * are of other sequences, and so are those that decide whether there is a gather ray. */
+enum { KEY_OF_BRANCHES = 1 << 16, KEY_OF_RAYS = 1 << 24, KEY_OF_CHANCE = 1 << 30 };
 
 /* What a diffuse place sends on: its parts, but for what is gathered, which comes to the sample later. */
 typedef struct diffuse_light {
@@ -50,15 +51,61 @@ static uint32_t nearest_bits(float wanted)
 }
 
 /* The share of the eye's gather rays that a place on the path has: as many of them as of the light that the eye sees.
- */
-static uint32_t gather_count(const transport *t, const eye_path *path)
+ * Where that is less than one, there is one with this probability. */
+typedef struct gather_share {
+    uint32_t count;
+    float probability; /* 1 where count > 1 */
+} gather_share;
+
+static gather_share share_of_gather(const transport *t, const eye_worker *worker, const eye_path *path)
 {
-    uint32_t most = (uint32_t)t->settings->gather_samples;
+    uint32_t most = worker->split.rays;
     if (path->scatterings == 0)
-        return most;
+        return (gather_share){most, 1.0f};
     float wanted = (float)most * fminf(path->share * rgb_max(path->throughput), 1.0f);
+    if (wanted < 1.0f) /* a bound would cut what chance has made brighter */
+        return (gather_share){1, t->settings->clamp_indirect > 0.0f ? 1.0f : fminf((float)most * path->share, 1.0f)};
     uint32_t bits = nearest_bits(wanted);
-    return 1u << bits < most ? 1u << bits : most;
+    return (gather_share){1u << bits < most ? 1u << bits : most, 1.0f};
+}
+
+/* The light from other surfaces by way of those. */
+static void gather_light(const transport *t, eye_worker *worker, const vertex *v, const eye_path *path,
+                         int scatterings_left)
+{
+    gather_share rays = share_of_gather(t, worker, path);
+    int key = random_vertex(path) + KEY_OF_RAYS * (int)sampler_bits(rays.count);
+    float chance = rays.probability < 1.0f
+                       ? sampler_2d(&path->where, SAMPLE_ROULETTE, random_vertex(path) + KEY_OF_CHANCE).x
+                       : 0.0f;
+    sampler where = path->where;
+    if (path->scatterings == 0) { /* all of a pixel's rays are one sequence, however many a sample has */
+        where = sampler_shifted(&where, worker->split.ray_shift, where.sample_bits + t->ray_bits, rays.count);
+        key = random_vertex(path);
+    }
+    if (chance < rays.probability)
+        final_gather(t, worker, v, &where, key, path->scatterings == 0, scatterings_left, rays.count,
+                     rgb_scale(path->throughput, path->share / rays.probability), path->share);
+}
+
+/* Light samples are shared like gather rays, but each place has one. */
+static rgb direct_radiance(const transport *t, eye_worker *worker, const vertex *v, const eye_path *path, rgb *by_group)
+{
+    uint32_t lights = worker->split.lights;
+    if (path->scatterings > 0) {
+        uint32_t bits = nearest_bits((float)lights * fminf(path->share * rgb_max(path->throughput), 1.0f));
+        lights = 1u << bits < lights ? 1u << bits : lights;
+    }
+    uint64_t before = eye_worker_cost(worker);
+    rgb direct =
+        direct_light_gathered(t, worker, v, &path->where, random_vertex(path) + KEY_OF_RAYS * (int)sampler_bits(lights),
+                              transport_sample_counts(t, lights), by_group);
+    if (path->scatterings == 0) {
+        float weight = rgb_mean(path->throughput);
+        worker->light_cost += eye_worker_cost(worker) - before;
+        worker->light_variance += weight * weight * worker->direct_variance;
+    }
+    return direct;
 }
 
 static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, const vertex *v, const eye_path *path,
@@ -83,11 +130,8 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
         sum.indirect = rgb_scale(all, AG_INV_PI);
         return sum;
     }
-    uint32_t rays = gather_count(t, path);
-    key += KEY_OF_RAYS * (int)sampler_bits(rays);
     if (is_whole) {
-        sum.direct =
-            direct_light_gathered(t, worker, v, &path->where, key, transport_sample_counts(t, (int)rays), by_group);
+        sum.direct = direct_radiance(t, worker, v, path, by_group);
         sum.sky = worker->direct_from_sky;
     }
     if (path->scatterings == 0)
@@ -96,8 +140,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
         sum.caustic = transport_some_caustics(t, worker, v, path->share * rgb_max(throughput),
                                               sampler_2d(&path->where, SAMPLE_ROULETTE, key).y);
     if (scatterings_left >= 2)
-        final_gather(t, worker, v, &path->where, key, path->scatterings == 0, scatterings_left, rays,
-                     rgb_scale(throughput, path->share), path->share);
+        gather_light(t, worker, v, path, scatterings_left);
     return sum;
 }
 
@@ -198,7 +241,6 @@ static uint32_t branch_bits(const transport *t, const eye_path *path, const vert
     if (path->scatterings > 0 || transport_is_open_pane(t, v) || !bsdf_has_many_ways(&v->scattering, BSDF_TRACED))
         return 0;
     int most = bsdf_is_sampled_from_light(&v->scattering, BSDF_TRACED) ? BRANCHES_MAX : SMOOTH_BRANCHES_MAX;
-    most = t->settings->gather_samples < most ? t->settings->gather_samples : most;
     return nearest_bits((float)most * bsdf_probability(&v->scattering, BSDF_TRACED));
 }
 

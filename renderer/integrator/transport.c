@@ -3,13 +3,11 @@
 
 #include "rays/passage.h"
 
-/* Direct light takes one sample for so many gather rays, so that neither is much noisier than the other. */
-enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
+enum { LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
 
-sample_counts transport_sample_counts(const transport *t, int gather_samples)
+sample_counts transport_sample_counts(const transport *t, uint32_t lights)
 {
-    sample_counts n = {0};
-    n.light = (gather_samples + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE;
+    sample_counts n = {.light = (int)lights};
     if (t->can_meet_lights)
         n.scatter = (n.light + LIGHT_SAMPLES_PER_SCATTER_SAMPLE - 1) / LIGHT_SAMPLES_PER_SCATTER_SAMPLE;
     return n;

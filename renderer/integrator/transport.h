@@ -22,6 +22,8 @@ typedef struct transport {
     const incident_light *incident;   /* likewise, what guides gathers; NULL: nothing */
     const direct_guide *direct_guide; /* what guides shadow rays; NULL: nothing */
     const ag_render_settings *settings;
+    split_counts split;        /* of all samples; where blocks choose, of the first */
+    uint32_t ray_bits;         /* no sample has more than 2^this gather rays */
     const aov_layout *layout;  /* what the film wants beside radiance */
     bool wants_layers;         /* of each sample: more than its radiance */
     bool wants_groups;         /* light by the groups of its lamps */
@@ -42,7 +44,24 @@ typedef struct eye_worker {
     gather_batch *batch;                       /* of the samples under way; NULL for path tracing */
     struct sample_queue *queue;                /* those samples */
     uint32_t sample;                           /* the number there of the one whose path is being traced */
+
+    /* Of that sample, see eye_sample: how it is to be split, and what is noted of it. */
+    split_counts split;
+    float light_variance;
+    float direct_variance; /* of the last direct_light_gathered, in the mean of the three colours: an estimate */
+    uint64_t gather_cost, light_cost;
+    uint64_t cost_apart; /* of whatever samples' detours, in all */
 } eye_worker;
+
+/* What a worker's rays have cost so far, but for detours, which do not belong to the sample under way: in quarters of a
+ * gather ray's time, as measured in five rooms. A camera ray's has the sample's whole way into the film with it, a
+ * path's what is found out about the place that it meets. */
+enum { EYE_COST_OF_RAY = 4, EYE_COST_OF_CAMERA_RAY = 24, EYE_COST_OF_PATH_RAY = 8 };
+static inline uint64_t eye_worker_cost(const eye_worker *w)
+{
+    return EYE_COST_OF_CAMERA_RAY * w->rays_camera + EYE_COST_OF_PATH_RAY * w->rays_path +
+           EYE_COST_OF_RAY * (w->rays_shadow + w->rays_gather) + w->rays_estimate - w->cost_apart;
+}
 
 /* A place where a camera path or gather ray met a surface. */
 typedef struct vertex {
@@ -53,12 +72,12 @@ typedef struct vertex {
     const light *lamp; /* the area light that shines there, or NULL */
 } vertex;
 
-/* How many samples direct light takes at a diffuse place that sends so many gather rays. */
+/* How many samples direct light takes at a diffuse place. */
 typedef struct sample_counts {
     int light;   /* towards lamps */
     int scatter; /* by scattering, 0 where that cannot meet a lamp */
 } sample_counts;
-sample_counts transport_sample_counts(const transport *t, int gather_samples);
+sample_counts transport_sample_counts(const transport *t, uint32_t lights);
 
 /* Follows a ray of unit direction to the first surface that scatters. */
 bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);

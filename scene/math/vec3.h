@@ -78,6 +78,7 @@ static inline float rgb_max(rgb a) { return float_max(a.r, float_max(a.g, a.b));
 static inline bool rgb_is_black(rgb a) { return a.r == 0.0f && a.g == 0.0f && a.b == 0.0f; }
 static inline bool rgb_is_finite(rgb a) { return isfinite(a.r) && isfinite(a.g) && isfinite(a.b); }
 /* Relative luminance, Rec. 709 primaries (ITU-R BT.709-6). */
+static inline float rgb_mean(rgb a) { return (a.r + a.g + a.b) / 3.0f; }
 static inline float rgb_luminance(rgb a) { return 0.2126f * a.r + 0.7152f * a.g + 0.0722f * a.b; }
 
 /* An orthonormal frame around a unit z axis. */

@@ -84,6 +84,7 @@ static void test_indirect(void **state)
     (void)state;
     EXPECT_HINT(PROGRAM_SCENES "dim_hall.pbrt", "in indirect light", "(--gather-samples)", "--spp=16",
                 "--gather-samples=1");
+    EXPECT_HINT(PROGRAM_SCENES "dim_hall.pbrt", "in indirect light", "more samples (--spp)", "--spp=256");
     EXPECT_HINT(PROGRAM_SCENES "dim_hall.pbrt", "in indirect light", "--integrator photonmap", "--spp=64",
                 "--integrator=path");
 }

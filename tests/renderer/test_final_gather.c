@@ -60,7 +60,8 @@ static void wall_of_a_sphere(void **state)
     (void)state;
     eye e;
     eye_init_with_photons(&e, DOME, PHOTONS, NEAREST);
-    e.settings.gather_samples = RAYS;
+    e.worker->split = (split_counts){.rays = RAYS, .lights = 1};
+    e.t.ray_bits = sampler_bits(RAYS);
     for (int most = 0; most <= 100; most += most < 2 ? 1 : 98) {
         e.settings.max_depth = most;
         mean_sum sum = {0};
@@ -88,7 +89,8 @@ static void wall_in_a_mirror(void **state)
                           DOME "Material \"conductor\" \"float roughness\" 0 \"rgb reflectance\" [1 1 1]"
                                " ReverseOrientation Shape \"disk\" \"float radius\" 0.2",
                           PHOTONS, NEAREST);
-    e.settings.gather_samples = RAYS;
+    e.worker->split = (split_counts){.rays = RAYS, .lights = 1};
+    e.t.ray_bits = sampler_bits(RAYS);
     mean_sum sum = {0};
     for (uint32_t i = 0; i < SAMPLES; i++) {
         rng random = test_random(i);

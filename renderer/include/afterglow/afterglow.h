@@ -302,9 +302,11 @@ typedef struct ag_render_settings {
     float shown_exposure_stops; /* by which the picture will be made brighter when it is shown, [-100, 100]: noise and
                                    warnings are of what is shown; default 0 */
     int gather_samples;         /* gather rays for each camera sample, [1, 65536], where it meets a diffuse surface
-                                   first; what is reflected shares about as many; 0: so many that samples times
-                                   gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL; with a noise level, where samples
-                                   are not known beforehand, for 64 samples at most */
+                                   first; what is reflected shares about as many; 0, the default: each block of 8 by
+                                   8 pixels chooses by the noise of its samples, and so it does the light samples;
+                                   the first ones have so many that samples times gather rays are about
+                                   AG_DEFAULT_GATHER_RAYS_PER_PIXEL (with a noise level for 64 samples at most), at
+                                   least 4 */
     /* A file that holds the photon map from one picture to the next, with the irradiances computed so far; NULL, the
      * default: none. Traced where there is none yet; other processes on this machine that use it meanwhile fill it
      * together with this one. The picture is the same. Borrowed until ag_rendering_create or ag_render returns. One

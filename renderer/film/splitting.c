@@ -1,0 +1,178 @@
+/* splitting.c: see splitting.h. */
+#include "film/splitting.h"
+
+#include "film/film.h"
+
+/* It is decided at FIRST_BARRIER samples, and each time that there are BARRIER_STEP times as many. */
+enum { FIRST_BARRIER = 4, BARRIER_STEP = 4 };
+
+/* Where pixels may get more samples, so many share AG_DEFAULT_GATHER_RAYS_PER_PIXEL. */
+enum { ADAPTIVE_SAMPLES = 64 };
+
+/* Without a choice there is a light sample for so many gather rays; with it there are at first some, from which
+ * their variance can be told. */
+enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, FIRST_LIGHTS = 4 };
+enum { RAYS_MAX = 64, LIGHTS_MAX = 16 };
+
+/* Rays of the first samples, at least: from one the variance cannot be told. */
+enum { FIRST_RAYS_MIN = 4 };
+
+/* With a fixed number of camera samples noisy blocks cannot have more of these, and are better helped by inner ones
+ * than the cost of their own noise says: by this factor, as measured in five rooms. */
+static const double FIXED_FACTOR = 2.0;
+/* Then the first rays bound the time, and nowhere are there fewer than this part of them: along edges samples vary
+ * much, but they are spread so well that little of it is left in the mean. */
+enum { FIXED_SHARE = 2 };
+/* Then a block needs no less noise than this, a standard error as in noise.h: nobody sees it. */
+static const double FIXED_CLEAN = 0.003;
+
+/* Of the variance between samples, at least this part is taken for the camera samples' own: what is left when the
+ * others are taken off is not well known. */
+static const double LEAST_REST = 1.0 / 64.0;
+
+bool splitting_is_open(const ag_render_settings *settings)
+{
+    return settings->integrator == AG_INTEGRATOR_PHOTONMAP && settings->gather_samples == 0;
+}
+
+split_counts splitting_first(const ag_render_settings *settings)
+{
+    uint32_t rays = (uint32_t)settings->gather_samples;
+    if (rays > 0)
+        return (split_counts){.rays = rays,
+                              .lights = (rays + GATHER_RAYS_PER_LIGHT_SAMPLE - 1) / GATHER_RAYS_PER_LIGHT_SAMPLE};
+    int samples = settings->samples_per_pixel;
+    if (settings->noise_level > 0.0f && samples > ADAPTIVE_SAMPLES)
+        samples = ADAPTIVE_SAMPLES;
+    if (samples > 0 && AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples > FIRST_RAYS_MIN)
+        rays = (uint32_t)(AG_DEFAULT_GATHER_RAYS_PER_PIXEL / samples);
+    return (split_counts){.rays = rays > 0 ? rays : FIRST_RAYS_MIN, .lights = FIRST_LIGHTS};
+}
+
+split_counts splitting_most(const ag_render_settings *settings)
+{
+    split_counts most = splitting_first(settings);
+    if (!splitting_is_open(settings))
+        return most;
+    most.lights = LIGHTS_MAX;
+    if (settings->noise_level > 0.0f && most.rays < RAYS_MAX) /* else the first rays bound the time */
+        most.rays = RAYS_MAX;
+    return most;
+}
+
+void split_trial_add(split_trial *trial, const eye_sample *sample)
+{
+    rgb radiance = sample->radiance;
+    float value = rgb_mean(radiance), rays = (float)trial->counts.rays, lights = (float)trial->counts.lights;
+    trial->value += value;
+    trial->square += value * value;
+    trial->by_parts += sample->gather_variance;
+    trial->by_ray += sample->gather_variance * rays;
+    trial->cost_of_ray += sample->gather_cost / rays;
+    trial->cost_of_light += sample->light_cost / lights;
+    trial->cost_of_rest += sample->rest_cost;
+    if (trial->counts.lights < 2)
+        return;
+    trial->by_parts += sample->light_variance;
+    trial->by_light += sample->light_variance * lights;
+    trial->lights_known++;
+}
+
+/* --- deciding --- */
+
+/* Over a block: how many pixels, their variances of what is shown of one sample, and costs. */
+typedef struct block_sums {
+    double pixels, all, by_parts, by_ray, by_light;
+    double cost_of_ray, cost_of_light, cost_of_rest;
+} block_sums;
+
+static void add_pixel(const split_trial *trial, double count, double scale, block_sums *sums)
+{
+    double mean = (double)trial->value / count, lights_known = (double)trial->lights_known;
+    double variance = fmax((double)trial->square - (double)trial->value * mean, 0.0) / (count - 1.0);
+    double weight = noise_shown_variance(scale * mean, scale * scale);
+    sums->pixels += 1.0;
+    sums->all += weight * variance;
+    sums->by_parts += weight * (double)trial->by_parts / count;
+    sums->by_ray += weight * (double)trial->by_ray / count;
+    sums->by_light += lights_known > 0.0 ? weight * (double)trial->by_light / lights_known : 0.0;
+    sums->cost_of_ray += (double)trial->cost_of_ray;
+    sums->cost_of_light += (double)trial->cost_of_light;
+    sums->cost_of_rest += (double)trial->cost_of_rest;
+}
+
+/* What bounds the choice. */
+typedef struct choice {
+    double scale;  /* of what is shown */
+    double factor; /* of the numbers that are best for a block alone */
+    double clean;  /* the variance of a sample that does no harm; 0: none */
+    split_counts least, most;
+} choice;
+
+/* The power of two nearest by ratio to the number that is best, within bounds. */
+static uint32_t best_count(const block_sums *sums, double by_one, double cost_of_one, const choice *c, uint32_t least,
+                           uint32_t most)
+{
+    double rest = fmax(sums->all - sums->by_parts, LEAST_REST * sums->all), wanted = 1.0;
+    rest = fmax(rest, c->clean * sums->pixels);
+    if (rest > 0.0 && cost_of_one > 0.0)
+        wanted = c->factor * sqrt(by_one / rest * sums->cost_of_rest / cost_of_one);
+    uint32_t count = 1;
+    while (count < most && (double)count * 1.4142135623730951 < wanted)
+        count *= 2;
+    count = count > least ? count : least;
+    return count < most ? count : most;
+}
+
+/* A block all of whose pixels have had `barrier` samples; another was decided on before, or needs no more. */
+static void decide_block(struct ag_film *film, film_area block, uint32_t barrier, const choice *c)
+{
+    block_sums sums = {0};
+    for (int y = block.y0; y < block.y0 + block.height; y++)
+        for (int x = block.x0; x < block.x0 + block.width; x++) {
+            size_t pixel = film_pixel_at(film, x, y);
+            if (film->counts[pixel] != barrier)
+                return;
+            add_pixel(&film->splits[pixel], (double)barrier, c->scale, &sums);
+        }
+    split_counts before = film->splits[film_pixel_at(film, block.x0, block.y0)].counts;
+    split_counts counts = {
+        .rays = best_count(&sums, sums.by_ray, sums.cost_of_ray, c, c->least.rays, c->most.rays),
+        .lights = best_count(&sums, sums.by_light, sums.cost_of_light, c, c->least.lights, c->most.lights)};
+    uint32_t used = (barrier + before.ray_shift) * before.rays;
+    counts.ray_shift = (used + counts.rays - 1) / counts.rays - barrier;
+    for (int y = block.y0; y < block.y0 + block.height; y++)
+        for (int x = block.x0; x < block.x0 + block.width; x++)
+            film->splits[film_pixel_at(film, x, y)].counts = counts;
+}
+
+/* The least number of samples of a pixel that is to have more; `wanted` where none is. */
+static uint32_t least_count(const struct ag_film *film, uint32_t wanted)
+{
+    uint32_t least = wanted;
+    for (size_t i = 0; i < film_area_count(film); i++)
+        if (film->counts[i] < film_goal(film, i, wanted) && film->counts[i] < least)
+            least = film->counts[i];
+    return least;
+}
+
+uint32_t splitting_decide(struct ag_film *film, const ag_render_settings *settings, uint32_t wanted)
+{
+    uint32_t least = least_count(film, wanted);
+    uint64_t barrier = FIRST_BARRIER;
+    while (barrier < least)
+        barrier *= BARRIER_STEP;
+    if (barrier == least && least < wanted) {
+        choice c = {noise_shown_scale(settings), 1.0, 0.0, {.rays = 1, .lights = 1}, splitting_most(settings)};
+        if (!(settings->noise_level > 0.0f)) {
+            c.factor = FIXED_FACTOR;
+            c.clean = FIXED_CLEAN * FIXED_CLEAN * settings->samples_per_pixel;
+            c.least.rays = (c.most.rays + FIXED_SHARE - 1) / FIXED_SHARE;
+        }
+        for (int row = 0; row * FILM_BLOCK < film->area.height; row++)
+            for (int column = 0; column * FILM_BLOCK < film->area.width; column++)
+                decide_block(film, film_block_at(film, column, row), least, &c);
+        barrier *= BARRIER_STEP;
+    }
+    return barrier < wanted ? (uint32_t)barrier : wanted;
+}

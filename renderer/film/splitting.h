@@ -1,0 +1,47 @@
+/* splitting.h: into how many gather rays and light samples a camera sample is split, where no option says it: in each
+ * block of pixels so many that the rays which the block costs bring the least noise.
+ * Rests on: Arvo, Kirk, "Particle Transport and Image Synthesis", 1990 (splitting); Neyman, "On the Two Different
+ * Aspects of the Representative Method", 1934 (samples by variance and cost). With the variances V between camera
+ * samples, G by one gather ray, L by one light sample, and what each of them costs, v, g, l, N camera samples of n rays
+ * and m light samples have the variance (V + G / n + L / m) / N for the cost N (v + n g + m l); their product is least
+ * at n = sqrt(G / V * v / g), m = sqrt(L / V * v / l). Flow: film -> [here] -> the next pass. Threads: a pixel belongs
+ * to one worker at a time; decided when no tile is rendered.
+ *
+ * It is decided for blocks, as in adaptive.h, at fixed numbers of samples and from the block's own samples; costs are
+ * numbers of rays and no times. How a sample is split depends on samples before it alone, so its expectation does not,
+ * and all samples weigh alike: the picture's expectation stays. */
+#ifndef AFTERGLOW_SPLITTING_H
+#define AFTERGLOW_SPLITTING_H
+
+#include "afterglow/afterglow.h"
+#include "integrator/eye_sample.h"
+
+#include <stdbool.h>
+
+struct ag_film;
+
+/* Of a pixel: sums over its samples, and how the next are split. Variances are of the mean of the three colours. */
+typedef struct split_trial {
+    float value, square;    /* the mean of the three colours, and its square */
+    float by_parts;         /* the variance by the choice of gather rays and light samples */
+    float by_ray, by_light; /* what it would be with one of them */
+    float cost_of_ray, cost_of_light, cost_of_rest;
+    uint32_t lights_known; /* samples that by_light sums over: those of two light samples or more */
+    split_counts counts;
+} split_trial;
+
+/* Whether blocks choose: the photon map's integrator, and no number of gather rays is set. */
+bool splitting_is_open(const ag_render_settings *settings);
+/* Of every sample where blocks do not choose, of the first ones where they do. */
+split_counts splitting_first(const ag_render_settings *settings);
+
+/* No sample has more. */
+split_counts splitting_most(const ag_render_settings *settings);
+
+void split_trial_add(split_trial *trial, const eye_sample *sample);
+
+/* To be called when no tile is rendered, before pixels are brought to `wanted` samples: decides where that is due, and
+ * gives the number of samples to stop at next. Calling it again changes nothing. */
+uint32_t splitting_decide(struct ag_film *film, const ag_render_settings *settings, uint32_t wanted);
+
+#endif

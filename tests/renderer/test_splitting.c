@@ -1,0 +1,262 @@
+/* test_splitting.c: how many gather rays and light samples blocks of pixels choose: the best numbers in closed form
+ * where variances and costs are known; the expectation stays; the picture is the same for any number of threads,
+ * however the work is cut into passes, and in crops; and the choice pays. Threads: the renderer's. */
+#define _GNU_SOURCE
+#include "film/film.h"
+#include "fixtures/layers_fixture.h"
+#include "math/rng.h"
+
+/* --- of samples made up --- */
+
+enum { WIDTH = 16, HEIGHT = 8 }; /* two blocks */
+
+static ag_film *create_film(const ag_render_settings *settings)
+{
+    static const char *const groups[] = {"default"};
+    pixel_filter filter = {.mean_sign = 1.0};
+    aov_layout layout;
+    assert_int_equal(aov_layout_create(0, (aov_needs){.albedo_and_normal = false}, false, groups, 1, &layout), AG_OK);
+    working_space space = working_space_rec709();
+    ag_film *film = film_create(settings, &space, &filter, &layout);
+    assert_non_null(film);
+    return film;
+}
+
+static ag_render_settings settings_of(float noise_level, int samples)
+{
+    ag_render_settings s = ag_default_render_settings();
+    s.width = WIDTH;
+    s.height = HEIGHT;
+    s.noise_level = noise_level;
+    s.samples_per_pixel = samples;
+    return s;
+}
+
+/* Four samples for each pixel, of the variance that is asked for: of their own, by one gather ray, by one light sample.
+ * A ray costs 4, as does a light sample, and the rest of a camera sample 40. */
+static void add_block(ag_film *film, int x0, double own, double by_ray, double by_light)
+{
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = x0; x < x0 + FILM_BLOCK; x++) {
+            size_t pixel = film_pixel_at(film, x, y);
+            float rays = (float)film->splits[pixel].counts.rays, lights = (float)film->splits[pixel].counts.lights;
+            eye_sample s = {.sign = 1,
+                            .gather_variance = (float)by_ray / rays,
+                            .light_variance = (float)by_light / lights,
+                            .gather_cost = 4.0f * rays,
+                            .light_cost = 4.0f * lights,
+                            .rest_cost = 40.0f};
+            double all = own + by_ray / (double)rays + by_light / (double)lights;
+            for (int i = 0; i < 4; i++) {
+                s.radiance = rgb_gray(1.0f + (float)(i % 2 ? sqrt(0.75 * all) : -sqrt(0.75 * all)));
+                film_add(film, pixel, &s);
+            }
+        }
+}
+
+static void expect_counts(const ag_film *film, int x, uint32_t rays, uint32_t lights)
+{
+    size_t pixel = film_pixel_at(film, x, 3);
+    split_counts got = film->splits[pixel].counts;
+    /* the next sample's rays follow those of the first four, which had 16 */
+    assert_int_equal((film->counts[pixel] + got.ray_shift) * got.rays, 16 * film->counts[pixel]);
+    if (got.rays != rays || got.lights != lights)
+        fail_msg("%u gather rays, %u light samples where %u and %u are best", got.rays, got.lights, rays, lights);
+}
+
+static void test_best_numbers(void **state)
+{
+    (void)state;
+    /* sqrt(0.04 / 0.04 * 40 / 4) = 3.2 and sqrt(0.02 / 0.04 * 40 / 4) = 2.2 for a block alone; twice that where the
+     * number of samples is fixed */
+    static const struct {
+        float noise_level;
+        uint32_t rays, lights, no_rays; /* the best; gather rays where they bring no noise */
+    } cases[] = {{0.0f, 8, 4, 8}, {0.01f, 4, 2, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        ag_render_settings settings = settings_of(cases[i].noise_level, 16);
+        ag_film *film = create_film(&settings);
+        if (film->wanted)
+            for (size_t k = 0; k < film_area_count(film); k++)
+                film->wanted[k] = 16;
+        assert_int_equal(splitting_decide(film, &settings, 16), 4);
+        expect_counts(film, 3, 16, 4);
+        add_block(film, 0, 0.04, 0.04, 0.02);
+        add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0);
+        for (int times = 0; times < 2; times++) { /* again changes nothing */
+            assert_int_equal(splitting_decide(film, &settings, 16), 16);
+            expect_counts(film, 3, cases[i].rays, cases[i].lights);
+            expect_counts(film, 11, cases[i].no_rays, 1);
+        }
+        assert_int_equal(splitting_decide(film, &settings, 4), 4); /* nothing to do */
+        ag_film_destroy(film);
+    }
+}
+
+static void test_given_number(void **state)
+{
+    (void)state;
+    ag_render_settings settings = settings_of(0.0f, 16);
+    settings.gather_samples = 20;
+    ag_film *film = create_film(&settings);
+    assert_false(splitting_is_open(&settings));
+    assert_null(film->splits);
+    split_counts counts = splitting_first(&settings);
+    assert_true(counts.rays == 20 && counts.lights == 3);
+    ag_film_destroy(film);
+    settings.gather_samples = 0;
+    settings.integrator = AG_INTEGRATOR_PATH;
+    assert_false(splitting_is_open(&settings));
+}
+
+/* A sample of mean 2, skewed: 1 / share with probability share, and as much in the mean by gather rays. */
+static void add_skewed(ag_film *film, size_t pixel, rng *random)
+{
+    static const float OWN = 0.2f, RAY = 0.1f;
+    uint32_t rays = film->splits[pixel].counts.rays, found = 0;
+    for (uint32_t i = 0; i < rays; i++)
+        found += rng_float(random) < RAY;
+    float n = (float)rays, sum = (float)found / RAY, squares = (float)found / (RAY * RAY);
+    float variance = rays > 1 ? (squares - sum * sum / n) / (n * (n - 1.0f)) : 0.5f * squares;
+    float value = (rng_float(random) < OWN ? 1.0f / OWN : 0.0f) + sum / n;
+    film_add(film, pixel,
+             &(eye_sample){.radiance = rgb_gray(value),
+                           .sign = 1,
+                           .gather_variance = variance,
+                           .gather_cost = 4.0f * n,
+                           .light_cost = 8.0f,
+                           .rest_cost = 40.0f});
+}
+
+/* The numbers are chosen by the samples' values: that must not show in the mean. */
+static void test_expectation(void **state)
+{
+    (void)state;
+    enum { FILMS = 400, SAMPLES = 8 };
+    const ag_render_settings settings = settings_of(0.0f, SAMPLES);
+    double sum = 0.0, squares = 0.0;
+    uint32_t least = UINT32_MAX, most = 0;
+    for (int i = 0; i < FILMS; i++) {
+        ag_film *film = create_film(&settings);
+        rng random = rng_make(5, 6, (uint64_t)i);
+        for (uint32_t done = 0; done < SAMPLES;) {
+            uint32_t next = splitting_decide(film, &settings, SAMPLES);
+            for (size_t pixel = 0; pixel < film_area_count(film); pixel++)
+                for (uint32_t k = done; k < next; k++)
+                    add_skewed(film, pixel, &random);
+            done = next;
+        }
+        uint32_t rays = film->splits[0].counts.rays;
+        least = rays < least ? rays : least;
+        most = rays > most ? rays : most;
+        film_resolve(film);
+        double mean = film_mean(film, "R");
+        sum += mean;
+        squares += mean * mean;
+        ag_film_destroy(film);
+    }
+    double mean = sum / FILMS, error = sqrt((squares / FILMS - mean * mean) / FILMS);
+    print_message("mean %.4f +- %.4f, by %u to %u rays\n", mean, error, least, most);
+    assert_true(most > least && error < 0.01);
+    expect_within("mean", mean, 2.0, 4.0 * error);
+}
+
+/* --- of pictures --- */
+
+static studio *open_room(unsigned threads, float noise_level)
+{
+    studio *s = studio_open(LAYERS_SCENES "glass_ball_room.pbrt", threads);
+    s->settings.width = 29, s->settings.height = 27;
+    s->settings.samples_per_pixel = 24;
+    s->settings.noise_level = noise_level;
+    s->settings.gather_samples = 0;
+    s->settings.layers = AG_LAYERS_LIGHT;
+    return s;
+}
+
+static const float LEVELS[] = {0.0f, 0.06f};
+
+static void test_same_bits(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        studio *s = open_room(1, LEVELS[k]), *threaded = open_room(3, LEVELS[k]);
+        ag_film *whole = studio_render(s), *other = studio_render(threaded), *cut;
+        expect_same_film(whole, other);
+        ag_rendering *r = studio_begin(threaded);
+        static const int passes[] = {1, 2, 4, 7, 16, 16, 17, 24, 24};
+        for (size_t i = 0; i < sizeof passes / sizeof *passes; i++) {
+            ag_context_pause(threaded->context);
+            assert_int_equal(ag_rendering_continue(r, passes[i]), AG_PAUSED);
+            if (i != 3)
+                assert_int_equal(ag_rendering_continue(r, passes[i]), AG_OK);
+            if (i == 3) { /* another goes on */
+                assert_int_equal(ag_rendering_write_checkpoint(r, in_folder("c")), AG_OK);
+                ag_rendering_finish(r, NULL);
+                studio *hold = s;
+                s = threaded;
+                threaded = hold;
+                r = studio_begin(threaded);
+                assert_int_equal(ag_rendering_read_checkpoint(r, in_folder("c")), AG_OK);
+            }
+        }
+        ag_rendering_finish(r, &cut);
+        expect_same_film(whole, cut);
+        ag_film_destroy(whole);
+        ag_film_destroy(other);
+        ag_film_destroy(cut);
+        studio_close(s);
+        studio_close(threaded);
+    }
+}
+
+/* A picture whose blocks choose cannot be gone on with by one whose do not. */
+static void test_checkpoint_of_other(void **state)
+{
+    (void)state;
+    studio *s = open_room(1, 0.0f);
+    ag_rendering *r = studio_begin(s);
+    assert_int_equal(ag_rendering_continue(r, 1), AG_OK);
+    assert_int_equal(ag_rendering_write_checkpoint(r, in_folder("c")), AG_OK);
+    ag_rendering_finish(r, NULL);
+    s->settings.gather_samples = 10;
+    r = studio_begin(s);
+    assert_int_equal(ag_rendering_read_checkpoint(r, in_folder("c")), AG_ERROR_INPUT);
+    assert_non_null(strstr(s->said, "another number of gather rays"));
+    ag_rendering_finish(r, NULL);
+    studio_close(s);
+}
+
+static void test_crops(void **state)
+{
+    (void)state;
+    studio *s = open_room(2, 0.0f);
+    ag_film *whole = studio_render(s);
+    static const int crops[][4] = {{5, 19, 3, 22}, {8, 16, 8, 16}, {27, 29, 25, 27}};
+    for (size_t i = 0; i < sizeof crops / sizeof *crops; i++) {
+        const int *crop = crops[i];
+        for (int k = 0; k < 4; k++)
+            s->settings.crop_window[k] = (double)crop[k] / (k < 2 ? 29.0 : 27.0);
+        ag_film *part = studio_render(s);
+        int width = crop[1] - crop[0], told_width, told_height;
+        const float *a = ag_film_pixels(whole, &told_width, &told_height),
+                    *b = ag_film_pixels(part, &told_width, &told_height);
+        assert_true(told_width == width && told_height == crop[3] - crop[2]);
+        for (int y = crop[2]; y < crop[3]; y++)
+            assert_memory_equal(a + 3 * (y * 29 + crop[0]), b + 3 * (y - crop[2]) * width,
+                                3 * (size_t)width * sizeof *a);
+        ag_film_destroy(part);
+    }
+    ag_film_destroy(whole);
+    studio_close(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_best_numbers), cmocka_unit_test(test_given_number),
+        cmocka_unit_test(test_expectation),  TEST_IN_FOLDER(test_same_bits),
+        TEST_IN_FOLDER(test_crops),          TEST_IN_FOLDER(test_checkpoint_of_other),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
