@@ -108,6 +108,8 @@ static ag_status settle_settings(ag_context *context, const scene *s, const ag_r
                                  ag_render_settings *out_settings)
 {
     *out_settings = *wanted;
+    if (out_settings->photon_seed == AG_PHOTON_SEED_AUTOMATIC)
+        out_settings->photon_seed = out_settings->seed;
     if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
         out_settings->photon_aim = out_settings->photon_map_file ? 0.0f : AG_DEFAULT_PHOTON_AIM;
     const integrator *kind = integrator_of(out_settings->integrator);

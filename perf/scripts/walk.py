@@ -16,7 +16,7 @@ import sys
 import zlib
 
 BLOCK = 8
-SAME_SURFACE = 0.03  # of the distance to the camera
+SAME_SURFACE = 6.0  # over the width in pixels, of the distance to the camera
 
 
 class Frame:
@@ -127,7 +127,7 @@ def compare(before, now):
         for i, weight in ((0, (1 - x + column) * (1 - y + row)), (1, (x - column) * (1 - y + row)),
                           (before.width, (1 - x + column) * (y - row)), (before.width + 1, (x - column) * (y - row))):
             neighbour = row * before.width + column + i
-            if not math.dist(position(before, neighbour), point) < SAME_SURFACE * distance:
+            if not math.dist(position(before, neighbour), point) < SAME_SURFACE / now.width * distance:
                 break
             value -= weight * luminance(before, '', neighbour)
             noise += weight * weight * variance(before, neighbour)

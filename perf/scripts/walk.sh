@@ -37,11 +37,10 @@ done
 walk() { # SCENE_FILE NAME KIND
     local file=$1 name=$2 kind=$3 number=0 eye_x eye_y eye_z x y z ratios options=()
     [[ $kind != path ]] || options=(--integrator path)
-    [[ $kind != kept ]] || options=(--photon-map "$suite_work/$name.map")
+    [[ $kind != kept ]] || options=(--photon-seed 1 --photon-map "$suite_work/$name.map")
     while read -r eye_x eye_y eye_z x y z; do
         number=$((number + 1))
-        [[ $kind != new ]] || options=(--seed "$number")
-        suite_run "$name" "$kind" "$number" --size "${width}x$((width * 9 / 16))" --spp "$spp" --type float \
+        suite_run "$name" "$kind" "$number" --seed "$number" --size "${width}x$((width * 9 / 16))" --spp "$spp" --type float \
             --only indirect --aov P --aov variance --camera-from "$eye_x,$eye_y,$eye_z" --camera-to "$x,$y,$z" \
             ${options[@]+"${options[@]}"} "$file"
         mv "$suite_work/run.exr" "$suite_work/$(printf frame-%04d.exr "$number")"

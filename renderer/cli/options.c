@@ -45,7 +45,7 @@ static char *join_arguments(int argc, char **argv)
     return joined;
 }
 
-/* A seed for each frame wants frames; and a kept photon map has but one. */
+/* A seed for each frame wants frames. */
 static bool has_odd_seeds(const options *o)
 {
     if (!o->seed_per_frame && !o->seed_pattern)
@@ -55,8 +55,6 @@ static bool has_odd_seeds(const options *o)
                 o->seed_per_frame ? "--seed-per-frame" : "a place for the frame's number in --seed");
     else if (o->seed_per_frame && o->seed_pattern)
         fprintf(stderr, "afterglow: --seed-per-frame, and a place for the frame's number in --seed: give one\n");
-    else if (o->render.photon_map_file)
-        fprintf(stderr, "afterglow: --photon-map is kept with one seed: frames cannot have seeds of their own\n");
     else
         return false;
     return true;
@@ -355,6 +353,9 @@ bool options_override(const options *o, const ag_scene *scene, ag_render_setting
 {
     for (int i = 0; i < o->given_count; i++)
         (void)ag_render_settings_set(settings, o->given[i].name, o->given[i].value); /* options_parse has tried it */
+    bool has_own_seed = o->seed_pattern || o->seed_per_frame;
+    if (has_own_seed && settings->photon_map_file && settings->photon_seed == AG_PHOTON_SEED_AUTOMATIC)
+        settings->photon_seed = settings->seed; /* one map for all frames */
     if (o->seed_pattern)
         (void)ag_render_settings_set(settings, "seed", o->seed_pattern); /* likewise */
     if (o->seed_per_frame)

@@ -108,7 +108,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
 {
     const transport *t = &job->t;
     const scene *s = t->s;
-    sampler where = sampler_make(t->settings->seed ^ PILOT_SEED, x, y, 0, 0);
+    sampler where = sampler_make(t->settings->photon_seed ^ PILOT_SEED, x, y, 0, 0);
     vec2 within = sampler_2d(&where, SAMPLE_PIXEL, 0);
     float time = s->has_motion ? sampler_2d(&where, SAMPLE_TIME, 0).x : 0.0f;
     scene_ray ray = camera_generate_ray(&s->camera, ((float)x + within.x) / (float)job->width,

@@ -113,8 +113,22 @@ static void frames_may_have_seeds_of_their_own(void **state)
     expect_end(ARGUMENTS(TINY, "--seed=%d", "-o", "a.exr", BOX), 2, "is for --frames, which is not given");
     expect_end(ARGUMENTS(TINY, "--seed-per-frame", "-o", "a.exr", BOX), 2, "--seed-per-frame is for --frames");
     expect_end(ARGUMENTS(TINY, "--seed=x%d", "--frames=1", "-o", "a.#.exr", BOX), 2, "--seed: 'x%d' is not valid");
-    expect_end(ARGUMENTS("--seed-per-frame", "--photon-map=m", "--frames=1", "-o", "a.#.exr", BOX), 2,
-               "kept with one seed");
+}
+
+#define SMALL "--photons=2000", "--caustic-photons=100", "--gather-samples=2", "--size=9x7", "--noise=0", "--spp=2"
+
+static void frames_of_one_photon_map_may_have_seeds_of_their_own(void **state)
+{
+    (void)state;
+    expect_end(ARGUMENTS(SMALL, "--seed=10", "--seed-per-frame", "--photon-map=one.map", "--frames=3-4", "-v", "-o",
+                         "kept.#.exr:float", BOX),
+               0, "'one.map': a map of");
+    expect_equal("kept.3.exr", "kept.4.exr", false);
+    expect_end(ARGUMENTS(SMALL, "-q", "--seed=14", "--photon-seed=10", "--photon-aim=0", "-o", "fresh.exr:float", BOX), 0,
+               "");
+    expect_equal("kept.4.exr", "fresh.exr", true);
+    expect_end(ARGUMENTS(SMALL, "-q", "--seed=14", "--photon-map=one.map", "-o", "other.exr", BOX), 1,
+               "another seed of photons: 10, not 14");
 }
 
 static void what_was_meant_is_named(void **state)
@@ -147,6 +161,7 @@ int main(void)
         TEST_IN_FOLDER(each_file_has_its_type),
         TEST_IN_FOLDER(other_linear_files_hold_the_same),
         TEST_IN_FOLDER(frames_may_have_seeds_of_their_own),
+        TEST_IN_FOLDER(frames_of_one_photon_map_may_have_seeds_of_their_own),
         TEST_IN_FOLDER(what_was_meant_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

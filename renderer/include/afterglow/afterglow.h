@@ -274,6 +274,8 @@ typedef struct ag_render_settings {
                                   rays that goes where light comes from, where photons are many; the rest goes by the
                                   cosine. 0: all. Less noise or more, the same light. Default
                                   AG_DEFAULT_GATHER_GUIDING */
+    uint64_t photon_seed; /* of the photons, so that pictures of other seeds can share a kept photon map. Default
+                             AG_PHOTON_SEED_AUTOMATIC: seed */
     float photon_aim;     /* share of the photon paths that begin where a pilot has found that they bring light to where
                              this picture asks for it, [0, 0.8]: the others begin by power alone, so that no photon is more
                              than five times as bright as without. The same light, with less noise in this picture and more
@@ -345,6 +347,7 @@ AG_API ag_status ag_render_settings_set(ag_render_settings *settings, const char
 #define AG_DEFAULT_SAMPLES_MOST          1024
 #define AG_DEFAULT_GATHER_RAYS_PER_PIXEL 256
 #define AG_DEFAULT_GATHER_GUIDING        0.5f
+#define AG_PHOTON_SEED_AUTOMATIC         0x8000000000000000u
 #define AG_DEFAULT_PHOTON_AIM            0.8f
 #define AG_PHOTON_AIM_AUTOMATIC          (-1.0f)
 #define AG_DEFAULT_DIRECT_GUIDING        0.8f
