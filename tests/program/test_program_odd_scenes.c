@@ -67,6 +67,22 @@ static void test_all_black(void **state)
                    "--tile=1/2", NULL);
 }
 
+/* A panel behind the eye whose faces were turned round; and one with a black back right before its bright side. */
+static void test_panel_turned_round(void **state)
+{
+    (void)state;
+    expect_warning(CAMERA PLAIN BALL "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [5 5 5]\n"
+                                     "Translate 0 0 5 Shape \"disk\" AttributeEnd\n",
+                   NULL, "shines away from everything that there is");
+    expect_warning(CAMERA PLAIN BALL "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [5 5 5]\n"
+                                     "Translate 0 0 5 ReverseOrientation Shape \"disk\" AttributeEnd\n"
+                                     "Translate 0 0 4.999 Shape \"disk\" \"float radius\" 1.1\n",
+                   NULL, "shines away from everything that there is");
+    expect_warning(CAMERA PLAIN BALL "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [5 5 5]\n"
+                                     "Translate 0 0 5 ReverseOrientation Shape \"disk\" AttributeEnd\n",
+                   NULL, NULL);
+}
+
 static void test_inside_solid(void **state)
 {
     (void)state;
@@ -115,8 +131,8 @@ static void test_scale(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_no_light),     TEST_IN_FOLDER(test_nothing_in_view), TEST_IN_FOLDER(test_all_black),
-        TEST_IN_FOLDER(test_inside_solid), TEST_IN_FOLDER(test_scale),
+        TEST_IN_FOLDER(test_no_light),           TEST_IN_FOLDER(test_nothing_in_view), TEST_IN_FOLDER(test_all_black),
+        TEST_IN_FOLDER(test_panel_turned_round), TEST_IN_FOLDER(test_inside_solid),    TEST_IN_FOLDER(test_scale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
