@@ -408,7 +408,7 @@ static const option_row ROWS[] = {
                         "in glTF and models, and in pbrt's text the axis nearest to the camera's up."},
      .take = take_up},
     {.text = {.name = "sun",
-              .argument = "AZIMUTH,ELEVATION[,STRENGTH]",
+              .argument = "AZ,ELEV[,STRENGTH]",
               .section = "Scene",
               .help = "a sun beside the file's lights: degrees from north over east, degrees above the horizon, W/m^2 "
                       "on what faces it (default 3)",
