@@ -123,6 +123,7 @@ ag_status ag_film_denoise(ag_context *context, ag_film *film)
     float *albedo = has_albedo ? malloc(size * sizeof *albedo) : NULL;
     float *normal = has_normal ? malloc(size * sizeof *normal) : NULL;
     char message[1024] = "";
+    phase_begin begin = context_begin_phase();
     ag_status status = (has_albedo && !albedo) || (has_normal && !normal) ? AG_ERROR_MEMORY : AG_OK;
     if (status == AG_OK) {
         if (albedo)
@@ -136,6 +137,7 @@ ag_status ag_film_denoise(ag_context *context, ag_film *film)
         log_message(context->log, AG_LOG_ERROR, "%s", message);
     free(albedo);
     free(normal);
+    context_add_to_phase(context, AG_PHASE_WRITE, begin);
     return status;
 }
 

@@ -64,8 +64,10 @@ static advice advise(const struct ag_rendering *r, ag_noise_source source, const
 
 ag_noise ag_rendering_noise(const ag_rendering *r)
 {
+    phase_begin begin = context_begin_phase();
     int nearest = r->t.caustic && r->t.caustic->set.count > 0 ? r->settings.nearest : 0;
     noise_summary summary = noise_lattice_read(&r->film->noise, noise_shown_scale(&r->settings), nearest);
+    context_add_to_phase(r->context, AG_PHASE_RENDER, begin);
     ag_noise out = {.level = summary.level};
     int most = 0;
     for (int i = 0; i < AG_NOISE_SOURCE_COUNT; i++) {

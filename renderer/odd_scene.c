@@ -1,7 +1,9 @@
 /* odd_scene.c: see odd_scene.h. */
 #include "odd_scene.h"
 
+#include "light/light.h"
 #include "material/pane.h"
+#include "math/rng.h"
 #include "math/sampling.h"
 #include "rays/passage.h"
 #include "rays/slab_faces.h"
@@ -10,6 +12,7 @@
 
 /* In all directions from the eye. */
 enum { DIRECTIONS = 256 };
+static const float RIGHT_IN_FRONT = 1e-3f; /* of the scene's radius */
 /* Of the picture's pixels, so few may be lit, or be brighter or darker than the others, and count for nothing. */
 static const double FEW = 0.002, HALF = 0.5;
 /* A picture with nothing above the first is all but black, one with next to nothing below the second all but white,
@@ -104,6 +107,29 @@ static void warn_of_view(const struct ag_rendering *r)
              (double)s->bounds_min.z, (double)s->bounds_max.x, (double)s->bounds_max.y, (double)s->bounds_max.z);
 }
 
+/* Whether all that shines does so from one side, into the void or onto what is right in front of it: a panel whose
+ * faces were turned round. */
+static bool shines_away(const scene *s)
+{
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        const light *l = &s->lights[i];
+        rng random = rng_make(0, i, 0);
+        if (!(rgb_max(l->power) > 0.0f))
+            continue;
+        if (l->kind != LIGHT_AREA || l->two_sided)
+            return false;
+        for (int k = 0; k < DIRECTIONS; k++) {
+            light_emission start;
+            surface_hit hit;
+            if (light_sample_emission(s, l, NULL, &random, &start) &&
+                passage_find_surface(s, scene_ray_make(start.origin, start.direction), INFINITY, &hit) &&
+                hit.distance > RIGHT_IN_FRONT * s->bounding_radius)
+                return false;
+        }
+    }
+    return true;
+}
+
 /* Path tracing finds what lamps send through smooth glass by meeting the lamp, and cannot meet these. */
 static bool has_lights_without_extent(const scene *s)
 {
@@ -162,6 +188,11 @@ void odd_scene_warn(const struct ag_rendering *r)
         log_once(log, AG_LOG_WARNING, "odd scene",
                  "the camera is inside of a solid: it meets the inner side of a surface in every direction, and no "
                  "light comes there");
+    else if (b.black == b.all && shines_away(s))
+        log_once(log, AG_LOG_WARNING, "odd scene",
+                 "the picture is black: what shines, with %.3g W, shines away from everything that there is: a lamp is "
+                 "bright on the side that its normals point to",
+                 (double)rgb_max(s->light_power));
     else if (b.black == b.all)
         log_once(log, AG_LOG_WARNING, "odd scene",
                  "the picture is black: no light comes to what is in view, from lights that emit %.3g W",

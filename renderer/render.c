@@ -247,7 +247,9 @@ static ag_status guide_direct_light(ag_rendering *r)
 static ag_status prepare(ag_rendering *r)
 {
     ag_context *context = r->context;
+    phase_begin begin = context_begin_phase();
     ag_status status = create_film(r);
+    r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
     if (status != AG_OK)
         return status;
     const integrator *kind = integrator_of(r->settings.integrator);
@@ -258,7 +260,9 @@ static ag_status prepare(ag_rendering *r)
         status = guide_direct_light(r);
     if (status != AG_OK)
         return status;
+    begin = context_begin_phase();
     r->workers = eye_workers_create(&r->t, context->statistics.threads);
+    r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
     return r->workers ? AG_OK : AG_ERROR_MEMORY;
 }
 
@@ -334,7 +338,9 @@ ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
         return AG_ERROR_SYSTEM;
     }
     char message[1024] = "";
+    phase_begin begin = context_begin_phase();
     ag_status status = photon_dump_write(&r->maps.global, &r->maps.caustic, path, message, sizeof message);
+    context_add_to_phase(r->context, AG_PHASE_WRITE, begin);
     if (message[0])
         log_message(r->context->log, AG_LOG_ERROR, "%s", message);
     return status;
@@ -346,6 +352,8 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
 {
     if (!r)
         return;
+    ag_context *context = r->context;
+    phase_begin begin = context_begin_phase();
     if (r->t.cache)
         count_irradiance(&r->context->statistics, r->t.cache);
     uint64_t not_finite = r->context->statistics.samples_not_finite - r->not_finite_before;
@@ -364,6 +372,7 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
     free(r->map_name);
     free(r->kept);
     free(r);
+    context_add_to_phase(context, AG_PHASE_RENDER, begin);
 }
 
 ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings, ag_film **out_film)

@@ -149,10 +149,12 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
     static const irradiance_cache_mode modes[] = {[AG_CACHE_ON_DEMAND] = IRRADIANCE_ON_DEMAND,
                                                   [AG_CACHE_PRECOMPUTE] = IRRADIANCE_PRECOMPUTE,
                                                   [AG_CACHE_OFF] = IRRADIANCE_UNCACHED};
+    phase_begin caching = context_begin_phase();
     status = irradiance_cache_create(&out_maps->global, modes[settings->cache], statistics->threads, &out_maps->cache);
     if (status == AG_OK && out_maps->file.is_shared)
         irradiance_cache_share(&out_maps->cache, &out_maps->file.owners);
     statistics->irradiance_ready += out_maps->cache.ready_before;
+    context_add_to_phase(context, AG_PHASE_MAP, caching);
     if (status == AG_OK && settings->cache == AG_CACHE_PRECOMPUTE) {
         phase_begin begin = context_begin_phase();
         status = irradiance_cache_precompute(&out_maps->cache, &context->run);

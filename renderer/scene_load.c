@@ -7,6 +7,7 @@
 #include "rays/bvh.h"
 #include "scene_file.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -32,21 +33,43 @@ static ag_status copy_definitions(ag_context *context, const ag_definition *give
 
 ag_scene_settings ag_default_scene_settings(void)
 {
-    return (ag_scene_settings){.camera_up = {0.0f, 1.0f, 0.0f}, .camera_fov_degrees = 45.0f};
+    return (ag_scene_settings){.camera_up = {0.0f, 1.0f, 0.0f},
+                               .camera_fov_degrees = 45.0f,
+                               .sun_elevation_degrees = 45.0f,
+                               .sun_irradiance = 3.0f,
+                               .sky_radiance = {1.0f, 1.0f, 1.0f}};
 }
 
 static vec3 vec3_of(const float v[3]) { return vec3_make(v[0], v[1], v[2]); }
 
 static ag_status make_request(const ag_scene_settings *settings, scene_request *out_request)
 {
-    if ((unsigned)settings->gltf_light_units > AG_GLTF_LIGHT_UNITS_RAW)
+    const float *sky = settings->sky_radiance;
+    const bool is_sun_sound = isfinite(settings->sun_azimuth_degrees) && fabsf(settings->sun_elevation_degrees) <= 90 &&
+                              settings->sun_irradiance >= 0 && isfinite(settings->sun_irradiance);
+    const bool is_sky_sound = sky[0] >= 0 && sky[1] >= 0 && sky[2] >= 0 && isfinite(sky[0] + sky[1] + sky[2]) &&
+                              isfinite(settings->sky_rotation_degrees);
+    if ((unsigned)settings->gltf_light_units > AG_GLTF_LIGHT_UNITS_RAW || (unsigned)settings->up > AG_UP_MINUS_Z ||
+        (settings->has_camera && settings->camera_name) || (settings->has_sun && !is_sun_sound) ||
+        (settings->has_sky && !is_sky_sound))
         return AG_ERROR_ARGUMENT;
     *out_request = (scene_request){.gltf_light_units = (gltf_light_units)settings->gltf_light_units,
                                    .has_camera = settings->has_camera,
                                    .camera_from = vec3_of(settings->camera_from),
                                    .camera_to = vec3_of(settings->camera_to),
                                    .camera_up = vec3_of(settings->camera_up),
-                                   .fov_degrees = settings->camera_fov_degrees};
+                                   .fov_degrees = settings->camera_fov_degrees,
+                                   .camera_name = settings->camera_name,
+                                   .drops_lights = settings->drops_lights,
+                                   .up = (scene_up)settings->up,
+                                   .has_sun = settings->has_sun,
+                                   .sun_azimuth_degrees = settings->sun_azimuth_degrees,
+                                   .sun_elevation_degrees = settings->sun_elevation_degrees,
+                                   .sun_irradiance = settings->sun_irradiance,
+                                   .has_sky = settings->has_sky,
+                                   .sky_radiance = rgb_make(sky[0], sky[1], sky[2]),
+                                   .sky_file = settings->sky_file,
+                                   .sky_rotation_degrees = settings->sky_rotation_degrees};
     return AG_OK;
 }
 
@@ -55,6 +78,7 @@ static ag_status load(ag_context *context, const char *path, const definitions *
                       scene *s, input_files *inputs)
 {
     const color_config *colors;
+    phase_begin begin = context_begin_phase();
     ag_status status = context_color_config(context, &colors);
     if (status != AG_OK)
         return status;
@@ -71,7 +95,6 @@ static ag_status load(ag_context *context, const char *path, const definitions *
                     wrong);
         return AG_ERROR_ARGUMENT;
     }
-    phase_begin begin = context_begin_phase();
     context->run.inputs = inputs;
     status = scene_file_load(&context->run, path, s);
     context->run.inputs = NULL;

@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "scene.h"
 
+#include "closed_room.h"
 #include "light/light_pick.h"
 #include "material/bsdf.h"
 #include "material/coat.h"
@@ -48,6 +49,7 @@ void scene_destroy(scene *s)
     scene_hints_reset(&s->hints);
     free(s->file_names);
     free(s->defined);
+    free(s->camera_names);
     free(s->light_group_names);
     scene_names_reset(&s->names);
     free(s->shapes);
@@ -283,6 +285,27 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
     return AG_OK;
 }
 
+/* Those of a kind, or all. The others keep their order, and shapes learn their new place. */
+static void drop_lights(scene *s, light_kind kind, bool is_any_kind)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        light *l = &s->lights[i];
+        const bool is_kept = !is_any_kind && l->kind != kind;
+        if (l->kind == LIGHT_AREA)
+            s->shapes[l->shape_index].light_index = is_kept ? kept : SHAPE_NO_LIGHT;
+        if (is_kept)
+            s->lights[kept++] = *l;
+        else
+            light_reset(l);
+    }
+    s->light_count = kept;
+}
+
+void scene_drop_lights(scene *s, light_kind kind) { drop_lights(s, kind, false); }
+
+void scene_drop_all_lights(scene *s) { drop_lights(s, LIGHT_AREA, true); }
+
 /* Beyond this a float overflows when squared. */
 static const float REACH_MAX = 1e18f;
 
@@ -346,12 +369,15 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
         status = find_bounds(s, run->log);
     if (status != AG_OK)
         return status;
+    status = bvh_create(s, run, isa, &s->bvh);
+    if (status == AG_OK)
+        status = closed_room_furnish(s, run->log);
+    if (status != AG_OK)
+        return status;
     s->has_motion = s->camera.is_moving || s->instance_step_count > s->instance_count;
     s->camera.medium = s->camera_medium;
     s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
     status = light_pick_commit(s, run->log);
-    if (status == AG_OK)
-        status = bvh_create(s, run, isa, &s->bvh);
     if (status == AG_OK)
         status = slab_faces_find(s, run, &s->slab_faces);
     s->has_panes = s->has_panes || s->slab_faces;

@@ -58,6 +58,8 @@ typedef struct scene {
     uint32_t camera_medium; /* that the eye is in, SCENE_NO_MEDIUM: none */
     camera camera;
     bool has_camera;
+    bool is_camera_made_up, is_light_made_up; /* by import_defaults: see closed_room.h */
+    char *camera_names; /* of the file's cameras, for a message: quoted, with commas; NULL: none has one */
 
     scene_hints hints; /* what its file says of the picture */
 
@@ -123,6 +125,10 @@ ag_status scene_add_instance(scene *s, uint32_t object_index, const affine *step
 /* An area light's shape must be there already, in the world itself; its light_index is set here. Pictures and tables of
  * a light pass into the scene's ownership, on failure too (they are then destroyed). */
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
+
+/* Drops the lights of one kind, or all of them; shapes that shone stay, dark. Before the commit. */
+void scene_drop_lights(scene *s, light_kind kind);
+void scene_drop_all_lights(scene *s);
 
 /* Areas, powers, bounds and the BVH (built by the run's threads and no others). isa: Embree's name of the widest
  * instruction set to use ("sse2", "sse4.2", "avx", "avx2", "avx512"), NULL for "avx2".

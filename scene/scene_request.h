@@ -15,12 +15,33 @@ typedef enum gltf_light_units {
     GLTF_LIGHTS_RAW           /* points and spots in W over the whole sphere, suns in W/m^2 */
 } gltf_light_units;
 
+/* The axis of the world that points up, for directions of suns and skies. */
+typedef enum scene_up {
+    UP_BY_FORMAT, /* y; in pbrt's text the one nearest to the camera's up */
+    UP_X,
+    UP_Y,
+    UP_Z,
+    UP_MINUS_X,
+    UP_MINUS_Y,
+    UP_MINUS_Z
+} scene_up;
+
 /* All zero: nothing is asked for. */
 typedef struct scene_request {
     gltf_light_units gltf_light_units;
     bool has_camera; /* in the place of the file's */
     vec3 camera_from, camera_to, camera_up;
-    float fov_degrees; /* across the shorter image axis, (0, 180) */
+    float fov_degrees;       /* across the shorter image axis, (0, 180) */
+    const char *camera_name; /* of the file's cameras this one; borrowed; NULL: the first */
+    bool drops_lights;       /* all of the file's */
+    scene_up up;
+    bool has_sun; /* beside the file's lights */
+    float sun_azimuth_degrees, sun_elevation_degrees;
+    float sun_irradiance; /* W/m^2, on a surface that faces it */
+    bool has_sky;         /* in the place of the file's infinite lights */
+    rgb sky_radiance;     /* W/m^2/sr, linear Rec. 709; a picture is multiplied by it */
+    const char *sky_file; /* a picture of all directions; borrowed; NULL: none */
+    float sky_rotation_degrees;
 } scene_request;
 
 #endif

@@ -83,7 +83,7 @@ static bool is_there(const options *o)
 }
 
 /* One picture; frame: -1 where there is none. */
-static ag_status run(ag_context *context, options *o, int frame, passes_result *out_result)
+static ag_status run(ag_context *context, options *o, int frame, progress *told, passes_result *out_result)
 {
     ag_status status = AG_OK;
     o->begun = passes_seconds();
@@ -92,8 +92,10 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
     /* what was asked for is checked before the work */
     if (file_conflicts_of_options(o))
         return AG_ERROR_ARGUMENT;
-    for (int i = 0; i < o->outfile_count && status == AG_OK; i++)
-        status = ag_output_check(context, &o->output, o->outfiles[i]);
+    for (int i = 0; i < o->outfile_count && status == AG_OK; i++) {
+        const ag_output_settings output = options_output(o, i);
+        status = ag_output_check(context, &output, o->outfiles[i]);
+    }
     if (status == AG_OK && o->stats)
         status = ag_statistics_check(context, o->stats);
     if (status == AG_OK && o->photons_file)
@@ -139,6 +141,8 @@ static ag_status run(ag_context *context, options *o, int frame, passes_result *
     }
     if (status == AG_OK && !is_skipped) {
         status = passes_render(context, o, scene, &settings, out_result);
+        if (status == AG_OK && !o->photons_only)
+            progress_tell_written(told, o->outfiles, o->outfile_count);
     }
     if ((status == AG_OK || out_result->is_partial) && !is_skipped && o->verbosity >= 1) {
         ag_statistics statistics = ag_context_statistics(context);
@@ -176,7 +180,7 @@ static ag_status run_in_context(options *o, int frame, progress *told)
     }
     signals_catch(context);
     passes_result result = {0};
-    status = o->lists_displays ? list_displays(context) : run(context, o, frame, &result);
+    status = o->lists_displays ? list_displays(context) : run(context, o, frame, told, &result);
     progress_finish(told);
     tell_end(o, status, &result);
     signals_release();
@@ -216,10 +220,13 @@ static bool name_frame(const options *o, int frame, options *out_one)
     for (int i = 0; one.outfiles && i < o->outfile_count; i++)
         is_whole = (one.outfiles[i] = frames_name(o->outfiles[i], frame)) && is_whole;
     one.scene = frames_name(o->scene, frame);
+    one.seed_pattern = o->seed_pattern ? frames_name(o->seed_pattern, frame) : NULL;
+    one.frame = frame;
     one.stats = o->stats ? frames_name(o->stats, frame) : NULL;
     one.photons_file = o->photons_file ? frames_name(o->photons_file, frame) : NULL;
     *out_one = one;
-    return is_whole && one.outfiles && one.scene && (one.stats || !o->stats) && (one.photons_file || !o->photons_file);
+    return is_whole && one.outfiles && one.scene && (one.stats || !o->stats) &&
+           (one.photons_file || !o->photons_file) && (one.seed_pattern || !o->seed_pattern);
 }
 
 static void free_frame(options *one, int outfile_count)
@@ -230,6 +237,7 @@ static void free_frame(options *one, int outfile_count)
     free((void *)(uintptr_t)one->scene);
     free((void *)(uintptr_t)one->stats);
     free((void *)(uintptr_t)one->photons_file);
+    free((void *)(uintptr_t)one->seed_pattern);
     for (size_t i = 0; i < one->definition_count; i++)
         options_free_definition(&one->definitions[i]);
     free(one->definitions);
@@ -242,7 +250,7 @@ static ag_status run_frames(options *o, progress *told)
     for (int i = 0; i < o->frames.count && status == AG_OK; i++) {
         options one;
         status = name_frame(o, o->frames.numbers[i], &one) ? AG_OK : AG_ERROR_MEMORY;
-        progress_begin_frame(told, i, o->frames.count);
+        progress_begin_frame(told, i, o->frames.count, o->frames.numbers[i]);
         if (status == AG_OK && o->verbosity >= 1)
             fprintf(stderr, "afterglow: frame %d: %s\n", o->frames.numbers[i], one.scene);
         if (status == AG_OK)

@@ -15,7 +15,20 @@
 
 static bool take_outfile(const char *value, options *o)
 {
-    o->outfiles[o->outfile_count++] = value;
+    static const char *const TYPES[] = {":uint8", ":uint16", ":half", ":float"};
+    const size_t length = strlen(value);
+    o->outfiles[o->outfile_count] = value;
+    for (int i = 0; i < 4; i++) {
+        const size_t end = strlen(TYPES[i]);
+        if (length <= end || strcmp(value + length - end, TYPES[i]) != 0)
+            continue;
+        char *name = strndup(value, length - end);
+        if (!name)
+            return false;
+        o->outfiles[o->outfile_count] = o->typed_names[o->outfile_count] = name;
+        o->outfile_types[o->outfile_count] = (ag_sample_type)(AG_SAMPLE_UINT8 + i);
+    }
+    o->outfile_count++;
     return true;
 }
 
@@ -54,9 +67,8 @@ static bool take_gltf_light_units(const char *value, options *o)
 
 static bool take_vector(const char *value, float out_vector[3])
 {
-    int end = 0;
-    return sscanf(value, "%f,%f,%f%n", &out_vector[0], &out_vector[1], &out_vector[2], &end) == 3 &&
-           value[end] == '\0' && isfinite(out_vector[0]) && isfinite(out_vector[1]) && isfinite(out_vector[2]);
+    int count;
+    return parse_floats(value, 3, out_vector, &count) && count == 3;
 }
 
 static bool take_camera_from(const char *value, options *o)
@@ -73,7 +85,7 @@ static bool take_camera_to(const char *value, options *o)
 
 static bool take_camera_up(const char *value, options *o)
 {
-    o->has_camera_detail = true;
+    o->has_camera_detail = o->has_camera_up = true;
     return take_vector(value, o->asked.camera_up);
 }
 
@@ -82,6 +94,58 @@ static bool take_fov(const char *value, options *o)
     o->has_camera_detail = true;
     return parse_float(value, &o->asked.camera_fov_degrees) && o->asked.camera_fov_degrees > 0.0f &&
            o->asked.camera_fov_degrees < 180.0f;
+}
+
+static bool take_up(const char *value, options *o)
+{
+    int word;
+    if (!parse_word(value, WORDS("x", "y", "z", "-x", "-y", "-z"), &word))
+        return false;
+    o->asked.up = (ag_up_axis)(AG_UP_X + word);
+    return true;
+}
+
+static bool take_sun(const char *value, options *o)
+{
+    float numbers[3] = {0.0f, 0.0f, o->asked.sun_irradiance};
+    int count;
+    if (!parse_floats(value, 3, numbers, &count) || count < 2 || fabsf(numbers[1]) > 90.0f || numbers[2] < 0.0f)
+        return false;
+    o->asked.has_sun = true;
+    o->asked.sun_azimuth_degrees = numbers[0];
+    o->asked.sun_elevation_degrees = numbers[1];
+    o->asked.sun_irradiance = numbers[2];
+    return true;
+}
+
+/* A grey, a colour, or else a file. */
+static bool take_sky(const char *value, options *o)
+{
+    float color[3];
+    int count;
+    o->asked.has_sky = true;
+    o->asked.sky_file = NULL;
+    for (int i = 0; i < 3; i++)
+        o->asked.sky_radiance[i] = 1.0f;
+    if (!parse_floats(value, 3, color, &count)) {
+        o->asked.sky_file = value;
+        return value[0] != '\0' && strspn(value, "0123456789.,+-") < strlen(value);
+    }
+    for (int i = 0; i < 3; i++)
+        o->asked.sky_radiance[i] = color[count == 1 ? 0 : i];
+    return count != 2 && color[0] >= 0.0f && (count == 1 || (color[1] >= 0.0f && color[2] >= 0.0f));
+}
+
+static bool take_sky_strength(const char *value, options *o)
+{
+    o->has_sky_detail = true;
+    return parse_float(value, &o->sky_strength) && o->sky_strength >= 0.0f && isfinite(o->sky_strength);
+}
+
+static bool take_sky_rotation(const char *value, options *o)
+{
+    o->has_sky_detail = true;
+    return parse_float(value, &o->asked.sky_rotation_degrees) && isfinite(o->asked.sky_rotation_degrees);
 }
 
 static bool take_type(const char *value, options *o)
@@ -176,12 +240,16 @@ static bool take_version(const char *value, options *o)
 
 static const option_row ROWS[] = {
     {.text = {.name = "outfile",
-              .argument = "FILE",
+              .argument = "FILE[:TYPE]",
               .section = "Output",
-              .help = "write the picture to FILE; may be repeated; .exr is scene-linear, .png, .tif and .jpg go "
-                      "through a display and view (default: the Film's filename, else SCENE.exr)",
-              .manual = "Write the picture to _FILE_. May be repeated. The extension chooses the format: _.exr_ is "
-                        "scene-linear; _.png_, _.tif_ and _.jpg_ go through a display and a view. A file appears "
+              .help = "write the picture to FILE, its samples of TYPE (default: --type); may be repeated; .exr, .hdr "
+                      "and .pfm are scene-linear, .png, .tif and .jpg go through a display and view (default: the "
+                      "Film's filename, else SCENE.exr)",
+              .manual = "Write the picture to _FILE_. May be repeated. The extension chooses the format: _.exr_, "
+                        "_.hdr_ (Radiance, shared exponents) and _.pfm_ (floats) are scene-linear, of which _.exr_ "
+                        "alone has layers and says its colour space; _.png_, _.tif_ and _.jpg_ go through a display "
+                        "and a view. _TYPE_ is one of those of *--type*, for this file alone: _a.exr:float_. A file "
+                        "appears "
                         "complete or not at all. Without this option, the file that the scene's Film names is "
                         "written, else _SCENE_ with _.exr_ for its extension, in the working directory."},
      .letter = 'o',
@@ -189,9 +257,10 @@ static const option_row ROWS[] = {
     {.text = {.name = "type",
               .argument = "NAME",
               .section = "Output",
-              .help = "stored samples: half, float, uint8 or uint16",
-              .manual = "How samples are stored: *half*, *float*, *uint8* or *uint16*. The default is *half* for "
-                        "OpenEXR, and *uint8* for the others."},
+              .help = "stored samples of files that name no type: half, float, uint8 or uint16",
+              .manual = "How samples are stored, in files of *-o* that name no type of their own: *half*, *float*, "
+                        "*uint8* or *uint16*. The default is *half* for OpenEXR, *float* for Radiance and PFM, "
+                        "*uint16* for TIFF, and *uint8* for the others."},
      .take = take_type},
     {.text = {.name = "tiled",
               .section = "Output",
@@ -293,6 +362,14 @@ static const option_row ROWS[] = {
                         "Scenes in other formats than pbrt's text have no such names."},
      .letter = 'D',
      .take = take_definition},
+    {.text = {.name = "camera",
+              .argument = "NAME",
+              .section = "Scene",
+              .help = "of the file's cameras this one (glTF, models; default: the first)",
+              .manual = "Of the cameras in the file the one of this name; the default is the first. In glTF it is the "
+                        "name of the node or of the camera. For another name the message says which there are. pbrt's "
+                        "scenes have one camera, without a name."},
+     TEXT(asked.camera_name)},
     {.text =
          {.name = "camera-from",
           .argument = "X,Y,Z",
@@ -321,6 +398,59 @@ static const option_row ROWS[] = {
           .manual =
               "The field of view of the camera of *--camera-from*, across the shorter side of the picture. Default: 45."},
      .take = take_fov},
+    {.text = {.name = "up",
+              .argument = "AXIS",
+              .section = "Scene",
+              .help = "which axis points up, for --sun, --sky and --camera-up: x, y, z, -x, -y or -z (default: y; in "
+                      "pbrt's text the one nearest to the camera's up)",
+              .manual = "Which axis of the world points up for *--sun* and *--sky*, and for *--camera-up* where that "
+                        "is not given: *x*, *y*, *z*, *-x*, *-y* or *-z*. The default for *--sun* and *--sky* is *y* "
+                        "in glTF and models, and in pbrt's text the axis nearest to the camera's up."},
+     .take = take_up},
+    {.text = {.name = "sun",
+              .argument = "AZ,ELEV[,STRENGTH]",
+              .section = "Scene",
+              .help = "a sun beside the file's lights: degrees from north over east, degrees above the horizon, W/m^2 "
+                      "on what faces it (default 3)",
+              .manual = "Add a sun: an azimuth in degrees from north over east, clockwise for who looks down; degrees "
+                        "above the horizon; and the irradiance in W/m^2 on a surface that faces it, as the strength "
+                        "of Blender's suns is, 3 by default, which makes white a little less than 1. It has no "
+                        "extent: its shadows are sharp. North is _-z_ where _y_ is up, and east is _x_; in pbrt's "
+                        "world, which is left-handed unless its camera mirrors it, north is _+z_ then. Where _z_ is "
+                        "up, north is _+y_. See *--up*. Where there is a sun or a sky, no light is made up for models "
+                        "without any."},
+     .take = take_sun},
+    {.text = {.name = "sky",
+              .argument = "SKY",
+              .section = "Scene",
+              .help = "a sky in the place of the file's: a grey V, a colour R,G,B (radiance, W/m^2/sr), or a picture "
+                      "of all directions",
+              .manual = "Put a sky in the place of the file's own infinite lights: a grey _V_ or a colour _R,G,B_, "
+                        "linear Rec. 709, its radiance in W/m^2/sr; or a picture (OpenEXR, Radiance, ...) of all "
+                        "directions: twice as wide as high, latitude-longitude, its middle in the east (+_x_ where "
+                        "_y_ or _z_ is up) and north a quarter to the left of that, as Blender's worlds have it; or "
+                        "square, octahedral. A picture whose name is numbers needs _./_ before it. Lamps and suns "
+                        "of the file shine on, but for *--no-lights*."},
+     .take = take_sky},
+    {.text = {.name = "sky-strength",
+              .argument = "F",
+              .section = "Scene",
+              .help = "multiplies the sky of --sky (default 1)",
+              .manual = "Multiplies the radiance of *--sky*; 1 is the default."},
+     .take = take_sky_strength},
+    {.text = {.name = "sky-rotation",
+              .argument = "DEGREES",
+              .section = "Scene",
+              .help = "turns its picture from north over east (default 0)",
+              .manual = "Turns the picture of *--sky* from north over east, clockwise for who looks down; 0 is the "
+                        "default."},
+     .take = take_sky_rotation},
+    {.text = {.name = "no-lights",
+              .section = "Scene",
+              .help = "nothing in the file shines: --sun and --sky alone light it",
+              .manual = "No lamp, sun, sky or surface of the file shines, and no light is made up: *--sun* and *--sky* "
+                        "alone light the scene."},
+     FLAG(asked.drops_lights)},
     {.text = {.name = "gltf-light-units",
               .argument = "UNITS",
               .section = "Scene",
@@ -389,6 +519,14 @@ static const option_row ROWS[] = {
               .manual = "Skip pictures whose files are all there and complete; a message says so. What was left by a "
                         "render that ended early is not complete."},
      FLAG(no_clobber)},
+    {.text = {.name = "seed-per-frame",
+              .section = "Work",
+              .help = "with --frames: each frame's number is added to the seed, so that noise differs from frame to "
+                      "frame",
+              .manual = "With *--frames*: each frame's number is added to the seed, so that noise does not stand still "
+                        "over the moving picture. Without it all frames have one seed; *--seed* may also have a place "
+                        "for the number, _%d_ or _####_. Does not go with *--photon-map*."},
+     FLAG(seed_per_frame)},
     {.text = {.name = "checkpoint",
               .argument = "SECONDS",
               .section = "Work",
@@ -473,9 +611,24 @@ bool option_at(size_t index, listed_option *out_option)
     return false;
 }
 
+/* A seed with a place for the frame's number is tried with one. */
+static bool take_seed_pattern(const char *value, options *o)
+{
+    char *tried = frames_name(value, 1);
+    const bool is_valid = tried && ag_render_settings_set(&o->render, "seed", tried) == AG_OK;
+    free(tried);
+    o->seed_pattern = value;
+    return is_valid;
+}
+
 /* A setting is tried on o->render, and noted for options_override. */
 static bool take_setting(const ag_setting *setting, const char *value, options *o)
 {
+    if (strcmp(setting->name, "seed") == 0) {
+        o->seed_pattern = NULL; /* the last one counts */
+        if (frames_has_place(value))
+            return take_seed_pattern(value, o);
+    }
     if (ag_render_settings_set(&o->render, setting->name, value) != AG_OK)
         return false;
     o->given[o->given_count++] = (given_setting){setting->name, value};

@@ -34,6 +34,21 @@ bool parse_float(const char *text, float *out_value)
     return end != text && !*end;
 }
 
+bool parse_floats(const char *text, int most, float *out_values, int *out_count)
+{
+    for (*out_count = 0; *out_count < most;) {
+        char *end;
+        float value = strtof(text, &end);
+        if (end == text || !isfinite(value) || (*end && *end != ','))
+            return false;
+        out_values[(*out_count)++] = value;
+        if (!*end)
+            return true;
+        text = end + 1;
+    }
+    return false;
+}
+
 bool parse_seconds(const char *text, double *out_seconds)
 {
     char *end;

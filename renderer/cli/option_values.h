@@ -9,6 +9,8 @@
 bool parse_int(const char *text, int least, int most, int *out_value);
 /* Any number, infinity and what is not a number among them. */
 bool parse_float(const char *text, float *out_value);
+/* Finite numbers with commas between them; how many, at most so many. */
+bool parse_floats(const char *text, int most, float *out_values, int *out_count);
 /* Above 0 and finite. */
 bool parse_seconds(const char *text, double *out_seconds);
 /* Seconds, or HH:MM:SS. */

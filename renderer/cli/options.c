@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "options.h"
 
+#include "option_guess.h"
 #include "option_help.h"
 #include "option_rows.h"
 
@@ -44,6 +45,23 @@ static char *join_arguments(int argc, char **argv)
     return joined;
 }
 
+/* A seed for each frame wants frames; and a kept photon map has but one. */
+static bool has_odd_seeds(const options *o)
+{
+    if (!o->seed_per_frame && !o->seed_pattern)
+        return false;
+    if (o->frames.count == 0)
+        fprintf(stderr, "afterglow: %s is for --frames, which is not given\n",
+                o->seed_per_frame ? "--seed-per-frame" : "a place for the frame's number in --seed");
+    else if (o->seed_per_frame && o->seed_pattern)
+        fprintf(stderr, "afterglow: --seed-per-frame, and a place for the frame's number in --seed: give one\n");
+    else if (o->render.photon_map_file)
+        fprintf(stderr, "afterglow: --photon-map is kept with one seed: frames cannot have seeds of their own\n");
+    else
+        return false;
+    return true;
+}
+
 /* A camera is asked for by its place and what it looks at. */
 static bool has_half_a_camera(const options *o)
 {
@@ -54,13 +72,41 @@ static bool has_half_a_camera(const options *o)
     return true;
 }
 
+/* What is said of a camera, a sun or a sky must be for one that is asked for. */
+static bool has_idle_scene_option(const options *o)
+{
+    const ag_scene_settings *asked = &o->asked;
+    if (o->has_sky_detail && !asked->has_sky)
+        fprintf(stderr, "afterglow: --sky-strength and --sky-rotation are for --sky, which is not given\n");
+    else if (o->asked.up != AG_UP_AUTO && !asked->has_sky && !asked->has_sun && !asked->has_camera)
+        fprintf(stderr, "afterglow: --up is for --sun, --sky and --camera-from, and none is given\n");
+    else if (asked->camera_name && asked->has_camera)
+        fprintf(stderr, "afterglow: --camera and --camera-from are two cameras: give one\n");
+    else
+        return false;
+    return true;
+}
+
+/* What follows from several options. */
+static void settle_scene_options(options *o)
+{
+    const int up = (int)o->asked.up - AG_UP_X;
+    for (int i = 0; i < 3; i++) {
+        o->asked.sky_radiance[i] *= o->sky_strength;
+        if (o->asked.up != AG_UP_AUTO && !o->has_camera_up)
+            o->asked.camera_up[i] = up % 3 != i ? 0.0f : up < 3 ? 1.0f : -1.0f;
+    }
+}
+
 /* What is asked for must be for one of the files, where they are known. */
 static bool has_idle_picture_option(const options *o)
 {
-    int exr_count = 0;
+    int exr_count = 0, linear_count = 0;
     for (int i = 0; i < o->outfile_count; i++) {
-        size_t length = strlen(o->outfiles[i]);
-        exr_count += length >= 4 && strcasecmp(o->outfiles[i] + length - 4, ".exr") == 0;
+        const char *dot = strrchr(o->outfiles[i], '.');
+        const bool is_exr = dot && strcasecmp(dot, ".exr") == 0;
+        exr_count += is_exr;
+        linear_count += is_exr || (dot && (strcasecmp(dot, ".hdr") == 0 || strcasecmp(dot, ".pfm") == 0));
     }
     if (o->outfile_count == 0)
         return false;
@@ -70,10 +116,11 @@ static bool has_idle_picture_option(const options *o)
                               : s->look                ? "look"
                               : s->exposure_stops != 0 ? "exposure"
                                                        : NULL;
-    if (of_displays && exr_count == o->outfile_count)
-        fprintf(stderr, "afterglow: --%s is for pictures that are not .exr, and there is none\n", of_displays);
-    else if (s->color_space && exr_count == 0)
-        fprintf(stderr, "afterglow: --output-space is for .exr files, and there is none\n");
+    if (of_displays && linear_count == o->outfile_count)
+        fprintf(stderr, "afterglow: --%s is for pictures that are not .exr, .hdr or .pfm, and there is none\n",
+                of_displays);
+    else if (s->color_space && linear_count == 0)
+        fprintf(stderr, "afterglow: --output-space is for .exr, .hdr and .pfm files, and there is none\n");
     else if (o->render.layers && exr_count == 0)
         fprintf(stderr, "afterglow: --aov is for .exr files, and there is none\n");
     else
@@ -124,11 +171,47 @@ static listed_option option_of_code(int code)
     return option;
 }
 
+/* What getopt_long did not take, in our words. */
+static void tell_wrong_option(int code, char **argv)
+{
+    char name[64];
+    const char *word = argv[optind - 1];
+    if (code == ':') {
+        listed_option option = option_of_code(optopt);
+        fprintf(stderr, "afterglow: --%s needs a value: ", option.text->name);
+        option_help_print_line(stderr, option.text);
+    } else if (optopt >= FIRST_CODE) {
+        fprintf(stderr, "afterglow: '%s': --%s takes no value\n", word, option_of_code(optopt).text->name);
+    } else if (optopt > 0) {
+        fprintf(stderr, "afterglow: there is no option -%c\n", optopt);
+    } else {
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+        const size_t length = strlen(name);
+        listed_option option;
+        int begun = 0;
+        for (size_t i = 0; length > 0 && option_at(i, &option); i++) {
+            if (strncmp(option.text->name, name, length) != 0)
+                continue;
+            if (begun++ == 0)
+                fprintf(stderr, "afterglow: --%s is the beginning of several options", name);
+            fprintf(stderr, "%s --%s", begun == 1 ? ":" : ",", option.text->name);
+        }
+        const char *guess = begun == 0 ? option_guess(name) : NULL;
+        if (begun > 0)
+            fputc('\n', stderr);
+        else if (guess)
+            fprintf(stderr, "afterglow: there is no option --%s: did you mean --%s?\n", name, guess);
+        else
+            fprintf(stderr, "afterglow: there is no option --%s\n", name);
+    }
+}
+
 /* getopt_long's tables, with each option's number in the list as its code. */
-static void describe_options(struct option longs[OPTIONS_MAX + 1], char letters[2 * OPTIONS_MAX + 1])
+static void describe_options(struct option longs[OPTIONS_MAX + 1], char letters[2 * OPTIONS_MAX + 2])
 {
     listed_option option;
     size_t count = 0, used = 0;
+    letters[used++] = ':'; /* a value that is missing is told apart */
     for (; option_at(count, &option); count++) {
         assert(count < OPTIONS_MAX);
         longs[count] = (struct option){option.text->name, option.text->argument ? required_argument : no_argument, NULL,
@@ -147,12 +230,15 @@ static void describe_options(struct option longs[OPTIONS_MAX + 1], char letters[
 static options_result take_options(int argc, char **argv, options *o)
 {
     struct option longs[OPTIONS_MAX + 1];
-    char letters[2 * OPTIONS_MAX + 1];
+    char letters[2 * OPTIONS_MAX + 2];
     int code;
+    opterr = 0; /* tell_wrong_option says it */
     describe_options(longs, letters);
     while ((code = getopt_long(argc, argv, letters, longs, NULL)) != -1) {
-        if (code == '?')
-            return OPTIONS_EXIT_USAGE; /* getopt has said what is wrong */
+        if (code == '?' || code == ':') {
+            tell_wrong_option(code, argv);
+            return OPTIONS_EXIT_USAGE;
+        }
         listed_option option = option_of_code(code);
         if (!option_take(&option, optarg, o)) {
             fprintf(stderr, "afterglow: --%s: '%s' is not valid: ", option.text->name, optarg);
@@ -174,12 +260,15 @@ options_result options_parse(int argc, char **argv, options *out_options)
     options o = {.asked = ag_default_scene_settings(),
                  .context = ag_default_context_settings(),
                  .output = ag_default_output_settings(),
-                 .render = ag_default_render_settings()};
+                 .render = ag_default_render_settings(),
+                 .sky_strength = 1.0f};
     o.outfiles = calloc((size_t)argc + 1, sizeof *o.outfiles);
+    o.outfile_types = calloc((size_t)argc + 1, sizeof *o.outfile_types);
+    o.typed_names = calloc((size_t)argc + 1, sizeof *o.typed_names);
     o.confined_to = calloc((size_t)argc + 1, sizeof *o.confined_to);
     o.given = calloc((size_t)argc + 1, sizeof *o.given);
     o.command_line = join_arguments(argc, argv); /* before getopt moves them */
-    if (!o.outfiles || !o.confined_to || !o.given || !o.command_line) {
+    if (!o.outfiles || !o.outfile_types || !o.typed_names || !o.confined_to || !o.given || !o.command_line) {
         options_reset(&o);
         return OPTIONS_EXIT_USAGE;
     }
@@ -195,8 +284,8 @@ options_result options_parse(int argc, char **argv, options *out_options)
     }
     if (result == OPTIONS_RUN && o.frames.count > 1 && has_frames_in_one_file(&o))
         result = OPTIONS_EXIT_USAGE;
-    if (result == OPTIONS_RUN &&
-        (has_half_a_camera(&o) || has_idle_picture_option(&o) || has_picture_of_photons_only(&o)))
+    if (result == OPTIONS_RUN && (has_odd_seeds(&o) || has_half_a_camera(&o) || has_idle_scene_option(&o) ||
+                                  has_idle_picture_option(&o) || has_picture_of_photons_only(&o)))
         result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
         fprintf(stderr, "Try 'afterglow --help'.\n");
@@ -205,6 +294,7 @@ options_result options_parse(int argc, char **argv, options *out_options)
         return result;
     }
     o.scene = o.lists_displays ? NULL : argv[optind];
+    settle_scene_options(&o);
     o.output.command_line = o.command_line;
     *out_options = o;
     return OPTIONS_RUN;
@@ -221,6 +311,10 @@ void options_reset(options *o)
     for (size_t i = 0; i < o->definition_count; i++)
         options_free_definition(&o->definitions[i]);
     free(o->definitions);
+    for (int i = 0; o->typed_names && i < o->outfile_count; i++)
+        free(o->typed_names[i]);
+    free(o->typed_names);
+    free(o->outfile_types);
     free(o->outfiles);
     free((void *)o->confined_to);
     free(o->given);
@@ -249,10 +343,22 @@ static bool has_setting(const options *o, const char *name)
     return false;
 }
 
+ag_output_settings options_output(const options *o, int index)
+{
+    ag_output_settings settings = o->output;
+    if (o->outfile_types[index] != AG_SAMPLE_DEFAULT)
+        settings.type = o->outfile_types[index];
+    return settings;
+}
+
 bool options_override(const options *o, const ag_scene *scene, ag_render_settings *settings)
 {
     for (int i = 0; i < o->given_count; i++)
         (void)ag_render_settings_set(settings, o->given[i].name, o->given[i].value); /* options_parse has tried it */
+    if (o->seed_pattern)
+        (void)ag_render_settings_set(settings, "seed", o->seed_pattern); /* likewise */
+    if (o->seed_per_frame)
+        settings->seed += (uint64_t)o->frame;
     bool has_spp = has_setting(o, "spp");
     if (!has_setting(o, "noise"))
         settings->noise_level = has_spp || ag_scene_has_own_samples(scene) ? 0.0f : AG_DEFAULT_NOISE_LEVEL;

@@ -28,7 +28,9 @@ typedef struct given_setting {
 /* What the scene says holds where a value was not given. */
 typedef struct options {
     const char *scene;
-    const char **outfiles; /* owned array, the strings are argv's */
+    const char **outfiles;         /* owned array, the strings are argv's */
+    ag_sample_type *outfile_types; /* owned array: of each of them, AG_SAMPLE_DEFAULT: as --type says */
+    char **typed_names;            /* owned array and strings: the names that were given with a type */
     int outfile_count;
     const char **confined_to; /* owned array, likewise */
     char *command_line;       /* owned */
@@ -39,12 +41,18 @@ typedef struct options {
     bool resume, preview, no_clobber;
     ag_definition *definitions; /* owned, as are its strings */
     size_t definition_count;
+    bool seed_per_frame;        /* the frame's number is added to the seed */
+    const char *seed_pattern;   /* the seed, with a place for the frame's number; NULL: there is none */
+    int frame;                  /* of one of several pictures, its number */
     frame_list frames;          /* none: one picture, whose names are as they stand */
     int tile_index, tile_count; /* from 1 on; 0: the whole */
     double time_limit, begun;   /* s, 0: none; from when it counts, see passes_seconds */
     progress_style progress;
-    int verbosity;                                          /* -1 quiet, 0, 1 verbose, 2 debug */
-    bool has_camera_from, has_camera_to, has_camera_detail; /* of those; the last: up or field of view */
+    int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
+    bool has_camera_from, has_camera_to, has_camera_up;
+    bool has_camera_detail; /* its up or its field of view */
+    bool has_sky_detail;    /* its strength or its rotation */
+    float sky_strength;
     ag_scene_settings asked; /* of the scene; without the definitions, which stand above */
     ag_context_settings context;
     ag_output_settings output;
@@ -60,6 +68,9 @@ typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE }
 options_result options_parse(int argc, char **argv, options *out_options);
 void options_reset(options *o);
 void options_free_definition(ag_definition *definition); /* its strings */
+
+/* How one of the outfiles is to be written. */
+ag_output_settings options_output(const options *o, int index);
 
 /* Puts what was given on the command line over the scene's settings. False where the picture has fewer rows than
  * tiles. */

@@ -148,8 +148,9 @@ static ag_status write_pictures(passes *p, const ag_film *film, bool is_last)
             status = mark_unfinished(outfile);
         if (status == AG_OK && is_pipe(outfile) && p->o->verbosity >= 0)
             fprintf(stderr, "afterglow: '%s' is a pipe: it is written when somebody reads it\n", outfile);
+        const ag_output_settings output = options_output(p->o, i);
         if (status == AG_OK)
-            status = ag_film_write(p->context, film, &p->o->output, outfile);
+            status = ag_film_write(p->context, film, &output, outfile);
         if (is_last && status == AG_OK)
             mark_finished(outfile);
     }

@@ -4,10 +4,13 @@
 
 #include "passes.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+enum { LINE_STEP = 5 }; /* percent, between two lines of a log */
 
 static pthread_mutex_t terminal = PTHREAD_MUTEX_INITIALIZER; /* one line at a time, from the log or from here */
 
@@ -18,55 +21,126 @@ void progress_init(progress *p, const options *o)
         p->style = o->verbosity < 0 ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_PLAIN;
     p->has_precompute = o->render.cache == AG_CACHE_PRECOMPUTE;
     p->is_path = o->render.integrator == AG_INTEGRATOR_PATH;
+    p->begun = p->frame_begun = passes_seconds();
 }
 
-/* The whole work in percent: each phase has a share of it that is usual. */
-static int overall_percent(const progress *p, ag_phase phase, double fraction)
+/* How much of the work of one picture each phase usually is. */
+static void usual_shares(const progress *p, double out_shares[AG_PHASE_COUNT])
 {
-    double shares[AG_PHASE_COUNT] = {
-        [AG_PHASE_LOAD] = 2, [AG_PHASE_BVH] = 2, [AG_PHASE_RENDER] = 94, [AG_PHASE_WRITE] = 2};
+    for (int i = 0; i < AG_PHASE_COUNT; i++)
+        out_shares[i] = 0.0;
+    out_shares[AG_PHASE_LOAD] = out_shares[AG_PHASE_BVH] = out_shares[AG_PHASE_WRITE] = 2.0;
+    out_shares[AG_PHASE_RENDER] = 94.0;
     if (!p->is_path) {
-        shares[AG_PHASE_PHOTONS] = 10;
-        shares[AG_PHASE_MAP] = 3;
-        shares[AG_PHASE_PRECOMPUTE] = p->has_precompute ? 25 : 0;
-        shares[AG_PHASE_RENDER] = 81 - shares[AG_PHASE_PRECOMPUTE];
+        out_shares[AG_PHASE_PHOTONS] = 10.0;
+        out_shares[AG_PHASE_MAP] = 3.0;
+        out_shares[AG_PHASE_PRECOMPUTE] = p->has_precompute ? 25.0 : 0.0;
+        out_shares[AG_PHASE_RENDER] = 81.0 - out_shares[AG_PHASE_PRECOMPUTE];
     }
-    double done = shares[phase] * fraction;
-    for (int i = 0; i < (int)phase; i++)
-        done += shares[i];
-    return (int)done;
 }
 
-void progress_begin_frame(progress *p, int frame, int frame_count)
+void progress_begin_frame(progress *p, int frame, int frame_count, int frame_number)
 {
+    if (frame > p->frame) { /* one is over */
+        for (int i = 0; i < AG_PHASE_COUNT; i++)
+            p->learned_seconds[i] += p->phase_seconds[i];
+        p->learned_count++;
+    }
+    for (int i = 0; i < AG_PHASE_COUNT; i++)
+        p->phase_seconds[i] = 0.0;
     p->frame = frame;
     p->frame_count = frame_count;
+    p->frame_number = frame_number;
+    p->frame_begun = passes_seconds();
     p->phase = AG_PHASE_COUNT;
 }
 
-/* Seconds until the phase is over, as it went so far; -1: not known yet. */
-static double seconds_left(progress *p, ag_phase phase, double fraction)
+static void enter_phase(progress *p, ag_phase phase, double fraction, double now)
 {
-    double now = passes_seconds();
-    if (p->phase != phase) {
-        p->phase = phase;
-        p->phase_begun = now;
-        p->phase_begun_at = fraction;
+    if (p->phase == phase)
+        return;
+    if (p->phase != AG_PHASE_COUNT)
+        p->phase_seconds[p->phase] = now - p->phase_begun;
+    p->phase = phase;
+    p->phase_begun = now;
+    p->phase_begun_at = fraction;
+}
+
+/* Seconds until all is written, of all pictures; -1: not known yet. A phase that is under way tells by its own pace how
+ * long it will take; one that is yet to come takes as long as it did in the pictures before or, in the first, its usual
+ * share of the time that is known. */
+static double seconds_left(const progress *p, double fraction, double now)
+{
+    const double least_seconds = 0.5, least_fraction = 0.02; /* to be known by */
+    double shares[AG_PHASE_COUNT], known_seconds = 0.0, known_shares = 0.0;
+    const double done = fraction - p->phase_begun_at, took = now - p->phase_begun;
+    const bool has_pace = done >= least_fraction && took >= least_seconds;
+    double left = has_pace ? took * (1.0 - fraction) / done : 0.0, of_one = 0.0;
+    usual_shares(p, shares);
+    for (int i = 0; i < (int)p->phase; i++) {
+        known_seconds += p->phase_seconds[i];
+        known_shares += shares[i];
     }
-    double done = fraction - p->phase_begun_at, took = now - p->phase_begun;
-    return done >= 0.02 && took >= 0.5 ? took * (1.0 - fraction) / done : -1.0;
+    if (has_pace) {
+        known_seconds += took + left;
+        known_shares += shares[p->phase];
+    }
+    const bool is_learned = p->learned_count > 0;
+    if (!is_learned && !(known_shares > 0.0 && known_seconds >= least_seconds))
+        return -1.0;
+    for (int i = (int)p->phase; i < AG_PHASE_COUNT; i++) {
+        const double whole =
+            is_learned ? p->learned_seconds[i] / p->learned_count : shares[i] * known_seconds / known_shares;
+        if (i > (int)p->phase)
+            left += whole;
+        else if (!has_pace)
+            left += fmax(whole * (1.0 - fraction), 0.0);
+    }
+    for (int i = 0; i < AG_PHASE_COUNT && is_learned; i++)
+        of_one += p->learned_seconds[i] / p->learned_count;
+    if (!is_learned)
+        of_one = now - p->frame_begun + left;
+    return left + of_one * (p->frame_count > 0 ? p->frame_count - p->frame - 1 : 0);
+}
+
+/* The whole work in percent: by time, where it is known, else by usual shares. 100 only at the end. */
+static int overall_percent(const progress *p, double fraction, double left, double now)
+{
+    const bool is_last = p->frame_count == 0 || p->frame + 1 == p->frame_count;
+    double shares[AG_PHASE_COUNT], done = 0.0;
+    if (is_last && p->phase == AG_PHASE_WRITE && fraction >= 1.0)
+        return 100;
+    if (left >= 0.0) {
+        done = 100.0 * (now - p->begun) / fmax(now - p->begun + left, 1e-9);
+    } else {
+        usual_shares(p, shares);
+        for (int i = 0; i < (int)p->phase; i++)
+            done += shares[i];
+        done += shares[p->phase] * fraction;
+        if (p->frame_count > 0)
+            done = (100.0 * p->frame + done) / p->frame_count;
+    }
+    return done < 99.0 ? (int)done : 99;
+}
+
+/* "1:23", or with hours. */
+static const char *time_text(double seconds, char *out, size_t size)
+{
+    const long whole = (long)(seconds + 0.5);
+    if (whole >= 3600)
+        snprintf(out, size, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+    else
+        snprintf(out, size, "%ld:%02ld", whole / 60, whole % 60);
+    return out;
 }
 
 /* ", 1:23 left", or nothing. */
 static const char *left_text(double seconds, char *out, size_t size)
 {
-    long whole = (long)(seconds + 0.5);
-    if (seconds < 0.0)
-        out[0] = '\0';
-    else if (whole >= 3600)
-        snprintf(out, size, ", %ld:%02ld:%02ld left", whole / 3600, whole / 60 % 60, whole % 60);
-    else
-        snprintf(out, size, ", %ld:%02ld left", whole / 60, whole % 60);
+    char time[32];
+    out[0] = '\0';
+    if (seconds >= 0.5)
+        snprintf(out, size, ", %s left", time_text(seconds, time, sizeof time));
     return out;
 }
 
@@ -77,15 +151,26 @@ static void clear_bar(progress *p)
     p->bar_is_shown = false;
 }
 
+static void tell_frame_as_json(const progress *p)
+{
+    if (p->frame_count > 0)
+        fprintf(stderr, ", \"frame\": %d, \"frame_index\": %d, \"frame_count\": %d", p->frame_number, p->frame + 1,
+                p->frame_count);
+}
+
 void progress_tell(void *user, ag_phase phase, double fraction)
 {
     progress *p = user;
     pthread_mutex_lock(&terminal);
-    int percent = (100 * p->frame + overall_percent(p, phase, fraction)) / (p->frame_count > 0 ? p->frame_count : 1);
-    double left = seconds_left(p, phase, fraction);
-    char left_for[48];
-    bool is_new = percent > p->told_percent;
-    if (is_new)
+    const double now = passes_seconds();
+    enter_phase(p, phase, fraction, now);
+    const double left = seconds_left(p, fraction, now);
+    const int percent = overall_percent(p, fraction, left, now);
+    char left_for[48], frame[48] = "";
+    const bool is_new = percent > p->told_percent, is_new_line = percent / LINE_STEP > p->told_percent / LINE_STEP;
+    if (p->frame_count > 0)
+        snprintf(frame, sizeof frame, "frame %d of %d, ", p->frame + 1, p->frame_count);
+    if (is_new && (p->style != PROGRESS_PLAIN || is_new_line || p->told_percent < 0))
         p->told_percent = percent;
     switch (p->style) {
     case PROGRESS_BAR: {
@@ -95,15 +180,15 @@ void progress_tell(void *user, ag_phase phase, double fraction)
         memset(bar, '.', WIDTH);
         memset(bar, '#', (size_t)(filled < WIDTH ? filled : WIDTH));
         bar[WIDTH] = '\0';
-        fprintf(stderr, "\r\033[K%-10s [%s] %3d%%%s", ag_phase_name(phase), bar, p->told_percent,
+        fprintf(stderr, "\r\033[K%s%-10s [%s] %3d%%%s", frame, ag_phase_name(phase), bar, p->told_percent,
                 left_text(left, left_for, sizeof left_for));
         fflush(stderr);
         p->bar_is_shown = true;
         break;
     }
     case PROGRESS_PLAIN:
-        if (is_new)
-            fprintf(stderr, "Progress: %d%% (%s%s)\n", percent, ag_phase_name(phase),
+        if (is_new && p->told_percent == percent)
+            fprintf(stderr, "Progress: %d%% (%s%s%s)\n", percent, frame, ag_phase_name(phase),
                     left_text(left, left_for, sizeof left_for));
         break;
     case PROGRESS_ALF: /* as render queues read it, from standard output */
@@ -113,8 +198,9 @@ void progress_tell(void *user, ag_phase phase, double fraction)
         }
         break;
     case PROGRESS_JSON:
-        fprintf(stderr, "{\"phase\": \"%s\", \"fraction\": %.4f, \"percent\": %d", ag_phase_name(phase), fraction,
-                p->told_percent);
+        fprintf(stderr, "{\"phase\": \"%s\", \"fraction\": %.4f, \"percent\": %d, \"seconds\": %.1f",
+                ag_phase_name(phase), fraction, p->told_percent, now - p->begun);
+        tell_frame_as_json(p);
         if (left >= 0.0)
             fprintf(stderr, ", \"seconds_left\": %.1f", left);
         fprintf(stderr, "}\n");
@@ -137,6 +223,50 @@ void progress_log(void *user, ag_log_level level, const char *message)
     pthread_mutex_lock(&terminal);
     clear_bar(p);
     fprintf(stderr, "%s%s%s\n", has_place ? "" : "afterglow: ", has_place ? "" : prefixes[level], message);
+    pthread_mutex_unlock(&terminal);
+}
+
+static void put_json_text(const char *text)
+{
+    fputc('"', stderr);
+    for (; *text; text++)
+        if (*text == '"' || *text == '\\')
+            fprintf(stderr, "\\%c", *text);
+        else if ((unsigned char)*text < ' ')
+            fprintf(stderr, "\\u%04x", (unsigned char)*text);
+        else
+            fputc(*text, stderr);
+    fputc('"', stderr);
+}
+
+void progress_tell_written(progress *p, const char *const *files, int file_count)
+{
+    const bool is_json = p->style == PROGRESS_JSON;
+    const double now = passes_seconds();
+    char time[32];
+    if (file_count == 0 || (!is_json && p->style != PROGRESS_BAR && p->style != PROGRESS_PLAIN))
+        return;
+    pthread_mutex_lock(&terminal);
+    clear_bar(p);
+    fprintf(stderr, "%s", is_json ? "{\"written\": [" : "afterglow: wrote ");
+    for (int i = 0; i < file_count; i++) {
+        fputs(i > 0 ? ", " : "", stderr);
+        if (is_json)
+            put_json_text(files[i]);
+        else
+            fputs(files[i], stderr);
+    }
+    if (is_json) {
+        fprintf(stderr, "], \"percent\": %d, \"picture_seconds\": %.1f, \"seconds\": %.1f", p->told_percent,
+                now - p->frame_begun, now - p->begun);
+        tell_frame_as_json(p);
+        fputs("}\n", stderr);
+    } else {
+        fprintf(stderr, " in %s", time_text(now - p->frame_begun, time, sizeof time));
+        if (p->frame_count > 0)
+            fprintf(stderr, " (frame %d of %d)", p->frame + 1, p->frame_count);
+        fputc('\n', stderr);
+    }
     pthread_mutex_unlock(&terminal);
 }
 

@@ -15,16 +15,24 @@ typedef struct progress {
     bool has_precompute; /* its share of the work */
     bool is_path;
     int frame, frame_count; /* which of the pictures, from 0 on */
+    int frame_number;       /* its own */
     ag_phase phase;         /* the one told last */
     double phase_begun;     /* s, when it was told first, and how far it was then */
     double phase_begun_at;
+    double begun, frame_begun;              /* s, passes_seconds */
+    double phase_seconds[AG_PHASE_COUNT];   /* of the phases of this picture that are over */
+    double learned_seconds[AG_PHASE_COUNT]; /* of all pictures before, in sum */
+    int learned_count;                      /* of those pictures */
 } progress;
 
 /* Settles AUTO: a bar on a terminal, whole lines elsewhere; nothing when quiet. */
 void progress_init(progress *p, const options *o);
 
 /* The next of so many pictures: progress is that of all of them. */
-void progress_begin_frame(progress *p, int frame, int frame_count);
+void progress_begin_frame(progress *p, int frame, int frame_count, int frame_number);
+
+/* What was written, and how long this picture took; where progress is told at all. */
+void progress_tell_written(progress *p, const char *const *files, int file_count);
 
 /* For ag_context_settings, with a progress as user. Messages go to standard error. */
 void progress_tell(void *user, ag_phase phase, double fraction);

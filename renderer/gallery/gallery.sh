@@ -90,8 +90,8 @@ say "## How the photon map fares" "" \
     "Irradiance as the map gives it at the first surface; photons per area; and of the photon that is nearest, whether its" \
     "irradiance was demanded (white) or not (grey) while the picture was made:" ""
 run oiiotool -i:ch=irradiance.R,irradiance.G,irradiance.B sunroom.exr --chnames R,G,B --mulc 0.15 --powc 0.4545 \
-    -i:ch=photon_density,photon_density,photon_density sunroom.exr --chnames R,G,B --mulc 0.00003 --powc 0.4545 \
-    -i:ch=cache_state,cache_state,cache_state sunroom.exr --chnames R,G,B --mulc 0.5 --powc 2.2 \
+    -i:ch=photon_density.V,photon_density.V,photon_density.V sunroom.exr --chnames R,G,B --mulc 0.00003 --powc 0.4545 \
+    -i:ch=cache_state.V,cache_state.V,cache_state.V sunroom.exr --chnames R,G,B --mulc 0.5 --powc 2.2 \
     --mosaic:pad=6 3x1 --resize 960x0 -d uint8 -o map.png
 show map "A smooth map of irradiance; dense photons where the sun shines; nearly all photons' irradiance demanded"
 

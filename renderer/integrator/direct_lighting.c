@@ -68,8 +68,8 @@ lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, cons
         return none;
     float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
     if (!sample.is_delta && scatter_count > 0)
-        weight =
-            mis_power((float)lamp_count, pdf, (float)scatter_count, bsdf_pdf(&v->scattering, lobes, sample.direction));
+        weight = mis_power((float)lamp_count, pdf, (float)scatter_count,
+                           bsdf_pdf(&v->scattering, lobes, BSDF_RADIANCE, sample.direction));
     return (lamp_light){rgb_scale(rgb_mul(reflected, transmittance), weight / pdf), lamp, sample.direction};
 }
 

@@ -18,12 +18,14 @@ typedef struct format_entry {
 #define BIT(type) (1u << (type))
 
 static const format_entry formats[] = {
-    {{"exr", true, IMAGE_HALF}, BIT(IMAGE_HALF) | BIT(IMAGE_FLOAT), 0},
-    {{"png", false, IMAGE_UINT8}, BIT(IMAGE_UINT8) | BIT(IMAGE_UINT16), 4},
-    {{"tif", false, IMAGE_UINT16}, BIT(IMAGE_UINT8) | BIT(IMAGE_UINT16) | BIT(IMAGE_FLOAT), 0},
-    {{"tiff", false, IMAGE_UINT16}, BIT(IMAGE_UINT8) | BIT(IMAGE_UINT16) | BIT(IMAGE_FLOAT), 0},
-    {{"jpg", false, IMAGE_UINT8}, BIT(IMAGE_UINT8), 0},
-    {{"jpeg", false, IMAGE_UINT8}, BIT(IMAGE_UINT8), 0},
+    {{"exr", true, IMAGE_HALF, true}, BIT(IMAGE_HALF) | BIT(IMAGE_FLOAT), 0},
+    {{"hdr", true, IMAGE_FLOAT, false}, BIT(IMAGE_FLOAT), 3},
+    {{"pfm", true, IMAGE_FLOAT, false}, BIT(IMAGE_FLOAT), 3},
+    {{"png", false, IMAGE_UINT8, false}, BIT(IMAGE_UINT8) | BIT(IMAGE_UINT16), 4},
+    {{"tif", false, IMAGE_UINT16, false}, BIT(IMAGE_UINT8) | BIT(IMAGE_UINT16) | BIT(IMAGE_FLOAT), 0},
+    {{"tiff", false, IMAGE_UINT16, false}, BIT(IMAGE_UINT8) | BIT(IMAGE_UINT16) | BIT(IMAGE_FLOAT), 0},
+    {{"jpg", false, IMAGE_UINT8, false}, BIT(IMAGE_UINT8), 0},
+    {{"jpeg", false, IMAGE_UINT8, false}, BIT(IMAGE_UINT8), 0},
 };
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 
@@ -94,6 +96,28 @@ static ag_status check_description(const char *path, const image_format *format,
     return AG_OK;
 }
 
+/* Portable float map: three floats a pixel, the bottom row first; a scale below 0 says that they are little-endian.
+ * Rests on: Debevec, "PFM Portable FloatMap Image Format", pauldebevec.com/Research/HDR/PFM. */
+static ag_status encode_pfm(const image_description *description, const float *pixels, unsigned char **out_bytes,
+                            size_t *out_size)
+{
+    char header[64];
+    const size_t width = (size_t)description->width, height = (size_t)description->height;
+    const size_t channels = (size_t)description->channel_count, row = 3 * width * sizeof *pixels;
+    const size_t header_size = (size_t)snprintf(header, sizeof header, "PF\n%zu %zu\n-1.0\n", width, height);
+    unsigned char *bytes = malloc(header_size + height * row);
+    if (!bytes)
+        return AG_ERROR_MEMORY;
+    memcpy(bytes, header, header_size);
+    for (size_t y = 0; y < height; y++)
+        for (size_t x = 0; x < width; x++)
+            memcpy(bytes + header_size + (height - 1 - y) * row + 3 * x * sizeof *pixels,
+                   pixels + (y * width + x) * channels, 3 * sizeof *pixels);
+    *out_bytes = bytes;
+    *out_size = header_size + height * row;
+    return AG_OK;
+}
+
 ag_status image_file_write(const char *path, const image_description *description, const float *pixels, char *message,
                            size_t message_size)
 {
@@ -110,8 +134,11 @@ ag_status image_file_write(const char *path, const image_description *descriptio
 
     unsigned char *bytes = NULL;
     size_t size = 0;
-    char reason[1024];
-    status = module->encode(format->extension, description, pixels, &bytes, &size, reason, sizeof reason);
+    char reason[1024] = "there is no memory for it";
+    if (strcmp(format->extension, "pfm") == 0)
+        status = encode_pfm(description, pixels, &bytes, &size);
+    else
+        status = module->encode(format->extension, description, pixels, &bytes, &size, reason, sizeof reason);
     if (status == AG_OK)
         status = atomic_file_write(path, bytes, size, message, message_size);
     else

@@ -17,11 +17,12 @@ extern "C" {
 /* What a file name's extension stands for. */
 typedef struct image_format {
     const char *extension; /* lower case, without the dot */
-    bool scene_linear;     /* EXR: written as it is; the others through a display and view */
+    bool scene_linear;     /* EXR, Radiance, PFM: written as it is; the others through a display and view */
     image_sample_type default_type;
+    bool has_layers; /* beside red, green and blue; and attributes of any kind */
 } image_format;
 
-/* NULL where the extension is not known. Known: exr, png, tif, tiff, jpg, jpeg. Needs no module. */
+/* NULL where the extension is not known. Known: exr, hdr, pfm, png, tif, tiff, jpg, jpeg. Needs no module. */
 const image_format *image_format_of(const char *path);
 
 /* The types a format can hold. */

@@ -32,8 +32,9 @@ static ag_status find_format(ag_context *context, const ag_output_settings *sett
 {
     const image_format *format = image_format_of(path);
     if (!format) {
-        log_message(context->log, AG_LOG_ERROR,
-                    "%s: the name must end in .exr, .png, .tif, .tiff, .jpg or .jpeg: it chooses the format", path);
+        log_message(
+            context->log, AG_LOG_ERROR,
+            "%s: the name must end in .exr, .hdr, .pfm, .png, .tif, .tiff, .jpg or .jpeg: it chooses the format", path);
         return AG_ERROR_ARGUMENT;
     }
     if (!image_format_can_hold(format, stored_type(format, settings->type))) {
@@ -57,13 +58,18 @@ ag_status ag_output_check(ag_context *context, const ag_output_settings *setting
     if (status != AG_OK)
         return status;
     char message[MESSAGE_SIZE];
+    phase_begin begin = context_begin_phase(); /* the first one loads OpenImageIO */
     status = image_file_check_target(path, message, sizeof message);
+    context_add_to_phase(context, AG_PHASE_WRITE, begin);
     if (status != AG_OK) {
         log_message(context->log, AG_LOG_ERROR, "%s", message);
         return status;
     }
     /* a config that is named but cannot be used is an error even where this picture would not need it */
-    return output_color_check(context, settings);
+    begin = context_begin_phase();
+    status = output_color_check(context, settings);
+    context_add_to_phase(context, AG_PHASE_LOAD, begin);
+    return status;
 }
 
 static bool ends_with(const char *text, const char *end)
@@ -128,7 +134,7 @@ static ag_status write_picture(ag_context *context, const ag_film *film, const a
                                      .attribute_count = sizeof attributes / sizeof *attributes};
     picture_layers layers = {0};
     ag_status status = AG_OK;
-    if (format->scene_linear) { /* the only one that holds layers */
+    if (format->has_layers) {
         status = picture_layers_create(context, film, pixels, settings, description.type, path, &layers);
         if (status == AG_OK && settings->color_space)
             status = convert_layers(context, film, settings, &layers);

@@ -251,7 +251,7 @@ rgb bsdf_gathered_transmission(const bsdf *b)
 }
 
 /* Shading normals bend the cosine of flux (Veach 1997, 5.3.2): the factor for flux that came from `out` and goes on to
- * `direction`. */
+ * `direction` by a lobe that is not diffuse. */
 static float flux_correction(const bsdf *b, vec3 direction)
 {
     float numerator = fabsf(vec3_dot(b->out, b->shading.z) * vec3_dot(direction, b->geometric_normal));
@@ -264,7 +264,7 @@ static float arrival_factor(const bsdf *b, const material *base)
     float shading = vec3_dot(b->out, b->shading.z), geometric = vec3_dot(b->out, b->geometric_normal);
     if (shading * geometric <= 0.0f)
         return 0.0f; /* behind the horizon of one of the normals: neither way of computing finds light */
-    return fminf(shading / geometric, BSDF_CORRECTION_MAX) * bsdf_lobe_transmittance(base, shading);
+    return fminf(shading / geometric, BSDF_ARRIVAL_MAX) * bsdf_lobe_transmittance(base, shading);
 }
 
 float bsdf_arrival_factor(const bsdf *b) { return arrival_factor(b, &b->matter); }
@@ -282,18 +282,19 @@ rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec
 {
     vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
     rgb sum = rgb_gray(0.0f);
+    float correction = transport == BSDF_FLUX ? flux_correction(b, direction) : 1.0f;
     for (int k = 0; k < b->lobe_count; k++) {
         rgb value;
         float pdf;
         if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
             continue;
         bsdf_lobe_evaluate(b, &b->lobes[k], transport, direction, o, i, &value, &pdf);
-        sum = rgb_add(sum, value);
+        sum = rgb_add(sum, bsdf_lobe_is_diffuse(b->lobes[k].kind) ? value : rgb_scale(value, correction));
     }
-    return transport == BSDF_FLUX ? rgb_scale(sum, flux_correction(b, direction)) : sum;
+    return sum;
 }
 
-float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 direction)
+float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)
 {
     vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
     float sum = 0.0f;
@@ -302,7 +303,7 @@ float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 direction)
         float pdf;
         if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
             continue;
-        bsdf_lobe_evaluate(b, &b->lobes[k], BSDF_FLUX, direction, o, i, &value, &pdf);
+        bsdf_lobe_evaluate(b, &b->lobes[k], transport, direction, o, i, &value, &pdf);
         sum += pdf * b->lobes[k].probability;
     }
     return sum > 0.0f ? sum / bsdf_probability(b, lobes) : 0.0f;
@@ -328,19 +329,21 @@ static const bsdf_lobe *pick_lobe(const bsdf *b, bsdf_lobes lobes, float *in_out
     return last;
 }
 
-/* f |cos| / pdf is the albedo, without evaluating any of them. */
+/* f |cos| / pdf is the albedo, without evaluating any of them. Radiance comes by the cosine to the shading normal; flux
+ * goes by that to the geometric one, as its radiance is the same all around (Veach 1997, 5.3). */
 static bool sample_plain(const bsdf *b, bsdf_transport transport, vec2 u, bsdf_sample *out)
 {
+    bool is_flux = transport == BSDF_FLUX;
+    frame around = is_flux ? frame_from_z(b->geometric_normal) : b->shading;
+    float correction = is_flux ? bsdf_arrival_factor(b) : 1.0f;
     vec3 i = sample_cosine_hemisphere(u);
     out->pdf_solid_angle = i.z * AG_INV_PI;
     if (bsdf_is_below(b))
         i.z = -i.z;
-    out->direction = frame_to_world(&b->shading, i); /* unit to rounding, as the frame and i are */
-    if (!bsdf_is_same_side(b, out->direction))
+    out->direction = frame_to_world(&around, i); /* unit to rounding, as the frame and i are */
+    if (!(correction > 0.0f) || !bsdf_is_same_side(b, out->direction))
         return false;
-    out->weight = b->matter.reflectance;
-    if (transport == BSDF_FLUX)
-        out->weight = rgb_scale(out->weight, flux_correction(b, out->direction));
+    out->weight = rgb_scale(b->matter.reflectance, correction);
     out->is_delta = out->is_straight = false;
     out->group = BSDF_GATHERED;
     return true;
@@ -376,10 +379,13 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
             out->weight = rgb_scale(out->weight, flux_correction(b, out->direction));
         return true;
     }
-    if (!bsdf_lobe_sample_rough(b, lobe->kind, o, u_lobe, u, &i))
+    bool is_by_geometry = transport == BSDF_FLUX && bsdf_lobe_is_diffuse(lobe->kind);
+    if ((is_by_geometry && !(bsdf_arrival_factor(b) > 0.0f)) ||
+        !bsdf_lobe_sample_rough(b, lobe->kind, o, u_lobe, u, &i))
         return false;
-    out->direction = vec3_normalize(frame_to_world(&b->shading, i));
-    out->pdf_solid_angle = bsdf_pdf(b, lobes, out->direction);
+    frame around = is_by_geometry ? frame_from_z(b->geometric_normal) : b->shading;
+    out->direction = vec3_normalize(frame_to_world(&around, i));
+    out->pdf_solid_angle = bsdf_pdf(b, lobes, transport, out->direction);
     if (!(out->pdf_solid_angle > 0.0f))
         return false;
     out->weight = rgb_scale(bsdf_evaluate(b, lobes, transport, out->direction), 1.0f / out->pdf_solid_angle);

@@ -20,7 +20,10 @@
 #include "material/material.h"
 #include "scene.h"
 
-/* The largest factor that shading normals may add to a photon: beyond it lie grazing silhouettes only. */
+/* The largest factors that shading normals may add to a photon: where it arrives at a place, and where a lobe that is
+ * not diffuse sends it on. Light nearer to the surface than that is some thousandths where normals lean by 45 degrees,
+ * and its part beyond the factor is lost. */
+#define BSDF_ARRIVAL_MAX    32.0f
 #define BSDF_CORRECTION_MAX 8.0f
 
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
@@ -65,7 +68,7 @@ typedef struct bsdf {
 typedef struct bsdf_sample {
     vec3 direction;        /* unit, away from the surface */
     rgb weight;            /* f |cos| / pdf, shading-normal correction of flux included */
-    float pdf_solid_angle; /* of all lobes asked for together; meaningless where is_delta */
+    float pdf_solid_angle; /* of all lobes asked for together, as they sample it; meaningless where is_delta */
     bool is_delta;
     bool is_straight; /* goes on through a pane, unbent */
     bsdf_lobes group; /* of the lobe that was picked */
@@ -110,7 +113,9 @@ rgb bsdf_gathered_transmission(const bsdf *b);
 /* f |cos(direction, shading normal)| for light from `direction` (unit, away from the surface) leaving to out; smooth
  * lobes count as 0. */
 rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction);
-float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, vec3 direction);
+/* Of sampling. Radiance is sampled about shading normals; flux leaves diffuse lobes by the cosine to the geometric one.
+ */
+float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction);
 
 /* Samples the way on. false: absorbed. */
 bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, float u_lobe, vec2 u,

@@ -40,6 +40,13 @@ static float diffuse_cosine(const bsdf *b, bsdf_lobe_kind kind, vec3 direction, 
     return fmaxf(0.0f, side * i.z);
 }
 
+/* diffuse_cosine to the geometric normal: by it flux leaves a diffuse lobe, whose radiance is the same all around. */
+static float geometric_cosine(const bsdf *b, bsdf_lobe_kind kind, vec3 direction)
+{
+    bool is_there = bsdf_is_same_side(b, direction) != (kind == LOBE_DIFFUSE_THROUGH);
+    return is_there ? fabsf(vec3_dot(direction, b->geometric_normal)) : 0.0f;
+}
+
 /* Walter 2007, eq. 20, 21; the density's factors follow Pharr et al., 9.7. */
 bool bsdf_lobe_refraction(ggx facets, float ior, bsdf_transport transport, vec3 o, vec3 i, float *out_cosine,
                           float *out_value, float *out_pdf)
@@ -96,10 +103,15 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
     case LOBE_DIFFUSE_THROUGH: {
-        float cosine = diffuse_cosine(b, lobe->kind, direction, i) * AG_INV_PI;
+        bool is_flux = transport == BSDF_FLUX;
+        float arrived = is_flux ? bsdf_arrival_factor(b) : bsdf_lobe_transmittance(m, o.z);
+        float cosine =
+            is_flux ? geometric_cosine(b, lobe->kind, direction) : diffuse_cosine(b, lobe->kind, direction, i);
         rgb albedo = lobe->kind == LOBE_DIFFUSE ? bsdf_lobe_diffuse_albedo(m) : m->transmittance;
-        *out_pdf = cosine;
-        *out_value = rgb_scale(albedo, cosine * bsdf_lobe_transmittance(m, o.z) * bsdf_lobe_transmittance(m, i.z));
+        if (is_flux && !(arrived > 0.0f))
+            return;
+        *out_pdf = cosine * AG_INV_PI;
+        *out_value = rgb_scale(albedo, *out_pdf * arrived * bsdf_lobe_transmittance(m, i.z));
         return;
     }
     case LOBE_DIELECTRIC: {

@@ -21,8 +21,15 @@ bool bsdf_lobe_refraction(ggx facets, float ior, bsdf_transport transport, vec3 
 /* Whether a direction is on out's side; judged by the geometry, which alone cannot leak. */
 bool bsdf_is_same_side(const bsdf *b, vec3 direction);
 
+/* Whether radiance leaves it in all directions alike, but for a coat. Flux leaves it by the cosine to the geometric
+ * normal then, whatever the shading normal, which counts where flux arrives. */
+static inline bool bsdf_lobe_is_diffuse(bsdf_lobe_kind kind)
+{
+    return kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH;
+}
+
 /* Value (f |cos|) and density of one lobe that is not smooth. direction: world; o, i: out and direction in the frame.
- */
+ * Of flux the value holds the shading normal's correction where the lobe is diffuse, and the density is flux's. */
 void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
                         rgb *out_value, float *out_pdf);
 
@@ -30,7 +37,7 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
 bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, float u_lobe,
                              vec3 *out_local, rgb *out_weight);
 
-/* A direction of a lobe that is not smooth, in the shading frame. */
+/* A direction of a lobe that is not smooth, in the shading frame; for flux of a diffuse lobe, in the geometric one. */
 bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_lobe, vec2 u, vec3 *out_local);
 
 #endif

@@ -31,7 +31,7 @@ static inline float lambert_arrival_factor(const surface_hit *hit, vec3 directio
     if (shading * geometric <= 0.0f)
         return 0.0f;
     float factor = shading / geometric;
-    return factor < BSDF_CORRECTION_MAX ? factor : BSDF_CORRECTION_MAX;
+    return factor < BSDF_ARRIVAL_MAX ? factor : BSDF_ARRIVAL_MAX;
 }
 
 /* Samples the way on of flux that came along `arrived`, unit: bsdf_sample_direction. *out_correction: what its weight
@@ -39,23 +39,12 @@ static inline float lambert_arrival_factor(const surface_hit *hit, vec3 directio
 static inline bool lambert_sample_flux(const surface_hit *hit, vec3 arrived, vec2 u, vec3 *out_direction,
                                        float *out_correction)
 {
-    vec3 i = sample_cosine_hemisphere(u), n = hit->geometric_normal;
-    frame shading = frame_from_z(hit->shading_normal);
-    float before = vec3_dot(arrived, n);
-    i.z = float_select(before > 0.0f, -i.z, i.z);
-    vec3 direction = vec3_normalize(frame_to_world(&shading, i));
-    float after = vec3_dot(direction, n);
-    *out_direction = direction;
-    *out_correction = 1.0f;
-    if (!(before * after < 0.0f))
-        return false;
-    if (lambert_is_flat_shaded(hit))
-        return true;
-    float numerator = fabsf(vec3_dot(arrived, shading.z) * after);
-    float denominator = fabsf(before * vec3_dot(direction, shading.z));
-    float factor = denominator > 0.0f ? numerator / denominator : 0.0f;
-    *out_correction = factor < BSDF_CORRECTION_MAX ? factor : BSDF_CORRECTION_MAX;
-    return true;
+    vec3 i = sample_cosine_hemisphere(u);
+    frame around = frame_from_z(hit->geometric_normal);
+    i.z = float_select(vec3_dot(arrived, hit->geometric_normal) > 0.0f, -i.z, i.z);
+    *out_direction = vec3_normalize(frame_to_world(&around, i));
+    *out_correction = lambert_arrival_factor(hit, arrived);
+    return *out_correction > 0.0f;
 }
 
 #endif

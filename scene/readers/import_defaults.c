@@ -2,6 +2,7 @@
 #include "import_defaults.h"
 
 #include "scene_extent.h"
+#include "scene_overrides.h"
 
 static const float FOV_DEGREES = 45.0f;
 static const double TAN_HALF_FOV = 0.41421356237309505;  /* tan 22.5 degrees = sqrt 2 - 1 */
@@ -57,8 +58,8 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
 {
     vec3 low, high;
     double axes[3][3], center[3] = {0.0, 0.0, 0.0}, half[3] = {1.0, 1.0, 1.0}, m[4][4] = {{0.0}};
-    if (s->request && s->request->has_camera)
-        return AG_OK; /* scene_file sets the one that is asked for */
+    if (s->request && (s->request->has_camera || s->request->camera_name))
+        return AG_OK; /* the one that is asked for is set, or missed, by scene_overrides */
     default_axes(axes);
     ag_status status = scene_find_bounds(s, NULL, &low, &high);
     if (status)
@@ -84,7 +85,7 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
     if (!transform_from_matrix((const double(*)[4])m, &c.world_from_camera))
         c.world_from_camera = transform_identity(); /* bounds are finite, so there is an inverse */
     s->camera = c;
-    s->has_camera = true;
+    s->has_camera = s->is_camera_made_up = true;
     log_message(log, AG_LOG_INFO, "the file has no camera: one is set at (%g, %g, %g), looking at (%g, %g, %g)",
                 m[0][3], m[1][3], m[2][3], center[0], center[1], center[2]);
     return AG_OK;
@@ -112,12 +113,15 @@ ag_status import_add_default_light(scene *s, log_sink *log)
 {
     light sky = light_make(LIGHT_INFINITE), sun = light_make(LIGHT_DISTANT);
     uint32_t index;
+    if (scene_overrides_light(s))
+        return AG_OK;
     sky.radiance = SKY_RADIANCE;
     sun.radiance = SUN_IRRADIANCE;
     sun.direction = sun_direction(s);
     ag_status status = scene_add_light(s, &sky, &index);
     if (!status)
         status = scene_add_light(s, &sun, &index);
+    s->is_light_made_up = !status;
     if (!status)
         log_message(log, AG_LOG_INFO, "the file has no light: an even sky and a sun light it");
     return status;

@@ -8,8 +8,9 @@
 #include "scene.h"
 
 /* Sets the scene's camera: from the front, a little from the right and from above, 45 degrees, so that the bounds of
- * all shapes are in the picture whatever its proportions. Said at info level. Shapes must be there already; the scene
- * is not yet committed. Always AG_OK: where there is nothing to see, it looks at the origin. */
+ * all shapes are in the picture whatever its proportions; closed_room.h puts it inside of a room. Said at info level.
+ * Shapes must be there already; the scene is not yet committed. Always AG_OK: where there is nothing to see, it looks
+ * at the origin. */
 ag_status import_add_default_camera(scene *s, log_sink *log);
 
 /* Adds an even sky (0.5 W/m^2/sr) and a sun (1.5 W/m^2) over the camera's left shoulder, or without a camera over that

@@ -7,8 +7,8 @@
 #include "model/obj_file.h"
 #include "model/ply_file.h"
 #include "pbrt/pbrt_parser.h"
+#include "scene_overrides.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -82,45 +82,6 @@ static ag_status load(run_context *run, const char *path, scene *out_scene)
     return status;
 }
 
-/* The camera that is asked for in the place of the file's. pbrt's world is left-handed, that of models right-handed. */
-static ag_status set_camera(run_context *run, scene *s, bool is_left_handed)
-{
-    const scene_request *asked = s->request;
-    const vec3 from = asked->camera_from, way = vec3_sub(asked->camera_to, from);
-    const vec3 across = is_left_handed ? vec3_cross(asked->camera_up, way) : vec3_cross(way, asked->camera_up);
-    const float distance = vec3_length(way), width = vec3_length(across);
-    camera c = {.shutter_close = 1.0f};
-    if (s->has_camera)
-        c = s->camera;
-    double matrix[4][4] = {{0.0}};
-    if (distance > 0.0f && width > 0.0f && isfinite(distance) && isfinite(width) && vec3_is_finite(from)) {
-        const vec3 z = vec3_scale(way, 1.0f / distance), x = vec3_scale(across, 1.0f / width);
-        const vec3 y = is_left_handed ? vec3_cross(z, x) : vec3_cross(x, z);
-        const vec3 columns[4] = {x, y, z, from};
-        for (int k = 0; k < 4; k++) {
-            matrix[0][k] = (double)columns[k].x;
-            matrix[1][k] = (double)columns[k].y;
-            matrix[2][k] = (double)columns[k].z;
-        }
-        matrix[3][3] = 1.0;
-    }
-    if (!(asked->fov_degrees > 0.0f && asked->fov_degrees < 180.0f) ||
-        !transform_from_matrix((const double(*)[4])matrix, &c.world_from_camera)) {
-        log_message(run->log, AG_LOG_ERROR,
-                    "the camera asked for makes no sense: from and to should differ, up should not be along the way "
-                    "between them, and the field of view should be within 0 and 180 degrees");
-        return AG_ERROR_ARGUMENT;
-    }
-    c.kind = CAMERA_PERSPECTIVE;
-    c.fov_degrees = asked->fov_degrees;
-    c.focal_distance = distance;
-    c.lens_radius = 0.0f;
-    c.is_moving = c.has_screen_window = false;
-    s->camera = c;
-    s->has_camera = true;
-    return AG_OK;
-}
-
 static bool is_pbrts(const char *path)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
@@ -134,8 +95,8 @@ static bool is_pbrts(const char *path)
 ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
 {
     ag_status status = load(run, path, out_scene);
-    if (status == AG_OK && out_scene->request && out_scene->request->has_camera)
-        status = set_camera(run, out_scene, is_pbrts(path));
+    if (status == AG_OK && out_scene->request)
+        status = scene_overrides_apply(run, path, is_pbrts(path), out_scene);
     const definition *unused = status == AG_OK ? definitions_unused(out_scene->definitions) : NULL;
     if (!unused)
         return status;

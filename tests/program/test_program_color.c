@@ -380,7 +380,7 @@ static void options_that_make_no_sense(void **state)
         {{"--exposure=1", "-o", "a.exr"}, "--exposure is for", 2},
         {{"--exposure=bright", "-o", "a.png"}, "'bright' is not valid", 2},
         {{"--exposure=nan", "-o", "a.png"}, "'nan' is not valid", 2},
-        {{"--output-space=AP0", "-o", "a.png"}, "--output-space is for .exr files", 2},
+        {{"--output-space=AP0", "-o", "a.png"}, "--output-space is for .exr, .hdr and .pfm files", 2},
         {{"--list-displays"}, "--list-displays renders nothing", 2},
         {{"--look=Cold", "-o", "a.png"}, "unknown look 'Cold'; the OpenColorIO config has: 'Warm', 'Flat'", 1},
         {{"--view=Bright", "-o", "a.png"}, "unknown view 'Bright'; display 'Monitor' has: ", 1},

@@ -103,6 +103,17 @@ static void test_progress_for_farms(void **state)
     run = RUN(TINY, "--progress=lines", "-o", "a.exr", BOX);
     expect_said(&run, "Progress: 100% (write)\n");
     program_run_reset(&run);
+    run = RUN(TINY, "--progress=lines", "--frames=7-8", "-o", "a.#.exr", "-o", "b.#.png:uint8", BOX);
+    expect_said(&run, "(frame 1 of 2, ");
+    expect_said(&run, "Progress: 100% (frame 2 of 2, write)\n");
+    expect_said(&run, "afterglow: wrote a.7.exr, b.7.png in 0:0");
+    expect_said(&run, "(frame 2 of 2)\n");
+    program_run_reset(&run);
+    run = RUN(TINY, "--progress=json", "--frames=7-8", "-o", "a.#.exr", BOX);
+    expect_said(&run, "\"frame\": 7, \"frame_index\": 1, \"frame_count\": 2");
+    expect_said(&run, "{\"written\": [\"a.8.exr\"], \"percent\": 100, ");
+    expect_said(&run, "\"frame\": 8, \"frame_index\": 2, \"frame_count\": 2}\n");
+    program_run_reset(&run);
     run = RUN(TINY, "--progress=off", "-o", "a.exr", BOX);
     assert_string_equal(run.err, "");
     program_run_reset(&run);

@@ -67,6 +67,28 @@ static void test_all_black(void **state)
                    "--tile=1/2", NULL);
 }
 
+/* A panel behind the eye whose faces were turned round, and one whose faces are right. */
+static void test_panel_turned_round(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *panel;
+        bool is_told;
+    } PANELS[] = {
+        {"Translate 0 0 5 Shape \"disk\" AttributeEnd\n", true},
+        {"Translate 0 0 5 ReverseOrientation Shape \"disk\" AttributeEnd\n", false},
+    };
+    for (size_t i = 0; i < sizeof PANELS / sizeof *PANELS; i++) {
+        char text[1024];
+        snprintf(text, sizeof text, "%s%s", CAMERA PLAIN BALL "AttributeBegin AreaLightSource \"diffuse\"\n",
+                 PANELS[i].panel);
+        program_run run = RUN(QUICK, "--integrator=path", write_text("a.pbrt", text));
+        expect_exit(&run, 0);
+        assert_int_equal(strstr(run.err, "shines away from everything that there is") != NULL, PANELS[i].is_told);
+        program_run_reset(&run);
+    }
+}
+
 static void test_inside_solid(void **state)
 {
     (void)state;
@@ -115,8 +137,8 @@ static void test_scale(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_no_light),     TEST_IN_FOLDER(test_nothing_in_view), TEST_IN_FOLDER(test_all_black),
-        TEST_IN_FOLDER(test_inside_solid), TEST_IN_FOLDER(test_scale),
+        TEST_IN_FOLDER(test_no_light),           TEST_IN_FOLDER(test_nothing_in_view), TEST_IN_FOLDER(test_all_black),
+        TEST_IN_FOLDER(test_panel_turned_round), TEST_IN_FOLDER(test_inside_solid),    TEST_IN_FOLDER(test_scale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* test_program_seams.c: what models have where their parts meet: thin walls, gaps of 1 mm, coplanar and overlapping
- * faces, flipped normals, panes within panes, lamps inside of fixtures. In a room of 4 m x 3 m x 4 m the photon map has
- * the path tracer's light. Flow: tests of the whole program. Threads: the program's. */
+ * faces, flipped normals, panes within panes, lamps inside of fixtures, steep reliefs. In a room of 4 m x 3 m x 4 m the
+ * photon map has the path tracer's light. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "fixtures/program_picture.h"
 
@@ -180,6 +180,30 @@ static void test_fixtures(void **state)
     expect_agreement("a lamp in a can behind glass", 0.03);
 }
 
+/* Walls with a steep relief, plain, coated, and letting light through: photons leave as light comes to the eye. */
+static void test_steep_reliefs(void **state)
+{
+    (void)state;
+    const char *kinds[] = {"\"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]",
+                           "\"coateddiffuse\" \"rgb reflectance\" [0.8 0.8 0.8]",
+                           "\"diffusetransmission\" \"rgb reflectance\" [0.5 0.5 0.5] "
+                           "\"rgb transmittance\" [0.3 0.3 0.3]"};
+    for (int k = 0; k < 3; k++) {
+        char more[256];
+        begin_room(0);
+        add_ceiling_lamp(0.0f);
+        add("Texture \"w\" \"float\" \"wrinkled\" \"integer octaves\" 2\n"
+            "Texture \"steep\" \"float\" \"scale\" \"texture tex\" \"w\" \"float scale\" 0.3\n");
+        snprintf(more, sizeof more, "Material %s \"texture displacement\" \"steep\"\n", kinds[k]);
+        add(more);
+        add_face(at(-1.99f, 0.01f, -2), at(3.98f, 0, 0), at(0, 0, 3.99f));
+        add_face(at(-1.99f, 0.01f, -2), at(0, 2.98f, 0), at(0, 0, 3.99f));
+        add_face(at(1.99f, 0.01f, -2), at(0, 2.98f, 0), at(0, 0, 3.99f));
+        add_face(at(-1.99f, 0.01f, 1.99f), at(3.98f, 0, 0), at(0, 2.98f, 0));
+        expect_agreement(kinds[k], 0.012);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -188,6 +212,7 @@ int main(void)
         TEST_IN_FOLDER(test_flipped),
         TEST_IN_FOLDER(test_panes_within_panes),
         TEST_IN_FOLDER(test_fixtures),
+        TEST_IN_FOLDER(test_steep_reliefs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

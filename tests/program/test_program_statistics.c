@@ -165,11 +165,17 @@ static const char *next_line(const char *text, char *line, size_t size)
 
 static void expect_plain(const char *said)
 {
-    int last = -1;
+    int last = -1, lines = 0;
     char line[256];
     for (const char *at = said; *at;) {
         at = next_line(at, line, sizeof line);
         int percent, used = 0;
+        assert_true(++lines <= 22); /* a log is not flooded */
+        if (!*at) {                 /* the last line says what was written, and how long it took */
+            assert_int_equal(strncmp(line, "afterglow: wrote a.exr", 22), 0);
+            assert_non_null(strstr(line, " in 0:"));
+            break;
+        }
         assert_int_equal(sscanf(line, "Progress: %d%%%n", &percent, &used), 1);
         assert_true(used > 0);
         assert_true(percent > last && percent <= 100);
@@ -209,6 +215,13 @@ static void test_json(void **state)
         at = next_line(at, line, sizeof line);
         json_t *told = json_loads(line, 0, NULL);
         assert_non_null(told);
+        assert_true(stats_number(told, "seconds") >= 0.0);
+        if (!*at) {
+            assert_string_equal(json_string_value(json_array_get(json_object_get(told, "written"), 0)), "a.exr");
+            assert_true(stats_number(told, "picture_seconds") > 0.0);
+            json_decref(told);
+            break;
+        }
         const char *name = json_string_value(stats_find(told, "phase"));
         double fraction = stats_number(told, "fraction"), percent = stats_number(told, "percent");
         if (phase < 0 || strcmp(name, ag_phase_name((ag_phase)phase)) != 0) {
@@ -236,7 +249,8 @@ static void test_bar(void **state)
     program_run run = RUN(QUICK, "--progress=bar", "-o", "a.exr", BOX);
     expect_exit(&run, 0);
     expect_said(&run, "100%");
-    assert_null(strchr(run.err, '\n'));
+    assert_non_null(strstr(run.err, "afterglow: wrote a.exr in 0:"));
+    assert_ptr_equal(strchr(run.err, '\n'), run.err + strlen(run.err) - 1); /* the bar is one line that goes */
     program_run_reset(&run);
 }
 

@@ -18,7 +18,9 @@ static const char *lamp_text(const char *generator, const char *lamp, const char
 static void lamps(void **state)
 {
     (void)state;
-    reading r = gltf_of(lamp_text("", "{'type': 'point', 'color': [1, 0.5, 0.25], 'intensity': 8, 'range': 3}",
+    gltf_expect_warning(lamp_text("", "{'type': 'point', 'name': 'bulb', 'intensity': 8, 'range': 3}", ""),
+                        "the range of lamp \"bulb\" is not heeded");
+    reading r = gltf_of(lamp_text("", "{'type': 'point', 'color': [1, 0.5, 0.25], 'intensity': 8}",
                                   "'translation': [1, 2, 3], 'scale': [5, 5, 5],"));
     const light *l = &r.scene->lights[0];
     assert_int_equal(r.scene->light_count, 1);
@@ -194,7 +196,7 @@ static void several_cameras(void **state)
                         "{'name': 'wide', 'type': 'perspective', 'perspective': {'yfov': 1.6}}],"
                         "'nodes': [{'children': [1]}, {'camera': 1}, {'camera': 0}]}");
     assert_near(r.scene->camera.fov_degrees, 1.6 * 180 / PI_, 1e-4);
-    expect_said(&r, AG_LOG_INFO, "cameras[0] \"\" is not the first one, and not used");
+    expect_said(&r, AG_LOG_INFO, "camera \"cameras[0]\" is not used");
     reading_destroy(&r);
 }
 

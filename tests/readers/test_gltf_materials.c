@@ -536,6 +536,36 @@ static void material_errors(void **state)
         gltf_expect_error(material_text(WRONG[i].material_json, WRONG[i].others), WRONG[i].status, WRONG[i].error);
 }
 
+/* Of glass without a volume, by name; of Blender's files, where it was solid, louder. */
+static void thin_glass_is_told(void **state)
+{
+    (void)state;
+    write_triangle();
+    static const char GLASS[] = "{'name': 'Pane', 'extensions': {'KHR_materials_transmission': {'transmissionFactor': "
+                                "1}%s}}",
+                      SAID[] = "the glass of material \"Pane\" is a thin shell, which bends no light";
+    char text[512], blenders[8192];
+    snprintf(text, sizeof text, GLASS, "");
+    reading r = gltf_of(material_text(text, ""));
+    expect_said(&r, AG_LOG_INFO, SAID);
+    reading_destroy(&r);
+    snprintf(blenders, sizeof blenders, "%s", material_text(text, ""));
+    char *version = strstr(blenders, "'version': '2.0'");
+    assert_non_null(version);
+    static const char GENERATOR[] = "'version': '2.0', 'generator': 'Khronos glTF Blender I/O v3.4.50'";
+    const size_t rest = strlen("'version': '2.0'");
+    memmove(version + sizeof GENERATOR - 1, version + rest, strlen(version + rest) + 1);
+    memcpy(version, GENERATOR, sizeof GENERATOR - 1);
+    r = gltf_read(blenders);
+    assert_int_equal(r.status, AG_OK);
+    expect_said(&r, AG_LOG_WARNING, SAID);
+    reading_destroy(&r);
+    snprintf(text, sizeof text, GLASS, ", 'KHR_materials_volume': {'thicknessFactor': 1}");
+    r = gltf_of(material_text(text, ""));
+    assert_null(r.said[AG_LOG_INFO] ? strstr(r.said[AG_LOG_INFO], SAID) : NULL);
+    reading_destroy(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -550,6 +580,7 @@ int main(void)
         TEST_IN_FOLDER(uv_sets),
         TEST_IN_FOLDER(pictures_in_memory),
         TEST_IN_FOLDER(warnings),
+        TEST_IN_FOLDER(thin_glass_is_told),
         TEST_IN_FOLDER(material_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -41,7 +41,7 @@ static void test_same_bits(void **state)
     }
     ag_rendering_finish(r, &cut);
     expect_same_film(whole, cut);
-    float *samples = film_channel_of(whole, "samples");
+    float *samples = film_channel_of(whole, "samples.V");
     float least = INFINITY, most = 0.0f;
     for (int i = 0; i < film_pixel_count(whole); i++) {
         least = fminf(least, samples[i]);
@@ -73,7 +73,7 @@ static void test_crops(void **state)
         ag_film_pixels(part, &told_width, &told_height);
         assert_int_equal(told_width, width);
         assert_int_equal(told_height, height);
-        static const char *const channels[] = {"R", "G", "B", "samples"};
+        static const char *const channels[] = {"R", "G", "B", "samples.V"};
         for (int c = 0; c < 4; c++) {
             float *a = film_channel_of(whole, channels[c]), *b = film_channel_of(part, channels[c]);
             for (int y = 0; y < height; y++)
@@ -97,8 +97,8 @@ static void test_shown_exposure(void **state)
     ag_film *darker = studio_render(s);
     s->settings.noise_level = 0.015f;
     ag_film *quiet = studio_render(s);
-    double by_plain = film_mean(plain, "samples"), by_darker = film_mean(darker, "samples"),
-           by_quiet = film_mean(quiet, "samples");
+    double by_plain = film_mean(plain, "samples.V"), by_darker = film_mean(darker, "samples.V"),
+           by_quiet = film_mean(quiet, "samples.V");
     if (!(by_darker < 0.7 * by_plain) || !(fabs(by_quiet / by_plain - 1.0) < 0.1))
         fail_msg("%g samples, %g when shown darker, %g for half the noise then", by_plain, by_darker, by_quiet);
     ag_film_destroy(plain);
@@ -138,7 +138,7 @@ static void test_noise_is_reached(void **state)
         s->settings.noise_level = level;
         s->settings.seed = 0;
         ag_film *film = studio_render(s);
-        double error = shown_error(film, truth), mean = film_mean(film, "samples");
+        double error = shown_error(film, truth), mean = film_mean(film, "samples.V");
         /* spread samples are better than their variance tells */
         if (!(error < 1.1 * (double)level) || !(error > 0.2 * (double)level))
             fail_msg("noise %g where %g was asked for, with %g samples", error, (double)level, mean);

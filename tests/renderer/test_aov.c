@@ -182,7 +182,7 @@ static void test_first_hit(void **state)
     assert_false(film_has(film, "irradiance.R")); /* the photon map's alone */
     float *alpha = film_channel_of(film, "A"), *z = film_channel_of(film, "Z"), *n = film_channel_of(film, "N.Z"),
           *x = film_channel_of(film, "P.X"), *y = film_channel_of(film, "P.Y"),
-          *albedo = film_channel_of(film, "albedo.B"), *object = film_channel_of(film, "id.object"),
+          *albedo = film_channel_of(film, "albedo.B"), *object = film_channel_of(film, "id.object.V"),
           *emission = film_channel_of(film, "emission.G");
     for (int i = 0; i < 256; i++) {
         bool is_wall = i % 16 < 8;

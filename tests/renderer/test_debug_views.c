@@ -19,14 +19,14 @@ static void test_sphere(void **state)
                          AG_LAYER_CACHE_STATE | AG_LAYER_TILE_TIME;
     ag_film *film = studio_render(s);
     double density = 20000.0 / (4.0 * 3.14159265 * 4.0);
-    expect_within("density", film_mean(film, "photon_density") / density, 1.0, 0.03);
+    expect_within("density", film_mean(film, "photon_density.V") / density, 1.0, 0.03);
     /* the nearest of evenly spread points: 1 / (2 sqrt(density)) */
-    expect_within("distance", film_mean(film, "photon_distance") * 2.0 * sqrt(density), 1.0, 0.15);
+    expect_within("distance", film_mean(film, "photon_distance.V") * 2.0 * sqrt(density), 1.0, 0.15);
     /* chords of a sphere by the cosine's law: length 2 r cos, 1 / E[1 / (2 r cos)] = r */
-    expect_within("gather", film_mean(film, "gather_distance"), 2.0, 0.1);
-    assert_true(film_mean(film, "tile_time") > 0.0);
+    expect_within("gather", film_mean(film, "gather_distance.V"), 2.0, 0.1);
+    assert_true(film_mean(film, "tile_time.V") > 0.0);
 
-    float *states = film_channel_of(film, "cache_state");
+    float *states = film_channel_of(film, "cache_state.V");
     int demanded = 0, empty = 0;
     for (int i = 0; i < 256; i++) {
         assert_true(states[i] == 1.0f || states[i] == 2.0f);
@@ -40,12 +40,12 @@ static void test_sphere(void **state)
 
     s->settings.cache = AG_CACHE_PRECOMPUTE;
     film = studio_render(s);
-    expect_within("all demanded", film_mean(film, "cache_state"), 2.0, 0.0);
+    expect_within("all demanded", film_mean(film, "cache_state.V"), 2.0, 0.0);
     ag_film_destroy(film);
 
     s->settings.integrator = AG_INTEGRATOR_PATH;
     film = studio_render(s);
-    assert_false(film_has(film, "cache_state"));
+    assert_false(film_has(film, "cache_state.V"));
     ag_film_destroy(film);
     studio_close(s);
 }

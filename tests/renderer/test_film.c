@@ -33,7 +33,7 @@ static void test_passes(void **state)
             ag_film_destroy(passes);
             /* fewer samples are those that come first */
             passes = render_in_passes(s, (const int[]){5, 0});
-            expect_within("samples", film_mean(passes, "samples"), 5.0, 0.0);
+            expect_within("samples", film_mean(passes, "samples.V"), 5.0, 0.0);
             ag_film_destroy(passes);
             ag_film_destroy(whole);
             studio_close(s);
@@ -88,7 +88,7 @@ static void test_cancelled(void **state)
     assert_int_equal(ag_rendering_create(broken.context, s->scene, &s->settings, &rendering), AG_OK);
     ag_status status = ag_rendering_continue(rendering, 2);
     ag_rendering_finish(rendering, &part);
-    float *samples = film_channel_of(part, "samples");
+    float *samples = film_channel_of(part, "samples.V");
     int width, height, whole_pixels = 0;
     const float *a = ag_film_pixels(whole, &width, &height), *b = ag_film_pixels(part, &width, &height);
     for (int i = 0; i < width * height; i++) {
@@ -155,8 +155,8 @@ static void test_sums(void **state)
     expect_within("R", value_of(film, "R"), 6.0, 1e-6);
     expect_within("A", value_of(film, "A"), 2.0 / 3.0, 1e-6);
     expect_within("Z", value_of(film, "Z"), 3.0, 0.0);
-    expect_within("object", value_of(film, "id.object"), 3.0, 0.0);
-    expect_within("material", value_of(film, "id.material"), 7.0, 0.0);
+    expect_within("object", value_of(film, "id.object.V"), 3.0, 0.0);
+    expect_within("material", value_of(film, "id.material.V"), 7.0, 0.0);
     expect_within("P", value_of(film, "P.X"), 4.0, 1e-6);
     expect_within("N", value_of(film, "N.X"), 4.0 / sqrt(17.0), 1e-6);
     /* of 2, 4, 12, which are the samples exposed; and of those that met something */

@@ -133,7 +133,7 @@ static void bad_requests(void **state)
     fill(pixels, 5);
     image_description description = describe(3, IMAGE_UINT8);
     expect_failure(image_file_write(in_folder("x.gif"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
-                   ".exr, .png");
+                   ".exr, .hdr, .pfm, .png");
     expect_failure(image_file_write(in_folder("x.exr"), &description, pixels, message, sizeof message), AG_ERROR_OUTPUT,
                    "8-bit");
     description = describe(3, IMAGE_FLOAT);

@@ -198,14 +198,14 @@ static void shading_normals_never_let_diffuse_light_through(void **state)
         bsdf_sample s;
         if (bsdf_sample_direction(&b, BSDF_ALL, BSDF_FLUX, 0.5f, rng_vec2(&random), &s)) {
             assert_true(s.direction.z * out.z > 0.0f);
-            assert_true(rgb_is_finite(s.weight) && s.weight.r <= 8.0f);
+            assert_true(rgb_is_finite(s.weight) && s.weight.r <= BSDF_ARRIVAL_MAX);
         }
         vec3 d = random_direction(&random);
         if (d.z * out.z < 0.0f)
             assert_true(rgb_is_black(bsdf_evaluate(&b, BSDF_ALL, BSDF_RADIANCE, d)));
         b = bsdf_at(&m, normal, d);
         float factor = bsdf_arrival_factor(&b);
-        assert_true(factor >= 0.0f && factor <= 8.0f);
+        assert_true(factor >= 0.0f && factor <= BSDF_ARRIVAL_MAX);
     }
     bsdf b = flat(&m, direction_at(60.0, 1.0));
     assert_true(bsdf_arrival_factor(&b) == 1.0f);
@@ -228,11 +228,11 @@ static void diffuse_light_ends_at_the_shading_horizon(void **state)
             bool is_beyond = d.z * vec3_dot(d, normal) <= 0.0f, is_through = d.z * out.z < 0.0f;
             rgb value = bsdf_evaluate(&b, BSDF_GATHERED, BSDF_RADIANCE, d);
             if (is_beyond) {
-                assert_true(rgb_is_black(value) && bsdf_pdf(&b, BSDF_GATHERED, d) == 0.0f);
+                assert_true(rgb_is_black(value) && bsdf_pdf(&b, BSDF_GATHERED, BSDF_RADIANCE, d) == 0.0f);
                 assert_true(bsdf_arrival_factor(&arrived) == 0.0f);
                 beyond++;
             } else if (!is_through || all[k].kind == MATERIAL_DIFFUSE_TRANSMISSION) {
-                assert_true(value.g > 0.0f && bsdf_pdf(&b, BSDF_GATHERED, d) > 0.0f);
+                assert_true(value.g > 0.0f && bsdf_pdf(&b, BSDF_GATHERED, BSDF_RADIANCE, d) > 0.0f);
                 assert_true(bsdf_arrival_factor(&arrived) > 0.0f);
                 before++;
             }
@@ -242,6 +242,30 @@ static void diffuse_light_ends_at_the_shading_horizon(void **state)
                 assert_true(s.direction.z * vec3_dot(s.direction, normal) > 0.0f);
         }
         assert_true(beyond > 1000 && before > 1000);
+    }
+}
+
+/* Flux that comes from a lamp and goes to the eye is the radiance that the eye sees of that lamp (Veach 1997, 5.3.2):
+ * f |cos shading normal| times the geometric cosines' ratio. Also where the shading normal does not face the eye. */
+static void flux_goes_where_radiance_comes_from(void **state)
+{
+    (void)state;
+    material all[] = {diffuse(), diffuse_transmission(), coated_diffuse(0.0f, 0.0f)};
+    rng random = test_random(13);
+    for (int k = 0; k < 3; k++) {
+        int beyond = 0;
+        for (int i = 0; i < 20000; i++) {
+            vec3 normal = vec3_face_forward(random_direction(&random), UP);
+            vec3 eye = random_direction(&random), lamp = random_direction(&random);
+            bsdf from_eye = bsdf_at(&all[k], normal, eye), from_lamp = bsdf_at(&all[k], normal, lamp);
+            rgb radiance = bsdf_evaluate(&from_eye, BSDF_GATHERED, BSDF_RADIANCE, lamp);
+            rgb flux = bsdf_evaluate(&from_lamp, BSDF_GATHERED, BSDF_FLUX, eye);
+            if (fabsf(vec3_dot(lamp, normal)) >= BSDF_ARRIVAL_MAX * fabsf(lamp.z))
+                continue;
+            assert_close(flux.g * fabsf(lamp.z), radiance.g * fabsf(eye.z), 1e-5);
+            beyond += radiance.g > 0.0f && eye.z * vec3_dot(eye, normal) < 0.0f;
+        }
+        assert_true(beyond > 1000);
     }
 }
 
@@ -334,6 +358,7 @@ int main(void)
         cmocka_unit_test(shading_normals_never_let_diffuse_light_through),
         cmocka_unit_test(diffuse_light_ends_at_the_shading_horizon),
         cmocka_unit_test(leaning_normals_claim_what_is_drawn),
+        cmocka_unit_test(flux_goes_where_radiance_comes_from),
         cmocka_unit_test(lambert_alone_is_the_same),
         cmocka_unit_test(what_is_lambertian),
     };

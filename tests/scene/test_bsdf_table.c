@@ -172,7 +172,7 @@ static void check_row(const row *r)
             }
             bsdf_sample s;
             assert_false(bsdf_sample_direction(&b, GROUPS[g], BSDF_FLUX, 0.5f, (vec2){0.5f, 0.5f}, &s));
-            assert_true(bsdf_pdf(&b, GROUPS[g], UP) == 0.0f);
+            assert_true(bsdf_pdf(&b, GROUPS[g], BSDF_FLUX, UP) == 0.0f);
             assert_true(rgb_is_black(bsdf_evaluate(&b, GROUPS[g], BSDF_FLUX, UP)));
         }
     }

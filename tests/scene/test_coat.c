@@ -107,7 +107,7 @@ static sphere_pictures picture_sphere(const material *prepared, int samples)
         frame f = frame_from_z(to_lamp);
         double pdf_lamp = 1.0 / (2.0 * PI * (double)one_minus_cos);
         vec3 at_lamp = frame_to_world(&f, sample_uniform_cone(rng_vec2(&random), one_minus_cos));
-        double pdf = bsdf_pdf(&b, BSDF_ALL, at_lamp);
+        double pdf = bsdf_pdf(&b, BSDF_ALL, BSDF_RADIANCE, at_lamp);
         sum.lamp +=
             10.0 * (double)bsdf_evaluate(&b, BSDF_ALL, BSDF_RADIANCE, at_lamp).g / pdf_lamp * balanced(pdf_lamp, pdf);
         bsdf_sample sample;

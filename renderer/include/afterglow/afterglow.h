@@ -94,6 +94,19 @@ typedef enum ag_gltf_light_units {
     AG_GLTF_LIGHT_UNITS_RAW       /* points and spots in W over the whole sphere: divided by 4 pi; suns in W/m^2 */
 } ag_gltf_light_units;
 
+/* Which axis of the world points up, for the compass that suns and skies have. North, where azimuths begin, is -z where
+ * y is up (+z in pbrt's left-handed world), so that east is +x; where z or x is up, it is +y. Azimuths go clockwise for
+ * who looks down from above. */
+typedef enum ag_up_axis {
+    AG_UP_AUTO, /* y; of pbrt's text the axis nearest to the camera's up */
+    AG_UP_X,
+    AG_UP_Y,
+    AG_UP_Z,
+    AG_UP_MINUS_X,
+    AG_UP_MINUS_Y,
+    AG_UP_MINUS_Z
+} ag_up_axis;
+
 /* Settings of a scene beyond what its file says. */
 typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
@@ -105,6 +118,23 @@ typedef struct ag_scene_settings {
     float camera_from[3], camera_to[3];
     float camera_up[3];       /* default 0 1 0 */
     float camera_fov_degrees; /* across the shorter image axis, (0, 180); default 45 */
+    /* Of the file's cameras the one of this name (glTF: its node's or its own); another one is an error that says which
+     * there are. Not with has_camera. NULL, the default: the first. */
+    const char *camera_name;
+    bool drops_lights; /* no light of the file's shines, nor any surface; nor is light made up. Default false */
+    ag_up_axis up;     /* default AG_UP_AUTO */
+    /* A sun beside the file's lights, infinitely far and without extent: its shadows are sharp. Where there is one, or
+     * a sky of the following, no light is made up. */
+    bool has_sun;                /* default false */
+    float sun_azimuth_degrees;   /* from north over east; default 0 */
+    float sun_elevation_degrees; /* above the horizon, [-90, 90]; default 45 */
+    float sun_irradiance;        /* W/m^2 on a surface that faces it, >= 0; default 3 */
+    /* A sky in the place of the file's infinite lights. */
+    bool has_sky;          /* default false */
+    float sky_radiance[3]; /* W/m^2/sr, linear Rec. 709, >= 0; a picture is multiplied by it; default 1 1 1 */
+    const char *sky_file;  /* a picture of it, latitude-longitude, its middle in the east, north to the left of that;
+                              or square, octahedral. Read wherever it lies. NULL, the default: alike everywhere */
+    float sky_rotation_degrees; /* turns the picture from north over east; default 0 */
 } ag_scene_settings;
 
 AG_API ag_scene_settings ag_default_scene_settings(void);
@@ -168,23 +198,23 @@ typedef enum ag_layer {
     AG_LAYER_SPECULAR = 1 << 10,     /* all that comes by the first surface's other lobes */
     AG_LAYER_IRRADIANCE = 1 << 11,   /* irradiance.R, G, B: of the photon map at the first surface, W/m^2 */
     AG_LAYER_VARIANCE = 1 << 12,     /* variance.R, G, B: of the pixel's samples (not of their mean) */
-    AG_LAYER_SAMPLES = 1 << 13,      /* samples: how many */
-    AG_LAYER_ID = 1 << 14,           /* id.object, id.material: of the nearest surface, from 1 on; 0: nothing */
+    AG_LAYER_SAMPLES = 1 << 13,      /* samples.V: how many */
+    AG_LAYER_ID = 1 << 14,           /* id.object.V, id.material.V: of the nearest surface, from 1 on; 0: nothing */
     AG_LAYER_LIGHT_GROUPS = 1 << 15, /* light_NAME.R, G, B: what came from the lamps of a group to the first surface and
                                         by way of mirrors and glass; light_photons: through the photon map */
     AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N in place of the above */
     /* How the photon map fared, at what the ray through the pixel's middle meets first; 0 where that gathers nothing.
      */
-    AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density: photons per area, 1/m^2 */
-    AG_LAYER_CACHE_STATE = 1 << 18,    /* cache_state: of the photon nearest there: 1 its irradiance was not demanded, 2
-                                          it was; 0: no photon is near */
-    AG_LAYER_PHOTON_DISTANCE = 1 << 19, /* photon_distance: how far that photon is */
-    AG_LAYER_GATHER_DISTANCE = 1 << 20, /* gather_distance: how far gather rays go, harmonic mean */
+    AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density.V: photons per area, 1/m^2 */
+    AG_LAYER_CACHE_STATE = 1 << 18, /* cache_state.V: of the photon nearest there: 1 its irradiance was not demanded, 2
+                                       it was; 0: no photon is near */
+    AG_LAYER_PHOTON_DISTANCE = 1 << 19, /* photon_distance.V: how far that photon is */
+    AG_LAYER_GATHER_DISTANCE = 1 << 20, /* gather_distance.V: how far gather rays go, harmonic mean */
     /* Cryptomatte for objects (instances, glTF nodes, files of meshes) and materials, by their names in the scene,
      * or by numbers; six ranks. */
     AG_LAYER_CRYPTO_OBJECT = 1 << 22,
     AG_LAYER_CRYPTO_MATERIAL = 1 << 23,
-    AG_LAYER_TILE_TIME = 1 << 21 /* tile_time: seconds that the pixel's tile took: another number in each run */
+    AG_LAYER_TILE_TIME = 1 << 21 /* tile_time.V: seconds that the pixel's tile took: another number in each run */
 } ag_layer;
 #define AG_LAYERS_LIGHT (AG_LAYER_EMISSION | AG_LAYER_DIRECT | AG_LAYER_INDIRECT | AG_LAYER_CAUSTIC | AG_LAYER_SPECULAR)
 /* All that is the same from run to run, in our names. */
@@ -439,11 +469,12 @@ typedef enum ag_sample_type {
 } ag_sample_type;
 
 typedef struct ag_output_settings {
-    ag_sample_type type;      /* default: half for EXR, 8 bit for the others */
+    ag_sample_type type;      /* default: half for EXR, float for Radiance and PFM, 16 bit for TIFF, 8 bit for others */
     bool tiled;               /* EXR in tiles of 64 x 64 pixels; default: in lines */
     bool reproducible;        /* EXR without what differs from run to run: equal pictures are equal files */
     const char *command_line; /* to be noted in EXR files, or NULL */
-    const char *color_space;  /* of EXR files, by the config's name, an alias or a role; NULL: the working space */
+    const char *color_space;  /* of EXR, Radiance and PFM files, by the config's name, an alias or a role; NULL: the
+                                 working space */
     /* of all others: */
     const char *display;  /* NULL: the config's default */
     const char *view;     /* NULL: the display's default */
@@ -459,8 +490,9 @@ AG_API ag_output_settings ag_default_output_settings(void);
  * or type), AG_ERROR_OUTPUT, AG_ERROR_COLOR. */
 AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *settings, const char *path);
 
-/* Writes the film: scene-linear, with its layers and chromaticities, for .exr; through look, display and view for .png,
- * .tif, .jpg. The file appears complete or not at all. settings NULL: the defaults. */
+/* Writes the film: scene-linear, with its layers and chromaticities, for .exr; scene-linear for .hdr (which clips what
+ * is below 0) and .pfm, which cannot say their colour space; through look, display and view for .png, .tif, .jpg. The
+ * file appears complete or not at all. settings NULL: the defaults. */
 AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                const char *path);
 

@@ -2,7 +2,9 @@
  * Rests on: Khronos, "glTF 2.0 Specification", 2021, 3.10 (cameras look along -z, y up; yfov is across the height).
  * Flow: gltf_nodes -> [here] -> scene.camera, scene.hints. Threads: one per scene. */
 #include "gltf/gltf_private.h"
+#include "scene_overrides.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static const double DEFAULT_ASPECT = 16.0 / 9.0;
@@ -96,17 +98,22 @@ static ag_status read_orthographic(gltf_reader *r, const gltf_value *at, camera 
     return AG_OK;
 }
 
-ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_matrix *world_from_node)
+ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_value *node, const gltf_matrix *world_from_node)
 {
-    const char *type = "", *name = "";
+    const char *type = "", *name = "", *node_name = "";
+    char number[32];
+    bool is_wanted;
     gltf_value at;
     GLTF_TRY(gltf_get_item(r, GLTF_CAMERAS, index, &at));
     GLTF_TRY(gltf_require(r, &at, "type"));
     GLTF_TRY(gltf_get_text(r, &at, "type", &type));
     GLTF_TRY(gltf_get_text(r, &at, "name", &name));
-    if (r->scene->has_camera) {
-        log_at(r->run->log, AG_LOG_INFO, r->where, "cameras[%u] \"%s\" is not the first one, and not used", index,
-               name);
+    GLTF_TRY(gltf_get_text(r, node, "name", &node_name));
+    snprintf(number, sizeof number, "cameras[%u]", index);
+    const char *known_as = node_name[0] ? node_name : name[0] ? name : number;
+    GLTF_TRY(scene_overrides_meet_camera(r->scene, known_as, name, &is_wanted));
+    if (!is_wanted) {
+        log_at(r->run->log, AG_LOG_INFO, r->where, "camera \"%s\" is not used: --camera takes its name", known_as);
         return AG_OK;
     }
     camera c = {.fov_degrees = 90.0f, .focal_distance = 1e6f};

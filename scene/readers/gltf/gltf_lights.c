@@ -86,7 +86,7 @@ static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
 
 ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world_from_node)
 {
-    const char *type = "";
+    const char *type = "", *name = "";
     rgb color = rgb_gray(1.0f);
     double intensity = 1.0, z[3];
     uint32_t light_index;
@@ -108,6 +108,13 @@ ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world
             return gltf_error(r, &at, "its node leaves no direction");
         z[0] = z[1] = 0.0, z[2] = 1.0;
     }
+    const gltf_value range = gltf_member(&at, "range");
+    GLTF_TRY(gltf_get_text(r, &at, "name", &name));
+    if (range.json && !is_sun)
+        gltf_warn_once(r, &range, "range",
+                       "the range of lamp \"%s\" is not heeded, nor that of any other: its light "
+                       "goes on beyond it, as light does",
+                       name);
     light l = light_make(is_sun ? LIGHT_DISTANT : is_spot ? LIGHT_SPOT : LIGHT_POINT);
     rgb strength = rgb_scale(color, (float)(intensity * (is_sun ? r->lamp_units.per_lux : r->lamp_units.per_candela)));
     if (is_sun)

@@ -4,6 +4,8 @@
  * scene. */
 #include "gltf/gltf_private.h"
 
+#include <stdio.h>
+
 static const gltf_texture_use COLOR = {.is_color = true, .is_srgb = true, .scale = 1.0f};
 static const gltf_texture_use RED = {.channel = TEXTURE_CHANNEL_R, .scale = 1.0f};
 static const gltf_texture_use GREEN = {.channel = TEXTURE_CHANNEL_G, .scale = 1.0f};
@@ -134,7 +136,7 @@ static ag_status read_unlit(gltf_reader *r, const gltf_value *at, const gltf_val
 }
 
 /* What the picture can go without is named. */
-static void warn_others(const gltf_reader *r, const gltf_value *extensions)
+static void warn_others(const gltf_reader *r, const gltf_value *extensions, const char *name)
 {
     static const char *const OTHERS[] = {"KHR_materials_anisotropy", "KHR_materials_diffuse_transmission",
                                          "KHR_materials_dispersion", "KHR_materials_iridescence",
@@ -142,8 +144,25 @@ static void warn_others(const gltf_reader *r, const gltf_value *extensions)
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
         gltf_value v = gltf_member(extensions, OTHERS[i]);
         if (v.json)
-            gltf_warn_once(r, &v, OTHERS[i], "the extension %s is not supported, and ignored", OTHERS[i]);
+            gltf_warn_once(r, &v, OTHERS[i],
+                           "the extension %s is not supported, and ignored, in material \"%s\" and "
+                           "whichever else has it",
+                           OTHERS[i], name);
     }
+}
+
+/* Glass without a volume is a sheet to the format, whatever its mesh looks like. Blender has no such sheets. */
+static void tell_thin_glass(const gltf_reader *r, const gltf_value *at, const material *m, const char *name)
+{
+    char key[96];
+    if (!(m->transmission > 0.0f && m->is_thin))
+        return;
+    snprintf(key, sizeof key, "gltf:thin:%p", (const void *)at->json); /* once for each material */
+    log_at_once(r->run->log, r->is_blenders ? AG_LOG_WARNING : AG_LOG_INFO, r->where, key,
+                "the glass of material \"%s\" is a thin shell, which bends no light: the file gives it no thickness "
+                "(KHR_materials_volume)%s",
+                name,
+                r->is_blenders ? "; Blender writes one where the material has a \"glTF Settings\" node group" : "");
 }
 
 ag_status gltf_read_material_extensions(gltf_reader *r, const gltf_value *at, material *m, gltf_material *out)
@@ -166,6 +185,9 @@ ag_status gltf_read_material_extensions(gltf_reader *r, const gltf_value *at, ma
         if (extension.json)
             GLTF_TRY(EXTENSIONS[i].read(r, at, &extension, m, out));
     }
-    warn_others(r, &extensions);
+    const char *name = "";
+    GLTF_TRY(gltf_get_text(r, at, "name", &name));
+    warn_others(r, &extensions, name);
+    tell_thin_glass(r, at, m, name);
     return AG_OK;
 }

@@ -178,7 +178,7 @@ static ag_status add_node(gltf_reader *r, uint32_t index)
     if (mesh_index != GLTF_NONE)
         GLTF_TRY(gltf_add_node_mesh(r, &node, mesh_index, world_from_node));
     if (camera_index != GLTF_NONE)
-        GLTF_TRY(gltf_add_camera(r, camera_index, world_from_node));
+        GLTF_TRY(gltf_add_camera(r, camera_index, &node, world_from_node));
     if (lamp_index != GLTF_NONE)
         GLTF_TRY(gltf_add_lamp(r, lamp_index, world_from_node));
     return AG_OK;

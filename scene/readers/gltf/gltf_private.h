@@ -306,8 +306,9 @@ ag_status gltf_load_image(gltf_reader *r, uint32_t index, image_encoding encodin
 /* gltf_nodes.c: the default scene's nodes, and all that hangs on them. */
 ag_status gltf_add_nodes(gltf_reader *r);
 
-/* gltf_cameras.c: the camera on a node becomes the scene's if it is the first; the picture has its proportions. */
-ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_matrix *world_from_node);
+/* gltf_cameras.c: the camera on a node becomes the scene's if it is the one that is asked for, by its name or the
+ * node's, or the first; the picture has its proportions. */
+ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_value *node, const gltf_matrix *world_from_node);
 void gltf_set_picture_size(gltf_reader *r);
 /* The node's axis, 0 to 2, of unit length; false where the node makes nothing of it. */
 bool gltf_matrix_axis(const gltf_matrix *m, int axis, double out_axis[3]);

@@ -272,8 +272,7 @@ static ag_status add_camera(model *m, const record *r)
     import_camera source;
     memcpy(&source, r->bytes, sizeof source);
     source.name[IMPORT_NAME_SIZE - 1] = '\0';
-    importer_add_camera(&m->to, &source);
-    return AG_OK;
+    return importer_add_camera(&m->to, &source);
 }
 
 static ag_status add_light(model *m, const record *r)

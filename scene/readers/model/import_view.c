@@ -5,6 +5,7 @@
  * Threads: one per scene. */
 #include "model/importer.h"
 #include "scene_extent.h"
+#include "scene_overrides.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -63,13 +64,17 @@ static double shorter_fov_degrees(const import_camera *source)
     return (aspect_of(source) > 1.0 ? atan(tan(half) / aspect_of(source)) : half) * 360.0 / PI;
 }
 
-void importer_add_camera(importer *i, const import_camera *source)
+ag_status importer_add_camera(importer *i, const import_camera *source)
 {
     camera c = {.kind = CAMERA_PERSPECTIVE, .fov_degrees = 90.0f, .focal_distance = 1e6f};
     double size = 1.0;
-    if (i->scene->has_camera) {
-        log_at(i->log, AG_LOG_INFO, i->where, "camera \"%s\" is not used: the file's first one is", source->name);
-        return;
+    bool is_wanted;
+    ag_status status = scene_overrides_meet_camera(i->scene, source->name, NULL, &is_wanted);
+    if (status)
+        return status;
+    if (!is_wanted) {
+        log_at(i->log, AG_LOG_INFO, i->where, "camera \"%s\" is not used: --camera takes its name", source->name);
+        return AG_OK;
     }
     if (source->orthographic_half_width > 0.0f) {
         c.kind = CAMERA_ORTHOGRAPHIC;
@@ -79,10 +84,11 @@ void importer_add_camera(importer *i, const import_camera *source)
     }
     if (!(c.fov_degrees > 0.0f && c.fov_degrees < 180.0f) || !place_camera(source, size, &c.world_from_camera)) {
         log_at(i->log, AG_LOG_WARNING, i->where, "camera \"%s\" makes no sense and is left out", source->name);
-        return;
+        return AG_OK;
     }
     i->scene->camera = c;
     i->scene->has_camera = true;
+    return AG_OK;
 }
 
 /* Lights */
@@ -175,6 +181,8 @@ static ag_status add_area_light(importer *i, const import_light *source, rgb int
 
 ag_status importer_add_light(importer *i, const import_light *light_source)
 {
+    if (i->scene->request && i->scene->request->drops_lights)
+        return AG_OK;                    /* nor would their surfaces be there */
     import_light source = *light_source; /* its direction becomes unit, its colour the working space's */
     if (is_sound(source.color))
         source.color = working_space_light(&i->scene->space, source.color);

@@ -53,9 +53,9 @@ ag_status importer_add_material(importer *i, const import_material *m, import_su
 ag_status importer_add_mesh(importer *i, const char *name, mesh *m, const transform *world_from_mesh,
                             const import_surface *surface);
 
-/* The first camera counts; what makes no sense is left out with a warning. Lights: shapes must be there already.
- * Errors: AG_ERROR_MEMORY. */
-void importer_add_camera(importer *i, const import_camera *source);
+/* The camera that is asked for by name counts, else the first; what makes no sense is left out with a warning. Lights:
+ * shapes must be there already. Errors: AG_ERROR_MEMORY. */
+ag_status importer_add_camera(importer *i, const import_camera *source);
 ag_status importer_add_light(importer *i, const import_light *source);
 
 /* Warns of what was left out, and adds a camera and light where there are none. Errors: AG_ERROR_INPUT (nothing to

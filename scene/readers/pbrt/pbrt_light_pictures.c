@@ -3,12 +3,12 @@
  * behaviour. Square pictures of directions are equal-area octahedral, as pbrt-v4 wants them; those twice as wide as
  * high, which it refuses, are latitude-longitude, as pbrt-v3 had them. Flow: pbrt_lights, pbrt_environments -> [here]
  * -> environment, projection. Threads: one per scene. */
-#include "image/image_encoding.h"
-#include "image/image_reader.h"
 #include "light/environment.h"
 #include "light/projection.h"
+#include "light_picture.h"
 #include "pbrt/pbrt_private.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, bool swaps_yz, light *l)
@@ -44,105 +44,48 @@ ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, 
     return AG_OK;
 }
 
-/* RGB of what was read; NULL when out of memory. */
-static rgb *rgb_pixels(const image *picture)
+/* Tells the reason at its place; memory has none. */
+static ag_status refuse_picture(pbrt_parser *parser, const parameter_list *list, ag_status status, const char *message)
 {
-    size_t count = (size_t)picture->width * (size_t)picture->height, channels = (size_t)picture->channel_count;
-    rgb *pixels = malloc(count * sizeof *pixels);
-    for (size_t i = 0; pixels && i < count; i++) {
-        const float *v = &picture->pixels[i * channels];
-        pixels[i] = channels >= 3 ? rgb_make(v[0], v[1], v[2]) : rgb_gray(v[0]);
-    }
-    return pixels;
-}
-
-/* Makes what is negative or not finite 0, before the matrix may make it anything else; gives the number of pixels. */
-static size_t clean_pixels(const image_colors *colors, rgb *pixels, size_t count)
-{
-    size_t bad_count = 0;
-    for (size_t i = 0; i < count; i++) {
-        float *c[3] = {&pixels[i].r, &pixels[i].g, &pixels[i].b};
-        bool is_bad = false;
-        for (int k = 0; k < 3; k++)
-            if (!(*c[k] >= 0.0f && isfinite(*c[k]))) {
-                is_bad = true;
-                *c[k] = 0.0f;
-            }
-        bad_count += is_bad;
-        if (colors->has_matrix)
-            pixels[i] = image_colors_convert(colors, pixels[i]);
-    }
-    return bad_count;
+    if (status != AG_ERROR_MEMORY)
+        pbrt_refuse(parser, list, "filename", "%s", message);
+    return status;
 }
 
 /* A picture's pixels, from malloc. is_gray: they are no colours. */
 static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
-                             uint32_t *out_width, uint32_t *out_height, rgb **out_pixels)
+                             light_picture *out_picture)
 {
-    char message[512];
-    image picture = {0};
-    image_colors colors = {0};
+    char message[768] = "";
     char *path = pbrt_find_file(parser, name);
-    ag_status status = path ? pbrt_allow_picture(parser, path, message, sizeof message) : AG_ERROR_MEMORY;
+    if (!path)
+        return AG_ERROR_MEMORY;
+    char reason[512];
+    ag_status status = pbrt_allow_picture(parser, path, reason, sizeof reason);
     if (status == AG_OK)
-        status = image_read(path, &picture, message, sizeof message);
-    *out_pixels = NULL;
-    if (status == AG_OK && !is_gray)
-        status = image_colors_find(parser->scene, image_colors_rule(parser->scene, path), &picture, &colors, message,
-                                   sizeof message);
+        status = light_picture_read(parser->scene, name, path, is_gray, out_picture, message, sizeof message);
+    else
+        snprintf(message, sizeof message, "cannot read the picture \"%s\": %s", name, reason);
     free(path);
-    if (status == AG_OK && !colors.space)
-        status = image_linearize(&picture, colors.encoding, message, sizeof message);
-    if (status == AG_ERROR_COLOR)
-        pbrt_refuse(parser, list, "filename", "cannot decode the picture \"%s\": %s", name, message);
-    if (status == AG_ERROR_INPUT || status == AG_ERROR_SYSTEM)
-        pbrt_refuse(parser, list, "filename", "cannot read the picture \"%s\": %s", name, message);
-    if (status == AG_OK && (picture.width < 1 || picture.height < 1 || picture.width > ENVIRONMENT_MAX_SIZE ||
-                            picture.height > ENVIRONMENT_MAX_SIZE))
-        status = pbrt_refuse(parser, list, "filename", "\"%s\" is %d x %d, which is beyond what a light may have", name,
-                             picture.width, picture.height);
-    const size_t count = (size_t)picture.width * (size_t)picture.height;
-    if (status == AG_OK) {
-        *out_width = (uint32_t)picture.width;
-        *out_height = (uint32_t)picture.height;
-        *out_pixels = rgb_pixels(&picture);
-        status = *out_pixels ? AG_OK : AG_ERROR_MEMORY;
-    }
-    image_reset(&picture); /* as soon as can be: large ones are a gigabyte */
-    if (status == AG_OK && colors.space) {
-        status = image_colors_decode(parser->scene, &colors, &(*out_pixels)->r, count, message, sizeof message);
-        if (status == AG_ERROR_COLOR)
-            pbrt_refuse(parser, list, "filename", "cannot decode the picture \"%s\": %s", name, message);
-    }
-    if (status != AG_OK) {
-        free(*out_pixels);
-        *out_pixels = NULL;
-        return status;
-    }
-    size_t bad_count = clean_pixels(&colors, *out_pixels, count);
-    if (bad_count > 0)
+    if (status != AG_OK)
+        return refuse_picture(parser, list, status, message);
+    if (out_picture->bad_count > 0)
         log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, "filename")->where,
-               "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0", name, bad_count);
-    return status;
+               "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0", name,
+               out_picture->bad_count);
+    return AG_OK;
 }
 
 ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
                                 environment **out_environment)
 {
-    uint32_t width, height;
-    rgb *pixels;
-    PBRT_TRY(read_pixels(parser, list, name, is_gray, &width, &height, &pixels));
-    if (width != height && width != 2 * height) {
-        free(pixels);
-        return pbrt_refuse(parser, list, "filename",
-                           "\"%s\" is %u x %u: the picture of such a light is square (octahedral) or twice as wide "
-                           "as high (latitude-longitude)",
-                           name, width, height);
-    }
-    for (size_t i = 0; is_gray && i < (size_t)width * height; i++)
-        pixels[i] = rgb_gray((pixels[i].r + pixels[i].g + pixels[i].b) / 3.0f);
-    return environment_create(width == height ? ENVIRONMENT_OCTAHEDRAL : ENVIRONMENT_LATITUDE_LONGITUDE, width, height,
-                              pixels, out_environment);
+    char message[768] = "";
+    light_picture picture;
+    PBRT_TRY(read_pixels(parser, list, name, is_gray, &picture));
+    for (size_t i = 0; is_gray && i < (size_t)picture.width * picture.height; i++)
+        picture.pixels[i] = rgb_gray((picture.pixels[i].r + picture.pixels[i].g + picture.pixels[i].b) / 3.0f);
+    ag_status status = light_picture_surround(&picture, name, out_environment, message, sizeof message);
+    return status == AG_OK ? AG_OK : refuse_picture(parser, list, status, message);
 }
 
 /* --- lights at a point --- */
@@ -201,8 +144,7 @@ static ag_status read_projection(pbrt_parser *parser, parameter_list *list, ligh
     const char *name;
     double scale = 1.0, power = -1.0;
     float fov = 90.0f;
-    uint32_t width, height;
-    rgb *pixels;
+    light_picture picture;
     l->kind = LIGHT_PROJECTION;
     PBRT_TRY(read_common(parser, list, &name, &scale, &power, l));
     PBRT_TRY(parameter_get_float(list, parser->log, "fov", &fov));
@@ -210,8 +152,8 @@ static ag_status read_projection(pbrt_parser *parser, parameter_list *list, ligh
         return pbrt_refuse(parser, list, "fov", "\"fov\" should be within (0, 180) degrees");
     PBRT_TRY(pbrt_set_light_frame(parser, list, false, l));
     l->direction = l->world_from_light.z;
-    PBRT_TRY(read_pixels(parser, list, name, false, &width, &height, &pixels));
-    PBRT_TRY(projection_create(width, height, pixels, fov, &l->projection));
+    PBRT_TRY(read_pixels(parser, list, name, false, &picture));
+    PBRT_TRY(projection_create(picture.width, picture.height, picture.pixels, fov, &l->projection));
     PBRT_TRY(set_intensity(parser, list, rgb_gray(1.0f), scale, power,
                            working_space_luminance(&parser->scene->space, l->projection->integral), l));
     return rgb_is_finite(rgb_mul(l->intensity, l->projection->integral))

@@ -1,0 +1,108 @@
+/* light_picture.c: see light_picture.h. Threads: one per scene. */
+#include "light_picture.h"
+
+#include "image/image_encoding.h"
+#include "image/image_reader.h"
+#include "light/environment.h"
+#include "texture/image_colors.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* RGB of what was read; NULL when out of memory. */
+static rgb *rgb_pixels(const image *picture)
+{
+    size_t count = (size_t)picture->width * (size_t)picture->height, channels = (size_t)picture->channel_count;
+    rgb *pixels = malloc(count * sizeof *pixels);
+    for (size_t i = 0; pixels && i < count; i++) {
+        const float *v = &picture->pixels[i * channels];
+        pixels[i] = channels >= 3 ? rgb_make(v[0], v[1], v[2]) : rgb_gray(v[0]);
+    }
+    return pixels;
+}
+
+/* Makes what is negative or not finite 0, before the matrix may make it anything else; gives the number of pixels. */
+static size_t clean_pixels(const image_colors *colors, rgb *pixels, size_t count)
+{
+    size_t bad_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        float *c[3] = {&pixels[i].r, &pixels[i].g, &pixels[i].b};
+        bool is_bad = false;
+        for (int k = 0; k < 3; k++)
+            if (!(*c[k] >= 0.0f && isfinite(*c[k]))) {
+                is_bad = true;
+                *c[k] = 0.0f;
+            }
+        bad_count += is_bad;
+        if (colors->has_matrix)
+            pixels[i] = image_colors_convert(colors, pixels[i]);
+    }
+    return bad_count;
+}
+
+/* Puts what could not be done before the reason. */
+static ag_status describe_failure(ag_status status, const char *name, const char *reason, char *message,
+                                  size_t message_size)
+{
+    if (status != AG_ERROR_MEMORY)
+        snprintf(message, message_size, "cannot %s the picture \"%s\": %s",
+                 status == AG_ERROR_COLOR ? "decode" : "read", name, reason);
+    return status;
+}
+
+ag_status light_picture_read(const scene *s, const char *name, const char *path, bool is_gray,
+                             light_picture *out_picture, char *message, size_t message_size)
+{
+    char reason[512] = "";
+    image picture = {0};
+    image_colors colors = {0};
+    *out_picture = (light_picture){0};
+    ag_status status = image_read(path, &picture, reason, sizeof reason);
+    if (status == AG_OK && !is_gray)
+        status = image_colors_find(s, image_colors_rule(s, path), &picture, &colors, reason, sizeof reason);
+    if (status == AG_OK && !colors.space)
+        status = image_linearize(&picture, colors.encoding, reason, sizeof reason);
+    if (status != AG_OK) {
+        image_reset(&picture);
+        return describe_failure(status, name, reason, message, message_size);
+    }
+    if (picture.width < 1 || picture.height < 1 || picture.width > ENVIRONMENT_MAX_SIZE ||
+        picture.height > ENVIRONMENT_MAX_SIZE) {
+        snprintf(message, message_size, "\"%s\" is %d x %d, which is beyond what a light may have", name, picture.width,
+                 picture.height);
+        image_reset(&picture);
+        return AG_ERROR_SCENE;
+    }
+    const size_t count = (size_t)picture.width * (size_t)picture.height;
+    light_picture p = {(uint32_t)picture.width, (uint32_t)picture.height, rgb_pixels(&picture), 0};
+    image_reset(&picture); /* as soon as can be: large ones are a gigabyte */
+    if (!p.pixels)
+        return AG_ERROR_MEMORY;
+    if (colors.space)
+        status = image_colors_decode(s, &colors, &p.pixels->r, count, reason, sizeof reason);
+    if (status != AG_OK) {
+        free(p.pixels);
+        return describe_failure(status, name, reason, message, message_size);
+    }
+    p.bad_count = clean_pixels(&colors, p.pixels, count);
+    *out_picture = p;
+    return AG_OK;
+}
+
+ag_status light_picture_surround(light_picture *picture, const char *name, environment **out_environment, char *message,
+                                 size_t message_size)
+{
+    const uint32_t width = picture->width, height = picture->height;
+    rgb *pixels = picture->pixels;
+    picture->pixels = NULL;
+    if (width != height && width != 2 * height) {
+        free(pixels);
+        snprintf(message, message_size,
+                 "\"%s\" is %u x %u: the picture of such a light is square (octahedral) or twice as wide as high "
+                 "(latitude-longitude)",
+                 name, width, height);
+        return AG_ERROR_SCENE;
+    }
+    return environment_create(width == height ? ENVIRONMENT_OCTAHEDRAL : ENVIRONMENT_LATITUDE_LONGITUDE, width, height,
+                              pixels, out_environment);
+}

@@ -1,0 +1,27 @@
+/* light_picture.h: pictures that lights throw, from their file to colours of the working space.
+ * Flow: pbrt_light_pictures, scene_overrides -> [here] -> environment, projection. Threads: one per scene. */
+#ifndef AFTERGLOW_LIGHT_PICTURE_H
+#define AFTERGLOW_LIGHT_PICTURE_H
+
+#include "scene.h"
+
+struct environment;
+
+typedef struct light_picture {
+    uint32_t width, height;
+    rgb *pixels;      /* from malloc, top row first; finite and not negative; the caller's */
+    size_t bad_count; /* of them, that were not so in the file, and are 0 in what was wrong */
+} light_picture;
+
+/* name: what messages call the picture of that path, which is known to be a file that may be read. is_gray: its values
+ * are no colours. Errors: AG_ERROR_COLOR, AG_ERROR_INPUT, AG_ERROR_SYSTEM, AG_ERROR_SCENE (too large), with the reason
+ * in message; AG_ERROR_MEMORY. */
+ag_status light_picture_read(const scene *s, const char *name, const char *path, bool is_gray,
+                             light_picture *out_picture, char *message, size_t message_size);
+
+/* Of all directions: a square picture is octahedral, one twice as wide as high latitude-longitude. Takes the pixels,
+ * on failure too. Errors: AG_ERROR_SCENE (another shape; the reason in message), AG_ERROR_MEMORY. */
+ag_status light_picture_surround(light_picture *picture, const char *name, struct environment **out_environment,
+                                 char *message, size_t message_size);
+
+#endif

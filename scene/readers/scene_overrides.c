@@ -1,0 +1,219 @@
+/* scene_overrides.c: see scene_overrides.h. Threads: one per scene. */
+#include "scene_overrides.h"
+
+#include "light/environment.h"
+#include "light_picture.h"
+#include "text/input_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double DEGREE = 3.14159265358979323846 / 180.0;
+
+/* --- camera --- */
+
+ag_status scene_overrides_meet_camera(scene *s, const char *name, const char *second_name, bool *out_is_wanted)
+{
+    const char *asked = s->request ? s->request->camera_name : NULL;
+    const char *before = s->camera_names ? s->camera_names : "";
+    const bool has_second = second_name && second_name[0] && strcmp(name, second_name) != 0;
+    const size_t size = strlen(before) + strlen(name) + (has_second ? strlen(second_name) : 0) + 16;
+    *out_is_wanted =
+        !s->has_camera && (!asked || strcmp(asked, name) == 0 || (second_name && strcmp(asked, second_name) == 0));
+    char *names = malloc(size);
+    if (!names)
+        return AG_ERROR_MEMORY;
+    snprintf(names, size, "%s%s\"%s\"%s%s%s", before, before[0] ? ", " : "", name, has_second ? " (\"" : "",
+             has_second ? second_name : "", has_second ? "\")" : "");
+    free(s->camera_names);
+    s->camera_names = names;
+    return AG_OK;
+}
+
+static ag_status check_named_camera(run_context *run, const char *path, bool is_pbrt, const scene *s)
+{
+    const char *name = s->request->camera_name;
+    if (!name || (s->has_camera && s->camera_names))
+        return AG_OK;
+    if (s->camera_names)
+        log_message(run->log, AG_LOG_ERROR, "%s: error: it has no camera \"%s\", but %s", path, name, s->camera_names);
+    else
+        log_message(run->log, AG_LOG_ERROR, "%s: error: it has no camera \"%s\", but %s", path, name,
+                    is_pbrt ? "one at most, without a name, as pbrt's format has it" : "none at all");
+    return AG_ERROR_ARGUMENT;
+}
+
+/* Whether x, y and z of the world, as the camera shows them, are as on the left hand. */
+static bool is_left_handed(const scene *s, bool is_pbrt)
+{
+    return is_pbrt && !(s->has_camera && transform_swaps_handedness(&s->camera.world_from_camera));
+}
+
+/* The camera that is asked for in the place of the file's. */
+static ag_status set_camera(run_context *run, bool is_pbrt, scene *s)
+{
+    const scene_request *asked = s->request;
+    const bool is_left = is_left_handed(s, is_pbrt);
+    const vec3 from = asked->camera_from, way = vec3_sub(asked->camera_to, from);
+    const vec3 across = is_left ? vec3_cross(asked->camera_up, way) : vec3_cross(way, asked->camera_up);
+    const float distance = vec3_length(way), width = vec3_length(across);
+    camera c = {.shutter_close = 1.0f};
+    if (s->has_camera)
+        c = s->camera;
+    double matrix[4][4] = {{0.0}};
+    if (distance > 0.0f && width > 0.0f && isfinite(distance) && isfinite(width) && vec3_is_finite(from)) {
+        const vec3 z = vec3_scale(way, 1.0f / distance), x = vec3_scale(across, 1.0f / width);
+        const vec3 y = is_left ? vec3_cross(z, x) : vec3_cross(x, z);
+        const vec3 columns[4] = {x, y, z, from};
+        for (int k = 0; k < 4; k++) {
+            matrix[0][k] = (double)columns[k].x;
+            matrix[1][k] = (double)columns[k].y;
+            matrix[2][k] = (double)columns[k].z;
+        }
+        matrix[3][3] = 1.0;
+    }
+    if (!(asked->fov_degrees > 0.0f && asked->fov_degrees < 180.0f) ||
+        !transform_from_matrix((const double(*)[4])matrix, &c.world_from_camera)) {
+        log_message(run->log, AG_LOG_ERROR,
+                    "the camera asked for makes no sense: from and to should differ, up should not be along the way "
+                    "between them, and the field of view should be within 0 and 180 degrees");
+        return AG_ERROR_ARGUMENT;
+    }
+    c.kind = CAMERA_PERSPECTIVE;
+    c.fov_degrees = asked->fov_degrees;
+    c.focal_distance = distance;
+    c.lens_radius = 0.0f;
+    c.is_moving = c.has_screen_window = false;
+    s->camera = c;
+    s->has_camera = true;
+    s->is_camera_made_up = false;
+    return AG_OK;
+}
+
+/* --- directions --- */
+
+static vec3 axis_of(int axis, bool is_minus)
+{
+    float v[3] = {0.0f, 0.0f, 0.0f};
+    v[axis] = is_minus ? -1.0f : 1.0f;
+    return vec3_make(v[0], v[1], v[2]);
+}
+
+/* The axis that points up, its number in *out_axis. */
+static vec3 find_up(const scene *s, bool is_pbrt, int *out_axis)
+{
+    const scene_up asked = s->request->up;
+    *out_axis = 1;
+    if (asked != UP_BY_FORMAT) {
+        *out_axis = ((int)asked - (int)UP_X) % 3;
+        return axis_of(*out_axis, asked >= UP_MINUS_X);
+    }
+    if (!is_pbrt || !s->has_camera)
+        return axis_of(1, false);
+    const double(*m)[4] = s->camera.world_from_camera.m;
+    for (int i = 0; i < 3; i++)
+        if (fabs(m[i][1]) > fabs(m[*out_axis][1]) * 1.0001) /* a tie stays with y */
+            *out_axis = i;
+    return axis_of(*out_axis, m[*out_axis][1] < 0.0);
+}
+
+/* North, east and up. */
+typedef struct compass {
+    vec3 north, east, up;
+} compass;
+
+static compass compass_of(const scene *s, bool is_pbrt)
+{
+    compass c;
+    int axis;
+    const bool is_left = is_left_handed(s, is_pbrt);
+    c.up = find_up(s, is_pbrt, &axis);
+    c.north = axis == 1 ? axis_of(2, !is_left) : axis_of(1, false);
+    c.east = is_left ? vec3_cross(c.up, c.north) : vec3_cross(c.north, c.up);
+    return c;
+}
+
+/* A unit direction of the horizon. */
+static vec3 heading(const compass *c, double azimuth_degrees)
+{
+    const double angle = fmod(azimuth_degrees, 360.0) * DEGREE;
+    return vec3_add(vec3_scale(c->north, (float)cos(angle)), vec3_scale(c->east, (float)sin(angle)));
+}
+
+/* --- light --- */
+
+bool scene_overrides_light(const scene *s)
+{
+    return s->request && (s->request->has_sun || s->request->has_sky || s->request->drops_lights);
+}
+
+static ag_status add_sun(run_context *run, const compass *c, scene *s)
+{
+    const scene_request *asked = s->request;
+    const double elevation = (double)asked->sun_elevation_degrees * DEGREE;
+    const vec3 across = heading(c, (double)asked->sun_azimuth_degrees);
+    const vec3 to_sun = vec3_add(vec3_scale(across, (float)cos(elevation)), vec3_scale(c->up, (float)sin(elevation)));
+    light sun = light_make(LIGHT_DISTANT);
+    uint32_t index;
+    sun.radiance = rgb_gray(asked->sun_irradiance);
+    sun.direction = vec3_negate(vec3_normalize(to_sun));
+    log_message(run->log, AG_LOG_INFO, "the sun that is asked for stands towards (%.3g, %.3g, %.3g), with %g W/m^2",
+                (double)to_sun.x, (double)to_sun.y, (double)to_sun.z, (double)asked->sun_irradiance);
+    return scene_add_light(s, &sun, &index);
+}
+
+/* A picture is latitude-longitude with its middle in the east, and north to the left of it: as in Blender, whose x is
+ * in the middle. */
+static ag_status add_sky(run_context *run, const compass *c, scene *s)
+{
+    const scene_request *asked = s->request;
+    char message[768] = "";
+    light sky = light_make(LIGHT_INFINITE);
+    light_picture picture;
+    uint32_t index;
+    ag_status status = AG_OK;
+    sky.radiance = working_space_light(&s->space, asked->sky_radiance);
+    if (asked->sky_file) {
+        sky.world_from_light = (frame){.x = heading(c, 270.0 + (double)asked->sky_rotation_degrees),
+                                       .y = heading(c, (double)asked->sky_rotation_degrees),
+                                       .z = c->up};
+        status = input_file_allow_named(run, asked->sky_file, message, sizeof message)
+                     ? light_picture_read(s, asked->sky_file, asked->sky_file, false, &picture, message, sizeof message)
+                     : AG_ERROR_INPUT;
+        if (!status)
+            status = light_picture_surround(&picture, asked->sky_file, &sky.environment, message, sizeof message);
+        if (!status && picture.bad_count > 0)
+            log_message(run->log, AG_LOG_WARNING,
+                        "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0",
+                        asked->sky_file, picture.bad_count);
+    }
+    if (!status && !rgb_is_finite(environment_integral(&sky))) {
+        snprintf(message, sizeof message, "the light is too bright for a float");
+        status = AG_ERROR_ARGUMENT;
+    }
+    if (status) {
+        if (status != AG_ERROR_MEMORY)
+            log_message(run->log, AG_LOG_ERROR, "the sky that is asked for: %s", message);
+        light_reset(&sky);
+        return status;
+    }
+    scene_drop_lights(s, LIGHT_INFINITE);
+    return scene_add_light(s, &sky, &index);
+}
+
+ag_status scene_overrides_apply(run_context *run, const char *path, bool is_pbrt, scene *s)
+{
+    const scene_request *asked = s->request;
+    ag_status status = check_named_camera(run, path, is_pbrt, s);
+    if (!status && asked->has_camera)
+        status = set_camera(run, is_pbrt, s);
+    const compass c = compass_of(s, is_pbrt);
+    if (asked->drops_lights)
+        scene_drop_all_lights(s);
+    if (!status && asked->has_sky)
+        status = add_sky(run, &c, s);
+    if (!status && asked->has_sun)
+        status = add_sun(run, &c, s);
+    return status;
+}
