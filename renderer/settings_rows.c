@@ -231,8 +231,9 @@ static const setting_row ROWS[] = {
               .argument = "N",
               .section = "Light",
               .help = "seed of the photons (default: --seed): pictures of other seeds can share a kept photon map",
-              .manual = "Seed of the photons (default: that of *--seed*). With it pictures of different seeds, the frames "
-                        "of an animation for one, can share a kept photon map.",
+              .manual =
+                  "Seed of the photons (default: that of *--seed*). With it pictures of different seeds, the frames "
+                  "of an animation for one, can share a kept photon map.",
               .is_of_photon_map = true},
      FIELD(photon_seed),
      .kind = SETTING_SEED,

@@ -9,9 +9,9 @@ enum { FIRST_BARRIER = 4, BARRIER_STEP = 4 };
 /* Where pixels may get more samples, so many share AG_DEFAULT_GATHER_RAYS_PER_PIXEL. */
 enum { ADAPTIVE_SAMPLES = 64 };
 
-/* Without a choice there is a light sample for so many gather rays; with it there are at first some, from which
- * their variance can be told. */
-enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, FIRST_LIGHTS = 4 };
+/* Without a choice there is a light sample for so many gather rays. With it there are many at first: blocks where few
+ * are enough find that out, and behind windows, where light comes from is what is known least. */
+enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, FIRST_LIGHTS = 16 };
 enum { RAYS_MAX = 64, LIGHTS_MAX = 16 };
 
 /* Rays of the first samples, at least: from one the variance cannot be told. */

@@ -124,8 +124,8 @@ static void frames_of_one_photon_map_may_have_seeds_of_their_own(void **state)
                          "kept.#.exr:float", BOX),
                0, "'one.map': a map of");
     expect_equal("kept.3.exr", "kept.4.exr", false);
-    expect_end(ARGUMENTS(SMALL, "-q", "--seed=14", "--photon-seed=10", "--photon-aim=0", "-o", "fresh.exr:float", BOX), 0,
-               "");
+    expect_end(ARGUMENTS(SMALL, "-q", "--seed=14", "--photon-seed=10", "--photon-aim=0", "-o", "fresh.exr:float", BOX),
+               0, "");
     expect_equal("kept.4.exr", "fresh.exr", true);
     expect_end(ARGUMENTS(SMALL, "-q", "--seed=14", "--photon-map=one.map", "-o", "other.exr", BOX), 1,
                "another seed of photons: 10, not 14");

@@ -101,8 +101,8 @@ static void change(const setting_row *row, ag_render_settings *settings)
     switch (row->kind) {
     case SETTING_WORD: *(unsigned *)value ^= 1u; break;
     case SETTING_INTEGER: *(int *)value = *(int *)value == (int)row->most ? (int)row->most - 1 : (int)row->most; break;
-    case SETTING_COUNT:
-    case SETTING_SEED: *(uint64_t *)value += 1; break;
+    case SETTING_COUNT: *(uint64_t *)value += 1; break;
+    case SETTING_SEED: *(uint64_t *)value = *(uint64_t *)value == 5 ? 6 : 5; break;
     case SETTING_NUMBER:
         *(float *)value = row->most < 1e6 && *(float *)value != (float)row->most ? (float)row->most : 0.5f;
         break;

@@ -80,7 +80,7 @@ static void test_best_numbers(void **state)
             for (size_t k = 0; k < film_area_count(film); k++)
                 film->wanted[k] = 16;
         assert_int_equal(splitting_decide(film, &settings, 16), 4);
-        expect_counts(film, 3, 16, 4);
+        expect_counts(film, 3, 16, 16);
         add_block(film, 0, 0.04, 0.04, 0.02);
         add_block(film, FILM_BLOCK, 0.04, 0.0, 0.0);
         for (int times = 0; times < 2; times++) { /* again changes nothing */

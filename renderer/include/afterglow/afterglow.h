@@ -274,8 +274,8 @@ typedef struct ag_render_settings {
                                   rays that goes where light comes from, where photons are many; the rest goes by the
                                   cosine. 0: all. Less noise or more, the same light. Default
                                   AG_DEFAULT_GATHER_GUIDING */
-    uint64_t photon_seed; /* of the photons, so that pictures of other seeds can share a kept photon map. Default
-                             AG_PHOTON_SEED_AUTOMATIC: seed */
+    uint64_t photon_seed;      /* of the photons, so that pictures of other seeds can share a kept photon map. Default
+                                  AG_PHOTON_SEED_AUTOMATIC: seed */
     float photon_aim;     /* share of the photon paths that begin where a pilot has found that they bring light to where
                              this picture asks for it, [0, 0.8]: the others begin by power alone, so that no photon is more
                              than five times as bright as without. The same light, with less noise in this picture and more
