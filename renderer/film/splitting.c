@@ -32,7 +32,8 @@ static const double LEAST_REST = 1.0 / 64.0;
 
 bool splitting_is_open(const ag_render_settings *settings)
 {
-    return settings->integrator == AG_INTEGRATOR_PHOTONMAP && settings->gather_samples == 0;
+    return settings->integrator == AG_INTEGRATOR_PHOTONMAP && settings->gather_samples == 0 &&
+           (settings->noise_level > 0.0f || settings->samples_per_pixel > FIRST_BARRIER);
 }
 
 split_counts splitting_first(const ag_render_settings *settings)

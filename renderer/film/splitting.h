@@ -30,7 +30,8 @@ typedef struct split_trial {
     split_counts counts;
 } split_trial;
 
-/* Whether blocks choose: the photon map's integrator, and no number of gather rays is set. */
+/* Whether blocks choose: the photon map's integrator, no number of gather rays is set, and there are samples left when
+ * the first have told of the noise. */
 bool splitting_is_open(const ag_render_settings *settings);
 /* Of every sample where blocks do not choose, of the first ones where they do. */
 split_counts splitting_first(const ag_render_settings *settings);

@@ -90,10 +90,10 @@ static void test_names_that_nobody_gave(void **state)
     program_run_reset(&run);
     expect_listing("afterglow.exr mine.exr sphere.exr sphere.pbrt");
     /* a name of the scene's that cannot be written is the scene's mistake */
-    scene = SCENE_WITH("sphere.pbrt", "Film \"rgb\"", "Film \"rgb\" \"string filename\" \"mine.pfm\"");
+    scene = SCENE_WITH("sphere.pbrt", "Film \"rgb\"", "Film \"rgb\" \"string filename\" \"mine.xyz\"");
     run = RUN("-q", QUICK, scene);
     expect_exit(&run, 1);
-    expect_said(&run, "mine.pfm");
+    expect_said(&run, "mine.xyz");
     program_run_reset(&run);
 }
 
