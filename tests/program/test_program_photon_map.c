@@ -104,7 +104,7 @@ static void test_refusal(void **state)
     (void)state;
     const char *scene = PROGRAM_SCENES ROOM;
     expect_end(RUN(QUICK, MAP, "-o", "a.exr", scene), 0, NULL);
-    expect_end(RUN(QUICK, MAP, "--seed=3", "-o", "a.exr", scene), 1, "another seed: 0, not 3");
+    expect_end(RUN(QUICK, MAP, "--seed=3", "-o", "a.exr", scene), 1, "another seed of photons: 0, not 3");
     expect_end(RUN(QUICK, MAP, "--photons=4001", "-o", "a.exr", scene), 1, "another number of photons: 4000, not 4001");
     expect_end(RUN(QUICK, MAP, "--irradiance-fraction=0.5", "-o", "a.exr", scene), 1,
                "another fraction of irradiance photons: 1, not 0.5");
