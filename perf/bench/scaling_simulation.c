@@ -96,7 +96,8 @@ static bool reserve(worker *w, uint32_t more)
 static void begin_looking(const simulation *s, worker *w)
 {
     w->now_s += w->count * s->frame->own_s * LOOKUP_SHARE;
-    qsort(w->batch, w->count, sizeof *w->batch, by_photon);
+    if (w->count > 0)
+        qsort(w->batch, w->count, sizeof *w->batch, by_photon);
     w->is_looking = true;
     w->at = w->met_count = 0;
 }
