@@ -187,7 +187,8 @@ static bool come_through_space(const scene *s, const light *l, light_emission *o
     return !rgb_is_black(out->flux);
 }
 
-/* From a place in the portal, which is in the light's own medium, with what comes so far. */
+/* From a place in the portal, which is in the light's own medium, with what comes so far; window panes before it let
+ * light through straight. */
 static bool emit_through_portal(const scene *s, const light *l, const light_target *target,
                                 const emission_numbers *numbers, light_emission *out)
 {
@@ -201,7 +202,7 @@ static bool emit_through_portal(const scene *s, const light *l, const light_targ
     scene_ray back = scene_ray_make(out->origin, to_light);
     back.medium = l->medium;
     uint64_t cut = 0;
-    rgb transmittance = passage_transmittance(s, back, INFINITY, &cut);
+    rgb transmittance = passage_transmittance_of_panes(s, back, INFINITY, &cut);
     out->direction = vec3_negate(to_light);
     out->flux = rgb_scale(rgb_mul(radiance, transmittance), vec3_dot(to_light, l->portal->axes.z) / pdf);
     return !rgb_is_black(out->flux);

@@ -251,6 +251,18 @@ static void test_sunny_room(void **state)
     expect_near("direct light", map.direct, path.direct, 0.02);
 }
 
+/* A portal in the window says where the sky comes in; the panes before it let photons through. */
+static void test_portal_behind_panes(void **state)
+{
+    (void)state;
+    char portal[512];
+    snprintf(portal, sizeof portal, "%s",
+             SCENE_WITH("panes.pbrt", "[1 1.2 1.5]",
+                        "[1 1.2 1.5] \"point3 portal\" [-1.98 1 1 -1.98 1 -1 -1.98 2.2 -1 -1.98 2.2 1]"));
+    expect_same_light("photon map, a portal", OVER_SEEDS(portal, PHOTONS, "--only=indirect"),
+                      OVER_SEEDS(ROOM, PATHS, "--only=indirect"));
+}
+
 static void test_same_bits(void **state)
 {
     (void)state;
@@ -286,6 +298,7 @@ int main(void)
         TEST_IN_FOLDER(test_warning),
         TEST_IN_FOLDER(test_room),
         TEST_IN_FOLDER(test_sunny_room),
+        TEST_IN_FOLDER(test_portal_behind_panes),
         TEST_IN_FOLDER(test_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
