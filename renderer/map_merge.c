@@ -9,6 +9,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 _Static_assert(sizeof((ag_photon_map_info *)0)->settings >= PHOTON_FILE_SETTINGS_MAX &&
                    sizeof((ag_photon_map_info *)0)->program >= sizeof((photon_file_key *)0)->program &&
@@ -88,14 +89,26 @@ ag_status ag_photon_map_read_info(ag_context *context, const char *path, ag_phot
 
 /* --- merging --- */
 
-/* What stands there is replaced by a photon map alone where it is one. */
-static ag_status check_output(ag_context *context, const char *path)
+static bool is_one_of(const char *path, const char *const *paths, size_t count)
+{
+    struct stat ours, other;
+    for (size_t i = 0; i < count && stat(path, &ours) == 0; i++)
+        if (stat(paths[i], &other) == 0 && ours.st_dev == other.st_dev && ours.st_ino == other.st_ino)
+            return true;
+    return false;
+}
+
+/* What stands there is replaced by a photon map alone where it is one. out_is_sound: it can be read. */
+static ag_status check_output(ag_context *context, const char *path, bool *out_is_sound)
 {
     char why[1024];
     read_map m;
     ag_status status = AG_OK;
     switch (photon_file_read(&context->run, path, &m.key, &m.fixed, &m.file, &m.global, &m.caustic, why, sizeof why)) {
-    case PHOTON_FILE_OPEN: read_map_reset(&m); break;
+    case PHOTON_FILE_OPEN:
+        read_map_reset(&m);
+        *out_is_sound = true;
+        break;
     case PHOTON_FILE_CANCELLED: return AG_CANCELLED;
     case PHOTON_FILE_FOREIGN:
     case PHOTON_FILE_FAILED:
@@ -151,11 +164,14 @@ ag_status ag_photon_map_merge(ag_context *context, const char *out_path, const c
         return AG_ERROR_ARGUMENT;
     char message[1024];
     read_map merged = {0};
-    ag_status status = check_output(context, out_path);
+    bool is_sound = false;
+    ag_status status = check_output(context, out_path, &is_sound);
     if (status == AG_OK)
         status = read_map_open(context, paths[0], &merged);
     for (size_t i = 1; i < count && status == AG_OK; i++)
         status = add(context, paths[0], &merged, paths[i]);
+    if (status == AG_OK && is_sound && !is_one_of(out_path, paths, count)) /* nothing that it holds is lost */
+        status = add(context, paths[0], &merged, out_path);
     if (status == AG_OK) {
         write_job job = {context, &merged};
         status = atomic_file_write_by(out_path, fill, &job, message, sizeof message);

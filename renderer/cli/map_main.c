@@ -13,7 +13,7 @@ static const char HELP[] =
     "\n"
     "  info          what files hold: for which scene, program and machine, with which settings, how full\n"
     "  merge         put the irradiances of files of one map together, which were filled apart: in any order, and any\n"
-    "                number of times; OUT may be one of them\n"
+    "                number of times; OUT is one of them where it is there\n"
     "  --help        print this\n"
     "  --version     print the version\n"
     "\n"

@@ -63,9 +63,17 @@ for name in forth back; do
 done
 echo "ok: $ready irradiances of three files"
 
+# what OUT holds already is kept
+cp 1.map grown.map
+"$map" merge grown.map 2.map 3.map >grown || fail "merge ended with $?"
+[[ $(sed -nE 's/irradiances: ([0-9]+) of 4000 .*/\1/p' grown) == "$ready" ]] || fail "what was there is lost: $(<grown)"
+
 # another map is refused, and nothing is written
 render --seed 7 --photons-only --photon-map other.map
 expect 1 'other.map: error: it is another map than 1.map' "$map" merge new.map 1.map other.map
+cp other.map kept.map
+expect 1 'kept.map: error: it is another map than 1.map' "$map" merge kept.map 1.map
+cmp other.map kept.map || fail "another map was replaced"
 expect 1 'nowhere.map: error: there is no such file' "$map" merge new.map 1.map nowhere.map
 expect 1 'it is no photon map' "$map" info "$scene"
 head -c 100000 1.map >cut.map

@@ -381,10 +381,10 @@ typedef struct ag_photon_map_info {
  * AG_CANCELLED. */
 AG_API ag_status ag_photon_map_read_info(ag_context *context, const char *path, ag_photon_map_info *out_info);
 /* Puts the irradiances of several files of one map together, which were filled apart, on machines of one maker: in any
- * order, and any of them any number of times, they make the same map. Written atomically; out_path may be one of the
- * paths, and what stands there must be a photon map. count >= 1. out_info: of the new file, or NULL. Errors:
- * AG_ERROR_INPUT (as above; or they are of different maps, or hold different irradiances), AG_ERROR_OUTPUT,
- * AG_ERROR_MEMORY, AG_CANCELLED. */
+ * order, and any of them any number of times, they make the same map. Written atomically; what stands at
+ * out_path must be a photon map, and unless it is damaged it is put in with the others. count >= 1. out_info: of the
+ * new file, or NULL. Errors: AG_ERROR_INPUT (as above; or they are of different maps, or hold different irradiances),
+ * AG_ERROR_OUTPUT, AG_ERROR_MEMORY, AG_CANCELLED. */
 AG_API ag_status ag_photon_map_merge(ag_context *context, const char *out_path, const char *const *paths, size_t count,
                                      ag_photon_map_info *out_info);
 
