@@ -41,7 +41,7 @@ static void usual_shares(const progress *p, double out_shares[AG_PHASE_COUNT])
 
 void progress_begin_frame(progress *p, int frame, int frame_count, int frame_number)
 {
-    if (frame > p->frame) { /* one is over */
+    if (frame > p->frame && p->phase != AG_PHASE_COUNT) { /* one is over, which was not skipped */
         for (int i = 0; i < AG_PHASE_COUNT; i++)
             p->learned_seconds[i] += p->phase_seconds[i];
         p->learned_count++;
@@ -60,7 +60,7 @@ static void enter_phase(progress *p, ag_phase phase, double fraction, double now
     if (p->phase == phase)
         return;
     if (p->phase != AG_PHASE_COUNT)
-        p->phase_seconds[p->phase] = now - p->phase_begun;
+        p->phase_seconds[p->phase] += now - p->phase_begun;
     p->phase = phase;
     p->phase_begun = now;
     p->phase_begun_at = fraction;
