@@ -378,7 +378,7 @@ static const setting_row ROWS[] = {
               .manual = "Gather rays for each camera sample: exactly so many, and a light sample for each eight of "
                         "them. By default each block of 8 by 8 pixels chooses both numbers by the noise of its own "
                         "samples. The first four samples of a pixel have 256 rays in all, shared by *--spp*, but at "
-                        "least 4 each, and four light samples; then it is decided, and again at four times as many "
+                        "least 4 each, and 16 light samples; then it is decided, and again at four times as many "
                         "samples. With *--noise 0* later samples have at least half as many rays as the first ones, "
                         "and no more than these; with a noise level from 1 to 64."},
      FIELD(gather_samples),

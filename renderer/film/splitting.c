@@ -104,7 +104,7 @@ static void add_pixel(const split_trial *trial, double count, double scale, bloc
 
 /* What bounds the choice. */
 typedef struct choice {
-    double scale;  /* of what is shown */
+    double scale;  /* from radiance to what is shown */
     double factor; /* of the numbers that are best for a block alone */
     double clean;  /* the variance of a sample that does no harm; 0: none */
     split_counts least, most;
@@ -164,7 +164,11 @@ uint32_t splitting_decide(struct ag_film *film, const ag_render_settings *settin
     while (barrier < least)
         barrier *= BARRIER_STEP;
     if (barrier == least && least < wanted) {
-        choice c = {noise_shown_scale(settings), 1.0, 0.0, {.rays = 1, .lights = 1}, splitting_most(settings)};
+        choice c = {noise_shown_scale(settings) * (double)settings->exposure,
+                    1.0,
+                    0.0,
+                    {.rays = 1, .lights = 1},
+                    splitting_most(settings)};
         if (!(settings->noise_level > 0.0f)) {
             c.factor = FIXED_FACTOR;
             c.clean = FIXED_CLEAN * FIXED_CLEAN * settings->samples_per_pixel;

@@ -24,7 +24,9 @@ static rgb irradiance_at(const transport *t, eye_worker *worker, const vertex *v
     arena_mark mark = arena_save(worker->scratch);
     photon_neighbor *neighbors = arena_alloc(worker->scratch, photon_map_scratch_count(map) * sizeof *neighbors);
     rgb irradiance;
+    uint64_t rays = worker->rays_estimate;
     irradiance_estimate_find(map, at.position, at.facing_normal, neighbors, &worker->rays_estimate, &irradiance);
+    worker->cost_apart += worker->rays_estimate - rays; /* no layer decides how samples are split */
     arena_restore(worker->scratch, mark);
     return irradiance;
 }
