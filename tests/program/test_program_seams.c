@@ -186,8 +186,8 @@ static void test_steep_reliefs(void **state)
     (void)state;
     const char *kinds[] = {"\"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]",
                            "\"coateddiffuse\" \"rgb reflectance\" [0.8 0.8 0.8]",
-                           "\"diffusetransmission\" \"rgb reflectance\" [0.5 0.5 0.5] "
-                           "\"rgb transmittance\" [0.3 0.3 0.3]"};
+                           ("\"diffusetransmission\" \"rgb reflectance\" [0.5 0.5 0.5] "
+                            "\"rgb transmittance\" [0.3 0.3 0.3]")};
     for (int k = 0; k < 3; k++) {
         char more[256];
         begin_room(0);
