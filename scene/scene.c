@@ -285,7 +285,7 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
     return AG_OK;
 }
 
-/* Those of a kind, or all. The others keep their order, and shapes learn their new place. */
+/* Drops the lights of a kind, or all. The others keep their order, and shapes learn their new place. */
 static void drop_lights(scene *s, light_kind kind, bool is_any_kind)
 {
     uint32_t kept = 0;

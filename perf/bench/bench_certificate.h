@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-/* What the bits depend on besides the benchmark's own scenes: short texts without a line's end. */
+/* The build on which the bits depend, besides the benchmark's own scenes: short texts without a line's end. */
 typedef struct bench_build {
     char sources[40];  /* fingerprint of the sources of threads/, scene/, photonmap/ and renderer/, 32 hexadecimals */
     char compiler[64]; /* "gcc 12.2.0" */

@@ -58,7 +58,7 @@ static bool ends_with(const char *text, const char *end)
     return length > end_length && strcmp(text + length - end_length, end) == 0;
 }
 
-/* What an option says; false: it, or its value, is none. */
+/* Notes what one option asks for; false: there is no such option, or its value is not valid. */
 static bool set_value(bench_options *o, const char *name, const char *value)
 {
     if (strcmp(name, "--size") == 0) {

@@ -19,7 +19,7 @@ typedef enum bench_phase {
 } bench_phase;
 
 const char *bench_phase_name(bench_phase phase);
-/* What a unit's amount counts: "photon", "ray", ... */
+/* The noun of the items that a unit's amount counts: "photon", "ray", ... */
 const char *bench_phase_item(bench_phase phase);
 
 typedef struct bench_outcome {

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* What lives while a run is measured. */
+/* The state of a run while it is measured. */
 typedef struct measuring {
     bench_run *run;
     const bench_work *work;

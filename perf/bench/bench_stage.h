@@ -33,7 +33,7 @@ typedef struct bench_stage {
 ag_status bench_stage_create(bench_scene which, const bench_work *work, ag_context *context, bench_stage *out_stage);
 void bench_stage_reset(bench_stage *stage);
 
-/* What photons of that kind are traced by. */
+/* The settings by which photons of that kind are traced. */
 photon_tracing_settings bench_stage_tracing(const bench_stage *stage, photon_kind kind);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "parallel_for.h"
 
-/* What a turn took. */
+/* The cost of one turn. */
 typedef struct stream_turn {
     double seconds, cpu_s;
     double amount; /* multiplications and additions, or bytes read and written */

@@ -70,7 +70,7 @@ static bool has_half_a_camera(const options *o)
     return true;
 }
 
-/* What is said of a camera, a sun or a sky must be for one that is asked for. */
+/* An option about a camera, a sun or a sky is a mistake where none of that kind is asked for. */
 static bool has_idle_scene_option(const options *o)
 {
     const ag_scene_settings *asked = &o->asked;
@@ -85,7 +85,7 @@ static bool has_idle_scene_option(const options *o)
     return true;
 }
 
-/* What follows from several options. */
+/* Settings that follow from several options together. */
 static void settle_scene_options(options *o)
 {
     const int up = (int)o->asked.up - AG_UP_X;

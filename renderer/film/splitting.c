@@ -102,7 +102,7 @@ static void add_pixel(const split_trial *trial, double count, double scale, bloc
     sums->cost_of_rest += (double)trial->cost_of_rest;
 }
 
-/* What bounds the choice. */
+/* The bounds of a block's choice. */
 typedef struct choice {
     double scale;  /* from radiance to what is shown */
     double factor; /* of the numbers that are best for a block alone */

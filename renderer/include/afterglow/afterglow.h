@@ -365,7 +365,7 @@ AG_API void ag_film_destroy(ag_film *film); /* NULL is fine */
  * is loaded. Errors: AG_ERROR_OUTPUT. */
 AG_API ag_status ag_photon_map_check(ag_context *context, const char *path);
 
-/* What a photon map's file holds. */
+/* The contents of a photon map's file. */
 typedef struct ag_photon_map_info {
     char program[56], machine[56]; /* that have made it; those of others refuse it */
     char scene[33];                /* fingerprint of what its photons depend on in the scene, 32 hexadecimals */
