@@ -9,7 +9,7 @@
 #ifndef AFTERGLOW_GATHER_BATCH_H
 #define AFTERGLOW_GATHER_BATCH_H
 
-#include "integrator/eye_sample.h"
+#include "film/eye_sample.h"
 #include "irradiance_cache.h"
 #include "rays/rays.h"
 
