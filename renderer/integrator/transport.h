@@ -43,14 +43,8 @@ typedef struct eye_worker {
     arena *scratch;                            /* for neighbours; what render.c has tried out beforehand always fits */
     gather_batch *batch;                       /* of the samples under way; NULL for path tracing */
     struct sample_queue *queue;                /* those samples */
-    uint32_t sample;                           /* the number there of the one whose path is being traced */
-
-    /* Of that sample, see eye_sample: how it is to be split, and what is noted of it. */
-    split_counts split;
-    float light_variance;
     float direct_variance; /* of the last direct_light_gathered, in the mean of the three colours: an estimate */
-    uint64_t gather_cost, light_cost;
-    uint64_t cost_apart; /* of whatever samples' detours, in all */
+    uint64_t cost_apart;   /* of whatever samples' detours, in all */
 } eye_worker;
 
 /* What a worker's rays have cost so far, but for detours, which do not belong to the sample under way: in quarters of a
