@@ -12,6 +12,7 @@
 #include "rays/passage.h"
 #include "render_maps.h"
 #include "render_tiles.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -382,10 +383,8 @@ ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render
     if (!out_film)
         return AG_ERROR_ARGUMENT;
     ag_rendering *rendering;
-    ag_status status = ag_rendering_create(context, loaded, settings, &rendering);
-    if (status != AG_OK)
-        return status;
-    status = ag_rendering_continue(rendering, rendering->settings.samples_per_pixel);
+    AG_TRY(ag_rendering_create(context, loaded, settings, &rendering));
+    ag_status status = ag_rendering_continue(rendering, rendering->settings.samples_per_pixel);
     ag_rendering_finish(rendering, status == AG_OK ? out_film : NULL);
     return status;
 }
