@@ -365,6 +365,10 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
                     (unsigned long long)not_finite);
     if (out_film)
         odd_scene_warn(r);
+    if (r->film) {
+        context->statistics.samples = ag_rendering_sample_counts(r);
+        context->statistics.noise = ag_rendering_noise(r).level;
+    }
     if (out_film)
         *out_film = r->film;
     else
