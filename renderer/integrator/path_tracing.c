@@ -165,6 +165,9 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray
         scattered_normal = direct_light_normal(&v, BSDF_ALL);
         scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
         ray = transport_scattered_ray(t, &v, next.direction, next.is_delta);
+        ray.cone = next.group == BSDF_GATHERED
+                       ? transport_gather_cone(&v)
+                       : transport_scattered_cone(t, &v, next.direction, next.is_delta, next.pdf_solid_angle);
     }
 }
 

@@ -264,6 +264,7 @@ static bool go_on(const transport *t, const vertex *v, bool is_last, int branch_
     in_out->scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
     in_out->scatter_count = branch_count;
     in_out->ray = transport_scattered_ray(t, v, next.direction, next.is_delta);
+    in_out->ray.cone = transport_scattered_cone(t, v, next.direction, next.is_delta, next.pdf_solid_angle);
     return true;
 }
 
