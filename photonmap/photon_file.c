@@ -21,8 +21,8 @@
 
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
 
-/* To be raised whenever the layout, or what photons or irradiances are, changes. */
-enum { LAYOUT_VERSION = 11 };
+/* To be raised whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
+enum { LAYOUT_VERSION = 12 };
 enum { GLOBAL, CAUSTIC, MAP_COUNT, BEARERS = MAP_COUNT, TREE_COUNT };
 enum { PAGE = 4096, CHUNK_BYTES = 1 << 22 };
 static const uint32_t BYTE_ORDER_MARK = 0x01020304;
@@ -57,7 +57,7 @@ typedef struct file_header {
 
 enum { OWNERS_AT = PAGE };
 _Static_assert(sizeof(file_header) <= OWNERS_AT, "the header has a page of its own");
-_Static_assert(sizeof(photon_file_key) == 1168 && sizeof(map_record) == 288 && sizeof(tree_record) == 24,
+_Static_assert(sizeof(photon_file_key) == 1184 && sizeof(map_record) == 288 && sizeof(tree_record) == 24,
                "no gaps: they are compared and hashed");
 _Static_assert(offsetof(photon_block, slot) + PHOTON_BLOCK_LANES * sizeof(irradiance_slot) == sizeof(photon_block),
                "what never changes of a block is its first part");
@@ -256,6 +256,8 @@ static void describe_difference(const photon_file_key *is, const photon_file_key
         snprintf(out, size, "it was made on another machine: '%s', this is '%s'", is->machine, wanted->machine);
     else if (strncmp(is->program, wanted->program, sizeof is->program) != 0)
         snprintf(out, size, "it was made by another program: '%s', this is '%s'", is->program, wanted->program);
+    else if (!hash128_is_equal(is->estimates, wanted->estimates))
+        snprintf(out, size, "it was made by a program whose estimates of irradiance were others");
     else if (!hash128_is_equal(is->scene, wanted->scene))
         snprintf(out, size, "it was made of another scene: shapes, lights, materials or textures differ");
     else if (strncmp(is->settings, wanted->settings, sizeof is->settings) != 0)

@@ -28,6 +28,7 @@ enum { PHOTON_FILE_SETTINGS_MAX = 1024 };
 typedef struct photon_file_key {
     hash128 scene;                           /* scene_hash_of_light */
     hash128 aim_view;                        /* what the photons are aimed at; zeros: at everything alike */
+    hash128 estimates;                       /* estimate_fingerprint: the program's irradiances */
     char settings[PHOTON_FILE_SETTINGS_MAX]; /* all else that it depends on, lines "NOUN: VALUE" */
     char program[56];                        /* version and compiler */
     char machine[56]; /* what may give other bits: kind and maker of the processor, instruction set of ray traversal */

@@ -5,9 +5,11 @@
 #include "map_file.h"
 
 #include "descriptor.h"
+#include "estimate_fingerprint.h"
 #include "output/atomic_file.h"
 #include "scene_hash.h"
 #include "settings_table.h"
+#include "status.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -49,10 +51,13 @@ static void describe_machine(const char *isa, char *out, size_t size)
     snprintf(out, size, "%.20s %s %s", system.machine, maker, isa);
 }
 
-static photon_file_key key_of(const ag_context *context, const scene *s, const ag_render_settings *settings)
+/* Errors: those of estimate_fingerprint. */
+static ag_status make_key(ag_context *context, const scene *s, const ag_render_settings *settings,
+                          photon_file_key *out_key)
 {
     photon_file_key key;
     memset(&key, 0, sizeof key);
+    AG_TRY(estimate_fingerprint(&context->run, context->isa, irradiance_estimate_find, &key.estimates));
     key.scene = scene_hash_of_light(s);
     size_t length = settings_of_photon_map(settings, key.settings, sizeof key.settings);
     assert(length < sizeof key.settings);
@@ -67,7 +72,8 @@ static photon_file_key key_of(const ag_context *context, const scene *s, const a
     }
     snprintf(key.program, sizeof key.program, "%s, %.30s", ag_version(), COMPILER);
     describe_machine(context->isa, key.machine, sizeof key.machine);
-    return key;
+    *out_key = key;
+    return AG_OK;
 }
 
 /* --- one traces --- */
@@ -242,7 +248,8 @@ static ag_status keep(const map_request *r, photon_map *global, photon_map *caus
 ag_status map_file_obtain(ag_context *context, const scene *s, const ag_render_settings *settings,
                           map_file_trace *trace, photon_file *out_file, photon_map *out_global, photon_map *out_caustic)
 {
-    map_request r = {.context = context, .settings = settings, .key = key_of(context, s, settings)};
+    map_request r = {.context = context, .settings = settings};
+    AG_TRY(make_key(context, s, settings, &r.key));
     trace_lock lock = {.descriptor = -1};
     if (asprintf(&lock.path, "%s.lock", settings->photon_map_file) < 0)
         return AG_ERROR_MEMORY;

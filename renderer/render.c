@@ -3,8 +3,8 @@
  * Threads: one phase after the other, each on all of the context's workers; what a phase made is const in the next. */
 #define _POSIX_C_SOURCE 200809L
 #include "film/adaptive.h"
-#include "film/debug_views.h"
 #include "floating_point.h"
+#include "integrator/debug_views.h"
 #include "integrator/direct_pilot.h"
 #include "integrator/integrator.h"
 #include "odd_scene.h"

@@ -62,18 +62,10 @@ typedef struct tile_job {
     double progress_begin, progress_end; /* of the phase, before and after this pass */
 } tile_job;
 
-/* What the sample's parts have cost, and how noisy its light samples are. */
-static void note_split(const eye_worker *worker, uint64_t cost_before, eye_sample *out)
-{
-    uint64_t cost = eye_worker_cost(worker) - cost_before;
-    out->light_variance = worker->light_variance;
-    out->gather_cost = (float)worker->gather_cost;
-    out->light_cost = (float)worker->light_cost;
-    out->rest_cost = (float)(cost - worker->gather_cost - worker->light_cost);
-}
-
-/* All but the gathered light, which the worker's batch brings later. */
-static void render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index, eye_sample *out)
+/* The sample of that index of a pixel, of that number in the worker's queue: all but the gathered light, which the
+ * worker's batch brings later. */
+static void render_sample(const tile_job *job, eye_worker *worker, int x, int y, uint32_t index, uint32_t number,
+                          split_counts split, eye_sample *out)
 {
     const transport *t = job->t;
     const ag_render_settings *settings = t->settings;
@@ -86,17 +78,19 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
     float width = (float)settings->width, height = (float)settings->height;
     camera_place place = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, width / height,
                           lens, time};
-    scene_ray ray = camera_generate_ray(&t->s->camera, place.film_x, place.film_y, place.aspect, lens, time);
+    camera_sample from = {.ray =
+                              camera_generate_ray(&t->s->camera, place.film_x, place.film_y, place.aspect, lens, time),
+                          .where = where,
+                          .split = split,
+                          .number = number};
     if (t->pixel_share > 0.0f)
-        ray.cone = camera_ray_cone(&t->s->camera, &ray, place.film_x, place.film_y, t->pixel_share / width,
-                                   t->pixel_share / height, place.aspect, lens);
+        from.ray.cone = camera_ray_cone(&t->s->camera, &from.ray, place.film_x, place.film_y, t->pixel_share / width,
+                                        t->pixel_share / height, place.aspect, lens);
     out->most_direct = settings->clamp_direct > 0.0f ? settings->clamp_direct : INFINITY;
     out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
     uint64_t cost_before = eye_worker_cost(worker);
-    worker->light_variance = 0.0f;
-    worker->gather_cost = worker->light_cost = 0;
-    job->kind->sample(t, worker, ray, &where, out);
-    note_split(worker, cost_before, out);
+    job->kind->sample(t, worker, &from, out);
+    out->rest_cost = (uint32_t)(eye_worker_cost(worker) - cost_before) - out->gather_cost - out->light_cost;
     if (out->layers && t->layout->needs_first_hit)
         first_hit_project(t, &place, &out->layers->first);
 }
@@ -133,13 +127,13 @@ static void render_pixel(tile_job *job, eye_worker *worker, int x, int y)
     ag_film *film = job->film;
     size_t pixel = film_pixel_at(film, x, y);
     uint32_t goal = film_goal(film, pixel, job->wanted);
-    worker->split = film->splits ? film->splits[pixel].counts : job->t->split;
+    split_counts split = film->splits ? film->splits[pixel].counts : job->t->split;
     bool with_layers = job->t->wants_layers || noise_lattice_holds(&film->noise, pixel);
     for (uint32_t i = film->counts[pixel]; i < goal; i++) {
         if (run_is_cancelled(&job->context->run))
             return;
-        worker->sample = worker->queue->count;
-        render_sample(job, worker, x, y, i, sample_queue_begin(worker->queue, pixel, with_layers));
+        uint32_t number = worker->queue->count;
+        render_sample(job, worker, x, y, i, number, split, sample_queue_begin(worker->queue, pixel, with_layers));
         if (should_finish(job->t, worker))
             finish_samples(job, worker);
     }

@@ -90,7 +90,7 @@ set(cut
   "^scene/readers/gltf/.*->scene/readers/(pbrt|model)/"
   "^scene/readers/model/.*->scene/readers/(pbrt|gltf)/"
   "^scene/readers/pbrt/.*->scene/readers/(gltf/|model/([^p]|p[^l]|pl[^y]|ply_[^f]))"
-  "^renderer/(film|integrator)/.*->renderer/(output|cli)/"
+  "^renderer/integrator/.*->renderer/(output|cli)/"
   "^renderer/output/.*->renderer/cli/"
   "^scene/(surface|rays/ray|rays/rays)\\.h->scene/scene\\.h$"
   "^scene/(shape|texture)/[a-z_]+\\.h->scene/scene\\.h$"

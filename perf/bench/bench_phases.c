@@ -216,7 +216,8 @@ static ag_status color(bench_stage *stage, ag_context *context, bench_outcome *o
 {
     uint64_t count = stage->work->color_pixels;
     const ag_output_settings settings = ag_default_output_settings();
-    ag_status status = output_color_check(context, &settings); /* the config is read when it is first asked for */
+    ag_status status =
+        output_color_check(context, &settings, false); /* the config is read when it is first asked for */
     memcpy(stage->shown, stage->colors, 3 * (size_t)count * sizeof *stage->shown);
     begin_work(out);
     if (status == AG_OK)

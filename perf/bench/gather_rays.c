@@ -65,9 +65,16 @@ static double embree_together(bench *b)
 static double whole(bench *b)
 {
     uint64_t before = b->worker.rays_gather;
-    for (uint32_t i = 0; i < b->place_count; i++)
-        final_gather(&b->t, &b->worker, &b->places[i].v, &b->places[i].where, 0, true, 98,
-                     (uint32_t)b->t.settings->gather_samples, rgb_gray(1.0f), 1.0f);
+    for (uint32_t i = 0; i < b->place_count; i++) {
+        gather_request request = {.from = &b->places[i].v,
+                                  .where = &b->places[i].where,
+                                  .is_first = true,
+                                  .scatterings_left = 98,
+                                  .count = (uint32_t)b->t.settings->gather_samples,
+                                  .throughput = rgb_gray(1.0f),
+                                  .share = 1.0f};
+        final_gather(&b->t, &b->worker, &request);
+    }
     final_gather_resolve(&b->t, &b->worker);
     b->sink += (double)b->worker.batch->gathered[0].first.g;
     return (double)(b->worker.rays_gather - before);

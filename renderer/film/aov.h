@@ -6,7 +6,7 @@
 
 #include "afterglow/afterglow.h"
 #include "film/cryptomatte.h"
-#include "integrator/eye_sample.h"
+#include "film/eye_sample.h"
 
 /* What is summed over a pixel's samples, each in so many channels. */
 typedef enum film_sum {

@@ -8,8 +8,8 @@
 #ifndef AFTERGLOW_NOISE_H
 #define AFTERGLOW_NOISE_H
 
+#include "film/eye_sample.h"
 #include "film/film_response.h"
-#include "integrator/eye_sample.h"
 
 #include <math.h>
 #include <stdbool.h>

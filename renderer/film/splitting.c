@@ -69,9 +69,9 @@ void split_trial_add(split_trial *trial, const eye_sample *sample)
     trial->square += value * value;
     trial->by_parts += sample->gather_variance;
     trial->by_ray += sample->gather_variance * rays;
-    trial->cost_of_ray += sample->gather_cost / rays;
-    trial->cost_of_light += sample->light_cost / lights;
-    trial->cost_of_rest += sample->rest_cost;
+    trial->cost_of_ray += (float)sample->gather_cost / rays;
+    trial->cost_of_light += (float)sample->light_cost / lights;
+    trial->cost_of_rest += (float)sample->rest_cost;
     if (trial->counts.lights < 2)
         return;
     trial->by_parts += sample->light_variance;

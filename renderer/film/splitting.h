@@ -14,7 +14,7 @@
 #define AFTERGLOW_SPLITTING_H
 
 #include "afterglow/afterglow.h"
-#include "integrator/eye_sample.h"
+#include "film/eye_sample.h"
 
 #include <stdbool.h>
 

@@ -5,7 +5,6 @@
 #include "integrator/gather_path.h"
 #include "integrator/shading.h"
 #include "parallel_for.h"
-#include "rays/passage.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -111,33 +110,29 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
     sampler where = sampler_make(t->settings->photon_seed ^ PILOT_SEED, x, y, 0, 0);
     vec2 within = sampler_2d(&where, SAMPLE_PIXEL, 0);
     float time = s->has_motion ? sampler_2d(&where, SAMPLE_TIME, 0).x : 0.0f;
-    scene_ray ray = camera_generate_ray(&s->camera, ((float)x + within.x) / (float)job->width,
-                                        ((float)y + within.y) / (float)job->height, job->aspect,
-                                        sampler_2d(&where, SAMPLE_LENS, 0), time);
-    rgb throughput = rgb_gray(1.0f);
-    for (int path_vertex = 0, scatterings = 0;; path_vertex++) {
+    camera_sample from = {.where = where,
+                          .ray = camera_generate_ray(&s->camera, ((float)x + within.x) / (float)job->width,
+                                                     ((float)y + within.y) / (float)job->height, job->aspect,
+                                                     sampler_2d(&where, SAMPLE_LENS, 0), time)};
+    eye_path path = eye_path_begin(&from, SHADING_ROULETTE_AFTER, false);
+    for (;;) {
         vertex v;
-        bsdf_sample next;
-        if (!transport_trace(t, worker, ray, &v))
+        if (!eye_path_trace(t, worker, &path, NULL, &v))
             return;
-        throughput = rgb_mul(throughput, v.transmittance);
-        bool is_last = scatterings >= t->settings->max_depth, goes_straight;
+        bool is_last = eye_path_is_last(t, &path);
         if (job->finds_lit && !is_last && bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL)) {
             add_lit(&out->lit, &v, bsdf_has(&v.scattering, BSDF_GATHERED) ? BSDF_GATHERED : BSDF_TRACED);
         } else if (!job->finds_lit && !is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
-            if (path_vertex > 0 && rgb_max(throughput) < SHADING_LOW_CONTRIBUTION) {
+            if (path.vertex > 0 && rgb_max(path.throughput) < SHADING_LOW_CONTRIBUTION) {
                 add_sides(t, &v, &out->gathered);
             } else {
                 add_sides(t, &v, &out->seen);
-                gather_places(t, worker, &v, &where, path_vertex, t->settings->max_depth - scatterings - 1,
+                gather_places(t, worker, &v, &where, path.vertex, t->settings->max_depth - path.scatterings - 1,
                               &out->gathered);
             }
         }
-        if (!shading_go_on(t, &v, &where, path_vertex, path_vertex, is_last, &throughput, &next, &goes_straight))
+        if (!eye_path_go_on(t, &v, BSDF_TRACED, eye_path_u_lobe(&path), 1, &path))
             return;
-        scatterings += !goes_straight;
-        ray = goes_straight ? passage_continue(&v.hit, &v.arrived)
-                            : transport_scattered_ray(t, &v, next.direction, next.is_delta);
     }
 }
 

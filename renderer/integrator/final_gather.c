@@ -7,23 +7,24 @@
 #include "rays/passage.h"
 #include "rays/slab_faces.h"
 
-/* One gather: from where, what its rays' random numbers are keyed by, and what they brought themselves. */
+/* One gather under way. */
 typedef struct gathering {
     const transport *t;
     eye_worker *worker;
-    const vertex *from;
-    const sampler *where;
-    int path_vertex, scatterings_left;
-    uint32_t count;
+    const gather_request *request;
     float share_seen; /* of what a ray brings, by the eye */
-    rgb known;
-    uint64_t cost; /* of its rays, as eye_worker_cost has it */
+    rgb known;        /* what its rays brought themselves */
+    uint64_t cost;    /* of its rays, as eye_worker_cost has it */
 } gathering;
 
 static rng ray_random(const gathering *g, uint32_t number)
 {
-    return rng_make(g->where->key, (uint64_t)g->path_vertex, (uint64_t)g->where->sample * g->count + number);
+    const gather_request *r = g->request;
+    return rng_make(r->where->key, (uint64_t)r->path_vertex, (uint64_t)r->where->sample * r->count + number);
 }
+
+/* Between a ray's end and the lamp. */
+static int scatterings_left(const gathering *g) { return g->request->scatterings_left - 1; }
 
 /* What is behind a gather ray of that number, which has met *v, and weighs `first` at its start: asks for irradiance,
  * and adds to what is known. */
@@ -34,7 +35,7 @@ static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
     rng random = ray_random(g, number);
     rng_next(&random); /* of the lobe that the ray left by */
     uint64_t before = eye_worker_cost(g->worker);
-    bool asks = gather_path_follow(g->t, g->worker, v, random, g->scatterings_left, first, g->share_seen, &known, &end,
+    bool asks = gather_path_follow(g->t, g->worker, v, random, scatterings_left(g), first, g->share_seen, &known, &end,
                                    &weight);
     g->cost += eye_worker_cost(g->worker) - before;
     g->known = rgb_add(g->known, known);
@@ -47,9 +48,9 @@ static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weight)
 {
     vertex v;
-    scene_ray ray = transport_scattered_ray(g->t, g->from, direction, false);
+    scene_ray ray = transport_scattered_ray(g->t, g->request->from, direction, false);
     ray.skips_uv = true;
-    ray.cone = transport_gather_cone(g->from);
+    ray.cone = transport_gather_cone(g->request->from);
     g->worker->rays_gather++;
     g->cost += EYE_COST_OF_RAY;
     if (transport_meet(g->t, g->worker, ray, &v))
@@ -75,7 +76,7 @@ static void follow_together(gathering *g, gather_rays *r)
         float distance = fan->met[i].distance;
         if (distance == INFINITY)
             continue;
-        gather_end end = {.medium = fan->common.medium, .scatterings_left = g->scatterings_left};
+        gather_end end = {.medium = fan->common.medium, .scatterings_left = scatterings_left(g)};
         const rgb *albedo = NULL;
         if (distance >= t->gather_min_distance)
             albedo = ray_fan_plain_place(t->s, fan, i, &end.place);
@@ -100,8 +101,8 @@ static void follow_together(gathering *g, gather_rays *r)
 static void sample_plain(const gathering *g, const incident_guide *guide, sampler_sequence *numbers, uint32_t begin,
                          uint32_t end, gather_rays *r)
 {
-    const bsdf *b = &g->from->scattering;
-    vec3 n = transport_facing_normal(g->from);
+    const bsdf *b = &g->request->from->scattering;
+    vec3 n = transport_facing_normal(g->request->from);
     ray_fan *fan = &r->fan;
     float u[2][RAY_FAN_MAX], weights[RAY_FAN_MAX];
     gather_numbers(numbers, begin, end - begin, u);
@@ -123,8 +124,8 @@ static void sample_plain(const gathering *g, const incident_guide *guide, sample
 /* Of any other place; what goes through is followed at once. */
 static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin, uint32_t end, gather_rays *r)
 {
-    const bsdf *b = &g->from->scattering;
-    vec3 n = transport_facing_normal(g->from);
+    const bsdf *b = &g->request->from->scattering;
+    vec3 n = transport_facing_normal(g->request->from);
     for (uint32_t i = begin; i < end; i++) {
         bsdf_sample s;
         rng random = ray_random(g, i);
@@ -154,19 +155,21 @@ static bool find_guide(const transport *t, const vertex *v, incident_guide *out_
                                bsdf_is_below(b) ? vec3_negate(b->shading.z) : b->shading.z, out_guide);
 }
 
-void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
-                  bool is_first, int scatterings_left, uint32_t count, rgb throughput, float share)
+uint32_t final_gather(const transport *t, eye_worker *worker, const gather_request *request)
 {
-    rgb one_ray = rgb_scale(throughput, 1.0f / (float)count);
-    gathering g = {t, worker, v, where, path_vertex, scatterings_left - 1, count, rgb_max(one_ray), rgb_gray(0.0f), 0};
+    const vertex *v = request->from;
+    uint32_t count = request->count;
+    rgb one_ray = rgb_scale(request->throughput, 1.0f / (float)count);
+    gathering g = {t, worker, request, rgb_max(one_ray), rgb_gray(0.0f), 0};
     gather_batch *batch = worker->batch;
     if (!gather_batch_has_room(batch, RAY_FAN_MAX))
         final_gather_resolve(t, worker);
     if (run_is_cancelled(t->run)) /* the batch is full still, and the sample thrown away */
-        return;
-    gather_batch_begin(batch, worker->sample, is_first, one_ray, share, count,
-                       hash_combine(hash_combine(where->key, (uint64_t)path_vertex), (uint64_t)where->sample * count));
-    sampler_sequence numbers = sampler_sequence_make(where, SAMPLE_GATHER, path_vertex, count);
+        return 0;
+    gather_batch_begin(batch, request->sample, request->is_first, one_ray, request->share, count,
+                       hash_combine(hash_combine(request->where->key, (uint64_t)request->path_vertex),
+                                    (uint64_t)request->where->sample * count));
+    sampler_sequence numbers = sampler_sequence_make(request->where, SAMPLE_GATHER, request->path_vertex, count);
     bool is_plain = bsdf_is_plain(&v->scattering);
     incident_guide guide;
     bool is_guided = is_plain && find_guide(t, v, &guide);
@@ -193,7 +196,7 @@ void final_gather(const transport *t, eye_worker *worker, const vertex *v, const
             follow_alone(&g, rays.number[i], ray_fan_direction(&rays.fan, i), rays.weight[i]);
     }
     gather_batch_end(batch, g.known);
-    worker->gather_cost += g.cost;
+    return (uint32_t)g.cost;
 }
 
 /* Bounces the detours under way until each has been answered, or ends. They ask together, so that this too is in the

@@ -7,14 +7,25 @@
 
 #include "integrator/transport.h"
 
-/* Sends the rays; what they find is added to the sample under way by final_gather_resolve: throughput times
- * the radiance, from this place, of light that met at least two surfaces before the eye, the last but one of them
- * diffuse. path_vertex: which of its path's, for random numbers; is_first: the eye sees it, but for panes, directly.
- * scatterings_left: how many there may be between here and the lamp, this one included; >= 2. Those of the photons
- * themselves are bounded where they are traced. share: of the camera sample, (0, 1], which the throughput contains;
- * what is brought is bounded by so much of what bounds a sample. */
-void final_gather(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, int path_vertex,
-                  bool is_first, int scatterings_left, uint32_t count, rgb throughput, float share);
+/* One gather. */
+typedef struct gather_request {
+    const vertex *from;   /* the diffuse hit that gathers */
+    const sampler *where; /* keys the random numbers, with */
+    int path_vertex;      /* which of its path's that is */
+    uint32_t sample;      /* the number of the camera sample, see camera_sample.h */
+    bool is_first;        /* the eye sees the hit, but for panes, directly */
+    int scatterings_left; /* there may be between the hit and the lamp, its own included; >= 2. Those of the photons
+                             themselves are bounded where they are traced */
+    uint32_t count;       /* of rays */
+    rgb throughput;       /* from the hit to the eye */
+    float share;          /* of the camera sample, (0, 1], which the throughput contains: what is brought is bounded by
+                             so much of what bounds a sample */
+} gather_request;
+
+/* Sends the rays; what they find is added to the sample by final_gather_resolve: throughput times the radiance, from
+ * the hit, of light that met at least two surfaces before the eye, the last but one of them diffuse. Gives what the
+ * rays have cost, as eye_worker_cost has it. */
+uint32_t final_gather(const transport *t, eye_worker *worker, const gather_request *request);
 
 /* Gets all irradiance that the worker's gather rays ask for, follows the light of those that get none, and adds the
  * gathers that are over to their samples. Nothing is right any more once the run is cancelled. */

@@ -9,7 +9,7 @@
 #ifndef AFTERGLOW_GATHER_BATCH_H
 #define AFTERGLOW_GATHER_BATCH_H
 
-#include "integrator/eye_sample.h"
+#include "film/eye_sample.h"
 #include "irradiance_cache.h"
 #include "rays/rays.h"
 
@@ -29,7 +29,7 @@ typedef struct gather {
     float most;         /* of a component of what it brings the eye; INFINITY: no bound */
     float squares;      /* of rays that asked for nothing: see known of gather_query_rest */
     uint32_t ray_count; /* of those that brought nothing, too */
-    uint32_t sample;    /* of those under way */
+    uint32_t sample;    /* the number of its sample, see camera_sample.h */
     uint32_t query_end; /* its queries go up to here, from where the last gather's end */
     bool is_first;      /* the place is what the eye sees */
     uint64_t key;       /* of the random numbers of its rays' detours */

@@ -4,6 +4,7 @@
 #ifndef AFTERGLOW_INTEGRATOR_H
 #define AFTERGLOW_INTEGRATOR_H
 
+#include "integrator/camera_sample.h"
 #include "integrator/transport.h"
 
 struct ag_rendering;
@@ -26,8 +27,9 @@ typedef struct integrator {
     ag_status (*begin_pass)(struct ag_rendering *r);
     ag_status (*end_pass)(struct ag_rendering *r);
 
-    /* Adds the radiance along a camera ray to the sample, but for what complete brings. */
-    void (*sample)(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where, eye_sample *in_out);
+    /* Adds the radiance along a camera ray to a sample that has nothing in it but its bounds and room for layers; what
+     * complete brings comes later. */
+    void (*sample)(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out);
     /* Completes all samples that the worker has under way. */
     void (*complete)(const transport *t, eye_worker *worker);
 } integrator;

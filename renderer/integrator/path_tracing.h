@@ -4,10 +4,10 @@
 #ifndef AFTERGLOW_PATH_TRACING_H
 #define AFTERGLOW_PATH_TRACING_H
 
+#include "integrator/camera_sample.h"
 #include "integrator/transport.h"
 
-/* As shading_radiance. */
-void path_tracing_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where,
-                           eye_sample *in_out);
+/* Adds the radiance along the ray to a sample that has nothing in it but its bounds and room for layers. */
+void path_tracing_radiance(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out);
 
 #endif

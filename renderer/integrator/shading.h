@@ -5,20 +5,17 @@
 #ifndef AFTERGLOW_SHADING_H
 #define AFTERGLOW_SHADING_H
 
-#include "integrator/transport.h"
+#include "integrator/eye_path.h"
 
 /* Below this throughput a diffuse place is shown by the k-nearest estimate at it instead of being gathered (Jensen
  * 2001, 8.2: an approximate evaluation where the contribution is low). */
 static const float SHADING_LOW_CONTRIBUTION = 0.03f;
 
-/* Sends an eye path on from a place by its traced lobes, with roulette from the fifth vertex on. is_last: only straight
- * through a pane where that is direct light. random_vertex: at which random numbers are drawn. False: the path ends.
- * *out_goes_straight: the sample is no scattering. */
-bool shading_go_on(const transport *t, const vertex *v, const sampler *where, int random_vertex, int path_vertex,
-                   bool is_last, rgb *in_out_throughput, bsdf_sample *out_next, bool *out_goes_straight);
+/* The vertex of an eye path from which on it goes on by roulette. */
+enum { SHADING_ROULETTE_AFTER = 4 };
 
-/* Adds to *in_out, which has nothing in it but its bounds and layers' place. */
-/* All but what is gathered: that the worker's batch has when it is resolved. */
-void shading_radiance(const transport *t, eye_worker *worker, scene_ray ray, const sampler *where, eye_sample *in_out);
+/* Adds the radiance along the ray to a sample that has nothing in it but its bounds and room for layers; what is
+ * gathered the worker's batch has when it is resolved. */
+void shading_radiance(const transport *t, eye_worker *worker, const camera_sample *from, eye_sample *in_out);
 
 #endif

@@ -22,14 +22,16 @@ bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, verte
     return is_met;
 }
 
-ray_cone transport_scattered_cone(const transport *t, const vertex *v, vec3 direction, bool is_delta,
-                                  float pdf_solid_angle)
+ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsdf_sample *next)
 {
     const ray_cone *c = &v->arrived.cone;
     if (!ray_cone_is_wide(c) || c->is_coarse)
         return *c;
-    return is_delta ? ray_cone_bent(t->s, c, &v->hit, v->arrived.direction, direction, v->scattering.matter.ior)
-                    : ray_cone_scattered(c, pdf_solid_angle);
+    if (next->group == BSDF_GATHERED)
+        return transport_gather_cone(v);
+    return next->is_delta
+               ? ray_cone_bent(t->s, c, &v->hit, v->arrived.direction, next->direction, v->scattering.matter.ior)
+               : ray_cone_scattered(c, next->pdf_solid_angle);
 }
 
 void transport_complete(const transport *t, vertex *v)

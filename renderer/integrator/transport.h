@@ -44,14 +44,8 @@ typedef struct eye_worker {
     arena *scratch;                            /* for neighbours; what render.c has tried out beforehand always fits */
     gather_batch *batch;                       /* of the samples under way; NULL for path tracing */
     struct sample_queue *queue;                /* those samples */
-    uint32_t sample;                           /* the number there of the one whose path is being traced */
-
-    /* Of that sample, see eye_sample: how it is to be split, and what is noted of it. */
-    split_counts split;
-    float light_variance;
     float direct_variance; /* of the last direct_light_gathered, in the mean of the three colours: an estimate */
-    uint64_t gather_cost, light_cost;
-    uint64_t cost_apart; /* of whatever samples' detours, in all */
+    uint64_t cost_apart;   /* of whatever samples' detours, in all */
 } eye_worker;
 
 /* What a worker's rays have cost so far, but for detours, which do not belong to the sample under way: in quarters of a
@@ -115,12 +109,10 @@ static inline scene_ray transport_scattered_ray(const transport *t, const vertex
     return ray;
 }
 
-/* What textures are filtered over along that ray: of rays that stand for many directions, by the density of this one,
- * which is not read where is_delta. */
-ray_cone transport_scattered_cone(const transport *t, const vertex *v, vec3 direction, bool is_delta,
-                                  float pdf_solid_angle);
+/* What textures are filtered over along the ray of a sample of the place. */
+ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsdf_sample *next);
 
-/* Of gather rays, and of paths behind a diffuse place. */
+/* Of gather rays, which are of no one sample. */
 static inline ray_cone transport_gather_cone(const vertex *v)
 {
     const ray_cone *c = &v->arrived.cone;

@@ -1,9 +1,11 @@
 /* image_file.c: what may be written under which name, and the way from pixels to a finished file.
- * Flow: film, colour -> [here] -> image_oiio.cpp (bytes) -> atomic_file.c (disk). Threads: see image_file.h. */
+ * Flow: film, colour -> [here] -> image_openexr.c or image_oiio.cpp (bytes) -> atomic_file.c (disk). Threads: see
+ * image_file.h. */
 #include "output/image_file.h"
 
 #include "image/image_module_loader.h"
 #include "output/atomic_file.h"
+#include "output/image_openexr.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -118,6 +120,12 @@ static ag_status encode_pfm(const image_description *description, const float *p
     return AG_OK;
 }
 
+/* EXR and PFM are written without OpenImageIO. */
+static bool needs_module(const image_format *format)
+{
+    return strcmp(format->extension, "exr") != 0 && strcmp(format->extension, "pfm") != 0;
+}
+
 ag_status image_file_write(const char *path, const image_description *description, const float *pixels, char *message,
                            size_t message_size)
 {
@@ -128,17 +136,19 @@ ag_status image_file_write(const char *path, const image_description *descriptio
     ag_status status = check_description(path, format, description, message, message_size);
     if (status != AG_OK)
         return status;
-    const image_module *module = image_module_get(message, message_size);
-    if (!module)
+    const image_module *module = NULL;
+    if (needs_module(format) && !(module = image_module_get(message, message_size)))
         return AG_ERROR_SYSTEM;
 
     unsigned char *bytes = NULL;
     size_t size = 0;
     char reason[1024] = "there is no memory for it";
-    if (strcmp(format->extension, "pfm") == 0)
-        status = encode_pfm(description, pixels, &bytes, &size);
-    else
+    if (module)
         status = module->encode(format->extension, description, pixels, &bytes, &size, reason, sizeof reason);
+    else if (format->has_layers)
+        status = image_openexr_encode(description, pixels, &bytes, &size, reason, sizeof reason);
+    else
+        status = encode_pfm(description, pixels, &bytes, &size);
     if (status == AG_OK)
         status = atomic_file_write(path, bytes, size, message, message_size);
     else
@@ -149,10 +159,11 @@ ag_status image_file_write(const char *path, const image_description *descriptio
 
 ag_status image_file_check_target(const char *path, char *message, size_t message_size)
 {
-    if (!image_format_of(path))
+    const image_format *format = image_format_of(path);
+    if (!format)
         return unknown_extension(path, message, message_size);
     ag_status status = atomic_file_check(path, message, message_size);
-    if (status == AG_OK && !image_module_get(message, message_size))
+    if (status == AG_OK && needs_module(format) && !image_module_get(message, message_size))
         status = AG_ERROR_SYSTEM;
     return status;
 }

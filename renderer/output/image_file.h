@@ -1,6 +1,7 @@
-/* image_file.h: pictures onto disk. OpenImageIO encodes to memory, inside a module that is opened when it is first
- * needed (linking it costs half a second at every start); the bytes are written by us, beside the target, and renamed.
- * Flow: film, colour -> [here] -> file. Threads: one caller at a time per call; no state but the loaded module. */
+/* image_file.h: pictures onto disk. EXR is encoded to memory by OpenEXR's library in C, PFM here, the others by
+ * OpenImageIO, inside a module that is opened when it is first needed (linking it costs 0.3 s at every start); the
+ * bytes are written by us, beside the target, and renamed. Flow: film, colour -> [here] -> file. Threads: one caller at
+ * a time per call; no state but the loaded module. */
 #ifndef AFTERGLOW_IMAGE_FILE_H
 #define AFTERGLOW_IMAGE_FILE_H
 
@@ -38,7 +39,8 @@ ag_status image_file_write(const char *path, const image_description *descriptio
                            size_t message_size);
 
 /* Whether a file could be created at path now: the extension is known, its folder exists and may be written, it is no
- * folder itself, the module can be opened. Called before a long render. Errors: AG_ERROR_OUTPUT, AG_ERROR_SYSTEM. */
+ * folder itself, the module can be opened where the format needs it. Called before a long render. Errors:
+ * AG_ERROR_OUTPUT, AG_ERROR_SYSTEM. */
 ag_status image_file_check_target(const char *path, char *message, size_t message_size);
 
 #ifdef __cplusplus

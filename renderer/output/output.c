@@ -58,7 +58,7 @@ ag_status ag_output_check(ag_context *context, const ag_output_settings *setting
     if (status != AG_OK)
         return status;
     char message[MESSAGE_SIZE];
-    phase_begin begin = context_begin_phase(); /* the first one loads OpenImageIO */
+    phase_begin begin = context_begin_phase(); /* it may load OpenImageIO */
     status = image_file_check_target(path, message, sizeof message);
     context_add_to_phase(context, AG_PHASE_WRITE, begin);
     if (status != AG_OK) {
@@ -67,7 +67,7 @@ ag_status ag_output_check(ag_context *context, const ag_output_settings *setting
     }
     /* a config that is named but cannot be used is an error even where this picture would not need it */
     begin = context_begin_phase();
-    status = output_color_check(context, settings);
+    status = output_color_check(context, settings, format->scene_linear);
     context_add_to_phase(context, AG_PHASE_LOAD, begin);
     return status;
 }

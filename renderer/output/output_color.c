@@ -76,11 +76,12 @@ static ag_status create_processor(ag_context *context, const ag_output_settings 
     return status;
 }
 
-ag_status output_color_check(ag_context *context, const ag_output_settings *settings)
+ag_status output_color_check(ag_context *context, const ag_output_settings *settings, bool scene_linear)
 {
-    for (int scene_linear = 0; scene_linear < 2; scene_linear++) {
+    const bool names_view = settings->display || settings->view || settings->look;
+    for (int is_linear = !names_view && scene_linear; is_linear < 2; is_linear++) {
         color_processor *processor;
-        ag_status status = create_processor(context, settings, scene_linear, &processor);
+        ag_status status = create_processor(context, settings, is_linear, &processor);
         if (status != AG_OK)
             return status;
         color_processor_destroy(processor);

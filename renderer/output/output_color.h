@@ -6,8 +6,9 @@
 
 #include "context.h"
 
-/* Whether the settings name what the config has; said in the log. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
-ag_status output_color_check(ag_context *context, const ag_output_settings *settings);
+/* Whether the settings name what the config has; said in the log. The default view, which takes 10 ms to make, is asked
+ * for only where the file is not scene_linear. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
+ag_status output_color_check(ag_context *context, const ag_output_settings *settings, bool scene_linear);
 
 /* In place, count pixels of 3 floats: scene_linear: to settings->color_space, where that is given; else to display and
  * view. Same bits whatever the threads. Errors: as above, AG_CANCELLED. */

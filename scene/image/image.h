@@ -41,7 +41,7 @@ typedef struct image_description {
     image_sample_type type;                 /* as stored; a format that cannot hold it is an error */
     const image_sample_type *channel_types; /* of each channel, EXR alone; NULL: all of the type above */
     bool is_tiled;                          /* EXR: in tiles, else in lines */
-    const char *color_space;                /* oiio:ColorSpace, or NULL */
+    const char *color_space;                /* oiio:ColorSpace of formats other than EXR, or NULL */
     const image_attribute *attributes;
     int attribute_count;
 } image_description;

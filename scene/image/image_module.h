@@ -19,12 +19,12 @@ extern "C" {
 #define IMAGE_MODULE_ENTRY_NAME "afterglow_image_module"
 
 /* Raised whenever this file or image.h changes. */
-enum { IMAGE_MODULE_INTERFACE = 4 };
+enum { IMAGE_MODULE_INTERFACE = 5 };
 
 typedef struct image_module {
     int interface_number; /* IMAGE_MODULE_INTERFACE of the module */
 
-    /* The picture as a file's bytes, malloc'ed. extension: of a known format, in lower case. Errors: AG_ERROR_OUTPUT,
+    /* The picture as a file's bytes, malloc'ed. extension: hdr, png, tif, tiff, jpg or jpeg. Errors: AG_ERROR_OUTPUT,
      * AG_ERROR_MEMORY. */
     ag_status (*encode)(const char *extension, const image_description *description, const float *pixels,
                         unsigned char **out_bytes, size_t *out_size, char *message, size_t message_size);

@@ -1,6 +1,7 @@
-/* image_oiio.cpp: the only file that knows OpenImageIO; a module of its own, opened when the first picture is read or
- * written. Its exceptions end here, as a status and a text. Flow: file -> [here] -> image_reader.c; image_file.c
- * (renderer) -> [here] -> bytes in memory. Threads: any; OpenImageIO itself is told to use none of its own. */
+/* image_oiio.cpp: the only file that knows OpenImageIO; a module of its own, opened when the first picture is read, or
+ * written other than as EXR. Its exceptions end here, as a status and a text. Flow: file -> [here] -> image_reader.c;
+ * image_file.c (renderer) -> [here] -> bytes in memory. Threads: any; OpenImageIO itself is told to use none of its
+ * own. */
 #include "image/image_module.h"
 
 #include <OpenImageIO/Imath.h>
@@ -22,8 +23,6 @@
 namespace
 {
 
-const float largest_half = 65504.0f;
-const int tile_side = 64;
 const int largest_jpeg_side = 65500;  /* libjpeg ends the process beyond that */
 const size_t jpeg_text_limit = 16384; /* ... and when metadata do not fit into a marker of 64 KiB */
 
@@ -113,13 +112,6 @@ OIIO::ImageSpec make_spec(const image_description &description, const std::strin
     if (description.color_space)
         spec.attribute("oiio:ColorSpace", description.color_space);
     add_attributes(spec, description, jpeg);
-    if (extension == "exr") {
-        spec.attribute("compression", "zip");
-        for (int i = 0; description.channel_types && i < channel_count; i++)
-            spec.channelformats.push_back(stored_type(description.channel_types[i]));
-        if (description.is_tiled)
-            spec.tile_width = spec.tile_height = tile_side;
-    }
     if (jpeg) {
         if (description.width > largest_jpeg_side || description.height > largest_jpeg_side)
             throw std::runtime_error("a JPEG picture is at most 65500 pixels wide and high");
@@ -140,23 +132,6 @@ std::vector<unsigned char> encode_to_vector(const std::string &extension, const 
                                             const float *pixels)
 {
     const OIIO::ImageSpec spec = make_spec(description, extension);
-
-    /* Beyond the largest half lies infinity. */
-    std::vector<float> clamped;
-    const size_t channel_count = static_cast<size_t>(description.channel_count);
-    for (size_t channel = 0; channel < channel_count; channel++) {
-        if ((description.channel_types ? description.channel_types[channel] : description.type) != IMAGE_HALF)
-            continue;
-        const size_t count =
-            static_cast<size_t>(description.width) * static_cast<size_t>(description.height) * channel_count;
-        if (clamped.empty())
-            clamped.assign(pixels, pixels + count);
-        for (size_t i = channel; i < count; i += channel_count)
-            clamped[i] = std::min(std::max(clamped[i], -largest_half), largest_half);
-    }
-    if (!clamped.empty())
-        pixels = clamped.data();
-
     const std::string name = "picture." + extension; /* in error texts only: everything goes to the proxy */
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput proxy(bytes);

@@ -29,6 +29,13 @@ static void take_gathered(eye *e, mean_sum *sum, bool is_first)
     *g = (gathered_light){0};
 }
 
+static camera_sample camera_sample_of(uint32_t i, vec3 position, vec3 direction)
+{
+    return (camera_sample){.ray = scene_ray_make(position, direction),
+                           .where = sampler_make(i, 3, 4, 0, 0),
+                           .split = {.rays = RAYS, .lights = 1}};
+}
+
 /* A plate in the middle of the sphere gathers from the half above it. */
 static void plate_under_a_dome(void **state)
 {
@@ -41,7 +48,14 @@ static void plate_under_a_dome(void **state)
         mean_sum sum = {0};
         for (uint32_t i = 0; i < GATHERS * RAYS / COUNTS[k]; i++) {
             sampler where = sampler_make(i, 3, 4, 0, 0);
-            final_gather(&e.t, e.worker, &v, &where, 0, true, 100, COUNTS[k], rgb_gray(0.25f), 1.0f);
+            gather_request request = {.from = &v,
+                                      .where = &where,
+                                      .is_first = true,
+                                      .scatterings_left = 100,
+                                      .count = COUNTS[k],
+                                      .throughput = rgb_gray(0.25f),
+                                      .share = 1.0f};
+            assert_true(final_gather(&e.t, e.worker, &request) >= COUNTS[k] * (uint32_t)EYE_COST_OF_RAY);
             take_gathered(&e, &sum, true);
         }
         assert_mean(&sum, 0.25 * 0.8 * 0.5 * dome_irradiance() / PI, field_bound());
@@ -60,7 +74,6 @@ static void wall_of_a_sphere(void **state)
     (void)state;
     eye e;
     eye_init_with_photons(&e, DOME, PHOTONS, NEAREST);
-    e.worker->split = (split_counts){.rays = RAYS, .lights = 1};
     e.t.ray_bits = sampler_bits(RAYS);
     for (int most = 0; most <= 100; most += most < 2 ? 1 : 98) {
         e.settings.max_depth = most;
@@ -68,9 +81,8 @@ static void wall_of_a_sphere(void **state)
         for (uint32_t i = 0; i < SAMPLES; i++) {
             rng random = test_random(i);
             eye_sample s = {.most_direct = INFINITY, .most_indirect = INFINITY};
-            sampler where = sampler_make(i, 3, 4, 0, 0);
-            shading_radiance(&e.t, e.worker, scene_ray_make((vec3){0.2f, 0.0f, 0.0f}, random_direction(&random)),
-                             &where, &s);
+            camera_sample from = camera_sample_of(i, (vec3){0.2f, 0.0f, 0.0f}, random_direction(&random));
+            shading_radiance(&e.t, e.worker, &from, &s);
             assert_true(rgb_is_black(s.radiance)); /* no lamp, no caustic */
             take_gathered(&e, &sum, true);
         }
@@ -89,15 +101,14 @@ static void wall_in_a_mirror(void **state)
                           DOME "Material \"conductor\" \"float roughness\" 0 \"rgb reflectance\" [1 1 1]"
                                " ReverseOrientation Shape \"disk\" \"float radius\" 0.2",
                           PHOTONS, NEAREST);
-    e.worker->split = (split_counts){.rays = RAYS, .lights = 1};
     e.t.ray_bits = sampler_bits(RAYS);
     mean_sum sum = {0};
     for (uint32_t i = 0; i < SAMPLES; i++) {
         rng random = test_random(i);
-        vec3 from = {0.1f * rng_float(&random), 0.0f, 0.6f};
+        vec3 at = {0.1f * rng_float(&random), 0.0f, 0.6f};
         eye_sample s = {.most_direct = INFINITY, .most_indirect = INFINITY};
-        sampler where = sampler_make(i, 3, 4, 0, 0);
-        shading_radiance(&e.t, e.worker, scene_ray_make(from, (vec3){0.0f, 0.0f, -1.0f}), &where, &s);
+        camera_sample from = camera_sample_of(i, at, (vec3){0.0f, 0.0f, -1.0f});
+        shading_radiance(&e.t, e.worker, &from, &s);
         take_gathered(&e, &sum, false);
     }
     assert_mean(&sum, 0.25 * dome_irradiance() / PI, field_bound());

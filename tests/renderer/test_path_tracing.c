@@ -14,9 +14,9 @@ enum { SAMPLES = 20000 / FEWER, BOUNDS = 5 };
 static eye_sample sample_of(eye *e, uint32_t i, sample_layers *layers)
 {
     eye_sample s = {.most_direct = INFINITY, .most_indirect = INFINITY, .layers = layers};
-    sampler where = sampler_make(i, 3, 4, 0, 0);
-    scene_ray ray = scene_ray_make((vec3){0.3f, 0.2f, 0.1f}, (vec3){0.0f, 0.6f, 0.8f});
-    path_tracing_radiance(&e->t, e->worker, ray, &where, &s);
+    camera_sample from = {.ray = scene_ray_make((vec3){0.3f, 0.2f, 0.1f}, (vec3){0.0f, 0.6f, 0.8f}),
+                          .where = sampler_make(i, 3, 4, 0, 0)};
+    path_tracing_radiance(&e->t, e->worker, &from, &s);
     return s;
 }
 

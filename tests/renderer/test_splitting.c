@@ -39,13 +39,14 @@ static void add_block(ag_film *film, int x0, double own, double by_ray, double b
     for (int y = 0; y < HEIGHT; y++)
         for (int x = x0; x < x0 + FILM_BLOCK; x++) {
             size_t pixel = film_pixel_at(film, x, y);
-            float rays = (float)film->splits[pixel].counts.rays, lights = (float)film->splits[pixel].counts.lights;
+            split_counts counts = film->splits[pixel].counts;
+            float rays = (float)counts.rays, lights = (float)counts.lights;
             eye_sample s = {.sign = 1,
                             .gather_variance = (float)by_ray / rays,
                             .light_variance = (float)by_light / lights,
-                            .gather_cost = 4.0f * rays,
-                            .light_cost = 4.0f * lights,
-                            .rest_cost = 40.0f};
+                            .gather_cost = 4 * counts.rays,
+                            .light_cost = 4 * counts.lights,
+                            .rest_cost = 40};
             double all = own + by_ray / (double)rays + by_light / (double)lights;
             for (int i = 0; i < 4; i++) {
                 s.radiance = rgb_gray(1.0f + (float)(i % 2 ? sqrt(0.75 * all) : -sqrt(0.75 * all)));
@@ -123,9 +124,9 @@ static void add_skewed(ag_film *film, size_t pixel, rng *random)
              &(eye_sample){.radiance = rgb_gray(value),
                            .sign = 1,
                            .gather_variance = variance,
-                           .gather_cost = 4.0f * n,
-                           .light_cost = 8.0f,
-                           .rest_cost = 40.0f});
+                           .gather_cost = 4 * rays,
+                           .light_cost = 8,
+                           .rest_cost = 40});
 }
 
 /* The numbers are chosen by the samples' values: that must not show in the mean. */

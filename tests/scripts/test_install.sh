@@ -26,9 +26,10 @@ if [[ -e $(sed -nE 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$AFTERGLOW_BUILD_DIR/CMak
     echo "skipped: a module that is missing: there is one where this build would be installed"
 else
     status=0
-    bare/bin/afterglow -o room.exr no-such.pbrt 2>bare.log || status=$?
+    bare/bin/afterglow -o room.png no-such.pbrt 2>bare.log || status=$?
     [[ $status -ne 0 ]] || fail "rendered without a module"
     grep -q 'image module cannot be opened' bare.log || fail "without a module: $(<bare.log)"
+    bare/bin/afterglow -q --photons 1000 -o bare.exr room.pbrt || fail "an EXR file wants no module"
 fi
 
 "$prefix/bin/afterglow-map" --version >map_version || fail "afterglow-map does not run"

@@ -37,7 +37,7 @@ expect_field Maintainer "Ann Packager <ann@example.org>"
 
 # Each library that is linked against, also by the module, is a package of this system by name and version.
 depends=$(dpkg-deb -f "$package" Depends)
-for library in libc6 libembree libopenimageio libopencolorio libassimp libjansson zlib1g; do
+for library in libc6 libembree libopenimageio libopenexr libopencolorio libassimp libjansson zlib1g; do
     [[ $depends == *$library* ]] || fail "it does not depend on $library: $depends"
 done
 while read -r name relation least; do

@@ -1,5 +1,5 @@
 /* debug_views.c: see debug_views.h. */
-#include "film/debug_views.h"
+#include "integrator/debug_views.h"
 
 #include "parallel_for.h"
 

@@ -54,8 +54,8 @@ typedef struct eye_sample {
     int sign;                         /* of the pixel filter there */
     float gather_variance;            /* of the mean of the three colours, by the choice of gather rays: an estimate */
     float light_variance;             /* likewise, of light samples where the ray met a surface first */
-    float gather_cost, light_cost, rest_cost; /* of those, and of all else: see eye_worker_cost */
-    sample_layers *layers;                    /* NULL: radiance alone is asked for */
+    uint32_t gather_cost, light_cost, rest_cost; /* of those, and of all else: see eye_worker_cost */
+    sample_layers *layers;                       /* NULL: radiance alone is asked for */
 } eye_sample;
 
 /* The factor that bounds light to a largest component. */
@@ -77,17 +77,6 @@ static inline void eye_sample_note(eye_sample *s, light_part part, rgb brought)
 {
     if (s->layers)
         s->layers->parts[part] = rgb_add(s->layers->parts[part], brought);
-}
-
-/* Adds light. Gives the factor of its bound. */
-static inline float eye_sample_add(eye_sample *s, light_part part, float share, int scatterings, rgb brought)
-{
-    float factor = eye_sample_bound(s, share, scatterings, brought);
-    if (factor < 1.0f)
-        brought = rgb_scale(brought, factor);
-    s->radiance = rgb_add(s->radiance, brought);
-    eye_sample_note(s, part, brought);
-    return factor;
 }
 
 /* Light by the groups of its lamps, while an estimate goes on. */

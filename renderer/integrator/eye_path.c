@@ -1,0 +1,162 @@
+/* eye_path.c: see eye_path.h. */
+#include "integrator/eye_path.h"
+
+#include "integrator/direct_lighting.h"
+#include "integrator/first_hit.h"
+#include "rays/passage.h"
+
+eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool wants_parts)
+{
+    return (eye_path){.where = from->where,
+                      .ray = from->ray,
+                      .throughput = rgb_gray(1.0f),
+                      .share = 1.0f,
+                      .roulette_after = roulette_after,
+                      .scattered_from = from->ray.origin,
+                      .scatter_count = 1,
+                      .wants_parts = wants_parts,
+                      .parts = {.of = {[PART_EMISSION] = rgb_gray(1.0f)}}};
+}
+
+/* --- the parts of the light --- */
+
+/* Behind a surface whose gathered lobes have this share of what it scatters there. */
+static part_shares shares_behind(const part_shares *before, rgb gathered)
+{
+    rgb traced = rgb_sub(rgb_gray(1.0f), gathered);
+    rgb from_lamp = rgb_add(before->of[PART_DIRECT], before->of[PART_CAUSTIC]);
+    part_shares after;
+    after.of[PART_EMISSION] = rgb_gray(0.0f);
+    after.of[PART_DIRECT] = rgb_mul(before->of[PART_EMISSION], gathered);
+    after.of[PART_CAUSTIC] = rgb_mul(from_lamp, traced);
+    after.of[PART_INDIRECT] = rgb_add(before->of[PART_INDIRECT], rgb_mul(from_lamp, gathered));
+    after.of[PART_SPECULAR] = rgb_add(before->of[PART_SPECULAR], rgb_mul(before->of[PART_EMISSION], traced));
+    return after;
+}
+
+/* The share of the gathered lobes in what these lobes scatter out of a direction. */
+static rgb gathered_share(const bsdf *b, bsdf_lobes lobes, vec3 direction)
+{
+    if (lobes != BSDF_ALL)
+        return rgb_gray(lobes == BSDF_GATHERED ? 1.0f : 0.0f);
+    rgb gathered = bsdf_evaluate(b, BSDF_GATHERED, BSDF_RADIANCE, direction);
+    rgb traced = bsdf_evaluate(b, BSDF_TRACED, BSDF_RADIANCE, direction), all = rgb_add(gathered, traced);
+    return (rgb){all.r > 0.0f ? gathered.r / all.r : 0.0f, all.g > 0.0f ? gathered.g / all.g : 0.0f,
+                 all.b > 0.0f ? gathered.b / all.b : 0.0f};
+}
+
+/* parts NULL: they are not asked for. is_sky: an infinite light's. Gives the factor of the light's bound. */
+static float add_light(eye_sample *sample, const eye_path *path, const part_shares *parts, int scatterings, rgb brought,
+                       bool is_sky)
+{
+    float kept = eye_sample_bound(sample, path->share, scatterings, brought);
+    if (kept < 1.0f)
+        brought = rgb_scale(brought, kept);
+    sample->radiance = rgb_add(sample->radiance, brought);
+    for (int i = 0; parts && i < LIGHT_PART_COUNT; i++)
+        eye_sample_note(sample, (light_part)i, rgb_mul(brought, parts->of[i]));
+    if (parts && is_sky)
+        sample->layers->sky = rgb_add(sample->layers->sky, rgb_mul(brought, parts->of[PART_DIRECT]));
+    return kept;
+}
+
+/* --- the steps --- */
+
+bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *path, eye_sample *sample, vertex *out)
+{
+    bool is_camera_ray = path->vertex == 0;
+    if (is_camera_ray)
+        worker->rays_camera++;
+    else
+        worker->rays_path++;
+    bool is_met = transport_trace(t, worker, path->ray, out);
+    path->throughput = rgb_mul(path->throughput, out->transmittance);
+    worker->camera_rays_met += is_met && is_camera_ray;
+    if (is_met && is_camera_ray && t->wants_layers)
+        first_hit_fill(t, worker, out, &path->where, &sample->layers->first);
+    return is_met;
+}
+
+void eye_path_add_escaped(const transport *t, const eye_path *path, eye_sample *sample)
+{
+    light_group_sums groups;
+    rgb *by_group = light_group_sums_begin(&groups, t->wants_groups);
+    rgb weight = rgb_scale(path->throughput, path->share);
+    rgb escaped = direct_light_escaped(t, path->scattered_from, path->scattered_normal, path->ray.direction,
+                                       path->scattered_pdf, 1, path->scatter_count, by_group);
+    float kept = add_light(sample, path, path->wants_parts ? &path->parts : NULL, path->scatterings,
+                           rgb_mul(weight, escaped), true);
+    eye_sample_add_groups(sample, by_group, rgb_scale(weight, kept));
+}
+
+void eye_path_add_emitted(const transport *t, const eye_path *path, const vertex *v, eye_sample *sample)
+{
+    rgb emitted = transport_emission(t, v);
+    if (rgb_is_black(emitted))
+        return;
+    float weight = path->share;
+    if (path->scattered_pdf > 0.0f)
+        weight *= direct_light_scatter_weight(t, path->scattered_from, path->scattered_normal, v, path->scattered_pdf,
+                                              1, path->scatter_count);
+    rgb seen = rgb_scale(rgb_mul(path->throughput, emitted), weight);
+    float kept = add_light(sample, path, path->wants_parts ? &path->parts : NULL, path->scatterings, seen, false);
+    if (t->wants_groups)
+        eye_sample_add_group(sample, v->lamp->group, rgb_scale(seen, kept));
+}
+
+void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path *path, const vertex *v,
+                         bsdf_lobes lobes, int scatter_count, eye_sample *sample)
+{
+    int key = eye_path_key(path);
+    float u_pick = sampler_2d(&path->where, SAMPLE_LIGHT_PICK, key).x;
+    lamp_light direct = direct_light_sample_lamp(t, worker, v, lobes, u_pick,
+                                                 sampler_2d(&path->where, SAMPLE_LIGHT, key), 1, scatter_count);
+    rgb brought = rgb_mul(rgb_scale(path->throughput, path->share), direct.radiance);
+    if (rgb_is_black(brought))
+        return;
+    const light *lamp = &t->s->lights[direct.lamp];
+    part_shares parts;
+    if (path->wants_parts)
+        parts = shares_behind(&path->parts, gathered_share(&v->scattering, lobes, direct.direction));
+    float kept = add_light(sample, path, path->wants_parts ? &parts : NULL, path->scatterings + 1, brought,
+                           lamp->kind == LIGHT_INFINITE);
+    if (t->wants_groups)
+        eye_sample_add_group(sample, lamp->group, rgb_scale(brought, kept));
+}
+
+bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float u_lobe, int branch_count,
+                    eye_path *path)
+{
+    bsdf_sample next;
+    int key = eye_path_key(path);
+    bool is_last = eye_path_is_last(t, path), may_go_straight = transport_is_open_pane(t, v);
+    if ((is_last && !may_go_straight) || !bsdf_has(&v->scattering, lobes) ||
+        !bsdf_sample_direction(&v->scattering, lobes, BSDF_RADIANCE, u_lobe,
+                               sampler_2d(&path->where, SAMPLE_SCATTER, key), &next))
+        return false;
+    bool goes_straight = may_go_straight && next.is_straight;
+    if (is_last && !goes_straight)
+        return false;
+    path->throughput = rgb_mul(path->throughput, next.weight);
+    if (path->vertex >= path->roulette_after &&
+        !transport_survives(&path->throughput, sampler_2d(&path->where, SAMPLE_ROULETTE, key).x))
+        return false;
+    path->vertex++;
+    if (goes_straight) {
+        path->ray = passage_continue(&v->hit, &v->arrived);
+        return true;
+    }
+    path->scatterings++;
+    if (path->first_gathered == 0 && next.group == BSDF_GATHERED)
+        path->first_gathered = path->scatterings;
+    if (path->wants_parts)
+        path->parts = shares_behind(&path->parts,
+                                    gathered_share(&v->scattering, next.is_delta ? next.group : lobes, next.direction));
+    path->scattered_from = v->hit.position;
+    path->scattered_normal = direct_light_normal(v, lobes);
+    path->scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
+    path->scatter_count = branch_count;
+    path->ray = transport_scattered_ray(t, v, next.direction, next.is_delta);
+    path->ray.cone = transport_scattered_cone(t, v, &next);
+    return true;
+}

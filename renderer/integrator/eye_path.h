@@ -1,0 +1,75 @@
+/* eye_path.h: a path of light followed back from the eye, step by step: trace to the next hit, add the light that is
+ * met there and the light that a lamp sends there, scatter on.
+ * Rests on: Kajiya, "The Rendering Equation", 1986; Veach 1997, ch. 9, 10 (next-event estimation, MIS); Heckbert 1990
+ * (path notation, for the parts of the light).
+ * Flow: shading, path_tracing and eye_pilot each follow paths by these steps -> eye_sample.
+ * Threads: a path belongs to one worker. */
+#ifndef AFTERGLOW_EYE_PATH_H
+#define AFTERGLOW_EYE_PATH_H
+
+#include "integrator/camera_sample.h"
+#include "integrator/transport.h"
+
+/* Which part light would belong to that the path met now, as shares that sum to 1 in each channel: where lobes of both
+ * groups scatter into one direction, the path stands for both. */
+typedef struct part_shares {
+    rgb of[LIGHT_PART_COUNT];
+} part_shares;
+
+typedef struct eye_path {
+    sampler where; /* of the branch: each takes numbers of its own of the same sequences */
+    scene_ray ray; /* to be followed next */
+    rgb throughput;
+    float share;        /* of the camera sample, (0, 1]: 1 over the number of branches */
+    int vertex;         /* which of its path's the ray will meet, from 0 on */
+    int vertex_key;     /* added to it where random numbers are drawn */
+    int roulette_after; /* the vertex from which on roulette decides whether the path goes on */
+    int scatterings;    /* so far; going straight through a pane may be none, and changes none of what follows */
+    int first_gathered; /* which of them, counted from 1, was the first by a gathered lobe; 0: none */
+    vec3 scattered_from, scattered_normal; /* the last one's position, and direct_light_normal there */
+    float scattered_pdf; /* per solid angle; 0: the eye or a smooth lobe, which no shadow ray serves */
+    int scatter_count;   /* how many branches left that position */
+    bool wants_parts;
+    part_shares parts; /* valid where wants_parts */
+} eye_path;
+
+eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool wants_parts);
+
+/* The vertex at which random numbers are drawn. */
+static inline int eye_path_key(const eye_path *path) { return path->vertex + path->vertex_key; }
+
+/* Whether the path has as many scatterings as settings allow: it may go on straight through panes alone. */
+static inline bool eye_path_is_last(const transport *t, const eye_path *path)
+{
+    return path->scatterings >= t->settings->max_depth;
+}
+
+/* The random number that picks the lobe by which the path goes on. */
+static inline float eye_path_u_lobe(const eye_path *path)
+{
+    return sampler_2d(&path->where, SAMPLE_LOBE, eye_path_key(path)).x;
+}
+
+/* Follows the ray to the first surface that scatters; false: it escapes. Fills the sample's first hit where layers ask
+ * for it; sample may be NULL where none do. */
+bool eye_path_trace(const transport *t, eye_worker *worker, eye_path *in_out_path, eye_sample *sample,
+                    vertex *out_vertex);
+
+/* Adds the radiance of infinite lights along a ray that has escaped, weighted against shadow rays from the position
+ * that it left. */
+void eye_path_add_escaped(const transport *t, const eye_path *path, eye_sample *in_out_sample);
+
+/* Adds the radiance that the surface at the vertex emits, weighted likewise. */
+void eye_path_add_emitted(const transport *t, const eye_path *path, const vertex *v, eye_sample *in_out_sample);
+
+/* Next-event estimation: adds light from one lamp by these lobes. scatter_count: how many samples of the same lobes
+ * will be taken by eye_path_go_on. */
+void eye_path_add_direct(const transport *t, eye_worker *worker, const eye_path *path, const vertex *v,
+                         bsdf_lobes lobes, int scatter_count, eye_sample *in_out_sample);
+
+/* Sends the path on from the vertex by one of these lobes, as one of branch_count branches from there; u_lobe in [0, 1)
+ * picks it. false: the path ends, by the lobes, roulette, or because it has all its scatterings. */
+bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float u_lobe, int branch_count,
+                    eye_path *in_out_path);
+
+#endif
