@@ -8,6 +8,7 @@
 #include "rays/passage.h"
 #include "scene_extent.h"
 #include "shape/alpha.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -404,9 +405,7 @@ static ag_status merge_round(round_job *job, photon_set *set, uint64_t block_cou
 {
     uint64_t used = 0;
     for (; used < block_count && set->count < job->settings->wanted; used++) {
-        ag_status status = account_block(job, set, job->first_path + used * PATHS_PER_BLOCK, &job->blocks[used]);
-        if (status != AG_OK)
-            return status;
+        AG_TRY(account_block(job, set, job->first_path + used * PATHS_PER_BLOCK, &job->blocks[used]));
     }
     merge_job merge = {job->blocks, set->photons};
     return parallel_for(job->run, used, 16, copy_blocks, &merge, AG_PHASE_PHOTONS, 0.0, 0.0);

@@ -64,6 +64,7 @@ ag_status ag_context_create(const ag_context_settings *settings, ag_context **ou
     }
     run_context_init(&c->run, c->pool, c->log, settings->progress, settings->user);
     c->statistics.threads = thread_pool_worker_count(c->pool);
+    c->statistics.noise = -1.0;
     *out_context = c;
     return AG_OK;
 }
@@ -145,6 +146,8 @@ void ag_film_chromaticities(const ag_film *film, float out_chromaticities[8])
 {
     working_space_chromaticities(&film->space, out_chromaticities);
 }
+
+void ag_context_note_end(ag_context *context, ag_end end) { context->statistics.end = end; }
 
 ag_statistics ag_context_statistics(const ag_context *context)
 {

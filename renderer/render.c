@@ -12,6 +12,7 @@
 #include "rays/passage.h"
 #include "render_maps.h"
 #include "render_tiles.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -375,6 +376,10 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
                     (unsigned long long)not_finite);
     if (out_film)
         odd_scene_warn(r);
+    if (r->film) {
+        context->statistics.samples = ag_rendering_sample_counts(r);
+        context->statistics.noise = ag_rendering_noise(r).level;
+    }
     if (out_film)
         *out_film = r->film;
     else
@@ -393,10 +398,8 @@ ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render
     if (!out_film)
         return AG_ERROR_ARGUMENT;
     ag_rendering *rendering;
-    ag_status status = ag_rendering_create(context, loaded, settings, &rendering);
-    if (status != AG_OK)
-        return status;
-    status = ag_rendering_continue(rendering, rendering->settings.samples_per_pixel);
+    AG_TRY(ag_rendering_create(context, loaded, settings, &rendering));
+    ag_status status = ag_rendering_continue(rendering, rendering->settings.samples_per_pixel);
     ag_rendering_finish(rendering, status == AG_OK ? out_film : NULL);
     return status;
 }

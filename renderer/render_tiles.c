@@ -5,6 +5,7 @@
 #include "integrator/first_hit.h"
 #include "integrator/integrator.h"
 #include "integrator/sample_queue.h"
+#include "status.h"
 #include "tile_scheduler.h"
 
 #include <stdlib.h>
@@ -196,10 +197,8 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
                     .progress_begin = film_count_samples(film).mean / most,
                     .progress_end = (double)wanted / most};
     const film_area *area = &film->area;
-    ag_status status = tile_scheduler_create(area->x0, area->y0, area->x0 + area->width, area->y0 + area->height,
-                                             TILE_SIZE, context->statistics.threads, &job.tiles);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(tile_scheduler_create(area->x0, area->y0, area->x0 + area->width, area->y0 + area->height, TILE_SIZE,
+                                 context->statistics.threads, &job.tiles));
     for (size_t i = 0; i < film_area_count(film); i++) {
         uint32_t goal = film_goal(film, i, wanted);
         job.sample_count += film->counts[i] < goal ? (double)(goal - film->counts[i]) : 0.0;

@@ -14,6 +14,7 @@
 #include "rays/slab_faces.h"
 #include "scene_extent.h"
 #include "shape/curves.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -144,9 +145,7 @@ ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index
     material_prepare(m);
     m->coat = NULL;
     if (coat_needs_table(m)) {
-        ag_status status = find_coat_table(s, m, &m->coat);
-        if (status != AG_OK)
-            return status;
+        AG_TRY(find_coat_table(s, m, &m->coat));
     }
     *out_index = s->material_count++;
     return AG_OK;
@@ -313,9 +312,7 @@ static const float REACH_MAX = 1e18f;
 
 static ag_status find_bounds(scene *s, log_sink *log)
 {
-    ag_status status = scene_find_bounds(s, NULL, &s->bounds_min, &s->bounds_max);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(scene_find_bounds(s, NULL, &s->bounds_min, &s->bounds_max));
     if (s->bounds_min.x > s->bounds_max.x) {
         s->bounding_radius = 1.0f;
         return AG_OK;

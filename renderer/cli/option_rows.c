@@ -346,7 +346,12 @@ static const option_row ROWS[] = {
               .argument = "FILE",
               .section = "Output",
               .help = "write statistics as JSON",
-              .manual = "Write statistics (counts, times, memory) as JSON."},
+              .manual =
+                  "Write statistics (counts, times, memory) as JSON, also of a picture that a signal has ended. "
+                  "Its end.reason is _samples_ (all that *--spp* allows), _noise_ (that of *--noise* was reached "
+                  "before), _photons_ (*--photons-only*), _time-limit_ or _signal_, where *--resume* goes on from "
+                  "a checkpoint; end.noise is the noise reached, as *--noise* measures it, null where it is not "
+                  "known, and end.samples tells how many samples pixels have had."},
      TEXT(stats)},
     {.text = {.name = "define",
               .argument = "NAME=VALUE",

@@ -301,6 +301,17 @@ static void tell_noise(const ag_noise *noise, const ag_sample_counts *samples, c
     fputc('\n', stderr);
 }
 
+static ag_end find_end(const passes *p, const passes_result *result)
+{
+    if (result->is_partial)
+        return AG_END_SIGNAL;
+    if (p->o->photons_only)
+        return AG_END_PHOTONS;
+    if (p->time_is_up)
+        return AG_END_TIME_LIMIT;
+    return result->samples.most < p->final ? AG_END_NOISE : AG_END_SAMPLES;
+}
+
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result)
 {
@@ -327,6 +338,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
             status = write_checkpoint(&p);
         out_result->samples = ag_rendering_sample_counts(p.rendering);
         noise = ag_rendering_noise(p.rendering);
+        ag_context_note_end(context, find_end(&p, out_result));
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial && failed == AG_OK)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);

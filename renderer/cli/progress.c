@@ -257,7 +257,7 @@ void progress_tell_written(progress *p, const char *const *files, int file_count
             fputs(files[i], stderr);
     }
     if (is_json) {
-        fprintf(stderr, "], \"percent\": %d, \"picture_seconds\": %.1f, \"seconds\": %.1f", p->told_percent,
+        fprintf(stderr, "], \"percent\": %d, \"picture_seconds\": %.3f, \"seconds\": %.3f", p->told_percent,
                 now - p->frame_begun, now - p->begun);
         tell_frame_as_json(p);
         fputs("}\n", stderr);

@@ -23,6 +23,17 @@ static const char *map_file_name(ag_map_file state)
     return names[state];
 }
 
+/* How the picture ended. */
+static json_t *end_to_json(const ag_statistics *s)
+{
+    static const char *const reasons[] = {
+        [AG_END_NONE] = "",           [AG_END_SAMPLES] = "samples",       [AG_END_NOISE] = "noise",
+        [AG_END_PHOTONS] = "photons", [AG_END_TIME_LIMIT] = "time-limit", [AG_END_SIGNAL] = "signal"};
+    json_t *noise = s->noise >= 0.0 && isfinite(s->noise) ? json_real(s->noise) : json_null();
+    return json_pack("{s:s, s:o, s:{s:i, s:i, s:f}}", "reason", reasons[s->end], "noise", noise, "samples", "least",
+                     s->samples.least, "most", s->samples.most, "mean", s->samples.mean);
+}
+
 /* --- settings --- */
 
 static json_t *layer_names(uint32_t layers)
@@ -107,7 +118,7 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
     json_t *counts = json_pack(
         "{s:{s:o, s:o, s:o, s:o, s:s},"
         " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o, s:o},"
-        " s:o, s:o, s:f, s:o, s:{s:o}}",
+        " s:o, s:o, s:f, s:o, s:{s:o}, s:o}",
         "photons", "emitted", count(s->photons_emitted), "stored_global", count(s->photons_stored_global),
         "stored_caustic", count(s->photons_stored_caustic), "bytes", count(s->photon_bytes), "map_file",
         map_file_name(s->map_file), /**/
@@ -119,7 +130,7 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
         "rays", "camera", count(s->rays_camera), "shadow", count(s->rays_shadow), "gather", count(s->rays_gather),
         "photon", count(s->rays_photon), "path", count(s->rays_path), "estimate", count(s->rays_estimate), /**/
         "samples_not_finite", count(s->samples_not_finite), "time_s", times, "cpu_s", s->cpu_s, "phase_cpu_s",
-        cpu_times, "memory", "peak_bytes", count(s->memory_peak_bytes));
+        cpu_times, "memory", "peak_bytes", count(s->memory_peak_bytes), "end", end_to_json(s));
     bool is_whole = counts && json_object_update(root, counts) == 0;
     json_decref(counts);
     if (is_whole)

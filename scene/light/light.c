@@ -10,6 +10,7 @@
 #include "math/sampling.h"
 #include "scene.h"
 #include "shape/alpha.h"
+#include "status.h"
 
 light light_make(light_kind kind)
 {
@@ -61,12 +62,10 @@ static rgb find_power(const scene *s, const light *l)
 
 ag_status light_commit(const scene *s, light *l)
 {
-    ag_status status = AG_OK;
     if (l->kind == LIGHT_AREA && light_varies(s, l) && !l->radiance_map)
-        status = radiance_map_create(s, l, &l->radiance_map);
-    if (status == AG_OK)
-        l->power = find_power(s, l);
-    return status;
+        AG_TRY(radiance_map_create(s, l, &l->radiance_map));
+    l->power = find_power(s, l);
+    return AG_OK;
 }
 
 /* --- how bright --- */

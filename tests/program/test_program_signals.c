@@ -44,6 +44,9 @@ static void test_every_signal(void **state)
     static const int NUMBERS[] = {SIGINT, SIGTERM, SIGHUP};
     for (int i = 0; i < 3; i++)
         expect_end("render", NUMBERS[i], ARGUMENTS(LONG, "--integrator=path", "--spp=100000", "--size=48x48", BOX));
+    json_t *stats = stats_read(in_folder("a.json"));
+    assert_string_equal(json_string_value(stats_find(stats, "end.reason")), "signal");
+    json_decref(stats);
     expect_partial_pictures();
 }
 

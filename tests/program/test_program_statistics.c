@@ -113,6 +113,42 @@ static void test_path_tracer(void **state)
     json_decref(stats);
 }
 
+static void expect_end(const char *const *arguments, const char *reason, int least, int most)
+{
+    json_t *stats = stats_of(BOX, arguments);
+    assert_string_equal(json_string_value(stats_find(stats, "end.reason")), reason);
+    assert_int_equal(stats_integer(stats, "end.samples.least"), least);
+    assert_int_equal(stats_integer(stats, "end.samples.most"), most);
+    const double mean = stats_number(stats, "end.samples.mean");
+    assert_true(mean >= least && mean <= most);
+    assert_true(stats_number(stats, "end.noise") >= 0.0);
+    json_decref(stats);
+}
+
+/* What a farm asks for: why a picture ended, and how good it is. */
+static void test_end(void **state)
+{
+    (void)state;
+    expect_end(ARGUMENTS(QUICK, "--stats=a.json"), "samples", 2, 2);
+    /* a level that no picture of 16 samples misses, and one that none reaches */
+    expect_end(ARGUMENTS(QUICK, "--spp=64", "--noise=0.99", "--stats=a.json"), "noise", 16, 16);
+    expect_end(ARGUMENTS(QUICK, "--spp=16", "--noise=1e-6", "--min-spp=2", "--stats=a.json"), "samples", 16, 16);
+    /* too short for more than the first pass, which is always there */
+    json_t *stats = stats_of(BOX, ARGUMENTS("--photons=3000", "--size=64x64", "--spp=65536", "--noise=0",
+                                            "--gather-samples=64", "--time-limit=0.01", "--stats=a.json"));
+    assert_string_equal(json_string_value(stats_find(stats, "end.reason")), "time-limit");
+    assert_true(stats_number(stats, "end.samples.mean") >= 1.0 && stats_number(stats, "end.samples.mean") < 65536.0);
+    json_decref(stats);
+
+    program_run run = RUN(QUICK, "--photons-only", "--photon-map=a.map", "--stats=b.json", BOX);
+    expect_exit(&run, 0);
+    stats = stats_read(in_folder("b.json"));
+    assert_string_equal(json_string_value(stats_find(stats, "end.reason")), "photons");
+    assert_true(json_is_null(stats_find(stats, "end.noise")));
+    json_decref(stats);
+    program_run_reset(&run);
+}
+
 /* Phases follow each other: together they last no longer than the whole. */
 static void test_times(void **state)
 {
@@ -287,10 +323,15 @@ static void test_verbose(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_photon_map), TEST_IN_FOLDER(test_path_tracer),
-        TEST_IN_FOLDER(test_times),      TEST_IN_FOLDER(test_photons_that_cannot_be_had),
-        TEST_IN_FOLDER(test_plain),      TEST_IN_FOLDER(test_json),
-        TEST_IN_FOLDER(test_bar),        TEST_IN_FOLDER(test_silence),
+        TEST_IN_FOLDER(test_photon_map),
+        TEST_IN_FOLDER(test_path_tracer),
+        TEST_IN_FOLDER(test_end),
+        TEST_IN_FOLDER(test_times),
+        TEST_IN_FOLDER(test_photons_that_cannot_be_had),
+        TEST_IN_FOLDER(test_plain),
+        TEST_IN_FOLDER(test_json),
+        TEST_IN_FOLDER(test_bar),
+        TEST_IN_FOLDER(test_silence),
         TEST_IN_FOLDER(test_verbose),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

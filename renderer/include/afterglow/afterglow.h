@@ -522,6 +522,16 @@ typedef enum ag_map_file {
     AG_MAP_FILE_PRIVATE /* from a file that could not be shared: a copy, which is not kept */
 } ag_map_file;
 
+/* Why a picture ended, so that a farm knows what to do with it. */
+typedef enum ag_end {
+    AG_END_NONE,       /* not known */
+    AG_END_SAMPLES,    /* pixels have had all samples that the settings allow */
+    AG_END_NOISE,      /* the noise that was asked for was reached before that, everywhere */
+    AG_END_PHOTONS,    /* only the photon map was wanted */
+    AG_END_TIME_LIMIT, /* the time was up */
+    AG_END_SIGNAL      /* it was interrupted */
+} ag_end;
+
 typedef struct ag_statistics {
     unsigned threads;
     uint64_t photons_emitted, photons_stored_global, photons_stored_caustic, photon_bytes;
@@ -545,9 +555,14 @@ typedef struct ag_statistics {
     double time_total_s;                /* since the context was created */
     double cpu_s;                       /* user + system of the whole process */
     uint64_t memory_peak_bytes;
+    ag_end end;               /* of the last picture, as noted by ag_context_note_end */
+    ag_sample_counts samples; /* of the pixels of the last picture */
+    double noise;             /* of the last picture, as in ag_noise; below 0: not known */
 } ag_statistics;
 
 AG_API ag_statistics ag_context_statistics(const ag_context *context);
+/* To be called when a rendering is finished, by who ended it; for the statistics. */
+AG_API void ag_context_note_end(ag_context *context, ag_end end);
 
 /* Whether statistics could be written there. To be asked before a long render. */
 AG_API ag_status ag_statistics_check(ag_context *context, const char *path);
