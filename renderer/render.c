@@ -69,6 +69,16 @@ static void collect_counts(ag_rendering *r)
     passage_warn_of_cut(r->context->log, cut);
 }
 
+/* Of a pixel, the width that one of its samples stands for: they share the pixel and, by its filter, some of those
+ * around it. No less than a quarter: where samples are adaptive, their number is but a bound. */
+static float pixel_share(const scene *s, const ag_render_settings *settings)
+{
+    static const float FILTER_WIDTH = 1.5f, SHARE_MIN = 0.25f;
+    if (settings->texture_filter != AG_TEXTURE_FILTER_ON || !s->has_mips)
+        return 0.0f;
+    return fminf(fmaxf(FILTER_WIDTH / sqrtf((float)settings->samples_per_pixel), SHARE_MIN), 1.0f);
+}
+
 static transport make_transport(const ag_context *context, const scene *s, const ag_render_settings *settings,
                                 const aov_layout *layout)
 {
@@ -80,6 +90,7 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .layout = layout,
                    .wants_layers = layout->needs_layers,
                    .wants_groups = aov_has(layout, SUM_GROUPS),
+                   .pixel_share = pixel_share(s, settings),
                    .has_lights = rgb_max(s->light_power) > 0.0f,
                    .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
     for (uint32_t i = 0; i < s->light_count; i++)

@@ -84,6 +84,9 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
                           .where = where,
                           .split = split,
                           .number = number};
+    if (t->pixel_share > 0.0f)
+        from.ray.cone = camera_ray_cone(&t->s->camera, &from.ray, place.film_x, place.film_y, t->pixel_share / width,
+                                        t->pixel_share / height, place.aspect, lens);
     out->most_direct = settings->clamp_direct > 0.0f ? settings->clamp_direct : INFINITY;
     out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
     uint64_t cost_before = eye_worker_cost(worker);
