@@ -23,11 +23,12 @@ static ag_status add_disc(scene *s, vec3 center, float radius)
 
 static ag_status make_scene(run_context *run, const char *isa, scene **out_scene)
 {
-    material gray = {.kind = MATERIAL_DIFFUSE, .reflectance = {0.5f, 0.5f, 0.5f}};
+    material gray = material_make(MATERIAL_DIFFUSE);
     uint32_t index;
     scene *s = scene_create();
     if (!s)
         return AG_ERROR_MEMORY;
+    gray.reflectance = rgb_gray(0.5f);
     ag_status status = scene_add_material(s, &gray, &index);
     if (status == AG_OK)
         status = add_disc(s, vec3_make(0.0f, 0.0f, 0.0f), 1.0f);

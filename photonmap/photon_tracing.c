@@ -8,6 +8,7 @@
 #include "rays/passage.h"
 #include "scene_extent.h"
 #include "shape/alpha.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -157,6 +158,14 @@ static bool pass_media(photon_books *books, rgb transmittance, rng *random, rgb 
 
 /* --- a path --- */
 
+/* Of the area that a photon stands for where they lie evenly, in scene units; giants are not counted. */
+static float photon_width(const scene *s, uint32_t photon_count)
+{
+    static const float RADIUS_SHARE_MAX = 1.0f / 64.0f;
+    float radius = s->detail_radius > 0.0f ? s->detail_radius : s->bounding_radius;
+    return fminf(sqrtf(s->surface_area / (float)photon_count), RADIUS_SHARE_MAX * radius);
+}
+
 /* Leaves a lamp, picked by its power or by the guide, at a time of the path's own where that matters. false: nothing
  * leaves. */
 static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
@@ -182,6 +191,8 @@ static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
     ray.slabs_are_panes = settings->panes_are_direct;
     ray.medium = start.medium;
     ray.time = time;
+    if (settings->filters_textures)
+        ray.cone = (ray_cone){photon_width(s, settings->wanted), 0.0f, true};
     rgb flux = rgb_scale(start.flux, weight / probability);
     *out_path = (photon_path){ray, flux, random, key, weight, 0, 0, false};
     book(t->out->books.emitted, out_path->flux);
@@ -287,6 +298,8 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
     path->flux = rgb_scale(scattered, 1.0f / survival);
     book(books->gained, rgb_sub(path->flux, scattered));
     path->ray = goes_straight ? passage_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
+    if (next.group == BSDF_GATHERED && settings->filters_textures)
+        path->ray.cone.spread = RAY_CONE_DIFFUSE_SPREAD;
     path->scatterings += !goes_straight;
     path->arrivals++;
     path->is_diffuse = path->is_diffuse || next.group == BSDF_GATHERED;
@@ -307,6 +320,10 @@ static void trace_path(tracer *t, uint64_t number)
             return;
         if (!is_met)
             book(books->escaped, path.flux);
+        if (is_met && ray_cone_is_wide(&path.ray.cone)) {
+            path.ray.cone = ray_cone_at(&path.ray.cone, hit.distance);
+            hit.footprint = ray_cone_footprint(&path.ray.cone, path.ray.direction);
+        }
         goes_on = is_met && scatter(t, &path, &hit);
     }
 }
@@ -388,9 +405,7 @@ static ag_status merge_round(round_job *job, photon_set *set, uint64_t block_cou
 {
     uint64_t used = 0;
     for (; used < block_count && set->count < job->settings->wanted; used++) {
-        ag_status status = account_block(job, set, job->first_path + used * PATHS_PER_BLOCK, &job->blocks[used]);
-        if (status != AG_OK)
-            return status;
+        AG_TRY(account_block(job, set, job->first_path + used * PATHS_PER_BLOCK, &job->blocks[used]));
     }
     merge_job merge = {job->blocks, set->photons};
     return parallel_for(job->run, used, 16, copy_blocks, &merge, AG_PHASE_PHOTONS, 0.0, 0.0);

@@ -56,6 +56,7 @@ typedef struct photon_tracing_settings {
     uint32_t wanted;       /* photons to store, > 0 */
     int max_scatterings;   /* arrivals after more scatterings than this are not stored; >= 0 */
     bool panes_are_direct; /* light straight through panes (bsdf.h) counts as unscattered: no caustic */
+    bool filters_textures; /* over about the area that a photon stands for, and more behind diffuse places */
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
     const emission_guide *guide;         /* where paths begin */

@@ -12,6 +12,7 @@
 #include "rays/passage.h"
 #include "render_maps.h"
 #include "render_tiles.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -68,6 +69,16 @@ static void collect_counts(ag_rendering *r)
     passage_warn_of_cut(r->context->log, cut);
 }
 
+/* Of a pixel, the width that one of its samples stands for: they share the pixel and, by its filter, some of those
+ * around it. No less than a quarter: where samples are adaptive, their number is but a bound. */
+static float pixel_share(const scene *s, const ag_render_settings *settings)
+{
+    static const float FILTER_WIDTH = 1.5f, SHARE_MIN = 0.25f;
+    if (settings->texture_filter != AG_TEXTURE_FILTER_ON || !s->has_mips)
+        return 0.0f;
+    return fminf(fmaxf(FILTER_WIDTH / sqrtf((float)settings->samples_per_pixel), SHARE_MIN), 1.0f);
+}
+
 static transport make_transport(const ag_context *context, const scene *s, const ag_render_settings *settings,
                                 const aov_layout *layout)
 {
@@ -79,10 +90,11 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .layout = layout,
                    .wants_layers = layout->needs_layers,
                    .wants_groups = aov_has(layout, SUM_GROUPS),
+                   .pixel_share = pixel_share(s, settings),
                    .has_lights = rgb_max(s->light_power) > 0.0f,
                    .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
     for (uint32_t i = 0; i < s->light_count; i++)
-        t.can_meet_lights = t.can_meet_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
+        t.can_meet_lights = t.can_meet_lights || light_can_be_met(&s->lights[i]);
     return t;
 }
 
@@ -385,10 +397,8 @@ ag_status ag_render(ag_context *context, const ag_scene *loaded, const ag_render
     if (!out_film)
         return AG_ERROR_ARGUMENT;
     ag_rendering *rendering;
-    ag_status status = ag_rendering_create(context, loaded, settings, &rendering);
-    if (status != AG_OK)
-        return status;
-    status = ag_rendering_continue(rendering, rendering->settings.samples_per_pixel);
+    AG_TRY(ag_rendering_create(context, loaded, settings, &rendering));
+    ag_status status = ag_rendering_continue(rendering, rendering->settings.samples_per_pixel);
     ag_rendering_finish(rendering, status == AG_OK ? out_film : NULL);
     return status;
 }

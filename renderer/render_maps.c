@@ -69,6 +69,8 @@ static ag_status trace_photons(ag_context *context, const scene *s, const ag_ren
                                        .wanted = (uint32_t)settings->photon_count,
                                        .max_scatterings = settings->max_depth - 2,
                                        .panes_are_direct = settings->pane_light == AG_PANE_LIGHT_DIRECT,
+                                       .filters_textures =
+                                           settings->texture_filter == AG_TEXTURE_FILTER_ON && s->has_mips,
                                        .seed = settings->photon_seed,
                                        .progress_begin = 0.0,
                                        .progress_end = wants_caustics ? 0.7 : 1.0};

@@ -5,6 +5,7 @@
 #include "integrator/first_hit.h"
 #include "integrator/integrator.h"
 #include "integrator/sample_queue.h"
+#include "status.h"
 #include "tile_scheduler.h"
 
 #include <stdlib.h>
@@ -83,6 +84,9 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
                           .where = where,
                           .split = split,
                           .number = number};
+    if (t->pixel_share > 0.0f)
+        from.ray.cone = camera_ray_cone(&t->s->camera, &from.ray, place.film_x, place.film_y, t->pixel_share / width,
+                                        t->pixel_share / height, place.aspect, lens);
     out->most_direct = settings->clamp_direct > 0.0f ? settings->clamp_direct : INFINITY;
     out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
     uint64_t cost_before = eye_worker_cost(worker);
@@ -193,10 +197,8 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
                     .progress_begin = film_count_samples(film).mean / most,
                     .progress_end = (double)wanted / most};
     const film_area *area = &film->area;
-    ag_status status = tile_scheduler_create(area->x0, area->y0, area->x0 + area->width, area->y0 + area->height,
-                                             TILE_SIZE, context->statistics.threads, &job.tiles);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(tile_scheduler_create(area->x0, area->y0, area->x0 + area->width, area->y0 + area->height, TILE_SIZE,
+                                 context->statistics.threads, &job.tiles));
     for (size_t i = 0; i < film_area_count(film); i++) {
         uint32_t goal = film_goal(film, i, wanted);
         job.sample_count += film->counts[i] < goal ? (double)(goal - film->counts[i]) : 0.0;

@@ -6,6 +6,7 @@
 #include "floating_point.h"
 #include "rays/bvh.h"
 #include "scene_file.h"
+#include "status.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -79,9 +80,7 @@ static ag_status load(ag_context *context, const char *path, const definitions *
 {
     const color_config *colors;
     phase_begin begin = context_begin_phase();
-    ag_status status = context_color_config(context, &colors);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(context_color_config(context, &colors));
     s->space = context->working_space;
     s->color_config = colors;
     s->definitions = d;
@@ -96,7 +95,7 @@ static ag_status load(ag_context *context, const char *path, const definitions *
         return AG_ERROR_ARGUMENT;
     }
     context->run.inputs = inputs;
-    status = scene_file_load(&context->run, path, s);
+    ag_status status = scene_file_load(&context->run, path, s);
     context->run.inputs = NULL;
     inputs->scene = NULL; /* it was borrowed */
     if (status != AG_OK)

@@ -57,6 +57,24 @@ static const setting_row ROWS[] = {
      .noun = "choice of light through panes (--pane-light)",
      .json = "settings.pane_light",
      .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER},
+    {.text = {.name = "texture-filter",
+              .argument = "MODE",
+              .section = "Light",
+              .help = "colours of pictures: on (default), their mean over what a ray stands for, or off, at single "
+                      "places",
+              .manual = "How pictures are looked up as colours of surfaces. *on* (default) takes their mean over what "
+                        "a ray stands for: of a camera ray its share of the pixel, also in mirrors and through glass, "
+                        "and what gather rays and photons meet more coarsely. So few samples show distant textures "
+                        "without noise. *off* looks them up at single places. Where light is not proportional to the "
+                        "picture's value, in roughness, normals, metals, coated bases, cut-outs and emission, nothing "
+                        "is filtered.",
+              .is_of_photon_map = true},
+     FIELD(texture_filter),
+     .kind = SETTING_WORD,
+     .words = WORDS("on", "off"),
+     .noun = "filtering of textures (--texture-filter)",
+     .json = "settings.texture_filter",
+     .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER},
     {.text = {.name = "only",
               .argument = "LIGHT",
               .section = "Light",

@@ -126,3 +126,19 @@ scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float
     ray.medium = c->medium;
     return ray;
 }
+
+/* The side of a square of that area. */
+static float mean_side(vec3 from, vec3 right, vec3 down)
+{
+    float across = vec3_distance_squared(right, from), along = vec3_distance_squared(down, from);
+    return sqrtf(sqrtf(across) * sqrtf(along));
+}
+
+ray_cone camera_ray_cone(const camera *c, const scene_ray *ray, float film_x, float film_y, float step_x, float step_y,
+                         float aspect, vec2 lens_u)
+{
+    scene_ray right = camera_generate_ray(c, film_x + step_x, film_y, aspect, lens_u, ray->time);
+    scene_ray down = camera_generate_ray(c, film_x, film_y + step_y, aspect, lens_u, ray->time);
+    return (ray_cone){mean_side(ray->origin, right.origin, down.origin),
+                      mean_side(ray->direction, right.direction, down.direction), false};
+}

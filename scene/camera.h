@@ -38,6 +38,10 @@ typedef struct camera {
  * unit. */
 scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u, float time);
 
+/* The cone of such a ray, of which neighbours are steps of film_x and film_y away: as wide as those are apart. */
+ray_cone camera_ray_cone(const camera *c, const scene_ray *ray, float film_x, float film_y, float step_x, float step_y,
+                         float aspect, vec2 lens_u);
+
 /* world_from_camera at a time of the shutter. */
 transform camera_transform_at(const camera *c, float time);
 

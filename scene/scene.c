@@ -8,11 +8,13 @@
 #include "material/bsdf.h"
 #include "material/coat.h"
 #include "material/coat_table.h"
+#include "material/material_mips.h"
 #include "material/pane.h"
 #include "rays/bvh.h"
 #include "rays/slab_faces.h"
 #include "scene_extent.h"
 #include "shape/curves.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -143,9 +145,7 @@ ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index
     material_prepare(m);
     m->coat = NULL;
     if (coat_needs_table(m)) {
-        ag_status status = find_coat_table(s, m, &m->coat);
-        if (status != AG_OK)
-            return status;
+        AG_TRY(find_coat_table(s, m, &m->coat));
     }
     *out_index = s->material_count++;
     return AG_OK;
@@ -182,7 +182,8 @@ ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index)
     *out_index = s->texture_count;
     s->textures[s->texture_count] = *item;
     s->textures[s->texture_count].step = step;
-    s->textures[s->texture_count++].cost = cost;
+    s->textures[s->texture_count].cost = cost;
+    texture_find_pictures(s, &s->textures[s->texture_count++]);
     return AG_OK;
 }
 
@@ -311,9 +312,7 @@ static const float REACH_MAX = 1e18f;
 
 static ag_status find_bounds(scene *s, log_sink *log)
 {
-    ag_status status = scene_find_bounds(s, NULL, &s->bounds_min, &s->bounds_max);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(scene_find_bounds(s, NULL, &s->bounds_min, &s->bounds_max));
     if (s->bounds_min.x > s->bounds_max.x) {
         s->bounding_radius = 1.0f;
         return AG_OK;
@@ -377,7 +376,9 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
     s->has_motion = s->camera.is_moving || s->instance_step_count > s->instance_count;
     s->camera.medium = s->camera_medium;
     s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
-    status = light_pick_commit(s, run->log);
+    status = material_mips_make(s, run);
+    if (status == AG_OK)
+        status = light_pick_commit(s, run->log);
     if (status == AG_OK)
         status = slab_faces_find(s, run, &s->slab_faces);
     s->has_panes = s->has_panes || s->slab_faces;

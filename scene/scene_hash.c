@@ -54,6 +54,8 @@ static void add_texture(hash128 *h, const texture *t)
     ADD(t->variation);
     ADD(t->cost);
     ADD(t->step);
+    ADD(t->has_pictures);
+    ADD(t->is_linear_in_pictures);
 }
 
 static void add_material(hash128 *h, const material *m)

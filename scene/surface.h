@@ -36,6 +36,7 @@ typedef struct surface_hit {
     uint32_t instance_index;  /* SCENE_NO_INSTANCE where the shape stands in the world itself */
     float time;               /* of the shutter, the ray's */
     slab_way slab;
+    ray_footprint footprint; /* of the ray, over which textures are filtered; set by whoever traces cones */
 } surface_hit;
 
 /* A place on a surface, and what it takes to leave it. */

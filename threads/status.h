@@ -1,5 +1,6 @@
 /* status.h: passing a failure on. A function that has nothing to free returns at once, by AG_TRY; one that has goes on
- * with "if (status == AG_OK) status = ..." to the end, where all is freed. Threads: any. */
+ * with "if (status == AG_OK) status = ..." to the end, where all is freed. A status is compared with AG_OK, not taken
+ * for a boolean. Threads: any. */
 #ifndef AFTERGLOW_STATUS_H
 #define AFTERGLOW_STATUS_H
 

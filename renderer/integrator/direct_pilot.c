@@ -6,6 +6,7 @@
 #include "light/environment.h"
 #include "light/light_tree.h"
 #include "parallel_for.h"
+#include "status.h"
 
 #include <stdlib.h>
 
@@ -224,11 +225,9 @@ ag_status direct_pilot_learn(const transport *t, run_context *run, direct_guide 
     *out_rays = 0;
     if (!(t->settings->direct_guiding > 0.0f) || !direct_guide_serves(t->s))
         return AG_OK;
-    ag_status status = eye_pilot_find_lit(t->s, run, t->settings, &places, &count);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(eye_pilot_find_lit(t->s, run, t->settings, &places, &count));
     l.places = places;
-    status = learn(&l, run, count, out_rays);
+    ag_status status = learn(&l, run, count, out_rays);
     free(places);
     if (status != AG_OK)
         direct_guide_reset(out_guide);

@@ -157,5 +157,6 @@ bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float
     path->scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
     path->scatter_count = branch_count;
     path->ray = transport_scattered_ray(t, v, next.direction, next.is_delta);
+    path->ray.cone = transport_scattered_cone(t, v, &next);
     return true;
 }

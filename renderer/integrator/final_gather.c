@@ -50,6 +50,7 @@ static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weig
     vertex v;
     scene_ray ray = transport_scattered_ray(g->t, g->request->from, direction, false);
     ray.skips_uv = true;
+    ray.cone = transport_gather_cone(g->request->from);
     g->worker->rays_gather++;
     g->cost += EYE_COST_OF_RAY;
     if (transport_meet(g->t, g->worker, ray, &v))
@@ -90,6 +91,7 @@ static void follow_together(gathering *g, gather_rays *r)
         v.transmittance = rgb_gray(1.0f);
         ray_fan_hit(t->s, fan, i, &v.hit);
         slab_meet(t->s, &v.arrived, &v.hit);
+        transport_note_footprint(&v);
         follow(g, r->number[i], r->weight[i], &v);
     }
 }
@@ -174,6 +176,7 @@ uint32_t final_gather(const transport *t, eye_worker *worker, const gather_reque
     gather_rays rays;
     rays.fan.common = transport_scattered_ray(t, v, transport_facing_normal(v), false);
     rays.fan.common.skips_uv = true;
+    rays.fan.common.cone = transport_gather_cone(v);
     for (uint32_t begin = 0; begin < count && !run_is_cancelled(t->run); begin += RAY_FAN_MAX) {
         uint32_t end = count - begin < RAY_FAN_MAX ? count : begin + RAY_FAN_MAX;
         if (!gather_batch_has_room(batch, end - begin))

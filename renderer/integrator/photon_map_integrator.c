@@ -5,6 +5,7 @@
 #include "integrator/integrator.h"
 #include "integrator/shading.h"
 #include "render_maps.h"
+#include "status.h"
 
 enum { ARENA_BLOCK_BYTES = 1 << 16 };
 
@@ -14,9 +15,7 @@ static const float GATHER_MIN_DISTANCE_RADII = 1.0f;
 static ag_status prepare(struct ag_rendering *r)
 {
     maps *m = &r->maps;
-    ag_status status = maps_create(r->context, r->s, &r->settings, m);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(maps_create(r->context, r->s, &r->settings, m));
     r->t.caustic = &m->caustic;
     r->t.cache = &m->cache;
     r->t.incident = m->incident.cells ? &m->incident : NULL;

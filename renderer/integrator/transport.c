@@ -17,7 +17,21 @@ bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, verte
 {
     bool is_met = passage_intersect(t->s, &ray, &worker->passages_cut, &out_vertex->hit, &out_vertex->transmittance);
     out_vertex->arrived = ray;
+    if (is_met)
+        transport_note_footprint(out_vertex);
     return is_met;
+}
+
+ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsdf_sample *next)
+{
+    const ray_cone *c = &v->arrived.cone;
+    if (!ray_cone_is_wide(c) || c->is_coarse)
+        return *c;
+    if (next->group == BSDF_GATHERED)
+        return transport_gather_cone(v);
+    return next->is_delta
+               ? ray_cone_bent(t->s, c, &v->hit, v->arrived.direction, next->direction, v->scattering.matter.ior)
+               : ray_cone_scattered(c, next->pdf_solid_angle);
 }
 
 void transport_complete(const transport *t, vertex *v)

@@ -30,6 +30,7 @@ typedef struct transport {
     bool has_lights;           /* any with power */
     bool can_meet_lights;      /* area or infinite ones: those that scattered rays find */
     bool panes_are_direct;     /* there are panes, and light straight through them is direct light (bsdf.h) */
+    float pixel_share;         /* of a pixel, what textures are filtered over for a sample; 0: they are not */
     float gather_min_distance; /* a gather ray that hits nearer than this does not use the cache, scene units */
 } transport;
 
@@ -84,6 +85,15 @@ void transport_complete(const transport *t, vertex *in_out_vertex);
  * that of the panes with it; hit.distance that of its last stretch. false also where nothing is left of the light. */
 bool transport_trace_through_panes(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 
+/* Carries the cone of the ray that has arrived to where it has met. */
+static inline void transport_note_footprint(vertex *v)
+{
+    if (!ray_cone_is_wide(&v->arrived.cone))
+        return;
+    v->arrived.cone = ray_cone_at(&v->arrived.cone, v->hit.distance);
+    v->hit.footprint = ray_cone_footprint(&v->arrived.cone, v->arrived.direction);
+}
+
 /* Whether a sample of the place that is_straight counts as no scattering. */
 static inline bool transport_is_open_pane(const transport *t, const vertex *v)
 {
@@ -97,6 +107,16 @@ static inline scene_ray transport_scattered_ray(const transport *t, const vertex
     scene_ray ray = surface_ray(&v->hit, v->arrived, direction);
     ray.slabs_are_panes = ray.slabs_are_panes || (t->panes_are_direct && !is_delta);
     return ray;
+}
+
+/* What textures are filtered over along the ray of a sample of the place. */
+ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsdf_sample *next);
+
+/* Of gather rays, which are of no one sample. */
+static inline ray_cone transport_gather_cone(const vertex *v)
+{
+    const ray_cone *c = &v->arrived.cone;
+    return ray_cone_is_wide(c) ? (ray_cone){fabsf(c->width), RAY_CONE_DIFFUSE_SPREAD, true} : *c;
 }
 
 /* Radiance that the place itself sends back along the ray. */

@@ -6,6 +6,7 @@
 
 #include "light/light_tree.h"
 #include "light/portal.h"
+#include "status.h"
 
 #include <stdlib.h>
 
@@ -21,9 +22,7 @@ static double mean_power(const light *l) { return ((double)l->power.r + l->power
 static ag_status find_powers(scene *s, log_sink *log)
 {
     for (uint32_t i = 0; i < s->light_count; i++) {
-        ag_status status = light_commit(s, &s->lights[i]);
-        if (status != AG_OK)
-            return status;
+        AG_TRY(light_commit(s, &s->lights[i]));
         s->light_power = rgb_add(s->light_power, s->lights[i].power);
     }
     if (rgb_is_finite(s->light_power))
@@ -59,9 +58,7 @@ ag_status light_pick_commit(scene *s, log_sink *log)
 {
     if (s->light_count == 0)
         return AG_OK;
-    ag_status status = find_powers(s, log);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(find_powers(s, log));
     uint32_t *lamps = malloc(s->light_count * sizeof *lamps), lamp_count = 0;
     s->photon_cdf = malloc(s->light_count * sizeof *s->photon_cdf);
     s->photon_probability = malloc(s->light_count * sizeof *s->photon_probability);
@@ -85,8 +82,7 @@ ag_status light_pick_commit(scene *s, log_sink *log)
         else
             s->everywhere_lights[s->everywhere_count++] = i;
     }
-    if (lamp_count > 0)
-        status = light_tree_create(s, lamps, lamp_count, &s->light_tree);
+    ag_status status = lamp_count > 0 ? light_tree_create(s, lamps, lamp_count, &s->light_tree) : AG_OK;
     free(lamps);
     deal_photons(s);
     return status;

@@ -2,7 +2,9 @@
  * Threads: material_prepare while the scene is built; the rest read only. */
 #include "material/material.h"
 
+#include "material/material_mips.h"
 #include "material/principled.h"
+#include "material/surface_footprint.h"
 #include "math/rng.h"
 #include "scene.h"
 
@@ -142,10 +144,10 @@ static rgb clamp_to_unit(rgb v)
 }
 
 /* The material as it is at a place. */
-static void look_up_textures(const scene *s, const surface_hit *hit, material *m)
+static void look_up_textures(const scene *s, const surface_hit *hit, const surface_footprint *footprint, material *m)
 {
     if (m->reflectance_texture != SCENE_NO_TEXTURE) {
-        m->reflectance = clamp_to_unit(texture_evaluate_rgb(s, m->reflectance_texture, hit));
+        m->reflectance = clamp_to_unit(texture_filtered_rgb(s, m->reflectance_texture, hit, footprint));
         rgb r = m->reflectance;
         float relative = m->kind == MATERIAL_COATED_CONDUCTOR ? 1.0f / m->ior : 1.0f;
         if (m->kind == MATERIAL_CONDUCTOR || m->kind == MATERIAL_COATED_CONDUCTOR) {
@@ -156,7 +158,7 @@ static void look_up_textures(const scene *s, const surface_hit *hit, material *m
         }
     }
     if (m->transmittance_texture != SCENE_NO_TEXTURE)
-        m->transmittance = clamp_to_unit(texture_evaluate_rgb(s, m->transmittance_texture, hit));
+        m->transmittance = clamp_to_unit(texture_filtered_rgb(s, m->transmittance_texture, hit, footprint));
     if (m->kind == MATERIAL_DIFFUSE_TRANSMISSION) {
         float sum = rgb_max(rgb_add(m->reflectance, m->transmittance));
         if (sum > 1.0f) {
@@ -186,10 +188,10 @@ static void look_up_textures(const scene *s, const surface_hit *hit, material *m
 }
 
 /* glTF's textures multiply what is given for the whole. */
-static void look_up_principled(const scene *s, const surface_hit *hit, material *m)
+static void look_up_principled(const scene *s, const surface_hit *hit, const surface_footprint *footprint, material *m)
 {
     if (m->reflectance_texture != SCENE_NO_TEXTURE)
-        m->reflectance = rgb_mul(m->reflectance, texture_evaluate_rgb(s, m->reflectance_texture, hit));
+        m->reflectance = rgb_mul(m->reflectance, texture_filtered_rgb(s, m->reflectance_texture, hit, footprint));
     if (m->specular_color_texture != SCENE_NO_TEXTURE)
         m->specular_color = rgb_mul(m->specular_color, texture_evaluate_rgb(s, m->specular_color_texture, hit));
     const uint32_t textures[] = {m->metallic_texture, m->roughness_texture, m->transmission_texture,
@@ -204,26 +206,32 @@ static void look_up_principled(const scene *s, const surface_hit *hit, material 
 
 enum { HALF = sizeof(material) / 2 };
 
-/* m is no mix. */
-static void evaluate_at(const scene *s, const material *m, const surface_hit *hit, material *out_material)
+/* m is no mix; of one that a texture picks from, is_picked: beside the place the other may be, whose pixels are of any
+ * colour in this one's pictures, so that none are filtered. */
+static void evaluate_at(const scene *s, const material *m, const surface_hit *hit, bool is_picked,
+                        material *out_material)
 {
     /* in two pieces: compilers make one string instruction of so much, which takes longer to begin than to do */
     memcpy(out_material, m, HALF);
     memcpy((char *)out_material + HALF, (const char *)m + HALF, sizeof *m - HALF);
     if (!m->is_textured)
         return;
+    surface_footprint footprint;
+    const bool filters = hit->footprint.width > 0.0f && s->has_mips && !is_picked && material_is_filtered(m) &&
+                         surface_footprint_at(s, hit, &footprint);
     if (m->kind == MATERIAL_PRINCIPLED)
-        look_up_principled(s, hit, out_material);
+        look_up_principled(s, hit, filters ? &footprint : NULL, out_material);
     else
-        look_up_textures(s, hit, out_material);
+        look_up_textures(s, hit, filters ? &footprint : NULL, out_material);
 }
 
 void material_at(const scene *s, const surface_hit *hit, material *out_material)
 {
     const material *m = &s->materials[s->shapes[hit->shape_index].material_index];
-    if (m->kind == MATERIAL_MIX)
+    const bool is_mix = m->kind == MATERIAL_MIX;
+    if (is_mix)
         m = resolve_mix(s, m, hit);
-    evaluate_at(s, m, hit, out_material);
+    evaluate_at(s, m, hit, is_mix, out_material);
 }
 
 static bool has_base(const material *m)
@@ -255,6 +263,6 @@ bool material_gathering_at(const scene *s, const surface_hit *hit, material *out
 {
     const material *m = find_with_base(s, &s->materials[s->shapes[hit->shape_index].material_index]);
     if (m)
-        evaluate_at(s, m, hit, out_material);
+        evaluate_at(s, m, hit, true, out_material);
     return m != NULL;
 }

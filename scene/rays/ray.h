@@ -4,6 +4,7 @@
 #define AFTERGLOW_RAY_H
 
 #include "math/vec3.h"
+#include "rays/ray_cone.h"
 
 #include <stdint.h>
 
@@ -24,12 +25,13 @@ typedef struct scene_ray {
     ray_veils veils;
     bool slabs_are_panes; /* light that may pass slabs of glass straight (slab_faces.h); else they bend it */
     bool skips_uv;        /* where no texture in the scene reads a hit's uv, nor does who casts it: it may be missing */
+    ray_cone cone;        /* over which textures are filtered; all zero: none is */
 } scene_ray;
 
 /* When the shutter opens, in nothing. */
 static inline scene_ray scene_ray_make(vec3 origin, vec3 direction)
 {
-    return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM, RAY_PASSES_VEILS, false, false};
+    return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM, RAY_PASSES_VEILS, false, false, {0.0f, 0.0f, false}};
 }
 
 #endif

@@ -47,6 +47,7 @@ static void place_hit(const scene *s, const scene_ray *ray, const ray_meeting *m
     out_hit->primitive_index = met->primitive;
     out_hit->time = ray->time;
     out_hit->slab.thickness = 0.0f;
+    out_hit->footprint.width = 0.0f;
     if (met->instance != RTC_INVALID_GEOMETRY_ID) {
         place_instance_hit(s, ray, met, out_hit);
         return;

@@ -3,6 +3,7 @@
 
 #include "scene_extent.h"
 #include "scene_overrides.h"
+#include "status.h"
 
 static const float FOV_DEGREES = 45.0f;
 static const double TAN_HALF_FOV = 0.41421356237309505;  /* tan 22.5 degrees = sqrt 2 - 1 */
@@ -61,9 +62,7 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
     if (s->request && (s->request->has_camera || s->request->camera_name))
         return AG_OK; /* the one that is asked for is set, or missed, by scene_overrides */
     default_axes(axes);
-    ag_status status = scene_find_bounds(s, NULL, &low, &high);
-    if (status)
-        return status;
+    AG_TRY(scene_find_bounds(s, NULL, &low, &high));
     if (low.x <= high.x) {
         const double a[3] = {(double)low.x, (double)low.y, (double)low.z};
         const double b[3] = {(double)high.x, (double)high.y, (double)high.z};
@@ -118,11 +117,9 @@ ag_status import_add_default_light(scene *s, log_sink *log)
     sky.radiance = SKY_RADIANCE;
     sun.radiance = SUN_IRRADIANCE;
     sun.direction = sun_direction(s);
-    ag_status status = scene_add_light(s, &sky, &index);
-    if (!status)
-        status = scene_add_light(s, &sun, &index);
-    s->is_light_made_up = !status;
-    if (!status)
-        log_message(log, AG_LOG_INFO, "the file has no light: an even sky and a sun light it");
-    return status;
+    AG_TRY(scene_add_light(s, &sky, &index));
+    AG_TRY(scene_add_light(s, &sun, &index));
+    s->is_light_made_up = true;
+    log_message(log, AG_LOG_INFO, "the file has no light: an even sky and a sun light it");
+    return AG_OK;
 }

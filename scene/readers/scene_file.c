@@ -8,6 +8,7 @@
 #include "model/ply_file.h"
 #include "pbrt/pbrt_parser.h"
 #include "scene_overrides.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,31 +23,27 @@ static ag_status load_ply(run_context *run, const char *path, scene *out_scene)
     import_surface surface = {.alpha = 1.0f, .alpha_texture = SCENE_NO_TEXTURE, .radiance_texture = SCENE_NO_TEXTURE};
     material gray = material_make(MATERIAL_DIFFUSE);
     transform identity = transform_identity();
-    ag_status status = importer_init(&i, run, path, out_scene);
-    if (status)
-        return status;
+    AG_TRY(importer_init(&i, run, path, out_scene));
     run_progress(run, AG_PHASE_LOAD, 0.0);
-    status = ply_file_read(path, run, error, sizeof error, &m);
+    ag_status status = ply_file_read(path, run, error, sizeof error, &m);
     if (status == AG_ERROR_INPUT)
         log_message(run->log, AG_LOG_ERROR, "%s", error); /* begins with the file's name */
-    if (!status) {
+    if (status == AG_OK) {
         i.left_out_count = m.lines;
         i.odd_vector_count = m.odd_vectors;
         status = scene_add_material(out_scene, &gray, &surface.material_index);
     }
-    if (!status)
-        status = importer_add_mesh(&i, "vertex", &m.mesh, &identity, &surface);
-    else
+    if (status != AG_OK) {
         ply_mesh_reset(&m);
-    if (!status && out_scene->shape_count > 0)
-        status = scene_set_name(out_scene, NAMED_SHAPE, 0, path);
-    if (!status)
-        log_at(run->log, AG_LOG_INFO, i.where, "a PLY file has no materials: the mesh is grey");
-    if (!status)
-        status = importer_finish(&i);
-    if (!status)
-        run_progress(run, AG_PHASE_LOAD, 1.0);
-    return status;
+        return status;
+    }
+    AG_TRY(importer_add_mesh(&i, "vertex", &m.mesh, &identity, &surface)); /* takes the mesh */
+    if (out_scene->shape_count > 0)
+        AG_TRY(scene_set_name(out_scene, NAMED_SHAPE, 0, path));
+    log_at(run->log, AG_LOG_INFO, i.where, "a PLY file has no materials: the mesh is grey");
+    AG_TRY(importer_finish(&i));
+    run_progress(run, AG_PHASE_LOAD, 1.0);
+    return AG_OK;
 }
 
 typedef ag_status load_function(run_context *run, const char *path, scene *out_scene);
@@ -94,12 +91,12 @@ static bool is_pbrts(const char *path)
 
 ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
 {
-    ag_status status = load(run, path, out_scene);
-    if (status == AG_OK && out_scene->request)
-        status = scene_overrides_apply(run, path, is_pbrts(path), out_scene);
-    const definition *unused = status == AG_OK ? definitions_unused(out_scene->definitions) : NULL;
+    AG_TRY(load(run, path, out_scene));
+    if (out_scene->request)
+        AG_TRY(scene_overrides_apply(run, path, is_pbrts(path), out_scene));
+    const definition *unused = definitions_unused(out_scene->definitions);
     if (!unused)
-        return status;
+        return AG_OK;
     log_message(run->log, AG_LOG_ERROR, "%s: error: the scene has no $%s, which -D %s=%s is for", path, unused->name,
                 unused->name, unused->value);
     return AG_ERROR_ARGUMENT;

@@ -3,6 +3,7 @@
 
 #include "light/environment.h"
 #include "light_picture.h"
+#include "status.h"
 #include "text/input_file.h"
 
 #include <stdio.h>
@@ -181,18 +182,18 @@ static ag_status add_sky(run_context *run, const compass *c, scene *s)
         status = input_file_allow_named(run, asked->sky_file, message, sizeof message)
                      ? light_picture_read(s, asked->sky_file, asked->sky_file, false, &picture, message, sizeof message)
                      : AG_ERROR_INPUT;
-        if (!status)
+        if (status == AG_OK)
             status = light_picture_surround(&picture, asked->sky_file, &sky.environment, message, sizeof message);
-        if (!status && picture.bad_count > 0)
+        if (status == AG_OK && picture.bad_count > 0)
             log_message(run->log, AG_LOG_WARNING,
                         "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0",
                         asked->sky_file, picture.bad_count);
     }
-    if (!status && !rgb_is_finite(environment_integral(&sky))) {
+    if (status == AG_OK && !rgb_is_finite(environment_integral(&sky))) {
         snprintf(message, sizeof message, "the light is too bright for a float");
         status = AG_ERROR_ARGUMENT;
     }
-    if (status) {
+    if (status != AG_OK) {
         if (status != AG_ERROR_MEMORY)
             log_message(run->log, AG_LOG_ERROR, "the sky that is asked for: %s", message);
         light_reset(&sky);
@@ -205,15 +206,13 @@ static ag_status add_sky(run_context *run, const compass *c, scene *s)
 ag_status scene_overrides_apply(run_context *run, const char *path, bool is_pbrt, scene *s)
 {
     const scene_request *asked = s->request;
-    ag_status status = check_named_camera(run, path, is_pbrt, s);
-    if (!status && asked->has_camera)
-        status = set_camera(run, is_pbrt, s);
+    AG_TRY(check_named_camera(run, path, is_pbrt, s));
+    if (asked->has_camera)
+        AG_TRY(set_camera(run, is_pbrt, s));
     const compass c = compass_of(s, is_pbrt);
     if (asked->drops_lights)
         scene_drop_all_lights(s);
-    if (!status && asked->has_sky)
-        status = add_sky(run, &c, s);
-    if (!status && asked->has_sun)
-        status = add_sun(run, &c, s);
-    return status;
+    if (asked->has_sky)
+        AG_TRY(add_sky(run, &c, s));
+    return asked->has_sun ? add_sun(run, &c, s) : AG_OK;
 }

@@ -4,6 +4,7 @@
 #include "shape/curves.h"
 
 #include "math/sampling.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -73,9 +74,7 @@ bool curves_can_be_joined(const shape *s, const shape *with)
 ag_status curves_join(curves *c, const curves *from)
 {
     uint32_t before = c->segment_count;
-    ag_status status = curves_reserve(c, before + from->segment_count);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(curves_reserve(c, before + from->segment_count));
     memcpy(c->points + 4 * (size_t)before, from->points, 4 * (size_t)from->segment_count * sizeof *c->points);
     memcpy(c->spans + before, from->spans, from->segment_count * sizeof *c->spans);
     if (c->normals)

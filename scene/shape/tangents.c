@@ -30,34 +30,56 @@ static void find_barycentrics(vec3 e1, vec3 e2, vec3 from_p0, double *out_b1, do
     *out_b2 = determinant > 0.0 ? (c2 * a11 - c1 * a12) / determinant : 0.0;
 }
 
+/* How uvs change along a triangle's edges from its first corner. */
+typedef struct uv_edges {
+    double u1, v1, u2, v2, inverse; /* of the determinant; 0 where they say nothing */
+} uv_edges;
+
+static uv_edges triangle_uv_edges(const mesh *m, const uint32_t *index)
+{
+    /* a mesh without uvs has (0, 0), (1, 0), (1, 1) on every triangle */
+    uv_edges e = {1.0, 0.0, 1.0, 1.0, 0.0};
+    if (m->uvs) {
+        vec2 t0 = m->uvs[index[0]], t1 = m->uvs[index[1]], t2 = m->uvs[index[2]];
+        e.u1 = (double)t1.x - t0.x, e.v1 = (double)t1.y - t0.y, e.u2 = (double)t2.x - t0.x, e.v2 = (double)t2.y - t0.y;
+    }
+    double determinant = e.u1 * e.v2 - e.u2 * e.v1, inverse = 1.0 / determinant;
+    e.inverse = determinant == 0.0 || !isfinite(inverse) ? 0.0 : inverse;
+    return e;
+}
+
+/* dpdu and dpdv; all zero where uvs say nothing. */
+static surface_differentials triangle_axes(const mesh *m, uint32_t triangle)
+{
+    const uint32_t *index = m->indices + 3 * (size_t)triangle;
+    vec3 e1 = triangle_edge(m->positions, index, 1), e2 = triangle_edge(m->positions, index, 2);
+    uv_edges uv = triangle_uv_edges(m, index);
+    surface_differentials d = NO_DIFFERENTIALS;
+    if (uv.inverse == 0.0)
+        return d;
+    d.dpdu = combine(e1, uv.v2 * uv.inverse, e2, -uv.v1 * uv.inverse);
+    d.dpdv = combine(e1, -uv.u2 * uv.inverse, e2, uv.u1 * uv.inverse);
+    return d;
+}
+
 static surface_differentials mesh_differentials(const shape *s, const surface_hit *hit)
 {
     const mesh *m = &s->as.mesh;
     const uint32_t *index = m->indices + 3 * (size_t)hit->primitive_index;
-    vec3 e1 = triangle_edge(m->positions, index, 1), e2 = triangle_edge(m->positions, index, 2);
-    /* a mesh without uvs has (0, 0), (1, 0), (1, 1) on every triangle */
-    double u1 = 1.0, v1 = 0.0, u2 = 1.0, v2 = 1.0;
-    if (m->uvs) {
-        vec2 t0 = m->uvs[index[0]], t1 = m->uvs[index[1]], t2 = m->uvs[index[2]];
-        u1 = (double)t1.x - t0.x, v1 = (double)t1.y - t0.y, u2 = (double)t2.x - t0.x, v2 = (double)t2.y - t0.y;
-    }
-    double determinant = u1 * v2 - u2 * v1, inverse = 1.0 / determinant;
-    surface_differentials d = NO_DIFFERENTIALS;
-    if (determinant == 0.0 || !isfinite(inverse))
+    surface_differentials d = triangle_axes(m, hit->primitive_index);
+    uv_edges uv = triangle_uv_edges(m, index);
+    if (uv.inverse == 0.0 || !m->normals)
         return d;
-    d.dpdu = combine(e1, v2 * inverse, e2, -v1 * inverse);
-    d.dpdv = combine(e1, -u2 * inverse, e2, u1 * inverse);
-    if (m->normals) {
-        vec3 n0 = m->normals[index[0]];
-        vec3 n1 = triangle_edge(m->normals, index, 1), n2 = triangle_edge(m->normals, index, 2);
-        double b1, b2;
-        find_barycentrics(e1, e2, vec3_sub(hit->position, m->positions[index[0]]), &b1, &b2);
-        double length = (double)vec3_length(vec3_add(n0, combine(n1, b1, n2, b2)));
-        if (length > 0.0) {
-            inverse /= length;
-            d.dndu = across(combine(n1, v2 * inverse, n2, -v1 * inverse), hit->shading_normal);
-            d.dndv = across(combine(n1, -u2 * inverse, n2, u1 * inverse), hit->shading_normal);
-        }
+    vec3 e1 = triangle_edge(m->positions, index, 1), e2 = triangle_edge(m->positions, index, 2);
+    vec3 n0 = m->normals[index[0]];
+    vec3 n1 = triangle_edge(m->normals, index, 1), n2 = triangle_edge(m->normals, index, 2);
+    double b1, b2;
+    find_barycentrics(e1, e2, vec3_sub(hit->position, m->positions[index[0]]), &b1, &b2);
+    double length = (double)vec3_length(vec3_add(n0, combine(n1, b1, n2, b2)));
+    if (length > 0.0) {
+        double inverse = uv.inverse / length;
+        d.dndu = across(combine(n1, uv.v2 * inverse, n2, -uv.v1 * inverse), hit->shading_normal);
+        d.dndv = across(combine(n1, -uv.u2 * inverse, n2, uv.u1 * inverse), hit->shading_normal);
     }
     return d;
 }
@@ -153,6 +175,25 @@ surface_differentials surface_differentials_at(const scene *s, const surface_hit
         d.dpdv = any.y;
     }
     return d;
+}
+
+bool surface_uv_axes(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec3 *out_dpdv)
+{
+    const shape *at = &s->shapes[hit->shape_index];
+    const bool is_placed = hit->instance_index != SCENE_NO_INSTANCE;
+    /* a triangle's do not depend on the place */
+    surface_hit in_object = is_placed && at->kind != SHAPE_MESH ? instance_hit_in_object(s, hit) : *hit;
+    surface_differentials d =
+        at->kind == SHAPE_MESH ? triangle_axes(&at->as.mesh, hit->primitive_index) : differentials_of(at, &in_object);
+    if (is_placed) {
+        affine world_from_object = instance_at(s, hit->instance_index, hit->time);
+        d.dpdu = affine_vector(&world_from_object, d.dpdu);
+        d.dpdv = affine_vector(&world_from_object, d.dpdv);
+    }
+    *out_dpdu = d.dpdu;
+    *out_dpdv = d.dpdv;
+    float area = vec3_length_squared(vec3_cross(d.dpdu, d.dpdv));
+    return area > 0.0f && isfinite(area);
 }
 
 /* The tangents that a mesh has been given, in its own space; false where there are none. */

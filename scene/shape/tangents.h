@@ -15,6 +15,9 @@ typedef struct surface_differentials {
 
 surface_differentials surface_differentials_at(const scene *s, const surface_hit *hit);
 
+/* dpdu and dpdv alone. false: uvs say nothing there. */
+bool surface_uv_axes(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec3 *out_dpdv);
+
 /* Along which the surface's u and v grow there, in world space, unless it is a mesh with tangents of its own: those,
  * and across them on v's side. Worked out anew at each call. Where there are none, any that lie in the surface. */
 void surface_tangents(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec3 *out_dpdv);

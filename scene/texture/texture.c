@@ -4,6 +4,7 @@
 
 #include "math/sampling.h"
 #include "scene.h"
+#include "texture/texture_filter.h"
 #include "texture/texture_noise.h"
 
 #include <string.h>
@@ -23,20 +24,26 @@ texture texture_make(texture_kind kind)
     return t;
 }
 
-static rgb evaluate(const scene *s, const texture *t, const surface_hit *hit);
+/* Where textures are looked up, and over what pictures are filtered. */
+typedef struct lookup {
+    const surface_hit *hit;
+    const surface_footprint *footprint; /* NULL: nothing is */
+} lookup;
 
-static rgb input_at(const scene *s, const texture *t, int which, const surface_hit *hit)
+static rgb evaluate(const scene *s, const texture *t, const lookup *at);
+
+static rgb input_at(const scene *s, const texture *t, int which, const lookup *at)
 {
     const texture_input *input = &t->inputs[which];
     return input->texture_index == SCENE_NO_TEXTURE ? input->value
-                                                    : evaluate(s, &s->textures[input->texture_index], hit);
+                                                    : evaluate(s, &s->textures[input->texture_index], at);
 }
 
 /* The second's share is amount. One that has no share is not asked: it may be costly. */
-static rgb mix_inputs(const scene *s, const texture *t, float amount, const surface_hit *hit)
+static rgb mix_inputs(const scene *s, const texture *t, float amount, const lookup *at)
 {
-    rgb first = amount == 1.0f ? rgb_gray(0.0f) : input_at(s, t, 0, hit);
-    rgb second = amount == 0.0f ? rgb_gray(0.0f) : input_at(s, t, 1, hit);
+    rgb first = amount == 1.0f ? rgb_gray(0.0f) : input_at(s, t, 0, at);
+    rgb second = amount == 0.0f ? rgb_gray(0.0f) : input_at(s, t, 1, at);
     return rgb_add(rgb_scale(first, 1.0f - amount), rgb_scale(second, amount));
 }
 
@@ -47,8 +54,9 @@ static bool is_odd(float x)
     return half - floorf(half) >= 0.5f;
 }
 
-static rgb checkerboard(const scene *s, const texture *t, const surface_hit *hit)
+static rgb checkerboard(const scene *s, const texture *t, const lookup *at)
 {
+    const surface_hit *hit = at->hit;
     bool odd;
     if (t->mapping.kind == TEXTURE_MAPPING_SOLID) {
         vec3 p = texture_mapping_point(&t->mapping, hit->position);
@@ -57,18 +65,38 @@ static rgb checkerboard(const scene *s, const texture *t, const surface_hit *hit
         vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
         odd = is_odd(st.x) != is_odd(st.y);
     }
-    return input_at(s, t, odd ? 1 : 0, hit);
+    return input_at(s, t, odd ? 1 : 0, at);
 }
 
-static rgb image_value(const scene *s, const texture *t, const surface_hit *hit)
+/* The second: over the footprint. */
+static rgb picture_rgb(const texture *t, const texture_image *picture, vec2 st)
 {
+    return (t->is_data ? texture_image_rgb : texture_image_color)(picture, t->wraps, t->filter, st.x, 1.0f - st.y);
+}
+
+static rgb filtered_picture_rgb(const texture *t, const texture_image *picture, vec2 st, const lookup *at)
+{
+    const surface_footprint *on_surface = at->footprint;
+    texture_footprint f = {.is_coarse = on_surface->is_coarse};
+    for (int k = 0; k < 2; k++) {
+        f.axes[k] = texture_mapping_step(&t->mapping, at->hit->uv, at->hit->position, on_surface->uv_axes[k],
+                                         on_surface->axes[k]);
+        f.axes[k].y = -f.axes[k].y;
+    }
+    return (t->is_data ? texture_filter_rgb : texture_filter_color)(picture, t->wraps, t->filter, st.x, 1.0f - st.y,
+                                                                    &f);
+}
+
+static rgb image_value(const scene *s, const texture *t, const lookup *at)
+{
+    const surface_hit *hit = at->hit;
     const texture_image *picture = s->texture_images[t->image_index];
     vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
     if (!t->is_spectrum) {
         float value = t->scale * texture_image_float(picture, t->channel, t->wraps, t->filter, st.x, 1.0f - st.y);
         return rgb_gray(t->invert ? fmaxf(0.0f, 1.0f - value) : value);
     }
-    rgb value = (t->is_data ? texture_image_rgb : texture_image_color)(picture, t->wraps, t->filter, st.x, 1.0f - st.y);
+    rgb value = at->footprint && picture->mips ? filtered_picture_rgb(t, picture, st, at) : picture_rgb(t, picture, st);
     value = rgb_scale(value, t->scale);
     if (t->invert)
         value = rgb_sub(rgb_gray(1.0f), value);
@@ -130,23 +158,24 @@ static rgb marble(const texture *t, vec3 place)
     return marble_color(fminf(fmaxf(0.5f + 0.5f * sine, 0.0f), 1.0f));
 }
 
-static rgb evaluate(const scene *s, const texture *t, const surface_hit *hit)
+static rgb evaluate(const scene *s, const texture *t, const lookup *at)
 {
+    const surface_hit *hit = at->hit;
     switch (t->kind) {
     case TEXTURE_CONSTANT: return t->inputs[0].value;
     case TEXTURE_SCALE: { /* by a float, which is grey, or by a colour */
-        rgb factor = input_at(s, t, 1, hit);
-        return rgb_is_black(factor) ? rgb_gray(0.0f) : rgb_mul(input_at(s, t, 0, hit), factor);
+        rgb factor = input_at(s, t, 1, at);
+        return rgb_is_black(factor) ? rgb_gray(0.0f) : rgb_mul(input_at(s, t, 0, at), factor);
     }
-    case TEXTURE_MIX: return mix_inputs(s, t, input_at(s, t, 2, hit).r, hit);
+    case TEXTURE_MIX: return mix_inputs(s, t, input_at(s, t, 2, at).r, at);
     case TEXTURE_DIRECTION_MIX:
-        return mix_inputs(s, t, 1.0f - fabsf(vec3_dot(hit->geometric_normal, t->direction)), hit);
-    case TEXTURE_CHECKERBOARD: return checkerboard(s, t, hit);
-    case TEXTURE_IMAGE: return image_value(s, t, hit);
+        return mix_inputs(s, t, 1.0f - fabsf(vec3_dot(hit->geometric_normal, t->direction)), at);
+    case TEXTURE_CHECKERBOARD: return checkerboard(s, t, at);
+    case TEXTURE_IMAGE: return image_value(s, t, at);
     case TEXTURE_BILERP: return bilerp(t, hit);
     case TEXTURE_DOTS: {
         bool inside = is_inside_dot(texture_mapping_st(&t->mapping, hit->uv, hit->position));
-        return input_at(s, t, inside ? 0 : 1, hit);
+        return input_at(s, t, inside ? 0 : 1, at);
     }
     default: break;
     }
@@ -164,10 +193,47 @@ static rgb evaluate(const scene *s, const texture *t, const surface_hit *hit)
 
 rgb texture_evaluate_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit)
 {
-    return evaluate(s, &s->textures[texture_index], hit);
+    return evaluate(s, &s->textures[texture_index], &(lookup){hit, NULL});
+}
+
+rgb texture_filtered_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit,
+                         const surface_footprint *footprint)
+{
+    const texture *t = &s->textures[texture_index];
+    return evaluate(s, t, &(lookup){hit, t->is_linear_in_pictures ? footprint : NULL});
 }
 
 float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit)
 {
-    return evaluate(s, &s->textures[texture_index], hit).r;
+    return evaluate(s, &s->textures[texture_index], &(lookup){hit, NULL}).r;
+}
+
+/* --- what pictures do to a texture --- */
+
+static const texture *input_texture(const struct scene *s, const texture *t, int which)
+{
+    uint32_t index = t->inputs[which].texture_index;
+    return index == SCENE_NO_TEXTURE ? NULL : &s->textures[index];
+}
+
+static bool has_pictures(const struct scene *s, const texture *t, int which)
+{
+    const texture *input = input_texture(s, t, which);
+    return input && input->has_pictures;
+}
+
+void texture_find_pictures(const struct scene *s, texture *t)
+{
+    t->has_pictures = t->kind == TEXTURE_IMAGE;
+    t->is_linear_in_pictures = true;
+    for (int i = 0; i < (int)(sizeof t->inputs / sizeof *t->inputs); i++) {
+        const texture *input = input_texture(s, t, i);
+        t->has_pictures = t->has_pictures || has_pictures(s, t, i);
+        t->is_linear_in_pictures = t->is_linear_in_pictures && (!input || input->is_linear_in_pictures);
+    }
+    bool is_product = t->kind == TEXTURE_SCALE ? has_pictures(s, t, 0) && has_pictures(s, t, 1)
+                      : t->kind == TEXTURE_MIX
+                          ? has_pictures(s, t, 2) && (has_pictures(s, t, 0) || has_pictures(s, t, 1))
+                          : false;
+    t->is_linear_in_pictures = t->is_linear_in_pictures && !is_product;
 }

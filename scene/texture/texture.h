@@ -1,7 +1,7 @@
 /* texture.h: values that vary over a surface, as nodes of a graph: a texture refers only to earlier ones.
  * The kinds, their parameters and defaults are pbrt-v4's (pbrt.org/fileformat-v4, "Textures"); Pharr, Jakob, Humphreys,
- * "Physically Based Rendering", 4th ed., 2023, ch. 10. Nothing is filtered but between the pixels of a picture: many
- * samples a pixel do the rest.
+ * "Physically Based Rendering", 4th ed., 2023, ch. 10. Pictures of colours are
+ * filtered over the footprints of rays that have one; of all else many samples a pixel take the mean.
  * Flow: the scene file makes textures; materials, lights and shapes look them up at a hit.
  * Threads: read-only once the scene is committed; looking up is pure. */
 #ifndef AFTERGLOW_TEXTURE_H
@@ -50,22 +50,37 @@ typedef struct texture {
     texture_channel channel; /* image, float textures: which of the picture's */
     texture_wraps wraps;
     texture_filter filter;
-    bool is_data;    /* image: three numbers, not a colour */
-    bool invert;     /* image: 1 - value, after scale */
-    float scale;     /* image: of values; marble: of the place */
-    int octaves;     /* fbm, wrinkled, marble; [0, TEXTURE_MAX_OCTAVES] */
-    float roughness; /* the same: of an octave over the one before */
-    float variation; /* marble */
-    uint32_t cost;   /* set by scene_add_texture */
-    float step;      /* likewise: of u and v, over which its slope is to be taken */
+    bool is_data;                             /* image: three numbers, not a colour */
+    bool invert;                              /* image: 1 - value, after scale */
+    float scale;                              /* image: of values; marble: of the place */
+    int octaves;                              /* fbm, wrinkled, marble; [0, TEXTURE_MAX_OCTAVES] */
+    float roughness;                          /* the same: of an octave over the one before */
+    float variation;                          /* marble */
+    uint32_t cost;                            /* set by scene_add_texture */
+    float step;                               /* likewise: of u and v, over which its slope is to be taken */
+    bool has_pictures, is_linear_in_pictures; /* likewise: the mean of its values is the value of its pictures' means */
 } texture;
+
+/* What a ray's cone cuts out of a surface, see material/surface_footprint.h. */
+typedef struct surface_footprint {
+    vec3 axes[2];    /* diameters of an ellipse, world space */
+    vec2 uv_axes[2]; /* the same in the surface's u and v */
+    bool is_coarse;
+} surface_footprint;
 
 /* Of that kind, without inputs, by the surface's own u and v; a picture as it is, bilinear, repeated. */
 texture texture_make(texture_kind kind);
 
 /* The value at a hit. Of a float texture all components are the same. */
 rgb texture_evaluate_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
+/* The same over a footprint, where the mean of the texture is to be had from that of its pictures. NULL: at the place.
+ */
+rgb texture_filtered_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit,
+                         const surface_footprint *footprint);
 /* Of a float texture. */
 float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
+
+/* Sets has_pictures and is_linear_in_pictures. */
+void texture_find_pictures(const struct scene *s, texture *in_out);
 
 #endif

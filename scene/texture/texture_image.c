@@ -182,102 +182,30 @@ void texture_image_destroy(texture_image *i)
     free(i->values);
     free(i->alpha_bytes);
     free(i->alpha_values);
+    texture_mips_destroy(i->mips);
     free(i);
 }
 
 /* Looking up */
 
-/* Pixels that have a part in a value. */
-typedef struct footprint {
-    int count;
-    size_t offset[4]; /* of the pixel's first value */
-    float weight[4];
-} footprint;
-
-/* A coordinate brought to where all neighbours are at most one pixel beyond an edge, or where all is black. */
-static float tame(texture_wrap wrap, float x)
+static pixel_blend find_pixels(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
 {
-    switch (wrap) {
-    case TEXTURE_WRAP_REPEAT: return fabsf(x) < 1e9f ? x - floorf(x) : 0.0f;
-    case TEXTURE_WRAP_BLACK: return fminf(fmaxf(x, -1.0f), 2.0f);
-    case TEXTURE_WRAP_MIRROR:
-        x = fabsf(x) < 1e9f ? 0.5f * x - floorf(0.5f * x) : 0.0f;
-        return x < 0.5f ? 2.0f * x : 2.0f - 2.0f * x;
-    default: return fminf(fmaxf(x, 0.0f), 1.0f);
-    }
+    return pixel_blend_at(i->width, i->height, wraps, filter, s, t);
 }
 
-/* Brings x, which is beyond an edge, to [0, size); false where all is black there. */
-static bool wrap_axis(texture_wrap wrap, int64_t size, int64_t *x)
-{
-    if (wrap == TEXTURE_WRAP_REPEAT)
-        *x = *x < 0 ? *x + size : *x - size;
-    else /* the edge's own pixel is also what a mirror shows next to it */
-        *x = *x < 0 ? 0 : size - 1;
-    return wrap != TEXTURE_WRAP_BLACK;
-}
-
-/* Brings pixel (x, y) into the picture; false where it is black. */
-static bool wrap_pixel(const texture_image *i, texture_wraps wraps, int64_t *x, int64_t *y)
-{
-    const int64_t width = i->width, height = i->height;
-    const bool beyond_x = *x < 0 || *x >= width, beyond_y = *y < 0 || *y >= height;
-    if (!beyond_x && !beyond_y)
-        return true;
-    if (wraps.s == TEXTURE_WRAP_OCTAHEDRAL) {
-        if (beyond_x) {
-            *x = *x < 0 ? 0 : width - 1;
-            *y = height - 1 - *y;
-        }
-        if (*y < 0 || *y >= height) {
-            *y = *y < 0 ? 0 : height - 1;
-            *x = width - 1 - *x;
-        }
-        return true;
-    }
-    return (!beyond_x || wrap_axis(wraps.s, width, x)) && (!beyond_y || wrap_axis(wraps.t, height, y));
-}
-
-static void add_pixel(const texture_image *i, texture_wraps wraps, int64_t x, int64_t y, float weight, footprint *f)
-{
-    if (!wrap_pixel(i, wraps, &x, &y))
-        return;
-    f->offset[f->count] = ((size_t)y * i->width + (size_t)x) * i->channel_count;
-    f->weight[f->count++] = weight;
-}
-
-static footprint find_pixels(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
-{
-    footprint f;
-    f.count = 0;
-    float x = tame(wraps.s, s) * (float)i->width, y = tame(wraps.t, t) * (float)i->height;
-    if (filter == TEXTURE_FILTER_POINT) {
-        add_pixel(i, wraps, (int64_t)floorf(x), (int64_t)floorf(y), 1.0f, &f);
-        return f;
-    }
-    x -= 0.5f;
-    y -= 0.5f;
-    const float left = floorf(x), top = floorf(y), u = x - left, v = y - top;
-    const int64_t x0 = (int64_t)left, y0 = (int64_t)top;
-    add_pixel(i, wraps, x0, y0, (1.0f - u) * (1.0f - v), &f);
-    add_pixel(i, wraps, x0 + 1, y0, u * (1.0f - v), &f);
-    add_pixel(i, wraps, x0, y0 + 1, (1.0f - u) * v, &f);
-    add_pixel(i, wraps, x0 + 1, y0 + 1, u * v, &f);
-    return f;
-}
-
-static float sum_channel(const texture_image *i, const footprint *f, size_t channel)
+static float sum_channel(const texture_image *i, const pixel_blend *f, size_t channel)
 {
     float sum = 0.0f;
-    for (int k = 0; k < f->count; k++)
-        sum +=
-            f->weight[k] * (i->bytes ? i->table[i->bytes[f->offset[k] + channel]] : i->values[f->offset[k] + channel]);
+    for (int k = 0; k < f->count; k++) {
+        const size_t at = f->pixel[k] * i->channel_count + channel;
+        sum += f->weight[k] * (i->bytes ? i->table[i->bytes[at]] : i->values[at]);
+    }
     return sum;
 }
 
 rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
 {
-    const footprint f = find_pixels(i, wraps, filter, s, t);
+    const pixel_blend f = find_pixels(i, wraps, filter, s, t);
     const float first = sum_channel(i, &f, 0);
     return i->channel_count == 1 ? rgb_gray(first) : rgb_make(first, sum_channel(i, &f, 1), sum_channel(i, &f, 2));
 }
@@ -289,11 +217,11 @@ rgb texture_image_color(const texture_image *i, texture_wraps wraps, texture_fil
 }
 
 /* is_encoded: bytes are decoded as those of colours are. */
-static float sum_alpha(const texture_image *i, const footprint *f, bool is_encoded)
+static float sum_alpha(const texture_image *i, const pixel_blend *f, bool is_encoded)
 {
     float sum = 0.0f;
     for (int k = 0; k < f->count; k++) {
-        const size_t pixel = f->offset[k] / i->channel_count;
+        const size_t pixel = f->pixel[k];
         const float alpha = i->alpha_bytes && is_encoded ? i->table[i->alpha_bytes[pixel]]
                             : i->alpha_bytes             ? (float)i->alpha_bytes[pixel] * (1.0f / 255.0f)
                             : i->alpha_values            ? i->alpha_values[pixel]
@@ -306,7 +234,7 @@ static float sum_alpha(const texture_image *i, const footprint *f, bool is_encod
 float texture_image_float(const texture_image *i, texture_channel channel, texture_wraps wraps, texture_filter filter,
                           float s, float t)
 {
-    const footprint f = find_pixels(i, wraps, filter, s, t);
+    const pixel_blend f = find_pixels(i, wraps, filter, s, t);
     if (channel == TEXTURE_CHANNEL_A)
         return sum_alpha(i, &f, false);
     if (channel == TEXTURE_CHANNEL_ALL && i->channel_count == 3 && (i->alpha_bytes || i->alpha_values))

@@ -7,28 +7,12 @@
 
 #include "math/vec3.h"
 #include "texture/image_colors.h"
+#include "texture/texture_mips.h"
+#include "texture/texture_pixels.h"
 
 #include <stdint.h>
 
 struct scene;
-
-/* What lies beyond the picture's edges. */
-typedef enum texture_wrap {
-    TEXTURE_WRAP_REPEAT,
-    TEXTURE_WRAP_BLACK,
-    TEXTURE_WRAP_CLAMP,
-    TEXTURE_WRAP_OCTAHEDRAL, /* the other half of the same edge: a sphere unfolded onto a square */
-    TEXTURE_WRAP_MIRROR      /* repeated, every other time mirrored */
-} texture_wrap;
-
-/* Along s and t; an octahedral one is so along both. */
-typedef struct texture_wraps {
-    texture_wrap s, t;
-} texture_wraps;
-
-static inline texture_wraps texture_wraps_same(texture_wrap wrap) { return (texture_wraps){wrap, wrap}; }
-
-typedef enum texture_filter { TEXTURE_FILTER_BILINEAR, TEXTURE_FILTER_POINT } texture_filter;
 
 /* Of a grey picture all three colours are the same; alpha is 1 where it has none. */
 typedef enum texture_channel {
@@ -51,6 +35,7 @@ typedef struct texture_image {
     unsigned char *alpha_bytes; /* with bytes, or NULL: 1 everywhere */
     float *alpha_values;        /* the same with values */
     image_colors colors;        /* from linear values to the working space's, of those that are colours */
+    texture_mips *mips;         /* coarser levels, for filtering; NULL: none are wanted */
     uint64_t bad_count;         /* values that were not finite, and are 0 now */
 } texture_image;
 

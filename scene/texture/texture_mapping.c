@@ -35,3 +35,28 @@ vec2 texture_mapping_st(const texture_mapping *m, vec2 uv, vec3 position)
         return (vec2){(float)(round_z <= 0.5 ? round_z + 0.5 : round_z - 0.5), p.z};
     return (vec2){(float)(2.0 * angle_turns(sqrt(x * x + y * y), (double)p.z)), (float)round_z};
 }
+
+/* Across the seam of what goes round once in 1. */
+static float shorter_way(float turn) { return turn - floorf(turn + 0.5f); }
+
+vec2 texture_mapping_step(const texture_mapping *m, vec2 uv, vec3 position, vec2 uv_step, vec3 position_step)
+{
+    if (m->kind == TEXTURE_MAPPING_UV)
+        return (vec2){m->scale.x * uv_step.x, m->scale.y * uv_step.y};
+    if (m->kind == TEXTURE_MAPPING_UV_AFFINE)
+        return (vec2){m->axes[0].x * uv_step.x + m->axes[0].y * uv_step.y,
+                      m->axes[1].x * uv_step.x + m->axes[1].y * uv_step.y};
+    if (m->kind == TEXTURE_MAPPING_PLANAR) {
+        vec3 from = texture_mapping_point(m, vec3_make(0.0f, 0.0f, 0.0f));
+        vec3 step = vec3_sub(texture_mapping_point(m, position_step), from);
+        return (vec2){vec3_dot(step, m->axes[0]), vec3_dot(step, m->axes[1])};
+    }
+    vec2 here = texture_mapping_st(m, uv, position),
+         there = texture_mapping_st(m, uv, vec3_add(position, position_step));
+    vec2 step = {there.x - here.x, there.y - here.y};
+    if (m->kind == TEXTURE_MAPPING_CYLINDRICAL)
+        step.x = shorter_way(step.x);
+    else
+        step.y = shorter_way(step.y);
+    return step;
+}

@@ -29,6 +29,8 @@ void texture_mapping_place(texture_mapping *m, const transform *world_from_textu
 
 /* uv is the surface's, position in world space. Not for solid ones. */
 vec2 texture_mapping_st(const texture_mapping *m, vec2 uv, vec3 position);
+/* The step of (s, t) where uv and position go on by so little. Not for solid ones. */
+vec2 texture_mapping_step(const texture_mapping *m, vec2 uv, vec3 position, vec2 uv_step, vec3 position_step);
 /* The place in texture space. Not for uv. */
 vec3 texture_mapping_point(const texture_mapping *m, vec3 position);
 

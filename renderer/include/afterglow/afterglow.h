@@ -178,6 +178,10 @@ typedef enum ag_pane_light {
     AG_PANE_LIGHT_TRACED  /* like light by way of any other glass */
 } ag_pane_light;
 
+/* Pictures of colours are filtered over the footprints of rays: along the eye's over their share of a pixel, also by
+ * way of mirrors and glass, along gather rays' and photons' more coarsely. */
+typedef enum ag_texture_filter { AG_TEXTURE_FILTER_ON, AG_TEXTURE_FILTER_OFF } ag_texture_filter;
+
 typedef enum ag_only { AG_ONLY_ALL, AG_ONLY_INDIRECT } ag_only;
 
 /* Layers of a picture beside its R, G and B. Their channels have the names that other renderers give them. */
@@ -240,11 +244,12 @@ typedef struct ag_layer_info {
 AG_API const ag_layer_info *ag_layer_at(size_t index);
 
 typedef struct ag_render_settings {
-    ag_integrator integrator; /* default: photonmap */
-    ag_cache_mode cache;      /* default: on demand */
-    ag_pane_light pane_light; /* default: direct */
-    ag_only only;             /* AG_ONLY_INDIRECT: less emission and direct light at the first non-specular hit */
-    uint64_t seed;            /* default 0; statistics show it as a signed number */
+    ag_integrator integrator;         /* default: photonmap */
+    ag_cache_mode cache;              /* default: on demand */
+    ag_pane_light pane_light;         /* default: direct */
+    ag_texture_filter texture_filter; /* default: on */
+    ag_only only;  /* AG_ONLY_INDIRECT: less emission and direct light at the first non-specular hit */
+    uint64_t seed; /* default 0; statistics show it as a signed number */
 
     int width, height;     /* pixels of the full picture, [1, 65536] */
     double crop_window[4]; /* x0, x1, y0, y1 in [0, 1]: the part to render, from the left and from the top, as

@@ -57,11 +57,11 @@ static ag_status read_perspective(gltf_reader *r, const gltf_value *at, camera *
 {
     double height_angle = 0.0;
     gltf_value perspective;
-    GLTF_TRY(gltf_require(r, at, "perspective"));
-    GLTF_TRY(gltf_get_object(r, at, "perspective", &perspective));
-    GLTF_TRY(gltf_require(r, &perspective, "yfov"));
-    GLTF_TRY(gltf_get_double(r, &perspective, "yfov", &height_angle));
-    GLTF_TRY(gltf_get_double(r, &perspective, "aspectRatio", &r->aspect));
+    AG_TRY(gltf_require(r, at, "perspective"));
+    AG_TRY(gltf_get_object(r, at, "perspective", &perspective));
+    AG_TRY(gltf_require(r, &perspective, "yfov"));
+    AG_TRY(gltf_get_double(r, &perspective, "yfov", &height_angle));
+    AG_TRY(gltf_get_double(r, &perspective, "aspectRatio", &r->aspect));
     if (!(height_angle > 0.0 && height_angle * DEGREES < 180.0))
         return gltf_error(r, &perspective, "its yfov is %g, which should be within (0, pi)", height_angle);
     if (r->aspect != 0.0 && !(r->aspect >= 1e-3 && r->aspect <= 1e3))
@@ -77,12 +77,12 @@ static ag_status read_orthographic(gltf_reader *r, const gltf_value *at, camera 
 {
     double half[2] = {0.0, 0.0};
     gltf_value orthographic;
-    GLTF_TRY(gltf_require(r, at, "orthographic"));
-    GLTF_TRY(gltf_get_object(r, at, "orthographic", &orthographic));
-    GLTF_TRY(gltf_require(r, &orthographic, "xmag"));
-    GLTF_TRY(gltf_require(r, &orthographic, "ymag"));
-    GLTF_TRY(gltf_get_double(r, &orthographic, "xmag", &half[0]));
-    GLTF_TRY(gltf_get_double(r, &orthographic, "ymag", &half[1]));
+    AG_TRY(gltf_require(r, at, "orthographic"));
+    AG_TRY(gltf_get_object(r, at, "orthographic", &orthographic));
+    AG_TRY(gltf_require(r, &orthographic, "xmag"));
+    AG_TRY(gltf_require(r, &orthographic, "ymag"));
+    AG_TRY(gltf_get_double(r, &orthographic, "xmag", &half[0]));
+    AG_TRY(gltf_get_double(r, &orthographic, "ymag", &half[1]));
     for (int i = 0; i < 2; i++) { /* a negative one is to mirror the picture, says the format, but nobody should */
         if (!(fabs(half[i]) >= 1e-18 && fabs(half[i]) <= GLTF_MAX_COORDINATE))
             return gltf_error(r, &orthographic, "its xmag and ymag are %g and %g, which should not be 0", half[0],
@@ -104,14 +104,14 @@ ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_value *node
     char number[32];
     bool is_wanted;
     gltf_value at;
-    GLTF_TRY(gltf_get_item(r, GLTF_CAMERAS, index, &at));
-    GLTF_TRY(gltf_require(r, &at, "type"));
-    GLTF_TRY(gltf_get_text(r, &at, "type", &type));
-    GLTF_TRY(gltf_get_text(r, &at, "name", &name));
-    GLTF_TRY(gltf_get_text(r, node, "name", &node_name));
+    AG_TRY(gltf_get_item(r, GLTF_CAMERAS, index, &at));
+    AG_TRY(gltf_require(r, &at, "type"));
+    AG_TRY(gltf_get_text(r, &at, "type", &type));
+    AG_TRY(gltf_get_text(r, &at, "name", &name));
+    AG_TRY(gltf_get_text(r, node, "name", &node_name));
     snprintf(number, sizeof number, "cameras[%u]", index);
     const char *known_as = node_name[0] ? node_name : name[0] ? name : number;
-    GLTF_TRY(scene_overrides_meet_camera(r->scene, known_as, name, &is_wanted));
+    AG_TRY(scene_overrides_meet_camera(r->scene, known_as, name, &is_wanted));
     if (!is_wanted) {
         log_at(r->run->log, AG_LOG_INFO, r->where, "camera \"%s\" is not used: --camera takes its name", known_as);
         return AG_OK;
@@ -120,7 +120,7 @@ ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_value *node
     bool is_orthographic = strcmp(type, "orthographic") == 0;
     if (!is_orthographic && strcmp(type, "perspective") != 0)
         return gltf_error(r, &at, "there is no camera of type \"%s\"", type);
-    GLTF_TRY(is_orthographic ? read_orthographic(r, &at, &c) : read_perspective(r, &at, &c));
+    AG_TRY(is_orthographic ? read_orthographic(r, &at, &c) : read_perspective(r, &at, &c));
     if (!place_camera(world_from_node, &c.world_from_camera))
         return gltf_error(r, &at, "its node leaves no room for it");
     r->scene->camera = c;

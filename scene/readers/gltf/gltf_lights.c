@@ -72,9 +72,9 @@ static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
 {
     double inner = 0.0, outer = 0.78539816339744831;
     gltf_value spot;
-    GLTF_TRY(gltf_get_object(r, at, "spot", &spot));
-    GLTF_TRY(gltf_get_double(r, &spot, "innerConeAngle", &inner));
-    GLTF_TRY(gltf_get_double(r, &spot, "outerConeAngle", &outer));
+    AG_TRY(gltf_get_object(r, at, "spot", &spot));
+    AG_TRY(gltf_get_double(r, &spot, "innerConeAngle", &inner));
+    AG_TRY(gltf_get_double(r, &spot, "outerConeAngle", &outer));
     if (!(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= 1.5708))
         return gltf_error(r, &spot, "its angles are %g and %g, which should be 0 <= inner < outer <= pi / 2", inner,
                           outer);
@@ -92,12 +92,12 @@ ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world
     uint32_t light_index;
     gltf_value at;
     tell_units(r);
-    GLTF_TRY(gltf_get_item(r, GLTF_LIGHTS, index, &at));
-    GLTF_TRY(gltf_require(r, &at, "type"));
-    GLTF_TRY(gltf_get_text(r, &at, "type", &type));
-    GLTF_TRY(gltf_get_color(r, &at, "color", 0.0, 1e6, &color));
+    AG_TRY(gltf_get_item(r, GLTF_LIGHTS, index, &at));
+    AG_TRY(gltf_require(r, &at, "type"));
+    AG_TRY(gltf_get_text(r, &at, "type", &type));
+    AG_TRY(gltf_get_color(r, &at, "color", 0.0, 1e6, &color));
     color = working_space_light(&r->scene->space, color);
-    GLTF_TRY(gltf_get_double(r, &at, "intensity", &intensity));
+    AG_TRY(gltf_get_double(r, &at, "intensity", &intensity));
     bool is_sun = strcmp(type, "directional") == 0, is_spot = strcmp(type, "spot") == 0;
     if (!is_sun && !is_spot && strcmp(type, "point") != 0)
         return gltf_error(r, &at, "there is no light of type \"%s\"", type);
@@ -109,7 +109,7 @@ ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world
         z[0] = z[1] = 0.0, z[2] = 1.0;
     }
     const gltf_value range = gltf_member(&at, "range");
-    GLTF_TRY(gltf_get_text(r, &at, "name", &name));
+    AG_TRY(gltf_get_text(r, &at, "name", &name));
     if (range.json && !is_sun)
         gltf_warn_once(r, &range, "range",
                        "the range of lamp \"%s\" is not heeded, nor that of any other: its light "
@@ -125,7 +125,7 @@ ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world
     l.position =
         vec3_make((float)world_from_node->m[0][3], (float)world_from_node->m[1][3], (float)world_from_node->m[2][3]);
     if (is_spot)
-        GLTF_TRY(read_spot(r, &at, &l));
+        AG_TRY(read_spot(r, &at, &l));
     if (!((double)vec3_max_abs(l.position) <= GLTF_MAX_COORDINATE))
         return gltf_error(r, &at, "it is beyond 1e18 units");
     return rgb_is_black(strength) ? AG_OK : scene_add_light(r->scene, &l, &light_index);

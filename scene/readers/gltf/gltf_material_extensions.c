@@ -20,7 +20,7 @@ static ag_status read_ior(gltf_reader *r, const gltf_value *at, const gltf_value
     double ior = 1.5;
     gltf_value v = gltf_member(extension, "ior");
     (void)at, (void)out;
-    GLTF_TRY(gltf_get_double(r, extension, "ior", &ior));
+    AG_TRY(gltf_get_double(r, extension, "ior", &ior));
     if (!(ior == 0.0 || (ior >= 1.0 && ior <= 1e6)))
         return gltf_error(r, &v, "%g should be 0 or from 1", ior);
     m->ior = (float)ior;
@@ -31,10 +31,10 @@ static ag_status read_specular(gltf_reader *r, const gltf_value *at, const gltf_
                                gltf_material *out)
 {
     (void)at;
-    GLTF_TRY(gltf_get_clamped(r, extension, "specularFactor", 0.0, 1.0, &m->specular));
-    GLTF_TRY(gltf_get_color(r, extension, "specularColorFactor", 0.0, 1e6, &m->specular_color));
+    AG_TRY(gltf_get_clamped(r, extension, "specularFactor", 0.0, 1.0, &m->specular));
+    AG_TRY(gltf_get_color(r, extension, "specularColorFactor", 0.0, 1e6, &m->specular_color));
     m->specular_color = working_space_light(&r->scene->space, m->specular_color);
-    GLTF_TRY(gltf_get_texture(r, extension, "specularTexture", ALPHA, &out->uv_set, &m->specular_texture));
+    AG_TRY(gltf_get_texture(r, extension, "specularTexture", ALPHA, &out->uv_set, &m->specular_texture));
     return gltf_get_texture(r, extension, "specularColorTexture", COLOR, &out->uv_set, &m->specular_color_texture);
 }
 
@@ -42,7 +42,7 @@ static ag_status read_transmission(gltf_reader *r, const gltf_value *at, const g
                                    gltf_material *out)
 {
     (void)at;
-    GLTF_TRY(gltf_get_clamped(r, extension, "transmissionFactor", 0.0, 1.0, &m->transmission));
+    AG_TRY(gltf_get_clamped(r, extension, "transmissionFactor", 0.0, 1.0, &m->transmission));
     if (m->transmission == 0.0f)
         return AG_OK;
     return gltf_get_texture(r, extension, "transmissionTexture", RED, &out->uv_set, &m->transmission_texture);
@@ -60,9 +60,9 @@ static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_va
     rgb color = rgb_gray(1.0f);
     gltf_value v = gltf_member(extension, "attenuationDistance");
     (void)at;
-    GLTF_TRY(gltf_get_clamped(r, extension, "thicknessFactor", 0.0, 1e30, &thickness));
-    GLTF_TRY(gltf_get_double(r, extension, "attenuationDistance", &distance));
-    GLTF_TRY(gltf_get_color(r, extension, "attenuationColor", 0.0, 1.0, &color));
+    AG_TRY(gltf_get_clamped(r, extension, "thicknessFactor", 0.0, 1e30, &thickness));
+    AG_TRY(gltf_get_double(r, extension, "attenuationDistance", &distance));
+    AG_TRY(gltf_get_color(r, extension, "attenuationColor", 0.0, 1.0, &color));
     color = working_space_reflectance(&r->scene->space, color);
     if (v.json && !(distance > 1e-18))
         return gltf_error(r, &v, "%g should be above 0", distance);
@@ -80,13 +80,13 @@ static ag_status read_clearcoat(gltf_reader *r, const gltf_value *at, const gltf
 {
     gltf_value map = gltf_member(extension, "clearcoatNormalTexture");
     (void)at;
-    GLTF_TRY(gltf_get_clamped(r, extension, "clearcoatFactor", 0.0, 1.0, &m->clearcoat));
-    GLTF_TRY(gltf_get_clamped(r, extension, "clearcoatRoughnessFactor", 0.0, 1.0, &m->clearcoat_roughness));
+    AG_TRY(gltf_get_clamped(r, extension, "clearcoatFactor", 0.0, 1.0, &m->clearcoat));
+    AG_TRY(gltf_get_clamped(r, extension, "clearcoatRoughnessFactor", 0.0, 1.0, &m->clearcoat_roughness));
     if (m->clearcoat == 0.0f)
         return AG_OK;
     if (map.json)
         gltf_warn_once(r, &map, map.key, "normal maps of clearcoats are not supported: they are as smooth as the mesh");
-    GLTF_TRY(gltf_get_texture(r, extension, "clearcoatTexture", RED, &out->uv_set, &m->clearcoat_texture));
+    AG_TRY(gltf_get_texture(r, extension, "clearcoatTexture", RED, &out->uv_set, &m->clearcoat_texture));
     return gltf_get_texture(r, extension, "clearcoatRoughnessTexture", GREEN, &out->uv_set,
                             &m->clearcoat_roughness_texture);
 }
@@ -96,9 +96,9 @@ static ag_status read_specular_glossiness(gltf_reader *r, const gltf_value *at, 
                                           material *m, gltf_material *out)
 {
     float diffuse[4] = {1.0f, 1.0f, 1.0f, 1.0f}, glossiness = 1.0f;
-    GLTF_TRY(gltf_get_factors(r, extension, "diffuseFactor", 0.0, 1.0, 4, diffuse));
-    GLTF_TRY(gltf_get_color(r, extension, "specularFactor", 0.0, 1.0, &m->specular_color));
-    GLTF_TRY(gltf_get_clamped(r, extension, "glossinessFactor", 0.0, 1.0, &glossiness));
+    AG_TRY(gltf_get_factors(r, extension, "diffuseFactor", 0.0, 1.0, 4, diffuse));
+    AG_TRY(gltf_get_color(r, extension, "specularFactor", 0.0, 1.0, &m->specular_color));
+    AG_TRY(gltf_get_clamped(r, extension, "glossinessFactor", 0.0, 1.0, &glossiness));
     m->reflectance = working_space_reflectance(&r->scene->space, rgb_make(diffuse[0], diffuse[1], diffuse[2]));
     m->specular_color = working_space_reflectance(&r->scene->space, m->specular_color);
     m->reflectance_texture = m->metallic_texture = m->roughness_texture = SCENE_NO_TEXTURE;
@@ -106,9 +106,9 @@ static ag_status read_specular_glossiness(gltf_reader *r, const gltf_value *at, 
     m->ior = 0.0f;
     m->roughness = 1.0f - glossiness;
     out->uv_set = GLTF_NONE;
-    GLTF_TRY(gltf_get_texture(r, extension, "diffuseTexture", COLOR, &out->uv_set, &m->reflectance_texture));
-    GLTF_TRY(gltf_read_alpha(r, at, extension, "diffuseTexture", diffuse[3], out));
-    GLTF_TRY(
+    AG_TRY(gltf_get_texture(r, extension, "diffuseTexture", COLOR, &out->uv_set, &m->reflectance_texture));
+    AG_TRY(gltf_read_alpha(r, at, extension, "diffuseTexture", diffuse[3], out));
+    AG_TRY(
         gltf_get_texture(r, extension, "specularGlossinessTexture", COLOR, &out->uv_set, &m->specular_color_texture));
     if (m->specular_color_texture == SCENE_NO_TEXTURE || glossiness == 0.0f)
         return AG_OK;
@@ -181,12 +181,12 @@ ag_status gltf_read_material_extensions(gltf_reader *r, const gltf_value *at, ma
     };
     gltf_value extensions, extension;
     for (size_t i = 0; i < sizeof EXTENSIONS / sizeof *EXTENSIONS; i++) {
-        GLTF_TRY(gltf_get_extension(r, at, EXTENSIONS[i].name, &extensions, &extension));
+        AG_TRY(gltf_get_extension(r, at, EXTENSIONS[i].name, &extensions, &extension));
         if (extension.json)
-            GLTF_TRY(EXTENSIONS[i].read(r, at, &extension, m, out));
+            AG_TRY(EXTENSIONS[i].read(r, at, &extension, m, out));
     }
     const char *name = "";
-    GLTF_TRY(gltf_get_text(r, at, "name", &name));
+    AG_TRY(gltf_get_text(r, at, "name", &name));
     warn_others(r, &extensions, name);
     tell_thin_glass(r, at, m, name);
     return AG_OK;

@@ -12,7 +12,7 @@ static ag_status read_matrix(const gltf_reader *r, const gltf_value *node, gltf_
 {
     double m[16]; /* column by column */
     gltf_value at = gltf_member(node, "matrix");
-    GLTF_TRY(gltf_get_doubles(r, node, "matrix", 16, m));
+    AG_TRY(gltf_get_doubles(r, node, "matrix", 16, m));
     if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0)
         return gltf_error(r, &at, "its last row should be 0 0 0 1");
     for (int i = 0; i < 3; i++)
@@ -25,7 +25,7 @@ static ag_status read_rotation(const gltf_reader *r, const gltf_value *node, glt
 {
     double q[4] = {0.0, 0.0, 0.0, 1.0};
     gltf_value at = gltf_member(node, "rotation");
-    GLTF_TRY(gltf_get_doubles(r, node, "rotation", 4, q));
+    AG_TRY(gltf_get_doubles(r, node, "rotation", 4, q));
     double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
     if (!(square > 1e-12 && square < 1e12))
         return gltf_error(r, &at, "is no rotation: the quaternion's length is not 1");
@@ -44,9 +44,9 @@ static ag_status read_transform(const gltf_reader *r, const gltf_value *node, gl
     *out = gltf_matrix_identity();
     if (gltf_member(node, "matrix").json)
         return read_matrix(r, node, out);
-    GLTF_TRY(read_rotation(r, node, out));
-    GLTF_TRY(gltf_get_doubles(r, node, "translation", 3, translation));
-    GLTF_TRY(gltf_get_doubles(r, node, "scale", 3, scale));
+    AG_TRY(read_rotation(r, node, out));
+    AG_TRY(gltf_get_doubles(r, node, "translation", 3, translation));
+    AG_TRY(gltf_get_doubles(r, node, "scale", 3, scale));
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
             out->m[i][k] *= scale[k];
@@ -70,12 +70,12 @@ static ag_status find_parents(gltf_reader *r, tree *t)
         t->parents[i] = GLTF_NONE;
     for (uint32_t i = 0; i < t->node_count; i++) {
         gltf_value node, children;
-        GLTF_TRY(gltf_get_item(r, GLTF_NODES, i, &node));
-        GLTF_TRY(gltf_get_array(r, &node, "children", &children));
+        AG_TRY(gltf_get_item(r, GLTF_NODES, i, &node));
+        AG_TRY(gltf_get_array(r, &node, "children", &children));
         for (size_t k = 0; children.json && k < json_array_size(children.json); k++) {
             uint32_t child;
             gltf_value at = gltf_element(&children, k);
-            GLTF_TRY(gltf_read_index(r, &at, GLTF_NODES, &child));
+            AG_TRY(gltf_read_index(r, &at, GLTF_NODES, &child));
             if (t->parents[child] != GLTF_NONE)
                 return gltf_error(r, &at, "nodes[%u] is a child of nodes[%u] already", child, t->parents[child]);
             t->parents[child] = i;
@@ -121,8 +121,8 @@ static ag_status place_nodes(gltf_reader *r, tree *t)
             uint32_t n = step(r, t);
             gltf_value node;
             gltf_matrix own;
-            GLTF_TRY(gltf_get_item(r, GLTF_NODES, n, &node));
-            GLTF_TRY(read_transform(r, &node, &own));
+            AG_TRY(gltf_get_item(r, GLTF_NODES, n, &node));
+            AG_TRY(read_transform(r, &node, &own));
             r->world_from_nodes[n] =
                 t->parents[n] == GLTF_NONE ? own : gltf_matrix_multiply(&r->world_from_nodes[t->parents[n]], &own);
         }
@@ -135,26 +135,26 @@ static ag_status push_roots(gltf_reader *r, tree *t)
 {
     uint32_t scene_index = 0;
     gltf_value scene_value, roots;
-    GLTF_TRY(gltf_get_index(r, &r->document, "scene", GLTF_SCENES, &scene_index));
+    AG_TRY(gltf_get_index(r, &r->document, "scene", GLTF_SCENES, &scene_index));
     if (r->list_counts[GLTF_SCENES] == 0) {
         for (uint32_t i = t->node_count; i > 0; i--)
             if (t->parents[i - 1] == GLTF_NONE)
                 t->stack[t->stack_count++] = i - 1;
         return AG_OK;
     }
-    GLTF_TRY(gltf_get_item(r, GLTF_SCENES, scene_index, &scene_value));
-    GLTF_TRY(gltf_get_array(r, &scene_value, "nodes", &roots));
+    AG_TRY(gltf_get_item(r, GLTF_SCENES, scene_index, &scene_value));
+    AG_TRY(gltf_get_array(r, &scene_value, "nodes", &roots));
     bool *is_root = calloc(t->node_count + 1, sizeof *is_root);
     ag_status status = is_root ? AG_OK : AG_ERROR_MEMORY;
-    for (size_t k = json_array_size(roots.json); !status && k > 0; k--) {
+    for (size_t k = json_array_size(roots.json); status == AG_OK && k > 0; k--) {
         uint32_t root = 0;
         gltf_value at = gltf_element(&roots, k - 1);
         status = gltf_read_index(r, &at, GLTF_NODES, &root);
-        if (!status && t->parents[root] != GLTF_NONE)
+        if (status == AG_OK && t->parents[root] != GLTF_NONE)
             status = gltf_error(r, &at, "nodes[%u] is no root: it is a child of nodes[%u]", root, t->parents[root]);
-        if (!status && is_root[root])
+        if (status == AG_OK && is_root[root])
             status = gltf_error(r, &at, "nodes[%u] is named twice", root);
-        if (!status) {
+        if (status == AG_OK) {
             is_root[root] = true;
             t->stack[t->stack_count++] = root;
         }
@@ -170,33 +170,33 @@ static ag_status add_node(gltf_reader *r, uint32_t index)
     uint32_t mesh_index = GLTF_NONE, camera_index = GLTF_NONE, lamp_index = GLTF_NONE;
     const gltf_matrix *world_from_node = &r->world_from_nodes[index];
     gltf_value node, extensions, extension;
-    GLTF_TRY(gltf_get_item(r, GLTF_NODES, index, &node));
-    GLTF_TRY(gltf_get_index(r, &node, "mesh", GLTF_MESHES, &mesh_index));
-    GLTF_TRY(gltf_get_index(r, &node, "camera", GLTF_CAMERAS, &camera_index));
-    GLTF_TRY(gltf_get_extension(r, &node, "KHR_lights_punctual", &extensions, &extension));
-    GLTF_TRY(gltf_get_index(r, &extension, "light", GLTF_LIGHTS, &lamp_index));
+    AG_TRY(gltf_get_item(r, GLTF_NODES, index, &node));
+    AG_TRY(gltf_get_index(r, &node, "mesh", GLTF_MESHES, &mesh_index));
+    AG_TRY(gltf_get_index(r, &node, "camera", GLTF_CAMERAS, &camera_index));
+    AG_TRY(gltf_get_extension(r, &node, "KHR_lights_punctual", &extensions, &extension));
+    AG_TRY(gltf_get_index(r, &extension, "light", GLTF_LIGHTS, &lamp_index));
     if (mesh_index != GLTF_NONE)
-        GLTF_TRY(gltf_add_node_mesh(r, &node, mesh_index, world_from_node));
+        AG_TRY(gltf_add_node_mesh(r, &node, mesh_index, world_from_node));
     if (camera_index != GLTF_NONE)
-        GLTF_TRY(gltf_add_camera(r, camera_index, &node, world_from_node));
+        AG_TRY(gltf_add_camera(r, camera_index, &node, world_from_node));
     if (lamp_index != GLTF_NONE)
-        GLTF_TRY(gltf_add_lamp(r, lamp_index, world_from_node));
+        AG_TRY(gltf_add_lamp(r, lamp_index, world_from_node));
     return AG_OK;
 }
 
 static ag_status walk(gltf_reader *r, tree *t)
 {
-    GLTF_TRY(find_parents(r, t));
-    GLTF_TRY(place_nodes(r, t));
-    GLTF_TRY(push_roots(r, t));
+    AG_TRY(find_parents(r, t));
+    AG_TRY(place_nodes(r, t));
+    AG_TRY(push_roots(r, t));
     while (t->stack_count > 0) {
         gltf_value node;
         t->order[t->order_count++] = step(r, t);
-        GLTF_TRY(gltf_get_item(r, GLTF_NODES, t->order[t->order_count - 1], &node));
-        GLTF_TRY(gltf_count_mesh_use(r, &node));
+        AG_TRY(gltf_get_item(r, GLTF_NODES, t->order[t->order_count - 1], &node));
+        AG_TRY(gltf_count_mesh_use(r, &node));
     }
     for (uint32_t i = 0; i < t->order_count; i++) {
-        GLTF_TRY(add_node(r, t->order[i]));
+        AG_TRY(add_node(r, t->order[i]));
         run_progress(r->run, AG_PHASE_LOAD, (double)i / t->order_count);
     }
     return AG_OK;

@@ -17,8 +17,6 @@ enum { GLTF_MAX_FACTORS = 4 };
 /* Vertices lie within +-this, in world space, as those of other formats. */
 #define GLTF_MAX_COORDINATE 1e18
 
-#define GLTF_TRY AG_TRY
-
 /* A value of the document and where it is: a chain of keys and indices up to the document itself, which is all in the
  * callers' frames. json is NULL where there is none. */
 typedef struct gltf_value {

@@ -18,6 +18,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "model/importer.h"
 
+#include "status.h"
 #include "text/input_file.h"
 
 #include <stdio.h>
@@ -249,10 +250,9 @@ static ag_status add_color(importer *i, const import_material *source, material 
     rgb factor = rgb_is_black(m->reflectance) ? rgb_gray(1.0f) : m->reflectance;
     const bool is_gray = factor.r == factor.g && factor.g == factor.b;
     uint32_t picture;
-    ag_status status =
-        add_picture(i, p, PICTURE_COLOR, m->kind == MATERIAL_DIFFUSE && is_gray ? factor.r : 1.0f, &picture);
-    if (status || picture == SCENE_NO_TEXTURE)
-        return status;
+    AG_TRY(add_picture(i, p, PICTURE_COLOR, m->kind == MATERIAL_DIFFUSE && is_gray ? factor.r : 1.0f, &picture));
+    if (picture == SCENE_NO_TEXTURE)
+        return AG_OK;
     if (m->kind == MATERIAL_DIFFUSE && !is_gray) {
         *m = make_principled(factor, 1.0f);
         m->specular = 0.0f;
@@ -265,13 +265,13 @@ static ag_status add_color(importer *i, const import_material *source, material 
 static ag_status add_relief(importer *i, const import_material *source, material *m)
 {
     const import_picture *normal = &source->pictures[IMPORT_NORMAL], *bump = &source->pictures[IMPORT_BUMP];
-    ag_status status = add_picture(i, normal, PICTURE_DIRECTION, 1.0f, &m->normal_map_texture);
+    AG_TRY(add_picture(i, normal, PICTURE_DIRECTION, 1.0f, &m->normal_map_texture));
     if (isfinite(normal->strength))
         m->normal_scale = normal->strength;
     float height = bump->strength * i->bump_unit;
-    if (status == AG_OK && m->normal_map_texture == SCENE_NO_TEXTURE && isfinite(height))
-        status = add_picture(i, bump, PICTURE_NUMBER, height, &m->displacement_texture);
-    return status;
+    if (m->normal_map_texture != SCENE_NO_TEXTURE || !isfinite(height))
+        return AG_OK;
+    return add_picture(i, bump, PICTURE_NUMBER, height, &m->displacement_texture);
 }
 
 static ag_status add_opacity(importer *i, const import_material *source, const material *m, import_surface *out)
@@ -292,33 +292,25 @@ static ag_status add_emission(importer *i, const import_material *source, import
     if (!rgb_is_finite(e) || e.r < 0.0f || e.g < 0.0f || e.b < 0.0f)
         e = rgb_gray(0.0f);
     e = working_space_light(&i->scene->space, e);
-    ag_status status = add_picture(i, p, PICTURE_COLOR, 1.0f, &out->radiance_texture);
-    if (status == AG_OK && out->radiance_texture != SCENE_NO_TEXTURE && rgb_is_black(e))
-        e = rgb_gray(1.0f);
-    out->radiance = e;
-    return status;
+    AG_TRY(add_picture(i, p, PICTURE_COLOR, 1.0f, &out->radiance_texture));
+    out->radiance = out->radiance_texture != SCENE_NO_TEXTURE && rgb_is_black(e) ? rgb_gray(1.0f) : e;
+    return AG_OK;
 }
 
 ag_status importer_add_material(importer *i, const import_material *source, import_surface *out_surface)
 {
     import_surface surface = {.alpha = 1.0f, .alpha_texture = SCENE_NO_TEXTURE, .radiance_texture = SCENE_NO_TEXTURE};
     material m = make_material(i, source);
-    ag_status status = add_color(i, source, &m);
-    if (status == AG_OK && m.kind == MATERIAL_PRINCIPLED && !is_glass(&m)) {
-        status = add_picture(i, &source->pictures[IMPORT_ROUGHNESS], PICTURE_NUMBER, 1.0f, &m.roughness_texture);
-        if (status == AG_OK)
-            status = add_picture(i, &source->pictures[IMPORT_METALLIC], PICTURE_NUMBER, 1.0f, &m.metallic_texture);
+    AG_TRY(add_color(i, source, &m));
+    if (m.kind == MATERIAL_PRINCIPLED && !is_glass(&m)) {
+        AG_TRY(add_picture(i, &source->pictures[IMPORT_ROUGHNESS], PICTURE_NUMBER, 1.0f, &m.roughness_texture));
+        AG_TRY(add_picture(i, &source->pictures[IMPORT_METALLIC], PICTURE_NUMBER, 1.0f, &m.metallic_texture));
     }
-    if (status == AG_OK)
-        status = add_relief(i, source, &m);
-    if (status == AG_OK)
-        status = add_opacity(i, source, &m, &surface);
-    if (status == AG_OK)
-        status = add_emission(i, source, &surface);
-    if (status == AG_OK)
-        status = scene_add_material(i->scene, &m, &surface.material_index);
-    if (status == AG_OK)
-        status = scene_set_name(i->scene, NAMED_MATERIAL, surface.material_index, source->name);
+    AG_TRY(add_relief(i, source, &m));
+    AG_TRY(add_opacity(i, source, &m, &surface));
+    AG_TRY(add_emission(i, source, &surface));
+    AG_TRY(scene_add_material(i->scene, &m, &surface.material_index));
+    AG_TRY(scene_set_name(i->scene, NAMED_MATERIAL, surface.material_index, source->name));
     *out_surface = surface;
-    return status;
+    return AG_OK;
 }

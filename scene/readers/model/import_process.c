@@ -134,7 +134,7 @@ static ag_status run_process(const run_context *run, import_task *task, void *us
     ag_status status = judge_end(process, message, message_size);
     if (!has_ended || (run && run_is_cancelled(run)))
         return AG_CANCELLED;
-    return status ? status : take_answer(answer_descriptor, out_answer, message, message_size);
+    return status != AG_OK ? status : take_answer(answer_descriptor, out_answer, message, message_size);
 }
 
 ag_status import_process_run(const run_context *run, import_task *task, void *user, uint64_t memory_bytes,

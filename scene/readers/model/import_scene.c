@@ -3,6 +3,7 @@
 #include "model/import_scene.h"
 
 #include "model/importer.h"
+#include "status.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,9 +115,7 @@ static ag_status index_records(model *m)
         return AG_ERROR_MEMORY;
     for (size_t k = 0; k < m->count; k++) {
         const record *r = &m->records[k];
-        ag_status status = check_record(m, r);
-        if (status)
-            return status;
+        AG_TRY(check_record(m, r));
         if (r->kind == IMPORT_RECORD_PICTURE)
             m->pictures[m->to.embedded_count++] = (import_embedded){r->bytes, r->size};
         if (r->kind == IMPORT_RECORD_MATERIAL)
@@ -232,10 +231,9 @@ static ag_status add_instance(model *m, const record *r)
         log_at(m->to.log, AG_LOG_WARNING, m->to.where, "mesh \"%s\" is scaled to nothing and is left out", head.name);
         return AG_OK;
     }
-    ag_status status = get_surface(m, head.material_index, &surface);
-    if (!status)
-        status = copy_mesh(source, &head, &copy);
-    return status ? status : importer_add_mesh(&m->to, head.name, &copy, &world_from_mesh, surface);
+    AG_TRY(get_surface(m, head.material_index, &surface));
+    AG_TRY(copy_mesh(source, &head, &copy));
+    return importer_add_mesh(&m->to, head.name, &copy, &world_from_mesh, surface);
 }
 
 /* The diagonal of all instances, roughly, for heights of bumps. */
@@ -304,15 +302,15 @@ ag_status import_scene_fill(run_context *run, const char *path, const unsigned c
     model m;
     memset(&m, 0, sizeof m);
     ag_status status = importer_init(&m.to, run, path, out_scene);
-    if (!status)
+    if (status == AG_OK)
         status = find_records(&m, bytes, size);
-    if (!status)
+    if (status == AG_OK)
         status = index_records(&m);
-    if (!status)
+    if (status == AG_OK)
         status = find_bump_unit(&m);
-    for (size_t k = 0; k < m.count && !status; k++)
+    for (size_t k = 0; k < m.count && status == AG_OK; k++)
         status = add_record(&m, &m.records[k]);
-    if (!status)
+    if (status == AG_OK)
         status = importer_finish(&m.to);
     free(m.records);
     free(m.materials);

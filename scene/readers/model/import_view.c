@@ -6,6 +6,7 @@
 #include "model/importer.h"
 #include "scene_extent.h"
 #include "scene_overrides.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -69,9 +70,7 @@ ag_status importer_add_camera(importer *i, const import_camera *source)
     camera c = {.kind = CAMERA_PERSPECTIVE, .fov_degrees = 90.0f, .focal_distance = 1e6f};
     double size = 1.0;
     bool is_wanted;
-    ag_status status = scene_overrides_meet_camera(i->scene, source->name, NULL, &is_wanted);
-    if (status)
-        return status;
+    AG_TRY(scene_overrides_meet_camera(i->scene, source->name, NULL, &is_wanted));
     if (!is_wanted) {
         log_at(i->log, AG_LOG_INFO, i->where, "camera \"%s\" is not used: --camera takes its name", source->name);
         return AG_OK;
@@ -107,9 +106,7 @@ static ag_status find_intensity_factor(const importer *i, const import_light *so
         return AG_OK;
     vec3 low, high;
     double square = 0.0, radius = 0.0;
-    ag_status status = scene_find_bounds(i->scene, NULL, &low, &high);
-    if (status)
-        return status;
+    AG_TRY(scene_find_bounds(i->scene, NULL, &low, &high));
     const double a[3] = {(double)low.x, (double)low.y, (double)low.z},
                  b[3] = {(double)high.x, (double)high.y, (double)high.z};
     for (int k = 0; k < 3 && a[0] <= b[0]; k++) {
@@ -174,9 +171,9 @@ static ag_status add_area_light(importer *i, const import_light *source, rgb int
     }
     if (source->measure == IMPORT_LIGHT_WATTS)
         s.alpha = 0.0f; /* Blender's lamps light, but are not seen */
-    ag_status status = scene_add_shape(i->scene, &s, &l.shape_index);
+    AG_TRY(scene_add_shape(i->scene, &s, &l.shape_index));
     l.radiance = scale_color(intensity, 1.0 / area);
-    return status ? status : scene_add_light(i->scene, &l, &index);
+    return scene_add_light(i->scene, &l, &index);
 }
 
 ag_status importer_add_light(importer *i, const import_light *light_source)
@@ -187,9 +184,7 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
     if (is_sound(source.color))
         source.color = working_space_light(&i->scene->space, source.color);
     double factor;
-    ag_status status = find_intensity_factor(i, &source, &factor);
-    if (status)
-        return status;
+    AG_TRY(find_intensity_factor(i, &source, &factor));
     rgb intensity = scale_color(source.color, factor);
     vec3 position = {(float)source.position[0], (float)source.position[1], (float)source.position[2]};
     light l = light_make(LIGHT_POINT);

@@ -2,6 +2,7 @@
 #include "model/importer.h"
 
 #include "import_defaults.h"
+#include "status.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -138,7 +139,7 @@ ag_status importer_add_mesh(importer *i, const char *name, mesh *m, const transf
         status = place_vertices(i, name, world_from_mesh, m);
     if (status == AG_OK)
         drop_degenerate(i, m);
-    if (status || m->triangle_count == 0) {
+    if (status != AG_OK || m->triangle_count == 0) {
         free_arrays(m);
         return status;
     }
@@ -150,10 +151,9 @@ ag_status importer_add_mesh(importer *i, const char *name, mesh *m, const transf
     s.alpha_texture = surface->alpha_texture;
     s.as.mesh = *m;
     memset(m, 0, sizeof *m);
-    status = scene_add_shape(i->scene, &s, &index);
-    if (status == AG_OK)
-        status = scene_set_name(i->scene, NAMED_SHAPE, index, name);
-    return status ? status : add_lamp(i, surface, index);
+    AG_TRY(scene_add_shape(i->scene, &s, &index));
+    AG_TRY(scene_set_name(i->scene, NAMED_SHAPE, index, name));
+    return add_lamp(i, surface, index);
 }
 
 /* The end */
@@ -170,10 +170,7 @@ ag_status importer_finish(importer *i)
                i->odd_vector_count);
     if (i->scene->shape_count == 0)
         return importer_refuse(i, "there is no triangle in the file: nothing to see");
-    ag_status status = AG_OK;
     if (!i->scene->has_camera)
-        status = import_add_default_camera(i->scene, i->log);
-    if (status == AG_OK && i->scene->light_count == 0)
-        status = import_add_default_light(i->scene, i->log);
-    return status;
+        AG_TRY(import_add_default_camera(i->scene, i->log));
+    return i->scene->light_count == 0 ? import_add_default_light(i->scene, i->log) : AG_OK;
 }

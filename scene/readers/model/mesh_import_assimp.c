@@ -10,6 +10,7 @@
 #include "model/import_model.h"
 #include "model/import_process.h"
 #include "model/import_scene.h"
+#include "status.h"
 #include "text/input_file.h"
 
 #include <assimp/ObjMaterial.h>
@@ -530,12 +531,10 @@ ag_status assimp_load_file(run_context *run, const char *path, scene *out_scene)
     char message[512];
     import_answer answer;
     uint64_t memory_bytes = 0;
-    ag_status status = find_memory_limit(run, path, &memory_bytes);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(find_memory_limit(run, path, &memory_bytes));
     run_progress(run, AG_PHASE_LOAD, 0.0);
     import_job job = {path, run->inputs};
-    status = import_process_run(run, import_in_process, &job, memory_bytes, &answer, message, sizeof message);
+    ag_status status = import_process_run(run, import_in_process, &job, memory_bytes, &answer, message, sizeof message);
     if (status && status != AG_CANCELLED && message[0] != '\0')
         refuse(run, path, "assimp cannot read the file", message);
     if (status == AG_OK)

@@ -1,6 +1,7 @@
 /* mtl_file.c: see mtl_file.h. Threads: one per scene. */
 #include "model/mtl_file.h"
 
+#include "status.h"
 #include "text/text_lines.h"
 
 #include <stdio.h>
@@ -54,10 +55,9 @@ static ag_status begin_material(reader *r)
 static ag_status read_float(reader *r, const char *what, float *out_value)
 {
     double value = 0.0;
-    ag_status status = text_lines_number(&r->lines, what, &value);
-    if (status == AG_OK)
-        *out_value = (float)value;
-    return status;
+    AG_TRY(text_lines_number(&r->lines, what, &value));
+    *out_value = (float)value;
+    return AG_OK;
 }
 
 /* One number is grey; measured spectra and CIE's XYZ are not read. */
@@ -74,18 +74,17 @@ static ag_status read_color(reader *r, const char *what, rgb *out_color, bool *o
     }
     r->lines = before;
     float c[3] = {0.0f, 0.0f, 0.0f};
-    ag_status status = read_float(r, what, &c[0]);
+    AG_TRY(read_float(r, what, &c[0]));
     before = r->lines;
     c[1] = c[2] = c[0];
-    if (status == AG_OK && text_lines_word(&r->lines, &ahead)) {
+    if (text_lines_word(&r->lines, &ahead)) {
         r->lines = before;
-        status = read_float(r, what, &c[1]);
-        if (status == AG_OK)
-            status = read_float(r, what, &c[2]);
+        AG_TRY(read_float(r, what, &c[1]));
+        AG_TRY(read_float(r, what, &c[2]));
     }
     *out_color = rgb_make(c[0], c[1], c[2]);
-    *out_is_read = status == AG_OK;
-    return status;
+    *out_is_read = true;
+    return AG_OK;
 }
 
 /* Up to three numbers; *out_count of them are there. */
@@ -173,9 +172,9 @@ static ag_status read_value(reader *r, const text_word *word, bool *out_is_known
     bool is_read;
     *out_is_known = true;
     if (text_word_is(word, "Kd")) {
-        ag_status status = read_color(r, "Kd", &m->diffuse, &is_read);
+        AG_TRY(read_color(r, "Kd", &m->diffuse, &is_read));
         r->has_diffuse = r->has_diffuse || is_read;
-        return status;
+        return AG_OK;
     }
     const struct {
         const char *name;
@@ -189,26 +188,24 @@ static ag_status read_value(reader *r, const text_word *word, bool *out_is_known
             return VALUES[k].color ? read_color(r, VALUES[k].name, VALUES[k].color, &is_read)
                                    : read_float(r, VALUES[k].name, VALUES[k].number);
     float value = 0.0f;
-    ag_status status;
     if (text_word_is(word, "d")) {
         text_lines before = r->lines;
         text_word halo;
         if (text_lines_word(&r->lines, &halo) && !text_word_is(&halo, "-halo"))
             r->lines = before;
-        status = read_float(r, "d", &m->opacity);
         r->has_d = true;
-        return status;
+        return read_float(r, "d", &m->opacity);
     }
     if (text_word_is(word, "Tr")) {
-        status = read_float(r, "Tr", &value);
-        if (status == AG_OK && !r->has_d)
+        AG_TRY(read_float(r, "Tr", &value));
+        if (!r->has_d)
             m->opacity = 1.0f - value;
-        return status;
+        return AG_OK;
     }
     if (text_word_is(word, "illum")) {
-        status = read_float(r, "illum", &value);
+        AG_TRY(read_float(r, "illum", &value));
         m->illumination = value >= 0.0f && value <= 10.0f ? (int32_t)value : -1;
-        return status;
+        return AG_OK;
     }
     *out_is_known = false;
     return AG_OK;
@@ -230,9 +227,9 @@ static ag_status read_statement(reader *r, const text_word *word)
     if (!r->now)
         return text_lines_refuse(&r->lines, *word, "\"%.*s\" stands before the first newmtl",
                                  (int)(word->length < 40 ? word->length : 40), word->text);
-    ag_status status = read_value(r, word, &is_known);
+    AG_TRY(read_value(r, word, &is_known));
     if (is_known)
-        return status;
+        return AG_OK;
     for (size_t k = 0; k < sizeof PICTURES / sizeof *PICTURES; k++)
         if (text_word_is(word, PICTURES[k].name))
             return read_picture(r, PICTURES[k].slot);

@@ -3,6 +3,7 @@
 #include "model/obj_file.h"
 
 #include "model/obj_private.h"
+#include "status.h"
 #include "text/text_file.h"
 
 #include <stdio.h>
@@ -35,9 +36,7 @@ static ag_status read_vertex(obj *o, int least, int most, double out_values[3])
         if (k >= least && !text_lines_word(&o->lines, &word))
             break;
         o->lines = before;
-        ag_status status = text_lines_number(&o->lines, WHAT[k], &out_values[k]);
-        if (status != AG_OK)
-            return status;
+        AG_TRY(text_lines_number(&o->lines, WHAT[k], &out_values[k]));
     }
     return AG_OK;
 }
@@ -46,9 +45,7 @@ static ag_status read_position(obj *o)
 {
     double v[3];
     text_word word;
-    ag_status status = read_vertex(o, 3, 3, v);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(read_vertex(o, 3, 3, v));
     o->positions[o->position_count++] = vec3_make((float)v[0], (float)v[1], (float)v[2]);
     int more = 0;
     while (text_lines_word(&o->lines, &word))
@@ -62,22 +59,20 @@ static ag_status read_position(obj *o)
 static ag_status read_uv(obj *o)
 {
     double v[3];
-    ag_status status = read_vertex(o, 1, 2, v);
-    if (status == AG_OK)
-        o->uvs[o->uv_count++] = (vec2){(float)v[0], (float)v[1]};
-    return status;
+    AG_TRY(read_vertex(o, 1, 2, v));
+    o->uvs[o->uv_count++] = (vec2){(float)v[0], (float)v[1]};
+    return AG_OK;
 }
 
 /* Any length will do, but that of a double may be none of a float. */
 static ag_status read_normal(obj *o)
 {
     double v[3];
-    ag_status status = read_vertex(o, 3, 3, v);
+    AG_TRY(read_vertex(o, 3, 3, v));
     double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
     double scale = largest > 0.0 ? 1.0 / largest : 0.0;
-    if (status == AG_OK)
-        o->normals[o->normal_count++] = vec3_make((float)(v[0] * scale), (float)(v[1] * scale), (float)(v[2] * scale));
-    return status;
+    o->normals[o->normal_count++] = vec3_make((float)(v[0] * scale), (float)(v[1] * scale), (float)(v[2] * scale));
+    return AG_OK;
 }
 
 /* One of the numbers of a corner, at *at; OBJ_NONE where there is none. Counts from 1, or back from the last one so
@@ -106,17 +101,15 @@ static ag_status read_corner(obj *o, const text_word *word)
 {
     const char *at = word->text, *end = at + word->length;
     obj_corner c = {OBJ_NONE, OBJ_NONE, OBJ_NONE};
-    ag_status status = read_reference(o, &at, end, word, "vertex", o->position_count, o->position_total, &c.position);
-    if (status == AG_OK && at < end && *at == '/') {
+    AG_TRY(read_reference(o, &at, end, word, "vertex", o->position_count, o->position_total, &c.position));
+    if (at < end && *at == '/') {
         at++;
-        status = read_reference(o, &at, end, word, "texture vertex", o->uv_count, o->uv_total, &c.uv);
-        if (status == AG_OK && at < end && *at == '/') {
+        AG_TRY(read_reference(o, &at, end, word, "texture vertex", o->uv_count, o->uv_total, &c.uv));
+        if (at < end && *at == '/') {
             at++;
-            status = read_reference(o, &at, end, word, "normal", o->normal_count, o->normal_total, &c.normal);
+            AG_TRY(read_reference(o, &at, end, word, "normal", o->normal_count, o->normal_total, &c.normal));
         }
     }
-    if (status != AG_OK)
-        return status;
     if (at != end || c.position == OBJ_NONE)
         return text_lines_refuse(&o->lines, *word, "a corner should be V, V/T, V//N or V/T/N");
     if (!obj_grow(&o->corners, o->corner_count, &o->corner_capacity, sizeof *o->corners))
@@ -141,11 +134,8 @@ static ag_status read_face(obj *o, text_word word)
 {
     obj_face f = {.first_corner = o->corner_count, .group = o->group};
     text_word next;
-    while (text_lines_word(&o->lines, &next)) {
-        ag_status status = read_corner(o, &next);
-        if (status != AG_OK)
-            return status;
-    }
+    while (text_lines_word(&o->lines, &next))
+        AG_TRY(read_corner(o, &next));
     size_t count = o->corner_count - f.first_corner;
     if (count < 3) {
         o->to.left_out_count++;
@@ -154,11 +144,8 @@ static ag_status read_face(obj *o, text_word word)
     }
     if (o->corner_count > OBJ_MAX_COUNT)
         return text_lines_refuse(&o->lines, word, "there are too many faces");
-    if (o->material == OBJ_NONE) { /* before any usemtl */
-        ag_status status = use_material(o, "");
-        if (status != AG_OK)
-            return status;
-    }
+    if (o->material == OBJ_NONE) /* before any usemtl */
+        AG_TRY(use_material(o, ""));
     f.corner_count = (uint32_t)count;
     f.material = o->material;
     if (!obj_grow(&o->faces, o->face_count, &o->face_capacity, sizeof *o->faces))
@@ -224,21 +211,19 @@ static ag_status read_libraries(obj *o)
     text_word rest = text_lines_rest(&o->lines), word;
     if (rest.length == 0)
         return text_lines_refuse(&o->lines, rest, "the material library's name is missing");
-    ag_status status = read_library(o, rest, &is_there, error, sizeof error);
-    while (status == AG_OK && !is_there && text_lines_word(&words, &word)) {
-        bool is_found = word.length == rest.length;
-        if (!is_found)
-            status = read_library(o, word, &is_found, error, sizeof error);
-        else
-            is_found = false;
-        if (status == AG_OK && !is_found) {
+    AG_TRY(read_library(o, rest, &is_there, error, sizeof error));
+    while (!is_there && text_lines_word(&words, &word)) {
+        bool is_found = false;
+        if (word.length != rest.length) /* else it has just been tried */
+            AG_TRY(read_library(o, word, &is_found, error, sizeof error));
+        if (!is_found) {
             snprintf(key, sizeof key, "mtllib:%.*s", (int)(word.length < 400 ? word.length : 400), word.text);
             log_at_once(o->to.log, AG_LOG_WARNING, text_lines_where(&o->lines, word.text), key,
                         "the material library \"%.*s\" cannot be read: %s",
                         (int)(word.length < 400 ? word.length : 400), word.text, error);
         }
     }
-    return status;
+    return AG_OK;
 }
 
 static ag_status read_use(obj *o)
@@ -304,9 +289,7 @@ static ag_status read_statements(obj *o)
     size_t lines = 0, size = (size_t)(o->lines.end - o->lines.text);
     while (text_lines_next(&o->lines)) {
         text_lines_word(&o->lines, &word);
-        ag_status status = read_statement(o, &word);
-        if (status != AG_OK)
-            return status;
+        AG_TRY(read_statement(o, &word));
         if (++lines % 4096 == 0) {
             if (run_is_cancelled(o->to.run))
                 return AG_CANCELLED;
@@ -318,12 +301,10 @@ static ag_status read_statements(obj *o)
 
 static ag_status load(obj *o)
 {
-    ag_status status = count_vertices(o);
-    if (status == AG_OK)
-        status = read_statements(o);
-    if (status == AG_OK)
-        status = obj_add_meshes(o);
-    return status ? status : importer_finish(&o->to);
+    AG_TRY(count_vertices(o));
+    AG_TRY(read_statements(o));
+    AG_TRY(obj_add_meshes(o));
+    return importer_finish(&o->to);
 }
 
 ag_status obj_load_file(run_context *run, const char *path, scene *out_scene)
@@ -333,11 +314,9 @@ ag_status obj_load_file(run_context *run, const char *path, scene *out_scene)
     text_file text;
     memset(&o, 0, sizeof o);
     o.material = OBJ_NONE;
-    ag_status status = importer_init(&o.to, run, path, out_scene);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(importer_init(&o.to, run, path, out_scene));
     run_progress(run, AG_PHASE_LOAD, 0.0);
-    status = text_file_read(run, path, error, sizeof error, &text);
+    ag_status status = text_file_read(run, path, error, sizeof error, &text);
     if (status == AG_ERROR_INPUT)
         importer_refuse(&o.to, "cannot read the file: %s", error);
     if (status != AG_OK)

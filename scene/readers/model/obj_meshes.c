@@ -2,6 +2,7 @@
  * vertex. Flow: obj_file -> [here], polygon -> importer. Threads: one per scene. */
 #include "model/obj_private.h"
 #include "model/polygon.h"
+#include "status.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -249,15 +250,14 @@ static void find_bump_unit(obj *o)
 
 ag_status obj_add_meshes(obj *o)
 {
-    ag_status status = smooth_normals(o);
-    if (status == AG_OK)
-        status = sort_faces(o);
+    AG_TRY(smooth_normals(o));
+    AG_TRY(sort_faces(o));
     find_bump_unit(o);
-    for (size_t k = 0; k < o->used_count && status == AG_OK; k++) {
+    for (size_t k = 0; k < o->used_count; k++) {
         if (run_is_cancelled(o->to.run))
             return AG_CANCELLED;
         if (o->used[k].face_count > 0)
-            status = add_mesh(o, &o->used[k]);
+            AG_TRY(add_mesh(o, &o->used[k]));
     }
-    return status;
+    return AG_OK;
 }

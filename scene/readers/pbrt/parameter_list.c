@@ -1,6 +1,7 @@
 /* parameter_list.c: see parameter_list.h.
  * Threads: one at a time. */
 #include "pbrt/parameter_list.h"
+#include "status.h"
 
 #include <float.h>
 #include <stdarg.h>
@@ -116,9 +117,9 @@ static ag_status look_up(parameter_list *list, log_sink *log, const char *name, 
 static ag_status look_up_counted(parameter_list *list, log_sink *log, const char *name, parameter_type type,
                                  size_t count, const parameter **out_parameter)
 {
-    ag_status status = look_up(list, log, name, type, out_parameter);
-    if (status || !*out_parameter || (*out_parameter)->count == count)
-        return status;
+    AG_TRY(look_up(list, log, name, type, out_parameter));
+    if (!*out_parameter || (*out_parameter)->count == count)
+        return AG_OK;
     return refuse(list, log, *out_parameter, "\"%s %s\" should have %zu value%s, but has %zu",
                   parameter_type_name(type), name, count, count == 1 ? "" : "s", (*out_parameter)->count);
 }
@@ -135,39 +136,39 @@ static ag_status check_float(const parameter_list *list, log_sink *log, const pa
 ag_status parameter_get_float(parameter_list *list, log_sink *log, const char *name, float *out_value)
 {
     const parameter *p;
-    ag_status status = look_up_counted(list, log, name, PARAMETER_FLOAT, 1, &p);
-    if (status == AG_OK && p)
-        status = check_float(list, log, p);
-    if (status == AG_OK && p)
-        *out_value = (float)p->numbers[0];
-    return status;
+    AG_TRY(look_up_counted(list, log, name, PARAMETER_FLOAT, 1, &p));
+    if (!p)
+        return AG_OK;
+    AG_TRY(check_float(list, log, p));
+    *out_value = (float)p->numbers[0];
+    return AG_OK;
 }
 
 ag_status parameter_get_int(parameter_list *list, log_sink *log, const char *name, int64_t *out_value)
 {
     const parameter *p;
-    ag_status status = look_up_counted(list, log, name, PARAMETER_INTEGER, 1, &p);
-    if (status == AG_OK && p)
+    AG_TRY(look_up_counted(list, log, name, PARAMETER_INTEGER, 1, &p));
+    if (p)
         *out_value = (int64_t)p->numbers[0]; /* the reader holds integers to 32 bits */
-    return status;
+    return AG_OK;
 }
 
 ag_status parameter_get_bool(parameter_list *list, log_sink *log, const char *name, bool *out_value)
 {
     const parameter *p;
-    ag_status status = look_up_counted(list, log, name, PARAMETER_BOOL, 1, &p);
-    if (status == AG_OK && p)
+    AG_TRY(look_up_counted(list, log, name, PARAMETER_BOOL, 1, &p));
+    if (p)
         *out_value = p->bools[0] != 0;
-    return status;
+    return AG_OK;
 }
 
 ag_status parameter_get_string(parameter_list *list, log_sink *log, const char *name, const char **out_value)
 {
     const parameter *p;
-    ag_status status = look_up_counted(list, log, name, PARAMETER_STRING, 1, &p);
-    if (status == AG_OK && p)
+    AG_TRY(look_up_counted(list, log, name, PARAMETER_STRING, 1, &p));
+    if (p)
         *out_value = p->strings[0];
-    return status;
+    return AG_OK;
 }
 
 ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char *name, const char **out_texture_name)
@@ -175,22 +176,21 @@ ag_status parameter_get_texture(parameter_list *list, log_sink *log, const char 
     const parameter *p = parameter_list_find(list, name);
     if (!p || p->type != PARAMETER_TEXTURE)
         return AG_OK;
-    ag_status status = look_up_counted(list, log, name, PARAMETER_TEXTURE, 1, &p);
-    if (status == AG_OK)
-        *out_texture_name = p->strings[0];
-    return status;
+    AG_TRY(look_up_counted(list, log, name, PARAMETER_TEXTURE, 1, &p));
+    *out_texture_name = p->strings[0];
+    return AG_OK;
 }
 
 ag_status parameter_get_vec3(parameter_list *list, log_sink *log, const char *name, parameter_type type,
                              vec3 *out_value)
 {
     const parameter *p;
-    ag_status status = look_up_counted(list, log, name, type, 3, &p);
-    if (status == AG_OK && p)
-        status = check_float(list, log, p);
-    if (status == AG_OK && p)
-        *out_value = vec3_make((float)p->numbers[0], (float)p->numbers[1], (float)p->numbers[2]);
-    return status;
+    AG_TRY(look_up_counted(list, log, name, type, 3, &p));
+    if (!p)
+        return AG_OK;
+    AG_TRY(check_float(list, log, p));
+    *out_value = vec3_make((float)p->numbers[0], (float)p->numbers[1], (float)p->numbers[2]);
+    return AG_OK;
 }
 
 spectrum_use parameter_spectrum_use(const char *name)
@@ -234,18 +234,17 @@ static ag_status get_spectrum(const parameter_list *list, log_sink *log, const p
         if (!(p->numbers[i + 1] >= 0.0))
             return refuse(list, log, p, "\"spectrum %s\" has a negative value, %g", p->name, p->numbers[i + 1]);
     }
-    ag_status status = check_float(list, log, p);
-    if (status == AG_OK)
-        *out_value = spectra_sampled(p->numbers, p->count / 2, parameter_spectrum_use(p->name), space);
-    return status;
+    AG_TRY(check_float(list, log, p));
+    *out_value = spectra_sampled(p->numbers, p->count / 2, parameter_spectrum_use(p->name), space);
+    return AG_OK;
 }
 
 static ag_status get_blackbody(parameter_list *list, log_sink *log, const char *name, rgb *out_value)
 {
     const parameter *p;
-    ag_status status = look_up_counted(list, log, name, PARAMETER_BLACKBODY, 1, &p);
-    if (status || !p)
-        return status;
+    AG_TRY(look_up_counted(list, log, name, PARAMETER_BLACKBODY, 1, &p));
+    if (!p)
+        return AG_OK;
     double kelvin = p->numbers[0];
     if (!(kelvin >= SPECTRA_MIN_KELVIN && kelvin <= SPECTRA_MAX_KELVIN))
         return refuse(list, log, p, "\"blackbody %s\": %g is not a temperature from %g to %g kelvin", name, kelvin,
@@ -264,11 +263,10 @@ ag_status parameter_get_rgb(parameter_list *list, log_sink *log, const char *nam
     if (found && found->type == PARAMETER_BLACKBODY)
         return get_blackbody(list, log, name, out_value);
     const parameter *p;
-    ag_status status = look_up_counted(list, log, name, PARAMETER_RGB, 3, &p);
-    if (status == AG_OK && p)
-        status = check_float(list, log, p);
-    if (status || !p)
-        return status;
+    AG_TRY(look_up_counted(list, log, name, PARAMETER_RGB, 3, &p));
+    if (!p)
+        return AG_OK;
+    AG_TRY(check_float(list, log, p));
     for (int i = 0; i < 3; i++)
         if (p->numbers[i] < 0.0)
             return refuse(list, log, p, "\"rgb %s\" has a negative component, %g", name, p->numbers[i]);
@@ -282,14 +280,13 @@ ag_status parameter_get_numbers(parameter_list *list, log_sink *log, const char 
     const parameter *p;
     *out_values = NULL;
     *out_count = 0;
-    ag_status status = look_up(list, log, name, type, &p);
-    if (status == AG_OK && p)
-        status = check_float(list, log, p);
-    if (status == AG_OK && p) {
-        *out_values = p->numbers;
-        *out_count = p->count;
-    }
-    return status;
+    AG_TRY(look_up(list, log, name, type, &p));
+    if (!p)
+        return AG_OK;
+    AG_TRY(check_float(list, log, p));
+    *out_values = p->numbers;
+    *out_count = p->count;
+    return AG_OK;
 }
 
 /* "sphere", "diffuse", ...: named materials and media say it by a parameter, their name is the user's own. */

@@ -56,7 +56,7 @@ static ag_status read_numbers(pbrt_parser *parser, pbrt_lexer *lexer, double **i
         ag_status status = pbrt_lexer_next(lexer, &token);
         if (status == AG_ERROR_SCENE)
             return refuse_token(parser, lexer, &token, lexer->error);
-        if (status || token.kind == PBRT_TOKEN_END)
+        if (status != AG_OK || token.kind == PBRT_TOKEN_END)
             return status;
         if (!pbrt_token_number(&token, &number) || !isfinite(number))
             return refuse_token(parser, lexer, &token, "a number should stand here");

@@ -131,7 +131,7 @@ ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location wh
         ag_status status = text_file_read(parser->run, name, error, sizeof error, &file);
         if (status == AG_ERROR_INPUT)
             log_at(parser->log, AG_LOG_ERROR, (file_location){shown, 0, 0}, "cannot read the file: %s", error);
-        return status ? status : push(parser, shown, &file, where);
+        return status != AG_OK ? status : push(parser, shown, &file, where);
     }
     if (parser->file_count == PBRT_MAX_DEPTH) {
         describe_chain(parser, where, chain, sizeof chain);
@@ -221,7 +221,7 @@ static ag_status fill_in(pbrt_parser *parser, pbrt_file *file, pbrt_token *token
                                           token->kind == PBRT_TOKEN_STRING, message, sizeof message, &text, &length);
     if (status == AG_ERROR_SCENE)
         return pbrt_error(parser, token->where, token->width, "%s", message);
-    if (status || !text)
+    if (status != AG_OK || !text)
         return status;
     free(file->value.text);
     file->value.text = text;
@@ -260,7 +260,7 @@ ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
             if (file->value.has_tokens)
                 continue;
         }
-        if (status || out_token->kind != PBRT_TOKEN_END || parser->file_count == 1 || file->is_import)
+        if (status != AG_OK || out_token->kind != PBRT_TOKEN_END || parser->file_count == 1 || file->is_import)
             return status;
         pbrt_pop_file(parser);
     }

@@ -81,7 +81,7 @@ ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list,
 {
     char message[768] = "";
     light_picture picture;
-    PBRT_TRY(read_pixels(parser, list, name, is_gray, &picture));
+    AG_TRY(read_pixels(parser, list, name, is_gray, &picture));
     for (size_t i = 0; is_gray && i < (size_t)picture.width * picture.height; i++)
         picture.pixels[i] = rgb_gray((picture.pixels[i].r + picture.pixels[i].g + picture.pixels[i].b) / 3.0f);
     ag_status status = light_picture_surround(&picture, name, out_environment, message, sizeof message);
@@ -95,9 +95,9 @@ static ag_status read_common(pbrt_parser *parser, parameter_list *list, const ch
 {
     float scale = 1.0f, power = -1.0f;
     *out_name = "";
-    PBRT_TRY(parameter_get_string(list, parser->log, "filename", out_name));
-    PBRT_TRY(parameter_get_float(list, parser->log, "scale", &scale));
-    PBRT_TRY(parameter_get_float(list, parser->log, "power", &power));
+    AG_TRY(parameter_get_string(list, parser->log, "filename", out_name));
+    AG_TRY(parameter_get_float(list, parser->log, "scale", &scale));
+    AG_TRY(parameter_get_float(list, parser->log, "power", &power));
     if (scale < 0.0f)
         return pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
     if (!(*out_name)[0])
@@ -129,11 +129,11 @@ static ag_status read_goniometric(pbrt_parser *parser, parameter_list *list, lig
     double scale = 1.0, power = -1.0;
     rgb color = rgb_gray(1.0f);
     l->kind = LIGHT_GONIOMETRIC;
-    PBRT_TRY(read_common(parser, list, &name, &scale, &power, l));
-    PBRT_TRY(parameter_get_rgb(list, parser->log, "I", &color));
-    PBRT_TRY(pbrt_set_light_frame(parser, list, true, l));
-    PBRT_TRY(pbrt_read_environment(parser, list, name, true, &l->environment));
-    PBRT_TRY(set_intensity(parser, list, color, scale, power, l->environment->integral.g, l));
+    AG_TRY(read_common(parser, list, &name, &scale, &power, l));
+    AG_TRY(parameter_get_rgb(list, parser->log, "I", &color));
+    AG_TRY(pbrt_set_light_frame(parser, list, true, l));
+    AG_TRY(pbrt_read_environment(parser, list, name, true, &l->environment));
+    AG_TRY(set_intensity(parser, list, color, scale, power, l->environment->integral.g, l));
     return rgb_is_finite(environment_integral(l))
                ? AG_OK
                : pbrt_refuse(parser, list, "scale", "the light is too bright for a float");
@@ -146,16 +146,16 @@ static ag_status read_projection(pbrt_parser *parser, parameter_list *list, ligh
     float fov = 90.0f;
     light_picture picture;
     l->kind = LIGHT_PROJECTION;
-    PBRT_TRY(read_common(parser, list, &name, &scale, &power, l));
-    PBRT_TRY(parameter_get_float(list, parser->log, "fov", &fov));
+    AG_TRY(read_common(parser, list, &name, &scale, &power, l));
+    AG_TRY(parameter_get_float(list, parser->log, "fov", &fov));
     if (!(fov > 0.0f && fov < 180.0f))
         return pbrt_refuse(parser, list, "fov", "\"fov\" should be within (0, 180) degrees");
-    PBRT_TRY(pbrt_set_light_frame(parser, list, false, l));
+    AG_TRY(pbrt_set_light_frame(parser, list, false, l));
     l->direction = l->world_from_light.z;
-    PBRT_TRY(read_pixels(parser, list, name, false, &picture));
-    PBRT_TRY(projection_create(picture.width, picture.height, picture.pixels, fov, &l->projection));
-    PBRT_TRY(set_intensity(parser, list, rgb_gray(1.0f), scale, power,
-                           working_space_luminance(&parser->scene->space, l->projection->integral), l));
+    AG_TRY(read_pixels(parser, list, name, false, &picture));
+    AG_TRY(projection_create(picture.width, picture.height, picture.pixels, fov, &l->projection));
+    AG_TRY(set_intensity(parser, list, rgb_gray(1.0f), scale, power,
+                         working_space_luminance(&parser->scene->space, l->projection->integral), l));
     return rgb_is_finite(rgb_mul(l->intensity, l->projection->integral))
                ? AG_OK
                : pbrt_refuse(parser, list, "scale", "the light is too bright for a float");

@@ -215,8 +215,8 @@ static ag_status add_patches(pbrt_parser *parser, parameter_list *list, pbrt_mes
                              size_t steps)
 {
     if (steps == 1) {
-        ag_status status = split_flat(source, patch_count);
-        return status ? status : pbrt_add_mesh(parser, list, source);
+        AG_TRY(split_flat(source, patch_count));
+        return pbrt_add_mesh(parser, list, source);
     }
     log_at(parser->log, AG_LOG_INFO, list->where,
            "Shape \"bilinearmesh\": %zu curved patch%s cut into %zu x %zu cells each", patch_count,

@@ -16,8 +16,6 @@
 #include "text/name_table.h"
 #include "text/text_file.h"
 
-#define PBRT_TRY AG_TRY
-
 /* World coordinates beyond this would overflow a float when squared. */
 #define PBRT_MAX_COORDINATE 1e18f
 

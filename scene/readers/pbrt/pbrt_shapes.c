@@ -215,7 +215,7 @@ static ag_status read_moving_shape(pbrt_parser *parser, parameter_list *list)
     parser->shapes_object_index = object_around;
     state->world_from_object = start;
     state->world_from_object_end = end;
-    if (status || is_shown || parser->scene->shape_count == count) /* the last: it was left out */
+    if (status != AG_OK || is_shown || parser->scene->shape_count == count) /* the last: it was left out */
         return status;
     if (is_curve(list)) {
         parser->curves_object_index = object_index;

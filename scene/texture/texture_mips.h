@@ -1,0 +1,42 @@
+/* texture_mips.h: coarser levels of a picture, for filtered look-ups. Each pixel of a level is the mean of the linear
+ * values that it covers in the level before, by area where sizes are odd, so that every level has the picture's mean.
+ * Rests on: Williams, "Pyramidal Parametrics", SIGGRAPH 1983; for odd sizes Guthe, Heckbert, "Non-Power-of-Two
+ * Mipmapping", 2005. Flow: texture_image -> [here] -> texture_filter. Threads: built by the run's workers; then
+ * read-only. */
+#ifndef AFTERGLOW_TEXTURE_MIPS_H
+#define AFTERGLOW_TEXTURE_MIPS_H
+
+#include "afterglow/base.h"
+#include "math/vec3.h"
+#include "run_context.h"
+#include "texture/texture_pixels.h"
+
+enum { TEXTURE_LEVELS_MAX = 32 };
+
+/* Pixels, packed, top row first; of bytes, packed and values the one that is there. */
+typedef struct texture_level {
+    uint32_t width, height;
+    uint32_t channel_count;     /* 1 or 3 */
+    const unsigned char *bytes; /* whose linear values are in table */
+    const float *table;
+    uint16_t *packed; /* linear, in 1/65535 */
+    float *values;    /* linear */
+} texture_level;
+
+typedef struct texture_mips {
+    uint32_t level_count;                     /* >= 1 */
+    texture_level levels[TEXTURE_LEVELS_MAX]; /* the first is the picture itself, borrowed; each other is half as wide
+                                                 and high as the one before, rounded up; the last is a single pixel */
+} texture_mips;
+
+/* Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ag_status texture_mips_create(run_context *run, const texture_level *finest, texture_mips **out_mips);
+void texture_mips_destroy(texture_mips *m); /* NULL is fine */
+
+/* Linear values between the middles of a level's pixels; of a grey picture all three are the same. */
+rgb texture_level_rgb(const texture_level *l, texture_wraps wraps, texture_filter filter, float s, float t);
+
+/* What the coarser levels take in memory. */
+size_t texture_mips_size_bytes(const texture_mips *m);
+
+#endif
