@@ -196,6 +196,8 @@ static bool take_checkpoint(const char *value, options *o) { return parse_second
 
 static bool take_time_limit(const char *value, options *o) { return parse_time(value, &o->time_limit); }
 
+static bool take_memory(const char *value, options *o) { return parse_bytes(value, &o->memory_limit); }
+
 static bool take_progress(const char *value, options *o)
 {
     static const progress_style styles[] = {PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_PLAIN, PROGRESS_JSON,
@@ -342,16 +344,17 @@ static const option_row ROWS[] = {
               .manual = "Print the displays and views, looks, colour spaces and roles of the config, and end; goes "
                         "with no scene."},
      FLAG(lists_displays)},
-    {.text = {.name = "stats",
-              .argument = "FILE",
-              .section = "Output",
-              .help = "write statistics as JSON",
-              .manual =
-                  "Write statistics (counts, times, memory) as JSON, also of a picture that a signal has ended. "
-                  "Its end.reason is _samples_ (all that *--spp* allows), _noise_ (that of *--noise* was reached "
-                  "before), _photons_ (*--photons-only*), _time-limit_ or _signal_, where *--resume* goes on from "
-                  "a checkpoint; end.noise is the noise reached, as *--noise* measures it, null where it is not "
-                  "known, and end.samples tells how many samples pixels have had."},
+    {.text =
+         {.name = "stats",
+          .argument = "FILE",
+          .section = "Output",
+          .help = "write statistics as JSON",
+          .manual =
+              "Write statistics (counts, times, memory) as JSON, also of a picture that a signal has ended. "
+              "Its end.reason is _samples_ (all that *--spp* allows), _noise_ (that of *--noise* was reached "
+              "before), _photons_ (*--photons-only*), _dry-run_, _memory_ (there was not enough), _time-limit_ or _signal_, where *--resume* goes on from "
+              "a checkpoint; end.noise is the noise reached, as *--noise* measures it, null where it is not "
+              "known, and end.samples tells how many samples pixels have had."},
      TEXT(stats)},
     {.text = {.name = "define",
               .argument = "NAME=VALUE",
@@ -558,6 +561,32 @@ static const option_row ROWS[] = {
                         "complete, and a message says how many samples it has; with *--checkpoint* a checkpoint "
                         "stays for *--resume* to go on with."},
      .take = take_time_limit},
+    {.text =
+         {.name = "memory",
+          .argument = "SIZE",
+          .section = "Work",
+          .help = "the process may have so much memory, in bytes or as 500M or 8G: a picture that would need more "
+                  "is not begun",
+          .manual =
+              "The process may have so much memory: bytes, or with K, M, G or T at the end times 1024, "
+              "1024^2, ... What a picture will need is predicted when the scene is there (see "
+              "*--dry-run*): where it is more, a message tells how much and for what, and the exit status "
+              "is 3. A run that needs more all the same ends for want of memory instead of taking it from "
+              "others; since libraries reserve memory that they never touch, 24 MB beyond are allowed then, and 256 MB "
+              "while the scene is read."},
+     .take = take_memory},
+    {.text =
+         {.name = "dry-run",
+          .section = "Work",
+          .help = "render no picture: predict how long it would take and how much memory, and print that",
+          .manual =
+              "Load the scene, predict how long the picture would take on this machine, were it idle, and "
+              "how much memory at the most, print that on standard output, and write no picture. For the "
+              "time photons are traced, a million into each map at most, and some hundred blocks of the "
+              "picture's pixels are rendered, or half of them where it is small. *--stats* has it as "
+              "prediction.time_s, prediction.cpu_s and prediction.memory. What *--denoise* takes is not in it, and limits of time, "
+              "checkpoints and photon maps that are kept already are not heeded."},
+     FLAG(dry_run)},
     {.text = {.name = "preview",
               .section = "Work",
               .help = "write the picture after 1, 2, 4, ... samples per pixel, too",

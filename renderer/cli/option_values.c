@@ -82,3 +82,25 @@ bool parse_word(const char *text, const char *const *words, int count, int *out_
             return true;
     return false;
 }
+
+bool parse_bytes(const char *text, uint64_t *out_bytes)
+{
+    static const char UNITS[] = "KMGT";
+    char number[32];
+    const size_t length = strlen(text);
+    const char *unit = length > 0 ? strchr(UNITS, text[length - 1]) : NULL;
+    double bytes;
+    if (length == 0 || length >= sizeof number)
+        return false;
+    memcpy(number, text, length + 1);
+    if (unit)
+        number[length - 1] = '\0';
+    if (!parse_seconds(number, &bytes))
+        return false;
+    for (int i = 0; unit && i <= unit - UNITS; i++)
+        bytes *= 1024.0;
+    if (!(bytes >= 1.0 && bytes < 0x1p63))
+        return false;
+    *out_bytes = (uint64_t)bytes;
+    return true;
+}

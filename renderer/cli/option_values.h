@@ -15,6 +15,8 @@ bool parse_floats(const char *text, int most, float *out_values, int *out_count)
 bool parse_seconds(const char *text, double *out_seconds);
 /* Seconds, or HH:MM:SS. */
 bool parse_time(const char *text, double *out_seconds);
+/* Bytes, or with K, M, G or T at the end 1024, 1024^2, ... times as many; at least 1. */
+bool parse_bytes(const char *text, uint64_t *out_bytes);
 /* I/N, 1 <= I <= N. */
 bool parse_tile(const char *text, int *out_index, int *out_count);
 /* One of a list of words: its place there. */
