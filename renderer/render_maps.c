@@ -1,6 +1,7 @@
 /* render_maps.c: see render_maps.h. */
 #include "render_maps.h"
 
+#include "caustic_radius.h"
 #include "integrator/eye_pilot.h"
 #include "map_file.h"
 #include "photon_aim.h"
@@ -115,7 +116,8 @@ static ag_status trace_maps(ag_context *context, const scene *s, const ag_render
                                             .surfaces = s};
         status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, out_global);
         /* caustics gather in places: how many of their photons there are does not tell how far apart they lie */
-        map_settings.radius_bound = out_global->max_radius;
+        if (status == AG_OK)
+            status = caustic_radius_find(out_global, &caustic, &map_settings.radius_bound);
         map_settings.bearing = 1.0f;
         if (status == AG_OK)
             status = photon_map_create(&context->run, &caustic, &map_settings, 0.7, 1.0, out_caustic);
