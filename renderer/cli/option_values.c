@@ -82,3 +82,17 @@ bool parse_word(const char *text, const char *const *words, int count, int *out_
             return true;
     return false;
 }
+
+bool parse_bytes(const char *text, uint64_t least, uint64_t *out_bytes)
+{
+    static const char UNITS[] = "KMG";
+    char *end;
+    errno = 0;
+    const unsigned long long number = strtoull(text, &end, 10);
+    const char *unit = *end ? strchr(UNITS, *end) : NULL;
+    const unsigned shift = unit ? 10u * (unsigned)(unit - UNITS + 1) : 0;
+    if (text[0] < '0' || text[0] > '9' || errno || (*end && (!unit || end[1])) || number > UINT64_MAX >> (shift + 1))
+        return false;
+    *out_bytes = (uint64_t)number << shift;
+    return *out_bytes == 0 || *out_bytes >= least;
+}

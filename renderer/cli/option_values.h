@@ -11,6 +11,8 @@ bool parse_int(const char *text, int least, int most, int *out_value);
 bool parse_float(const char *text, float *out_value);
 /* Finite numbers with commas between them; how many, at most so many. */
 bool parse_floats(const char *text, int most, float *out_values, int *out_count);
+/* A whole number, of K, M or G, each 1024 of the one before: 0, or that least. */
+bool parse_bytes(const char *text, uint64_t least, uint64_t *out_bytes);
 /* Above 0 and finite. */
 bool parse_seconds(const char *text, double *out_seconds);
 /* Seconds, or HH:MM:SS. */
