@@ -134,8 +134,7 @@ static bool shines_away(const scene *s)
 static bool has_lights_without_extent(const scene *s)
 {
     for (uint32_t i = 0; i < s->light_count; i++)
-        if (s->lights[i].kind != LIGHT_AREA && s->lights[i].kind != LIGHT_INFINITE &&
-            rgb_max(s->lights[i].power) > 0.0f)
+        if (!light_can_be_met(&s->lights[i]) && rgb_max(s->lights[i].power) > 0.0f)
             return true;
     return false;
 }

@@ -94,7 +94,7 @@ static transport make_transport(const ag_context *context, const scene *s, const
                    .has_lights = rgb_max(s->light_power) > 0.0f,
                    .panes_are_direct = s->has_panes && settings->pane_light == AG_PANE_LIGHT_DIRECT};
     for (uint32_t i = 0; i < s->light_count; i++)
-        t.can_meet_lights = t.can_meet_lights || s->lights[i].kind == LIGHT_AREA || s->lights[i].kind == LIGHT_INFINITE;
+        t.can_meet_lights = t.can_meet_lights || light_can_be_met(&s->lights[i]);
     return t;
 }
 

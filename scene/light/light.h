@@ -62,6 +62,9 @@ void light_set_cone(light *l, double full_angle, double dark_angle);
 /* Frees the pictures and tables. */
 void light_reset(light *l);
 
+/* Whether scattered rays find it: area and infinite lights. The others shadow rays alone find. */
+bool light_can_be_met(const light *l);
+
 /* Light arriving at a point. */
 typedef struct light_sample {
     vec3 direction;        /* towards the light, unit */

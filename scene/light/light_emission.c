@@ -1,22 +1,16 @@
 /* light_emission.c: rays of light that leave a lamp: see light_sample_emission in light.h.
  * Rests on: Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, ch. 5; Jensen 1996 (projection maps).
  * Threads: read-only. */
-#include "light/environment.h"
-#include "light/portal.h"
-#include "light/projection.h"
-#include "light/radiance_map.h"
+#include "light/light_type.h"
 #include "math/rng.h"
 #include "math/sampling.h"
-#include "rays/passage.h"
 #include "rays/rays.h"
 #include "scene.h"
 
 /* Beyond this, 1 - cos of its half angle, a cone to the target is hardly better than sampling the light's own way. */
 static const float TARGET_CONE_MAX = 0.5f;
 
-/* A direction from a place uniformly in the cone to the target; false where the light's own way, which fills a cone of
- * own_cone, is as good. */
-static bool aim_at(const light_target *target, vec3 origin, float own_cone, vec2 u, vec3 *out_direction, float *out_pdf)
+bool light_aim_at(const light_target *target, vec3 origin, float own_cone, vec2 u, vec3 *out_direction, float *out_pdf)
 {
     if (!target)
         return false;
@@ -29,89 +23,6 @@ static bool aim_at(const light_target *target, vec3 origin, float own_cone, vec2
     *out_direction = frame_to_world(&f, sample_uniform_cone(u, one_minus_cos));
     *out_pdf = 1.0f / (2.0f * AG_PI * one_minus_cos);
     return true;
-}
-
-static bool emit_area(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
-                      light_emission *out)
-{
-    const shape *lamp = &s->shapes[l->shape_index];
-    vec2 u = numbers->place;
-    float density = 1.0f, pdf;
-    if (l->radiance_map && !radiance_map_sample(l->radiance_map, u, &u, &density))
-        return false;
-    surface_sample at = shape_sample_area(lamp, u);
-    rgb radiance = rgb_mul(l->radiance, light_sampled_value(s, l, &at));
-    vec3 n = at.geometric_normal;
-    if (aim_at(target, at.position, 1.0f, numbers->direction, &out->direction, &pdf)) {
-        float cosine = vec3_dot(n, out->direction);
-        if (l->two_sided && cosine < 0.0f) {
-            n = vec3_negate(n);
-            cosine = -cosine;
-        }
-        out->flux = rgb_scale(radiance, fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf));
-    } else {
-        if (l->two_sided && numbers->part < 0.5f)
-            n = vec3_negate(n);
-        frame f = frame_from_z(n);
-        out->direction = frame_to_world(&f, sample_cosine_hemisphere(numbers->direction));
-        /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids, and nearly so by a radiance map */
-        out->flux = rgb_scale(radiance, AG_PI * (l->two_sided ? 2.0f : 1.0f) / (at.pdf_area * density));
-    }
-    out->origin = vec3_add_scaled(at.position, n, at.epsilon);
-    out->medium = vec3_dot(n, at.geometric_normal) > 0.0f ? lamp->medium_outside : lamp->medium_inside;
-    return !rgb_is_black(out->flux);
-}
-
-/* A direction in the cone, uniform but thinned by the falloff, so that all photons are equal: on average at least half
- * are accepted, and what 64 trials refuse goes along the axis. */
-static vec3 sample_spot(const light *l, const emission_numbers *numbers, rng *random)
-{
-    frame f = frame_from_z(l->direction);
-    vec3 local = {0.0f, 0.0f, 1.0f};
-    float ramp = l->falloff_end - l->falloff_start;
-    for (int trial = 0; trial < 64; trial++) {
-        vec2 u = trial == 0 ? numbers->direction : rng_vec2(random);
-        float x = ramp > 0.0f ? fminf((1.0f - u.x) * l->falloff_end / ramp, 1.0f) : 1.0f;
-        if (rng_float(random) < x * x * (3.0f - 2.0f * x)) {
-            local = sample_uniform_cone(u, l->falloff_end);
-            break;
-        }
-    }
-    return frame_to_world(&f, local);
-}
-
-/* The lights that are points. */
-static bool emit_point(const light *l, const light_target *target, const emission_numbers *numbers, rng *random,
-                       light_emission *out)
-{
-    float pdf, own_cone = 2.0f;
-    vec3 local;
-    out->origin = l->position;
-    if (l->kind == LIGHT_SPOT)
-        own_cone = l->falloff_end;
-    else if (l->kind == LIGHT_PROJECTION)
-        own_cone = 1.0f - projection_corner_cosine(l->projection);
-    if (aim_at(target, l->position, own_cone, numbers->direction, &out->direction, &pdf)) {
-        out->flux = rgb_scale(light_intensity(l, out->direction), 1.0f / pdf);
-        return !rgb_is_black(out->flux);
-    }
-    switch (l->kind) {
-    case LIGHT_GONIOMETRIC:
-        if (!environment_sample_whole(l, numbers->direction, &out->direction, &out->flux, &pdf))
-            return false;
-        out->flux = rgb_scale(out->flux, 1.0f / pdf);
-        return true;
-    case LIGHT_PROJECTION:
-        if (!projection_sample(l->projection, numbers->direction, &local, &out->flux, &pdf))
-            return false;
-        out->direction = vec3_normalize(frame_to_world(&l->world_from_light, local));
-        out->flux = rgb_scale(rgb_mul(l->intensity, out->flux), 1.0f / pdf);
-        return true;
-    case LIGHT_SPOT: out->direction = sample_spot(l, numbers, random); break;
-    default: out->direction = sample_uniform_sphere(numbers->direction); break;
-    }
-    out->flux = l->power;
-    return !rgb_is_black(out->flux);
 }
 
 /* Where small things stand among giants, light from afar that were spread evenly over the scene would hardly find them.
@@ -187,39 +98,15 @@ static bool come_through_space(const scene *s, const light *l, light_emission *o
     return !rgb_is_black(out->flux);
 }
 
-/* From a place in the portal, which is in the light's own medium, with what comes so far; window panes before it let
- * light through straight. */
-static bool emit_through_portal(const scene *s, const light *l, const light_target *target,
-                                const emission_numbers *numbers, light_emission *out)
+bool light_emit_from_afar(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                          vec3 direction, rgb radiance, float pdf, light_emission *out)
 {
-    vec3 to_light;
-    float pdf;
-    if (!portal_sample_flux(l->portal, target, numbers, &out->origin, &to_light, &pdf))
-        return false;
-    rgb radiance = environment_whole_radiance(l, to_light);
-    if (rgb_is_black(radiance))
-        return false;
-    scene_ray back = scene_ray_make(out->origin, to_light);
-    back.medium = l->medium;
-    uint64_t cut = 0;
-    rgb transmittance = passage_transmittance_of_panes(s, back, INFINITY, &cut);
-    out->direction = vec3_negate(to_light);
-    out->flux = rgb_scale(rgb_mul(radiance, transmittance), vec3_dot(to_light, l->portal->axes.z) / pdf);
-    return !rgb_is_black(out->flux);
-}
-
-static bool emit_infinite(const scene *s, const light *l, const light_target *ball, const emission_numbers *numbers,
-                          light_emission *out)
-{
-    vec3 to_light;
-    rgb radiance;
-    float pdf;
-    if (!environment_sample_whole(l, numbers->direction, &to_light, &radiance, &pdf))
-        return false;
+    light_target whole = {s->bounding_center, s->bounding_radius};
+    const light_target *ball = target && target->radius < whole.radius ? target : &whole;
     float density;
-    out->direction = vec3_negate(to_light);
-    if (!start_from_afar(s, ball, out->direction, numbers, &out->origin, &density))
+    if (!start_from_afar(s, ball, direction, numbers, &out->origin, &density))
         return false;
+    out->direction = direction;
     out->flux = rgb_scale(radiance, 1.0f / (density * pdf));
     return come_through_space(s, l, out);
 }
@@ -227,23 +114,8 @@ static bool emit_infinite(const scene *s, const light *l, const light_target *ba
 bool light_emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                 rng *random, light_emission *out_emission)
 {
-    light_emission *out = out_emission;
-    light_target whole = {s->bounding_center, s->bounding_radius};
-    const light_target *ball = target && target->radius < whole.radius ? target : &whole;
-    float density;
-    out->medium = l->medium; /* of area lights: by the side */
-    switch (l->kind) {
-    case LIGHT_AREA: return emit_area(s, l, target, numbers, out);
-    case LIGHT_DISTANT:
-        if (!start_from_afar(s, ball, l->direction, numbers, &out->origin, &density))
-            return false;
-        out->direction = l->direction;
-        out->flux = rgb_scale(l->radiance, 1.0f / density);
-        return come_through_space(s, l, out) && !rgb_is_black(out->flux);
-    case LIGHT_INFINITE:
-        return l->portal ? emit_through_portal(s, l, target, numbers, out) : emit_infinite(s, l, ball, numbers, out);
-    default: return emit_point(l, target, numbers, random, out);
-    }
+    out_emission->medium = l->medium; /* of area lights: by the side */
+    return light_type_of(l->kind)->emit(s, l, target, numbers, random, out_emission);
 }
 
 emission_numbers emission_numbers_draw(rng *random)

@@ -25,6 +25,10 @@ typedef struct light_bounds {
     float intensity;    /* towards where it is brightest, W/sr by the mean of the channels */
 } light_bounds;
 
+/* A cosine for all directions; and what is added to bounds for rounding. */
+#define LIGHT_BOUNDS_ALL_AROUND (-1.0f)
+#define LIGHT_BOUNDS_SLACK      1e-3f
+
 /* Of a committed light; false for those that are everywhere. */
 bool light_find_bounds(const scene *s, const light *l, light_bounds *out_bounds);
 

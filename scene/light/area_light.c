@@ -1,0 +1,255 @@
+/* area_light.c: a shape that shines, by its own sampling, by the cone of a sphere, or by a radiance map.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.4 and 6.2.4 (the cone of a
+ * sphere). Threads: read-only. */
+#include "light/light_type.h"
+#include "light/radiance_map.h"
+#include "math/sampling.h"
+#include "scene.h"
+#include "shape/alpha.h"
+#include "status.h"
+
+static ag_status commit(const scene *s, light *l)
+{
+    return light_varies(s, l) && !l->radiance_map ? radiance_map_create(s, l, &l->radiance_map) : AG_OK;
+}
+
+static rgb power(const scene *s, const light *l)
+{
+    rgb mean = rgb_mul(l->radiance, l->radiance_map ? l->radiance_map->mean : light_sampled_value(s, l, NULL));
+    return rgb_scale(mean, AG_PI * s->shapes[l->shape_index].area * (l->two_sided ? 2.0f : 1.0f));
+}
+
+/* --- how bright --- */
+
+rgb light_texture_value(const scene *s, const light *l, const surface_hit *hit)
+{
+    if (l->radiance_texture == SCENE_NO_TEXTURE)
+        return rgb_gray(1.0f);
+    rgb c = texture_evaluate_rgb(s, l->radiance_texture, hit);
+    return rgb_make(fmaxf(c.r, 0.0f), fmaxf(c.g, 0.0f), fmaxf(c.b, 0.0f));
+}
+
+bool light_varies(const scene *s, const light *l)
+{
+    const shape *lamp = &s->shapes[l->shape_index];
+    return l->radiance_texture != SCENE_NO_TEXTURE ||
+           (lamp->alpha_texture != SCENE_NO_TEXTURE && !shape_is_invisible(lamp));
+}
+
+rgb light_sampled_value(const scene *s, const light *l, const surface_sample *at)
+{
+    const shape *lamp = &s->shapes[l->shape_index];
+    if (l->radiance_texture == SCENE_NO_TEXTURE && shape_is_opaque(lamp))
+        return rgb_gray(1.0f);
+    surface_hit hit = {.distance = 0.0f};
+    if (light_varies(s, l))
+        shape_sample_surface(lamp, l->shape_index, at, &hit);
+    rgb value = light_texture_value(s, l, &hit);
+    if (shape_is_opaque(lamp) || shape_is_invisible(lamp))
+        return value;
+    return rgb_scale(value, alpha_at(s, lamp, &hit));
+}
+
+static rgb emitted_radiance(const scene *s, const light *l, const surface_hit *hit, vec3 direction)
+{
+    if (!l->two_sided && vec3_dot(hit->geometric_normal, direction) <= 0.0f)
+        return rgb_gray(0.0f);
+    return l->radiance_texture == SCENE_NO_TEXTURE ? l->radiance : rgb_mul(l->radiance, light_texture_value(s, l, hit));
+}
+
+/* --- towards a point --- */
+
+/* light_ball_cone of a lamp that is a whole sphere. */
+static bool sphere_cone(const shape *s, vec3 point, float *out_one_minus_cos)
+{
+    if (s->kind != SHAPE_SPHERE || s->as.quadric.uniform_radius <= 0.0f)
+        return false;
+    return light_ball_cone(s->as.quadric.center, s->as.quadric.uniform_radius, point, out_one_minus_cos);
+}
+
+/* A place on a lamp seen from outside its sphere, uniform in solid angle: a direction in the cone, then the near
+ * intersection by plane geometry. */
+static surface_sample sample_sphere_cone(const shape *lamp, vec3 point, vec2 u, float cone)
+{
+    vec3 center = lamp->as.quadric.center, to_center = vec3_sub(center, point);
+    float distance = vec3_length(to_center), r = lamp->as.quadric.uniform_radius;
+    frame f = frame_from_z(vec3_scale(to_center, 1.0f / distance));
+    vec3 local = sample_uniform_cone(u, cone);
+    float sin2 = fmaxf(0.0f, local.x * local.x + local.y * local.y);
+    float along = distance * local.z - sqrtf(fmaxf(0.0f, r * r - distance * distance * sin2));
+    vec3 n = vec3_normalize(vec3_sub(vec3_add_scaled(point, frame_to_world(&f, local), along), center));
+    surface_sample at = {0};
+    at.position = vec3_add_scaled(center, n, r);
+    at.geometric_normal = lamp->flip_normal ? vec3_negate(n) : n;
+    at.epsilon = (vec3_max_abs(center) + r) * SHAPE_EPSILON_RELATIVE;
+    return at;
+}
+
+/* Whether direct light is sampled by the lamp's radiance map too: where its density is known at a hit. */
+static bool is_sampled_by_map(const light *l, const shape *lamp) { return l->radiance_map && lamp->kind == SHAPE_MESH; }
+
+static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
+{
+    const shape *lamp = &s->shapes[l->shape_index];
+    surface_sample at;
+    float cone, density = 1.0f;
+    bool is_cone = sphere_cone(lamp, point, &cone);
+    if (is_sampled_by_map(l, lamp) && !radiance_map_sample(l->radiance_map, u, &u, &density))
+        return false;
+    at = is_cone ? sample_sphere_cone(lamp, point, u, cone) : shape_sample_area(lamp, u);
+    vec3 to_lamp = vec3_sub(at.position, point);
+    float distance_squared = vec3_length_squared(to_lamp);
+    if (!(distance_squared > 0.0f))
+        return false;
+    out->distance = sqrtf(distance_squared);
+    out->direction = vec3_scale(to_lamp, 1.0f / out->distance);
+    out->radiance = rgb_gray(0.0f);
+    if (l->two_sided || vec3_dot(at.geometric_normal, out->direction) < 0.0f)
+        out->radiance = rgb_mul(l->radiance, light_sampled_value(s, l, &at));
+    float cos_lamp = fabsf(vec3_dot(at.geometric_normal, out->direction));
+    if (rgb_is_black(out->radiance) || cos_lamp <= 1e-6f)
+        return false;
+    out->pdf_solid_angle = is_cone ? 1.0f / (2.0f * AG_PI * cone) : at.pdf_area * density * distance_squared / cos_lamp;
+    out->shadow_target =
+        vec3_add_scaled(at.position, vec3_face_forward(at.geometric_normal, vec3_negate(out->direction)), at.epsilon);
+    out->is_delta = shape_is_invisible(lamp); /* then shadow rays alone find it */
+    return true;
+}
+
+static float pdf_from_point(const scene *s, const light *l, vec3 point, const surface_hit *hit)
+{
+    const shape *lamp = &s->shapes[l->shape_index];
+    float cone;
+    vec2 u;
+    if (sphere_cone(lamp, point, &cone))
+        return 1.0f / (2.0f * AG_PI * cone);
+    vec3 to_lamp = vec3_sub(hit->position, point);
+    float distance_squared = vec3_length_squared(to_lamp);
+    float cos_lamp = fabsf(vec3_dot(hit->geometric_normal, to_lamp)) / sqrtf(distance_squared);
+    float density = is_sampled_by_map(l, lamp) && shape_sample_inverse(lamp, hit, &u)
+                        ? radiance_map_density(l->radiance_map, u)
+                        : 1.0f;
+    return cos_lamp > 0.0f ? shape_pdf_area(lamp, hit->geometric_normal) * density * distance_squared / cos_lamp : 0.0f;
+}
+
+/* --- from the lamp --- */
+
+static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                 struct rng *random, light_emission *out)
+{
+    (void)random;
+    const shape *lamp = &s->shapes[l->shape_index];
+    vec2 u = numbers->place;
+    float density = 1.0f, pdf;
+    if (l->radiance_map && !radiance_map_sample(l->radiance_map, u, &u, &density))
+        return false;
+    surface_sample at = shape_sample_area(lamp, u);
+    rgb radiance = rgb_mul(l->radiance, light_sampled_value(s, l, &at));
+    vec3 n = at.geometric_normal;
+    if (light_aim_at(target, at.position, 1.0f, numbers->direction, &out->direction, &pdf)) {
+        float cosine = vec3_dot(n, out->direction);
+        if (l->two_sided && cosine < 0.0f) {
+            n = vec3_negate(n);
+            cosine = -cosine;
+        }
+        out->flux = rgb_scale(radiance, fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf));
+    } else {
+        if (l->two_sided && numbers->part < 0.5f)
+            n = vec3_negate(n);
+        frame f = frame_from_z(n);
+        out->direction = frame_to_world(&f, sample_cosine_hemisphere(numbers->direction));
+        /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids, and nearly so by a radiance map */
+        out->flux = rgb_scale(radiance, AG_PI * (l->two_sided ? 2.0f : 1.0f) / (at.pdf_area * density));
+    }
+    out->origin = vec3_add_scaled(at.position, n, at.epsilon);
+    out->medium = vec3_dot(n, at.geometric_normal) > 0.0f ? lamp->medium_outside : lamp->medium_inside;
+    return !rgb_is_black(out->flux);
+}
+
+/* --- bounds --- */
+
+/* The triangle's normals: as surface_hit has it, vertex normals say which way is outside, and may disagree. */
+static void add_normal(const mesh *m, uint32_t triangle, vec3 n, vec3 axis, float *least_cos)
+{
+    const uint32_t *index = m->indices + 3 * (size_t)triangle;
+    bool is_turned = false, is_kept = !m->normals;
+    for (int k = 0; m->normals && k < 3; k++)
+        *(vec3_dot(n, m->normals[index[k]]) < 0.0f ? &is_turned : &is_kept) = true;
+    float cosine = vec3_dot(n, axis);
+    if (is_kept)
+        *least_cos = fminf(*least_cos, cosine);
+    if (is_turned)
+        *least_cos = fminf(*least_cos, -cosine);
+}
+
+static vec3 triangle_normal(const shape *s, uint32_t triangle, float *out_area)
+{
+    const mesh *m = &s->as.mesh;
+    const uint32_t *index = m->indices + 3 * (size_t)triangle;
+    vec3 p = m->positions[index[0]];
+    vec3 n = vec3_cross(vec3_sub(m->positions[index[1]], p), vec3_sub(m->positions[index[2]], p));
+    float length = vec3_length(n);
+    *out_area = 0.5f * length;
+    if (!(length > 0.0f && isfinite(length)))
+        return (vec3){0.0f, 0.0f, 0.0f};
+    return vec3_scale(n, (s->flip_normal ? -1.0f : 1.0f) / length);
+}
+
+/* The mean normal, and how far the others are off. */
+static void find_mesh_normals(const shape *s, light_bounds *b)
+{
+    const mesh *m = &s->as.mesh;
+    vec3 sum = {0.0f, 0.0f, 0.0f};
+    for (uint32_t i = 0; i < m->triangle_count; i++) {
+        float area;
+        vec3 n = triangle_normal(s, i, &area);
+        if (m->normals)
+            n = vec3_face_forward(n, m->normals[m->indices[3 * (size_t)i]]);
+        sum = vec3_add_scaled(sum, n, area / s->area);
+    }
+    float length = vec3_length(sum);
+    if (!(length > LIGHT_BOUNDS_SLACK))
+        return;
+    b->axis = vec3_scale(sum, 1.0f / length);
+    float least = 1.0f;
+    for (uint32_t i = 0; i < m->triangle_count; i++) {
+        float area;
+        vec3 n = triangle_normal(s, i, &area);
+        if (area > 0.0f)
+            add_normal(m, i, n, b->axis, &least);
+        else
+            least = LIGHT_BOUNDS_ALL_AROUND; /* a sliver, whose normal single precision does not know */
+    }
+    b->cos_normals = fmaxf(least - LIGHT_BOUNDS_SLACK, LIGHT_BOUNDS_ALL_AROUND);
+}
+
+static void narrow_bounds(const scene *s, const light *l, light_bounds *b)
+{
+    const shape *lamp = &s->shapes[l->shape_index];
+    vec3 low, high;
+    shape_bounds(lamp, &low, &high);
+    b->center = vec3_add_scaled(low, vec3_sub(high, low), 0.5f);
+    b->radius = 0.5f * vec3_length(vec3_sub(high, low));
+    b->cos_emission = 0.0f;
+    b->least_cos = 0.0f;
+    b->two_sided = l->two_sided;
+    b->intensity = rgb_mean(l->power) * AG_INV_PI * (l->two_sided ? 0.5f : 1.0f);
+    if (lamp->kind == SHAPE_DISK) {
+        surface_sample at = shape_sample_area(lamp, (vec2){0.5f, 0.5f});
+        b->axis = at.geometric_normal;
+        b->cos_normals = 1.0f - LIGHT_BOUNDS_SLACK;
+    } else if (lamp->kind == SHAPE_MESH) {
+        find_mesh_normals(lamp, b);
+    }
+    if (b->cos_normals < 0.0f)
+        b->intensity *= 0.25f; /* Cauchy: a convex body shows a quarter of its surface, on average */
+}
+
+const light_type area_light = {.can_be_met = true,
+                               .commit = commit,
+                               .power = power,
+                               .sample_from_point = sample_from_point,
+                               .pdf_from_point = pdf_from_point,
+                               .emitted_radiance = emitted_radiance,
+                               .emit = emit,
+                               .narrow_bounds = narrow_bounds};

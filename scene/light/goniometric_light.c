@@ -1,0 +1,29 @@
+/* goniometric_light.c: a point whose intensity is a picture over all directions.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.2.4. Threads: read-only. */
+#include "light/environment.h"
+#include "light/light_type.h"
+#include "scene.h"
+
+static rgb power(const scene *s, const light *l)
+{
+    (void)s;
+    return environment_integral(l);
+}
+
+static rgb intensity(const light *l, vec3 direction) { return environment_whole_radiance(l, direction); }
+
+static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                 struct rng *random, light_emission *out)
+{
+    float pdf;
+    (void)s, (void)random;
+    if (light_aim_point(l, target, 2.0f, numbers, out))
+        return !rgb_is_black(out->flux);
+    if (!environment_sample_whole(l, numbers->direction, &out->direction, &out->flux, &pdf))
+        return false;
+    out->flux = rgb_scale(out->flux, 1.0f / pdf);
+    return true;
+}
+
+const light_type goniometric_light = {
+    .power = power, .intensity = intensity, .sample_from_point = light_sample_of_point, .emit = emit};

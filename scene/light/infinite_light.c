@@ -1,0 +1,61 @@
+/* infinite_light.c: light from infinitely far away in all directions, from everywhere or through a portal; what it
+ * looks like is told by environment.c.
+ * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.5. Threads: read-only. */
+#include "light/environment.h"
+#include "light/light_type.h"
+#include "light/portal.h"
+#include "rays/passage.h"
+#include "scene.h"
+
+static rgb power(const scene *s, const light *l)
+{
+    float disc = AG_PI * s->bounding_radius * s->bounding_radius;
+    return l->portal ? rgb_scale(l->portal->irradiance, l->portal->width * l->portal->height)
+                     : rgb_scale(environment_integral(l), disc);
+}
+
+static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
+{
+    (void)s;
+    out->is_delta = false;
+    out->distance = INFINITY;
+    out->shadow_target = point;
+    return environment_sample(l, point, u, &out->direction, &out->radiance, &out->pdf_solid_angle);
+}
+
+/* From a place in the portal, which is in the light's own medium, with what comes so far; window panes before it let
+ * light through straight. */
+static bool emit_through_portal(const scene *s, const light *l, const light_target *target,
+                                const emission_numbers *numbers, light_emission *out)
+{
+    vec3 to_light;
+    float pdf;
+    if (!portal_sample_flux(l->portal, target, numbers, &out->origin, &to_light, &pdf))
+        return false;
+    rgb radiance = environment_whole_radiance(l, to_light);
+    if (rgb_is_black(radiance))
+        return false;
+    scene_ray back = scene_ray_make(out->origin, to_light);
+    back.medium = l->medium;
+    uint64_t cut = 0;
+    rgb transmittance = passage_transmittance_of_panes(s, back, INFINITY, &cut);
+    out->direction = vec3_negate(to_light);
+    out->flux = rgb_scale(rgb_mul(radiance, transmittance), vec3_dot(to_light, l->portal->axes.z) / pdf);
+    return !rgb_is_black(out->flux);
+}
+
+static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                 struct rng *random, light_emission *out)
+{
+    vec3 to_light;
+    rgb radiance;
+    float pdf;
+    (void)random;
+    if (l->portal)
+        return emit_through_portal(s, l, target, numbers, out);
+    return environment_sample_whole(l, numbers->direction, &to_light, &radiance, &pdf) &&
+           light_emit_from_afar(s, l, target, numbers, vec3_negate(to_light), radiance, pdf, out);
+}
+
+const light_type infinite_light = {
+    .can_be_met = true, .is_everywhere = true, .power = power, .sample_from_point = sample_from_point, .emit = emit};

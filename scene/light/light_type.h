@@ -1,0 +1,54 @@
+/* light_type.h: what a kind of light is: one file and one row of light_type.c each.
+ * Flow: light.c, light_emission.c and light_bounds.c ask the row of a light's kind. Threads: read-only tables. */
+#ifndef AFTERGLOW_LIGHT_TYPE_H
+#define AFTERGLOW_LIGHT_TYPE_H
+
+#include "light/light.h"
+#include "light/light_tree.h"
+
+/* Each function is there, but for those that may be NULL. */
+typedef struct light_type {
+    bool can_be_met;    /* scattered rays find it: samples towards it are weighed against them */
+    bool is_everywhere; /* infinitely far away: it has no bounds, and may shine at any place */
+    /* Makes what needs the scene; NULL: nothing. Errors: AG_ERROR_MEMORY. */
+    ag_status (*commit)(const scene *s, light *l);
+    rgb (*power)(const scene *s, const light *l); /* W, as light.power has it */
+    /* W/sr into a unit direction away from it; of points, else NULL. */
+    rgb (*intensity)(const light *l, vec3 direction);
+    /* light_sample_from_point. */
+    bool (*sample_from_point)(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample);
+    /* light_pdf_from_point; NULL: 0. */
+    float (*pdf_from_point)(const scene *s, const light *l, vec3 point, const struct surface_hit *hit);
+    /* light_emitted_radiance; NULL: black. */
+    rgb (*emitted_radiance)(const scene *s, const light *l, const struct surface_hit *hit, vec3 direction);
+    /* light_emit. *out_emission has the light's own medium. */
+    bool (*emit)(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                 struct rng *random, light_emission *out_emission);
+    /* Narrows light_find_bounds of a point that shines into all directions; NULL: the light is one. */
+    void (*narrow_bounds)(const scene *s, const light *l, light_bounds *in_out_bounds);
+} light_type;
+
+extern const light_type point_light, spot_light, goniometric_light, projection_light, distant_light, area_light,
+    infinite_light;
+
+const light_type *light_type_of(light_kind kind);
+
+/* --- what several kinds share --- */
+
+/* Towards a light that is a point, by its type's intensity. */
+bool light_sample_of_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample);
+
+/* A direction from a position uniformly in the cone to the target; false where the light's own way, which fills a cone
+ * of own_cone (1 - cos of its half angle), is as good. */
+bool light_aim_at(const light_target *target, vec3 origin, float own_cone, vec2 u, vec3 *out_direction, float *out_pdf);
+
+/* Emission of a point: sets the origin, and where light_aim_at finds a cone, direction and flux too (true). */
+bool light_aim_point(const light *l, const light_target *target, float own_cone, const emission_numbers *numbers,
+                     light_emission *out_emission);
+
+/* Light from infinitely far away in that direction: of so much radiance (or irradiance) over its density, from a disc
+ * outside all there is, with what media take from it. target as light_emit has it. */
+bool light_emit_from_afar(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                          vec3 direction, rgb radiance, float pdf, light_emission *out_emission);
+
+#endif

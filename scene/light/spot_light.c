@@ -1,0 +1,80 @@
+/* spot_light.c: a point that shines into a cone, with a ramp at its rim.
+ * Rests on: pbrt-v4's spot light (smoothstep in the cosine). Threads: read-only. */
+#include "light/light_type.h"
+#include "math/rng.h"
+#include "math/sampling.h"
+#include "scene.h"
+
+void light_set_cone(light *l, double full_angle, double dark_angle)
+{
+    /* 1 - cos without the cancellation that narrow cones would suffer from */
+    double full = sin(0.5 * full_angle), dark = sin(0.5 * dark_angle);
+    l->falloff_start = (float)(2.0 * full * full);
+    l->falloff_end = (float)(2.0 * dark * dark);
+}
+
+/* 1 - cos of the angle between two unit directions, without cancellation. */
+static float one_minus_cos(vec3 a, vec3 b) { return 0.5f * vec3_distance_squared(a, b); }
+
+/* 1 inside falloff_start, 0 outside falloff_end, smoothstep in the cosine between, as pbrt-v4. */
+static float spot_falloff(const light *l, vec3 direction)
+{
+    float height = one_minus_cos(l->direction, direction);
+    if (height <= l->falloff_start)
+        return 1.0f;
+    if (height >= l->falloff_end)
+        return 0.0f;
+    float x = (l->falloff_end - height) / (l->falloff_end - l->falloff_start);
+    return x * x * (3.0f - 2.0f * x);
+}
+
+static rgb intensity(const light *l, vec3 direction) { return rgb_scale(l->intensity, spot_falloff(l, direction)); }
+
+static rgb power(const scene *s, const light *l)
+{
+    (void)s;
+    return rgb_scale(l->intensity, AG_PI * (l->falloff_start + l->falloff_end)); /* half of the ramp */
+}
+
+/* A direction in the cone, uniform but thinned by the falloff, so that all photons are equal: on average at least half
+ * are accepted, and what 64 trials refuse goes along the axis. */
+static vec3 sample_spot(const light *l, const emission_numbers *numbers, rng *random)
+{
+    frame f = frame_from_z(l->direction);
+    vec3 local = {0.0f, 0.0f, 1.0f};
+    float ramp = l->falloff_end - l->falloff_start;
+    for (int trial = 0; trial < 64; trial++) {
+        vec2 u = trial == 0 ? numbers->direction : rng_vec2(random);
+        float x = ramp > 0.0f ? fminf((1.0f - u.x) * l->falloff_end / ramp, 1.0f) : 1.0f;
+        if (rng_float(random) < x * x * (3.0f - 2.0f * x)) {
+            local = sample_uniform_cone(u, l->falloff_end);
+            break;
+        }
+    }
+    return frame_to_world(&f, local);
+}
+
+static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
+                 rng *random, light_emission *out)
+{
+    (void)s;
+    if (!light_aim_point(l, target, l->falloff_end, numbers, out)) {
+        out->direction = sample_spot(l, numbers, random);
+        out->flux = l->power;
+    }
+    return !rgb_is_black(out->flux);
+}
+
+static void narrow_bounds(const scene *s, const light *l, light_bounds *b)
+{
+    (void)s;
+    b->cos_normals = 1.0f;
+    b->cos_emission = fmaxf(1.0f - l->falloff_end - LIGHT_BOUNDS_SLACK, LIGHT_BOUNDS_ALL_AROUND);
+    b->intensity = rgb_mean(l->intensity);
+}
+
+const light_type spot_light = {.power = power,
+                               .intensity = intensity,
+                               .sample_from_point = light_sample_of_point,
+                               .emit = emit,
+                               .narrow_bounds = narrow_bounds};
