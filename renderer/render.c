@@ -115,9 +115,8 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
     statistics->irradiance_wait_s += c.waited_seconds;
 }
 
-/* Settings with nothing left open. */
-static ag_status settle_settings(ag_context *context, const scene *s, const ag_render_settings *wanted,
-                                 ag_render_settings *out_settings)
+ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_settings *wanted,
+                           ag_render_settings *out_settings)
 {
     *out_settings = *wanted;
     if (out_settings->photon_seed == AG_PHOTON_SEED_AUTOMATIC)
@@ -158,7 +157,7 @@ static ag_status note_origin(const ag_rendering *r, film_origin *out)
     return out->defined || !r->s->defined ? AG_OK : AG_ERROR_MEMORY;
 }
 
-static ag_status create_film(ag_rendering *r)
+ag_status rendering_create_film(ag_rendering *r)
 {
     pixel_filter filter;
     aov_layout layout;
@@ -262,7 +261,7 @@ static ag_status prepare(ag_rendering *r)
 {
     ag_context *context = r->context;
     phase_begin begin = context_begin_phase();
-    ag_status status = create_film(r);
+    ag_status status = rendering_create_film(r);
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
     if (status != AG_OK)
         return status;
@@ -293,7 +292,7 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
     r->context = context;
     r->s = loaded->s;
     r->not_finite_before = context->statistics.samples_not_finite;
-    ag_status status = settle_settings(context, loaded->s, settings, &r->settings);
+    ag_status status = rendering_settle(context, loaded->s, settings, &r->settings);
     context->rendered = r->settings;
     context->rendered.photon_map_file = NULL; /* the caller's */
     if (status == AG_OK)

@@ -24,6 +24,11 @@ static bool has_traced_matter(const scene *s)
     return false;
 }
 
+bool maps_have_caustics(const scene *s, const ag_render_settings *settings)
+{
+    return settings->caustic_photon_count > 0 && settings->max_depth >= 2 && has_traced_matter(s);
+}
+
 /* Traces one map's photons, after trials that tell which of them are of use. asked: NULL aims at nothing. */
 static ag_status trace_aimed(ag_context *context, const scene *s, float share, const place_importance *asked,
                              photon_tracing_settings *tracing, photon_set *out_set)
@@ -53,7 +58,7 @@ static ag_status trace_aimed(ag_context *context, const scene *s, float share, c
 static ag_status trace_photons(ag_context *context, const scene *s, const ag_render_settings *settings,
                                photon_set *out_global, photon_set *out_caustic)
 {
-    bool wants_caustics = settings->caustic_photon_count > 0 && settings->max_depth >= 2 && has_traced_matter(s);
+    bool wants_caustics = maps_have_caustics(s, settings);
     float share = settings->photon_aim;
     eye_pilot pilot = {0};
     ag_status status = AG_OK;

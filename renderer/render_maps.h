@@ -11,4 +11,7 @@
 ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps *out_maps);
 void maps_reset(maps *m);
 
+/* Whether photons are traced into the caustic map: there is something that focuses light, and they are wanted. */
+bool maps_have_caustics(const scene *s, const ag_render_settings *settings);
+
 #endif

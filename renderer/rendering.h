@@ -32,4 +32,12 @@ struct ag_rendering {
     unsigned char *kept;                   /* the film's planes as of the last pass that saw that file whole, or NULL */
 };
 
+/* Fills in r->film of context, scene and settings. Errors: AG_ERROR_MEMORY, AG_ERROR_ARGUMENT (the crop holds no
+ * pixel). (render.c) */
+ag_status rendering_create_film(ag_rendering *r);
+
+/* Settings with nothing left open; says in the log what is out of range. (render.c) */
+ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_settings *wanted,
+                           ag_render_settings *out_settings);
+
 #endif

@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "file_conflicts.h"
 #include "large_stack.h"
+#include "memory_limit.h"
 #include "options.h"
 #include "passes.h"
 #include "progress.h"
@@ -82,6 +83,31 @@ static bool is_there(const options *o)
     return o->outfile_count > 0;
 }
 
+/* What a picture will take, before it is begun: whether that is allowed, and where it is all that is asked for, what.
+ * Errors: AG_ERROR_SYSTEM (more memory than --memory allows; it has been said), those of the prediction. */
+static ag_status predict(ag_context *context, const options *o, const ag_scene *scene,
+                         const ag_render_settings *settings)
+{
+    ag_prediction prediction;
+    if (o->memory_limit == 0 && !o->dry_run)
+        return AG_OK;
+    ag_status status = ag_predict_memory(context, scene, settings, &prediction);
+    if (status == AG_OK && o->memory_limit > 0 && !memory_limit_holds(o->memory_limit, &prediction)) {
+        ag_context_note_end(context, AG_END_MEMORY);
+        return AG_ERROR_SYSTEM;
+    }
+    if (status == AG_OK && o->memory_limit > 0)
+        memory_limit_set(o->memory_limit, true);
+    if (status != AG_OK || !o->dry_run)
+        return status;
+    status = ag_predict(context, scene, settings, &prediction);
+    if (status != AG_OK)
+        return status;
+    summary_print_prediction(stdout, &prediction);
+    ag_context_note_end(context, AG_END_DRY_RUN);
+    return fflush(stdout) == 0 ? AG_OK : AG_ERROR_OUTPUT;
+}
+
 /* One picture; frame: -1 where there is none. */
 static ag_status run(ag_context *context, options *o, int frame, progress *told, passes_result *out_result)
 {
@@ -139,16 +165,25 @@ static ag_status run(ag_context *context, options *o, int frame, progress *told,
         fprintf(stderr, "afterglow: --tile: there are more tiles than rows\n");
         status = AG_ERROR_ARGUMENT;
     }
+    bool lacks_memory = false;
     if (status == AG_OK && !is_skipped) {
+        status = predict(context, o, scene, &settings);
+        lacks_memory = status == AG_ERROR_SYSTEM;
+    }
+    if (status == AG_OK && !is_skipped && !o->dry_run) {
         status = passes_render(context, o, scene, &settings, out_result);
         if (status == AG_OK && !o->photons_only)
             progress_tell_written(told, o->outfiles, o->outfile_count);
     }
-    if ((status == AG_OK || out_result->is_partial) && !is_skipped && o->verbosity >= 1) {
+    if (status == AG_ERROR_MEMORY) {
+        ag_context_note_end(context, AG_END_MEMORY);
+        lacks_memory = true;
+    }
+    if ((status == AG_OK || out_result->is_partial) && !is_skipped && !o->dry_run && o->verbosity >= 1) {
         ag_statistics statistics = ag_context_statistics(context);
         summary_print(stderr, &statistics);
     }
-    if ((status == AG_OK || out_result->is_partial) && !is_skipped && o->stats) {
+    if ((status == AG_OK || out_result->is_partial || lacks_memory) && !is_skipped && o->stats) {
         ag_status written = ag_statistics_write(context, o->stats);
         status = status == AG_OK ? written : status;
     }
@@ -166,7 +201,8 @@ static void tell_end(const options *o, ag_status status, const passes_result *re
             fprintf(stderr, "afterglow: interrupted: no picture was written\n");
     }
     if (status == AG_ERROR_MEMORY) /* the log says what else there is to say */
-        fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
+        fprintf(stderr, "afterglow: error: %s%s\n", ag_status_text(status),
+                o->memory_limit > 0 ? ": --memory allows no more" : "");
 }
 
 /* Each picture has a context of its own, so that statistics are its own. */
@@ -179,6 +215,8 @@ static ag_status run_in_context(options *o, int frame, progress *told)
         return status;
     }
     signals_catch(context);
+    if (o->memory_limit > 0)
+        memory_limit_set(o->memory_limit, false);
     passes_result result = {0};
     status = o->lists_displays ? list_displays(context) : run(context, o, frame, told, &result);
     progress_finish(told);

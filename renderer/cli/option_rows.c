@@ -67,7 +67,9 @@ static bool take_gltf_light_units(const char *value, options *o)
 
 static bool take_texture_memory(const char *value, options *o)
 {
-    return parse_bytes(value, AG_TEXTURE_MEMORY_LEAST_BYTES, &o->asked.texture_memory_bytes);
+    uint64_t *bytes = &o->asked.texture_memory_bytes;
+    *bytes = 0;
+    return strcmp(value, "0") == 0 || (parse_bytes(value, bytes) && *bytes >= AG_TEXTURE_MEMORY_LEAST_BYTES);
 }
 
 static bool take_vector(const char *value, float out_vector[3])
@@ -200,6 +202,8 @@ static bool take_frames(const char *value, options *o)
 static bool take_checkpoint(const char *value, options *o) { return parse_seconds(value, &o->checkpoint_seconds); }
 
 static bool take_time_limit(const char *value, options *o) { return parse_time(value, &o->time_limit); }
+
+static bool take_memory(const char *value, options *o) { return parse_bytes(value, &o->memory_limit); }
 
 static bool take_progress(const char *value, options *o)
 {
@@ -347,16 +351,17 @@ static const option_row ROWS[] = {
               .manual = "Print the displays and views, looks, colour spaces and roles of the config, and end; goes "
                         "with no scene."},
      FLAG(lists_displays)},
-    {.text = {.name = "stats",
-              .argument = "FILE",
-              .section = "Output",
-              .help = "write statistics as JSON",
-              .manual =
-                  "Write statistics (counts, times, memory) as JSON, also of a picture that a signal has ended. "
-                  "Its end.reason is _samples_ (all that *--spp* allows), _noise_ (that of *--noise* was reached "
-                  "before), _photons_ (*--photons-only*), _time-limit_ or _signal_, where *--resume* goes on from "
-                  "a checkpoint; end.noise is the noise reached, as *--noise* measures it, null where it is not "
-                  "known, and end.samples tells how many samples pixels have had."},
+    {.text =
+         {.name = "stats",
+          .argument = "FILE",
+          .section = "Output",
+          .help = "write statistics as JSON",
+          .manual =
+              "Write statistics (counts, times, memory) as JSON, also of a picture that a signal has ended. "
+              "Its end.reason is _samples_ (all that *--spp* allows), _noise_ (that of *--noise* was reached "
+              "before), _photons_ (*--photons-only*), _dry-run_, _memory_ (there was not enough), _time-limit_ or _signal_, where *--resume* goes on from "
+              "a checkpoint; end.noise is the noise reached, as *--noise* measures it, null where it is not "
+              "known, and end.samples tells how many samples pixels have had."},
      TEXT(stats)},
     {.text = {.name = "define",
               .argument = "NAME=VALUE",
@@ -472,16 +477,18 @@ static const option_row ROWS[] = {
                         "file's generator: Blender's from version 3.4 on is standard, before that raw, others are "
                         "unitless."},
      .take = take_gltf_light_units},
-    {.text = {.name = "texture-memory",
-              .argument = "SIZE",
-              .section = "Scene",
-              .help = "memory for pictures of textures, as 512M or 4G (default), at least 16M, 0: no bound; what is "
-                      "beyond it lies in a temporary file",
-              .manual = "Memory for the pictures of textures: bytes, or _K_, _M_ or _G_ of 1024 each other; *4G* by "
-                        "default, at least *16M*, *0* for no bound. Up to half of it pictures are held whole. What is "
-                        "beyond lies in a temporary file without a name, in $*TMPDIR* or _/tmp_, of up to three bytes "
-                        "or so for each byte of pixels, and tiles of it are held in the rest. Pictures are decoded one "
-                        "at a time. The picture that is rendered is the same."},
+    {.text =
+         {.name = "texture-memory",
+          .argument = "SIZE",
+          .section = "Scene",
+          .help = "memory for pictures of textures, as 512M or 4G (default), at least 16M, 0: no bound; what is "
+                  "beyond it lies in a temporary file",
+          .manual =
+              "Memory for the pictures of textures: bytes, or with K, M, G or T 1024, 1024^2, ... times as many; *4G* by "
+              "default, at least *16M*, *0* for no bound. Up to half of it pictures are held whole. What is "
+              "beyond lies in a temporary file without a name, in $*TMPDIR* or _/tmp_, of up to three bytes "
+              "or so for each byte of pixels, and tiles of it are held in the rest. Pictures are decoded one "
+              "at a time. The picture that is rendered is the same."},
      .take = take_texture_memory},
     {.text = {.name = "confine",
               .section = "Scene",
@@ -574,6 +581,32 @@ static const option_row ROWS[] = {
                         "complete, and a message says how many samples it has; with *--checkpoint* a checkpoint "
                         "stays for *--resume* to go on with."},
      .take = take_time_limit},
+    {.text =
+         {.name = "memory",
+          .argument = "SIZE",
+          .section = "Work",
+          .help = "the process may have so much memory, in bytes or as 500M or 8G: a picture that would need more "
+                  "is not begun",
+          .manual =
+              "The process may have so much memory: bytes, or with K, M, G or T at the end times 1024, "
+              "1024^2, ... What a picture will need is predicted when the scene is there (see "
+              "*--dry-run*): where it is more, a message tells how much and for what, and the exit status "
+              "is 3. A run that needs more all the same ends for want of memory instead of taking it from "
+              "others; since libraries reserve memory that they never touch, 24 MB beyond are allowed then, and 256 MB "
+              "while the scene is read."},
+     .take = take_memory},
+    {.text =
+         {.name = "dry-run",
+          .section = "Work",
+          .help = "render no picture: predict how long it would take and how much memory, and print that",
+          .manual =
+              "Load the scene, predict how long the picture would take on this machine, were it idle, and "
+              "how much memory at the most, print that on standard output, and write no picture. For the "
+              "time photons are traced, a million into each map at most, and some hundred blocks of the "
+              "picture's pixels are rendered, or half of them where it is small. *--stats* has the times, the CPU time and "
+              "the memory by its parts under _prediction_. What *--denoise* takes is not in it, and limits of time, checkpoints and "
+              "photon maps that are kept already are not heeded."},
+     FLAG(dry_run)},
     {.text = {.name = "preview",
               .section = "Work",
               .help = "write the picture after 1, 2, 4, ... samples per pixel, too",

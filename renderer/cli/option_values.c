@@ -83,16 +83,24 @@ bool parse_word(const char *text, const char *const *words, int count, int *out_
     return false;
 }
 
-bool parse_bytes(const char *text, uint64_t least, uint64_t *out_bytes)
+bool parse_bytes(const char *text, uint64_t *out_bytes)
 {
-    static const char UNITS[] = "KMG";
-    char *end;
-    errno = 0;
-    const unsigned long long number = strtoull(text, &end, 10);
-    const char *unit = *end ? strchr(UNITS, *end) : NULL;
-    const unsigned shift = unit ? 10u * (unsigned)(unit - UNITS + 1) : 0;
-    if (text[0] < '0' || text[0] > '9' || errno || (*end && (!unit || end[1])) || number > UINT64_MAX >> (shift + 1))
+    static const char UNITS[] = "KMGT";
+    char number[32];
+    const size_t length = strlen(text);
+    const char *unit = length > 0 ? strchr(UNITS, text[length - 1]) : NULL;
+    double bytes;
+    if (length == 0 || length >= sizeof number)
         return false;
-    *out_bytes = (uint64_t)number << shift;
-    return *out_bytes == 0 || *out_bytes >= least;
+    memcpy(number, text, length + 1);
+    if (unit)
+        number[length - 1] = '\0';
+    if (!parse_seconds(number, &bytes))
+        return false;
+    for (int i = 0; unit && i <= unit - UNITS; i++)
+        bytes *= 1024.0;
+    if (!(bytes >= 1.0 && bytes < 0x1p63))
+        return false;
+    *out_bytes = (uint64_t)bytes;
+    return true;
 }

@@ -11,12 +11,12 @@ bool parse_int(const char *text, int least, int most, int *out_value);
 bool parse_float(const char *text, float *out_value);
 /* Finite numbers with commas between them; how many, at most so many. */
 bool parse_floats(const char *text, int most, float *out_values, int *out_count);
-/* A whole number, of K, M or G, each 1024 of the one before: 0, or that least. */
-bool parse_bytes(const char *text, uint64_t least, uint64_t *out_bytes);
 /* Above 0 and finite. */
 bool parse_seconds(const char *text, double *out_seconds);
 /* Seconds, or HH:MM:SS. */
 bool parse_time(const char *text, double *out_seconds);
+/* Bytes, or with K, M, G or T at the end 1024, 1024^2, ... times as many; at least 1. */
+bool parse_bytes(const char *text, uint64_t *out_bytes);
 /* I/N, 1 <= I <= N. */
 bool parse_tile(const char *text, int *out_index, int *out_count);
 /* One of a list of words: its place there. */

@@ -39,6 +39,8 @@ typedef struct options {
     bool lists_displays;       /* there is no scene then */
     double checkpoint_seconds; /* 0: none but at signals, where resume is asked for */
     bool resume, preview, no_clobber;
+    bool dry_run;               /* predicts, renders nothing */
+    uint64_t memory_limit;      /* bytes of the process; 0: none */
     ag_definition *definitions; /* owned, as are its strings */
     size_t definition_count;
     bool seed_per_frame;        /* the frame's number is added to the seed */

@@ -63,3 +63,24 @@ void summary_print(FILE *file, const ag_statistics *s)
         fprintf(file, "  %-24s %10.1f MB\n", "their temporary file", (double)s->texture_file_bytes / 1e6);
     }
 }
+
+void summary_print_prediction(FILE *file, const ag_prediction *p)
+{
+    fprintf(file, "time, on this machine idle\n");
+    for (int i = 0; i < AG_PHASE_COUNT; i++)
+        print_share(file, ag_phase_name((ag_phase)i), p->time_s[i], p->time_total_s);
+    print_share(file, "total", p->time_total_s, p->time_total_s);
+    fprintf(file, "  %-24s %10.2f s\n  %-24s %10.1f\n", "processor", p->cpu_s, "samples per pixel",
+            p->samples_per_pixel);
+    fprintf(file, "memory\n  %-24s %10.1f MB\n", "peak", (double)p->memory_peak_bytes / 1e6);
+    const struct {
+        const char *name;
+        uint64_t bytes;
+    } parts[] = {{"program and scene", p->memory_scene_bytes},
+                 {"photon maps", p->memory_photon_bytes},
+                 {"threads", p->memory_thread_bytes},
+                 {"film", p->memory_film_bytes},
+                 {"a file on its way", p->memory_file_bytes}};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        fprintf(file, "  %-24s %10.1f MB\n", parts[i].name, (double)parts[i].bytes / 1e6);
+}

@@ -47,6 +47,12 @@ static void set_crop(ag_film *film, const ag_render_settings *settings)
     }
 }
 
+static void begin_splits(ag_film *film, const ag_render_settings *settings)
+{
+    for (size_t i = 0; film->splits && i < film_area_count(film); i++)
+        film->splits[i].counts = splitting_first(settings);
+}
+
 ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
                      aov_layout *layout)
 {
@@ -88,8 +94,7 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
     if (splitting_is_open(settings)) {
         film->splits = calloc(count, sizeof *film->splits);
         is_whole = is_whole && film->splits;
-        for (size_t i = 0; film->splits && i < count; i++)
-            film->splits[i].counts = splitting_first(settings);
+        begin_splits(film, settings);
     }
     if (film->layout.needs_nearest) {
         film->nearest = calloc(count, sizeof *film->nearest);
@@ -147,6 +152,14 @@ int film_planes(const ag_film *film, film_plane out_planes[FILM_PLANES_MAX])
         out_planes[count++] = (film_plane){film->nearest, pixels * sizeof *film->nearest};
     out_planes[count++] = (film_plane){film->noise.sums, noise_lattice_bytes(&film->noise)};
     return count;
+}
+
+void film_clear(ag_film *film, const ag_render_settings *settings)
+{
+    film_plane planes[FILM_PLANES_MAX];
+    for (int i = film_planes(film, planes) - 1; i >= 0; i--)
+        memset(planes[i].bytes, 0, planes[i].size);
+    begin_splits(film, settings);
 }
 
 film_area film_block_at(const ag_film *film, int column, int row)

@@ -37,6 +37,8 @@ enum { FILM_BLOCK = 8 };
 
 struct ag_film {
     int x0, y0, width, height; /* the crop, in pixels of the full picture */
+    unsigned trial_step;       /* above 1: of its blocks each so manieth alone is rendered, as a trial of the whole */
+    unsigned trial_first;      /* which of those: below trial_step */
     film_area area;            /* what is rendered: the crop; where blocks are decided on, all that it touches, so that
                                   its pixels get the samples that they have in the full picture */
     int full_width, full_height;
@@ -82,6 +84,9 @@ static inline size_t film_pixel_at(const struct ag_film *film, int x, int y)
  * lattice wants them. */
 void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);
 
+/* Empty again. */
+void film_clear(struct ag_film *film, const ag_render_settings *settings);
+
 /* Makes the pixels of the sums. */
 void film_resolve(struct ag_film *film);
 
@@ -96,9 +101,20 @@ int film_planes(const struct ag_film *film, film_plane out_planes[FILM_PLANES_MA
 /* A block's pixels, those of the area alone, by its column and row there. */
 film_area film_block_at(const struct ag_film *film, int column, int row);
 
+/* Whether a trial leaves a pixel out. Its blocks form a lattice that is spread evenly: Korobov, "The approximate
+ * computation of multiple integrals", 1959. */
+static inline bool film_is_left_out(const struct ag_film *film, size_t pixel)
+{
+    size_t width = (size_t)film->area.width;
+    size_t column = pixel % width / FILM_BLOCK, row = pixel / width / FILM_BLOCK;
+    return film->trial_step > 1 && (column + 5 * row) % film->trial_step != film->trial_first;
+}
+
 /* How many samples a pixel is to have in a pass that brings all to `all`. */
 static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint32_t all)
 {
+    if (film_is_left_out(film, pixel))
+        return 0;
     return film->wanted && film->wanted[pixel] < all ? film->wanted[pixel] : all;
 }
 

@@ -22,8 +22,9 @@ typedef struct exr_file {
     unsigned char *bytes;
     size_t size, capacity;
     exr_encode_pipeline_t pipeline;
-    int *places;   /* of each channel of the file, in the description */
-    float *planes; /* the values of one chunk, channel by channel */
+    exr_result_t (*compress)(exr_encode_pipeline_t *pipeline); /* OpenEXR's own */
+    int *places;                                               /* of each channel of the file, in the description */
+    float *planes;                                             /* the values of one chunk, channel by channel */
     bool lacks_memory;
     char *message; /* the first one of OpenEXR's */
     size_t message_size;
@@ -185,6 +186,17 @@ static void fill_planes(exr_file *file, int x, int y)
     }
 }
 
+/* A chunk that is as long as its pixels is read as not compressed. OpenEXR 3.1 keeps one that compression has left at
+ * just that length, which is then read as noise. */
+static exr_result_t compress(exr_encode_pipeline_t *pipeline)
+{
+    const exr_file *file = pipeline->encoding_user_data;
+    exr_result_t result = file->compress(pipeline);
+    if (result == EXR_ERR_SUCCESS && pipeline->compressed_bytes == pipeline->packed_bytes)
+        memcpy(pipeline->compressed_buffer, pipeline->packed_buffer, (size_t)pipeline->packed_bytes);
+    return result;
+}
+
 static exr_result_t write_chunk(exr_file *file, const exr_chunk_info_t *chunk, int x, int y)
 {
     const bool is_first = !file->places;
@@ -196,8 +208,12 @@ static exr_result_t write_chunk(exr_file *file, const exr_chunk_info_t *chunk, i
     if (is_first && !find_places(file))
         return EXR_ERR_OUT_OF_MEMORY;
     fill_planes(file, x, y);
-    if (is_first)
+    if (is_first) {
         result = exr_encoding_choose_default_routines(file->context, 0, pipeline);
+        file->compress = pipeline->compress_fn;
+        pipeline->encoding_user_data = file;
+        pipeline->compress_fn = compress;
+    }
     return result == EXR_ERR_SUCCESS ? exr_encoding_run(file->context, 0, pipeline) : result;
 }
 

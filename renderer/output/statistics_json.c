@@ -28,10 +28,24 @@ static json_t *end_to_json(const ag_statistics *s)
 {
     static const char *const reasons[] = {
         [AG_END_NONE] = "",           [AG_END_SAMPLES] = "samples",       [AG_END_NOISE] = "noise",
-        [AG_END_PHOTONS] = "photons", [AG_END_TIME_LIMIT] = "time-limit", [AG_END_SIGNAL] = "signal"};
+        [AG_END_PHOTONS] = "photons", [AG_END_TIME_LIMIT] = "time-limit", [AG_END_SIGNAL] = "signal",
+        [AG_END_MEMORY] = "memory",   [AG_END_DRY_RUN] = "dry-run"};
     json_t *noise = s->noise >= 0.0 && isfinite(s->noise) ? json_real(s->noise) : json_null();
     return json_pack("{s:s, s:o, s:{s:i, s:i, s:f}}", "reason", reasons[s->end], "noise", noise, "samples", "least",
                      s->samples.least, "most", s->samples.most, "mean", s->samples.mean);
+}
+
+static json_t *prediction_to_json(const ag_prediction *p)
+{
+    json_t *times = json_object();
+    for (int i = 0; i < AG_PHASE_COUNT; i++)
+        json_object_set_new(times, ag_phase_name((ag_phase)i), json_real(p->time_s[i]));
+    json_object_set_new(times, "total", json_real(p->time_total_s));
+    return json_pack("{s:{s:o, s:o, s:o, s:o, s:o, s:o}, s:o, s:f, s:f}", "memory", "peak_bytes",
+                     count(p->memory_peak_bytes), "scene_bytes", count(p->memory_scene_bytes), "photon_bytes",
+                     count(p->memory_photon_bytes), "thread_bytes", count(p->memory_thread_bytes), "film_bytes",
+                     count(p->memory_film_bytes), "file_bytes", count(p->memory_file_bytes), "time_s", times, "cpu_s",
+                     p->cpu_s, "samples_per_pixel", p->samples_per_pixel);
 }
 
 /* --- settings --- */
@@ -135,6 +149,8 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
         "file_bytes", count(s->texture_file_bytes), "tiles_read", count(s->texture_tiles_read), /**/
         "end", end_to_json(s));
     bool is_whole = counts && json_object_update(root, counts) == 0;
+    if (s->prediction.memory_peak_bytes > 0)
+        is_whole = json_object_set_new(root, "prediction", prediction_to_json(&s->prediction)) == 0 && is_whole;
     json_decref(counts);
     if (is_whole)
         return root;

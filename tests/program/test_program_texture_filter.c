@@ -240,7 +240,7 @@ static void test_memory_errors(void **state)
 {
     (void)state;
     static const char *const WRONG[] = {"--texture-memory=15M", "--texture-memory=-1",
-                                        "--texture-memory=1T",  "--texture-memory=16MB",
+                                        "--texture-memory=1P",  "--texture-memory=16MB",
                                         "--texture-memory=",    "--texture-memory=99999999999G"};
     for (size_t k = 0; k < sizeof WRONG / sizeof *WRONG; k++) {
         program_run run = RUN(WRONG[k], "-o", "no.exr", PROGRAM_SCENES "box_with_blocks.pbrt");

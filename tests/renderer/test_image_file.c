@@ -5,6 +5,7 @@
 #include "fixtures/temporary_folder.h"
 #include "image/image_module_loader.h"
 #include "image/image_reader.h"
+#include "math/rng.h"
 #include "output/atomic_file.h"
 #include "output/image_file.h"
 
@@ -299,6 +300,28 @@ static void exr_keeps_every_value(void **state)
         free(bytes);
     }
     free(pixels);
+}
+
+/* Pictures that hardly compress: of many, some come out of compression as long as they went in, and then must not be
+ * kept compressed, for a chunk of that length is read as it stands. */
+static void exr_keeps_what_hardly_compresses(void **state)
+{
+    (void)state;
+    enum { PICTURES = 300, VALUES = 3 * 9 * 5 };
+    image_description d = describe(3, IMAGE_FLOAT);
+    d.width = d.full_width = 9;
+    d.height = d.full_height = 5;
+    const char *path = in_folder("noise.exr");
+    rng random = rng_make(7, 0, 0);
+    for (int i = 0; i < PICTURES; i++) {
+        float pixels[VALUES];
+        for (int k = 0; k < VALUES; k++)
+            pixels[k] = k < i % 20 ? 0.0f : rng_float(&random);
+        write_picture(path, &d, pixels);
+        float *read = read_picture(path, 9, 5, 3);
+        assert_memory_equal(read, pixels, sizeof pixels);
+        free(read);
+    }
 }
 
 static void crops_keep_their_windows(void **state)
@@ -698,6 +721,7 @@ int main(void)
         TEST_IN_FOLDER(integers_are_rounded_and_clamped),
         TEST_IN_FOLDER(half_is_clamped_float_is_not),
         TEST_IN_FOLDER(exr_keeps_every_value),
+        TEST_IN_FOLDER(exr_keeps_what_hardly_compresses),
         TEST_IN_FOLDER(crops_keep_their_windows),
         TEST_IN_FOLDER(attributes_reach_the_header),
         TEST_IN_FOLDER(jpeg_keeps_all_colour),

@@ -519,6 +519,33 @@ AG_API void ag_end_waits(void);
  * once: safe in it. */
 AG_API void ag_abandon_files(void);
 
+/* --- what is to be expected --- */
+
+/* What a picture is expected to take. */
+typedef struct ag_prediction {
+    /* of memory, bytes; without what --denoise takes */
+    uint64_t memory_peak_bytes;   /* of the whole process, resident */
+    uint64_t memory_scene_bytes;  /* what the process has now: the program and the scene */
+    uint64_t memory_photon_bytes; /* photon maps */
+    uint64_t memory_thread_bytes; /* of all threads */
+    uint64_t memory_film_bytes;
+    uint64_t memory_file_bytes; /* a picture on its way to a file; maps and threads' memory are given back before */
+    /* of time: on this machine, were it idle; 0: not predicted */
+    double time_s[AG_PHASE_COUNT];
+    double time_total_s;      /* since the context was created */
+    double cpu_s;             /* of all threads */
+    double samples_per_pixel; /* that it takes on average */
+} ag_prediction;
+
+/* The memory alone, without any work. To be asked before ag_render. Errors: as ag_render. */
+AG_API ag_status ag_predict_memory(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
+                                   ag_prediction *out_prediction);
+/* Time and memory; for the time photons are traced, a million into each map at most, and a part of the picture's blocks
+ * of 8 x 8 pixels is rendered: a half of small pictures, some hundred blocks of large ones. A photon map's file is left
+ * alone. Errors: as ag_render. */
+AG_API ag_status ag_predict(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
+                            ag_prediction *out_prediction);
+
 /* --- what was done --- */
 
 /* Where a picture's photon map came from. */
@@ -536,7 +563,9 @@ typedef enum ag_end {
     AG_END_NOISE,      /* the noise that was asked for was reached before that, everywhere */
     AG_END_PHOTONS,    /* only the photon map was wanted */
     AG_END_TIME_LIMIT, /* the time was up */
-    AG_END_SIGNAL      /* it was interrupted */
+    AG_END_SIGNAL,     /* it was interrupted */
+    AG_END_MEMORY,     /* it needs more memory than there is, or than it may have */
+    AG_END_DRY_RUN     /* it was only predicted */
 } ag_end;
 
 typedef struct ag_statistics {
@@ -568,6 +597,7 @@ typedef struct ag_statistics {
     ag_end end;               /* of the last picture, as noted by ag_context_note_end */
     ag_sample_counts samples; /* of the pixels of the last picture */
     double noise;             /* of the last picture, as in ag_noise; below 0: not known */
+    ag_prediction prediction; /* the last one; memory_peak_bytes is 0 where none was made */
 } ag_statistics;
 
 AG_API ag_statistics ag_context_statistics(const ag_context *context);

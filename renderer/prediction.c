@@ -1,0 +1,283 @@
+/* prediction.c: what a picture will take: memory from the sizes of what is held at its peak, time from a trial.
+ * Rests on: the trial renders a lattice of the film's blocks just as the picture would, so all that is paid by the
+ * sample grows with the number of pixels. Irradiance is computed at a photon once: how many photons more requests reach
+ * follows from requests that are spread over the photons by a negative binomial distribution (Greenwood, Yule, "An
+ * Inquiry into the Nature of Frequency Distributions", 1920), whose shape the trial tells. Flow: scene, settings ->
+ * [here] -> program. Threads: as in afterglow.h. */
+#include "integrator/gather_batch.h"
+#include "integrator/integrator.h"
+#include "integrator/sample_queue.h"
+#include "render_maps.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    TRIAL_PHOTONS = 1000000, /* of each map, at most */
+    TRIAL_BLOCKS = 256,      /* of a picture, in each of two trials, if that is a quarter of it or less */
+    SMALL_SIDE = 64          /* of a film that tells what a pixel takes */
+};
+
+/* Measured: blocks, tree, and what there is meanwhile on the way to them. */
+static const double BYTES_PER_PHOTON = 26.0;
+/* Measured: stacks, arenas and what libraries hold for each thread. */
+static const double BYTES_PER_THREAD = 1.5e6;
+/* A zipped value of a picture, over its size; it differs much, and counts little. */
+static const double ZIPPED_SHARE = 0.5;
+/* Measured: a value of an EXR file, most of it in zlib. */
+static const double WRITE_SECONDS_PER_VALUE = 6e-8;
+
+/* --- memory --- */
+
+/* 0 where the system does not tell. */
+static uint64_t resident_bytes(void)
+{
+    unsigned long long size = 0, resident = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (file && fscanf(file, "%llu %llu", &size, &resident) != 2)
+        resident = 0;
+    if (file)
+        fclose(file);
+    return resident * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+static double pixels_of(const ag_render_settings *settings)
+{
+    const double *crop = settings->crop_window;
+    return (crop[1] - crop[0]) * settings->width * (crop[3] - crop[2]) * settings->height;
+}
+
+/* What a pixel takes in the film, and on its way to a file, by a small film of these settings. */
+static ag_status measure_pixel(ag_context *context, const scene *s, const ag_render_settings *settings,
+                               double *out_film_bytes, double *out_file_bytes, int *out_channel_count)
+{
+    ag_rendering small = {.context = context, .s = s, .settings = *settings};
+    film_plane planes[FILM_PLANES_MAX];
+    small.settings.width = small.settings.height = SMALL_SIDE;
+    small.settings.crop_window[0] = small.settings.crop_window[2] = 0.0;
+    small.settings.crop_window[1] = small.settings.crop_window[3] = 1.0;
+    ag_status status = rendering_create_film(&small);
+    if (status == AG_OK) {
+        double bytes = -(double)noise_lattice_bytes(&small.film->noise), pixel_count = SMALL_SIDE * SMALL_SIDE;
+        const aov_layout *layout = &small.film->layout;
+        for (int i = film_planes(small.film, planes) - 1; i >= 0; i--)
+            bytes += (double)planes[i].size;
+        *out_film_bytes = bytes / pixel_count + 3.0 * sizeof(float); /* and the picture */
+        *out_file_bytes = 0.0;
+        for (int c = 0; c < layout->channel_count; c++)
+            *out_file_bytes += sizeof(float) + ZIPPED_SHARE * (layout->channels[c].is_exact ? 4.0 : 2.0);
+        *out_channel_count = layout->channel_count;
+    }
+    ag_film_destroy(small.film);
+    return status;
+}
+
+static ag_status predict_memory(ag_context *context, const scene *s, const ag_render_settings *settings,
+                                ag_prediction *out, int *out_channel_count)
+{
+    const bool has_map = integrator_of(settings->integrator)->has_photon_map;
+    const double threads = context->statistics.threads, pixels = pixels_of(settings);
+    double film, file;
+    ag_status status = measure_pixel(context, s, settings, &film, &file, out_channel_count);
+    if (status != AG_OK)
+        return status;
+    double photons = 0.0, thread = BYTES_PER_THREAD + sizeof(sample_queue);
+    if (has_map) {
+        const double fraction = (double)settings->irradiance_fraction;
+        photons = (double)settings->photon_count * (fraction < 1.0 ? 1.0 + fraction : 1.0);
+        photons += maps_have_caustics(s, settings) ? (double)settings->caustic_photon_count : 0.0;
+        thread += sizeof(gather_batch);
+    }
+    out->memory_scene_bytes = resident_bytes();
+    out->memory_photon_bytes = (uint64_t)(BYTES_PER_PHOTON * photons);
+    out->memory_thread_bytes = (uint64_t)(thread * threads);
+    out->memory_film_bytes = (uint64_t)(film * pixels * (settings->photon_map_file ? 2.0 : 1.0)); /* and its copy */
+    out->memory_file_bytes = (uint64_t)(file * pixels);
+    const uint64_t rendering = out->memory_photon_bytes + out->memory_thread_bytes;
+    const uint64_t peak = out->memory_scene_bytes + out->memory_film_bytes +
+                          (rendering > out->memory_file_bytes ? rendering : out->memory_file_bytes);
+    const uint64_t before = peak_memory_bytes();
+    out->memory_peak_bytes = peak > before ? peak : before;
+    return AG_OK;
+}
+
+/* --- time --- */
+
+/* The part of the photons that is reached at least once by `mean` requests each on average, where these are spread by a
+ * negative binomial distribution of this evenness (its shape): small where a few photons get most of them. */
+static double share_reached(double mean, double evenness) { return 1.0 - exp(-evenness * log1p(mean / evenness)); }
+
+/* How many of count photons `requests` reach, when those of the trial reached `reached`. */
+static double predict_reached(double count, double reached, double trial_requests, double requests)
+{
+    const double share = reached / count, trial_mean = trial_requests / count;
+    double low = 1e-6, high = 1e6;
+    if (!(reached > 0.0) || !(count > 0.0))
+        return 0.0;
+    for (int i = 0; i < 100; i++) { /* the more evenly they are spread, the more are reached */
+        const double middle = sqrt(low * high);
+        *(share_reached(trial_mean, middle) < share ? &low : &high) = middle;
+    }
+    return count * share_reached(requests / count, low);
+}
+
+/* What the blocks of a trial have taken. */
+typedef struct trial {
+    double cpu_s, pixels, samples;
+    double computed; /* irradiance at photons */
+} trial;
+
+/* Of two trials one after the other. The second finds most of the irradiance there: what it takes less tells what
+ * computing it takes. timed_s: the same by a clock, which is read too seldom and takes time itself. */
+static double seconds_of_estimate(const trial *first, const trial *second, double timed_s)
+{
+    const double fewer = first->computed * second->samples - second->computed * first->samples;
+    const double less_s = first->cpu_s * second->samples - second->cpu_s * first->samples;
+    const double estimate_s = fewer > 0.0 ? less_s / fewer : timed_s;
+    return fmin(fmax(estimate_s, 0.5 * timed_s), timed_s);
+}
+
+/* CPU seconds of the whole picture's samples, and of the irradiance that is computed before. count: photons that bear
+ * it. */
+static double predict_samples(const ag_rendering *r, const ag_render_settings *settings, const trial trials[2],
+                              double photons_grown, double *out_precompute_s)
+{
+    const double grown = (double)film_area_count(r->film) / (trials[0].pixels + trials[1].pixels);
+    const double cpu_s = trials[0].cpu_s + trials[1].cpu_s;
+    *out_precompute_s = 0.0;
+    if (!r->t.cache)
+        return cpu_s * grown;
+    const irradiance_counters c = irradiance_cache_counters(r->t.cache);
+    const double computed = (double)c.computed, made = computed + (double)c.uncached;
+    const double timed_s = made > 0.0 ? irradiance_counters_estimate_seconds(&c) / made : 0.0;
+    const double each_s = seconds_of_estimate(&trials[0], &trials[1], timed_s);
+    const double count = (double)r->maps.global.bearers.count, rest_s = (cpu_s - each_s * computed) * grown;
+    if (settings->cache == AG_CACHE_PRECOMPUTE) {
+        *out_precompute_s = each_s * count * photons_grown;
+        return rest_s;
+    }
+    const double requests = (double)c.requests;
+    return rest_s +
+           each_s * photons_grown * predict_reached(count, computed, requests, requests * grown / photons_grown);
+}
+
+/* Renders the blocks of one trial. */
+static ag_status render_trial(ag_rendering *r, trial *out)
+{
+    ag_film *film = r->film;
+    const double cpu_before = clock_process_cpu_seconds();
+    irradiance_counters before = {0}, after = {0};
+    if (r->t.cache)
+        before = irradiance_cache_counters(r->t.cache);
+    ag_status status = ag_rendering_continue(r, r->settings.samples_per_pixel);
+    if (r->t.cache)
+        after = irradiance_cache_counters(r->t.cache);
+    *out = (trial){.cpu_s = clock_process_cpu_seconds() - cpu_before,
+                   .computed = (double)(after.computed - before.computed)};
+    for (size_t i = 0; i < film_area_count(film); i++) {
+        out->pixels += !film_is_left_out(film, i);
+        out->samples += film->counts[i];
+    }
+    return status;
+}
+
+/* Two trials, of blocks that lie between each other's. */
+static ag_status render_trials(ag_rendering *r, trial out_trials[2])
+{
+    ag_film *film = r->film;
+    const double blocks = (double)film_area_count(film) / (FILM_BLOCK * FILM_BLOCK);
+    film->trial_step = blocks < 4.0 * TRIAL_BLOCKS ? 4 : (unsigned)(blocks / TRIAL_BLOCKS);
+    while (film->trial_step % 5 == 0) /* else rows would be alike */
+        film->trial_step++;
+    ag_status status = render_trial(r, &out_trials[0]);
+    film_clear(film, &r->settings);
+    film->trial_first = film->trial_step / 2;
+    return status == AG_OK ? render_trial(r, &out_trials[1]) : status;
+}
+
+static double at_most(uint64_t count, uint64_t most) { return count > most ? (double)count / (double)most : 1.0; }
+
+static ag_status predict_time(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
+                              int channel_count, ag_prediction *out)
+{
+    ag_render_settings tried = *settings;
+    const double global_grown = at_most(settings->photon_count, TRIAL_PHOTONS);
+    const uint64_t caustic_count = maps_have_caustics(loaded->s, settings) ? settings->caustic_photon_count : 0;
+    const double caustic_grown = at_most(caustic_count, TRIAL_PHOTONS);
+    tried.photon_count = (uint64_t)((double)settings->photon_count / global_grown);
+    tried.caustic_photon_count = (uint64_t)((double)caustic_count / caustic_grown);
+    tried.photon_map_file = NULL;
+    tried.cache = settings->cache == AG_CACHE_PRECOMPUTE ? AG_CACHE_ON_DEMAND : settings->cache;
+    const ag_statistics before = context->statistics;
+    ag_rendering *r;
+    trial trials[2] = {0};
+    double precompute_cpu_s;
+    ag_status status = ag_rendering_create(context, loaded, &tried, &r);
+    if (status != AG_OK)
+        return status;
+    const ag_statistics *s = &context->statistics;
+    const double threads = s->threads,
+                 preparing = s->phase_cpu_s[AG_PHASE_RENDER] - before.phase_cpu_s[AG_PHASE_RENDER];
+    status = render_trials(r, trials);
+    if (status == AG_OK) {
+        const double trial_photons = (double)(tried.photon_count + tried.caustic_photon_count);
+        const double photons_grown = (double)(settings->photon_count + caustic_count) / fmax(trial_photons, 1.0);
+        out->samples_per_pixel = (trials[0].samples + trials[1].samples) / (trials[0].pixels + trials[1].pixels);
+        for (int i = 0; i < AG_PHASE_COUNT; i++) /* of the scene: they are over */
+            out->time_s[i] = before.time_s[i];
+        const double render_cpu_s = preparing + predict_samples(r, settings, trials, global_grown, &precompute_cpu_s);
+        double cpu_before = clock_process_cpu_seconds() - trials[0].cpu_s - trials[1].cpu_s - preparing;
+        for (int i = AG_PHASE_PHOTONS; i <= AG_PHASE_MAP; i++) {
+            const double phase_cpu_s = s->phase_cpu_s[i] - before.phase_cpu_s[i];
+            /* some of it is one thread's; what takes longer than that has waited for a processor */
+            out->time_s[i] = fmin(s->time_s[i] - before.time_s[i], phase_cpu_s) * photons_grown;
+            cpu_before += phase_cpu_s * (photons_grown - 1.0);
+        }
+        out->time_s[AG_PHASE_PRECOMPUTE] = precompute_cpu_s / threads;
+        out->time_s[AG_PHASE_RENDER] = render_cpu_s / threads;
+        const double write_s = WRITE_SECONDS_PER_VALUE * channel_count * pixels_of(settings);
+        out->time_s[AG_PHASE_WRITE] = before.time_s[AG_PHASE_WRITE] + write_s;
+        for (int i = 0; i < AG_PHASE_COUNT; i++)
+            out->time_total_s += out->time_s[i];
+        out->cpu_s = cpu_before + precompute_cpu_s + render_cpu_s + write_s;
+    }
+    ag_rendering_finish(r, NULL);
+    context->statistics = before; /* nothing of a picture has been done */
+    return status;
+}
+
+static ag_status predict(ag_context *context, const ag_scene *loaded, const ag_render_settings *wanted, bool with_time,
+                         ag_prediction *out_prediction)
+{
+    if (!context || !loaded || !wanted || !out_prediction)
+        return AG_ERROR_ARGUMENT;
+    ag_render_settings settings;
+    ag_prediction made = {0};
+    int channel_count = 0;
+    ag_status status = rendering_settle(context, loaded->s, wanted, &settings);
+    if (status == AG_OK)
+        status = predict_memory(context, loaded->s, &settings, &made, &channel_count);
+    if (status == AG_OK && with_time)
+        status = predict_time(context, loaded, &settings, channel_count, &made);
+    if (status != AG_OK)
+        return status;
+    context->rendered = settings;
+    context->rendered.photon_map_file = NULL; /* the caller's */
+    context->statistics.prediction = made;
+    *out_prediction = made;
+    return AG_OK;
+}
+
+ag_status ag_predict_memory(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
+                            ag_prediction *out_prediction)
+{
+    return predict(context, loaded, settings, false, out_prediction);
+}
+
+ag_status ag_predict(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
+                     ag_prediction *out_prediction)
+{
+    return predict(context, loaded, settings, true, out_prediction);
+}
