@@ -86,6 +86,8 @@ static ag_status trace_photons(ag_context *context, const scene *s, const ag_ren
     }
     eye_pilot_reset(&pilot);
     if (status == AG_OK)
+        status = context_check_textures(context, s);
+    if (status == AG_OK)
         run_progress(&context->run, AG_PHASE_PHOTONS, 1.0);
     return status;
 }
