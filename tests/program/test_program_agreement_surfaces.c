@@ -1,5 +1,5 @@
 /* test_program_agreement_surfaces.c: photon map and path tracer show the same light on surfaces that are not diffuse:
- * glass, rough metal and a mirror; rough coats; glTF's material in many ways; veils, bump maps and brushed metal. All
+ * glass, rough metal and a mirror; rough coats; glTF's material in many ways; alpha, bump maps and brushed metal. All
  * light, and
  * indirect light alone. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
@@ -30,10 +30,10 @@ static void test_principled(void **state)
 }
 
 /* What is in question is in all light. */
-static void test_veils_and_relief(void **state)
+static void test_alpha_and_relief(void **state)
 {
     (void)state;
-    compare_integrators("veils_and_relief", "--spp=64", NULL, SIGMA_MOST);
+    compare_integrators("alpha_and_relief", "--spp=64", NULL, SIGMA_MOST);
 }
 
 int main(void)
@@ -42,7 +42,7 @@ int main(void)
         TEST_IN_FOLDER(test_glass_and_metal),
         TEST_IN_FOLDER(test_rough_coats),
         TEST_IN_FOLDER(test_principled),
-        TEST_IN_FOLDER(test_veils_and_relief),
+        TEST_IN_FOLDER(test_alpha_and_relief),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* test_bsdf_table.c: what must hold for every material, one row for each: samples fall as their density says, weigh
  * f cos / pdf, gain nothing as flux or as radiance, and go both ways alike; what photons store and the eye looks up is
- * the value. Some rows come from scene text, with the place of a hit: mixes, textures, veils, interfaces. Rests on:
+ * the value. Some rows come from scene text, with the place of a hit: mixes, textures, alpha, interfaces. Rests on:
  * Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2 (reciprocity where light is bent).
  * Threads: one. */
 #include "fixtures/bsdf_fixture.h"
@@ -39,7 +39,7 @@ static void add_text(table *t, const char *name, const char *text, const char *m
     snprintf(world, sizeof world, "%s Shape \"disk\" \"float radius\" 9 %s", text, more);
     r.s = test_scene_create(&t->run, world);
     scene_ray down = scene_ray_make((vec3){x, 0.3f, 2.0f}, (vec3){0.0f, 0.0f, -1.0f});
-    down.veils = RAY_MEETS_VEILS;
+    down.alpha_rule = RAY_MEETS_ALPHA;
     assert_true(scene_intersect(r.s, down, INFINITY, &r.hit));
     material_at(r.s, &r.hit, &r.parameters);
     assert_true(t->count < ROWS_MAX);
@@ -102,7 +102,7 @@ static table *table_create(void)
              0.2f);
     add_text(t, "textured",
              CHECKS "Material \"coateddiffuse\" \"texture reflectance\" \"checks\" \"float roughness\" .3", "", 0.7f);
-    add_text(t, "veil", "Material \"diffuse\" \"rgb reflectance\" [.7 .2 .4]", "\"float alpha\" .5", 0.4f);
+    add_text(t, "alpha", "Material \"diffuse\" \"rgb reflectance\" [.7 .2 .4]", "\"float alpha\" .5", 0.4f);
     add_text(t, "curve",
              "Material \"coateddiffuse\" \"rgb reflectance\" [.7 .2 .4] \"float roughness\" .4 Shape \"curve\" "
              "\"string type\" \"ribbon\" \"point3 P\" [0 -4 1 0 -1 1 0 2 1 0 4 1] \"float width\" 6 \"normal N\" "
