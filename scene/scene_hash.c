@@ -15,7 +15,7 @@ static void add_array(hash128 *h, const void *items, size_t count, size_t item_s
     hash128_add(h, items, items ? count * item_size : 0);
 }
 
-/* --- matter --- */
+/* --- materials --- */
 
 static void add_image(hash128 *h, const texture_image *i)
 {

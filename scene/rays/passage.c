@@ -1,5 +1,5 @@
 /* passage.c: see passage.h. A ray that crosses an interface is cast anew from its other side; what a medium takes is
- * reckoned from surface to surface, not from where rays start.
+ * computed from surface to surface, not from where rays start.
  * Threads: pure but for the caller's counter. */
 #include "rays/passage.h"
 
