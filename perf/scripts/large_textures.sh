@@ -16,7 +16,8 @@ oiiotool --pattern "checker:width=32:height=32:color1=.2,.3,.4:color2=.8,.7,.3" 
     echo 'Film "rgb" "integer xresolution" 320 "integer yresolution" 320 WorldBegin LightSource "infinite"'
     for ((i = 0; i < count; i++)); do
     ((i == 0)) || ln 0.png "$i.png"
-    echo "AttributeBegin Translate $((i % 8 * 12 - 42))e-1 $((i / 8 * 12 - 42))e-1 0"
+    column=$((i % 8)) row=$((i / 8))
+    echo "AttributeBegin Translate $((column * 12 - 42))e-1 $((row * 12 - 42))e-1 0"
     echo "Texture \"t$i\" \"spectrum\" \"imagemap\" \"string filename\" \"$i.png\""
     echo "Material \"diffuse\" \"texture reflectance\" \"t$i\""
     echo 'Shape "bilinearmesh" "point3 P" [-.55 -.55 0 .55 -.55 0 -.55 .55 0 .55 .55 0] "point2 uv" [0 0 1 0 0 1 1 1]'
