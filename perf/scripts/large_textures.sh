@@ -15,13 +15,13 @@ oiiotool --pattern "checker:width=32:height=32:color1=.2,.3,.4:color2=.8,.7,.3" 
     echo 'LookAt 0 0 -9  0 0 0  0 1 0 Camera "perspective" "float fov" 60'
     echo 'Film "rgb" "integer xresolution" 320 "integer yresolution" 320 WorldBegin LightSource "infinite"'
     for ((i = 0; i < count; i++)); do
-    ((i == 0)) || ln 0.png "$i.png"
-    column=$((i % 8)) row=$((i / 8))
-    echo "AttributeBegin Translate $((column * 12 - 42))e-1 $((row * 12 - 42))e-1 0"
-    echo "Texture \"t$i\" \"spectrum\" \"imagemap\" \"string filename\" \"$i.png\""
-    echo "Material \"diffuse\" \"texture reflectance\" \"t$i\""
-    echo 'Shape "bilinearmesh" "point3 P" [-.55 -.55 0 .55 -.55 0 -.55 .55 0 .55 .55 0] "point2 uv" [0 0 1 0 0 1 1 1]'
-    echo 'AttributeEnd'
+        ((i == 0)) || ln 0.png "$i.png"
+        column=$((i % 8)) row=$((i / 8))
+        echo "AttributeBegin Translate $((column * 12 - 42))e-1 $((row * 12 - 42))e-1 0"
+        echo "Texture \"t$i\" \"spectrum\" \"imagemap\" \"string filename\" \"$i.png\""
+        echo "Material \"diffuse\" \"texture reflectance\" \"t$i\""
+        echo 'Shape "bilinearmesh" "point3 P" [-.55 -.55 0 .55 -.55 0 -.55 .55 0 .55 .55 0] "point2 uv" [0 0 1 0 0 1 1 1]'
+        echo 'AttributeEnd'
     done
 } > scene.pbrt
 "$program" scene.pbrt --noise 0 --spp 4 --photons 1e5 --gather-samples 8 --texture-memory "$size" -q -o picture.exr \
