@@ -486,8 +486,8 @@ static const option_row ROWS[] = {
           .manual =
               "Memory for the pictures of textures: bytes, or with K, M, G or T 1024, 1024^2, ... times as many; *4G* by "
               "default, at least *16M*, *0* for no bound. Up to half of it pictures are held whole. What is "
-              "beyond lies in a temporary file without a name, in $*TMPDIR* or _/tmp_, of up to three bytes "
-              "or so for each byte of pixels, and tiles of it are held in the rest. Pictures are decoded one "
+              "beyond lies in a temporary file without a name, in $*TMPDIR* or _/tmp_, of "
+              "less than twice the pixels' size, and tiles of it are held in the rest. Pictures are decoded one "
               "at a time. The picture that is rendered is the same."},
      .take = take_texture_memory},
     {.text = {.name = "confine",
