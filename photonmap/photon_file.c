@@ -35,7 +35,7 @@ typedef struct tree_record {
 
 typedef struct map_record {
     uint64_t emitted_paths, rays, passages_cut;
-    photon_books books;
+    energy_balance balance;
     uint32_t nearest;
     float max_radius, min_radius_squared, mean_radius;
     int32_t flux_exponent_max, irradiance_bias;
@@ -129,7 +129,7 @@ static map_record record_of(const photon_map *map)
     return (map_record){.emitted_paths = map->set.emitted_paths,
                         .rays = map->set.rays,
                         .passages_cut = map->set.passages_cut,
-                        .books = map->set.books,
+                        .balance = map->set.balance,
                         .nearest = map->nearest,
                         .max_radius = map->max_radius,
                         .min_radius_squared = map->min_radius_squared,
@@ -322,7 +322,7 @@ static photon_map map_of(const map_record *m, photon_tree tree, photon_tree bear
                               .emitted_paths = m->emitted_paths,
                               .rays = m->rays,
                               .passages_cut = m->passages_cut,
-                              .books = m->books},
+                              .balance = m->balance},
                       .blocks = tree.blocks,
                       .tree = tree,
                       .bearers = bearers,

@@ -32,7 +32,7 @@ typedef struct block {
     uint32_t count, capacity;
     uint32_t place; /* of its photons in the set */
     uint64_t paths, rays, passages_cut;
-    photon_books books;
+    energy_balance balance;
     bool out_of_memory;
     bool is_cut; /* cancelled before all of its paths were traced */
 } block;
@@ -42,7 +42,7 @@ typedef struct tracer {
     const light_target *target; /* of a caustic map: what its paths must meet first; else NULL */
     const photon_tracing_settings *settings;
     block *out;
-    uint32_t limit;        /* photons to store at most; paths begun are finished for the books */
+    uint32_t limit;        /* photons to store at most; paths begun are finished for the balance */
     emission_trial *trial; /* NULL, or nothing is stored, and this is valued */
     trial_counts *counts;  /* with it */
 } tracer;
@@ -58,7 +58,7 @@ typedef struct photon_path {
     bool is_diffuse; /* has gone on from a place by its gathered lobes */
 } photon_path;
 
-static void book(double entry[3], rgb flux)
+static void count_flux(double entry[3], rgb flux)
 {
     entry[0] += (double)flux.r;
     entry[1] += (double)flux.g;
@@ -90,7 +90,7 @@ static bool keep(tracer *t, const photon_path *path, vec3 position, vec3 normal,
     rgb flux = *in_out_flux;
     bool is_kept = (float)(hash_combine(key, 0x6b656570u) >> 40) * 0x1p-24f < path->weight;
     *in_out_flux = is_kept ? rgb_scale(flux, 1.0f / path->weight) : rgb_gray(0.0f);
-    book(t->out->books.thinned, rgb_sub(flux, *in_out_flux));
+    count_flux(t->out->balance.thinned, rgb_sub(flux, *in_out_flux));
     return is_kept;
 }
 
@@ -116,11 +116,11 @@ static void store(tracer *t, const photon_path *path, const surface_hit *hit, fl
         t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
         return;
     }
-    book(out->books.arrived, flux);
+    count_flux(out->balance.arrived, flux);
     if (!keep(t, path, at.position, normal, key, &flux))
         return;
     if (out->count == t->limit) {
-        book(out->books.cut, flux);
+        count_flux(out->balance.cut, flux);
         return;
     }
     photon *p = place_for_photon(out);
@@ -133,26 +133,26 @@ static void store(tracer *t, const photon_path *path, const surface_hit *hit, fl
     p->direction = arrival_encode(direction, path->is_diffuse);
     p->normal = direction_encode(normal);
     memset(&p->slot, 0, sizeof p->slot);
-    book(out->books.stored, flux_decode(p->flux));
+    count_flux(out->balance.stored, flux_decode(p->flux));
 }
 
 /* Media take their share of a path's flux; roulette then keeps what it carries about as it was, so that no photons are
  * spent on light that hardly matters. False: the path ends here. No random number is drawn where nothing is taken. */
-static bool pass_media(photon_books *books, rgb transmittance, rng *random, rgb *in_out_flux)
+static bool pass_media(energy_balance *balance, rgb transmittance, rng *random, rgb *in_out_flux)
 {
     if (transmittance.r == 1.0f && transmittance.g == 1.0f && transmittance.b == 1.0f)
         return true;
     rgb flux = *in_out_flux, left = rgb_mul(flux, transmittance);
-    book(books->absorbed, rgb_sub(flux, left));
+    count_flux(balance->absorbed, rgb_sub(flux, left));
     if (rgb_is_black(left))
         return false;
     float survival = fminf(1.0f, rgb_max(left) / rgb_max(flux));
     if (rng_float(random) >= survival) {
-        book(books->lost, left);
+        count_flux(balance->lost, left);
         return false;
     }
     *in_out_flux = rgb_scale(left, 1.0f / survival);
-    book(books->gained, rgb_sub(*in_out_flux, left));
+    count_flux(balance->gained, rgb_sub(*in_out_flux, left));
     return true;
 }
 
@@ -195,31 +195,31 @@ static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
         ray.cone = (ray_cone){photon_width(s, settings->wanted), 0.0f, true};
     rgb flux = rgb_scale(start.flux, weight / probability);
     *out_path = (photon_path){ray, flux, random, key, weight, 0, 0, false};
-    book(t->out->books.emitted, out_path->flux);
+    count_flux(t->out->balance.emitted, out_path->flux);
     return true;
 }
 
 /* What a path has arrived at. */
-typedef struct matter {
+typedef struct arrival_surface {
     const rgb *albedo; /* of a Lambertian place; else NULL, and: */
     bsdf scattering;
-} matter;
+} arrival_surface;
 
-static void matter_find(const scene *s, const surface_hit *hit, vec3 arrived, matter *out_matter)
+static void arrival_surface_find(const scene *s, const surface_hit *hit, vec3 arrived, arrival_surface *out_surface)
 {
-    out_matter->albedo = lambert_albedo(s, hit);
-    if (!out_matter->albedo)
-        out_matter->scattering = bsdf_create(s, hit, vec3_negate(arrived));
+    out_surface->albedo = lambert_albedo(s, hit);
+    if (!out_surface->albedo)
+        out_surface->scattering = bsdf_create(s, hit, vec3_negate(arrived));
 }
 
-static bool matter_has(const matter *m, bsdf_lobes lobes)
+static bool arrival_surface_has(const arrival_surface *m, bsdf_lobes lobes)
 {
     return m->albedo ? (lobes & BSDF_GATHERED) != 0 : bsdf_has(&m->scattering, lobes);
 }
 
 /* Whether photons are stored there, as so much of what they carry: on surfaces that gather. */
-static bool matter_is_stored_at(const scene *s, const surface_hit *hit, vec3 arrived, const matter *m,
-                                float *out_factor)
+static bool arrival_surface_stores(const scene *s, const surface_hit *hit, vec3 arrived, const arrival_surface *m,
+                                   float *out_factor)
 {
     if (m->albedo) {
         *out_factor = lambert_arrival_factor(hit, arrived);
@@ -232,8 +232,8 @@ static bool matter_is_stored_at(const scene *s, const surface_hit *hit, vec3 arr
 }
 
 /* Direction, weight, group and is_straight are set. */
-static bool matter_sample(const matter *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes, float u_lobe, vec2 u,
-                          bsdf_sample *out_next)
+static bool arrival_surface_sample(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
+                                   float u_lobe, vec2 u, bsdf_sample *out_next)
 {
     float correction;
     if (!m->albedo)
@@ -250,53 +250,53 @@ static bool matter_sample(const matter *m, const surface_hit *hit, vec3 arrived,
 static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
 {
     const photon_tracing_settings *settings = t->settings;
-    photon_books *books = &t->out->books;
+    energy_balance *balance = &t->out->balance;
     vec3 arrived = path->ray.direction;
     rgb flux = path->flux;
-    matter m;
-    matter_find(t->s, hit, arrived, &m);
+    arrival_surface m;
+    arrival_surface_find(t->s, hit, arrived, &m);
 
     bool is_global = settings->kind == PHOTON_GLOBAL;
     float factor;
-    if ((is_global || path->scatterings > 0) && matter_is_stored_at(t->s, hit, arrived, &m, &factor))
+    if ((is_global || path->scatterings > 0) && arrival_surface_stores(t->s, hit, arrived, &m, &factor))
         store(t, path, hit, factor);
     bool may_go_straight = settings->panes_are_direct && !m.albedo && m.scattering.is_pane;
     bool is_last = path->scatterings >= settings->max_scatterings;
     if (path->arrivals >= SCATTERING_CAP || (is_last && !may_go_straight)) {
-        book(books->truncated, flux);
+        count_flux(balance->truncated, flux);
         return false;
     }
 
     /* scatter; a caustic map follows traced lobes alone */
     bsdf_lobes lobes = is_global ? BSDF_ALL : BSDF_TRACED;
-    if (!matter_has(&m, lobes)) {
-        book(books->lost, flux);
+    if (!arrival_surface_has(&m, lobes)) {
+        count_flux(balance->lost, flux);
         return false;
     }
     float u_lobe = rng_float(&path->random), u_roulette = rng_float(&path->random);
     vec2 u = rng_vec2(&path->random);
     bsdf_sample next;
-    if (!matter_sample(&m, hit, arrived, lobes, u_lobe, u, &next)) {
-        book(books->absorbed, flux);
+    if (!arrival_surface_sample(&m, hit, arrived, lobes, u_lobe, u, &next)) {
+        count_flux(balance->absorbed, flux);
         return false;
     }
     bool goes_straight = may_go_straight && next.is_straight;
     if (is_last && !goes_straight) {
-        book(books->truncated, flux);
+        count_flux(balance->truncated, flux);
         return false;
     }
     rgb scattered = rgb_mul(flux, next.weight);
-    book(books->absorbed, rgb_sub(flux, scattered));
+    count_flux(balance->absorbed, rgb_sub(flux, scattered));
 
     /* roulette keeps the flux of the survivors about what it was */
     float largest = rgb_max(scattered), survival = largest > 0.0f ? largest / rgb_max(flux) : 0.0f;
     survival = survival < 1.0f ? survival : 1.0f;
     if (u_roulette >= survival) {
-        book(books->lost, scattered);
+        count_flux(balance->lost, scattered);
         return false;
     }
     path->flux = rgb_scale(scattered, 1.0f / survival);
-    book(books->gained, rgb_sub(path->flux, scattered));
+    count_flux(balance->gained, rgb_sub(path->flux, scattered));
     path->ray = goes_straight ? passage_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
     if (next.group == BSDF_GATHERED && settings->filters_textures)
         path->ray.cone.spread = RAY_CONE_DIFFUSE_SPREAD;
@@ -309,17 +309,17 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
 static void trace_path(tracer *t, uint64_t number)
 {
     photon_path path;
-    photon_books *books = &t->out->books;
+    energy_balance *balance = &t->out->balance;
     bool goes_on = begin_path(t, number, &path);
     while (goes_on) {
         surface_hit hit;
         rgb transmittance;
         t->out->rays++;
         bool is_met = passage_intersect(t->s, &path.ray, &t->out->passages_cut, &hit, &transmittance);
-        if (!pass_media(books, transmittance, &path.random, &path.flux))
+        if (!pass_media(balance, transmittance, &path.random, &path.flux))
             return;
         if (!is_met)
-            book(books->escaped, path.flux);
+            count_flux(balance->escaped, path.flux);
         if (is_met && ray_cone_is_wide(&path.ray.cone)) {
             path.ray.cone = ray_cone_at(&path.ray.cone, hit.distance);
             hit.footprint = ray_cone_footprint(&path.ray.cone, path.ray.direction);
@@ -343,7 +343,7 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
 {
     (void)worker;
     round_job *job = user;
-    /* each photon changes the books, which lie beside those of another worker's block: a copy has its lines to itself
+    /* each photon changes the balance, which lies beside that of another worker's block: a copy has its lines to itself
      */
     block out = job->blocks[block_index];
     tracer t = {job->s, job->target, job->settings, &out, UINT32_MAX, NULL, NULL};
@@ -354,7 +354,7 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
     job->blocks[block_index] = out;
 }
 
-static void add_books(photon_books *sum, const photon_books *part)
+static void add_balance(energy_balance *sum, const energy_balance *part)
 {
     double *a = (double *)sum;
     const double *b = (const double *)part;
@@ -363,7 +363,7 @@ static void add_books(photon_books *sum, const photon_books *part)
 }
 
 /* Takes a block into the account; where it overfills the set, its paths are traced again up to the one that fills it,
- * so that the books tell of whole paths and of those alone. */
+ * so that the balance tells of whole paths and of those alone. */
 static ag_status account_block(round_job *job, photon_set *set, uint64_t first_path, block *b)
 {
     uint32_t room = job->settings->wanted - set->count;
@@ -382,7 +382,7 @@ static ag_status account_block(round_job *job, photon_set *set, uint64_t first_p
     set->emitted_paths += b->paths;
     set->rays += b->rays;
     set->passages_cut += b->passages_cut;
-    add_books(&set->books, &b->books);
+    add_balance(&set->balance, &b->balance);
     return AG_OK;
 }
 
@@ -412,7 +412,7 @@ static ag_status merge_round(round_job *job, photon_set *set, uint64_t block_cou
 }
 
 /* A ball around all shapes that have traced lobes; of radius 0 where there is none. */
-static ag_status find_traced_matter(const scene *s, light_target *out_target)
+static ag_status find_traced_surfaces(const scene *s, light_target *out_target)
 {
     vec3 low, high;
     ag_status status = scene_find_bounds(s, scene_shape_is_traced, &low, &high);
@@ -426,7 +426,7 @@ static ag_status find_traced_matter(const scene *s, light_target *out_target)
 
 static void explain_shortage(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
 {
-    const photon_books *b = &set->books;
+    const energy_balance *b = &set->balance;
     double emitted = b->emitted[0] + b->emitted[1] + b->emitted[2];
     double escaped = b->escaped[0] + b->escaped[1] + b->escaped[2];
     /* most scenes with something shiny have hardly any caustics: that is no news */
@@ -440,9 +440,9 @@ static void explain_shortage(run_context *run, const photon_tracing_settings *se
                 emitted > 0.0 ? 100.0 * escaped / emitted : 0.0);
 }
 
-/* The specular matter that a caustic map's paths are to meet first; NULL for the global map. false in *out_has_any:
+/* The traced surfaces that a caustic map's paths are to meet first; NULL for the global map. false in *out_has_any:
  * there is no light, or nothing that a caustic could come from. */
-static ag_status find_target(const scene *s, photon_kind kind, light_target *out_matter,
+static ag_status find_target(const scene *s, photon_kind kind, light_target *out_target_ball,
                              const light_target **out_target, bool *out_has_any)
 {
     *out_target = NULL;
@@ -450,9 +450,9 @@ static ag_status find_target(const scene *s, photon_kind kind, light_target *out
                    !(s->shape_count == 0 && s->infinite_light_count > 0); /* a sky alone is seen without photons */
     if (!*out_has_any || kind == PHOTON_GLOBAL)
         return AG_OK;
-    ag_status status = find_traced_matter(s, out_matter);
-    *out_target = out_matter;
-    *out_has_any = out_matter->radius > 0.0f; /* there may be such matter in objects without instances */
+    ag_status status = find_traced_surfaces(s, out_target_ball);
+    *out_target = out_target_ball;
+    *out_has_any = out_target_ball->radius > 0.0f; /* there may be such surfaces in objects without instances */
     return status;
 }
 
@@ -461,10 +461,10 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
 {
     photon_set set = {0};
     *out_set = set;
-    light_target traced_matter;
+    light_target traced_surfaces;
     const light_target *caustic_target;
     bool has_any;
-    ag_status found = find_target(s, settings->kind, &traced_matter, &caustic_target, &has_any);
+    ag_status found = find_target(s, settings->kind, &traced_surfaces, &caustic_target, &has_any);
     if (found != AG_OK || !has_any)
         return found;
     block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
@@ -507,10 +507,10 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         photon_set_reset(&set);
         return status;
     }
-    /* the books so far are sums over paths that each stand for all the light */
+    /* the balance so far is of sums over paths that each stand for all the light */
     double share = set.emitted_paths > 0 ? 1.0 / (double)set.emitted_paths : 0.0;
-    for (size_t i = 0; i < sizeof set.books / sizeof(double); i++)
-        ((double *)&set.books)[i] *= share;
+    for (size_t i = 0; i < sizeof set.balance / sizeof(double); i++)
+        ((double *)&set.balance)[i] *= share;
     *out_set = set;
     return AG_OK;
 }
@@ -554,10 +554,10 @@ ag_status photon_tracing_try(const scene *s, run_context *run, const photon_trac
                              uint64_t first_path, uint32_t count, emission_trial *out_trials,
                              trial_counts *in_out_counts)
 {
-    light_target traced_matter;
+    light_target traced_surfaces;
     const light_target *caustic_target;
     bool has_any;
-    ag_status status = find_target(s, settings->kind, &traced_matter, &caustic_target, &has_any);
+    ag_status status = find_target(s, settings->kind, &traced_surfaces, &caustic_target, &has_any);
     for (uint32_t i = 0; i < count; i++)
         out_trials[i] = (emission_trial){.density = 1.0f};
     if (status != AG_OK || !has_any)

@@ -1,4 +1,4 @@
-/* photon_tracing.h: light from the lamps through the scene, into arrays of photons, with the books kept.
+/* photon_tracing.h: light from the lamps through the scene, into arrays of photons, with its energy balance.
  * Rests on: Jensen, "Global Illumination using Photon Maps", 1996; Jensen 2001, ch. 5 (emission, roulette).
  * Flow: scene -> [here] -> photon_map. Threads: paths are traced in blocks by the run's workers; the photons are the
  * same for any number of them: each path has its own random numbers, blocks are merged in their order, and the array is
@@ -29,7 +29,7 @@ typedef enum photon_kind { PHOTON_GLOBAL, PHOTON_CAUSTIC } photon_kind;
 /* Where the flux went, W, for the whole of the emitted paths.
  * emitted + gained = absorbed + escaped + lost + truncated;  arrived = stored + cut + thinned.
  * By a guide each of them is right on average. */
-typedef struct photon_books {
+typedef struct energy_balance {
     double emitted[3];   /* at the lamps */
     double gained[3];    /* by the survivors of roulette */
     double absorbed[3];  /* by surfaces and media */
@@ -40,7 +40,7 @@ typedef struct photon_books {
     double stored[3];    /* in photons, as rounded to their shared exponents */
     double cut[3];       /* arrived on the last path after the map was full */
     double thinned[3]; /* in photons left out where no light is asked for, less what those carry that stand for them */
-} photon_books;
+} energy_balance;
 
 typedef struct photon_set {
     photon *photons; /* owned, from photon_records_create */
@@ -48,7 +48,7 @@ typedef struct photon_set {
     uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
     uint64_t rays;
     uint64_t passages_cut; /* ways across more interfaces than scene/rays/passage.h follows: absorbed */
-    photon_books books;
+    energy_balance balance;
 } photon_set;
 
 typedef struct photon_tracing_settings {
@@ -80,7 +80,7 @@ typedef struct trial_counts {
 /* Tries so many paths, from that number on, which store nothing: a trial's value is the sum over the photons that it
  * would store of their flux times the root of their places' importance, so that what few ask for is not left to
  * a handful of photons. Paths apart from those of photon_tracing_run. The
- * caustics of a scene without traced matter, and the light of one without lamps, are of no value. Errors:
+ * caustics of a scene without traced lobes, and the light of one without lamps, are of no value. Errors:
  * AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_tracing_try(const scene *s, run_context *run, const photon_tracing_settings *settings,
                              uint64_t first_path, uint32_t count, emission_trial *out_trials,

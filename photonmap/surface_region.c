@@ -33,14 +33,14 @@ typedef struct probe {
     const scene *s;
     vec3 above, normal; /* the place, lifted along its normal */
     float lift, radius, min_cos;
-    ray_veils veils;
+    ray_alpha_rule alpha_rule;
     uint64_t *rays; /* counts them */
 } probe;
 
 static bool find_surface(const probe *p, vec3 origin, vec3 direction, float farthest, surface_hit *out_hit)
 {
     scene_ray ray = scene_ray_make(origin, direction);
-    ray.veils = p->veils;
+    ray.alpha_rule = p->alpha_rule;
     ++*p->rays;
     return passage_find_surface(p->s, ray, farthest, out_hit);
 }
@@ -152,7 +152,7 @@ static float share_that_is_there(const probe *p, const surface_region *r)
     memcpy(bits, &r->center, sizeof bits);
     rng random = rng_make(hash_combine(bits[0], bits[1]), 0, bits[2]);
     probe what_is_there = *p;
-    what_is_there.veils = RAY_MEETS_VEILS;
+    what_is_there.alpha_rule = RAY_MEETS_ALPHA;
     int all = 0, there = 0; /* with holes and without */
     for (int i = 0; i < PARTS * PARTS; i++) {
         vec2 u = rng_vec2(&random);
@@ -178,7 +178,7 @@ bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, floa
 {
     float lift = LIFT * radius;
     vec3 above = vec3_add_scaled(position, normal, lift), x, y;
-    probe p = {s, above, normal, lift, radius, min_cos, RAY_MEETS_VEILS, in_out_rays};
+    probe p = {s, above, normal, lift, radius, min_cos, RAY_MEETS_ALPHA, in_out_rays};
     find_tangents(position, normal, &x, &y);
     for (int i = 0; i < SURFACE_REGION_SECTORS; i += 2) {
         surface_hit hit;
@@ -194,7 +194,7 @@ bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_c
 {
     float extent[SURFACE_REGION_SECTORS];
     surface_region *r = out_region;
-    probe p = {s, position, normal, 0.0f, radius, min_cos, RAY_MEETS_VEILS, in_out_rays};
+    probe p = {s, position, normal, 0.0f, radius, min_cos, RAY_MEETS_ALPHA, in_out_rays};
     surface_hit foot;
     if (!find_foot(&p, position, normal, &foot))
         return false;
@@ -203,7 +203,7 @@ bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_c
     find_tangents(position, p.normal, &r->x, &r->y);
 
     if (may_be_empty)
-        p.veils = RAY_MEETS_EMPTY_VEILS; /* holes are no ends: there may be one in every direction */
+        p.alpha_rule = RAY_MEETS_EMPTY_ALPHA; /* holes are no ends: there may be one in every direction */
     r->nearest_end = radius;
     for (int i = 0; i < SURFACE_REGION_SECTORS; i++) {
         extent[i] = find_extent(&p, vec3_add_scaled(vec3_scale(r->x, UNIT[i][0]), r->y, UNIT[i][1]));

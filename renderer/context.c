@@ -157,3 +157,23 @@ ag_statistics ag_context_statistics(const ag_context *context)
     s.memory_peak_bytes = peak_memory_bytes();
     return s;
 }
+
+void context_count_textures(ag_context *context, const scene *s)
+{
+    const texture_store_counts c = texture_store_count(s->texture_store);
+    ag_statistics *out = &context->statistics;
+    out->texture_whole_bytes = c.whole_bytes;
+    out->texture_tile_bytes = c.tile_bytes_most;
+    out->texture_file_bytes = c.file_bytes;
+    out->texture_tiles_read = c.tiles_read;
+}
+
+ag_status context_check_textures(ag_context *context, const scene *s)
+{
+    context_count_textures(context, s);
+    if (!texture_store_has_failed(s->texture_store))
+        return AG_OK;
+    log_message(context->log, AG_LOG_ERROR,
+                "textures beyond --texture-memory cannot be read back from their temporary file");
+    return AG_ERROR_SYSTEM;
+}

@@ -48,6 +48,11 @@ double context_add_to_phase(ag_context *context, ag_phase phase, phase_begin beg
 /* Adds the time since `begin` to a phase, and says at info level how long it took. */
 void context_end_phase(ag_context *context, ag_phase phase, phase_begin begin);
 
+/* Notes in the statistics what the scene's textures take. */
+void context_count_textures(ag_context *context, const scene *s);
+/* The same; AG_ERROR_SYSTEM, and says so, where they could not be read: what was made of them is not to be used. */
+ag_status context_check_textures(ag_context *context, const scene *s);
+
 /* The context's colour config, and with it context->working_space; read when first asked for. What is wrong is said in
  * the log. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. (output_color.c) */
 ag_status context_color_config(ag_context *context, const color_config **out_config);

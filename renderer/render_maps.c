@@ -17,7 +17,7 @@ void maps_reset(maps *m)
 }
 
 /* A caustic needs something to be focused by. */
-static bool has_traced_matter(const scene *s)
+static bool has_traced_lobes(const scene *s)
 {
     for (uint32_t i = 0; i < s->shape_count; i++)
         if (scene_shape_is_traced(s, &s->shapes[i]))
@@ -27,7 +27,7 @@ static bool has_traced_matter(const scene *s)
 
 bool maps_have_caustics(const scene *s, const ag_render_settings *settings)
 {
-    return settings->caustic_photon_count > 0 && settings->max_depth >= 2 && has_traced_matter(s);
+    return settings->caustic_photon_count > 0 && settings->max_depth >= 2 && has_traced_lobes(s);
 }
 
 /* Traces one map's photons, after trials that tell which of them are of use. asked: NULL aims at nothing. */
@@ -86,6 +86,8 @@ static ag_status trace_photons(ag_context *context, const scene *s, const ag_ren
         status = trace_aimed(context, s, share, &pilot.seen, &tracing, out_caustic);
     }
     eye_pilot_reset(&pilot);
+    if (status == AG_OK)
+        status = context_check_textures(context, s);
     if (status == AG_OK)
         run_progress(&context->run, AG_PHASE_PHOTONS, 1.0);
     return status;

@@ -209,5 +209,6 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
     thread_pool_run(context->pool, work_on_tiles, &job);
     bool is_paused = run_end_pause(&context->run);
     tile_scheduler_destroy(job.tiles);
+    AG_TRY(context_check_textures(context, r->s));
     return run_is_cancelled(&context->run) ? AG_CANCELLED : is_paused ? AG_PAUSED : AG_OK;
 }

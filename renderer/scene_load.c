@@ -34,7 +34,8 @@ static ag_status copy_definitions(ag_context *context, const ag_definition *give
 
 ag_scene_settings ag_default_scene_settings(void)
 {
-    return (ag_scene_settings){.camera_up = {0.0f, 1.0f, 0.0f},
+    return (ag_scene_settings){.texture_memory_bytes = AG_DEFAULT_TEXTURE_MEMORY_BYTES,
+                               .camera_up = {0.0f, 1.0f, 0.0f},
                                .camera_fov_degrees = 45.0f,
                                .sun_elevation_degrees = 45.0f,
                                .sun_irradiance = 3.0f,
@@ -51,6 +52,7 @@ static ag_status make_request(const ag_scene_settings *settings, scene_request *
     const bool is_sky_sound = sky[0] >= 0 && sky[1] >= 0 && sky[2] >= 0 && isfinite(sky[0] + sky[1] + sky[2]) &&
                               isfinite(settings->sky_rotation_degrees);
     if ((unsigned)settings->gltf_light_units > AG_GLTF_LIGHT_UNITS_RAW || (unsigned)settings->up > AG_UP_MINUS_Z ||
+        (settings->texture_memory_bytes > 0 && settings->texture_memory_bytes < AG_TEXTURE_MEMORY_LEAST_BYTES) ||
         (settings->has_camera && settings->camera_name) || (settings->has_sun && !is_sun_sound) ||
         (settings->has_sky && !is_sky_sound))
         return AG_ERROR_ARGUMENT;
@@ -62,6 +64,7 @@ static ag_status make_request(const ag_scene_settings *settings, scene_request *
                                    .fov_degrees = settings->camera_fov_degrees,
                                    .camera_name = settings->camera_name,
                                    .drops_lights = settings->drops_lights,
+                                   .texture_memory_bytes = settings->texture_memory_bytes,
                                    .up = (scene_up)settings->up,
                                    .has_sun = settings->has_sun,
                                    .sun_azimuth_degrees = settings->sun_azimuth_degrees,
@@ -111,6 +114,7 @@ static ag_status load(ag_context *context, const char *path, const definitions *
     if (status != AG_OK)
         return status;
     context_end_phase(context, AG_PHASE_BVH, begin);
+    context_count_textures(context, s);
     log_message(context->log, AG_LOG_INFO, "shapes: %u; lights: %u; materials: %u; BVH: %.1f MB (%s)", s->shape_count,
                 s->light_count, s->material_count, (double)bvh_memory_bytes(s->bvh) / 1e6, bvh_isa(s->bvh));
     return AG_OK;

@@ -44,6 +44,7 @@ void scene_destroy(scene *s)
         light_reset(&s->lights[i]);
     for (uint32_t i = 0; i < s->texture_image_count; i++)
         texture_image_destroy(s->texture_images[i]);
+    texture_store_destroy(s->texture_store);
     for (uint32_t i = 0; i < s->file_name_count; i++)
         free(s->file_names[i]);
     for (uint32_t i = 0; i < s->light_group_count; i++)

@@ -40,6 +40,7 @@ typedef struct scene {
     uint32_t texture_count;
     texture_image **texture_images; /* those that textures refer to, each file and encoding once */
     uint32_t texture_image_count;
+    texture_store *texture_store; /* of those that are too large for memory; NULL: memory is not limited */
     shape *shapes;
     uint32_t shape_count;
     scene_object *objects; /* what their shapes are is told by the shapes */

@@ -15,20 +15,15 @@ static void add_array(hash128 *h, const void *items, size_t count, size_t item_s
     hash128_add(h, items, items ? count * item_size : 0);
 }
 
-/* --- matter --- */
+/* --- materials --- */
 
 static void add_image(hash128 *h, const texture_image *i)
 {
-    size_t count = (size_t)i->width * i->height;
     ADD(i->width);
     ADD(i->height);
     ADD(i->channel_count);
-    if (i->bytes)
-        ADD(i->table);
-    add_array(h, i->bytes, count * i->channel_count, 1);
-    add_array(h, i->values, count * i->channel_count, sizeof *i->values);
-    add_array(h, i->alpha_bytes, count, 1);
-    add_array(h, i->alpha_values, count, sizeof *i->alpha_values);
+    const hash128 content = texture_image_content(i);
+    ADD(content);
     hash128_add_text(h, i->colors.space);
     ADD(i->colors.has_matrix);
     if (i->colors.has_matrix)

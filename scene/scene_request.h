@@ -6,6 +6,7 @@
 #include "math/vec3.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 /* The units of lamps in a glTF file, beside those of emissive surfaces; names as in Blender's exporter. */
 typedef enum gltf_light_units {
@@ -31,9 +32,10 @@ typedef struct scene_request {
     gltf_light_units gltf_light_units;
     bool has_camera; /* in the place of the file's */
     vec3 camera_from, camera_to, camera_up;
-    float fov_degrees;       /* across the shorter image axis, (0, 180) */
-    const char *camera_name; /* of the file's cameras this one; borrowed; NULL: the first */
-    bool drops_lights;       /* all of the file's */
+    float fov_degrees;             /* across the shorter image axis, (0, 180) */
+    const char *camera_name;       /* of the file's cameras this one; borrowed; NULL: the first */
+    bool drops_lights;             /* all of the file's */
+    uint64_t texture_memory_bytes; /* of pictures; 0: no limit */
     scene_up up;
     bool has_sun; /* beside the file's lights */
     float sun_azimuth_degrees, sun_elevation_degrees;

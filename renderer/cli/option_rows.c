@@ -65,6 +65,13 @@ static bool take_gltf_light_units(const char *value, options *o)
     return is_valid;
 }
 
+static bool take_texture_memory(const char *value, options *o)
+{
+    uint64_t *bytes = &o->asked.texture_memory_bytes;
+    *bytes = 0;
+    return strcmp(value, "0") == 0 || (parse_bytes(value, bytes) && *bytes >= AG_TEXTURE_MEMORY_LEAST_BYTES);
+}
+
 static bool take_vector(const char *value, float out_vector[3])
 {
     int count;
@@ -470,6 +477,19 @@ static const option_row ROWS[] = {
                         "file's generator: Blender's from version 3.4 on is standard, before that raw, others are "
                         "unitless."},
      .take = take_gltf_light_units},
+    {.text =
+         {.name = "texture-memory",
+          .argument = "SIZE",
+          .section = "Scene",
+          .help = "memory for pictures of textures, as 512M or 4G (default), at least 16M, 0: no bound; what is "
+                  "beyond it lies in a temporary file",
+          .manual =
+              "Memory for the pictures of textures: bytes, or with K, M, G or T 1024, 1024^2, ... times as many; *4G* by "
+              "default, at least *16M*, *0* for no bound. Up to half of it pictures are held whole. What is "
+              "beyond lies in a temporary file without a name, in $*TMPDIR* or _/tmp_, of "
+              "less than twice the pixels' size, and tiles of it are held in the rest. Pictures are decoded one "
+              "at a time. The picture that is rendered is the same."},
+     .take = take_texture_memory},
     {.text = {.name = "confine",
               .section = "Scene",
               .help = "for scenes of strangers: read files below the scene's folder alone, and write only what the "
@@ -583,9 +603,9 @@ static const option_row ROWS[] = {
               "Load the scene, predict how long the picture would take on this machine, were it idle, and "
               "how much memory at the most, print that on standard output, and write no picture. For the "
               "time photons are traced, a million into each map at most, and some hundred blocks of the "
-              "picture's pixels are rendered, or half of them where it is small. *--stats* has it as "
-              "prediction.time_s, prediction.cpu_s and prediction.memory. What *--denoise* takes is not in it, and limits of time, "
-              "checkpoints and photon maps that are kept already are not heeded."},
+              "picture's pixels are rendered, or half of them where it is small. *--stats* has the times, the CPU time and "
+              "the memory by its parts under _prediction_. What *--denoise* takes is not in it, and limits of time, checkpoints and "
+              "photon maps that are kept already are not heeded."},
      FLAG(dry_run)},
     {.text = {.name = "preview",
               .section = "Work",

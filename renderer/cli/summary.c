@@ -56,6 +56,12 @@ void summary_print(FILE *file, const ag_statistics *s)
     fprintf(file, "memory\n  %-24s %10.1f MB\n", "peak", (double)s->memory_peak_bytes / 1e6);
     if (s->photon_bytes > 0)
         fprintf(file, "  %-24s %10.1f MB\n", "photon maps", (double)s->photon_bytes / 1e6);
+    if (s->texture_whole_bytes > 0)
+        fprintf(file, "  %-24s %10.1f MB\n", "textures", (double)s->texture_whole_bytes / 1e6);
+    if (s->texture_file_bytes > 0) {
+        fprintf(file, "  %-24s %10.1f MB\n", "tiles of textures", (double)s->texture_tile_bytes / 1e6);
+        fprintf(file, "  %-24s %10.1f MB\n", "their temporary file", (double)s->texture_file_bytes / 1e6);
+    }
 }
 
 void summary_print_prediction(FILE *file, const ag_prediction *p)

@@ -132,7 +132,7 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
     json_t *counts = json_pack(
         "{s:{s:o, s:o, s:o, s:o, s:s},"
         " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o, s:o},"
-        " s:o, s:o, s:f, s:o, s:{s:o}, s:o}",
+        " s:o, s:o, s:f, s:o, s:{s:o}, s:{s:o, s:o, s:o, s:o}, s:o}",
         "photons", "emitted", count(s->photons_emitted), "stored_global", count(s->photons_stored_global),
         "stored_caustic", count(s->photons_stored_caustic), "bytes", count(s->photon_bytes), "map_file",
         map_file_name(s->map_file), /**/
@@ -144,7 +144,10 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
         "rays", "camera", count(s->rays_camera), "shadow", count(s->rays_shadow), "gather", count(s->rays_gather),
         "photon", count(s->rays_photon), "path", count(s->rays_path), "estimate", count(s->rays_estimate), /**/
         "samples_not_finite", count(s->samples_not_finite), "time_s", times, "cpu_s", s->cpu_s, "phase_cpu_s",
-        cpu_times, "memory", "peak_bytes", count(s->memory_peak_bytes), "end", end_to_json(s));
+        cpu_times, "memory", "peak_bytes", count(s->memory_peak_bytes), /**/
+        "texture", "whole_bytes", count(s->texture_whole_bytes), "tile_bytes", count(s->texture_tile_bytes),
+        "file_bytes", count(s->texture_file_bytes), "tiles_read", count(s->texture_tiles_read), /**/
+        "end", end_to_json(s));
     bool is_whole = counts && json_object_update(root, counts) == 0;
     if (s->prediction.memory_peak_bytes > 0)
         is_whole = json_object_set_new(root, "prediction", prediction_to_json(&s->prediction)) == 0 && is_whole;

@@ -62,7 +62,7 @@ static void normalize_probabilities(bsdf *b)
 
 static void add_principled(bsdf *b)
 {
-    const material *m = &b->matter;
+    const material *m = &b->parameters;
     float cosine = vec3_dot(b->out, b->shading.z);
     principled_shares shares = principled_shares_at(m, fminf(fabsf(cosine), 1.0f));
     bool has_interface = principled_has_interface(m);
@@ -77,7 +77,7 @@ static void add_principled(bsdf *b)
 
 static void add_lobes(bsdf *b)
 {
-    const material *m = &b->matter;
+    const material *m = &b->parameters;
     bool smooth = material_is_smooth(m->alpha_u, m->alpha_v);
     float coat = m->kind == MATERIAL_COATED_DIFFUSE || m->kind == MATERIAL_COATED_CONDUCTOR
                      ? fresnel_dielectric(fabsf(vec3_dot(b->out, b->shading.z)), m->ior)
@@ -120,23 +120,23 @@ static void add_lobes(bsdf *b)
     normalize_probabilities(b);
 }
 
-/* matter is there already: it is large, and copied once. */
+/* The parameters are there already: they are large, and copied once. */
 static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
 {
     b->shading = shading;
     b->geometric_normal = hit->geometric_normal;
     b->out = out;
-    b->is_pane = pane_is_of(&b->matter);
+    b->is_pane = pane_is_of(&b->parameters);
     b->lobe_count = 0;
     add_lobes(b);
     for (int k = 0; hit->is_strand && k < b->lobe_count; k++)
         b->lobes[k].group = BSDF_TRACED;
 }
 
-bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out)
+bsdf bsdf_create_of(const material *parameters, const surface_hit *hit, vec3 out)
 {
     bsdf b;
-    b.matter = *matter;
+    b.parameters = *parameters;
     set_up(&b, frame_from_z(hit->shading_normal), hit, out);
     return b;
 }
@@ -148,15 +148,15 @@ static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
     b->is_pane = true;
     b->lobe_count = 0;
     add_lobe(b, LOBE_SLAB, BSDF_TRACED, true, 1.0f);
-    slab_find_shares(&b->matter, fabsf(vec3_dot(b->out, b->shading.z)), hit->slab.thickness, between,
+    slab_find_shares(&b->parameters, fabsf(vec3_dot(b->out, b->shading.z)), hit->slab.thickness, between,
                      &b->slab_reflected, &b->slab_through);
 }
 
 bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out)
 {
     bsdf b;
-    material_at(s, hit, &b.matter);
-    set_up(&b, shading_frame_at(s, hit, &b.matter), hit, out);
+    material_at(s, hit, &b.parameters);
+    set_up(&b, shading_frame_at(s, hit, &b.parameters), hit, out);
     b.is_pane = b.is_pane && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
     if (hit->slab.thickness > 0.0f)
         make_slab(s, hit, &b);
@@ -175,7 +175,7 @@ rgb bsdf_straight_transmittance(const bsdf *b)
 {
     if (b->is_pane && b->lobes[0].kind == LOBE_SLAB)
         return b->slab_through;
-    return b->is_pane ? pane_transmittance(&b->matter, vec3_dot(b->out, b->shading.z)) : rgb_gray(0.0f);
+    return b->is_pane ? pane_transmittance(&b->parameters, vec3_dot(b->out, b->shading.z)) : rgb_gray(0.0f);
 }
 
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
@@ -194,7 +194,7 @@ bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)
             continue;
         bool is_two_ways = lobe->kind == LOBE_DIELECTRIC || lobe->kind == LOBE_THIN_DIELECTRIC ||
                            lobe->kind == LOBE_SLAB ||
-                           (lobe->kind == LOBE_PRINCIPLED && principled_transmits(&b->matter));
+                           (lobe->kind == LOBE_PRINCIPLED && principled_transmits(&b->parameters));
         if (!lobe->is_delta || is_two_ways) /* all others are mirrors, and of the same normal */
             return true;
     }
@@ -214,7 +214,7 @@ bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
         case LOBE_COAT_SCATTERED:
         case LOBE_CONDUCTOR_UNDER_COAT: break;
         case LOBE_PRINCIPLED:
-            if (principled_transmits(&b->matter))
+            if (principled_transmits(&b->parameters))
                 return true;
             break;
         default: return true;
@@ -234,7 +234,7 @@ float bsdf_probability(const bsdf *b, bsdf_lobes lobes)
 
 rgb bsdf_gathered_reflection(const bsdf *b)
 {
-    const material *m = &b->matter;
+    const material *m = &b->parameters;
     switch (m->kind) {
     case MATERIAL_DIFFUSE:
     case MATERIAL_DIFFUSE_TRANSMISSION: return m->reflectance;
@@ -247,7 +247,7 @@ rgb bsdf_gathered_reflection(const bsdf *b)
 
 rgb bsdf_gathered_transmission(const bsdf *b)
 {
-    return b->matter.kind == MATERIAL_DIFFUSE_TRANSMISSION ? b->matter.transmittance : rgb_gray(0.0f);
+    return b->parameters.kind == MATERIAL_DIFFUSE_TRANSMISSION ? b->parameters.transmittance : rgb_gray(0.0f);
 }
 
 /* Shading normals bend the cosine of flux (Veach 1997, 5.3.2): the factor for flux that came from `out` and goes on to
@@ -267,7 +267,7 @@ static float arrival_factor(const bsdf *b, const material *base)
     return fminf(shading / geometric, BSDF_ARRIVAL_MAX) * bsdf_lobe_transmittance(base, shading);
 }
 
-float bsdf_arrival_factor(const bsdf *b) { return arrival_factor(b, &b->matter); }
+float bsdf_arrival_factor(const bsdf *b) { return arrival_factor(b, &b->parameters); }
 
 bool bsdf_arrival_factor_beside(const scene *s, const surface_hit *hit, const bsdf *b, float *out_factor)
 {
@@ -343,7 +343,7 @@ static bool sample_plain(const bsdf *b, bsdf_transport transport, vec2 u, bsdf_s
     out->direction = frame_to_world(&around, i); /* unit to rounding, as the frame and i are */
     if (!(correction > 0.0f) || !bsdf_is_same_side(b, out->direction))
         return false;
-    out->weight = rgb_scale(b->matter.reflectance, correction);
+    out->weight = rgb_scale(b->parameters.reflectance, correction);
     out->is_delta = out->is_straight = false;
     out->group = BSDF_GATHERED;
     return true;

@@ -58,7 +58,7 @@ typedef struct bsdf {
     frame shading;                    /* z: shading normal, to the outside */
     vec3 geometric_normal;            /* to the outside */
     vec3 out;                         /* back along the ray that arrived, unit */
-    material matter;                  /* as it is at this place */
+    material parameters;              /* as it is at this place */
     bool is_pane;                     /* lets light straight through (pane.h, slab.h), and does not shine itself */
     rgb slab_reflected, slab_through; /* of LOBE_SLAB, which then is the only lobe */
     int lobe_count;
@@ -77,14 +77,14 @@ typedef struct bsdf_sample {
 /* out: back along the ray that met the place, unit. */
 bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out);
 /* The same of a material that is no mix, and has been prepared. */
-bsdf bsdf_create_of(const material *matter, const surface_hit *hit, vec3 out);
+bsdf bsdf_create_of(const material *parameters, const surface_hit *hit, vec3 out);
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
 
 /* A Lambertian surface and nothing else: sampling it needs no u_lobe. */
 static inline bool bsdf_is_plain(const bsdf *b)
 {
-    return b->matter.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;
+    return b->parameters.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;
 }
 
 /* Whether `out` is on the inside, by the geometric normal: what does not go through stays there. */

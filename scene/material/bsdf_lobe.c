@@ -97,7 +97,7 @@ static void rough_dielectric(const material *m, bsdf_transport transport, vec3 o
 void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
                         rgb *out_value, float *out_pdf)
 {
-    const material *m = &b->matter;
+    const material *m = &b->parameters;
     *out_value = rgb_gray(0.0f);
     *out_pdf = 0.0f;
     switch (lobe->kind) {
@@ -172,7 +172,7 @@ static bool sample_slab(const bsdf *b, vec3 o, float u_lobe, vec3 *in_out_local,
 bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, float u_lobe,
                              vec3 *out_local, rgb *out_weight)
 {
-    const material *m = &b->matter;
+    const material *m = &b->parameters;
     if (kind == LOBE_PRINCIPLED || kind == LOBE_CLEARCOAT)
         return bsdf_principled_sample_smooth(m, kind, transport, o, u_lobe, out_local, out_weight);
     vec3 n = {0.0f, 0.0f, o.z >= 0.0f ? 1.0f : -1.0f};
@@ -206,7 +206,7 @@ bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport 
 /* A direction of a lobe that is not smooth, in the shading frame. */
 bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
-    const material *m = &b->matter;
+    const material *m = &b->parameters;
     if (kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH || kind == LOBE_COAT_SCATTERED) {
         *out_local = sample_cosine_hemisphere(u);
         if ((vec3_dot(b->out, b->geometric_normal) < 0.0f) != (kind == LOBE_DIFFUSE_THROUGH))

@@ -69,7 +69,7 @@ static void transmission(const material *m, bsdf_transport transport, vec3 o, ve
 void bsdf_principled_evaluate(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 direction, vec3 o,
                               vec3 i, rgb *out_value, float *out_pdf)
 {
-    const material *m = &b->matter;
+    const material *m = &b->parameters;
     bool is_reflection = o.z * i.z > 0.0f;
     if (o.z * i.z == 0.0f || bsdf_is_same_side(b, direction) != is_reflection)
         return; /* between the two horizons of a leaning normal */

@@ -19,7 +19,7 @@ typedef struct coat_cell {
     rgb back;
 
     /* A metal: the lobe of light that no facet reflected totally. */
-    float breadth;                 /* its roughness over what coat_lobe_facets reckons */
+    float breadth;                 /* its roughness over what coat_lobe_facets computes */
     float scale[COAT_PLACES];      /* what it is multiplied by, at either end */
     float albedo[COAT_PLACES];     /* of a metal that reflects all */
     float lobe_share[COAT_ORDERS]; /* of its albedo, by the number of reflections */

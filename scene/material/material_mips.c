@@ -24,15 +24,10 @@ bool material_is_filtered(const material *m)
 
 static ag_status make_of_picture(scene *s, run_context *run, texture_image *i)
 {
+    s->has_mips = true;
     if (i->mips)
         return AG_OK;
-    const texture_level finest = {.width = i->width,
-                                  .height = i->height,
-                                  .channel_count = i->channel_count,
-                                  .bytes = i->bytes,
-                                  .table = i->table,
-                                  .values = i->values};
-    s->has_mips = true;
+    const texture_level finest = texture_image_finest(i);
     return texture_mips_create(run, &finest, &i->mips);
 }
 

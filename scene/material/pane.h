@@ -1,4 +1,4 @@
-/* pane.h: matter that light passes straight: thin glass, or a smooth interface between equal indices. Such light is
+/* pane.h: materials that light passes straight: thin glass, or a smooth interface between equal indices. Such light is
  * neither bent nor scattered, and may be sampled at its lamp through the pane: it is direct light.
  * Rests on: Born, Wolf, "Principles of Optics", 1.6 (the series of reflections between two faces, without
  * interference); Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 9.5.1 (thin dielectrics).

@@ -89,7 +89,7 @@ static bool quadric_hit(const void *user, void *ray, lane l, float *out_t)
     float from = *lane_float(ray, l, RAY_NEAR), to = *lane_float(ray, l, RAY_FAR);
     for (uint32_t crossing = 0; shape_intersect_quadric(a->shape, origin, direction, from, to, out_t); crossing++) {
         if (shape_is_opaque(a->shape) || alpha_stops_ray(a->s, a->shape, 0, 0.0f, 0.0f, crossing, origin, direction,
-                                                         *out_t, (ray_veils)*lane_uint(ray, l, RAY_ID)))
+                                                         *out_t, (ray_alpha_rule)*lane_uint(ray, l, RAY_ID)))
             return true;
         from = *out_t;
     }
@@ -146,7 +146,7 @@ static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
                             vec3_dot(lane_vec3(hit, l, HIT_NORMAL), direction) > 0.0f;
         if (!alpha_stops_ray(a->s, a->shape, *lane_uint(hit, l, HIT_PRIMITIVE), *lane_float(hit, l, HIT_U),
                              *lane_float(hit, l, HIT_V), crossing, origin, direction, *lane_float(ray, l, RAY_FAR),
-                             (ray_veils)*lane_uint(ray, l, RAY_ID)))
+                             (ray_alpha_rule)*lane_uint(ray, l, RAY_ID)))
             arguments->valid[l.at] = 0;
     }
 }

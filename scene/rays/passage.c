@@ -1,5 +1,5 @@
 /* passage.c: see passage.h. A ray that crosses an interface is cast anew from its other side; what a medium takes is
- * reckoned from surface to surface, not from where rays start.
+ * computed from surface to surface, not from where rays start.
  * Threads: pure but for the caller's counter. */
 #include "rays/passage.h"
 
@@ -148,8 +148,8 @@ rgb passage_transmittance_of_panes(const scene *s, scene_ray ray, float reach, u
 bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
 {
     ray.skips_uv = true;
-    if (ray.veils == RAY_PASSES_VEILS)
-        ray.veils = RAY_MEETS_VEILS;
+    if (ray.alpha_rule == RAY_PASSES_ALPHA)
+        ray.alpha_rule = RAY_MEETS_ALPHA;
     if (!s->has_interfaces)
         return scene_intersect(s, ray, max_distance, out_hit);
     uint64_t cut = 0;
@@ -163,7 +163,7 @@ bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, sur
 bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance)
 {
     surface_hit hit;
-    ray.veils = RAY_MEETS_VEILS;
+    ray.alpha_rule = RAY_MEETS_ALPHA;
     return s->has_interfaces ? passage_find_surface(s, ray, max_distance, &hit) : scene_occluded(s, ray, max_distance);
 }
 

@@ -33,8 +33,9 @@ rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *
  * in it; those between two panes, which move light sideways, are not. */
 rgb passage_transmittance_of_panes(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
 
-/* As scene_intersect and scene_occluded, but interfaces are not there, and veils stop all rays, RAY_MEETS_VEILS unless
- * ray.veils asks for the empty ones as well: for those who ask about surfaces, not light. */
+/* As scene_intersect and scene_occluded, but interfaces are not there, and alpha surfaces stop all rays,
+ * RAY_MEETS_ALPHA unless ray.alpha_rule asks for the empty ones as well: for those who ask about surfaces, not light.
+ */
 bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance);
 

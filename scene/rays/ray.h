@@ -11,18 +11,18 @@
 #define SCENE_NO_MEDIUM UINT32_MAX
 
 /* How a surface that is there in part (alpha.h) meets a ray. */
-typedef enum ray_veils {
-    RAY_PASSES_VEILS,     /* stops it by chance, as much as is there: light */
-    RAY_MEETS_VEILS,      /* stops it wherever anything is there: the ray looks for surfaces */
-    RAY_MEETS_EMPTY_VEILS /* stops it everywhere, where nothing is there too: for how far such a surface goes */
-} ray_veils;
+typedef enum ray_alpha_rule {
+    RAY_PASSES_ALPHA,     /* stops it by chance, as much as is there: light */
+    RAY_MEETS_ALPHA,      /* stops it wherever anything is there: the ray looks for surfaces */
+    RAY_MEETS_EMPTY_ALPHA /* stops it everywhere, where nothing is there too: for how far such a surface goes */
+} ray_alpha_rule;
 
 /* Named so, for a ray is what variables are called. */
 typedef struct scene_ray {
     vec3 origin, direction; /* world; whoever wants the direction unit says so */
     float time;             /* of the shutter, [0, 1] from its opening to its closing */
     uint32_t medium;        /* that it starts in; SCENE_NO_MEDIUM: nothing that absorbs */
-    ray_veils veils;
+    ray_alpha_rule alpha_rule;
     bool slabs_are_panes; /* light that may pass slabs of glass straight (slab_faces.h); else they bend it */
     bool skips_uv;        /* where no texture in the scene reads a hit's uv, nor does who casts it: it may be missing */
     ray_cone cone;        /* over which textures are filtered; all zero: none is */
@@ -31,7 +31,7 @@ typedef struct scene_ray {
 /* When the shutter opens, in nothing. */
 static inline scene_ray scene_ray_make(vec3 origin, vec3 direction)
 {
-    return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM, RAY_PASSES_VEILS, false, false, {0.0f, 0.0f, false}};
+    return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM, RAY_PASSES_ALPHA, false, false, {0.0f, 0.0f, false}};
 }
 
 #endif

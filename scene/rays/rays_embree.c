@@ -16,7 +16,7 @@ static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
                          .time = r->time,
                          .tfar = max_distance,
                          .mask = 0xffffffffu,
-                         .id = (unsigned)r->veils,
+                         .id = (unsigned)r->alpha_rule,
                          .flags = 0};
     return ray;
 }
@@ -138,7 +138,7 @@ static void cast_packet(const scene *s, ray_fan *f, const uint8_t *numbers, uint
     fill(p.ray.tnear, 0.0f), fill(p.ray.tfar, INFINITY), fill(p.ray.time, c->time);
     for (uint32_t k = 0; k < PACKET; k++) {
         p.ray.mask[k] = 0xffffffffu;
-        p.ray.id[k] = (unsigned)c->veils;
+        p.ray.id[k] = (unsigned)c->alpha_rule;
         p.ray.flags[k] = 0;
         p.hit.geomID[k] = p.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
         vec3 d = ray_fan_direction(f, numbers[k < count ? k : 0]);

@@ -83,7 +83,7 @@ static bool find_exit(const scene *s, const slab_faces *f, const scene_ray *ray,
     float most = thickness_max(s, in, entered);
     scene_ray within = *ray;
     within.origin = surface_place_behind(in->position, in->geometric_normal, in->epsilon, ray->direction);
-    within.veils = RAY_MEETS_VEILS;
+    within.alpha_rule = RAY_MEETS_ALPHA;
     within.skips_uv = true;
     if (!scene_intersect(s, within, 1.01f * most / cosine, out_hit) || !is_counterpart(s, in, out_hit))
         return false;

@@ -38,15 +38,15 @@ static float hash_of_ray(uint32_t shape_index, uint32_t primitive_index, uint32_
 }
 
 bool alpha_stops_ray(const scene *s, const shape *at, uint32_t primitive_index, float u, float v, uint32_t crossing,
-                     vec3 origin, vec3 direction, float t, ray_veils veils)
+                     vec3 origin, vec3 direction, float t, ray_alpha_rule alpha_rule)
 {
-    if (veils == RAY_MEETS_EMPTY_VEILS)
+    if (alpha_rule == RAY_MEETS_EMPTY_ALPHA)
         return true;
     surface_hit hit = {.distance = t};
     if (at->alpha_texture != SCENE_NO_TEXTURE)
         shape_surface_at(at, primitive_index, u, v, vec3_add_scaled(origin, direction, t), direction, &hit);
     float alpha = alpha_at(s, at, &hit); /* which reads the hit for a texture only */
-    if (alpha <= 0.0f || alpha >= 1.0f || veils == RAY_MEETS_VEILS)
+    if (alpha <= 0.0f || alpha >= 1.0f || alpha_rule == RAY_MEETS_ALPHA)
         return alpha > 0.0f;
     return hash_of_ray((uint32_t)(at - s->shapes), primitive_index, crossing, origin, direction) < alpha;
 }

@@ -31,6 +31,6 @@ float alpha_at_hit(const scene *s, const surface_hit *hit);
 /* Whether a ray meets the surface where it crosses it at distance t. u, v: as of shape_surface_at; crossing: which one
  * it is where the ray crosses one primitive several times. The same for the same ray. */
 bool alpha_stops_ray(const scene *s, const shape *at, uint32_t primitive_index, float u, float v, uint32_t crossing,
-                     vec3 origin, vec3 direction, float t, ray_veils veils);
+                     vec3 origin, vec3 direction, float t, ray_alpha_rule alpha_rule);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "image/image_reader.h"
 #include "scene.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -142,6 +143,53 @@ static ag_status read_image(const scene *s, texture_image *i, const char *path, 
     return status;
 }
 
+/* With its coarser levels, which may be made later, and alpha. */
+static uint64_t whole_bytes(const texture_image *i)
+{
+    const uint64_t pixels = (uint64_t)i->width * i->height, values = pixels * i->channel_count;
+    const uint64_t finest = i->bytes ? values : values * sizeof *i->values;
+    const uint64_t coarser = values / 3 * (i->bytes ? sizeof(uint16_t) : sizeof(float));
+    return finest + coarser + (i->alpha_bytes ? pixels : 0) + (i->alpha_values ? pixels * sizeof *i->alpha_values : 0);
+}
+
+/* Moves what does not fit into the scene's store, pixels, coarser levels and alpha. */
+static ag_status put_into_store(scene *s, texture_image *i, char *message, size_t message_size)
+{
+    const texture_level finest = texture_image_finest(i);
+    i->stored_content = texture_image_content(i);
+    AG_TRY(texture_mips_create(NULL, &finest, &i->mips));
+    AG_TRY(texture_mips_put(i->mips, s->texture_store, message, message_size));
+    if (texture_image_has_alpha(i)) {
+        i->stored_alpha = (texture_level){.width = i->width,
+                                          .height = i->height,
+                                          .channel_count = 1,
+                                          .sample = i->alpha_bytes ? TEXTURE_BYTES : TEXTURE_FLOATS,
+                                          .bytes = i->alpha_bytes,
+                                          .values = i->alpha_values};
+        AG_TRY(texture_level_put(&i->stored_alpha, s->texture_store, message, message_size));
+    }
+    free(i->bytes);
+    free(i->values);
+    free(i->alpha_bytes);
+    free(i->alpha_values);
+    i->bytes = i->alpha_bytes = NULL;
+    i->values = i->alpha_values = NULL;
+    i->is_stored = true;
+    return AG_OK;
+}
+
+static ag_status hold_within_limit(scene *s, texture_image *i, char *message, size_t message_size)
+{
+    const uint64_t limit_bytes = s->request ? s->request->texture_memory_bytes : 0;
+    if (limit_bytes == 0)
+        return AG_OK;
+    if (!s->texture_store)
+        s->texture_store = texture_store_create(limit_bytes);
+    if (!s->texture_store)
+        return AG_ERROR_MEMORY;
+    return texture_store_keeps(s->texture_store, whole_bytes(i)) ? AG_OK : put_into_store(s, i, message, message_size);
+}
+
 static ag_status load(scene *s, const char *path, file_bytes file, image_encoding encoding, uint32_t *out_index,
                       char *message, size_t message_size)
 {
@@ -156,6 +204,8 @@ static ag_status load(scene *s, const char *path, file_bytes file, image_encodin
         return AG_ERROR_MEMORY;
     i->encoding = encoding;
     ag_status status = read_image(s, i, path, file, message, message_size);
+    if (status == AG_OK)
+        status = hold_within_limit(s, i, message, message_size);
     if (status != AG_OK)
         texture_image_destroy(i);
     return status ? status : scene_add_texture_image(s, i, out_index);
@@ -183,65 +233,38 @@ void texture_image_destroy(texture_image *i)
     free(i->alpha_bytes);
     free(i->alpha_values);
     texture_mips_destroy(i->mips);
+    texture_tiles_destroy(i->stored_alpha.tiles);
     free(i);
 }
 
-/* Looking up */
-
-static pixel_blend find_pixels(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
+texture_level texture_image_finest(const texture_image *i)
 {
-    return pixel_blend_at(i->width, i->height, wraps, filter, s, t);
+    return (texture_level){.width = i->width,
+                           .height = i->height,
+                           .channel_count = i->channel_count,
+                           .sample = i->bytes ? TEXTURE_BYTES : TEXTURE_FLOATS,
+                           .bytes = i->bytes,
+                           .table = i->table,
+                           .values = i->values};
 }
 
-static float sum_channel(const texture_image *i, const pixel_blend *f, size_t channel)
+static void add_array(hash128 *h, const void *items, size_t count, size_t item_size)
 {
-    float sum = 0.0f;
-    for (int k = 0; k < f->count; k++) {
-        const size_t at = f->pixel[k] * i->channel_count + channel;
-        sum += f->weight[k] * (i->bytes ? i->table[i->bytes[at]] : i->values[at]);
-    }
-    return sum;
+    HASH128_ADD(h, count);
+    hash128_add(h, items, items ? count * item_size : 0);
 }
 
-rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
+hash128 texture_image_content(const texture_image *i)
 {
-    const pixel_blend f = find_pixels(i, wraps, filter, s, t);
-    const float first = sum_channel(i, &f, 0);
-    return i->channel_count == 1 ? rgb_gray(first) : rgb_make(first, sum_channel(i, &f, 1), sum_channel(i, &f, 2));
-}
-
-rgb texture_image_color(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
-{
-    rgb c = texture_image_rgb(i, wraps, filter, s, t);
-    return i->colors.has_matrix ? image_colors_convert(&i->colors, c) : c;
-}
-
-/* is_encoded: bytes are decoded as those of colours are. */
-static float sum_alpha(const texture_image *i, const pixel_blend *f, bool is_encoded)
-{
-    float sum = 0.0f;
-    for (int k = 0; k < f->count; k++) {
-        const size_t pixel = f->pixel[k];
-        const float alpha = i->alpha_bytes && is_encoded ? i->table[i->alpha_bytes[pixel]]
-                            : i->alpha_bytes             ? (float)i->alpha_bytes[pixel] * (1.0f / 255.0f)
-                            : i->alpha_values            ? i->alpha_values[pixel]
-                                                         : 1.0f;
-        sum += f->weight[k] * alpha;
-    }
-    return sum;
-}
-
-float texture_image_float(const texture_image *i, texture_channel channel, texture_wraps wraps, texture_filter filter,
-                          float s, float t)
-{
-    const pixel_blend f = find_pixels(i, wraps, filter, s, t);
-    if (channel == TEXTURE_CHANNEL_A)
-        return sum_alpha(i, &f, false);
-    if (channel == TEXTURE_CHANNEL_ALL && i->channel_count == 3 && (i->alpha_bytes || i->alpha_values))
-        return sum_alpha(i, &f, true);
-    if (i->channel_count == 1)
-        return sum_channel(i, &f, 0);
-    if (channel == TEXTURE_CHANNEL_ALL || channel == TEXTURE_CHANNEL_MEAN)
-        return (sum_channel(i, &f, 0) + sum_channel(i, &f, 1) + sum_channel(i, &f, 2)) * (1.0f / 3.0f);
-    return sum_channel(i, &f, (size_t)(channel - TEXTURE_CHANNEL_R));
+    const size_t count = (size_t)i->width * i->height;
+    hash128 h = hash128_begin();
+    if (i->is_stored)
+        return i->stored_content;
+    if (i->bytes)
+        HASH128_ADD(&h, i->table);
+    add_array(&h, i->bytes, count * i->channel_count, 1);
+    add_array(&h, i->values, count * i->channel_count, sizeof *i->values);
+    add_array(&h, i->alpha_bytes, count, 1);
+    add_array(&h, i->alpha_values, count, sizeof *i->alpha_values);
+    return h;
 }

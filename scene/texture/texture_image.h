@@ -5,6 +5,7 @@
 #ifndef AFTERGLOW_TEXTURE_IMAGE_H
 #define AFTERGLOW_TEXTURE_IMAGE_H
 
+#include "math/hash128.h"
 #include "math/vec3.h"
 #include "texture/image_colors.h"
 #include "texture/texture_mips.h"
@@ -36,6 +37,9 @@ typedef struct texture_image {
     float *alpha_values;        /* the same with values */
     image_colors colors;        /* from linear values to the working space's, of those that are colours */
     texture_mips *mips;         /* coarser levels, for filtering; NULL: none are wanted */
+    bool is_stored;             /* all pixels lie in the scene's texture_store: those above are NULL, mips are there */
+    texture_level stored_alpha; /* then, where it has one: tiles is not NULL */
+    hash128 stored_content;     /* then, what texture_image_content was */
     uint64_t bad_count;         /* values that were not finite, and are 0 now */
 } texture_image;
 
@@ -48,6 +52,18 @@ ag_status texture_image_load(struct scene *s, const char *path, image_encoding e
 ag_status texture_image_load_memory(struct scene *s, const char *name, const unsigned char *bytes, size_t size,
                                     image_encoding encoding, uint32_t *out_index, char *message, size_t message_size);
 void texture_image_destroy(texture_image *i); /* NULL is fine */
+
+/* The picture itself as a level, whose memory stays the picture's. Not of one that is stored. */
+texture_level texture_image_finest(const texture_image *i);
+
+/* Whether alpha is below 1 anywhere. */
+static inline bool texture_image_has_alpha(const texture_image *i)
+{
+    return i->alpha_bytes || i->alpha_values || i->stored_alpha.tiles;
+}
+
+/* A fingerprint of its pixels, the same whether they are stored or not. */
+hash128 texture_image_content(const texture_image *i);
 
 /* s to the right, t down, from the top left corner (0, 0) to the bottom right one (1, 1). The first is a colour of the
  * working space, the others are numbers as they stand in the picture, made linear. */

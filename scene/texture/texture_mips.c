@@ -2,24 +2,50 @@
 #include "texture/texture_mips.h"
 
 #include "parallel_for.h"
+#include "status.h"
 
 #include <stdlib.h>
 
 static float value_at(const texture_level *l, size_t at)
 {
-    if (l->bytes)
-        return l->table[l->bytes[at]];
-    return l->packed ? (float)l->packed[at] * (1.0f / 65535.0f) : l->values[at];
+    switch (l->sample) {
+    case TEXTURE_BYTES: return l->table ? l->table[l->bytes[at]] : (float)l->bytes[at] * (1.0f / 255.0f);
+    case TEXTURE_PACKED: return (float)l->packed[at] * (1.0f / 65535.0f);
+    default: return l->values[at];
+    }
+}
+
+static rgb blend_values(const texture_level *l, const pixel_blend *blend)
+{
+    float sums[3] = {0.0f, 0.0f, 0.0f};
+    for (int k = 0; k < blend->count; k++)
+        for (uint32_t channel = 0; channel < l->channel_count; channel++)
+            sums[channel] += blend->weight[k] * value_at(l, blend->pixel[k] * l->channel_count + channel);
+    return l->channel_count == 1 ? rgb_gray(sums[0]) : rgb_make(sums[0], sums[1], sums[2]);
+}
+
+/* The blend's pixels, one behind the other, are a level of their own. */
+static rgb blend_tiles(const texture_level *l, pixel_blend *blend)
+{
+    union {
+        unsigned char bytes[4 * TEXTURE_PIXEL_BYTES_MAX];
+        uint16_t packed[4 * 3];
+        float values[4 * 3];
+    } pixels;
+    texture_tiles_read(l->tiles, blend, pixels.bytes);
+    texture_level here = *l;
+    here.bytes = pixels.bytes;
+    here.packed = pixels.packed;
+    here.values = pixels.values;
+    for (int k = 0; k < blend->count; k++)
+        blend->pixel[k] = (size_t)k;
+    return blend_values(&here, blend);
 }
 
 rgb texture_level_rgb(const texture_level *l, texture_wraps wraps, texture_filter filter, float s, float t)
 {
-    const pixel_blend blend = pixel_blend_at(l->width, l->height, wraps, filter, s, t);
-    float sums[3] = {0.0f, 0.0f, 0.0f};
-    for (int k = 0; k < blend.count; k++)
-        for (uint32_t channel = 0; channel < l->channel_count; channel++)
-            sums[channel] += blend.weight[k] * value_at(l, blend.pixel[k] * l->channel_count + channel);
-    return l->channel_count == 1 ? rgb_gray(sums[0]) : rgb_make(sums[0], sums[1], sums[2]);
+    pixel_blend blend = pixel_blend_at(l->width, l->height, wraps, filter, s, t);
+    return l->tiles ? blend_tiles(l, &blend) : blend_values(l, &blend);
 }
 
 /* --- making them --- */
@@ -76,7 +102,7 @@ static void average_rows(void *user, uint64_t begin, uint64_t end, uint64_t bloc
             float sums[3];
             average_pixel(fine, &across, &down, sums);
             for (uint32_t channel = 0; channel < coarse->channel_count; channel++)
-                if (coarse->packed)
+                if (coarse->sample == TEXTURE_PACKED)
                     coarse->packed[at + channel] = (uint16_t)(sums[channel] * 65535.0f + 0.5f);
                 else
                     coarse->values[at + channel] = sums[channel];
@@ -89,15 +115,22 @@ static size_t level_count_of_values(const texture_level *l) { return (size_t)l->
 static ag_status make_level(run_context *run, const texture_level *fine, texture_level *out)
 {
     enum { ROWS = 64 };
-    *out = (texture_level){(fine->width + 1) / 2, (fine->height + 1) / 2, fine->channel_count, NULL, NULL, NULL, NULL};
+    *out = (texture_level){.width = (fine->width + 1) / 2,
+                           .height = (fine->height + 1) / 2,
+                           .channel_count = fine->channel_count,
+                           .sample = fine->sample == TEXTURE_FLOATS ? TEXTURE_FLOATS : TEXTURE_PACKED};
     const size_t count = level_count_of_values(out);
-    if (fine->values)
+    if (out->sample == TEXTURE_FLOATS)
         out->values = malloc(count * sizeof *out->values);
     else
         out->packed = malloc(count * sizeof *out->packed);
     if (!out->values && !out->packed)
         return AG_ERROR_MEMORY;
     mip_job job = {fine, out};
+    if (!run) {
+        average_rows(&job, 0, out->height, 0, 0);
+        return AG_OK;
+    }
     return parallel_for(run, out->height, ROWS, average_rows, &job, AG_PHASE_PHOTONS, 0.0, 0.0);
 }
 
@@ -122,20 +155,46 @@ ag_status texture_mips_create(run_context *run, const texture_level *finest, tex
     return status;
 }
 
-void texture_mips_destroy(texture_mips *m)
+static size_t sample_bytes(texture_sample sample)
 {
-    for (uint32_t k = 1; m && k < m->level_count; k++) {
-        free(m->levels[k].packed);
-        free(m->levels[k].values);
-    }
-    free(m);
+    return sample == TEXTURE_BYTES ? 1 : sample == TEXTURE_PACKED ? sizeof(uint16_t) : sizeof(float);
 }
 
-size_t texture_mips_size_bytes(const texture_mips *m)
+ag_status texture_level_put(texture_level *l, texture_store *store, char *message, size_t message_size)
 {
-    size_t sum = sizeof *m;
-    for (uint32_t k = 1; k < m->level_count; k++)
-        sum += level_count_of_values(&m->levels[k]) *
-               (m->levels[k].packed ? sizeof *m->levels[k].packed : sizeof *m->levels[k].values);
-    return sum;
+    const void *pixels = l->sample == TEXTURE_BYTES    ? (const void *)l->bytes
+                         : l->sample == TEXTURE_PACKED ? (const void *)l->packed
+                                                       : l->values;
+    return texture_store_put(store, pixels, l->width, l->height, l->channel_count * (uint32_t)sample_bytes(l->sample),
+                             &l->tiles, message, message_size);
+}
+
+static void free_level(texture_level *l)
+{
+    free(l->packed);
+    free(l->values);
+    l->packed = NULL;
+    l->values = NULL;
+}
+
+ag_status texture_mips_put(texture_mips *m, texture_store *store, char *message, size_t message_size)
+{
+    for (uint32_t k = 0; k < m->level_count; k++) {
+        AG_TRY(texture_level_put(&m->levels[k], store, message, message_size));
+        if (k > 0)
+            free_level(&m->levels[k]);
+    }
+    m->levels[0].bytes = NULL;
+    m->levels[0].values = NULL;
+    return AG_OK;
+}
+
+void texture_mips_destroy(texture_mips *m)
+{
+    for (uint32_t k = 0; m && k < m->level_count; k++) {
+        texture_tiles_destroy(m->levels[k].tiles);
+        if (k > 0)
+            free_level(&m->levels[k]);
+    }
+    free(m);
 }

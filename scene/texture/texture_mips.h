@@ -10,17 +10,23 @@
 #include "math/vec3.h"
 #include "run_context.h"
 #include "texture/texture_pixels.h"
+#include "texture/texture_store.h"
 
 enum { TEXTURE_LEVELS_MAX = 32 };
 
-/* Pixels, packed, top row first; of bytes, packed and values the one that is there. */
+/* How a value is kept: linear, but for bytes, whose linear values are in a table. */
+typedef enum texture_sample { TEXTURE_BYTES, TEXTURE_PACKED, TEXTURE_FLOATS } texture_sample;
+
+/* Pixels, packed, top row first: of bytes, packed and values the one that `sample` says, or in tiles. */
 typedef struct texture_level {
     uint32_t width, height;
-    uint32_t channel_count;     /* 1 or 3 */
-    const unsigned char *bytes; /* whose linear values are in table */
-    const float *table;
-    uint16_t *packed; /* linear, in 1/65535 */
-    float *values;    /* linear */
+    uint32_t channel_count; /* 1 or 3 */
+    texture_sample sample;
+    const unsigned char *bytes;
+    const float *table; /* of bytes; NULL: they are in 1/255 */
+    uint16_t *packed;   /* in 1/65535 */
+    float *values;
+    texture_tiles *tiles; /* in the place of these; owned by whoever puts them there; NULL: they are in memory */
 } texture_level;
 
 typedef struct texture_mips {
@@ -29,14 +35,17 @@ typedef struct texture_mips {
                                                  and high as the one before, rounded up; the last is a single pixel */
 } texture_mips;
 
-/* Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+/* run NULL: by this thread alone. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status texture_mips_create(run_context *run, const texture_level *finest, texture_mips **out_mips);
 void texture_mips_destroy(texture_mips *m); /* NULL is fine */
 
+/* Moves all levels into the store, the finest, of which the memory stays the caller's, too. Errors: as of
+ * texture_store_put. */
+ag_status texture_mips_put(texture_mips *m, texture_store *store, char *message, size_t message_size);
+/* The same of one level. */
+ag_status texture_level_put(texture_level *in_out, texture_store *store, char *message, size_t message_size);
+
 /* Linear values between the middles of a level's pixels; of a grey picture all three are the same. */
 rgb texture_level_rgb(const texture_level *l, texture_wraps wraps, texture_filter filter, float s, float t);
-
-/* What the coarser levels take in memory. */
-size_t texture_mips_size_bytes(const texture_mips *m);
 
 #endif

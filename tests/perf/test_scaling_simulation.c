@@ -1,6 +1,6 @@
-/* test_scaling_simulation.c: the simulated frame keeps its books: one worker takes the sum of all costs, any number
- * does the same work once, nobody is faster than his share, and one slot that all want is waited for by all but one.
- * Flow: tests of perf/bench/scaling_simulation.c. Threads: one. */
+/* test_scaling_simulation.c: the simulated frame accounts for its time: one worker takes the sum of all costs, any
+ * number does the same work once, nobody is faster than his share, and one slot that all want is waited for by all but
+ * one. Flow: tests of perf/bench/scaling_simulation.c. Threads: one. */
 #define _GNU_SOURCE
 #include "bench/scaling_simulation.h"
 #include "fixtures/temporary_folder.h"

@@ -103,7 +103,7 @@ static result trace_seeds(test_run *r, const scene *s, const place_importance *a
             all += flux;
             direct += arrival_is_diffuse(set.photons[i].direction) ? 0.0 : flux;
         }
-        const photon_books *b = &set.books;
+        const energy_balance *b = &set.balance;
         for (int c = 0; c < 3; c++) {
             assert_relative(b->stored[c] + b->cut[c] + b->thinned[c], b->arrived[c], 1e-3 * WIDER);
             assert_relative(b->absorbed[c] + b->escaped[c] + b->lost[c] + b->truncated[c], b->emitted[c] + b->gained[c],
@@ -197,7 +197,7 @@ static void expect_no_guide(const scene *s, test_run *r, photon_kind kind, const
     assert_null(guide.nodes);
 }
 
-/* Nothing asked for, asked for where no light comes, no lamp, nothing to be met, no traced matter. */
+/* Nothing asked for, asked for where no light comes, no lamp, nothing to be met, no traced lobes. */
 static void where_there_is_nothing_to_aim_at_power_decides(void **state)
 {
     (void)state;

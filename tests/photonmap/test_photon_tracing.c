@@ -1,4 +1,4 @@
-/* test_photon_tracing.c: the books balance, closed rooms are tight, and the photons are the same for any number of
+/* test_photon_tracing.c: the energy balances, closed rooms are tight, and the photons are the same for any number of
  * threads. Threads: those of the tracing. */
 #include "photon_tracing.h"
 
@@ -58,7 +58,7 @@ static photon_set trace(test_run *r, const scene *s, photon_kind kind, uint32_t 
 
 static void expect_balance(const photon_set *set)
 {
-    const photon_books *b = &set->books;
+    const energy_balance *b = &set->balance;
     for (int c = 0; c < 3; c++) {
         double in = b->emitted[c] + b->gained[c];
         assert_true(b->emitted[c] > 0.0);
@@ -91,7 +91,7 @@ static void expect_good_photons(const scene *s, const photon_set *set)
     }
 }
 
-static void books_balance_in_a_room_of_everything(void **state)
+static void energy_balances_in_a_room_of_everything(void **state)
 {
     (void)state;
     test_run r;
@@ -107,8 +107,8 @@ static void books_balance_in_a_room_of_everything(void **state)
             expect_balance(&set);
             expect_good_photons(s, &set);
             /* every path carries the lamp's power */
-            assert_relative(set.books.emitted[0], s->light_power.r, 1e-5);
-            assert_relative(set.books.emitted[2], s->light_power.b, 1e-5);
+            assert_relative(set.balance.emitted[0], s->light_power.r, 1e-5);
+            assert_relative(set.balance.emitted[2], s->light_power.b, 1e-5);
             photon_set_reset(&set);
         }
     assert_int_equal(r.warning_count, 0);
@@ -130,18 +130,18 @@ static void a_closed_sphere_stores_flux_over_one_minus_rho(void **state)
         expect_balance(&set);
         /* the number of arrivals is geometric: its deviation is sqrt(rho) / (1 - rho) a path */
         double tolerance = 4.0 * sqrt(RHO[i] / (double)set.emitted_paths);
-        assert_relative(set.books.arrived[0], 4.0 * PI * 3.0 / (1.0 - RHO[i]), tolerance);
-        assert_relative(set.books.arrived[2], 4.0 * PI * 1.0 / (1.0 - RHO[i]), tolerance);
+        assert_relative(set.balance.arrived[0], 4.0 * PI * 3.0 / (1.0 - RHO[i]), tolerance);
+        assert_relative(set.balance.arrived[2], 4.0 * PI * 1.0 / (1.0 - RHO[i]), tolerance);
         /* the first arrival of each path is marked as straight from the lamp, all others not */
         uint64_t straight = 0;
         for (uint32_t k = 0; k < set.count; k++)
             straight += !arrival_is_diffuse(set.photons[k].direction);
         assert_int_equal(straight, set.emitted_paths);
         for (int c = 0; c < 3; c++) {
-            assert_true(set.books.escaped[c] == 0.0);
-            assert_true(set.books.truncated[c] <= 1e-8 * set.books.emitted[c]);
+            assert_true(set.balance.escaped[c] == 0.0);
+            assert_true(set.balance.truncated[c] <= 1e-8 * set.balance.emitted[c]);
             /* what roulette gives and takes is even */
-            assert_close(set.books.gained[c], set.books.lost[c], 4.0 * set.books.arrived[c] / sqrt(set.count));
+            assert_close(set.balance.gained[c], set.balance.lost[c], 4.0 * set.balance.arrived[c] / sqrt(set.count));
         }
         photon_set_reset(&set);
         scene_destroy(s);
@@ -150,9 +150,9 @@ static void a_closed_sphere_stores_flux_over_one_minus_rho(void **state)
     scene *s = sphere_scene(&r, 0.8, 0.5, 0.2);
     photon_set set = trace(&r, s, PHOTON_GLOBAL, 200000 / FEWER, 100);
     expect_balance(&set);
-    assert_relative(set.books.arrived[0], 4.0 * PI * 3.0 / 0.2, 0.03 * WIDER);
-    assert_relative(set.books.arrived[1], 4.0 * PI * 2.0 / 0.5, 0.03 * WIDER);
-    assert_relative(set.books.arrived[2], 4.0 * PI * 1.0 / 0.8, 0.03 * WIDER);
+    assert_relative(set.balance.arrived[0], 4.0 * PI * 3.0 / 0.2, 0.03 * WIDER);
+    assert_relative(set.balance.arrived[1], 4.0 * PI * 2.0 / 0.5, 0.03 * WIDER);
+    assert_relative(set.balance.arrived[2], 4.0 * PI * 1.0 / 0.8, 0.03 * WIDER);
     photon_set_reset(&set);
     scene_destroy(s);
     test_run_reset(&r);
@@ -188,11 +188,11 @@ static void media_take_their_share(void **state)
             double sigma = SIGMA[c], power = 4.0 * PI;
             double t = (1.0 - exp(-2.0 * sigma) * (1.0 + 2.0 * sigma)) / (2.0 * sigma * sigma);
             double arrived = power * exp(-sigma) / (1.0 - 0.8 * t);
-            assert_relative(set.books.arrived[c], arrived, 0.02 * WIDER);
+            assert_relative(set.balance.arrived[c], arrived, 0.02 * WIDER);
             /* the wall takes a fifth, the medium all the rest; roulette is even */
-            assert_relative(set.books.absorbed[c] + set.books.lost[c] - set.books.gained[c], power, 1e-6);
-            assert_close(set.books.gained[c], set.books.lost[c], 0.03 * WIDER * arrived);
-            assert_true(set.books.escaped[c] == 0.0);
+            assert_relative(set.balance.absorbed[c] + set.balance.lost[c] - set.balance.gained[c], power, 1e-6);
+            assert_close(set.balance.gained[c], set.balance.lost[c], 0.03 * WIDER * arrived);
+            assert_true(set.balance.escaped[c] == 0.0);
         }
         assert_int_equal(set.passages_cut, 0);
         photon_set_reset(&set);
@@ -231,7 +231,7 @@ static void light_from_afar_comes_through_what_is_outside(void **state)
             photon_set set = trace(&r, s, PHOTON_GLOBAL, 20000 / FEWER, 100);
             const double power[3] = {s->light_power.r, s->light_power.g, s->light_power.b};
             for (int c = 0; c < 3; c++)
-                assert_close(set.books.emitted[c], CASES[k].share[c] * power[c],
+                assert_close(set.balance.emitted[c], CASES[k].share[c] * power[c],
                              0.05 * WIDER * CASES[k].share[c] * power[c]);
             photon_set_reset(&set);
             scene_destroy(s);
@@ -248,9 +248,9 @@ static void depth_limits_what_is_stored(void **state)
     double expected = 4.0 * PI * 3.0, sum = expected;
     for (int max = 0; max < 3; max++) {
         photon_set set = trace(&r, s, PHOTON_GLOBAL, 100000 / FEWER, max);
-        assert_relative(set.books.arrived[0], sum, 0.01 * WIDER);
+        assert_relative(set.balance.arrived[0], sum, 0.01 * WIDER);
         /* what goes on beyond the limit is truncated before the surface absorbs any of it */
-        assert_relative(set.books.truncated[0], expected, 0.01 * WIDER);
+        assert_relative(set.balance.truncated[0], expected, 0.01 * WIDER);
         expect_balance(&set);
         photon_set_reset(&set);
         sum += expected *= 0.5;
@@ -281,7 +281,7 @@ static void any_number_of_threads_traces_the_same_photons(void **state)
             assert_int_equal(set.emitted_paths, first.emitted_paths);
             assert_int_equal(set.rays, first.rays);
             assert_memory_equal(set.photons, first.photons, COUNT * sizeof *set.photons);
-            assert_memory_equal(&set.books, &first.books, sizeof set.books);
+            assert_memory_equal(&set.balance, &first.balance, sizeof set.balance);
             photon_set_reset(&set);
         }
         photon_set_reset(&first);
@@ -378,7 +378,7 @@ static void paths_have_times_of_their_own(void **state)
 }
 
 /* Nothing specular, or only in an object that is nowhere: not one path is traced. */
-static void without_traced_matter_there_are_no_caustics(void **state)
+static void without_traced_lobes_there_are_no_caustics(void **state)
 {
     (void)state;
     static const char *const WORLDS[] = {
@@ -420,7 +420,7 @@ static void a_black_room_is_met_once_a_path(void **state)
     photon_set set = trace(&r, s, PHOTON_GLOBAL, 10000, 100);
     assert_int_equal(set.count, 10000);
     assert_int_equal(set.emitted_paths, 10000);
-    assert_relative(set.books.absorbed[0] + set.books.lost[0], set.books.emitted[0], 1e-6);
+    assert_relative(set.balance.absorbed[0] + set.balance.lost[0], set.balance.emitted[0], 1e-6);
     photon_set_reset(&set);
     scene_destroy(s);
     test_run_reset(&r);
@@ -513,7 +513,7 @@ static void expect_tight(const char *world, uint32_t wanted)
     assert_int_equal(set.count, wanted / FEWER);
     assert_true(set.emitted_paths >= 200000 / FEWER);
     for (int c = 0; c < 3; c++)
-        assert_true(set.books.escaped[c] == 0.0);
+        assert_true(set.balance.escaped[c] == 0.0);
     photon_set_reset(&set);
     scene_destroy(s);
     test_run_reset(&r);
@@ -546,7 +546,7 @@ static void a_furnished_room_does_not_leak(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(books_balance_in_a_room_of_everything),
+        cmocka_unit_test(energy_balances_in_a_room_of_everything),
         cmocka_unit_test(a_closed_sphere_stores_flux_over_one_minus_rho),
         cmocka_unit_test(media_take_their_share),
         cmocka_unit_test(light_from_afar_comes_through_what_is_outside),
@@ -555,7 +555,7 @@ int main(void)
         cmocka_unit_test(seeds_and_counts_make_a_difference),
         cmocka_unit_test(a_shortage_is_explained),
         cmocka_unit_test(paths_have_times_of_their_own),
-        cmocka_unit_test(without_traced_matter_there_are_no_caustics),
+        cmocka_unit_test(without_traced_lobes_there_are_no_caustics),
         cmocka_unit_test(a_scene_without_light_has_no_photons),
         cmocka_unit_test(a_black_room_is_met_once_a_path),
         cmocka_unit_test(cancelling_ends_it),

@@ -38,14 +38,14 @@ static void test_sun(void **state)
     }
 }
 
-/* A veil of glass, of alpha 0.3, is there for that share of the rays; a tinted pane of glTF's material lets through its
+/* A pane of alpha 0.3 is there for that share of the rays; a tinted pane of glTF's material lets through its
  * colour times what Schlick's formula does not reflect; of one with a chequered colour the eye's floor is under white
  * at [0, 1) and under grey beyond. */
 static void test_other_panes(void **state)
 {
     (void)state;
     /* sigma of a sample: sqrt(0.21) (1 - T) = 0.035, of 64 x 256 of them 0.0003 */
-    expect_gray_floor("a veil", SUN THIN SQUARE_WITH("50", "1", "\"float alpha\" 0.3"),
+    expect_gray_floor("a pane of alpha", SUN THIN SQUARE_WITH("50", "1", "\"float alpha\" 0.3"),
                       3.0 * (0.7 + 0.3 * thin_glass(1.0, 1.5)), 4.0 * 0.0003, "--spp=256");
     const double tinted[3] = {3.0 * 0.96 * 0.8, 3.0 * 0.96 * 0.4, 3.0 * 0.96 * 0.2};
     expect_floor("a tinted pane",

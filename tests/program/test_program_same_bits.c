@@ -42,7 +42,7 @@ static void expect_same(const char *what, const picture *p, const picture *refer
 
 /* What must hold of every picture by photon map. bearers: photons at most that bear irradiance in a tree of their own.
  */
-static void expect_books(const char *stats_file, long long photons, long long bearers)
+static void expect_balance(const char *stats_file, long long photons, long long bearers)
 {
     json_t *stats = stats_read(in_folder(stats_file));
     long long global = stats_integer(stats, "photons.stored_global"),
@@ -82,7 +82,7 @@ static void expect_same_for_all_threads(const char *scene, const char *more)
                 snprintf(what, sizeof what, "%s %s", THREADS[i], CACHES[cache]);
                 picture p = render_map(scene, THREADS[i], CACHES[cache], more);
                 expect_same(what, &p, &reference);
-                expect_books("stats.json", PHOTON_COUNT, more ? PHOTON_COUNT / 2 : 0);
+                expect_balance("stats.json", PHOTON_COUNT, more ? PHOTON_COUNT / 2 : 0);
                 picture_reset(&p);
             }
     picture_reset(&reference);
@@ -131,7 +131,7 @@ static void test_few_photons_for_many_threads(void **state)
     for (int i = 0; i < 4; i++) {
         picture p = RENDER(COINCIDENCES, SIZE, "--spp=2", "--gather-samples=16", "--photons=50", "--caustic-photons=10",
                            "--radius=3", "--stats=stats.json", i == 0 ? "--nthreads=1" : "--nthreads=64");
-        expect_books("stats.json", 50, 0);
+        expect_balance("stats.json", 50, 0);
         if (i == 0) {
             reference = p;
             continue;

@@ -1,5 +1,5 @@
-/* test_program_surface.c: pictures of surfaces that are not wholly there, whose answer is known: white veils in a
- * furnace, a lamp through a black veil, lamps that are invisible or a veil themselves. Flow: tests of the whole
+/* test_program_surface.c: pictures of surfaces that are not wholly there, whose answer is known: white alpha surfaces
+ * in a furnace, a lamp through a black one, lamps that are invisible or there in part. Flow: tests of the whole
  * program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "fixtures/program_picture.h"
@@ -8,11 +8,11 @@ static const double PI = 3.14159265358979323846;
 static const char *const INTEGRATORS[] = {"photonmap", "path"};
 enum { INTEGRATOR_COUNT = 2, BLOCK = 8 };
 
-static void test_veils_in_a_furnace(void **state)
+static void test_alpha_in_a_furnace(void **state)
 {
     (void)state;
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(PROGRAM_SCENES "veils_in_furnace.pbrt", "--integrator", INTEGRATORS[k], "--photons=400000",
+        picture p = RENDER(PROGRAM_SCENES "alpha_in_furnace.pbrt", "--integrator", INTEGRATORS[k], "--photons=400000",
                            "--spp", k == 0 ? "4" : "128");
         expect_uniform(INTEGRATORS[k], &p, 2.0, 0.01, BLOCK, 0.03);
         picture_reset(&p);
@@ -51,7 +51,7 @@ static picture floor_under(const char *between, const char *integrator)
                   "--gather-samples=4");
 }
 
-static void test_lamp_through_veils(void **state)
+static void test_lamp_through_alpha_surfaces(void **state)
 {
     (void)state;
     static const struct {
@@ -79,9 +79,9 @@ static void test_lamp_through_veils(void **state)
         }
 }
 
-/* The floor under a rectangular lamp is as bright when the lamp is invisible, and dimmed by its share when it is a
- * veil. */
-static void test_lamps_that_are_veils(void **state)
+/* The floor under a rectangular lamp is as bright when the lamp is invisible, and dimmed by its share when it is there
+ * in part. */
+static void test_lamps_that_are_alpha_surfaces(void **state)
 {
     (void)state;
     static const struct {
@@ -114,10 +114,10 @@ static void test_lamps_that_are_veils(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_veils_in_a_furnace),
+        TEST_IN_FOLDER(test_alpha_in_a_furnace),
         TEST_IN_FOLDER(test_fine_nets_in_a_furnace),
-        TEST_IN_FOLDER(test_lamp_through_veils),
-        TEST_IN_FOLDER(test_lamps_that_are_veils),
+        TEST_IN_FOLDER(test_lamp_through_alpha_surfaces),
+        TEST_IN_FOLDER(test_lamps_that_are_alpha_surfaces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* test_program_texture_filter.c: textures filtered over ray cones: a plane to the horizon has less error at 4 samples
  * than unfiltered at 16, and the same mean; so have a room with pictures on its walls, by photon map and path tracing,
- * and the plane in a mirror; whatever the number of threads, in parts and as a whole the bits are the same.
+ * and the plane in a mirror; whatever the number of threads and the memory for
+ * textures, in parts and as a whole the bits are the same.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "fixtures/program_picture.h"
@@ -35,7 +36,7 @@ static const char *write_scene(const char *text)
     assert_non_null(file);
     assert_true(fputs(text, file) >= 0);
     assert_int_equal(fclose(file), 0);
-    return in_folder("scene.pbrt");
+    return "scene.pbrt"; /* the program runs in the folder */
 }
 
 #define PICTURE                                                                                                          \
@@ -163,13 +164,103 @@ static void test_photon_map_file(void **state)
     picture_reset(&again);
 }
 
+/* Two pictures that do not fit, of bytes with alpha and of floats: the same bits as in memory, by whatever threads;
+ * tiles are read, and keep to the bound. */
+static const char *large_room(void)
+{
+    enum { SIDE = 1500 };
+    static const char *const NAMES[4] = {"R", "G", "B", "A"};
+    float *pixels = malloc((size_t)SIDE * SIDE * 4 * sizeof *pixels);
+    assert_non_null(pixels);
+    for (int i = 0; i < 4 * SIDE * SIDE; i++) {
+        rng random = rng_make(1, 3, (uint64_t)i);
+        pixels[i] = rng_float(&random);
+    }
+    for (int k = 0; k < 2; k++) {
+        const image_description description = {.width = SIDE,
+                                               .height = SIDE,
+                                               .full_width = SIDE,
+                                               .full_height = SIDE,
+                                               .channel_count = 4 - k,
+                                               .channel_names = NAMES,
+                                               .type = k ? IMAGE_FLOAT : IMAGE_UINT8};
+        if (image_file_write(in_folder(k ? "floats.exr" : "bytes.png"), &description, pixels, message,
+                             sizeof message) != AG_OK)
+            fail_msg("%s", message);
+    }
+    free(pixels);
+    return write_scene(
+        "LookAt 0 1 -3  0 1 0  0 1 0 Camera \"perspective\" \"float fov\" 60 "
+        "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24 WorldBegin "
+        "LightSource \"infinite\" \"rgb L\" [1 1 1] "
+        "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"bytes.png\" "
+        "Texture \"cut\" \"float\" \"imagemap\" \"string filename\" \"bytes.png\" \"string encoding\" \"sRGB\" "
+        "Texture \"b\" \"spectrum\" \"imagemap\" \"string filename\" \"floats.exr\" "
+        "Material \"diffuse\" \"texture reflectance\" \"a\" Shape \"trianglemesh\" \"point3 P\" [-9 0 -9 9 0 -9 9 0 "
+        "9 -9 0 9] \"point2 uv\" [0 0 1 0 1 1 0 1] \"integer indices\" [0 1 2 0 2 3] "
+        "Material \"coateddiffuse\" \"texture reflectance\" \"b\" Shape \"sphere\" \"float radius\" 0.7 "
+        "Translate 0 2 0 Shape \"sphere\" \"texture alpha\" \"cut\" \"float radius\" 0.7");
+}
+
+static void test_memory(void **state)
+{
+    (void)state;
+    const char *scene = large_room();
+    picture whole = RENDER(scene, "--noise=0", "--spp=4", "--photons=2e4", "--texture-memory=0"),
+            tiled = RENDER(scene, "--noise=0", "--spp=4", "--photons=2e4", "--texture-memory=16M", "--nthreads=1"),
+            again = RENDER(scene, "--noise=0", "--spp=4", "--photons=2e4", "--texture-memory=64M", "--nthreads=7",
+                           "--stats=more.json"),
+            least = RENDER(scene, "--noise=0", "--spp=4", "--photons=2e4", "--texture-memory=16M", "--nthreads=7",
+                           "--stats=least.json", "--photon-map=a.map"),
+            from_map = RENDER(scene, "--noise=0", "--spp=4", "--photons=2e4", "--photon-map=a.map");
+    const size_t size = 3 * 24 * 24 * sizeof *whole.pixels;
+    assert_memory_equal(tiled.pixels, whole.pixels, size);
+    assert_memory_equal(again.pixels, whole.pixels, size);
+    assert_memory_equal(from_map.pixels, least.pixels, size); /* the map's fingerprint of the scene is the same, too */
+    json_t *stats = stats_read(in_folder("least.json"));
+    const long long held = stats_integer(stats, "texture.whole_bytes"),
+                    most = stats_integer(stats, "texture.tile_bytes");
+    assert_int_equal(held, 0);
+    assert_true(most > 1 << 20 && most <= 16 << 20);
+    assert_true(stats_integer(stats, "texture.tiles_read") * 12 * 64 * 64 > most);
+    assert_true(stats_integer(stats, "texture.file_bytes") > 1500LL * 1500 * (3 + 1 + 12));
+    json_decref(stats);
+    stats = stats_read(in_folder("more.json"));
+    assert_true(stats_integer(stats, "texture.whole_bytes") > 1500LL * 1500 * 4);
+    json_decref(stats);
+    picture_reset(&whole);
+    picture_reset(&tiled);
+    picture_reset(&again);
+    picture_reset(&least);
+    picture_reset(&from_map);
+}
+
+/* Sizes that are none; and a file system that is full while textures are put there. */
+static void test_memory_errors(void **state)
+{
+    (void)state;
+    static const char *const WRONG[] = {"--texture-memory=15M", "--texture-memory=-1",
+                                        "--texture-memory=1P",  "--texture-memory=16MB",
+                                        "--texture-memory=",    "--texture-memory=99999999999G"};
+    for (size_t k = 0; k < sizeof WRONG / sizeof *WRONG; k++) {
+        program_run run = RUN(WRONG[k], "-o", "no.exr", PROGRAM_SCENES "box_with_blocks.pbrt");
+        expect_exit(&run, 2);
+        program_run_reset(&run);
+    }
+    const char *scene = large_room();
+    const program_setting setting = {.file_size_limit = 1 << 20};
+    program_run run = program_execute(&setting, ARGUMENTS("--texture-memory=16M", "-o", "no.exr", scene));
+    assert_true(run.exit_code > 0);
+    assert_non_null(strstr(run.err, "temporary file"));
+    assert_true(access(in_folder("no.exr"), F_OK) != 0);
+    program_run_reset(&run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_horizon),
-        TEST_IN_FOLDER(test_room),
-        TEST_IN_FOLDER(test_same_bits),
-        TEST_IN_FOLDER(test_photon_map_file),
+        TEST_IN_FOLDER(test_horizon),         TEST_IN_FOLDER(test_room),   TEST_IN_FOLDER(test_same_bits),
+        TEST_IN_FOLDER(test_photon_map_file), TEST_IN_FOLDER(test_memory), TEST_IN_FOLDER(test_memory_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,7 +78,7 @@ static void *work(void *user)
 static void make_job(job *j, int number, const char *run)
 {
     static const char *const scenes[JOB_COUNT] = {
-        LAYERS_SCENES "glass_and_metal.pbrt", LAYERS_SCENES "veils_and_relief.pbrt", LAYERS_SCENES "next_room.pbrt",
+        LAYERS_SCENES "glass_and_metal.pbrt", LAYERS_SCENES "alpha_and_relief.pbrt", LAYERS_SCENES "next_room.pbrt",
         LAYERS_SCENES "glass_and_metal.pbrt", LAYERS_SCENES "box_with_blocks.pbrt",  NULL};
     *j = (job){.scene = scenes[number], .working_space = number == 3 ? "acescg" : NULL, .is_cancelled = number == 4};
     snprintf(j->file[0], PATH_SIZE, "%s/%s%d.exr", folder, run, number);

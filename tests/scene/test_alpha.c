@@ -100,8 +100,8 @@ static void a_share_of_the_rays_is_stopped(void **state)
     assert_true(share_stopped("Shape \"sphere\" \"float radius\" 2 \"float alpha\" -1", 1.0f, 9) == 0.0);
 }
 
-/* Rays that look for surfaces find veils always, and holes never. */
-static void probes_find_veils(void **state)
+/* Rays that look for surfaces find alpha surfaces always, and holes never. */
+static void probes_find_alpha_surfaces(void **state)
 {
     (void)state;
     scene *s =
@@ -226,7 +226,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_share_of_the_rays_is_stopped),
-        cmocka_unit_test(probes_find_veils),
+        cmocka_unit_test(probes_find_alpha_surfaces),
         cmocka_unit_test(what_is_behind_is_met),
         cmocka_unit_test(holes_are_where_the_texture_has_them),
         cmocka_unit_test(cutoffs_make_masks),

@@ -213,7 +213,7 @@ static void shading_normals_never_let_diffuse_light_through(void **state)
     assert_relative(bsdf_arrival_factor(&b), cos(40.0 * PI / 180.0) / 0.5, 1e-5);
 }
 
-/* Beyond the horizon of either normal there is no diffuse light: none is reckoned, none stored, none drawn. */
+/* Beyond the horizon of either normal there is no diffuse light: none is computed, none stored, none drawn. */
 static void diffuse_light_ends_at_the_shading_horizon(void **state)
 {
     (void)state;

@@ -17,7 +17,7 @@ static double gathered_furnace(const bsdf *b)
     for (int i = 0; i < STEPS; i++) {
         double cosine = (i + 0.5) / STEPS;
         bsdf in =
-            flat(&b->matter, (vec3){(float)sqrt(1.0 - cosine * cosine), 0.0f, copysignf((float)cosine, b->out.z)});
+            flat(&b->parameters, (vec3){(float)sqrt(1.0 - cosine * cosine), 0.0f, copysignf((float)cosine, b->out.z)});
         mean += 2.0 * cosine * (double)bsdf_arrival_factor(&in) / STEPS;
     }
     return mean * (double)bsdf_gathered_reflection(b).g;

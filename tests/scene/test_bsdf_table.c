@@ -1,6 +1,6 @@
 /* test_bsdf_table.c: what must hold for every material, one row for each: samples fall as their density says, weigh
  * f cos / pdf, gain nothing as flux or as radiance, and go both ways alike; what photons store and the eye looks up is
- * the value. Some rows come from scene text, with the place of a hit: mixes, textures, veils, interfaces. Rests on:
+ * the value. Some rows come from scene text, with the place of a hit: mixes, textures, alpha, interfaces. Rests on:
  * Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2 (reciprocity where light is bent).
  * Threads: one. */
 #include "fixtures/bsdf_fixture.h"
@@ -11,7 +11,7 @@ enum { SAMPLES = 20000 / FEWER };
 /* A material made here, or the text of one, met at a place of a disk that faces up. */
 typedef struct row {
     const char *name, *text;
-    material matter;
+    material parameters;
     scene *s; /* of the text */
     surface_hit hit;
 } row;
@@ -28,7 +28,7 @@ static void add(table *t, const char *name, material m)
 {
     assert_true(t->count < ROWS_MAX);
     prepare(&m);
-    t->rows[t->count++] = (row){.name = name, .matter = m};
+    t->rows[t->count++] = (row){.name = name, .parameters = m};
 }
 
 /* The text sets the material of what follows; x: the place on the disk. */
@@ -39,16 +39,16 @@ static void add_text(table *t, const char *name, const char *text, const char *m
     snprintf(world, sizeof world, "%s Shape \"disk\" \"float radius\" 9 %s", text, more);
     r.s = test_scene_create(&t->run, world);
     scene_ray down = scene_ray_make((vec3){x, 0.3f, 2.0f}, (vec3){0.0f, 0.0f, -1.0f});
-    down.veils = RAY_MEETS_VEILS;
+    down.alpha_rule = RAY_MEETS_ALPHA;
     assert_true(scene_intersect(r.s, down, INFINITY, &r.hit));
-    material_at(r.s, &r.hit, &r.matter);
+    material_at(r.s, &r.hit, &r.parameters);
     assert_true(t->count < ROWS_MAX);
     t->rows[t->count++] = r;
 }
 
 static bsdf row_bsdf(const row *r, vec3 out)
 {
-    return r->s ? bsdf_create(r->s, &r->hit, out) : bsdf_of(&r->matter, UP, out);
+    return r->s ? bsdf_create(r->s, &r->hit, out) : bsdf_of(&r->parameters, UP, out);
 }
 
 static material thin(float ior)
@@ -102,7 +102,7 @@ static table *table_create(void)
              0.2f);
     add_text(t, "textured",
              CHECKS "Material \"coateddiffuse\" \"texture reflectance\" \"checks\" \"float roughness\" .3", "", 0.7f);
-    add_text(t, "veil", "Material \"diffuse\" \"rgb reflectance\" [.7 .2 .4]", "\"float alpha\" .5", 0.4f);
+    add_text(t, "alpha", "Material \"diffuse\" \"rgb reflectance\" [.7 .2 .4]", "\"float alpha\" .5", 0.4f);
     add_text(t, "curve",
              "Material \"coateddiffuse\" \"rgb reflectance\" [.7 .2 .4] \"float roughness\" .4 Shape \"curve\" "
              "\"string type\" \"ribbon\" \"point3 P\" [0 -4 1 0 -1 1 0 2 1 0 4 1] \"float width\" 6 \"normal N\" "
@@ -137,7 +137,7 @@ static void every_kind_has_a_row(void **state)
     const table *t = *state;
     bool is_there[MATERIAL_MIX + 1] = {false};
     for (int k = 0; k < t->count; k++) {
-        is_there[t->rows[k].matter.kind] = true;
+        is_there[t->rows[k].parameters.kind] = true;
         if (t->rows[k].s &&
             t->rows[k].s->materials[t->rows[k].s->shapes[t->rows[k].hit.shape_index].material_index].kind ==
                 MATERIAL_MIX)
@@ -158,7 +158,7 @@ static void check_row(const row *r)
         double probability = 0.0;
         for (int k = 0; k < b.lobe_count; k++)
             probability += (double)b.lobes[k].probability;
-        bool is_empty = r->matter.kind == MATERIAL_INTERFACE;
+        bool is_empty = r->parameters.kind == MATERIAL_INTERFACE;
         assert_close(probability, is_empty ? 0.0 : 1.0, 1e-6);
         assert_close(bsdf_probability(&b, BSDF_ALL), probability, 1e-6);
         assert_close(bsdf_probability(&b, BSDF_GATHERED) + bsdf_probability(&b, BSDF_TRACED), probability, 1e-6);
@@ -192,7 +192,7 @@ static void samples_fall_and_weigh_as_is_said(void **state)
 /* The square of the index beyond over that on out's side, where what passes is bent; else 1. */
 static double square_beyond(const bsdf *b)
 {
-    const material *m = &b->matter;
+    const material *m = &b->parameters;
     bool bends = m->kind == MATERIAL_DIELECTRIC || (m->kind == MATERIAL_PRINCIPLED && principled_is_solid(m));
     double square = bends ? (double)m->ior * (double)m->ior : 1.0;
     return vec3_dot(b->out, UP) > 0.0f ? square : 1.0 / square;
@@ -281,7 +281,7 @@ static void gathered_lobes_are_products(void **state)
         for (int i = 0; i < 3000; i++) {
             vec3 normal = i % 2 ? UP : vec3_face_forward(random_direction(&random), UP);
             vec3 o = random_direction(&random), d = random_direction(&random);
-            bsdf out = bsdf_of(&r->matter, normal, o), in = bsdf_of(&r->matter, normal, d);
+            bsdf out = bsdf_of(&r->parameters, normal, o), in = bsdf_of(&r->parameters, normal, d);
             if (vec3_dot(d, normal) / d.z > 7.9f)
                 continue; /* bounded, at grazing silhouettes */
             double expected = (double)bsdf_arrival_factor(&in) * fabs((double)d.z) / PI;

@@ -314,7 +314,7 @@ static void a_fan_meets_what_its_rays_meet_alone(void **state)
         for (uint32_t round = 0; round < 1200 / FEWER; round++) {
             uint32_t count = round % (RAY_FAN_MAX + 1);
             ray_fan f = fan_from(random_in_box(&random, (vec3){-3, -3, -3}, (vec3){3, 3, 3}), count, &random);
-            f.common.veils = round % 2 ? RAY_MEETS_VEILS : RAY_PASSES_VEILS;
+            f.common.alpha_rule = round % 2 ? RAY_MEETS_ALPHA : RAY_PASSES_ALPHA;
             f.common.time = rng_float(&random);
             scene_intersect_fan(s, &f);
             for (uint32_t i = 0; i < count; i++) {

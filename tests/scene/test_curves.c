@@ -1,5 +1,5 @@
 /* test_curves.c: tubes, flat curves and ribbons: what rays meet, held against a cylinder, a rectangle and the width as
- * it is seen; (u, v), tangents, rays that leave; veils, objects and motion. Threads: one. */
+ * it is seen; (u, v), tangents, rays that leave; alpha, objects and motion. Threads: one. */
 #include "fixtures/test_scene.h"
 
 #define STRAIGHT  "\"point3 P\" [0 0 -1 0 0 -.25 0 0 .5 0 0 1] " /* u is no even measure of it */
@@ -330,10 +330,10 @@ static void tangents_go_where_uv_goes(void **state)
     test_run_reset(&r);
 }
 
-/* --- veils, objects, motion --- */
+/* --- alpha, objects, motion --- */
 
 /* Each of a tube's two walls lets a half through, a flat curve's one. */
-static void veils_let_their_share_through(void **state)
+static void alpha_surfaces_let_their_share_through(void **state)
 {
     (void)state;
     static const struct {
@@ -395,7 +395,7 @@ int main(void)
         cmocka_unit_test(a_flat_curve_is_as_wide_from_every_side),
         cmocka_unit_test(rays_that_leave_do_not_come_back),
         cmocka_unit_test(tangents_go_where_uv_goes),
-        cmocka_unit_test(veils_let_their_share_through),
+        cmocka_unit_test(alpha_surfaces_let_their_share_through),
         cmocka_unit_test(a_moving_curve_is_where_its_time_says),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

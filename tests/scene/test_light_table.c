@@ -12,9 +12,9 @@ typedef struct light_row {
     const char *name, *text; /* the lamp, above the disc at the origin that faces up */
     const char *texture;     /* of an area light's radiance, or NULL */
     builder builder;
-    int number;        /* of the builder's */
-    bool hides_itself; /* a part of the lamp shadows another: for photons through the disc no law is known */
-    bool is_veil;      /* rays meet it sometimes, or never: what they see is not what samples bring */
+    int number;            /* of the builder's */
+    bool hides_itself;     /* a part of the lamp shadows another: for photons through the disc no law is known */
+    bool is_alpha_surface; /* rays meet it sometimes, or never: what they see is not what samples bring */
 } light_row;
 
 #define LAMP   "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1] "
@@ -68,7 +68,7 @@ static const light_row ROWS[] = {
     {"textured sphere", BALL, CHECKS, FROM_TEXT, 0, false, false},
     {"textured ellipsoid", EGG, SLOPE, FROM_TEXT, 0, false, false},
     {"textured cylinder", PIPE, CHECKS, FROM_TEXT, 0, true, false},
-    {"veil", RING "\"float alpha\" .5", NULL, FROM_TEXT, 0, false, true},
+    {"alpha", RING "\"float alpha\" .5", NULL, FROM_TEXT, 0, false, true},
     {"holes", HOLES RING "\"texture alpha\" \"h\"", NULL, FROM_TEXT, 0, false, true},
     {"invisible", RING "\"float alpha\" 0", NULL, FROM_TEXT, 0, false, true},
     {"sky", FLOOR "LightSource \"infinite\" \"rgb L\" [3 2 1]", NULL, FROM_TEXT, 0, false, false},
@@ -238,14 +238,14 @@ static void check_towards(const light_row *row, const scene *s, vec3 point)
         double pdf = look(s, point, at.direction, &radiance);
         seen++;
         counts[direction_bin(at.direction)]++;
-        if (!row->is_veil)
+        if (!row->is_alpha_surface)
             strangers += fabs(pdf / (double)at.pdf_solid_angle - 1.0) > 0.01 ||
                          fabsf(radiance.g - at.radiance.g) > 1e-3f * at.radiance.g;
     }
     if (l->kind != LIGHT_AREA && l->kind != LIGHT_INFINITE)
         return;
     assert_true(strangers <= SAMPLES / 50); /* along outlines, and the borders of squares, pixels and cells */
-    if (row->is_veil)
+    if (row->is_alpha_surface)
         return;
     double whole = integrate_bins(density, &v, FEWER > 1 ? 8 : 14, bins);
     /* a picture's black pixels have a little density too, and no light */

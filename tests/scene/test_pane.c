@@ -111,8 +111,8 @@ static void test_blocked(void **state)
     test_run_reset(&r);
 }
 
-/* A veil of glass: by the hash of each ray either the pane is there, or nothing. */
-static void test_veil(void **state)
+/* A pane that is there in part: by the hash of each ray either the pane is there, or nothing. */
+static void test_alpha_surface(void **state)
 {
     (void)state;
     enum { RAYS = 20000 };
@@ -200,7 +200,7 @@ static void test_many(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_transmittance), cmocka_unit_test(test_blocked), cmocka_unit_test(test_veil),
+        cmocka_unit_test(test_transmittance), cmocka_unit_test(test_blocked), cmocka_unit_test(test_alpha_surface),
         cmocka_unit_test(test_samples),       cmocka_unit_test(test_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

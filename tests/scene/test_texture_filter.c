@@ -36,12 +36,7 @@ static void make_picture(made_picture *p, uint32_t width, uint32_t height, bool 
         else
             i->bytes[k] = (unsigned char)(255.0f * v + 0.5f);
     }
-    const texture_level finest = {.width = width,
-                                  .height = height,
-                                  .channel_count = 3,
-                                  .bytes = i->bytes,
-                                  .table = i->table,
-                                  .values = i->values};
+    const texture_level finest = texture_image_finest(i);
     assert_int_equal(texture_mips_create(&p->r.run, &finest, &i->mips), AG_OK);
 }
 
@@ -78,7 +73,9 @@ static double level_mean(const texture_level *l, uint32_t channel)
     double sum = 0.0;
     for (size_t k = 0; k < count; k++) {
         const size_t at = k * l->channel_count + channel;
-        sum += l->bytes ? (double)l->table[l->bytes[at]] : l->packed ? l->packed[at] / 65535.0 : (double)l->values[at];
+        sum += l->bytes                      ? (double)l->table[l->bytes[at]]
+               : l->sample == TEXTURE_PACKED ? l->packed[at] / 65535.0
+                                             : (double)l->values[at];
     }
     return sum / (double)count;
 }

@@ -107,6 +107,9 @@ typedef enum ag_up_axis {
     AG_UP_MINUS_Z
 } ag_up_axis;
 
+#define AG_DEFAULT_TEXTURE_MEMORY_BYTES ((uint64_t)4 << 30)
+#define AG_TEXTURE_MEMORY_LEAST_BYTES   ((uint64_t)16 << 20)
+
 /* Settings of a scene beyond what its file says. */
 typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
@@ -121,6 +124,10 @@ typedef struct ag_scene_settings {
     /* Of the file's cameras the one of this name (glTF: its node's or its own); another one is an error that says which
      * there are. Not with has_camera. NULL, the default: the first. */
     const char *camera_name;
+    uint64_t texture_memory_bytes; /* of the pictures of textures: up to half of it they are held whole, what is beyond
+                                      lies in a temporary file ($TMPDIR, else /tmp), of which tiles are held. The
+                                      picture is the same. 0: unbounded, else [AG_TEXTURE_MEMORY_LEAST_BYTES, ...];
+                                      default AG_DEFAULT_TEXTURE_MEMORY_BYTES */
     bool drops_lights; /* no light of the file's shines, nor any surface; nor is light made up. Default false */
     ag_up_axis up;     /* default AG_UP_AUTO */
     /* A sun beside the file's lights, infinitely far and without extent: its shadows are sharp. Where there is one, or
@@ -584,6 +591,9 @@ typedef struct ag_statistics {
     double time_total_s;                /* since the context was created */
     double cpu_s;                       /* user + system of the whole process */
     uint64_t memory_peak_bytes;
+    /* Of the scene loaded last: pictures of textures held whole, with what their coarser levels take, and the most that
+     * tiles of the others took; their temporary file, and how many tiles were read from it. */
+    uint64_t texture_whole_bytes, texture_tile_bytes, texture_file_bytes, texture_tiles_read;
     ag_end end;               /* of the last picture, as noted by ag_context_note_end */
     ag_sample_counts samples; /* of the pixels of the last picture */
     double noise;             /* of the last picture, as in ag_noise; below 0: not known */

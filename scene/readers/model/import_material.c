@@ -127,7 +127,7 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
         return AG_OK;
     }
     const texture_image *read = i->scene->texture_images[t.image_index];
-    const bool has_alpha = read->alpha_bytes || read->alpha_values;
+    const bool has_alpha = texture_image_has_alpha(read);
     t.channel = use == PICTURE_OPACITY && has_alpha ? TEXTURE_CHANNEL_A : TEXTURE_CHANNEL_MEAN;
     return scene_add_texture(i->scene, &t, out_texture);
 }
