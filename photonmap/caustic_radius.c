@@ -9,9 +9,6 @@
 
 /* Irradiance is asked for at so many photons of the global map; dim are the darkest of them, one in so many. */
 enum { SAMPLES = 255, DIM_ONE_IN = 20 };
-/* Of the k photons of an estimate, this share is to be as bright as the dim parts. */
-static const float DIM_SHARE = 0.5f;
-
 static int compare_floats(const void *a, const void *b)
 {
     float x = *(const float *)a, y = *(const float *)b;
@@ -29,8 +26,7 @@ static ag_status find_dim_irradiance(const photon_map *global, float *out_irradi
     for (uint32_t i = 0; i < count; i++) {
         uint32_t index = (uint32_t)((uint64_t)i * global->set.count / count);
         vec3 normal = direction_decode(photon_block_normal(global->blocks, index));
-        found[i] =
-            rgb_max(irradiance_estimate(global, photon_block_position(global->blocks, index), normal, scratch));
+        found[i] = rgb_max(irradiance_estimate(global, photon_block_position(global->blocks, index), normal, scratch));
     }
     free(scratch);
     qsort(found, count, sizeof *found, compare_floats);
@@ -49,7 +45,7 @@ ag_status caustic_radius_find(const photon_map *global, const photon_set *causti
     for (uint32_t i = 0; i < caustic->count; i++)
         flux += (double)rgb_max(flux_decode(caustic->photons[i].flux));
     double each = flux / ((double)caustic->count * (double)caustic->emitted_paths);
-    float radius = (float)sqrt((double)DIM_SHARE * (double)global->nearest * each / ((double)AG_PI * (double)dim));
+    float radius = (float)sqrt((double)global->nearest * each / ((double)AG_PI * (double)dim));
     if (radius > 0.0f && radius < *out_radius)
         *out_radius = radius;
     return AG_OK;

@@ -24,7 +24,7 @@
  * not diffuse sends it on. Light nearer to the surface than that is some thousandths where normals lean by 45 degrees,
  * and its part beyond the factor is lost. */
 #define BSDF_ARRIVAL_MAX    32.0f
-#define BSDF_CORRECTION_MAX 1000.0f
+#define BSDF_CORRECTION_MAX 32.0f
 
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
 
