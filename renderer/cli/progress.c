@@ -93,8 +93,8 @@ static double seconds_left(const progress *p, double fraction, double now)
             is_learned ? p->learned_seconds[i] / p->learned_count : shares[i] * known_seconds / known_shares;
         if (i > (int)p->phase)
             left += whole;
-        else if (!has_pace)
-            left += fmax(whole * (1.0 - fraction), 0.0);
+        else if (!has_pace) /* what has not shown its pace in that time takes at least so long */
+            left += fmax(whole * (1.0 - fraction), took * (1.0 - fraction) / fmax(done, least_fraction));
     }
     for (int i = 0; i < AG_PHASE_COUNT && is_learned; i++)
         of_one += p->learned_seconds[i] / p->learned_count;
