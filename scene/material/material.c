@@ -143,9 +143,26 @@ static rgb clamp_to_unit(rgb v)
     return (rgb){fminf(fmaxf(v.r, 0.0f), 1.0f), fminf(fmaxf(v.g, 0.0f), 1.0f), fminf(fmaxf(v.b, 0.0f), 1.0f)};
 }
 
+static float bound_of_color(const scene *s, rgb color, uint32_t texture_index)
+{
+    return texture_index == SCENE_NO_TEXTURE ? rgb_max(color) : s->textures[texture_index].most;
+}
+
+/* Where reflectance and transmittance together are above 1 they are scaled down: the mean of that is not that of means.
+ */
+static bool is_cut_by_its_sum(const scene *s, const material *m)
+{
+    return m->kind == MATERIAL_DIFFUSE_TRANSMISSION &&
+           !(bound_of_color(s, m->reflectance, m->reflectance_texture) +
+                 bound_of_color(s, m->transmittance, m->transmittance_texture) <=
+             1.0f);
+}
+
 /* The material as it is at a place. */
 static void look_up_textures(const scene *s, const surface_hit *hit, const surface_footprint *footprint, material *m)
 {
+    if (is_cut_by_its_sum(s, m))
+        footprint = NULL;
     if (m->reflectance_texture != SCENE_NO_TEXTURE) {
         m->reflectance = clamp_to_unit(texture_filtered_rgb(s, m->reflectance_texture, hit, footprint));
         rgb r = m->reflectance;

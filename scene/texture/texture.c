@@ -200,7 +200,7 @@ rgb texture_filtered_rgb(const struct scene *s, uint32_t texture_index, const st
                          const surface_footprint *footprint)
 {
     const texture *t = &s->textures[texture_index];
-    return evaluate(s, t, &(lookup){hit, t->is_linear_in_pictures ? footprint : NULL});
+    return evaluate(s, t, &(lookup){hit, t->is_linear_in_pictures && t->most <= 1.0f ? footprint : NULL});
 }
 
 float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit)
@@ -222,18 +222,82 @@ static bool has_pictures(const struct scene *s, const texture *t, int which)
     return input && input->has_pictures;
 }
 
+static bool varies(const struct scene *s, const texture *t, int which)
+{
+    const texture *input = input_texture(s, t, which);
+    return input && input->kind != TEXTURE_CONSTANT;
+}
+
+/* Whether its value is more than a weighted sum of its pictures' values, by weights that are alike everywhere. */
+static bool is_product(const struct scene *s, const texture *t)
+{
+    const bool any = has_pictures(s, t, 0) || has_pictures(s, t, 1);
+    switch (t->kind) {
+    case TEXTURE_SCALE: return (has_pictures(s, t, 0) && varies(s, t, 1)) || (has_pictures(s, t, 1) && varies(s, t, 0));
+    case TEXTURE_MIX:
+        return (any && varies(s, t, 2)) || (has_pictures(s, t, 2) && (varies(s, t, 0) || varies(s, t, 1)));
+    case TEXTURE_CHECKERBOARD:
+    case TEXTURE_DOTS:
+    case TEXTURE_DIRECTION_MIX: return any; /* one of the two is picked */
+    default: return false;
+    }
+}
+
+static float bound_of_picture(const struct scene *s, const texture *t)
+{
+    const texture_image *picture = s->texture_images[t->image_index];
+    float least = picture->least, most = picture->most;
+    if (picture->colors.has_matrix && !t->is_data) {
+        const float low = least, high = most;
+        least = most = 0.0f;
+        for (int row = 0; row < 3; row++) {
+            float row_least = 0.0f, row_most = 0.0f;
+            for (int k = 0; k < 3; k++) {
+                const float m = picture->colors.matrix[3 * row + k];
+                row_least += m * (m < 0.0f ? high : low);
+                row_most += m * (m < 0.0f ? low : high);
+            }
+            least = fminf(least, row_least);
+            most = fmaxf(most, row_most);
+        }
+    }
+    most *= t->scale;
+    if (least < 0.0f || t->scale < 0.0f || (t->invert && most > 1.0f))
+        return INFINITY;
+    return t->invert ? 1.0f : most;
+}
+
+static float bound_of_input(const struct scene *s, const texture *t, int which)
+{
+    const texture *input = input_texture(s, t, which);
+    const rgb value = t->inputs[which].value;
+    if (input)
+        return input->most;
+    return value.r < 0.0f || value.g < 0.0f || value.b < 0.0f ? INFINITY : rgb_max(value);
+}
+
+static float bound_of(const struct scene *s, const texture *t)
+{
+    switch (t->kind) {
+    case TEXTURE_IMAGE: return bound_of_picture(s, t);
+    case TEXTURE_CONSTANT: return bound_of_input(s, t, 0);
+    case TEXTURE_SCALE: return bound_of_input(s, t, 0) * bound_of_input(s, t, 1);
+    case TEXTURE_MIX:
+        if (!(bound_of_input(s, t, 2) <= 1.0f))
+            return INFINITY;
+        return fmaxf(bound_of_input(s, t, 0), bound_of_input(s, t, 1));
+    default: return INFINITY; /* these are never filtered */
+    }
+}
+
 void texture_find_pictures(const struct scene *s, texture *t)
 {
     t->has_pictures = t->kind == TEXTURE_IMAGE;
-    t->is_linear_in_pictures = true;
+    t->is_linear_in_pictures = !is_product(s, t);
     for (int i = 0; i < (int)(sizeof t->inputs / sizeof *t->inputs); i++) {
         const texture *input = input_texture(s, t, i);
         t->has_pictures = t->has_pictures || has_pictures(s, t, i);
         t->is_linear_in_pictures = t->is_linear_in_pictures && (!input || input->is_linear_in_pictures);
     }
-    bool is_product = t->kind == TEXTURE_SCALE ? has_pictures(s, t, 0) && has_pictures(s, t, 1)
-                      : t->kind == TEXTURE_MIX
-                          ? has_pictures(s, t, 2) && (has_pictures(s, t, 0) || has_pictures(s, t, 1))
-                          : false;
-    t->is_linear_in_pictures = t->is_linear_in_pictures && !is_product;
+    t->most = bound_of(s, t);
 }

@@ -59,6 +59,8 @@ typedef struct texture {
     uint32_t cost;                            /* set by scene_add_texture */
     float step;                               /* likewise: of u and v, over which its slope is to be taken */
     bool has_pictures, is_linear_in_pictures; /* likewise: the mean of its values is the value of its pictures' means */
+    float most;                               /* likewise: no value is larger; infinite where that is not known, or some
+                                                 may be below 0, where values are cut */
 } texture;
 
 /* What a ray's cone cuts out of a surface, see material/surface_footprint.h. */
@@ -73,14 +75,14 @@ texture texture_make(texture_kind kind);
 
 /* The value at a hit. Of a float texture all components are the same. */
 rgb texture_evaluate_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
-/* The same over a footprint, where the mean of the texture is to be had from that of its pictures. NULL: at the place.
- */
+/* The same over a footprint, where the mean of the texture is to be had from that of its pictures and none of its
+ * values is above 1, where reflectances are cut. NULL: at the place. */
 rgb texture_filtered_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit,
                          const surface_footprint *footprint);
 /* Of a float texture. */
 float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
 
-/* Sets has_pictures and is_linear_in_pictures. */
+/* Sets has_pictures, is_linear_in_pictures and most. */
 void texture_find_pictures(const struct scene *s, texture *in_out);
 
 #endif

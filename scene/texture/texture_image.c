@@ -122,6 +122,18 @@ static ag_status take_pixels(const scene *s, texture_image *i, image *picture, c
     return status;
 }
 
+static void find_range(texture_image *i)
+{
+    const float *values = i->bytes ? i->table : i->values;
+    const size_t count = i->bytes ? 256 : (size_t)i->width * i->height * i->channel_count;
+    i->least = INFINITY;
+    i->most = -INFINITY;
+    for (size_t k = 0; k < count; k++) {
+        i->least = fminf(i->least, values[k]);
+        i->most = fmaxf(i->most, values[k]);
+    }
+}
+
 /* A file's bytes; NULL: they are on disk. */
 typedef struct file_bytes {
     const unsigned char *bytes;
@@ -139,6 +151,8 @@ static ag_status read_image(const scene *s, texture_image *i, const char *path, 
                                   : image_read_compact(path, &picture, message, message_size);
     if (status == AG_OK)
         status = take_pixels(s, i, &picture, message, message_size);
+    if (status == AG_OK)
+        find_range(i);
     image_reset(&picture);
     return status;
 }

@@ -41,6 +41,7 @@ typedef struct texture_image {
     texture_level stored_alpha; /* then, where it has one: tiles is not NULL */
     hash128 stored_content;     /* then, what texture_image_content was */
     uint64_t bad_count;         /* values that were not finite, and are 0 now */
+    float least, most;          /* of the linear values, before `colors` */
 } texture_image;
 
 /* Loads a picture into the scene's ownership, once for each path and encoding. Three channels or more are taken for

@@ -91,6 +91,50 @@ static void test_horizon(void **state)
     picture_reset(&now);
 }
 
+/* A picture far away, as one of these materials: whether it is filtered at all. */
+static bool is_filtered(const char *material)
+{
+    char text[4096];
+    snprintf(text, sizeof text,
+             "LookAt 0 0 -40  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 2 "
+             "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16 WorldBegin "
+             "LightSource \"distant\" \"point3 from\" [0 0 -9] \"point3 to\" [0 0 0] "
+             "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"noise.png\" "
+             "Texture \"t2\" \"spectrum\" \"imagemap\" \"string filename\" \"noise.png\" \"float scale\" 2 "
+             "Texture \"half\" \"spectrum\" \"scale\" \"texture tex\" \"t\" \"float scale\" 0.5 "
+             "Texture \"c\" \"float\" \"checkerboard\" \"float uscale\" 64 \"float vscale\" 64 "
+             "Texture \"cells\" \"spectrum\" \"scale\" \"texture tex\" \"t\" \"texture scale\" \"c\" "
+             "Texture \"picked\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"t\" \"texture tex2\" \"half\" "
+             "Material %s "
+             "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0  1 -1 0  1 1 0 -1 1 0] \"point2 uv\" "
+             "[0 0 1 0 1 1 0 1] \"integer indices\" [0 1 2 0 2 3]",
+             material);
+    const char *scene = write_scene(text);
+    picture off = render_path(scene, "--texture-filter=off", "--spp=4"),
+            on = render_path(scene, "--texture-filter=on", "--spp=4");
+    const size_t size = 3 * (size_t)on.width * (size_t)on.height * sizeof *on.pixels;
+    const bool is_alike = memcmp(on.pixels, off.pixels, size) == 0;
+    assert_true(picture_mean(&off, 1) > 0.01);
+    picture_reset(&off);
+    picture_reset(&on);
+    return !is_alike;
+}
+
+/* What cuts values, or picks among them, at each place is not the same of their mean: such textures stay unfiltered. */
+static void test_not_linear(void **state)
+{
+    (void)state;
+    write_noise("noise.png", 512);
+    assert_true(is_filtered("\"diffuse\" \"texture reflectance\" \"t\""));
+    assert_true(is_filtered("\"diffuse\" \"texture reflectance\" \"half\""));
+    assert_true(
+        is_filtered("\"diffusetransmission\" \"texture reflectance\" \"half\" \"texture transmittance\" \"half\""));
+    assert_false(is_filtered("\"diffuse\" \"texture reflectance\" \"t2\""));
+    assert_false(is_filtered("\"diffuse\" \"texture reflectance\" \"cells\""));
+    assert_false(is_filtered("\"diffuse\" \"texture reflectance\" \"picked\""));
+    assert_false(is_filtered("\"diffusetransmission\" \"texture reflectance\" \"t\" \"texture transmittance\" \"t\""));
+}
+
 /* A closed room of pictures with a lamp: light that goes from wall to wall, by coarse look-ups of photons, gather rays
  * and paths, is that of unfiltered path tracing. */
 static const char *room(void)
@@ -259,8 +303,9 @@ static void test_memory_errors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_horizon),         TEST_IN_FOLDER(test_room),   TEST_IN_FOLDER(test_same_bits),
-        TEST_IN_FOLDER(test_photon_map_file), TEST_IN_FOLDER(test_memory), TEST_IN_FOLDER(test_memory_errors),
+        TEST_IN_FOLDER(test_horizon),       TEST_IN_FOLDER(test_not_linear),      TEST_IN_FOLDER(test_room),
+        TEST_IN_FOLDER(test_same_bits),     TEST_IN_FOLDER(test_photon_map_file), TEST_IN_FOLDER(test_memory),
+        TEST_IN_FOLDER(test_memory_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

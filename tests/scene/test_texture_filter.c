@@ -231,8 +231,10 @@ static void which_textures_are_filtered(void **state)
 {
     (void)state;
     scene s = {0};
-    texture textures[8];
+    texture textures[9];
+    texture_image picture = {.least = 0.0f, .most = 1.0f}, *pictures[] = {&picture};
     s.textures = textures;
+    s.texture_images = pictures;
     for (int k = 0; k < 2; k++) {
         textures[k] = texture_make(TEXTURE_IMAGE);
         texture_find_pictures(&s, &textures[k]);
@@ -253,11 +255,51 @@ static void which_textures_are_filtered(void **state)
     textures[6] = texture_make(TEXTURE_CHECKERBOARD); /* of what cannot be */
     textures[6].inputs[1].texture_index = 5;
     texture_find_pictures(&s, &textures[6]);
-    static const bool EXPECTED[7] = {true, true, true, false, true, false, false};
-    for (int k = 0; k < 7; k++) {
+    textures[7] = texture_make(TEXTURE_CHECKERBOARD); /* of a picture: its cells may go along with it */
+    textures[7].inputs[1].texture_index = 0;
+    texture_find_pictures(&s, &textures[7]);
+    textures[8] = texture_make(TEXTURE_SCALE); /* of a picture, by a texture that varies */
+    textures[8].inputs[0].texture_index = 0;
+    textures[8].inputs[1].texture_index = 7;
+    texture_find_pictures(&s, &textures[8]);
+    static const bool EXPECTED[9] = {true, true, true, false, true, false, false, false, false};
+    for (int k = 0; k < 9; k++) {
         assert_true(textures[k].has_pictures);
         assert_int_equal(textures[k].is_linear_in_pictures, EXPECTED[k]);
     }
+}
+
+static float most_of(scene *s, const texture *t)
+{
+    texture found = *t;
+    texture_find_pictures(s, &found);
+    return found.most;
+}
+
+/* What may be above 1 is cut there, and what may be below 0 as well. */
+static void bounds_of_values(void **state)
+{
+    (void)state;
+    scene s = {0};
+    texture_image picture = {.least = 0.0f, .most = 0.75f}, *pictures[] = {&picture};
+    texture t = texture_make(TEXTURE_IMAGE), product = texture_make(TEXTURE_SCALE);
+    s.textures = &t;
+    s.texture_images = pictures;
+    assert_true(most_of(&s, &t) == 0.75f);
+    t.scale = 2.0f;
+    assert_true(most_of(&s, &t) == 1.5f);
+    t.most = 1.5f;
+    product.inputs[0].texture_index = 0;
+    product.inputs[1].value = rgb_gray(0.5f);
+    assert_true(most_of(&s, &product) == 0.75f);
+    product.inputs[1].value = rgb_gray(-0.5f);
+    assert_true(isinf(most_of(&s, &product)));
+    t.invert = true;
+    assert_true(isinf(most_of(&s, &t)));
+    t.scale = 1.0f;
+    assert_true(most_of(&s, &t) == 1.0f);
+    picture.least = -0.01f;
+    assert_true(isinf(most_of(&s, &t)));
 }
 
 int main(void)
@@ -271,6 +313,7 @@ int main(void)
         cmocka_unit_test(look_ups_have_the_mean),
         cmocka_unit_test(odd_footprints),
         cmocka_unit_test(which_textures_are_filtered),
+        cmocka_unit_test(bounds_of_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

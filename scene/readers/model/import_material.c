@@ -120,7 +120,9 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
     const bool is_color = use == PICTURE_COLOR;
     image_encoding encoding = {.curve = is_color ? IMAGE_CURVE_DEFAULT : IMAGE_CURVE_LINEAR};
     ag_status status = load_picture(i, p, encoding, &t.image_index, message, sizeof message);
-    if (status == AG_ERROR_MEMORY)
+    if (status == AG_ERROR_SYSTEM) /* no room for the picture, or no library that reads it */
+        log_message(i->log, AG_LOG_ERROR, "%s", message);
+    if (status == AG_ERROR_MEMORY || status == AG_ERROR_SYSTEM)
         return status;
     if (status != AG_OK) {
         warn_picture(i, p, message);

@@ -297,7 +297,7 @@ ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const
 
 static ag_status read_image(pbrt_parser *parser, parameter_list *list, texture *t)
 {
-    /* as in texture_wrap; and all filters but "point" are one: nothing is filtered beyond the pixels' size */
+    /* as in texture_wrap; all filters but "point" are one: footprints are filtered alike whatever the file asks for */
     static const char *const WRAPS[] = {"repeat", "black", "clamp", "octahedralsphere"};
     static const char *const FILTERS[] = {"bilinear", "point", "trilinear", "EWA", "ewa"};
     const char *name = NULL;
