@@ -24,6 +24,8 @@ enum {
 static const double BYTES_PER_PHOTON = 26.0;
 /* Measured: stacks, arenas and what libraries hold for each thread. */
 static const double BYTES_PER_THREAD = 1.5e6;
+/* Measured: of path tracing, which keeps no samples back. */
+static const double PATH_BYTES_PER_THREAD = 3e5;
 /* A zipped value of a picture, over its size; it differs much, and counts little. */
 static const double ZIPPED_SHARE = 0.5;
 /* Measured: a value of an EXR file, most of it in zlib. */
@@ -83,12 +85,12 @@ static ag_status predict_memory(ag_context *context, const scene *s, const ag_re
     ag_status status = measure_pixel(context, s, settings, &film, &file, out_channel_count);
     if (status != AG_OK)
         return status;
-    double photons = 0.0, thread = BYTES_PER_THREAD + sizeof(sample_queue);
+    double photons = 0.0, thread = PATH_BYTES_PER_THREAD;
     if (has_map) {
         const double fraction = (double)settings->irradiance_fraction;
         photons = (double)settings->photon_count * (fraction < 1.0 ? 1.0 + fraction : 1.0);
         photons += maps_have_caustics(s, settings) ? (double)settings->caustic_photon_count : 0.0;
-        thread += sizeof(gather_batch);
+        thread = BYTES_PER_THREAD + sizeof(sample_queue) + sizeof(gather_batch);
     }
     out->memory_scene_bytes = resident_bytes();
     out->memory_photon_bytes = (uint64_t)(BYTES_PER_PHOTON * photons);
@@ -153,7 +155,7 @@ static double predict_samples(const ag_rendering *r, const ag_render_settings *s
     const double computed = (double)c.computed, made = computed + (double)c.uncached;
     const double timed_s = made > 0.0 ? irradiance_counters_estimate_seconds(&c) / made : 0.0;
     const double each_s = seconds_of_estimate(&trials[0], &trials[1], timed_s);
-    const double count = (double)r->maps.global.bearers.count, rest_s = (cpu_s - each_s * computed) * grown;
+    const double count = (double)r->maps.global.bearers.count, rest_s = fmax(cpu_s - each_s * computed, 0.0) * grown;
     if (settings->cache == AG_CACHE_PRECOMPUTE) {
         *out_precompute_s = each_s * count * photons_grown;
         return rest_s;
@@ -171,7 +173,10 @@ static ag_status render_trial(ag_rendering *r, trial *out)
     irradiance_counters before = {0}, after = {0};
     if (r->t.cache)
         before = irradiance_cache_counters(r->t.cache);
-    ag_status status = ag_rendering_continue(r, r->settings.samples_per_pixel);
+    ag_status status;
+    do /* a pause is for snapshots, and there is none of a trial */
+        status = ag_rendering_continue(r, r->settings.samples_per_pixel);
+    while (status == AG_PAUSED);
     if (r->t.cache)
         after = irradiance_cache_counters(r->t.cache);
     *out = (trial){.cpu_s = clock_process_cpu_seconds() - cpu_before,
@@ -183,14 +188,27 @@ static ag_status render_trial(ag_rendering *r, trial *out)
     return status;
 }
 
+static unsigned greatest_common_divisor(unsigned a, unsigned b)
+{
+    return b == 0 ? a : greatest_common_divisor(b, a % b);
+}
+
+/* A lattice is even where a row is turned against the next by about the golden ratio of the step. */
+static unsigned even_turn(unsigned step)
+{
+    unsigned turn = (unsigned)(0.6180339887 * step);
+    while (greatest_common_divisor(step, turn) != 1)
+        turn++;
+    return turn;
+}
+
 /* Two trials, of blocks that lie between each other's. */
 static ag_status render_trials(ag_rendering *r, trial out_trials[2])
 {
     ag_film *film = r->film;
     const double blocks = (double)film_area_count(film) / (FILM_BLOCK * FILM_BLOCK);
     film->trial_step = blocks < 4.0 * TRIAL_BLOCKS ? 4 : (unsigned)(blocks / TRIAL_BLOCKS);
-    while (film->trial_step % 5 == 0) /* else rows would be alike */
-        film->trial_step++;
+    film->trial_turn = even_turn(film->trial_step);
     ag_status status = render_trial(r, &out_trials[0]);
     film_clear(film, &r->settings);
     film->trial_first = film->trial_step / 2;
@@ -211,12 +229,16 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
     tried.photon_map_file = NULL;
     tried.cache = settings->cache == AG_CACHE_PRECOMPUTE ? AG_CACHE_ON_DEMAND : settings->cache;
     const ag_statistics before = context->statistics;
+    const ag_render_settings rendered_before = context->rendered;
     ag_rendering *r;
     trial trials[2] = {0};
     double precompute_cpu_s;
     ag_status status = ag_rendering_create(context, loaded, &tried, &r);
-    if (status != AG_OK)
+    if (status != AG_OK) {
+        context->statistics = before;
+        context->rendered = rendered_before;
         return status;
+    }
     const ag_statistics *s = &context->statistics;
     const double threads = s->threads,
                  preparing = s->phase_cpu_s[AG_PHASE_RENDER] - before.phase_cpu_s[AG_PHASE_RENDER];
@@ -245,6 +267,7 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
     }
     ag_rendering_finish(r, NULL);
     context->statistics = before; /* nothing of a picture has been done */
+    context->rendered = rendered_before;
     return status;
 }
 

@@ -366,6 +366,10 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
     if (!r)
         return;
     ag_context *context = r->context;
+    if (r->film) { /* it adds its own time to the phase */
+        context->statistics.samples = ag_rendering_sample_counts(r);
+        context->statistics.noise = ag_rendering_noise(r).level;
+    }
     phase_begin begin = context_begin_phase();
     if (r->t.cache)
         count_irradiance(&r->context->statistics, r->t.cache);
@@ -375,10 +379,6 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
                     (unsigned long long)not_finite);
     if (out_film)
         odd_scene_warn(r);
-    if (r->film) {
-        context->statistics.samples = ag_rendering_sample_counts(r);
-        context->statistics.noise = ag_rendering_noise(r).level;
-    }
     if (out_film)
         *out_film = r->film;
     else

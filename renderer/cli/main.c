@@ -84,9 +84,10 @@ static bool is_there(const options *o)
 }
 
 /* What a picture will take, before it is begun: whether that is allowed, and where it is all that is asked for, what.
- * Errors: AG_ERROR_SYSTEM (more memory than --memory allows; it has been said), those of the prediction. */
+ * Errors: AG_ERROR_SYSTEM (more memory than --memory allows, which sets *out_lacks_memory; it has been said), those of
+ * the prediction. */
 static ag_status predict(ag_context *context, const options *o, const ag_scene *scene,
-                         const ag_render_settings *settings)
+                         const ag_render_settings *settings, bool *out_lacks_memory)
 {
     ag_prediction prediction;
     if (o->memory_limit == 0 && !o->dry_run)
@@ -94,6 +95,7 @@ static ag_status predict(ag_context *context, const options *o, const ag_scene *
     ag_status status = ag_predict_memory(context, scene, settings, &prediction);
     if (status == AG_OK && o->memory_limit > 0 && !memory_limit_holds(o->memory_limit, &prediction)) {
         ag_context_note_end(context, AG_END_MEMORY);
+        *out_lacks_memory = true;
         return AG_ERROR_SYSTEM;
     }
     if (status == AG_OK && o->memory_limit > 0)
@@ -166,10 +168,8 @@ static ag_status run(ag_context *context, options *o, int frame, progress *told,
         status = AG_ERROR_ARGUMENT;
     }
     bool lacks_memory = false;
-    if (status == AG_OK && !is_skipped) {
-        status = predict(context, o, scene, &settings);
-        lacks_memory = status == AG_ERROR_SYSTEM;
-    }
+    if (status == AG_OK && !is_skipped)
+        status = predict(context, o, scene, &settings, &lacks_memory);
     if (status == AG_OK && !is_skipped && !o->dry_run) {
         status = passes_render(context, o, scene, &settings, out_result);
         if (status == AG_OK && !o->photons_only)
@@ -223,6 +223,7 @@ static ag_status run_in_context(options *o, int frame, progress *told)
     tell_end(o, status, &result);
     signals_release();
     ag_context_destroy(context);
+    memory_limit_lift();
     return status;
 }
 

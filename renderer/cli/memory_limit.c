@@ -22,6 +22,11 @@ static uint64_t status_bytes(const char *name)
 
 static const uint64_t RESERVED_BYTES = (uint64_t)24 << 20, RESERVED_IN_LOADING = (uint64_t)256 << 20;
 
+static struct {
+    struct rlimit found; /* before --memory */
+    bool is_set;
+} own;
+
 /* The kernel counts what is reserved, too; so the limit is set above what there is. */
 void memory_limit_set(uint64_t bytes, bool is_loaded)
 {
@@ -32,17 +37,31 @@ void memory_limit_set(uint64_t bytes, bool is_loaded)
     if (data == 0 || getrlimit(RLIMIT_DATA, &limit) != 0 || (uint64_t)limit.rlim_cur <= data + more)
         return;
     limit.rlim_cur = (rlim_t)(data + more);
+    if (!own.is_set)
+        getrlimit(RLIMIT_DATA, &own.found);
+    own.is_set = true;
     setrlimit(RLIMIT_DATA, &limit);
+}
+
+void memory_limit_lift(void)
+{
+    if (own.is_set)
+        setrlimit(RLIMIT_DATA, &own.found);
+    own.is_set = false;
 }
 
 bool memory_limit_holds(uint64_t bytes, const ag_prediction *p)
 {
-    if (p->memory_peak_bytes <= bytes)
+    /* what the process has had at most may be another picture's */
+    const uint64_t photons = p->memory_photon_bytes + p->memory_thread_bytes;
+    const uint64_t needed = p->memory_scene_bytes + p->memory_film_bytes +
+                            (photons > p->memory_file_bytes ? photons : p->memory_file_bytes);
+    if (needed <= bytes)
         return true;
     fprintf(stderr,
             "afterglow: error: the picture needs about %.1f MB of memory, and --memory allows %.1f MB: the program and "
             "the scene %.1f MB, photon maps %.1f, threads %.1f, film %.1f, a file on its way %.1f\n",
-            (double)p->memory_peak_bytes / 1e6, (double)bytes / 1e6, (double)p->memory_scene_bytes / 1e6,
+            (double)needed / 1e6, (double)bytes / 1e6, (double)p->memory_scene_bytes / 1e6,
             (double)p->memory_photon_bytes / 1e6, (double)p->memory_thread_bytes / 1e6,
             (double)p->memory_film_bytes / 1e6, (double)p->memory_file_bytes / 1e6);
     return false;

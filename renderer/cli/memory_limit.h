@@ -12,6 +12,9 @@
  * (is_loaded), and with it what ray tracing reserves, 256 MB. */
 void memory_limit_set(uint64_t bytes, bool is_loaded);
 
+/* Takes the limit away: for what the prediction does not know, and for the next picture's scene. */
+void memory_limit_lift(void);
+
 /* Whether what is predicted keeps within the limit; says on standard error what does not. */
 bool memory_limit_holds(uint64_t bytes, const ag_prediction *prediction);
 

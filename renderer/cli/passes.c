@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "passes.h"
 
+#include "memory_limit.h"
 #include "signals.h"
 
 #include <errno.h>
@@ -344,8 +345,10 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
     ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
     bool has_picture = !o->photons_only && (!out_result->is_partial || out_result->samples.most > 0);
-    if (status == AG_OK && settings->denoise && has_picture)
+    if (status == AG_OK && settings->denoise && has_picture) {
+        memory_limit_lift(); /* the prediction does not know what the denoiser takes */
         status = ag_film_denoise(context, film);
+    }
     if (status == AG_OK && has_picture)
         status = write_pictures(&p, film, !out_result->is_partial && failed == AG_OK);
     if (status == AG_OK && failed != AG_OK) {

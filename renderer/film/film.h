@@ -39,6 +39,7 @@ struct ag_film {
     int x0, y0, width, height; /* the crop, in pixels of the full picture */
     unsigned trial_step;       /* above 1: of its blocks each so manieth alone is rendered, as a trial of the whole */
     unsigned trial_first;      /* which of those: below trial_step */
+    unsigned trial_turn;       /* by how many columns a row's blocks are apart from those of the next */
     film_area area;            /* what is rendered: the crop; where blocks are decided on, all that it touches, so that
                                   its pixels get the samples that they have in the full picture */
     int full_width, full_height;
@@ -107,7 +108,7 @@ static inline bool film_is_left_out(const struct ag_film *film, size_t pixel)
 {
     size_t width = (size_t)film->area.width;
     size_t column = pixel % width / FILM_BLOCK, row = pixel / width / FILM_BLOCK;
-    return film->trial_step > 1 && (column + 5 * row) % film->trial_step != film->trial_first;
+    return film->trial_step > 1 && (column + film->trial_turn * row) % film->trial_step != film->trial_first;
 }
 
 /* How many samples a pixel is to have in a pass that brings all to `all`. */
