@@ -22,10 +22,13 @@ bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, verte
     return is_met;
 }
 
+/* Directions whose cosine is above this are one: what is thin bends nothing, and a cone goes through as it is. */
+static const float STRAIGHT_COSINE = 0.99999f;
+
 ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsdf_sample *next)
 {
     const ray_cone *c = &v->arrived.cone;
-    if (!ray_cone_is_wide(c) || c->is_coarse)
+    if (!ray_cone_is_wide(c) || c->is_coarse || vec3_dot(v->arrived.direction, next->direction) > STRAIGHT_COSINE)
         return *c;
     if (next->group == BSDF_GATHERED)
         return transport_gather_cone(v);

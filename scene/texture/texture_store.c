@@ -5,6 +5,7 @@
 #include "texture/texture_store.h"
 
 #include "atomics.h"
+#include "descriptor.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -81,14 +82,16 @@ static int open_temporary(void)
     if (!folder || !*folder)
         folder = "/tmp";
     int file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (file >= 0)
-        return file;
-    if (snprintf(path, sizeof path, "%s/afterglow-textures-XXXXXX", folder) >= (int)sizeof path)
-        return -1;
-    file = mkostemp(path, O_CLOEXEC);
-    if (file >= 0)
-        unlink(path);
-    return file;
+    if (file < 0) {
+        if (snprintf(path, sizeof path, "%s/afterglow-textures-XXXXXX", folder) >= (int)sizeof path) {
+            errno = ENAMETOOLONG;
+            return -1;
+        }
+        file = mkostemp(path, O_CLOEXEC);
+        if (file >= 0)
+            unlink(path);
+    }
+    return descriptor_beyond_standard(file); /* what a host prints must not reach the tiles */
 }
 
 static bool write_all(int file, const unsigned char *bytes, size_t size, uint64_t offset)
@@ -97,8 +100,10 @@ static bool write_all(int file, const unsigned char *bytes, size_t size, uint64_
         ssize_t written = pwrite(file, bytes, size, (off_t)offset);
         if (written < 0 && errno == EINTR)
             continue;
-        if (written <= 0)
+        if (written <= 0) {
+            errno = written == 0 ? ENOSPC : errno;
             return false;
+        }
         bytes += written;
         size -= (size_t)written;
         offset += (uint64_t)written;
