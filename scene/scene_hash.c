@@ -51,6 +51,7 @@ static void add_texture(hash128 *h, const texture *t)
     ADD(t->step);
     ADD(t->has_pictures);
     ADD(t->is_linear_in_pictures);
+    ADD(t->most);
 }
 
 static void add_material(hash128 *h, const material *m)
