@@ -2,6 +2,7 @@
 #include "caustic_radius.h"
 
 #include "irradiance_estimate.h"
+#include "math/compare_floats.h"
 #include "status.h"
 
 #include <math.h>
@@ -9,11 +10,6 @@
 
 /* Irradiance is asked for at so many photons of the global map; dim are the darkest of them, one in so many. */
 enum { SAMPLES = 255, DIM_ONE_IN = 20 };
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
 
 /* [W/m^2] of the channel that is largest. */
 static ag_status find_dim_irradiance(const photon_map *global, float *out_irradiance)

@@ -2,6 +2,7 @@
  * Threads: see photon_map.h. */
 #include "photon_map.h"
 
+#include "math/compare_floats.h"
 #include "parallel_for.h"
 #include "photon_kernels.h"
 #include "rays/passage.h"
@@ -23,12 +24,6 @@ static const float MEDIAN_FACTOR = 4.0f;
 /* Half of the photons may lie in one place, a share of the largest radius that is no use. */
 static const float LEAST_MEDIAN = 0x1p-16f;
 enum { MEDIAN_OF = 255 };
-
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
 
 /* By the radii of the estimates at every so-manieth photon: max_radius where it has no k neighbours. */
 static ag_status bound_radii(photon_map *map)

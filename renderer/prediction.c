@@ -98,10 +98,10 @@ static ag_status predict_memory(ag_context *context, const scene *s, const ag_re
     out->memory_film_bytes = (uint64_t)(film * pixels * (settings->photon_map_file ? 2.0 : 1.0)); /* and its copy */
     out->memory_file_bytes = (uint64_t)(file * pixels);
     const uint64_t rendering = out->memory_photon_bytes + out->memory_thread_bytes;
-    const uint64_t peak = out->memory_scene_bytes + out->memory_film_bytes +
-                          (rendering > out->memory_file_bytes ? rendering : out->memory_file_bytes);
+    out->memory_needed_bytes = out->memory_scene_bytes + out->memory_film_bytes +
+                               (rendering > out->memory_file_bytes ? rendering : out->memory_file_bytes);
     const uint64_t before = peak_memory_bytes();
-    out->memory_peak_bytes = peak > before ? peak : before;
+    out->memory_peak_bytes = out->memory_needed_bytes > before ? out->memory_needed_bytes : before;
     return AG_OK;
 }
 
@@ -229,16 +229,12 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
     tried.photon_map_file = NULL;
     tried.cache = settings->cache == AG_CACHE_PRECOMPUTE ? AG_CACHE_ON_DEMAND : settings->cache;
     const ag_statistics before = context->statistics;
-    const ag_render_settings rendered_before = context->rendered;
     ag_rendering *r;
     trial trials[2] = {0};
     double precompute_cpu_s;
     ag_status status = ag_rendering_create(context, loaded, &tried, &r);
-    if (status != AG_OK) {
-        context->statistics = before;
-        context->rendered = rendered_before;
+    if (status != AG_OK)
         return status;
-    }
     const ag_statistics *s = &context->statistics;
     const double threads = s->threads,
                  preparing = s->phase_cpu_s[AG_PHASE_RENDER] - before.phase_cpu_s[AG_PHASE_RENDER];
@@ -266,8 +262,6 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
         out->cpu_s = cpu_before + precompute_cpu_s + render_cpu_s + write_s;
     }
     ag_rendering_finish(r, NULL);
-    context->statistics = before; /* nothing of a picture has been done */
-    context->rendered = rendered_before;
     return status;
 }
 
@@ -282,8 +276,12 @@ static ag_status predict(ag_context *context, const ag_scene *loaded, const ag_r
     ag_status status = rendering_settle(context, loaded->s, wanted, &settings);
     if (status == AG_OK)
         status = predict_memory(context, loaded->s, &settings, &made, &channel_count);
+    const ag_statistics statistics = context->statistics;
+    const ag_render_settings rendered = context->rendered;
     if (status == AG_OK && with_time)
         status = predict_time(context, loaded, &settings, channel_count, &made);
+    context->statistics = statistics; /* trials are nothing of a picture */
+    context->rendered = rendered;
     if (status != AG_OK)
         return status;
     context->rendered = settings;

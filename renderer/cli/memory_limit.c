@@ -36,10 +36,10 @@ void memory_limit_set(uint64_t bytes, bool is_loaded)
         (bytes > resident ? bytes - resident : 0) + (is_loaded ? RESERVED_BYTES : RESERVED_IN_LOADING);
     if (data == 0 || getrlimit(RLIMIT_DATA, &limit) != 0 || (uint64_t)limit.rlim_cur <= data + more)
         return;
-    limit.rlim_cur = (rlim_t)(data + more);
     if (!own.is_set)
-        getrlimit(RLIMIT_DATA, &own.found);
+        own.found = limit;
     own.is_set = true;
+    limit.rlim_cur = (rlim_t)(data + more);
     setrlimit(RLIMIT_DATA, &limit);
 }
 
@@ -52,16 +52,12 @@ void memory_limit_lift(void)
 
 bool memory_limit_holds(uint64_t bytes, const ag_prediction *p)
 {
-    /* what the process has had at most may be another picture's */
-    const uint64_t photons = p->memory_photon_bytes + p->memory_thread_bytes;
-    const uint64_t needed = p->memory_scene_bytes + p->memory_film_bytes +
-                            (photons > p->memory_file_bytes ? photons : p->memory_file_bytes);
-    if (needed <= bytes)
+    if (p->memory_needed_bytes <= bytes) /* the peak may be another picture's */
         return true;
     fprintf(stderr,
             "afterglow: error: the picture needs about %.1f MB of memory, and --memory allows %.1f MB: the program and "
             "the scene %.1f MB, photon maps %.1f, threads %.1f, film %.1f, a file on its way %.1f\n",
-            (double)needed / 1e6, (double)bytes / 1e6, (double)p->memory_scene_bytes / 1e6,
+            (double)p->memory_needed_bytes / 1e6, (double)bytes / 1e6, (double)p->memory_scene_bytes / 1e6,
             (double)p->memory_photon_bytes / 1e6, (double)p->memory_thread_bytes / 1e6,
             (double)p->memory_film_bytes / 1e6, (double)p->memory_file_bytes / 1e6);
     return false;

@@ -143,26 +143,9 @@ static rgb clamp_to_unit(rgb v)
     return (rgb){fminf(fmaxf(v.r, 0.0f), 1.0f), fminf(fmaxf(v.g, 0.0f), 1.0f), fminf(fmaxf(v.b, 0.0f), 1.0f)};
 }
 
-static float bound_of_color(const scene *s, rgb color, uint32_t texture_index)
-{
-    return texture_index == SCENE_NO_TEXTURE ? rgb_max(color) : s->textures[texture_index].most;
-}
-
-/* Where reflectance and transmittance together are above 1 they are scaled down: the mean of that is not that of means.
- */
-static bool is_cut_by_its_sum(const scene *s, const material *m)
-{
-    return m->kind == MATERIAL_DIFFUSE_TRANSMISSION &&
-           !(bound_of_color(s, m->reflectance, m->reflectance_texture) +
-                 bound_of_color(s, m->transmittance, m->transmittance_texture) <=
-             1.0f);
-}
-
 /* The material as it is at a place. */
 static void look_up_textures(const scene *s, const surface_hit *hit, const surface_footprint *footprint, material *m)
 {
-    if (is_cut_by_its_sum(s, m))
-        footprint = NULL;
     if (m->reflectance_texture != SCENE_NO_TEXTURE) {
         m->reflectance = clamp_to_unit(texture_filtered_rgb(s, m->reflectance_texture, hit, footprint));
         rgb r = m->reflectance;
@@ -234,7 +217,7 @@ static void evaluate_at(const scene *s, const material *m, const surface_hit *hi
     if (!m->is_textured)
         return;
     surface_footprint footprint;
-    const bool filters = hit->footprint.width > 0.0f && s->has_mips && !is_picked && material_is_filtered(m) &&
+    const bool filters = hit->footprint.width > 0.0f && s->has_mips && !is_picked && material_is_filtered(s, m) &&
                          surface_footprint_at(s, hit, &footprint);
     if (m->kind == MATERIAL_PRINCIPLED)
         look_up_principled(s, hit, filters ? &footprint : NULL, out_material);

@@ -12,11 +12,26 @@ static bool has_varying_factors(const material *m)
            (m->clearcoat != 0.0f && m->clearcoat_texture != SCENE_NO_TEXTURE);
 }
 
-bool material_is_filtered(const material *m)
+static float bound_of_color(const scene *s, rgb color, uint32_t texture_index)
+{
+    return texture_index == SCENE_NO_TEXTURE ? rgb_max(color) : s->textures[texture_index].most;
+}
+
+/* Where reflectance and transmittance together are above 1 they are scaled down: the mean of that is not that of means.
+ */
+static bool is_cut_by_its_sum(const scene *s, const material *m)
+{
+    return m->kind == MATERIAL_DIFFUSE_TRANSMISSION &&
+           !(bound_of_color(s, m->reflectance, m->reflectance_texture) +
+                 bound_of_color(s, m->transmittance, m->transmittance_texture) <=
+             1.0f);
+}
+
+bool material_is_filtered(const scene *s, const material *m)
 {
     switch (m->kind) {
-    case MATERIAL_DIFFUSE:
-    case MATERIAL_DIFFUSE_TRANSMISSION: return true;
+    case MATERIAL_DIFFUSE: return true;
+    case MATERIAL_DIFFUSE_TRANSMISSION: return !is_cut_by_its_sum(s, m);
     case MATERIAL_PRINCIPLED: return !has_varying_factors(m);
     default: return false;
     }
@@ -31,11 +46,11 @@ static ag_status make_of_picture(scene *s, run_context *run, texture_image *i)
     return texture_mips_create(run, &finest, &i->mips);
 }
 
-/* Of the pictures in it. */
+/* Of the pictures in a texture that is filtered or a part of one. */
 static ag_status make_of_texture(scene *s, run_context *run, uint32_t index)
 {
     const texture *t = &s->textures[index];
-    if (!t->has_pictures || !t->is_linear_in_pictures || !t->is_spectrum)
+    if (!t->has_pictures || !t->is_spectrum)
         return AG_OK;
     if (t->kind == TEXTURE_IMAGE)
         return make_of_picture(s, run, s->texture_images[t->image_index]);
@@ -51,12 +66,12 @@ ag_status material_mips_make(scene *s, run_context *run)
     ag_status status = AG_OK;
     for (uint32_t k = 0; k < s->material_count && status == AG_OK; k++) {
         const material *m = &s->materials[k];
-        if (!m->is_textured || !material_is_filtered(m))
+        if (!m->is_textured || !material_is_filtered(s, m))
             continue;
-        if (m->reflectance_texture != SCENE_NO_TEXTURE)
-            status = make_of_texture(s, run, m->reflectance_texture);
-        if (status == AG_OK && m->transmittance_texture != SCENE_NO_TEXTURE)
-            status = make_of_texture(s, run, m->transmittance_texture);
+        const uint32_t colors[] = {m->reflectance_texture, m->transmittance_texture};
+        for (int i = 0; i < 2 && status == AG_OK; i++)
+            if (colors[i] != SCENE_NO_TEXTURE && texture_is_filtered(&s->textures[colors[i]]))
+                status = make_of_texture(s, run, colors[i]);
     }
     return status;
 }

@@ -10,7 +10,7 @@
 #include "scene.h"
 
 /* Whether reflectance_texture and transmittance_texture are filtered. */
-bool material_is_filtered(const material *m);
+bool material_is_filtered(const scene *s, const material *m);
 
 /* Makes the coarser levels of all pictures that may be filtered, and sets has_mips. Errors: AG_ERROR_MEMORY,
  * AG_CANCELLED. */

@@ -200,7 +200,7 @@ rgb texture_filtered_rgb(const struct scene *s, uint32_t texture_index, const st
                          const surface_footprint *footprint)
 {
     const texture *t = &s->textures[texture_index];
-    return evaluate(s, t, &(lookup){hit, t->is_linear_in_pictures && t->most <= 1.0f ? footprint : NULL});
+    return evaluate(s, t, &(lookup){hit, texture_is_filtered(t) ? footprint : NULL});
 }
 
 float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit)

@@ -82,6 +82,12 @@ rgb texture_filtered_rgb(const struct scene *s, uint32_t texture_index, const st
 /* Of a float texture. */
 float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
 
+/* Whether texture_filtered_rgb heeds a footprint. */
+static inline bool texture_is_filtered(const texture *t)
+{
+    return t->has_pictures && t->is_spectrum && t->is_linear_in_pictures && t->most <= 1.0f;
+}
+
 /* Sets has_pictures, is_linear_in_pictures and most. */
 void texture_find_pictures(const struct scene *s, texture *in_out);
 

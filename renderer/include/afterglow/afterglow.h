@@ -524,7 +524,8 @@ AG_API void ag_abandon_files(void);
 /* What a picture is expected to take. */
 typedef struct ag_prediction {
     /* of memory, bytes; without what --denoise takes */
-    uint64_t memory_peak_bytes;   /* of the whole process, resident */
+    uint64_t memory_peak_bytes;   /* of the whole process, resident; no less than it has had already */
+    uint64_t memory_needed_bytes; /* the most that is there at once of what follows */
     uint64_t memory_scene_bytes;  /* what the process has now: the program and the scene */
     uint64_t memory_photon_bytes; /* photon maps */
     uint64_t memory_thread_bytes; /* of all threads */

@@ -1,0 +1,12 @@
+/* compare_floats.h: the order of floats, for qsort. Threads: a pure function. */
+#ifndef AFTERGLOW_COMPARE_FLOATS_H
+#define AFTERGLOW_COMPARE_FLOATS_H
+
+/* Of two floats that are numbers: below 0, 0 or above 0, as the first is less, equal or greater. */
+static inline int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+#endif
