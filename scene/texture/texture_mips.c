@@ -127,7 +127,7 @@ static ag_status make_level(run_context *run, const texture_level *fine, texture
     if (!out->values && !out->packed)
         return AG_ERROR_MEMORY;
     mip_job job = {fine, out};
-    if (!run) {
+    if (!run || !run->pool) {
         average_rows(&job, 0, out->height, 0, 0);
         return AG_OK;
     }

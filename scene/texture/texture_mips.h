@@ -35,7 +35,7 @@ typedef struct texture_mips {
                                                  and high as the one before, rounded up; the last is a single pixel */
 } texture_mips;
 
-/* run NULL: by this thread alone. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+/* run NULL, or without a pool: by this thread alone. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status texture_mips_create(run_context *run, const texture_level *finest, texture_mips **out_mips);
 void texture_mips_destroy(texture_mips *m); /* NULL is fine */
 

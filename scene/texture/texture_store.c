@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 enum { SHARDS = 64 };
+enum { NO_MEMORY = 1, NO_FILE = 2 }; /* failures */
 
 /* Read and changed under its shard's lock. */
 typedef struct texture_tile {
@@ -35,7 +36,7 @@ struct texture_store {
     shard shards[SHARDS];
     uint64_t limit_bytes, whole_bytes, file_bytes;
     int file;            /* -1: not made yet */
-    atomic_u64 failures; /* relaxed: read behind a barrier of the pass */
+    atomic_u32 failures; /* relaxed: read behind a barrier of the pass */
 };
 
 texture_store *texture_store_create(uint64_t limit_bytes)
@@ -220,8 +221,8 @@ static void drop_one(shard *of)
     }
 }
 
-/* A shard holds one tile at least. false: there is no memory, or the file cannot be read. */
-static bool bring_in(texture_store *s, shard *of, texture_tile *tile, uint32_t size_bytes, uint64_t offset)
+/* A shard holds one tile at least. Errors: AG_ERROR_MEMORY, AG_ERROR_SYSTEM (the file cannot be read). */
+static ag_status bring_in(texture_store *s, shard *of, texture_tile *tile, uint32_t size_bytes, uint64_t offset)
 {
     const uint64_t room = (s->limit_bytes - s->whole_bytes) / SHARDS;
     while (of->held_count > 0 && of->bytes + size_bytes > room)
@@ -230,21 +231,23 @@ static bool bring_in(texture_store *s, shard *of, texture_tile *tile, uint32_t s
         const uint32_t capacity = of->held_capacity ? 2 * of->held_capacity : 64;
         texture_tile **larger = realloc(of->held, capacity * sizeof *larger);
         if (!larger)
-            return false;
+            return AG_ERROR_MEMORY;
         of->held = larger;
         of->held_capacity = capacity;
     }
     unsigned char *pixels = malloc(size_bytes);
-    if (!pixels || !read_all(s->file, pixels, size_bytes, offset)) {
+    if (!pixels)
+        return AG_ERROR_MEMORY;
+    if (!read_all(s->file, pixels, size_bytes, offset)) {
         free(pixels);
-        return false;
+        return AG_ERROR_SYSTEM;
     }
     *tile = (texture_tile){pixels, size_bytes, false};
     of->held[of->held_count++] = tile;
     of->bytes += size_bytes;
     of->bytes_most = of->bytes > of->bytes_most ? of->bytes : of->bytes_most;
     of->read_count++;
-    return true;
+    return AG_OK;
 }
 
 void texture_tiles_read(const texture_tiles *t, const pixel_blend *blend, unsigned char *out_pixels)
@@ -258,12 +261,12 @@ void texture_tiles_read(const texture_tiles *t, const pixel_blend *blend, unsign
         texture_tile *tile = &t->entries[number];
         shard *of = &s->shards[(offset / size_bytes * UINT64_C(0x9e3779b97f4a7c15)) >> 58];
         pthread_mutex_lock(&of->lock);
-        bool is_there = tile->pixels || bring_in(s, of, tile, size_bytes, offset);
+        const ag_status status = tile->pixels ? AG_OK : bring_in(s, of, tile, size_bytes, offset);
         /* what follows in the same tile at once */
         for (bool is_same = true; is_same;) {
             const size_t px = blend->pixel[k] % t->width % TEXTURE_TILE_SIDE,
                          py = blend->pixel[k] / t->width % TEXTURE_TILE_SIDE;
-            if (is_there)
+            if (status == AG_OK)
                 memcpy(out_pixels + (size_t)k * t->pixel_bytes,
                        tile->pixels + (py * TEXTURE_TILE_SIDE + px) * t->pixel_bytes, t->pixel_bytes);
             else
@@ -275,8 +278,8 @@ void texture_tiles_read(const texture_tiles *t, const pixel_blend *blend, unsign
         }
         tile->was_asked = true;
         pthread_mutex_unlock(&of->lock);
-        if (!is_there)
-            fetch_add_relaxed_u64(&s->failures, 1);
+        if (status != AG_OK)
+            fetch_or_relaxed_u32(&s->failures, status == AG_ERROR_MEMORY ? NO_MEMORY : NO_FILE);
     }
 }
 
@@ -294,4 +297,8 @@ texture_store_counts texture_store_count(const texture_store *s)
     return c;
 }
 
-bool texture_store_has_failed(const texture_store *s) { return s && load_relaxed_u64(&s->failures) > 0; }
+ag_status texture_store_state(const texture_store *s)
+{
+    const uint32_t failures = s ? load_relaxed_u32(&s->failures) : 0;
+    return failures & NO_FILE ? AG_ERROR_SYSTEM : failures & NO_MEMORY ? AG_ERROR_MEMORY : AG_OK;
+}

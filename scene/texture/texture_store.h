@@ -36,8 +36,7 @@ ag_status texture_store_put(texture_store *s, const void *pixels, uint32_t width
                             texture_tiles **out_tiles, char *message, size_t message_size);
 void texture_tiles_destroy(texture_tiles *t); /* NULL is fine */
 
-/* Copies the blend's pixels, one behind the other. Zeros where the file cannot be read: see texture_store_has_failed.
- */
+/* Copies the blend's pixels, one behind the other. Zeros where the file cannot be read: see texture_store_state. */
 void texture_tiles_read(const texture_tiles *t, const pixel_blend *blend, unsigned char *out_pixels);
 
 typedef struct texture_store_counts {
@@ -50,7 +49,8 @@ typedef struct texture_store_counts {
 /* NULL: all zero. */
 texture_store_counts texture_store_count(const texture_store *s);
 
-/* Whether any tile could not be read since the store was made. NULL is fine. */
-bool texture_store_has_failed(const texture_store *s);
+/* Whether all tiles could be read since the store was made. NULL is fine. Errors: AG_ERROR_MEMORY, AG_ERROR_SYSTEM (the
+ * file cannot be read). */
+ag_status texture_store_state(const texture_store *s);
 
 #endif
