@@ -5,10 +5,11 @@
  *
  *     header       what it is, what it was made of, constants of the maps, checksum: never changes
  *     owners       the processes at work on it (claim_owners.h)
- *     blocks       of the global map, the caustic map, and the global map's bearers where they are a part of the
- *                  photons: photons never change, slots do
+ *     blocks       of the global map, the caustic map, and the global map's irradiance photons where they
+ *                  are not all photons: photons never change, slots do
  *     nodes        of their trees: never change
- *     checks       a byte for each bearer: irradiance_word_check of its slot, written before the slot is ready
+ *     checks       a byte for each irradiance photon: irradiance_word_check of its slot, written before the slot is
+ *                  ready
  *
  * The layout is the machine's own: byte order and sizes are in the header, and another machine's file is refused. What
  * never changes is under a checksum. A slot that is ready without its check byte is emptied when the file is opened,

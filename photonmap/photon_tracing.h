@@ -47,7 +47,7 @@ typedef struct photon_set {
     uint32_t count;
     uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
     uint64_t rays;
-    uint64_t passages_cut; /* ways across more interfaces than scene/rays/passage.h follows: absorbed */
+    uint64_t rays_cut; /* by TRANSMITTANCE_CROSSINGS_MAX (scene/rays/transmittance.h): absorbed */
     energy_balance balance;
 } photon_set;
 

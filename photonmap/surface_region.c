@@ -4,7 +4,7 @@
 
 #include "math/rng.h"
 #include "math/sampling.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 #include <string.h>
 
@@ -42,7 +42,7 @@ static bool find_surface(const probe *p, vec3 origin, vec3 direction, float fart
     scene_ray ray = scene_ray_make(origin, direction);
     ray.alpha_rule = p->alpha_rule;
     ++*p->rays;
-    return passage_find_surface(p->s, ray, farthest, out_hit);
+    return scene_find_surface(p->s, ray, farthest, out_hit);
 }
 
 /* A picture cuts holes into it, which no photon falls on. */

@@ -2,7 +2,7 @@
 #include "closed_room.h"
 
 #include "math/sampling.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 /* Places that are tried, along and across, at several heights; directions around each; and headings to look along. */
 enum { PLACES = 12, HEIGHTS = 3, DIRECTIONS = 64, HEADINGS = 32, OPEN_HEADINGS_MAX = 4, PANES_MAX = 16 };
@@ -31,11 +31,11 @@ static bool cast(const scene *s, vec3 origin, vec3 direction, surface_hit *out_h
 {
     scene_ray ray = scene_ray_make(origin, direction);
     for (int i = 0; i < PANES_MAX; i++) {
-        if (!passage_find_surface(s, ray, INFINITY, out_hit))
+        if (!scene_find_surface(s, ray, INFINITY, out_hit))
             return false;
         if (!material_is_clear_glass(s, s->shapes[out_hit->shape_index].material_index))
             return true;
-        ray = passage_continue(out_hit, &ray);
+        ray = scene_ray_continue(out_hit, &ray);
     }
     return false;
 }

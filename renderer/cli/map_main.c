@@ -34,8 +34,8 @@ static int exit_code(ag_status status)
 
 static void print_filling(const ag_photon_map_info *info)
 {
-    printf("irradiances: %" PRIu64 " of %" PRIu64 " computed (%.1f %%)\n", info->ready, info->bearers,
-           info->bearers > 0 ? 100.0 * (double)info->ready / (double)info->bearers : 100.0);
+    printf("irradiances: %" PRIu64 " of %" PRIu64 " computed (%.1f %%)\n", info->ready, info->irradiance_photons,
+           info->irradiance_photons > 0 ? 100.0 * (double)info->ready / (double)info->irradiance_photons : 100.0);
 }
 
 static void print_info(const char *path, const ag_photon_map_info *info)

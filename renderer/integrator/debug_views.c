@@ -79,7 +79,7 @@ static void view_pixel(const views_job *job, eye_worker *worker, size_t pixel, i
     uint32_t word = irradiance_slot_read(photon_map_slot(map, nearest));
     put(job, VIEW_CACHE_STATE, pixel, irradiance_word_is_ready(word) ? 2.0f : 1.0f);
     put(job, VIEW_PHOTON_DISTANCE, pixel,
-        sqrtf(vec3_distance_squared(at.position, photon_block_position(map->bearers.blocks, nearest))));
+        sqrtf(vec3_distance_squared(at.position, photon_block_position(map->irradiance_photons.blocks, nearest))));
 }
 
 static void view_rows(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker_index)

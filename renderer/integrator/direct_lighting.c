@@ -3,7 +3,7 @@
 
 #include "light/environment.h"
 #include "math/sampling.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes)
 {
@@ -20,8 +20,8 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, const sur
         reach = 1.0f;
     }
     worker->rays_shadow++;
-    return t->panes_are_direct ? passage_transmittance_of_panes(t->s, shadow, reach, &worker->passages_cut)
-                               : passage_transmittance(t->s, shadow, reach, &worker->passages_cut);
+    return t->panes_are_direct ? transmittance_through_panes(t->s, shadow, reach, &worker->rays_cut)
+                               : transmittance_of_ray(t->s, shadow, reach, &worker->rays_cut);
 }
 
 /* The lamp for a place, the numbers that sample it, and the factor by which its own density is multiplied. */

@@ -4,8 +4,8 @@
 #include "integrator/gather_directions.h"
 #include "integrator/gather_path.h"
 #include "math/sampling.h"
-#include "rays/passage.h"
 #include "rays/slab_faces.h"
+#include "rays/transmittance.h"
 
 /* One gather under way. */
 typedef struct gathering {
@@ -188,7 +188,7 @@ uint32_t final_gather(const transport *t, eye_worker *worker, const gather_reque
             sample_plain(&g, is_guided ? &guide : NULL, &numbers, begin, end, &rays);
         else
             sample_lobes(&g, &numbers, begin, end, &rays);
-        if (passage_is_clear(t->s, &rays.fan.common)) {
+        if (transmittance_is_one(t->s, &rays.fan.common)) {
             follow_together(&g, &rays);
             continue;
         }

@@ -2,7 +2,7 @@
 #include "integrator/gather_path.h"
 
 #include "integrator/direct_lighting.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 /* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often (asked
  * sooner, the cache tells of the light outside of a small room). */
@@ -90,7 +90,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         depth += !goes_straight;
         if (depth == scatterings_left)
             return false;
-        scene_ray ray = goes_straight ? passage_continue(&v->hit, &v->arrived)
+        scene_ray ray = goes_straight ? scene_ray_continue(&v->hit, &v->arrived)
                                       : transport_scattered_ray(t, v, next.direction, true);
         ray.skips_uv = true;
         worker->rays_gather++;

@@ -1,7 +1,7 @@
 /* transport.c: see transport.h. */
 #include "integrator/transport.h"
 
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 enum { LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
 
@@ -15,7 +15,7 @@ sample_counts transport_sample_counts(const transport *t, uint32_t lights)
 
 bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
 {
-    bool is_met = passage_intersect(t->s, &ray, &worker->passages_cut, &out_vertex->hit, &out_vertex->transmittance);
+    bool is_met = transmittance_intersect(t->s, &ray, &worker->rays_cut, &out_vertex->hit, &out_vertex->transmittance);
     out_vertex->arrived = ray;
     if (is_met)
         transport_note_footprint(out_vertex);
@@ -61,14 +61,14 @@ bool transport_trace_through_panes(const transport *t, eye_worker *worker, scene
         rgb passed = bsdf_straight_transmittance(&out->scattering);
         if (rgb_is_black(passed))
             break;
-        bool is_cut = crossings == PASSAGE_CROSSINGS_MAX;
-        worker->passages_cut += is_cut;
+        bool is_cut = crossings == TRANSMITTANCE_CROSSINGS_MAX;
+        worker->rays_cut += is_cut;
         left = is_cut ? rgb_gray(0.0f) : rgb_mul(left, passed);
         if (rgb_is_black(left)) {
             is_met = false;
             break;
         }
-        is_met = transport_trace(t, worker, passage_continue(&out->hit, &out->arrived), out);
+        is_met = transport_trace(t, worker, scene_ray_continue(&out->hit, &out->arrived), out);
         left = rgb_mul(left, out->transmittance);
     }
     out->transmittance = left;

@@ -18,8 +18,8 @@ typedef enum material_kind {
     MATERIAL_CONDUCTOR,
     MATERIAL_DIELECTRIC,
     MATERIAL_THIN_DIELECTRIC,
-    MATERIAL_INTERFACE,        /* no surface: light passes unbent (passage.h), perhaps from one medium to another */
-    MATERIAL_COATED_DIFFUSE,   /* a dielectric coat on a diffuse base */
+    MATERIAL_INTERFACE,      /* no surface: light passes unbent (transmittance.h), perhaps from one medium to another */
+    MATERIAL_COATED_DIFFUSE, /* a dielectric coat on a diffuse base */
     MATERIAL_COATED_CONDUCTOR, /* a dielectric coat on a conductor */
     MATERIAL_PRINCIPLED,       /* glTF 2.0's metallic-roughness, with transmission, ior, specular and clearcoat */
     MATERIAL_MIX               /* one of two others, picked by place */

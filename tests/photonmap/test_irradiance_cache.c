@@ -40,7 +40,7 @@ static void the_second_request_finds_it_ready(void **state)
     irradiance_request a, b;
     irradiance_cache_get(&f.cache, p.position, p.normal, 0, &a);
     irradiance_cache_get(&f.cache, p.position, p.normal, 0, &b);
-    assert_int_equal(a.bearer, PHOTON_NONE);
+    assert_int_equal(a.irradiance_photon, PHOTON_NONE);
     assert_memory_equal(&a, &b, sizeof a);
     /* the answer is what the slot holds, not what was computed */
     uint32_t word = irradiance_slot_read(photon_block_slot(f.map.blocks, 123));
@@ -70,7 +70,7 @@ static void uncached_answers_at_the_place(void **state)
         irradiance_request request;
         irradiance_cache_get(&f.cache, at.position, at.normal, 0, &request);
         rgb expected = irradiance_estimate(&f.map, at.position, at.normal, f.cache.scratch[0].neighbors);
-        assert_int_equal(request.bearer, PHOTON_NONE);
+        assert_int_equal(request.irradiance_photon, PHOTON_NONE);
         assert_memory_equal(&request.irradiance, &expected, sizeof expected);
     }
     irradiance_counters c = irradiance_cache_counters(&f.cache);
@@ -89,7 +89,7 @@ static void a_place_without_photons_is_estimated_uncached(void **state)
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 1);
     irradiance_request request;
     irradiance_cache_get(&f.cache, (vec3){5.0f, 0.0f, 0.0f}, (vec3){1.0f, 0.0f, 0.0f}, 0, &request);
-    assert_int_equal(request.bearer, PHOTON_NONE);
+    assert_int_equal(request.irradiance_photon, PHOTON_NONE);
     assert_true(rgb_is_black(request.irradiance));
     irradiance_counters c = irradiance_cache_counters(&f.cache);
     assert_int_equal(c.uncached, 1);
@@ -126,13 +126,13 @@ static void a_request_set_aside_comes_back(void **state)
     assert_true(irradiance_slot_try_claim(slot, 7, &word)); /* somebody else is at it */
     irradiance_request request, other;
     irradiance_cache_get(&f.cache, p.position, p.normal, 1, &request);
-    assert_int_equal(request.bearer, PHOTONS / 2);
+    assert_int_equal(request.irradiance_photon, PHOTONS / 2);
     assert_int_equal(irradiance_cache_counters(&f.cache).deferred, 1);
 
     /* meanwhile others are served */
     field_place q = field_photon(&f.map, 1);
     irradiance_cache_get(&f.cache, q.position, q.normal, 1, &other);
-    assert_int_equal(other.bearer, PHOTON_NONE);
+    assert_int_equal(other.irradiance_photon, PHOTON_NONE);
 
     /* it comes back, without waiting where it is ready, and after waiting where it is not */
     uint32_t value = photon_map_encode_irradiance(&f.map, rgb_gray(3.0f), 0);
@@ -147,7 +147,7 @@ static void a_request_set_aside_comes_back(void **state)
     void *published;
     pthread_join(thread, &published);
     assert_non_null(published);
-    assert_int_equal(request.bearer, PHOTON_NONE);
+    assert_int_equal(request.irradiance_photon, PHOTON_NONE);
     assert_memory_equal(&request.irradiance, &expected, sizeof expected);
     uint64_t waited = irradiance_cache_counters(&f.cache).waited;
     assert_true(waited <= 1);
@@ -267,7 +267,7 @@ static void demand(void *user, unsigned worker)
             irradiance_cache_get(&all->f->cache, p.position, p.normal, worker, &requests[i]);
         }
         for (uint32_t i = 0; i < RAYS; i++)
-            if (requests[i].bearer != PHOTON_NONE) {
+            if (requests[i].irradiance_photon != PHOTON_NONE) {
                 all->open[worker]++;
                 irradiance_cache_retry(&all->f->cache, NULL, &requests[i], worker);
             }
@@ -329,7 +329,7 @@ static void ask_all(void *user, unsigned worker)
         field_place p = field_photon(&f->map, (i + worker * (PHOTONS / workers)) % PHOTONS);
         irradiance_request request;
         irradiance_cache_get(&f->cache, p.position, p.normal, worker, &request);
-        if (request.bearer != PHOTON_NONE)
+        if (request.irradiance_photon != PHOTON_NONE)
             irradiance_cache_retry(&f->cache, NULL, &request, worker);
     }
 }
@@ -408,7 +408,7 @@ static void an_empty_map_answers_black(void **state)
     assert_int_equal(irradiance_cache_precompute(&cache, &r.run), AG_OK);
     irradiance_request request;
     irradiance_cache_get(&cache, (vec3){0.0f, 0.0f, 0.0f}, (vec3){0.0f, 0.0f, 1.0f}, 0, &request);
-    assert_int_equal(request.bearer, PHOTON_NONE);
+    assert_int_equal(request.irradiance_photon, PHOTON_NONE);
     assert_true(rgb_is_black(request.irradiance));
     irradiance_cache_reset(&cache);
     photon_map_reset(&map);

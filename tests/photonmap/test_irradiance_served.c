@@ -229,7 +229,7 @@ static served_sums ask(test_run *r, const scene *s, const served_case *c, double
         while (cross(&p, &at)) {
             irradiance_request request;
             irradiance_cache_get(&cache, at.position, at.normal, 0, &request);
-            assert_int_equal(request.bearer, PHOTON_NONE);
+            assert_int_equal(request.irradiance_photon, PHOTON_NONE);
             received += (double)(request.holds ? request.irradiance.g : at.irradiance);
             truth += (double)at.irradiance;
             refused += !request.holds;

@@ -52,8 +52,8 @@ static void expect_refused(const char *path, const photon_file_key *key, const c
         fail_msg("'%s' is not in: %s", why, message);
 }
 
-/* Bearers that are a part of the photons have slots of their own, which the file keeps too. */
-static void bearers_are_kept(void **state)
+/* Irradiance photons that are a part of the photons have slots of their own, which the file keeps too. */
+static void irradiance_photons_are_kept(void **state)
 {
     (void)state;
     test_run r;
@@ -61,7 +61,7 @@ static void bearers_are_kept(void **state)
     const char *path = in_folder("b.map");
     photon_set set = field_photons(FIELD_SPHERE, PHOTONS, 3), empty = {0};
     photon_map_settings settings = {
-        .nearest = NEAREST, .max_radius = 1.0f, .surface_area = 4.0f * AG_PI, .bearing = 0.25f};
+        .nearest = NEAREST, .max_radius = 1.0f, .surface_area = 4.0f * AG_PI, .irradiance_fraction = 0.25f};
     photon_map map, none = field_map(&r, &empty, NEAREST, 1.0f);
     assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
     photon_file_key key = some_key();
@@ -79,9 +79,9 @@ static void bearers_are_kept(void **state)
                          PHOTON_FILE_OPEN);
         assert_true(o.file.is_shared);
         assert_int_equal(o.map.set.count, PHOTONS);
-        assert_int_equal(o.map.bearers.count, map.bearers.count);
-        assert_false(photon_map_all_bear(&o.map));
-        assert_true(photon_map_all_bear(&o.caustic));
+        assert_int_equal(o.map.irradiance_photons.count, map.irradiance_photons.count);
+        assert_false(photon_map_all_have_irradiance(&o.map));
+        assert_true(photon_map_all_have_irradiance(&o.caustic));
         assert_int_equal(irradiance_cache_create(&o.map, IRRADIANCE_ON_DEMAND, 1, &o.cache), AG_OK);
         irradiance_cache_share(&o.cache, &o.file.owners);
         for (uint32_t i = 0; i < PHOTONS; i += 3) {
@@ -92,7 +92,7 @@ static void bearers_are_kept(void **state)
             assert_memory_equal(&x.irradiance, &y.irradiance, sizeof x.irradiance);
         }
         uint64_t computed = irradiance_cache_counters(&in_memory).computed;
-        assert_true(computed > map.bearers.count / 2 && computed <= map.bearers.count);
+        assert_true(computed > map.irradiance_photons.count / 2 && computed <= map.irradiance_photons.count);
         assert_int_equal(o.cache.ready_before, time == 0 ? 0 : computed);
         assert_int_equal(irradiance_cache_counters(&o.cache).computed, time == 0 ? computed : 0);
         close_map(&o);
@@ -360,7 +360,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(what_was_computed_is_there_again),
-        TEST_IN_FOLDER(bearers_are_kept),
+        TEST_IN_FOLDER(irradiance_photons_are_kept),
         TEST_IN_FOLDER(what_was_made_of_something_else_is_refused),
         TEST_IN_FOLDER(what_is_damaged_is_refused),
         TEST_IN_FOLDER(slots_may_hold_anything),

@@ -25,7 +25,7 @@ static void expect_mean(field_kind kind, uint32_t nearest, uint32_t photons, uin
             field_place at = field_place_at(kind, (vec2){(float)(x - floor(x)), (float)(y - floor(y))});
             irradiance_request request;
             irradiance_cache_get(&cache, at.position, at.normal, 0, &request);
-            assert_int_equal(request.bearer, PHOTON_NONE);
+            assert_int_equal(request.irradiance_photon, PHOTON_NONE);
             mean[0] += request.irradiance.r;
             mean[1] += request.irradiance.g;
             mean[2] += request.irradiance.b;

@@ -194,7 +194,7 @@ static void media_take_their_share(void **state)
             assert_close(set.balance.gained[c], set.balance.lost[c], 0.03 * WIDER * arrived);
             assert_true(set.balance.escaped[c] == 0.0);
         }
-        assert_int_equal(set.passages_cut, 0);
+        assert_int_equal(set.rays_cut, 0);
         photon_set_reset(&set);
         scene_destroy(s);
         test_run_reset(&r);

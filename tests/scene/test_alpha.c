@@ -2,7 +2,7 @@
  * quadrics; and lamps that are invisible. Counts are held against their binomial distribution.
  * Threads: the run's workers build, one casts. */
 #include "light/light.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 #include "shape/alpha.h"
 
 #include "fixtures/test_scene.h"
@@ -111,8 +111,8 @@ static void probes_find_alpha_surfaces(void **state)
         scene_ray ray = ray_down(&random, 0.0f);
         surface_hit hit;
         ray.origin.z = 9.0f;
-        assert_true(passage_find_surface(s, ray, INFINITY, &hit) && hit.shape_index == 0);
-        assert_true(passage_is_blocked(s, ray, INFINITY));
+        assert_true(scene_find_surface(s, ray, INFINITY, &hit) && hit.shape_index == 0);
+        assert_true(scene_is_blocked(s, ray, INFINITY));
     }
     scene_destroy(s);
 }
