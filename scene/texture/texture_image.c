@@ -3,6 +3,7 @@
 
 #include "image/image.h"
 #include "scene.h"
+#include "texture/texture_file_levels.h"
 #include "texture/texture_udim.h"
 
 #include <stdlib.h>
@@ -150,6 +151,7 @@ void texture_image_destroy(texture_image *i)
     free(i->alpha_values);
     texture_mips_destroy(i->mips);
     texture_tiles_destroy(i->stored_alpha.tiles);
+    texture_file_levels_destroy(i->file);
     texture_udim_destroy(i->udim);
     free(i);
 }
@@ -177,6 +179,8 @@ hash128 texture_image_content(const texture_image *i)
     hash128 h = hash128_begin();
     if (i->udim)
         return texture_udim_content(i->udim);
+    if (i->is_by_file)
+        return texture_file_content(i->path);
     if (i->is_stored)
         return i->stored_content;
     if (i->bytes)

@@ -41,10 +41,12 @@ typedef struct texture_image {
     bool is_stored;             /* all pixels lie in the scene's texture_store: those above are NULL, mips are there */
     texture_level stored_alpha; /* then, where it has one: tiles is not NULL */
     hash128 stored_content;     /* then, what texture_image_content was */
-    uint64_t bad_count;         /* values that were not finite, and are 0 now */
-    float least, most;          /* of the linear values, before `colors` */
-    struct texture_udim *udim;  /* many pictures side by side, see texture_udim.h, or NULL. Then the sizes above are the
-                                   largest, the counts and bounds all of them's; it has no pixels or colours itself */
+    bool is_by_file;            /* its levels are those of its file, whose bytes are its fingerprint */
+    struct texture_file_levels *file; /* from which tiles are read, or NULL */
+    uint64_t bad_count;               /* values that were not finite, and are 0 now */
+    float least, most;                /* of the linear values, before `colors` */
+    struct texture_udim *udim; /* many pictures side by side, see texture_udim.h, or NULL. Then the sizes above are the
+                                  largest, the counts and bounds all of them's; it has no pixels or colours itself */
 } texture_image;
 
 /* Takes the pixels of a picture that was read, of which *i has path and encoding so far. Errors: AG_ERROR_COLOR,

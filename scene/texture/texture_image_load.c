@@ -6,6 +6,7 @@
 #include "scene.h"
 #include "status.h"
 #include "text/input_file.h"
+#include "texture/texture_file_levels.h"
 #include "texture/texture_udim.h"
 
 #include <stdio.h>
@@ -22,14 +23,18 @@ typedef struct source {
     image_encoding encoding;
 } source;
 
-static ag_status read_image(const scene *s, texture_image *i, const source *from, char *message, size_t message_size)
+static ag_status allow(const source *from, char *message, size_t message_size)
 {
     char reason[128];
+    if (from->bytes || input_file_allow(from->run, from->path, reason, sizeof reason))
+        return AG_OK;
+    snprintf(message, message_size, "cannot read '%s': %s", from->path, reason);
+    return AG_ERROR_INPUT;
+}
+
+static ag_status read_image(const scene *s, texture_image *i, const source *from, char *message, size_t message_size)
+{
     image picture;
-    if (!from->bytes && !input_file_allow(from->run, from->path, reason, sizeof reason)) {
-        snprintf(message, message_size, "cannot read '%s': %s", from->path, reason);
-        return AG_ERROR_INPUT;
-    }
     ag_status status = from->bytes
                            ? image_read_memory(from->path, from->bytes, from->size, &picture, message, message_size)
                            : image_read_compact(from->path, &picture, message, message_size);
@@ -56,7 +61,7 @@ static ag_status put_into_store(run_context *run, scene *s, texture_image *i, ch
     const texture_level finest = texture_image_finest(i);
     i->stored_content = texture_image_content(i);
     AG_TRY(texture_mips_create(run, &finest, &i->mips));
-    AG_TRY(texture_mips_put(i->mips, s->texture_store, message, message_size));
+    AG_TRY(texture_mips_put(run, i->mips, s->texture_store, message, message_size));
     if (texture_image_has_alpha(i)) {
         i->stored_alpha = (texture_level){.width = i->width,
                                           .height = i->height,
@@ -64,7 +69,7 @@ static ag_status put_into_store(run_context *run, scene *s, texture_image *i, ch
                                           .sample = i->alpha_bytes ? TEXTURE_BYTES : TEXTURE_FLOATS,
                                           .bytes = i->alpha_bytes,
                                           .values = i->alpha_values};
-        AG_TRY(texture_level_put(&i->stored_alpha, s->texture_store, message, message_size));
+        AG_TRY(texture_level_put(run, &i->stored_alpha, s->texture_store, message, message_size));
     }
     free(i->bytes);
     free(i->values);
@@ -76,15 +81,22 @@ static ag_status put_into_store(run_context *run, scene *s, texture_image *i, ch
     return AG_OK;
 }
 
-static ag_status hold_within_limit(run_context *run, scene *s, texture_image *i, char *message, size_t message_size)
+/* Where memory is limited. */
+static ag_status make_store(scene *s)
 {
     const uint64_t limit_bytes = s->request ? s->request->texture_memory_bytes : 0;
-    if (limit_bytes == 0)
-        return AG_OK;
-    if (!s->texture_store)
+    if (limit_bytes > 0 && !s->texture_store) {
         s->texture_store = texture_store_create(limit_bytes);
+        if (!s->texture_store)
+            return AG_ERROR_MEMORY;
+    }
+    return AG_OK;
+}
+
+static ag_status hold_within_limit(run_context *run, scene *s, texture_image *i, char *message, size_t message_size)
+{
     if (!s->texture_store)
-        return AG_ERROR_MEMORY;
+        return AG_OK;
     return texture_store_keeps(s->texture_store, whole_bytes(i)) ? AG_OK
                                                                  : put_into_store(run, s, i, message, message_size);
 }
@@ -176,8 +188,15 @@ static ag_status load(scene *s, const source *from, uint32_t *out_index, char *m
     if (status == AG_OK && !from->bytes && texture_udim_is_pattern(from->path)) {
         status = read_tiles(s, i, from, message, message_size);
     } else if (status == AG_OK) {
-        status = read_image(s, i, from, message, message_size);
+        bool is_read = false;
+        status = allow(from, message, message_size);
         if (status == AG_OK)
+            status = make_store(s);
+        if (status == AG_OK && !from->bytes)
+            status = texture_file_levels_read(from->run, s, i, &is_read, message, message_size);
+        if (status == AG_OK && !is_read)
+            status = read_image(s, i, from, message, message_size);
+        if (status == AG_OK && !is_read)
             status = hold_within_limit(from->run, s, i, message, message_size);
     }
     if (status != AG_OK)
