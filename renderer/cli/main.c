@@ -46,7 +46,7 @@ static void name_default_output(const options *o, const ag_scene *scene, int fra
     if (own) {
         const char *dot = strrchr(own, '.');
         char *named = frames_name(own, frame);
-        if (named && frames_has_place(own))
+        if (named && frames_has_placeholder(own))
             snprintf(out_name, size, "%s", named);
         else /* the frames may have one name */
             snprintf(out_name, size, "%.*s.%04d%s", (int)(dot ? dot - own : (long)strlen(own)), own, frame,
