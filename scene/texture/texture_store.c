@@ -95,14 +95,22 @@ static void cut_tile(const put_job *job, size_t number, unsigned char *out)
                count * pixel_bytes);
 }
 
-static int put_tile(const put_job *job, size_t number, unsigned char *buffers)
+/* in_out_misses: how many tiles in a row could not be packed; after some no other is tried. Gives an errno, or 0. */
+static int put_tile(const put_job *job, size_t number, unsigned char *buffers, int *in_out_misses)
 {
+    enum { MISSES_MAX = 2 };
     const texture_tiles *t = job->tiles;
     const size_t size = tile_bytes_of(t);
     unsigned char *scratch = buffers + size, *packed = buffers + 2 * size;
     texture_tile *tile = &t->entries[number];
     cut_tile(job, number, buffers);
-    const size_t packed_bytes = tile_pack(format_of(t), buffers, scratch, packed);
+    size_t packed_bytes = size;
+    if (*in_out_misses < MISSES_MAX) {
+        packed_bytes = tile_pack(format_of(t), buffers, scratch, packed);
+        *in_out_misses = packed_bytes == size ? *in_out_misses + 1 : 0;
+    } else {
+        packed = buffers;
+    }
     if (packed_bytes == 0)
         return ENOMEM;
     tile->file_bytes = (uint32_t)packed_bytes;
@@ -115,9 +123,9 @@ static void put_tiles(void *user, uint64_t begin, uint64_t end, uint64_t block, 
     (void)block, (void)worker;
     put_job *job = user;
     unsigned char *buffers = malloc(3 * tile_bytes_of(job->tiles));
-    int failure = buffers ? 0 : ENOMEM;
+    int failure = buffers ? 0 : ENOMEM, misses = 0;
     for (uint64_t number = begin; number < end && !failure; number++)
-        failure = put_tile(job, (size_t)number, buffers);
+        failure = put_tile(job, (size_t)number, buffers, &misses);
     free(buffers);
     if (failure)
         store_relaxed_u32(&job->failure, (uint32_t)failure);
