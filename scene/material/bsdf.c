@@ -256,7 +256,7 @@ static float flux_correction(const bsdf *b, vec3 direction)
 {
     float numerator = fabsf(vec3_dot(b->out, b->shading.z) * vec3_dot(direction, b->geometric_normal));
     float denominator = fabsf(vec3_dot(b->out, b->geometric_normal) * vec3_dot(direction, b->shading.z));
-    return denominator > 0.0f ? fminf(numerator / denominator, BSDF_CORRECTION_MAX) : 0.0f;
+    return denominator > 0.0f ? fminf(numerator / denominator, BSDF_SHADING_NORMAL_MAX) : 0.0f;
 }
 
 static float arrival_factor(const bsdf *b, const material *base)
@@ -264,7 +264,7 @@ static float arrival_factor(const bsdf *b, const material *base)
     float shading = vec3_dot(b->out, b->shading.z), geometric = vec3_dot(b->out, b->geometric_normal);
     if (shading * geometric <= 0.0f)
         return 0.0f; /* behind the horizon of one of the normals: neither way of computing finds light */
-    return fminf(shading / geometric, BSDF_ARRIVAL_MAX) * bsdf_lobe_transmittance(base, shading);
+    return fminf(shading / geometric, BSDF_SHADING_NORMAL_MAX) * bsdf_lobe_transmittance(base, shading);
 }
 
 float bsdf_arrival_factor(const bsdf *b) { return arrival_factor(b, &b->parameters); }

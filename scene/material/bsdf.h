@@ -20,11 +20,10 @@
 #include "material/material.h"
 #include "scene.h"
 
-/* The largest factors that shading normals may add to a photon: where it arrives at a surface, and where a lobe that is
- * not diffuse sends it on. Light nearer to the surface than that is some thousandths where normals lean by 45 degrees,
- * and its part beyond the factor is lost. */
-#define BSDF_ARRIVAL_MAX    32.0f
-#define BSDF_CORRECTION_MAX 32.0f
+/* The largest factor that a shading normal may multiply a photon's flux by: where it arrives at a surface, and where a
+ * lobe that is not diffuse sends it on. Light nearer to the surface than that is some thousandths where normals lean by
+ * 45 degrees, and its part beyond the factor is lost. */
+#define BSDF_SHADING_NORMAL_MAX 32.0f
 
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
 
