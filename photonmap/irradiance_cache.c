@@ -77,8 +77,8 @@ static irradiance_extent estimate(irradiance_cache *cache, vec3 position, vec3 n
     return extent;
 }
 
-/* At a place that no photon stands for. */
-static bool estimate_at_place(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
+/* The estimate at a point that no photon stands for. */
+static bool estimate_at_point(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                               rgb *out_irradiance)
 {
     bool holds = estimate(cache, position, normal, worker_index, out_irradiance) != IRRADIANCE_HOLDS_NOWHERE;
@@ -200,12 +200,12 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
     cache->ready_before += irradiance_cache_distinct(cache) - distinct;
 }
 
-/* The answer where photon_map_nearest gave PHOTON_NONE or PHOTON_HIDDEN: an estimate at the place, or none. */
+/* The answer where photon_map_nearest gave PHOTON_NONE or PHOTON_HIDDEN: an estimate at the point, or none. */
 static bool answer_without_photon(irradiance_cache *cache, const irradiance_query *query, uint32_t nearest,
                                   unsigned worker_index, rgb *out_irradiance)
 {
     bool holds = nearest == PHOTON_NONE &&
-                 estimate_at_place(cache, query->position, query->normal, worker_index, out_irradiance);
+                 estimate_at_point(cache, query->position, query->normal, worker_index, out_irradiance);
     if (!holds)
         *out_irradiance = rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
@@ -340,7 +340,7 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
             out_holds[i] =
                 answer_by_word(cache, &queries[i], irradiance_photon, word, worker_index, &out_irradiance[i]);
         else
-            order[waiting++] = order[k]; /* its place in the order is free by now */
+            order[waiting++] = order[k]; /* its position in the order is free by now */
     }
     counters->deferred += waiting;
     for (uint32_t k = 0; k < waiting; k++) {
@@ -373,7 +373,7 @@ void irradiance_cache_retry(irradiance_cache *cache, const run_context *run, irr
 rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
 {
     rgb irradiance;
-    estimate_at_place(cache, position, normal, worker_index, &irradiance);
+    estimate_at_point(cache, position, normal, worker_index, &irradiance);
     return irradiance;
 }
 

@@ -1,4 +1,4 @@
-/* irradiance_cache.h: the irradiance at a place, from the nearest irradiance photon, computed at most once.
+/* irradiance_cache.h: the irradiance at a point, from the nearest irradiance photon, computed at most once.
  * Rests on: Neilson, Yang, TR 04-21, 2004 (on demand); Christensen 1999 (precomputed, and the nearest-photon lookup).
  * Flow: final gathering asks; the photon map's estimates answer. Threads: any number ask at once.
  *
@@ -10,13 +10,13 @@
 #include "claim_owners.h"
 #include "irradiance_estimate.h"
 
-/* Places that can be asked for at once. */
+/* Points that can be asked for at once. */
 enum { IRRADIANCE_BATCH_MAX = 1 << 16 };
 
 typedef enum irradiance_cache_mode {
     IRRADIANCE_ON_DEMAND,  /* the first to ask computes */
     IRRADIANCE_PRECOMPUTE, /* all are computed beforehand */
-    IRRADIANCE_UNCACHED    /* an estimate at every place asked for: another estimator, without the mosaic */
+    IRRADIANCE_UNCACHED    /* an estimate at every point asked for: another estimator, without the mosaic */
 } irradiance_cache_mode;
 
 /* Of one worker; summed when all is done. Padded apart: they change all the time. */
@@ -28,7 +28,7 @@ typedef struct irradiance_counters {
     uint64_t duplicated;            /* estimates whose claim another process had taken over meanwhile: 0, unless this
                                        process stood still for seconds */
     uint64_t reclaimed;             /* claims taken over from processes that died or stood still */
-    uint64_t uncached;              /* estimates at the place itself */
+    uint64_t uncached;              /* estimates at the point itself */
     uint64_t refused;               /* requests for points where no estimate holds */
     uint64_t rays;                  /* cast by estimates and lookups, to find where surfaces end and what is in sight */
     uint64_t timed;                 /* estimates whose time was taken */
@@ -68,7 +68,7 @@ ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run)
 void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words);
 void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words);
 
-/* A place, and the side of the unit normal. */
+/* A point, and the side of the unit normal. */
 typedef struct irradiance_query {
     vec3 position, normal;
 } irradiance_query;
@@ -80,10 +80,10 @@ typedef struct irradiance_request {
     rgb irradiance; /* W/m^2; 0 where none holds */
 } irradiance_request;
 
-/* Asks for the irradiance at a place, on the side of the unit normal. Either it is answered (request->irradiance_photon
+/* Asks for the irradiance at a point, on the side of the unit normal. Either it is answered (request->irradiance_photon
  * is PHOTON_NONE), or another thread is computing it: then it is to be asked for again with irradiance_cache_retry,
  * after the caller's other work. Where no estimate holds (irradiance_estimate.h) at the photon that stands for the
- * place, or the place does not see that photon and would have to, the answer is that there is none. */
+ * point, or the point does not see that photon and would have to, the answer is that there is none. */
 void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                           irradiance_request *out_request);
 
@@ -100,7 +100,7 @@ void irradiance_cache_retry(irradiance_cache *cache, const run_context *run, irr
 void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, const irradiance_query *queries,
                                uint32_t count, unsigned worker_index, rgb *out_irradiance, bool *out_holds);
 
-/* An estimate at the place itself, not kept; the value alone, also where it does not hold. */
+/* An estimate at the point itself, not kept; the value alone, also where it does not hold. */
 rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index);
 
 /* The counters of all workers. */

@@ -201,7 +201,7 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
         return ECANCELED;
     h.self = hash_of_header(&h);
 
-    /* What is mapped must have its place on the disk: a disk that is full later would end processes by SIGBUS. A file
+    /* What is mapped must have its space on the disk: a disk that is full later would end processes by SIGBUS. A file
      * system that cannot reserve gets all bytes written below: none is left out. */
     int error = posix_fallocate(descriptor, 0, (off_t)h.file_bytes);
     if (error != 0 && error != EOPNOTSUPP && error != EINVAL && error != ENOSYS && error != EBADF)
@@ -337,7 +337,7 @@ static photon_map map_of(const map_record *m, photon_tree tree, photon_tree irra
     return map;
 }
 
-/* Maps it, and takes a place among its owners. message: where not, why. */
+/* Maps it, and takes an entry among its owners. message: where not, why. */
 static bool share(int descriptor, photon_file *file, char *message, size_t message_size)
 {
     if (file_system_is_network(descriptor)) {
@@ -554,7 +554,7 @@ void photon_file_close(photon_file *file)
         map_guard_remove(file->guard);
         munmap(file->memory, file->size_bytes);
         claim_owners_reset(&file->owners);
-        close(file->descriptor); /* and with it our place is free */
+        close(file->descriptor); /* frees our entry among the owners */
     } else {
         free(file->memory);
     }

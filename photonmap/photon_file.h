@@ -56,8 +56,8 @@ typedef enum photon_file_result {
 } photon_file_result;
 
 /* Opens the maps, which borrow the file, and have no surfaces yet. Where the file cannot be shared (it may not be
- * written, it is on a network's file system, or there are no places left) it is copied into memory: is_shared is false,
- * and its claims count as empty. message: one line, always terminated; for OPEN, why it is not shared. */
+ * written, it is on a network's file system, or its owners' table is full) it is copied into memory: is_shared is
+ * false, and its claims count as empty. message: one line, always terminated; for OPEN, why it is not shared. */
 photon_file_result photon_file_open(const run_context *run, const char *path, const photon_file_key *key,
                                     photon_file *out_file, photon_map *out_global, photon_map *out_caustic,
                                     char *message, size_t message_size);

@@ -65,7 +65,7 @@ static bool is_inside_solid(const scene *s)
 {
     const camera *c = &s->camera;
     if (c->kind == CAMERA_ORTHOGRAPHIC)
-        return false; /* which has no one place */
+        return false; /* which has no position */
     scene_ray ray = camera_generate_ray(c, 0.5f, 0.5f, 1.0f, (vec2){0.5f, 0.5f}, 0.0f);
     for (int i = 0; i < DIRECTIONS; i++) {
         surface_hit hit;

@@ -29,7 +29,7 @@ static ag_status render_passes(ag_rendering *r, uint32_t wanted)
     }
 }
 
-/* The passes between the places where it is decided which pixels need more. */
+/* The number of passes between decisions which pixels need more. */
 static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
 {
     ag_film *film = r->film;

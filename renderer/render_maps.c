@@ -117,7 +117,7 @@ static ag_status trace_maps(ag_context *context, const scene *s, const ag_render
                                             .irradiance_fraction = settings->irradiance_fraction,
                                             .surfaces = s};
         status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, out_global);
-        /* caustics gather in places: how many of their photons there are does not tell how far apart they lie */
+        /* caustics gather in spots: how many of their photons there are does not tell how far apart they lie */
         if (status == AG_OK)
             status = caustic_radius_find(out_global, &caustic, &map_settings.radius_bound);
         map_settings.irradiance_fraction = 1.0f;

@@ -140,9 +140,9 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa);
 /* Whether any light that meets it is traced on, rather than gathered: see bsdf.h. */
 bool scene_shape_is_traced(const scene *s, const shape *item);
 
-/* For shading: picks one of the lights that may shine at a place, about in proportion to what it may bring; u in [0,
+/* For shading: picks one of the lights that may shine at a point, about in proportion to what it may bring; u in [0,
  * 1). normal: unit, of a surface that scatters only what comes from the side it points to; zero: light from all sides
- * counts. Gives its index, and the probability with which this one is picked: 0 where no light reaches the place, and
+ * counts. Gives its index, and the probability with which this one is picked: 0 where no light reaches the point, and
  * the index is of no use. The scene has at least one light with power. */
 uint32_t scene_pick_light(const scene *s, vec3 point, vec3 normal, float u, float *out_probability);
 /* The probability with which scene_pick_light picks that one there. */

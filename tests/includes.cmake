@@ -92,6 +92,7 @@ set(cut
   "^scene/readers/pbrt/.*->scene/readers/(gltf/|model/([^p]|p[^l]|pl[^y]|ply_[^f]))"
   "^renderer/integrator/.*->renderer/(output|cli)/"
   "^renderer/output/.*->renderer/cli/"
+  "^renderer/cli/.*->threads/([a-rt-z]|s[^t]|st[^a])"
   "^scene/(surface|rays/ray|rays/rays)\\.h->scene/scene\\.h$"
   "^scene/(shape|texture)/[a-z_]+\\.h->scene/scene\\.h$"
   "^scene/scene\\.h->scene/rays/(bvh|rays|transmittance)\\.h$")

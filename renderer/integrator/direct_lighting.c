@@ -24,7 +24,7 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, const sur
                                : transmittance_of_ray(t->s, shadow, reach, &worker->rays_cut);
 }
 
-/* The lamp for a place, the numbers that sample it, and the factor by which its own density is multiplied. */
+/* The lamp for a point, the numbers that sample it, and the factor by which its own density is multiplied. */
 static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pick, vec2 *in_out_u, float *out_factor)
 {
     const direct_guide *guide = t->direct_guide;

@@ -9,37 +9,37 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each place that they see.
+/* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each point that they see.
  */
 enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHER_RAYS = 8, GRID_MAX = 4096 };
-/* Eye paths that look for places that are lit. */
+/* Eye paths that look for points that are lit. */
 enum { LIT_PATHS = 12288 };
 /* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
-typedef struct place_list {
-    asked_place *places; /* owned */
+typedef struct point_list {
+    asked_place *points; /* owned */
     uint32_t count, capacity;
     bool out_of_memory;
-} place_list;
+} point_list;
 
-static void add_place(place_list *list, vec3 position, vec3 normal)
+static void add_point(point_list *list, vec3 position, vec3 normal)
 {
     if (list->count == list->capacity) {
         uint32_t capacity = list->capacity ? 2 * list->capacity : 1024;
-        asked_place *larger = realloc(list->places, capacity * sizeof *larger);
+        asked_place *larger = realloc(list->points, capacity * sizeof *larger);
         if (!larger) {
             list->out_of_memory = true;
             return;
         }
-        list->places = larger;
+        list->points = larger;
         list->capacity = capacity;
     }
-    list->places[list->count++] = (asked_place){position, normal};
+    list->points[list->count++] = (asked_place){position, normal};
 }
 
 typedef struct lit_list {
-    lit_place *places; /* owned */
+    lit_point *points; /* owned */
     uint32_t count, capacity;
     bool out_of_memory;
 } lit_list;
@@ -48,42 +48,42 @@ static void add_lit(lit_list *list, const vertex *v, bsdf_lobes lobes)
 {
     if (list->count == list->capacity) {
         uint32_t capacity = list->capacity ? 2 * list->capacity : 256;
-        lit_place *larger = realloc(list->places, capacity * sizeof *larger);
+        lit_point *larger = realloc(list->points, capacity * sizeof *larger);
         if (!larger) {
             list->out_of_memory = true;
             return;
         }
-        list->places = larger;
+        list->points = larger;
         list->capacity = capacity;
     }
-    list->places[list->count++] = (lit_place){v->hit, v->arrived, direct_light_normal(v, lobes)};
+    list->points[list->count++] = (lit_point){v->hit, v->arrived, direct_light_normal(v, lobes)};
 }
 
-typedef struct row_places {
-    place_list gathered, seen;
+typedef struct row_points {
+    point_list gathered, seen;
     lit_list lit;
-} row_places;
+} row_points;
 
 typedef struct pilot_job {
     transport t;
     int width, height; /* of the grid */
     float aspect;
-    bool finds_lit;   /* places of direct light, and nothing else */
-    row_places *rows; /* [height] */
+    bool finds_lit;   /* points of direct light, and nothing else */
+    row_points *rows; /* [height] */
 } pilot_job;
 
-/* On each side that the place's diffuse lobes take light from. */
-static void add_sides(const transport *t, const vertex *v, place_list *list)
+/* On each side that the point's diffuse lobes take light from. */
+static void add_sides(const transport *t, const vertex *v, point_list *list)
 {
-    map_place at = transport_map_place(t, v);
+    map_point at = transport_map_point(t, v);
     if (!rgb_is_black(bsdf_gathered_reflection(&v->scattering)))
-        add_place(list, at.position, at.facing_normal);
+        add_point(list, at.position, at.facing_normal);
     if (!rgb_is_black(bsdf_gathered_transmission(&v->scattering)))
-        add_place(list, at.position, vec3_negate(at.facing_normal));
+        add_point(list, at.position, vec3_negate(at.facing_normal));
 }
 
-static void gather_places(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, int scatterings_left, place_list *list)
+static void gather_points(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                          int path_vertex, int scatterings_left, point_list *list)
 {
     for (uint32_t i = 0; scatterings_left >= 1 && i < GATHER_RAYS; i++) {
         rng random = rng_make(where->key, (uint64_t)path_vertex, i);
@@ -98,12 +98,12 @@ static void gather_places(const transport *t, eye_worker *worker, const vertex *
         ray.skips_uv = true;
         if (transport_meet(t, worker, ray, &met) &&
             gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight))
-            add_place(list, end.place.position, end.place.normal);
+            add_point(list, end.point.position, end.point.normal);
     }
 }
 
 /* As shading.c follows an eye path, but for all that is light. */
-static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_places *out)
+static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_points *out)
 {
     const transport *t = &job->t;
     const scene *s = t->s;
@@ -127,7 +127,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
                 add_sides(t, &v, &out->gathered);
             } else {
                 add_sides(t, &v, &out->seen);
-                gather_places(t, worker, &v, &where, path.vertex, t->settings->max_depth - path.scatterings - 1,
+                gather_points(t, worker, &v, &where, path.vertex, t->settings->max_depth - path.scatterings - 1,
                               &out->gathered);
             }
         }
@@ -155,7 +155,7 @@ static void divide_frame(int paths, float aspect, int *out_width, int *out_heigh
     *out_height = height < 1 ? 1 : height > GRID_MAX ? GRID_MAX : height;
 }
 
-static ag_status merge(const row_places *rows, int row_count, bool is_seen, place_importance *out_importance)
+static ag_status merge(const row_points *rows, int row_count, bool is_seen, place_importance *out_importance)
 {
     uint32_t count = 0, at = 0;
     for (int i = 0; i < row_count; i++) {
@@ -167,9 +167,9 @@ static ag_status merge(const row_places *rows, int row_count, bool is_seen, plac
     if (!all)
         return AG_ERROR_MEMORY;
     for (int i = 0; i < row_count; i++) {
-        const place_list *list = is_seen ? &rows[i].seen : &rows[i].gathered;
+        const point_list *list = is_seen ? &rows[i].seen : &rows[i].gathered;
         if (list->count > 0)
-            memcpy(all + at, list->places, list->count * sizeof *all);
+            memcpy(all + at, list->points, list->count * sizeof *all);
         at += list->count;
     }
     ag_status status = place_importance_create(all, count, out_importance);
@@ -193,9 +193,9 @@ static ag_status look_over_frame(pilot_job *job, run_context *run, int paths, co
 static void free_rows(pilot_job *job)
 {
     for (int i = 0; job->rows && i < job->height; i++) {
-        free(job->rows[i].gathered.places);
-        free(job->rows[i].seen.places);
-        free(job->rows[i].lit.places);
+        free(job->rows[i].gathered.points);
+        free(job->rows[i].seen.points);
+        free(job->rows[i].lit.points);
     }
     free(job->rows);
 }
@@ -227,10 +227,10 @@ void eye_pilot_reset(eye_pilot *pilot)
 }
 
 ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_settings *settings,
-                             lit_place **out_places, uint32_t *out_count)
+                             lit_point **out_points, uint32_t *out_count)
 {
     pilot_job job = {.t = {.s = s, .run = run}, .finds_lit = true};
-    lit_place *all = NULL;
+    lit_point *all = NULL;
     uint32_t count = 0;
     ag_status status = look_over_frame(&job, run, LIT_PATHS, settings);
     for (int i = 0; status == AG_OK && i < job.height; i++) {
@@ -239,12 +239,12 @@ ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_s
     }
     if (status == AG_OK && !(all = malloc((count + 1) * sizeof *all)))
         status = AG_ERROR_MEMORY;
-    *out_places = all;
+    *out_points = all;
     *out_count = 0;
     for (int i = 0; status == AG_OK && i < job.height; i++) {
         const lit_list *list = &job.rows[i].lit;
         if (list->count > 0)
-            memcpy(all + *out_count, list->places, list->count * sizeof *all);
+            memcpy(all + *out_count, list->points, list->count * sizeof *all);
         *out_count += list->count;
     }
     free_rows(&job);

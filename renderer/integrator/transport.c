@@ -84,18 +84,18 @@ rgb transport_emission(const transport *t, const vertex *v)
 
 vec3 transport_facing_normal(const vertex *v) { return vec3_face_forward(v->hit.geometric_normal, v->scattering.out); }
 
-map_place transport_map_place(const transport *t, const vertex *v)
+map_point transport_map_point(const transport *t, const vertex *v)
 {
     surface_rest rest = surface_at_opening(t->s, &v->hit);
     bool is_behind = vec3_dot(v->hit.geometric_normal, v->arrived.direction) > 0.0f;
-    return (map_place){rest.position, is_behind ? vec3_negate(rest.geometric_normal) : rest.geometric_normal};
+    return (map_point){rest.position, is_behind ? vec3_negate(rest.geometric_normal) : rest.geometric_normal};
 }
 
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
 {
     if (!t->caustic || t->caustic->set.count == 0)
         return rgb_gray(0.0f);
-    map_place at = transport_map_place(t, v);
+    map_point at = transport_map_point(t, v);
     arena_mark mark = arena_save(worker->scratch);
     photon_neighbor *neighbors =
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));

@@ -23,7 +23,7 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
     return environment_sample(l, point, u, &out->direction, &out->radiance, &out->pdf_solid_angle);
 }
 
-/* From a place in the portal, which is in the light's own medium, with what comes so far; window panes before it let
+/* From a point in the portal, which is in the light's own medium, with what comes so far; window panes before it let
  * light through straight. */
 static bool emit_through_portal(const scene *s, const light *l, const light_target *target,
                                 const emission_numbers *numbers, light_emission *out)

@@ -1,4 +1,4 @@
-/* material.c: what of a material can be worked out beforehand, and what it is at a place.
+/* material.c: what of a material can be worked out beforehand, and what it is at a point.
  * Threads: material_prepare while the scene is built; the rest read only. */
 #include "material/material.h"
 
@@ -102,7 +102,7 @@ bool material_is_clear_glass(const scene *s, uint32_t material_index)
     }
 }
 
-/* A mix picks one of its two by place alone, as pbrt-v4 does: the same for all rays, so photons and eye agree. */
+/* A mix picks one of its two by position alone, as pbrt-v4 does: the same for all rays, so photons and eye agree. */
 static const material *resolve_mix(const scene *s, const material *m, const surface_hit *hit)
 {
     uint32_t bits[3];
@@ -146,7 +146,7 @@ static rgb clamp_to_unit(rgb v)
     return (rgb){fminf(fmaxf(v.r, 0.0f), 1.0f), fminf(fmaxf(v.g, 0.0f), 1.0f), fminf(fmaxf(v.b, 0.0f), 1.0f)};
 }
 
-/* The material as it is at a place. */
+/* The material as it is at a point. */
 static void look_up_textures(const scene *s, const surface_hit *hit, const surface_footprint *footprint, material *m)
 {
     if (m->reflectance_texture != SCENE_NO_TEXTURE) {
@@ -211,7 +211,7 @@ static void look_up_principled(const scene *s, const surface_hit *hit, const sur
 
 enum { HALF = sizeof(material) / 2 };
 
-/* m is no mix; of one that a texture picks from, is_picked: beside the place the other may be, whose pixels are of any
+/* m is no mix; of one that a texture picks from, is_picked: beside the point the other may be, whose pixels are of any
  * colour in this one's pictures, so that none are filtered. */
 static void evaluate_at(const scene *s, const material *m, const surface_hit *hit, bool is_picked,
                         material *out_material)

@@ -23,7 +23,7 @@ typedef enum material_kind {
     MATERIAL_COATED_CONDUCTOR, /* a dielectric coat on a conductor */
     MATERIAL_HAIR,             /* a fibre, coloured within (hair.h); mostly on curves */
     MATERIAL_PRINCIPLED,       /* glTF 2.0's metallic-roughness, with transmission, ior, specular and clearcoat */
-    MATERIAL_MIX               /* one of two others, picked by place */
+    MATERIAL_MIX               /* one of two others, picked by position */
 } material_kind;
 
 struct coat_table;
@@ -57,7 +57,7 @@ typedef struct material {
     float clearcoat_roughness; /* as it is perceived, [0, 1] */
     bool is_thin; /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
 
-    /* of the same, set by scene_add_material, and at a place */
+    /* of the same, set by scene_add_material, and at a point */
     rgb dielectric_f0;  /* of facets at normal incidence; at grazing they reflect `specular` */
     float base_through; /* of diffuse light from outside, what gets to the diffuse base */
 
@@ -109,7 +109,7 @@ bool material_is_traced(const struct scene *s, uint32_t material_index);
 /* Whether the material is, or may pick, smooth glass, thin or not: light goes through it on one way alone. */
 bool material_is_clear_glass(const struct scene *s, uint32_t material_index);
 
-/* Whether rays pass the place unbent. */
+/* Whether rays pass the hit unbent. */
 bool material_is_interface(const struct scene *s, const struct surface_hit *hit);
 
 /* Whether that is so anywhere on surfaces of the material. */
@@ -118,11 +118,11 @@ bool material_may_be_interface(const struct scene *s, uint32_t material_index);
 /* The albedo of a material that is Lambertian, and the same all over; NULL of others. Not for curves: see bsdf.h. */
 const rgb *material_plain_albedo(const struct scene *s, uint32_t material_index);
 
-/* The material at a place: mixes picked, textures looked up. */
+/* The material at a point: mixes picked, textures looked up. */
 void material_at(const struct scene *s, const struct surface_hit *hit, material *out_material);
 
-/* Of a surface that gathers light anywhere (bsdf.h), the material by which it does, at a place where that one may not
- * have been picked or has a black texel. false: no place of the surface gathers. */
+/* Of a surface that gathers light anywhere (bsdf.h), the material by which it does, at a point where that one may not
+ * have been picked or has a black texel. false: no point of the surface gathers. */
 bool material_gathering_at(const struct scene *s, const struct surface_hit *hit, material *out_material);
 
 #endif

@@ -53,7 +53,7 @@ static float displacement_beside(const scene *s, const surface_hit *hit, const s
     return texture_evaluate_float(s, index, &beside);
 }
 
-/* The normal of the surface p + d n. Its tangents are dp + dd n + d dn; slopes are those between places before and
+/* The normal of the surface p + d n. Its tangents are dp + dd n + d dn; slopes are those between points before and
  * behind, half a pixel of the finest picture away: nearer, the slope would jump from pixel to pixel. */
 static vec3 bump_normal(const scene *s, const surface_hit *hit, const material *m)
 {

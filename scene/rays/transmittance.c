@@ -18,7 +18,7 @@ static bool is_passed(const scene *s, const surface_hit *hit)
     return material_is_interface(s, hit) && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
 }
 
-/* The share of a ray that a place lets through unbent: all of it, a pane's or slab's transmittance, or nothing. */
+/* The share of a ray that a surface lets through unbent: all of it, a pane's or slab's transmittance, or nothing. */
 static rgb let_through(const scene *s, const surface_hit *hit, const scene_ray *ray, bool through_panes)
 {
     if (is_passed(s, hit))
@@ -35,8 +35,8 @@ scene_ray scene_ray_continue(const surface_hit *hit, const scene_ray *ray)
     bool is_slab = hit->slab.thickness > 0.0f;
     scene_ray next = is_slab ? *ray : surface_ray(hit, *ray, ray->direction);
     next.origin = is_slab
-                      ? surface_place_behind(hit->slab.exit, hit->geometric_normal, hit->slab.epsilon, ray->direction)
-                      : surface_place_behind(hit->position, hit->geometric_normal, hit->epsilon, ray->direction);
+                      ? surface_point_behind(hit->slab.exit, hit->geometric_normal, hit->slab.epsilon, ray->direction)
+                      : surface_point_behind(hit->position, hit->geometric_normal, hit->epsilon, ray->direction);
     if (is_slab && hit->has_medium_interface)
         next.medium = hit->medium_outside;
     return next;
@@ -130,7 +130,7 @@ rgb transmittance_of_ray(const scene *s, scene_ray ray, float reach, uint64_t *i
     rgb left = rgb_gray(1.0f);
     float unit = normalize_direction(&ray);
     if (!(unit > 0.0f))
-        return left; /* from a place to itself */
+        return left; /* from a point to itself */
     return follow(s, &ray, reach * unit, false, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;
 }
 

@@ -90,9 +90,9 @@ static void irradiance_photons_are_spread_as_the_photons_are(void **state)
     }
     for (uint32_t i = 0; i < PHOTONS; i++) {
         bool is_served = has_irradiance[i];
-        field_place p = field_photon(&map, i);
+        field_point p = field_photon(&map, i);
         for (uint32_t k = i / EACH * EACH; k < (i / EACH + 1) * EACH && !is_served; k++) {
-            field_place q = field_photon(&map, k);
+            field_point q = field_photon(&map, k);
             is_served = has_irradiance[k] &&
                         vec3_distance_squared(p.position, q.position) <= 0.25f * map.max_radius * map.max_radius &&
                         vec3_dot(p.normal, q.normal) > PHOTON_NEAREST_MIN_COS;
@@ -108,7 +108,7 @@ static void irradiance_photons_are_spread_as_the_photons_are(void **state)
     test_run_reset(&r);
 }
 
-/* Photons on a line too far apart for one to stand for another, and photons at one place that look six ways, of which
+/* Photons on a line too far apart for one to stand for another, and photons at one point that look six ways, of which
  * no more than six are irradiance photons in each run. */
 static void what_cannot_be_stood_for_bears(void **state)
 {
@@ -165,7 +165,7 @@ static void threads_do_not_matter(void **state)
 static void the_mean_through_the_nearest_irradiance_photon_is_right(void **state)
 {
     (void)state;
-    enum { MAPS = 12 / (FEWER > 1 ? 4 : 1), PLACES = 10000 / FEWER };
+    enum { MAPS = 12 / (FEWER > 1 ? 4 : 1), POINTS = 10000 / FEWER };
     static const float FRACTIONS[] = {0.5f, 0.25f, 0.125f};
     for (int f = 0; f < 3; f++) {
         double mean = 0.0;
@@ -176,16 +176,16 @@ static void the_mean_through_the_nearest_irradiance_photon_is_right(void **state
             irradiance_cache cache;
             assert_int_equal(irradiance_cache_create(&map, IRRADIANCE_ON_DEMAND, 1, &cache), AG_OK);
             rng random = test_random((uint64_t)(100 + m));
-            for (int i = 0; i < PLACES; i++) {
+            for (int i = 0; i < POINTS; i++) {
                 irradiance_request request;
-                field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
+                field_point at = field_point_at(FIELD_SPHERE, rng_vec2(&random));
                 irradiance_cache_get(&cache, at.position, at.normal, 0, &request);
-                mean += (double)request.irradiance.r / (MAPS * PLACES);
+                mean += (double)request.irradiance.r / (MAPS * POINTS);
             }
             irradiance_counters c = irradiance_cache_counters(&cache);
             assert_true(c.computed > 0 && c.computed <= map.irradiance_photons.count);
             assert_int_equal(c.computed, irradiance_cache_distinct(&cache));
-            assert_true(c.uncached <= PLACES / 10); /* nearly all have an irradiance photon nearby */
+            assert_true(c.uncached <= POINTS / 10); /* nearly all have an irradiance photon nearby */
             irradiance_cache_reset(&cache);
             photon_map_reset(&map);
             test_run_reset(&r);
@@ -210,7 +210,7 @@ static void on_demand_and_precomputed_are_the_same_bits(void **state)
     rng random = test_random(7);
     for (int i = 0; i < 2000; i++) {
         irradiance_request x, y;
-        field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
+        field_point at = field_point_at(FIELD_SPHERE, rng_vec2(&random));
         irradiance_cache_get(&on_demand, at.position, at.normal, 1, &x);
         irradiance_cache_get(&precomputed, at.position, at.normal, 2, &y);
         assert_memory_equal(&x.irradiance, &y.irradiance, sizeof x.irradiance);

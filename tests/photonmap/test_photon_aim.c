@@ -21,7 +21,7 @@ static const char *const ROOM =
 static const char *const SKY = "LightSource \"infinite\" \"rgb L\" [1 1 1]";
 static const double THROUGH_WINDOW = 3.14159265358979 * 0.5 * 0.5; /* W: pi radiance area */
 
-enum { PLACES = 8000, PHOTONS = 100000, SEEDS = 8 };
+enum { POINTS = 8000, PHOTONS = 100000, SEEDS = 8 };
 
 static scene *room_scene(test_run *r, const char *lights)
 {
@@ -33,11 +33,11 @@ static scene *room_scene(test_run *r, const char *lights)
 /* Asked for on the floor and the walls, from inside. */
 static place_importance ask_inside(void)
 {
-    asked_place *places = malloc(PLACES * sizeof *places);
+    asked_place *points = malloc(POINTS * sizeof *points);
     place_importance importance;
-    assert_non_null(places);
+    assert_non_null(points);
     rng random = test_random(6);
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < POINTS; i++) {
         vec3 p = random_in_box(&random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){1.0f, 1.0f, 2.0f});
         vec3 n = {0.0f, 0.0f, 1.0f};
         switch (i % 5) {
@@ -47,10 +47,10 @@ static place_importance ask_inside(void)
         case 3: p.y = -1.0f, n = (vec3){0.0f, 1.0f, 0.0f}; break;
         default: p.y = 1.0f, n = (vec3){0.0f, -1.0f, 0.0f}; break;
         }
-        places[i] = (asked_place){p, n};
+        points[i] = (asked_place){p, n};
     }
-    assert_int_equal(place_importance_create(places, PLACES, &importance), AG_OK);
-    free(places);
+    assert_int_equal(place_importance_create(points, POINTS, &importance), AG_OK);
+    free(points);
     return importance;
 }
 
@@ -233,18 +233,18 @@ static void a_room_that_is_lit_from_within_needs_no_aim(void **state)
     test_run_init(&r, 2);
     scene *s = test_scene_create(&r, "LightSource \"point\" \"rgb I\" [1 1 1]\nMaterial \"diffuse\"\n"
                                      "Shape \"sphere\" \"float radius\" [1]");
-    asked_place *places = malloc(PLACES * sizeof *places);
+    asked_place *points = malloc(POINTS * sizeof *points);
     place_importance asked;
-    assert_non_null(places);
+    assert_non_null(points);
     rng random = test_random(8);
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < POINTS; i++) {
         vec3 d = random_direction(&random);
-        places[i] = (asked_place){d, vec3_negate(d)};
+        points[i] = (asked_place){d, vec3_negate(d)};
     }
-    assert_int_equal(place_importance_create(places, PLACES, &asked), AG_OK);
+    assert_int_equal(place_importance_create(points, POINTS, &asked), AG_OK);
     expect_no_guide(s, &r, PHOTON_GLOBAL, &asked);
     place_importance_reset(&asked);
-    free(places);
+    free(points);
     scene_destroy(s);
     test_run_reset(&r);
 }

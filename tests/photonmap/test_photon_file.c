@@ -23,7 +23,7 @@ static void what_was_computed_is_there_again(void **state)
     assert_int_equal(o.caustic.set.count, 0);
     for (uint32_t i = 0; i < PHOTONS; i += 3) {
         expect_right(&o.map, i, ask(&o, i));
-        field_place p = field_photon(&in_memory, i), q = field_photon(&o.map, i);
+        field_point p = field_photon(&in_memory, i), q = field_photon(&o.map, i);
         assert_memory_equal(&p, &q, sizeof p);
         expect_right(&in_memory, i, expected_at(&o.map, i));
     }
@@ -86,7 +86,7 @@ static void irradiance_photons_are_kept(void **state)
         irradiance_cache_share(&o.cache, &o.file.owners);
         for (uint32_t i = 0; i < PHOTONS; i += 3) {
             irradiance_request x, y;
-            field_place at = field_photon(&map, i);
+            field_point at = field_photon(&map, i);
             irradiance_cache_get(&in_memory, at.position, at.normal, 0, &x);
             irradiance_cache_get(&o.cache, at.position, at.normal, 0, &y);
             assert_memory_equal(&x.irradiance, &y.irradiance, sizeof x.irradiance);
@@ -200,7 +200,7 @@ static void slots_may_hold_anything(void **state)
     for (uint32_t i = 0; i < PHOTONS; i++) {
         uint32_t word = (uint32_t)rng_next(&random);
         if (i % 3 == 0)
-            word = irradiance_word(IRRADIANCE_CLAIMED, word & 0x3ff); /* places and generations that there may be */
+            word = irradiance_word(IRRADIANCE_CLAIMED, word & 0x3ff); /* indices and generations that there may be */
         store_relaxed_u32(photon_block_slot(o.map.blocks, i), word);
         not_ready += !irradiance_word_is_ready(word) && word != 0 &&
                      word != irradiance_word(IRRADIANCE_CLAIMED, o.file.owners.claimer);
@@ -299,7 +299,7 @@ static void check_bytes_tell_bits(void **state)
     }
 }
 
-/* Where all places are taken a process works on a copy, in which nobody else's claims are. */
+/* Where all entries of the table are taken a process works on a copy, in which nobody else's claims are. */
 static void a_copy_has_no_claims(void **state)
 {
     (void)state;

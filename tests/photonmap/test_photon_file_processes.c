@@ -259,7 +259,7 @@ static void what_was_taken_over_is_counted(void **state)
         irradiance_request request;
         uint32_t i = asked++ % PHOTONS;
         store_relaxed_u32(photon_block_slot(o.map.blocks, i), 0); /* empty */
-        field_place p = field_photon(&o.map, i);
+        field_point p = field_photon(&o.map, i);
         irradiance_cache_get(&o.cache, p.position, p.normal, 0, &request);
         if (request.irradiance_photon == PHOTON_NONE)
             expect_right(&o.map, i, request.irradiance);

@@ -344,7 +344,7 @@ static void a_shortage_is_explained(void **state)
 }
 
 /* A plate goes through a narrow beam, by which it is met for so much of the time; the floor below has the rest. Photons
- * on the plate lie where those places are when it starts. */
+ * on the plate lie where those points are when it starts. */
 static void paths_have_times_of_their_own(void **state)
 {
     (void)state;

@@ -29,7 +29,7 @@ static int tear_down(void **state)
     "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 1 1 0 -1 1 0 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n"
 #define WITH_UV "\"point2 uv\" [ 0 0 1 0 1 1 0 1 ]\n"
 
-/* Downwards from a place above a point of the square |x|, |y| < 1. */
+/* Downwards from a point above a point of the square |x|, |y| < 1. */
 static scene_ray ray_down(rng *random, float spread)
 {
     vec3 on = random_in_box(random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){1.0f, 1.0f, 0.0f});

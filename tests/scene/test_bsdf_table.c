@@ -1,6 +1,6 @@
 /* test_bsdf_table.c: what must hold for every material, one row for each: samples fall as their density says, weigh
  * f cos / pdf, gain nothing as flux or as radiance, and go both ways alike; what photons store and the eye looks up is
- * the value. Some rows come from scene text, with the place of a hit: mixes, textures, alpha, interfaces. Rests on:
+ * the value. Some rows come from scene text, with the position of a hit: mixes, textures, alpha, interfaces. Rests on:
  * Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2 (reciprocity where light is bent).
  * Threads: one. */
 #include "fixtures/bsdf_fixture.h"
@@ -8,7 +8,7 @@
 
 enum { SAMPLES = 20000 / FEWER };
 
-/* A material made here, or the text of one, met at a place of a disk that faces up. */
+/* A material made here, or the text of one, met at a point of a disk that faces up. */
 typedef struct row {
     const char *name, *text;
     material parameters;
@@ -31,7 +31,7 @@ static void add(table *t, const char *name, material m)
     t->rows[t->count++] = (row){.name = name, .parameters = m};
 }
 
-/* The text sets the material of what follows; x: the place on the disk. */
+/* The text sets the material of what follows; x: the point on the disk. */
 static void add_text(table *t, const char *name, const char *text, const char *more, float x)
 {
     char world[1024];

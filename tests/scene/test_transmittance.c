@@ -185,7 +185,7 @@ static void surfaces_tell_rays_their_medium(void **state)
     test_run_reset(&r);
 }
 
-/* Half of the places of a mix with an interface are not there; and a medium is passed there without a trace of it. */
+/* Half of the points of a mix with an interface are not there; and a medium is passed there without a trace of it. */
 static void mixes_with_an_interface_have_holes(void **state)
 {
     (void)state;

@@ -278,11 +278,11 @@ typedef struct ag_render_settings {
     uint64_t caustic_photon_count; /* photons to store in the caustic map; only where anything is specular; [0, …] */
     int nearest;                   /* photons of an estimate, [1, 65536] */
     float radius;                  /* largest radius of an estimate, scene units; 0: from the photons' density */
-    float irradiance_fraction;     /* of the photons, how many are irradiance photons, (0, 1]: gather rays look for the
-                                      nearest of those, and each estimate is still of all photons. Less is faster, and blurs
-                                      by about     what those are apart. Where photons lie far apart, and where surfaces
-                                      turn,     more of     the photons become irradiance photons, so that each photon has one
-                                      nearby.     Default 1 */
+    float irradiance_fraction;     /* share of the photons that irradiance is kept at, (0, 1]: gather rays look for the
+                                      nearest of these irradiance photons, and each estimate is still of all photons.
+                                      Less is faster, and blurs by about their spacing. Where photons lie far apart,
+                                      and where surfaces turn, more photons are taken, so that each has an irradiance
+                                      photon nearby. Default 1 */
     float gather_guiding; /* how much the photons' directions decide where gather rays go, [0, 1]: the share of the
                              rays that goes where light comes from, where photons are many; the rest goes by the
                              cosine. 0: all. Less noise or more, the same light. Default
