@@ -115,6 +115,7 @@ static void add_lobes(bsdf *b)
         if (!rgb_is_black(scattered))
             add_lobe(b, LOBE_COAT_SCATTERED, BSDF_TRACED, false, rgb_max(scattered));
         break;
+    case MATERIAL_HAIR: add_lobe(b, LOBE_HAIR, BSDF_TRACED, false, 1.0f); break;
     case MATERIAL_PRINCIPLED: add_principled(b); break;
     }
     normalize_probabilities(b);
@@ -128,6 +129,8 @@ static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
     b->out = out;
     b->is_pane = pane_is_of(&b->parameters);
     b->lobe_count = 0;
+    if (b->parameters.kind == MATERIAL_HAIR)
+        b->fibre = hair_fibre_at(&b->parameters, hit->uv.y);
     add_lobes(b);
     for (int k = 0; hit->is_strand && k < b->lobe_count; k++)
         b->lobes[k].group = BSDF_TRACED;
