@@ -2,10 +2,11 @@
  * Threads: see photon_map.h. */
 #include "photon_map.h"
 
-#include "math/compare_floats.h"
 #include "parallel_for.h"
 #include "photon_kernels.h"
+#include "photon_survey.h"
 #include "rays/transmittance.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,28 +24,21 @@ enum { IRRADIANCE_OCTAVES = 64, OCTAVES_OF_A_THOUSAND = 10 };
 static const float MEDIAN_FACTOR = 4.0f;
 /* Half of the photons may lie at one point, a share of the largest radius that is no use. */
 static const float LEAST_MEDIAN = 0x1p-16f;
-enum { MEDIAN_OF = 255 };
 
-/* By the radii of the estimates at every so-manieth photon: max_radius where it has no k neighbours. */
+/* The radius of the estimate at a photon: max_radius where it has no k neighbours. */
+static float radius_at(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
+{
+    float other_squared;
+    uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
+                                           map->nearest + 1, scratch, &other_squared);
+    return found == map->nearest + 1 ? sqrtf(photon_neighbor_distance_squared(scratch[map->nearest])) : map->max_radius;
+}
+
 static ag_status bound_radii(photon_map *map)
 {
-    float radius[MEDIAN_OF];
-    uint32_t count = map->set.count < MEDIAN_OF ? map->set.count : MEDIAN_OF;
-    photon_neighbor *scratch = malloc(photon_map_scratch_count(map) * sizeof *scratch);
-    if (!scratch)
-        return AG_ERROR_MEMORY;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t index = (uint32_t)((uint64_t)i * map->set.count / count);
-        float other_squared;
-        uint32_t found =
-            photon_tree_k_nearest(&map->tree, photon_block_position(map->blocks, index),
-                                  direction_decode(photon_block_normal(map->blocks, index)), PHOTON_ESTIMATE_MIN_COS,
-                                  map->max_radius, map->nearest + 1, scratch, &other_squared);
-        radius[i] = found == map->nearest + 1 ? sqrtf(photon_neighbor_distance_squared(scratch[map->nearest]))
-                                              : map->max_radius;
-    }
-    free(scratch);
-    qsort(radius, count, sizeof *radius, compare_floats);
+    float radius[PHOTON_SURVEY_MAX];
+    uint32_t count;
+    AG_TRY(photon_survey(map, radius_at, radius, &count));
     float median = fmaxf(radius[count / 2], LEAST_MEDIAN * map->max_radius);
     map->mean_radius = fminf(map->mean_radius, MEDIAN_FACTOR * median);
     map->max_radius = fminf(map->max_radius, RADIUS_FACTOR * map->mean_radius);

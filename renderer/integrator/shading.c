@@ -77,8 +77,8 @@ static void gather_light(const transport *t, eye_worker *worker, const vertex *v
 }
 
 /* Light samples are shared like gather rays, but each vertex has one. */
-static rgb direct_radiance(const transport *t, eye_worker *worker, const vertex *v, const camera_sample *from,
-                           const eye_path *path, eye_sample *sample, rgb *by_group)
+static direct_light direct_radiance(const transport *t, eye_worker *worker, const vertex *v, const camera_sample *from,
+                                    const eye_path *path, eye_sample *sample, rgb *by_group)
 {
     uint32_t lights = from->split.lights;
     if (path->scatterings > 0) {
@@ -86,13 +86,13 @@ static rgb direct_radiance(const transport *t, eye_worker *worker, const vertex 
         lights = 1u << bits < lights ? 1u << bits : lights;
     }
     uint64_t before = eye_worker_cost(worker);
-    rgb direct =
+    direct_light direct =
         direct_light_gathered(t, worker, v, &path->where, eye_path_key(path) + KEY_OF_RAYS * (int)sampler_bits(lights),
                               transport_sample_counts(t, lights), by_group);
     if (path->scatterings == 0) {
         float weight = rgb_mean(path->throughput);
         sample->light_cost += (uint32_t)(eye_worker_cost(worker) - before);
-        sample->light_variance += weight * weight * worker->direct_variance;
+        sample->light_variance += weight * weight * direct.variance;
     }
     return direct;
 }
@@ -121,8 +121,9 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
         return sum;
     }
     if (is_whole) {
-        sum.direct = direct_radiance(t, worker, v, from, path, sample, by_group);
-        sum.sky = worker->direct_from_sky;
+        const direct_light direct = direct_radiance(t, worker, v, from, path, sample, by_group);
+        sum.direct = direct.radiance;
+        sum.sky = direct.from_sky;
     }
     if (path->scatterings == 0)
         sum.caustic = transport_caustics(t, worker, v);

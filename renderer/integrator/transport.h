@@ -39,13 +39,11 @@ typedef struct eye_worker {
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
     uint64_t rays_estimate;                /* of photon estimates and lookups at the point itself */
     uint64_t camera_rays_met;              /* those that met a surface */
-    rgb direct_from_sky;                   /* of the last direct_light_gathered, what infinite lights gave */
     uint64_t samples_not_finite, rays_cut; /* the latter: by TRANSMITTANCE_CROSSINGS_MAX */
     arena *scratch;                        /* for neighbours; what render.c has tried out beforehand always fits */
     gather_batch *batch;                   /* of the samples under way; NULL for path tracing */
     struct sample_queue *queue;            /* those samples */
-    float direct_variance; /* of the last direct_light_gathered, in the mean of the three colours: an estimate */
-    uint64_t cost_apart;   /* of whatever samples' detours, in all */
+    uint64_t cost_apart;                   /* of whatever samples' detours, in all */
 } eye_worker;
 
 /* What a worker's rays have cost so far, but for detours, which do not belong to the sample under way: in quarters of a

@@ -17,14 +17,14 @@
 #ifndef AFTERGLOW_BSDF_H
 #define AFTERGLOW_BSDF_H
 
+#include "material/hair.h"
 #include "material/material.h"
 #include "scene.h"
 
-/* The largest factors that shading normals may add to a photon: where it arrives at a surface, and where a lobe that is
- * not diffuse sends it on. Light nearer to the surface than that is some thousandths where normals lean by 45 degrees,
- * and its part beyond the factor is lost. */
-#define BSDF_ARRIVAL_MAX    32.0f
-#define BSDF_CORRECTION_MAX 32.0f
+/* The largest factor that a shading normal may multiply a photon's flux by: where it arrives at a surface, and where a
+ * lobe that is not diffuse sends it on. Light nearer to the surface than that is some thousandths where normals lean by
+ * 45 degrees, and its part beyond the factor is lost. */
+#define BSDF_SHADING_NORMAL_MAX 32.0f
 
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
 
@@ -41,6 +41,7 @@ typedef enum bsdf_lobe_kind {
     LOBE_COAT,                 /* reflection by a dielectric coat */
     LOBE_CONDUCTOR_UNDER_COAT, /* refracted in, reflected by the conductor, refracted out */
     LOBE_COAT_SCATTERED,       /* what leaves a coat at any angle (coat.h) */
+    LOBE_HAIR,                 /* all ways by a fibre (hair.h) */
     LOBE_PRINCIPLED,           /* metal's and dielectric's reflection, and transmission, straight or refracted */
     LOBE_CLEARCOAT             /* reflection by the coat of the principled one */
 } bsdf_lobe_kind;
@@ -61,6 +62,7 @@ typedef struct bsdf {
     material parameters;              /* as it is at this hit */
     bool is_pane;                     /* lets light straight through (pane.h, slab.h), and does not shine itself */
     rgb slab_reflected, slab_through; /* of LOBE_SLAB, which then is the only lobe */
+    hair_fibre fibre;                 /* of LOBE_HAIR */
     int lobe_count;
     bsdf_lobe lobes[BSDF_LOBES_MAX];
 } bsdf;

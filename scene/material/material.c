@@ -2,6 +2,7 @@
  * Threads: material_prepare while the scene is built; the rest read only. */
 #include "material/material.h"
 
+#include "material/hair.h"
 #include "material/material_mips.h"
 #include "material/principled.h"
 #include "material/surface_footprint.h"
@@ -36,6 +37,8 @@ material material_make(material_kind kind)
         m.reflectance = rgb_gray(1.0f);
     if (kind == MATERIAL_DIFFUSE_TRANSMISSION)
         m.reflectance = m.transmittance = rgb_gray(0.25f);
+    m.hair_beta_m = m.hair_beta_n = 0.3f;
+    m.hair_tilt_degrees = 2.0f;
     m.mix_amount = 0.5f;
     m.reflectance_texture = m.transmittance_texture = m.alpha_u_texture = m.alpha_v_texture = m.mix_amount_texture =
         m.metallic_texture = m.roughness_texture = m.transmission_texture = m.specular_texture =
@@ -157,6 +160,8 @@ static void look_up_textures(const scene *s, const surface_hit *hit, const surfa
                              relative);
         }
     }
+    if (m->kind == MATERIAL_HAIR && m->reflectance_texture != SCENE_NO_TEXTURE)
+        m->hair_sigma_a = hair_absorption_from_reflectance(m->reflectance, m->hair_beta_n);
     if (m->transmittance_texture != SCENE_NO_TEXTURE)
         m->transmittance = clamp_to_unit(texture_filtered_rgb(s, m->transmittance_texture, hit, footprint));
     if (m->kind == MATERIAL_DIFFUSE_TRANSMISSION) {

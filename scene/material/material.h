@@ -21,6 +21,7 @@ typedef enum material_kind {
     MATERIAL_INTERFACE,      /* no surface: light passes unbent (transmittance.h), perhaps from one medium to another */
     MATERIAL_COATED_DIFFUSE, /* a dielectric coat on a diffuse base */
     MATERIAL_COATED_CONDUCTOR, /* a dielectric coat on a conductor */
+    MATERIAL_HAIR,             /* a fibre, coloured within (hair.h); mostly on curves */
     MATERIAL_PRINCIPLED,       /* glTF 2.0's metallic-roughness, with transmission, ior, specular and clearcoat */
     MATERIAL_MIX               /* one of two others, picked by position */
 } material_kind;
@@ -39,9 +40,12 @@ typedef struct material {
     rgb coat_albedo;                  /* of that stuff, [0, 1]; black: it does not scatter */
     float coat_g;                     /* mean cosine of its scattering, in (-1, 1) */
     int coat_bounces; /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
-    const struct coat_table *coat; /* where coat_needs_table; set by scene_add_material, and the scene's own */
-    uint32_t mixed[2];             /* mix: indices of materials made before */
-    float mix_amount;              /* mix: the share of the second, [0, 1] */
+    const struct coat_table *coat;  /* where coat_needs_table; set by scene_add_material, and the scene's own */
+    rgb hair_sigma_a;               /* per radius of the way within a fibre, >= 0; ior is the fibre's */
+    float hair_beta_m, hair_beta_n; /* roughness along the fibre and about it, [0, 1] */
+    float hair_tilt_degrees;        /* of its scales */
+    uint32_t mixed[2];              /* mix: indices of materials made before */
+    float mix_amount;               /* mix: the share of the second, [0, 1] */
 
     /* principled; reflectance is the base colour, ior >= 1 or 0 (infinite) */
     float metallic;            /* [0, 1] */

@@ -13,7 +13,10 @@ static bool has_maps(const material *m)
     return m->normal_map_texture != SCENE_NO_TEXTURE || m->displacement_texture != SCENE_NO_TEXTURE;
 }
 
-static bool has_grain(const material *m) { return m->alpha_u != m->alpha_v || m->base_alpha_u != m->base_alpha_v; }
+static bool has_grain(const material *m)
+{
+    return m->alpha_u != m->alpha_v || m->base_alpha_u != m->base_alpha_v || m->kind == MATERIAL_HAIR;
+}
 
 /* x along a tangent as far as it goes across z; any where it does not. */
 static frame frame_along(vec3 z, vec3 tangent)

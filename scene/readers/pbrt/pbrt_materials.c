@@ -48,7 +48,7 @@ static const material_reader READERS[] = {
     {"interface", MATERIAL_INTERFACE, read_interface},
     {"none", MATERIAL_INTERFACE, read_interface},
     {"", MATERIAL_INTERFACE, read_interface},
-    {"hair", MATERIAL_DIFFUSE, pbrt_read_hair},
+    {"hair", MATERIAL_HAIR, pbrt_read_hair},
     {"subsurface", MATERIAL_COATED_DIFFUSE, pbrt_read_subsurface},
     {"measured", MATERIAL_DIFFUSE, pbrt_read_measured},
 };
