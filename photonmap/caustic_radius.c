@@ -2,32 +2,18 @@
 #include "caustic_radius.h"
 
 #include "irradiance_estimate.h"
-#include "math/compare_floats.h"
+#include "photon_survey.h"
 #include "status.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-/* Irradiance is asked for at so many photons of the global map; dim are the darkest of them, one in so many. */
-enum { SAMPLES = 255, DIM_ONE_IN = 20 };
+/* One photon of the global map in so many is darker than the dim irradiance. */
+enum { DIM_ONE_IN = 20 };
 
 /* [W/m^2] of the channel that is largest. */
-static ag_status find_dim_irradiance(const photon_map *global, float *out_irradiance)
+static float irradiance_at(const photon_map *global, vec3 position, vec3 normal, photon_neighbor *scratch)
 {
-    float found[SAMPLES];
-    uint32_t count = global->set.count < SAMPLES ? global->set.count : SAMPLES;
-    photon_neighbor *scratch = malloc(photon_map_scratch_count(global) * sizeof *scratch);
-    if (!scratch)
-        return AG_ERROR_MEMORY;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t index = (uint32_t)((uint64_t)i * global->set.count / count);
-        vec3 normal = direction_decode(photon_block_normal(global->blocks, index));
-        found[i] = rgb_max(irradiance_estimate(global, photon_block_position(global->blocks, index), normal, scratch));
-    }
-    free(scratch);
-    qsort(found, count, sizeof *found, compare_floats);
-    *out_irradiance = found[count / DIM_ONE_IN];
-    return AG_OK;
+    return rgb_max(irradiance_estimate(global, position, normal, scratch));
 }
 
 ag_status caustic_radius_find(const photon_map *global, const photon_set *caustic, float *out_radius)
@@ -35,8 +21,10 @@ ag_status caustic_radius_find(const photon_map *global, const photon_set *causti
     *out_radius = global->max_radius;
     if (global->set.count == 0 || caustic->count == 0)
         return AG_OK;
-    float dim = 0.0f;
-    AG_TRY(find_dim_irradiance(global, &dim));
+    float found[PHOTON_SURVEY_MAX];
+    uint32_t count;
+    AG_TRY(photon_survey(global, irradiance_at, found, &count));
+    const float dim = found[count / DIM_ONE_IN];
     double flux = 0.0;
     for (uint32_t i = 0; i < caustic->count; i++)
         flux += (double)rgb_max(flux_decode(caustic->photons[i].flux));

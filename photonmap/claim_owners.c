@@ -11,8 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { PLACE_BITS = 8, GENERATION_MASK = (1 << 22) - 1 };
-_Static_assert(CLAIM_OWNERS_MAX == 1 << PLACE_BITS, "a claim's 30 bits are place and generation");
+enum { INDEX_BITS = 8, GENERATION_MASK = (1 << 22) - 1 };
+_Static_assert(CLAIM_OWNERS_MAX == 1 << INDEX_BITS, "a claim's 30 bits are index and generation");
 
 /* Beyond what any map file holds, for locks need no bytes; other programs that lock whole files stay out of it. */
 static const int64_t LOCKS_AT = (int64_t)1 << 60;
@@ -21,10 +21,10 @@ static const int64_t LOCKS_AT = (int64_t)1 << 60;
 static const double STANDSTILL_SECONDS = 3.0;
 enum { ROUNDS_AWAKE = 64, SLEEP_NANOSECONDS = 200000 };
 
-static struct flock lock_of(uint32_t place)
+static struct flock lock_of(uint32_t index)
 {
     return (struct flock){
-        .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = (off_t)(LOCKS_AT + (int64_t)place), .l_len = 1};
+        .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = (off_t)(LOCKS_AT + (int64_t)index), .l_len = 1};
 }
 
 /* Never 0, so that no claim is all zero. */
@@ -36,8 +36,8 @@ static uint32_t next_generation(uint32_t generation)
 
 bool claim_owners_join(int file, claim_owner *table, claim_owners *out_owners)
 {
-    for (uint32_t place = 0; place < CLAIM_OWNERS_MAX; place++) {
-        struct flock lock = lock_of(place);
+    for (uint32_t index = 0; index < CLAIM_OWNERS_MAX; index++) {
+        struct flock lock = lock_of(index);
         if (fcntl(file, F_OFD_SETLK, &lock) != 0) {
             if (errno == EAGAIN || errno == EACCES)
                 continue; /* somebody lives there */
@@ -46,12 +46,12 @@ bool claim_owners_join(int file, claim_owner *table, claim_owners *out_owners)
         atomic_u32 *stalled = calloc(CLAIM_OWNERS_MAX, sizeof *stalled);
         if (!stalled)
             return false;
-        claim_owner *own = &table[place];
+        claim_owner *own = &table[index];
         uint32_t generation = next_generation(load_relaxed_u32(&own->generation));
         store_relaxed_u32(&own->process, (uint32_t)getpid());
         /* Ordered by our claims, which release: who acquires a claim of this generation finds it in the table. */
         store_relaxed_u32(&own->generation, generation);
-        *out_owners = (claim_owners){table, file, generation << PLACE_BITS | place, stalled};
+        *out_owners = (claim_owners){table, file, generation << INDEX_BITS | index, stalled};
         return true;
     }
     return false;
@@ -65,20 +65,20 @@ void claim_owners_reset(claim_owners *owners)
 
 void claim_owners_renew(claim_owners *owners, uint32_t claimer)
 {
-    uint32_t place = claimer & (CLAIM_OWNERS_MAX - 1), before = claimer >> PLACE_BITS, next = next_generation(before);
+    uint32_t index = claimer & (CLAIM_OWNERS_MAX - 1), before = claimer >> INDEX_BITS, next = next_generation(before);
     /* The table first: whoever reads a claim of the new number finds it there, for our claims release. */
-    if (cas_acquire_release_u32(&owners->table[place].generation, &before, next))
-        store_relaxed_u32(&owners->claimer, next << PLACE_BITS | place);
+    if (cas_acquire_release_u32(&owners->table[index].generation, &before, next))
+        store_relaxed_u32(&owners->claimer, next << INDEX_BITS | index);
 }
 
 bool claim_owners_is_alive(const claim_owners *owners, uint32_t claimer)
 {
     if (claimer == load_relaxed_u32(&owners->claimer))
         return true;
-    uint32_t place = claimer & (CLAIM_OWNERS_MAX - 1);
-    if (load_relaxed_u32(&owners->table[place].generation) != claimer >> PLACE_BITS)
-        return false; /* another has taken the place since */
-    struct flock lock = lock_of(place);
+    uint32_t index = claimer & (CLAIM_OWNERS_MAX - 1);
+    if (load_relaxed_u32(&owners->table[index].generation) != claimer >> INDEX_BITS)
+        return false; /* another has taken the entry since */
+    struct flock lock = lock_of(index);
     /* where the kernel does not say, it lives: STANDSTILL_SECONDS then helps */
     return fcntl(owners->file, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
 }

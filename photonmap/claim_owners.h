@@ -1,13 +1,13 @@
 /* claim_owners.h: the processes that fill one map file together: which of them holds a claim, and whether it still
- * lives. Each has a place in a table in the file, a number that its claims carry, and a lock on a byte of the file,
+ * lives. Each has an entry in a table in the file, a number that its claims carry, and a lock on a byte of the file,
  * which the kernel drops when the process ends, however it ends: the lock is what tells that it lives.
  * Rests on: fcntl(2), open file description locks. Flow: photon_file joins -> irradiance_cache waits. Modelled in
  * tests/models/irradiance_slot_shared.pml. Threads: join and leave by one; the others by any.
  *
- * A claim carries place and generation. Whoever takes a place that a dead process has left begins a new generation: so
- * no living process ever writes what a dead one's claim reads, and a claim taken over cannot be mistaken. All threads
- * of a process share its number: none of them takes over a claim of its own process, whose holder is another thread at
- * work, so of the threads that wait for one claim no more than one computes it. */
+ * A claim carries the entry's index and a generation. Whoever takes an entry that a dead process has left begins a new
+ * generation: so no living process ever writes what a dead one's claim reads, and a claim taken over cannot be
+ * mistaken. All threads of a process share its number: none of them takes over a claim of its own process, whose holder
+ * is another thread at work, so of the threads that wait for one claim no more than one computes it. */
 #ifndef AFTERGLOW_CLAIM_OWNERS_H
 #define AFTERGLOW_CLAIM_OWNERS_H
 
@@ -25,11 +25,11 @@ typedef struct claim_owners {
     claim_owner *table;  /* [CLAIM_OWNERS_MAX], borrowed */
     int file;            /* borrowed: an open file description of our own, whose locks are ours */
     atomic_u32 claimer;  /* what our claims carry, never 0; stands alone, so relaxed */
-    atomic_u32 *stalled; /* [CLAIM_OWNERS_MAX], owned: for each place the claimer there that was seen to stand still, 0:
+    atomic_u32 *stalled; /* [CLAIM_OWNERS_MAX], owned: for each entry its claimer that was seen to stand still, 0:
                             none; stand alone, so relaxed */
 } claim_owners;
 
-/* Takes a place. False where all are taken, the file system has no such locks, or memory is short. The place is left
+/* Takes an entry. False where all are taken, the file system has no such locks, or memory is short. The entry is left
  * when the file is closed. */
 bool claim_owners_join(int file, claim_owner *table, claim_owners *out_owners);
 void claim_owners_reset(claim_owners *owners); /* frees what is owned; all zero is fine */

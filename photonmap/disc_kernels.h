@@ -21,7 +21,7 @@ typedef struct photon_collection {
 /* What the photons of a disc add up to, in whole numbers, so that their order does not matter. */
 typedef struct photon_disc_sums {
     int64_t flux[3];   /* in units of 2^(flux_exponent_max - 32); red, green, blue */
-    int32_t offset[3]; /* from the place, in units of the radius over 2^12: 2^19 photons and no fewer fit */
+    int32_t offset[3]; /* from the point, in units of the radius over 2^12: 2^19 photons and no fewer fit */
 } photon_disc_sums;
 
 #define PHOTON_DISC_OFFSET_UNIT 0x1p12f
@@ -30,7 +30,7 @@ typedef struct photon_disc {
     const photon_block *blocks;
     vec3 position, normal;
     float radius;          /* > 0 */
-    float level;           /* photons no higher and no lower than this over the place's plane lie on its surface */
+    float level;           /* photons no higher and no lower than this over the point's plane lie on its surface */
     int flux_exponent_max; /* of any photon of the map */
 } photon_disc;
 
@@ -48,13 +48,13 @@ typedef struct disc_kernels {
      * count; all within the limit, a squared distance. */
     void (*select)(photon_neighbor *neighbors, uint32_t count, uint32_t wanted, float limit);
 
-    /* Sums those that lie on the place's surface, as far as heights and normals tell, and keeps them in front, in their
+    /* Sums those that lie on the point's surface, as far as heights and normals tell, and keeps them in front, in their
      * order; the others go to out_doubtful, in theirs, which has room for count + 4. Returns how many were kept. */
     uint32_t (*sum_on_level)(const photon_disc *disc, photon_neighbor *neighbors, uint32_t count,
                              photon_disc_sums *out_sums, photon_neighbor *out_doubtful);
 } disc_kernels;
 
-/* Whether a photon lies on the surface of the place, as far as heights and normals tell: no lower than a convex surface
+/* Whether a photon lies on the surface of the point, as far as heights and normals tell: no lower than a convex surface
  * goes that has the two normals, and no higher than the level. */
 static inline bool photon_disc_is_on_level(const photon_disc *disc, vec3 offset, uint16_t normal_code)
 {

@@ -260,16 +260,16 @@ AVX2 static inline __m256i add_shifted(__m256i sum, __m256i mantissas, __m256i b
 
 /* Where the photons of four neighbours lie: their blocks in bytes from the first one, which may be more than 32 bits
  * can tell, and their lanes. */
-typedef struct places_4 {
+typedef struct lanes_4 {
     __m256i block, lane;
-} places_4;
+} lanes_4;
 
-AVX2 static inline places_4 find_places(__m256i four)
+AVX2 static inline lanes_4 find_lanes(__m256i four)
 {
     __m256i index = _mm256_and_si256(four, _mm256_set1_epi64x(UINT32_MAX));
     __m256i block = _mm256_srli_epi64(index, 4); /* 16 lanes */
-    return (places_4){_mm256_mul_epu32(block, _mm256_set1_epi64x(sizeof(photon_block))),
-                      _mm256_and_si256(index, _mm256_set1_epi64x(PHOTON_BLOCK_LANES - 1))};
+    return (lanes_4){_mm256_mul_epu32(block, _mm256_set1_epi64x(sizeof(photon_block))),
+                     _mm256_and_si256(index, _mm256_set1_epi64x(PHOTON_BLOCK_LANES - 1))};
 }
 
 /* The words of the first block's column that lie so many bytes farther on. */
@@ -279,16 +279,16 @@ AVX2 static inline __m256i gather_words(const void *column, __m256i low, __m256i
                             _mm256_i64gather_epi32((const int *)column, low, 1));
 }
 
-AVX2 static inline __m256i word_of_lane(places_4 p) { return _mm256_add_epi64(p.block, _mm256_slli_epi64(p.lane, 2)); }
+AVX2 static inline __m256i word_of_lane(lanes_4 p) { return _mm256_add_epi64(p.block, _mm256_slli_epi64(p.lane, 2)); }
 
 /* Of half-words, the word with the pair that the lane is in. */
-AVX2 static inline __m256i pair_of_lane(places_4 p)
+AVX2 static inline __m256i pair_of_lane(lanes_4 p)
 {
     __m256i pair = _mm256_srli_epi64(p.lane, 1);
     return _mm256_add_epi64(p.block, _mm256_slli_epi64(pair, 2));
 }
 
-AVX2 static inline __m256i gather_normals(const photon_block *blocks, places_4 low, places_4 high)
+AVX2 static inline __m256i gather_normals(const photon_block *blocks, lanes_4 low, lanes_4 high)
 {
     __m256i pairs = gather_words(blocks->normal, pair_of_lane(low), pair_of_lane(high));
     /* lanes are few: the low words of all, side by side */
@@ -301,7 +301,7 @@ AVX2 static inline __m256i gather_normals(const photon_block *blocks, places_4 l
 }
 
 /* photon_disc_is_on_level, as bits. */
-AVX2 static inline uint32_t find_on_level(const photon_disc *disc, vec3_8 offset, places_4 low, places_4 high)
+AVX2 static inline uint32_t find_on_level(const photon_disc *disc, vec3_8 offset, lanes_4 low, lanes_4 high)
 {
     vec3_8 normal = fill(disc->normal);
     __m256 level = _mm256_set1_ps(disc->level), zero = _mm256_setzero_ps(), height = dot(offset, normal);
@@ -330,7 +330,7 @@ AVX2 static uint32_t sum_on_level(const photon_disc *disc, photon_neighbor *n, u
     for (; i + WIDTH <= count; i += WIDTH) {
         /* both fours are read before either is written over */
         __m256i first = load(&n[i]), second = load(&n[i + 4]);
-        places_4 low = find_places(first), high = find_places(second);
+        lanes_4 low = find_lanes(first), high = find_lanes(second);
         __m256i low_word = word_of_lane(low), high_word = word_of_lane(high);
         vec3_8 at = {_mm256_castsi256_ps(gather_words(blocks->position[0], low_word, high_word)),
                      _mm256_castsi256_ps(gather_words(blocks->position[1], low_word, high_word)),

@@ -276,10 +276,10 @@ static void warp_plain(const incident_guide *guide, uint32_t count, float u[2][I
                        float weights[INCIDENT_WARPS_MAX])
 {
     for (uint32_t i = 0; i < count; i++) {
-        vec2 place = {u[0][i], u[1][i]};
-        weights[i] = incident_guide_warp_one(guide, &place);
-        u[0][i] = place.x;
-        u[1][i] = place.y;
+        vec2 u_of_ray = {u[0][i], u[1][i]};
+        weights[i] = incident_guide_warp_one(guide, &u_of_ray);
+        u[0][i] = u_of_ray.x;
+        u[1][i] = u_of_ray.y;
     }
 }
 
@@ -301,12 +301,12 @@ AVX2 static inline void try_begin(step_8 *s, __m256 begin, __m256 x)
     s->high = _mm256_min_ps(s->high, _mm256_blendv_ps(begin, s->high, is_passed));
 }
 
-/* Where in the unit square's side, by a step's number and the place in it. */
-AVX2 static inline __m256 place_in(step_8 s, __m256 x)
+/* The coordinate along the unit square's side, from a bin's number and the position in it. */
+AVX2 static inline __m256 coordinate_in(step_8 s, __m256 x)
 {
     __m256 share = _mm256_div_ps(_mm256_sub_ps(x, s.low), _mm256_sub_ps(s.high, s.low));
-    __m256 place = _mm256_mul_ps(_mm256_add_ps(s.number, share), _mm256_set1_ps(BIN_WIDTH));
-    return _mm256_min_ps(place, _mm256_set1_ps(BELOW_ONE));
+    __m256 u = _mm256_mul_ps(_mm256_add_ps(s.number, share), _mm256_set1_ps(BIN_WIDTH));
+    return _mm256_min_ps(u, _mm256_set1_ps(BELOW_ONE));
 }
 
 AVX2 static void warp_avx2(const incident_guide *guide, uint32_t count, float u[2][INCIDENT_WARPS_MAX],
@@ -327,8 +327,8 @@ AVX2 static void warp_avx2(const incident_guide *guide, uint32_t count, float u[
         step_8 bin = {_mm256_setzero_ps(), row.low, row.high};
         for (int k = 1; k < INCIDENT_SIDE; k++)
             try_begin(&bin, _mm256_permutevar8x32_ps(columns[k], number), y);
-        _mm256_storeu_ps(&u[0][i], place_in(row, x));
-        _mm256_storeu_ps(&u[1][i], place_in(bin, y));
+        _mm256_storeu_ps(&u[0][i], coordinate_in(row, x));
+        _mm256_storeu_ps(&u[1][i], coordinate_in(bin, y));
         _mm256_storeu_ps(&weights[i], _mm256_div_ps(_mm256_set1_ps((float)(INCIDENT_ONE / INCIDENT_BINS)),
                                                     _mm256_sub_ps(bin.high, bin.low)));
     }

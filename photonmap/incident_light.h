@@ -1,4 +1,4 @@
-/* incident_light.h: from where light comes, as the photons around a place tell: to send gather rays there.
+/* incident_light.h: from where light comes, as the photons around a point tell: to send gather rays there.
  * Rests on: Jensen, "Importance Driven Path Tracing using the Photon Map", 1995 (directions from a histogram of photons
  * over the square that the cosine's distribution is warped from); Guo et al., "Primary Sample Space Path Sampling",
  * 2018 (that square as the domain of guiding); Veach, Guibas, "Optimally Combining Sampling Techniques", 1995.
@@ -24,7 +24,7 @@ typedef struct incident_histogram {
 } incident_histogram;
 
 typedef struct incident_light {
-    photon_tree tree;               /* the map's, borrowed; empty: no place is guided */
+    photon_tree tree;               /* the map's, borrowed; empty: no point is guided */
     uint32_t cell_depth;            /* cells are the nodes so deep in it */
     uint32_t *cells;                /* owned: of each the first histogram << 6, and as bits which ways there are */
     incident_histogram *histograms; /* owned */
@@ -37,7 +37,7 @@ ag_status incident_light_create(run_context *run, const photon_map *map, float s
 void incident_light_reset(incident_light *l);
 uint64_t incident_light_bytes(const incident_light *l);
 
-/* What guides rays from a place. */
+/* What guides rays from a point. */
 typedef struct incident_guide {
     frame around; /* z: the normal */
     const incident_histogram *histogram;
@@ -46,8 +46,8 @@ typedef struct incident_guide {
 /* Whether the photons there tell anything. normal: unit, on the side that the light arrives at. */
 bool incident_light_find(const incident_light *l, vec3 position, vec3 normal, incident_guide *out_guide);
 
-/* Warps places of the unit square, up to INCIDENT_WARPS_MAX, to ones by the guide's density. out_weights: 1 / that
- * density: what a ray by the new place, warped on by sample_cosine_hemisphere in the guide's frame, weighs more than
+/* Warps points of the unit square, up to INCIDENT_WARPS_MAX, to ones by the guide's density. out_weights: 1 / that
+ * density: what a ray by the new point, warped on by sample_cosine_hemisphere in the guide's frame, weighs more than
  * one by the cosine alone. All of the columns up to a multiple of eight is overwritten, and must be numbers of [0, 1).
  */
 enum { INCIDENT_WARPS_MAX = 64 };

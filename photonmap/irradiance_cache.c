@@ -18,8 +18,8 @@ static bool scratch_create(irradiance_scratch *s, const photon_map *map)
     s->neighbors = malloc(photon_map_scratch_count(map) * sizeof *s->neighbors);
     s->order[0] = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->order[0]);
     s->order[1] = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->order[1]);
-    s->places = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->places);
-    return s->neighbors && s->order[0] && s->order[1] && s->places;
+    s->leaves = malloc(IRRADIANCE_BATCH_MAX * sizeof *s->leaves);
+    return s->neighbors && s->order[0] && s->order[1] && s->leaves;
 }
 
 static void scratch_reset(irradiance_scratch *s)
@@ -27,7 +27,7 @@ static void scratch_reset(irradiance_scratch *s)
     free(s->neighbors);
     free(s->order[0]);
     free(s->order[1]);
-    free(s->places);
+    free(s->leaves);
 }
 
 ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
@@ -77,8 +77,8 @@ static irradiance_extent estimate(irradiance_cache *cache, vec3 position, vec3 n
     return extent;
 }
 
-/* At a place that no photon stands for. */
-static bool estimate_at_place(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
+/* The estimate at a point that no photon stands for. */
+static bool estimate_at_point(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                               rgb *out_irradiance)
 {
     bool holds = estimate(cache, position, normal, worker_index, out_irradiance) != IRRADIANCE_HOLDS_NOWHERE;
@@ -105,7 +105,7 @@ static bool publish(const photon_map *map, uint32_t index, uint32_t claimer, uin
 /* Computes and publishes what the worker has claimed under that number; gives the slot's word. */
 static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claimer, unsigned worker_index)
 {
-    photon_block *blocks = cache->map->bearers.blocks;
+    photon_block *blocks = cache->map->irradiance_photons.blocks;
     rgb irradiance;
     irradiance_extent extent =
         estimate(cache, photon_block_position(blocks, index), direction_decode(photon_block_normal(blocks, index)),
@@ -123,13 +123,14 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claime
     return word;
 }
 
-/* The word of a bearer, computed first where nobody has claimed it; where another has, it need not be ready. */
-static uint32_t demand(irradiance_cache *cache, uint32_t bearer, unsigned worker_index)
+/* The word of an irradiance photon, computed first where nobody has claimed it; where another has, it need not be
+ * ready. */
+static uint32_t demand(irradiance_cache *cache, uint32_t irradiance_photon, unsigned worker_index)
 {
-    irradiance_slot *slot = photon_map_slot(cache->map, bearer);
+    irradiance_slot *slot = photon_map_slot(cache->map, irradiance_photon);
     uint32_t word = irradiance_slot_read(slot), claimer = claimer_of(cache, worker_index);
     if (irradiance_word_state(word) == IRRADIANCE_EMPTY && irradiance_slot_try_claim(slot, claimer, &word))
-        word = compute(cache, bearer, claimer, worker_index);
+        word = compute(cache, irradiance_photon, claimer, worker_index);
     return word;
 }
 
@@ -173,14 +174,14 @@ static void precompute_block(void *user, uint64_t begin, uint64_t end, uint64_t 
 ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run)
 {
     precompute_job job = {cache, run};
-    ag_status status = parallel_for(run, cache->map->bearers.count, PRECOMPUTE_BLOCK, precompute_block, &job,
+    ag_status status = parallel_for(run, cache->map->irradiance_photons.count, PRECOMPUTE_BLOCK, precompute_block, &job,
                                     AG_PHASE_PRECOMPUTE, 0.0, 1.0);
     return status == AG_OK && run_is_cancelled(run) ? AG_CANCELLED : status;
 }
 
 void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words)
 {
-    for (uint32_t i = 0; i < cache->map->bearers.count; i++) {
+    for (uint32_t i = 0; i < cache->map->irradiance_photons.count; i++) {
         uint32_t word = irradiance_slot_read(photon_map_slot(cache->map, i));
         out_words[i] = irradiance_word_is_ready(word) ? word : 0;
     }
@@ -189,7 +190,7 @@ void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words)
 void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
 {
     uint64_t distinct = irradiance_cache_distinct(cache);
-    for (uint32_t i = 0; i < cache->map->bearers.count; i++) {
+    for (uint32_t i = 0; i < cache->map->irradiance_photons.count; i++) {
         uint32_t found;
         irradiance_slot *slot = photon_map_slot(cache->map, i);
         uint32_t claimer = claimer_of(cache, 0);
@@ -199,28 +200,28 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
     cache->ready_before += irradiance_cache_distinct(cache) - distinct;
 }
 
-/* The answer where photon_map_nearest gave PHOTON_NONE or PHOTON_HIDDEN: an estimate at the place, or none. */
-static bool answer_without_bearer(irradiance_cache *cache, const irradiance_query *query, uint32_t nearest,
+/* The answer where photon_map_nearest gave PHOTON_NONE or PHOTON_HIDDEN: an estimate at the point, or none. */
+static bool answer_without_photon(irradiance_cache *cache, const irradiance_query *query, uint32_t nearest,
                                   unsigned worker_index, rgb *out_irradiance)
 {
     bool holds = nearest == PHOTON_NONE &&
-                 estimate_at_place(cache, query->position, query->normal, worker_index, out_irradiance);
+                 estimate_at_point(cache, query->position, query->normal, worker_index, out_irradiance);
     if (!holds)
         *out_irradiance = rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;
 }
 
-/* The answer of a bearer whose word is ready. */
-static bool answer_by_word(irradiance_cache *cache, const irradiance_query *query, uint32_t bearer, uint32_t word,
-                           unsigned worker_index, rgb *out_irradiance)
+/* The answer of an irradiance photon whose word is ready. */
+static bool answer_by_word(irradiance_cache *cache, const irradiance_query *query, uint32_t irradiance_photon,
+                           uint32_t word, unsigned worker_index, rgb *out_irradiance)
 {
     const photon_map *map = cache->map;
     uint32_t value = word & IRRADIANCE_VALUE_MASK;
     bool holds = value != PHOTON_NO_IRRADIANCE;
     if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces)
-        holds = !photon_map_is_behind_wall(map, map->bearers.blocks, query->position, query->normal, bearer,
-                                           &cache->counters[worker_index].rays);
+        holds = !photon_map_is_behind_wall(map, map->irradiance_photons.blocks, query->position, query->normal,
+                                           irradiance_photon, &cache->counters[worker_index].rays);
     *out_irradiance = holds ? photon_map_decode_irradiance(cache->map, value) : rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;
@@ -230,48 +231,48 @@ void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, u
                           irradiance_request *out_request)
 {
     irradiance_counters *counters = &cache->counters[worker_index];
-    uint32_t bearer = PHOTON_NONE;
+    uint32_t irradiance_photon = PHOTON_NONE;
     if (cache->mode != IRRADIANCE_UNCACHED)
-        bearer = photon_map_nearest(cache->map, position, normal, &counters->rays);
+        irradiance_photon = photon_map_nearest(cache->map, position, normal, &counters->rays);
     counters->requests++;
-    *out_request = (irradiance_request){.query = {position, normal}, .bearer = PHOTON_NONE};
-    if (bearer >= PHOTON_HIDDEN) {
-        out_request->holds =
-            answer_without_bearer(cache, &out_request->query, bearer, worker_index, &out_request->irradiance);
+    *out_request = (irradiance_request){.query = {position, normal}, .irradiance_photon = PHOTON_NONE};
+    if (irradiance_photon >= PHOTON_HIDDEN) {
+        out_request->holds = answer_without_photon(cache, &out_request->query, irradiance_photon, worker_index,
+                                                   &out_request->irradiance);
         return;
     }
-    uint32_t word = demand(cache, bearer, worker_index);
+    uint32_t word = demand(cache, irradiance_photon, worker_index);
     if (irradiance_word_is_ready(word)) {
         out_request->holds =
-            answer_by_word(cache, &out_request->query, bearer, word, worker_index, &out_request->irradiance);
+            answer_by_word(cache, &out_request->query, irradiance_photon, word, worker_index, &out_request->irradiance);
         return;
     }
     counters->deferred++;
-    out_request->bearer = bearer;
+    out_request->irradiance_photon = irradiance_photon;
 }
 
-/* The queries' numbers in the map's order, as the low halves; the high ones are places. By digits, from the lowest: as
+/* The queries' numbers in the map's order, as the low halves; the high ones are leaves. By digits, from the lowest: as
  * few as their counts fit the first cache. */
 static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch, const irradiance_query *queries,
                               uint32_t count)
 {
     enum { DIGIT_BITS_MAX = 12 };
-    const uint32_t *places = scratch->places;
-    uint32_t depth = map->bearers.depth, digits = (depth + DIGIT_BITS_MAX - 1) / DIGIT_BITS_MAX;
+    const uint32_t *leaves = scratch->leaves;
+    uint32_t depth = map->irradiance_photons.depth, digits = (depth + DIGIT_BITS_MAX - 1) / DIGIT_BITS_MAX;
     uint32_t bits = digits > 0 ? (depth + digits - 1) / digits : 1, mask = (1u << bits) - 1;
     uint64_t *from = scratch->order[1], *to = scratch->order[0];
-    photon_map_places(map, &queries->position.x, sizeof *queries / sizeof(float), count, scratch->places);
+    photon_map_leaves(map, &queries->position.x, sizeof *queries / sizeof(float), count, scratch->leaves);
     for (uint32_t shift = 0; shift == 0 || shift < depth; shift += bits) {
         uint32_t begin[1 << DIGIT_BITS_MAX] = {0}, sum = 0;
         for (uint32_t i = 0; i < count; i++)
-            begin[places[i] >> shift & mask]++;
+            begin[leaves[i] >> shift & mask]++;
         for (uint32_t d = 0; d <= mask; d++) {
             uint32_t of_digit = begin[d];
             begin[d] = sum;
             sum += of_digit;
         }
         for (uint32_t i = 0; i < count; i++) {
-            uint64_t next = shift == 0 ? (uint64_t)places[i] << 32 | i : from[i];
+            uint64_t next = shift == 0 ? (uint64_t)leaves[i] << 32 | i : from[i];
             to[begin[next >> (32 + shift) & mask]++] = next;
         }
         uint64_t *hold = from;
@@ -281,16 +282,16 @@ static uint64_t *put_in_order(const photon_map *map, irradiance_scratch *scratch
     return from;
 }
 
-/* The bearers that stand for the queries, in their order; each takes the place in the high half of its query's entry.
- */
-static void find_bearers(const photon_map *map, const irradiance_query *queries, uint64_t *order, uint32_t count,
-                         uint64_t *in_out_rays)
+/* Finds the irradiance photons that stand for the queries, in their order, and puts each into the high half of its
+ * query's entry. */
+static void find_irradiance_photons(const photon_map *map, const irradiance_query *queries, uint64_t *order,
+                                    uint32_t count, uint64_t *in_out_rays)
 {
     enum { AT_ONCE = PHOTON_LOOKUPS_MAX };
     photon_walk walk;
-    photon_walk_init(&walk, &map->bearers);
+    photon_walk_init(&walk, &map->irradiance_photons);
     for (uint32_t begin = 0; begin < count; begin += AT_ONCE) {
-        uint32_t some = count - begin < AT_ONCE ? count - begin : AT_ONCE, bearers[AT_ONCE];
+        uint32_t some = count - begin < AT_ONCE ? count - begin : AT_ONCE, irradiance_photons[AT_ONCE];
         photon_lookup lookups[AT_ONCE];
         for (uint32_t k = 0; k < some; k++) {
             const irradiance_query *q = &queries[(uint32_t)order[begin + k]];
@@ -298,9 +299,9 @@ static void find_bearers(const photon_map *map, const irradiance_query *queries,
         }
         for (uint32_t k = begin + some; k < begin + some + AT_ONCE && k < count; k++) /* the next ones */
             __builtin_prefetch(&queries[(uint32_t)order[k]]);
-        photon_map_nearest_many(map, &walk, lookups, some, in_out_rays, bearers);
+        photon_map_nearest_many(map, &walk, lookups, some, in_out_rays, irradiance_photons);
         for (uint32_t k = 0; k < some; k++)
-            order[begin + k] = (uint64_t)bearers[k] << 32 | (uint32_t)order[begin + k];
+            order[begin + k] = (uint64_t)irradiance_photons[k] << 32 | (uint32_t)order[begin + k];
     }
 }
 
@@ -313,36 +314,38 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
     const photon_map *map = cache->map;
     irradiance_counters *counters = &cache->counters[worker_index];
     uint64_t *order = put_in_order(map, &cache->scratch[worker_index], queries, count);
-    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->bearers.count > 0;
+    bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->irradiance_photons.count > 0;
     counters->requests += count;
     if (is_cached)
-        find_bearers(map, queries, order, count, &counters->rays);
+        find_irradiance_photons(map, queries, order, count, &counters->rays);
     for (uint32_t k = 0; k < count; k++) {
-        uint32_t i = (uint32_t)order[k], bearer = is_cached ? (uint32_t)(order[k] >> 32) : PHOTON_NONE;
+        uint32_t i = (uint32_t)order[k], irradiance_photon = is_cached ? (uint32_t)(order[k] >> 32) : PHOTON_NONE;
         if (k % CANCEL_EVERY == 0 && run_is_cancelled(run))
             return;
-        if (bearer >= PHOTON_HIDDEN) {
+        if (irradiance_photon >= PHOTON_HIDDEN) {
             order[k] = (uint64_t)PHOTON_NONE << 32 | i;
-            out_holds[i] = answer_without_bearer(cache, &queries[i], bearer, worker_index, &out_irradiance[i]);
+            out_holds[i] =
+                answer_without_photon(cache, &queries[i], irradiance_photon, worker_index, &out_irradiance[i]);
             continue;
         }
-        demand(cache, bearer, worker_index);
+        demand(cache, irradiance_photon, worker_index);
     }
     uint32_t waiting = 0;
     for (uint32_t k = 0; k < count; k++) {
-        uint32_t i = (uint32_t)order[k], bearer = (uint32_t)(order[k] >> 32);
-        if (bearer == PHOTON_NONE)
+        uint32_t i = (uint32_t)order[k], irradiance_photon = (uint32_t)(order[k] >> 32);
+        if (irradiance_photon == PHOTON_NONE)
             continue;
-        uint32_t word = irradiance_slot_read(photon_map_slot(map, bearer));
+        uint32_t word = irradiance_slot_read(photon_map_slot(map, irradiance_photon));
         if (irradiance_word_is_ready(word))
-            out_holds[i] = answer_by_word(cache, &queries[i], bearer, word, worker_index, &out_irradiance[i]);
+            out_holds[i] =
+                answer_by_word(cache, &queries[i], irradiance_photon, word, worker_index, &out_irradiance[i]);
         else
-            order[waiting++] = order[k]; /* its place in the order is free by now */
+            order[waiting++] = order[k]; /* its position in the order is free by now */
     }
     counters->deferred += waiting;
     for (uint32_t k = 0; k < waiting; k++) {
         uint32_t i = (uint32_t)order[k];
-        irradiance_request request = {.query = queries[i], .bearer = (uint32_t)(order[k] >> 32)};
+        irradiance_request request = {.query = queries[i], .irradiance_photon = (uint32_t)(order[k] >> 32)};
         irradiance_cache_retry(cache, run, &request, worker_index);
         out_irradiance[i] = request.irradiance;
         out_holds[i] = request.holds;
@@ -352,24 +355,25 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
 void irradiance_cache_retry(irradiance_cache *cache, const run_context *run, irradiance_request *request,
                             unsigned worker_index)
 {
-    uint32_t word = irradiance_slot_read(photon_map_slot(cache->map, request->bearer));
+    uint32_t word = irradiance_slot_read(photon_map_slot(cache->map, request->irradiance_photon));
     if (!irradiance_word_is_ready(word)) {
         irradiance_counters *counters = &cache->counters[worker_index];
         double begin = clock_thread_cpu_seconds();
-        word = await(cache, run, request->bearer, worker_index);
+        word = await(cache, run, request->irradiance_photon, worker_index);
         counters->waited++;
         counters->waited_seconds += clock_thread_cpu_seconds() - begin;
     }
     if (!irradiance_word_is_ready(word)) /* cancelled */
         word = irradiance_word(IRRADIANCE_READY, PHOTON_NO_IRRADIANCE);
-    request->holds = answer_by_word(cache, &request->query, request->bearer, word, worker_index, &request->irradiance);
-    request->bearer = PHOTON_NONE;
+    request->holds =
+        answer_by_word(cache, &request->query, request->irradiance_photon, word, worker_index, &request->irradiance);
+    request->irradiance_photon = PHOTON_NONE;
 }
 
 rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index)
 {
     rgb irradiance;
-    estimate_at_place(cache, position, normal, worker_index, &irradiance);
+    estimate_at_point(cache, position, normal, worker_index, &irradiance);
     return irradiance;
 }
 
@@ -403,7 +407,7 @@ double irradiance_counters_estimate_seconds(const irradiance_counters *counters)
 uint64_t irradiance_cache_distinct(const irradiance_cache *cache)
 {
     uint64_t ready = 0;
-    for (uint32_t i = 0; i < cache->map->bearers.count; i++)
+    for (uint32_t i = 0; i < cache->map->irradiance_photons.count; i++)
         ready += irradiance_word_is_ready(irradiance_slot_read(photon_map_slot(cache->map, (uint32_t)i)));
     return ready - cache->ready_before;
 }

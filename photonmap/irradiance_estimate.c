@@ -3,7 +3,7 @@
 #include "irradiance_estimate.h"
 
 #include "disc_kernels.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 #include "surface_region.h"
 
 /* Photons this much higher or lower than the place, as a share of the radius, may lie on another surface. */
@@ -37,7 +37,7 @@ static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uin
     scene_ray up =
         scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->level), vec3_scale(disc->normal, -height));
     ++*in_out_rays;
-    return !passage_is_blocked(map->surfaces, up, 1.0f);
+    return !scene_is_blocked(map->surfaces, up, 1.0f);
 }
 
 /* Sums the photons of the disc that are in the region. Returns how many they are. */

@@ -1,4 +1,4 @@
-/* irradiance_estimate.h: what the photons around a place say of the light there.
+/* irradiance_estimate.h: the irradiance at a point from the density of the photons around it.
  * Rests on: Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, ch. 7 (density estimates).
  * Flow: photon_k_nearest, disc_kernels, surface_region -> [here] -> irradiance_cache, caustics.
  * Threads: pure functions, but for the caller's scratch memory. */
@@ -7,10 +7,10 @@
 
 #include "photon_map.h"
 
-/* Where an estimate holds, of the places that its photon or place is the nearest to. */
+/* At which points an estimate holds, of those that are nearest to its photon. */
 typedef enum irradiance_extent {
     IRRADIANCE_HOLDS_NOWHERE,
-    IRRADIANCE_HOLDS_IN_SIGHT,  /* where the place is seen from: a surface ends near by, or another level is there */
+    IRRADIANCE_HOLDS_IN_SIGHT,  /* where the point is seen from: a surface ends near by, or another level is there */
     IRRADIANCE_HOLDS_EVERYWHERE /* no surface ends within photon_map_far */
 } irradiance_extent;
 

@@ -11,8 +11,8 @@
  *   EMPTY           0                     anybody: to CLAIMED, naming itself
  *   CLAIMED         the claimer's number  the claimer: to a ready state; where it is dead, anybody else: to CLAIMED,
  *                                         naming itself
- *   READY           exponent, mantissas   nobody; serves every place that the photon is the nearest to
- *   READY_IN_SIGHT  exponent, mantissas   nobody; a surface ends near by, so it serves those places only that see the
+ *   READY           exponent, mantissas   nobody; serves every point that the photon is the nearest to
+ *   READY_IN_SIGHT  exponent, mantissas   nobody; a surface ends near by, so it serves those points only that see the
  *                                         photon
  *
  * A file's slot that is ready without its check byte is emptied by who opens the file.
@@ -57,7 +57,7 @@ static inline uint32_t irradiance_word(irradiance_state state, uint32_t value)
 static inline uint32_t irradiance_slot_read(const irradiance_slot *slot) { return load_acquire_u32(slot); }
 
 /* Takes an empty slot for the claimer (any number below 2^30). At most one caller ever gets true. Acquire: pairs with
- * publish when it loses and finds READY. Release: whoever reads the claim and asks after its claimer finds its place in
+ * publish when it loses and finds READY. Release: whoever reads the claim and asks after its claimer finds its entry in
  * the table of claim_owners.h. *out_word: what is there now. */
 static inline bool irradiance_slot_try_claim(irradiance_slot *slot, uint32_t claimer, uint32_t *out_word)
 {

@@ -18,7 +18,7 @@
 typedef struct photon {
     float position[3];    /* world */
     uint32_t flux;        /* W per emitted path's share (times the number of paths emitted), shared exponent */
-    uint16_t direction;   /* the way the light goes, and whether by way of a diffuse place: arrival_encode */
+    uint16_t direction;   /* the way the light goes, and whether by way of a diffuse vertex: arrival_encode */
     uint16_t normal;      /* geometric, on the side it arrived at, octahedral */
     irradiance_slot slot; /* the irradiance here, once someone has asked for it */
 } photon;
@@ -122,7 +122,8 @@ static inline vec3 direction_decode_unnormalized(uint16_t code)
 
 static inline vec3 direction_decode(uint16_t code) { return vec3_normalize(direction_decode_unnormalized(code)); }
 
-/* --- how a photon arrived: by way of a diffuse place or not, 1 bit; direction, 181 x 181 steps; within 1.5 degrees ---
+/* --- how a photon arrived: by way of a diffuse vertex or not, 1 bit; direction, 181 x 181 steps; within 1.5 degrees
+ * ---
  */
 
 enum { ARRIVAL_IS_DIFFUSE = 0x8000, ARRIVAL_STEPS = 181 };
@@ -135,15 +136,15 @@ static inline uint16_t arrival_encode(vec3 d, bool is_diffuse)
     return (uint16_t)((is_diffuse ? ARRIVAL_IS_DIFFUSE : 0) | (i * ARRIVAL_STEPS + j));
 }
 
-/* Whether a gather ray could have brought this light: it had met a diffuse place since it left its lamp. */
+/* Whether a gather ray could have brought this light: it had met a diffuse vertex since it left its lamp. */
 static inline bool arrival_is_diffuse(uint16_t code) { return code & ARRIVAL_IS_DIFFUSE; }
 
 static inline vec3 arrival_direction(uint16_t code)
 {
     const float half = (ARRIVAL_STEPS - 1) / 2, step = 1.0f / half;
-    uint32_t place = code & (ARRIVAL_IS_DIFFUSE - 1u);
-    return vec3_normalize(octahedral_decode(((float)(place / ARRIVAL_STEPS) - half) * step,
-                                            ((float)(place % ARRIVAL_STEPS) - half) * step));
+    uint32_t cell = code & (ARRIVAL_IS_DIFFUSE - 1u);
+    return vec3_normalize(octahedral_decode(((float)(cell / ARRIVAL_STEPS) - half) * step,
+                                            ((float)(cell % ARRIVAL_STEPS) - half) * step));
 }
 
 #endif

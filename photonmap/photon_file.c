@@ -23,7 +23,7 @@ _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not h
 
 /* To be raised whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
 enum { LAYOUT_VERSION = 14 };
-enum { GLOBAL, CAUSTIC, MAP_COUNT, BEARERS = MAP_COUNT, TREE_COUNT };
+enum { GLOBAL, CAUSTIC, MAP_COUNT, IRRADIANCE_PHOTONS = MAP_COUNT, TREE_COUNT };
 enum { PAGE = 4096, CHUNK_BYTES = 1 << 22 };
 static const uint32_t BYTE_ORDER_MARK = 0x01020304;
 static const char MAGIC[16] = "Afterglow map\r\n";
@@ -34,7 +34,7 @@ typedef struct tree_record {
 } tree_record;
 
 typedef struct map_record {
-    uint64_t emitted_paths, rays, passages_cut;
+    uint64_t emitted_paths, rays, rays_cut;
     energy_balance balance;
     uint32_t nearest;
     float max_radius, min_radius_squared, mean_radius;
@@ -48,8 +48,8 @@ typedef struct file_header {
     uint64_t file_bytes;
     uint64_t nonce; /* at random: no two files have the same */
     photon_file_key key;
-    tree_record trees[TREE_COUNT]; /* BEARERS is empty where all photons are */
-    uint64_t checks_at;            /* of the bearers' check bytes, from the file's beginning */
+    tree_record trees[TREE_COUNT]; /* IRRADIANCE_PHOTONS is empty where all photons are */
+    uint64_t checks_at;            /* of the irradiance photons' check bytes, from the file's beginning */
     map_record maps[MAP_COUNT];
     hash128 content; /* of the photons and the nodes */
     hash128 self;    /* of all above */
@@ -71,9 +71,9 @@ static uint64_t blocks_bytes(const tree_record *t) { return photon_block_count(t
 static uint64_t nodes_bytes(const tree_record *t) { return photon_tree_bytes(&(photon_tree){.depth = t->depth}); }
 
 /* Of the global map. */
-static uint32_t bearer_count(const tree_record trees[TREE_COUNT])
+static uint32_t irradiance_photon_count(const tree_record trees[TREE_COUNT])
 {
-    return trees[BEARERS].count > 0 ? trees[BEARERS].count : trees[GLOBAL].count;
+    return trees[IRRADIANCE_PHOTONS].count > 0 ? trees[IRRADIANCE_PHOTONS].count : trees[GLOBAL].count;
 }
 
 /* Where all lies, from counts and depths. Returns the file's size. */
@@ -89,7 +89,7 @@ static uint64_t lay_out(tree_record trees[TREE_COUNT], uint64_t *out_checks_at)
         at += to_page(nodes_bytes(&trees[i]));
     }
     *out_checks_at = at;
-    return at + to_page(bearer_count(trees));
+    return at + to_page(irradiance_photon_count(trees));
 }
 
 static hash128 hash_of_header(const file_header *h)
@@ -128,7 +128,7 @@ static map_record record_of(const photon_map *map)
 {
     return (map_record){.emitted_paths = map->set.emitted_paths,
                         .rays = map->set.rays,
-                        .passages_cut = map->set.passages_cut,
+                        .rays_cut = map->set.rays_cut,
                         .balance = map->set.balance,
                         .nearest = map->nearest,
                         .max_radius = map->max_radius,
@@ -156,14 +156,14 @@ static int write_at(const run_context *run, int descriptor, const void *bytes, u
     return 0;
 }
 
-/* Of all bearers, by pages; 0 where a slot is not ready, and behind the last one. */
-static int write_checks(const run_context *run, int descriptor, const photon_tree *bearers, uint64_t at)
+/* Of all irradiance photons, by pages; 0 where a slot is not ready, and behind the last one. */
+static int write_checks(const run_context *run, int descriptor, const photon_tree *irradiance_photons, uint64_t at)
 {
     int error = 0;
-    for (uint32_t first = 0; first < bearers->count && error == 0; first += PAGE, at += PAGE) {
+    for (uint32_t first = 0; first < irradiance_photons->count && error == 0; first += PAGE, at += PAGE) {
         uint8_t checks[PAGE] = {0};
-        for (uint32_t i = 0; i < PAGE && i < bearers->count - first; i++) {
-            uint32_t word = irradiance_slot_read(photon_block_slot(bearers->blocks, first + i));
+        for (uint32_t i = 0; i < PAGE && i < irradiance_photons->count - first; i++) {
+            uint32_t word = irradiance_slot_read(photon_block_slot(irradiance_photons->blocks, first + i));
             if (irradiance_word_is_ready(word))
                 checks[i] = irradiance_word_check(first + i, word);
         }
@@ -187,8 +187,8 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
     h.maps[GLOBAL] = record_of(global);
     h.maps[CAUSTIC] = record_of(caustic);
     photon_tree trees[TREE_COUNT] = {[GLOBAL] = global->tree, [CAUSTIC] = caustic->tree};
-    if (!photon_map_all_bear(global))
-        trees[BEARERS] = global->bearers;
+    if (!photon_map_all_have_irradiance(global))
+        trees[IRRADIANCE_PHOTONS] = global->irradiance_photons;
     for (int i = 0; i < TREE_COUNT; i++)
         h.trees[i] = (tree_record){.count = trees[i].count, .depth = trees[i].depth};
     if (getrandom(&h.nonce, sizeof h.nonce, GRND_NONBLOCK) != (ssize_t)sizeof h.nonce) {
@@ -201,7 +201,7 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
         return ECANCELED;
     h.self = hash_of_header(&h);
 
-    /* What is mapped must have its place on the disk: a disk that is full later would end processes by SIGBUS. A file
+    /* What is mapped must have its space on the disk: a disk that is full later would end processes by SIGBUS. A file
      * system that cannot reserve gets all bytes written below: none is left out. */
     int error = posix_fallocate(descriptor, 0, (off_t)h.file_bytes);
     if (error != 0 && error != EOPNOTSUPP && error != EINVAL && error != ENOSYS && error != EBADF)
@@ -224,7 +224,7 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
         if (error == 0)
             error = write_at(run, descriptor, zeros, rest, t->nodes_at + size);
     }
-    return error == 0 ? write_checks(run, descriptor, &global->bearers, h.checks_at) : error;
+    return error == 0 ? write_checks(run, descriptor, &global->irradiance_photons, h.checks_at) : error;
 }
 
 /* --- opening --- */
@@ -316,16 +316,16 @@ static photon_tree tree_of(void *memory, const tree_record *t)
     return tree;
 }
 
-static photon_map map_of(const map_record *m, photon_tree tree, photon_tree bearers)
+static photon_map map_of(const map_record *m, photon_tree tree, photon_tree irradiance_photons)
 {
     photon_map map = {.set = {.count = tree.count,
                               .emitted_paths = m->emitted_paths,
                               .rays = m->rays,
-                              .passages_cut = m->passages_cut,
+                              .rays_cut = m->rays_cut,
                               .balance = m->balance},
                       .blocks = tree.blocks,
                       .tree = tree,
-                      .bearers = bearers,
+                      .irradiance_photons = irradiance_photons,
                       .nearest = m->nearest,
                       .max_radius = m->max_radius,
                       .min_radius_squared = m->min_radius_squared,
@@ -337,7 +337,7 @@ static photon_map map_of(const map_record *m, photon_tree tree, photon_tree bear
     return map;
 }
 
-/* Maps it, and takes a place among its owners. message: where not, why. */
+/* Maps it, and takes an entry among its owners. message: where not, why. */
 static bool share(int descriptor, photon_file *file, char *message, size_t message_size)
 {
     if (file_system_is_network(descriptor)) {
@@ -395,7 +395,7 @@ static photon_file_result copy(const run_context *run, int descriptor, photon_fi
 static uint32_t empty_damaged(photon_map *map, const claim_owners *owners)
 {
     uint32_t damaged = 0;
-    for (uint32_t i = 0; i < map->bearers.count; i++) {
+    for (uint32_t i = 0; i < map->irradiance_photons.count; i++) {
         irradiance_slot *slot = photon_map_slot(map, i);
         uint32_t word = irradiance_slot_read(slot);
         bool is_ready = irradiance_word_is_ready(word);
@@ -409,7 +409,7 @@ static uint32_t empty_damaged(photon_map *map, const claim_owners *owners)
 /* In a copy nobody will publish what was being computed. */
 static void drop_claims(photon_map *map)
 {
-    for (uint32_t i = 0; i < map->bearers.count; i++) {
+    for (uint32_t i = 0; i < map->irradiance_photons.count; i++) {
         irradiance_slot *slot = photon_map_slot(map, i);
         if (!irradiance_word_is_ready(load_relaxed_u32(slot)))
             store_relaxed_u32(slot, 0);
@@ -434,7 +434,8 @@ static photon_file_result open_maps(const run_context *run, int descriptor, cons
     photon_tree trees[TREE_COUNT];
     for (int i = 0; i < TREE_COUNT; i++)
         trees[i] = tree_of(file->memory, &h->trees[i]);
-    maps[GLOBAL] = map_of(&h->maps[GLOBAL], trees[GLOBAL], trees[BEARERS].count > 0 ? trees[BEARERS] : trees[GLOBAL]);
+    maps[GLOBAL] = map_of(&h->maps[GLOBAL], trees[GLOBAL],
+                          trees[IRRADIANCE_PHOTONS].count > 0 ? trees[IRRADIANCE_PHOTONS] : trees[GLOBAL]);
     maps[CAUSTIC] = map_of(&h->maps[CAUSTIC], trees[CAUSTIC], trees[CAUSTIC]);
     hash128 content;
     if (!hash_content(run, trees, &content))
@@ -553,7 +554,7 @@ void photon_file_close(photon_file *file)
         map_guard_remove(file->guard);
         munmap(file->memory, file->size_bytes);
         claim_owners_reset(&file->owners);
-        close(file->descriptor); /* and with it our place is free */
+        close(file->descriptor); /* frees our entry among the owners */
     } else {
         free(file->memory);
     }

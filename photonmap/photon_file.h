@@ -5,10 +5,11 @@
  *
  *     header       what it is, what it was made of, constants of the maps, checksum: never changes
  *     owners       the processes at work on it (claim_owners.h)
- *     blocks       of the global map, the caustic map, and the global map's bearers where they are a part of the
- *                  photons: photons never change, slots do
+ *     blocks       of the global map, the caustic map, and the global map's irradiance photons where they
+ *                  are not all photons: photons never change, slots do
  *     nodes        of their trees: never change
- *     checks       a byte for each bearer: irradiance_word_check of its slot, written before the slot is ready
+ *     checks       a byte for each irradiance photon: irradiance_word_check of its slot, written before the slot is
+ *                  ready
  *
  * The layout is the machine's own: byte order and sizes are in the header, and another machine's file is refused. What
  * never changes is under a checksum. A slot that is ready without its check byte is emptied when the file is opened,
@@ -55,8 +56,8 @@ typedef enum photon_file_result {
 } photon_file_result;
 
 /* Opens the maps, which borrow the file, and have no surfaces yet. Where the file cannot be shared (it may not be
- * written, it is on a network's file system, or there are no places left) it is copied into memory: is_shared is false,
- * and its claims count as empty. message: one line, always terminated; for OPEN, why it is not shared. */
+ * written, it is on a network's file system, or its owners' table is full) it is copied into memory: is_shared is
+ * false, and its claims count as empty. message: one line, always terminated; for OPEN, why it is not shared. */
 photon_file_result photon_file_open(const run_context *run, const char *path, const photon_file_key *key,
                                     photon_file *out_file, photon_map *out_global, photon_map *out_caustic,
                                     char *message, size_t message_size);

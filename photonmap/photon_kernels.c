@@ -35,15 +35,15 @@ static void descend(const photon_tree *tree, const photon_reach *reach, const ph
     photon_visits *out = out_children;
     uint32_t count = 0;
     for (uint32_t i = 0; i < nodes->count; i++) {
-        uint32_t place = nodes->place[i], first_child = 2 * nodes->node[i] + 1;
+        uint32_t lookup = nodes->lookup[i], first_child = 2 * nodes->node[i] + 1;
         photon_tree_node n = tree->nodes[nodes->node[i]];
-        float at = reach->column[n.axis][place], off = at - n.split;
+        float at = reach->column[n.axis][lookup], off = at - n.split;
         uint32_t is_right = at >= n.split;
-        out->place[count] = place;
+        out->lookup[count] = lookup;
         out->node[count++] = first_child + is_right;
-        out->place[count] = place;
+        out->lookup[count] = lookup;
         out->node[count] = first_child + 1 - is_right;
-        count += off * off <= reach->column[PHOTON_REACH_SQUARED][place];
+        count += off * off <= reach->column[PHOTON_REACH_SQUARED][lookup];
     }
     out->count = count;
 }
@@ -54,15 +54,15 @@ static void scan(const photon_block *blocks, const photon_reach *reach, const ph
     enum { AHEAD = 6 };
     uint32_t count = 0;
     for (uint32_t i = 0; i < leaves->count; i++) {
-        uint32_t lane, place = leaves->place[i], leaf = leaves->node[i];
+        uint32_t lane, lookup = leaves->lookup[i], leaf = leaves->node[i];
         if (i + AHEAD < leaves->count)
             photon_block_prefetch(&blocks[leaves->node[i + AHEAD]]);
-        const float at[3] = {reach->column[0][place], reach->column[1][place], reach->column[2][place]};
+        const float at[3] = {reach->column[0][lookup], reach->column[1][lookup], reach->column[2][lookup]};
         float d = photon_block_nearest(&blocks[leaf], at, &lane);
-        out_photons->place[count] = place;
+        out_photons->lookup[count] = lookup;
         out_photons->node[count] = leaf * PHOTON_BLOCK_LANES + lane;
         out_distances_squared[count] = d;
-        count += d <= reach->column[PHOTON_REACH_SQUARED][place];
+        count += d <= reach->column[PHOTON_REACH_SQUARED][lookup];
     }
     out_photons->count = count;
 }

@@ -1,4 +1,4 @@
-/* photon_kernels.h: the inner loops of searches for many places at once, once for any processor and once for AVX2. Both
+/* photon_kernels.h: the inner loops of searches for many points at once, once for any processor and once for AVX2. Both
  * do the same operations on the same numbers, so what they find is the same, to the bit.
  * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2 (gathers, compaction by
  * permutation). Flow: photon_nearest_many, irradiance_cache -> [here]. Threads: pure but for what the caller owns. */
@@ -7,7 +7,7 @@
 
 #include "photon_tree.h"
 
-/* Places by their numbers as columns: x, y, z, and the squared distance within which photons still matter to each;
+/* Points by their numbers as columns: x, y, z, and the squared distance within which photons still matter to each;
  * negative: none does. */
 typedef struct photon_reach {
     _Alignas(32) float column[4][PHOTON_LOOKUPS_MAX];
@@ -15,25 +15,25 @@ typedef struct photon_reach {
 
 enum { PHOTON_REACH_SQUARED = 3 };
 
-/* Which places are at which nodes, or leaves. */
+/* Which points are at which nodes, or leaves. */
 enum { PHOTON_VISITS_MAX = 16 * PHOTON_LOOKUPS_MAX };
 typedef struct photon_visits {
     uint32_t count;
-    /* room for two children each, for all places on top, and for a vector that sticks out */
-    uint32_t place[2 * PHOTON_VISITS_MAX + 2 * PHOTON_LOOKUPS_MAX + 16],
+    /* room for two children each, for all points on top, and for a vector that sticks out */
+    uint32_t lookup[2 * PHOTON_VISITS_MAX + 2 * PHOTON_LOOKUPS_MAX + 16],
         node[2 * PHOTON_VISITS_MAX + 2 * PHOTON_LOOKUPS_MAX + 16];
 } photon_visits;
 
 typedef struct photon_kernels {
-    /* The leaves that places fall into: photon_tree_leaf of each. x, y, z stand side by side, and `stride` floats on
-     * those of the next place. */
+    /* The leaves that points fall into: photon_tree_leaf of each. x, y, z stand side by side, and `stride` floats on
+     * those of the next lookup. */
     void (*find_leaves)(const photon_tree *tree, const float *positions, uint32_t stride, uint32_t count,
                         uint32_t *out_leaves);
 
-    /* As bits, which of PHOTON_LOOKUPS_MAX places have the plane within their reach. */
+    /* As bits, which of PHOTON_LOOKUPS_MAX points have the plane within their reach. */
     uint64_t (*meet_plane)(const photon_reach *reach, photon_tree_node plane);
 
-    /* From nodes, at most PHOTON_VISITS_MAX, to their children: the one on the place's side, and the other where its
+    /* From nodes, at most PHOTON_VISITS_MAX, to their children: the one on the lookup's side, and the other where its
      * plane is within reach. */
     void (*descend)(const photon_tree *tree, const photon_reach *reach, const photon_visits *nodes,
                     photon_visits *out_children);

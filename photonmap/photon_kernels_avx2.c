@@ -108,24 +108,24 @@ AVX2 static void descend(const photon_tree *tree, const photon_reach *reach, con
             lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     uint32_t count = 0;
     for (uint32_t i = 0; i < nodes->count; i += WIDTH) {
-        /* beyond the last there is rubbish: place 0 at the root instead */
+        /* beyond the last there is rubbish: lookup 0 at the root instead */
         uint32_t left = nodes->count - i;
         __m256i is_there = _mm256_cmpgt_epi32(_mm256_set1_epi32((int)left), lanes);
-        __m256i place = _mm256_and_si256(load(&nodes->place[i]), is_there);
+        __m256i lookup = _mm256_and_si256(load(&nodes->lookup[i]), is_there);
         __m256i node = _mm256_and_si256(load(&nodes->node[i]), is_there);
         nodes_8 n = gather_nodes(tree, node);
-        __m256 at = _mm256_i32gather_ps(columns, _mm256_add_epi32(_mm256_mullo_epi32(n.axis, height), place), 4);
-        __m256 most = _mm256_i32gather_ps(reach->column[PHOTON_REACH_SQUARED], place, 4);
+        __m256 at = _mm256_i32gather_ps(columns, _mm256_add_epi32(_mm256_mullo_epi32(n.axis, height), lookup), 4);
+        __m256 most = _mm256_i32gather_ps(reach->column[PHOTON_REACH_SQUARED], lookup, 4);
         __m256 off = _mm256_sub_ps(at, n.split);
         __m256i is_right = _mm256_castps_si256(_mm256_cmp_ps(at, n.split, _CMP_GE_OQ)); /* -1 */
         __m256i first_child = _mm256_add_epi32(_mm256_add_epi32(node, node), one);
-        store(&out_children->place[count], place);
+        store(&out_children->lookup[count], lookup);
         store(&out_children->node[count], _mm256_sub_epi32(first_child, is_right));
         count += left < WIDTH ? left : WIDTH;
         __m256 is_met =
             _mm256_and_ps(_mm256_cmp_ps(_mm256_mul_ps(off, off), most, _CMP_LE_OQ), _mm256_castsi256_ps(is_there));
         uint32_t met = (uint32_t)_mm256_movemask_ps(is_met);
-        store_some_of_8(&out_children->place[count], place, met);
+        store_some_of_8(&out_children->lookup[count], lookup, met);
         __m256i other = _mm256_add_epi32(_mm256_add_epi32(first_child, one), is_right);
         count += store_some_of_8(&out_children->node[count], other, met);
     }
@@ -159,16 +159,16 @@ AVX2 static void scan(const photon_block *blocks, const photon_reach *reach, con
     enum { AHEAD = 6 };
     uint32_t count = 0;
     for (uint32_t i = 0; i < leaves->count; i++) {
-        uint32_t lane, place = leaves->place[i], leaf = leaves->node[i];
+        uint32_t lane, lookup = leaves->lookup[i], leaf = leaves->node[i];
         if (i + AHEAD < leaves->count)
             photon_block_prefetch(&blocks[leaves->node[i + AHEAD]]);
-        float d = block_nearest(&blocks[leaf], _mm256_broadcast_ss(&reach->column[0][place]),
-                                _mm256_broadcast_ss(&reach->column[1][place]),
-                                _mm256_broadcast_ss(&reach->column[2][place]), &lane);
-        out_photons->place[count] = place;
+        float d = block_nearest(&blocks[leaf], _mm256_broadcast_ss(&reach->column[0][lookup]),
+                                _mm256_broadcast_ss(&reach->column[1][lookup]),
+                                _mm256_broadcast_ss(&reach->column[2][lookup]), &lane);
+        out_photons->lookup[count] = lookup;
         out_photons->node[count] = leaf * PHOTON_BLOCK_LANES + lane;
         out_distances_squared[count] = d;
-        count += d <= reach->column[PHOTON_REACH_SQUARED][place];
+        count += d <= reach->column[PHOTON_REACH_SQUARED][lookup];
     }
     out_photons->count = count;
 }

@@ -2,49 +2,43 @@
  * Threads: see photon_map.h. */
 #include "photon_map.h"
 
-#include "math/compare_floats.h"
 #include "parallel_for.h"
 #include "photon_kernels.h"
-#include "rays/passage.h"
+#include "photon_survey.h"
+#include "rays/transmittance.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* The automatic radius: this many times what an estimate needs where the light is spread evenly. Darker places then
+/* The automatic radius: this many times what an estimate needs where the light is spread evenly. Darker regions then
  * take the photons of the whole disc, which is right, only noisier. */
 static const float RADIUS_FACTOR = 4.0f;
 /* Behind a glass on a plain of kilometres the discs of a caustic are a millionth of what its photons' number lets
- * expect. So the smallest disc, which is a safeguard against photons in one place, is as small as a slot allows:
+ * expect. So the smallest disc, which is a safeguard against photons at one point, is as small as a slot allows:
  * between the estimate on it and a thousandth of a photon on the largest disc lie these octaves. */
 enum { IRRADIANCE_OCTAVES = 64, OCTAVES_OF_A_THOUSAND = 10 };
 
 /* Where most of the scene is dark, its area does not tell how far apart the photons lie. Estimates need no more than
  * this many times the radius of the median photon's. */
 static const float MEDIAN_FACTOR = 4.0f;
-/* Half of the photons may lie in one place, a share of the largest radius that is no use. */
+/* Half of the photons may lie at one point, a share of the largest radius that is no use. */
 static const float LEAST_MEDIAN = 0x1p-16f;
-enum { MEDIAN_OF = 255 };
 
-/* By the radii of the estimates at every so-manieth photon: max_radius where it has no k neighbours. */
+/* The radius of the estimate at a photon: max_radius where it has no k neighbours. */
+static float radius_at(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
+{
+    float other_squared;
+    uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
+                                           map->nearest + 1, scratch, &other_squared);
+    return found == map->nearest + 1 ? sqrtf(photon_neighbor_distance_squared(scratch[map->nearest])) : map->max_radius;
+}
+
 static ag_status bound_radii(photon_map *map)
 {
-    float radius[MEDIAN_OF];
-    uint32_t count = map->set.count < MEDIAN_OF ? map->set.count : MEDIAN_OF;
-    photon_neighbor *scratch = malloc(photon_map_scratch_count(map) * sizeof *scratch);
-    if (!scratch)
-        return AG_ERROR_MEMORY;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t index = (uint32_t)((uint64_t)i * map->set.count / count);
-        float other_squared;
-        uint32_t found =
-            photon_tree_k_nearest(&map->tree, photon_block_position(map->blocks, index),
-                                  direction_decode(photon_block_normal(map->blocks, index)), PHOTON_ESTIMATE_MIN_COS,
-                                  map->max_radius, map->nearest + 1, scratch, &other_squared);
-        radius[i] = found == map->nearest + 1 ? sqrtf(photon_neighbor_distance_squared(scratch[map->nearest]))
-                                              : map->max_radius;
-    }
-    free(scratch);
-    qsort(radius, count, sizeof *radius, compare_floats);
+    float radius[PHOTON_SURVEY_MAX];
+    uint32_t count;
+    AG_TRY(photon_survey(map, radius_at, radius, &count));
     float median = fmaxf(radius[count / 2], LEAST_MEDIAN * map->max_radius);
     map->mean_radius = fminf(map->mean_radius, MEDIAN_FACTOR * median);
     map->max_radius = fminf(map->max_radius, RADIUS_FACTOR * map->mean_radius);
@@ -58,10 +52,10 @@ static float smallest_radius(const photon_map *map)
     return ldexpf(map->max_radius, -octaves);
 }
 
-/* A bearer stands for places up to this share of the largest disc's radius away. The light through the nearest photon
- * is right in the mean as long as the disc around the place that holds no photon lies within the photon's own, which
- * ends here. Where the empty disc is larger, an estimate at the place misses just what the others have too much:
- * for n photons a disc, exp(-n / 4) / 4 of n. */
+/* An irradiance photon stands for points up to this share of the largest disc's radius away. The light through the
+ * nearest photon is right in the mean as long as the disc around the point that holds no photon lies within the
+ * photon's own, which ends here. Where the empty disc is larger, an estimate at the point misses just what the others
+ * have too much: for n photons a disc, exp(-n / 4) / 4 of n. */
 static const float NEAREST_SHARE = 0.5f;
 
 static float nearest_reach(const photon_map *map) { return NEAREST_SHARE * map->max_radius; }
@@ -87,12 +81,12 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
     map.set.photons = NULL;
     map.blocks = (photon_block *)(void *)records;
     ag_status status = photon_tree_build(run, records, map.set.count, progress_begin, progress_end, &map.tree);
-    map.bearers = map.tree;
+    map.irradiance_photons = map.tree;
     if (status == AG_OK && settings->max_radius == 0.0f && !(settings->radius_bound > 0.0f))
         status = bound_radii(&map);
-    if (status == AG_OK && settings->bearing > 0.0f && settings->bearing < 1.0f)
-        status = irradiance_bearers_create(run, &map.tree, settings->bearing, nearest_reach(&map),
-                                           PHOTON_NEAREST_MIN_COS, progress_end, &map.bearers);
+    if (status == AG_OK && settings->irradiance_fraction > 0.0f && settings->irradiance_fraction < 1.0f)
+        status = irradiance_photons_create(run, &map.tree, settings->irradiance_fraction, nearest_reach(&map),
+                                           PHOTON_NEAREST_MIN_COS, progress_end, &map.irradiance_photons);
     if (status != AG_OK) {
         photon_map_reset(&map);
         return status;
@@ -128,14 +122,14 @@ void photon_map_set_bias(photon_map *map, int irradiance_bias)
 void photon_map_reset(photon_map *map)
 {
     if (!map->is_borrowed) {
-        if (!photon_map_all_bear(map)) {
-            free(map->bearers.blocks);
-            photon_tree_reset(&map->bearers);
+        if (!photon_map_all_have_irradiance(map)) {
+            free(map->irradiance_photons.blocks);
+            photon_tree_reset(&map->irradiance_photons);
         }
         free(map->blocks);
         photon_tree_reset(&map->tree);
     }
-    map->tree = map->bearers = (photon_tree){0};
+    map->tree = map->irradiance_photons = (photon_tree){0};
     map->blocks = NULL;
     photon_set_reset(&map->set);
 }
@@ -143,8 +137,9 @@ void photon_map_reset(photon_map *map)
 uint64_t photon_map_bytes(const photon_map *map)
 {
     uint64_t bytes = photon_block_count(map->set.count) * sizeof(photon_block) + photon_tree_bytes(&map->tree);
-    if (!photon_map_all_bear(map))
-        bytes += photon_block_count(map->bearers.count) * sizeof(photon_block) + photon_tree_bytes(&map->bearers);
+    if (!photon_map_all_have_irradiance(map))
+        bytes += photon_block_count(map->irradiance_photons.count) * sizeof(photon_block) +
+                 photon_tree_bytes(&map->irradiance_photons);
     return bytes;
 }
 
@@ -159,65 +154,67 @@ bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks
     float share = 1.0f / 32.0f + 0.125f * sqrtf(vec3_distance_squared(normal, its_normal));
     float lift = sqrtf(vec3_distance_squared(position, at)) * share;
     vec3 from = vec3_add_scaled(position, normal, lift), to = vec3_add_scaled(at, its_normal, lift);
-    return passage_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
+    return scene_is_blocked(map->surfaces, scene_ray_make(from, vec3_sub(to, from)), 1.0f);
 }
 
-/* A bearer higher or lower than the place by this share of its distance may lie on a board or a frame. */
+/* An irradiance photon higher or lower than the point by this share of its distance may lie on a board or a frame. */
 static const float LEVEL_SLOPE = 0.1f;
 
-/* In mean spacings of the bearers. */
+/* In mean spacings of the irradiance photons. */
 static const float FAR_SPACINGS = 1.4f;
 
 float photon_map_far(const photon_map *map)
 {
-    float photons_each = (float)map->set.count / (float)map->bearers.count;
+    float photons_each = (float)map->set.count / (float)map->irradiance_photons.count;
     return FAR_SPACINGS * map->mean_radius * sqrtf(photons_each / (float)map->nearest);
 }
 
-/* The bearer found, or PHOTON_HIDDEN where it does not stand for the place. */
+/* The irradiance photon found, or PHOTON_HIDDEN where it does not stand for the point. */
 static uint32_t in_sight(const photon_map *map, vec3 position, vec3 normal, uint32_t found, float distance_squared,
                          uint64_t *in_out_rays)
 {
     if (found == PHOTON_NONE || !map->surfaces)
         return found;
     float far = photon_map_far(map);
-    float height = vec3_dot(vec3_sub(photon_block_position(map->bearers.blocks, found), position), normal);
+    float height = vec3_dot(vec3_sub(photon_block_position(map->irradiance_photons.blocks, found), position), normal);
     if (distance_squared <= far * far && height * height <= LEVEL_SLOPE * LEVEL_SLOPE * distance_squared)
         return found;
-    return photon_map_is_behind_wall(map, map->bearers.blocks, position, normal, found, in_out_rays) ? PHOTON_HIDDEN
-                                                                                                     : found;
+    return photon_map_is_behind_wall(map, map->irradiance_photons.blocks, position, normal, found, in_out_rays)
+               ? PHOTON_HIDDEN
+               : found;
 }
 
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, uint64_t *in_out_rays)
 {
     float d;
     uint32_t found =
-        photon_tree_nearest(&map->bearers, position, normal, PHOTON_NEAREST_MIN_COS, nearest_reach(map), &d);
+        photon_tree_nearest(&map->irradiance_photons, position, normal, PHOTON_NEAREST_MIN_COS, nearest_reach(map), &d);
     return in_sight(map, position, normal, found, d, in_out_rays);
 }
 
 void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
-                             uint64_t *in_out_rays, uint32_t *out_bearers)
+                             uint64_t *in_out_rays, uint32_t *out_irradiance_photons)
 {
     photon_neighbor nearest[PHOTON_LOOKUPS_MAX];
     photon_walk_nearest_many(walk, lookups, count, PHOTON_NEAREST_MIN_COS, nearest_reach(map), nearest);
     for (uint32_t i = 0; i < count; i++)
-        out_bearers[i] = in_sight(map, lookups[i].position, lookups[i].normal, photon_neighbor_index(nearest[i]),
-                                  photon_neighbor_distance_squared(nearest[i]), in_out_rays);
+        out_irradiance_photons[i] =
+            in_sight(map, lookups[i].position, lookups[i].normal, photon_neighbor_index(nearest[i]),
+                     photon_neighbor_distance_squared(nearest[i]), in_out_rays);
 }
 
-uint32_t photon_map_place(const photon_map *map, vec3 position)
+uint32_t photon_map_leaf(const photon_map *map, vec3 position)
 {
-    return map->bearers.count > 0 ? photon_tree_leaf(&map->bearers, position) : 0;
+    return map->irradiance_photons.count > 0 ? photon_tree_leaf(&map->irradiance_photons, position) : 0;
 }
 
-void photon_map_places(const photon_map *map, const float *positions, uint32_t stride, uint32_t count,
-                       uint32_t *out_places)
+void photon_map_leaves(const photon_map *map, const float *positions, uint32_t stride, uint32_t count,
+                       uint32_t *out_leaves)
 {
-    if (map->bearers.count > 0)
-        photon_kernels_best()->find_leaves(&map->bearers, positions, stride, count, out_places);
+    if (map->irradiance_photons.count > 0)
+        photon_kernels_best()->find_leaves(&map->irradiance_photons, positions, stride, count, out_leaves);
     else
-        memset(out_places, 0, count * sizeof *out_places);
+        memset(out_leaves, 0, count * sizeof *out_leaves);
 }
 
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key)

@@ -1,28 +1,28 @@
-/* photon_map.h: photons, their tree, and which of them stands for a place.
+/* photon_map.h: photons, their tree, and which of them stands for a point.
  * Rests on: Neilson, Yang, TR 04-21, 2004; Christensen, "Faster Photon Map Global Illumination", 1999 (irradiance at
  * the photons). Flow: photon_tracing, photon_tree -> [here] -> irradiance_estimate, irradiance_cache. Threads: built by
  * one caller on the run's workers; then read-only, but for the slots. */
 #ifndef AFTERGLOW_PHOTON_MAP_H
 #define AFTERGLOW_PHOTON_MAP_H
 
-#include "irradiance_bearers.h"
+#include "irradiance_photons.h"
 #include "photon_tracing.h"
 #include "photon_tree.h"
 
 typedef struct photon_map_settings {
-    uint32_t nearest;      /* photons of an estimate, >= 1; the paper: 300 */
-    float max_radius;      /* of an estimate, scene units; the paper: 3.0; 0: from the density of the map */
-    float surface_area;    /* of the scene, m^2: for the automatic radius */
-    float radius_bound;    /* the automatic radius is no larger; 0: no bound */
-    float bearing;         /* fraction of the photons that bear irradiance, (0, 1]; 0: all */
-    const scene *surfaces; /* borrowed: where discs end; NULL: nowhere */
+    uint32_t nearest;          /* photons of an estimate, >= 1; the paper: 300 */
+    float max_radius;          /* of an estimate, scene units; the paper: 3.0; 0: from the density of the map */
+    float surface_area;        /* of the scene, m^2: for the automatic radius */
+    float radius_bound;        /* the automatic radius is no larger; 0: no bound */
+    float irradiance_fraction; /* of the photons that become irradiance photons, (0, 1]; 0: all */
+    const scene *surfaces;     /* borrowed: where discs end; NULL: nowhere */
 } photon_map_settings;
 
 typedef struct photon_map {
-    photon_set set;       /* without its records, which have become: */
-    photon_block *blocks; /* owned, but of a map from a file; NULL where there is no photon */
-    photon_tree tree;     /* over the blocks */
-    photon_tree bearers;  /* of the photons that bear irradiance, with its slots: the tree itself where all do */
+    photon_set set;                 /* without its records, which have become: */
+    photon_block *blocks;           /* owned, but of a map from a file; NULL where there is no photon */
+    photon_tree tree;               /* over the blocks */
+    photon_tree irradiance_photons; /* these photons alone, with their slots: `tree` itself where they are all */
     uint32_t nearest;
     float max_radius;
     float min_radius_squared;  /* coincident photons have no area of their own: the estimate's area is at least this
@@ -33,8 +33,8 @@ typedef struct photon_map {
     float irradiance_unit[64]; /* of a slot's mantissas, by its exponent */
     const scene *surfaces;     /* borrowed, or NULL */
     bool is_borrowed;          /* blocks and nodes are a photon_file's */
-    atomic_u8 *checks;         /* of a map from a file: irradiance_word_check of each bearer, borrowed; else NULL */
-    bool has_been_cached;      /* a cache has been made over it: some slots may be ready */
+    atomic_u8 *checks; /* of a map from a file: irradiance_word_check of each irradiance photon, borrowed; else NULL */
+    bool has_been_cached; /* a cache has been made over it: some slots may be ready */
 } photon_map;
 
 /* Takes the set's photons over (and frees them on failure). A map without photons is valid: it says 0 everywhere.
@@ -46,15 +46,18 @@ void photon_map_reset(photon_map *map);
 /* What the codes of irradiances stand for. For a map that comes from a file. */
 void photon_map_set_bias(photon_map *map, int irradiance_bias);
 
-/* Whether all photons bear irradiance; else bearers have blocks and indices of their own. */
-static inline bool photon_map_all_bear(const photon_map *map) { return map->bearers.blocks == map->blocks; }
-
-static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t bearer)
+/* Whether all photons are irradiance photons; otherwise these have blocks and indices of their own. */
+static inline bool photon_map_all_have_irradiance(const photon_map *map)
 {
-    return photon_block_slot(map->bearers.blocks, bearer);
+    return map->irradiance_photons.blocks == map->blocks;
 }
 
-/* Photons, bearers and trees, all told. */
+static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t irradiance_photon)
+{
+    return photon_block_slot(map->irradiance_photons.blocks, irradiance_photon);
+}
+
+/* Memory of the photons, the irradiance photons and the trees, bytes. */
 uint64_t photon_map_bytes(const photon_map *map);
 
 /* Room for one worker's neighbours: photon_map_scratch_count(map) of them. */
@@ -62,45 +65,47 @@ uint32_t photon_map_scratch_count(const photon_map *map);
 
 /* How similar two normals must be: photons of an estimate lie within 60 degrees, so that on a convex surface the chord
  * of the search can grow to the radius of curvature, and no photon of a wall at a right angle counts; the photon whose
- * irradiance stands for a place lies within 25 degrees. Cosines. */
+ * irradiance stands for a point lies within 25 degrees. Cosines. */
 #define PHOTON_ESTIMATE_MIN_COS 0.5f
 #define PHOTON_NEAREST_MIN_COS  0.9f
 
-/* Whether something stands between a place, with its normal, and a photon of the blocks: by one ray, which is added to
- * *in_out_rays. */
+/* Whether something stands between a point of a surface, with its normal, and a photon of the blocks: by one ray, which
+ * is added to *in_out_rays. */
 bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
                                uint32_t index, uint64_t *in_out_rays);
 
-/* A bearer farther than this from a place must be in sight to stand for it, scene units: in a dark room the nearest
- * bearer is the bright next room's. Of evenly spread photons 1 in 7 is so far, and what still leaks through a partition
- * goes down with the square. */
+/* An irradiance photon farther than this from a point must be in sight to stand for it, scene units: in a dark room the
+ * nearest irradiance photon is the bright next room's. Of evenly spread photons 1 in 7 is so far, and what still leaks
+ * through a partition goes down with the square. */
 float photon_map_far(const photon_map *map);
 
-/* The nearest bearer is out of sight: an answer of photon_map_nearest. */
+/* The nearest irradiance photon is out of sight: an answer of photon_map_nearest. */
 #define PHOTON_HIDDEN (PHOTON_NONE - 1)
 
-/* The bearer whose irradiance stands for the place. PHOTON_NONE: none with a like normal is within half the largest
- * radius. PHOTON_HIDDEN: the nearest one lies so far away, or so far off the place's tangent plane, that it must be in
- * sight, and it is not. The rays that find that out are added to *in_out_rays. */
+/* The irradiance photon whose irradiance stands for the point. PHOTON_NONE: none with a like normal is within half the
+ * largest radius. PHOTON_HIDDEN: the nearest one lies so far away, or so far off the point's tangent plane, that it
+ * must be in sight, and it is not. The rays that find that out are added to *in_out_rays. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, uint64_t *in_out_rays);
 
-/* Where in the bearers' order a place is: lookups at places with like numbers touch the same memory. */
-uint32_t photon_map_place(const photon_map *map, vec3 position);
+/* The leaf of the irradiance photons' tree that a point lies in: lookups at points of like leaves touch the same
+ * memory. */
+uint32_t photon_map_leaf(const photon_map *map, vec3 position);
 
-/* The same of many; x, y, z of each stand side by side, and `stride` floats on those of the next one. */
-void photon_map_places(const photon_map *map, const float *positions, uint32_t stride, uint32_t count,
-                       uint32_t *out_places);
+/* photon_map_leaf of many points; x, y, z of each stand side by side, and `stride` floats on those of the next one. */
+void photon_map_leaves(const photon_map *map, const float *positions, uint32_t stride, uint32_t count,
+                       uint32_t *out_leaves);
 
-/* photon_map_nearest of many, as photon_walk_nearest_many has them, their leaves being their places; walk is one over
- * map->bearers. */
+/* photon_map_nearest of many, as photon_walk_nearest_many has them, their leaves being photon_map_leaf's; walk is one
+ * over map->irradiance_photons. */
 void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
-                             uint64_t *in_out_rays, uint32_t *out_bearers);
+                             uint64_t *in_out_rays, uint32_t *out_irradiance_photons);
 
-/* The 30 bits of a slot whose photon has been found to stand for no place, since no estimate holds there. Final, like
+/* The 30 bits of a slot whose photon has been found to stand for no point, since no estimate holds there. Final, like
  * a value. */
 #define PHOTON_NO_IRRADIANCE IRRADIANCE_VALUE_MASK
 
-/* Irradiance as a slot's 30 bits, never PHOTON_NO_IRRADIANCE. key decides the rounding: the bearer's index. */
+/* Irradiance as a slot's 30 bits, never PHOTON_NO_IRRADIANCE. The key, an irradiance photon's index, decides the
+ * rounding. */
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);
 rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value);
 

@@ -3,18 +3,19 @@
 
 #include <assert.h>
 
-photon_merge_result photon_merge(photon_map *into, const photon_map *from, uint64_t *in_out_added, uint32_t *out_bearer)
+photon_merge_result photon_merge(photon_map *into, const photon_map *from, uint64_t *in_out_added,
+                                 uint32_t *out_irradiance_photon)
 {
-    assert(into->bearers.count == from->bearers.count);
-    for (uint32_t i = 0; i < into->bearers.count; i++) {
+    assert(into->irradiance_photons.count == from->irradiance_photons.count);
+    for (uint32_t i = 0; i < into->irradiance_photons.count; i++) {
         uint32_t is = irradiance_slot_read(photon_map_slot(into, i)),
                  other = irradiance_slot_read(photon_map_slot(from, i));
         if (irradiance_word_is_ready(is) && irradiance_word_is_ready(other) && is != other) {
-            *out_bearer = i;
+            *out_irradiance_photon = i;
             return PHOTON_MERGE_DIFFERS;
         }
     }
-    for (uint32_t i = 0; i < into->bearers.count; i++) {
+    for (uint32_t i = 0; i < into->irradiance_photons.count; i++) {
         uint32_t word = irradiance_slot_read(photon_map_slot(from, i)), found;
         if (!irradiance_word_is_ready(word) || !irradiance_slot_try_claim(photon_map_slot(into, i), 0, &found))
             continue;
@@ -29,7 +30,7 @@ photon_merge_result photon_merge(photon_map *into, const photon_map *from, uint6
 uint64_t photon_merge_count_ready(const photon_map *map)
 {
     uint64_t ready = 0;
-    for (uint32_t i = 0; i < map->bearers.count; i++)
+    for (uint32_t i = 0; i < map->irradiance_photons.count; i++)
         ready += irradiance_word_is_ready(irradiance_slot_read(photon_map_slot(map, i)));
     return ready;
 }

@@ -51,7 +51,7 @@ static void walk_to(photon_walk *walk, uint32_t leaf)
     }
 }
 
-/* Whether all that is outside the cell of that level is farther away than the limit. The place is in the cell. */
+/* Whether all that is outside the cell of that level is farther away than the limit. The point is in the cell. */
 static inline bool cell_holds(const photon_walk *walk, uint32_t level, photon_lanes at, float limit)
 {
     float most = photon_query_hair_beyond(limit);

@@ -1,8 +1,9 @@
-/* photon_nearest_many.c: the nearest photons of many places at once; see photon_tree.h.
- * First each place's own leaf, which says how far to look; then all places go down the tree together, level by level.
- * What one place alone does, going where its last step has led, is a chain of branches that no processor foresees; here
- * they are counts that go up by one or not, and what is to be read next is known well before.
- * Threads: read only, but for the caller's walk. */
+/* photon_nearest_many.c: the nearest photons of many points at once; see photon_tree.h.
+ * First each lookup's own leaf, which says how far to look; then all lookups go down the tree together, level by level.
+ * What one lookup alone does, going where its last step has led, is a chain of branches that no processor foresees;
+ * here they are counts that go up by one or not, and what is to be read next is known well before.
+ * Threads: read only,
+ * but for the caller's walk. */
 #include "photon_kernels.h"
 #include "photon_query.h"
 
@@ -13,19 +14,19 @@ static void take(photon_query *q, const photon_lookup *lookups, const photon_vis
                  photon_neighbor *nearest)
 {
     for (uint32_t i = 0; i < found->count; i++) {
-        uint32_t place = found->place[i], photon_index = found->node[i];
-        const photon_lookup *l = &lookups[place];
+        uint32_t lookup = found->lookup[i], photon_index = found->node[i];
+        const photon_lookup *l = &lookups[lookup];
         if (l->normal.x != q->normal.x || l->normal.y != q->normal.y || l->normal.z != q->normal.z)
             q->similar_code = q->other_code = PHOTON_QUERY_NO_CODE;
         q->normal = l->normal;
         q->position[0] = l->position.x, q->position[1] = l->position.y, q->position[2] = l->position.z;
-        if (distances[i] <= photon_neighbor_distance_squared(nearest[place]))
+        if (distances[i] <= photon_neighbor_distance_squared(nearest[lookup]))
             photon_query_offer(q, photon_index / PHOTON_BLOCK_LANES, photon_index % PHOTON_BLOCK_LANES, distances[i],
-                               &nearest[place]);
+                               &nearest[lookup]);
     }
 }
 
-/* Puts on `leaves` which other leaves than their own the places must look at. Down to the node that has all their
+/* Puts on `leaves` which other leaves than their own the points must look at. Down to the node that has all their
  * leaves below it the way is the same for all, and only who sees the other side is asked. false: too many. */
 static bool find_other_leaves(const photon_walk *walk, const photon_lookup *lookups, uint32_t count,
                               const photon_reach *reach, photon_visits *spare, photon_visits *leaves)
@@ -39,7 +40,7 @@ static bool find_other_leaves(const photon_walk *walk, const photon_lookup *look
     from->count = 0;
     for (uint32_t level = 0;; level++) {
         for (uint32_t i = 0; level == top && i < count; i++) {
-            from->place[from->count] = i;
+            from->lookup[from->count] = i;
             from->node[from->count] = (way >> (depth - top)) - 1;
             from->count += most[i] >= 0.0f;
         }
@@ -52,7 +53,7 @@ static bool find_other_leaves(const photon_walk *walk, const photon_lookup *look
             uint32_t sibling = (way >> (depth - 1 - level) ^ 1) - 1;
             uint64_t met = walk->kernels->meet_plane(reach, tree->nodes[(way >> (depth - level)) - 1]);
             for (; met; met &= met - 1) {
-                to->place[to->count] = (uint32_t)__builtin_ctzll(met);
+                to->lookup[to->count] = (uint32_t)__builtin_ctzll(met);
                 to->node[to->count++] = sibling;
             }
         }
@@ -62,10 +63,10 @@ static bool find_other_leaves(const photon_walk *walk, const photon_lookup *look
     }
     uint32_t kept = 0;
     for (uint32_t i = 0; i < from->count; i++) {
-        uint32_t place = from->place[i], leaf = from->node[i] - ((1u << depth) - 1);
-        leaves->place[kept] = place;
+        uint32_t lookup = from->lookup[i], leaf = from->node[i] - ((1u << depth) - 1);
+        leaves->lookup[kept] = lookup;
         leaves->node[kept] = leaf;
-        kept += leaf != lookups[place].leaf;
+        kept += leaf != lookups[lookup].leaf;
     }
     leaves->count = kept;
     return true;
@@ -87,7 +88,7 @@ void photon_walk_nearest_many(photon_walk *walk, const photon_lookup *lookups, u
         most[i] = i < count ? radius * radius : -1.0f;
     }
     for (uint32_t i = 0; i < count; i++) {
-        leaves.place[i] = i;
+        leaves.lookup[i] = i;
         leaves.node[i] = lookups[i].leaf;
         out_nearest[i] = photon_neighbor_make(radius * radius, PHOTON_NONE);
     }

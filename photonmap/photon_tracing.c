@@ -5,7 +5,7 @@
 
 #include "material/lambert.h"
 #include "parallel_for.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 #include "scene_extent.h"
 #include "shape/alpha.h"
 #include "status.h"
@@ -33,7 +33,7 @@ typedef struct block {
     photon *photons;
     uint32_t count, capacity;
     uint32_t place; /* of its photons in the set */
-    uint64_t paths, parts, rays, passages_cut;
+    uint64_t paths, parts, rays, rays_cut;
     energy_balance balance;
     bool out_of_memory;
     bool is_cut; /* cancelled before all of its paths were traced */
@@ -299,7 +299,7 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit, const 
     }
     path->flux = rgb_scale(scattered, 1.0f / survival);
     count_flux(balance->gained, rgb_sub(path->flux, scattered));
-    path->ray = goes_straight ? passage_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
+    path->ray = goes_straight ? scene_ray_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
     if (next.group == BSDF_GATHERED && settings->filters_textures)
         path->ray.cone.spread = RAY_CONE_DIFFUSE_SPREAD;
     path->scatterings += !goes_straight;
@@ -369,7 +369,7 @@ static void follow_path(tracer *t, photon_path *path)
         surface_hit hit;
         rgb transmittance;
         t->out->rays++;
-        bool is_met = passage_intersect(t->s, &path->ray, &t->out->passages_cut, &hit, &transmittance);
+        bool is_met = transmittance_intersect(t->s, &path->ray, &t->out->rays_cut, &hit, &transmittance);
         if (!pass_media(balance, transmittance, &path->random, &path->flux))
             return;
         if (!is_met)
@@ -443,7 +443,7 @@ static ag_status account_block(round_job *job, photon_set *set, uint64_t first_p
     set->emitted_paths += b->paths;
     set->rays += b->rays;
     set->parts += b->parts;
-    set->passages_cut += b->passages_cut;
+    set->rays_cut += b->rays_cut;
     add_balance(&set->balance, &b->balance);
     return AG_OK;
 }

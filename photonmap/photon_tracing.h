@@ -13,7 +13,7 @@
  * Monte Carlo calculations", 1984: weight windows).
  *
  * Where something moves, each path has a time of the shutter of its own, so that a map is the mean over the shutter;
- * which light comes at which time is lost. A photon on a moving surface lies where that place of the surface is when
+ * which light comes at which time is lost. A photon on a moving surface lies where that point of the surface is when
  * the shutter opens, and is looked for there (surface_at_opening): it goes with its surface, and is not smeared over
  * its way. */
 #ifndef AFTERGLOW_PHOTON_TRACING_H
@@ -52,7 +52,7 @@ typedef struct photon_set {
     uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
     uint64_t parts;         /* that splitting has added to them */
     uint64_t rays;
-    uint64_t passages_cut; /* ways across more interfaces than scene/rays/passage.h follows: absorbed */
+    uint64_t rays_cut; /* by TRANSMITTANCE_CROSSINGS_MAX (scene/rays/transmittance.h): absorbed */
     energy_balance balance;
 } photon_set;
 
@@ -61,7 +61,7 @@ typedef struct photon_tracing_settings {
     uint32_t wanted;       /* photons to store, > 0 */
     int max_scatterings;   /* arrivals after more scatterings than this are not stored; >= 0 */
     bool panes_are_direct; /* light straight through panes (bsdf.h) counts as unscattered: no caustic */
-    bool filters_textures; /* over about the area that a photon stands for, and more behind diffuse places */
+    bool filters_textures; /* over about the area that a photon stands for, and more behind diffuse vertices */
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
     const emission_guide *guide;    /* where paths begin */
@@ -86,7 +86,7 @@ typedef struct trial_counts {
 } trial_counts;
 
 /* Tries so many paths, from that number on, which store nothing: a trial's value is the sum over the photons that it
- * would store of their flux times the root of their places' importance, so that what few ask for is not left to
+ * would store of their flux times the root of their points' importance, so that what few ask for is not left to
  * a handful of photons. Paths apart from those of photon_tracing_run. The
  * caustics of a scene without traced lobes, and the light of one without lamps, are of no value. Errors:
  * AG_ERROR_MEMORY, AG_CANCELLED. */

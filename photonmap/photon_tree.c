@@ -13,7 +13,7 @@ enum { PARALLEL_LEVELS = 9 };
 enum { CANCEL_MASK = 0xffff };
 /* Shorter ranges take their own middle as the pivot. */
 enum { SAMPLED_MIN = 600 };
-/* What rounding does to the places of a flat surface, relative to their largest coordinate: some units in the last
+/* How far rounding moves points of a flat surface, relative to their largest coordinate: some units in the last
  * place. */
 static const float ON_PLANE_RELATIVE = 5e-7f;
 
@@ -23,12 +23,12 @@ typedef struct range {
     uint32_t low, high; /* photons */
 } range;
 
-/* The photons below the node at that place of its level: those of the blocks that are its leaves, as far as there are
+/* The photons below the node of that number on its level: those of the blocks that are its leaves, as far as there are
  * any. */
-static range node_range(const photon_tree *tree, uint32_t level, uint64_t place)
+static range node_range(const photon_tree *tree, uint32_t level, uint64_t number)
 {
     uint64_t each = (uint64_t)PHOTON_BLOCK_LANES << (tree->depth - level);
-    uint64_t low = place * each, high = low + each, count = tree->count;
+    uint64_t low = number * each, high = low + each, count = tree->count;
     return (range){(uint32_t)(low < count ? low : count), (uint32_t)(high < count ? high : count)};
 }
 
@@ -95,17 +95,17 @@ static bool lies_in_surface(const photon *p, range r, photon_tree_node plane, fl
 static void sort_axes(const float extent[3], uint32_t out_axes[3])
 {
     for (uint32_t a = 0; a < 3; a++) {
-        uint32_t place = a;
-        for (; place > 0 && extent[a] > extent[out_axes[place - 1]]; place--)
-            out_axes[place] = out_axes[place - 1];
-        out_axes[place] = a;
+        uint32_t at = a;
+        for (; at > 0 && extent[a] > extent[out_axes[at - 1]]; at--)
+            out_axes[at] = out_axes[at - 1];
+        out_axes[at] = a;
     }
 }
 
-static void split_node(const run_context *run, photon_tree *tree, photon *p, uint32_t level, uint64_t place)
+static void split_node(const run_context *run, photon_tree *tree, photon *p, uint32_t level, uint64_t number)
 {
-    range r = node_range(tree, level, place);
-    uint32_t node = (1u << level) - 1 + (uint32_t)place, middle = node_range(tree, level + 1, 2 * place).high;
+    range r = node_range(tree, level, number);
+    uint32_t node = (1u << level) - 1 + (uint32_t)number, middle = node_range(tree, level + 1, 2 * number).high;
     if (middle >= r.high) { /* all is on the left */
         tree->nodes[node] = (photon_tree_node){INFINITY, 0};
         return;
@@ -139,9 +139,9 @@ static void split_node(const run_context *run, photon_tree *tree, photon *p, uin
     tree->nodes[node] = plane;
 }
 
-static void split_subtree(const run_context *run, photon_tree *tree, photon *p, uint32_t level, uint64_t place)
+static void split_subtree(const run_context *run, photon_tree *tree, photon *p, uint32_t level, uint64_t number)
 {
-    range r = node_range(tree, level, place);
+    range r = node_range(tree, level, number);
     bool is_empty = r.low == r.high;
     /* searches look at the lowest levels as a whole: what is empty there is to lie beyond planes at infinity, all the
      * way down */
@@ -149,12 +149,12 @@ static void split_subtree(const run_context *run, photon_tree *tree, photon *p, 
         return;
     if (level == tree->depth) {
         if (!is_empty)
-            photon_block_from_records(&tree->blocks[place], r.high - r.low);
+            photon_block_from_records(&tree->blocks[number], r.high - r.low);
         return;
     }
-    split_node(run, tree, p, level, place);
-    split_subtree(run, tree, p, level + 1, 2 * place);
-    split_subtree(run, tree, p, level + 1, 2 * place + 1);
+    split_node(run, tree, p, level, number);
+    split_subtree(run, tree, p, level + 1, 2 * number);
+    split_subtree(run, tree, p, level + 1, 2 * number + 1);
 }
 
 typedef struct level_job {
@@ -169,11 +169,11 @@ static void split_level_block(void *user, uint64_t begin, uint64_t end, uint64_t
 {
     (void)block, (void)worker;
     const level_job *job = user;
-    for (uint64_t place = begin; place < end; place++)
+    for (uint64_t number = begin; number < end; number++)
         if (job->whole_subtrees)
-            split_subtree(job->run, job->tree, job->photons, job->level, place);
+            split_subtree(job->run, job->tree, job->photons, job->level, number);
         else
-            split_node(job->run, job->tree, job->photons, job->level, place);
+            split_node(job->run, job->tree, job->photons, job->level, number);
 }
 
 ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, double progress_begin,

@@ -60,7 +60,7 @@ static inline float photon_neighbor_distance_squared(photon_neighbor n)
 uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared);
 
-/* The block of the leaf that a place falls into; of a tree that is not empty. */
+/* The block of the leaf that a point falls into; of a tree that is not empty. */
 uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
 
 enum { PHOTON_TREE_DEPTH_MAX = 32, PHOTON_WALK_AXES = 4 };
@@ -79,19 +79,19 @@ typedef struct photon_walk {
 
 void photon_walk_init(photon_walk *walk, const photon_tree *tree); /* borrows the tree */
 
-/* photon_tree_nearest at a place of the leaf that photon_tree_leaf tells: the same photon, whatever was looked up
+/* photon_tree_nearest at a point of the leaf that photon_tree_leaf tells: the same photon, whatever was looked up
  * before. */
 uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared);
 
-/* A place to find the nearest photon of: position, unit normal, and the leaf that photon_tree_leaf tells. */
+/* A point to find the nearest photon of: position, unit normal, and the leaf that photon_tree_leaf tells. */
 enum { PHOTON_LOOKUPS_MAX = 64 };
 typedef struct photon_lookup {
     vec3 position, normal;
     uint32_t leaf;
 } photon_lookup;
 
-/* The same for `count` places, from 1 to PHOTON_LOOKUPS_MAX, in the order of their leaves: much cheaper. Where there is
+/* The same for `count` points, from 1 to PHOTON_LOOKUPS_MAX, in the order of their leaves: much cheaper. Where there is
  * none, the index is PHOTON_NONE. */
 void photon_walk_nearest_many(photon_walk *walk, const photon_lookup *lookups, uint32_t count, float min_cos,
                               float radius, photon_neighbor *out_nearest);

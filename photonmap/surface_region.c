@@ -4,7 +4,7 @@
 
 #include "math/rng.h"
 #include "math/sampling.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 #include <string.h>
 
@@ -28,10 +28,10 @@ static bool is_alike(const surface_hit *hit, vec3 normal, vec3 arrival, float mi
     return vec3_dot(vec3_face_forward(hit->geometric_normal, vec3_negate(arrival)), normal) > min_cos;
 }
 
-/* The constants of one search. Its rays begin, or end, `lift` above the plane through the place. */
+/* The constants of one search. Its rays begin, or end, `lift` above the plane through the point. */
 typedef struct probe {
     const scene *s;
-    vec3 above, normal; /* the place, lifted along its normal */
+    vec3 above, normal; /* the point, lifted along its normal */
     float lift, radius, min_cos;
     ray_alpha_rule alpha_rule;
     uint64_t *rays; /* counts them */
@@ -42,7 +42,7 @@ static bool find_surface(const probe *p, vec3 origin, vec3 direction, float fart
     scene_ray ray = scene_ray_make(origin, direction);
     ray.alpha_rule = p->alpha_rule;
     ++*p->rays;
-    return passage_find_surface(p->s, ray, farthest, out_hit);
+    return scene_find_surface(p->s, ray, farthest, out_hit);
 }
 
 /* A picture cuts holes into it, which no photon falls on. */
@@ -51,7 +51,7 @@ static bool has_holes(const scene *s, const surface_hit *hit)
     return s->shapes[hit->shape_index].alpha_texture != SCENE_NO_TEXTURE;
 }
 
-/* The surface at the place itself, from above: its normal, and a start above it, which become the probe's. A narrow
+/* The surface at the point itself, from above: its normal, and a start above it, which become the probe's. A narrow
  * corner may have no room for the full lift. */
 static bool find_foot(probe *p, vec3 position, vec3 normal, surface_hit *out_foot)
 {
@@ -132,7 +132,7 @@ static void bound_sector(const float *extent, float radius, int i, float *out_li
     line_through(extent, i, out_line);
 }
 
-/* Two tangents at right angles, turned at random by the place, so that no direction is favoured. */
+/* Two tangents at right angles, turned at random by the point, so that no direction is favoured. */
 static void find_tangents(vec3 position, vec3 normal, vec3 *out_x, vec3 *out_y)
 {
     uint32_t bits[3];
@@ -144,7 +144,7 @@ static void find_tangents(vec3 position, vec3 normal, vec3 *out_x, vec3 *out_y)
     *out_y = vec3_add_scaled(vec3_scale(f.y, cosine), f.x, -sine);
 }
 
-/* Of the region, how much is there: looked up at one place in each of 8 by 8 parts of the disc. */
+/* Of the region, how much is there: looked up at one point in each of 8 by 8 parts of the disc. */
 static float share_that_is_there(const probe *p, const surface_region *r)
 {
     enum { PARTS = 8 };
@@ -169,7 +169,7 @@ static float share_that_is_there(const probe *p, const surface_region *r)
         there += is_there;
         all += is_there || find_below(p, tangent, length * p->radius, &hit);
     }
-    /* one more of each, the place itself: of a binomial count that makes the mean of 1 / share right */
+    /* one more of each, the point itself: of a binomial count that makes the mean of 1 / share right */
     return ((float)there + 1.0f) / ((float)all + 1.0f);
 }
 

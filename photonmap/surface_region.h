@@ -4,7 +4,7 @@
  * photons and area are then counted inside that region alone, so the estimate is right wherever the region is whole
  * surface. Rests on: Jensen 2001, 7.2 (boundary bias); the rays are an alternative to his convex hull, which takes
  * shadows for edges. Flow: photon_map asks, where the photons found hint at an edge. Threads: pure functions of the
- * scene and the place. */
+ * scene and the point. */
 #ifndef AFTERGLOW_SURFACE_REGION_H
 #define AFTERGLOW_SURFACE_REGION_H
 
@@ -23,11 +23,11 @@ typedef struct surface_region {
 
 /* min_cos: normals more alike than this belong to the surface, as for photons. The rays that are cast are added to
  * *in_out_rays, here and below. Returns false where nothing ends it
- * within radius of the place and it has no holes, and where there is no surface at the place. */
+ * within radius of the point and it has no holes, and where there is no surface at the point. */
 bool surface_region_find(const scene *s, vec3 position, vec3 normal, float min_cos, float radius, uint64_t *in_out_rays,
                          surface_region *out_region);
 
-/* Whether surface lies below four places near the rim of the disc, a quarter turn apart: a test for edges at a quarter
+/* Whether surface lies below four points near the rim of the disc, a quarter turn apart: a test for edges at a quarter
  * of the search's cost, for discs in which nothing else hints at one. An edge nearer than 0.64 of the radius is
  * always found. */
 bool surface_region_reaches_rim(const scene *s, vec3 position, vec3 normal, float min_cos, float radius,

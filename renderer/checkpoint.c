@@ -35,7 +35,7 @@ static hash128 hash_filter(const pixel_filter *filter)
 static uint64_t words_of(const struct ag_rendering *r)
 {
     return integrator_of(r->settings.integrator)->has_photon_map && r->settings.cache == AG_CACHE_ON_DEMAND
-               ? r->maps.global.bearers.count
+               ? r->maps.global.irradiance_photons.count
                : 0;
 }
 

@@ -62,7 +62,7 @@ static ag_photon_map_info info_of(const read_map *m)
                                .paths_emitted = m->global.set.emitted_paths + m->caustic.set.emitted_paths,
                                .photons_global = m->global.set.count,
                                .photons_caustic = m->caustic.set.count,
-                               .bearers = m->global.bearers.count,
+                               .irradiance_photons = m->global.irradiance_photons.count,
                                .ready = photon_merge_count_ready(&m->global),
                                .damaged = m->file.damaged};
     static const hash128 none;
@@ -127,17 +127,18 @@ static ag_status add(ag_context *context, const char *first_path, read_map *into
 {
     read_map m;
     uint64_t added = 0;
-    uint32_t bearer;
+    uint32_t irradiance_photon;
     ag_status status = read_map_open(context, path, &m);
     if (status == AG_OK && !hash128_is_equal(m.fixed, into->fixed)) {
         log_message(context->log, AG_LOG_ERROR,
                     "%s: error: it is another map than %s: scene, settings, view, program, machine or photons differ",
                     path, first_path);
         status = AG_ERROR_INPUT;
-    } else if (status == AG_OK && photon_merge(&into->global, &m.global, &added, &bearer) != PHOTON_MERGE_DONE) {
+    } else if (status == AG_OK &&
+               photon_merge(&into->global, &m.global, &added, &irradiance_photon) != PHOTON_MERGE_DONE) {
         log_message(context->log, AG_LOG_ERROR,
                     "%s: error: irradiance %u is another one than in the files before: one of them is damaged", path,
-                    bearer);
+                    irradiance_photon);
         status = AG_ERROR_INPUT;
     } else if (status == AG_OK) {
         log_message(context->log, AG_LOG_INFO, "%s: %llu irradiances added", path, (unsigned long long)added);

@@ -5,8 +5,8 @@
 #include "material/pane.h"
 #include "math/rng.h"
 #include "math/sampling.h"
-#include "rays/passage.h"
 #include "rays/slab_faces.h"
+#include "rays/transmittance.h"
 
 #include <math.h>
 
@@ -65,13 +65,13 @@ static bool is_inside_solid(const scene *s)
 {
     const camera *c = &s->camera;
     if (c->kind == CAMERA_ORTHOGRAPHIC)
-        return false; /* which has no one place */
+        return false; /* which has no position */
     scene_ray ray = camera_generate_ray(c, 0.5f, 0.5f, 1.0f, (vec2){0.5f, 0.5f}, 0.0f);
     for (int i = 0; i < DIRECTIONS; i++) {
         surface_hit hit;
         ray.direction = sample_uniform_sphere(
             (vec2){((float)i + 0.5f) / DIRECTIONS, (float)i * 0.618034f - floorf((float)i * 0.618034f)});
-        if (!passage_find_surface(s, ray, INFINITY, &hit) || vec3_dot(hit.geometric_normal, ray.direction) <= 0.0f)
+        if (!scene_find_surface(s, ray, INFINITY, &hit) || vec3_dot(hit.geometric_normal, ray.direction) <= 0.0f)
             return false;
     }
     return true;
@@ -122,7 +122,7 @@ static bool shines_away(const scene *s)
             light_emission start;
             surface_hit hit;
             if (light_sample_emission(s, l, NULL, &random, &start) &&
-                passage_find_surface(s, scene_ray_make(start.origin, start.direction), INFINITY, &hit) &&
+                scene_find_surface(s, scene_ray_make(start.origin, start.direction), INFINITY, &hit) &&
                 hit.distance > RIGHT_IN_FRONT * s->bounding_radius)
                 return false;
         }

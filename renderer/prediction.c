@@ -141,8 +141,8 @@ static double seconds_of_estimate(const trial *first, const trial *second, doubl
     return fmin(fmax(estimate_s, 0.5 * timed_s), timed_s);
 }
 
-/* CPU seconds of the whole picture's samples, and of the irradiance that is computed before. count: photons that bear
- * it. */
+/* CPU seconds of the whole picture's samples, and of the irradiance that is computed before. count: the
+ * irradiance photons. */
 static double predict_samples(const ag_rendering *r, const ag_render_settings *settings, const trial trials[2],
                               double photons_grown, double *out_precompute_s)
 {
@@ -155,7 +155,8 @@ static double predict_samples(const ag_rendering *r, const ag_render_settings *s
     const double computed = (double)c.computed, made = computed + (double)c.uncached;
     const double timed_s = made > 0.0 ? irradiance_counters_estimate_seconds(&c) / made : 0.0;
     const double each_s = seconds_of_estimate(&trials[0], &trials[1], timed_s);
-    const double count = (double)r->maps.global.bearers.count, rest_s = fmax(cpu_s - each_s * computed, 0.0) * grown;
+    const double count = (double)r->maps.global.irradiance_photons.count,
+                 rest_s = fmax(cpu_s - each_s * computed, 0.0) * grown;
     if (settings->cache == AG_CACHE_PRECOMPUTE) {
         *out_precompute_s = each_s * count * photons_grown;
         return rest_s;

@@ -9,7 +9,7 @@
 #include "integrator/integrator.h"
 #include "odd_scene.h"
 #include "output/photon_dump.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 #include "render_maps.h"
 #include "render_tiles.h"
 #include "status.h"
@@ -29,7 +29,7 @@ static ag_status render_passes(ag_rendering *r, uint32_t wanted)
     }
 }
 
-/* The passes between the places where it is decided which pixels need more. */
+/* The number of passes between decisions which pixels need more. */
 static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
 {
     ag_film *film = r->film;
@@ -62,11 +62,11 @@ static void collect_counts(ag_rendering *r)
         r->camera_rays += w->rays_camera;
         r->camera_rays_met += w->camera_rays_met;
         statistics->samples_not_finite += w->samples_not_finite;
-        cut += w->passages_cut;
+        cut += w->rays_cut;
         w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = w->rays_estimate = 0;
-        w->camera_rays_met = w->samples_not_finite = w->passages_cut = 0;
+        w->camera_rays_met = w->samples_not_finite = w->rays_cut = 0;
     }
-    passage_warn_of_cut(r->context->log, cut);
+    transmittance_warn_of_cut(r->context->log, cut);
 }
 
 /* Of a pixel, the width that one of its samples stands for: they share the pixel and, by its filter, some of those

@@ -5,7 +5,7 @@
 #include "integrator/eye_pilot.h"
 #include "map_file.h"
 #include "photon_aim.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 void maps_reset(maps *m)
 {
@@ -110,20 +110,20 @@ static ag_status trace_maps(ag_context *context, const scene *s, const ag_render
         statistics->photons_stored_global += global.count;
         statistics->photons_stored_caustic += caustic.count;
         statistics->rays_photon += global.rays + caustic.rays;
-        passage_warn_of_cut(context->log, global.passages_cut + caustic.passages_cut);
+        transmittance_warn_of_cut(context->log, global.rays_cut + caustic.rays_cut);
         log_message(context->log, AG_LOG_INFO, "photons: %u in the global map, %u in the caustic map, %llu paths",
                     global.count, caustic.count, (unsigned long long)(global.emitted_paths + caustic.emitted_paths));
         begin = context_begin_phase();
         photon_map_settings map_settings = {.nearest = (uint32_t)settings->nearest,
                                             .max_radius = settings->radius,
                                             .surface_area = s->surface_area,
-                                            .bearing = settings->irradiance_fraction,
+                                            .irradiance_fraction = settings->irradiance_fraction,
                                             .surfaces = s};
         status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, out_global);
-        /* caustics gather in places: how many of their photons there are does not tell how far apart they lie */
+        /* caustics gather in spots: how many of their photons there are does not tell how far apart they lie */
         if (status == AG_OK)
             status = caustic_radius_find(out_global, &caustic, &map_settings.radius_bound);
-        map_settings.bearing = 1.0f;
+        map_settings.irradiance_fraction = 1.0f;
         if (status == AG_OK)
             status = photon_map_create(&context->run, &caustic, &map_settings, 0.7, 1.0, out_caustic);
     }

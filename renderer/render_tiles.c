@@ -77,23 +77,23 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
                  : t->s->hints.disable_pixel_jitter ? 0.5f
                                                     : sampler_2d(&where, SAMPLE_TIME, 0).x;
     float width = (float)settings->width, height = (float)settings->height;
-    camera_place place = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, width / height,
+    film_point on_film = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, width / height,
                           lens, time};
-    camera_sample from = {.ray =
-                              camera_generate_ray(&t->s->camera, place.film_x, place.film_y, place.aspect, lens, time),
-                          .where = where,
-                          .split = split,
-                          .number = number};
+    camera_sample from = {
+        .ray = camera_generate_ray(&t->s->camera, on_film.film_x, on_film.film_y, on_film.aspect, lens, time),
+        .where = where,
+        .split = split,
+        .number = number};
     if (t->pixel_share > 0.0f)
-        from.ray.cone = camera_ray_cone(&t->s->camera, &from.ray, place.film_x, place.film_y, t->pixel_share / width,
-                                        t->pixel_share / height, place.aspect, lens);
+        from.ray.cone = camera_ray_cone(&t->s->camera, &from.ray, on_film.film_x, on_film.film_y,
+                                        t->pixel_share / width, t->pixel_share / height, on_film.aspect, lens);
     out->most_direct = settings->clamp_direct > 0.0f ? settings->clamp_direct : INFINITY;
     out->most_indirect = settings->clamp_indirect > 0.0f ? settings->clamp_indirect : INFINITY;
     uint64_t cost_before = eye_worker_cost(worker);
     job->kind->sample(t, worker, &from, out);
     out->rest_cost = (uint32_t)(eye_worker_cost(worker) - cost_before) - out->gather_cost - out->light_cost;
     if (out->layers && t->layout->needs_first_hit)
-        first_hit_project(t, &place, &out->layers->first);
+        first_hit_project(t, &on_film, &out->layers->first);
 }
 
 /* Completes the samples under way. When the work is cancelled they do not count. */

@@ -23,7 +23,7 @@ static void screen_edges(const camera *c, float aspect, float out[4])
         out[2] = -1.0f / frame_aspect, out[3] = 1.0f / frame_aspect;
 }
 
-static vec2 screen_place(const camera *c, float film_x, float film_y, float aspect)
+static vec2 screen_point(const camera *c, float film_x, float film_y, float aspect)
 {
     float e[4];
     screen_edges(c, aspect, e);
@@ -110,7 +110,7 @@ scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float
 {
     vec3 origin = {0.0f, 0.0f, 0.0f}, direction;
     if (c->kind == CAMERA_PERSPECTIVE || c->kind == CAMERA_ORTHOGRAPHIC)
-        projective_ray(c, screen_place(c, film_x, film_y, aspect), lens_u, &origin, &direction);
+        projective_ray(c, screen_point(c, film_x, film_y, aspect), lens_u, &origin, &direction);
     else
         direction = spherical_direction(c->kind, (double)film_x, (double)film_y);
     scene_ray ray;

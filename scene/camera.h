@@ -1,4 +1,4 @@
-/* camera.h: from a place on the film to a ray.
+/* camera.h: from a point on the film to a ray.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 5 (perspective, orthographic,
  * thin lens, spherical). Threads: read-only once the scene is committed. */
 #ifndef AFTERGLOW_CAMERA_H
@@ -34,7 +34,7 @@ typedef struct camera {
 } camera;
 
 /* film_x, film_y: in [0, 1] from the left and from the top of the full image, and a filter's radius beyond; aspect: its
- * width / height; lens_u in [0,1)^2 picks the place on the lens; time: of the shutter, see scene_ray. The direction is
+ * width / height; lens_u in [0,1)^2 picks the point on the lens; time: of the shutter, see scene_ray. The direction is
  * unit. */
 scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u, float time);
 

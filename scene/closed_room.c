@@ -2,10 +2,10 @@
 #include "closed_room.h"
 
 #include "math/sampling.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
-/* Places that are tried, along and across, at several heights; directions around each; and headings to look along. */
-enum { PLACES = 12, HEIGHTS = 3, DIRECTIONS = 64, HEADINGS = 32, OPEN_HEADINGS_MAX = 4, PANES_MAX = 16 };
+/* Candidate positions along and across, and heights; directions tried around each; and headings to look along. */
+enum { GRID = 12, HEIGHTS = 3, DIRECTIONS = 64, HEADINGS = 32, OPEN_HEADINGS_MAX = 4, PANES_MAX = 16 };
 static const float HEIGHT_SHARES[HEIGHTS] = {0.45f, 0.25f, 0.7f};
 
 static const float ENCLOSED = 0.85f; /* of the directions, so many end at a surface in a room */
@@ -31,11 +31,11 @@ static bool cast(const scene *s, vec3 origin, vec3 direction, surface_hit *out_h
 {
     scene_ray ray = scene_ray_make(origin, direction);
     for (int i = 0; i < PANES_MAX; i++) {
-        if (!passage_find_surface(s, ray, INFINITY, out_hit))
+        if (!scene_find_surface(s, ray, INFINITY, out_hit))
             return false;
         if (!material_is_clear_glass(s, s->shapes[out_hit->shape_index].material_index))
             return true;
-        ray = passage_continue(out_hit, &ray);
+        ray = scene_ray_continue(out_hit, &ray);
     }
     return false;
 }
@@ -54,7 +54,7 @@ static bool is_on_bounds(const scene *s, vec3 p)
            high.x < ON_BOUNDS_REACH * size.x || high.y < ON_BOUNDS_REACH * size.y || high.z < ON_BOUNDS_REACH * size.z;
 }
 
-static surroundings look_around(const scene *s, vec3 place)
+static surroundings look_around(const scene *s, vec3 position)
 {
     surroundings r = {.nearest = INFINITY};
     int met = 0, facing = 0, on_bounds = 0;
@@ -63,9 +63,9 @@ static surroundings look_around(const scene *s, vec3 place)
         const float turn = (float)i * 0.618034f;
         const vec3 direction = sample_uniform_sphere((vec2){((float)i + 0.5f) / DIRECTIONS, turn - floorf(turn)});
         surface_hit hit;
-        if (!cast(s, place, direction, &hit))
+        if (!cast(s, position, direction, &hit))
             continue;
-        const float square = vec3_distance_squared(hit.position, place);
+        const float square = vec3_distance_squared(hit.position, position);
         met++;
         facing += vec3_dot(hit.geometric_normal, direction) < 0.0f;
         on_bounds += is_on_bounds(s, hit.position);
@@ -106,11 +106,11 @@ static bool is_room(const surroundings *r, bool has_outer)
 }
 
 /* Between the floor below and the ceiling above. */
-static bool find_height(const scene *s, vec3 place, float share, vec3 *out_place)
+static bool find_height(const scene *s, vec3 position, float share, vec3 *out_position)
 {
-    const float down = free_distance(s, place, vec3_make(0.0f, -1.0f, 0.0f));
-    const float up = free_distance(s, place, vec3_make(0.0f, 1.0f, 0.0f));
-    *out_place = vec3_make(place.x, place.y - down + share * (down + up), place.z);
+    const float down = free_distance(s, position, vec3_make(0.0f, -1.0f, 0.0f));
+    const float up = free_distance(s, position, vec3_make(0.0f, 1.0f, 0.0f));
+    *out_position = vec3_make(position.x, position.y - down + share * (down + up), position.z);
     return down >= 0.0f && up >= 0.0f;
 }
 
@@ -148,12 +148,12 @@ static view find_view(const scene *s, bool has_outer)
     const float elbow_room = ELBOW_ROOM * vec3_length(size);
     view best = {.distance = -1.0f};
     for (int h = 0; h < HEIGHTS && best.distance < 0.0f; h++)
-        for (int i = 0; i < PLACES * PLACES; i++) {
-            const float x = ((float)(i % PLACES) + 0.5f) / PLACES, z = ((float)(i / PLACES) + 0.5f) / PLACES;
-            const vec3 place = vec3_make(low.x + x * size.x, low.y + HEIGHT_SHARES[h] * size.y, low.z + z * size.z);
+        for (int i = 0; i < GRID * GRID; i++) {
+            const float x = ((float)(i % GRID) + 0.5f) / GRID, z = ((float)(i / GRID) + 0.5f) / GRID;
+            const vec3 position = vec3_make(low.x + x * size.x, low.y + HEIGHT_SHARES[h] * size.y, low.z + z * size.z);
             vec3 eye;
-            surroundings around = look_around(s, place);
-            if (!is_room(&around, has_outer) || !find_height(s, place, EYE_HEIGHT, &eye))
+            surroundings around = look_around(s, position);
+            if (!is_room(&around, has_outer) || !find_height(s, position, EYE_HEIGHT, &eye))
                 continue;
             around = look_around(s, eye);
             if (is_room(&around, has_outer) && around.nearest >= elbow_room)

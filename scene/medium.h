@@ -1,7 +1,8 @@
 /* medium.h: what fills space and absorbs light on its way, the same everywhere in it.
  * Rests on: Beer's law, as in Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 11.2; scattering
  * within a medium is not simulated.
- * Flow: the scene file makes media; shapes, lamps and the camera refer to them; passage.h takes light through them.
+ * Flow: the scene file makes media; shapes, lamps and the camera refer to them; transmittance.h takes light through
+ * them.
  * Threads: pure functions; media are read-only once the scene is committed. */
 #ifndef AFTERGLOW_MEDIUM_H
 #define AFTERGLOW_MEDIUM_H

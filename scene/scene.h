@@ -81,7 +81,7 @@ typedef struct scene {
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
     bool has_mips;       /* any picture that is filtered: see material_mips.h */
-    bool has_interfaces; /* any shape that rays may pass unbent: see passage.h */
+    bool has_interfaces; /* any shape that rays may pass unbent: see transmittance.h */
     bool has_panes;      /* any shape that lets light straight through: see pane.h, slab_faces.h */
     /* How lights are picked, see light_pick.c */
     uint32_t lit_count;          /* lights with power */
@@ -140,9 +140,9 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa);
 /* Whether any light that meets it is traced on, rather than gathered: see bsdf.h. */
 bool scene_shape_is_traced(const scene *s, const shape *item);
 
-/* For shading: picks one of the lights that may shine at a place, about in proportion to what it may bring; u in [0,
+/* For shading: picks one of the lights that may shine at a point, about in proportion to what it may bring; u in [0,
  * 1). normal: unit, of a surface that scatters only what comes from the side it points to; zero: light from all sides
- * counts. Gives its index, and the probability with which this one is picked: 0 where no light reaches the place, and
+ * counts. Gives its index, and the probability with which this one is picked: 0 where no light reaches the point, and
  * the index is of no use. The scene has at least one light with power. */
 uint32_t scene_pick_light(const scene *s, vec3 point, vec3 normal, float u, float *out_probability);
 /* The probability with which scene_pick_light picks that one there. */

@@ -22,7 +22,7 @@ static void include(box *b, const box *other)
 }
 
 /* Around the box that the map makes of b: its middle, and how far its half reaches along each axis. */
-static box place_box(const affine *a, const box *b)
+static box transform_box(const affine *a, const box *b)
 {
     const double middle[3] = {0.5 * ((double)b->low.x + (double)b->high.x),
                               0.5 * ((double)b->low.y + (double)b->high.y),
@@ -65,7 +65,7 @@ ag_status scene_find_bounds(const scene *s, bool (*is_wanted)(const scene *s, co
         const scene_instance *at = &s->instances[i];
         const box *b = &of_objects[at->object_index];
         for (uint32_t k = 0; b->low.x <= b->high.x && k < at->step_count; k++) {
-            box placed = place_box(&s->instance_steps[at->first_step + k], b);
+            box placed = transform_box(&s->instance_steps[at->first_step + k], b);
             include(&all, &placed);
         }
     }
@@ -176,7 +176,7 @@ static void take_in_instances(const scene *s, size_census *c, const shape *item,
     shape_bounds(item, &own.low, &own.high);
     for (uint32_t k = first; k != SCENE_NO_INSTANCE; k = next[k]) {
         const affine *a = &s->instance_steps[s->instances[k].first_step];
-        box placed = place_box(a, &own);
+        box placed = transform_box(a, &own);
         float size = size_of(&placed), scale = size / size_of(&own);
         if (item->kind != SHAPE_MESH || size <= small) {
             take_in(c, &placed, octave_of(size));
@@ -187,7 +187,7 @@ static void take_in_instances(const scene *s, size_census *c, const shape *item,
         is_sorted = true;
         for (int i = 0; i < OCTAVES; i++)
             if (by_octave[i].low.x <= by_octave[i].high.x) {
-                placed = place_box(a, &by_octave[i]);
+                placed = transform_box(a, &by_octave[i]);
                 take_in(c, &placed, octave_of(ldexpf(1.5f, i - OCTAVE_OF_ONE) * scale));
             }
     }

@@ -70,6 +70,10 @@ static void add_material(hash128 *h, const material *m)
     ADD(m->coat_albedo);
     ADD(m->coat_g);
     ADD(m->coat_bounces);
+    ADD(m->hair_sigma_a);
+    ADD(m->hair_beta_m);
+    ADD(m->hair_beta_n);
+    ADD(m->hair_tilt_degrees);
     ADD(m->mixed);
     ADD(m->mix_amount);
     ADD(m->metallic);

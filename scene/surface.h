@@ -1,4 +1,4 @@
-/* surface.h: a place on a surface: what a ray has met there, and the ray that leaves it.
+/* surface.h: a point of a surface: what a ray has hit there, and the ray that leaves it.
  * Flow: rays, shape -> [here] -> material, photon map, renderer. Threads: plain values. */
 #ifndef AFTERGLOW_SURFACE_H
 #define AFTERGLOW_SURFACE_H
@@ -39,14 +39,14 @@ typedef struct surface_hit {
     ray_footprint footprint; /* of the ray, over which textures are filtered; set by whoever traces cones */
 } surface_hit;
 
-/* A place on a surface, and what it takes to leave it. */
-typedef struct surface_place {
+/* A point on a surface, and what it takes to leave it. */
+typedef struct surface_point {
     vec3 position;
     vec3 normal;   /* geometric, unit */
     float epsilon; /* as in surface_hit */
-} surface_place;
+} surface_point;
 
-/* A random place on a shape, in proportion to area. pdf_area: 1/m^2. */
+/* A random point on a shape, in proportion to area. pdf_area: 1/m^2. */
 typedef struct surface_sample {
     vec3 position;
     vec3 geometric_normal; /* unit, outside */
@@ -56,9 +56,9 @@ typedef struct surface_sample {
     vec2 barycentrics; /* of meshes: of the triangle's second and third corner */
 } surface_sample;
 
-/* Where a ray that passes a place straight starts on its other side: on its line, as far as the line leaves the surface
- * soon, so that many such places bend it no more than one. normal: geometric, of either side. */
-static inline vec3 surface_place_behind(vec3 position, vec3 normal, float epsilon, vec3 direction)
+/* Where a ray that passes a surface straight starts on its other side: on its line, as far as the line leaves the
+ * surface soon, so that many such crossings bend it no more than one. normal: geometric, of either side. */
+static inline vec3 surface_point_behind(vec3 position, vec3 normal, float epsilon, vec3 direction)
 {
     static const float COSINE_MIN = 0.125f;
     vec3 n = vec3_face_forward(normal, direction);

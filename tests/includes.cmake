@@ -77,7 +77,7 @@ list(TRANSFORM roots PREPEND ${ROOT}/)
 # way round; what casts rays knows no lights. A format's reader knows no other's, but that meshes of pbrt may be PLY
 # files. What finds the light knows nothing of pictures' files.
 set(cut
-  "^scene/(shape|texture|material|image|color|text|math)/.*->scene/rays/(bvh|bvh_embree|rays|passage|embree_api)\\.h$"
+  "^scene/(shape|texture|material|image|color|text|math)/.*->scene/rays/(bvh|bvh_embree|rays|transmittance|embree_api)\\.h$"
   "^scene/(image|color|text|math)/.*->scene/(scene|surface|shape/.*|material/.*|light/.*|texture/.*)\\.h$"
   "^scene/(math|text)/.*->scene/(color|image)/"
   "^scene/math/.*->scene/text/"
@@ -92,9 +92,10 @@ set(cut
   "^scene/readers/pbrt/.*->scene/readers/(gltf/|model/([^p]|p[^l]|pl[^y]|ply_[^f]))"
   "^renderer/integrator/.*->renderer/(output|cli)/"
   "^renderer/output/.*->renderer/cli/"
+  "^renderer/cli/.*->threads/([a-rt-z]|s[^t]|st[^a])"
   "^scene/(surface|rays/ray|rays/rays)\\.h->scene/scene\\.h$"
   "^scene/(shape|texture)/[a-z_]+\\.h->scene/scene\\.h$"
-  "^scene/scene\\.h->scene/rays/(bvh|rays|passage)\\.h$")
+  "^scene/scene\\.h->scene/rays/(bvh|rays|transmittance)\\.h$")
 set(is_wrong FALSE)
 foreach(file ${files})
   cmake_path(GET file PARENT_PATH own_folder)

@@ -106,7 +106,7 @@ static ag_status build_tree(bench_stage *stage, ag_context *context, bench_outco
 static void add_slots(bench_stage *stage, const irradiance_cache *cache, bench_outcome *out)
 {
     irradiance_cache_save(cache, stage->words);
-    hash128_add(&out->hash, stage->words, cache->map->bearers.count * sizeof *stage->words);
+    hash128_add(&out->hash, stage->words, cache->map->irradiance_photons.count * sizeof *stage->words);
 }
 
 static ag_status estimate_all(bench_stage *stage, ag_context *context, bench_outcome *out)
@@ -116,7 +116,7 @@ static ag_status estimate_all(bench_stage *stage, ag_context *context, bench_out
         irradiance_cache_create(&stage->map, IRRADIANCE_PRECOMPUTE, ag_context_thread_count(context), &cache);
     if (status != AG_OK)
         return status;
-    for (uint32_t i = 0; i < stage->map.bearers.count; i++)
+    for (uint32_t i = 0; i < stage->map.irradiance_photons.count; i++)
         store_relaxed_u32(photon_map_slot(&stage->map, i), 0);
     begin_work(out);
     status = irradiance_cache_precompute(&cache, &context->run);
@@ -124,7 +124,7 @@ static ag_status estimate_all(bench_stage *stage, ag_context *context, bench_out
     add_slots(stage, &cache, out);
     irradiance_counters c = irradiance_cache_counters(&cache);
     out->amount = out->count = c.computed;
-    out->expected = stage->map.bearers.count;
+    out->expected = stage->map.irradiance_photons.count;
     out->duplicated = c.duplicated;
     out->is_sound = true;
     irradiance_cache_reset(&cache);

@@ -98,7 +98,7 @@ static void make_fan(const bench *b, const place *p, ray_fan *out_fan)
     vec3 side = is_below ? vec3_negate(scattering->shading.z) : scattering->shading.z;
     sampler_sequence sequence = sampler_sequence_make(&p->where, SAMPLE_GATHER, 0, GATHER_RAYS);
     incident_guide guide;
-    bool is_guided = incident_light_find(&b->incident, transport_map_place(&b->t, &p->v).position, side, &guide);
+    bool is_guided = incident_light_find(&b->incident, transport_map_point(&b->t, &p->v).position, side, &guide);
     out_fan->common = surface_ray(&p->v.hit, p->v.arrived, transport_facing_normal(&p->v));
     out_fan->common.skips_uv = true;
     out_fan->count = GATHER_RAYS;
@@ -127,8 +127,8 @@ static double fans(bench *b)
         make_fan(b, &b->places[i], &fan);
         scene_intersect_fan(b->s, &fan);
         for (uint32_t k = 0; k < GATHER_RAYS; k++) {
-            surface_place at;
-            if (fan.met[k].distance < INFINITY && ray_fan_plain_place(b->s, &fan, k, &at))
+            surface_point at;
+            if (fan.met[k].distance < INFINITY && ray_fan_plain_point(b->s, &fan, k, &at))
                 b->sink += (double)at.position.x;
         }
     }
@@ -198,7 +198,7 @@ static void add_place(bench *b, int x, int y)
         b->rays[b->ray_count++] = ray;
         vertex end;
         if (transport_trace(&b->t, &b->worker, ray, &end)) {
-            map_place at = transport_map_place(&b->t, &end);
+            map_point at = transport_map_point(&b->t, &end);
             b->queries[b->query_count++] = (irradiance_query){at.position, at.facing_normal};
         }
     }

@@ -85,7 +85,7 @@ static uint32_t nearest_as_they_come(bench *b)
 static uint32_t nearest_sorted(bench *b)
 {
     photon_walk walk;
-    photon_walk_init(&walk, &b->map.bearers);
+    photon_walk_init(&walk, &b->map.irradiance_photons);
     uint32_t end;
     uint64_t rays = 0;
     for (uint32_t begin = 0; begin < b->hit_count; begin = end) {
@@ -191,7 +191,7 @@ static void make_rays(bench *b, rng *random)
             continue;
         h.position = hit.position;
         h.normal = vec3_face_forward(hit.geometric_normal, vec3_negate(h.ray.direction));
-        h.order = (uint64_t)(i / TILE) << 32 | photon_map_place(&b->map, h.position);
+        h.order = (uint64_t)(i / TILE) << 32 | photon_map_leaf(&b->map, h.position);
         b->hits[b->hit_count++] = h;
     }
     memcpy(b->sorted_hits, b->hits, b->hit_count * sizeof *b->hits);

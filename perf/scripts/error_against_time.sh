@@ -28,7 +28,7 @@ while ((${#suite_rest[@]} > 0)); do
 done
 
 # photons-caustic photons-samples a pixel-gather rays a sample, and where they differ from 1 and the scene's own: -fraction
-# that bears irradiance-photons of an estimate; and samples a pixel of path tracing
+# that are irradiance photons-photons of an estimate; and samples a pixel of path tracing
 photon_map_steps=(3000-100-4-1 10000-300-4-1 30000-1000-4-4 30000-1000-16-1 100000-3000-16-4 300000-10000-16-8
     30000-300-1-4-1-50 30000-300-1-8-0.25-50 20000-300-4-4-0.0625-30 40000-1000-4-6-0.0625-50 60000-1000-4-8-0.0625-60
     60000-1000-4-12-0.0625-60 100000-1000-8-8-0.0625-60 100000-3000-16-4-0.125-60 200000-3000-16-8-0.125-60

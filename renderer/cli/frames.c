@@ -66,7 +66,7 @@ void frames_reset(frame_list *frames)
 }
 
 /* The length of a place at the beginning of the text, 0: there is none; and its digits. */
-static int place_at(const char *text, int *out_digits)
+static int placeholder_at(const char *text, int *out_digits)
 {
     int used = (int)strspn(text, "#");
     *out_digits = used;
@@ -83,11 +83,11 @@ static int place_at(const char *text, int *out_digits)
     return 4;
 }
 
-bool frames_has_place(const char *name)
+bool frames_has_placeholder(const char *name)
 {
     int digits;
     for (; *name; name++)
-        if (place_at(name, &digits) > 0)
+        if (placeholder_at(name, &digits) > 0)
             return true;
     return false;
 }
@@ -97,7 +97,7 @@ char *frames_name(const char *name, int frame)
     char *made = malloc(strlen(name) * DIGITS_MAX + 1); /* no place is shorter than a character */
     size_t length = 0;
     for (; made && *name;) {
-        int digits, used = place_at(name, &digits);
+        int digits, used = placeholder_at(name, &digits);
         if (used > 0)
             length += (size_t)sprintf(made + length, "%0*d", digits, frame);
         else

@@ -18,7 +18,7 @@ bool frames_parse(const char *text, frame_list *out_frames);
 void frames_reset(frame_list *frames);
 
 /* Whether a name has a place for the number: %d, %04d, or a run of #, one for each digit at least. */
-bool frames_has_place(const char *name);
+bool frames_has_placeholder(const char *name);
 /* The name with the number in every such place; to be freed, NULL when out of memory. */
 char *frames_name(const char *name, int frame);
 

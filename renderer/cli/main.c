@@ -9,6 +9,7 @@
 #include "progress.h"
 #include "signals.h"
 #include "standard_files.h"
+#include "status.h"
 #include "summary.h"
 
 #include <stdint.h>
@@ -46,7 +47,7 @@ static void name_default_output(const options *o, const ag_scene *scene, int fra
     if (own) {
         const char *dot = strrchr(own, '.');
         char *named = frames_name(own, frame);
-        if (named && frames_has_place(own))
+        if (named && frames_has_placeholder(own))
             snprintf(out_name, size, "%s", named);
         else /* the frames may have one name */
             snprintf(out_name, size, "%.*s.%04d%s", (int)(dot ? dot - own : (long)strlen(own)), own, frame,
@@ -66,10 +67,8 @@ static void name_default_output(const options *o, const ag_scene *scene, int fra
 static ag_status list_displays(ag_context *context)
 {
     const char *text;
-    ag_status status = ag_color_summary(context, &text);
-    if (status == AG_OK && (fputs(text, stdout) < 0 || fflush(stdout) != 0))
-        status = AG_ERROR_OUTPUT;
-    return status;
+    AG_TRY(ag_color_summary(context, &text));
+    return fputs(text, stdout) < 0 || fflush(stdout) != 0 ? AG_ERROR_OUTPUT : AG_OK;
 }
 
 /* Whether all that is to be written is there, and complete; says so. */
@@ -83,110 +82,141 @@ static bool is_there(const options *o)
     return o->outfile_count > 0;
 }
 
-/* What a picture will take, before it is begun: whether that is allowed, and where it is all that is asked for, what.
- * Errors: AG_ERROR_SYSTEM (more memory than --memory allows, which sets *out_lacks_memory; it has been said), those of
- * the prediction. */
+/* Predicts the picture's memory before it is begun, and refuses it where --memory does not allow so much; prints the
+ * whole prediction for --dry-run. Errors: AG_ERROR_SYSTEM (more memory than allowed, which sets *out_lacks_memory and
+ * has been logged), those of the prediction. */
 static ag_status predict(ag_context *context, const options *o, const ag_scene *scene,
                          const ag_render_settings *settings, bool *out_lacks_memory)
 {
     ag_prediction prediction;
     if (o->memory_limit == 0 && !o->dry_run)
         return AG_OK;
-    ag_status status = ag_predict_memory(context, scene, settings, &prediction);
-    if (status == AG_OK && o->memory_limit > 0 && !memory_limit_holds(o->memory_limit, &prediction)) {
+    AG_TRY(ag_predict_memory(context, scene, settings, &prediction));
+    if (o->memory_limit > 0 && !memory_limit_holds(o->memory_limit, &prediction)) {
         ag_context_note_end(context, AG_END_MEMORY);
         *out_lacks_memory = true;
         return AG_ERROR_SYSTEM;
     }
-    if (status == AG_OK && o->memory_limit > 0)
+    if (o->memory_limit > 0)
         memory_limit_set(o->memory_limit, true);
-    if (status != AG_OK || !o->dry_run)
-        return status;
-    status = ag_predict(context, scene, settings, &prediction);
-    if (status != AG_OK)
-        return status;
+    if (!o->dry_run)
+        return AG_OK;
+    AG_TRY(ag_predict(context, scene, settings, &prediction));
     summary_print_prediction(stdout, &prediction);
     ag_context_note_end(context, AG_END_DRY_RUN);
     return fflush(stdout) == 0 ? AG_OK : AG_ERROR_OUTPUT;
 }
 
+/* Checks what was asked for, as far as that is possible without the scene, before any work. */
+static ag_status check_options(ag_context *context, const options *o)
+{
+    if (file_conflicts_of_options(o))
+        return AG_ERROR_ARGUMENT;
+    for (int i = 0; i < o->outfile_count; i++) {
+        const ag_output_settings output = options_output(o, i);
+        AG_TRY(ag_output_check(context, &output, o->outfiles[i]));
+    }
+    if (o->stats)
+        AG_TRY(ag_statistics_check(context, o->stats));
+    if (o->photons_file)
+        AG_TRY(ag_statistics_check(context, o->photons_file)); /* as for any file */
+    if (o->render.photon_map_file)
+        AG_TRY(ag_photon_map_check(context, o->render.photon_map_file));
+    if ((o->photons_file || o->render.photon_map_file) && o->render.integrator == AG_INTEGRATOR_PATH) {
+        fprintf(stderr, "afterglow: --%s: path tracing has no photons\n",
+                o->photons_file ? "dump-photons" : "photon-map");
+        return AG_ERROR_ARGUMENT;
+    }
+    return o->render.denoise ? ag_denoise_check(context) : AG_OK;
+}
+
+enum { NAME_SIZE = 4096 };
+
+/* One picture on its way. */
+typedef struct picture_run {
+    ag_context *context;
+    options *o;
+    int frame; /* -1: there are no frames */
+    progress *told;
+    char default_name[NAME_SIZE];
+    bool is_skipped;   /* for --no-clobber */
+    bool lacks_memory; /* more than there is, or than --memory allows */
+} picture_run;
+
+/* Gives a picture without an output file the name that belongs to its scene. */
+static ag_status choose_output(picture_run *r, const ag_scene *scene)
+{
+    options *o = r->o;
+    name_default_output(o, scene, r->frame, r->default_name, sizeof r->default_name);
+    o->outfiles[o->outfile_count++] = r->default_name;
+    const ag_status status = ag_output_check(r->context, &o->output, r->default_name);
+    if (status != AG_OK) /* the name is the scene's, not the command line's */
+        return status == AG_ERROR_ARGUMENT ? AG_ERROR_SCENE : status;
+    r->is_skipped = o->no_clobber && is_there(o);
+    return !r->is_skipped && file_conflicts_of_options(o) ? AG_ERROR_ARGUMENT : AG_OK;
+}
+
+static ag_status render_scene(picture_run *r, const ag_scene *scene, passes_result *out_result)
+{
+    options *o = r->o;
+    ag_render_settings settings;
+    if (o->outfile_count == 0 && !o->photons_only)
+        AG_TRY(choose_output(r, scene));
+    if (r->is_skipped)
+        return AG_OK;
+    if (file_conflicts_with_scene(o, scene))
+        return AG_ERROR_ARGUMENT;
+    AG_TRY(ag_render_settings_from_scene(r->context, scene, &settings));
+    if (!options_override(o, scene, &settings)) {
+        fprintf(stderr, "afterglow: --tile: there are more tiles than rows\n");
+        return AG_ERROR_ARGUMENT;
+    }
+    AG_TRY(predict(r->context, o, scene, &settings, &r->lacks_memory));
+    if (o->dry_run)
+        return AG_OK;
+    AG_TRY(passes_render(r->context, o, scene, &settings, out_result));
+    if (!o->photons_only)
+        progress_tell_written(r->told, o->outfiles, o->outfile_count);
+    return AG_OK;
+}
+
+/* Writes the statistics of a picture that was made, if only in part, or that lacked memory. */
+static ag_status tell_statistics(picture_run *r, ag_status status, const passes_result *result)
+{
+    const options *o = r->o;
+    const bool is_made = status == AG_OK || result->is_partial;
+    if (r->is_skipped)
+        return status;
+    if (is_made && !o->dry_run && o->verbosity >= 1) {
+        ag_statistics statistics = ag_context_statistics(r->context);
+        summary_print(stderr, &statistics);
+    }
+    if (!o->stats || !(is_made || r->lacks_memory))
+        return status;
+    const ag_status written = ag_statistics_write(r->context, o->stats);
+    return status == AG_OK ? written : status;
+}
+
 /* One picture; frame: -1 where there is none. */
 static ag_status run(ag_context *context, options *o, int frame, progress *told, passes_result *out_result)
 {
-    ag_status status = AG_OK;
     o->begun = passes_seconds();
     if (o->no_clobber && is_there(o))
         return AG_OK;
-    /* what was asked for is checked before the work */
-    if (file_conflicts_of_options(o))
-        return AG_ERROR_ARGUMENT;
-    for (int i = 0; i < o->outfile_count && status == AG_OK; i++) {
-        const ag_output_settings output = options_output(o, i);
-        status = ag_output_check(context, &output, o->outfiles[i]);
-    }
-    if (status == AG_OK && o->stats)
-        status = ag_statistics_check(context, o->stats);
-    if (status == AG_OK && o->photons_file)
-        status = ag_statistics_check(context, o->photons_file); /* as for any file */
-    if (status == AG_OK && o->render.photon_map_file)
-        status = ag_photon_map_check(context, o->render.photon_map_file);
-    if (status == AG_OK && (o->photons_file || o->render.photon_map_file) &&
-        o->render.integrator == AG_INTEGRATOR_PATH) {
-        fprintf(stderr, "afterglow: --%s: path tracing has no photons\n",
-                o->photons_file ? "dump-photons" : "photon-map");
-        status = AG_ERROR_ARGUMENT;
-    }
-    if (status == AG_OK && o->render.denoise)
-        status = ag_denoise_check(context);
-    if (status != AG_OK)
-        return status;
-
+    AG_TRY(check_options(context, o));
+    picture_run r = {.context = context, .o = o, .frame = frame, .told = told};
     ag_scene *scene = NULL;
-    ag_render_settings settings;
-    char default_name[4096];
-    bool is_skipped = false;
     ag_scene_settings asked = o->asked;
     asked.definitions = o->definitions;
     asked.definition_count = o->definition_count;
-    status = ag_scene_load_as(context, o->scene, &asked, &scene);
-    if (status == AG_OK && o->outfile_count == 0 && !o->photons_only) {
-        name_default_output(o, scene, frame, default_name, sizeof default_name);
-        o->outfiles[o->outfile_count++] = default_name;
-        status = ag_output_check(context, &o->output, default_name);
-        if (status == AG_ERROR_ARGUMENT)
-            status = AG_ERROR_SCENE; /* the name is the scene's, not the command line's */
-        is_skipped = status == AG_OK && o->no_clobber && is_there(o);
-        if (status == AG_OK && !is_skipped && file_conflicts_of_options(o))
-            status = AG_ERROR_ARGUMENT;
-    }
-    if (status == AG_OK && !is_skipped && file_conflicts_with_scene(o, scene))
-        status = AG_ERROR_ARGUMENT;
-    if (status == AG_OK && !is_skipped)
-        status = ag_render_settings_from_scene(context, scene, &settings);
-    if (status == AG_OK && !is_skipped && !options_override(o, scene, &settings)) {
-        fprintf(stderr, "afterglow: --tile: there are more tiles than rows\n");
-        status = AG_ERROR_ARGUMENT;
-    }
-    bool lacks_memory = false;
-    if (status == AG_OK && !is_skipped)
-        status = predict(context, o, scene, &settings, &lacks_memory);
-    if (status == AG_OK && !is_skipped && !o->dry_run) {
-        status = passes_render(context, o, scene, &settings, out_result);
-        if (status == AG_OK && !o->photons_only)
-            progress_tell_written(told, o->outfiles, o->outfile_count);
-    }
+    ag_status status = ag_scene_load_as(context, o->scene, &asked, &scene);
+    if (status == AG_OK)
+        status = render_scene(&r, scene, out_result);
     if (status == AG_ERROR_MEMORY) {
         ag_context_note_end(context, AG_END_MEMORY);
-        lacks_memory = true;
+        r.lacks_memory = true;
     }
-    if ((status == AG_OK || out_result->is_partial) && !is_skipped && !o->dry_run && o->verbosity >= 1) {
-        ag_statistics statistics = ag_context_statistics(context);
-        summary_print(stderr, &statistics);
-    }
-    if ((status == AG_OK || out_result->is_partial || lacks_memory) && !is_skipped && o->stats) {
-        ag_status written = ag_statistics_write(context, o->stats);
-        status = status == AG_OK ? written : status;
-    }
+    status = tell_statistics(&r, status, out_result);
     ag_scene_destroy(scene);
     return status;
 }
@@ -282,23 +312,31 @@ static void free_frame(options *one, int outfile_count)
     free(one->definitions);
 }
 
-/* One after the other; the first that fails ends it. */
+static ag_status run_frame(options *o, int index, progress *told)
+{
+    const int frame = o->frames.numbers[index];
+    options one;
+    ag_status status = AG_ERROR_MEMORY;
+    const bool is_named = name_frame(o, frame, &one);
+    progress_begin_frame(told, index, o->frames.count, frame);
+    if (is_named) {
+        if (o->verbosity >= 1)
+            fprintf(stderr, "afterglow: frame %d: %s\n", frame, one.scene);
+        status = run_in_context(&one, frame, told);
+    }
+    free_frame(&one, o->outfile_count);
+    return status;
+}
+
+/* Renders one frame after the other; the first that fails ends the run. */
 static ag_status run_frames(options *o, progress *told)
 {
-    ag_status status = AG_OK;
-    for (int i = 0; i < o->frames.count && status == AG_OK; i++) {
-        options one;
-        status = name_frame(o, o->frames.numbers[i], &one) ? AG_OK : AG_ERROR_MEMORY;
-        progress_begin_frame(told, i, o->frames.count, o->frames.numbers[i]);
-        if (status == AG_OK && o->verbosity >= 1)
-            fprintf(stderr, "afterglow: frame %d: %s\n", o->frames.numbers[i], one.scene);
-        if (status == AG_OK)
-            status = run_in_context(&one, o->frames.numbers[i], told);
-        free_frame(&one, o->outfile_count);
-        if (status == AG_OK && signals_stop() && i + 1 < o->frames.count)
-            status = AG_CANCELLED; /* it came when this one was complete */
+    for (int i = 0; i < o->frames.count; i++) {
+        AG_TRY(run_frame(o, i, told));
+        if (signals_stop() && i + 1 < o->frames.count)
+            return AG_CANCELLED; /* the signal came when this frame was complete */
     }
-    return status;
+    return AG_OK;
 }
 
 static int run_program(int argc, char **argv)

@@ -1,6 +1,7 @@
 /* map_main.c: the program afterglow-map: what a kept photon map holds; maps filled on different machines, put together.
  * Flow: argv -> the public interface. Threads: main alone. */
 #include "afterglow/afterglow.h"
+#include "status.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -34,8 +35,8 @@ static int exit_code(ag_status status)
 
 static void print_filling(const ag_photon_map_info *info)
 {
-    printf("irradiances: %" PRIu64 " of %" PRIu64 " computed (%.1f %%)\n", info->ready, info->bearers,
-           info->bearers > 0 ? 100.0 * (double)info->ready / (double)info->bearers : 100.0);
+    printf("irradiances: %" PRIu64 " of %" PRIu64 " computed (%.1f %%)\n", info->ready, info->irradiance_photons,
+           info->irradiance_photons > 0 ? 100.0 * (double)info->ready / (double)info->irradiance_photons : 100.0);
 }
 
 static void print_info(const char *path, const ag_photon_map_info *info)
@@ -52,26 +53,22 @@ static void print_info(const char *path, const ag_photon_map_info *info)
 
 static ag_status tell(ag_context *context, int count, char **paths)
 {
-    ag_status status = AG_OK;
-    for (int i = 0; i < count && status == AG_OK; i++) {
+    for (int i = 0; i < count; i++) {
         ag_photon_map_info info;
-        status = ag_photon_map_read_info(context, paths[i], &info);
-        if (status == AG_OK && i > 0)
+        AG_TRY(ag_photon_map_read_info(context, paths[i], &info));
+        if (i > 0)
             putchar('\n');
-        if (status == AG_OK)
-            print_info(paths[i], &info);
+        print_info(paths[i], &info);
     }
-    return status;
+    return AG_OK;
 }
 
 static ag_status merge(ag_context *context, int count, char **paths)
 {
     ag_photon_map_info info;
-    ag_status status =
-        ag_photon_map_merge(context, paths[0], (const char *const *)(void *)(paths + 1), (size_t)count - 1, &info);
-    if (status == AG_OK)
-        print_filling(&info);
-    return status;
+    AG_TRY(ag_photon_map_merge(context, paths[0], (const char *const *)(void *)(paths + 1), (size_t)count - 1, &info));
+    print_filling(&info);
+    return AG_OK;
 }
 
 int main(int argc, char **argv)

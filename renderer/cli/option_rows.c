@@ -680,7 +680,7 @@ static bool take_setting(const ag_setting *setting, const char *value, options *
 {
     if (strcmp(setting->name, "seed") == 0) {
         o->seed_pattern = NULL; /* the last one counts */
-        if (frames_has_place(value))
+        if (frames_has_placeholder(value))
             return take_seed_pattern(value, o);
     }
     if (ag_render_settings_set(&o->render, setting->name, value) != AG_OK)

@@ -19,11 +19,11 @@ enum { OPTIONS_MAX = 128, FIRST_CODE = 256 }; /* codes below are letters */
 /* Frames would be written one over the other. */
 static bool has_frames_in_one_file(const options *o)
 {
-    const char *name = o->stats && !frames_has_place(o->stats) ? o->stats : NULL;
-    if (o->photons_file && !frames_has_place(o->photons_file))
+    const char *name = o->stats && !frames_has_placeholder(o->stats) ? o->stats : NULL;
+    if (o->photons_file && !frames_has_placeholder(o->photons_file))
         name = o->photons_file;
     for (int i = 0; i < o->outfile_count; i++)
-        if (!frames_has_place(o->outfiles[i]))
+        if (!frames_has_placeholder(o->outfiles[i]))
             name = o->outfiles[i];
     if (name)
         fprintf(stderr, "afterglow: '%s' has no place for the frame's number: %%04d or ####\n", name);

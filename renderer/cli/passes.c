@@ -4,6 +4,7 @@
 
 #include "memory_limit.h"
 #include "signals.h"
+#include "status.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -140,22 +141,20 @@ bool passes_is_complete(const char *outfile)
 
 static ag_status write_pictures(passes *p, const ag_film *film, bool is_last)
 {
-    ag_status status = AG_OK;
-    for (int i = 0; i < p->o->outfile_count && status == AG_OK; i++) {
+    for (int i = 0; i < p->o->outfile_count; i++) {
         const char *outfile = p->o->outfiles[i];
         if (!is_last && is_stream(outfile))
             continue;
         if (!is_last)
-            status = mark_unfinished(outfile);
-        if (status == AG_OK && is_pipe(outfile) && p->o->verbosity >= 0)
+            AG_TRY(mark_unfinished(outfile));
+        if (is_pipe(outfile) && p->o->verbosity >= 0)
             fprintf(stderr, "afterglow: '%s' is a pipe: it is written when somebody reads it\n", outfile);
         const ag_output_settings output = options_output(p->o, i);
-        if (status == AG_OK)
-            status = ag_film_write(p->context, film, &output, outfile);
-        if (is_last && status == AG_OK)
+        AG_TRY(ag_film_write(p->context, film, &output, outfile));
+        if (is_last)
             mark_finished(outfile);
     }
-    return status;
+    return AG_OK;
 }
 
 static ag_status write_snapshot(passes *p)
@@ -163,10 +162,10 @@ static ag_status write_snapshot(passes *p)
     ag_sample_counts samples = ag_rendering_sample_counts(p->rendering);
     if (samples.most == 0)
         return AG_OK; /* nothing to show yet */
-    ag_status status = write_pictures(p, ag_rendering_film(p->rendering), false);
-    if (status == AG_OK && p->o->verbosity >= 0)
+    AG_TRY(write_pictures(p, ag_rendering_film(p->rendering), false));
+    if (p->o->verbosity >= 0)
         fprintf(stderr, "afterglow: snapshot: %.4g of %d samples per pixel\n", samples.mean, p->final);
-    return status;
+    return AG_OK;
 }
 
 /* --- checkpoints --- */
@@ -190,11 +189,11 @@ static ag_status resume(passes *p)
             fprintf(stderr, "afterglow: no checkpoint '%s': beginning anew\n", p->checkpoint);
         return AG_OK;
     }
-    ag_status status = ag_rendering_read_checkpoint(p->rendering, p->checkpoint);
-    if (status == AG_OK && p->o->verbosity >= 0)
+    AG_TRY(ag_rendering_read_checkpoint(p->rendering, p->checkpoint));
+    if (p->o->verbosity >= 0)
         fprintf(stderr, "afterglow: resumed from '%s': %.4g of %d samples per pixel are there\n", p->checkpoint,
                 ag_rendering_sample_counts(p->rendering).mean, p->final);
-    return status;
+    return AG_OK;
 }
 
 /* --- the passes --- */
@@ -216,17 +215,14 @@ static int next_pass(const passes *p, int samples, double seconds_per_sample)
     return affordable >= 1.0 ? samples + (int)affordable : 0;
 }
 
-/* What was asked for in a pause or after a pass, but the end. */
+/* Writes what is due in a pause or after a pass: a snapshot or preview, and a checkpoint. */
 static ag_status serve(passes *p, bool is_after_pass)
 {
-    ag_status status = AG_OK;
     if (signals_take_snapshot())
-        status = write_snapshot(p);
+        AG_TRY(write_snapshot(p));
     else if (is_after_pass && p->o->preview)
-        status = write_pictures(p, ag_rendering_film(p->rendering), false);
-    if (status == AG_OK && now() >= p->next_checkpoint)
-        status = write_checkpoint(p);
-    return status;
+        AG_TRY(write_pictures(p, ag_rendering_film(p->rendering), false));
+    return now() >= p->next_checkpoint ? write_checkpoint(p) : AG_OK;
 }
 
 /* AG_PAUSED: a signal wants the end. */
@@ -246,9 +242,7 @@ static ag_status run_passes(passes *p)
             return AG_OK;
         if (signals_stop())
             return AG_PAUSED;
-        ag_status served = serve(p, status == AG_OK);
-        if (served != AG_OK)
-            return served;
+        AG_TRY(serve(p, status == AG_OK));
         if (status != AG_OK)
             continue;
         ag_sample_counts counts = ag_rendering_sample_counts(p->rendering);
@@ -274,18 +268,15 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
         p->checkpoint = passes_checkpoint_name(o->outfiles[0]);
         if (!p->checkpoint)
             return AG_ERROR_MEMORY;
-        ag_status status = ag_statistics_check(p->context, p->checkpoint); /* as for any file */
-        if (status != AG_OK)
-            return status;
+        AG_TRY(ag_statistics_check(p->context, p->checkpoint)); /* as for any file */
     }
-    ag_status status = ag_rendering_create(p->context, scene, settings, &p->rendering);
-    if (status == AG_OK && o->resume)
-        status = resume(p);
+    AG_TRY(ag_rendering_create(p->context, scene, settings, &p->rendering));
+    if (o->resume)
+        AG_TRY(resume(p));
     p->checkpoint_interval = o->checkpoint_seconds > 0.0 ? o->checkpoint_seconds : INFINITY;
     p->next_checkpoint = now() + p->checkpoint_interval;
-    if (status == AG_OK)
-        p->mean_at_checkpoint = ag_rendering_sample_counts(p->rendering).mean;
-    return status;
+    p->mean_at_checkpoint = ag_rendering_sample_counts(p->rendering).mean;
+    return AG_OK;
 }
 
 /* The noise that is left, against what was asked for, and what would help most. */
@@ -313,6 +304,53 @@ static ag_end find_end(const passes *p, const passes_result *result)
     return result->samples.most < p->final ? AG_END_NOISE : AG_END_SAMPLES;
 }
 
+/* Runs the passes. *out_failed: AG_OK, or why the picture shown is not complete. */
+static ag_status render(passes *p, passes_result *out_result, ag_noise *out_noise, ag_status *out_failed)
+{
+    ag_status status = p->o->photons_only ? AG_OK : run_passes(p);
+    out_result->is_partial = status == AG_PAUSED;
+    signals_set_timer(INFINITY);
+    if (status == AG_PAUSED)
+        status = AG_OK;
+    if (status == AG_ERROR_SYSTEM && ag_rendering_sample_counts(p->rendering).most > 0) {
+        *out_failed = status; /* the photon map was lost: what the passes before have rendered is shown */
+        status = AG_OK;
+    }
+    if (status == AG_OK && p->checkpoint && (out_result->is_partial || p->time_is_up))
+        status = write_checkpoint(p);
+    out_result->samples = ag_rendering_sample_counts(p->rendering);
+    *out_noise = ag_rendering_noise(p->rendering);
+    ag_context_note_end(p->context, find_end(p, out_result));
+    return status;
+}
+
+/* Denoises and writes the pictures of a finished rendering, and tells of them. */
+static ag_status show(passes *p, ag_film *film, const ag_render_settings *settings, const passes_result *result,
+                      const ag_noise *noise, ag_status failed)
+{
+    const options *o = p->o;
+    const bool has_picture = !o->photons_only && (!result->is_partial || result->samples.most > 0);
+    if (settings->denoise && has_picture) {
+        memory_limit_lift(); /* the prediction does not know what the denoiser takes */
+        AG_TRY(ag_film_denoise(p->context, film));
+    }
+    if (has_picture)
+        AG_TRY(write_pictures(p, film, !result->is_partial && failed == AG_OK));
+    if (failed != AG_OK) {
+        fprintf(stderr, "afterglow: error: the picture is not complete: it has %.4g of %d samples per pixel\n",
+                result->samples.mean, p->final);
+        return failed;
+    }
+    if (p->checkpoint && !result->is_partial && !p->time_is_up)
+        unlink(p->checkpoint); /* it has served */
+    if (p->time_is_up && o->verbosity >= 0)
+        fprintf(stderr, "afterglow: time limit: the picture has %.4g of %d samples per pixel\n", result->samples.mean,
+                p->final);
+    if (has_picture && o->verbosity >= (settings->noise_level > 0.0f ? 0 : 1))
+        tell_noise(noise, &result->samples, settings);
+    return AG_OK;
+}
+
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result)
 {
@@ -326,43 +364,13 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     ag_status status = begin(&p, scene, settings);
     if (status == AG_OK) {
         signals_begin_rendering(); /* until all is written: what has been rendered is not thrown away */
-        status = o->photons_only ? AG_OK : run_passes(&p);
-        out_result->is_partial = status == AG_PAUSED;
-        signals_set_timer(INFINITY);
-        if (status == AG_PAUSED)
-            status = AG_OK;
-        if (status == AG_ERROR_SYSTEM && ag_rendering_sample_counts(p.rendering).most > 0) {
-            failed = status; /* the photon map was lost: what the passes before have rendered is shown */
-            status = AG_OK;
-        }
-        if (status == AG_OK && p.checkpoint && (out_result->is_partial || p.time_is_up))
-            status = write_checkpoint(&p);
-        out_result->samples = ag_rendering_sample_counts(p.rendering);
-        noise = ag_rendering_noise(p.rendering);
-        ag_context_note_end(context, find_end(&p, out_result));
+        status = render(&p, out_result, &noise, &failed);
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial && failed == AG_OK)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
     ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
-    bool has_picture = !o->photons_only && (!out_result->is_partial || out_result->samples.most > 0);
-    if (status == AG_OK && settings->denoise && has_picture) {
-        memory_limit_lift(); /* the prediction does not know what the denoiser takes */
-        status = ag_film_denoise(context, film);
-    }
-    if (status == AG_OK && has_picture)
-        status = write_pictures(&p, film, !out_result->is_partial && failed == AG_OK);
-    if (status == AG_OK && failed != AG_OK) {
-        fprintf(stderr, "afterglow: error: the picture is not complete: it has %.4g of %d samples per pixel\n",
-                out_result->samples.mean, p.final);
-        status = failed;
-    }
-    if (status == AG_OK && p.checkpoint && !out_result->is_partial && !p.time_is_up)
-        unlink(p.checkpoint); /* it has served */
-    if (status == AG_OK && p.time_is_up && o->verbosity >= 0)
-        fprintf(stderr, "afterglow: time limit: the picture has %.4g of %d samples per pixel\n",
-                out_result->samples.mean, p.final);
-    if (status == AG_OK && has_picture && o->verbosity >= (settings->noise_level > 0.0f ? 0 : 1))
-        tell_noise(&noise, &out_result->samples, settings);
+    if (status == AG_OK)
+        status = show(&p, film, settings, out_result, &noise, failed);
     signals_end_rendering();
     ag_film_destroy(film);
     free(p.checkpoint);

@@ -217,12 +217,12 @@ void progress_log(void *user, ag_log_level level, const char *message)
     if (level > AG_LOG_ERROR && (int)level > p->verbosity + 1)
         return;
     static const char *const prefixes[] = {"error: ", "warning: ", "", ""};
-    static const char *const placed[] = {": error: ", ": warning: "};
+    static const char *const located[] = {": error: ", ": warning: "};
     /* messages about a place in a file say themselves what they are */
-    bool has_place = level <= AG_LOG_WARNING && strstr(message, placed[level]) != NULL;
+    bool has_location = level <= AG_LOG_WARNING && strstr(message, located[level]) != NULL;
     pthread_mutex_lock(&terminal);
     clear_bar(p);
-    fprintf(stderr, "%s%s%s\n", has_place ? "" : "afterglow: ", has_place ? "" : prefixes[level], message);
+    fprintf(stderr, "%s%s%s\n", has_location ? "" : "afterglow: ", has_location ? "" : prefixes[level], message);
     pthread_mutex_unlock(&terminal);
 }
 

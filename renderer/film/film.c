@@ -302,8 +302,8 @@ static void read_mean(const ag_film *film, size_t pixel, int offset, int count, 
     pixel_filter_resolve(&film->filter, &sum, out);
 }
 
-/* The mean over the samples that met something, by their number. Signs are left out: what lies between two places is no
- * place. */
+/* The mean over the samples that met something, by their number. Signs are left out: a sum of points by sign
+ * would be no point. */
 static double read_hit_mean(const ag_film *film, size_t pixel, int offset)
 {
     const double *sums = film->sums + pixel * sums_of_pixel(film);

@@ -19,7 +19,7 @@ static void put(const views_job *job, film_view view, size_t pixel, float value)
 }
 
 /* Photons per area, from those that an estimate would take, though not cut off at edges. */
-static float photon_density(const photon_map *map, eye_worker *worker, const map_place *at)
+static float photon_density(const photon_map *map, eye_worker *worker, const map_point *at)
 {
     if (map->set.count == 0)
         return 0.0f;
@@ -36,7 +36,7 @@ static float photon_density(const photon_map *map, eye_worker *worker, const map
     return (float)found / (AG_PI * fmaxf(radius_squared, map->min_radius_squared));
 }
 
-/* The harmonic mean of how far gather rays go: near places weigh most, as they do for the light. */
+/* The harmonic mean of how far gather rays go: near points weigh most, as they do for the light. */
 static float gather_distance(const transport *t, eye_worker *worker, const vertex *v, const sampler *where)
 {
     float sum = 0.0f;
@@ -70,7 +70,7 @@ static void view_pixel(const views_job *job, eye_worker *worker, size_t pixel, i
     if (!t->cache)
         return;
     const photon_map *map = t->cache->map;
-    map_place at = transport_map_place(t, &v);
+    map_point at = transport_map_point(t, &v);
     if (job->film->views[VIEW_PHOTON_DENSITY])
         put(job, VIEW_PHOTON_DENSITY, pixel, photon_density(map, worker, &at));
     uint32_t nearest = photon_map_nearest(map, at.position, at.facing_normal, &worker->rays_estimate);
@@ -79,7 +79,7 @@ static void view_pixel(const views_job *job, eye_worker *worker, size_t pixel, i
     uint32_t word = irradiance_slot_read(photon_map_slot(map, nearest));
     put(job, VIEW_CACHE_STATE, pixel, irradiance_word_is_ready(word) ? 2.0f : 1.0f);
     put(job, VIEW_PHOTON_DISTANCE, pixel,
-        sqrtf(vec3_distance_squared(at.position, photon_block_position(map->bearers.blocks, nearest))));
+        sqrtf(vec3_distance_squared(at.position, photon_block_position(map->irradiance_photons.blocks, nearest))));
 }
 
 static void view_rows(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker_index)

@@ -31,14 +31,14 @@ static uint32_t way_of(vec3 n)
 
 static float along(vec3 p, uint32_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-typedef struct sorted_place {
+typedef struct sorted_point {
     float at;
     uint32_t index;
-} sorted_place;
+} sorted_point;
 
 static int compare(const void *a, const void *b)
 {
-    const sorted_place *p = a, *q = b;
+    const sorted_point *p = a, *q = b;
     if (p->at != q->at)
         return p->at < q->at ? -1 : 1;
     return (p->index > q->index) - (p->index < q->index);
@@ -47,11 +47,11 @@ static int compare(const void *a, const void *b)
 typedef struct cell_maker {
     const vec3 *positions;
     uint32_t *order;
-    sorted_place *sorted;
+    sorted_point *sorted;
     direct_guide *g;
 } cell_maker;
 
-/* The node of places [begin, begin + count) of the order. */
+/* The node of points [begin, begin + count) of the order. */
 static uint32_t make_node(cell_maker *m, uint32_t begin, uint32_t count)
 {
     direct_guide *g = m->g;
@@ -65,15 +65,15 @@ static uint32_t make_node(cell_maker *m, uint32_t begin, uint32_t count)
     vec3 size = vec3_sub(high, low);
     axis = size.y > size.x ? 1 : 0;
     axis = size.z > along(size, axis) ? 2 : axis;
-    if (count <= DIRECT_GUIDE_CELL_PLACES || !(along(size, axis) > 0.0f)) {
-        bool is_enough = count >= DIRECT_GUIDE_CELL_PLACES_MIN;
+    if (count <= DIRECT_GUIDE_CELL_POINTS || !(along(size, axis) > 0.0f)) {
+        bool is_enough = count >= DIRECT_GUIDE_CELL_POINTS_MIN;
         g->nodes[made] = (direct_guide_node){0.0f, 3, is_enough ? g->cell_count : DIRECT_GUIDE_NO_CELL};
         if (is_enough)
             g->cells[g->cell_count++] = (direct_guide_cell){begin, count};
         return made;
     }
     for (uint32_t i = 0; i < count; i++)
-        m->sorted[i] = (sorted_place){along(m->positions[order[i]], axis), order[i]};
+        m->sorted[i] = (sorted_point){along(m->positions[order[i]], axis), order[i]};
     qsort(m->sorted, count, sizeof *m->sorted, compare);
     for (uint32_t i = 0; i < count; i++)
         order[i] = m->sorted[i].index;
@@ -251,14 +251,14 @@ static float width_of(const uint16_t *begins, uint32_t i)
     return (float)((i + 1 < DIRECT_GUIDE_SIDE ? begins[i + 1] : (uint32_t)DIRECT_GUIDE_ONE) - begins[i]);
 }
 
-/* The bin that u falls into. Makes of u the place in an even row of bins. */
+/* The bin that u falls into. *in_out_u becomes the coordinate in a row of bins of equal width. */
 static uint32_t warp(const uint16_t *begins, float *in_out_u)
 {
-    float place = *in_out_u * DIRECT_GUIDE_ONE;
+    float scaled = *in_out_u * DIRECT_GUIDE_ONE;
     uint32_t low = 0;
     for (uint32_t step = DIRECT_GUIDE_SIDE / 2; step > 0; step /= 2)
-        low += (float)begins[low + step] <= place ? step : 0;
-    float within = fminf((place - (float)begins[low]) / width_of(begins, low), BELOW_ONE);
+        low += (float)begins[low + step] <= scaled ? step : 0;
+    float within = fminf((scaled - (float)begins[low]) / width_of(begins, low), BELOW_ONE);
     *in_out_u = fminf(((float)low + within) / DIRECT_GUIDE_SIDE, BELOW_ONE);
     return low;
 }

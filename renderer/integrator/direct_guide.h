@@ -1,11 +1,11 @@
-/* direct_guide.h: which lights, and which part of the sky, bring light to a place, as a pilot has seen it: to send
+/* direct_guide.h: which lights, and which part of the sky, bring light to a point, as a pilot has seen it: to send
  * shadow rays there.
  * Rests on: Vevoda, Kondapaneni, Krivanek, "Bayesian Online Regression for Adaptive Direct Illumination Sampling", 2018
  * (shares of lights learned in cells of space, by the root of the mean square); Guo et al., "Primary Sample Space Path
  * Sampling", 2018 (a histogram over the random numbers of a sampler that is there).
  * Flow: direct_pilot fills it; direct lighting asks it. Threads: read-only once filled.
  *
- * Cells part the places that the picture sees, and the ways that surfaces face: six, and surfaces that light passes. In
+ * Cells part the points that the picture sees, and the ways that surfaces face: six, and surfaces that light passes. In
  * a cell each light that is everywhere has a share of the samples, and all lamps have one, which the light tree deals
  * out. The numbers by which an infinite light without a portal is sampled are warped by a histogram, so that its own
  * picture still decides within a bin. Wherever and whatever the pilot has seen, a sample has at least (1 - share) of
@@ -19,8 +19,8 @@ enum {
     DIRECT_GUIDE_SIDE = 32,
     DIRECT_GUIDE_ONE = 1 << 16,
     DIRECT_GUIDE_SHARES_MAX = 16, /* with more lights that are everywhere, nothing is guided */
-    DIRECT_GUIDE_CELL_PLACES = 16,
-    DIRECT_GUIDE_CELL_PLACES_MIN = 4
+    DIRECT_GUIDE_CELL_POINTS = 16,
+    DIRECT_GUIDE_CELL_POINTS_MIN = 4
 };
 #define DIRECT_GUIDE_NO_CELL UINT32_MAX
 
@@ -36,7 +36,7 @@ typedef struct direct_guide_node {
     uint32_t other; /* of a leaf: its cell, or DIRECT_GUIDE_NO_CELL */
 } direct_guide_node;
 
-/* Places of the list that a cell was made for. */
+/* Points of the list that a cell was made for. */
 typedef struct direct_guide_cell {
     uint32_t begin, count;
 } direct_guide_cell;
@@ -44,7 +44,7 @@ typedef struct direct_guide_cell {
 enum { DIRECT_GUIDE_WAYS = 7 };
 
 typedef struct direct_guide {
-    uint32_t roots[DIRECT_GUIDE_WAYS]; /* nodes, DIRECT_GUIDE_NO_CELL: no such place */
+    uint32_t roots[DIRECT_GUIDE_WAYS]; /* nodes, DIRECT_GUIDE_NO_CELL: no such point */
     direct_guide_node *nodes;          /* owned, as all that follows */
     uint32_t node_count;
     direct_guide_cell *cells;
@@ -60,7 +60,7 @@ typedef struct direct_guide {
 /* Whether there is anything to guide in a scene: more than one light, or an infinite one, and not too many. */
 bool direct_guide_serves(const scene *s);
 
-/* Makes cells for places, which it puts in the cells' order: order[i] is the index of the place. normals: unit, or zero
+/* Makes cells for points, which it puts in the cells' order: order[i] is the index of the point. normals: unit, or zero
  * where light from all sides counts. All shares are 0. Errors: AG_ERROR_MEMORY. */
 ag_status direct_guide_create(const scene *s, const vec3 *positions, const vec3 *normals, uint32_t count,
                               uint32_t *out_order, direct_guide *out_guide);
@@ -75,7 +75,7 @@ typedef struct direct_bins {
  * bins. share: (0, 1), of the samples that follow it. */
 void direct_guide_fill(direct_guide *g, uint32_t cell, float share, const float *brought, const direct_bins *seen);
 
-/* The cell of a place, DIRECT_GUIDE_NO_CELL where nothing is known of it. normal: as above. g: NULL is fine. */
+/* The cell of a point, DIRECT_GUIDE_NO_CELL where nothing is known of it. normal: as above. g: NULL is fine. */
 uint32_t direct_guide_find(const direct_guide *g, vec3 point, vec3 normal);
 
 /* As scene_pick_light and scene_light_probability. */

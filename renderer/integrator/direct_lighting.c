@@ -3,7 +3,7 @@
 
 #include "light/environment.h"
 #include "math/sampling.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes)
 {
@@ -20,11 +20,11 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, const sur
         reach = 1.0f;
     }
     worker->rays_shadow++;
-    return t->panes_are_direct ? passage_transmittance_of_panes(t->s, shadow, reach, &worker->passages_cut)
-                               : passage_transmittance(t->s, shadow, reach, &worker->passages_cut);
+    return t->panes_are_direct ? transmittance_through_panes(t->s, shadow, reach, &worker->rays_cut)
+                               : transmittance_of_ray(t->s, shadow, reach, &worker->rays_cut);
 }
 
-/* The lamp for a place, the numbers that sample it, and the factor by which its own density is multiplied. */
+/* The lamp for a point, the numbers that sample it, and the factor by which its own density is multiplied. */
 static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pick, vec2 *in_out_u, float *out_factor)
 {
     const direct_guide *guide = t->direct_guide;
@@ -125,15 +125,13 @@ static float variance_of_mean(float sum, float squares, int count)
     return fmaxf(squares - sum * sum / n, 0.0f) / (n * (n - 1.0f));
 }
 
-rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, sample_counts counts, rgb *by_group)
+direct_light direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                                   int path_vertex, sample_counts counts, rgb *by_group)
 {
-    rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f), *sky = &worker->direct_from_sky;
+    rgb from_lamps = rgb_gray(0.0f), by_scattering = rgb_gray(0.0f), sky = rgb_gray(0.0f);
     float lamp_squares = 0.0f, scatter_squares = 0.0f;
-    *sky = rgb_gray(0.0f);
-    worker->direct_variance = 0.0f;
     if (!t->has_lights)
-        return from_lamps;
+        return (direct_light){from_lamps, sky, 0.0f};
     int lamp_count = counts.light, scatter_count = counts.scatter;
     float lamp_share = 1.0f / (float)lamp_count, scatter_share = scatter_count > 0 ? 1.0f / (float)scatter_count : 0.0f;
     vec3 from = v->hit.position, normal = direct_light_normal(v, BSDF_GATHERED);
@@ -144,7 +142,7 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
         from_lamps = rgb_add(from_lamps, sample.radiance);
         lamp_squares += rgb_mean(sample.radiance) * rgb_mean(sample.radiance);
         if (!rgb_is_black(sample.radiance) && t->s->lights[sample.lamp].kind == LIGHT_INFINITE)
-            *sky = rgb_add(*sky, rgb_scale(sample.radiance, lamp_share));
+            sky = rgb_add(sky, rgb_scale(sample.radiance, lamp_share));
         if (by_group && !rgb_is_black(sample.radiance))
             add_to_group(by_group, &t->s->lights[sample.lamp], rgb_scale(sample.radiance, lamp_share));
     }
@@ -167,7 +165,7 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
             by_scattering = rgb_add(by_scattering, brought);
             scatter_squares += rgb_mean(brought) * rgb_mean(brought);
             rgb reflected = rgb_scale(rgb_mul(met.transmittance, scattered.weight), scatter_share);
-            *sky = rgb_add(*sky, rgb_mul(escaped, reflected));
+            sky = rgb_add(sky, rgb_mul(escaped, reflected));
             for (int k = 0; of_group && k <= LIGHT_GROUPS_MAX; k++)
                 by_group[k] = rgb_add(by_group[k], rgb_mul(of_group[k], reflected));
             continue;
@@ -182,10 +180,11 @@ rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *
         scatter_squares += rgb_mean(brought) * rgb_mean(brought);
         add_to_group(by_group, met.lamp, rgb_scale(brought, scatter_share));
     }
-    worker->direct_variance =
-        variance_of_mean(rgb_mean(from_lamps), lamp_squares, lamp_count) +
-        (scatter_count == 1 ? 0.5f * scatter_squares
-                            : variance_of_mean(rgb_mean(by_scattering), scatter_squares, scatter_count));
+    float variance = variance_of_mean(rgb_mean(from_lamps), lamp_squares, lamp_count) +
+                     (scatter_count == 1 ? 0.5f * scatter_squares
+                                         : variance_of_mean(rgb_mean(by_scattering), scatter_squares, scatter_count));
     rgb sum = rgb_scale(from_lamps, lamp_share);
-    return scatter_count > 0 ? rgb_add(sum, rgb_scale(by_scattering, scatter_share)) : sum;
+    if (scatter_count > 0)
+        sum = rgb_add(sum, rgb_scale(by_scattering, scatter_share));
+    return (direct_light){sum, sky, variance};
 }

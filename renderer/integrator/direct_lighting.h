@@ -10,11 +10,11 @@
 /* What picking a lamp for these lobes knows of how the surface lies: see scene_pick_light. */
 vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes);
 
-/* The share of a sample's light that reaches the place that `arrived` has met. */
+/* The share of a sample's light that reaches the vertex that `arrived` has met. */
 rgb direct_light_transmittance(const transport *t, eye_worker *worker, const surface_hit *hit, scene_ray arrived,
                                const light_sample *sample);
 
-/* One sample towards a lamp picked for the place: reflected radiance. lamp_count and scatter_count: how many samples
+/* One sample towards a lamp picked for the vertex: reflected radiance. lamp_count and scatter_count: how many samples
  * the caller takes of either technique; it divides by lamp_count itself. scatter_count 0: this technique alone. */
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
                            vec2 u, int lamp_count, int scatter_count);
@@ -39,9 +39,13 @@ float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, co
 rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
                          int lamp_count, int scatter_count, rgb *by_group);
 
-/* All of the direct light at a diffuse place, by so many samples towards lamps and by scattering. What of it is from
- * infinite lights is left in worker->direct_from_sky, and how noisy it is in worker->direct_variance. */
-rgb direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, sample_counts counts, rgb *by_group);
+/* The direct light at a diffuse vertex, estimated by so many samples towards lamps and by scattering. */
+typedef struct direct_light {
+    rgb radiance;
+    rgb from_sky;   /* the part of it that comes from infinite lights */
+    float variance; /* of the mean of the three colours, estimated */
+} direct_light;
+direct_light direct_light_gathered(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                                   int path_vertex, sample_counts counts, rgb *by_group);
 
 #endif

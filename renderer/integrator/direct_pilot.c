@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 /* First so many rays for each of 8 by 8 parts of the square: where most of those above the horizon see the sky, there
- * is nothing else to be found. Then one for each bin. Lamps: rays for each place. */
+ * is nothing else to be found. Then one for each bin. Lamps: rays for each point. */
 enum { COARSE_SIDE = 8, COARSE_RAYS = 2, FINE = DIRECT_GUIDE_SIDE / COARSE_SIDE, LAMP_RAYS = 2 };
 static const float OPEN_SKY = 0.6f;
 static const uint64_t PILOT_SEED = 0x646972656374u;
@@ -19,44 +19,44 @@ static const uint64_t PILOT_SEED = 0x646972656374u;
 typedef struct learning {
     const transport *t;
     direct_guide *guide;
-    const lit_place *places;
+    const lit_point *points;
     const uint32_t *order;
     uint64_t *rays; /* [cell_count]; UINT64_MAX: out of memory */
 } learning;
 
 static float mean(rgb c) { return (c.r + c.g + c.b) * (1.0f / 3.0f); }
 
-static float cosine_at(const lit_place *place, vec3 direction)
+static float cosine_at(const lit_point *point, vec3 direction)
 {
-    bool has_normal = place->normal.x != 0.0f || place->normal.y != 0.0f || place->normal.z != 0.0f;
-    return has_normal ? fmaxf(vec3_dot(place->normal, direction), 0.0f) : 1.0f;
+    bool has_normal = point->normal.x != 0.0f || point->normal.y != 0.0f || point->normal.z != 0.0f;
+    return has_normal ? fmaxf(vec3_dot(point->normal, direction), 0.0f) : 1.0f;
 }
 
 /* The light that one sample of a lamp or sky brings, over the density of its numbers. *out_possible: whether it might.
  */
-static float look_at(const transport *t, eye_worker *worker, const lit_place *place, uint32_t light_index, vec2 u,
+static float look_at(const transport *t, eye_worker *worker, const lit_point *point, uint32_t light_index, vec2 u,
                      bool *out_possible)
 {
     light_sample sample;
     *out_possible = false;
-    if (!light_sample_from_point(t->s, &t->s->lights[light_index], place->hit.position, u, &sample))
+    if (!light_sample_from_point(t->s, &t->s->lights[light_index], point->hit.position, u, &sample))
         return 0.0f;
-    float brought = cosine_at(place, sample.direction) * mean(sample.radiance) / sample.pdf_solid_angle;
+    float brought = cosine_at(point, sample.direction) * mean(sample.radiance) / sample.pdf_solid_angle;
     if (!(brought > 0.0f && isfinite(brought)))
         return 0.0f;
     *out_possible = true;
-    return brought * mean(direct_light_transmittance(t, worker, &place->hit, place->arrived, &sample));
+    return brought * mean(direct_light_transmittance(t, worker, &point->hit, point->arrived, &sample));
 }
 
 typedef struct cell_view {
     const learning *l;
     eye_worker worker;
-    const uint32_t *places; /* [count], of the list */
+    const uint32_t *points; /* [count], of the list */
     uint32_t count;
     rng random;
 } cell_view;
 
-static const lit_place *place_of(const cell_view *c, uint32_t i) { return &c->l->places[c->places[i % c->count]]; }
+static const lit_point *point_of(const cell_view *c, uint32_t i) { return &c->l->points[c->points[i % c->count]]; }
 
 static vec2 within(cell_view *c, uint32_t x, uint32_t y, uint32_t side)
 {
@@ -65,7 +65,7 @@ static vec2 within(cell_view *c, uint32_t x, uint32_t y, uint32_t side)
                   fminf(((float)y + u.y) / (float)side, 0x1.fffffep-1f)};
 }
 
-/* Root mean square over bins and their neighbours, for they are seen by one ray each, from one of many places. */
+/* Root mean square over bins and their neighbours, for they are seen by one ray each, from one of many points. */
 static void blur(const float squares[DIRECT_GUIDE_SIDE][DIRECT_GUIDE_SIDE], direct_bins *out)
 {
     for (int y = 0; y < DIRECT_GUIDE_SIDE; y++)
@@ -94,7 +94,7 @@ static float look_at_sky(cell_view *c, uint32_t light_index, direct_bins *out)
             float square = 0.0f;
             for (uint32_t i = 0; i < COARSE_RAYS; i++) {
                 bool is_possible;
-                float brought = look_at(c->l->t, &c->worker, place_of(c, number++), light_index,
+                float brought = look_at(c->l->t, &c->worker, point_of(c, number++), light_index,
                                         within(c, x, y, COARSE_SIDE), &is_possible);
                 possible += is_possible;
                 seen += brought > 0.0f;
@@ -107,7 +107,7 @@ static float look_at_sky(cell_view *c, uint32_t light_index, direct_bins *out)
         for (uint32_t y = 0; y < DIRECT_GUIDE_SIDE; y++)
             for (uint32_t x = 0; x < DIRECT_GUIDE_SIDE; x++) {
                 bool is_possible;
-                float brought = look_at(c->l->t, &c->worker, place_of(c, number++ * 7), light_index,
+                float brought = look_at(c->l->t, &c->worker, point_of(c, number++ * 7), light_index,
                                         within(c, x, y, DIRECT_GUIDE_SIDE), &is_possible);
                 squares[y][x] = brought * brought;
             }
@@ -119,13 +119,13 @@ static float look_at_sky(cell_view *c, uint32_t light_index, direct_bins *out)
     return (float)(sum / (DIRECT_GUIDE_SIDE * DIRECT_GUIDE_SIDE));
 }
 
-/* Another light that is everywhere, from each place. */
+/* Another light that is everywhere, from each point. */
 static float look_at_light(cell_view *c, uint32_t light_index)
 {
     float square = 0.0f;
     for (uint32_t i = 0; i < c->count; i++) {
         bool is_possible;
-        float brought = look_at(c->l->t, &c->worker, place_of(c, i), light_index, rng_vec2(&c->random), &is_possible);
+        float brought = look_at(c->l->t, &c->worker, point_of(c, i), light_index, rng_vec2(&c->random), &is_possible);
         square += brought * brought / (float)c->count;
     }
     return sqrtf(square);
@@ -136,15 +136,15 @@ static float look_at_lamps(cell_view *c)
     const transport *t = c->l->t;
     float square = 0.0f;
     for (uint32_t i = 0; i < c->count * LAMP_RAYS; i++) {
-        const lit_place *place = place_of(c, i);
+        const lit_point *point = point_of(c, i);
         bool is_possible;
         float probability;
         uint32_t lamp =
-            light_tree_pick(t->s->light_tree, place->hit.position, place->normal, rng_float(&c->random), &probability);
+            light_tree_pick(t->s->light_tree, point->hit.position, point->normal, rng_float(&c->random), &probability);
         vec2 u = rng_vec2(&c->random);
         if (!(probability > 0.0f))
             continue;
-        float brought = look_at(t, &c->worker, place, lamp, u, &is_possible) / probability;
+        float brought = look_at(t, &c->worker, point, lamp, u, &is_possible) / probability;
         square += brought * brought / (float)(c->count * LAMP_RAYS);
     }
     return sqrtf(square);
@@ -164,7 +164,7 @@ static void learn_cells(void *user, uint64_t begin, uint64_t end, uint64_t block
     for (uint64_t cell = begin; cell < end; cell++) {
         cell_view c = {.l = l,
                        .worker = {.index = worker_index},
-                       .places = l->order + g->cells[cell].begin,
+                       .points = l->order + g->cells[cell].begin,
                        .count = g->cells[cell].count,
                        .random = rng_make(l->t->settings->seed ^ PILOT_SEED, 0, cell)};
         float brought[DIRECT_GUIDE_SHARES_MAX];
@@ -183,7 +183,7 @@ static void learn_cells(void *user, uint64_t begin, uint64_t end, uint64_t block
     free(bins);
 }
 
-/* Cells for the places, and what is seen from them. */
+/* Cells for the points, and what is seen from them. */
 static ag_status learn(learning *l, run_context *run, uint32_t count, uint64_t *out_rays)
 {
     vec3 *positions = malloc(((size_t)count + 1) * sizeof *positions),
@@ -191,8 +191,8 @@ static ag_status learn(learning *l, run_context *run, uint32_t count, uint64_t *
     uint32_t *order = malloc(((size_t)count + 1) * sizeof *order);
     ag_status status = positions && normals && order ? AG_OK : AG_ERROR_MEMORY;
     for (uint32_t i = 0; status == AG_OK && i < count; i++) {
-        positions[i] = l->places[i].hit.position;
-        normals[i] = l->places[i].normal;
+        positions[i] = l->points[i].hit.position;
+        normals[i] = l->points[i].normal;
     }
     if (status == AG_OK)
         status = direct_guide_create(l->t->s, positions, normals, count, order, l->guide);
@@ -218,17 +218,17 @@ ag_status direct_pilot_learn(const transport *t, run_context *run, direct_guide 
 {
     transport unguided = *t;
     learning l = {.t = &unguided, .guide = out_guide};
-    lit_place *places;
+    lit_point *points;
     uint32_t count;
     unguided.direct_guide = NULL;
     *out_guide = (direct_guide){0};
     *out_rays = 0;
     if (!(t->settings->direct_guiding > 0.0f) || !direct_guide_serves(t->s))
         return AG_OK;
-    AG_TRY(eye_pilot_find_lit(t->s, run, t->settings, &places, &count));
-    l.places = places;
+    AG_TRY(eye_pilot_find_lit(t->s, run, t->settings, &points, &count));
+    l.points = points;
     ag_status status = learn(&l, run, count, out_rays);
-    free(places);
+    free(points);
     if (status != AG_OK)
         direct_guide_reset(out_guide);
     return status;

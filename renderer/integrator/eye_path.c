@@ -3,7 +3,7 @@
 
 #include "integrator/direct_lighting.h"
 #include "integrator/first_hit.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool wants_parts)
 {
@@ -143,7 +143,7 @@ bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float
         return false;
     path->vertex++;
     if (goes_straight) {
-        path->ray = passage_continue(&v->hit, &v->arrived);
+        path->ray = scene_ray_continue(&v->hit, &v->arrived);
         return true;
     }
     path->scatterings++;

@@ -5,45 +5,45 @@
 #include "integrator/gather_path.h"
 #include "integrator/shading.h"
 #include "parallel_for.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 #include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each place that they see.
+/* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each point that they see.
  */
 enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHER_RAYS = 8, GRID_MAX = 4096 };
-/* One importon for so many places that are asked, and the scatterings that it has at most. */
-enum { PLACES_PER_IMPORTON = 2, IMPORTON_SCATTERINGS_MAX = 8 };
-/* Eye paths that look for places that are lit. */
+/* One importon for so many points that are asked, and the scatterings that it has at most. */
+enum { POINTS_PER_IMPORTON = 2, IMPORTON_SCATTERINGS_MAX = 8 };
+/* Eye paths that look for points that are lit. */
 enum { LIT_PATHS = 12288 };
 /* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
-typedef struct place_list {
-    asked_place *places; /* owned */
+typedef struct point_list {
+    asked_place *points; /* owned */
     uint32_t count, capacity;
     bool out_of_memory;
-} place_list;
+} point_list;
 
-static void add_place(place_list *list, vec3 position, vec3 normal)
+static void add_point(point_list *list, vec3 position, vec3 normal)
 {
     if (list->count == list->capacity) {
         uint32_t capacity = list->capacity ? 2 * list->capacity : 1024;
-        asked_place *larger = realloc(list->places, capacity * sizeof *larger);
+        asked_place *larger = realloc(list->points, capacity * sizeof *larger);
         if (!larger) {
             list->out_of_memory = true;
             return;
         }
-        list->places = larger;
+        list->points = larger;
         list->capacity = capacity;
     }
-    list->places[list->count++] = (asked_place){position, normal};
+    list->points[list->count++] = (asked_place){position, normal};
 }
 
 typedef struct lit_list {
-    lit_place *places; /* owned */
+    lit_point *points; /* owned */
     uint32_t count, capacity;
     bool out_of_memory;
 } lit_list;
@@ -52,47 +52,47 @@ static void add_lit(lit_list *list, const vertex *v, bsdf_lobes lobes)
 {
     if (list->count == list->capacity) {
         uint32_t capacity = list->capacity ? 2 * list->capacity : 256;
-        lit_place *larger = realloc(list->places, capacity * sizeof *larger);
+        lit_point *larger = realloc(list->points, capacity * sizeof *larger);
         if (!larger) {
             list->out_of_memory = true;
             return;
         }
-        list->places = larger;
+        list->points = larger;
         list->capacity = capacity;
     }
-    list->places[list->count++] = (lit_place){v->hit, v->arrived, direct_light_normal(v, lobes)};
+    list->points[list->count++] = (lit_point){v->hit, v->arrived, direct_light_normal(v, lobes)};
 }
 
 /* As eye_pilot has them. */
 enum { GATHERED, ONWARD, SEEN, LIST_COUNT };
 
-typedef struct row_places {
-    place_list lists[LIST_COUNT];
+typedef struct row_points {
+    point_list lists[LIST_COUNT];
     uint32_t importons;
     lit_list lit;
-} row_places;
+} row_points;
 
 typedef struct pilot_job {
     transport t;
     int width, height; /* of the grid */
     float aspect;
-    bool finds_lit;   /* places of direct light, and nothing else */
-    row_places *rows; /* [height] */
+    bool finds_lit;   /* points of direct light, and nothing else */
+    row_points *rows; /* [height] */
 } pilot_job;
 
-/* On each side that the place's diffuse lobes take light from. */
-static void add_sides(const transport *t, const vertex *v, place_list *list)
+/* On each side that the point's diffuse lobes take light from. */
+static void add_sides(const transport *t, const vertex *v, point_list *list)
 {
-    map_place at = transport_map_place(t, v);
+    map_point at = transport_map_point(t, v);
     if (!rgb_is_black(bsdf_gathered_reflection(&v->scattering)))
-        add_place(list, at.position, at.facing_normal);
+        add_point(list, at.position, at.facing_normal);
     if (!rgb_is_black(bsdf_gathered_transmission(&v->scattering)))
-        add_place(list, at.position, vec3_negate(at.facing_normal));
+        add_point(list, at.position, vec3_negate(at.facing_normal));
 }
 
 /* Importance goes back along the light's ways from where it is asked for: where it is scattered by diffuse lobes, light
  * that arrives on that side will arrive there in part. */
-static void trace_importon(const transport *t, eye_worker *worker, const gather_end *end, rng random, place_list *list)
+static void trace_importon(const transport *t, eye_worker *worker, const gather_end *end, rng random, point_list *list)
 {
     vertex v;
     rgb throughput = rgb_gray(1.0f);
@@ -108,15 +108,15 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
         if (!transport_survives(&throughput, rng_float(&random)))
             return;
         if (scatterings > 0 && next.group == BSDF_GATHERED) {
-            map_place at = transport_map_place(t, &v);
+            map_point at = transport_map_point(t, &v);
             bool is_through = vec3_dot(transport_facing_normal(&v), next.direction) < 0.0f;
-            add_place(list, at.position, is_through ? vec3_negate(at.facing_normal) : at.facing_normal);
+            add_point(list, at.position, is_through ? vec3_negate(at.facing_normal) : at.facing_normal);
         }
         bool goes_straight = transport_is_open_pane(t, &v) && next.is_straight;
         scatterings += !goes_straight;
         if (scatterings == left)
             return;
-        scene_ray ray = goes_straight ? passage_continue(&v.hit, &v.arrived)
+        scene_ray ray = goes_straight ? scene_ray_continue(&v.hit, &v.arrived)
                                       : transport_scattered_ray(t, &v, next.direction, next.group == BSDF_TRACED);
         ray.skips_uv = true;
         if (!transport_trace(t, worker, ray, &v))
@@ -125,8 +125,8 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
     }
 }
 
-static void gather_places(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, int scatterings_left, row_places *out)
+static void gather_points(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
+                          int path_vertex, int scatterings_left, row_points *out)
 {
     for (uint32_t i = 0; scatterings_left >= 1 && i < GATHER_RAYS; i++) {
         rng random = rng_make(where->key, (uint64_t)path_vertex, i);
@@ -141,8 +141,8 @@ static void gather_places(const transport *t, eye_worker *worker, const vertex *
         ray.skips_uv = true;
         if (transport_meet(t, worker, ray, &met) &&
             gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight)) {
-            add_place(&out->lists[GATHERED], end.place.position, end.place.normal);
-            if (i % PLACES_PER_IMPORTON == 0) {
+            add_point(&out->lists[GATHERED], end.point.position, end.point.normal);
+            if (i % POINTS_PER_IMPORTON == 0) {
                 out->importons++;
                 trace_importon(t, worker, &end, rng_make(random.state, (uint64_t)path_vertex, i), &out->lists[ONWARD]);
             }
@@ -151,7 +151,7 @@ static void gather_places(const transport *t, eye_worker *worker, const vertex *
 }
 
 /* As shading.c follows an eye path, but for all that is light. */
-static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_places *out)
+static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_points *out)
 {
     const transport *t = &job->t;
     const scene *s = t->s;
@@ -175,7 +175,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_pla
                 add_sides(t, &v, &out->lists[GATHERED]);
             } else {
                 add_sides(t, &v, &out->lists[SEEN]);
-                gather_places(t, worker, &v, &where, path.vertex, t->settings->max_depth - path.scatterings - 1, out);
+                gather_points(t, worker, &v, &where, path.vertex, t->settings->max_depth - path.scatterings - 1, out);
             }
         }
         if (!eye_path_go_on(t, &v, BSDF_TRACED, eye_path_u_lobe(&path), 1, &path))
@@ -202,12 +202,12 @@ static void divide_frame(int paths, float aspect, int *out_width, int *out_heigh
     *out_height = height < 1 ? 1 : height > GRID_MAX ? GRID_MAX : height;
 }
 
-/* One list of all rows. out_places: to be freed by the caller, on success. */
-static ag_status merge(const pilot_job *job, int which, asked_place **out_places, uint32_t *out_count)
+/* One list of all rows. out_points: to be freed by the caller, on success. */
+static ag_status merge(const pilot_job *job, int which, asked_place **out_points, uint32_t *out_count)
 {
     uint32_t count = 0, at = 0;
     for (int i = 0; i < job->height; i++) {
-        const place_list *list = &job->rows[i].lists[which];
+        const point_list *list = &job->rows[i].lists[which];
         if (list->out_of_memory)
             return AG_ERROR_MEMORY;
         count += list->count;
@@ -216,38 +216,38 @@ static ag_status merge(const pilot_job *job, int which, asked_place **out_places
     if (!all)
         return AG_ERROR_MEMORY;
     for (int i = 0; i < job->height; i++) {
-        const place_list *list = &job->rows[i].lists[which];
+        const point_list *list = &job->rows[i].lists[which];
         if (list->count > 0)
-            memcpy(all + at, list->places, list->count * sizeof *all);
+            memcpy(all + at, list->points, list->count * sizeof *all);
         at += list->count;
     }
-    *out_places = all;
+    *out_points = all;
     *out_count = count;
     return AG_OK;
 }
 
 static ag_status merge_asked(const pilot_job *job, int which, place_importance *out_importance)
 {
-    asked_place *places;
+    asked_place *points;
     uint32_t count;
-    AG_TRY(merge(job, which, &places, &count));
-    ag_status status = place_importance_create(places, count, out_importance);
-    free(places);
+    AG_TRY(merge(job, which, &points, &count));
+    ag_status status = place_importance_create(points, count, out_importance);
+    free(points);
     return status;
 }
 
 static ag_status merge_onward(const pilot_job *job, place_importance *out_importance)
 {
     const scene *s = job->t.s;
-    asked_place *places;
+    asked_place *points;
     uint32_t count, importons = 0;
     for (int i = 0; i < job->height; i++)
         importons += job->rows[i].importons;
-    AG_TRY(merge(job, ONWARD, &places, &count));
+    AG_TRY(merge(job, ONWARD, &points, &count));
     vec3 radius = {s->bounding_radius, s->bounding_radius, s->bounding_radius};
-    ag_status status = place_importance_create_smooth(places, count, importons, vec3_sub(s->bounding_center, radius),
+    ag_status status = place_importance_create_smooth(points, count, importons, vec3_sub(s->bounding_center, radius),
                                                       vec3_add(s->bounding_center, radius), out_importance);
-    free(places);
+    free(points);
     return status;
 }
 
@@ -268,8 +268,8 @@ static void free_rows(pilot_job *job)
 {
     for (int i = 0; job->rows && i < job->height; i++) {
         for (int k = 0; k < LIST_COUNT; k++)
-            free(job->rows[i].lists[k].places);
-        free(job->rows[i].lit.places);
+            free(job->rows[i].lists[k].points);
+        free(job->rows[i].lit.points);
     }
     free(job->rows);
 }
@@ -304,10 +304,10 @@ void eye_pilot_reset(eye_pilot *pilot)
 }
 
 ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_settings *settings,
-                             lit_place **out_places, uint32_t *out_count)
+                             lit_point **out_points, uint32_t *out_count)
 {
     pilot_job job = {.t = {.s = s, .run = run}, .finds_lit = true};
-    lit_place *all = NULL;
+    lit_point *all = NULL;
     uint32_t count = 0;
     ag_status status = look_over_frame(&job, run, LIT_PATHS, settings);
     for (int i = 0; status == AG_OK && i < job.height; i++) {
@@ -316,12 +316,12 @@ ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_s
     }
     if (status == AG_OK && !(all = malloc((count + 1) * sizeof *all)))
         status = AG_ERROR_MEMORY;
-    *out_places = all;
+    *out_points = all;
     *out_count = 0;
     for (int i = 0; status == AG_OK && i < job.height; i++) {
         const lit_list *list = &job.rows[i].lit;
         if (list->count > 0)
-            memcpy(all + *out_count, list->places, list->count * sizeof *all);
+            memcpy(all + *out_count, list->points, list->count * sizeof *all);
         *out_count += list->count;
     }
     free_rows(&job);

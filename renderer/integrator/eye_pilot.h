@@ -13,9 +13,9 @@
 #include "scene.h"
 
 typedef struct eye_pilot {
-    place_importance gathered; /* places where the global map will be asked */
+    place_importance gathered; /* points where the global map will be asked */
     place_importance onward;   /* diffuse surfaces whose light arrives at those */
-    place_importance seen;     /* places where the caustic map will be asked */
+    place_importance seen;     /* points where the caustic map will be asked */
 } eye_pilot;
 
 /* Reads of the settings: width over height, depth, light through panes, number of photons, seed. Errors:
@@ -23,16 +23,16 @@ typedef struct eye_pilot {
 ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot);
 void eye_pilot_reset(eye_pilot *pilot);
 
-/* A place where the picture will ask for direct light. */
-typedef struct lit_place {
+/* A point where the picture will ask for direct light. */
+typedef struct lit_point {
     surface_hit hit;
     scene_ray arrived;
     vec3 normal; /* direct_light_normal there */
-} lit_place;
+} lit_point;
 
 /* Reads of the settings: width over height, depth, light through panes, seed. Errors: AG_ERROR_MEMORY, AG_CANCELLED.
- * out_places: to be freed by the caller, on success. */
+ * out_points: to be freed by the caller, on success. */
 ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_settings *settings,
-                             lit_place **out_places, uint32_t *out_count);
+                             lit_point **out_points, uint32_t *out_count);
 
 #endif

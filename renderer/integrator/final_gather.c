@@ -4,8 +4,8 @@
 #include "integrator/gather_directions.h"
 #include "integrator/gather_path.h"
 #include "math/sampling.h"
-#include "rays/passage.h"
 #include "rays/slab_faces.h"
+#include "rays/transmittance.h"
 
 /* One gather under way. */
 typedef struct gathering {
@@ -79,7 +79,7 @@ static void follow_together(gathering *g, gather_rays *r)
         gather_end end = {.medium = fan->common.medium, .scatterings_left = scatterings_left(g)};
         const rgb *albedo = NULL;
         if (distance >= t->gather_min_distance)
-            albedo = ray_fan_plain_place(t->s, fan, i, &end.place);
+            albedo = ray_fan_plain_point(t->s, fan, i, &end.point);
         if (albedo) {
             gather_batch_ask(g->worker->batch, &end, r->number[i], rgb_scale(rgb_mul(r->weight[i], *albedo), AG_INV_PI),
                              0.0f);
@@ -96,7 +96,7 @@ static void follow_together(gathering *g, gather_rays *r)
     }
 }
 
-/* The rays `begin` to `end` of a Lambertian place: by the cosine, so that each weighs the albedo; where there is a
+/* The rays `begin` to `end` of a Lambertian vertex: by the cosine, so that each weighs the albedo; where there is a
  * guide, by both. */
 static void sample_plain(const gathering *g, const incident_guide *guide, sampler_sequence *numbers, uint32_t begin,
                          uint32_t end, gather_rays *r)
@@ -121,7 +121,7 @@ static void sample_plain(const gathering *g, const incident_guide *guide, sample
     }
 }
 
-/* Of any other place; what goes through is followed at once. */
+/* Of any other vertex; what goes through is followed at once. */
 static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin, uint32_t end, gather_rays *r)
 {
     const bsdf *b = &g->request->from->scattering;
@@ -145,13 +145,13 @@ static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin
     }
 }
 
-/* The place is plain; what is found is for the side that it is seen from. */
+/* The vertex is plain; the light is looked up for the side that it is seen from. */
 static bool find_guide(const transport *t, const vertex *v, incident_guide *out_guide)
 {
     const bsdf *b = &v->scattering;
     if (!t->incident)
         return false;
-    return incident_light_find(t->incident, transport_map_place(t, v).position,
+    return incident_light_find(t->incident, transport_map_point(t, v).position,
                                bsdf_is_below(b) ? vec3_negate(b->shading.z) : b->shading.z, out_guide);
 }
 
@@ -188,7 +188,7 @@ uint32_t final_gather(const transport *t, eye_worker *worker, const gather_reque
             sample_plain(&g, is_guided ? &guide : NULL, &numbers, begin, end, &rays);
         else
             sample_lobes(&g, &numbers, begin, end, &rays);
-        if (passage_is_clear(t->s, &rays.fan.common)) {
+        if (transmittance_is_one(t->s, &rays.fan.common)) {
             follow_together(&g, &rays);
             continue;
         }
@@ -211,7 +211,7 @@ static void follow_detours(const transport *t, eye_worker *worker, uint32_t coun
             if (!gather_path_bounce(t, worker, rng_make(d->key, bounce, d->number), d->share_seen, &d->end, &d->weight,
                                     &b->irradiance[d->query]))
                 continue;
-            b->detour_queries[asking] = (irradiance_query){d->end.place.position, d->end.place.normal};
+            b->detour_queries[asking] = (irradiance_query){d->end.point.position, d->end.point.normal};
             b->detours[asking++] = *d;
         }
         irradiance_cache_get_many(t->cache, t->run, b->detour_queries, asking, worker->index, b->detour_irradiance,

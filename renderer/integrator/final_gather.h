@@ -1,4 +1,4 @@
-/* final_gather.h: indirect light at a diffuse place, by rays over its hemisphere that read the irradiance cache where
+/* final_gather.h: indirect light at a diffuse vertex, by rays over its hemisphere that read the irradiance cache where
  * they end.
  * Rests on: Jensen 1996, 2001 ch. 8; Christensen 1999; Neilson, Yang, TR 04-21, 2004.
  * Threads: any number gather at once, each into its worker's batch. */

@@ -20,7 +20,7 @@ static rgb albedo_at(const vertex *v, const sampler *where)
 static rgb irradiance_at(const transport *t, eye_worker *worker, const vertex *v)
 {
     const photon_map *map = t->cache->map;
-    map_place at = transport_map_place(t, v);
+    map_point at = transport_map_point(t, v);
     arena_mark mark = arena_save(worker->scratch);
     photon_neighbor *neighbors = arena_alloc(worker->scratch, photon_map_scratch_count(map) * sizeof *neighbors);
     rgb irradiance;
@@ -52,10 +52,10 @@ void first_hit_fill(const transport *t, eye_worker *worker, const vertex *v, con
 
 /* How far along the camera's axis the surface's plane goes on to the next pixel's ray. */
 static float slope(const transport *t, const transform *camera_from_world, const first_hit *first,
-                   const camera_place *place, float step_x, float step_y)
+                   const film_point *from, float step_x, float step_y)
 {
-    scene_ray beside = camera_generate_ray(&t->s->camera, place->film_x + step_x, place->film_y + step_y, place->aspect,
-                                           place->lens, place->time);
+    scene_ray beside = camera_generate_ray(&t->s->camera, from->film_x + step_x, from->film_y + step_y, from->aspect,
+                                           from->lens, from->time);
     float towards = vec3_dot(beside.direction, first->geometric_normal);
     if (towards == 0.0f)
         return 0.0f;
@@ -65,20 +65,20 @@ static float slope(const transport *t, const transform *camera_from_world, const
     return isfinite(dz) ? dz : 0.0f;
 }
 
-void first_hit_project(const transport *t, const camera_place *place, first_hit *in_out)
+void first_hit_project(const transport *t, const film_point *from, first_hit *in_out)
 {
     const camera *c = &t->s->camera;
     if (!in_out->is_hit)
         return;
-    transform world_from_camera = camera_transform_at(c, place->time);
+    transform world_from_camera = camera_transform_at(c, from->time);
     transform camera_from_world = transform_invert(&world_from_camera);
     vec3 in_camera = transform_point(&camera_from_world, in_out->position);
     if (c->kind == CAMERA_PERSPECTIVE || c->kind == CAMERA_ORTHOGRAPHIC)
         in_out->depth = in_camera.z;
     if (!t->layout->is_gbuffer)
         return;
-    in_out->dz_dx = slope(t, &camera_from_world, in_out, place, 1.0f / (float)t->settings->width, 0.0f);
-    in_out->dz_dy = slope(t, &camera_from_world, in_out, place, 0.0f, 1.0f / (float)t->settings->height);
+    in_out->dz_dx = slope(t, &camera_from_world, in_out, from, 1.0f / (float)t->settings->width, 0.0f);
+    in_out->dz_dy = slope(t, &camera_from_world, in_out, from, 0.0f, 1.0f / (float)t->settings->height);
     if (!t->settings->layers_in_camera_space)
         return;
     in_out->position = in_camera;

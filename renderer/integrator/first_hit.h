@@ -6,17 +6,17 @@
 
 #include "integrator/transport.h"
 
-/* A camera ray's place on film and lens, as camera_generate_ray takes it. */
-typedef struct camera_place {
+/* A camera ray's point on film and lens and its time, as camera_generate_ray takes them. */
+typedef struct film_point {
     float film_x, film_y, aspect; /* [0, 1] */
     vec2 lens;
     float time;
-} camera_place;
+} film_point;
 
 /* All but the slopes. */
 void first_hit_fill(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, first_hit *out);
 
 /* The slopes, of a film of that size in pixels; and what is to be in the camera's space is taken there. */
-void first_hit_project(const transport *t, const camera_place *place, first_hit *in_out);
+void first_hit_project(const transport *t, const film_point *from, first_hit *in_out);
 
 #endif

@@ -67,9 +67,9 @@ uint32_t gather_batch_make_detours(gather_batch *b, uint32_t *in_out_query)
         if (b->holds[i])
             continue;
         const gather_query_rest *rest = &b->rests[i];
-        surface_place place = {b->queries[i].position, b->queries[i].normal, rest->epsilon};
+        surface_point point = {b->queries[i].position, b->queries[i].normal, rest->epsilon};
         const gather *g = gather_of(b, i);
-        gather_end end = {place, rest->medium, rest->scatterings_left};
+        gather_end end = {point, rest->medium, rest->scatterings_left};
         b->detours[count++] = (gather_detour){i, rest->number, g->key, end, b->weights[i], rgb_max(g->throughput)};
         b->weights[i] = rgb_gray(1.0f);
         b->irradiance[i] = rgb_gray(0.0f);

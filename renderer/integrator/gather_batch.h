@@ -17,21 +17,21 @@ enum { GATHER_BATCH_GATHERS = 1 << 14, GATHER_BATCH_SAMPLES = 1 << 14, GATHER_BA
 
 /* Where a gather ray ends: irradiance is asked for there, and where none holds its light is followed on. */
 typedef struct gather_end {
-    surface_place place;  /* as the photons have it: when the shutter opens */
+    surface_point point;  /* as the photons have it: when the shutter opens */
     uint32_t medium;      /* that the ray arrived in */
     int scatterings_left; /* there may be between the lamp and the ray's last start; >= 1 */
 } gather_end;
 
-/* All rays from one diffuse place of a camera path. */
+/* All rays from one diffuse vertex of a camera path. */
 typedef struct gather {
-    rgb throughput;     /* from the place to the eye, over the number of rays */
+    rgb throughput;     /* from the vertex to the eye, over the number of rays */
     rgb known, read;    /* radiance, W/m^2/sr: brought by short rays' own bounces, and what was read from the cache */
     float most;         /* of a component of what it brings the eye; INFINITY: no bound */
     float squares;      /* of rays that asked for nothing: see known of gather_query_rest */
     uint32_t ray_count; /* of those that brought nothing, too */
     uint32_t sample;    /* the number of its sample, see camera_sample.h */
     uint32_t query_end; /* its queries go up to here, from where the last gather's end */
-    bool is_first;      /* the place is what the eye sees */
+    bool is_first;      /* the vertex is what the eye sees */
     uint64_t key;       /* of the random numbers of its rays' detours */
 } gather;
 
@@ -96,9 +96,9 @@ void gather_batch_end(gather_batch *b, rgb known);
  * the three colours of what it brought already. */
 static inline void gather_batch_ask(gather_batch *b, const gather_end *end, uint32_t number, rgb weight, float known)
 {
-    b->queries[b->query_count] = (irradiance_query){end->place.position, end->place.normal};
+    b->queries[b->query_count] = (irradiance_query){end->point.position, end->point.normal};
     b->rests[b->query_count] =
-        (gather_query_rest){end->place.epsilon, end->medium, number, end->scatterings_left, known};
+        (gather_query_rest){end->point.epsilon, end->medium, number, end->scatterings_left, known};
     b->weights[b->query_count++] = weight;
 }
 

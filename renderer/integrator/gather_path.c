@@ -2,13 +2,13 @@
 #include "integrator/gather_path.h"
 
 #include "integrator/direct_lighting.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 /* Roulette begins after this many scatterings along one gather ray; short rays bounce on at most so often (asked
  * sooner, the cache tells of the light outside of a small room). */
 enum { ROULETTE_AFTER = 4, SHORT_BOUNCES_MAX = 64 };
 
-/* Direct light and caustics at a diffuse place, as an estimate there holds them: radiance towards v's `out`. */
+/* Direct light and caustics at a diffuse vertex, as an estimate there holds them: radiance towards v's `out`. */
 static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, float share_seen, rng *random)
 {
     float u_pick = rng_float(random), u_caustic = rng_float(random);
@@ -16,11 +16,11 @@ static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, 
     return rgb_add(direct, transport_some_caustics(t, worker, v, share_seen, u_caustic));
 }
 
-/* The ray ends at a diffuse place: irradiance on one side of it, picked by the lobes' shares. */
+/* The ray ends at a diffuse vertex: irradiance on one side of it, picked by the lobes' shares. */
 static void end_at(const transport *t, const vertex *v, int scatterings_left, rgb throughput, float u_side,
                    gather_end *out_end, rgb *out_weight)
 {
-    map_place at = transport_map_place(t, v);
+    map_point at = transport_map_point(t, v);
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
     rgb factor = reflected;
     if (!rgb_is_black(transmitted)) {
@@ -41,7 +41,7 @@ static bool ends_plainly(const transport *t, const vertex *v, int scatterings_le
     const rgb *albedo = material_plain_albedo(t->s, t->s->shapes[v->hit.shape_index].material_index);
     if (!albedo || v->hit.is_strand)
         return false;
-    map_place at = transport_map_place(t, v);
+    map_point at = transport_map_point(t, v);
     *out_end = (gather_end){{at.position, at.facing_normal, v->hit.epsilon}, v->arrived.medium, scatterings_left};
     *out_weight = rgb_scale(rgb_mul(throughput, *albedo), AG_INV_PI);
     return true;
@@ -90,7 +90,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         depth += !goes_straight;
         if (depth == scatterings_left)
             return false;
-        scene_ray ray = goes_straight ? passage_continue(&v->hit, &v->arrived)
+        scene_ray ray = goes_straight ? scene_ray_continue(&v->hit, &v->arrived)
                                       : transport_scattered_ray(t, v, next.direction, true);
         ray.skips_uv = true;
         worker->rays_gather++;
@@ -102,7 +102,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
 void gather_end_make_white(const gather_end *end, vertex *v)
 {
     static const material WHITE = {.kind = MATERIAL_DIFFUSE, .reflectance = {1.0f, 1.0f, 1.0f}};
-    const surface_place *at = &end->place;
+    const surface_point *at = &end->point;
     v->hit = (surface_hit){.position = at->position,
                            .geometric_normal = at->normal,
                            .shading_normal = at->normal,

@@ -9,7 +9,7 @@
 /* Follows a gather ray that has met *v: through traced lobes, and by a bounce more where it is still too near for the
  * cache. scatterings_left: how many there may be between the ray's start and the lamp; >= 1. throughput: what the light
  * behind the ray is multiplied by; share_seen: how much of that again reaches the eye. Adds to *in_out_known what
- * direct light and caustics on the way bring; true: the rest is the irradiance at out_end->place times *out_weight
+ * direct light and caustics on the way bring; true: the rest is the irradiance at out_end->point times *out_weight
  * (1/sr). Lamps and environments that the ray meets add nothing: light straight from them is direct light, light from
  * them by way of traced lobes is in the caustic map. */
 bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng random, int scatterings_left,

@@ -23,14 +23,14 @@ typedef enum sample_use {
     SAMPLE_ROULETTE,
     SAMPLE_USE_COUNT,
     /* The time of the path, which its first vertex alone asks for: there this is a number that the second vertex leaves
-     * free, for what that would mean is a place on the film. So pictures of scenes without motion keep their bits. */
+     * free, for what that would mean is a point on the film. So pictures of scenes without motion keep their bits. */
     SAMPLE_TIME = SAMPLE_USE_COUNT + SAMPLE_PIXEL
 } sample_use;
 
 typedef struct sampler {
     uint64_t key;         /* of seed and pixel: for what is random only */
     uint64_t block_key;   /* of seed and block of pixels */
-    uint32_t place;       /* of the pixel in its block, in Morton order */
+    uint32_t morton;      /* the pixel's index in its block, in Morton order */
     uint32_t sample;      /* of the pixel */
     uint32_t sample_bits; /* the pixel has no more than 2^this samples */
 } sampler;
@@ -136,7 +136,7 @@ static inline void sampler_sequence_enter(sampler_sequence *s, uint64_t high)
 static inline sampler_sequence sampler_sequence_make(const sampler *s, sample_use use, int vertex, uint32_t count)
 {
     sampler_sequence made;
-    made.first = ((uint64_t)s->place << (s->sample_bits + sampler_bits(count))) + (uint64_t)s->sample * count;
+    made.first = ((uint64_t)s->morton << (s->sample_bits + sampler_bits(count))) + (uint64_t)s->sample * count;
     made.use_key = (uint64_t)vertex * SAMPLE_USE_COUNT + (uint64_t)use;
     made.block_key = s->block_key;
     sampler_sequence_enter(&made, made.first >> 32);

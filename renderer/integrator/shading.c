@@ -4,7 +4,7 @@
 #include "integrator/direct_lighting.h"
 #include "integrator/final_gather.h"
 
-/* A path is split at the first glossy place: the diffuse places behind it share the gather rays, and many directions
+/* A path is split at the first glossy vertex: the diffuse vertices behind it share the gather rays, and many directions
  * say more of the light than many rays behind one; so there may be more branches than gather rays. Smooth glass has two
  * ways at each of its faces. */
 enum { BRANCHES_MAX = 8, SMOOTH_BRANCHES_MAX = 4 };
@@ -15,7 +15,7 @@ static const float SQRT_2 = 1.41421356f;
  * are of other sequences, and so are those that decide whether there is a gather ray. */
 enum { KEY_OF_BRANCHES = 1 << 16, KEY_OF_RAYS = 1 << 24, KEY_OF_CHANCE = 1 << 30 };
 
-/* What a diffuse place sends on: its parts, but for what is gathered, which comes to the sample later. */
+/* What a diffuse vertex sends on: its parts, but for what is gathered, which comes to the sample later. */
 typedef struct diffuse_light {
     rgb direct, caustic, indirect;
     rgb sky; /* of the direct light, from infinite lights */
@@ -30,8 +30,8 @@ static uint32_t nearest_bits(float wanted)
     return bits;
 }
 
-/* The share of the eye's gather rays, of which there may be `most`, that a place on the path has: as many of them as of
- * the light that the eye sees. Where that is less than one, there is one with this probability. */
+/* The share of the eye's gather rays, of which there may be `most`, that a vertex of the path has: as many of them as
+ * of the light that the eye sees. Where that is less than one, there is one with this probability. */
 typedef struct gather_share {
     uint32_t count;
     float probability; /* 1 where count > 1 */
@@ -76,9 +76,9 @@ static void gather_light(const transport *t, eye_worker *worker, const vertex *v
     sample->gather_cost += final_gather(t, worker, &request);
 }
 
-/* Light samples are shared like gather rays, but each place has one. */
-static rgb direct_radiance(const transport *t, eye_worker *worker, const vertex *v, const camera_sample *from,
-                           const eye_path *path, eye_sample *sample, rgb *by_group)
+/* Light samples are shared like gather rays, but each vertex has one. */
+static direct_light direct_radiance(const transport *t, eye_worker *worker, const vertex *v, const camera_sample *from,
+                                    const eye_path *path, eye_sample *sample, rgb *by_group)
 {
     uint32_t lights = from->split.lights;
     if (path->scatterings > 0) {
@@ -86,13 +86,13 @@ static rgb direct_radiance(const transport *t, eye_worker *worker, const vertex 
         lights = 1u << bits < lights ? 1u << bits : lights;
     }
     uint64_t before = eye_worker_cost(worker);
-    rgb direct =
+    direct_light direct =
         direct_light_gathered(t, worker, v, &path->where, eye_path_key(path) + KEY_OF_RAYS * (int)sampler_bits(lights),
                               transport_sample_counts(t, lights), by_group);
     if (path->scatterings == 0) {
         float weight = rgb_mean(path->throughput);
         sample->light_cost += (uint32_t)(eye_worker_cost(worker) - before);
-        sample->light_variance += weight * weight * worker->direct_variance;
+        sample->light_variance += weight * weight * direct.variance;
     }
     return direct;
 }
@@ -109,7 +109,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
     if (scatterings_left < 1)
         return sum;
     if (is_whole && path->scatterings > 0 && rgb_max(throughput) < SHADING_LOW_CONTRIBUTION) {
-        map_place at = transport_map_place(t, v);
+        map_point at = transport_map_point(t, v);
         rgb transmitted = bsdf_gathered_transmission(&v->scattering);
         rgb all = rgb_mul(bsdf_gathered_reflection(&v->scattering),
                           irradiance_cache_estimate(t->cache, at.position, at.facing_normal, worker->index));
@@ -121,8 +121,9 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
         return sum;
     }
     if (is_whole) {
-        sum.direct = direct_radiance(t, worker, v, from, path, sample, by_group);
-        sum.sky = worker->direct_from_sky;
+        const direct_light direct = direct_radiance(t, worker, v, from, path, sample, by_group);
+        sum.direct = direct.radiance;
+        sum.sky = direct.from_sky;
     }
     if (path->scatterings == 0)
         sum.caustic = transport_caustics(t, worker, v);
@@ -165,7 +166,7 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
     }
 }
 
-/* Into how many branches, a power of two as bits, the path is split at the first place that it is traced on from. */
+/* Into how many branches, a power of two as bits, the path is split at the first vertex that it is traced on from. */
 static uint32_t branch_bits(const transport *t, const eye_path *path, const vertex *v)
 {
     if (path->scatterings > 0 || transport_is_open_pane(t, v) || !bsdf_has_many_ways(&v->scattering, BSDF_TRACED))

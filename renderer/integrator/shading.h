@@ -7,7 +7,7 @@
 
 #include "integrator/eye_path.h"
 
-/* Below this throughput a diffuse place is shown by the k-nearest estimate at it instead of being gathered (Jensen
+/* Below this throughput a diffuse vertex is shown by the k-nearest estimate at it instead of being gathered (Jensen
  * 2001, 8.2: an approximate evaluation where the contribution is low). */
 static const float SHADING_LOW_CONTRIBUTION = 0.03f;
 

@@ -1,7 +1,7 @@
 /* transport.c: see transport.h. */
 #include "integrator/transport.h"
 
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 enum { LIGHT_SAMPLES_PER_SCATTER_SAMPLE = 4 };
 
@@ -15,7 +15,7 @@ sample_counts transport_sample_counts(const transport *t, uint32_t lights)
 
 bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex)
 {
-    bool is_met = passage_intersect(t->s, &ray, &worker->passages_cut, &out_vertex->hit, &out_vertex->transmittance);
+    bool is_met = transmittance_intersect(t->s, &ray, &worker->rays_cut, &out_vertex->hit, &out_vertex->transmittance);
     out_vertex->arrived = ray;
     if (is_met)
         transport_note_footprint(out_vertex);
@@ -61,14 +61,14 @@ bool transport_trace_through_panes(const transport *t, eye_worker *worker, scene
         rgb passed = bsdf_straight_transmittance(&out->scattering);
         if (rgb_is_black(passed))
             break;
-        bool is_cut = crossings == PASSAGE_CROSSINGS_MAX;
-        worker->passages_cut += is_cut;
+        bool is_cut = crossings == TRANSMITTANCE_CROSSINGS_MAX;
+        worker->rays_cut += is_cut;
         left = is_cut ? rgb_gray(0.0f) : rgb_mul(left, passed);
         if (rgb_is_black(left)) {
             is_met = false;
             break;
         }
-        is_met = transport_trace(t, worker, passage_continue(&out->hit, &out->arrived), out);
+        is_met = transport_trace(t, worker, scene_ray_continue(&out->hit, &out->arrived), out);
         left = rgb_mul(left, out->transmittance);
     }
     out->transmittance = left;
@@ -84,18 +84,18 @@ rgb transport_emission(const transport *t, const vertex *v)
 
 vec3 transport_facing_normal(const vertex *v) { return vec3_face_forward(v->hit.geometric_normal, v->scattering.out); }
 
-map_place transport_map_place(const transport *t, const vertex *v)
+map_point transport_map_point(const transport *t, const vertex *v)
 {
     surface_rest rest = surface_at_opening(t->s, &v->hit);
     bool is_behind = vec3_dot(v->hit.geometric_normal, v->arrived.direction) > 0.0f;
-    return (map_place){rest.position, is_behind ? vec3_negate(rest.geometric_normal) : rest.geometric_normal};
+    return (map_point){rest.position, is_behind ? vec3_negate(rest.geometric_normal) : rest.geometric_normal};
 }
 
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
 {
     if (!t->caustic || t->caustic->set.count == 0)
         return rgb_gray(0.0f);
-    map_place at = transport_map_place(t, v);
+    map_point at = transport_map_point(t, v);
     arena_mark mark = arena_save(worker->scratch);
     photon_neighbor *neighbors =
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));

@@ -37,20 +37,18 @@ typedef struct transport {
 typedef struct eye_worker {
     _Alignas(64) unsigned index; /* the worker's */
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path;
-    uint64_t rays_estimate;                    /* of photon estimates and lookups at the place itself */
-    uint64_t camera_rays_met;                  /* those that met a surface */
-    rgb direct_from_sky;                       /* of the last direct_light_gathered, what infinite lights gave */
-    uint64_t samples_not_finite, passages_cut; /* the latter: ways across more interfaces than passage.h follows */
-    arena *scratch;                            /* for neighbours; what render.c has tried out beforehand always fits */
-    gather_batch *batch;                       /* of the samples under way; NULL for path tracing */
-    struct sample_queue *queue;                /* those samples */
-    float direct_variance; /* of the last direct_light_gathered, in the mean of the three colours: an estimate */
-    uint64_t cost_apart;   /* of whatever samples' detours, in all */
+    uint64_t rays_estimate;                /* of photon estimates and lookups at the point itself */
+    uint64_t camera_rays_met;              /* those that met a surface */
+    uint64_t samples_not_finite, rays_cut; /* the latter: by TRANSMITTANCE_CROSSINGS_MAX */
+    arena *scratch;                        /* for neighbours; what render.c has tried out beforehand always fits */
+    gather_batch *batch;                   /* of the samples under way; NULL for path tracing */
+    struct sample_queue *queue;            /* those samples */
+    uint64_t cost_apart;                   /* of whatever samples' detours, in all */
 } eye_worker;
 
 /* What a worker's rays have cost so far, but for detours, which do not belong to the sample under way: in quarters of a
  * gather ray's time, as measured in five rooms. A camera ray's has the sample's whole way into the film with it, a
- * path's what is found out about the place that it meets. */
+ * path's what is found out about the vertex that it meets. */
 enum { EYE_COST_OF_RAY = 4, EYE_COST_OF_CAMERA_RAY = 24, EYE_COST_OF_PATH_RAY = 8 };
 static inline uint64_t eye_worker_cost(const eye_worker *w)
 {
@@ -58,7 +56,7 @@ static inline uint64_t eye_worker_cost(const eye_worker *w)
            EYE_COST_OF_RAY * (w->rays_shadow + w->rays_gather) + w->rays_estimate - w->cost_apart;
 }
 
-/* A place where a camera path or gather ray met a surface. */
+/* A vertex of a camera path or gather ray: where it met a surface. */
 typedef struct vertex {
     surface_hit hit;
     bsdf scattering;
@@ -67,7 +65,7 @@ typedef struct vertex {
     const light *lamp; /* the area light that shines there, or NULL */
 } vertex;
 
-/* How many samples direct light takes at a diffuse place. */
+/* How many samples direct light takes at a diffuse vertex. */
 typedef struct sample_counts {
     int light;   /* towards lamps */
     int scatter; /* by scattering, 0 where that cannot meet a lamp */
@@ -77,7 +75,7 @@ sample_counts transport_sample_counts(const transport *t, uint32_t lights);
 /* Follows a ray of unit direction to the first surface that scatters. */
 bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 
-/* The same in two steps, for those who may not need the second: how the place scatters, and whether it shines. */
+/* The same in two steps, for those who may not need the second: how the vertex scatters, and whether it shines. */
 bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 void transport_complete(const transport *t, vertex *in_out_vertex);
 
@@ -94,13 +92,13 @@ static inline void transport_note_footprint(vertex *v)
     v->hit.footprint = ray_cone_footprint(&v->arrived.cone, v->arrived.direction);
 }
 
-/* Whether a sample of the place that is_straight counts as no scattering. */
+/* Whether a sample of the vertex that is_straight counts as no scattering. */
 static inline bool transport_is_open_pane(const transport *t, const vertex *v)
 {
     return t->panes_are_direct && v->scattering.is_pane;
 }
 
-/* The ray that leaves a place by scattering. Behind the first lobe that is not smooth the way back to the lamp passes
+/* The ray that leaves a vertex by scattering. Behind the first lobe that is not smooth the way back to the lamp passes
  * slabs straight (slab_faces.h), as shadow rays and photons do; what the eye sees directly, or in mirrors, is bent. */
 static inline scene_ray transport_scattered_ray(const transport *t, const vertex *v, vec3 direction, bool is_delta)
 {
@@ -109,7 +107,7 @@ static inline scene_ray transport_scattered_ray(const transport *t, const vertex
     return ray;
 }
 
-/* What textures are filtered over along the ray of a sample of the place. */
+/* The cone that textures are filtered over along the ray of a sample of the vertex. */
 ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsdf_sample *next);
 
 /* Of gather rays, which are of no one sample. */
@@ -119,7 +117,7 @@ static inline ray_cone transport_gather_cone(const vertex *v)
     return ray_cone_is_wide(c) ? (ray_cone){fabsf(c->width), RAY_CONE_DIFFUSE_SPREAD, true} : *c;
 }
 
-/* Radiance that the place itself sends back along the ray. */
+/* Radiance that the vertex itself emits, back along the ray. */
 rgb transport_emission(const transport *t, const vertex *v);
 
 /* Roulette: whether a path that carries so much goes on, by a number in [0, 1); what survives carries the others'
@@ -136,14 +134,14 @@ static inline bool transport_survives(rgb *in_out_throughput, float u)
 /* The geometric normal on the side that the ray came from. */
 vec3 transport_facing_normal(const vertex *v);
 
-/* Where the photons of a place lie, and its geometric normal there on the side that the ray came from; see
+/* Where the photons of a vertex lie, and its geometric normal there on the side that the ray came from; see
  * photon_tracing.h. */
-typedef struct map_place {
+typedef struct map_point {
     vec3 position, facing_normal;
-} map_place;
-map_place transport_map_place(const transport *t, const vertex *v);
+} map_point;
+map_point transport_map_point(const transport *t, const vertex *v);
 
-/* The caustic map's light at a diffuse place: reflected radiance. */
+/* The caustic map's light at a diffuse vertex: reflected radiance. */
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);
 
 /* An estimate of transport_caustics, equal on average, that asks the map only as often as it matters: share_seen is how

@@ -7,6 +7,7 @@
 #include "atomics.h"
 #include "descriptor.h"
 #include "file_system.h"
+#include "status.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -426,9 +427,8 @@ ag_status atomic_file_write_by(const char *path, atomic_file_fill *fill, void *u
 {
     output out;
     snprintf(message, message_size, "%s", "");
-    ag_status status = begin(path, &out, message, message_size);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(begin(path, &out, message, message_size));
+    ag_status status = AG_OK;
     if (fill_and_rename(&out, fill, user) != 0) {
         const int error = errno;
         abandon(&out);

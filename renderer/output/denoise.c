@@ -1,6 +1,8 @@
 /* denoise.c: see denoise.h. */
 #include "output/denoise.h"
 
+#include "status.h"
+
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -74,10 +76,9 @@ static ag_status open_library(oidn_library *out, char *message, size_t message_s
 ag_status denoise_check(char *message, size_t message_size)
 {
     oidn_library library;
-    ag_status status = open_library(&library, message, message_size);
-    if (status == AG_OK)
-        dlclose(library.handle);
-    return status;
+    AG_TRY(open_library(&library, message, message_size));
+    dlclose(library.handle);
+    return AG_OK;
 }
 
 /* The first error since the last question; device NULL: of making one. */
@@ -126,9 +127,8 @@ ag_status denoise_picture(int width, int height, float *color, const float *albe
 {
     oidn_library library;
     snprintf(message, message_size, "%s", "");
-    ag_status status = open_library(&library, message, message_size);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(open_library(&library, message, message_size));
+    ag_status status;
     /* a GPU could not read our memory */
     oidn_device device = library.new_device(OIDN_CPU);
     if (!device) {

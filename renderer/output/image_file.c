@@ -6,6 +6,7 @@
 #include "image/image_module_loader.h"
 #include "output/atomic_file.h"
 #include "output/image_openexr.h"
+#include "status.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -133,9 +134,7 @@ ag_status image_file_write(const char *path, const image_description *descriptio
     const image_format *format = image_format_of(path);
     if (!format)
         return unknown_extension(path, message, message_size);
-    ag_status status = check_description(path, format, description, message, message_size);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(check_description(path, format, description, message, message_size));
     const image_module *module = NULL;
     if (needs_module(format) && !(module = image_module_get(message, message_size)))
         return AG_ERROR_SYSTEM;
@@ -143,6 +142,7 @@ ag_status image_file_write(const char *path, const image_description *descriptio
     unsigned char *bytes = NULL;
     size_t size = 0;
     char reason[1024] = "there is no memory for it";
+    ag_status status;
     if (module)
         status = module->encode(format->extension, description, pixels, &bytes, &size, reason, sizeof reason);
     else if (format->has_layers)
@@ -162,8 +162,6 @@ ag_status image_file_check_target(const char *path, char *message, size_t messag
     const image_format *format = image_format_of(path);
     if (!format)
         return unknown_extension(path, message, message_size);
-    ag_status status = atomic_file_check(path, message, message_size);
-    if (status == AG_OK && needs_module(format) && !image_module_get(message, message_size))
-        status = AG_ERROR_SYSTEM;
-    return status;
+    AG_TRY(atomic_file_check(path, message, message_size));
+    return needs_module(format) && !image_module_get(message, message_size) ? AG_ERROR_SYSTEM : AG_OK;
 }

@@ -23,7 +23,7 @@ typedef struct exr_file {
     size_t size, capacity;
     exr_encode_pipeline_t pipeline;
     exr_result_t (*compress)(exr_encode_pipeline_t *pipeline); /* OpenEXR's own */
-    int *places;                                               /* of each channel of the file, in the description */
+    int *indices;                                              /* of each channel of the file, in the description */
     float *planes;                                             /* the values of one chunk, channel by channel */
     bool lacks_memory;
     char *message; /* the first one of OpenEXR's */
@@ -43,7 +43,7 @@ static void keep_first_message(exr_const_context_t context, exr_result_t code, c
         snprintf(file->message, file->message_size, "OpenEXR cannot encode it: %s", text);
 }
 
-/* The table of the chunks' places is written over, at the end. */
+/* The table of the chunks' offsets is written over, at the end. */
 static int64_t write_bytes(exr_const_context_t context, void *user, const void *bytes, uint64_t size, uint64_t offset,
                            exr_stream_error_func_ptr_t report)
 {
@@ -145,16 +145,16 @@ static exr_result_t write_header(exr_file *file)
 /* --- the pixels --- */
 
 /* The file's order is that of names, the description's is the layers'. */
-static bool find_places(exr_file *file)
+static bool find_channels(exr_file *file)
 {
     const image_description *d = file->description;
-    file->places = malloc((size_t)d->channel_count * sizeof *file->places);
-    for (int c = 0; file->places && c < file->pipeline.channel_count; c++) {
-        file->places[c] = 0;
-        while (strcmp(d->channel_names[file->places[c]], file->pipeline.channels[c].channel_name) != 0)
-            file->places[c]++;
+    file->indices = malloc((size_t)d->channel_count * sizeof *file->indices);
+    for (int c = 0; file->indices && c < file->pipeline.channel_count; c++) {
+        file->indices[c] = 0;
+        while (strcmp(d->channel_names[file->indices[c]], file->pipeline.channels[c].channel_name) != 0)
+            file->indices[c]++;
     }
-    return file->places != NULL;
+    return file->indices != NULL;
 }
 
 /* Copies the chunk whose first pixel is (x, y) of those given, and tells the pipeline of it. */
@@ -166,7 +166,7 @@ static void fill_planes(exr_file *file, int x, int y)
     for (size_t line = 0; line < height; line++) {
         const float *first = file->pixels + (((size_t)y + line) * (size_t)d->width + (size_t)x) * stride;
         for (size_t c = 0; c < stride; c++) {
-            const float *from = first + file->places[c];
+            const float *from = first + file->indices[c];
             float *to = file->planes + (c * height + line) * width;
             if (file->pipeline.channels[c].data_type == EXR_PIXEL_HALF)
                 for (size_t i = 0; i < width; i++) /* beyond the largest half lies infinity */
@@ -199,13 +199,13 @@ static exr_result_t compress(exr_encode_pipeline_t *pipeline)
 
 static exr_result_t write_chunk(exr_file *file, const exr_chunk_info_t *chunk, int x, int y)
 {
-    const bool is_first = !file->places;
+    const bool is_first = !file->indices;
     exr_encode_pipeline_t *pipeline = &file->pipeline;
     exr_result_t result = is_first ? exr_encoding_initialize(file->context, 0, chunk, pipeline)
                                    : exr_encoding_update(file->context, 0, chunk, pipeline);
     if (result != EXR_ERR_SUCCESS)
         return result;
-    if (is_first && !find_places(file))
+    if (is_first && !find_channels(file))
         return EXR_ERR_OUT_OF_MEMORY;
     fill_planes(file, x, y);
     if (is_first) {
@@ -270,7 +270,7 @@ ag_status image_openexr_encode(const image_description *description, const float
     exr_encoding_destroy(file.context, &file.pipeline);
     const exr_result_t finished = exr_finish(&file.context);
     result = result == EXR_ERR_SUCCESS ? finished : result;
-    free(file.places);
+    free(file.indices);
     free(file.planes);
     if (result == EXR_ERR_SUCCESS) {
         *out_bytes = file.bytes;

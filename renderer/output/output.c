@@ -7,6 +7,7 @@
 #include "output/image_file.h"
 #include "output/output_color.h"
 #include "output/picture_layers.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -54,12 +55,10 @@ ag_status ag_output_check(ag_context *context, const ag_output_settings *setting
     if (!settings)
         settings = &defaults;
     const image_format *format;
-    ag_status status = find_format(context, settings, path, &format);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(find_format(context, settings, path, &format));
     char message[MESSAGE_SIZE];
     phase_begin begin = context_begin_phase(); /* it may load OpenImageIO */
-    status = image_file_check_target(path, message, sizeof message);
+    ag_status status = image_file_check_target(path, message, sizeof message);
     context_add_to_phase(context, AG_PHASE_WRITE, begin);
     if (status != AG_OK) {
         log_message(context->log, AG_LOG_ERROR, "%s", message);
@@ -109,6 +108,18 @@ static ag_status convert_layers(ag_context *context, const ag_film *film, const 
     return status;
 }
 
+/* The channels of a format with layers. out_layers: to be reset by the caller, on failure too. */
+static ag_status make_layers(ag_context *context, const ag_film *film, const ag_output_settings *settings,
+                             image_sample_type type, const output_color_tag *tag, const float *pixels, const char *path,
+                             picture_layers *out_layers)
+{
+    AG_TRY(picture_layers_create(context, film, pixels, settings, type, path, out_layers));
+    if (settings->color_space)
+        AG_TRY(convert_layers(context, film, settings, out_layers));
+    return tag->has_chromaticities ? picture_layers_add_numbers(out_layers, "chromaticities", tag->chromaticities, 8)
+                                   : AG_OK;
+}
+
 /* pixels: RGB as they are to be written. */
 static ag_status write_picture(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                const image_format *format, const output_color_tag *tag, const float *pixels,
@@ -133,13 +144,8 @@ static ag_status write_picture(ag_context *context, const ag_film *film, const a
                                      .attributes = attributes,
                                      .attribute_count = sizeof attributes / sizeof *attributes};
     picture_layers layers = {0};
-    ag_status status = AG_OK;
     if (format->has_layers) {
-        status = picture_layers_create(context, film, pixels, settings, description.type, path, &layers);
-        if (status == AG_OK && settings->color_space)
-            status = convert_layers(context, film, settings, &layers);
-        if (status == AG_OK && tag->has_chromaticities)
-            status = picture_layers_add_numbers(&layers, "chromaticities", tag->chromaticities, 8);
+        const ag_status status = make_layers(context, film, settings, description.type, tag, pixels, path, &layers);
         if (status != AG_OK) {
             picture_layers_reset(&layers);
             return status;
@@ -152,10 +158,31 @@ static ag_status write_picture(ag_context *context, const ag_film *film, const a
         pixels = layers.pixels;
     }
     char message[MESSAGE_SIZE];
-    status = image_file_write(path, &description, pixels, message, sizeof message);
+    const ag_status status = image_file_write(path, &description, pixels, message, sizeof message);
     if (status != AG_OK)
         log_message(context->log, AG_LOG_ERROR, "%s", message);
     picture_layers_reset(&layers);
+    return status;
+}
+
+/* Converts the film's colours where the format or the settings want it, and writes them. */
+static ag_status convert_and_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
+                                   const image_format *format, const char *path)
+{
+    const size_t count = (size_t)film->width * (size_t)film->height;
+    output_color_tag tag = {0};
+    if (format->scene_linear)
+        AG_TRY(output_color_find_tag(context, settings, film, &tag));
+    if (format->scene_linear && !settings->color_space)
+        return write_picture(context, film, settings, format, &tag, film->pixels, path);
+    float *shown = malloc(count * 3 * sizeof *shown);
+    if (!shown)
+        return AG_ERROR_MEMORY;
+    memcpy(shown, film->pixels, count * 3 * sizeof *shown);
+    ag_status status = output_color_apply(context, settings, format->scene_linear, shown, count);
+    if (status == AG_OK)
+        status = write_picture(context, film, settings, format, &tag, shown, path);
+    free(shown);
     return status;
 }
 
@@ -170,32 +197,11 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
         return AG_CANCELLED;
     phase_begin begin = context_begin_phase();
     const image_format *format;
-    ag_status status = find_format(context, settings, path, &format);
-    if (status != AG_OK)
-        return status;
-
-    const float *pixels = film->pixels;
-    float *shown = NULL;
-    size_t count = (size_t)film->width * (size_t)film->height;
-    output_color_tag tag = {0};
-    if (format->scene_linear)
-        status = output_color_find_tag(context, settings, film, &tag);
-    if (status == AG_OK && (!format->scene_linear || settings->color_space)) {
-        shown = malloc(count * 3 * sizeof *shown);
-        if (!shown)
-            return AG_ERROR_MEMORY;
-        memcpy(shown, film->pixels, count * 3 * sizeof *shown);
-        pixels = shown;
-        status = output_color_apply(context, settings, format->scene_linear, shown, count);
-    }
-    if (status == AG_OK)
-        status = write_picture(context, film, settings, format, &tag, pixels, path);
-    free(shown);
-    if (status == AG_OK) {
-        run_progress(&context->run, AG_PHASE_WRITE, 1.0);
-        context_end_phase(context, AG_PHASE_WRITE, begin);
-    }
-    return status;
+    AG_TRY(find_format(context, settings, path, &format));
+    AG_TRY(convert_and_write(context, film, settings, format, path));
+    run_progress(&context->run, AG_PHASE_WRITE, 1.0);
+    context_end_phase(context, AG_PHASE_WRITE, begin);
+    return AG_OK;
 }
 
 void ag_abandon_files(void) { atomic_file_unlink_pending(); }

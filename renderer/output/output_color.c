@@ -4,6 +4,7 @@
 
 #include "color/color.h"
 #include "parallel_for.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -47,15 +48,16 @@ ag_status ag_color_summary(ag_context *context, const char **out_text)
     const color_config *config;
     if (!context || !out_text)
         return AG_ERROR_ARGUMENT;
-    ag_status status = context_color_config(context, &config);
-    if (status == AG_OK && !context->color_summary) {
-        status = color_config_describe(config, message, sizeof message, &context->color_summary);
-        if (status != AG_OK)
+    AG_TRY(context_color_config(context, &config));
+    if (!context->color_summary) {
+        const ag_status status = color_config_describe(config, message, sizeof message, &context->color_summary);
+        if (status != AG_OK) {
             log_message(context->log, AG_LOG_ERROR, "%s", message);
+            return status;
+        }
     }
-    if (status == AG_OK)
-        *out_text = context->color_summary;
-    return status;
+    *out_text = context->color_summary;
+    return AG_OK;
 }
 
 /* NULL where values stay as they are. */
@@ -66,11 +68,12 @@ static ag_status create_processor(ag_context *context, const ag_output_settings 
     const color_config *config;
     const color_view view = {settings->display, settings->view, settings->look, settings->exposure_stops};
     *out_processor = NULL;
-    ag_status status = context_color_config(context, &config);
-    if (status != AG_OK || (scene_linear && !settings->color_space))
-        return status;
-    status = scene_linear ? color_encoder_create(config, settings->color_space, message, sizeof message, out_processor)
-                          : color_processor_create(config, &view, message, sizeof message, out_processor);
+    AG_TRY(context_color_config(context, &config));
+    if (scene_linear && !settings->color_space)
+        return AG_OK;
+    const ag_status status =
+        scene_linear ? color_encoder_create(config, settings->color_space, message, sizeof message, out_processor)
+                     : color_processor_create(config, &view, message, sizeof message, out_processor);
     if (status != AG_OK)
         log_message(context->log, AG_LOG_ERROR, "%s", message);
     return status;
@@ -81,9 +84,7 @@ ag_status output_color_check(ag_context *context, const ag_output_settings *sett
     const bool names_view = settings->display || settings->view || settings->look;
     for (int is_linear = !names_view && scene_linear; is_linear < 2; is_linear++) {
         color_processor *processor;
-        ag_status status = create_processor(context, settings, is_linear, &processor);
-        if (status != AG_OK)
-            return status;
+        AG_TRY(create_processor(context, settings, is_linear, &processor));
         color_processor_destroy(processor);
     }
     return AG_OK;
@@ -114,11 +115,12 @@ ag_status output_color_apply(ag_context *context, const ag_output_settings *sett
 {
     color_job job = {.pixels = pixels};
     color_processor *processor;
-    ag_status status = create_processor(context, settings, scene_linear, &processor);
-    if (status != AG_OK || !processor)
-        return status;
+    AG_TRY(create_processor(context, settings, scene_linear, &processor));
+    if (!processor)
+        return AG_OK;
     job.processor = processor;
-    status = parallel_for(&context->run, count, PIXELS_PER_BLOCK, apply_block, &job, AG_PHASE_WRITE, 0.0, 0.5);
+    ag_status status =
+        parallel_for(&context->run, count, PIXELS_PER_BLOCK, apply_block, &job, AG_PHASE_WRITE, 0.0, 0.5);
     if (status == AG_OK && load_relaxed_u32(&job.has_failed)) {
         log_message(context->log, AG_LOG_ERROR, "%s", job.message);
         status = AG_ERROR_COLOR;
@@ -150,9 +152,8 @@ ag_status output_color_find_tag(ag_context *context, const ag_output_settings *s
     color_curve curve = COLOR_CURVE_LINEAR;
     double to_working[9];
     working_space space = film->space;
-    ag_status status = context_color_config(context, &config);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(context_color_config(context, &config));
+    ag_status status = AG_OK;
     output_color_tag tag = {.color_space = color_config_working_space(config), .has_chromaticities = true};
     if (settings->color_space) {
         status = color_config_study_space(config, settings->color_space, message, sizeof message, &curve, to_working);

@@ -12,9 +12,10 @@ enum { FLOATS = 12, RECORD_BYTES = FLOATS * 4 + 2, HEAD_BYTES = 1024 };
 /* Photon by photon, whether its irradiance is there: at places so many bytes apart. */
 static void mark_demanded(const photon_map *map, unsigned char *first)
 {
-    for (uint32_t i = 0; i < map->bearers.count; i++) {
+    for (uint32_t i = 0; i < map->irradiance_photons.count; i++) {
         uint32_t word = irradiance_slot_read(photon_map_slot(map, i));
-        uint32_t photon_index = photon_map_all_bear(map) ? i : irradiance_bearers_photon(&map->bearers, i);
+        uint32_t photon_index =
+            photon_map_all_have_irradiance(map) ? i : irradiance_photons_source(&map->irradiance_photons, i);
         if (irradiance_word_is_ready(word) && photon_index < map->set.count)
             first[(size_t)photon_index * RECORD_BYTES] = 1;
     }

@@ -3,6 +3,7 @@
 
 #include "color/color.h"
 #include "image/image.h"
+#include "status.h"
 #include "text/decimal.h"
 
 #include <math.h>
@@ -43,23 +44,26 @@ bool image_encoding_equal(image_encoding a, image_encoding b)
 
 /* By greys, since OpenColorIO takes colours. The config compiled in, because the encodings' meaning is the scene
  * file's, not that of the user's config. */
+static ag_status decode_greys(const color_config *config, float *greys, size_t count, char *message,
+                              size_t message_size)
+{
+    color_processor *processor;
+    AG_TRY(color_decoder_create(config, "sRGB - Texture", message, message_size, &processor));
+    const ag_status status = color_processor_apply(processor, greys, count, message, message_size);
+    color_processor_destroy(processor);
+    return status;
+}
+
 static ag_status decode_srgb(float *values, size_t count, char *message, size_t message_size)
 {
-    color_config *config = NULL;
-    color_processor *processor = NULL;
+    color_config *config;
+    AG_TRY(color_config_create_builtin(message, message_size, &config));
     float *greys = malloc(3 * count * sizeof *greys);
-    ag_status status = greys ? color_config_create_builtin(message, message_size, &config) : AG_ERROR_MEMORY;
-    if (status == AG_OK)
-        status = color_decoder_create(config, "sRGB - Texture", message, message_size, &processor);
-    if (status == AG_OK) {
-        for (size_t i = 0; i < count; i++)
-            greys[3 * i] = greys[3 * i + 1] = greys[3 * i + 2] = values[i];
-        status = color_processor_apply(processor, greys, count, message, message_size);
-    }
-    if (status == AG_OK)
-        for (size_t i = 0; i < count; i++)
-            values[i] = greys[3 * i];
-    color_processor_destroy(processor);
+    for (size_t i = 0; greys && i < count; i++)
+        greys[3 * i] = greys[3 * i + 1] = greys[3 * i + 2] = values[i];
+    const ag_status status = greys ? decode_greys(config, greys, count, message, message_size) : AG_ERROR_MEMORY;
+    for (size_t i = 0; status == AG_OK && i < count; i++)
+        values[i] = greys[3 * i];
     color_config_destroy(config);
     free(greys);
     return status;

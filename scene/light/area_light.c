@@ -67,7 +67,7 @@ static bool sphere_cone(const shape *s, vec3 point, float *out_one_minus_cos)
     return light_ball_cone(s->as.quadric.center, s->as.quadric.uniform_radius, point, out_one_minus_cos);
 }
 
-/* A place on a lamp seen from outside its sphere, uniform in solid angle: a direction in the cone, then the near
+/* A point on a lamp seen from outside its sphere, uniform in solid angle: a direction in the cone, then the near
  * intersection by plane geometry. */
 static surface_sample sample_sphere_cone(const shape *lamp, vec3 point, vec2 u, float cone)
 {
@@ -139,7 +139,7 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
 {
     (void)random;
     const shape *lamp = &s->shapes[l->shape_index];
-    vec2 u = numbers->place;
+    vec2 u = numbers->position;
     float density = 1.0f, pdf;
     if (l->radiance_map && !radiance_map_sample(l->radiance_map, u, &u, &density))
         return false;

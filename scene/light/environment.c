@@ -1,5 +1,5 @@
 /* environment.c: see environment.h.
- * Places on pictures are found in double precision: single would blur the pixels of large ones. */
+ * Points on pictures are found in double precision: single would blur the pixels of large ones. */
 #include "light/environment.h"
 
 #include "light/portal.h"
@@ -25,7 +25,7 @@ vec3 environment_octahedral_direction(double x, double y)
                      (float)copysign(1.0 - r * r, above));
 }
 
-static void octahedral_place(vec3 d, double *out_x, double *out_y)
+static void octahedral_coordinates(vec3 d, double *out_x, double *out_y)
 {
     double x = d.x, y = d.y, z = d.z;
     double r = sqrt((x * x + y * y) / (1.0 + fabs(z))); /* sqrt(1 - |z|), without cancellation */
@@ -58,7 +58,7 @@ static vec3 spherical_direction(const environment *e, uint32_t x, uint32_t y, ve
     return vec3_make((float)(across * c), (float)(across * s), (float)(is_low ? -z : z));
 }
 
-static void spherical_place(vec3 d, double *out_x, double *out_y)
+static void spherical_coordinates(vec3 d, double *out_x, double *out_y)
 {
     double x = d.x, y = d.y;
     *out_x = angle_turns(y, x);
@@ -77,18 +77,18 @@ double environment_pixel_solid_angle(const environment *e, uint32_t y)
     return 2.0 * (double)middle * half * TWO_PI / e->width; /* cos a - cos b as a product */
 }
 
-static uint32_t cell_of(double place, uint32_t count)
+static uint32_t cell_of(double coordinate, uint32_t count)
 {
-    double cell = place * count;
+    double cell = coordinate * count;
     return cell >= count ? count - 1 : cell > 0.0 ? (uint32_t)cell : 0;
 }
 
 static void find_pixel(const environment *e, vec3 direction, double *x, double *y, uint32_t *out_x, uint32_t *out_y)
 {
     if (e->mapping == ENVIRONMENT_OCTAHEDRAL)
-        octahedral_place(direction, x, y);
+        octahedral_coordinates(direction, x, y);
     else
-        spherical_place(direction, x, y);
+        spherical_coordinates(direction, x, y);
     *out_x = cell_of(*x, e->width);
     *out_y = cell_of(*y, e->height);
 }
@@ -99,7 +99,7 @@ void environment_pixel_at(const environment *e, vec3 direction, uint32_t *out_x,
     find_pixel(e, direction, &x, &y, out_x, out_y);
 }
 
-void environment_place_at(const environment *e, vec3 direction, uint32_t *out_x, uint32_t *out_y, vec2 *out_within)
+void environment_uv_at(const environment *e, vec3 direction, uint32_t *out_x, uint32_t *out_y, vec2 *out_within)
 {
     double x, y;
     find_pixel(e, direction, &x, &y, out_x, out_y);
@@ -221,7 +221,7 @@ bool environment_sample_whole_numbers(const light *l, vec3 direction, vec2 *out_
     }
     uint32_t x, y;
     vec2 within;
-    environment_place_at(e, frame_to_local(&l->world_from_light, direction), &x, &y, &within);
+    environment_uv_at(e, frame_to_local(&l->world_from_light, direction), &x, &y, &within);
     *out_u = distribution_2d_numbers(&e->picks, x, y, within);
     return distribution_2d_probability(&e->picks, x, y) > 0.0f;
 }

@@ -31,14 +31,14 @@ ag_status environment_create(environment_mapping mapping, uint32_t width, uint32
                              environment **out_environment);
 void environment_destroy(environment *e); /* NULL is fine */
 
-/* The direction of a place of [0,1]^2 on a picture that is octahedral. */
+/* The direction of a point of [0,1]^2 on a picture that is octahedral. */
 vec3 environment_octahedral_direction(double x, double y);
 /* The solid angle of each pixel of a row, sr. */
 double environment_pixel_solid_angle(const environment *e, uint32_t y);
-/* The pixel that a unit direction of the light's space falls into; and environment_direction's place within it. */
+/* The pixel that a unit direction of the light's space falls into, and where in it, as environment_direction has it. */
 void environment_pixel_at(const environment *e, vec3 direction, uint32_t *out_x, uint32_t *out_y);
-void environment_place_at(const environment *e, vec3 direction, uint32_t *out_x, uint32_t *out_y, vec2 *out_within);
-/* A direction in the light's space, even in solid angle over each pixel for places within it in [0,1]^2. */
+void environment_uv_at(const environment *e, vec3 direction, uint32_t *out_x, uint32_t *out_y, vec2 *out_within);
+/* A direction in the light's space, even in solid angle over each pixel for coordinates within it in [0,1]^2. */
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within);
 
 /* The rest asks a light of kind LIGHT_INFINITE, from a point of the scene: light that comes through a portal reaches

@@ -4,7 +4,7 @@
 #include "light/environment.h"
 #include "light/light_type.h"
 #include "light/portal.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 #include "scene.h"
 
 static rgb power(const scene *s, const light *l)
@@ -23,7 +23,7 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
     return environment_sample(l, point, u, &out->direction, &out->radiance, &out->pdf_solid_angle);
 }
 
-/* From a place in the portal, which is in the light's own medium, with what comes so far; window panes before it let
+/* From a point in the portal, which is in the light's own medium, with what comes so far; window panes before it let
  * light through straight. */
 static bool emit_through_portal(const scene *s, const light *l, const light_target *target,
                                 const emission_numbers *numbers, light_emission *out)
@@ -38,7 +38,7 @@ static bool emit_through_portal(const scene *s, const light *l, const light_targ
     scene_ray back = scene_ray_make(out->origin, to_light);
     back.medium = l->medium;
     uint64_t cut = 0;
-    rgb transmittance = passage_transmittance_of_panes(s, back, INFINITY, &cut);
+    rgb transmittance = transmittance_through_panes(s, back, INFINITY, &cut);
     out->direction = vec3_negate(to_light);
     out->flux = rgb_scale(rgb_mul(radiance, transmittance), vec3_dot(to_light, l->portal->axes.z) / pdf);
     return !rgb_is_black(out->flux);

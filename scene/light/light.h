@@ -41,7 +41,7 @@ typedef struct light {
                                        * there is nothing; smoothstep in the cosine between */
     uint32_t shape_index;             /* area: the shape that shines */
     bool two_sided;                   /* area */
-    uint32_t radiance_texture;        /* area: multiplies radiance from place to place; SCENE_NO_TEXTURE: nowhere */
+    uint32_t radiance_texture;        /* area: multiplies radiance over the surface; SCENE_NO_TEXTURE: nowhere */
     uint32_t group;                   /* of the scene's light groups; 0: the one of those that name none */
     float photons;                    /* multiplies its share of the photons; 0: it sends none */
     uint32_t medium;                  /* all but area lights: that their light starts in; SCENE_NO_MEDIUM: none */
@@ -81,11 +81,11 @@ ag_status light_commit(const struct scene *s, light *l);
 /* u in [0,1)^2. Returns false when no light can come from there. */
 bool light_sample_from_point(const struct scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample);
 
-/* The density with which light_sample_from_point picks the direction from point to a place hit on the light's
+/* The density with which light_sample_from_point picks the direction from point to a hit on the light's
  * shape. For lights of kind LIGHT_INFINITE see environment_pdf. */
 float light_pdf_from_point(const struct scene *s, const light *l, vec3 point, const struct surface_hit *hit);
 
-/* Radiance that an area light sends from a place on it into direction (away from it, unit). */
+/* Radiance that an area light sends from a point on it into direction (away from it, unit). */
 rgb light_emitted_radiance(const struct scene *s, const light *l, const struct surface_hit *hit, vec3 direction);
 
 /* The texture's part in that, not negative; 1 where there is none. */
@@ -93,7 +93,7 @@ rgb light_texture_value(const struct scene *s, const light *l, const struct surf
 
 /* Whether an area light is not alike all over, by its texture or its shape's alpha. */
 bool light_varies(const struct scene *s, const light *l);
-/* What a place sampled on an area light has of its radiance: the texture's value, times the share of the shape that is
+/* What a point sampled on an area light has of its radiance: the texture's value, times the share of the shape that is
  * there unless it is invisible (alpha.h); rays that meet the lamp have taken account of that. at: read only if the
  * light varies. */
 rgb light_sampled_value(const struct scene *s, const light *l, const struct surface_sample *at);
@@ -123,8 +123,8 @@ typedef struct light_target {
  * whoever knows which parts of a light are of use can pick them by these numbers. */
 typedef struct emission_numbers {
     vec2 direction;
-    vec2 place; /* on an area light or a portal; of lights that are far away: across the direction */
-    float part; /* side of an area light; which of the balls that are nested around small things */
+    vec2 position; /* on an area light or a portal; of lights that are far away: across the direction */
+    float part;    /* side of an area light; which of the balls that are nested around small things */
 } emission_numbers;
 
 /* target NULL: all of the light. Else only that part of it is sampled, as far as is known beforehand, whose rays meet

@@ -43,13 +43,13 @@ static light_target nested_ball(const scene *s, const light_target *whole, int i
     return i == count - 1 ? *whole : (light_target){s->detail_center, ldexpf(s->detail_radius, i)};
 }
 
-/* The density, per area across direction, with which rays along it come through that place. */
-static float nested_density(const scene *s, const light_target *whole, int count, vec3 place, vec3 direction)
+/* The density, per area across direction, with which rays along it come through that point. */
+static float nested_density(const scene *s, const light_target *whole, int count, vec3 point, vec3 direction)
 {
     float density = 0.0f;
     for (int i = 0; i < count; i++) {
         light_target ball = nested_ball(s, whole, i, count);
-        vec3 offset = vec3_sub(place, ball.center);
+        vec3 offset = vec3_sub(point, ball.center);
         offset = vec3_add_scaled(offset, direction, -vec3_dot(offset, direction));
         if (i == count - 1 || vec3_dot(offset, offset) <= ball.radius * ball.radius)
             density += 1.0f / ((float)count * AG_PI * ball.radius * ball.radius);
@@ -67,15 +67,15 @@ static bool start_from_afar(const scene *s, const light_target *whole, vec3 dire
     if (count > 1)
         picked = (int)fminf(numbers->part * (float)count, (float)count - 1.0f);
     light_target ball = nested_ball(s, whole, picked, count);
-    vec2 d = sample_disk_concentric(numbers->place);
-    vec3 place = vec3_add(ball.center, frame_to_world(&f, (vec3){d.x * ball.radius, d.y * ball.radius, 0.0f}));
+    vec2 d = sample_disk_concentric(numbers->position);
+    vec3 point = vec3_add(ball.center, frame_to_world(&f, (vec3){d.x * ball.radius, d.y * ball.radius, 0.0f}));
     *out_density = 1.0f / (AG_PI * ball.radius * ball.radius);
     if (count > 1) {
-        vec3 offset = vec3_sub(place, whole->center);
+        vec3 offset = vec3_sub(point, whole->center);
         offset = vec3_add_scaled(offset, direction, -vec3_dot(offset, direction));
         if (picked < count - 1 && vec3_dot(offset, offset) > whole->radius * whole->radius)
             return false;
-        *out_density = nested_density(s, whole, count, place, direction);
+        *out_density = nested_density(s, whole, count, point, direction);
     }
     /* the plane that touches the scene's own ball from behind */
     float behind = vec3_dot(vec3_sub(ball.center, s->bounding_center), direction) + 1.01f * s->bounding_radius;
@@ -122,7 +122,7 @@ emission_numbers emission_numbers_draw(rng *random)
 {
     emission_numbers numbers;
     numbers.direction = rng_vec2(random);
-    numbers.place = rng_vec2(random);
+    numbers.position = rng_vec2(random);
     numbers.part = rng_float(random);
     return numbers;
 }

@@ -1,4 +1,4 @@
-/* light_pick.c: which light to sample: see scene.h. For a place in the scene each light that is everywhere has one
+/* light_pick.c: which light to sample: see scene.h. For a point of the scene each light that is everywhere has one
  * share, and the lamps together have one, which the light tree deals out; for photons it is power that counts. Rests
  * on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.6 (a fair share of infinite lights: how
  * much of them is hidden is not known). Threads: light_pick_commit by one thread; the rest read only. */
@@ -97,7 +97,7 @@ void light_pick_reset(scene *s)
     free(s->everywhere_lights);
 }
 
-/* --- for a place --- */
+/* --- for a point --- */
 
 static bool has_direction(vec3 v) { return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f; }
 
@@ -142,10 +142,10 @@ uint32_t scene_pick_light(const scene *s, vec3 point, vec3 normal, float u, floa
     *out_probability = 0.0f;
     if (shares == 0)
         return 0;
-    float place = u * (float)shares;
-    uint32_t wanted = (uint32_t)place < shares ? (uint32_t)place : shares - 1;
+    float scaled = u * (float)shares;
+    uint32_t wanted = (uint32_t)scaled < shares ? (uint32_t)scaled : shares - 1;
     if (wanted == count) {
-        u = fminf(place - (float)wanted, 0x1.fffffep-1f);
+        u = fminf(scaled - (float)wanted, 0x1.fffffep-1f);
         uint32_t lamp = light_tree_pick(s->light_tree, point, normal, u, out_probability);
         *out_probability /= (float)shares;
         return lamp;

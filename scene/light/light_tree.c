@@ -1,12 +1,12 @@
-/* light_tree.c: see light_tree.h. Places are in units of the scene's radius from its middle, and intensities parts of
- * the whole: nothing overflows. */
+/* light_tree.c: see light_tree.h. Positions are in units of the scene's radius from its middle, and intensities parts
+ * of the whole: nothing overflows. */
 #include "light/light_tree.h"
 
 #include <stdlib.h>
 
 /* For rounding: what is this little beyond a horizon still counts. */
 static const float SLACK = 1e-3f;
-/* Of the cosine to the place's normal and of the lamp's own: what may count for more by a shading normal, or where the
+/* Of the cosine to the point's normal and of the lamp's own: what may count for more by a shading normal, or where the
  * ball hides how the lamp lies. */
 static const float COSINE_LEAST = 0.02f;
 /* Nearer than this to a lamp, in scene radii, all distances count alike. */
@@ -33,17 +33,17 @@ typedef struct node {
     uint32_t parent, slot; /* where it is a child; parent LIGHT_TREE_NONE: the root */
 } node;
 
-/* Where a lamp is. */
-typedef struct place {
+/* The node that has a lamp as a child, and which child. */
+typedef struct parent_slot {
     uint32_t node, slot;
-} place;
+} parent_slot;
 
 struct light_tree {
     vec3 center;
     float inverse_radius;
     node *nodes;
     uint32_t node_count;
-    place *places; /* [light_count of the scene]; node LIGHT_TREE_NONE where it is not in the tree */
+    parent_slot *parents; /* [light_count of the scene]; node LIGHT_TREE_NONE where it is not in the tree */
 };
 
 /* --- weighing --- */
@@ -80,7 +80,7 @@ static inline float sin_beyond(float sin_a, float cos_a, float sin_b, float cos_
     return cos_a > cos_b ? 0.0f : difference;
 }
 
-/* About the irradiance that child k may bring to the place; 0 only where it brings none. No branches, so that compilers
+/* About the irradiance that child k may bring to the point; 0 only where it brings none. No branches, so that compilers
  * weigh several children at once. */
 static inline float weigh(const node *n, uint32_t k, const query *q)
 {
@@ -101,9 +101,9 @@ static inline float weigh(const node *n, uint32_t k, const query *q)
     float cos_lamp = cos_beyond(s, c, sin_ball, cos_ball);
     float brightness = greater(greater(cos_lamp, n->least_cos[k]), COSINE_LEAST);
     brightness = cos_lamp < n->cos_emission[k] ? 0.0f : brightness;
-    /* from the place's normal, less the ball */
-    float cos_place = -(x * q->normal.x + y * q->normal.y + z * q->normal.z) * inverse;
-    float best = cos_beyond(sine_of(cos_place), cos_place, sin_ball, cos_ball);
+    /* from the point's normal, less the ball */
+    float cos_point = -(x * q->normal.x + y * q->normal.y + z * q->normal.z) * inverse;
+    float best = cos_beyond(sine_of(cos_point), cos_point, sin_ball, cos_ball);
     float received = greater(best, q->least_received);
     received = best < q->horizon ? 0.0f : received;
     return n->intensity[k] * brightness * received / greater(d2, n->nearest2[k]);
@@ -161,7 +161,7 @@ uint32_t light_tree_pick(const light_tree *t, vec3 point, vec3 normal, float u, 
 float light_tree_probability(const light_tree *t, uint32_t light_index, vec3 point, vec3 normal)
 {
     query q = make_query(t, point, normal);
-    place at = t->places[light_index];
+    parent_slot at = t->parents[light_index];
     float probability = 1.0f;
     while (at.node != LIGHT_TREE_NONE) {
         const node *n = &t->nodes[at.node];
@@ -169,7 +169,7 @@ float light_tree_probability(const light_tree *t, uint32_t light_index, vec3 poi
         if (!(weights[at.slot] > 0.0f))
             return 0.0f;
         probability *= weights[at.slot] / sum;
-        at = (place){n->parent, n->slot};
+        at = (parent_slot){n->parent, n->slot};
     }
     return probability;
 }
@@ -280,7 +280,7 @@ static int longest_axis(const lamp *lamps, group g)
     return d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
 }
 
-/* Sorts the group and gives the place where it falls in two at the least cost. Of large ones only the longest axis is
+/* Sorts the group and gives the index where it falls in two at the least cost. Of large ones only the longest axis is
  * tried. */
 static uint32_t split(lamp *lamps, group g)
 {
@@ -360,7 +360,7 @@ static void build(light_tree *t, lamp *lamps, uint32_t count, group *queue)
             set_child(n, k, n->is_lamp[k], &b);
             if (n->is_lamp[k]) {
                 n->child[k] = lamps[groups[k].begin].index;
-                t->places[n->child[k]] = (place){at, k};
+                t->parents[n->child[k]] = (parent_slot){at, k};
                 continue;
             }
             n->child[k] = t->node_count;
@@ -401,12 +401,12 @@ ag_status light_tree_create(const scene *s, const uint32_t *lights, uint32_t cou
         *t = (light_tree){.center = s->bounding_center, .inverse_radius = 1.0f / s->bounding_radius};
         t->nodes =
             calloc(count, sizeof *t->nodes); /* fewer than lamps, for each has two children or more, or is the root */
-        t->places = malloc(s->light_count * sizeof *t->places);
+        t->parents = malloc(s->light_count * sizeof *t->parents);
     }
-    ag_status status = t && lamps && queue && t->nodes && t->places ? AG_OK : AG_ERROR_MEMORY;
+    ag_status status = t && lamps && queue && t->nodes && t->parents ? AG_OK : AG_ERROR_MEMORY;
     if (status == AG_OK) {
         for (uint32_t i = 0; i < s->light_count; i++)
-            t->places[i] = (place){LIGHT_TREE_NONE, 0};
+            t->parents[i] = (parent_slot){LIGHT_TREE_NONE, 0};
         find_lamps(s, t, lights, count, lamps);
         build(t, lamps, count, queue);
         node *fewer = realloc(t->nodes, t->node_count * sizeof *t->nodes);
@@ -425,6 +425,6 @@ void light_tree_destroy(light_tree *t)
     if (!t)
         return;
     free(t->nodes);
-    free(t->places);
+    free(t->parents);
     free(t);
 }

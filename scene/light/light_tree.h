@@ -1,4 +1,4 @@
-/* light_tree.h: picks one of many lamps by what each may send to a place: a tree whose nodes know where their lamps
+/* light_tree.h: picks one of many lamps by what each may send to a point: a tree whose nodes know where their lamps
  * are, which way they shine, and how bright they are. Rests on: Conty Estevez, Kulla, "Importance Sampling of Many
  * Lights with Adaptive Tree Splitting", 2018; Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed.,
  * 2023, 12.6.3. Nodes have eight children, so that few lamps are weighed one by one; and nothing but square roots and
@@ -38,10 +38,10 @@ typedef struct light_tree light_tree;
 ag_status light_tree_create(const scene *s, const uint32_t *lights, uint32_t count, light_tree **out_tree);
 void light_tree_destroy(light_tree *t); /* NULL is fine */
 
-/* Whether any of its lamps may send light to a place. normal: unit, of a surface that scatters light from its own side
+/* Whether any of its lamps may send light to a point. normal: unit, of a surface that scatters light from its own side
  * alone, or zero for all sides; so in the following. */
 bool light_tree_reaches(const light_tree *t, vec3 point, vec3 normal);
-/* A lamp, and the probability with which it is picked; LIGHT_TREE_NONE and 0 where none reaches the place. u in [0,1).
+/* A lamp, and the probability with which it is picked; LIGHT_TREE_NONE and 0 where none reaches the point. u in [0,1).
  */
 uint32_t light_tree_pick(const light_tree *t, vec3 point, vec3 normal, float u, float *out_probability);
 /* Of a lamp in the tree. */

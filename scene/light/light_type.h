@@ -9,7 +9,7 @@
 /* Each function is there, but for those that may be NULL. */
 typedef struct light_type {
     bool can_be_met;    /* scattered rays find it: samples towards it are weighed against them */
-    bool is_everywhere; /* infinitely far away: it has no bounds, and may shine at any place */
+    bool is_everywhere; /* infinitely far away: it has no bounds, and may shine at any point */
     /* Makes what needs the scene; NULL: nothing. Errors: AG_ERROR_MEMORY. */
     ag_status (*commit)(const scene *s, light *l);
     rgb (*power)(const scene *s, const light *l); /* W, as light.power has it */

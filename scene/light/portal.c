@@ -1,4 +1,4 @@
-/* portal.c: see portal.h. Sums and places on the map are in double precision: windows are differences of sums. */
+/* portal.c: see portal.h. Sums and points on the map are in double precision: windows are differences of sums. */
 #include "light/portal.h"
 
 #include "light/environment.h"
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 static const double PI = 3.14159265358979323846;
-/* Of the mean of all cells: what even a black one keeps, so that no light is missed between the places looked at. */
+/* Of the mean of all cells: what even a black one keeps, so that no light is missed between the points looked at. */
 static const double FLOOR = 0.01;
 enum { MAP_SIZE_MIN = 64, MAP_SIZE_MAX = 1024 };
 
@@ -20,7 +20,7 @@ typedef struct window {
 /* --- the map: angles from z, towards x and towards y, from -90 degrees to 90 --- */
 
 /* Where on [0, 1] the angle with this tangent is. */
-static double place_of(double tangent) { return 0.5 + copysign(2.0 * angle_turns(fabs(tangent), 1.0), tangent); }
+static double coordinate_of(double tangent) { return 0.5 + copysign(2.0 * angle_turns(fabs(tangent), 1.0), tangent); }
 
 static vec3 direction_at(double u, double v)
 {
@@ -43,8 +43,9 @@ static vec3 to_local(const portal *p, vec3 point) { return frame_to_local(&p->ax
 static window window_from(const portal *p, vec3 local)
 {
     double inverse = 1.0 / -(double)local.z, n = p->size;
-    return (window){n * place_of(-(double)local.x * inverse), n * place_of(((double)p->width - local.x) * inverse),
-                    n * place_of(-(double)local.y * inverse), n * place_of(((double)p->height - local.y) * inverse)};
+    return (window){
+        n * coordinate_of(-(double)local.x * inverse), n * coordinate_of(((double)p->width - local.x) * inverse),
+        n * coordinate_of(-(double)local.y * inverse), n * coordinate_of(((double)p->height - local.y) * inverse)};
 }
 
 /* --- sums --- */
@@ -111,7 +112,7 @@ static bool sample_window(const double *sums, uint32_t size, window w, vec2 u, v
 
 /* --- making one --- */
 
-bool portal_place(const vec3 corners[4], portal *out_portal)
+bool portal_init(const vec3 corners[4], portal *out_portal)
 {
     vec3 edges[4] = {vec3_sub(corners[3], corners[0]), vec3_sub(corners[2], corners[1]),
                      vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[3])};
@@ -138,7 +139,7 @@ bool portal_place(const vec3 corners[4], portal *out_portal)
 
 static double mean(rgb c) { return ((double)c.r + c.g + c.b) / 3.0; }
 
-/* Radiance at 2 x 2 places of each cell, by the mean of the channels, row by row; NULL when out of memory. */
+/* Radiance at 2 x 2 points of each cell, by the mean of the channels, row by row; NULL when out of memory. */
 static float *look_around(const portal *p, const light *l)
 {
     uint32_t count = 2 * p->size;
@@ -151,7 +152,7 @@ static float *look_around(const portal *p, const light *l)
     return seen;
 }
 
-/* A cell's radiance is the mean over its places and the ring around it, so that it knows of bright neighbours whose
+/* A cell's radiance is the mean over its points and the ring around it, so that it knows of bright neighbours whose
  * edge it may share. */
 static double cell_radiance(const float *seen, uint32_t size, uint32_t i, uint32_t j)
 {
@@ -275,7 +276,7 @@ float portal_pdf(const portal *p, vec3 point, vec3 direction)
     vec3 w = frame_to_local(&p->axes, direction);
     uint32_t n = p->size;
     double whole = sum_in(p->light, n, window_from(p, to_local(p, point)));
-    double x = n * place_of((double)w.x / w.z), y = n * place_of((double)w.y / w.z);
+    double x = n * coordinate_of((double)w.x / w.z), y = n * coordinate_of((double)w.y / w.z);
     uint32_t i = x < n ? (uint32_t)x : n - 1, j = y < n ? (uint32_t)y : n - 1;
     return whole > 0.0 ? (float)(cell_density(p->light, n, i, j, whole) / stretch_at(w)) : 0.0f;
 }
@@ -301,8 +302,8 @@ bool portal_sample_flux(const portal *p, const light_target *target, const emiss
         if (near > 0.0) {
             tangents_from_ball(center.x, target->radius, p->width, near, far, along_x);
             tangents_from_ball(center.y, target->radius, p->height, near, far, along_y);
-            w = (window){n * place_of(along_x[0]), n * place_of(along_x[1]), n * place_of(along_y[0]),
-                         n * place_of(along_y[1])};
+            w = (window){n * coordinate_of(along_x[0]), n * coordinate_of(along_x[1]), n * coordinate_of(along_y[0]),
+                         n * coordinate_of(along_y[1])};
         }
     }
     float pdf;
@@ -319,9 +320,9 @@ bool portal_sample_flux(const portal *p, const light_target *target, const emiss
         if (!(x0 < x1 && y0 < y1))
             return false;
     }
-    vec2 u = numbers->place;
-    vec3 place = {x0 + u.x * (x1 - x0), y0 + u.y * (y1 - y0), 0.0f};
-    *out_position = vec3_add(p->corner, frame_to_world(&p->axes, place));
+    vec2 u = numbers->position;
+    vec3 local = {x0 + u.x * (x1 - x0), y0 + u.y * (y1 - y0), 0.0f};
+    *out_position = vec3_add(p->corner, frame_to_world(&p->axes, local));
     *out_direction = vec3_normalize(frame_to_world(&p->axes, d));
     *out_pdf = pdf / ((x1 - x0) * (y1 - y0));
     return *out_pdf > 0.0f && isfinite(*out_pdf);

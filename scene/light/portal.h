@@ -1,6 +1,6 @@
 /* portal.h: a rectangle through which alone an infinite light comes: a window, seen from inside.
  * Rests on: Bitterli, Novak, Jarosz, "Portal-Masked Environment Map Sampling", 2015: on a map whose coordinates are the
- * angles along the rectangle's two edges, what a place sees through it is itself a rectangle, and sums over rectangles
+ * angles along the rectangle's two edges, what a point sees through it is itself a rectangle, and sums over rectangles
  * are four look-ups. The map is a density alone, radiance is always the light's own.
  * Flow: pbrt_environments makes it; environment and light_emission sample it. Threads: read-only once created. */
 #ifndef AFTERGLOW_PORTAL_H
@@ -21,9 +21,9 @@ typedef struct portal {
 
 /* Corners as pbrt's "portal", in world space: edges 0 to 3 and 0 to 1 are x and y. false where they are no rectangle.
  */
-bool portal_place(const vec3 corners[4], portal *out_portal);
+bool portal_init(const vec3 corners[4], portal *out_portal);
 
-/* l: the infinite light that shines through it, complete but for the portal. placed: see portal_place.
+/* l: the infinite light that shines through it, complete but for the portal. placed: see portal_init.
  * Errors: AG_ERROR_MEMORY. */
 ag_status portal_create(const portal *placed, const light *l, portal **out_portal);
 void portal_destroy(portal *p); /* NULL is fine */
@@ -38,7 +38,7 @@ bool portal_is_crossed(const portal *p, vec3 point, vec3 direction);
 bool portal_sample(const portal *p, vec3 point, vec2 u, vec3 *out_direction, float *out_pdf_solid_angle);
 /* Its density; 0 for directions that miss the portal. */
 float portal_pdf(const portal *p, vec3 point, vec3 direction);
-/* A place on it and a direction, nearly in proportion to the flux that enters; where target is not NULL of what may
+/* A point on it and a direction, nearly in proportion to the flux that enters; where target is not NULL of what may
  * meet that ball. The density is per area and solid angle. false where the sample carries nothing. */
 bool portal_sample_flux(const portal *p, const light_target *target, const emission_numbers *numbers,
                         vec3 *out_position, vec3 *out_direction, float *out_pdf);

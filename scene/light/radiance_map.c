@@ -5,11 +5,11 @@
 
 #include <stdlib.h>
 
-enum { SIZE = 64, LOOKS = 16 * SIZE * SIZE }; /* cells along a side; places looked at */
-/* Of the mean of all cells: what even a black one keeps, so that nothing is missed between the places looked at. */
+enum { SIZE = 64, LOOKS = 16 * SIZE * SIZE }; /* cells along a side; points looked at */
+/* Of the mean of all cells: what even a black one keeps, so that nothing is missed between the points looked at. */
 static const double FLOOR = 0.1;
 
-/* Looks at places of a lattice by the golden ratio: no two alike in either number, so that meshes of many triangles are
+/* Looks at points of a lattice by the golden ratio: no two alike in either number, so that meshes of many triangles are
  * looked at everywhere. Gives the sum of its values, and of its mean channel in each cell. */
 static void look(const scene *s, const light *l, double out_sum[3], double out_cells[SIZE * SIZE],
                  uint32_t out_counts[SIZE * SIZE])

@@ -115,6 +115,7 @@ static void add_lobes(bsdf *b)
         if (!rgb_is_black(scattered))
             add_lobe(b, LOBE_COAT_SCATTERED, BSDF_TRACED, false, rgb_max(scattered));
         break;
+    case MATERIAL_HAIR: add_lobe(b, LOBE_HAIR, BSDF_TRACED, false, 1.0f); break;
     case MATERIAL_PRINCIPLED: add_principled(b); break;
     }
     normalize_probabilities(b);
@@ -128,6 +129,8 @@ static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
     b->out = out;
     b->is_pane = pane_is_of(&b->parameters);
     b->lobe_count = 0;
+    if (b->parameters.kind == MATERIAL_HAIR)
+        b->fibre = hair_fibre_at(&b->parameters, hit->uv.y);
     add_lobes(b);
     for (int k = 0; hit->is_strand && k < b->lobe_count; k++)
         b->lobes[k].group = BSDF_TRACED;
@@ -141,7 +144,7 @@ bsdf bsdf_create_of(const material *parameters, const surface_hit *hit, vec3 out
     return b;
 }
 
-/* Both faces and what is between them as one place. */
+/* Both faces and what is between them as one hit. */
 static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
 {
     const medium *between = hit->slab.medium < s->medium_count ? &s->media[hit->slab.medium] : NULL;
@@ -256,7 +259,7 @@ static float flux_correction(const bsdf *b, vec3 direction)
 {
     float numerator = fabsf(vec3_dot(b->out, b->shading.z) * vec3_dot(direction, b->geometric_normal));
     float denominator = fabsf(vec3_dot(b->out, b->geometric_normal) * vec3_dot(direction, b->shading.z));
-    return denominator > 0.0f ? fminf(numerator / denominator, BSDF_CORRECTION_MAX) : 0.0f;
+    return denominator > 0.0f ? fminf(numerator / denominator, BSDF_SHADING_NORMAL_MAX) : 0.0f;
 }
 
 static float arrival_factor(const bsdf *b, const material *base)
@@ -264,7 +267,7 @@ static float arrival_factor(const bsdf *b, const material *base)
     float shading = vec3_dot(b->out, b->shading.z), geometric = vec3_dot(b->out, b->geometric_normal);
     if (shading * geometric <= 0.0f)
         return 0.0f; /* behind the horizon of one of the normals: neither way of computing finds light */
-    return fminf(shading / geometric, BSDF_ARRIVAL_MAX) * bsdf_lobe_transmittance(base, shading);
+    return fminf(shading / geometric, BSDF_SHADING_NORMAL_MAX) * bsdf_lobe_transmittance(base, shading);
 }
 
 float bsdf_arrival_factor(const bsdf *b) { return arrival_factor(b, &b->parameters); }

@@ -13,18 +13,18 @@
  * than the disc of any estimate, and a flat one has no normal of its own that photons and eye could agree on.
  *
  * A second predicate, is_pane and is_straight of a sample, says where light goes on as if nothing were there: for
- * photons, eye and shadow rays alike, who may count such a place as no surface of the path. */
+ * photons, eye and shadow rays alike, who may count such a hit as no surface of the path. */
 #ifndef AFTERGLOW_BSDF_H
 #define AFTERGLOW_BSDF_H
 
+#include "material/hair.h"
 #include "material/material.h"
 #include "scene.h"
 
-/* The largest factors that shading normals may add to a photon: where it arrives at a place, and where a lobe that is
- * not diffuse sends it on. Light nearer to the surface than that is some thousandths where normals lean by 45 degrees,
- * and its part beyond the factor is lost. */
-#define BSDF_ARRIVAL_MAX    32.0f
-#define BSDF_CORRECTION_MAX 32.0f
+/* The largest factor that a shading normal may multiply a photon's flux by: where it arrives at a surface, and where a
+ * lobe that is not diffuse sends it on. Light nearer to the surface than that is some thousandths where normals lean by
+ * 45 degrees, and its part beyond the factor is lost. */
+#define BSDF_SHADING_NORMAL_MAX 32.0f
 
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
 
@@ -41,6 +41,7 @@ typedef enum bsdf_lobe_kind {
     LOBE_COAT,                 /* reflection by a dielectric coat */
     LOBE_CONDUCTOR_UNDER_COAT, /* refracted in, reflected by the conductor, refracted out */
     LOBE_COAT_SCATTERED,       /* what leaves a coat at any angle (coat.h) */
+    LOBE_HAIR,                 /* all ways by a fibre (hair.h) */
     LOBE_PRINCIPLED,           /* metal's and dielectric's reflection, and transmission, straight or refracted */
     LOBE_CLEARCOAT             /* reflection by the coat of the principled one */
 } bsdf_lobe_kind;
@@ -58,9 +59,10 @@ typedef struct bsdf {
     frame shading;                    /* z: shading normal, to the outside */
     vec3 geometric_normal;            /* to the outside */
     vec3 out;                         /* back along the ray that arrived, unit */
-    material parameters;              /* as it is at this place */
+    material parameters;              /* as it is at this hit */
     bool is_pane;                     /* lets light straight through (pane.h, slab.h), and does not shine itself */
     rgb slab_reflected, slab_through; /* of LOBE_SLAB, which then is the only lobe */
+    hair_fibre fibre;                 /* of LOBE_HAIR */
     int lobe_count;
     bsdf_lobe lobes[BSDF_LOBES_MAX];
 } bsdf;
@@ -74,7 +76,7 @@ typedef struct bsdf_sample {
     bsdf_lobes group; /* of the lobe that was picked */
 } bsdf_sample;
 
-/* out: back along the ray that met the place, unit. */
+/* out: back along the ray that met the surface, unit. */
 bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out);
 /* The same of a material that is no mix, and has been prepared. */
 bsdf bsdf_create_of(const material *parameters, const surface_hit *hit, vec3 out);
@@ -90,7 +92,7 @@ static inline bool bsdf_is_plain(const bsdf *b)
 /* Whether `out` is on the inside, by the geometric normal: what does not go through stays there. */
 static inline bool bsdf_is_below(const bsdf *b) { return vec3_dot(b->out, b->geometric_normal) < 0.0f; }
 
-/* The share of light that goes straight through the place to `out`, in [0, 1]; black where there is no pane. */
+/* The share of light that goes straight through the surface to `out`, in [0, 1]; black where there is no pane. */
 rgb bsdf_straight_transmittance(const bsdf *b);
 
 /* Whether light can find these lobes by sampling a lamp: they are not all perfectly smooth. */
@@ -125,9 +127,9 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
  * geometric normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
 float bsdf_arrival_factor(const bsdf *b);
 
-/* bsdf_arrival_factor at a place that gathers nothing itself, while others of its surface do: beside the metal grains
+/* bsdf_arrival_factor at a point that gathers nothing itself, while others of its surface do: beside the metal grains
  * of a mix, or the black texels of a base. An estimate takes photons per area of all the surface, so photons are stored
- * on all of it, as those others would have them. false: no place of the surface gathers. */
+ * on all of it, as those others would have them. false: no point of the surface gathers. */
 bool bsdf_arrival_factor_beside(const scene *s, const surface_hit *hit, const bsdf *b, float *out_factor);
 
 #endif

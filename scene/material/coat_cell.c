@@ -53,7 +53,7 @@ static rgb scattered_color(const material *m, int count)
 static float mean_of(rgb c) { return (c.r + c.g + c.b) / 3.0f; }
 
 /* Over the hemisphere, weighted by the cosine. */
-static float hemisphere_mean(const float values[COAT_PLACES])
+static float hemisphere_mean(const float values[COAT_COSINES])
 {
     enum { STEPS = 256 };
     float sum = 0.0f;
@@ -78,9 +78,9 @@ static float turn_of(vec3 direction)
 static void fill_forward(coat_cell *cell)
 {
     float mean = cell->scattered_mean > 0.0f ? hemisphere_mean(cell->forward) / cell->scattered_mean : 0.0f;
-    for (int place = 0; place < COAT_PLACES; place++) {
-        float turn = cell->scattered[place] > 0.0f ? cell->forward[place] / cell->scattered[place] : 0.0f;
-        cell->forward[place] = mean > 1e-3f ? fminf(fmaxf(turn / sqrtf(mean), 0.0f), 0.95f) : 0.0f;
+    for (int number = 0; number < COAT_COSINES; number++) {
+        float turn = cell->scattered[number] > 0.0f ? cell->forward[number] / cell->scattered[number] : 0.0f;
+        cell->forward[number] = mean > 1e-3f ? fminf(fmaxf(turn / sqrtf(mean), 0.0f), 0.95f) : 0.0f;
     }
 }
 
@@ -105,26 +105,26 @@ static void fill_diffuse(coat_cell *cell, const material *m, uint64_t key)
 {
     const coat_layers layers = layers_of(m);
     rgb entered = rgb_gray(0.0f), scattered[COAT_ORDERS] = {{0.0f, 0.0f, 0.0f}};
-    for (int place = 0; place < COAT_PLACES; place++) {
+    for (int number = 0; number < COAT_COSINES; number++) {
         rgb in = rgb_gray(0.0f), back_out = rgb_gray(0.0f);
         const int walks = layers.scatters ? SCATTERED_WALKS : DIFFUSE_WALKS;
         for (int k = 0; k < walks; k++) {
             float turn = start_turn(m, k);
-            coat_numbers numbers = coat_numbers_make(key, (uint64_t)place, (uint32_t)k);
-            vec3 out = turn_about_normal(coat_place_direction(coat_place_cosine(place)), turn);
+            coat_numbers numbers = coat_numbers_make(key, (uint64_t)number, (uint32_t)k);
+            vec3 out = turn_about_normal(coat_direction(coat_cosine(number)), turn);
             coat_path path = coat_walk_in(&layers, out, &numbers);
             rgb weight = rgb_scale(scattered_color(m, path.scatter_count), path.weight / (float)walks);
             if (path.end == COAT_END_BASE)
                 in = rgb_add(in, weight);
             if (path.end == COAT_END_OUTSIDE) {
                 back_out = rgb_add(back_out, weight);
-                cell->forward[place] += mean_of(weight) * turn_of(turn_about_normal(path.direction, -turn));
+                cell->forward[number] += mean_of(weight) * turn_of(turn_about_normal(path.direction, -turn));
             }
         }
-        cell->entry[place] = mean_of(in);
-        cell->scattered[place] = mean_of(back_out);
-        /* weighted by the cosine, and by the spacing of the places */
-        float root = (float)place, spread = root * coat_place_cosine(place);
+        cell->entry[number] = mean_of(in);
+        cell->scattered[number] = mean_of(back_out);
+        /* weighted by the cosine, and by the spacing of the cosines */
+        float root = (float)number, spread = root * coat_cosine(number);
         entered = rgb_add(entered, rgb_scale(in, spread));
         scattered[0] = rgb_add(scattered[0], rgb_scale(back_out, spread));
     }
@@ -134,7 +134,7 @@ static void fill_diffuse(coat_cell *cell, const material *m, uint64_t key)
     fill_scattered_shares(cell, scattered);
     rgb back = rgb_gray(0.0f);
     for (int k = 0; k < UPWARD_WALKS; k++) {
-        coat_numbers numbers = coat_numbers_make(key, COAT_PLACES, (uint32_t)k);
+        coat_numbers numbers = coat_numbers_make(key, COAT_COSINES, (uint32_t)k);
         float x = coat_numbers_next(&numbers);
         vec3 up = sample_cosine_hemisphere((vec2){x, coat_numbers_next(&numbers)});
         coat_path path = coat_walk_up(&layers, up, &numbers);
@@ -148,7 +148,7 @@ static void fill_diffuse(coat_cell *cell, const material *m, uint64_t key)
 
 /* --- a metal --- */
 
-/* Walks of light that a metal reflects whole, from one place. */
+/* Walks of light that a metal reflects whole, from one direction. */
 typedef struct metal_sums {
     float lobe[COAT_ORDERS];
     rgb scattered[COAT_ORDERS];
@@ -162,7 +162,7 @@ static metal_sums walk_to_metal(const material *m, const coat_layers *layers, fl
     for (int k = 0; k < walks; k++) {
         float turn = start_turn(m, k);
         coat_numbers numbers = coat_numbers_make(key, stream, (uint32_t)k);
-        coat_path path = coat_walk_in(layers, turn_about_normal(coat_place_direction(cosine), turn), &numbers);
+        coat_path path = coat_walk_in(layers, turn_about_normal(coat_direction(cosine), turn), &numbers);
         if (path.end != COAT_END_OUTSIDE)
             continue;
         int order = path.metal_count < COAT_ORDERS ? path.metal_count : COAT_ORDERS - 1;
@@ -181,16 +181,16 @@ static metal_sums walk_to_metal(const material *m, const coat_layers *layers, fl
 static bool fill_metal(coat_cell *cell, const material *m, int walks, uint64_t key)
 {
     const coat_layers layers = layers_of(m);
-    float orders[COAT_ORDERS] = {0.0f}, once[COAT_PLACES], whole = 0.0f;
+    float orders[COAT_ORDERS] = {0.0f}, once[COAT_COSINES], whole = 0.0f;
     rgb scattered[COAT_ORDERS] = {{0.0f, 0.0f, 0.0f}};
-    for (int place = 0; place < COAT_PLACES; place++) {
-        metal_sums sums = walk_to_metal(m, &layers, coat_place_cosine(place), walks, key, (uint64_t)place);
-        float spread = (float)place * coat_place_cosine(place);
-        cell->forward[place] = sums.forward;
-        once[place] = sums.lobe[1];
+    for (int number = 0; number < COAT_COSINES; number++) {
+        metal_sums sums = walk_to_metal(m, &layers, coat_cosine(number), walks, key, (uint64_t)number);
+        float spread = (float)number * coat_cosine(number);
+        cell->forward[number] = sums.forward;
+        once[number] = sums.lobe[1];
         for (int n = 0; n < COAT_ORDERS; n++) {
-            cell->albedo[place] += sums.lobe[n];
-            cell->scattered[place] += mean_of(sums.scattered[n]);
+            cell->albedo[number] += sums.lobe[n];
+            cell->scattered[number] += mean_of(sums.scattered[n]);
             orders[n] += spread * sums.lobe[n];
             whole += spread * sums.lobe[n];
             scattered[n] = rgb_add(scattered[n], rgb_scale(sums.scattered[n], spread));

@@ -7,28 +7,28 @@
 #include "material/material.h"
 
 enum {
-    COAT_PLACES = 16, /* cosines (k / 15)^2 */
-    COAT_ORDERS = 8   /* reflections by the metal that are told apart; of the last, and more */
+    COAT_COSINES = 16, /* cosines (k / 15)^2 */
+    COAT_ORDERS = 8    /* reflections by the metal that are told apart; of the last, and more */
 };
 
 /* Of one roughness of the interface and one of the metal. */
 typedef struct coat_cell {
     /* A diffuse base. Of light from outside, what gets to it; of what leaves it upwards, what comes back. */
-    float entry[COAT_PLACES];
+    float entry[COAT_COSINES];
     rgb entry_tint; /* the square of what a gap that scatters in colours makes of `entry` */
     rgb back;
 
     /* A metal: the lobe of light that no facet reflected totally. */
     float breadth;                 /* its roughness over what coat_lobe_facets computes */
-    float scale[COAT_PLACES];      /* what it is multiplied by, at either end */
-    float albedo[COAT_PLACES];     /* of a metal that reflects all */
+    float scale[COAT_COSINES];     /* what it is multiplied by, at either end */
+    float albedo[COAT_COSINES];    /* of a metal that reflects all */
     float lobe_share[COAT_ORDERS]; /* of its albedo, by the number of reflections */
 
     /* Either: light that leaves at any angle, a product. On a metal, of what was reflected totally or scattered; on a
      * diffuse base, of what the gap scatters back before it gets there. */
-    float scattered[COAT_PLACES]; /* its albedo, of a metal that reflects all, mean of the channels */
-    float forward[COAT_PLACES];   /* of that light: how much it keeps of the way it went along the surface, [0, 1) */
-    float scattered_mean;         /* over the hemisphere; 0: there is none */
+    float scattered[COAT_COSINES]; /* its albedo, of a metal that reflects all, mean of the channels */
+    float forward[COAT_COSINES];   /* of that light: how much it keeps of the way it went along the surface, [0, 1) */
+    float scattered_mean;          /* over the hemisphere; 0: there is none */
     rgb scattered_share[COAT_ORDERS]; /* of its albedo, by the number of reflections, each channel */
 } coat_cell;
 
@@ -36,23 +36,23 @@ typedef struct coat_cell {
  * material's roughnesses are those of the cell. false: no memory. */
 bool coat_cell_fill(coat_cell *out_cell, const material *m, int metal_walks, uint64_t key);
 
-/* The cosine that a place stands for, above 0. */
-static inline float coat_place_cosine(int place)
+/* The cosine of that number, above 0. */
+static inline float coat_cosine(int number)
 {
-    float root = (float)place / (float)(COAT_PLACES - 1);
+    float root = (float)number / (float)(COAT_COSINES - 1);
     return fmaxf(root * root, 1e-3f);
 }
 
-static inline vec3 coat_place_direction(float cosine)
+static inline vec3 coat_direction(float cosine)
 {
     return (vec3){sqrtf(fmaxf(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine};
 }
 
-static inline float coat_interpolate(const float values[COAT_PLACES], float cosine)
+static inline float coat_interpolate(const float values[COAT_COSINES], float cosine)
 {
-    float place = sqrtf(fminf(fmaxf(cosine, 0.0f), 1.0f)) * (float)(COAT_PLACES - 1);
-    int step = place < (float)(COAT_PLACES - 2) ? (int)place : COAT_PLACES - 2;
-    float u = place - (float)step;
+    float along = sqrtf(fminf(fmaxf(cosine, 0.0f), 1.0f)) * (float)(COAT_COSINES - 1);
+    int step = along < (float)(COAT_COSINES - 2) ? (int)along : COAT_COSINES - 2;
+    float u = along - (float)step;
     return (1.0f - u) * values[step] + u * values[step + 1];
 }
 

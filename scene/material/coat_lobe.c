@@ -74,11 +74,11 @@ static float breadth_correction(const material *m)
 float coat_lobe_fit_breadth(const material *m, const coat_layers *layers, uint64_t key)
 {
     static const float COSINE = 0.9f;
-    vec3 out = coat_place_direction(COSINE);
+    vec3 out = coat_direction(COSINE);
     ggx facets = coat_lobe_facets(m, 1.0f);
     tangents walked = {.scale = sqrtf(facets.alpha_u * facets.alpha_v)};
     for (int k = 0; k < WALKS; k++) {
-        coat_numbers numbers = coat_numbers_make(key, COAT_PLACES, (uint32_t)k);
+        coat_numbers numbers = coat_numbers_make(key, COAT_COSINES, (uint32_t)k);
         coat_path path = coat_walk_in(layers, out, &numbers);
         if (path.end == COAT_END_OUTSIDE && !path.was_trapped && path.scatter_count == 0)
             add_tangent(&walked, ggx_half_vector(out, path.direction), path.weight);
@@ -107,7 +107,7 @@ typedef struct lobe_sample {
 static void sample_lobe(const material *m, const coat_layers *layers, float breadth, float cosine,
                         lobe_sample out_samples[LOBE_FACETS])
 {
-    vec3 out = coat_place_direction(cosine);
+    vec3 out = coat_direction(cosine);
     ggx facets = layers->interface_is_smooth ? layers->base : coat_lobe_facets(m, breadth);
     vec3 o = layers->interface_is_smooth ? coat_refract(m, out) : out;
     for (int k = 0; k < LOBE_FACETS; k++) {
@@ -127,34 +127,34 @@ static void sample_lobe(const material *m, const coat_layers *layers, float brea
     }
 }
 
-static float lobe_albedo(const coat_cell *cell, const lobe_sample *samples, int place)
+static float lobe_albedo(const coat_cell *cell, const lobe_sample *samples, int number)
 {
     float sum = 0.0f;
     for (int k = 0; k < LOBE_FACETS; k++) {
-        lobe_sample s = samples[place * LOBE_FACETS + k];
+        lobe_sample s = samples[number * LOBE_FACETS + k];
         sum += s.weight > 0.0f ? s.weight * coat_interpolate(cell->scale, s.cosine) : 0.0f;
     }
-    return sum * cell->scale[place];
+    return sum * cell->scale[number];
 }
 
-bool coat_lobe_fit_scales(coat_cell *cell, const material *m, const coat_layers *layers, const float once[COAT_PLACES])
+bool coat_lobe_fit_scales(coat_cell *cell, const material *m, const coat_layers *layers, const float once[COAT_COSINES])
 {
-    lobe_sample *samples = calloc((size_t)COAT_PLACES * LOBE_FACETS, sizeof *samples);
+    lobe_sample *samples = calloc((size_t)COAT_COSINES * LOBE_FACETS, sizeof *samples);
     if (!samples)
         return false;
-    for (int place = 0; place < COAT_PLACES; place++) {
-        cell->scale[place] = 1.0f;
-        sample_lobe(m, layers, cell->breadth, coat_place_cosine(place), samples + (ptrdiff_t)place * LOBE_FACETS);
+    for (int number = 0; number < COAT_COSINES; number++) {
+        cell->scale[number] = 1.0f;
+        sample_lobe(m, layers, cell->breadth, coat_cosine(number), samples + (ptrdiff_t)number * LOBE_FACETS);
     }
-    for (int place = 0; place < COAT_PLACES && layers->interface_is_smooth; place++)
-        if (once[place] > 0.0f)
-            cell->albedo[place] *= lobe_albedo(cell, samples, place) / once[place];
+    for (int number = 0; number < COAT_COSINES && layers->interface_is_smooth; number++)
+        if (once[number] > 0.0f)
+            cell->albedo[number] *= lobe_albedo(cell, samples, number) / once[number];
     for (int round = 0; round < ROUNDS; round++) {
-        float next[COAT_PLACES];
-        for (int place = 0; place < COAT_PLACES; place++) {
-            float sum = lobe_albedo(cell, samples, place);
-            bool is_lit = sum > 1e-6f && cell->albedo[place] > 1e-6f;
-            next[place] = is_lit ? fminf(cell->scale[place] * sqrtf(cell->albedo[place] / sum), 16.0f) : 1.0f;
+        float next[COAT_COSINES];
+        for (int number = 0; number < COAT_COSINES; number++) {
+            float sum = lobe_albedo(cell, samples, number);
+            bool is_lit = sum > 1e-6f && cell->albedo[number] > 1e-6f;
+            next[number] = is_lit ? fminf(cell->scale[number] * sqrtf(cell->albedo[number] / sum), 16.0f) : 1.0f;
         }
         memcpy(cell->scale, next, sizeof next);
     }

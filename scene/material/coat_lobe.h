@@ -16,6 +16,7 @@ float coat_lobe_fit_breadth(const material *m, const coat_layers *layers, uint64
 /* Sets the cell's scales, so that the lobe has its albedo. once: the albedo of walks that met the metal once. Under a
  * smooth interface the lobe of one reflection is exact, so walks tell only how much the others add, and the cell's
  * albedo is set anew. false: no memory. */
-bool coat_lobe_fit_scales(coat_cell *cell, const material *m, const coat_layers *layers, const float once[COAT_PLACES]);
+bool coat_lobe_fit_scales(coat_cell *cell, const material *m, const coat_layers *layers,
+                          const float once[COAT_COSINES]);
 
 #endif

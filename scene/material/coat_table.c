@@ -94,7 +94,7 @@ coat_table *coat_table_create(const material *m)
     return table;
 }
 
-static float side_place(float alpha_u, float alpha_v)
+static float side_coordinate(float alpha_u, float alpha_v)
 {
     float alpha = fminf(fmaxf(sqrtf(alpha_u * alpha_v), ALPHA_MIN), ALPHA_MAX);
     return sqrtf((alpha - ALPHA_MIN) / (ALPHA_MAX - ALPHA_MIN)) * (float)(SIDE - 1);
@@ -108,15 +108,15 @@ coat_blend coat_table_find(const coat_table *table, const material *m)
     int base_step = 0, step = 0, across = 1, along = 1;
     float base_u = 0.0f, u = 0.0f;
     if (table->base_count > 1) {
-        float place = side_place(m->base_alpha_u, m->base_alpha_v);
-        base_step = place < (float)(SIDE - 2) ? (int)place : SIDE - 2;
-        base_u = place - (float)base_step;
+        float coordinate = side_coordinate(m->base_alpha_u, m->base_alpha_v);
+        base_step = coordinate < (float)(SIDE - 2) ? (int)coordinate : SIDE - 2;
+        base_u = coordinate - (float)base_step;
         across = 2;
     }
     if (table->has_smooth && !material_is_smooth(m->alpha_u, m->alpha_v)) {
-        float place = side_place(m->alpha_u, m->alpha_v);
-        step = place < (float)(SIDE - 2) ? (int)place : SIDE - 2;
-        u = place - (float)step;
+        float coordinate = side_coordinate(m->alpha_u, m->alpha_v);
+        step = coordinate < (float)(SIDE - 2) ? (int)coordinate : SIDE - 2;
+        u = coordinate - (float)step;
         step++; /* past those of a smooth one */
         along = 2;
     }

@@ -18,7 +18,7 @@ void coat_table_destroy(coat_table *table);
 /* Whether it is the one that coat_table_create would make of that material. */
 bool coat_table_serves(const coat_table *table, const material *m);
 
-/* Cells about a material at a place, with weights that sum to 1. */
+/* Cells about a material at a point, with weights that sum to 1. */
 typedef struct coat_blend {
     const coat_cell *cells[4];
     float weights[4];

@@ -8,10 +8,10 @@
 /* Where x in [0, 1] lies among even steps. */
 static int find_step(float x, int count, float *out_rest)
 {
-    float place = fminf(fmaxf(x, 0.0f), 1.0f) * (float)(count - 1);
-    int step = (int)place;
+    float along = fminf(fmaxf(x, 0.0f), 1.0f) * (float)(count - 1);
+    int step = (int)along;
     step = step < count - 2 ? step : count - 2;
-    *out_rest = place - (float)step;
+    *out_rest = along - (float)step;
     return step;
 }
 

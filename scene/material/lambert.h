@@ -31,7 +31,7 @@ static inline float lambert_arrival_factor(const surface_hit *hit, vec3 directio
     if (shading * geometric <= 0.0f)
         return 0.0f;
     float factor = shading / geometric;
-    return factor < BSDF_ARRIVAL_MAX ? factor : BSDF_ARRIVAL_MAX;
+    return factor < BSDF_SHADING_NORMAL_MAX ? factor : BSDF_SHADING_NORMAL_MAX;
 }
 
 /* Samples the way on of flux that came along `arrived`, unit: bsdf_sample_direction. *out_correction: what its weight

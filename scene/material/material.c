@@ -1,7 +1,8 @@
-/* material.c: what of a material can be worked out beforehand, and what it is at a place.
+/* material.c: what of a material can be worked out beforehand, and what it is at a point.
  * Threads: material_prepare while the scene is built; the rest read only. */
 #include "material/material.h"
 
+#include "material/hair.h"
 #include "material/material_mips.h"
 #include "material/principled.h"
 #include "material/surface_footprint.h"
@@ -36,6 +37,8 @@ material material_make(material_kind kind)
         m.reflectance = rgb_gray(1.0f);
     if (kind == MATERIAL_DIFFUSE_TRANSMISSION)
         m.reflectance = m.transmittance = rgb_gray(0.25f);
+    m.hair_beta_m = m.hair_beta_n = 0.3f;
+    m.hair_tilt_degrees = 2.0f;
     m.mix_amount = 0.5f;
     m.reflectance_texture = m.transmittance_texture = m.alpha_u_texture = m.alpha_v_texture = m.mix_amount_texture =
         m.metallic_texture = m.roughness_texture = m.transmission_texture = m.specular_texture =
@@ -99,7 +102,7 @@ bool material_is_clear_glass(const scene *s, uint32_t material_index)
     }
 }
 
-/* A mix picks one of its two by place alone, as pbrt-v4 does: the same for all rays, so photons and eye agree. */
+/* A mix picks one of its two by position alone, as pbrt-v4 does: the same for all rays, so photons and eye agree. */
 static const material *resolve_mix(const scene *s, const material *m, const surface_hit *hit)
 {
     uint32_t bits[3];
@@ -143,7 +146,7 @@ static rgb clamp_to_unit(rgb v)
     return (rgb){fminf(fmaxf(v.r, 0.0f), 1.0f), fminf(fmaxf(v.g, 0.0f), 1.0f), fminf(fmaxf(v.b, 0.0f), 1.0f)};
 }
 
-/* The material as it is at a place. */
+/* The material as it is at a point. */
 static void look_up_textures(const scene *s, const surface_hit *hit, const surface_footprint *footprint, material *m)
 {
     if (m->reflectance_texture != SCENE_NO_TEXTURE) {
@@ -157,6 +160,8 @@ static void look_up_textures(const scene *s, const surface_hit *hit, const surfa
                              relative);
         }
     }
+    if (m->kind == MATERIAL_HAIR && m->reflectance_texture != SCENE_NO_TEXTURE)
+        m->hair_sigma_a = hair_absorption_from_reflectance(m->reflectance, m->hair_beta_n);
     if (m->transmittance_texture != SCENE_NO_TEXTURE)
         m->transmittance = clamp_to_unit(texture_filtered_rgb(s, m->transmittance_texture, hit, footprint));
     if (m->kind == MATERIAL_DIFFUSE_TRANSMISSION) {
@@ -206,7 +211,7 @@ static void look_up_principled(const scene *s, const surface_hit *hit, const sur
 
 enum { HALF = sizeof(material) / 2 };
 
-/* m is no mix; of one that a texture picks from, is_picked: beside the place the other may be, whose pixels are of any
+/* m is no mix; of one that a texture picks from, is_picked: beside the point the other may be, whose pixels are of any
  * colour in this one's pictures, so that none are filtered. */
 static void evaluate_at(const scene *s, const material *m, const surface_hit *hit, bool is_picked,
                         material *out_material)

@@ -18,11 +18,12 @@ typedef enum material_kind {
     MATERIAL_CONDUCTOR,
     MATERIAL_DIELECTRIC,
     MATERIAL_THIN_DIELECTRIC,
-    MATERIAL_INTERFACE,        /* no surface: light passes unbent (passage.h), perhaps from one medium to another */
-    MATERIAL_COATED_DIFFUSE,   /* a dielectric coat on a diffuse base */
+    MATERIAL_INTERFACE,      /* no surface: light passes unbent (transmittance.h), perhaps from one medium to another */
+    MATERIAL_COATED_DIFFUSE, /* a dielectric coat on a diffuse base */
     MATERIAL_COATED_CONDUCTOR, /* a dielectric coat on a conductor */
+    MATERIAL_HAIR,             /* a fibre, coloured within (hair.h); mostly on curves */
     MATERIAL_PRINCIPLED,       /* glTF 2.0's metallic-roughness, with transmission, ior, specular and clearcoat */
-    MATERIAL_MIX               /* one of two others, picked by place */
+    MATERIAL_MIX               /* one of two others, picked by position */
 } material_kind;
 
 struct coat_table;
@@ -39,9 +40,12 @@ typedef struct material {
     rgb coat_albedo;                  /* of that stuff, [0, 1]; black: it does not scatter */
     float coat_g;                     /* mean cosine of its scattering, in (-1, 1) */
     int coat_bounces; /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
-    const struct coat_table *coat; /* where coat_needs_table; set by scene_add_material, and the scene's own */
-    uint32_t mixed[2];             /* mix: indices of materials made before */
-    float mix_amount;              /* mix: the share of the second, [0, 1] */
+    const struct coat_table *coat;  /* where coat_needs_table; set by scene_add_material, and the scene's own */
+    rgb hair_sigma_a;               /* per radius of the way within a fibre, >= 0; ior is the fibre's */
+    float hair_beta_m, hair_beta_n; /* roughness along the fibre and about it, [0, 1] */
+    float hair_tilt_degrees;        /* of its scales */
+    uint32_t mixed[2];              /* mix: indices of materials made before */
+    float mix_amount;               /* mix: the share of the second, [0, 1] */
 
     /* principled; reflectance is the base colour, ior >= 1 or 0 (infinite) */
     float metallic;            /* [0, 1] */
@@ -53,7 +57,7 @@ typedef struct material {
     float clearcoat_roughness; /* as it is perceived, [0, 1] */
     bool is_thin; /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
 
-    /* of the same, set by scene_add_material, and at a place */
+    /* of the same, set by scene_add_material, and at a point */
     rgb dielectric_f0;  /* of facets at normal incidence; at grazing they reflect `specular` */
     float base_through; /* of diffuse light from outside, what gets to the diffuse base */
 
@@ -105,7 +109,7 @@ bool material_is_traced(const struct scene *s, uint32_t material_index);
 /* Whether the material is, or may pick, smooth glass, thin or not: light goes through it on one way alone. */
 bool material_is_clear_glass(const struct scene *s, uint32_t material_index);
 
-/* Whether rays pass the place unbent. */
+/* Whether rays pass the hit unbent. */
 bool material_is_interface(const struct scene *s, const struct surface_hit *hit);
 
 /* Whether that is so anywhere on surfaces of the material. */
@@ -114,11 +118,11 @@ bool material_may_be_interface(const struct scene *s, uint32_t material_index);
 /* The albedo of a material that is Lambertian, and the same all over; NULL of others. Not for curves: see bsdf.h. */
 const rgb *material_plain_albedo(const struct scene *s, uint32_t material_index);
 
-/* The material at a place: mixes picked, textures looked up. */
+/* The material at a point: mixes picked, textures looked up. */
 void material_at(const struct scene *s, const struct surface_hit *hit, material *out_material);
 
-/* Of a surface that gathers light anywhere (bsdf.h), the material by which it does, at a place where that one may not
- * have been picked or has a black texel. false: no place of the surface gathers. */
+/* Of a surface that gathers light anywhere (bsdf.h), the material by which it does, at a point where that one may not
+ * have been picked or has a black texel. false: no point of the surface gathers. */
 bool material_gathering_at(const struct scene *s, const struct surface_hit *hit, material *out_material);
 
 #endif

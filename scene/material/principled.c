@@ -51,7 +51,7 @@ float principled_base_transmittance(const material *m, float cosine)
     return fmaxf(0.0f, 1.0f - reflected) * coat_through(m, cosine);
 }
 
-/* The mean of t over the hemisphere, by Gauss's rule of 6 places. */
+/* The mean of t over the hemisphere, by Gauss's rule of 6 points. */
 static float mean_base_transmittance(const material *m)
 {
     static const float PLACES[3] = {0.2386191861f, 0.6612093865f, 0.9324695142f};

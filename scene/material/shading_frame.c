@@ -13,7 +13,10 @@ static bool has_maps(const material *m)
     return m->normal_map_texture != SCENE_NO_TEXTURE || m->displacement_texture != SCENE_NO_TEXTURE;
 }
 
-static bool has_grain(const material *m) { return m->alpha_u != m->alpha_v || m->base_alpha_u != m->base_alpha_v; }
+static bool has_grain(const material *m)
+{
+    return m->alpha_u != m->alpha_v || m->base_alpha_u != m->base_alpha_v || m->kind == MATERIAL_HAIR;
+}
 
 /* x along a tangent as far as it goes across z; any where it does not. */
 static frame frame_along(vec3 z, vec3 tangent)
@@ -50,7 +53,7 @@ static float displacement_beside(const scene *s, const surface_hit *hit, const s
     return texture_evaluate_float(s, index, &beside);
 }
 
-/* The normal of the surface p + d n. Its tangents are dp + dd n + d dn; slopes are those between places before and
+/* The normal of the surface p + d n. Its tangents are dp + dd n + d dn; slopes are those between points before and
  * behind, half a pixel of the finest picture away: nearer, the slope would jump from pixel to pixel. */
 static vec3 bump_normal(const scene *s, const surface_hit *hit, const material *m)
 {

@@ -1,14 +1,14 @@
 /* shading_frame.h: the frame that a surface scatters in: along its tangents where its roughness has a grain, tilted
  * where a bump or normal map says so. Rests on: Blinn, "Simulation of Wrinkled Surfaces", 1978; Pharr, Jakob,
  * Humphreys, "Physically Based Rendering", 4th ed., 2023, 10.5.3 (bump and normal maps). Flow: surface hit, material ->
- * [here] -> bsdf. A function of the place alone, so that photons and eye agree. Threads: pure functions. */
+ * [here] -> bsdf. A function of the point alone, so that photons and eye agree. Threads: pure functions. */
 #ifndef AFTERGLOW_SHADING_FRAME_H
 #define AFTERGLOW_SHADING_FRAME_H
 
 #include "material/material.h"
 #include "scene.h"
 
-/* m: as it is at the place, no mix. z: the shading normal, on the geometric normal's side; x: along dp/du, but of
+/* m: as it is at the point, no mix. z: the shading normal, on the geometric normal's side; x: along dp/du, but of
  * material that is alike all round, and has no maps, any. */
 frame shading_frame_at(const scene *s, const surface_hit *hit, const material *m);
 

@@ -2,7 +2,7 @@
  * came, or as a mirror sends it, but for a shift sideways of about a third of the plate's thickness.
  * Rests on: Born, Wolf, "Principles of Optics", 1.6 (the series of reflections between two faces, without
  * interference); Beer's law for what is between them.
- * Flow: material -> [here] -> bsdf, at places that rays/slab_faces.h has found to be such plates.
+ * Flow: material -> [here] -> bsdf, at hits that rays/slab_faces.h has found to be such plates.
  * Threads: pure functions. */
 #ifndef AFTERGLOW_SLAB_H
 #define AFTERGLOW_SLAB_H

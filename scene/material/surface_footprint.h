@@ -8,7 +8,7 @@
 #include "texture/texture.h"
 
 /* false: nothing is to be filtered there. That is so on shapes which are there in part (alpha.h), too: what lies beside
- * the place may be a part that is not there, and of any colour. */
+ * the point may be a part that is not there, and of any colour. */
 bool surface_footprint_at(const scene *s, const surface_hit *hit, surface_footprint *out);
 
 #endif

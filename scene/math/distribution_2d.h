@@ -17,7 +17,7 @@ typedef struct distribution_2d {
     float *cell_cdf; /* [height][width + 1], likewise, of each row; owned */
 } distribution_2d;
 
-/* A cell and a place in it. */
+/* A cell and a point in it, of [0,1)^2. */
 typedef struct distribution_2d_sample {
     uint32_t x, y;
     vec2 within;       /* in the cell, [0,1)^2 */
@@ -39,7 +39,7 @@ static inline float distribution_2d_probability(const distribution_2d *d, uint32
     return (d->row_cdf[y + 1] - d->row_cdf[y]) * (cells[x + 1] - cells[x]);
 }
 
-/* The numbers for which distribution_2d_pick gives that place in the cell, up to rounding. */
+/* The numbers for which distribution_2d_pick gives that point in the cell, up to rounding. */
 static inline vec2 distribution_2d_numbers(const distribution_2d *d, uint32_t x, uint32_t y, vec2 within)
 {
     const float *rows = d->row_cdf + y, *cells = d->cell_cdf + (size_t)y * (d->width + 1) + x;

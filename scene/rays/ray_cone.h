@@ -24,7 +24,7 @@ typedef struct ray_footprint {
     vec3 direction; /* the ray's, unit */
 } ray_footprint;
 
-/* The spread of rays that a diffuse place scatters; about what a hundred of them share the hemisphere by. */
+/* The spread of rays that a diffuse surface scatters; about what a hundred of them share the hemisphere by. */
 #define RAY_CONE_DIFFUSE_SPREAD 0.125f
 
 struct scene;
@@ -43,10 +43,10 @@ static inline ray_footprint ray_cone_footprint(const ray_cone *at_surface, vec3 
     return (ray_footprint){fabsf(at_surface->width), at_surface->is_coarse, direction};
 }
 
-/* Behind a place that scatters: wider, the less probable the direction. pdf: 1/sr, of the direction, > 0. */
+/* Behind a surface that scatters: wider, the less probable the direction. pdf: 1/sr, of the direction, > 0. */
 ray_cone ray_cone_scattered(const ray_cone *at_surface, float pdf_solid_angle);
 
-/* Behind a smooth place that reflects the ray into `direction`, or refracts it: a curved one spreads or focuses the
+/* Behind a smooth surface that reflects the ray into `direction`, or refracts it: a curved one spreads or focuses the
  * cone as a mirror or lens does near its axis. index: of the inside over the outside. */
 ray_cone ray_cone_bent(const struct scene *s, const ray_cone *at_surface, const struct surface_hit *hit, vec3 arrived,
                        vec3 direction, float index);

@@ -9,11 +9,11 @@
  * that is not of finite numbers below 1.8e18 meets nothing. */
 bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 
-/* Rays of unit direction from one place, many at once: those that go about the same way share theirs through the
+/* Rays of unit direction from one point, many at once: those that go about the same way share theirs through the
  * scene's tree. Whether and how they are put together depends on them alone. */
 enum { RAY_FAN_MAX = 64 };
 
-/* The place that a ray of a fan meets, as the tree says it; for ray_fan_hit. */
+/* The point that a ray of a fan meets, as the tree says it; for ray_fan_hit. */
 typedef struct ray_meeting {
     float distance; /* INFINITY: nothing */
     float u, v;
@@ -38,7 +38,7 @@ void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_
 
 /* The short way for a ray that met a Lambertian surface and nothing else: its reflectance and where the ray hit, with
  * the normal on the ray's side. NULL: it is not to be told so easily, and ray_fan_hit tells all there is. */
-const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, surface_place *out_place);
+const rgb *ray_fan_plain_point(const scene *s, const ray_fan *f, uint32_t i, surface_point *out_point);
 
 /* How far along the ray the nearest surface is, INFINITY where there is none: traversal alone, without looking at what
  * was hit, which is the physical limit that benchmarks compare with. */

@@ -1,6 +1,6 @@
 /* rays_embree.c: rays cast at the scene's shapes, one by one and as fans, and what they hit. With bvh_embree.c the only
  * file that knows Embree. Rests on: Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing", 2014.
- * Flow: bvh_embree -> [here] -> passage. Threads: rays may be cast from any. */
+ * Flow: bvh_embree -> [here] -> transmittance. Threads: rays may be cast from any. */
 #include "rays/bvh_embree.h"
 #include "rays/rays.h"
 
@@ -21,7 +21,7 @@ static struct RTCRay embree_ray(const scene_ray *r, float max_distance)
     return ray;
 }
 
-static void place_instance_hit(const scene *s, const scene_ray *ray, const ray_meeting *met, surface_hit *out_hit)
+static void fill_instance_hit(const scene *s, const scene_ray *ray, const ray_meeting *met, surface_hit *out_hit)
 {
     uint32_t index = met->instance - s->shape_count;
     const scene_object *o = &s->objects[s->instances[index].object_index];
@@ -38,10 +38,10 @@ static void place_instance_hit(const scene *s, const scene_ray *ray, const ray_m
         direction = instance_direction_in_object(&world_from_object, direction);
     shape_surface_at(at, met->primitive, met->u, met->v, instance_point_in_object(&world_from_object, world), direction,
                      out_hit);
-    instance_place_hit(&world_from_object, out_hit);
+    instance_transform_hit(&world_from_object, out_hit);
 }
 
-static void place_hit(const scene *s, const scene_ray *ray, const ray_meeting *met, surface_hit *out_hit)
+static void fill_hit(const scene *s, const scene_ray *ray, const ray_meeting *met, surface_hit *out_hit)
 {
     out_hit->distance = met->distance;
     out_hit->primitive_index = met->primitive;
@@ -49,7 +49,7 @@ static void place_hit(const scene *s, const scene_ray *ray, const ray_meeting *m
     out_hit->slab.thickness = 0.0f;
     out_hit->footprint.width = 0.0f;
     if (met->instance != RTC_INVALID_GEOMETRY_ID) {
-        place_instance_hit(s, ray, met, out_hit);
+        fill_instance_hit(s, ray, met, out_hit);
         return;
     }
     out_hit->shape_index = met->geometry;
@@ -57,7 +57,7 @@ static void place_hit(const scene *s, const scene_ray *ray, const ray_meeting *m
     vec3 position = vec3_add_scaled(ray->origin, ray->direction, met->distance);
     const shape *at = &s->shapes[met->geometry];
     if (ray->skips_uv && s->texture_count == 0)
-        shape_place_at(at, met->primitive, met->u, met->v, position, ray->direction, out_hit);
+        shape_hit_at(at, met->primitive, met->u, met->v, position, ray->direction, out_hit);
     else
         shape_surface_at(at, met->primitive, met->u, met->v, position, ray->direction, out_hit);
 }
@@ -91,7 +91,7 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
     cast_one(s, &ray, max_distance, &met);
     if (met.geometry == RTC_INVALID_GEOMETRY_ID)
         return false;
-    place_hit(s, &ray, &met, out_hit);
+    fill_hit(s, &ray, &met, out_hit);
     return true;
 }
 
@@ -105,7 +105,7 @@ enum { PACKET = 8, SINGLES_MAX = 15 };
 static void put_in_order(const ray_fan *f, uint8_t out_order[RAY_FAN_MAX])
 {
     enum { SLICES = 8, KEYS = 8 * SLICES };
-    uint8_t keys[RAY_FAN_MAX], places[KEYS] = {0}, sum = 0;
+    uint8_t keys[RAY_FAN_MAX], begins[KEYS] = {0}, sum = 0;
     for (uint32_t i = 0; i < f->count; i++) {
         float x = f->direction[0][i], y = f->direction[1][i], z = f->direction[2][i];
         float above = (z + 1.0f) * (0.5f * SLICES);
@@ -113,14 +113,14 @@ static void put_in_order(const ray_fan *f, uint8_t out_order[RAY_FAN_MAX])
         keys[i] = (uint8_t)(((x < 0.0f) | (y < 0.0f) << 1 | (z < 0.0f) << 2) * SLICES + slice);
     }
     for (uint32_t i = 0; i < f->count; i++)
-        places[keys[i]]++;
+        begins[keys[i]]++;
     for (uint32_t k = 0; k < KEYS; k++) {
-        uint8_t of_key = places[k];
-        places[k] = sum;
+        uint8_t of_key = begins[k];
+        begins[k] = sum;
         sum = (uint8_t)(sum + of_key);
     }
     for (uint32_t i = 0; i < f->count; i++)
-        out_order[places[keys[i]]++] = (uint8_t)i;
+        out_order[begins[keys[i]]++] = (uint8_t)i;
 }
 
 static void fill(float lanes[PACKET], float value)
@@ -192,10 +192,10 @@ void scene_intersect_fan(const scene *s, ray_fan *f)
 void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_hit)
 {
     scene_ray ray = ray_of(f, i);
-    place_hit(s, &ray, &f->met[i], out_hit);
+    fill_hit(s, &ray, &f->met[i], out_hit);
 }
 
-const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, surface_place *out_place)
+const rgb *ray_fan_plain_point(const scene *s, const ray_fan *f, uint32_t i, surface_point *out_point)
 {
     const ray_meeting *met = &f->met[i];
     if (met->instance != RTC_INVALID_GEOMETRY_ID)
@@ -204,10 +204,10 @@ const rgb *ray_fan_plain_place(const scene *s, const ray_fan *f, uint32_t i, sur
     const rgb *albedo = material_plain_albedo(s, at->material_index);
     vec3 direction = ray_fan_direction(f, i);
     vec3 position = vec3_add_scaled(f->common.origin, direction, met->distance);
-    if (!albedo || !shape_bare_place_at(at, met->primitive, met->u, met->v, position, out_place))
+    if (!albedo || !shape_bare_point_at(at, met->primitive, met->u, met->v, position, out_point))
         return NULL;
-    if (vec3_dot(out_place->normal, direction) > 0.0f)
-        out_place->normal = vec3_negate(out_place->normal);
+    if (vec3_dot(out_point->normal, direction) > 0.0f)
+        out_point->normal = vec3_negate(out_point->normal);
     return albedo;
 }
 

@@ -12,8 +12,8 @@ static const double PATCH_SHARE_MIN = 1e-5;
 /* Rays cast to find the counterparts of a shape's patches, in all its instances, at most. */
 static const uint64_t TRIALS_MAX = 1u << 20;
 /* Where on a patch's largest triangle they start. */
-static const float TRIAL_PLACES[][2] = {{0.34f, 0.33f}, {0.6f, 0.2f}, {0.2f, 0.6f}, {0.21f, 0.19f}};
-enum { TRIAL_PLACE_COUNT = 4 };
+static const float TRIAL_BARYCENTRICS[][2] = {{0.34f, 0.33f}, {0.6f, 0.2f}, {0.2f, 0.6f}, {0.21f, 0.19f}};
+enum { TRIAL_COUNT = 4 };
 
 typedef struct shape_faces {
     uint32_t *patch_of_triangle; /* NULL: no part of the shape is a slab's */
@@ -82,7 +82,7 @@ static bool find_exit(const scene *s, const slab_faces *f, const scene_ray *ray,
         return false; /* from within */
     float most = thickness_max(s, in, entered);
     scene_ray within = *ray;
-    within.origin = surface_place_behind(in->position, in->geometric_normal, in->epsilon, ray->direction);
+    within.origin = surface_point_behind(in->position, in->geometric_normal, in->epsilon, ray->direction);
     within.alpha_rule = RAY_MEETS_ALPHA;
     within.skips_uv = true;
     if (!scene_intersect(s, within, 1.01f * most / cosine, out_hit) || !is_counterpart(s, in, out_hit))
@@ -130,20 +130,20 @@ static bool may_be_slab(const scene *s, const shape *item)
            item->alpha == 1.0f && item->alpha_texture == SCENE_NO_TEXTURE && slab_may_be_of(s, item->material_index);
 }
 
-/* A place on a patch, in one of its object's instances, or in the world itself. */
-static void find_place(const scene *s, uint32_t shape_index, uint32_t instance_index, const flat_patch *p, int place,
-                       surface_hit *out_hit)
+/* The hit of a trial on a patch, in one of its object's instances, or in the world itself. */
+static void find_trial_hit(const scene *s, uint32_t shape_index, uint32_t instance_index, const flat_patch *p,
+                           int trial, surface_hit *out_hit)
 {
     static const vec3 NOWHERE = {0.0f, 0.0f, 0.0f};
-    shape_surface_at(&s->shapes[shape_index], p->largest_triangle, TRIAL_PLACES[place][0], TRIAL_PLACES[place][1],
-                     NOWHERE, NOWHERE, out_hit);
+    shape_surface_at(&s->shapes[shape_index], p->largest_triangle, TRIAL_BARYCENTRICS[trial][0],
+                     TRIAL_BARYCENTRICS[trial][1], NOWHERE, NOWHERE, out_hit);
     out_hit->distance = out_hit->time = 0.0f;
     out_hit->shape_index = shape_index;
     out_hit->primitive_index = p->largest_triangle;
     out_hit->instance_index = instance_index;
     if (instance_index != SCENE_NO_INSTANCE) {
         affine world_from_object = instance_at(s, instance_index, 0.0f);
-        instance_place_hit(&world_from_object, out_hit);
+        instance_transform_hit(&world_from_object, out_hit);
     }
 }
 
@@ -153,11 +153,11 @@ static void try_patches(const scene *s, slab_faces *f, uint32_t shape_index, uin
 {
     shape_faces *own = &f->of_shape[shape_index];
     for (uint32_t i = 0; i < own->patch_count; i++)
-        for (int place = 0; place < TRIAL_PLACE_COUNT && !own->is_face[i] && *in_out_trials < TRIALS_MAX; place++) {
+        for (int trial = 0; trial < TRIAL_COUNT && !own->is_face[i] && *in_out_trials < TRIALS_MAX; trial++) {
             surface_hit in, out;
             slab_way way;
             uint32_t left;
-            find_place(s, shape_index, instance_index, &own->patches[i], place, &in);
+            find_trial_hit(s, shape_index, instance_index, &own->patches[i], trial, &in);
             scene_ray ray = scene_ray_make(in.position, vec3_negate(in.geometric_normal));
             (*in_out_trials)++;
             if (find_exit(s, f, &ray, &in, &own->patches[i], &way, &out, &left))

@@ -4,7 +4,7 @@
  * shadow rays, scattered rays and photons ask alike. Where the line leaves otherwise (by a rim, into a frame) or the
  * glass is as thick as a block, light is refracted and traced.
  * Rests on: material/slab.h for what a slab lets through.
- * Flow: scene_commit finds the faces; passage asks where rays meet them. Threads: read-only once found. */
+ * Flow: scene_commit finds the faces; transmittance.c asks where rays meet them. Threads: read-only once found. */
 #ifndef AFTERGLOW_SLAB_FACES_H
 #define AFTERGLOW_SLAB_FACES_H
 

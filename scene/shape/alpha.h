@@ -21,10 +21,10 @@ static inline bool shape_is_invisible(const shape *s)
     return s->alpha <= 0.0f || (s->alpha_texture == SCENE_NO_TEXTURE && s->alpha < s->alpha_cutoff);
 }
 
-/* The share of the surface that is there at a place, [0, 1]; the hit's shape_index is not read. */
+/* The share of the surface that is there at a point, [0, 1]; the hit's shape_index is not read. */
 float alpha_at(const scene *s, const shape *at, const surface_hit *hit);
 
-/* The share at a place that a ray has met, where it is above 0. Of the photons that come to such a place this share is
+/* The share at a point that a ray has hit, where it is above 0. Of the photons that come to such a point this share is
  * stored there, while what is there is lit by all of them. */
 float alpha_at_hit(const scene *s, const surface_hit *hit);
 

@@ -1,4 +1,4 @@
-/* curves.c: see curves.h. Places are found in double precision from Embree's parameter, which is a start only: it is
+/* curves.c: see curves.h. Points are found in double precision from Embree's parameter, which is a start only: it is
  * settled by Newton's method, so that what Embree gives up for speed does not show.
  * Threads: curves_reserve and curves_join by one thread; the rest read only. */
 #include "shape/curves.h"
@@ -99,14 +99,14 @@ void curves_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max)
     *out_max = high;
 }
 
-/* --- places --- */
+/* --- points of the axis --- */
 
-typedef struct place {
+typedef struct axis_point {
     double p[3], d[3], dd[3]; /* the middle line, and its derivatives by u */
     double t[3];              /* unit, along it */
     double speed;             /* |d| */
     double radius, slope;     /* and its derivative by u */
-} place;
+} axis_point;
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -145,13 +145,13 @@ static void any_across(const double unit[3], double out[3])
 
 static vec3 rounded(const double v[3]) { return (vec3){(float)v[0], (float)v[1], (float)v[2]}; }
 
-static place find_place(const curves *c, uint32_t segment, double u)
+static axis_point find_axis_point(const curves *c, uint32_t segment, double u)
 {
     const curve_point *q = c->points + 4 * (size_t)segment;
     const double w = 1.0 - u, b[4] = {w * w * w, 3.0 * u * w * w, 3.0 * u * u * w, u * u * u};
     const double d[3] = {3.0 * w * w, 6.0 * u * w, 3.0 * u * u};
     double x[4][4];
-    place at;
+    axis_point at;
     for (int k = 0; k < 4; k++) {
         x[k][0] = (double)q[k].at.x, x[k][1] = (double)q[k].at.y, x[k][2] = (double)q[k].at.z;
         x[k][3] = (double)q[k].radius;
@@ -166,7 +166,7 @@ static place find_place(const curves *c, uint32_t segment, double u)
     at.speed = sqrt(dot(at.d, at.d));
     for (int i = 0; i < 3; i++)
         at.t[i] = at.d[i];
-    if (!make_unit(at.t)) { /* two control points in one place: the way to the other end */
+    if (!make_unit(at.t)) { /* two control points coincide: the way to the other end */
         for (int i = 0; i < 3; i++)
             at.t[i] = x[3][i] - x[0][i];
         if (!make_unit(at.t))
@@ -175,12 +175,13 @@ static place find_place(const curves *c, uint32_t segment, double u)
     return at;
 }
 
-/* The place whose cross-section the point is in; with a direction, the one that is nearest as seen along it. u: near
- * it. */
-static place settle(const curves *c, uint32_t segment, const double point[3], const double *direction, double *in_out_u)
+/* The point of the axis whose cross-section contains `point`; with a direction, the one that is nearest as seen along
+ * it. u: near it. */
+static axis_point settle(const curves *c, uint32_t segment, const double point[3], const double *direction,
+                         double *in_out_u)
 {
     double u = fmin(fmax(*in_out_u, 0.0), 1.0);
-    place at = find_place(c, segment, u);
+    axis_point at = find_axis_point(c, segment, u);
     for (int step = 0; step < SETTLE_STEPS; step++) {
         double to[3], d[3];
         for (int i = 0; i < 3; i++)
@@ -195,16 +196,16 @@ static place settle(const curves *c, uint32_t segment, const double point[3], co
         if (!(slope > 0.0))
             break;
         double moved = fmin(fmax(u + dot(to, d) / slope, 0.0), 1.0);
-        if (!(fabs(moved - u) < 0.25)) /* further than Embree errs: another place of the same curve */
+        if (!(fabs(moved - u) < 0.25)) /* further than Embree errs: another part of the same curve */
             break;
         u = moved;
-        at = find_place(c, segment, u);
+        at = find_axis_point(c, segment, u);
     }
     *in_out_u = u;
     return at;
 }
 
-static void ribbon_normal(const curves *c, uint32_t segment, double u, const place *at, double out[3])
+static void ribbon_normal(const curves *c, uint32_t segment, double u, const axis_point *at, double out[3])
 {
     const vec3 *n = c->normals + 4 * (size_t)segment;
     const double w = 1.0 - u, b[4] = {w * w * w, 3.0 * u * w * w, 3.0 * u * u * w, u * u * u};
@@ -220,7 +221,7 @@ static void ribbon_normal(const curves *c, uint32_t segment, double u, const pla
 }
 
 /* Of a tube: what is around the bend is nearer together, and a taper looks up along the curve. */
-static void tube_normal(const place *at, const double around[3], double out[3])
+static void tube_normal(const axis_point *at, const double around[3], double out[3])
 {
     double stretch = at->speed > 0.0 ? at->speed - at->radius * dot(around, at->dd) / at->speed : 0.0;
     for (int i = 0; i < 3; i++)
@@ -239,7 +240,7 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
     double way[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
     double along = (double)u, v, epsilon = 0.0;
     bool is_seen = make_unit(way);
-    place at = settle(c, primitive_index, x, c->type == CURVES_FLAT && is_seen ? way : NULL, &along);
+    axis_point at = settle(c, primitive_index, x, c->type == CURVES_FLAT && is_seen ? way : NULL, &along);
     for (int i = 0; i < 3; i++)
         off[i] = x[i] - at.p[i];
 
@@ -296,7 +297,7 @@ surface_differentials curves_differentials(const shape *s, const surface_hit *hi
     vec2 span = c->spans[hit->primitive_index];
     double share = (double)span.y - (double)span.x;
     double u = fmin(fmax(((double)hit->uv.x - (double)span.x) / share, 0.0), 1.0);
-    place at = find_place(c, hit->primitive_index, u);
+    axis_point at = find_axis_point(c, hit->primitive_index, u);
     double sign = s->flip_normal ? -1.0 : 1.0, aside[3];
     double normal[3] = {sign * (double)hit->geometric_normal.x, sign * (double)hit->geometric_normal.y,
                         sign * (double)hit->geometric_normal.z};
@@ -318,7 +319,7 @@ float curves_area(const shape *s)
     double area = 0.0, around = c->type == CURVES_CYLINDER ? 2.0 * (double)AG_PI : 2.0;
     for (uint32_t k = 0; k < c->segment_count; k++)
         for (int i = 0; i < LENGTH_PARTS; i++) {
-            place at = find_place(c, k, (i + 0.5) / LENGTH_PARTS);
+            axis_point at = find_axis_point(c, k, (i + 0.5) / LENGTH_PARTS);
             area += around * at.radius * at.speed / LENGTH_PARTS;
         }
     return (float)area;

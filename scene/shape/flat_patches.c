@@ -1,4 +1,4 @@
-/* flat_patches.c: see flat_patches.h. Corners at one place are one, whatever their numbers; triangles with a common
+/* flat_patches.c: see flat_patches.h. Corners at one position are one, whatever their numbers; triangles with a common
  * edge and a common plane are joined (union by smallest root). Threads: pure functions. */
 #include "shape/flat_patches.h"
 
@@ -14,20 +14,20 @@ typedef struct corner {
 } corner;
 
 typedef struct edge {
-    uint32_t low, high, triangle; /* its ends, as numbers of places */
+    uint32_t low, high, triangle; /* its ends, as welded vertices */
 } edge;
 
 typedef struct work {
     const mesh *m;
-    uint32_t *place_of_vertex; /* the same number for all vertices at one place */
-    uint32_t *root;            /* of each triangle */
-    vec3 *normal;              /* of each triangle; zero where it is not flat or has no area */
+    uint32_t *welded; /* one vertex number for all vertices at one position */
+    uint32_t *root;   /* of each triangle */
+    vec3 *normal;     /* of each triangle; zero where it is not flat or has no area */
     float *area;
     corner *corners;
     edge *edges;
 } work;
 
-static int compare_places(vec3 a, vec3 b)
+static int compare_positions(vec3 a, vec3 b)
 {
     if (a.x != b.x)
         return a.x < b.x ? -1 : 1;
@@ -39,7 +39,7 @@ static int compare_places(vec3 a, vec3 b)
 static int compare_corners(const void *a, const void *b)
 {
     const corner *x = a, *y = b;
-    int order = compare_places(x->at, y->at);
+    int order = compare_positions(x->at, y->at);
     return order ? order : x->vertex < y->vertex ? -1 : x->vertex > y->vertex;
 }
 
@@ -53,16 +53,16 @@ static int compare_edges(const void *a, const void *b)
     return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
 }
 
-static void number_places(work *w)
+static void weld_vertices(work *w)
 {
     uint32_t count = w->m->vertex_count;
     for (uint32_t i = 0; i < count; i++)
         w->corners[i] = (corner){w->m->positions[i], i};
     qsort(w->corners, count, sizeof *w->corners, compare_corners);
     for (uint32_t i = 0; i < count; i++) {
-        bool is_same = i > 0 && compare_places(w->corners[i - 1].at, w->corners[i].at) == 0;
+        bool is_same = i > 0 && compare_positions(w->corners[i - 1].at, w->corners[i].at) == 0;
         uint32_t vertex = w->corners[i].vertex;
-        w->place_of_vertex[vertex] = is_same ? w->place_of_vertex[w->corners[i - 1].vertex] : vertex;
+        w->welded[vertex] = is_same ? w->welded[w->corners[i - 1].vertex] : vertex;
     }
 }
 
@@ -122,8 +122,8 @@ static void join_neighbors(work *w)
     size_t count = 0;
     for (uint32_t t = 0; t < w->m->triangle_count; t++)
         for (int k = 0; k < 3 && is_flat(w, t); k++) {
-            uint32_t a = w->place_of_vertex[w->m->indices[3 * (size_t)t + (size_t)k]];
-            uint32_t b = w->place_of_vertex[w->m->indices[3 * (size_t)t + (size_t)((k + 1) % 3)]];
+            uint32_t a = w->welded[w->m->indices[3 * (size_t)t + (size_t)k]];
+            uint32_t b = w->welded[w->m->indices[3 * (size_t)t + (size_t)((k + 1) % 3)]];
             w->edges[count++] = (edge){a < b ? a : b, a < b ? b : a, t};
         }
     qsort(w->edges, count, sizeof *w->edges, compare_edges);
@@ -198,7 +198,7 @@ ag_status flat_patches_find(const mesh *m, double share_min, uint32_t **out_patc
 {
     size_t triangles = m->triangle_count, vertices = m->vertex_count;
     work w = {.m = m,
-              .place_of_vertex = malloc((vertices + 1) * sizeof *w.place_of_vertex),
+              .welded = malloc((vertices + 1) * sizeof *w.welded),
               .root = malloc((triangles + 1) * sizeof *w.root),
               .normal = malloc((triangles + 1) * sizeof *w.normal),
               .area = malloc((triangles + 1) * sizeof *w.area),
@@ -206,16 +206,16 @@ ag_status flat_patches_find(const mesh *m, double share_min, uint32_t **out_patc
               .edges = malloc((3 * triangles + 1) * sizeof *w.edges)};
     uint32_t *patch_of = malloc((triangles + 1) * sizeof *patch_of);
     ag_status status = AG_ERROR_MEMORY;
-    if (w.place_of_vertex && w.root && w.normal && w.area && w.corners && w.edges && patch_of) {
+    if (w.welded && w.root && w.normal && w.area && w.corners && w.edges && patch_of) {
         for (uint32_t t = 0; t < m->triangle_count; t++) {
             w.root[t] = t;
             measure(&w, t);
         }
-        number_places(&w);
+        weld_vertices(&w);
         join_neighbors(&w);
         status = gather(&w, share_min, patch_of, out_patches, out_count);
     }
-    free(w.place_of_vertex), free(w.root), free(w.normal), free(w.area), free(w.corners), free(w.edges);
+    free(w.welded), free(w.root), free(w.normal), free(w.area), free(w.corners), free(w.edges);
     if (status == AG_OK)
         *out_patch_of_triangle = patch_of;
     else

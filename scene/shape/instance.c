@@ -40,7 +40,7 @@ vec3 instance_direction_in_object(const affine *world_from_object, vec3 directio
     return (vec3){(float)d[0], (float)d[1], (float)d[2]};
 }
 
-static vec3 place_normal(const double cofactors[3][3], double sign, vec3 n)
+static vec3 normal_to_world(const double cofactors[3][3], double sign, vec3 n)
 {
     double w[3], square = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -51,11 +51,11 @@ static vec3 place_normal(const double cofactors[3][3], double sign, vec3 n)
     return (vec3){(float)(w[0] * inverse), (float)(w[1] * inverse), (float)(w[2] * inverse)};
 }
 
-/* A ray that starts at the place is rounded in the world's coordinates, and again on its way into the object's space,
+/* A ray that starts at the hit is rounded in the world's coordinates, and again on its way into the object's space,
  * where the sums are as large as the translation; and what is lost there shows in the world as large as the map makes
  * it. */
-static float place_epsilon(const affine *a, const double cofactors[3][3], double determinant, vec3 world,
-                           float object_epsilon, float relative)
+static float epsilon_in_world(const affine *a, const double cofactors[3][3], double determinant, vec3 world,
+                              float object_epsilon, float relative)
 {
     double from[3] = {fabs((double)world.x) + fabs((double)a->m[0][3]),
                       fabs((double)world.y) + fabs((double)a->m[1][3]),
@@ -72,7 +72,7 @@ static float place_epsilon(const affine *a, const double cofactors[3][3], double
     return (float)largest;
 }
 
-void instance_place_hit(const affine *world_from_object, surface_hit *in_out_hit)
+void instance_transform_hit(const affine *world_from_object, surface_hit *in_out_hit)
 {
     surface_hit *h = in_out_hit;
     double cofactors[3][3], determinant = affine_determinant(world_from_object);
@@ -80,10 +80,10 @@ void instance_place_hit(const affine *world_from_object, surface_hit *in_out_hit
     const double(*c)[3] = (const double(*)[3])cofactors;
     double sign = determinant < 0.0 ? -1.0 : 1.0; /* the outside stays the outside in a mirror */
     h->position = affine_point(world_from_object, h->position);
-    h->shading_normal = place_normal(c, sign, h->shading_normal);
-    h->geometric_normal = vec3_face_forward(place_normal(c, sign, h->geometric_normal), h->shading_normal);
-    h->epsilon = place_epsilon(world_from_object, c, determinant, h->position, h->epsilon,
-                               h->is_flat ? FLAT_EPSILON_RELATIVE : ROUND_EPSILON_RELATIVE);
+    h->shading_normal = normal_to_world(c, sign, h->shading_normal);
+    h->geometric_normal = vec3_face_forward(normal_to_world(c, sign, h->geometric_normal), h->shading_normal);
+    h->epsilon = epsilon_in_world(world_from_object, c, determinant, h->position, h->epsilon,
+                                  h->is_flat ? FLAT_EPSILON_RELATIVE : ROUND_EPSILON_RELATIVE);
 }
 
 /* A normal goes back by the transpose. */

@@ -38,14 +38,14 @@ vec3 instance_point_in_object(const affine *world_from_object, const double worl
 vec3 instance_direction_in_object(const affine *world_from_object, vec3 direction);
 
 /* Takes a hit from the object's space to the world's: position, normals, epsilon. */
-void instance_place_hit(const affine *world_from_object, struct surface_hit *in_out_hit);
+void instance_transform_hit(const affine *world_from_object, struct surface_hit *in_out_hit);
 
 /* The way back: the hit as its shape has it, but for epsilon; itself where the shape stands in the world. For the
  * functions that read shapes. */
 struct surface_hit instance_hit_in_object(const struct scene *s, const struct surface_hit *hit);
 
-/* A place of the surface as it stands when the shutter opens, and how its area there is to its area now (1 where
- * nothing is stretched). The hit's own place where nothing moves. */
+/* A point of the surface as it stands when the shutter opens, and how its area there is to its area now (1 where
+ * nothing is stretched). The hit's own position where nothing moves. */
 typedef struct surface_rest {
     vec3 position;
     vec3 geometric_normal; /* unit, outside */

@@ -211,7 +211,7 @@ static vec3 normalize_or_z(vec3 v)
     return square > 0.0f ? vec3_scale(v, 1.0f / sqrtf(square)) : (vec3){0.0f, 0.0f, 1.0f};
 }
 
-bool quadric_bare_place_at(const shape *s, vec3 position, vec3 *out_position, vec3 *out_geometric_normal)
+bool quadric_bare_point_at(const shape *s, vec3 position, vec3 *out_position, vec3 *out_geometric_normal)
 {
     const quadric *q = &s->as.quadric;
     if (!(q->uniform_radius > 0.0f))
@@ -231,7 +231,7 @@ void quadric_surface_at(const shape *s, vec3 position, bool with_uv, surface_hit
     h->epsilon = q->epsilon;
     h->uv = (vec2){0.0f, 0.0f};
     h->is_flat = s->kind == SHAPE_DISK;
-    if (quadric_bare_place_at(s, position, &h->position, &h->geometric_normal)) {
+    if (quadric_bare_point_at(s, position, &h->position, &h->geometric_normal)) {
         h->shading_normal = h->geometric_normal;
         if (!with_uv)
             return;
@@ -266,7 +266,7 @@ void quadric_surface_at(const shape *s, vec3 position, bool with_uv, surface_hit
 
 /* --- intersection --- */
 
-/* Where the line o + t d meets a circle (of axes 2) or sphere (3) of radius squared r2: 0 or 2 places, in order. The
+/* Where the line o + t d meets a circle (of axes 2) or sphere (3) of radius squared r2: 0 or 2 points, in order. The
  * discriminant is taken from the line's distance to the middle, and the roots in their stable form. */
 static int meet_round(const double o[3], const double d[3], int axes, double r2, double out_t[2])
 {

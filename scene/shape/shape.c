@@ -291,21 +291,21 @@ static void mesh_surface_at(const shape *s, uint32_t primitive_index, float u, f
     h->is_flat = true;
 }
 
-bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
-                         surface_place *out_place)
+bool shape_bare_point_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
+                         surface_point *out_point)
 {
     if (s->kind == SHAPE_MESH) {
         double length;
         corners c = mesh_corners(&s->as.mesh, primitive_index);
-        out_place->position = position_between(&c, u, v);
-        out_place->normal = area_vector(c.p0, c.p1, c.p2, &length);
-        out_place->epsilon = corners_epsilon(&c);
+        out_point->position = position_between(&c, u, v);
+        out_point->normal = area_vector(c.p0, c.p1, c.p2, &length);
+        out_point->epsilon = corners_epsilon(&c);
         return true;
     }
     if (s->kind == SHAPE_CURVES)
         return false;
-    out_place->epsilon = s->as.quadric.epsilon;
-    return quadric_bare_place_at(s, position, &out_place->position, &out_place->normal);
+    out_point->epsilon = s->as.quadric.epsilon;
+    return quadric_bare_point_at(s, position, &out_point->position, &out_point->normal);
 }
 
 static void surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
@@ -329,8 +329,8 @@ void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v
     surface_at(s, primitive_index, u, v, position, direction, true, out_hit);
 }
 
-void shape_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
-                    surface_hit *out_hit)
+void shape_hit_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                  surface_hit *out_hit)
 {
     surface_at(s, primitive_index, u, v, position, direction, false, out_hit);
 }

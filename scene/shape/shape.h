@@ -84,7 +84,7 @@ typedef struct shape {
     uint32_t light_index;   /* SHAPE_NO_LIGHT where it does not shine */
     float alpha;            /* the share of it that is there, [0, 1]: rays pass through the rest (alpha.h) */
     uint32_t alpha_texture; /* a float texture that multiplies it; SCENE_NO_TEXTURE: none */
-    float alpha_cutoff;     /* above 0: a place is there, wholly, where alpha is at least that */
+    float alpha_cutoff;     /* above 0: the surface is there, wholly, where alpha is at least that */
     uint32_t object_index;  /* the scene's object that it belongs to; SCENE_NO_OBJECT: it stands in the world itself */
     union {
         mesh mesh;
@@ -103,25 +103,25 @@ void shape_reset(shape *s);
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
 
 surface_sample shape_sample_area(const shape *s, vec2 u);
-/* All that there is to know of a sampled place; distance is 0. */
+/* The whole hit at a sampled point; distance is 0. */
 void shape_sample_surface(const shape *s, uint32_t shape_index, const surface_sample *sample, surface_hit *out_hit);
-/* Back from a place to the random numbers that pick it. false for shapes that are no mesh. */
+/* Back from a point to the random numbers that pick it. false for shapes that are no mesh. */
 bool shape_sample_inverse(const shape *s, const surface_hit *hit, vec2 *out_u);
-/* The density of shape_sample_area at a place on the shape with that geometric normal. */
+/* The density of shape_sample_area at a point on the shape with that geometric normal. */
 float shape_pdf_area(const shape *s, vec3 geometric_normal);
 
-/* A place that Embree has found, for rays_embree.c: fills in everything but distance, indices and time. u, v:
+/* The hit that Embree has found, for rays_embree.c: fills in everything but distance, indices and time. u, v:
  * Embree's barycentrics for meshes, u along curves; for all but meshes `position` comes in as the ray's point and is
  * put onto the surface. direction: the ray's, of any length; read for curves alone. */
 void shape_surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
                       surface_hit *out_hit);
 /* shape_surface_at, but uv may be missing. */
-void shape_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
-                    surface_hit *out_hit);
+void shape_hit_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
+                  surface_hit *out_hit);
 /* Position, geometric normal and epsilon alone, as the same have them, but for the normal's side; false: not of this
  * kind of shape. */
-bool shape_bare_place_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
-                         surface_place *out_place);
+bool shape_bare_point_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position,
+                         surface_point *out_point);
 
 /* Area of a shape in world space, m^2. For a power given in the file (pbrt's "power"). */
 float shape_area(const shape *s);

@@ -21,7 +21,7 @@ static vec3 combine(vec3 e1, double a, vec3 e2, double b)
     return (vec3){(float)(e1.x * a + e2.x * b), (float)(e1.y * a + e2.y * b), (float)(e1.z * a + e2.z * b)};
 }
 
-/* Barycentrics of corners 1 and 2 of a place in the triangle's plane. */
+/* Barycentrics of corners 1 and 2 of a point in the triangle's plane. */
 static void find_barycentrics(vec3 e1, vec3 e2, vec3 from_p0, double *out_b1, double *out_b2)
 {
     double a11 = vec3_dot(e1, e1), a12 = vec3_dot(e1, e2), a22 = vec3_dot(e2, e2);
@@ -130,7 +130,7 @@ static surface_differentials quadric_differentials(const shape *s, const surface
 
 /* How the world's unit normal turns where the object's, of unit length, turns by dn: both go by the inverse transpose.
  */
-static vec3 place_turn(const affine *a, vec3 object_normal, vec3 dn, vec3 world_normal)
+static vec3 turn_to_world(const affine *a, vec3 object_normal, vec3 dn, vec3 world_normal)
 {
     double c[3][3], turned[3], square = 0.0;
     const double n[3] = {(double)object_normal.x, (double)object_normal.y, (double)object_normal.z};
@@ -164,8 +164,8 @@ surface_differentials surface_differentials_at(const scene *s, const surface_hit
         d = differentials_of(at, &in_object);
         d.dpdu = affine_vector(&world_from_object, d.dpdu);
         d.dpdv = affine_vector(&world_from_object, d.dpdv);
-        d.dndu = place_turn(&world_from_object, in_object.shading_normal, d.dndu, hit->shading_normal);
-        d.dndv = place_turn(&world_from_object, in_object.shading_normal, d.dndv, hit->shading_normal);
+        d.dndu = turn_to_world(&world_from_object, in_object.shading_normal, d.dndu, hit->shading_normal);
+        d.dndv = turn_to_world(&world_from_object, in_object.shading_normal, d.dndv, hit->shading_normal);
     }
     float area = vec3_length_squared(vec3_cross(d.dpdu, d.dpdv));
     if (!(area > 0.0f && isfinite(area))) {
@@ -181,7 +181,7 @@ bool surface_uv_axes(const scene *s, const surface_hit *hit, vec3 *out_dpdu, vec
 {
     const shape *at = &s->shapes[hit->shape_index];
     const bool is_placed = hit->instance_index != SCENE_NO_INSTANCE;
-    /* a triangle's do not depend on the place */
+    /* a triangle's are the same all over it */
     surface_hit in_object = is_placed && at->kind != SHAPE_MESH ? instance_hit_in_object(s, hit) : *hit;
     surface_differentials d =
         at->kind == SHAPE_MESH ? triangle_axes(&at->as.mesh, hit->primitive_index) : differentials_of(at, &in_object);

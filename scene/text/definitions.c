@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A place in a text that stands for a value. */
-typedef struct place {
+/* $NAME or ${NAME:-OTHERWISE} in a text, which stands for a value. */
+typedef struct placeholder {
     const char *name, *otherwise; /* NULL: there is none */
     size_t name_length, otherwise_length, length;
-} place;
+} placeholder;
 
 typedef struct buffer {
     char *text;
@@ -36,9 +36,9 @@ bool definition_name_is_valid(const char *name)
 }
 
 /* Whether one begins at text, which is a $. */
-static bool find_place(const char *text, const char *end, place *out)
+static bool find_placeholder(const char *text, const char *end, placeholder *out)
 {
-    *out = (place){.name = text + 1};
+    *out = (placeholder){.name = text + 1};
     bool has_brace = text + 1 < end && text[1] == '{';
     out->name += has_brace;
     out->name_length = name_length(out->name, end);
@@ -59,7 +59,7 @@ static bool find_place(const char *text, const char *end, place *out)
     return true;
 }
 
-static definition *find(const definitions *d, const place *wanted)
+static definition *find(const definitions *d, const placeholder *wanted)
 {
     for (size_t i = 0; d && i < d->count; i++)
         if (strlen(d->items[i].name) == wanted->name_length &&
@@ -102,8 +102,8 @@ ag_status definitions_expand(const definitions *d, const char *text, size_t leng
     bool is_whole = true;
     for (const char *p = memchr(text, '$', length); p && is_whole;
          p = p < end ? memchr(p, '$', (size_t)(end - p)) : NULL) {
-        place at;
-        if (!find_place(p, end, &at)) {
+        placeholder at;
+        if (!find_placeholder(p, end, &at)) {
             p++;
             continue;
         }

@@ -24,14 +24,14 @@ static const char *format_text(char *fixed, size_t fixed_size, const char *forma
 
 static void log_located(log_sink *log, ag_log_level level, file_location where, const char *key, const char *text)
 {
-    char place[32] = "";
+    char position[32] = "";
     if (where.file && where.line > 0)
-        snprintf(place, sizeof place, "%d:%d:", where.line, where.column);
+        snprintf(position, sizeof position, "%d:%d:", where.line, where.column);
     const char *file = where.file ? where.file : "", *colon = where.file ? ":" : "", *gap = where.file ? " " : "";
     if (key)
-        log_once(log, level, key, "%s%s%s%s%s: %s", file, colon, place, gap, LEVEL_NAMES[level], text);
+        log_once(log, level, key, "%s%s%s%s%s: %s", file, colon, position, gap, LEVEL_NAMES[level], text);
     else
-        log_message(log, level, "%s%s%s%s%s: %s", file, colon, place, gap, LEVEL_NAMES[level], text);
+        log_message(log, level, "%s%s%s%s%s: %s", file, colon, position, gap, LEVEL_NAMES[level], text);
 }
 
 void log_at(log_sink *log, ag_log_level level, file_location where, const char *format, ...)

@@ -123,16 +123,16 @@ ag_status text_lines_number(text_lines *lines, const char *what, double *out_val
     return AG_OK;
 }
 
-file_location text_lines_where(const text_lines *lines, const char *place)
+file_location text_lines_where(const text_lines *lines, const char *at)
 {
     int line = lines->line;
     const char *start = lines->line_start;
-    for (const char *c = start; c < place; c++)
+    for (const char *c = start; c < at; c++)
         if (*c == '\n') {
             line++;
             start = c + 1;
         }
-    return (file_location){lines->file, line, (int)(place - start) + 1};
+    return (file_location){lines->file, line, (int)(at - start) + 1};
 }
 
 ag_status text_lines_refuse(const text_lines *lines, text_word word, const char *format, ...)

@@ -41,7 +41,7 @@ bool text_word_number(const text_word *word, double *out_value);
 /* The next word as a number. Errors: AG_ERROR_SCENE, with a message: what stands there is none, or nothing does. */
 ag_status text_lines_number(text_lines *lines, const char *what, double *out_value);
 
-file_location text_lines_where(const text_lines *lines, const char *place);
+file_location text_lines_where(const text_lines *lines, const char *at);
 /* FILE:LINE:COLUMN: error: ... and the line with a mark. Gives AG_ERROR_SCENE. */
 ag_status text_lines_refuse(const text_lines *lines, text_word word, const char *format, ...) AG_PRINTF(3, 4);
 

@@ -4,6 +4,7 @@
 #include "color/color.h"
 #include "image/image.h"
 #include "scene.h"
+#include "status.h"
 
 static const double SAME = 1e-4; /* of a matrix that is the unit matrix but for rounding */
 
@@ -46,9 +47,7 @@ static ag_status find_by_space(const scene *s, image_encoding encoding, bool is_
 {
     color_curve curve;
     double m[9];
-    ag_status status = color_config_study_space(s->color_config, encoding.space, message, message_size, &curve, m);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(color_config_study_space(s->color_config, encoding.space, message, message_size, &curve, m));
     if (curve == COLOR_CURVE_SRGB && is_integer)
         c->encoding.curve = IMAGE_CURVE_SRGB;
     else if (curve == COLOR_CURVE_DATA || curve == COLOR_CURVE_LINEAR)
@@ -87,9 +86,8 @@ ag_status image_colors_decode(const scene *s, const image_colors *colors, float 
                               char *message, size_t message_size)
 {
     color_processor *processor;
-    ag_status status = color_decoder_create(s->color_config, colors->space, message, message_size, &processor);
-    if (status == AG_OK)
-        status = color_processor_apply(processor, rgb_pixels, count, message, message_size);
+    AG_TRY(color_decoder_create(s->color_config, colors->space, message, message_size, &processor));
+    const ag_status status = color_processor_apply(processor, rgb_pixels, count, message, message_size);
     color_processor_destroy(processor);
     return status;
 }

@@ -3,7 +3,7 @@
 
 #include "math/angle.h"
 
-void texture_mapping_place(texture_mapping *m, const transform *world_from_texture)
+void texture_mapping_set_space(texture_mapping *m, const transform *world_from_texture)
 {
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 4; column++)

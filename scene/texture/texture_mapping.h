@@ -25,7 +25,7 @@ typedef struct texture_mapping {
 } texture_mapping;
 
 /* Fills in texture_from_world. */
-void texture_mapping_place(texture_mapping *m, const transform *world_from_texture);
+void texture_mapping_set_space(texture_mapping *m, const transform *world_from_texture);
 
 /* uv is the surface's, position in world space. Not for solid ones. */
 vec2 texture_mapping_st(const texture_mapping *m, vec2 uv, vec3 position);

@@ -6,7 +6,7 @@
 
 #include "irradiance_estimate.h"
 
-enum { PHOTONS = 20000 / FEWER, NEAREST = 50, SPOT = 300, SPOT_PLACES = 60000 };
+enum { PHOTONS = 20000 / FEWER, NEAREST = 50, SPOT = 300, SPOT_POINTS = 60000 };
 static const float SPOT_ANGLE = 0.05f, AROUND = 0.6f;
 
 /* A spot of SPOT photons around the pole of the unit sphere, each of so many W. */
@@ -83,7 +83,7 @@ static void no_photons(void **state)
     end(&c);
 }
 
-/* The irradiance over all the places around a spot is its power: out to the global map's radius, estimates in the dark
+/* The irradiance over all the points around a spot is its power: out to the global map's radius, estimates in the dark
  * around it add half as much again. */
 static void a_spot_keeps_its_power(void **state)
 {
@@ -100,7 +100,7 @@ static void a_spot_keeps_its_power(void **state)
     assert_non_null(scratch);
     rng random = test_random(34);
     double sum = 0.0, squares = 0.0, area = 2.0 * PI * (1.0 - (double)cosf(AROUND));
-    for (int i = 0; i < SPOT_PLACES; i++) {
+    for (int i = 0; i < SPOT_POINTS; i++) {
         float z = 1.0f - rng_float(&random) * (1.0f - cosf(AROUND)), r = sqrtf(1.0f - z * z);
         float around = 2.0f * AG_PI * rng_float(&random);
         vec3 p = {r * cosf(around), r * sinf(around), z};
@@ -108,7 +108,7 @@ static void a_spot_keeps_its_power(void **state)
         sum += power;
         squares += power * power;
     }
-    double mean = sum / SPOT_PLACES, sigma = sqrt((squares / SPOT_PLACES - mean * mean) / SPOT_PLACES);
+    double mean = sum / SPOT_POINTS, sigma = sqrt((squares / SPOT_POINTS - mean * mean) / SPOT_POINTS);
     double share = mean / (SPOT * (double)power_each), error = sigma / (SPOT * (double)power_each);
     print_message("radius %g: %.3f +- %.3f of the power\n", (double)caustic.max_radius, share, error);
     assert_true(fabs(share - 1.0) < 0.05 + 3.0 * error);

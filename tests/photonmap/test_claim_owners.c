@@ -1,4 +1,4 @@
-/* test_claim_owners.c: places in a file's table: who has one, whose claims live, and what becomes of a place that was
+/* test_claim_owners.c: entries of a file's table: who has one, whose claims live, and what becomes of an entry that was
  * left. What waits for claims, and takes them over, is in test_photon_file.c. Threads: one. */
 #define _GNU_SOURCE
 #include "claim_owners.h"
@@ -8,7 +8,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-/* Descriptions of their own, as processes have them, of one file with a byte for each place. */
+/* Descriptions of their own, as processes have them, of one file with a byte for each entry. */
 static int open_file(void)
 {
     int file = open(in_folder("f"), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
@@ -36,7 +36,7 @@ static void claims_live_as_long_as_their_owner(void **state)
     assert_false(claim_owners_is_alive(&b, of_a));
     assert_true(claim_owners_is_alive(&b, of_b));
 
-    /* the place is taken again, under another number: the dead one's claims stay dead */
+    /* the entry is taken again, under another number: the dead one's claims stay dead */
     int file_c = open_file();
     assert_true(claim_owners_join(file_c, table, &c));
     assert_int_equal(claimer_of(&c) & (CLAIM_OWNERS_MAX - 1), of_a & (CLAIM_OWNERS_MAX - 1));
@@ -71,7 +71,7 @@ static void a_new_number_once(void **state)
     close(file_b);
 }
 
-static void no_more_than_there_are_places(void **state)
+static void no_more_than_the_table_holds(void **state)
 {
     (void)state;
     static claim_owner table[CLAIM_OWNERS_MAX];
@@ -81,9 +81,9 @@ static void no_more_than_there_are_places(void **state)
     for (int i = 0; i < CLAIM_OWNERS_MAX; i++) {
         files[i] = open_file();
         assert_true(claim_owners_join(files[i], table, &owners[i]));
-        uint32_t place = claimer_of(&owners[i]) & (CLAIM_OWNERS_MAX - 1);
-        assert_false(is_taken[place]);
-        is_taken[place] = true;
+        uint32_t index = claimer_of(&owners[i]) & (CLAIM_OWNERS_MAX - 1);
+        assert_false(is_taken[index]);
+        is_taken[index] = true;
     }
     claim_owners one_more;
     files[CLAIM_OWNERS_MAX] = open_file();
@@ -122,7 +122,7 @@ static void what_need_not_be_waited_for(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {TEST_IN_FOLDER(claims_live_as_long_as_their_owner),
-                                       TEST_IN_FOLDER(a_new_number_once), TEST_IN_FOLDER(no_more_than_there_are_places),
+                                       TEST_IN_FOLDER(a_new_number_once), TEST_IN_FOLDER(no_more_than_the_table_holds),
                                        TEST_IN_FOLDER(what_need_not_be_waited_for)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

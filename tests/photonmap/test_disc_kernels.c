@@ -135,7 +135,7 @@ static void the_nearest_are_selected(void **state)
     }
 }
 
-/* Of every subtree, from places within and without, the same leaves; and none that holds a photon within reach is left
+/* Of every subtree, from points within and without, the same leaves; and none that holds a photon within reach is left
  * out. */
 static void leaves_of_subtrees_are_found(void **state)
 {

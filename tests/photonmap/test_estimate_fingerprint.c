@@ -76,7 +76,7 @@ static void depends_on_the_estimate(void **state)
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++)
         if (hash128_is_equal(one, fingerprint(1, "avx2", OTHERS[i])))
             fail_msg("the fingerprint does not tell estimate %zu from ours", i);
-    assert_true(at_rims >= 10); /* of many places, and not of all */
+    assert_true(at_rims >= 10); /* of many points, and not of all */
     assert_true(at_rims < calls / 2);
 }
 

@@ -1,5 +1,5 @@
 /* test_incident_light.c: what guides gather rays: the warp keeps to its density, which is never far below the cosine's;
- * photons draw rays to where they came from, those of their own normal and of a diffuse place alone; the same for any
+ * photons draw rays to where they came from, those of their own normal and of a diffuse point alone; the same for any
  * number of threads, in less than a byte a photon. Threads: the map's, up to 4. */
 /* ctest: sanitize */
 #include "incident_light.h"
@@ -108,7 +108,7 @@ static void the_density_integrates_to_one(void **state)
     }
 }
 
-/* To the bit, with any instructions, and for any number of places. */
+/* To the bit, with any instructions, and for any number of points. */
 static void many_are_warped_as_each_alone(void **state)
 {
     (void)state;
@@ -137,7 +137,7 @@ static void many_are_warped_as_each_alone(void **state)
     put_out(&l);
 }
 
-/* Places in order stay in order: what is stratified stays so. */
+/* Points in order stay in order: what is stratified stays so. */
 static void the_warp_keeps_order(void **state)
 {
     (void)state;

@@ -36,11 +36,11 @@ static void the_second_request_finds_it_ready(void **state)
     (void)state;
     fixture f;
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 1);
-    field_place p = field_photon(&f.map, 123);
+    field_point p = field_photon(&f.map, 123);
     irradiance_request a, b;
     irradiance_cache_get(&f.cache, p.position, p.normal, 0, &a);
     irradiance_cache_get(&f.cache, p.position, p.normal, 0, &b);
-    assert_int_equal(a.bearer, PHOTON_NONE);
+    assert_int_equal(a.irradiance_photon, PHOTON_NONE);
     assert_memory_equal(&a, &b, sizeof a);
     /* the answer is what the slot holds, not what was computed */
     uint32_t word = irradiance_slot_read(photon_block_slot(f.map.blocks, 123));
@@ -59,18 +59,18 @@ static void the_second_request_finds_it_ready(void **state)
     fixture_reset(&f);
 }
 
-static void uncached_answers_at_the_place(void **state)
+static void uncached_answers_at_the_point(void **state)
 {
     (void)state;
     fixture f;
     fixture_init(&f, IRRADIANCE_UNCACHED, 1);
     rng random = test_random(1);
     for (int i = 0; i < 100; i++) {
-        field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
+        field_point at = field_point_at(FIELD_SPHERE, rng_vec2(&random));
         irradiance_request request;
         irradiance_cache_get(&f.cache, at.position, at.normal, 0, &request);
         rgb expected = irradiance_estimate(&f.map, at.position, at.normal, f.cache.scratch[0].neighbors);
-        assert_int_equal(request.bearer, PHOTON_NONE);
+        assert_int_equal(request.irradiance_photon, PHOTON_NONE);
         assert_memory_equal(&request.irradiance, &expected, sizeof expected);
     }
     irradiance_counters c = irradiance_cache_counters(&f.cache);
@@ -81,15 +81,15 @@ static void uncached_answers_at_the_place(void **state)
     fixture_reset(&f);
 }
 
-/* Where no photon is near, the estimate is made at the place, and counted. */
-static void a_place_without_photons_is_estimated_uncached(void **state)
+/* Where no photon is near, the estimate is made at the point, and counted. */
+static void a_point_without_photons_is_estimated_uncached(void **state)
 {
     (void)state;
     fixture f;
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 1);
     irradiance_request request;
     irradiance_cache_get(&f.cache, (vec3){5.0f, 0.0f, 0.0f}, (vec3){1.0f, 0.0f, 0.0f}, 0, &request);
-    assert_int_equal(request.bearer, PHOTON_NONE);
+    assert_int_equal(request.irradiance_photon, PHOTON_NONE);
     assert_true(rgb_is_black(request.irradiance));
     irradiance_counters c = irradiance_cache_counters(&f.cache);
     assert_int_equal(c.uncached, 1);
@@ -120,19 +120,19 @@ static void a_request_set_aside_comes_back(void **state)
     (void)state;
     fixture f;
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 2);
-    field_place p = field_photon(&f.map, PHOTONS / 2);
+    field_point p = field_photon(&f.map, PHOTONS / 2);
     irradiance_slot *slot = photon_block_slot(f.map.blocks, PHOTONS / 2);
     uint32_t word;
     assert_true(irradiance_slot_try_claim(slot, 7, &word)); /* somebody else is at it */
     irradiance_request request, other;
     irradiance_cache_get(&f.cache, p.position, p.normal, 1, &request);
-    assert_int_equal(request.bearer, PHOTONS / 2);
+    assert_int_equal(request.irradiance_photon, PHOTONS / 2);
     assert_int_equal(irradiance_cache_counters(&f.cache).deferred, 1);
 
     /* meanwhile others are served */
-    field_place q = field_photon(&f.map, 1);
+    field_point q = field_photon(&f.map, 1);
     irradiance_cache_get(&f.cache, q.position, q.normal, 1, &other);
-    assert_int_equal(other.bearer, PHOTON_NONE);
+    assert_int_equal(other.irradiance_photon, PHOTON_NONE);
 
     /* it comes back, without waiting where it is ready, and after waiting where it is not */
     uint32_t value = photon_map_encode_irradiance(&f.map, rgb_gray(3.0f), 0);
@@ -147,7 +147,7 @@ static void a_request_set_aside_comes_back(void **state)
     void *published;
     pthread_join(thread, &published);
     assert_non_null(published);
-    assert_int_equal(request.bearer, PHOTON_NONE);
+    assert_int_equal(request.irradiance_photon, PHOTON_NONE);
     assert_memory_equal(&request.irradiance, &expected, sizeof expected);
     uint64_t waited = irradiance_cache_counters(&f.cache).waited;
     assert_true(waited <= 1);
@@ -158,34 +158,34 @@ static void a_request_set_aside_comes_back(void **state)
     fixture_reset(&f);
 }
 
-/* Many at once: each gets what it would have got alone, at its own place, and what another computes comes last. */
+/* Many at once: each gets what it would have got alone, at its own point, and what another computes comes last. */
 static void many_at_once_are_as_each_alone(void **state)
 {
     (void)state;
-    enum { PLACES = 3000 };
-    static irradiance_query queries[PLACES];
-    static rgb many[PLACES];
-    static bool holds[PLACES];
+    enum { POINTS = 3000 };
+    static irradiance_query queries[POINTS];
+    static rgb many[POINTS];
+    static bool holds[POINTS];
     const irradiance_cache_mode modes[] = {IRRADIANCE_ON_DEMAND, IRRADIANCE_UNCACHED};
     for (int m = 0; m < 2; m++) {
         fixture f, single;
         fixture_init(&f, modes[m], 1);
         fixture_init(&single, modes[m], 1);
         rng random = test_random(5);
-        for (int i = 0; i < PLACES; i++) {
-            field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
+        for (int i = 0; i < POINTS; i++) {
+            field_point at = field_point_at(FIELD_SPHERE, rng_vec2(&random));
             if (i % 100 == 0)
                 at.position = vec3_scale(at.position, 5.0f); /* no photon is near */
             queries[i] = (irradiance_query){at.position, at.normal};
         }
-        irradiance_cache_get_many(&f.cache, &f.r.run, queries, PLACES, 0, many, holds);
-        for (int i = 0; i < PLACES; i++) {
+        irradiance_cache_get_many(&f.cache, &f.r.run, queries, POINTS, 0, many, holds);
+        for (int i = 0; i < POINTS; i++) {
             irradiance_request request;
             irradiance_cache_get(&single.cache, queries[i].position, queries[i].normal, 0, &request);
             assert_memory_equal(&many[i], &request.irradiance, sizeof many[i]);
         }
         irradiance_counters a = irradiance_cache_counters(&f.cache), b = irradiance_cache_counters(&single.cache);
-        assert_int_equal(a.requests, PLACES);
+        assert_int_equal(a.requests, POINTS);
         assert_int_equal(a.computed, b.computed);
         assert_int_equal(a.uncached, b.uncached);
         assert_int_equal(a.computed, irradiance_cache_distinct(&f.cache));
@@ -197,32 +197,32 @@ static void many_at_once_are_as_each_alone(void **state)
 static void many_at_once_come_back_to_what_another_computes(void **state)
 {
     (void)state;
-    enum { PLACES = 50 };
+    enum { POINTS = 50 };
     fixture f;
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 2);
-    irradiance_query queries[PLACES];
-    rgb found[PLACES];
-    bool holds[PLACES];
-    for (uint32_t i = 0; i < PLACES; i++) {
-        field_place p = field_photon(&f.map, i * (PHOTONS / PLACES));
+    irradiance_query queries[POINTS];
+    rgb found[POINTS];
+    bool holds[POINTS];
+    for (uint32_t i = 0; i < POINTS; i++) {
+        field_point p = field_photon(&f.map, i * (PHOTONS / POINTS));
         queries[i] = (irradiance_query){p.position, p.normal};
     }
     enum { HELD = 20 };
-    irradiance_slot *slot = photon_block_slot(f.map.blocks, HELD * (PHOTONS / PLACES));
+    irradiance_slot *slot = photon_block_slot(f.map.blocks, HELD * (PHOTONS / POINTS));
     uint32_t word, value = photon_map_encode_irradiance(&f.map, rgb_gray(3.0f), 0);
     assert_true(irradiance_slot_try_claim(slot, 7, &word));
     atomic_u32 go = 1;
     late_claimer late = {slot, value, &go};
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, publish_late, &late), 0);
-    irradiance_cache_get_many(&f.cache, &f.r.run, queries, PLACES, 1, found, holds);
+    irradiance_cache_get_many(&f.cache, &f.r.run, queries, POINTS, 1, found, holds);
     void *published;
     pthread_join(thread, &published);
     assert_non_null(published);
     rgb expected = photon_map_decode_irradiance(&f.map, value);
     assert_memory_equal(&found[HELD], &expected, sizeof expected);
     irradiance_counters c = irradiance_cache_counters(&f.cache);
-    assert_int_equal(c.computed, PLACES - 1);
+    assert_int_equal(c.computed, POINTS - 1);
     assert_true(c.deferred <= 1);
     assert_int_equal(c.duplicated, 0);
     fixture_reset(&f);
@@ -250,7 +250,7 @@ enum { FEW = 24, ROUNDS = 40, RAYS = 64 };
 
 typedef struct crowd {
     fixture *f;
-    field_place few[FEW];
+    field_point few[FEW];
     rgb expected[FEW]; /* from another map, precomputed */
     uint32_t wrong[64];
     uint32_t open[64]; /* set aside, by worker */
@@ -263,11 +263,11 @@ static void demand(void *user, unsigned worker)
     irradiance_request requests[RAYS];
     for (uint32_t round = 0; round < ROUNDS; round++) {
         for (uint32_t i = 0; i < RAYS; i++) {
-            field_place p = all->few[(i + round) % FEW];
+            field_point p = all->few[(i + round) % FEW];
             irradiance_cache_get(&all->f->cache, p.position, p.normal, worker, &requests[i]);
         }
         for (uint32_t i = 0; i < RAYS; i++)
-            if (requests[i].bearer != PHOTON_NONE) {
+            if (requests[i].irradiance_photon != PHOTON_NONE) {
                 all->open[worker]++;
                 irradiance_cache_retry(&all->f->cache, NULL, &requests[i], worker);
             }
@@ -295,7 +295,7 @@ static void many_threads_demand_the_same_few_photons(void **state)
             for (uint32_t i = 0; i < FEW; i++) {
                 uint32_t index = i * (PHOTONS / FEW);
                 all.few[i] = field_photon(&f.map, index);
-                field_place same = field_photon(&reference.map, index);
+                field_point same = field_photon(&reference.map, index);
                 assert_memory_equal(&all.few[i], &same, sizeof same);
                 uint32_t word = irradiance_slot_read(photon_block_slot(reference.map.blocks, index));
                 all.expected[i] = photon_map_decode_irradiance(&reference.map, word & IRRADIANCE_VALUE_MASK);
@@ -326,10 +326,10 @@ static void ask_all(void *user, unsigned worker)
     fixture *f = user;
     unsigned workers = thread_pool_worker_count(f->r.pool);
     for (uint32_t i = 0; i < PHOTONS; i++) { /* each from another end, so that they meet */
-        field_place p = field_photon(&f->map, (i + worker * (PHOTONS / workers)) % PHOTONS);
+        field_point p = field_photon(&f->map, (i + worker * (PHOTONS / workers)) % PHOTONS);
         irradiance_request request;
         irradiance_cache_get(&f->cache, p.position, p.normal, worker, &request);
-        if (request.bearer != PHOTON_NONE)
+        if (request.irradiance_photon != PHOTON_NONE)
             irradiance_cache_retry(&f->cache, NULL, &request, worker);
     }
 }
@@ -362,7 +362,7 @@ static void a_second_cache_sees_what_was_ready(void **state)
     fixture_init(&f, IRRADIANCE_ON_DEMAND, 2);
     irradiance_request request;
     for (uint32_t i = 0; i < 50; i++) {
-        field_place p = field_photon(&f.map, i);
+        field_point p = field_photon(&f.map, i);
         irradiance_cache_get(&f.cache, p.position, p.normal, i % 2, &request);
     }
     assert_int_equal(irradiance_cache_distinct(&f.cache), 50);
@@ -371,7 +371,7 @@ static void a_second_cache_sees_what_was_ready(void **state)
     assert_int_equal(second.ready_before, 50);
     assert_int_equal(irradiance_cache_distinct(&second), 0);
     for (uint32_t i = 40; i < 60; i++) {
-        field_place p = field_photon(&f.map, i);
+        field_point p = field_photon(&f.map, i);
         irradiance_cache_get(&second, p.position, p.normal, i % 2, &request);
     }
     assert_int_equal(irradiance_cache_counters(&second).requests, 20);
@@ -408,7 +408,7 @@ static void an_empty_map_answers_black(void **state)
     assert_int_equal(irradiance_cache_precompute(&cache, &r.run), AG_OK);
     irradiance_request request;
     irradiance_cache_get(&cache, (vec3){0.0f, 0.0f, 0.0f}, (vec3){0.0f, 0.0f, 1.0f}, 0, &request);
-    assert_int_equal(request.bearer, PHOTON_NONE);
+    assert_int_equal(request.irradiance_photon, PHOTON_NONE);
     assert_true(rgb_is_black(request.irradiance));
     irradiance_cache_reset(&cache);
     photon_map_reset(&map);
@@ -419,8 +419,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_second_request_finds_it_ready),
-        cmocka_unit_test(uncached_answers_at_the_place),
-        cmocka_unit_test(a_place_without_photons_is_estimated_uncached),
+        cmocka_unit_test(uncached_answers_at_the_point),
+        cmocka_unit_test(a_point_without_photons_is_estimated_uncached),
         cmocka_unit_test(a_request_set_aside_comes_back),
         cmocka_unit_test(many_at_once_are_as_each_alone),
         cmocka_unit_test(many_at_once_come_back_to_what_another_computes),

@@ -1,14 +1,14 @@
-/* test_irradiance_estimate.c: density estimates in fields of photons whose irradiance is known. At places drawn apart
+/* test_irradiance_estimate.c: density estimates in fields of photons whose irradiance is known. At points drawn apart
  * from the photons, k over the area out to the (k+1)-th is right on average: for uniform points the expectation of
  * k / A is their density. Threads: one. */
 #include "fixtures/photon_field.h"
 
 #include "irradiance_estimate.h"
 
-enum { PHOTONS = 50000 / FEWER, PLACES = 1500 };
+enum { PHOTONS = 50000 / FEWER, POINTS = 1500 };
 
 /* The mean over the surface. Photons are as many as they are, so that the mean hardly varies: what does is k at each of
- * the places, by 1 / sqrt(k), over as many as are apart: PHOTONS / k at most. */
+ * the points, by 1 / sqrt(k), over as many as are apart: PHOTONS / k at most. */
 static double mean_of(field_kind kind, uint32_t nearest, float max_radius)
 {
     test_run r;
@@ -19,8 +19,8 @@ static double mean_of(field_kind kind, uint32_t nearest, float max_radius)
     assert_non_null(scratch);
     rng random = test_random(12);
     double sum = 0.0;
-    for (int i = 0; i < PLACES; i++) {
-        field_place at = field_place_at(kind, rng_vec2(&random));
+    for (int i = 0; i < POINTS; i++) {
+        field_point at = field_point_at(kind, rng_vec2(&random));
         rgb e = irradiance_estimate(&map, at.position, at.normal, scratch);
         sum += (double)e.r;
         if (i < 10)
@@ -29,7 +29,7 @@ static double mean_of(field_kind kind, uint32_t nearest, float max_radius)
     free(scratch);
     photon_map_reset(&map);
     test_run_reset(&r);
-    return sum / PLACES;
+    return sum / POINTS;
 }
 
 static void even_fields(void **state)
@@ -39,7 +39,7 @@ static void even_fields(void **state)
     for (int kind = FIELD_SPHERE; kind <= FIELD_PLANE; kind++)
         for (size_t i = 0; i < sizeof NEAREST / sizeof *NEAREST; i++) {
             double expected = (double)FIELD_FLUX.r * field_irradiance((field_kind)kind), k = NEAREST[i];
-            double apart = fmin(PLACES, PHOTONS / k), sigma = 1.0 / sqrt(k * apart);
+            double apart = fmin(POINTS, PHOTONS / k), sigma = 1.0 / sqrt(k * apart);
             assert_relative(mean_of((field_kind)kind, NEAREST[i], 1.0f), expected, 4.0 * sigma + 0.002);
         }
 }
@@ -49,7 +49,7 @@ static void bounded_radius(void **state)
 {
     (void)state;
     double radius = sqrt(50.0 / (PI * PHOTONS));
-    double sigma = 1.0 / sqrt(50.0 * fmin(PLACES, PHOTONS / 50.0));
+    double sigma = 1.0 / sqrt(50.0 * fmin(POINTS, PHOTONS / 50.0));
     assert_relative(mean_of(FIELD_PLANE, 300, (float)radius), (double)FIELD_FLUX.r, 4.0 * sigma + 0.002);
 }
 
@@ -73,7 +73,7 @@ static void thin_wall(void **state)
     photon_map map = field_map(&r, &set, 50, 1.0f);
     photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
     assert_non_null(scratch);
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < POINTS; i++) {
         vec2 u = rng_vec2(&random);
         vec3 at = {0.2f + 0.6f * u.x, 0.2f + 0.6f * u.y, 0.0f};
         rgb below = irradiance_estimate(&map, at, (vec3){0.0f, 0.0f, -1.0f}, scratch);

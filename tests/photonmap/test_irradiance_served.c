@@ -1,5 +1,5 @@
-/* test_irradiance_served.c: the irradiance that a place receives through the cache is right in the mean, over places
- * drawn evenly from all the surfaces of a scene. Where no estimate holds, a place receives the truth instead, as the
+/* test_irradiance_served.c: the irradiance that a point receives through the cache is right in the mean, over points
+ * drawn evenly from all the surfaces of a scene. Where no estimate holds, a point receives the truth instead, as the
  * renderer follows the light on from there. Threads: one at a time. */
 /* ctest: long */
 #include "irradiance_cache.h"
@@ -204,15 +204,15 @@ static const served_case CASES[] = {
 };
 
 typedef struct served_sums {
-    double ratio;   /* of what places received over what they should */
-    double refused; /* share of the places that no estimate holds for */
+    double ratio;   /* of what points received over what they should */
+    double refused; /* share of the points that no estimate holds for */
     double largest; /* irradiance served, over the truth where that is largest */
 } served_sums;
 
 static served_sums ask(test_run *r, const scene *s, const served_case *c, double photons_a_disc, uint32_t nearest,
                        irradiance_cache_mode mode, uint64_t seed)
 {
-    enum { PLACES = 5000 };
+    enum { POINTS = 5000 };
     photon_set set = draw_photons(s, c, photons_a_disc, 2 * seed);
     photon_map map;
     photon_map_settings settings = {
@@ -222,24 +222,24 @@ static served_sums ask(test_run *r, const scene *s, const served_case *c, double
     assert_int_equal(irradiance_cache_create(&map, mode, 1, &cache), AG_OK);
     point_source p = {.s = s, .c = c, .random = test_random(2 * seed + 1)};
     double received = 0.0, truth = 0.0, largest = 0.0;
-    int places = 0, refused = 0;
-    while (places < PLACES) {
+    int points = 0, refused = 0;
+    while (points < POINTS) {
         field_point at;
         draw_line(&p);
         while (cross(&p, &at)) {
             irradiance_request request;
             irradiance_cache_get(&cache, at.position, at.normal, 0, &request);
-            assert_int_equal(request.bearer, PHOTON_NONE);
+            assert_int_equal(request.irradiance_photon, PHOTON_NONE);
             received += (double)(request.holds ? request.irradiance.g : at.irradiance);
             truth += (double)at.irradiance;
             refused += !request.holds;
             largest = fmax(largest, (double)request.irradiance.g);
-            places++;
+            points++;
         }
     }
     irradiance_cache_reset(&cache);
     photon_map_reset(&map);
-    return (served_sums){received / truth, (double)refused / places, largest / (double)largest_irradiance(c)};
+    return (served_sums){received / truth, (double)refused / points, largest / (double)largest_irradiance(c)};
 }
 
 /* The largest value that a Poisson count of that mean exceeds in one of so many draws. */
@@ -278,7 +278,7 @@ static bool judge(test_run *r, const scene *s, const served_case *c, double phot
     return is_right;
 }
 
-static void places_receive_what_is_there(void **state)
+static void points_receive_what_is_there(void **state)
 {
     (void)state;
     static const struct {
@@ -302,6 +302,6 @@ static void places_receive_what_is_there(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(places_receive_what_is_there)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(points_receive_what_is_there)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

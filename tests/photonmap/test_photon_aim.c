@@ -22,7 +22,7 @@ static const char *const ROOM =
 static const char *const SKY = "LightSource \"infinite\" \"rgb L\" [1 1 1]";
 static const double THROUGH_WINDOW = 3.14159265358979 * 0.5 * 0.5; /* W: pi radiance area */
 
-enum { PLACES = 8000, PHOTONS = 100000, SEEDS = 8 };
+enum { POINTS = 8000, PHOTONS = 100000, SEEDS = 8 };
 
 /* The same room on a ground of 16 x 16 with a window of 0.8 x 0.8 in the wall x = 1 instead. */
 static const char *const SIDE_ROOM =
@@ -48,10 +48,10 @@ static scene *scene_of(test_run *r, const char *shapes, const char *lights)
 static scene *room_scene(test_run *r, const char *lights) { return scene_of(r, ROOM, lights); }
 
 /* On the floor and the walls, from inside. */
-static void add_inside(asked_place places[PLACES])
+static void add_inside(asked_place points[POINTS])
 {
     rng random = test_random(6);
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < POINTS; i++) {
         vec3 p = random_in_box(&random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){1.0f, 1.0f, 2.0f});
         vec3 n = {0.0f, 0.0f, 1.0f};
         switch (i % 5) {
@@ -61,18 +61,18 @@ static void add_inside(asked_place places[PLACES])
         case 3: p.y = -1.0f, n = (vec3){0.0f, 1.0f, 0.0f}; break;
         default: p.y = 1.0f, n = (vec3){0.0f, -1.0f, 0.0f}; break;
         }
-        places[i] = (asked_place){p, n};
+        points[i] = (asked_place){p, n};
     }
 }
 
 static place_importance ask_inside(void)
 {
-    asked_place *places = malloc(PLACES * sizeof *places);
+    asked_place *points = malloc(POINTS * sizeof *points);
     place_importance importance;
-    assert_non_null(places);
-    add_inside(places);
-    assert_int_equal(place_importance_create(places, PLACES, &importance), AG_OK);
-    free(places);
+    assert_non_null(points);
+    add_inside(points);
+    assert_int_equal(place_importance_create(points, POINTS, &importance), AG_OK);
+    free(points);
     return importance;
 }
 
@@ -80,24 +80,24 @@ static place_importance ask_inside(void)
  * rays that leave by the window meet the ground. */
 static place_importance pass_to_inside(void)
 {
-    enum { OUTSIDE = PLACES / 20, WHOLE = 2 * PLACES };
-    asked_place *places = malloc((PLACES + OUTSIDE) * sizeof *places);
+    enum { OUTSIDE = POINTS / 20, WHOLE = 2 * POINTS };
+    asked_place *points = malloc((POINTS + OUTSIDE) * sizeof *points);
     place_importance importance;
-    uint32_t count = PLACES;
-    assert_non_null(places);
-    add_inside(places);
+    uint32_t count = POINTS;
+    assert_non_null(points);
+    add_inside(points);
     rng random = test_random(9);
-    while (count < PLACES + OUTSIDE) {
+    while (count < POINTS + OUTSIDE) {
         vec3 from = random_in_box(&random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){-0.5f, 1.0f, 2.0f});
         vec3 by = random_in_box(&random, (vec3){1.0f, -0.4f, 0.6f}, (vec3){1.0f, 0.4f, 1.4f});
         vec3 way = vec3_sub(by, from);
         vec3 at = vec3_add(from, vec3_scale(way, from.z / fmaxf(-way.z, 1e-6f)));
         if (at.x < 8.0f && fabsf(at.y) < 8.0f)
-            places[count++] = (asked_place){{at.x, at.y, -0.01f}, {0.0f, 0.0f, 1.0f}};
+            points[count++] = (asked_place){{at.x, at.y, -0.01f}, {0.0f, 0.0f, 1.0f}};
     }
     vec3 low = {-12.0f, -12.0f, -12.0f}, high = {12.0f, 12.0f, 12.0f};
-    assert_int_equal(place_importance_create_smooth(places, count, WHOLE, low, high, &importance), AG_OK);
-    free(places);
+    assert_int_equal(place_importance_create_smooth(points, count, WHOLE, low, high, &importance), AG_OK);
+    free(points);
     return importance;
 }
 
@@ -308,18 +308,18 @@ static void a_room_that_is_lit_from_within_needs_no_aim(void **state)
     test_run_init(&r, 2);
     scene *s = test_scene_create(&r, "LightSource \"point\" \"rgb I\" [1 1 1]\nMaterial \"diffuse\"\n"
                                      "Shape \"sphere\" \"float radius\" [1]");
-    asked_place *places = malloc(PLACES * sizeof *places);
+    asked_place *points = malloc(POINTS * sizeof *points);
     place_importance asked;
-    assert_non_null(places);
+    assert_non_null(points);
     rng random = test_random(8);
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < POINTS; i++) {
         vec3 d = random_direction(&random);
-        places[i] = (asked_place){d, vec3_negate(d)};
+        points[i] = (asked_place){d, vec3_negate(d)};
     }
-    assert_int_equal(place_importance_create(places, PLACES, &asked), AG_OK);
+    assert_int_equal(place_importance_create(points, POINTS, &asked), AG_OK);
     expect_no_guide(s, &r, PHOTON_GLOBAL, &asked);
     place_importance_reset(&asked);
-    free(places);
+    free(points);
     scene_destroy(s);
     test_run_reset(&r);
 }

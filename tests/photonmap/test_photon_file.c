@@ -23,7 +23,7 @@ static void what_was_computed_is_there_again(void **state)
     assert_int_equal(o.caustic.set.count, 0);
     for (uint32_t i = 0; i < PHOTONS; i += 3) {
         expect_right(&o.map, i, ask(&o, i));
-        field_place p = field_photon(&in_memory, i), q = field_photon(&o.map, i);
+        field_point p = field_photon(&in_memory, i), q = field_photon(&o.map, i);
         assert_memory_equal(&p, &q, sizeof p);
         expect_right(&in_memory, i, expected_at(&o.map, i));
     }
@@ -52,8 +52,8 @@ static void expect_refused(const char *path, const photon_file_key *key, const c
         fail_msg("'%s' is not in: %s", why, message);
 }
 
-/* Bearers that are a part of the photons have slots of their own, which the file keeps too. */
-static void bearers_are_kept(void **state)
+/* Irradiance photons that are a part of the photons have slots of their own, which the file keeps too. */
+static void irradiance_photons_are_kept(void **state)
 {
     (void)state;
     test_run r;
@@ -61,7 +61,7 @@ static void bearers_are_kept(void **state)
     const char *path = in_folder("b.map");
     photon_set set = field_photons(FIELD_SPHERE, PHOTONS, 3), empty = {0};
     photon_map_settings settings = {
-        .nearest = NEAREST, .max_radius = 1.0f, .surface_area = 4.0f * AG_PI, .bearing = 0.25f};
+        .nearest = NEAREST, .max_radius = 1.0f, .surface_area = 4.0f * AG_PI, .irradiance_fraction = 0.25f};
     photon_map map, none = field_map(&r, &empty, NEAREST, 1.0f);
     assert_int_equal(photon_map_create(&r.run, &set, &settings, 0.0, 1.0, &map), AG_OK);
     photon_file_key key = some_key();
@@ -79,20 +79,20 @@ static void bearers_are_kept(void **state)
                          PHOTON_FILE_OPEN);
         assert_true(o.file.is_shared);
         assert_int_equal(o.map.set.count, PHOTONS);
-        assert_int_equal(o.map.bearers.count, map.bearers.count);
-        assert_false(photon_map_all_bear(&o.map));
-        assert_true(photon_map_all_bear(&o.caustic));
+        assert_int_equal(o.map.irradiance_photons.count, map.irradiance_photons.count);
+        assert_false(photon_map_all_have_irradiance(&o.map));
+        assert_true(photon_map_all_have_irradiance(&o.caustic));
         assert_int_equal(irradiance_cache_create(&o.map, IRRADIANCE_ON_DEMAND, 1, &o.cache), AG_OK);
         irradiance_cache_share(&o.cache, &o.file.owners);
         for (uint32_t i = 0; i < PHOTONS; i += 3) {
             irradiance_request x, y;
-            field_place at = field_photon(&map, i);
+            field_point at = field_photon(&map, i);
             irradiance_cache_get(&in_memory, at.position, at.normal, 0, &x);
             irradiance_cache_get(&o.cache, at.position, at.normal, 0, &y);
             assert_memory_equal(&x.irradiance, &y.irradiance, sizeof x.irradiance);
         }
         uint64_t computed = irradiance_cache_counters(&in_memory).computed;
-        assert_true(computed > map.bearers.count / 2 && computed <= map.bearers.count);
+        assert_true(computed > map.irradiance_photons.count / 2 && computed <= map.irradiance_photons.count);
         assert_int_equal(o.cache.ready_before, time == 0 ? 0 : computed);
         assert_int_equal(irradiance_cache_counters(&o.cache).computed, time == 0 ? computed : 0);
         close_map(&o);
@@ -200,7 +200,7 @@ static void slots_may_hold_anything(void **state)
     for (uint32_t i = 0; i < PHOTONS; i++) {
         uint32_t word = (uint32_t)rng_next(&random);
         if (i % 3 == 0)
-            word = irradiance_word(IRRADIANCE_CLAIMED, word & 0x3ff); /* places and generations that there may be */
+            word = irradiance_word(IRRADIANCE_CLAIMED, word & 0x3ff); /* indices and generations that there may be */
         store_relaxed_u32(photon_block_slot(o.map.blocks, i), word);
         not_ready += !irradiance_word_is_ready(word) && word != 0 &&
                      word != irradiance_word(IRRADIANCE_CLAIMED, o.file.owners.claimer);
@@ -299,7 +299,7 @@ static void check_bytes_tell_bits(void **state)
     }
 }
 
-/* Where all places are taken a process works on a copy, in which nobody else's claims are. */
+/* Where all entries of the table are taken a process works on a copy, in which nobody else's claims are. */
 static void a_copy_has_no_claims(void **state)
 {
     (void)state;
@@ -360,7 +360,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(what_was_computed_is_there_again),
-        TEST_IN_FOLDER(bearers_are_kept),
+        TEST_IN_FOLDER(irradiance_photons_are_kept),
         TEST_IN_FOLDER(what_was_made_of_something_else_is_refused),
         TEST_IN_FOLDER(what_is_damaged_is_refused),
         TEST_IN_FOLDER(slots_may_hold_anything),

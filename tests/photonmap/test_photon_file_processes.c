@@ -177,12 +177,12 @@ static void one_that_stands_still_is_remembered(void **state)
     int ready, order;
     pid_t id = start_holder(path, &ready, &order);
     assert_int_equal(kill(id, SIGSTOP), 0);
-    irradiance_request request = {.bearer = 0};
+    irradiance_request request = {.irradiance_photon = 0};
     run_context run;
     run_context_init(&run, NULL, NULL, NULL, NULL);
     run_cancel(&run);
     irradiance_cache_retry(&o.cache, &run, &request, 0);
-    assert_int_equal(request.bearer, PHOTON_NONE);
+    assert_int_equal(request.irradiance_photon, PHOTON_NONE);
     assert_false(request.holds);
     assert_int_equal(irradiance_cache_counters(&o.cache).reclaimed, 0);
     run_context_reset(&run);
@@ -259,9 +259,9 @@ static void what_was_taken_over_is_counted(void **state)
         irradiance_request request;
         uint32_t i = asked++ % PHOTONS;
         store_relaxed_u32(photon_block_slot(o.map.blocks, i), 0); /* empty */
-        field_place p = field_photon(&o.map, i);
+        field_point p = field_photon(&o.map, i);
         irradiance_cache_get(&o.cache, p.position, p.normal, 0, &request);
-        if (request.bearer == PHOTON_NONE)
+        if (request.irradiance_photon == PHOTON_NONE)
             expect_right(&o.map, i, request.irradiance);
     }
     store_relaxed_u32(&t.stops, 1);

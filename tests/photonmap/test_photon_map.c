@@ -1,47 +1,47 @@
 /* test_photon_map.c: density estimates where the answer is known, and the slots' irradiance.
- * In an even field the mean of the estimates is right, at any place and asked for through the nearest photon, where the
+ * In an even field the mean of the estimates is right, at any point and asked for through the nearest photon, where the
  * estimate counts k photons and divides by the area out to the next one.
  * Threads: the map's build. */
 #include "fixtures/photon_field.h"
 
-/* The mean over many places, against the truth; photons and places are as many as it takes to see `tolerance`. */
-static void expect_mean(field_kind kind, uint32_t nearest, uint32_t photons, uint32_t places, int seeds, bool is_cached,
+/* The mean over many points, against the truth; photons and points are as many as it takes to see `tolerance`. */
+static void expect_mean(field_kind kind, uint32_t nearest, uint32_t photons, uint32_t points, int seeds, bool is_cached,
                         double tolerance)
 {
     test_run r;
     test_run_init(&r, 1);
     double mean[3] = {0.0, 0.0, 0.0};
     photons /= FEWER;
-    places /= FEWER;
+    points /= FEWER;
     for (int seed = 0; seed < seeds; seed++) {
         photon_set set = field_photons(kind, photons, (uint64_t)(1000 * seed) + nearest);
         photon_map map = field_map(&r, &set, nearest, kind == FIELD_SPHERE ? 1.0f : 0.15f);
         irradiance_cache cache;
         assert_int_equal(
             irradiance_cache_create(&map, is_cached ? IRRADIANCE_ON_DEMAND : IRRADIANCE_UNCACHED, 1, &cache), AG_OK);
-        for (uint32_t i = 0; i < places; i++) {
-            /* well-spread places, from two irrational steps (Roberts's R2) */
+        for (uint32_t i = 0; i < points; i++) {
+            /* well-spread points, from two irrational steps (Roberts's R2) */
             double x = i * 0.7548776662466927, y = i * 0.5698402909980532;
-            field_place at = field_place_at(kind, (vec2){(float)(x - floor(x)), (float)(y - floor(y))});
+            field_point at = field_point_at(kind, (vec2){(float)(x - floor(x)), (float)(y - floor(y))});
             irradiance_request request;
             irradiance_cache_get(&cache, at.position, at.normal, 0, &request);
-            assert_int_equal(request.bearer, PHOTON_NONE);
+            assert_int_equal(request.irradiance_photon, PHOTON_NONE);
             mean[0] += request.irradiance.r;
             mean[1] += request.irradiance.g;
             mean[2] += request.irradiance.b;
         }
         /* all were answered in the way that is meant */
         irradiance_counters c = irradiance_cache_counters(&cache);
-        assert_int_equal(c.requests, places);
+        assert_int_equal(c.requests, points);
         if (is_cached)
-            assert_true(c.uncached <= places / 10000);
+            assert_true(c.uncached <= points / 10000);
         else
             assert_int_equal(c.computed, 0);
         irradiance_cache_reset(&cache);
         photon_map_reset(&map);
     }
     test_run_reset(&r);
-    double expected = field_irradiance(kind), share = 1.0 / ((double)places * seeds);
+    double expected = field_irradiance(kind), share = 1.0 / ((double)points * seeds);
     print_message("%s, %3u nearest, %s: %+.3f %%\n", kind == FIELD_SPHERE ? "sphere" : "plane", nearest,
                   is_cached ? "cached" : "at the place", 100.0 * (mean[0] * share / FIELD_FLUX.r / expected - 1.0));
     assert_relative(mean[0] * share, expected * FIELD_FLUX.r, tolerance * WIDER);
@@ -49,7 +49,7 @@ static void expect_mean(field_kind kind, uint32_t nearest, uint32_t photons, uin
     assert_relative(mean[2] * share, expected * FIELD_FLUX.b, 1.5 * tolerance * WIDER);
 }
 
-static void the_mean_at_any_place_is_right(void **state)
+static void the_mean_at_any_point_is_right(void **state)
 {
     (void)state;
     expect_mean(FIELD_PLANE, 20, 60000, 40000, 1, false, 3e-3);
@@ -190,7 +190,7 @@ static void the_order_of_the_photons_does_not_matter(void **state)
     photon_map map_a = field_map(&r, &a, 50, 1.0f), map_b = field_map(&r, &b, 50, 1.0f);
     photon_neighbor *scratch = malloc(photon_map_scratch_count(&map_a) * sizeof *scratch);
     for (int i = 0; i < 500; i++) {
-        field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
+        field_point at = field_point_at(FIELD_SPHERE, rng_vec2(&random));
         rgb x = irradiance_estimate(&map_a, at.position, at.normal, scratch);
         rgb y = irradiance_estimate(&map_b, at.position, at.normal, scratch);
         assert_memory_equal(&x, &y, sizeof x);
@@ -310,12 +310,12 @@ static void irradiance_survives_without_bias(void **state)
     test_run_reset(&r);
 }
 
-/* Where photons lie farther apart than the mean tells, most places still have one that stands for them, and what they
+/* Where photons lie farther apart than the mean tells, most points still have one that stands for them, and what they
  * are told is right on average. */
 static void in_the_dark_the_nearest_photon_is_farther(void **state)
 {
     (void)state;
-    enum { COUNT = 2000, MAPS = 60 / (FEWER > 1 ? 6 : 1), PLACES = 4000 / (FEWER > 1 ? 4 : 1) };
+    enum { COUNT = 2000, MAPS = 60 / (FEWER > 1 ? 6 : 1), POINTS = 4000 / (FEWER > 1 ? 4 : 1) };
     test_run r;
     test_run_init(&r, 2);
     /* eight photons in the largest disc, half a one in the mean's */
@@ -332,18 +332,18 @@ static void in_the_dark_the_nearest_photon_is_farther(void **state)
         irradiance_cache cache;
         assert_int_equal(irradiance_cache_create(&map, IRRADIANCE_ON_DEMAND, 1, &cache), AG_OK);
         rng random = test_random((uint64_t)(500 + m));
-        for (int i = 0; i < PLACES; i++) {
+        for (int i = 0; i < POINTS; i++) {
             irradiance_request request;
-            field_place at = field_place_at(FIELD_SPHERE, rng_vec2(&random));
+            field_point at = field_point_at(FIELD_SPHERE, rng_vec2(&random));
             irradiance_cache_get(&cache, at.position, at.normal, 0, &request);
-            mean += (double)request.irradiance.r / (MAPS * (double)PLACES);
+            mean += (double)request.irradiance.r / (MAPS * (double)POINTS);
         }
-        uncached += (double)irradiance_cache_counters(&cache).uncached / (MAPS * (double)PLACES);
+        uncached += (double)irradiance_cache_counters(&cache).uncached / (MAPS * (double)POINTS);
         irradiance_cache_reset(&cache);
         photon_map_reset(&map);
     }
     double expected = (double)FIELD_FLUX.r * field_irradiance(FIELD_SPHERE);
-    print_message("in the dark: %+.2f %%, %.1f %% of the places without a photon\n", 100.0 * (mean / expected - 1.0),
+    print_message("in the dark: %+.2f %%, %.1f %% of the points without a photon\n", 100.0 * (mean / expected - 1.0),
                   100.0 * uncached);
     assert_relative(mean, expected, 0.01 * WIDER);
     assert_true(fabs(uncached - exp(-2.0)) < 0.02 * WIDER);
@@ -379,7 +379,7 @@ static void a_ball_is_no_wall(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_mean_at_any_place_is_right),
+        cmocka_unit_test(the_mean_at_any_point_is_right),
         cmocka_unit_test(the_mean_through_the_nearest_photon_is_right),
         cmocka_unit_test(an_estimate_counts_k_and_reaches_to_the_next),
         cmocka_unit_test(coincident_photons_give_finite_values),

@@ -35,7 +35,7 @@ static void test_union(void **state)
     test_run_init(&r, 1);
     photon_map into = make_map(&r), from = make_map(&r);
     uint64_t added = 5;
-    uint32_t bearer;
+    uint32_t irradiance_photon;
     for (uint32_t i = 0; i < PHOTONS; i++) {
         if (i % 3 == 0)
             set(&into, i, word_of(i));
@@ -43,14 +43,15 @@ static void test_union(void **state)
             set(&from, i, word_of(i));
     }
     assert_int_equal(photon_merge_count_ready(&into), PHOTONS / 3);
-    assert_int_equal(photon_merge(&into, &from, &added, &bearer), PHOTON_MERGE_DONE);
+    assert_int_equal(photon_merge(&into, &from, &added, &irradiance_photon), PHOTON_MERGE_DONE);
     assert_int_equal(added, 5 + PHOTONS / 4 - PHOTONS / 12);
     assert_int_equal(photon_merge_count_ready(&into), PHOTONS / 3 + PHOTONS / 4 - PHOTONS / 12);
     for (uint32_t i = 0; i < PHOTONS; i++) {
         assert_int_equal(get(&into, i), i % 3 == 0 || i % 4 == 0 ? word_of(i) : 0);
         assert_int_equal(get(&from, i), i % 4 == 0 ? word_of(i) : 0);
     }
-    assert_int_equal(photon_merge(&into, &from, &added, &bearer), PHOTON_MERGE_DONE); /* once more: nothing */
+    assert_int_equal(photon_merge(&into, &from, &added, &irradiance_photon),
+                     PHOTON_MERGE_DONE); /* once more: nothing */
     assert_int_equal(added, 5 + PHOTONS / 4 - PHOTONS / 12);
     photon_map_reset(&into);
     photon_map_reset(&from);
@@ -64,12 +65,12 @@ static void test_differing(void **state)
     test_run_init(&r, 1);
     photon_map into = make_map(&r), from = make_map(&r);
     uint64_t added = 0;
-    uint32_t bearer = 0;
+    uint32_t irradiance_photon = 0;
     set(&from, 3, word_of(3));
     set(&into, 500, word_of(500));
     set(&from, 500, word_of(500) ^ 1);
-    assert_int_equal(photon_merge(&into, &from, &added, &bearer), PHOTON_MERGE_DIFFERS);
-    assert_int_equal(bearer, 500);
+    assert_int_equal(photon_merge(&into, &from, &added, &irradiance_photon), PHOTON_MERGE_DIFFERS);
+    assert_int_equal(irradiance_photon, 500);
     assert_int_equal(added, 0);
     assert_int_equal(get(&into, 3), 0);
     photon_map_reset(&into);

@@ -1,4 +1,4 @@
-/* test_photon_nearest_many.c: many places at once find the photons that each finds alone, and the kernels for AVX2 do
+/* test_photon_nearest_many.c: many points at once find the photons that each finds alone, and the kernels for AVX2 do
  * what the plain ones do, to the bit. */
 #include "fixtures/test_scene.h"
 #include "photon_kernels.h"
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COUNT = 6000, PLACES = 61 * PHOTON_LOOKUPS_MAX / 2 };
+enum { COUNT = 6000, POINTS = 61 * PHOTON_LOOKUPS_MAX / 2 };
 
 typedef enum cloud { BALL, WALLS, GRID, COINCIDENT, TWO_CLUSTERS, FEW, CLOUD_KINDS } cloud;
 
@@ -53,7 +53,7 @@ static int by_leaf(const void *a, const void *b)
 static void make_lookups(const photon_tree *tree, uint64_t seed, photon_lookup *lookups)
 {
     rng random = test_random(seed);
-    for (uint32_t i = 0; i < PLACES; i++) {
+    for (uint32_t i = 0; i < POINTS; i++) {
         uint32_t photon_index = (uint32_t)(rng_next(&random) % tree->count);
         vec3 at = random_in_box(&random, (vec3){-1.5f, -1.5f, -1.5f}, (vec3){1.5f, 1.5f, 1.5f});
         if (i % 3 < 2)
@@ -62,7 +62,7 @@ static void make_lookups(const photon_tree *tree, uint64_t seed, photon_lookup *
             i % 2 ? random_direction(&random) : direction_decode(photon_block_normal(tree->blocks, photon_index));
         lookups[i] = (photon_lookup){at, normal, photon_tree_leaf(tree, at)};
     }
-    qsort(lookups, PLACES, sizeof *lookups, by_leaf);
+    qsort(lookups, POINTS, sizeof *lookups, by_leaf);
 }
 
 static void check_kernels(const photon_tree *tree, const photon_kernels *kernels, const photon_lookup *lookups)
@@ -72,10 +72,10 @@ static void check_kernels(const photon_tree *tree, const photon_kernels *kernels
     photon_walk_init(&walk, tree);
     walk.kernels = kernels;
     uint32_t found_count = 0, missed_count = 0;
-    for (uint32_t begin = 0, round = 0, count; begin < PLACES; begin += count, round++) {
+    for (uint32_t begin = 0, round = 0, count; begin < POINTS; begin += count, round++) {
         photon_neighbor many[PHOTON_LOOKUPS_MAX];
         count = round % 3 ? PHOTON_LOOKUPS_MAX : 1 + round % PHOTON_LOOKUPS_MAX;
-        count = PLACES - begin < count ? PLACES - begin : count;
+        count = POINTS - begin < count ? POINTS - begin : count;
         float radius = RADII[round / 3 % 4], min_cos = round % 2 ? 0.9f : 0.0f;
         photon_walk_nearest_many(&walk, lookups + begin, count, min_cos, radius, many);
         for (uint32_t i = 0; i < count; i++) {
@@ -94,7 +94,7 @@ static void check_kernels(const photon_tree *tree, const photon_kernels *kernels
 static void many_find_what_each_finds_alone(void **state)
 {
     (void)state;
-    static photon_lookup lookups[PLACES];
+    static photon_lookup lookups[POINTS];
     test_run r;
     test_run_init(&r, 2);
     for (int kind = 0; kind < CLOUD_KINDS; kind++) {
@@ -112,11 +112,11 @@ static void many_find_what_each_finds_alone(void **state)
     test_run_reset(&r);
 }
 
-/* Any number of places, the ends of vectors among them. */
+/* Any number of points, the ends of vectors among them. */
 static void leaves_are_those_of_each_alone(void **state)
 {
     (void)state;
-    static photon_lookup lookups[PLACES];
+    static photon_lookup lookups[POINTS];
     test_run r;
     test_run_init(&r, 2);
     const photon_kernels *kernels[] = {&photon_kernels_plain, photon_kernels_best()};
@@ -145,7 +145,7 @@ static void kernels_write_the_same(void **state)
 {
     (void)state;
     const photon_kernels *plain = &photon_kernels_plain, *best = photon_kernels_best();
-    static photon_lookup lookups[PLACES];
+    static photon_lookup lookups[POINTS];
     static photon_visits from, to[2], found[2];
     static float distances[2][sizeof found->node / sizeof *found->node];
     test_run r;
@@ -164,7 +164,7 @@ static void kernels_write_the_same(void **state)
         assert_true(plain->meet_plane(&reach, tree.nodes[node]) == best->meet_plane(&reach, tree.nodes[node]));
     from.count = 0;
     for (uint32_t i = 0; i < PHOTON_LOOKUPS_MAX - 3; i++) {
-        from.place[from.count] = i;
+        from.lookup[from.count] = i;
         from.node[from.count++] = 0;
     }
     for (uint32_t level = 0; level < tree.depth; level++) {
@@ -176,7 +176,7 @@ static void kernels_write_the_same(void **state)
         uint64_t sums[2] = {0, 0};
         for (int k = 0; k < 2; k++)
             for (uint32_t i = 0; i < to[k].count; i++)
-                sums[k] += hash_mix64((uint64_t)to[k].place[i] << 32 | to[k].node[i]);
+                sums[k] += hash_mix64((uint64_t)to[k].lookup[i] << 32 | to[k].node[i]);
         assert_true(sums[0] == sums[1]);
         from = to[0];
     }
@@ -187,7 +187,7 @@ static void kernels_write_the_same(void **state)
     best->scan(tree.blocks, &reach, &from, &found[1], distances[1]);
     assert_true(found[0].count > 0 && found[0].count < from.count);
     assert_int_equal(found[0].count, found[1].count);
-    assert_memory_equal(found[0].place, found[1].place, found[0].count * sizeof *found->place);
+    assert_memory_equal(found[0].lookup, found[1].lookup, found[0].count * sizeof *found->lookup);
     assert_memory_equal(found[0].node, found[1].node, found[0].count * sizeof *found->node);
     assert_memory_equal(distances[0], distances[1], found[0].count * sizeof **distances);
     photon_tree_reset(&tree);

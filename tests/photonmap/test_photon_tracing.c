@@ -194,7 +194,7 @@ static void media_take_their_share(void **state)
             assert_close(set.balance.gained[c], set.balance.lost[c], 0.03 * WIDER * arrived);
             assert_true(set.balance.escaped[c] == 0.0);
         }
-        assert_int_equal(set.passages_cut, 0);
+        assert_int_equal(set.rays_cut, 0);
         photon_set_reset(&set);
         scene_destroy(s);
         test_run_reset(&r);
@@ -344,7 +344,7 @@ static void a_shortage_is_explained(void **state)
 }
 
 /* A plate goes through a narrow beam, by which it is met for so much of the time; the floor below has the rest. Photons
- * on the plate lie where those places are when it starts. */
+ * on the plate lie where those points are when it starts. */
 static void paths_have_times_of_their_own(void **state)
 {
     (void)state;

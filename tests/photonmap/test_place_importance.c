@@ -1,4 +1,4 @@
-/* test_place_importance.c: the importance of a place is the share of questions per area around it, on its own side of a
+/* test_place_importance.c: the importance of a point is the share of questions per area around it, on its own side of a
  * surface, and nothing elsewhere. Threads: one. */
 #include "place_importance.h"
 
@@ -8,12 +8,12 @@ enum { COUNT = 20000 };
 
 static asked_place *field(vec3 low, vec3 high, vec3 normal, uint32_t count)
 {
-    asked_place *places = malloc(count * sizeof *places);
-    assert_non_null(places);
+    asked_place *points = malloc(count * sizeof *points);
+    assert_non_null(points);
     rng random = test_random(count);
     for (uint32_t i = 0; i < count; i++)
-        places[i] = (asked_place){random_in_box(&random, low, high), normal};
-    return places;
+        points[i] = (asked_place){random_in_box(&random, low, high), normal};
+    return points;
 }
 
 /* Evenly asked for, on a square of 3 x 2 that is turned by 30 degrees about x. */
@@ -21,11 +21,11 @@ static void an_even_field_is_even(void **state)
 {
     (void)state;
     const float c = 0.8660254f, s = 0.5f;
-    asked_place *places = field((vec3){0.0f, 0.0f, 5.0f}, (vec3){3.0f, 2.0f, 5.0f}, (vec3){0.0f, -s, c}, COUNT);
+    asked_place *points = field((vec3){0.0f, 0.0f, 5.0f}, (vec3){3.0f, 2.0f, 5.0f}, (vec3){0.0f, -s, c}, COUNT);
     for (int i = 0; i < COUNT; i++)
-        places[i].position = (vec3){places[i].position.x, c * places[i].position.y, 5.0f + s * places[i].position.y};
+        points[i].position = (vec3){points[i].position.x, c * points[i].position.y, 5.0f + s * points[i].position.y};
     place_importance importance;
-    assert_int_equal(place_importance_create(places, COUNT, &importance), AG_OK);
+    assert_int_equal(place_importance_create(points, COUNT, &importance), AG_OK);
     rng random = test_random(1);
     double sum = 0.0;
     int empty = 0, tries = 20000;
@@ -43,18 +43,18 @@ static void an_even_field_is_even(void **state)
     assert_true(sum > 0.5 / 6.0 && sum < 2.0 / 6.0);
     assert_true(empty < tries / 100);
     place_importance_reset(&importance);
-    free(places);
+    free(points);
 }
 
 /* Half of the questions on a hundredth of the area. */
 static void what_is_asked_more_counts_more(void **state)
 {
     (void)state;
-    asked_place *places = field((vec3){0.0f, 0.0f, 0.0f}, (vec3){1.0f, 1.0f, 0.0f}, (vec3){0.0f, 0.0f, 1.0f}, COUNT);
+    asked_place *points = field((vec3){0.0f, 0.0f, 0.0f}, (vec3){1.0f, 1.0f, 0.0f}, (vec3){0.0f, 0.0f, 1.0f}, COUNT);
     for (int i = 0; i < COUNT / 2; i++)
-        places[i].position = vec3_scale(places[i].position, 0.1f);
+        points[i].position = vec3_scale(points[i].position, 0.1f);
     place_importance importance;
-    assert_int_equal(place_importance_create(places, COUNT, &importance), AG_OK);
+    assert_int_equal(place_importance_create(points, COUNT, &importance), AG_OK);
     rng random = test_random(2);
     double near = 0.0, far = 0.0;
     for (int i = 0; i < 1000; i++) {
@@ -66,7 +66,7 @@ static void what_is_asked_more_counts_more(void **state)
     assert_relative(near, 50.5, 0.3);
     assert_relative(far, 0.5, 0.3);
     place_importance_reset(&importance);
-    free(places);
+    free(points);
 }
 
 static void odd_fields_are_safe(void **state)

@@ -1,4 +1,4 @@
-/* test_surface_region.c: what is surface around a place: nothing to tell in the open and on a ball, half planes at
+/* test_surface_region.c: what is surface around a point: nothing to tell in the open and on a ball, half planes at
  * walls and edges, a corner's quarter, none of the next room; and estimates that are right right up to the edge.
  * Threads: one at a time. */
 #include "surface_region.h"
@@ -19,10 +19,10 @@ static const vec3 UP = {0.0f, 1.0f, 0.0f};
 /* Area of the disc of radius 1 on the near side of a line at that distance. */
 static double cut_disc(double distance) { return PI - (acos(distance) - distance * sqrt(1.0 - distance * distance)); }
 
-typedef struct place {
+typedef struct test_point {
     vec3 at;
     double expected; /* area over radius squared; 0: nothing ends it */
-} place;
+} test_point;
 
 static void areas_are_those_of_cut_discs(void **state)
 {
@@ -32,7 +32,7 @@ static void areas_are_those_of_cut_discs(void **state)
     test_run_init(&r, 1);
     scene *s = test_scene_create(&r, ROOM);
     const float radius = 0.2f;
-    const place places[] = {
+    const test_point points[] = {
         {{-0.3f, 0.0f, -0.2f}, 0.0},           /* in the open */
         {{-0.9f, 0.0f, 0.0f}, cut_disc(0.5)},  /* a wall */
         {{0.94f, 0.0f, -0.4f}, cut_disc(0.3)}, /* an open edge */
@@ -40,19 +40,19 @@ static void areas_are_those_of_cut_discs(void **state)
         {{0.5f, 0.0f, 0.56f}, cut_disc(0.3)},  {{-0.998f, 0.0f, -0.998f}, PI / 4.0 + 0.02}, /* a corner */
     };
     rng random = test_random(3);
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+    for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
         double sum = 0.0;
         enum { TRIALS = 200 };
         for (int k = 0; k < TRIALS; k++) {
             vec3 jitter = {(rng_float(&random) - 0.5f) * 2e-3f, 0.0f, (rng_float(&random) - 0.5f) * 2e-3f};
             surface_region region;
-            bool is_bounded = surface_region_find(s, vec3_add(places[i].at, jitter), UP, 0.5f, radius, &rays, &region);
-            assert_int_equal(is_bounded, places[i].expected > 0.0);
+            bool is_bounded = surface_region_find(s, vec3_add(points[i].at, jitter), UP, 0.5f, radius, &rays, &region);
+            assert_int_equal(is_bounded, points[i].expected > 0.0);
             sum += is_bounded ? surface_region_area(&region, radius) / ((double)radius * radius) : 0.0;
         }
         double mean = sum / TRIALS;
-        if (places[i].expected > 0.0 && !(fabs(mean - places[i].expected) < 0.01 * places[i].expected))
-            fail_msg("place %zu: area %.4f, not %.4f", i, mean, places[i].expected);
+        if (points[i].expected > 0.0 && !(fabs(mean - points[i].expected) < 0.01 * points[i].expected))
+            fail_msg("point %zu: area %.4f, not %.4f", i, mean, points[i].expected);
     }
     scene_destroy(s);
     test_run_reset(&r);
@@ -68,10 +68,10 @@ static void area_and_membership_agree(void **state)
     test_run_init(&r, 1);
     scene *s = test_scene_create(&r, ROOM);
     rng random = test_random(4);
-    enum { PLACES = 300, POINTS = 4000 };
+    enum { DISCS = 300, POINTS = 4000 };
     const float radius = 0.3f;
     int bounded = 0, all_astray = 0, all_inside = 0;
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < DISCS; i++) {
         vec3 at = {2.0f * rng_float(&random) - 1.0f, 0.0f, 2.0f * rng_float(&random) - 1.0f};
         surface_region region;
         if (!surface_region_find(s, at, UP, 0.5f, radius, &rays, &region))
@@ -94,7 +94,7 @@ static void area_and_membership_agree(void **state)
         all_astray += astray;
         all_inside += inside;
     }
-    assert_true(bounded > PLACES / 4);
+    assert_true(bounded > DISCS / 4);
     print_message("%.2f %% of the regions is no surface\n", 100.0 * all_astray / all_inside);
     assert_true(all_astray < all_inside / 100);
     scene_destroy(s);

@@ -14,7 +14,7 @@ static void test_box_with_blocks(void **state)
     compare_integrators("box_with_blocks", "--spp=64", "--only=indirect", SIGMA_MOST);
 }
 
-static void test_few_bearers(void **state)
+static void test_few_irradiance_photons(void **state)
 {
     (void)state;
     compare_integrators_with("box_with_blocks", "--spp=64", "--only=indirect", "--irradiance-fraction=0.25",
@@ -39,7 +39,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_box_with_blocks),
-        TEST_IN_FOLDER(test_few_bearers),
+        TEST_IN_FOLDER(test_few_irradiance_photons),
         TEST_IN_FOLDER(test_next_room),
         TEST_IN_FOLDER(test_tea_in_glass),
     };

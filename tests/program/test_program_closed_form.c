@@ -46,8 +46,8 @@ static void test_light_in_the_middle(void **state)
         }
 }
 
-/* The same light where few of the photons bear irradiance. */
-static void test_few_bearers(void **state)
+/* Irradiance kept at few of the photons gives the same light. */
+static void test_few_irradiance_photons(void **state)
 {
     (void)state;
     static const char *const FRACTIONS[] = {"--irradiance-fraction=0.5", "--irradiance-fraction=0.125"};
@@ -420,7 +420,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_light_in_the_middle),
-        TEST_IN_FOLDER(test_few_bearers),
+        TEST_IN_FOLDER(test_few_irradiance_photons),
         TEST_IN_FOLDER(test_black_among_white),
         TEST_IN_FOLDER(test_light_off_the_middle),
         TEST_IN_FOLDER(test_spot_in_the_sphere),

@@ -17,6 +17,23 @@ static void test_curves_in_a_furnace(void **state)
     }
 }
 
+/* Nor is hair without colour, which keeps all light. */
+static void test_white_hair_in_a_furnace(void **state)
+{
+    (void)state;
+    static const char TEXT[] = "LookAt 0 -5 1  0 0 1  0 0 1\nCamera \"perspective\" \"float fov\" 20\nPixelFilter "
+                               "\"box\"\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [1.5 1.5 1.5]\nMaterial "
+                               "\"hair\" \"float eumelanin\" 0 \"float beta_m\" .4\n"
+                               "Shape \"curve\" \"float width\" .4 \"point3 P\" [-.5 0 0 0 0 .5 0 0 1.5 .5 0 2]\n"
+                               "Shape \"curve\" \"string type\" \"cylinder\" \"float width\" .5 \"point3 P\" "
+                               "[-2 .5 .5 -1 .5 1.5 1 .5 .5 2 .5 1.5]\n";
+    for (int k = 0; k < INTEGRATOR_COUNT; k++) {
+        picture p = RENDER(write_text("white.pbrt", TEXT), INTEGRATORS[k], "--spp=256", "--size=32x32");
+        expect_uniform(INTEGRATORS[k], &p, 1.5, 0.004, BLOCK, 0.015);
+        picture_reset(&p);
+    }
+}
+
 #define UNDER_A_LAMP                                                                                                   \
     "LookAt 0 -5 1  0 0 1  0 0 1\nCamera \"perspective\" \"float fov\" 20\nPixelFilter \"box\"\nWorldBegin\n"          \
     "LightSource \"distant\" \"point3 from\" [1 -1 1] \"point3 to\" [0 0 0]\nLightSource \"infinite\" \"rgb L\" "      \
@@ -49,7 +66,8 @@ static double hash(unsigned n)
     return (n ^ (n >> 15)) * 0x1p-32;
 }
 
-static const char *write_tuft(void)
+/* materials: of the tubes, the flat ones and the ribbons. */
+static const char *write_tuft(const char *const materials[3])
 {
     static char text[400000];
     static const char *const TYPES[] = {"cylinder", "flat", "ribbon"};
@@ -58,10 +76,7 @@ static const char *write_tuft(void)
         double r = 0.7 * sqrt(hash(7 * i)), a = 6.283185307 * hash(7 * i + 1), x = r * cos(a), y = r * sin(a);
         double lean = 0.5 + 0.5 * hash(7 * i + 2), h = 0.6 + 0.5 * hash(7 * i + 3);
         if (i % 300 == 0)
-            n += (size_t)snprintf(text + n, sizeof text - n, "Material \"diffuse\" \"rgb reflectance\" [%s]\n",
-                                  i == 0     ? ".8 .5 .3"
-                                  : i == 300 ? ".4 .7 .4"
-                                             : ".7 .7 .8");
+            n += (size_t)snprintf(text + n, sizeof text - n, "Material %s\n", materials[i / 300]);
         n += (size_t)snprintf(text + n, sizeof text - n,
                               "Shape \"curve\" \"string type\" \"%s\" \"float width0\" .03 \"float width1\" .01 "
                               "\"point3 P\" [%g %g -.01 %g %g %g %g %g %g %g %g %g]%s\n",
@@ -99,17 +114,32 @@ static void expect_both_alike(const char *scene, const char *only, double of_mea
 static void test_a_tuft_of_hair(void **state)
 {
     (void)state;
-    const char *scene = write_tuft();
+    static const char *const MATTE[3] = {"\"diffuse\" \"rgb reflectance\" [.8 .5 .3]",
+                                         "\"diffuse\" \"rgb reflectance\" [.4 .7 .4]",
+                                         "\"diffuse\" \"rgb reflectance\" [.7 .7 .8]"};
+    const char *scene = write_tuft(MATTE);
     expect_both_alike(scene, NULL, 0.015, 0.12);
     expect_both_alike(scene, "--only=indirect", 0.04, 0.25);
+}
+
+/* Hair as it scatters: photons that go on from hair to the floor are those of the eye's ways back. */
+static void test_a_tuft_of_fibres(void **state)
+{
+    (void)state;
+    static const char *const HAIR[3] = {"\"hair\" \"float eumelanin\" .3",
+                                        "\"hair\" \"rgb color\" [.5 .5 .5] \"float beta_m\" .5 \"float beta_n\" .5",
+                                        "\"hair\" \"rgb sigma_a\" [.1 .2 .4] \"float alpha\" 3"};
+    expect_both_alike(write_tuft(HAIR), NULL, 0.02, 0.15);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_curves_in_a_furnace),
+        TEST_IN_FOLDER(test_white_hair_in_a_furnace),
         TEST_IN_FOLDER(test_a_tube_is_as_bright_as_a_cylinder),
         TEST_IN_FOLDER(test_a_tuft_of_hair),
+        TEST_IN_FOLDER(test_a_tuft_of_fibres),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* test_program_same_bits.c: the same picture, bit for bit, whatever the number of threads, on demand and precomputed,
- * twice each, in a plain room, in one full of coincidences and in one that moves; also where few photons bear
+ * twice each, in a plain room, in one full of coincidences and in one that moves; also where few photons keep
  * irradiance; and in no run is an irradiance computed twice.
  *
  * Flow: tests of the whole program. Threads: the program's, up to more than there are processors. */
@@ -40,16 +40,16 @@ static void expect_same(const char *what, const picture *p, const picture *refer
                      (double)p->pixels[i], (double)reference->pixels[i]);
 }
 
-/* What must hold of every picture by photon map. bearers: photons at most that bear irradiance in a tree of their own.
+/* Checks what must hold of every picture by photon map. irradiance_photons: the most that a tree of their own may hold.
  */
-static void expect_balance(const char *stats_file, long long photons, long long bearers)
+static void expect_balance(const char *stats_file, long long photons, long long irradiance_photons)
 {
     json_t *stats = stats_read(in_folder(stats_file));
     long long global = stats_integer(stats, "photons.stored_global"),
               caustic = stats_integer(stats, "photons.stored_caustic");
     long long computed = stats_integer(stats, "irradiance.computed");
     assert_int_equal(global, photons);
-    assert_true(stats_integer(stats, "photons.bytes") <= 28 * (global + caustic + bearers) + 2048);
+    assert_true(stats_integer(stats, "photons.bytes") <= 28 * (global + caustic + irradiance_photons) + 2048);
     assert_true(computed > 0);
     assert_int_equal(computed, stats_integer(stats, "irradiance.distinct"));
     assert_int_equal(stats_integer(stats, "irradiance.duplicated"), 0);
@@ -100,13 +100,13 @@ static void test_coincidences(void **state)
     expect_same_for_all_threads(COINCIDENCES, NULL);
 }
 
-static void test_few_bearers(void **state)
+static void test_few_irradiance_photons(void **state)
 {
     (void)state;
     expect_same_for_all_threads(BOX, "--irradiance-fraction=0.125");
     json_t *stats = stats_read(in_folder("stats.json")); /* of the last picture, precomputed */
     long long computed = stats_integer(stats, "irradiance.computed");
-    /* where few photons lie far apart, more bear */
+    /* where few photons lie far apart, more of them are irradiance photons */
     assert_true(computed >= PHOTON_COUNT / 8 && computed < PHOTON_COUNT / 2);
     json_decref(stats);
 }
@@ -228,11 +228,16 @@ static void test_cache_off(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_plain_room),  TEST_IN_FOLDER(test_coincidences),
-        TEST_IN_FOLDER(test_motion),      TEST_IN_FOLDER(test_few_photons_for_many_threads),
-        TEST_IN_FOLDER(test_path_tracer), TEST_IN_FOLDER(test_crop),
-        TEST_IN_FOLDER(test_seed),        TEST_IN_FOLDER(test_cache_off),
-        TEST_IN_FOLDER(test_few_bearers), TEST_IN_FOLDER(test_unguided),
+        TEST_IN_FOLDER(test_plain_room),
+        TEST_IN_FOLDER(test_coincidences),
+        TEST_IN_FOLDER(test_motion),
+        TEST_IN_FOLDER(test_few_photons_for_many_threads),
+        TEST_IN_FOLDER(test_path_tracer),
+        TEST_IN_FOLDER(test_crop),
+        TEST_IN_FOLDER(test_seed),
+        TEST_IN_FOLDER(test_cache_off),
+        TEST_IN_FOLDER(test_few_irradiance_photons),
+        TEST_IN_FOLDER(test_unguided),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

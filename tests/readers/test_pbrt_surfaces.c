@@ -344,10 +344,68 @@ static void old_mixes(void **state)
     assert_int_equal(m.mixed[1], 1);
 }
 
+/* ---- hair ---- */
+
+static void hair_is_colored_by_one_of_its_words(void **state)
+{
+    (void)state;
+    material m = silent_material("Material \"hair\"");
+    assert_int_equal(m.kind, MATERIAL_HAIR);
+    assert_near(m.ior, 1.55, 1e-6);
+    assert_near(m.hair_beta_m, .3, 1e-6);
+    assert_near(m.hair_beta_n, .3, 1e-6);
+    assert_near(m.hair_tilt_degrees, 2, 1e-6);
+    assert_rgb(m.hair_sigma_a, 1.3 * .419, 1.3 * .697, 1.3 * 1.37, 1e-5);
+    m = silent_material("Material \"hair\" \"float eumelanin\" .5 \"float pheomelanin\" 2 \" float beta_n\" .5");
+    assert_rgb(m.hair_sigma_a, .5 * .419 + 2 * .187, .5 * .697 + 2 * .4, .5 * 1.37 + 2 * 1.05, 1e-5);
+    assert_near(m.hair_beta_n, .5, 1e-6);
+    m = silent_material("Material \"hair\" \"rgb sigma_a\" [ .1 0 3 ] \"rgb color\" [ .1 .2 .3 ] \"float eta\" 1.4");
+    assert_rgb(m.hair_sigma_a, .1, 0, 3, 1e-6);
+    assert_near(m.ior, 1.4, 1e-6);
+    /* of a colour: (ln c / fit)^2 */
+    double fit = 5.969 - 0.215 * .3 + 2.532 * .09 - 10.73 * .027 + 5.574 * .0081 + 0.245 * .00243;
+    static const char *const COLORS[] = {"reflectance", "color"};
+    for (int i = 0; i < 2; i++) {
+        char text[128];
+        snprintf(text, sizeof text, "Material \"hair\" \"rgb %s\" [ .35 1 .1 ]", COLORS[i]);
+        m = silent_material(text);
+        assert_rgb(m.hair_sigma_a, pow(log(.35) / fit, 2), 0, pow(log(.1) / fit, 2), 1e-5);
+    }
+    refuses("Material \"hair\" \"float beta_m\" 1.5", "\"beta_m\" should be from 0 to 1");
+    refuses("Material \"hair\" \"float eta\" .9", "\"eta\" of \"hair\" should be above 1");
+    refuses("Material \"hair\" \"rgb sigma_a\" [ -1 0 0 ]", "\"rgb sigma_a\" has a negative component");
+    m = warned_material(FLOATS "Material \"hair\" \"texture beta_m\" \"f\"",
+                        "material \"hair\": a texture for \"beta_m\" is not supported: 0.3 stands in\n");
+    assert_near(m.hair_beta_m, .3, 1e-6);
+}
+
+/* Whose scattering is that of a whole fibre. */
+static void curves_of_hair_are_flat_to_rays(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *material;
+        curves_type type;
+    } CASES[] = {
+        {"Material \"hair\"", CURVES_FLAT},
+        {"Material \"diffuse\"", CURVES_CYLINDER},
+        {"MakeNamedMaterial \"h\" \"string type\" \"hair\" MakeNamedMaterial \"d\" \"string type\" \"diffuse\" "
+         "Material \"mix\" \"string materials\" [\"d\" \"h\"]",
+         CURVES_FLAT}};
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "%s Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3]",
+                 CASES[i].material);
+        reading r = read_world(text);
+        assert_int_equal(r.scene->shapes[r.scene->shape_count - 1].as.curves.type, CASES[i].type);
+        reading_destroy(&r);
+    }
+}
+
 /* ---- stand-ins ---- */
 
 #define STANDS_IN(type, what) "material \"" type "\" is not supported: " what " stands in\n"
-#define FOR_HAIR              STANDS_IN("hair", "\"diffuse\" of its colour")
 #define FOR_FLESH                                                                                                      \
     STANDS_IN("subsurface", "\"coateddiffuse\" of its diffuse reflectance, which lets no light travel inside,")
 
@@ -355,24 +413,6 @@ static void stand_ins_keep_what_they_can(void **state)
 {
     (void)state;
     material m = warned_material(
-        "Material \"hair\" \"rgb reflectance\" [ .1 .2 .3 ] \"float beta_m\" .2 Material \"hair\" \"rgb "
-        "reflectance\" [ .4 .2 .3 ]",
-        FOR_HAIR);
-    assert_int_equal(m.kind, MATERIAL_DIFFUSE);
-    assert_rgb(m.reflectance, .4, .2, .3, 1e-7);
-    assert_rgb(warned_material("Material \"hair\" \"rgb color\" [ .1 .2 .3 ]", FOR_HAIR).reflectance, .1, .2, .3, 1e-7);
-    /* the default is brown; no pigment at all is white */
-    m = warned_material("Material \"hair\"", FOR_HAIR);
-    assert_true(m.reflectance.r > m.reflectance.g && m.reflectance.g > m.reflectance.b && m.reflectance.b > 0.0f &&
-                m.reflectance.r < 0.2f);
-    assert_rgb(warned_material("Material \"hair\" \"float eumelanin\" 0", FOR_HAIR).reflectance, 1, 1, 1, 0);
-    /* sigma_a of a colour and back: (ln c / fit)^2 */
-    double fit = 5.969 - 0.215 * .3 + 2.532 * .09 - 10.73 * .027 + 5.574 * .0081 + 0.245 * .00243;
-    char text[256];
-    snprintf(text, sizeof text, "Material \"hair\" \"rgb sigma_a\" [ %.9g 0 0 ]", pow(log(.35) / fit, 2));
-    assert_rgb(warned_material(text, FOR_HAIR).reflectance, .35, 1, 1, 1e-5);
-
-    m = warned_material(
         "Material \"subsurface\" \"rgb reflectance\" [ .1 .2 .3 ] \"rgb mfp\" [ 1 1 1 ] \"float roughness\" .04",
         FOR_FLESH);
     assert_int_equal(m.kind, MATERIAL_COATED_DIFFUSE);
@@ -407,6 +447,8 @@ int main(void)
         cmocka_unit_test(old_plastics),
         cmocka_unit_test(old_glass_and_metal),
         cmocka_unit_test(old_mixes),
+        cmocka_unit_test(hair_is_colored_by_one_of_its_words),
+        cmocka_unit_test(curves_of_hair_are_flat_to_rays),
         cmocka_unit_test(stand_ins_keep_what_they_can),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

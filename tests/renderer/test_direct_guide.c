@@ -26,7 +26,7 @@ static direct_guide guide_of(const scene *s, direct_bins *seen)
     direct_guide g;
     assert_true(direct_guide_serves(s));
     assert_int_equal(direct_guide_create(s, positions, normals, PLACES, order, &g), AG_OK);
-    assert_true(g.cell_count > PLACES / DIRECT_GUIDE_CELL_PLACES && g.share_count == 3 && g.histogram_count == 1);
+    assert_true(g.cell_count > PLACES / DIRECT_GUIDE_CELL_POINTS && g.share_count == 3 && g.histogram_count == 1);
     uint32_t placed = 0;
     for (uint32_t i = 0; i < g.cell_count; i++) {
         float way = normals[order[g.cells[i].begin]].z;
@@ -34,7 +34,7 @@ static direct_guide guide_of(const scene *s, direct_bins *seen)
             uint32_t place = order[g.cells[i].begin + k];
             assert_true(normals[place].z == way);
         }
-        assert_true(g.cells[i].count >= DIRECT_GUIDE_CELL_PLACES_MIN && g.cells[i].count <= DIRECT_GUIDE_CELL_PLACES);
+        assert_true(g.cells[i].count >= DIRECT_GUIDE_CELL_POINTS_MIN && g.cells[i].count <= DIRECT_GUIDE_CELL_POINTS);
     }
     assert_int_equal(placed, PLACES);
     assert_int_equal(direct_guide_find(&g, positions[0], normals[0]), DIRECT_GUIDE_NO_CELL); /* nothing is seen yet */

@@ -17,7 +17,7 @@ static mean_sum measure(eye *e, sample_counts counts)
     vertex v = eye_meet(e, (vec3){0.0f, 0.0f, 0.5f}, (vec3){0.0f, 0.0f, -1.0f});
     for (uint32_t i = 0; i < SAMPLES; i++) {
         sampler where = sampler_make(i, 3, 4, 0, 0); /* a seed of its own each: independent */
-        mean_add(&sum, (double)direct_light_gathered(&e->t, e->worker, &v, &where, 0, counts, NULL).g);
+        mean_add(&sum, (double)direct_light_gathered(&e->t, e->worker, &v, &where, 0, counts, NULL).radiance.g);
     }
     return sum;
 }
@@ -50,8 +50,8 @@ static void sky(void **state)
         assert_mean(&sum, REFLECTANCE * 10.0, 1e-4);
         vertex v = eye_meet(&e, (vec3){0.0f, 0.0f, 0.5f}, (vec3){0.0f, 0.0f, -1.0f});
         sampler where = sampler_make(1, 3, 4, 0, 0);
-        rgb all = direct_light_gathered(&e.t, e.worker, &v, &where, 0, COUNTS[i], NULL);
-        assert_relative((double)e.worker->direct_from_sky.g, (double)all.g, 1e-5);
+        direct_light all = direct_light_gathered(&e.t, e.worker, &v, &where, 0, COUNTS[i], NULL);
+        assert_relative((double)all.from_sky.g, (double)all.radiance.g, 1e-5);
     }
     eye_reset(&e);
 }
@@ -77,7 +77,7 @@ static void nothing_from_behind(void **state)
     eye_init(&e, FLOOR "LightSource \"point\" \"rgb I\" [8 8 8] \"point3 from\" [0 0 2]");
     vertex v = eye_meet(&e, (vec3){0.0f, 0.0f, -0.5f}, (vec3){0.0f, 0.0f, 1.0f});
     sampler where = sampler_make(1, 3, 4, 0, 0);
-    rgb all = direct_light_gathered(&e.t, e.worker, &v, &where, 0, (sample_counts){4, 0}, NULL);
+    rgb all = direct_light_gathered(&e.t, e.worker, &v, &where, 0, (sample_counts){4, 0}, NULL).radiance;
     assert_true(rgb_is_black(all));
     eye_reset(&e);
 }

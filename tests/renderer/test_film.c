@@ -166,7 +166,7 @@ static void test_sums(void **state)
     ag_film_destroy(film);
 }
 
-/* Light counts with its sign; a place between two places by the signs would be no place. */
+/* Light counts with its sign; a point between two points by the signs would be no point. */
 static void test_signed_sums(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* test_final_gather.c: gather rays under a hemisphere whose irradiance is known, and eye paths that end in them.
- * Photons lie evenly over the unit sphere, E W/m^2; what reflects rho shows rho E / pi, so a place in it receives rho
+ * Photons lie evenly over the unit sphere, E W/m^2; what reflects rho shows rho E / pi, so a point in it receives rho
  * E, and one that reflects sigma shows sigma rho E / pi. The field has noise of its own: of N photons half lie in the
  * hemisphere, weighted by 2 cos, so that what is gathered has a standard deviation of sqrt(8 / 3 / N) however many rays
  * there are. Threads: one. */

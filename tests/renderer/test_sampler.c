@@ -40,7 +40,7 @@ static void aligned_runs_are_nets(void **state)
             }
 }
 
-/* The samples of a square of pixels, at a place that its width divides, are one net too: so errors of neighbours
+/* The samples of a square of pixels, at a point that its width divides, are one net too: so errors of neighbours
  * cancel. Also at the far end of large pictures, and where each sample draws many numbers. */
 static void squares_of_pixels_are_nets(void **state)
 {

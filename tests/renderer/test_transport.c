@@ -104,7 +104,7 @@ static void caustics(void **state)
         mean_add(&some, (double)transport_some_caustics(&e.t, e.worker, &v, 0.05f, rng_float(&random)).r);
     }
     double expected = 0.5 / PI * (double)FIELD_FLUX.r * field_irradiance(FIELD_SPHERE);
-    double field = 3.0 / sqrt(50.0 * fmin(PHOTONS / 50.0, 4000.0)); /* places nearby share their photons */
+    double field = 3.0 / sqrt(50.0 * fmin(PHOTONS / 50.0, 4000.0)); /* points nearby share their photons */
     assert_mean(&whole, expected, 0.005 + field);
     assert_mean(&some, expected, 0.005 + field);
     eye_reset(&e);

@@ -2,7 +2,7 @@
  * quadrics; and lamps that are invisible. Counts are held against their binomial distribution.
  * Threads: the run's workers build, one casts. */
 #include "light/light.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 #include "shape/alpha.h"
 
 #include "fixtures/test_scene.h"
@@ -29,7 +29,7 @@ static int tear_down(void **state)
     "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 1 1 0 -1 1 0 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n"
 #define WITH_UV "\"point2 uv\" [ 0 0 1 0 1 1 0 1 ]\n"
 
-/* Downwards from a place above a point of the square |x|, |y| < 1. */
+/* Downwards from a point above a point of the square |x|, |y| < 1. */
 static scene_ray ray_down(rng *random, float spread)
 {
     vec3 on = random_in_box(random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){1.0f, 1.0f, 0.0f});
@@ -111,8 +111,8 @@ static void probes_find_alpha_surfaces(void **state)
         scene_ray ray = ray_down(&random, 0.0f);
         surface_hit hit;
         ray.origin.z = 9.0f;
-        assert_true(passage_find_surface(s, ray, INFINITY, &hit) && hit.shape_index == 0);
-        assert_true(passage_is_blocked(s, ray, INFINITY));
+        assert_true(scene_find_surface(s, ray, INFINITY, &hit) && hit.shape_index == 0);
+        assert_true(scene_is_blocked(s, ray, INFINITY));
     }
     scene_destroy(s);
 }

@@ -432,7 +432,7 @@ static scene *mixes_create(test_run *run, const char *amount)
     return test_scene_create(run, text);
 }
 
-/* Shares of diffuse, dielectric and conductor over many places of a shape: scattered about, or a fine row. */
+/* Shares of diffuse, dielectric and conductor over many points of a shape: scattered about, or a fine row. */
 static void mix_shares(const scene *s, uint32_t shape_index, bool in_a_row, double out_shares[3])
 {
     int counts[3] = {0, 0, 0};
@@ -444,7 +444,7 @@ static void mix_shares(const scene *s, uint32_t shape_index, bool in_a_row, doub
         material_kind kind = b.parameters.kind;
         assert_true(kind == MATERIAL_DIFFUSE || kind == MATERIAL_DIELECTRIC || kind == MATERIAL_CONDUCTOR);
         counts[kind == MATERIAL_DIFFUSE ? 0 : kind == MATERIAL_DIELECTRIC ? 1 : 2]++;
-        /* the same place is the same for all that meet it */
+        /* the same point is the same for all that meet it */
         bsdf again = bsdf_create(s, &hit, direction_at(i % 180, 10.0 * i));
         assert_int_equal(again.parameters.kind, kind);
         assert_int_equal(again.lobes[0].group, kind == MATERIAL_DIFFUSE ? BSDF_GATHERED : BSDF_TRACED);

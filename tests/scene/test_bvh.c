@@ -168,7 +168,7 @@ static void closed_surfaces_let_nothing_through(void **state)
     test_run_reset(&r);
 }
 
-/* Two meshes in one place, so that equal distances must be told apart, beside spheres of both kinds. */
+/* Two meshes that coincide, so that equal distances must be told apart, beside spheres of both kinds. */
 static void any_number_of_builders_gives_the_same_hits(void **state)
 {
     (void)state;
@@ -254,13 +254,13 @@ static bool meets_the_same(const scene *s, const ray_fan *f, uint32_t i)
     if (hit.shape_index != alone.shape_index || hit.instance_index != alone.instance_index)
         return false;
     vec3 off = vec3_sub(hit.position, alone.position);
-    surface_place place;
-    const rgb *albedo = ray_fan_plain_place(s, f, i, &place);
+    surface_point at_hit;
+    const rgb *albedo = ray_fan_plain_point(s, f, i, &at_hit);
     if (albedo) { /* the same, and on the ray's side */
         assert_ptr_equal(albedo, &s->materials[s->shapes[hit.shape_index].material_index].reflectance);
-        assert_memory_equal(&place.position, &hit.position, sizeof place.position);
+        assert_memory_equal(&at_hit.position, &hit.position, sizeof at_hit.position);
         vec3 facing = vec3_face_forward(hit.geometric_normal, vec3_negate(ray_fan_direction(f, i)));
-        assert_memory_equal(&place.normal, &facing, sizeof place.normal);
+        assert_memory_equal(&at_hit.normal, &facing, sizeof at_hit.normal);
     }
     return vec3_length(off) < 1e-3f && fabsf(hit.distance - alone.distance) < 1e-3f &&
            vec3_dot(hit.geometric_normal, alone.geometric_normal) > 0.999f;

@@ -59,7 +59,7 @@ static void orthographic(void **state)
     check_ray(&c, 1.0, 0.5, 2.0, vec3_make(0, 0, 0), vec3_make(0, 0, 1));
 }
 
-/* From all over the lens, rays of one place on the film meet where the plane in focus is. */
+/* From all over the lens, rays of one point on the film meet where the plane in focus is. */
 static void lenses(void **state)
 {
     (void)state;

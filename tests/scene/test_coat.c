@@ -35,7 +35,7 @@ static void check_figure(const char *what, double got, double expected)
         fail_msg("%s: %.4f, not %.4f", what, got, expected);
 }
 
-/* Mean weight of what leaves to a place whose cosine is within 0.06 of the one named. */
+/* Mean weight of what leaves to a point whose cosine is within 0.06 of the one named. */
 static double albedo_about(const material *prepared, double cosine, int samples)
 {
     rng random = test_random(41);

@@ -59,7 +59,7 @@ typedef struct comparison {
     int rays, met, differ; /* one was met, the other not */
 } comparison;
 
-/* Where both are met: the same place, normal (or either, for what has two sides) and uv's v. */
+/* Where both are met: the same point, normal (or either, for what has two sides) and uv's v. */
 static comparison compare(const scene *a, const scene *b, bool is_two_sided, double tolerance)
 {
     comparison c = {.rays = 4000 / FEWER};
@@ -155,7 +155,7 @@ static void a_bent_tube_is_a_torus(void **state)
         double miss =
             sqrt((double)vec3_distance_squared(vec3_add_scaled(ray.origin, ray.direction, h.distance), h.position));
         double grazing = fabs((double)vec3_dot(ray.direction, h.geometric_normal));
-        assert_true(miss < 1e-3 || grazing < 0.1); /* the place is the ray's */
+        assert_true(miss < 1e-3 || grazing < 0.1); /* the point is the ray's */
         met++;
     }
     assert_true(met > 1000 / FEWER);

@@ -1,5 +1,5 @@
 /* test_ggx_albedo.c: the table of what rough interfaces reflect in all, worked out again, and what lies between its
- * places. Threads: one. */
+ * points. Threads: one. */
 #include "fixtures/bsdf_fixture.h"
 #include "material/fresnel.h"
 #include "material/ggx_albedo.h"

@@ -50,7 +50,7 @@ static void expect_near_point(vec3 a, vec3 b, float tolerance)
                  (double)b.y, (double)b.z, (double)tolerance);
 }
 
-/* The same place, as two scenes see it; tolerance in lengths of the scene. Where the ray grazes, roundings go far along
+/* The same point, as two scenes see it; tolerance in lengths of the scene. Where the ray grazes, roundings go far along
  * the surface, and nothing is asked. */
 static void expect_same_hit(const scene_ray *ray, const surface_hit *a, const surface_hit *b, float tolerance)
 {
@@ -254,7 +254,7 @@ static void a_surface_is_found_where_it_was_at_first(void **state)
             double scale = 1.0 + 2.0 * (double)ray.time;
             assert_relative(rest.area_ratio, 1.0 / (scale * scale), 1e-3);
             assert_close(vec3_length(rest.geometric_normal), 1.0, 1e-5);
-            /* a ray from above that place at the opening meets it there */
+            /* a ray from above that point at the opening meets it there */
             vec3 above = vec3_add_scaled(rest.position, rest.geometric_normal, 1e-3f);
             if (!scene_intersect(s, scene_ray_make(above, vec3_negate(rest.geometric_normal)), 3e-3f, &first))
                 continue; /* an edge */

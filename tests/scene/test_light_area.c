@@ -68,7 +68,7 @@ static void check_lamp(const char *world, vec3 point, double solid_angle)
         }
         float pdf = light_pdf_from_point(s, l, point, &hit);
         if (fabsf(vec3_dot(hit.geometric_normal, at.direction)) < 0.03f)
-            continue; /* nearly along the surface: rounding moves the place */
+            continue; /* nearly along the surface: rounding moves the point */
         assert_relative(hit.distance, at.distance, 1e-3);
         assert_relative(pdf, at.pdf_solid_angle, 5e-3);
     }

@@ -1,4 +1,4 @@
-/* test_light_pick.c: which light is sampled: probabilities are those said and sum to 1, lights that shine at a place
+/* test_light_pick.c: which light is sampled: probabilities are those said and sum to 1, lights that shine at a point
  * are never left out, and many lamps' light is found with little noise. Threads: one. */
 #include "fixtures/test_scene.h"
 
@@ -60,7 +60,7 @@ static void photons_multiplies_a_share(void **state)
     test_run_reset(&r);
 }
 
-/* --- for a place --- */
+/* --- for a point --- */
 
 enum { TEXT_SIZE = 1 << 18 };
 
@@ -99,7 +99,7 @@ static const char *const SKY =
     "LightSource \"infinite\" \"rgb L\" [0.1 0.2 0.4]\n"
     "LightSource \"distant\" \"rgb L\" [0 0 0]\n";
 
-/* Irradiance that a light may bring to a place facing along normal (from all sides: to its whole surface), unshadowed,
+/* Irradiance that a light may bring to a point facing along normal (from all sides: to its whole surface), unshadowed,
  * by one sample of it. */
 static double brought(const scene *s, uint32_t index, vec3 point, vec3 normal, vec2 u)
 {
@@ -214,7 +214,7 @@ static void many_lamps_are_found(void **state)
     test_run_reset(&r);
 }
 
-/* A lamp beside a place, one far off, a sun: the sun has its share, the near lamp nearly all of the rest. */
+/* A lamp beside a point, one far off, a sun: the sun has its share, the near lamp nearly all of the rest. */
 static void the_near_lamp_and_the_sun(void **state)
 {
     (void)state;
@@ -258,7 +258,7 @@ static void one_light_is_certain(void **state)
     }
 }
 
-/* Places where bounds are at their worst: in lamps, on them, beside their planes, at the point of a spot, far away. */
+/* Points where bounds are at their worst: in lamps, on them, beside their planes, at the point of a spot, far away. */
 static void odd_places(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* test_light_table.c: what must hold for every light, one row for each: samples towards a place fall as their density
+/* test_light_table.c: what must hold for every light, one row for each: samples towards a point fall as their density
  * says, bring the radiance that is seen there, and a ray that way has the same density; photons carry the light's
  * power, as much through a disc as direct light says (which is how the two ways of transport agree), aimed and unaimed;
  * those of points go by intensity. Threads: one. */
@@ -166,7 +166,7 @@ static void every_kind_has_a_row(void **state)
     assert_true(has_portal && has_map && has_picture);
 }
 
-/* --- towards a place --- */
+/* --- towards a point --- */
 
 typedef struct view {
     const scene *s;

@@ -2,7 +2,7 @@
  * (transmittance) are told the same. Threads: one. */
 #include "material/bsdf.h"
 #include "material/pane.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 #include "fixtures/test_scene.h"
 
@@ -34,8 +34,8 @@ static rgb passed(const scene *s, vec3 from, vec3 direction, bool through_panes)
 {
     uint64_t cut = 0;
     scene_ray ray = scene_ray_make(from, direction);
-    rgb left = through_panes ? passage_transmittance_of_panes(s, ray, UP_TO_END / direction.z, &cut)
-                             : passage_transmittance(s, ray, UP_TO_END / direction.z, &cut);
+    rgb left = through_panes ? transmittance_through_panes(s, ray, UP_TO_END / direction.z, &cut)
+                             : transmittance_of_ray(s, ray, UP_TO_END / direction.z, &cut);
     assert_int_equal(cut, 0);
     return left;
 }
@@ -177,7 +177,7 @@ static void test_many(void **state)
 {
     (void)state;
     static char text[1 << 16];
-    for (int count = PASSAGE_CROSSINGS_MAX; count <= PASSAGE_CROSSINGS_MAX + 1; count++) {
+    for (int count = TRANSMITTANCE_CROSSINGS_MAX; count <= TRANSMITTANCE_CROSSINGS_MAX + 1; count++) {
         size_t length = (size_t)snprintf(text, sizeof text, "Material \"thindielectric\" \"float eta\" 1\n");
         for (int i = 0; i < count; i++)
             length += (size_t)snprintf(text + length, sizeof text - length,
@@ -189,9 +189,9 @@ static void test_many(void **state)
         scene *s = test_scene_create(&r, text);
         uint64_t cut = 0;
         scene_ray up = scene_ray_make(vec3_make(0.1f, 0.2f, 0.0f), vec3_make(0.0f, 0.0f, 1.0f));
-        rgb left = passage_transmittance_of_panes(s, up, INFINITY, &cut);
-        assert_int_equal(cut, count > PASSAGE_CROSSINGS_MAX);
-        assert_true(left.g == (count > PASSAGE_CROSSINGS_MAX ? 0.0f : 1.0f));
+        rgb left = transmittance_through_panes(s, up, INFINITY, &cut);
+        assert_int_equal(cut, count > TRANSMITTANCE_CROSSINGS_MAX);
+        assert_true(left.g == (count > TRANSMITTANCE_CROSSINGS_MAX ? 0.0f : 1.0f));
         scene_destroy(s);
         test_run_reset(&r);
     }

@@ -1,4 +1,4 @@
-/* test_portal.c: infinite light through a window: what a place sees, with which density it is sampled, and the photons
+/* test_portal.c: infinite light through a window: what a point sees, with which density it is sampled, and the photons
  * that enter. Threads: one. */
 #include "fixtures/light_fixture.h"
 
@@ -22,7 +22,7 @@ static void only_rectangles_are_portals(void **state)
     vec3 corners[4], moved[4];
     portal p;
     make_corners(corners);
-    assert_true(portal_place(corners, &p));
+    assert_true(portal_init(corners, &p));
     assert_close(p.width, 2.0, 1e-5);
     assert_close(p.height, 1.5, 1e-5);
     assert_close(vec3_dot(p.axes.z, vec3_normalize(vec3_make(1.0f, 0.2f, -0.1f))), 1.0, 1e-6);
@@ -31,13 +31,13 @@ static void only_rectangles_are_portals(void **state)
     for (int i = 0; i < 4; i++) {
         memcpy(moved, corners, sizeof moved);
         moved[i] = vec3_add(moved[i], vec3_make(0.1f, 0.1f, 0.3f));
-        assert_false(portal_place(moved, &p));
+        assert_false(portal_init(moved, &p));
     }
     memcpy(moved, corners, sizeof moved);
     moved[1] = moved[0];
-    assert_false(portal_place(moved, &p));
+    assert_false(portal_init(moved, &p));
     vec3 crossed[4] = {corners[0], corners[2], corners[1], corners[3]};
-    assert_false(portal_place(crossed, &p));
+    assert_false(portal_init(crossed, &p));
 }
 
 /* The mirror's order: light comes from the other side. */
@@ -48,7 +48,7 @@ static void the_order_of_corners_says_where_outside_is(void **state)
     portal p;
     make_corners(corners);
     vec3 turned[4] = {corners[0], corners[3], corners[2], corners[1]};
-    assert_true(portal_place(turned, &p));
+    assert_true(portal_init(turned, &p));
     assert_true(p.axes.z.x < 0.0f);
     assert_false(portal_is_before(&p, vec3_make(0.0f, 0.0f, 0.0f)));
 }

@@ -230,7 +230,7 @@ static void rays_meet_the_part_alone(void **state)
                 hits++;
                 assert_true(is_on_part(it, to_object(it, hit.position), 1e-5 * scale));
                 assert_true(hit.uv.x >= 0.0f && hit.uv.x <= 1.0f && hit.uv.y >= 0.0f && hit.uv.y <= 1.0f);
-                /* going on, it never meets the same place again */
+                /* going on, it never meets the same point again */
                 vec3 out = surface_ray(&hit, scene_ray_make(hit.position, direction), direction).origin;
                 if (scene_intersect(s, scene_ray_make(out, direction), INFINITY, &next)) {
                     through++;

@@ -90,7 +90,7 @@ static void two_tones(void **state)
     test_run_reset(&r);
 }
 
-/* Back to the numbers that picked a place. */
+/* Back to the numbers that picked a point. */
 static void samples_of_meshes_are_undone(void **state)
 {
     (void)state;
@@ -166,7 +166,7 @@ static void light_is_sampled_by_its_density(void **state)
                                               fabsf(seen.g - at.radiance.g) > 1e-3f);
                 }
             }
-            /* places picked evenly */
+            /* points picked evenly */
             surface_sample place = shape_sample_area(&s->shapes[0], rng_vec2(&random));
             vec3 to = vec3_sub(place.position, point), d = vec3_normalize(to);
             surface_hit there;
@@ -195,7 +195,7 @@ static void light_is_sampled_by_its_density(void **state)
     }
 }
 
-/* Small bright places on a dark screen are found: photons are nearly alike, and direct light has little noise. */
+/* Small bright points on a dark screen are found: photons are nearly alike, and direct light has little noise. */
 static void bright_specks_are_found(void **state)
 {
     (void)state;

@@ -99,7 +99,7 @@ static void smooth_mesh(void **state)
     compare_bent(world, 3.0f, -1.0f, 0.0f, 2.0f);
 }
 
-/* Scattering spreads a cone by its density, up to that of diffuse places, and never narrows it. */
+/* Scattering spreads a cone by its density, up to that of diffuse points, and never narrows it. */
 static void scattering(void **state)
 {
     (void)state;

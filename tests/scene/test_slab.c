@@ -1,8 +1,8 @@
 /* test_slab.c: which slabs of glass light passes straight, how much of it, that samples and shadow rays are told the
  * same, that a line is judged alike in both directions; and which glass is no slab. Threads: one. */
 #include "material/bsdf.h"
-#include "rays/passage.h"
 #include "rays/slab_faces.h"
+#include "rays/transmittance.h"
 
 #include "fixtures/slab_text.h"
 #include "fixtures/test_scene.h"
@@ -38,7 +38,7 @@ static void end_scene(test_run *r, scene *s)
 static rgb passed(const scene *s, vec3 from, vec3 direction)
 {
     uint64_t cut = 0;
-    rgb left = passage_transmittance_of_panes(s, scene_ray_make(from, direction), UP_TO_END, &cut);
+    rgb left = transmittance_through_panes(s, scene_ray_make(from, direction), UP_TO_END, &cut);
     assert_int_equal(cut, 0);
     return left;
 }
@@ -205,10 +205,10 @@ static void test_samples(void **state)
             rgb way;
             uint64_t cut = 0;
             /* to the eye it is glass that bends */
-            assert_true(passage_intersect(s, &ray, &cut, &hit, &way));
+            assert_true(transmittance_intersect(s, &ray, &cut, &hit, &way));
             assert_false(bsdf_create(s, &hit, vec3_negate(direction)).is_pane);
             ray.slabs_are_panes = true;
-            assert_true(passage_intersect(s, &ray, &cut, &hit, &way));
+            assert_true(transmittance_intersect(s, &ray, &cut, &hit, &way));
             bsdf b = bsdf_create(s, &hit, vec3_negate(direction));
             assert_true(b.is_pane);
             rng random = test_random(7);
@@ -230,7 +230,7 @@ static void test_samples(void **state)
                 assert_relative(expected, slab_share(0.8, 1.5, 0.0), 1e-4);
                 assert_true(fabs(through + back - 1.0) <= 1e-4);
             }
-            scene_ray on = passage_continue(&hit, &ray);
+            scene_ray on = scene_ray_continue(&hit, &ray);
             assert_true((on.origin.z - (side > 0 ? HIGH.z : LOW.z)) * (float)side > 0.0f);
             assert_true(fabsf(on.origin.x - 0.75f * fabsf(on.origin.z - ray.origin.z)) < 1e-3f);
             end_scene(&r, s);
@@ -260,8 +260,8 @@ static void test_both_ways(void **state)
         vec3 from = {3.0f * rng_float(&random) - 1.5f, 2.0f * rng_float(&random) - 1.0f, 0.5f};
         vec3 to = {3.0f * rng_float(&random) - 1.5f, 2.0f * rng_float(&random) - 1.0f, 1.6f};
         uint64_t cut = 0;
-        rgb up = passage_transmittance_of_panes(s, scene_ray_make(from, vec3_sub(to, from)), 1.0f, &cut);
-        rgb down = passage_transmittance_of_panes(s, scene_ray_make(to, vec3_sub(from, to)), 1.0f, &cut);
+        rgb up = transmittance_through_panes(s, scene_ray_make(from, vec3_sub(to, from)), 1.0f, &cut);
+        rgb down = transmittance_through_panes(s, scene_ray_make(to, vec3_sub(from, to)), 1.0f, &cut);
         differ += fabsf(up.g - down.g) > 1e-4f;
         open += up.g > 0.0f;
         shut += up.g == 0.0f;
@@ -285,7 +285,7 @@ static void test_end_within(void **state)
     for (int i = 0; i < 3; i++) {
         uint64_t cut = 0;
         scene_ray up = scene_ray_make(vec3_make(0.1f, 0.2f, 0.0f), vec3_make(0.0f, 0.0f, 1.0f));
-        float left = passage_transmittance_of_panes(s, up, ENDS[i], &cut).g;
+        float left = transmittance_through_panes(s, up, ENDS[i], &cut).g;
         assert_true(i == 0 ? left == 1.0f : i == 1 ? left == 0.0f : left > 0.9f && left < 0.93f);
     }
     end_scene(&r, s);

@@ -22,7 +22,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* A place of the only shape that a ray from afar meets. */
+/* A point of the only shape that a ray from afar meets. */
 static bool random_place(const scene *s, rng *random, surface_hit *out_hit)
 {
     vec3 out = random_direction(random), into = random_in_box(random, (vec3){-1, -1, -1}, (vec3){1, 1, 1});
@@ -30,7 +30,7 @@ static bool random_place(const scene *s, rng *random, surface_hit *out_hit)
     return scene_intersect(s, scene_ray_make(from, vec3_negate(out)), INFINITY, out_hit);
 }
 
-/* The place beside, which a ray along the normal puts back onto the surface. */
+/* The point beside, which a ray along the normal puts back onto the surface. */
 static bool step(const scene *s, const surface_hit *hit, vec3 along, float h, surface_hit *out_hit)
 {
     vec3 n = hit->geometric_normal, p = vec3_add_scaled(hit->position, along, h);

@@ -181,7 +181,7 @@ static void stripes_are_sharp_across(void **state)
 }
 
 /* Over the whole picture, eye's and coarse ones, from a pixel wide to many pictures, the mean is that of the picture:
- * by random places, within four standard errors. Where the footprint is wide each value is near it. */
+ * by random points, within four standard errors. Where the footprint is wide each value is near it. */
 static void look_ups_have_the_mean(void **state)
 {
     (void)state;

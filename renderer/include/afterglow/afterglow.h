@@ -278,16 +278,17 @@ typedef struct ag_render_settings {
     uint64_t caustic_photon_count; /* photons to store in the caustic map; only where anything is specular; [0, …] */
     int nearest;                   /* photons of an estimate, [1, 65536] */
     float radius;                  /* largest radius of an estimate, scene units; 0: from the photons' density */
-    float irradiance_fraction; /* of the photons, how many bear irradiance, (0, 1]: gather rays look for the nearest of
-                                  those, and each estimate is still of all photons. Less is faster, and blurs by about
-                                  what those are apart. Where photons lie far apart, and where surfaces turn, more of
-                                  them bear irradiance, so that each photon has one near that does. Default 1 */
-    float gather_guiding;      /* how much the photons' directions decide where gather rays go, [0, 1]: the share of the
-                                  rays that goes where light comes from, where photons are many; the rest goes by the
-                                  cosine. 0: all. Less noise or more, the same light. Default
-                                  AG_DEFAULT_GATHER_GUIDING */
-    uint64_t photon_seed;      /* of the photons, so that pictures of other seeds can share a kept photon map. Default
-                                  AG_PHOTON_SEED_AUTOMATIC: seed */
+    float irradiance_fraction;     /* share of the photons that irradiance is kept at, (0, 1]: gather rays look for the
+                                      nearest of these irradiance photons, and each estimate is still of all photons.
+                                      Less is faster, and blurs by about their spacing. Where photons lie far apart,
+                                      and where surfaces turn, more photons are taken, so that each has an irradiance
+                                      photon nearby. Default 1 */
+    float gather_guiding; /* how much the photons' directions decide where gather rays go, [0, 1]: the share of the
+                             rays that goes where light comes from, where photons are many; the rest goes by the
+                             cosine. 0: all. Less noise or more, the same light. Default
+                             AG_DEFAULT_GATHER_GUIDING */
+    uint64_t photon_seed; /* of the photons, so that pictures of other seeds can share a kept photon map. Default
+                             AG_PHOTON_SEED_AUTOMATIC: seed */
     float photon_aim;     /* share of the photon paths that begin where a pilot has found that they bring light to where
                              this picture asks for it, [0, 0.8]: the others begin by power alone, so that no photon is more
                              than five times as bright as without. The same light, with less noise in this picture and more
@@ -384,9 +385,9 @@ typedef struct ag_photon_map_info {
     char view[33];                 /* the same of the view that they are aimed at; "": at none */
     char settings[1024];           /* that they depend on, lines "NOUN: VALUE" */
     uint64_t file_bytes, paths_emitted, photons_global, photons_caustic;
-    uint64_t bearers; /* photons of the global map that bear irradiance */
-    uint64_t ready;   /* of these, where it has been computed */
-    uint64_t damaged; /* where it had been and is damaged: it will be computed again */
+    uint64_t irradiance_photons; /* photons of the global map that irradiance is kept at */
+    uint64_t ready;              /* of these, where it has been computed */
+    uint64_t damaged;            /* where it had been and is damaged: it will be computed again */
 } ag_photon_map_info;
 
 /* Errors: AG_ERROR_INPUT (it cannot be read, is damaged, or is no photon map; the log says why), AG_ERROR_MEMORY,

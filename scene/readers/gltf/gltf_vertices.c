@@ -139,7 +139,7 @@ bool gltf_matrix_cofactors(const gltf_matrix *matrix, double out_cofactors[3][3]
     return determinant < 0.0;
 }
 
-static vec3 place_point(const gltf_matrix *matrix, const double *v)
+static vec3 point_to_world(const gltf_matrix *matrix, const double *v)
 {
     double world[3];
     for (int i = 0; i < 3; i++) {
@@ -151,7 +151,7 @@ static vec3 place_point(const gltf_matrix *matrix, const double *v)
 
 /* By cofactors, so that a flattening matrix will do. Zero where there is none: the triangle's own normal is then used.
  */
-static vec3 place_normal(double cofactors[3][3], const double *v)
+static vec3 normal_to_world(double cofactors[3][3], const double *v)
 {
     double world[3], square = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -220,7 +220,7 @@ ag_status gltf_vertices_get(gltf_reader *r, const gltf_vertices *v, uint32_t i, 
     if (v->influence_count > 0)
         AG_TRY(blend_joints(r, v, i, &matrix));
     get_morphed(v, i, false, own);
-    *out_position = place_point(&matrix, own);
+    *out_position = point_to_world(&matrix, own);
     if (!((double)vec3_max_abs(*out_position) <= GLTF_MAX_COORDINATE) || !vec3_is_finite(*out_position)) {
         gltf_value at = gltf_member(v->attributes, "POSITION");
         return gltf_error(r, &at, "vertex %u is not finite, or beyond 1e18 units in world space", i);
@@ -229,7 +229,7 @@ ag_status gltf_vertices_get(gltf_reader *r, const gltf_vertices *v, uint32_t i, 
         double cofactors[3][3];
         get_morphed(v, i, true, own);
         gltf_matrix_cofactors(&matrix, cofactors);
-        *out_normal = place_normal(cofactors, own);
+        *out_normal = normal_to_world(cofactors, own);
     }
     if (out_uv && v->has_uvs) {
         gltf_accessor_get(&v->uvs, i, values);

@@ -288,6 +288,15 @@ static ag_status read_type(pbrt_parser *parser, parameter_list *list, curves_typ
                        name);
 }
 
+/* Mixes that pick one another in a circle are refused once all is read. */
+static bool may_be_hair(const scene *s, uint32_t material_index, int depth)
+{
+    const material *m = &s->materials[material_index];
+    if (m->kind == MATERIAL_MIX && depth > 0)
+        return may_be_hair(s, m->mixed[0], depth - 1) || may_be_hair(s, m->mixed[1], depth - 1);
+    return m->kind == MATERIAL_HAIR;
+}
+
 ag_status pbrt_curve(pbrt_parser *parser, parameter_list *list)
 {
     curve_source source = {0};
@@ -301,6 +310,9 @@ ag_status pbrt_curve(pbrt_parser *parser, parameter_list *list)
     /* how finely pbrt cuts curves for its tree; Embree sees to that itself */
     AG_TRY(parameter_get_int(list, parser->log, "splitdepth", &split_depth));
     parameter_list_warn_unused(list, parser->log);
+    /* its scattering is that of a whole fibre, which a ray must meet once: pbrt's "cylinder" is flat to rays, too */
+    if (c->type == CURVES_CYLINDER && may_be_hair(parser->scene, parser->state.material_index, 8))
+        c->type = CURVES_FLAT;
     s.flip_normal = parser->state.reverse_orientation;
     if (c->type == CURVES_RIBBON && transform_swaps_handedness(&parser->state.world_from_object))
         s.flip_normal = !s.flip_normal;

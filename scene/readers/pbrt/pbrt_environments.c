@@ -39,7 +39,7 @@ static ag_status read_portal(pbrt_parser *parser, parameter_list *list, bool *ou
         return pbrt_refuse(parser, list, "portal", "\"portal\" has four corners, not %zu", count / 3);
     for (int i = 0; i < 4; i++)
         corners[i] = vec3_make((float)numbers[3 * i], (float)numbers[3 * i + 1], (float)numbers[3 * i + 2]);
-    if (!portal_place(corners, out_portal))
+    if (!portal_init(corners, out_portal))
         return pbrt_refuse(parser, list, "portal", "\"portal\" is not a rectangle, corner by corner");
     return AG_OK;
 }

@@ -13,9 +13,9 @@
 
 static int clamp_to_int(ptrdiff_t v) { return v > INT_MAX ? INT_MAX : (int)v; }
 
-static file_location location_at(const pbrt_lexer *lexer, const char *place)
+static file_location location_at(const pbrt_lexer *lexer, const char *at)
 {
-    return (file_location){lexer->file, lexer->line, clamp_to_int(place - lexer->line_start + 1)};
+    return (file_location){lexer->file, lexer->line, clamp_to_int(at - lexer->line_start + 1)};
 }
 
 void pbrt_lexer_init(pbrt_lexer *lexer, const char *file, const char *text, size_t size)
@@ -60,24 +60,23 @@ static void skip_blanks(pbrt_lexer *lexer)
 
 static bool is_word_byte(char c) { return c > ' ' && c < 0x7f && c != '"' && c != '[' && c != ']' && c != '#'; }
 
-static ag_status fail(pbrt_lexer *lexer, pbrt_token *out_token, const char *place, const char *message)
+static ag_status fail(pbrt_lexer *lexer, pbrt_token *out_token, const char *at, const char *message)
 {
     snprintf(lexer->error, sizeof lexer->error, "%s", message);
-    out_token->where = location_at(lexer, place);
+    out_token->where = location_at(lexer, at);
     out_token->width = 1;
     return AG_ERROR_SCENE;
 }
 
-static ag_status fail_strange_byte(pbrt_lexer *lexer, pbrt_token *out_token, const char *place)
+static ag_status fail_strange_byte(pbrt_lexer *lexer, pbrt_token *out_token, const char *at)
 {
-    if (*place == '\0')
-        return fail(lexer, out_token, place, "NUL byte: this is not a text file");
-    if (place - lexer->text <= 1 &&
-        (memcmp(lexer->text, "\xff\xfe", 2) == 0 || memcmp(lexer->text, "\xfe\xff", 2) == 0))
-        return fail(lexer, out_token, place, "the file is UTF-16; only ASCII and UTF-8 can be read");
+    if (*at == '\0')
+        return fail(lexer, out_token, at, "NUL byte: this is not a text file");
+    if (at - lexer->text <= 1 && (memcmp(lexer->text, "\xff\xfe", 2) == 0 || memcmp(lexer->text, "\xfe\xff", 2) == 0))
+        return fail(lexer, out_token, at, "the file is UTF-16; only ASCII and UTF-8 can be read");
     char message[sizeof lexer->error];
-    snprintf(message, sizeof message, "unexpected byte 0x%02x", (unsigned)(unsigned char)*place);
-    return fail(lexer, out_token, place, message);
+    snprintf(message, sizeof message, "unexpected byte 0x%02x", (unsigned)(unsigned char)*at);
+    return fail(lexer, out_token, at, message);
 }
 
 static bool unescape(char c, char *out)

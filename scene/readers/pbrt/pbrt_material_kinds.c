@@ -1,9 +1,10 @@
 /* pbrt_material_kinds.c: what each kind of material of a pbrt-v4 scene is made of.
- * Rests on the format's description, pbrt.org/fileformat-v4, "Materials"; for what stands in for hair and flesh on
- * Chiang et al., "A Practical and Controllable Hair and Fur Model for Production Path Tracing", 2016 (eq. 9), d'Eon et
- * al., "An Energy-Conserving Hair Reflectance Model", 2011, and Jensen et al., "A Practical Model for Subsurface Light
- * Transport", 2001 (the diffuse reflectance). Flow: pbrt_materials -> [here] -> material. Threads: one per scene. */
+ * Rests on the format's description, pbrt.org/fileformat-v4, "Materials"; for the colour of hair on d'Eon et al.,
+ * "An Energy-Conserving Hair Reflectance Model", 2011 (melanin), for what stands in for flesh on Jensen et al., "A
+ * Practical Model for Subsurface Light Transport", 2001 (the diffuse reflectance). Flow: pbrt_materials -> [here] ->
+ * material. Threads: one per scene. */
 #include "color/spectra.h"
+#include "material/hair.h"
 #include "pbrt/pbrt_private.h"
 
 #include <stdio.h>
@@ -240,40 +241,71 @@ static void pass_over(parameter_list *list, const char *const *names, size_t cou
                 list->items[i].looked_up = true;
 }
 
-/* The colour of much hair that absorbs so: the fit by which it is chosen for a colour, turned round. */
-static float hair_reflectance(float sigma_a, float beta_n)
-{
-    double b = beta_n, fit = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
-    return (float)exp(-sqrt(fmax(0.0, (double)sigma_a)) * fit);
-}
-
 static rgb hair_absorption(float eumelanin, float pheomelanin)
 {
     float e = fmaxf(eumelanin, 0.0f), p = fmaxf(pheomelanin, 0.0f);
     return rgb_make(0.419f * e + 0.187f * p, 0.697f * e + 0.4f * p, 1.37f * e + 1.05f * p);
 }
 
-ag_status pbrt_read_hair(pbrt_parser *parser, parameter_list *list, material *m)
+/* A number that may vary over the format's surfaces, but not over ours. */
+static ag_status read_constant(pbrt_parser *parser, parameter_list *list, const char *name, float *value)
 {
-    static const char *const UNUSED[] = {"eta", "beta_m", "alpha", "sigma_a", "eumelanin", "pheomelanin", "color"};
-    float beta_n = 0.3f, eumelanin = 0.0f, pheomelanin = 0.0f;
+    uint32_t texture_index = SCENE_NO_TEXTURE;
+    const float otherwise = *value;
+    AG_TRY(pbrt_get_float_texture(parser, list, name, value, &texture_index));
+    if (texture_index == SCENE_NO_TEXTURE)
+        return AG_OK;
+    *value = otherwise;
+    log_at_once(parser->log, AG_LOG_WARNING, list->where, name,
+                "material \"hair\": a texture for \"%s\" is not supported: %g stands in", name, (double)otherwise);
+    return AG_OK;
+}
+
+static ag_status read_hair_color(pbrt_parser *parser, parameter_list *list, material *m)
+{
     const char *color = parameter_list_find(list, "reflectance") ? "reflectance" : "color";
-    tell_stand_in(parser, list, "hair", "\"diffuse\" of its colour");
-    AG_TRY(parameter_get_float(list, parser->log, "beta_n", &beta_n));
+    uint32_t texture_index = SCENE_NO_TEXTURE;
     if (!parameter_list_find(list, "sigma_a") && parameter_list_find(list, color)) {
         AG_TRY(pbrt_get_rgb_texture(parser, list, color, &m->reflectance, &m->reflectance_texture));
-    } else {
-        if (!parameter_list_find(list, "eumelanin") && !parameter_list_find(list, "pheomelanin"))
-            eumelanin = 1.3f;
-        AG_TRY(parameter_get_float(list, parser->log, "eumelanin", &eumelanin));
-        AG_TRY(parameter_get_float(list, parser->log, "pheomelanin", &pheomelanin));
-        rgb sigma_a = working_space_light(&parser->scene->space, hair_absorption(eumelanin, pheomelanin));
-        AG_TRY(parameter_get_rgb(list, parser->log, "sigma_a", &sigma_a));
-        m->reflectance = rgb_make(hair_reflectance(sigma_a.r, beta_n), hair_reflectance(sigma_a.g, beta_n),
-                                  hair_reflectance(sigma_a.b, beta_n));
+        m->hair_sigma_a = hair_absorption_from_reflectance(m->reflectance, m->hair_beta_n);
+        return AG_OK;
     }
-    m->reflectance = clamp_color(m->reflectance);
-    pass_over(list, UNUSED, sizeof UNUSED / sizeof *UNUSED);
+    float eumelanin = 0.0f, pheomelanin = 0.0f;
+    if (!parameter_list_find(list, "eumelanin") && !parameter_list_find(list, "pheomelanin"))
+        eumelanin = 1.3f;
+    AG_TRY(read_constant(parser, list, "eumelanin", &eumelanin));
+    AG_TRY(read_constant(parser, list, "pheomelanin", &pheomelanin));
+    const rgb melanin = working_space_light(&parser->scene->space, hair_absorption(eumelanin, pheomelanin));
+    m->hair_sigma_a = melanin;
+    AG_TRY(pbrt_get_rgb_texture(parser, list, "sigma_a", &m->hair_sigma_a, &texture_index));
+    if (texture_index != SCENE_NO_TEXTURE) {
+        m->hair_sigma_a = melanin;
+        log_at_once(parser->log, AG_LOG_WARNING, list->where, "sigma_a",
+                    "material \"hair\": a texture for \"sigma_a\" is not supported: brown stands in");
+    }
+    return AG_OK;
+}
+
+ag_status pbrt_read_hair(pbrt_parser *parser, parameter_list *list, material *m)
+{
+    static const char *const COLORS[] = {"sigma_a", "reflectance", "color", "eumelanin", "pheomelanin"};
+    m->ior = 1.55f;
+    AG_TRY(read_constant(parser, list, "eta", &m->ior));
+    AG_TRY(read_constant(parser, list, "beta_m", &m->hair_beta_m));
+    AG_TRY(read_constant(parser, list, "beta_n", &m->hair_beta_n));
+    AG_TRY(read_constant(parser, list, "alpha", &m->hair_tilt_degrees));
+    if (!(m->ior > 1.0f))
+        return pbrt_refuse(parser, list, "eta", "\"eta\" of \"hair\" should be above 1");
+    for (int i = 0; i < 2; i++) {
+        const char *name = i == 0 ? "beta_m" : "beta_n";
+        float value = i == 0 ? m->hair_beta_m : m->hair_beta_n;
+        if (!(value >= 0.0f && value <= 1.0f))
+            return pbrt_refuse(parser, list, name, "\"%s\" should be from 0 to 1", name);
+    }
+    if (!(fabsf(m->hair_tilt_degrees) <= 90.0f))
+        return pbrt_refuse(parser, list, "alpha", "\"alpha\" should be from -90 to 90 degrees");
+    AG_TRY(read_hair_color(parser, list, m));
+    pass_over(list, COLORS, sizeof COLORS / sizeof *COLORS); /* the first of them decides */
     return AG_OK;
 }
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_index);
+static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_index);
 
 static ag_status read_mix(pbrt_parser *parser, parameter_list *list, material *m)
 {
@@ -18,7 +18,7 @@ static ag_status read_mix(pbrt_parser *parser, parameter_list *list, material *m
         return pbrt_refuse(parser, list, "materials", "\"mix\" needs \"string materials\" with two names");
     (void)parameter_get_string(list, NULL, "materials", &ignored); /* marks it as known */
     for (int i = 0; i < 2; i++)
-        AG_TRY(find_or_keep_place(parser, names->strings[i], names->where, &m->mixed[i]));
+        AG_TRY(find_or_reserve(parser, names->strings[i], names->where, &m->mixed[i]));
     return AG_OK;
 }
 
@@ -48,7 +48,7 @@ static const material_reader READERS[] = {
     {"interface", MATERIAL_INTERFACE, read_interface},
     {"none", MATERIAL_INTERFACE, read_interface},
     {"", MATERIAL_INTERFACE, read_interface},
-    {"hair", MATERIAL_DIFFUSE, pbrt_read_hair},
+    {"hair", MATERIAL_HAIR, pbrt_read_hair},
     {"subsurface", MATERIAL_COATED_DIFFUSE, pbrt_read_subsurface},
     {"measured", MATERIAL_DIFFUSE, pbrt_read_measured},
 };
@@ -154,13 +154,13 @@ ag_status pbrt_make_named_material(pbrt_parser *parser, file_location where)
 }
 
 /* A named material, or where it is not made yet, as pbrt allows, a place for it. */
-static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_index)
+static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_index)
 {
     const pbrt_named_material *named = find_named_material(parser, name);
     if (!named) {
         pbrt_named_material used = {.where = where};
-        material place = material_make(MATERIAL_DIFFUSE);
-        AG_TRY(scene_add_material(parser->scene, &place, &used.index));
+        material reserved = material_make(MATERIAL_DIFFUSE);
+        AG_TRY(scene_add_material(parser->scene, &reserved, &used.index));
         AG_TRY(add_named_material(parser, name, used));
         named = find_named_material(parser, name);
     }
@@ -170,7 +170,7 @@ static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_
 
 static ag_status use_named(pbrt_parser *parser, const char *name, file_location where)
 {
-    AG_TRY(find_or_keep_place(parser, name, where, &parser->state.material_index));
+    AG_TRY(find_or_reserve(parser, name, where, &parser->state.material_index));
     parser->state.has_no_surface = parser->scene->materials[parser->state.material_index].kind == MATERIAL_INTERFACE;
     return AG_OK;
 }

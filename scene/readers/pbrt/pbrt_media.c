@@ -179,7 +179,7 @@ static ag_status read_medium(pbrt_parser *parser, parameter_list *list, medium *
 }
 
 /* The place of a name among the named media, new where it is not there yet. */
-static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_location where, size_t *out_named)
+static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_location where, size_t *out_named)
 {
     uint32_t found;
     if (name_table_find(&parser->medium_names, name, &found)) {
@@ -211,9 +211,9 @@ static ag_status find_or_keep_place(pbrt_parser *parser, const char *name, file_
 
 static ag_status make_named(pbrt_parser *parser, parameter_list *list)
 {
-    size_t place;
-    AG_TRY(find_or_keep_place(parser, list->name, list->where, &place));
-    pbrt_named_medium *named = &parser->named_media[place];
+    size_t index;
+    AG_TRY(find_or_reserve(parser, list->name, list->where, &index));
+    pbrt_named_medium *named = &parser->named_media[index];
     if (named->is_defined)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
                           "medium \"%s\" is made twice, first at %s:%d:%d", list->name, named->where.file,
@@ -236,7 +236,7 @@ ag_status pbrt_make_named_medium(pbrt_parser *parser, file_location where)
 static ag_status read_side(pbrt_parser *parser, const char *name, file_location where, size_t *out_named)
 {
     *out_named = PBRT_NO_MEDIUM;
-    return name[0] ? find_or_keep_place(parser, name, where, out_named) : AG_OK;
+    return name[0] ? find_or_reserve(parser, name, where, out_named) : AG_OK;
 }
 
 ag_status pbrt_medium_interface(pbrt_parser *parser, file_location where)

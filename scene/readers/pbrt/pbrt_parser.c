@@ -33,11 +33,11 @@ static ag_status include(pbrt_parser *parser, file_location where)
 
 /* The table of directives */
 
-typedef enum place { ANYWHERE, BEFORE_WORLD, IN_WORLD } place;
+typedef enum section { ANYWHERE, BEFORE_WORLD, IN_WORLD } section;
 
 static const struct {
     const char *name;
-    place where;
+    section where;
     pbrt_handler *handle;
 } DIRECTIVES[] = {
     {"Shape", IN_WORLD, pbrt_shape},

@@ -123,7 +123,7 @@ static ag_status read_solid_mapping(pbrt_parser *parser, const parameter_list *l
 {
     t->mapping.kind = TEXTURE_MAPPING_SOLID;
     pbrt_warn_still(parser, list->where, "a texture in space");
-    texture_mapping_place(&t->mapping, &parser->state.world_from_object);
+    texture_mapping_set_space(&t->mapping, &parser->state.world_from_object);
     return AG_OK;
 }
 
@@ -136,7 +136,7 @@ static ag_status read_mapping(pbrt_parser *parser, parameter_list *list, texture
     m->kind = (texture_mapping_kind)kind;
     if (kind != TEXTURE_MAPPING_UV)
         pbrt_warn_still(parser, list->where, "a texture in space");
-    texture_mapping_place(m, &parser->state.world_from_object);
+    texture_mapping_set_space(m, &parser->state.world_from_object);
     if (kind == TEXTURE_MAPPING_UV) {
         m->scale = (vec2){1.0f, 1.0f};
         AG_TRY(parameter_get_float(list, parser->log, "uscale", &m->scale.x));

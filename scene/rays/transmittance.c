@@ -1,7 +1,7 @@
-/* passage.c: see passage.h. A ray that crosses an interface is cast anew from its other side; what a medium takes is
- * computed from surface to surface, not from where rays start.
+/* transmittance.c: see transmittance.h. A ray that crosses an interface is cast anew from its other side; what a medium
+ * takes is computed from surface to surface, not from where rays start.
  * Threads: pure but for the caller's counter. */
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 #include "material/bsdf.h"
 #include "material/pane.h"
@@ -18,7 +18,7 @@ static bool is_passed(const scene *s, const surface_hit *hit)
     return material_is_interface(s, hit) && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
 }
 
-/* The share of a ray that a place lets through unbent: all of it, a pane's or slab's transmittance, or nothing. */
+/* The share of a ray that a surface lets through unbent: all of it, a pane's or slab's transmittance, or nothing. */
 static rgb let_through(const scene *s, const surface_hit *hit, const scene_ray *ray, bool through_panes)
 {
     if (is_passed(s, hit))
@@ -30,13 +30,13 @@ static rgb let_through(const scene *s, const surface_hit *hit, const scene_ray *
     return bsdf_straight_transmittance(&at);
 }
 
-scene_ray passage_continue(const surface_hit *hit, const scene_ray *ray)
+scene_ray scene_ray_continue(const surface_hit *hit, const scene_ray *ray)
 {
     bool is_slab = hit->slab.thickness > 0.0f;
     scene_ray next = is_slab ? *ray : surface_ray(hit, *ray, ray->direction);
     next.origin = is_slab
-                      ? surface_place_behind(hit->slab.exit, hit->geometric_normal, hit->slab.epsilon, ray->direction)
-                      : surface_place_behind(hit->position, hit->geometric_normal, hit->epsilon, ray->direction);
+                      ? surface_point_behind(hit->slab.exit, hit->geometric_normal, hit->slab.epsilon, ray->direction)
+                      : surface_point_behind(hit->position, hit->geometric_normal, hit->epsilon, ray->direction);
     if (is_slab && hit->has_medium_interface)
         next.medium = hit->medium_outside;
     return next;
@@ -73,7 +73,7 @@ static bool follow(const scene *s, scene_ray *ray, float length, bool through_pa
         }
         if (in_out_left)
             *in_out_left = rgb_mul(*in_out_left, passed);
-        if (crossings == PASSAGE_CROSSINGS_MAX) {
+        if (crossings == TRANSMITTANCE_CROSSINGS_MAX) {
             (*in_out_cut)++;
             if (in_out_left)
                 *in_out_left = rgb_gray(0.0f);
@@ -81,7 +81,7 @@ static bool follow(const scene *s, scene_ray *ray, float length, bool through_pa
         }
         from = is_slab ? out_hit->slab.exit : out_hit->position;
         travelled += is_slab ? distance_between(out_hit->position, from) : 0.0f;
-        *ray = passage_continue(out_hit, ray);
+        *ray = scene_ray_continue(out_hit, ray);
         if (!is_bounded)
             continue;
         /* to the same end from the other side; it may lie within the step there */
@@ -93,8 +93,8 @@ static bool follow(const scene *s, scene_ray *ray, float length, bool through_pa
     }
 }
 
-bool passage_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, surface_hit *out_hit,
-                       rgb *out_transmittance)
+bool transmittance_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, surface_hit *out_hit,
+                             rgb *out_transmittance)
 {
     if (s->has_interfaces) {
         scene_ray last = *ray;
@@ -118,7 +118,7 @@ static float normalize_direction(scene_ray *ray)
     return unit;
 }
 
-rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut)
+rgb transmittance_of_ray(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut)
 {
     if (!s->has_interfaces) {
         if (scene_occluded(s, ray, reach))
@@ -130,11 +130,11 @@ rgb passage_transmittance(const scene *s, scene_ray ray, float reach, uint64_t *
     rgb left = rgb_gray(1.0f);
     float unit = normalize_direction(&ray);
     if (!(unit > 0.0f))
-        return left; /* from a place to itself */
+        return left; /* from a point to itself */
     return follow(s, &ray, reach * unit, false, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;
 }
 
-rgb passage_transmittance_of_panes(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut)
+rgb transmittance_through_panes(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut)
 {
     surface_hit hit;
     rgb left = rgb_gray(1.0f);
@@ -145,7 +145,7 @@ rgb passage_transmittance_of_panes(const scene *s, scene_ray ray, float reach, u
     return follow(s, &ray, reach * unit, true, in_out_cut, &hit, &left) ? rgb_gray(0.0f) : left;
 }
 
-bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
+bool scene_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit)
 {
     ray.skips_uv = true;
     if (ray.alpha_rule == RAY_PASSES_ALPHA)
@@ -160,16 +160,16 @@ bool passage_find_surface(const scene *s, scene_ray ray, float max_distance, sur
     return true;
 }
 
-bool passage_is_blocked(const scene *s, scene_ray ray, float max_distance)
+bool scene_is_blocked(const scene *s, scene_ray ray, float max_distance)
 {
     surface_hit hit;
     ray.alpha_rule = RAY_MEETS_ALPHA;
-    return s->has_interfaces ? passage_find_surface(s, ray, max_distance, &hit) : scene_occluded(s, ray, max_distance);
+    return s->has_interfaces ? scene_find_surface(s, ray, max_distance, &hit) : scene_occluded(s, ray, max_distance);
 }
 
-void passage_warn_of_cut(log_sink *log, uint64_t count)
+void transmittance_warn_of_cut(log_sink *log, uint64_t count)
 {
     if (count > 0)
         log_message(log, AG_LOG_WARNING, "%llu rays would cross more than %d interfaces or panes: they end there, dark",
-                    (unsigned long long)count, PASSAGE_CROSSINGS_MAX);
+                    (unsigned long long)count, TRANSMITTANCE_CROSSINGS_MAX);
 }

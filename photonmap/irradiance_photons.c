@@ -1,11 +1,11 @@
-/* irradiance_bearers.c: see irradiance_bearers.h. */
-#include "irradiance_bearers.h"
+/* irradiance_photons.c: see irradiance_photons.h. */
+#include "irradiance_photons.h"
 
 #include "parallel_for.h"
 
 #include <stdlib.h>
 
-uint32_t irradiance_bearers_runs(uint32_t photon_count, float fraction)
+uint32_t irradiance_photons_runs(uint32_t photon_count, float fraction)
 {
     if (photon_count == 0 || fraction >= 1.0f)
         return photon_count;
@@ -55,22 +55,22 @@ static photon record_of(const photon_tree *photons, uint32_t index)
     return p;
 }
 
-/* So many of a run's bearers are asked whether they stand for a photon: its pick, and the last ones. */
+/* A photon is compared with this many of its run's irradiance photons at most: the pick, and the last ones. */
 enum { ASKED = 8 };
 
-/* bearers: the pick first. The others have half the reach: they lie where a place may be far from all photons. */
-static bool is_stood_for(const choice *c, const spot *bearers, uint32_t count, const spot *photon_at)
+/* chosen: the pick first. The others have half the reach: they lie where a gather hit may be far from all photons. */
+static bool is_stood_for(const choice *c, const spot *chosen, uint32_t count, const spot *photon_at)
 {
-    if (is_near(c, &bearers[0], photon_at, c->reach_squared))
+    if (is_near(c, &chosen[0], photon_at, c->reach_squared))
         return true;
     for (uint32_t i = 1; i < count; i++)
-        if (is_near(c, &bearers[i], photon_at, 0.25f * c->reach_squared))
+        if (is_near(c, &chosen[i], photon_at, 0.25f * c->reach_squared))
             return true;
     return false;
 }
 
-/* The bearers of a run of photons, as records, where there is room for them: its pick, and what none of those asked
- * stands for. Returns how many they are; when cancelled, how many it got to. */
+/* Chooses a run's irradiance photons: its pick, and the photons that none of those compared stands for. Writes them to
+ * records, unless it is NULL, and returns their number, or when cancelled the number so far. */
 static uint32_t choose(const choice *c, uint32_t run, photon *records)
 {
     uint64_t all = c->photons->count, begin = run * all / c->runs, end = (run + 1) * all / c->runs;
@@ -99,7 +99,7 @@ enum { RUNS_PER_BLOCK = 256 };
 
 typedef struct choice_job {
     const choice *c;
-    uint32_t *places; /* by block: how many its bearers are, then where the first one lies */
+    uint32_t *begins; /* by block: the number of its irradiance photons, then the index of the first one */
     photon *records;  /* NULL while they are counted */
 } choice_job;
 
@@ -109,9 +109,9 @@ static void choose_block(void *user, uint64_t begin, uint64_t end, uint64_t bloc
     const choice_job *job = user;
     uint32_t count = 0;
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->c->run); i++)
-        count += choose(job->c, (uint32_t)i, job->records ? job->records + job->places[block] + count : NULL);
+        count += choose(job->c, (uint32_t)i, job->records ? job->records + job->begins[block] + count : NULL);
     if (!job->records)
-        job->places[block] = count;
+        job->begins[block] = count;
 }
 
 static ag_status choose_all(run_context *run, choice_job *job)
@@ -120,36 +120,36 @@ static ag_status choose_all(run_context *run, choice_job *job)
     return status == AG_OK && run_is_cancelled(run) ? AG_CANCELLED : status; /* the last blocks may be incomplete */
 }
 
-/* Makes places of counts; gives how many bearers there are. */
-static uint32_t place_blocks(uint32_t *places, uint32_t block_count)
+/* Turns the blocks' counts into their first indices; returns the sum. */
+static uint32_t sum_counts(uint32_t *counts, uint32_t block_count)
 {
     uint32_t sum = 0;
     for (uint32_t i = 0; i < block_count; i++) {
-        uint32_t count = places[i];
-        places[i] = sum;
+        uint32_t count = counts[i];
+        counts[i] = sum;
         sum += count;
     }
     return sum;
 }
 
-ag_status irradiance_bearers_create(run_context *run, const photon_tree *photons, float fraction, float reach,
-                                    float min_cos, double progress, photon_tree *out_bearers)
+ag_status irradiance_photons_create(run_context *run, const photon_tree *photons, float fraction, float reach,
+                                    float min_cos, double progress, photon_tree *out_irradiance_photons)
 {
-    choice c = {run, photons, irradiance_bearers_runs(photons->count, fraction), reach * reach, min_cos};
+    choice c = {run, photons, irradiance_photons_runs(photons->count, fraction), reach * reach, min_cos};
     uint32_t block_count = c.runs / RUNS_PER_BLOCK + 1;
-    choice_job job = {&c, calloc(block_count, sizeof *job.places), NULL};
-    if (!job.places)
+    choice_job job = {&c, calloc(block_count, sizeof *job.begins), NULL};
+    if (!job.begins)
         return AG_ERROR_MEMORY;
     ag_status status = choose_all(run, &job);
     photon *records = NULL;
     if (status == AG_OK) {
-        uint32_t count = place_blocks(job.places, block_count);
+        uint32_t count = sum_counts(job.begins, block_count);
         records = job.records = photon_records_create(count);
         status = records ? choose_all(run, &job) : AG_ERROR_MEMORY;
         if (status == AG_OK)
-            status = photon_tree_build(run, records, count, progress, progress, out_bearers);
+            status = photon_tree_build(run, records, count, progress, progress, out_irradiance_photons);
     }
-    free(job.places);
+    free(job.begins);
     if (status != AG_OK)
         free(records);
     return status;

@@ -1,7 +1,7 @@
-/* test_passage.c: what is left of light on its way through media and across interfaces, by Beer's law, and the medium
- * it arrives in. Threads: one. */
+/* test_transmittance.c: what is left of light on its way through media and across interfaces, by Beer's law, and the
+ * medium it arrives in. Threads: one. */
 #include "medium.h"
-#include "rays/passage.h"
+#include "rays/transmittance.h"
 
 #include "fixtures/test_scene.h"
 
@@ -39,7 +39,7 @@ static void expect_way(const scene *s, vec3 from, vec3 to, uint32_t start, doubl
     rgb left;
     uint64_t cut = 0;
     vec3 origin = ray.origin;
-    assert_true(passage_intersect(s, &ray, &cut, &hit, &left));
+    assert_true(transmittance_intersect(s, &ray, &cut, &hit, &left));
     assert_left(left, in_a, in_b, 1e-5);
     assert_int_equal(ray.medium, end);
     assert_memory_equal(&ray.origin, &origin, sizeof origin);
@@ -49,9 +49,9 @@ static void expect_way(const scene *s, vec3 from, vec3 to, uint32_t start, doubl
     /* of any length; to just before the surface; and beyond it */
     ray = ray_between(from, to, start);
     ray.direction = vec3_scale(vec3_sub(to, from), 0.25f);
-    assert_left(passage_transmittance(s, ray, 4.0f * 0.9999f, &cut), in_a, in_b, 2e-3);
-    assert_true(rgb_is_black(passage_transmittance(s, ray, 4.1f, &cut)));
-    assert_true(rgb_is_black(passage_transmittance(s, ray, INFINITY, &cut)));
+    assert_left(transmittance_of_ray(s, ray, 4.0f * 0.9999f, &cut), in_a, in_b, 2e-3);
+    assert_true(rgb_is_black(transmittance_of_ray(s, ray, 4.1f, &cut)));
+    assert_true(rgb_is_black(transmittance_of_ray(s, ray, INFINITY, &cut)));
     assert_int_equal(cut, 0);
 }
 
@@ -94,19 +94,19 @@ static void slabs(void **state)
     uint64_t cut = 0;
     /* that ends within */
     scene_ray up = ray_between(vec3_make(0.2f, 0.3f, 0.0f), vec3_make(0.2f, 0.3f, 4.0f), SCENE_NO_MEDIUM);
-    assert_left(passage_transmittance(s, up, 1.25f, &cut), 0.25, 0.0, 1e-5);
-    assert_left(passage_transmittance(s, up, 1.75f, &cut), 0.5, 0.25, 1e-5);
-    assert_left(passage_transmittance(s, up, 1.5f, &cut), 0.5, 0.0, 1e-4); /* just on the interface */
-    assert_left(passage_transmittance(s, up, 0.5f, &cut), 0.0, 0.0, 0.0);
+    assert_left(transmittance_of_ray(s, up, 1.25f, &cut), 0.25, 0.0, 1e-5);
+    assert_left(transmittance_of_ray(s, up, 1.75f, &cut), 0.5, 0.25, 1e-5);
+    assert_left(transmittance_of_ray(s, up, 1.5f, &cut), 0.5, 0.0, 1e-4); /* just on the interface */
+    assert_left(transmittance_of_ray(s, up, 0.5f, &cut), 0.0, 0.0, 0.0);
     /* surfaces alone, in lengths of any direction */
     surface_hit hit;
     up.direction.z = 0.5f;
-    assert_true(passage_find_surface(s, up, 8.1f, &hit));
+    assert_true(scene_find_surface(s, up, 8.1f, &hit));
     assert_relative(hit.distance, 8.0, 1e-5);
     assert_relative(hit.position.z, 4.0, 1e-5);
-    assert_false(passage_find_surface(s, up, 7.9f, &hit));
-    assert_true(passage_is_blocked(s, up, INFINITY));
-    assert_false(passage_is_blocked(s, up, 7.9f));
+    assert_false(scene_find_surface(s, up, 7.9f, &hit));
+    assert_true(scene_is_blocked(s, up, INFINITY));
+    assert_false(scene_is_blocked(s, up, 7.9f));
     scene_destroy(s);
     test_run_reset(&r);
 }
@@ -161,31 +161,31 @@ static void surfaces_tell_rays_their_medium(void **state)
         surface_hit hit;
         rgb left;
         uint64_t cut = 0;
-        assert_true(passage_intersect(s, &ray, &cut, &hit, &left));
+        assert_true(transmittance_intersect(s, &ray, &cut, &hit, &left));
         assert_left(left, 0.0, 0.5, 1e-5);
         assert_int_equal(ray.medium, IN_B);
         assert_int_equal(surface_ray(&hit, ray, up).medium, IN_B);
         assert_int_equal(surface_ray(&hit, ray, down).medium, i == 0 ? IN_A : IN_B);
-        assert_left(passage_transmittance(s, ray, 0.4f, &cut), 0.0, 0.4, 1e-5);
-        assert_true(rgb_is_black(passage_transmittance(s, ray, 0.6f, &cut)));
+        assert_left(transmittance_of_ray(s, ray, 0.4f, &cut), 0.0, 0.4, 1e-5);
+        assert_true(rgb_is_black(transmittance_of_ray(s, ray, 0.6f, &cut)));
     }
     /* nothing in the way: to infinity nothing is left, but of what is not absorbed at all */
     scene_ray ray = scene_ray_make(vec3_make(0.1f, 0.2f, 4.0f), up);
     surface_hit hit;
     rgb left;
     uint64_t cut = 0;
-    assert_false(passage_intersect(s, &ray, &cut, &hit, &left));
+    assert_false(transmittance_intersect(s, &ray, &cut, &hit, &left));
     assert_true(left.r == 1.0f && left.g == 1.0f && left.b == 1.0f);
     ray.medium = IN_B;
-    assert_false(passage_intersect(s, &ray, &cut, &hit, &left));
+    assert_false(transmittance_intersect(s, &ray, &cut, &hit, &left));
     assert_true(left.r == 0.0f && left.g == 1.0f && left.b == 0.0f);
-    left = passage_transmittance(s, ray, INFINITY, &cut);
+    left = transmittance_of_ray(s, ray, INFINITY, &cut);
     assert_true(left.r == 0.0f && left.g == 1.0f && left.b == 0.0f);
     scene_destroy(s);
     test_run_reset(&r);
 }
 
-/* Half of the places of a mix with an interface are not there; and a medium is passed there without a trace of it. */
+/* Half of the points of a mix with an interface are not there; and a medium is passed there without a trace of it. */
 static void mixes_with_an_interface_have_holes(void **state)
 {
     (void)state;
@@ -207,12 +207,12 @@ static void mixes_with_an_interface_have_holes(void **state)
         rgb left;
         uint64_t cut = 0;
         ray.direction = vec3_make(0, 0, 1);
-        assert_true(passage_intersect(s, &ray, &cut, &hit, &left));
+        assert_true(transmittance_intersect(s, &ray, &cut, &hit, &left));
         bool is_through = hit.position.z > 1.5f;
         passed += is_through;
         assert_left(left, (is_through ? 2.0 : 1.0) - (double)from.z, 0.0, 1e-4);
         assert_int_equal(
-            rgb_is_black(passage_transmittance(s, ray_between(from, vec3_add(from, ray.direction), IN_A), 1.4f, &cut)),
+            rgb_is_black(transmittance_of_ray(s, ray_between(from, vec3_add(from, ray.direction), IN_A), 1.4f, &cut)),
             !is_through);
         assert_int_equal(ray.medium, IN_A);
     }
@@ -229,7 +229,7 @@ static void crossings_have_an_end(void **state)
     assert_non_null(text);
     for (int more = 0; more < 2; more++) {
         size_t size = (size_t)sprintf(text, MEDIA "MediumInterface \"b\" \"\" Material \"interface\"\n");
-        for (int i = 0; i < PASSAGE_CROSSINGS_MAX + more; i++) {
+        for (int i = 0; i < TRANSMITTANCE_CROSSINGS_MAX + more; i++) {
             char z[32];
             snprintf(z, sizeof z, "%g", 0.01 * (i + 1));
             size += (size_t)sprintf(text + size, "Shape \"disk\" \"float radius\" 3 \"float height\" %s\n", z);
@@ -244,11 +244,11 @@ static void crossings_have_an_end(void **state)
         surface_hit hit;
         rgb left;
         uint64_t cut = 0;
-        assert_int_equal(passage_intersect(s, &ray, &cut, &hit, &left), !more);
+        assert_int_equal(transmittance_intersect(s, &ray, &cut, &hit, &left), !more);
         assert_int_equal(rgb_is_black(left), more);
         assert_int_equal(cut, more);
         ray.medium = SCENE_NO_MEDIUM;
-        left = passage_transmittance(s, ray, 3.9f, &cut);
+        left = transmittance_of_ray(s, ray, 3.9f, &cut);
         assert_int_equal(rgb_is_black(left), more);
         assert_int_equal(cut, 2 * more);
         scene_destroy(s);
