@@ -6,6 +6,11 @@
 # jobs that render bands with it, and a job that waits for them and puts them together. Names of files must mean the same
 # on all nodes. A band that is stopped (a limit of time, a node taken away) writes a checkpoint when Slurm sends SIGTERM,
 # and goes on from there when it is requeued.
+#
+# AFTERGLOW_MAP_COPIES=yes: for nodes that share no more than a network's file system, where a photon map is read but not
+# filled. Each job fills a copy of the map on its own node, and the last one puts the copies together (afterglow-map
+# merge). The map, OUT.photons, stays: it has all irradiances of the picture, for the next one.
+#
 # Options of sbatch go into $SBATCH_OPTIONS: SBATCH_OPTIONS="-c 16 -t 2:00:00" tiles_slurm.sh ...
 set -euo pipefail
 
@@ -13,6 +18,7 @@ scene=$1 out=$2 count=$3
 shift 3
 afterglow=${AFTERGLOW:-afterglow}
 map=${out%.exr}.photons
+copies=${AFTERGLOW_MAP_COPIES:-no}
 part() { echo "${out%.exr}.part$1.exr"; }
 
 submit() { # SBATCH-OPTION... -- ARGUMENT-OF-THIS-SCRIPT...
@@ -35,20 +41,33 @@ if [[ -z ${SLURM_JOB_ID:-} ]]; then
     exit
 fi
 
-# exec: signals are for the program, not for a shell that waits for it
 case $AFTERGLOW_STEP in
-photons) exec "$afterglow" "$@" --photons-only --photon-map "$map" "$scene" ;;
+photons) exec "$afterglow" "$@" --photons-only --photon-map "$map" "$scene" ;; # exec: signals are for the program
 bands)
-    exec "$afterglow" "$@" --photon-map "$map" --tile "$SLURM_ARRAY_TASK_ID/$count" --no-clobber --checkpoint 300 \
-        --resume -o "$(part "$SLURM_ARRAY_TASK_ID")" "$scene"
+    i=$SLURM_ARRAY_TASK_ID
+    band=(--tile "$i/$count" -o "$(part "$i")" "$scene")
+    [[ $copies == yes ]] || exec "$afterglow" "$@" --photon-map "$map" --no-clobber --checkpoint 300 --resume "${band[@]}"
+    node=$(mktemp -d) # of the node
+    trap 'rm -rf "$node"' EXIT
+    cp "$map" "$node/map"
+    "$afterglow" "$@" --photon-map "$node/map" "${band[@]}"
+    cp "$node/map" "$map.$i.copying"
+    mv "$map.$i.copying" "$map.$i"
     ;;
 picture) # bands do not overlap: their sum is the picture, to the last bit
-    parts=("$(part 1)") merge=("$(part 1)")
-    for ((i = 2; i <= count; i++)); do
+    parts=() filled=() sum=()
+    for ((i = 1; i <= count; i++)); do
         parts+=("$(part "$i")")
-        merge+=("$(part "$i")" --add)
+        filled+=("$map.$i")
+        sum+=("$(part "$i")")
+        ((i == 1)) || sum+=(--add)
     done
-    oiiotool "${merge[@]}" -o "$out"
-    rm -- "${parts[@]}" "$map"
+    if [[ $copies == yes ]]; then
+        "${AFTERGLOW_MAP:-afterglow-map}" merge "$map" "$map" "${filled[@]}"
+    else
+        filled=("$map")
+    fi
+    oiiotool "${sum[@]}" -o "$out"
+    rm -- "${parts[@]}" "${filled[@]}"
     ;;
 esac

@@ -2,26 +2,11 @@
 # afterglow-bench's quick form: its certificate holds for any number of threads and processors, its files are whole, two
 # results are compared, and mistakes are told. Nothing is timed.
 set -euo pipefail
-if ! command -v jq >/dev/null; then
-    echo "SKIPPED: jq is not installed"
-    exit 77
-fi
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+need jq
 program=$AFTERGLOW_BUILD_DIR/bin/afterglow-bench
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-fail() {
-    echo "FAILED: $*" >&2
-    exit 1
-}
-# expect STATUS TEXT COMMAND...: how it ends, and what it says
-expect() {
-    local wanted=$1 text=$2 status=0
-    shift 2
-    "$@" >said 2>&1 || status=$?
-    [[ $status == "$wanted" ]] || fail "$*: exit status $status instead of $wanted: $(<said)"
-    grep -qF -- "$text" said || fail "$*: '$text' is not in: $(<said)"
-}
 
 # more threads than processors, too: the bits and counts of one thread
 "$program" --quick -q --threads 1,2,3,64 -o a.json -o a.html >line 2>told || fail "--quick ended with $?: $(<told)"

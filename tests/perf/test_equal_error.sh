@@ -2,26 +2,13 @@
 # equal_error.sh's quick form on two small scenes, with rivals: tables are whole, a rival that is path tracing is as good
 # as path tracing, what has a bias shows it, what fails is named, and what is measured is not measured again.
 set -euo pipefail
-for tool in jq python3; do
-    if ! command -v "$tool" >/dev/null; then
-        echo "SKIPPED: $tool is not installed"
-        exit 77
-    fi
-done
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+need jq python3
 export AG_BUILD_DIR=$folder/build AG_PROGRAM=$AFTERGLOW_PROGRAM AG_PERF_BUILD=no
 mkdir -p "$AG_BUILD_DIR"
 ln -s "$AFTERGLOW_BUILD_DIR/bin" "$AG_BUILD_DIR/bin"
-if [[ ! -x $AG_BUILD_DIR/bin/afterglow-pair-error ]]; then
-    echo "SKIPPED: the benchmarks are not built"
-    exit 77
-fi
-fail() {
-    echo "$*" >&2
-    exit 1
-}
+need_benchmark afterglow-pair-error
 
 box=$root/tests/scenes/box_with_blocks.pbrt lamp=$root/tests/scenes/lamp_sphere.pbrt
 path="'$AG_PROGRAM' -q --noise 0 --integrator path --type float --size {width}x{height} --seed {seed} -o {out}"

@@ -2,22 +2,11 @@
 # The forty rooms' bookkeeping: every run is kept, turns alternate, ratios are of the same repeat, and the worst room is
 # judged. The renderer is a stand-in that hands out the same small picture again and again; CPU times are made up.
 set -euo pipefail
-if ! command -v jq >/dev/null; then
-    echo "SKIPPED: jq is not installed"
-    exit 77
-fi
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+need jq
 program=$AFTERGLOW_BUILD_DIR/bin/afterglow-forty-rooms
-if [[ ! -x $program ]]; then
-    echo "SKIPPED: the benchmarks are not built"
-    exit 77
-fi
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-fail() {
-    echo "$*" >&2
-    exit 1
-}
+need_benchmark afterglow-forty-rooms
 
 cat >"$folder/renderer" <<'END'
 #!/usr/bin/env bash

@@ -1,22 +1,11 @@
 #!/usr/bin/env bash
 # The benchmark suite's quick form: its files are whole, its counts are right, its verdict is kept. Nothing is timed.
 set -euo pipefail
-if ! command -v jq >/dev/null; then
-    echo "SKIPPED: jq is not installed"
-    exit 77
-fi
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+need jq
 export AG_BUILD_DIR=$AFTERGLOW_BUILD_DIR AG_PROGRAM=$AFTERGLOW_PROGRAM AG_PERF_BUILD=no
-if [[ ! -x $AG_BUILD_DIR/bin/afterglow-photon-memory ]]; then
-    echo "SKIPPED: the benchmarks are not built"
-    exit 77
-fi
-fail() {
-    echo "$*" >&2
-    exit 1
-}
+need_benchmark afterglow-photon-memory
 
 "$root/perf/scripts/run.sh" --quick --out "$folder/out" --results "$folder/report" || fail "run.sh --quick ended with $?"
 

@@ -2,22 +2,12 @@
 # walk.sh's quick form: a walk through a small room flickers no more than its noise says, path traced or by a kept
 # photon map; a frame that is brighter than the others is found out.
 set -euo pipefail
-for tool in jq python3 oiiotool; do
-    if ! command -v "$tool" >/dev/null; then
-        echo "SKIPPED: $tool is not installed"
-        exit 77
-    fi
-done
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+need jq python3 oiiotool
 export AG_BUILD_DIR=$folder/build AG_PROGRAM=$AFTERGLOW_PROGRAM AG_PERF_BUILD=no
 mkdir -p "$AG_BUILD_DIR"
 ln -s "$AFTERGLOW_BUILD_DIR/bin" "$AG_BUILD_DIR/bin"
-fail() {
-    echo "$*" >&2
-    exit 1
-}
 holds() { awk "BEGIN { exit !($1) }" || fail "$2: $1"; }
 
 box=$root/tests/scenes/box_with_blocks.pbrt

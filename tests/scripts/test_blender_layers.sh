@@ -2,14 +2,9 @@
 # Every layer reaches Blender's compositor: it drops channels whose names do not end in one letter behind a point.
 # Skipped where Blender is not installed.
 set -euo pipefail
-
-if ! command -v blender >/dev/null; then
-    echo "SKIPPED: blender is not installed (apt-get install --no-install-recommends blender)"
-    exit 77
-fi
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+need blender
 cd "$folder"
 
 "$AFTERGLOW_PROGRAM" -q --photons 2000 --caustic-photons 0 --gather-samples 4 --spp 2 --noise 0 --size 16x16 \

@@ -4,21 +4,15 @@
 # surfaces without their highlights. What a format does not say is named in a warning. Skipped where Blender (with numpy, for its glTF exporter) is not installed.
 # ctest: blender
 set -euo pipefail
-
-if ! command -v blender >/dev/null; then
-    echo "SKIPPED: blender is not installed (apt-get install --no-install-recommends blender python3-numpy)"
-    exit 77
-fi
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+need blender
 cd "$folder"
 
 if ! HOME=$folder timeout 400 blender -b --factory-startup -P "$root/tests/fixtures/blender_rooms.py" -- "$folder" \
     >blender.log 2>&1 || [[ ! -s world.cycles.exr || ! -s world.obj ]]; then
     if grep -q "No module named 'numpy'\|has no attribute 'collada_export'\|could not be found" blender.log; then
-        echo "SKIPPED: this blender lacks an exporter: $(grep -m 1 Error blender.log)"
-        exit 77
+        skip "this blender lacks an exporter: $(grep -m 1 Error blender.log)"
     fi
     tail -20 blender.log
     exit 1

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # renderer/examples/tiles_slurm.sh makes the picture that one process makes, from one photon map; frames_slurm.sh makes
-# frames that share one, and none twice; map_slurm.sh puts copies of a map together. On a cluster of this machine alone, where it belongs to no other.
+# frames that share one, and none twice; where each job fills a copy of the map, the last one
+# puts the copies together. On a cluster of this machine alone, where it belongs to no other.
 set -euo pipefail
 
 # shellcheck source=tests/fixtures/slurm_cluster.sh
@@ -29,7 +30,7 @@ expect_tracers 1
 export AFTERGLOW_MAP=$AFTERGLOW_BUILD_DIR/bin/afterglow-map
 scene=$root/tests/scenes/box_with_blocks.pbrt
 quick=(--size 40x30 --spp 2 --photons 3000 --gather-samples 4)
-AFTERGLOW=$AFTERGLOW_PROGRAM "$root/renderer/examples/map_slurm.sh" "$scene" eight.exr 8 "${quick[@]}" -v
+AFTERGLOW_MAP_COPIES=yes AFTERGLOW=$AFTERGLOW_PROGRAM "$root/renderer/examples/tiles_slurm.sh" "$scene" eight.exr 8 "${quick[@]}" -v
 expect_tracers 1
 "$AFTERGLOW_PROGRAM" -q "${quick[@]}" --photon-aim 0 -o fresh.exr "$scene"
 "$AFTERGLOW_PROGRAM" -q "${quick[@]}" --photon-map eight.photons --stats again.json -o again.exr "$scene"

@@ -2,11 +2,8 @@
 # renderer/gallery/README.md is the page that gallery.sh beside it writes; its pictures are there, small; and the scene
 # that it shows renders.
 set -euo pipefail
-
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
 bash "$root/renderer/gallery/gallery.sh" --page >"$folder/page"
 if ! diff -u --label renderer/gallery/README.md "$root/renderer/gallery/README.md" --label "gallery.sh --page" "$folder/page"; then
     echo "FAILED: renderer/gallery/README.md is not what renderer/gallery/gallery.sh writes"

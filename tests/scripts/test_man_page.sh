@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
 # The man page and `afterglow --help` have the same options with the same arguments; and the page is proper roff.
 set -euo pipefail
-
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
 page=$AFTERGLOW_BUILD_DIR/renderer/afterglow.1
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 
 # One line each, as "-o, --outfile FILE". In the page they follow a .TP.
 "$AFTERGLOW_PROGRAM" --help | sed -nE 's/^ {2,6}((-., )?--[^ ]+( [^ ]+)?)( {2}.*)?$/\1/p' | sort >"$folder/help"

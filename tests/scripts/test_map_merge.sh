@@ -3,27 +3,11 @@
 # one process would have filled: a picture with it computes nothing, and has the bits of a fresh run. Other maps, damage and
 # mistakes are told, and write nothing.
 set -euo pipefail
-if ! command -v jq >/dev/null; then
-    echo "SKIPPED: jq is not installed"
-    exit 77
-fi
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+need jq
 map=$AFTERGLOW_BUILD_DIR/bin/afterglow-map
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-fail() {
-    echo "FAILED: $*" >&2
-    exit 1
-}
-# expect STATUS TEXT COMMAND...: how it ends, and what it says
-expect() {
-    local wanted=$1 text=$2 status=0
-    shift 2
-    "$@" >said 2>&1 || status=$?
-    [[ $status == "$wanted" ]] || fail "$*: exit status $status instead of $wanted: $(<said)"
-    grep -qF -- "$text" said || fail "$*: '$text' is not in: $(<said)"
-}
 scene=$root/tests/scenes/glass_and_metal.pbrt
 render() { # OPTION...
     "$AFTERGLOW_PROGRAM" -q --progress none --photons 4000 --caustic-photons 500 --spp 2 --gather-samples 4 --size 24x24 \

@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
 # Tiles that oiiotool adds up are the picture in one, every channel of it, with the same windows.
 set -euo pipefail
-
-command -v oiiotool >/dev/null || { echo "SKIPPED: oiiotool is not installed (openimageio-tools)"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+need oiiotool
 cd "$folder"
-scene=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/scenes/box_with_blocks.pbrt
+scene=$root/tests/scenes/box_with_blocks.pbrt
 render() { "$AFTERGLOW_PROGRAM" -q --size 40x30 --spp 2 --photons 3000 --gather-samples 4 --aov A,Z,albedo,light "$@" "$scene"; }
 
 render -o whole.exr

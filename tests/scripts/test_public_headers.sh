@@ -2,10 +2,8 @@
 # Each public header stands alone, as C17 and as C++17, without a warning; and the library exports exactly the functions
 # that they declare.
 set -euo pipefail
-
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
 headers=(afterglow/base.h afterglow/afterglow.h)
 includes=(-I "$root/renderer/include" -I "$root/threads/include")
 warnings=(-Wall -Wextra -Wshadow -Wconversion -Wundef -pedantic -Werror)
