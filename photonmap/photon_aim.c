@@ -12,11 +12,10 @@ enum { BLIND_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
 static const float LEAST_GAIN = 1.5f;
 static const double ENOUGH_ASKED = 0.5, ENOUGH_PER_PATH = 0.25;
 /* Paths are split that are worth more than SPLIT_RATIO times what a tenth of the useful ones is worth less than; or
- * more than that, so that no more than PARTS_PER_PATH come to one path on average. So that no round takes long, the
- * first one with a guide splits what is worth more than nearly all by power alone, each further one down to a
- * SPLIT_STEP less.
- */
-static const float SPLIT_RATIO = 2.0f, PARTS_PER_PATH = 0.5f, SPLIT_STEP = 8.0f;
+ * more than that, so that no more than PARTS_PER_PATH come to one path on average. The first round with a guide splits
+ * only what is worth more than nearly all paths are by power alone, and each further one at most what is worth so many
+ * times less, so that no round takes long. */
+static const float SPLIT_RATIO = 2.0f, PARTS_PER_PATH = 0.5f, SPLIT_STEP = 5.0f;
 static const float LOW_SHARE = 0.1f, HIGH_SHARE = 0.99f;
 
 typedef struct learner {
