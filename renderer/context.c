@@ -5,6 +5,8 @@
 
 #include "clock.h"
 #include "output/denoise.h"
+#include "texture/texture_file_levels.h"
+#include "texture/texture_udim.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -171,9 +173,22 @@ void context_count_textures(ag_context *context, const scene *s)
 ag_status context_check_textures(ag_context *context, const scene *s)
 {
     context_count_textures(context, s);
-    if (!texture_store_has_failed(s->texture_store))
-        return AG_OK;
-    log_message(context->log, AG_LOG_ERROR,
-                "textures beyond --texture-memory cannot be read back from their temporary file");
-    return AG_ERROR_SYSTEM;
+    for (uint32_t i = 0; i < s->texture_image_count; i++)
+        if (s->texture_images[i]->udim)
+            texture_udim_tell_missed(s->texture_images[i], context->log);
+    for (uint32_t i = 0; i < s->texture_image_count; i++) {
+        const texture_image *picture = s->texture_images[i];
+        const char *problem = picture->file ? texture_file_levels_problem(picture->file) : NULL;
+        if (problem) {
+            log_message(context->log, AG_LOG_ERROR, "'%s' %s", picture->path, problem);
+            return AG_ERROR_INPUT;
+        }
+    }
+    const ag_status status = texture_store_state(s->texture_store);
+    if (status == AG_ERROR_MEMORY)
+        log_message(context->log, AG_LOG_ERROR, "out of memory for tiles of textures");
+    else if (status != AG_OK)
+        log_message(context->log, AG_LOG_ERROR,
+                    "textures beyond --texture-memory cannot be read back from their temporary file");
+    return status;
 }

@@ -24,6 +24,19 @@ typedef struct image {
     float chromaticities[8]; /* that the file brings: of red, green, blue, white, each x and y */
 } image;
 
+/* A file that holds tiles, and coarser levels as the one before halved. */
+enum { IMAGE_LEVELS_MAX = 32 };
+typedef struct image_level {
+    int width, height;
+    int tile_width_bits, tile_height_bits; /* logarithms of the sides of a tile */
+} image_level;
+
+typedef struct image_levels_header {
+    image picture; /* without pixels */
+    int level_count;
+    image_level levels[IMAGE_LEVELS_MAX];
+} image_levels_header;
+
 typedef struct image_attribute {
     const char *name;
     const char *text;     /* a string attribute, or NULL: numbers */

@@ -19,7 +19,7 @@ extern "C" {
 #define IMAGE_MODULE_ENTRY_NAME "afterglow_image_module"
 
 /* Raised whenever this file or image.h changes. */
-enum { IMAGE_MODULE_INTERFACE = 5 };
+enum { IMAGE_MODULE_INTERFACE = 6 };
 
 typedef struct image_module {
     int interface_number; /* IMAGE_MODULE_INTERFACE of the module */
@@ -35,6 +35,16 @@ typedef struct image_module {
     /* The same of a file's bytes. extension: of their format, in lower case. */
     ag_status (*decode_memory)(const char *extension, const unsigned char *bytes, size_t size, bool keep_bytes,
                                image *out_image, char *message, size_t message_size);
+
+    /* Opens a file that holds tiles and coarser levels. *out_file is to be closed; NULL, with AG_OK, where it holds
+     * none of that kind. Errors: as of decode. */
+    ag_status (*open_levels)(const char *path, void **out_file, image_levels_header *out_header, char *message,
+                             size_t message_size);
+    /* A tile, from its upper left corner, of some of the channels, as bytes or floats; rows are as long as the level's
+     * tiles are wide. Any number of threads may read from one file; they wait for one another. Errors: as of decode. */
+    ag_status (*read_tile)(void *file, int level, int x, int y, int channel_begin, int channel_end, bool as_bytes,
+                           void *out_pixels);
+    void (*close_levels)(void *file);
 } image_module;
 
 /* The module's only symbol. NULL where OpenImageIO cannot be set up. */

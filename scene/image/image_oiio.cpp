@@ -31,6 +31,8 @@ const size_t jpeg_text_limit = 16384; /* ... and when metadata do not fit into a
 const std::uint64_t trusted_values = std::uint64_t(1) << 28;
 const std::uint64_t values_per_byte = std::uint64_t(1) << 16;
 
+const int largest_tile_bits = 9; /* TEXTURE_TILE_BITS_MAX */
+
 /* Runs work and is the one place where an exception becomes a status. */
 template <typename Work>
 ag_status guarded(ag_status failure, char *message, size_t message_size, Work &&work) noexcept
@@ -206,20 +208,9 @@ Value *read_values(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, std::ui
     return values.release();
 }
 
-/* proxy: the file's bytes, or NULL: they are read from path. */
-image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::IOProxy *proxy)
+/* Without pixels. */
+image describe(const OIIO::ImageSpec &spec)
 {
-    OIIO::ImageSpec wishes;
-    wishes.attribute("oiio:UnassociatedAlpha", 1); /* colours as stored, not multiplied by alpha */
-    if (proxy)
-        wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes, proxy);
-    if (!input)
-        fail("OpenImageIO cannot open it", OIIO::geterror());
-    input->threads(1);
-    const OIIO::ImageSpec spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
-        throw std::runtime_error("it is not a flat picture");
     image read = image();
     read.width = spec.width;
     read.height = spec.height;
@@ -231,6 +222,30 @@ image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::I
         read.has_chromaticities = true;
         std::memcpy(read.chromaticities, chromaticities->data(), sizeof read.chromaticities);
     }
+    return read;
+}
+
+std::unique_ptr<OIIO::ImageInput> open_input(const std::string &path, OIIO::Filesystem::IOProxy *proxy)
+{
+    OIIO::ImageSpec wishes;
+    wishes.attribute("oiio:UnassociatedAlpha", 1); /* colours as stored, not multiplied by alpha */
+    if (proxy)
+        wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes, proxy);
+    if (!input)
+        fail("OpenImageIO cannot open it", OIIO::geterror());
+    input->threads(1);
+    return input;
+}
+
+/* proxy: the file's bytes, or NULL: they are read from path. */
+image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::IOProxy *proxy)
+{
+    const std::unique_ptr<OIIO::ImageInput> input = open_input(path, proxy);
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
+        throw std::runtime_error("it is not a flat picture");
+    image read = describe(spec);
     const std::uint64_t count = count_values(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path));
     if (keep_bytes && read.type == IMAGE_UINT8)
         read.bytes = read_values<unsigned char>(*input, spec, count, OIIO::TypeUInt8);
@@ -256,11 +271,96 @@ ag_status decode_memory(const char *extension, const unsigned char *bytes, size_
     });
 }
 
+/* --- parts of files that hold tiles and coarser levels --- */
+
+/* -1: it is no power of two, or beyond what is held at once. */
+int bits_of_side(int side)
+{
+    for (int bits = 0; bits <= largest_tile_bits; bits++)
+        if (side == 1 << bits)
+            return bits;
+    return -1;
+}
+
+bool is_half_of(int side, int before) { return side == std::max(before / 2, 1) || side == (before + 1) / 2; }
+
+/* Whether a level is one that parts are read of: a flat picture that fills its frame, in tiles, as the first but for
+ * its size, which is half of the one before. */
+bool is_usable_level(const OIIO::ImageSpec &spec, const image_levels_header &header)
+{
+    const image &picture = header.picture;
+    if (spec.depth > 1 || spec.deep || spec.x != 0 || spec.y != 0 || spec.full_x != 0 || spec.full_y != 0 ||
+        spec.full_width != spec.width || spec.full_height != spec.height || spec.tile_depth > 1 ||
+        bits_of_side(spec.tile_width) < 0 || bits_of_side(spec.tile_height) < 0)
+        return false;
+    if (header.level_count == 0)
+        return true;
+    const image_level &before = header.levels[header.level_count - 1];
+    return spec.nchannels == picture.channel_count && sample_type_of(spec.format) == picture.type &&
+           is_half_of(spec.width, before.width) && is_half_of(spec.height, before.height);
+}
+
+ag_status open_levels(const char *path, void **out_file, image_levels_header *out_header, char *message,
+                      size_t message_size) noexcept
+{
+    *out_file = nullptr;
+    *out_header = image_levels_header();
+    return guarded(AG_ERROR_INPUT, message, message_size, [=] {
+        std::unique_ptr<OIIO::ImageInput> input = open_input(path, nullptr);
+        image_levels_header header = image_levels_header();
+        OIIO::ImageSpec spec = input->spec();
+        if (spec.tile_width == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
+            return;
+        header.picture = describe(spec);
+        count_values(spec, OIIO::Filesystem::file_size(path));
+        while (header.level_count < IMAGE_LEVELS_MAX && is_usable_level(spec, header)) {
+            header.levels[header.level_count++] = {spec.width, spec.height, bits_of_side(spec.tile_width),
+                                                   bits_of_side(spec.tile_height)};
+            if (!input->seek_subimage(0, header.level_count))
+                break;
+            spec = input->spec();
+        }
+        input->geterror(); /* that there is no further level is no error */
+        if (header.level_count < 2)
+            return;
+        *out_header = header;
+        *out_file = input.release();
+    });
+}
+
+ag_status read_tile(void *file, int level, int x, int y, int channel_begin, int channel_end, bool as_bytes,
+                    void *out_pixels) noexcept
+{
+    char message[256];
+    return guarded(AG_ERROR_INPUT, message, sizeof message, [=] {
+        OIIO::ImageInput &input = *static_cast<OIIO::ImageInput *>(file);
+        const OIIO::ImageSpec spec = input.spec_dimensions(0, level);
+        const OIIO::stride_t pixel_size =
+            (channel_end - channel_begin) * static_cast<int>(as_bytes ? 1 : sizeof(float));
+        const int right = std::min(x + spec.tile_width, spec.width),
+                  bottom = std::min(y + spec.tile_height, spec.height);
+        if (spec.tile_width < 1 || x >= right || y >= bottom ||
+            !input.read_tiles(0, level, x, right, y, bottom, 0, 1, channel_begin, channel_end,
+                              as_bytes ? OIIO::TypeUInt8 : OIIO::TypeFloat, out_pixels, pixel_size,
+                              pixel_size * spec.tile_width))
+            fail("OpenImageIO cannot decode it", input.geterror());
+    });
+}
+
+void close_levels(void *file) noexcept
+{
+    try {
+        delete static_cast<OIIO::ImageInput *>(file);
+    } catch (...) {
+    }
+}
+
 } // namespace
 
 extern "C" const image_module *afterglow_image_module(void)
 {
-    static const image_module table = {IMAGE_MODULE_INTERFACE, encode, decode, decode_memory};
+    static const image_module table = {
+        IMAGE_MODULE_INTERFACE, encode, decode, decode_memory, open_levels, read_tile, close_levels};
     try {
         /* Before anything else, or OpenImageIO and OpenEXR start a thread for every CPU. And Debian's build prints
          * debug messages to standard error unless told not to. */

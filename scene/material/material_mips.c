@@ -1,6 +1,8 @@
 /* material_mips.c: see material_mips.h. */
 #include "material/material_mips.h"
 
+#include "texture/texture_udim.h"
+
 /* A factor that varies goes along with the colour or against it: the mean of the product is another than the product of
  * the means. Roughness has hardly a part in how much is reflected. */
 static bool has_varying_factors(const material *m)
@@ -40,6 +42,14 @@ bool material_is_filtered(const scene *s, const material *m)
 static ag_status make_of_picture(scene *s, run_context *run, texture_image *i)
 {
     s->has_mips = true;
+    if (i->udim) {
+        i->udim->has_mips = true;
+        ag_status status = AG_OK;
+        for (uint32_t k = 0; k < i->udim->slot_count && status == AG_OK; k++)
+            if (i->udim->tiles[k])
+                status = make_of_picture(s, run, i->udim->tiles[k]);
+        return status;
+    }
     if (i->mips)
         return AG_OK;
     const texture_level finest = texture_image_finest(i);

@@ -6,6 +6,7 @@
 #include "scene.h"
 #include "texture/texture_filter.h"
 #include "texture/texture_noise.h"
+#include "texture/texture_udim.h"
 
 #include <string.h>
 
@@ -96,7 +97,8 @@ static rgb image_value(const scene *s, const texture *t, const lookup *at)
         float value = t->scale * texture_image_float(picture, t->channel, t->wraps, t->filter, st.x, 1.0f - st.y);
         return rgb_gray(t->invert ? fmaxf(0.0f, 1.0f - value) : value);
     }
-    rgb value = at->footprint && picture->mips ? filtered_picture_rgb(t, picture, st, at) : picture_rgb(t, picture, st);
+    const bool is_filtered = at->footprint && (picture->udim ? picture->udim->has_mips : picture->mips != NULL);
+    rgb value = is_filtered ? filtered_picture_rgb(t, picture, st, at) : picture_rgb(t, picture, st);
     value = rgb_scale(value, t->scale);
     if (t->invert)
         value = rgb_sub(rgb_gray(1.0f), value);
@@ -243,9 +245,8 @@ static bool is_product(const struct scene *s, const texture *t)
     }
 }
 
-static float bound_of_picture(const struct scene *s, const texture *t)
+static float bound_of_values(const texture *t, const texture_image *picture)
 {
-    const texture_image *picture = s->texture_images[t->image_index];
     float least = picture->least, most = picture->most;
     if (picture->colors.has_matrix && !t->is_data) {
         const float low = least, high = most;
@@ -265,6 +266,18 @@ static float bound_of_picture(const struct scene *s, const texture *t)
     if (least < 0.0f || t->scale < 0.0f || (t->invert && most > 1.0f))
         return INFINITY;
     return t->invert ? 1.0f : most;
+}
+
+static float bound_of_picture(const struct scene *s, const texture *t)
+{
+    const texture_image *picture = s->texture_images[t->image_index];
+    if (!picture->udim)
+        return bound_of_values(t, picture);
+    float most = t->invert ? 1.0f : 0.0f; /* beyond the tiles all is black */
+    for (uint32_t k = 0; k < picture->udim->slot_count; k++)
+        if (picture->udim->tiles[k])
+            most = fmaxf(most, bound_of_values(t, picture->udim->tiles[k]));
+    return most;
 }
 
 static float bound_of_input(const struct scene *s, const texture *t, int which)

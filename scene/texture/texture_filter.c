@@ -1,6 +1,8 @@
 /* texture_filter.c: see texture_filter.h. */
 #include "texture/texture_filter.h"
 
+#include "texture/texture_udim.h"
+
 #include <string.h>
 
 enum { PROBES_MAX = 16 };
@@ -70,6 +72,8 @@ static uint32_t coarsest_level(const texture_level *finest)
 rgb texture_filter_rgb(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t,
                        const texture_footprint *footprint)
 {
+    if (i->udim && !texture_udim_enter(&i, &wraps, &s, &t))
+        return rgb_gray(0.0f);
     const texture_mips *m = i->mips;
     ellipse e;
     if (!find_ellipse(&m->levels[0], footprint, &e))
@@ -99,6 +103,8 @@ rgb texture_filter_rgb(const texture_image *i, texture_wraps wraps, texture_filt
 rgb texture_filter_color(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t,
                          const texture_footprint *footprint)
 {
+    if (i->udim && !texture_udim_enter(&i, &wraps, &s, &t))
+        return rgb_gray(0.0f);
     rgb c = texture_filter_rgb(i, wraps, filter, s, t, footprint);
     return i->colors.has_matrix ? image_colors_convert(&i->colors, c) : c;
 }

@@ -1,15 +1,13 @@
-/* texture_image.c: see texture_image.h. Threads: one loads; then any number look up. */
-#define _POSIX_C_SOURCE 200809L
+/* texture_image.c: see texture_image.h. Threads: one takes; then any number look up. */
 #include "texture/texture_image.h"
 
-#include "image/image_reader.h"
+#include "image/image.h"
 #include "scene.h"
-#include "status.h"
+#include "texture/texture_file_levels.h"
+#include "texture/texture_udim.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* Loading */
 
 /* Keeps the first `kept` of the channels, in place; gives the array, which may have moved. */
 static void *keep_channels(void *values, size_t value_size, size_t pixel_count, size_t channel_count, size_t kept)
@@ -134,107 +132,12 @@ static void find_range(texture_image *i)
     }
 }
 
-/* A file's bytes; NULL: they are on disk. */
-typedef struct file_bytes {
-    const unsigned char *bytes;
-    size_t size;
-} file_bytes;
-
-static ag_status read_image(const scene *s, texture_image *i, const char *path, file_bytes file, char *message,
-                            size_t message_size)
+ag_status texture_image_take(const scene *s, texture_image *i, image *picture, char *message, size_t message_size)
 {
-    i->path = strdup(path);
-    if (!i->path)
-        return AG_ERROR_MEMORY;
-    image picture;
-    ag_status status = file.bytes ? image_read_memory(path, file.bytes, file.size, &picture, message, message_size)
-                                  : image_read_compact(path, &picture, message, message_size);
-    if (status == AG_OK)
-        status = take_pixels(s, i, &picture, message, message_size);
+    ag_status status = take_pixels(s, i, picture, message, message_size);
     if (status == AG_OK)
         find_range(i);
-    image_reset(&picture);
     return status;
-}
-
-/* With its coarser levels, which may be made later, and alpha. */
-static uint64_t whole_bytes(const texture_image *i)
-{
-    const uint64_t pixels = (uint64_t)i->width * i->height, values = pixels * i->channel_count;
-    const uint64_t finest = i->bytes ? values : values * sizeof *i->values;
-    const uint64_t coarser = values / 3 * (i->bytes ? sizeof(uint16_t) : sizeof(float));
-    return finest + coarser + (i->alpha_bytes ? pixels : 0) + (i->alpha_values ? pixels * sizeof *i->alpha_values : 0);
-}
-
-/* Moves what does not fit into the scene's store, pixels, coarser levels and alpha. */
-static ag_status put_into_store(scene *s, texture_image *i, char *message, size_t message_size)
-{
-    const texture_level finest = texture_image_finest(i);
-    i->stored_content = texture_image_content(i);
-    AG_TRY(texture_mips_create(NULL, &finest, &i->mips));
-    AG_TRY(texture_mips_put(i->mips, s->texture_store, message, message_size));
-    if (texture_image_has_alpha(i)) {
-        i->stored_alpha = (texture_level){.width = i->width,
-                                          .height = i->height,
-                                          .channel_count = 1,
-                                          .sample = i->alpha_bytes ? TEXTURE_BYTES : TEXTURE_FLOATS,
-                                          .bytes = i->alpha_bytes,
-                                          .values = i->alpha_values};
-        AG_TRY(texture_level_put(&i->stored_alpha, s->texture_store, message, message_size));
-    }
-    free(i->bytes);
-    free(i->values);
-    free(i->alpha_bytes);
-    free(i->alpha_values);
-    i->bytes = i->alpha_bytes = NULL;
-    i->values = i->alpha_values = NULL;
-    i->is_stored = true;
-    return AG_OK;
-}
-
-static ag_status hold_within_limit(scene *s, texture_image *i, char *message, size_t message_size)
-{
-    const uint64_t limit_bytes = s->request ? s->request->texture_memory_bytes : 0;
-    if (limit_bytes == 0)
-        return AG_OK;
-    if (!s->texture_store)
-        s->texture_store = texture_store_create(limit_bytes);
-    if (!s->texture_store)
-        return AG_ERROR_MEMORY;
-    return texture_store_keeps(s->texture_store, whole_bytes(i)) ? AG_OK : put_into_store(s, i, message, message_size);
-}
-
-static ag_status load(scene *s, const char *path, file_bytes file, image_encoding encoding, uint32_t *out_index,
-                      char *message, size_t message_size)
-{
-    for (uint32_t k = 0; k < s->texture_image_count; k++)
-        if (image_encoding_equal(s->texture_images[k]->encoding, encoding) &&
-            strcmp(s->texture_images[k]->path, path) == 0) {
-            *out_index = k;
-            return AG_OK;
-        }
-    texture_image *i = calloc(1, sizeof *i);
-    if (!i)
-        return AG_ERROR_MEMORY;
-    i->encoding = encoding;
-    ag_status status = read_image(s, i, path, file, message, message_size);
-    if (status == AG_OK)
-        status = hold_within_limit(s, i, message, message_size);
-    if (status != AG_OK)
-        texture_image_destroy(i);
-    return status ? status : scene_add_texture_image(s, i, out_index);
-}
-
-ag_status texture_image_load(struct scene *s, const char *path, image_encoding encoding, uint32_t *out_index,
-                             char *message, size_t message_size)
-{
-    return load(s, path, (file_bytes){NULL, 0}, encoding, out_index, message, message_size);
-}
-
-ag_status texture_image_load_memory(struct scene *s, const char *name, const unsigned char *bytes, size_t size,
-                                    image_encoding encoding, uint32_t *out_index, char *message, size_t message_size)
-{
-    return load(s, name, (file_bytes){bytes, size}, encoding, out_index, message, message_size);
 }
 
 void texture_image_destroy(texture_image *i)
@@ -248,6 +151,8 @@ void texture_image_destroy(texture_image *i)
     free(i->alpha_values);
     texture_mips_destroy(i->mips);
     texture_tiles_destroy(i->stored_alpha.tiles);
+    texture_file_levels_destroy(i->file);
+    texture_udim_destroy(i->udim);
     free(i);
 }
 
@@ -272,6 +177,10 @@ hash128 texture_image_content(const texture_image *i)
 {
     const size_t count = (size_t)i->width * i->height;
     hash128 h = hash128_begin();
+    if (i->udim)
+        return texture_udim_content(i->udim);
+    if (i->is_by_file)
+        return texture_file_content(i->path);
     if (i->is_stored)
         return i->stored_content;
     if (i->bytes)

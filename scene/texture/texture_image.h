@@ -1,6 +1,6 @@
 /* texture_image.h: pictures as textures look them up: linear values between the middles of pixels. Pixels of 8 bits
  * stay bytes, and are decoded by a table of 256; a picture may serve as colours and as numbers. Rests on: Pharr, Jakob,
- * Humphreys, "Physically Based Rendering", 4th ed., 2023, 10.4 (image texture). Flow: image_reader, image_encoding ->
+ * Humphreys, "Physically Based Rendering", 4th ed., 2023, 10.4 (image texture). Flow: texture_image_load ->
  * [here] -> texture. Threads: one loads; then any number look up. */
 #ifndef AFTERGLOW_TEXTURE_IMAGE_H
 #define AFTERGLOW_TEXTURE_IMAGE_H
@@ -13,6 +13,7 @@
 
 #include <stdint.h>
 
+struct image;
 struct scene;
 
 /* Of a grey picture all three colours are the same; alpha is 1 where it has none. */
@@ -40,24 +41,24 @@ typedef struct texture_image {
     bool is_stored;             /* all pixels lie in the scene's texture_store: those above are NULL, mips are there */
     texture_level stored_alpha; /* then, where it has one: tiles is not NULL */
     hash128 stored_content;     /* then, what texture_image_content was */
-    uint64_t bad_count;         /* values that were not finite, and are 0 now */
-    float least, most;          /* of the linear values, before `colors` */
+    bool is_by_file;            /* its levels are those of its file, whose bytes are its fingerprint */
+    struct texture_file_levels *file; /* from which tiles are read, or NULL */
+    uint64_t bad_count;               /* values that were not finite, and are 0 now */
+    float least, most;                /* of the linear values, before `colors` */
+    struct texture_udim *udim; /* many pictures side by side, see texture_udim.h, or NULL. Then the sizes above are the
+                                  largest, the counts and bounds all of them's; it has no pixels or colours itself */
 } texture_image;
 
-/* Loads a picture into the scene's ownership, once for each path and encoding. Three channels or more are taken for
- * red, green, blue and alpha, one or two for grey and alpha; what is beyond is left out. Errors: as of image_read,
- * AG_ERROR_COLOR; text in message. */
-ag_status texture_image_load(struct scene *s, const char *path, image_encoding encoding, uint32_t *out_index,
-                             char *message, size_t message_size);
-/* The same of a PNG or JPEG file in memory, once for each name, which is to differ from all paths, and encoding. */
-ag_status texture_image_load_memory(struct scene *s, const char *name, const unsigned char *bytes, size_t size,
-                                    image_encoding encoding, uint32_t *out_index, char *message, size_t message_size);
+/* Takes the pixels of a picture that was read, of which *i has path and encoding so far. Errors: AG_ERROR_COLOR,
+ * AG_ERROR_MEMORY; text in message. */
+ag_status texture_image_take(const struct scene *s, texture_image *i, struct image *picture, char *message,
+                             size_t message_size);
 void texture_image_destroy(texture_image *i); /* NULL is fine */
 
 /* The picture itself as a level, whose memory stays the picture's. Not of one that is stored. */
 texture_level texture_image_finest(const texture_image *i);
 
-/* Whether alpha is below 1 anywhere. */
+/* Whether alpha is below 1 anywhere; not of one in tiles. */
 static inline bool texture_image_has_alpha(const texture_image *i)
 {
     return i->alpha_bytes || i->alpha_values || i->stored_alpha.tiles;

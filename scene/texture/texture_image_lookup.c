@@ -1,6 +1,8 @@
 /* texture_image_lookup.c: values of pictures at a place, see texture_image.h. Threads: pure functions. */
 #include "texture/texture_image.h"
 
+#include "texture/texture_udim.h"
+
 static pixel_blend find_pixels(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
 {
     return pixel_blend_at(i->width, i->height, wraps, filter, s, t);
@@ -18,6 +20,8 @@ static float sum_channel(const texture_image *i, const pixel_blend *f, size_t ch
 
 rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
 {
+    if (i->udim && !texture_udim_enter(&i, &wraps, &s, &t))
+        return rgb_gray(0.0f);
     if (i->is_stored)
         return texture_level_rgb(&i->mips->levels[0], wraps, filter, s, t);
     const pixel_blend f = find_pixels(i, wraps, filter, s, t);
@@ -27,6 +31,8 @@ rgb texture_image_rgb(const texture_image *i, texture_wraps wraps, texture_filte
 
 rgb texture_image_color(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t)
 {
+    if (i->udim && !texture_udim_enter(&i, &wraps, &s, &t))
+        return rgb_gray(0.0f);
     rgb c = texture_image_rgb(i, wraps, filter, s, t);
     return i->colors.has_matrix ? image_colors_convert(&i->colors, c) : c;
 }
@@ -77,6 +83,8 @@ static float stored_float(const texture_image *i, texture_channel channel, textu
 float texture_image_float(const texture_image *i, texture_channel channel, texture_wraps wraps, texture_filter filter,
                           float s, float t)
 {
+    if (i->udim && !texture_udim_enter(&i, &wraps, &s, &t))
+        return 0.0f;
     if (i->is_stored)
         return stored_float(i, channel, wraps, filter, s, t);
     const pixel_blend f = find_pixels(i, wraps, filter, s, t);

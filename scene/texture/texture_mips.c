@@ -127,7 +127,7 @@ static ag_status make_level(run_context *run, const texture_level *fine, texture
     if (!out->values && !out->packed)
         return AG_ERROR_MEMORY;
     mip_job job = {fine, out};
-    if (!run) {
+    if (!run || !run->pool) {
         average_rows(&job, 0, out->height, 0, 0);
         return AG_OK;
     }
@@ -155,32 +155,39 @@ ag_status texture_mips_create(run_context *run, const texture_level *finest, tex
     return status;
 }
 
-static size_t sample_bytes(texture_sample sample)
+static texture_layout layout_of(const texture_level *l)
 {
-    return sample == TEXTURE_BYTES ? 1 : sample == TEXTURE_PACKED ? sizeof(uint16_t) : sizeof(float);
+    return (texture_layout){.width = l->width,
+                            .height = l->height,
+                            .channel_count = l->channel_count,
+                            .value_bytes = l->sample == TEXTURE_BYTES    ? 1
+                                           : l->sample == TEXTURE_PACKED ? 2
+                                                                         : 4};
 }
 
-ag_status texture_level_put(texture_level *l, texture_store *store, char *message, size_t message_size)
+ag_status texture_level_put(run_context *run, texture_level *l, texture_store *store, char *message,
+                            size_t message_size)
 {
     const void *pixels = l->sample == TEXTURE_BYTES    ? (const void *)l->bytes
                          : l->sample == TEXTURE_PACKED ? (const void *)l->packed
                                                        : l->values;
-    return texture_store_put(store, pixels, l->width, l->height, l->channel_count * (uint32_t)sample_bytes(l->sample),
-                             &l->tiles, message, message_size);
+    return texture_store_put(store, run, pixels, layout_of(l), &l->tiles, message, message_size);
 }
 
 static void free_level(texture_level *l)
 {
+    free((void *)l->bytes);
     free(l->packed);
     free(l->values);
+    l->bytes = NULL;
     l->packed = NULL;
     l->values = NULL;
 }
 
-ag_status texture_mips_put(texture_mips *m, texture_store *store, char *message, size_t message_size)
+ag_status texture_mips_put(run_context *run, texture_mips *m, texture_store *store, char *message, size_t message_size)
 {
     for (uint32_t k = 0; k < m->level_count; k++) {
-        AG_TRY(texture_level_put(&m->levels[k], store, message, message_size));
+        AG_TRY(texture_level_put(run, &m->levels[k], store, message, message_size));
         if (k > 0)
             free_level(&m->levels[k]);
     }

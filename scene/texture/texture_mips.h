@@ -35,15 +35,16 @@ typedef struct texture_mips {
                                                  and high as the one before, rounded up; the last is a single pixel */
 } texture_mips;
 
-/* run NULL: by this thread alone. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+/* run NULL, or without a pool: by this thread alone. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status texture_mips_create(run_context *run, const texture_level *finest, texture_mips **out_mips);
 void texture_mips_destroy(texture_mips *m); /* NULL is fine */
 
 /* Moves all levels into the store, the finest, of which the memory stays the caller's, too. Errors: as of
  * texture_store_put. */
-ag_status texture_mips_put(texture_mips *m, texture_store *store, char *message, size_t message_size);
+ag_status texture_mips_put(run_context *run, texture_mips *m, texture_store *store, char *message, size_t message_size);
 /* The same of one level. */
-ag_status texture_level_put(texture_level *in_out, texture_store *store, char *message, size_t message_size);
+ag_status texture_level_put(run_context *run, texture_level *in_out, texture_store *store, char *message,
+                            size_t message_size);
 
 /* Linear values between the middles of a level's pixels; of a grey picture all three are the same. */
 rgb texture_level_rgb(const texture_level *l, texture_wraps wraps, texture_filter filter, float s, float t);

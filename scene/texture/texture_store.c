@@ -1,42 +1,14 @@
-/* texture_store.c: see texture_store.h. Each tile belongs to one of some shards, by its number in the file: a lock, a
- * share of the limit and the tiles held. Which is dropped is found by going round (a clock: those that were asked for
- * since stay for another round). */
-#define _GNU_SOURCE
-#include "texture/texture_store.h"
+/* texture_store.c: see texture_store.h. Putting tiles there; texture_store_read.c reads them. */
+#include "texture/texture_store_private.h"
 
-#include "atomics.h"
-#include "descriptor.h"
+#include "parallel_for.h"
+#include "texture/texture_tile_file.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-enum { SHARDS = 64 };
-
-/* Read and changed under its shard's lock. */
-typedef struct texture_tile {
-    unsigned char *pixels; /* NULL: in the file alone */
-    uint32_t size_bytes;
-    bool was_asked;
-} texture_tile;
-
-typedef struct shard {
-    _Alignas(64) pthread_mutex_t lock;
-    texture_tile **held;
-    uint32_t held_count, held_capacity, hand;
-    uint64_t bytes, bytes_most, read_count;
-} shard;
-
-struct texture_store {
-    shard shards[SHARDS];
-    uint64_t limit_bytes, whole_bytes, file_bytes;
-    int file;            /* -1: not made yet */
-    atomic_u64 failures; /* relaxed: read behind a barrier of the pass */
-};
 
 texture_store *texture_store_create(uint64_t limit_bytes)
 {
@@ -72,102 +44,131 @@ bool texture_store_keeps(texture_store *s, uint64_t picture_bytes)
     return true;
 }
 
-/* --- writing --- */
-
-/* Without a name, so that nothing is left behind however the process ends. */
-static int open_temporary(void)
+ag_status texture_store_lend(texture_store *s, texture_tile_source source, texture_layout layout,
+                             texture_tiles **out_tiles)
 {
-    const char *folder = getenv("TMPDIR");
-    char path[4096];
-    if (!folder || !*folder)
-        folder = "/tmp";
-    int file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (file < 0) {
-        if (snprintf(path, sizeof path, "%s/afterglow-textures-XXXXXX", folder) >= (int)sizeof path) {
-            errno = ENAMETOOLONG;
-            return -1;
-        }
-        file = mkostemp(path, O_CLOEXEC);
-        if (file >= 0)
-            unlink(path);
-    }
-    return descriptor_beyond_standard(file); /* what a host prints must not reach the tiles */
-}
-
-static bool write_all(int file, const unsigned char *bytes, size_t size, uint64_t offset)
-{
-    while (size > 0) {
-        ssize_t written = pwrite(file, bytes, size, (off_t)offset);
-        if (written < 0 && errno == EINTR)
-            continue;
-        if (written <= 0) {
-            errno = written == 0 ? ENOSPC : errno;
-            return false;
-        }
-        bytes += written;
-        size -= (size_t)written;
-        offset += (uint64_t)written;
-    }
-    return true;
-}
-
-/* Tiles at the right and lower edges are whole, too; what is beyond the picture is zero. */
-static bool write_tiles(const texture_tiles *t, const unsigned char *pixels, uint32_t height, unsigned char *row)
-{
-    const size_t tile_row = (size_t)TEXTURE_TILE_SIDE * t->pixel_bytes, tile_bytes = TEXTURE_TILE_SIDE * tile_row;
-    const size_t row_bytes = tile_bytes * t->tiles_across;
-    for (uint32_t y0 = 0; y0 < height; y0 += TEXTURE_TILE_SIDE) {
-        memset(row, 0, row_bytes);
-        for (uint32_t y = y0; y < height && y < y0 + TEXTURE_TILE_SIDE; y++)
-            for (uint32_t tile = 0; tile < t->tiles_across; tile++) {
-                const uint32_t x = tile * TEXTURE_TILE_SIDE, left = t->width - x;
-                const uint32_t count = left < TEXTURE_TILE_SIDE ? left : TEXTURE_TILE_SIDE;
-                memcpy(row + tile * tile_bytes + (y - y0) * tile_row,
-                       pixels + ((size_t)y * t->width + x) * t->pixel_bytes, (size_t)count * t->pixel_bytes);
-            }
-        if (!write_all(t->store->file, row, row_bytes, t->file_offset + (y0 / TEXTURE_TILE_SIDE) * (uint64_t)row_bytes))
-            return false;
-    }
-    return true;
-}
-
-ag_status texture_store_put(texture_store *s, const void *pixels, uint32_t width, uint32_t height, uint32_t pixel_bytes,
-                            texture_tiles **out_tiles, char *message, size_t message_size)
-{
-    const uint32_t across = (width + TEXTURE_TILE_SIDE - 1) / TEXTURE_TILE_SIDE,
-                   down = (height + TEXTURE_TILE_SIDE - 1) / TEXTURE_TILE_SIDE;
-    const size_t tile_bytes = (size_t)TEXTURE_TILE_SIDE * TEXTURE_TILE_SIDE * pixel_bytes;
+    const uint32_t across = ((layout.width - 1) >> source.tile_width_bits) + 1,
+                   down = ((layout.height - 1) >> source.tile_height_bits) + 1;
     texture_tiles *t = calloc(1, sizeof *t);
-    unsigned char *row = malloc(tile_bytes * across);
-    ag_status status = t && row ? AG_OK : AG_ERROR_MEMORY;
-    if (status == AG_OK) {
-        *t = (texture_tiles){s, width, across, pixel_bytes, s->file_bytes, NULL, (size_t)across * down};
-        t->entries = calloc(t->entry_count, sizeof *t->entries);
-        if (!t->entries)
-            status = AG_ERROR_MEMORY;
+    if (!t)
+        return AG_ERROR_MEMORY;
+    *t = (texture_tiles){.store = s,
+                         .width = layout.width,
+                         .tiles_across = across,
+                         .tile_width_bits = source.tile_width_bits,
+                         .tile_height_bits = source.tile_height_bits,
+                         .channel_count = layout.channel_count,
+                         .value_bytes = layout.value_bytes,
+                         .source = source,
+                         .first_number = s->tile_count,
+                         .entry_count = (size_t)across * down};
+    t->entries = calloc(t->entry_count, sizeof *t->entries);
+    if (!t->entries) {
+        free(t);
+        return AG_ERROR_MEMORY;
     }
-    if (status == AG_OK && s->file < 0)
-        s->file = open_temporary();
-    if (status == AG_OK && (s->file < 0 || !write_tiles(t, pixels, height, row))) {
-        snprintf(message, message_size,
-                 "no room for textures beyond --texture-memory in a temporary file ($TMPDIR): %s", strerror(errno));
-        status = AG_ERROR_SYSTEM;
-    }
-    free(row);
-    if (status != AG_OK) {
-        texture_tiles_destroy(t);
-        return status;
-    }
-    s->file_bytes += (uint64_t)tile_bytes * across * down;
+    s->tile_count += t->entry_count;
     *out_tiles = t;
     return AG_OK;
+}
+
+/* --- writing --- */
+
+typedef struct put_job {
+    texture_tiles *tiles;
+    const unsigned char *pixels;
+    uint32_t height;
+    atomic_u32 failure; /* relaxed: an errno, or 0; read when all is done */
+} put_job;
+
+/* Tiles at the right and lower edges are whole, too; what is beyond the picture is zero. */
+static void cut_tile(const put_job *job, size_t number, unsigned char *out)
+{
+    const texture_tiles *t = job->tiles;
+    const uint32_t x0 = (uint32_t)(number % t->tiles_across) << t->tile_width_bits,
+                   y0 = (uint32_t)(number / t->tiles_across) << t->tile_height_bits;
+    const uint32_t side = 1u << t->tile_width_bits, left = t->width - x0, count = left < side ? left : side;
+    const size_t pixel_bytes = pixel_bytes_of(t), row_bytes = pixel_bytes << t->tile_width_bits;
+    memset(out, 0, tile_bytes_of(t));
+    for (uint32_t y = 0; y < 1u << t->tile_height_bits && y0 + y < job->height; y++)
+        memcpy(out + y * row_bytes, job->pixels + ((size_t)(y0 + y) * t->width + x0) * pixel_bytes,
+               count * pixel_bytes);
+}
+
+/* in_out_misses: how many tiles in a row could not be packed; after some no other is tried. Gives an errno, or 0. */
+static int put_tile(const put_job *job, size_t number, unsigned char *buffers, int *in_out_misses)
+{
+    enum { MISSES_MAX = 2 };
+    const texture_tiles *t = job->tiles;
+    const size_t size = tile_bytes_of(t);
+    unsigned char *scratch = buffers + size, *packed = buffers + 2 * size;
+    texture_tile *tile = &t->entries[number];
+    cut_tile(job, number, buffers);
+    size_t packed_bytes = size;
+    if (*in_out_misses < MISSES_MAX) {
+        packed_bytes = tile_pack(format_of(t), buffers, scratch, packed);
+        *in_out_misses = packed_bytes == size ? *in_out_misses + 1 : 0;
+    } else {
+        packed = buffers;
+    }
+    if (packed_bytes == 0)
+        return ENOMEM;
+    tile->file_bytes = (uint32_t)packed_bytes;
+    tile->file_offset = fetch_add_relaxed_u64(&t->store->file_bytes, packed_bytes);
+    return tile_file_write(t->store->file, packed, packed_bytes, tile->file_offset) ? 0 : errno;
+}
+
+static void put_tiles(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
+{
+    (void)block, (void)worker;
+    put_job *job = user;
+    unsigned char *buffers = malloc(3 * tile_bytes_of(job->tiles));
+    int failure = buffers ? 0 : ENOMEM, misses = 0;
+    for (uint64_t number = begin; number < end && !failure; number++)
+        failure = put_tile(job, (size_t)number, buffers, &misses);
+    free(buffers);
+    if (failure)
+        store_relaxed_u32(&job->failure, (uint32_t)failure);
+}
+
+ag_status texture_store_put(texture_store *s, run_context *run, const void *pixels, texture_layout layout,
+                            texture_tiles **out_tiles, char *message, size_t message_size)
+{
+    enum { TILES_AT_ONCE = 32 };
+    texture_tiles *t;
+    const texture_tile_source own = {.tile_width_bits = TEXTURE_TILE_BITS, .tile_height_bits = TEXTURE_TILE_BITS};
+    ag_status status = texture_store_lend(s, own, layout, &t);
+    if (status != AG_OK)
+        return status;
+    put_job job = {.tiles = t, .pixels = pixels, .height = layout.height};
+    if (s->file < 0) {
+        s->file = tile_file_open();
+        store_relaxed_u32(&job.failure, s->file < 0 ? (uint32_t)errno : 0);
+    }
+    if (s->file >= 0 && run && run->pool)
+        status = parallel_for(run, t->entry_count, TILES_AT_ONCE, put_tiles, &job, AG_PHASE_LOAD, 0.0, 0.0);
+    else if (s->file >= 0)
+        put_tiles(&job, 0, t->entry_count, 0, 0);
+    const int failure = (int)load_relaxed_u32(&job.failure);
+    if (status == AG_OK && failure == ENOMEM)
+        status = AG_ERROR_MEMORY;
+    if (status == AG_OK && failure) {
+        snprintf(message, message_size,
+                 "no room for textures beyond --texture-memory in a temporary file ($TMPDIR): %s", strerror(failure));
+        status = AG_ERROR_SYSTEM;
+    }
+    if (status != AG_OK)
+        texture_tiles_destroy(t);
+    else
+        *out_tiles = t;
+    return status;
 }
 
 void texture_tiles_destroy(texture_tiles *t)
 {
     if (!t)
         return;
-    for (int i = 0; i < SHARDS && t->entries; i++) {
+    for (int i = 0; i < SHARDS; i++) {
         shard *of = &t->store->shards[i];
         uint32_t kept = 0;
         for (uint32_t k = 0; k < of->held_count; k++) {
@@ -185,108 +186,13 @@ void texture_tiles_destroy(texture_tiles *t)
     free(t);
 }
 
-/* --- reading --- */
-
-static bool read_all(int file, unsigned char *bytes, size_t size, uint64_t offset)
-{
-    while (size > 0) {
-        ssize_t got = pread(file, bytes, size, (off_t)offset);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got <= 0)
-            return false;
-        bytes += got;
-        size -= (size_t)got;
-        offset += (uint64_t)got;
-    }
-    return true;
-}
-
-/* Drops one tile; there is one. */
-static void drop_one(shard *of)
-{
-    for (;;) {
-        of->hand = of->hand < of->held_count ? of->hand : 0;
-        texture_tile *tile = of->held[of->hand];
-        if (!tile->was_asked) {
-            free(tile->pixels);
-            tile->pixels = NULL;
-            of->bytes -= tile->size_bytes;
-            of->held[of->hand] = of->held[--of->held_count];
-            return;
-        }
-        tile->was_asked = false;
-        of->hand++;
-    }
-}
-
-/* A shard holds one tile at least. false: there is no memory, or the file cannot be read. */
-static bool bring_in(texture_store *s, shard *of, texture_tile *tile, uint32_t size_bytes, uint64_t offset)
-{
-    const uint64_t room = (s->limit_bytes - s->whole_bytes) / SHARDS;
-    while (of->held_count > 0 && of->bytes + size_bytes > room)
-        drop_one(of);
-    if (of->held_count == of->held_capacity) {
-        const uint32_t capacity = of->held_capacity ? 2 * of->held_capacity : 64;
-        texture_tile **larger = realloc(of->held, capacity * sizeof *larger);
-        if (!larger)
-            return false;
-        of->held = larger;
-        of->held_capacity = capacity;
-    }
-    unsigned char *pixels = malloc(size_bytes);
-    if (!pixels || !read_all(s->file, pixels, size_bytes, offset)) {
-        free(pixels);
-        return false;
-    }
-    *tile = (texture_tile){pixels, size_bytes, false};
-    of->held[of->held_count++] = tile;
-    of->bytes += size_bytes;
-    of->bytes_most = of->bytes > of->bytes_most ? of->bytes : of->bytes_most;
-    of->read_count++;
-    return true;
-}
-
-void texture_tiles_read(const texture_tiles *t, const pixel_blend *blend, unsigned char *out_pixels)
-{
-    texture_store *s = t->store;
-    const uint32_t size_bytes = TEXTURE_TILE_SIDE * TEXTURE_TILE_SIDE * t->pixel_bytes;
-    for (int k = 0; k < blend->count;) {
-        const size_t x = blend->pixel[k] % t->width, y = blend->pixel[k] / t->width;
-        const size_t number = y / TEXTURE_TILE_SIDE * t->tiles_across + x / TEXTURE_TILE_SIDE;
-        const uint64_t offset = t->file_offset + (uint64_t)number * size_bytes;
-        texture_tile *tile = &t->entries[number];
-        shard *of = &s->shards[(offset / size_bytes * UINT64_C(0x9e3779b97f4a7c15)) >> 58];
-        pthread_mutex_lock(&of->lock);
-        bool is_there = tile->pixels || bring_in(s, of, tile, size_bytes, offset);
-        /* what follows in the same tile at once */
-        for (bool is_same = true; is_same;) {
-            const size_t px = blend->pixel[k] % t->width % TEXTURE_TILE_SIDE,
-                         py = blend->pixel[k] / t->width % TEXTURE_TILE_SIDE;
-            if (is_there)
-                memcpy(out_pixels + (size_t)k * t->pixel_bytes,
-                       tile->pixels + (py * TEXTURE_TILE_SIDE + px) * t->pixel_bytes, t->pixel_bytes);
-            else
-                memset(out_pixels + (size_t)k * t->pixel_bytes, 0, t->pixel_bytes);
-            k++;
-            is_same = k < blend->count && blend->pixel[k] / t->width / TEXTURE_TILE_SIDE * t->tiles_across +
-                                                  blend->pixel[k] % t->width / TEXTURE_TILE_SIDE ==
-                                              number;
-        }
-        tile->was_asked = true;
-        pthread_mutex_unlock(&of->lock);
-        if (!is_there)
-            fetch_add_relaxed_u64(&s->failures, 1);
-    }
-}
-
 texture_store_counts texture_store_count(const texture_store *s)
 {
     texture_store_counts c = {0};
     if (!s)
         return c;
     c.whole_bytes = s->whole_bytes;
-    c.file_bytes = s->file_bytes;
+    c.file_bytes = load_relaxed_u64(&s->file_bytes);
     for (int i = 0; i < SHARDS; i++) {
         c.tile_bytes_most += s->shards[i].bytes_most;
         c.tiles_read += s->shards[i].read_count;
@@ -294,4 +200,8 @@ texture_store_counts texture_store_count(const texture_store *s)
     return c;
 }
 
-bool texture_store_has_failed(const texture_store *s) { return s && load_relaxed_u64(&s->failures) > 0; }
+ag_status texture_store_state(const texture_store *s)
+{
+    const uint32_t failures = s ? load_relaxed_u32(&s->failures) : 0;
+    return failures & NO_TEMPORARY ? AG_ERROR_SYSTEM : failures & NO_MEMORY ? AG_ERROR_MEMORY : AG_OK;
+}

@@ -3,7 +3,7 @@
  * Flow: gltf_textures -> [here] -> gltf_buffers, gltf_uri -> texture_image. Threads: one per scene. */
 #include "gltf/gltf_private.h"
 
-#include "text/input_file.h"
+#include "texture/texture_image_load.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,12 +16,7 @@ static ag_status load_from_file(gltf_reader *r, const gltf_value *uri, const cha
     char *path = gltf_uri_to_path(r, text, &wrong);
     if (!path)
         return wrong ? gltf_error(r, uri, "%s", wrong) : AG_ERROR_MEMORY;
-    ag_status status = AG_ERROR_INPUT;
-    char reason[128];
-    if (!input_file_allow(r->run, path, reason, sizeof reason))
-        snprintf(message, sizeof message, "cannot read '%s': %s", path, reason);
-    else
-        status = texture_image_load(r->scene, path, encoding, out_image_index, message, sizeof message);
+    ag_status status = texture_image_load(r->run, r->scene, path, encoding, out_image_index, message, sizeof message);
     if (status != AG_OK)
         gltf_error(r, uri, "%s", message[0] ? message : ag_status_text(status));
     free(path);
@@ -59,8 +54,8 @@ ag_status gltf_load_image(gltf_reader *r, uint32_t index, image_encoding encodin
         return load_from_file(r, &uri, text, encoding, out_image_index);
     AG_TRY(text ? decode_uri(r, index, &uri, text, &bytes) : gltf_buffer_view(r, view_index, &bytes, &stride));
     snprintf(name, sizeof name, "%.400s#images[%u]", r->where.file, index);
-    ag_status status = texture_image_load_memory(r->scene, name, bytes.data, bytes.size, encoding, out_image_index,
-                                                 message, sizeof message);
+    ag_status status = texture_image_load_memory(r->run, r->scene, name, bytes.data, bytes.size, encoding,
+                                                 out_image_index, message, sizeof message);
     if (status != AG_OK)
         gltf_error(r, text ? &uri : &at, "%s", message[0] ? message : ag_status_text(status));
     return status;

@@ -19,12 +19,11 @@
 #include "model/importer.h"
 
 #include "status.h"
-#include "text/input_file.h"
+#include "texture/texture_image_load.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* Pictures */
 
@@ -41,14 +40,14 @@ static bool find_picture(const importer *i, const char *name, char *out_path, si
     int folder = slash ? (int)(slash - i->where.file) + 1 : 0;
     if (plain[0] == '/') {
         snprintf(out_path, size, "%s", plain);
-        if (access(out_path, R_OK) == 0)
+        if (texture_image_is_there(out_path))
             return true;
     }
     snprintf(out_path, size, "%.*s%s", folder, i->where.file, plain);
-    if (access(out_path, R_OK) == 0)
+    if (texture_image_is_there(out_path))
         return true;
     snprintf(out_path, size, "%.*s%s", folder, i->where.file, base ? base + 1 : plain);
-    return access(out_path, R_OK) == 0;
+    return texture_image_is_there(out_path);
 }
 
 static void warn_picture(importer *i, const import_picture *p, const char *reason)
@@ -70,7 +69,7 @@ static ag_status load_picture(importer *i, const import_picture *p, image_encodi
             snprintf(message, message_size, "there is no such picture within the file");
             return AG_ERROR_INPUT;
         }
-        return texture_image_load_memory(i->scene, p->path, i->embedded[number].bytes, i->embedded[number].size,
+        return texture_image_load_memory(i->run, i->scene, p->path, i->embedded[number].bytes, i->embedded[number].size,
                                          encoding, out_image_index, message, message_size);
     }
     if (!find_picture(i, p->path, path, sizeof path)) {
@@ -79,12 +78,7 @@ static ag_status load_picture(importer *i, const import_picture *p, image_encodi
     }
     if (encoding.curve == IMAGE_CURVE_DEFAULT) /* a colour's */
         encoding = image_colors_rule(i->scene, path);
-    char reason[128];
-    if (!input_file_allow(i->run, path, reason, sizeof reason)) {
-        snprintf(message, message_size, "cannot read the file: %s", reason);
-        return AG_ERROR_INPUT;
-    }
-    return texture_image_load(i->scene, path, encoding, out_image_index, message, message_size);
+    return texture_image_load(i->run, i->scene, path, encoding, out_image_index, message, message_size);
 }
 
 static texture_wrap wrap_of(uint32_t wrap)

@@ -4,6 +4,7 @@
 #include "pbrt/pbrt_private.h"
 
 #include "text/input_file.h"
+#include "texture/texture_image_load.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -72,9 +73,9 @@ char *pbrt_find_file(const pbrt_parser *parser, const char *name)
         name = "./-"; /* a file: only the user may name standard input */
     char *path = join(parser->top_directory, name);
     char *directory = directory_of(parser->files[parser->file_count - 1].lexer.file);
-    if (path && directory && access(path, F_OK) != 0) {
+    if (path && directory && !texture_image_is_there(path)) {
         char *beside = join(directory, name);
-        if (!beside || access(beside, F_OK) == 0) {
+        if (!beside || texture_image_is_there(beside)) {
             free(path);
             path = beside;
         } else {

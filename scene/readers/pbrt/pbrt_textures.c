@@ -5,6 +5,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "pbrt/pbrt_private.h"
 
+#include "texture/texture_image_load.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -282,9 +284,9 @@ ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const
     char *path = pbrt_find_file(parser, file_name);
     if (path && t->is_spectrum && !t->is_data && encoding.curve == IMAGE_CURVE_DEFAULT)
         encoding = image_colors_rule(s, path);
-    ag_status status = path ? pbrt_allow_picture(parser, path, message, sizeof message) : AG_ERROR_MEMORY;
-    if (status == AG_OK)
-        status = texture_image_load(s, path, encoding, &t->image_index, message, sizeof message);
+    ag_status status =
+        path ? texture_image_load(parser->run, s, path, encoding, &t->image_index, message, sizeof message)
+             : AG_ERROR_MEMORY;
     free(path);
     if (status && status != AG_ERROR_MEMORY)
         pbrt_refuse(parser, list, parameter_name, "%s", message);

@@ -1,0 +1,218 @@
+/* texture_image_load.c: see texture_image_load.h. */
+#define _POSIX_C_SOURCE 200809L
+#include "texture/texture_image_load.h"
+
+#include "image/image_reader.h"
+#include "scene.h"
+#include "status.h"
+#include "text/input_file.h"
+#include "texture/texture_file_levels.h"
+#include "texture/texture_udim.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* What a picture is made of. */
+typedef struct source {
+    run_context *run;
+    const char *path;
+    const unsigned char *bytes; /* the file's; NULL: it is on disk */
+    size_t size;
+    image_encoding encoding;
+} source;
+
+static ag_status allow(const source *from, char *message, size_t message_size)
+{
+    char reason[128];
+    if (from->bytes || input_file_allow(from->run, from->path, reason, sizeof reason))
+        return AG_OK;
+    snprintf(message, message_size, "cannot read '%s': %s", from->path, reason);
+    return AG_ERROR_INPUT;
+}
+
+static ag_status read_image(const scene *s, texture_image *i, const source *from, char *message, size_t message_size)
+{
+    image picture;
+    ag_status status = from->bytes
+                           ? image_read_memory(from->path, from->bytes, from->size, &picture, message, message_size)
+                           : image_read_compact(from->path, &picture, message, message_size);
+    if (status == AG_OK)
+        status = texture_image_take(s, i, &picture, message, message_size);
+    image_reset(&picture);
+    return status;
+}
+
+/* --- those that do not fit into memory --- */
+
+/* With its coarser levels, which may be made later, and alpha. */
+static uint64_t whole_bytes(const texture_image *i)
+{
+    const uint64_t pixels = (uint64_t)i->width * i->height, values = pixels * i->channel_count;
+    const uint64_t finest = i->bytes ? values : values * sizeof *i->values;
+    const uint64_t coarser = values / 3 * (i->bytes ? sizeof(uint16_t) : sizeof(float));
+    return finest + coarser + (i->alpha_bytes ? pixels : 0) + (i->alpha_values ? pixels * sizeof *i->alpha_values : 0);
+}
+
+/* Moves what does not fit into the scene's store, pixels, coarser levels and alpha. */
+static ag_status put_into_store(run_context *run, scene *s, texture_image *i, char *message, size_t message_size)
+{
+    const texture_level finest = texture_image_finest(i);
+    i->stored_content = texture_image_content(i);
+    AG_TRY(texture_mips_create(run, &finest, &i->mips));
+    AG_TRY(texture_mips_put(run, i->mips, s->texture_store, message, message_size));
+    if (texture_image_has_alpha(i)) {
+        i->stored_alpha = (texture_level){.width = i->width,
+                                          .height = i->height,
+                                          .channel_count = 1,
+                                          .sample = i->alpha_bytes ? TEXTURE_BYTES : TEXTURE_FLOATS,
+                                          .bytes = i->alpha_bytes,
+                                          .values = i->alpha_values};
+        AG_TRY(texture_level_put(run, &i->stored_alpha, s->texture_store, message, message_size));
+    }
+    free(i->bytes);
+    free(i->values);
+    free(i->alpha_bytes);
+    free(i->alpha_values);
+    i->bytes = i->alpha_bytes = NULL;
+    i->values = i->alpha_values = NULL;
+    i->is_stored = true;
+    return AG_OK;
+}
+
+/* Where memory is limited. */
+static ag_status make_store(scene *s)
+{
+    const uint64_t limit_bytes = s->request ? s->request->texture_memory_bytes : 0;
+    if (limit_bytes > 0 && !s->texture_store) {
+        s->texture_store = texture_store_create(limit_bytes);
+        if (!s->texture_store)
+            return AG_ERROR_MEMORY;
+    }
+    return AG_OK;
+}
+
+static ag_status hold_within_limit(run_context *run, scene *s, texture_image *i, char *message, size_t message_size)
+{
+    if (!s->texture_store)
+        return AG_OK;
+    return texture_store_keeps(s->texture_store, whole_bytes(i)) ? AG_OK
+                                                                 : put_into_store(run, s, i, message, message_size);
+}
+
+/* --- tiles --- */
+
+static void add_tile(texture_image *i, uint32_t slot, texture_image *tile)
+{
+    i->udim->tiles[slot] = tile;
+    i->width = tile->width > i->width ? tile->width : i->width;
+    i->height = tile->height > i->height ? tile->height : i->height;
+    i->channel_count = tile->channel_count > i->channel_count ? tile->channel_count : i->channel_count;
+    i->bad_count += tile->bad_count;
+}
+
+static ag_status load(scene *s, const source *from, uint32_t *out_index, char *message, size_t message_size);
+
+/* Slots ascend. */
+static ag_status load_tiles(scene *s, texture_image *i, const source *from, const uint16_t *slots, uint32_t count,
+                            char *message, size_t message_size)
+{
+    i->udim = calloc(1, sizeof *i->udim);
+    if (!i->udim)
+        return AG_ERROR_MEMORY;
+    i->udim->slot_count = (uint32_t)slots[count - 1] + 1;
+    i->udim->tiles = calloc(i->udim->slot_count, sizeof *i->udim->tiles);
+    ag_status status = i->udim->tiles ? AG_OK : AG_ERROR_MEMORY;
+    for (uint32_t k = 0; k < count && status == AG_OK; k++) {
+        uint32_t index = 0;
+        source tile = *from;
+        char *path = texture_udim_file(from->path, slots[k]);
+        tile.path = path;
+        status = path ? load(s, &tile, &index, message, message_size) : AG_ERROR_MEMORY;
+        free(path);
+        if (status == AG_OK)
+            add_tile(i, slots[k], s->texture_images[index]);
+    }
+    return status;
+}
+
+static ag_status read_tiles(scene *s, texture_image *i, const source *from, char *message, size_t message_size)
+{
+    uint16_t *slots;
+    uint32_t count;
+    AG_TRY(texture_udim_find(from->path, &slots, &count));
+    ag_status status = AG_ERROR_INPUT;
+    if (count > 0) {
+        status = load_tiles(s, i, from, slots, count, message, message_size);
+    } else {
+        char reason[128] = "No such file", *first = texture_udim_file(from->path, 0);
+        if (first)
+            input_file_allow(from->run, first, reason, sizeof reason); /* it may not be allowed either */
+        snprintf(message, message_size, "cannot read '%s': there is no file of any tile, such as '%s': %s", from->path,
+                 first ? first : "", reason);
+        free(first);
+    }
+    free(slots);
+    return status;
+}
+
+bool texture_image_is_there(const char *path)
+{
+    uint16_t *slots;
+    uint32_t count;
+    if (!texture_udim_is_pattern(path))
+        return access(path, F_OK) == 0;
+    if (texture_udim_find(path, &slots, &count) != AG_OK)
+        return false;
+    free(slots);
+    return count > 0;
+}
+
+/* --- each once --- */
+
+static ag_status load(scene *s, const source *from, uint32_t *out_index, char *message, size_t message_size)
+{
+    for (uint32_t k = 0; k < s->texture_image_count; k++)
+        if (image_encoding_equal(s->texture_images[k]->encoding, from->encoding) &&
+            strcmp(s->texture_images[k]->path, from->path) == 0) {
+            *out_index = k;
+            return AG_OK;
+        }
+    texture_image *i = calloc(1, sizeof *i);
+    if (!i)
+        return AG_ERROR_MEMORY;
+    i->encoding = from->encoding;
+    i->path = strdup(from->path);
+    ag_status status = i->path ? AG_OK : AG_ERROR_MEMORY;
+    if (status == AG_OK && !from->bytes && texture_udim_is_pattern(from->path)) {
+        status = read_tiles(s, i, from, message, message_size);
+    } else if (status == AG_OK) {
+        bool is_read = false;
+        status = allow(from, message, message_size);
+        if (status == AG_OK)
+            status = make_store(s);
+        if (status == AG_OK && !from->bytes)
+            status = texture_file_levels_read(from->run, s, i, &is_read, message, message_size);
+        if (status == AG_OK && !is_read)
+            status = read_image(s, i, from, message, message_size);
+        if (status == AG_OK && !is_read)
+            status = hold_within_limit(from->run, s, i, message, message_size);
+    }
+    if (status != AG_OK)
+        texture_image_destroy(i);
+    return status ? status : scene_add_texture_image(s, i, out_index);
+}
+
+ag_status texture_image_load(run_context *run, struct scene *s, const char *path, image_encoding encoding,
+                             uint32_t *out_index, char *message, size_t message_size)
+{
+    return load(s, &(source){.run = run, .path = path, .encoding = encoding}, out_index, message, message_size);
+}
+
+ag_status texture_image_load_memory(run_context *run, struct scene *s, const char *name, const unsigned char *bytes,
+                                    size_t size, image_encoding encoding, uint32_t *out_index, char *message,
+                                    size_t message_size)
+{
+    return load(s, &(source){run, name, bytes, size, encoding}, out_index, message, message_size);
+}

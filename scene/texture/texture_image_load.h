@@ -1,0 +1,23 @@
+/* texture_image_load.h: pictures of textures, from files into a scene, each once.
+ * Flow: readers -> [here] -> image_reader, texture_image, texture_store. Threads: one per scene; the run's work on
+ * large pictures. */
+#ifndef AFTERGLOW_TEXTURE_IMAGE_LOAD_H
+#define AFTERGLOW_TEXTURE_IMAGE_LOAD_H
+
+#include "run_context.h"
+#include "texture/texture_image.h"
+
+/* Loads a picture into the scene's ownership, once for each path and encoding; of a name as texture_udim.h has them all
+ * tiles that there are. Three channels or more are taken for red, green, blue and alpha, one or two for grey and alpha;
+ * what is beyond is left out. Files are noted by the run, and may be refused by it. Errors: as of image_read,
+ * AG_ERROR_COLOR, AG_CANCELLED; text in message. */
+ag_status texture_image_load(run_context *run, struct scene *s, const char *path, image_encoding encoding,
+                             uint32_t *out_index, char *message, size_t message_size);
+/* Whether there is a file of that name, or of any tile. */
+bool texture_image_is_there(const char *path);
+/* From a PNG or JPEG file in memory, once for each name, which is to differ from all paths, and encoding. */
+ag_status texture_image_load_memory(run_context *run, struct scene *s, const char *name, const unsigned char *bytes,
+                                    size_t size, image_encoding encoding, uint32_t *out_index, char *message,
+                                    size_t message_size);
+
+#endif

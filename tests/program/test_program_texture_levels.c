@@ -1,0 +1,123 @@
+/* test_program_texture_levels.c: files that hold tiles and coarser levels: their own levels are what is seen from afar;
+ * the same bits in memory and tile by tile, by whatever threads, and in a photon map's fingerprint; broken ones are
+ * told. Flow: tests of the whole program. Threads: the program's. */
+#define _GNU_SOURCE
+#include "fixtures/program_picture.h"
+#include "fixtures/tiled_tiff.h"
+
+/* Each level of a colour of its own: the finest is red, the next one green, others blue. */
+static unsigned char colored(uint32_t level, uint32_t x, uint32_t y, uint32_t channel)
+{
+    (void)x, (void)y;
+    return channel == (level < 2 ? level : 2) ? 255 : 0;
+}
+
+static unsigned char noise(uint32_t level, uint32_t x, uint32_t y, uint32_t channel)
+{
+    const uint32_t key = ((level * 4096 + y) * 4096 + x) * 4 + channel;
+    return (unsigned char)((key * UINT64_C(0x9e3779b97f4a7c15)) >> 56);
+}
+
+static const char *write_scene(const char *text)
+{
+    FILE *file = fopen(in_folder("scene.pbrt"), "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+    return "scene.pbrt";
+}
+
+/* A square of 256 x 256 pixels of the picture, seen straight on over so many of ours, lit by pi W/m^2. */
+static picture look(const char *size)
+{
+    write_scene("LookAt 0 0 -5  0 0 0  0 1 0 Camera \"orthographic\" WorldBegin "
+                "LightSource \"distant\" \"point3 from\" [0 0 -9] \"point3 to\" [0 0 0] "
+                "\"rgb L\" [3.14159265 3.14159265 3.14159265] "
+                "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.tx\" \"string encoding\" \"linear\" "
+                "Material \"diffuse\" \"texture reflectance\" \"t\" "
+                "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0  1 -1 0  1 1 0 -1 1 0] \"point2 uv\" "
+                "[0 0 1 0 1 1 0 1] \"integer indices\" [0 1 2 0 2 3]");
+    return RENDER("scene.pbrt", "--integrator=path", "--max-depth=1", "--noise=0", "--spp=1", "--size", size);
+}
+
+static void test_own_levels(void **state)
+{
+    (void)state;
+    tiff_write_levels("a.tx", 256, 3, colored);
+    picture close = look("256x256"), far = look("16x16");
+    assert_true(picture_mean(&close, 0) > 0.99); /* pixel by pixel */
+    assert_true(picture_mean(&far, 2) > 0.9 && picture_mean(&far, 0) < 0.01);
+    picture_reset(&close);
+    picture_reset(&far);
+}
+
+static const char *room(void)
+{
+    tiff_write_levels("bytes.tx", 2048, 4, noise);
+    tiff_write_levels("gray.tif", 1024, 1, noise);
+    return write_scene(
+        "LookAt 0 1 -3  0 1 0  0 1 0 Camera \"perspective\" \"float fov\" 60 "
+        "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24 WorldBegin "
+        "LightSource \"infinite\" \"rgb L\" [1 1 1] "
+        "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"bytes.tx\" "
+        "Texture \"cut\" \"float\" \"imagemap\" \"string filename\" \"bytes.tx\" \"string encoding\" \"sRGB\" "
+        "Texture \"b\" \"spectrum\" \"imagemap\" \"string filename\" \"gray.tif\" "
+        "Material \"diffuse\" \"texture reflectance\" \"a\" Shape \"trianglemesh\" \"point3 P\" [-9 0 -9 9 0 -9 9 0 "
+        "9 -9 0 9] \"point2 uv\" [0 0 1 0 1 1 0 1] \"integer indices\" [0 1 2 0 2 3] "
+        "Material \"coateddiffuse\" \"texture reflectance\" \"b\" Shape \"sphere\" \"float radius\" 0.7 "
+        "Translate 0 2 0 Shape \"sphere\" \"texture alpha\" \"cut\" \"float radius\" 0.7");
+}
+
+static void test_memory(void **state)
+{
+    (void)state;
+    const char *scene = room();
+    picture whole = RENDER(scene, "--noise=0", "--spp=4", "--photons=2e4", "--texture-memory=0"),
+            tiled = RENDER(scene, "--noise=0", "--spp=4", "--photons=2e4", "--texture-memory=16M", "--nthreads=1"),
+            least = RENDER(scene, "--noise=0", "--spp=4", "--photons=2e4", "--texture-memory=16M", "--nthreads=7",
+                           "--stats=least.json", "--photon-map=a.map"),
+            from_map = RENDER(scene, "--noise=0", "--spp=4", "--photons=2e4", "--photon-map=a.map");
+    const size_t size = 3 * 24 * 24 * sizeof *whole.pixels;
+    assert_memory_equal(tiled.pixels, whole.pixels, size);
+    assert_memory_equal(from_map.pixels, least.pixels, size); /* the map is of this scene */
+    json_t *stats = stats_read(in_folder("least.json"));
+    assert_int_equal(stats_integer(stats, "texture.file_bytes"), 0); /* no temporary file */
+    assert_true(stats_integer(stats, "texture.tiles_read") > 100);
+    assert_true(stats_integer(stats, "texture.tile_bytes") <= 16 << 20);
+    json_decref(stats);
+    picture_reset(&whole);
+    picture_reset(&tiled);
+    picture_reset(&least);
+    picture_reset(&from_map);
+}
+
+/* Cut short: told while the scene is read, or where a tile is missing later on. */
+static void test_broken(void **state)
+{
+    (void)state;
+    const char *scene = room();
+    struct stat file;
+    assert_int_equal(stat(in_folder("bytes.tx"), &file), 0);
+    for (int k = 1; k < 4; k += 2) {
+        assert_int_equal(truncate(in_folder("bytes.tx"), file.st_size * k / 4), 0);
+        for (int tiled = 0; tiled < 2; tiled++) {
+            program_run run = RUN("--noise=0", "--spp=1", "--photons=1e3", "-o", "no.exr",
+                                  tiled ? "--texture-memory=16M" : "--texture-memory=0", scene);
+            assert_true(run.exit_code > 0);
+            assert_non_null(strstr(run.err, "bytes.tx"));
+            assert_true(access(in_folder("no.exr"), F_OK) != 0);
+            program_run_reset(&run);
+        }
+        room();
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(test_own_levels),
+        TEST_IN_FOLDER(test_memory),
+        TEST_IN_FOLDER(test_broken),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

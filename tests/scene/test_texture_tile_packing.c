@@ -1,0 +1,67 @@
+/* test_texture_tile_packing.c: tiles come back as they were, whatever is in them; what is smooth becomes smaller, noise
+ * no larger; bytes that are no packed tile are told, not believed. Threads: one. */
+#include "math/rng.h"
+#include "texture/texture_tile_packing.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE = 64, BYTES_MAX = SIDE * SIDE * 12 };
+
+static unsigned char pixels[BYTES_MAX], scratch[BYTES_MAX], packed[BYTES_MAX], back[BYTES_MAX];
+
+static size_t go_round(tile_format f)
+{
+    const size_t size = tile_format_bytes(f), count = tile_pack(f, pixels, scratch, packed);
+    assert_true(count > 0 && count <= size);
+    memset(back, 0xa5, sizeof back);
+    assert_true(tile_unpack(f, packed, count, scratch, back));
+    assert_memory_equal(back, pixels, size);
+    return count;
+}
+
+static void test_round_trip(void **state)
+{
+    (void)state;
+    static const size_t CHANNELS[] = {1, 3}, BYTES[] = {1, 2, 4};
+    for (int k = 0; k < 6; k++) {
+        const tile_format f = {CHANNELS[k % 2] * SIDE, SIDE, CHANNELS[k % 2], BYTES[k / 2]};
+        const size_t size = tile_format_bytes(f);
+        memset(pixels, 77, size);
+        assert_true(go_round(f) < size / 50);
+        for (size_t i = 0; i < size; i++) {
+            rng random = rng_make(1, (uint32_t)k, i);
+            pixels[i] = (unsigned char)(255.0f * rng_float(&random));
+        }
+        go_round(f);
+        for (size_t i = 0; i < size / f.value_bytes; i++) { /* a slope, with 4 values of noise */
+            rng random = rng_make(2, (uint32_t)k, i);
+            const uint32_t value = (uint32_t)(i / f.channel_count % SIDE) * 3 + (uint32_t)(4.0f * rng_float(&random));
+            memcpy(pixels + i * f.value_bytes, &value, f.value_bytes);
+        }
+        assert_true(go_round(f) < size / 2 + 1);
+    }
+}
+
+static void test_broken(void **state)
+{
+    (void)state;
+    const tile_format f = {3 * SIDE, SIDE, 3, 1};
+    memset(pixels, 5, sizeof pixels);
+    const size_t count = go_round(f);
+    assert_false(tile_unpack(f, packed, count - 1, scratch, back));
+    packed[0] ^= 0xff;
+    assert_false(tile_unpack(f, packed, count, scratch, back));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip), cmocka_unit_test(test_broken)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
