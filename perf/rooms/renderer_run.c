@@ -1,7 +1,7 @@
-/* renderer_run.c: fork, exec, wait4; then the statistics by jansson and the picture by image_file.
+/* renderer_run.c: posix_spawnp, wait4; then the statistics by jansson and the picture by image_file.
  * CPU time and peak memory are the kernel's own account of the child, so a start-up cost cannot hide.
  * Flow: forty_rooms -> [here] -> forty_rooms. Threads: one caller at a time. */
-#define _DEFAULT_SOURCE /* wait4 */
+#define _GNU_SOURCE /* wait4, environ */
 #include "rooms/renderer_run.h"
 
 #include "image/image_reader.h"
@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
+#include <spawn.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,8 +48,8 @@ static const statistic statistics[] = {
 
 static double seconds(struct timeval time) { return (double)time.tv_sec + 1e-6 * (double)time.tv_usec; }
 
-/* Returns only where the program could not be started. */
-static void exec_renderer(const renderer_run_settings *settings)
+/* 0, or an errno where the program could not be started. */
+static int spawn_renderer(const renderer_run_settings *settings, pid_t *out_child)
 {
     char gather[16], threads[16];
     snprintf(gather, sizeof gather, "%d", settings->gather_samples);
@@ -77,23 +78,19 @@ static void exec_renderer(const renderer_run_settings *settings)
     arguments[count++] = settings->stats_path;
     arguments[count++] = settings->scene_path;
     arguments[count] = NULL;
-    /* execvp promises not to change the strings; its type is older than const. */
+    /* posix_spawnp promises not to change the strings; its type is older than const. */
     char *plain_arguments[24];
     memcpy(plain_arguments, arguments, sizeof arguments);
-    execvp(settings->program, plain_arguments);
+    return posix_spawnp(out_child, settings->program, NULL, NULL, plain_arguments, environ);
 }
 
 static ag_status run_child(const renderer_run_settings *settings, struct rusage *out_usage)
 {
-    const pid_t child = fork();
-    if (child < 0) {
-        fprintf(stderr, "%s: error: %s\n", settings->program, strerror(errno));
+    pid_t child;
+    const int error = spawn_renderer(settings, &child);
+    if (error != 0) {
+        fprintf(stderr, "%s: error: %s\n", settings->program, strerror(error));
         return AG_ERROR_SYSTEM;
-    }
-    if (child == 0) {
-        exec_renderer(settings);
-        fprintf(stderr, "%s: error: %s\n", settings->program, strerror(errno));
-        _exit(127);
     }
     int wait_status = 0;
     pid_t ended;

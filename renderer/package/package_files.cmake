@@ -19,7 +19,7 @@ file(WRITE ${doc}/changelog.Debian
  -- ${CPACK_PACKAGE_CONTACT}  ${date}
 ")
 
-file(GLOB_RECURSE files ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*.1)
+file(GLOB_RECURSE files ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/share/man/*.1)
 foreach(file ${files} ${doc}/changelog ${doc}/changelog.Debian)
   execute_process(COMMAND ${AG_GZIP} -9nf ${file} COMMAND_ERROR_IS_FATAL ANY)
 endforeach()

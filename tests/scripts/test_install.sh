@@ -49,7 +49,7 @@ read -ra flags <<<"$(pkg-config --cflags --libs afterglow)"
 library_folder=$(pkg-config --variable=libdir afterglow)
 library=$(readlink -f "$library_folder/libafterglow.so")
 soname=$(readelf -d "$library" | sed -nE 's/.*SONAME.*\[(.*)\]/\1/p')
-[[ $soname =~ ^libafterglow\.so\.[0-9]+$ && -e $library_folder/$soname ]] || fail "soname is '$soname'"
+[[ $soname =~ ^libafterglow\.so\.([1-9][0-9]*|0\.[0-9]+)$ && -e $library_folder/$soname ]] || fail "soname is '$soname'"
 
 # The example, as a user in C and as one in C++ compile it.
 example=$(find "$prefix" -name render_scene.c)

@@ -62,7 +62,7 @@ fi
 for binary in bin/afterglow lib/libafterglow.so.*.*; do
     ! readelf -S "tree/usr/"$binary | grep -q '\.symtab' || fail "$binary is not stripped"
 done
-dpkg-deb --ctrl-tarfile "$package" | tar -x --to-stdout ./shlibs | grep -q '^libafterglow 0 afterglow' ||
+dpkg-deb --ctrl-tarfile "$package" | tar -x --to-stdout ./shlibs | grep -q '^libafterglow 0.1 afterglow' ||
     fail "no shlibs for libafterglow"
 dpkg-deb --ctrl-tarfile "$package" | tar -x --to-stdout ./triggers | grep -qx 'activate-noawait ldconfig' ||
     fail "the linker's cache is not renewed"
