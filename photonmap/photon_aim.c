@@ -11,6 +11,12 @@ enum { BLIND_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
  * of the photons are of use, and a path leaves so many of those. */
 static const float LEAST_GAIN = 1.5f;
 static const double ENOUGH_ASKED = 0.5, ENOUGH_PER_PATH = 0.25;
+/* Paths are split that are worth more than SPLIT_RATIO times what a tenth of the useful ones is worth less than; or
+ * more than that, so that no more than PARTS_PER_PATH come to one path on average. The first round with a guide splits
+ * only what is worth more than nearly all paths are by power alone, and each further one at most what is worth so many
+ * times less, so that no round takes long. */
+static const float SPLIT_RATIO = 2.0f, PARTS_PER_PATH = 0.5f, SPLIT_STEP = 5.0f;
+static const float LOW_SHARE = 0.1f, HIGH_SHARE = 0.99f;
 
 typedef struct learner {
     const scene *s;
@@ -19,16 +25,49 @@ typedef struct learner {
     float share;
     emission_trial *trials;
     uint32_t count, round_trials, round_count;
+    float split_above;                 /* of the next round, if it has a guide */
     emission_guide guides[ROUNDS + 1]; /* by which the rounds were traced; then the last one */
     trial_counts counts, blind;        /* of all trials; of those by power alone */
 } learner;
 
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Sets what the next round splits by a round's trials, as bright as its guide made them, and by its number of parts. */
+static ag_status set_split(learner *l, const emission_trial *trials, uint32_t count, uint64_t parts)
+{
+    uint32_t useful = 0;
+    float *worths = malloc(count * sizeof *worths);
+    if (!worths)
+        return AG_ERROR_MEMORY;
+    for (uint32_t i = 0; i < count; i++)
+        if (trials[i].value > 0.0f)
+            worths[useful++] = trials[i].value / trials[i].density;
+    qsort(worths, useful, sizeof *worths, compare_floats);
+    if (useful > 0 && l->round_count == 0) {
+        l->split_above = worths[(uint32_t)(HIGH_SHARE * (float)useful)];
+    } else if (useful > 0) {
+        float by_worth = SPLIT_RATIO * worths[(uint32_t)(LOW_SHARE * (float)useful)];
+        float by_parts = l->split_above * (float)parts / (PARTS_PER_PATH * (float)count);
+        l->split_above = fmaxf(fmaxf(by_worth, by_parts), l->split_above / SPLIT_STEP);
+    }
+    free(worths);
+    return AG_OK;
+}
+
 static ag_status trace_round(learner *l, uint32_t count)
 {
+    uint64_t parts = l->counts.parts;
+    emission_trial *trials = l->trials + l->count;
     l->settings.guide = &l->guides[l->round_count];
-    ag_status status =
-        photon_tracing_try(l->s, l->run, &l->settings, l->count, count, l->trials + l->count, &l->counts);
+    l->settings.split_above = l->round_count > 0 ? l->split_above : 0.0f;
+    ag_status status = photon_tracing_try(l->s, l->run, &l->settings, l->count, count, trials, &l->counts);
     l->count += count;
+    if (status == AG_OK && l->settings.onward)
+        status = set_split(l, trials, count, l->counts.parts - parts);
     return status;
 }
 
@@ -93,11 +132,9 @@ static uint32_t fewer_by_power(const trial_counts *blind, uint32_t wanted)
 }
 
 ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings, float share,
-                           emission_guide *out_guide, trial_counts *out_counts, uint32_t *out_wanted)
+                           photon_aim *out_aim)
 {
-    *out_guide = (emission_guide){0};
-    *out_counts = (trial_counts){0};
-    *out_wanted = settings->wanted;
+    *out_aim = (photon_aim){.wanted = settings->wanted};
     if (!(share > 0.0f) || !settings->asked || !settings->asked->nodes)
         return AG_OK;
     learner l = {.s = s, .run = run, .settings = *settings, .share = share};
@@ -107,12 +144,20 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     if (l.round_trials > ROUND_TRIALS_MAX)
         l.round_trials = ROUND_TRIALS_MAX;
     l.trials = malloc((size_t)(BLIND_ROUNDS_MAX + ROUNDS) * l.round_trials * sizeof *l.trials);
-    ag_status status = l.trials ? learn(&l, out_guide) : AG_ERROR_MEMORY;
-    *out_counts = l.counts;
-    if (out_guide->nodes)
-        *out_wanted = fewer_by_power(&l.blind, settings->wanted);
+    ag_status status = l.trials ? learn(&l, &out_aim->guide) : AG_ERROR_MEMORY;
+    out_aim->tried = l.counts;
+    if (out_aim->guide.nodes) {
+        out_aim->wanted = fewer_by_power(&l.blind, settings->wanted);
+        out_aim->split_above = l.split_above;
+    }
     for (int i = 0; i <= ROUNDS; i++)
         emission_guide_reset(&l.guides[i]);
     free(l.trials);
     return status;
+}
+
+void photon_aim_reset(photon_aim *aim)
+{
+    emission_guide_reset(&aim->guide);
+    *aim = (photon_aim){0};
 }

@@ -7,12 +7,19 @@
 
 #include "photon_tracing.h"
 
-/* Fills out_guide for photon tracing with these settings (whose guide is not read, and whose `asked` is); share: of the
- * paths, that follow what is learned, [0, 1). The guide is empty, so that photons go by power alone, where none of the
- * trials arrives where light is asked for, and where enough do without a guide. out_counts: of all that was tried.
- * *out_wanted: the settings' `wanted`, or, by a guide, no more than power alone would have stored before it gave up:
- * estimates take the longer the more photons they find. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+typedef struct photon_aim {
+    emission_guide guide; /* owned; empty: photons go by power alone */
+    uint32_t wanted;      /* photons to store, > 0 */
+    float split_above;    /* as photon_tracing_settings has it; 0 without a guide */
+    trial_counts tried;   /* in all */
+} photon_aim;
+
+/* For photon tracing with these settings, of which guide and split_above are not read; share: of the paths, that follow
+ * what is learned, [0, 1). The guide is empty where none of the trials arrives where light is asked for, and where
+ * enough do without one. wanted: the settings', or, by a guide, no more than power alone would have stored before it
+ * gave up: estimates take the longer the more photons they find. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings, float share,
-                           emission_guide *out_guide, trial_counts *out_counts, uint32_t *out_wanted);
+                           photon_aim *out_aim);
+void photon_aim_reset(photon_aim *aim);
 
 #endif

@@ -24,6 +24,8 @@ enum { FIRST_YIELD = 4, NO_YIELD_GROWTH = 8 };
 enum { BLOCKS_WHOLE_ROUND = 512 };
 /* Tracing gives up when so many paths have stored no photon at all. */
 static const uint64_t PATHS_WITHOUT_PHOTON_MAX = 1u << 20;
+/* A path is split into so many parts at one surface at most. */
+enum { SPLIT_MOST = 4096 };
 /* Random streams, apart from those of the eye. */
 enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2, STREAM_TRIALS = 2 /* added to those */ };
 
@@ -31,7 +33,7 @@ typedef struct block {
     photon *photons;
     uint32_t count, capacity;
     uint32_t place; /* of its photons in the set */
-    uint64_t paths, rays, rays_cut;
+    uint64_t paths, parts, rays, rays_cut;
     energy_balance balance;
     bool out_of_memory;
     bool is_cut; /* cancelled before all of its paths were traced */
@@ -52,7 +54,7 @@ typedef struct photon_path {
     rgb flux;
     rng random;
     uint64_t key;
-    float weight;    /* of its beginning: by power over by the guide */
+    float weight;    /* by power over by the guide and by splitting: how much rarer its photons would be */
     int scatterings; /* but for panes, where they are direct */
     int arrivals;    /* at surfaces, panes too */
     bool is_diffuse; /* has gone on from a place by its gathered lobes */
@@ -94,21 +96,28 @@ static bool keep(tracer *t, const photon_path *path, vec3 position, vec3 normal,
     return is_kept;
 }
 
+/* Where that place of a surface is when the shutter opens; its normal on the side that the path has arrived on. */
+static surface_rest rest_of_arrival(const scene *s, const photon_path *path, const surface_hit *hit)
+{
+    surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
+    if (hit->instance_index != SCENE_NO_INSTANCE)
+        at = surface_at_opening(s, hit);
+    if (vec3_dot(hit->geometric_normal, path->ray.direction) > 0.0f)
+        at.geometric_normal = vec3_negate(at.geometric_normal);
+    return at;
+}
+
 static void store(tracer *t, const photon_path *path, const surface_hit *hit, float arrival_factor)
 {
-    vec3 direction = path->ray.direction;
     uint64_t key = hash_combine(path->key, (uint64_t)path->arrivals);
     rgb flux = path->flux;
     block *out = t->out;
-    surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
+    surface_rest at = rest_of_arrival(t->s, path, hit);
+    vec3 normal = at.geometric_normal;
     float alpha = 1.0f;
-    if (hit->instance_index != SCENE_NO_INSTANCE)
-        at = surface_at_opening(t->s, hit);
     if (!shape_is_opaque(&t->s->shapes[hit->shape_index]))
         alpha = alpha_at_hit(t->s, hit);
     flux = rgb_scale(flux, alpha > 0.0f ? arrival_factor * at.area_ratio / alpha : 0.0f);
-    bool is_outside = !(vec3_dot(hit->geometric_normal, direction) > 0.0f);
-    vec3 normal = is_outside ? at.geometric_normal : vec3_negate(at.geometric_normal);
     if (t->trial) {
         float importance = place_importance_at(t->settings->asked, at.position, normal);
         t->counts->photons++;
@@ -130,7 +139,7 @@ static void store(tracer *t, const photon_path *path, const surface_hit *hit, fl
     p->position[1] = at.position.y;
     p->position[2] = at.position.z;
     p->flux = flux_encode(flux, key);
-    p->direction = arrival_encode(direction, path->is_diffuse);
+    p->direction = arrival_encode(path->ray.direction, path->is_diffuse);
     p->normal = direction_encode(normal);
     memset(&p->slot, 0, sizeof p->slot);
     count_flux(out->balance.stored, flux_decode(p->flux));
@@ -185,7 +194,7 @@ static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
     light_emission start;
     if (!(probability > 0.0f) || !light_emit(s, lamp, t->target, &numbers, &random, &start))
         return false;
-    float weight = t->trial ? 1.0f : 1.0f / density;
+    float weight = 1.0f / density;
     scene_ray ray = scene_ray_make(start.origin, start.direction);
     ray.skips_uv = true;
     ray.slabs_are_panes = settings->panes_are_direct;
@@ -193,7 +202,7 @@ static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
     ray.time = time;
     if (settings->filters_textures)
         ray.cone = (ray_cone){photon_width(s, settings->wanted), 0.0f, true};
-    rgb flux = rgb_scale(start.flux, weight / probability);
+    rgb flux = rgb_scale(start.flux, (t->trial ? 1.0f : weight) / probability);
     *out_path = (photon_path){ray, flux, random, key, weight, 0, 0, false};
     count_flux(t->out->balance.emitted, out_path->flux);
     return true;
@@ -246,37 +255,30 @@ static bool arrival_surface_sample(const arrival_surface *m, const surface_hit *
     return true;
 }
 
-/* Stores a photon and sends the path on, from where its ray has arrived. false: the path ends. */
-static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
+/* Sends the path on from where its ray has arrived. false: it ends there. */
+static bool scatter(tracer *t, photon_path *path, const surface_hit *hit, const arrival_surface *m)
 {
     const photon_tracing_settings *settings = t->settings;
     energy_balance *balance = &t->out->balance;
     vec3 arrived = path->ray.direction;
     rgb flux = path->flux;
-    arrival_surface m;
-    arrival_surface_find(t->s, hit, arrived, &m);
-
-    bool is_global = settings->kind == PHOTON_GLOBAL;
-    float factor;
-    if ((is_global || path->scatterings > 0) && arrival_surface_stores(t->s, hit, arrived, &m, &factor))
-        store(t, path, hit, factor);
-    bool may_go_straight = settings->panes_are_direct && !m.albedo && m.scattering.is_pane;
+    bool may_go_straight = settings->panes_are_direct && !m->albedo && m->scattering.is_pane;
     bool is_last = path->scatterings >= settings->max_scatterings;
     if (path->arrivals >= SCATTERING_CAP || (is_last && !may_go_straight)) {
         count_flux(balance->truncated, flux);
         return false;
     }
 
-    /* scatter; a caustic map follows traced lobes alone */
-    bsdf_lobes lobes = is_global ? BSDF_ALL : BSDF_TRACED;
-    if (!arrival_surface_has(&m, lobes)) {
+    /* a caustic map follows traced lobes alone */
+    bsdf_lobes lobes = settings->kind == PHOTON_GLOBAL ? BSDF_ALL : BSDF_TRACED;
+    if (!arrival_surface_has(m, lobes)) {
         count_flux(balance->lost, flux);
         return false;
     }
     float u_lobe = rng_float(&path->random), u_roulette = rng_float(&path->random);
     vec2 u = rng_vec2(&path->random);
     bsdf_sample next;
-    if (!arrival_surface_sample(&m, hit, arrived, lobes, u_lobe, u, &next)) {
+    if (!arrival_surface_sample(m, hit, arrived, lobes, u_lobe, u, &next)) {
         count_flux(balance->absorbed, flux);
         return false;
     }
@@ -306,26 +308,85 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit)
     return true;
 }
 
-static void trace_path(tracer *t, uint64_t number)
+/* Into how many parts a path is split before it is scattered. In proportion to its flux and to the root of the share of
+ * it that arrives where light is asked for, their variance is least for the number of all parts. */
+static uint32_t count_parts(const tracer *t, const photon_path *path, const surface_hit *hit, const arrival_surface *m)
 {
-    photon_path path;
+    const photon_tracing_settings *settings = t->settings;
+    if (!(settings->split_above > 0.0f) || !arrival_surface_has(m, BSDF_GATHERED))
+        return 1;
+    surface_rest at = rest_of_arrival(t->s, path, hit);
+    float importance = place_importance_at(settings->onward, at.position, at.geometric_normal);
+    float flux = path->flux.r + path->flux.g + path->flux.b;
+    if (t->trial)
+        flux /= t->trial->density;
+    float parts = flux * sqrtf(importance) / settings->split_above;
+    return !(parts > 1.0f) ? 1 : parts < (float)SPLIT_MOST ? (uint32_t)(parts + 0.5f) : SPLIT_MOST;
+}
+
+/* One of the parts, equally bright, each with random numbers of its own. */
+static photon_path part_of_path(const photon_path *path, uint32_t part, uint32_t parts)
+{
+    photon_path out = *path;
+    uint64_t number = (uint64_t)path->arrivals << 32 | part;
+    float share = 1.0f / (float)parts;
+    out.flux = rgb_scale(path->flux, share);
+    out.weight *= share;
+    out.key = hash_combine(path->key, number);
+    out.random.state = hash_combine(path->random.state, number);
+    return out;
+}
+
+static void follow_path(tracer *t, photon_path *path);
+
+/* Stores a photon where the path's ray has arrived, and sends the path on, or its parts. false: it ends there. */
+static bool arrive(tracer *t, photon_path *path, const surface_hit *hit)
+{
+    vec3 arrived = path->ray.direction;
+    arrival_surface m;
+    float factor;
+    arrival_surface_find(t->s, hit, arrived, &m);
+    if ((t->settings->kind == PHOTON_GLOBAL || path->scatterings > 0) &&
+        arrival_surface_stores(t->s, hit, arrived, &m, &factor))
+        store(t, path, hit, factor);
+    uint32_t parts = count_parts(t, path, hit, &m);
+    t->out->parts += parts - 1;
+    for (uint32_t i = 1; i < parts; i++) {
+        photon_path part = part_of_path(path, i, parts);
+        if (scatter(t, &part, hit, &m))
+            follow_path(t, &part);
+    }
+    if (parts > 1)
+        *path = part_of_path(path, 0, parts);
+    return scatter(t, path, hit, &m);
+}
+
+static void follow_path(tracer *t, photon_path *path)
+{
     energy_balance *balance = &t->out->balance;
-    bool goes_on = begin_path(t, number, &path);
+    bool goes_on = true;
     while (goes_on) {
         surface_hit hit;
         rgb transmittance;
         t->out->rays++;
-        bool is_met = transmittance_intersect(t->s, &path.ray, &t->out->rays_cut, &hit, &transmittance);
-        if (!pass_media(balance, transmittance, &path.random, &path.flux))
+        bool is_met = transmittance_intersect(t->s, &path->ray, &t->out->rays_cut, &hit, &transmittance);
+        if (!pass_media(balance, transmittance, &path->random, &path->flux))
             return;
         if (!is_met)
-            count_flux(balance->escaped, path.flux);
-        if (is_met && ray_cone_is_wide(&path.ray.cone)) {
-            path.ray.cone = ray_cone_at(&path.ray.cone, hit.distance);
-            hit.footprint = ray_cone_footprint(&path.ray.cone, path.ray.direction);
+            count_flux(balance->escaped, path->flux);
+        if (is_met && ray_cone_is_wide(&path->ray.cone)) {
+            path->ray.cone = ray_cone_at(&path->ray.cone, hit.distance);
+            hit.footprint = ray_cone_footprint(&path->ray.cone, path->ray.direction);
         }
-        goes_on = is_met && scatter(t, &path, &hit);
+        goes_on = is_met && arrive(t, path, &hit);
     }
+}
+
+static void trace_path(tracer *t, uint64_t number)
+{
+    photon_path path;
+    if (begin_path(t, number, &path))
+        follow_path(t, &path);
 }
 
 /* --- rounds of blocks --- */
@@ -381,6 +442,7 @@ static ag_status account_block(round_job *job, photon_set *set, uint64_t first_p
     set->count += b->count;
     set->emitted_paths += b->paths;
     set->rays += b->rays;
+    set->parts += b->parts;
     set->rays_cut += b->rays_cut;
     add_balance(&set->balance, &b->balance);
     return AG_OK;
@@ -546,6 +608,7 @@ static void try_block(void *user, uint64_t begin, uint64_t end, uint64_t block_i
         trace_path(&t, job->first_path + i);
     }
     counts.paths = end - begin;
+    counts.parts = out.parts;
     counts.rays = out.rays;
     job->counts[block_index] = counts;
 }
@@ -570,6 +633,7 @@ ag_status photon_tracing_try(const scene *s, run_context *run, const photon_trac
     status = parallel_for(run, count, TRIALS_PER_BLOCK, try_block, &job, AG_PHASE_PHOTONS, 0.0, 0.0);
     for (uint64_t i = 0; i < block_count; i++) {
         in_out_counts->paths += counts[i].paths;
+        in_out_counts->parts += counts[i].parts;
         in_out_counts->rays += counts[i].rays;
         in_out_counts->photons += counts[i].photons;
         in_out_counts->asked += counts[i].asked;

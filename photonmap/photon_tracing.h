@@ -8,6 +8,10 @@
  * the lamp by way of traced lobes alone, at least one: LS+D, from an emission of its own. Where panes are direct, light
  * that a pane lets straight through has met no S there: the eye samples it at the lamp.
  *
+ * A path that brings much more than others to where light is asked for is split where a diffuse surface scatters it, so
+ * that what comes of it are many photons as bright as the rest (Booth, Hendricks, "Importance estimation in forward
+ * Monte Carlo calculations", 1984: weight windows).
+ *
  * Where something moves, each path has a time of the shutter of its own, so that a map is the mean over the shutter;
  * which light comes at which time is lost. A photon on a moving surface lies where that point of the surface is when
  * the shutter opens, and is looked for there (surface_at_opening): it goes with its surface, and is not smeared over
@@ -46,6 +50,7 @@ typedef struct photon_set {
     photon *photons; /* owned, from photon_records_create */
     uint32_t count;
     uint64_t emitted_paths; /* a photon's flux is its stored flux / emitted_paths */
+    uint64_t parts;         /* that splitting has added to them */
     uint64_t rays;
     uint64_t rays_cut; /* by TRANSMITTANCE_CROSSINGS_MAX (scene/rays/transmittance.h): absorbed */
     energy_balance balance;
@@ -59,8 +64,10 @@ typedef struct photon_tracing_settings {
     bool filters_textures; /* over about the area that a photon stands for, and more behind diffuse vertices */
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
-    const emission_guide *guide;         /* where paths begin */
-    const place_importance *asked;       /* elsewhere photons are stored no denser than power alone would have them */
+    const emission_guide *guide;    /* where paths begin */
+    const place_importance *asked;  /* elsewhere photons are stored no denser than power alone would have them */
+    const place_importance *onward; /* diffuse surfaces whose light arrives where it is asked for */
+    float split_above; /* paths on those are split by their flux times the root of that importance; 0: they are not */
     double progress_begin, progress_end; /* of AG_PHASE_PHOTONS */
 } photon_tracing_settings;
 
@@ -74,6 +81,7 @@ void photon_set_reset(photon_set *set);
 /* Of all trials so far. */
 typedef struct trial_counts {
     uint64_t paths, rays;
+    uint64_t parts;          /* that splitting has added to the paths */
     uint64_t photons, asked; /* that would be stored; and of those, where light is asked for */
 } trial_counts;
 

@@ -5,7 +5,7 @@
 
 /* A cube is divided while it holds more places than LEAF_MOST: a surface that passes through leaves about a quarter of
  * them to each part that it passes through, so that hardly any of those is empty by chance. */
-enum { WAYS = 6, LEAF_MOST = 24, DEPTH_MAX = 20, PARTS = 8 };
+enum { WAYS = 6, LEAF_MOST = 24, DEPTH_MAX = 24, PARTS = 8 };
 /* A place counts for each way that its normal is within 60 degrees of. */
 static const float WAY_COSINE = 0.5f;
 
@@ -20,6 +20,7 @@ typedef struct builder {
     uint32_t count, capacity;
     vec3 *places, *scratch;
     float unit; /* share of one place */
+    bool is_smooth;
 } builder;
 
 static bool add_parts(builder *b, uint32_t *out_first)
@@ -68,10 +69,17 @@ static void sort_places(builder *b, uint32_t begin, uint32_t end, vec3 middle, u
         b->places[i] = b->scratch[i];
 }
 
-static bool divide(builder *b, uint32_t node, uint32_t begin, uint32_t end, vec3 corner, float size, int depth)
+/* The mean of what a count of places by chance leaves open, where `around` were to be expected before it was known: of
+ * the gamma distribution whose shape is 1. */
+static float smooth_count(uint32_t count, float around) { return around * ((float)count + 1.0f) / (around + 1.0f); }
+
+/* around: how many places there would be if those of the cube above were spread over its surface. */
+static bool divide(builder *b, uint32_t node, uint32_t begin, uint32_t end, vec3 corner, float size, float around,
+                   int depth)
 {
+    float places = b->is_smooth ? smooth_count(end - begin, around) : (float)(end - begin);
     if (end - begin <= LEAF_MOST || depth == DEPTH_MAX) {
-        b->nodes[node].density = (float)(end - begin) * b->unit / (size * size);
+        b->nodes[node].density = places * b->unit / (size * size);
         return true;
     }
     float half = 0.5f * size;
@@ -81,7 +89,7 @@ static bool divide(builder *b, uint32_t node, uint32_t begin, uint32_t end, vec3
         return false;
     b->nodes[node].first_part = first;
     for (uint32_t i = 0; i < PARTS; i++) {
-        if (!divide(b, first + i, begin, ends[i], part_corner(corner, half, i), half, depth + 1))
+        if (!divide(b, first + i, begin, ends[i], part_corner(corner, half, i), half, 0.25f * places, depth + 1))
             return false;
         begin = ends[i];
     }
@@ -90,14 +98,8 @@ static bool divide(builder *b, uint32_t node, uint32_t begin, uint32_t end, vec3
 
 static float component(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-static void find_cube(const asked_place *places, uint32_t count, place_importance *out)
+static void set_cube(vec3 low, vec3 high, place_importance *out)
 {
-    vec3 low = places[0].position, high = low;
-    for (uint32_t i = 1; i < count; i++) {
-        vec3 p = places[i].position;
-        low = (vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
-        high = (vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
-    }
     vec3 extent = vec3_sub(high, low);
     float largest = fmaxf(fmaxf(extent.x, extent.y), extent.z);
     /* a little larger, and with its corner a little off: what lies in the planes of walls falls on one side */
@@ -105,14 +107,12 @@ static void find_cube(const asked_place *places, uint32_t count, place_importanc
     out->corner = vec3_sub(low, (vec3){0.011f * out->size, 0.012f * out->size, 0.013f * out->size});
 }
 
-ag_status place_importance_create(const asked_place *places, uint32_t count, place_importance *out_importance)
+static ag_status build(const asked_place *places, uint32_t count, float unit, bool is_smooth, vec3 low, vec3 high,
+                       place_importance *out_importance)
 {
-    *out_importance = (place_importance){0};
-    if (count == 0)
-        return AG_OK;
     place_importance made = {0};
-    find_cube(places, count, &made);
-    builder b = {.capacity = WAYS + 1024, .count = WAYS, .unit = 1.0f / (float)count};
+    set_cube(low, high, &made);
+    builder b = {.capacity = WAYS + 1024, .count = WAYS, .unit = unit, .is_smooth = is_smooth};
     b.nodes = calloc(b.capacity, sizeof *b.nodes);
     b.places = malloc(count * sizeof *b.places);
     b.scratch = malloc(count * sizeof *b.scratch);
@@ -124,7 +124,7 @@ ag_status place_importance_create(const asked_place *places, uint32_t count, pla
             if ((way % 2 ? -along : along) > WAY_COSINE)
                 b.places[facing++] = places[i].position;
         }
-        is_made = divide(&b, way, 0, facing, made.corner, made.size, 0);
+        is_made = divide(&b, way, 0, facing, made.corner, made.size, (float)facing, 0);
     }
     free(b.places);
     free(b.scratch);
@@ -136,6 +136,27 @@ ag_status place_importance_create(const asked_place *places, uint32_t count, pla
     made.node_count = b.count;
     *out_importance = made;
     return AG_OK;
+}
+
+ag_status place_importance_create(const asked_place *places, uint32_t count, place_importance *out_importance)
+{
+    *out_importance = (place_importance){0};
+    if (count == 0)
+        return AG_OK;
+    vec3 low = places[0].position, high = low;
+    for (uint32_t i = 1; i < count; i++) {
+        vec3 p = places[i].position;
+        low = (vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
+        high = (vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
+    }
+    return build(places, count, 1.0f / (float)count, false, low, high, out_importance);
+}
+
+ag_status place_importance_create_smooth(const asked_place *places, uint32_t count, uint32_t whole, vec3 low, vec3 high,
+                                         place_importance *out_importance)
+{
+    *out_importance = (place_importance){0};
+    return count == 0 ? AG_OK : build(places, count, 1.0f / (float)whole, true, low, high, out_importance);
 }
 
 void place_importance_reset(place_importance *importance)

@@ -29,9 +29,15 @@ typedef struct place_importance {
 
 /* Reads the places. Without any, no place has importance. Errors: AG_ERROR_MEMORY. */
 ag_status place_importance_create(const asked_place *places, uint32_t count, place_importance *out_importance);
+
+/* For places that are few and by chance, shares of so large a whole (>= 1): between low and high, where all of them
+ * lie, a part of a surface that has none counts as if it had up to one, by how many lie around it. */
+ag_status place_importance_create_smooth(const asked_place *places, uint32_t count, uint32_t whole, vec3 low, vec3 high,
+                                         place_importance *out_importance);
 void place_importance_reset(place_importance *importance);
 
-/* Share of all the places that lie around here on the side of the normal, per area [1/m^2]; 0 where there is none. */
+/* Share of all the places, or of the whole, that lies around here on the side of the normal, per area [1/m^2]; 0 where
+ * there is none. */
 float place_importance_at(const place_importance *importance, vec3 position, vec3 normal);
 
 #endif

@@ -30,29 +30,28 @@ bool maps_have_caustics(const scene *s, const ag_render_settings *settings)
     return settings->caustic_photon_count > 0 && settings->max_depth >= 2 && has_traced_lobes(s);
 }
 
-/* Traces one map's photons, after trials that tell which of them are of use. asked: NULL aims at nothing. */
-static ag_status trace_aimed(ag_context *context, const scene *s, float share, const place_importance *asked,
-                             photon_tracing_settings *tracing, photon_set *out_set)
+/* Traces one map's photons, after trials that tell which of them are of use. */
+static ag_status trace_aimed(ag_context *context, const scene *s, float share, photon_tracing_settings tracing,
+                             photon_set *out_set)
 {
-    emission_guide guide = {0};
-    trial_counts tried = {0};
-    tracing->guide = NULL;
-    tracing->asked = asked;
-    ag_statistics *statistics = &context->statistics;
-    ag_status status = AG_OK;
-    if (asked)
-        status = photon_aim_learn(s, &context->run, tracing, share, &guide, &tried, &tracing->wanted);
-    statistics->rays_photon += tried.rays;
-    if (guide.nodes)
+    photon_aim aim;
+    ag_status status = photon_aim_learn(s, &context->run, &tracing, share, &aim);
+    const emission_guide *guide = &aim.guide;
+    context->statistics.rays_photon += aim.tried.rays;
+    if (guide->nodes)
         log_message(context->log, AG_LOG_INFO,
                     "photons are aimed: %u cells, %.3g times less variance expected, after %llu trials",
-                    (guide.node_count + 1) / 2, (double)guide.gain, (unsigned long long)tried.paths);
-    tracing->guide = guide.nodes ? &guide : NULL;
-    tracing->asked = guide.nodes ? asked : NULL;
+                    (guide->node_count + 1) / 2, (double)guide->gain, (unsigned long long)aim.tried.paths);
+    tracing.guide = guide->nodes ? guide : NULL;
+    tracing.asked = guide->nodes ? tracing.asked : NULL;
+    tracing.wanted = aim.wanted;
+    tracing.split_above = aim.split_above;
     if (status == AG_OK)
-        status = photon_tracing_run(s, &context->run, tracing, out_set);
-    tracing->guide = NULL;
-    emission_guide_reset(&guide);
+        status = photon_tracing_run(s, &context->run, &tracing, out_set);
+    if (status == AG_OK && out_set->parts > 0)
+        log_message(context->log, AG_LOG_INFO, "photon paths were split into %llu parts more",
+                    (unsigned long long)out_set->parts);
+    photon_aim_reset(&aim);
     return status;
 }
 
@@ -73,17 +72,21 @@ static ag_status trace_photons(ag_context *context, const scene *s, const ag_ren
                                        .filters_textures =
                                            settings->texture_filter == AG_TEXTURE_FILTER_ON && s->has_mips,
                                        .seed = settings->photon_seed,
+                                       .asked = &pilot.gathered,
+                                       .onward = &pilot.onward,
                                        .progress_begin = 0.0,
                                        .progress_end = wants_caustics ? 0.7 : 1.0};
     if (status == AG_OK && settings->max_depth >= 2)
-        status = trace_aimed(context, s, share, &pilot.gathered, &tracing, out_global);
+        status = trace_aimed(context, s, share, tracing, out_global);
     if (status == AG_OK && wants_caustics) {
         tracing.kind = PHOTON_CAUSTIC;
+        tracing.asked = &pilot.seen;
+        tracing.onward = NULL;
         tracing.wanted = (uint32_t)settings->caustic_photon_count;
         tracing.max_scatterings = settings->max_depth - 1;
         tracing.progress_begin = 0.7;
         tracing.progress_end = 1.0;
-        status = trace_aimed(context, s, share, &pilot.seen, &tracing, out_caustic);
+        status = trace_aimed(context, s, share, tracing, out_caustic);
     }
     eye_pilot_reset(&pilot);
     if (status == AG_OK)

@@ -5,6 +5,8 @@
 #include "integrator/gather_path.h"
 #include "integrator/shading.h"
 #include "parallel_for.h"
+#include "rays/transmittance.h"
+#include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +14,8 @@
 /* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each point that they see.
  */
 enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHER_RAYS = 8, GRID_MAX = 4096 };
+/* One importon for so many points that are asked, and the scatterings that it has at most. */
+enum { POINTS_PER_IMPORTON = 2, IMPORTON_SCATTERINGS_MAX = 8 };
 /* Eye paths that look for points that are lit. */
 enum { LIT_PATHS = 12288 };
 /* Sampler keys apart from the picture's own. */
@@ -59,8 +63,12 @@ static void add_lit(lit_list *list, const vertex *v, bsdf_lobes lobes)
     list->points[list->count++] = (lit_point){v->hit, v->arrived, direct_light_normal(v, lobes)};
 }
 
+/* As eye_pilot has them. */
+enum { GATHERED, ONWARD, SEEN, LIST_COUNT };
+
 typedef struct row_points {
-    point_list gathered, seen;
+    point_list lists[LIST_COUNT];
+    uint32_t importons;
     lit_list lit;
 } row_points;
 
@@ -82,8 +90,43 @@ static void add_sides(const transport *t, const vertex *v, point_list *list)
         add_point(list, at.position, vec3_negate(at.facing_normal));
 }
 
+/* Importance goes back along the light's ways from where it is asked for: where it is scattered by diffuse lobes, light
+ * that arrives on that side will arrive there in part. */
+static void trace_importon(const transport *t, eye_worker *worker, const gather_end *end, rng random, point_list *list)
+{
+    vertex v;
+    rgb throughput = rgb_gray(1.0f);
+    int left = end->scatterings_left < IMPORTON_SCATTERINGS_MAX ? end->scatterings_left : IMPORTON_SCATTERINGS_MAX;
+    gather_end_make_white(end, &v);
+    for (int scatterings = 0;;) {
+        bsdf_sample next;
+        float u_lobe = rng_float(&random);
+        vec2 u = rng_vec2(&random);
+        if (!bsdf_sample_direction(&v.scattering, BSDF_ALL, BSDF_RADIANCE, u_lobe, u, &next))
+            return;
+        throughput = rgb_mul(throughput, next.weight);
+        if (!transport_survives(&throughput, rng_float(&random)))
+            return;
+        if (scatterings > 0 && next.group == BSDF_GATHERED) {
+            map_point at = transport_map_point(t, &v);
+            bool is_through = vec3_dot(transport_facing_normal(&v), next.direction) < 0.0f;
+            add_point(list, at.position, is_through ? vec3_negate(at.facing_normal) : at.facing_normal);
+        }
+        bool goes_straight = transport_is_open_pane(t, &v) && next.is_straight;
+        scatterings += !goes_straight;
+        if (scatterings == left)
+            return;
+        scene_ray ray = goes_straight ? scene_ray_continue(&v.hit, &v.arrived)
+                                      : transport_scattered_ray(t, &v, next.direction, next.group == BSDF_TRACED);
+        ray.skips_uv = true;
+        if (!transport_trace(t, worker, ray, &v))
+            return;
+        throughput = rgb_mul(throughput, v.transmittance);
+    }
+}
+
 static void gather_points(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, int scatterings_left, point_list *list)
+                          int path_vertex, int scatterings_left, row_points *out)
 {
     for (uint32_t i = 0; scatterings_left >= 1 && i < GATHER_RAYS; i++) {
         rng random = rng_make(where->key, (uint64_t)path_vertex, i);
@@ -97,8 +140,13 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
         scene_ray ray = transport_scattered_ray(t, v, first.direction, false);
         ray.skips_uv = true;
         if (transport_meet(t, worker, ray, &met) &&
-            gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight))
-            add_point(list, end.point.position, end.point.normal);
+            gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight)) {
+            add_point(&out->lists[GATHERED], end.point.position, end.point.normal);
+            if (i % POINTS_PER_IMPORTON == 0) {
+                out->importons++;
+                trace_importon(t, worker, &end, rng_make(random.state, (uint64_t)path_vertex, i), &out->lists[ONWARD]);
+            }
+        }
     }
 }
 
@@ -124,11 +172,10 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_poi
             add_lit(&out->lit, &v, bsdf_has(&v.scattering, BSDF_GATHERED) ? BSDF_GATHERED : BSDF_TRACED);
         } else if (!job->finds_lit && !is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
             if (path.vertex > 0 && rgb_max(path.throughput) < SHADING_LOW_CONTRIBUTION) {
-                add_sides(t, &v, &out->gathered);
+                add_sides(t, &v, &out->lists[GATHERED]);
             } else {
-                add_sides(t, &v, &out->seen);
-                gather_points(t, worker, &v, &where, path.vertex, t->settings->max_depth - path.scatterings - 1,
-                              &out->gathered);
+                add_sides(t, &v, &out->lists[SEEN]);
+                gather_points(t, worker, &v, &where, path.vertex, t->settings->max_depth - path.scatterings - 1, out);
             }
         }
         if (!eye_path_go_on(t, &v, BSDF_TRACED, eye_path_u_lobe(&path), 1, &path))
@@ -155,25 +202,52 @@ static void divide_frame(int paths, float aspect, int *out_width, int *out_heigh
     *out_height = height < 1 ? 1 : height > GRID_MAX ? GRID_MAX : height;
 }
 
-static ag_status merge(const row_points *rows, int row_count, bool is_seen, place_importance *out_importance)
+/* One list of all rows. out_points: to be freed by the caller, on success. */
+static ag_status merge(const pilot_job *job, int which, asked_place **out_points, uint32_t *out_count)
 {
     uint32_t count = 0, at = 0;
-    for (int i = 0; i < row_count; i++) {
-        if (rows[i].gathered.out_of_memory || rows[i].seen.out_of_memory)
+    for (int i = 0; i < job->height; i++) {
+        const point_list *list = &job->rows[i].lists[which];
+        if (list->out_of_memory)
             return AG_ERROR_MEMORY;
-        count += is_seen ? rows[i].seen.count : rows[i].gathered.count;
+        count += list->count;
     }
     asked_place *all = malloc((count + 1) * sizeof *all);
     if (!all)
         return AG_ERROR_MEMORY;
-    for (int i = 0; i < row_count; i++) {
-        const point_list *list = is_seen ? &rows[i].seen : &rows[i].gathered;
+    for (int i = 0; i < job->height; i++) {
+        const point_list *list = &job->rows[i].lists[which];
         if (list->count > 0)
             memcpy(all + at, list->points, list->count * sizeof *all);
         at += list->count;
     }
-    ag_status status = place_importance_create(all, count, out_importance);
-    free(all);
+    *out_points = all;
+    *out_count = count;
+    return AG_OK;
+}
+
+static ag_status merge_asked(const pilot_job *job, int which, place_importance *out_importance)
+{
+    asked_place *points;
+    uint32_t count;
+    AG_TRY(merge(job, which, &points, &count));
+    ag_status status = place_importance_create(points, count, out_importance);
+    free(points);
+    return status;
+}
+
+static ag_status merge_onward(const pilot_job *job, place_importance *out_importance)
+{
+    const scene *s = job->t.s;
+    asked_place *points;
+    uint32_t count, importons = 0;
+    for (int i = 0; i < job->height; i++)
+        importons += job->rows[i].importons;
+    AG_TRY(merge(job, ONWARD, &points, &count));
+    vec3 radius = {s->bounding_radius, s->bounding_radius, s->bounding_radius};
+    ag_status status = place_importance_create_smooth(points, count, importons, vec3_sub(s->bounding_center, radius),
+                                                      vec3_add(s->bounding_center, radius), out_importance);
+    free(points);
     return status;
 }
 
@@ -193,8 +267,8 @@ static ag_status look_over_frame(pilot_job *job, run_context *run, int paths, co
 static void free_rows(pilot_job *job)
 {
     for (int i = 0; job->rows && i < job->height; i++) {
-        free(job->rows[i].gathered.points);
-        free(job->rows[i].seen.points);
+        for (int k = 0; k < LIST_COUNT; k++)
+            free(job->rows[i].lists[k].points);
         free(job->rows[i].lit.points);
     }
     free(job->rows);
@@ -209,9 +283,11 @@ ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_setti
     eye_pilot made = {0};
     ag_status status = look_over_frame(&job, run, paths, settings);
     if (status == AG_OK)
-        status = merge(job.rows, job.height, false, &made.gathered);
+        status = merge_asked(&job, GATHERED, &made.gathered);
     if (status == AG_OK)
-        status = merge(job.rows, job.height, true, &made.seen);
+        status = merge_onward(&job, &made.onward);
+    if (status == AG_OK)
+        status = merge_asked(&job, SEEN, &made.seen);
     free_rows(&job);
     if (status == AG_OK)
         *out_pilot = made;
@@ -223,6 +299,7 @@ ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_setti
 void eye_pilot_reset(eye_pilot *pilot)
 {
     place_importance_reset(&pilot->gathered);
+    place_importance_reset(&pilot->onward);
     place_importance_reset(&pilot->seen);
 }
 

@@ -14,7 +14,8 @@
 
 typedef struct eye_pilot {
     place_importance gathered; /* points where the global map will be asked */
-    place_importance seen;     /* points where the caustic map will be */
+    place_importance onward;   /* diffuse surfaces whose light arrives at those */
+    place_importance seen;     /* points where the caustic map will be asked */
 } eye_pilot;
 
 /* Reads of the settings: width over height, depth, light through panes, number of photons, seed. Errors:

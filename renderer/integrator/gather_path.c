@@ -99,8 +99,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
     }
 }
 
-/* A white Lambertian surface at an end: the radiance that leaves it is the irradiance over pi. */
-static void make_white(const gather_end *end, vertex *v)
+void gather_end_make_white(const gather_end *end, vertex *v)
 {
     static const material WHITE = {.kind = MATERIAL_DIFFUSE, .reflectance = {1.0f, 1.0f, 1.0f}};
     const surface_point *at = &end->point;
@@ -123,7 +122,7 @@ bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, floa
     vertex v;
     bsdf_sample next;
     rgb throughput = rgb_scale(*in_out_weight, AG_PI);
-    make_white(in_out_end, &v);
+    gather_end_make_white(in_out_end, &v);
     rgb local = local_light(t, worker, &v, share_seen * rgb_max(throughput), &random);
     *in_out_known = rgb_add(*in_out_known, rgb_mul(throughput, local));
     int left = in_out_end->scatterings_left - 1;

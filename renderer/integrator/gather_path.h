@@ -21,4 +21,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
 bool gather_path_bounce(const transport *t, eye_worker *worker, rng random, float share_seen, gather_end *in_out_end,
                         rgb *in_out_weight, rgb *in_out_known);
 
+/* A white Lambertian surface at an end: the radiance that leaves it is the irradiance over pi. */
+void gather_end_make_white(const gather_end *end, vertex *out_vertex);
+
 #endif

@@ -1,5 +1,6 @@
 /* test_photon_aim.c: photons aimed at the inside of a room with a small window under the sky: many more of them arrive
- * there, the light is that of the closed form, and all is the same for any number of threads.
+ * there, the light is that of the closed form, and all is the same for any number of threads. Where light comes in by
+ * the ground before a window, paths are split there, and no few photons hold much of the light.
  * Threads: those of the tracing. */
 #include "photon_aim.h"
 
@@ -23,19 +24,32 @@ static const double THROUGH_WINDOW = 3.14159265358979 * 0.5 * 0.5; /* W: pi radi
 
 enum { POINTS = 8000, PHOTONS = 100000, SEEDS = 8 };
 
-static scene *room_scene(test_run *r, const char *lights)
+/* The same room on a ground of 16 x 16 with a window of 0.8 x 0.8 in the wall x = 1 instead. */
+static const char *const SIDE_ROOM =
+    "%s\nMaterial \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-8 -8 -0.01  8 -8 -0.01  -8 8 -0.01  8 8 -0.01]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 2  1 -1 2  -1 1 2  1 1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 -1 2  1 -1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 1 0  1 1 0  -1 1 2  1 1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  -1 1 0  -1 -1 2  -1 1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [1 -1 0  1 1 0  1 -1 0.6  1 1 0.6]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [1 -1 1.4  1 1 1.4  1 -1 2  1 1 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [1 -1 0.6  1 -0.4 0.6  1 -1 1.4  1 -0.4 1.4]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [1 0.4 0.6  1 1 0.6  1 0.4 1.4  1 1 1.4]\n";
+
+static scene *scene_of(test_run *r, const char *shapes, const char *lights)
 {
     char text[4096];
-    snprintf(text, sizeof text, ROOM, lights);
+    snprintf(text, sizeof text, shapes, lights);
     return test_scene_create(r, text);
 }
 
-/* Asked for on the floor and the walls, from inside. */
-static place_importance ask_inside(void)
+static scene *room_scene(test_run *r, const char *lights) { return scene_of(r, ROOM, lights); }
+
+/* On the floor and the walls, from inside. */
+static void add_inside(asked_place points[POINTS])
 {
-    asked_place *points = malloc(POINTS * sizeof *points);
-    place_importance importance;
-    assert_non_null(points);
     rng random = test_random(6);
     for (int i = 0; i < POINTS; i++) {
         vec3 p = random_in_box(&random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){1.0f, 1.0f, 2.0f});
@@ -49,7 +63,40 @@ static place_importance ask_inside(void)
         }
         points[i] = (asked_place){p, n};
     }
+}
+
+static place_importance ask_inside(void)
+{
+    asked_place *points = malloc(POINTS * sizeof *points);
+    place_importance importance;
+    assert_non_null(points);
+    add_inside(points);
     assert_int_equal(place_importance_create(points, POINTS, &importance), AG_OK);
+    free(points);
+    return importance;
+}
+
+/* Where about half of the light goes on to the inside of SIDE_ROOM, and a fortieth by its window: inside, and where
+ * rays that leave by the window meet the ground. */
+static place_importance pass_to_inside(void)
+{
+    enum { OUTSIDE = POINTS / 20, WHOLE = 2 * POINTS };
+    asked_place *points = malloc((POINTS + OUTSIDE) * sizeof *points);
+    place_importance importance;
+    uint32_t count = POINTS;
+    assert_non_null(points);
+    add_inside(points);
+    rng random = test_random(9);
+    while (count < POINTS + OUTSIDE) {
+        vec3 from = random_in_box(&random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){-0.5f, 1.0f, 2.0f});
+        vec3 by = random_in_box(&random, (vec3){1.0f, -0.4f, 0.6f}, (vec3){1.0f, 0.4f, 1.4f});
+        vec3 way = vec3_sub(by, from);
+        vec3 at = vec3_add(from, vec3_scale(way, from.z / fmaxf(-way.z, 1e-6f)));
+        if (at.x < 8.0f && fabsf(at.y) < 8.0f)
+            points[count++] = (asked_place){{at.x, at.y, -0.01f}, {0.0f, 0.0f, 1.0f}};
+    }
+    vec3 low = {-12.0f, -12.0f, -12.0f}, high = {12.0f, 12.0f, 12.0f};
+    assert_int_equal(place_importance_create_smooth(points, count, WHOLE, low, high, &importance), AG_OK);
     free(points);
     return importance;
 }
@@ -62,47 +109,52 @@ static bool is_inside(const photon *p)
            vec3_dot(to_middle, direction_decode(p->normal)) > 0.0f;
 }
 
-static photon_set trace(test_run *r, const scene *s, const place_importance *asked, uint64_t seed)
+static photon_set trace(test_run *r, const scene *s, const place_importance *asked, const place_importance *onward,
+                        uint64_t seed)
 {
     photon_tracing_settings settings = {
         .kind = PHOTON_GLOBAL, .wanted = PHOTONS / FEWER, .max_scatterings = 100, .seed = seed, .progress_end = 1.0};
-    emission_guide guide = {0};
-    trial_counts tried;
+    photon_aim aim = {0};
     photon_set set;
-    uint32_t wanted;
     if (asked) {
         settings.asked = asked;
-        assert_int_equal(photon_aim_learn(s, &r->run, &settings, 0.8f, &guide, &tried, &wanted), AG_OK);
-        assert_non_null(guide.nodes);
-        assert_true(tried.paths > 0 && tried.rays >= tried.paths / 2 && tried.photons >= tried.asked &&
-                    tried.asked > 0);
-        settings.guide = &guide;
+        settings.onward = onward;
+        assert_int_equal(photon_aim_learn(s, &r->run, &settings, 0.8f, &aim), AG_OK);
+        assert_non_null(aim.guide.nodes);
+        assert_true(aim.tried.paths > 0 && aim.tried.rays >= aim.tried.paths / 2 &&
+                    aim.tried.photons >= aim.tried.asked && aim.tried.asked > 0);
+        assert_true(onward ? aim.split_above > 0.0f : aim.split_above == 0.0f);
+        settings.guide = &aim.guide;
+        settings.split_above = aim.split_above;
     }
     assert_int_equal(photon_tracing_run(s, &r->run, &settings, &set), AG_OK);
-    emission_guide_reset(&guide);
+    photon_aim_reset(&aim);
     return set;
 }
 
 typedef struct result {
-    double share; /* of the photons, that lie inside */
+    double share;   /* of the photons, that lie inside */
+    double squares; /* of the fluxes inside, over the square of their sum: 1 over how many alike would vary so much */
     double direct, direct_error, all, all_error;
 } result;
 
-static result trace_seeds(test_run *r, const scene *s, const place_importance *asked)
+static result trace_seeds(test_run *r, const scene *s, const place_importance *asked, const place_importance *onward)
 {
     result sum = {0};
     double direct_squared = 0.0, all_squared = 0.0;
     for (int seed = 0; seed < SEEDS; seed++) {
-        photon_set set = trace(r, s, asked, (uint64_t)seed);
-        double direct = 0.0, all = 0.0;
+        photon_set set = trace(r, s, asked, onward, (uint64_t)seed);
+        double direct = 0.0, all = 0.0, squares = 0.0;
         for (uint32_t i = 0; i < set.count; i++) {
             if (!is_inside(&set.photons[i]))
                 continue;
             double flux = (double)flux_decode(set.photons[i].flux).g / (double)set.emitted_paths;
             sum.share += 1.0 / set.count / SEEDS;
             all += flux;
+            squares += flux * flux;
             direct += arrival_is_diffuse(set.photons[i].direction) ? 0.0 : flux;
         }
+        sum.squares += squares / (all * all) / SEEDS;
         const energy_balance *b = &set.balance;
         for (int c = 0; c < 3; c++) {
             assert_relative(b->stored[c] + b->cut[c] + b->thinned[c], b->arrived[c], 1e-3 * WIDER);
@@ -127,7 +179,7 @@ static void a_small_window_is_found_and_its_light_is_right(void **state)
     test_run_init(&r, 2);
     scene *s = room_scene(&r, SKY);
     place_importance asked = ask_inside();
-    result plain = trace_seeds(&r, s, NULL), aimed = trace_seeds(&r, s, &asked);
+    result plain = trace_seeds(&r, s, NULL, NULL), aimed = trace_seeds(&r, s, &asked, NULL);
     print_message("inside: share %.4f plain, %.4f aimed; direct %.4f +- %.4f, %.4f +- %.4f of %.4f; all %.4f +- %.4f, "
                   "%.4f +- %.4f\n",
                   plain.share, aimed.share, plain.direct, plain.direct_error, aimed.direct, aimed.direct_error,
@@ -148,7 +200,7 @@ static void no_photon_is_more_than_five_times_as_bright(void **state)
     test_run_init(&r, 2);
     scene *s = room_scene(&r, SKY);
     place_importance asked = ask_inside();
-    photon_set plain = trace(&r, s, NULL, 1), aimed = trace(&r, s, &asked, 1);
+    photon_set plain = trace(&r, s, NULL, NULL, 1), aimed = trace(&r, s, &asked, NULL, 1);
     float most_plain = 0.0f, most_aimed = 0.0f;
     for (uint32_t i = 0; i < plain.count; i++)
         most_plain = fmaxf(most_plain, rgb_max(flux_decode(plain.photons[i].flux)));
@@ -162,16 +214,40 @@ static void no_photon_is_more_than_five_times_as_bright(void **state)
     test_run_reset(&r);
 }
 
+/* By aim and by parts the light inside is what it is by power alone, within 3 sigma; with parts fewer photons hold less
+ * of it. */
+static void paths_are_split_where_their_light_comes_in(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    scene *s = scene_of(&r, SIDE_ROOM, SKY);
+    place_importance asked = ask_inside(), onward = pass_to_inside();
+    result plain = trace_seeds(&r, s, NULL, NULL), aimed = trace_seeds(&r, s, &asked, NULL);
+    result split = trace_seeds(&r, s, &asked, &onward);
+    print_message("inside: all %.4f +- %.4f plain, %.4f +- %.4f aimed, %.4f +- %.4f split; squares %.3g, %.3g, %.3g\n",
+                  plain.all, plain.all_error, aimed.all, aimed.all_error, split.all, split.all_error, plain.squares,
+                  aimed.squares, split.squares);
+    assert_close(split.all, plain.all, 3.0 * hypot(split.all_error, plain.all_error));
+    assert_close(split.all, aimed.all, 3.0 * hypot(split.all_error, aimed.all_error));
+    assert_true(split.squares < 0.7 * aimed.squares);
+    place_importance_reset(&asked);
+    place_importance_reset(&onward);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 static void any_number_of_threads_has_the_same_photons(void **state)
 {
     (void)state;
     photon_set first = {0};
-    place_importance asked = ask_inside();
+    place_importance asked = ask_inside(), onward = pass_to_inside();
     for (unsigned threads = 1; threads <= 3; threads++) {
         test_run r;
         test_run_init(&r, threads);
-        scene *s = room_scene(&r, SKY);
-        photon_set set = trace(&r, s, &asked, 7);
+        scene *s = scene_of(&r, SIDE_ROOM, SKY);
+        photon_set set = trace(&r, s, &asked, &onward, 7);
+        assert_true(set.parts > 0);
         if (threads == 1) {
             first = set;
         } else {
@@ -184,17 +260,16 @@ static void any_number_of_threads_has_the_same_photons(void **state)
         test_run_reset(&r);
     }
     photon_set_reset(&first);
+    place_importance_reset(&onward);
     place_importance_reset(&asked);
 }
 
 static void expect_no_guide(const scene *s, test_run *r, photon_kind kind, const place_importance *asked)
 {
     photon_tracing_settings settings = {.kind = kind, .wanted = 1000, .max_scatterings = 100, .asked = asked};
-    emission_guide guide;
-    trial_counts tried;
-    uint32_t wanted;
-    assert_int_equal(photon_aim_learn(s, &r->run, &settings, 0.8f, &guide, &tried, &wanted), AG_OK);
-    assert_null(guide.nodes);
+    photon_aim aim;
+    assert_int_equal(photon_aim_learn(s, &r->run, &settings, 0.8f, &aim), AG_OK);
+    assert_null(aim.guide.nodes);
 }
 
 /* Nothing asked for, asked for where no light comes, no lamp, nothing to be met, no traced lobes. */
@@ -254,6 +329,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_small_window_is_found_and_its_light_is_right),
         cmocka_unit_test(no_photon_is_more_than_five_times_as_bright),
+        cmocka_unit_test(paths_are_split_where_their_light_comes_in),
         cmocka_unit_test(any_number_of_threads_has_the_same_photons),
         cmocka_unit_test(where_there_is_nothing_to_aim_at_power_decides),
         cmocka_unit_test(a_room_that_is_lit_from_within_needs_no_aim),
