@@ -115,7 +115,7 @@ ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_i
 ag_status scene_light_group(scene *s, const char *name, uint32_t *out_index);
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
-/* The same of curves, which join those of the shape before where they differ in nothing else: fur is many. */
+/* Adds curves, which join those of the shape before where they differ in nothing else: fur is many. */
 ag_status scene_add_curves(scene *s, uint32_t object_index, const shape *item);
 /* An object, which is seen where instances put it. Its shapes do not shine. */
 ag_status scene_add_object(scene *s, uint32_t *out_index);

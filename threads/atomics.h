@@ -38,7 +38,7 @@ static inline bool cas_acquire_u32(atomic_u32 *a, uint32_t *expected, uint32_t d
     return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_acquire, memory_order_acquire);
 }
 
-/* The same with acquire and release on success: and whoever acquires the new value sees what was written before. */
+/* Strong compare-and-swap, acquire and release on success: who acquires the new value sees what was written before. */
 static inline bool cas_acquire_release_u32(atomic_u32 *a, uint32_t *expected, uint32_t desired)
 {
     return atomic_compare_exchange_strong_explicit(a, expected, desired, memory_order_acq_rel, memory_order_acquire);

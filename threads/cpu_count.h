@@ -7,7 +7,7 @@
 /* CPUs in the affinity mask, capped by the cgroup's CPU quota rounded up; at least 1. */
 unsigned cpu_count_available(void);
 
-/* The same quota read below another root ("" is the machine's own): `proc_self_cgroup` and `mountinfo` are
+/* The cgroup's CPU quota read below another root ("" is the machine's own): `proc_self_cgroup` and `mountinfo` are
  * the texts of /proc/self/cgroup and /proc/self/mountinfo, paths in them are looked up below `root`.
  * Returns the quota in CPUs, 0 where there is none. For tests. */
 double cpu_quota_below(const char *root, const char *proc_self_cgroup, const char *mountinfo);

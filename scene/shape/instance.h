@@ -34,7 +34,7 @@ affine instance_at(const struct scene *s, uint32_t instance_index, float time);
 /* The world's point, in double precision, in the object's space. */
 vec3 instance_point_in_object(const affine *world_from_object, const double world[3]);
 
-/* The same of a direction: of any length. */
+/* The world's direction, of any length, in the object's space. */
 vec3 instance_direction_in_object(const affine *world_from_object, vec3 direction);
 
 /* Takes a hit from the object's space to the world's: position, normals, epsilon. */

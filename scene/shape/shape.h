@@ -98,7 +98,7 @@ typedef struct shape {
 shape shape_make(shape_kind kind);
 /* Frees what it owns. */
 void shape_reset(shape *s);
-/* The same shape, which is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
+/* Copies a shape that is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
  * AG_ERROR_MEMORY. */
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);
 

@@ -70,16 +70,16 @@ typedef struct surface_footprint {
     bool is_coarse;
 } surface_footprint;
 
-/* Of that kind, without inputs, by the surface's own u and v; a picture as it is, bilinear, repeated. */
+/* A texture of that kind, without inputs, by the surface's own u and v; a picture as it is, bilinear, repeated. */
 texture texture_make(texture_kind kind);
 
 /* The value at a hit. Of a float texture all components are the same. */
 rgb texture_evaluate_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
-/* The same over a footprint, where the mean of the texture is to be had from that of its pictures and none of its
- * values is above 1, where reflectances are cut. NULL: at the place. */
+/* The mean value over a footprint, where it is to be had from the mean of the texture's pictures and none of its values
+ * is above 1, where reflectances are cut. footprint NULL: the value at the hit. */
 rgb texture_filtered_rgb(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit,
                          const surface_footprint *footprint);
-/* Of a float texture. */
+/* The value of a float texture at a hit. */
 float texture_evaluate_float(const struct scene *s, uint32_t texture_index, const struct surface_hit *hit);
 
 /* Whether texture_filtered_rgb heeds a footprint. */

@@ -42,7 +42,7 @@ void texture_mips_destroy(texture_mips *m); /* NULL is fine */
 /* Moves all levels into the store, the finest, of which the memory stays the caller's, too. Errors: as of
  * texture_store_put. */
 ag_status texture_mips_put(run_context *run, texture_mips *m, texture_store *store, char *message, size_t message_size);
-/* The same of one level. */
+/* Moves a single level into the store, as texture_mips_put does. */
 ag_status texture_level_put(run_context *run, texture_level *in_out, texture_store *store, char *message,
                             size_t message_size);
 

@@ -12,7 +12,7 @@ float texture_noise(vec3 p);
 
 /* Octaves of noise, each 1.99 times as fine as the one before and `roughness` times as high. */
 float texture_fbm(vec3 p, float roughness, int octaves);
-/* The same of the noise's absolute value; the octaves left out count with its mean. */
+/* Octaves of the noise's absolute value, as in texture_fbm; the octaves left out count with its mean. */
 float texture_turbulence(vec3 p, float roughness, int octaves);
 
 #endif

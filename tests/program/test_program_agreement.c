@@ -5,7 +5,7 @@
 #include "fixtures/program_agreement.h"
 
 /* Standard error of the whole picture. */
-static const double SIGMA_MOST = 0.01;
+static const double SIGMA_MOST = 0.005;
 
 static void test_box_with_blocks(void **state)
 {
@@ -25,7 +25,7 @@ static void test_few_irradiance_photons(void **state)
 static void test_next_room(void **state)
 {
     (void)state;
-    compare_integrators("next_room", "--spp=128", NULL, 0.02);
+    compare_integrators("next_room", "--spp=128", NULL, SIGMA_MOST);
 }
 
 static void test_tea_in_glass(void **state)

@@ -236,7 +236,7 @@ ag_status pbrt_tell_progress(pbrt_parser *parser);
 /* pbrt_parameters.c: "DIRECTIVE name parameters". On failure the list is reset. */
 ag_status pbrt_read_parameters(pbrt_parser *parser, const char *directive, file_location where,
                                parameter_list *out_list);
-/* The same, with the quoted name before them. */
+/* pbrt_read_parameters of a directive that has a quoted name before its parameters. */
 ag_status pbrt_read_named_parameters(pbrt_parser *parser, const char *directive, const char *expected,
                                      file_location where, parameter_list *out_list);
 
@@ -418,7 +418,7 @@ typedef struct pbrt_mesh {
 
 /* Adds it to the scene in world space, less the triangles without area. Takes source->indices, also on failure. */
 ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const pbrt_mesh *source);
-/* The same of a mesh whose arrays, in object space, are the scene's own already: they are transformed where they are
+/* pbrt_add_mesh for a mesh whose arrays, in object space, are the scene's own already: they are transformed in place
  * and taken, also on failure. dropped: triangles that were left out before, for the warning. */
 ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
                                bool expects_degenerate);
