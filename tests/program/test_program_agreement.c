@@ -2,6 +2,7 @@
  * blocks; a room lit through an opening; media in glass and behind interfaces. All light, and indirect light alone.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
+#define AGREEMENT_BLOCK_SIGMA_MOST 0.03
 #include "fixtures/program_agreement.h"
 
 /* Standard error of the whole picture. */

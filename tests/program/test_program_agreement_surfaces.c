@@ -2,6 +2,7 @@
  * glass, rough metal and a mirror; rough coats; glTF's material in many ways; alpha, bump maps and brushed metal. All
  * light, and indirect light alone. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
+#define AGREEMENT_BLOCK_SIGMA_MOST 0.04
 #include "fixtures/program_agreement.h"
 
 /* Standard error of the whole picture. */
