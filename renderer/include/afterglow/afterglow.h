@@ -6,8 +6,8 @@
  * Threads: a context and what was made with it belong to one thread at a time, but for ag_context_cancel and
  * ag_context_pause, which any thread and any signal handler may call. Several contexts may work side by side.
  * Errors: what can fail returns ag_status and writes its out-parameters on AG_OK alone; the text goes to the log.
- * Structs are plain, and filled by ag_default_...(): later releases add members. A program is built against the header of
- * the library that it runs with; the library's SONAME changes whenever a public struct or enum does. */
+ * Structs are plain, and filled by ag_default_...(): later releases add members. A program is built against the header
+ * of the library that it runs with; the library's SONAME changes whenever a public struct or enum does. */
 #ifndef AFTERGLOW_AFTERGLOW_H
 #define AFTERGLOW_AFTERGLOW_H
 
