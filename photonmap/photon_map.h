@@ -43,7 +43,7 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
                             double progress_begin, double progress_end, photon_map *out_map);
 void photon_map_reset(photon_map *map);
 
-/* What the codes of irradiances stand for. For a map that comes from a file. */
+/* Sets the values that the codes of irradiances stand for, in a map that comes from a file. */
 void photon_map_set_bias(photon_map *map, int irradiance_bias);
 
 /* Whether all photons are irradiance photons; otherwise these have blocks and indices of their own. */
