@@ -35,8 +35,9 @@ typedef struct light {
     vec3 position;  /* of all points: world space */
     vec3 direction; /* spot, projection, distant: the way the light goes, unit */
     rgb intensity;  /* point: W/sr; spot: along the axis; goniometric, projection: what the picture is multiplied by */
-    rgb radiance; /* area: W/m^2/sr; distant: irradiance on a surface facing it, W/m^2; infinite: W/m^2/sr, or what its
-                   * picture is multiplied by */
+    rgb radiance;   /* area: W/m^2/sr; distant: irradiance on a surface facing its middle, W/m^2; infinite: W/m^2/sr, or
+                     * what its   picture is multiplied by */
+    float disc_one_minus_cos; /* distant: 1 - cos of half the angle under which it is seen; 0: it has no extent */
     float falloff_start, falloff_end; /* spot: 1 - cos of the angles inside of which it is full and outside of which
                                        * there is nothing; smoothstep in the cosine between */
     uint32_t shape_index;             /* area: the shape that shines */
@@ -59,6 +60,9 @@ typedef struct light {
 light light_make(light_kind kind);
 /* A spot's cone: full inside the first angle from its axis, dark outside the second, radians in [0, pi]. */
 void light_set_cone(light *l, double full_angle, double dark_angle);
+/* A distant light's disc, which shines alike all over: the angle across it, radians in [0, pi]. Shadows alone show it.
+ */
+void light_set_disc(light *l, double angle);
 /* Frees the pictures and tables. */
 void light_reset(light *l);
 
@@ -75,7 +79,7 @@ typedef struct light_sample {
     bool is_delta;         /* cannot be hit by a scattered ray: no MIS */
 } light_sample;
 
-/* What scene_commit sets, areas and bounds being there. Errors: AG_ERROR_MEMORY. */
+/* Sets the members that scene_commit is said to set, once areas and bounds are there. Errors: AG_ERROR_MEMORY. */
 ag_status light_commit(const struct scene *s, light *l);
 
 /* u in [0,1)^2. Returns false when no light can come from there. */
@@ -93,12 +97,12 @@ rgb light_texture_value(const struct scene *s, const light *l, const struct surf
 
 /* Whether an area light is not alike all over, by its texture or its shape's alpha. */
 bool light_varies(const struct scene *s, const light *l);
-/* What a point sampled on an area light has of its radiance: the texture's value, times the share of the shape that is
- * there unless it is invisible (alpha.h); rays that meet the lamp have taken account of that. at: read only if the
- * light varies. */
+/* The share of its radiance that a point sampled on an area light sends: the texture's value, times the share of the
+ * shape that is there unless it is invisible (alpha.h); rays that meet the lamp have taken account of that. at: read
+ * only if the light varies. */
 rgb light_sampled_value(const struct scene *s, const light *l, const struct surface_sample *at);
 
-/* Of the lights that are points: W/sr into direction (away from it, unit). */
+/* Intensity of a light that is a point, W/sr into direction (away from it, unit). */
 rgb light_intensity(const light *l, vec3 direction);
 
 /* The cone under which a ball is seen from a point outside it: true, and 1 - cos of its half angle; false when the
