@@ -136,8 +136,11 @@ static ag_status open_file(const map_request *r, opened_maps *out, bool *out_is_
     const char *path = r->settings->photon_map_file;
     char why[512];
     *out_is_open = false;
-    switch (
-        photon_file_open(&r->context->run, path, &r->key, &out->file, &out->global, &out->caustic, why, sizeof why)) {
+    const phase_begin begin = context_begin_phase();
+    const photon_file_result opened =
+        photon_file_open(&r->context->run, path, &r->key, &out->file, &out->global, &out->caustic, why, sizeof why);
+    context_add_to_phase(r->context, AG_PHASE_MAP, begin);
+    switch (opened) {
     case PHOTON_FILE_OPEN:
         *out_is_open = true;
         if (out->file.damaged > 0)
@@ -249,7 +252,9 @@ ag_status map_file_obtain(ag_context *context, const scene *s, const ag_render_s
                           map_file_trace *trace, photon_file *out_file, photon_map *out_global, photon_map *out_caustic)
 {
     map_request r = {.context = context, .settings = settings};
+    phase_begin begin = context_begin_phase();
     AG_TRY(make_key(context, s, settings, &r.key));
+    context_add_to_phase(context, AG_PHASE_MAP, begin);
     trace_lock lock = {.descriptor = -1};
     if (asprintf(&lock.path, "%s.lock", settings->photon_map_file) < 0)
         return AG_ERROR_MEMORY;
@@ -264,8 +269,11 @@ ag_status map_file_obtain(ag_context *context, const scene *s, const ag_render_s
     } else if (status == AG_OK) {
         photon_map global, caustic;
         status = trace(context, s, settings, &global, &caustic);
-        if (status == AG_OK)
+        if (status == AG_OK) {
+            begin = context_begin_phase();
             status = keep(&r, &global, &caustic, &maps);
+            context_add_to_phase(context, AG_PHASE_MAP, begin);
+        }
         context->statistics.map_file = AG_MAP_FILE_TRACED;
     }
     unlock(&lock);

@@ -35,7 +35,6 @@ static ag_status copy_definitions(ag_context *context, const ag_definition *give
 ag_scene_settings ag_default_scene_settings(void)
 {
     return (ag_scene_settings){.texture_memory_bytes = AG_DEFAULT_TEXTURE_MEMORY_BYTES,
-                               .camera_up = {0.0f, 1.0f, 0.0f},
                                .camera_fov_degrees = 45.0f,
                                .sun_elevation_degrees = 45.0f,
                                .sun_irradiance = 3.0f,
@@ -48,9 +47,10 @@ static ag_status make_request(const ag_scene_settings *settings, scene_request *
 {
     const float *sky = settings->sky_radiance;
     const bool is_sun_sound = isfinite(settings->sun_azimuth_degrees) && fabsf(settings->sun_elevation_degrees) <= 90 &&
-                              settings->sun_irradiance >= 0 && isfinite(settings->sun_irradiance);
-    const bool is_sky_sound = sky[0] >= 0 && sky[1] >= 0 && sky[2] >= 0 && isfinite(sky[0] + sky[1] + sky[2]) &&
-                              isfinite(settings->sky_rotation_degrees);
+                              settings->sun_irradiance >= 0 && isfinite(settings->sun_irradiance) &&
+                              settings->sun_angle_degrees >= 0 && settings->sun_angle_degrees <= 180;
+    const bool is_sky_sound = sky[0] >= 0 && sky[1] >= 0 && sky[2] >= 0 && isfinite(sky[0]) && isfinite(sky[1]) &&
+                              isfinite(sky[2]) && isfinite(settings->sky_rotation_degrees);
     if ((unsigned)settings->gltf_light_units > AG_GLTF_LIGHT_UNITS_RAW || (unsigned)settings->up > AG_UP_MINUS_Z ||
         (settings->texture_memory_bytes > 0 && settings->texture_memory_bytes < AG_TEXTURE_MEMORY_LEAST_BYTES) ||
         (settings->has_camera && settings->camera_name) || (settings->has_sun && !is_sun_sound) ||
@@ -70,6 +70,7 @@ static ag_status make_request(const ag_scene_settings *settings, scene_request *
                                    .sun_azimuth_degrees = settings->sun_azimuth_degrees,
                                    .sun_elevation_degrees = settings->sun_elevation_degrees,
                                    .sun_irradiance = settings->sun_irradiance,
+                                   .sun_angle_degrees = settings->sun_angle_degrees,
                                    .has_sky = settings->has_sky,
                                    .sky_radiance = rgb_make(sky[0], sky[1], sky[2]),
                                    .sky_file = settings->sky_file,

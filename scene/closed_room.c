@@ -108,9 +108,9 @@ static bool is_room(const surroundings *r, bool has_outer)
 /* Between the floor below and the ceiling above. */
 static bool find_height(const scene *s, vec3 position, float share, vec3 *out_position)
 {
-    const float down = free_distance(s, position, vec3_make(0.0f, -1.0f, 0.0f));
-    const float up = free_distance(s, position, vec3_make(0.0f, 1.0f, 0.0f));
-    *out_position = vec3_make(position.x, position.y - down + share * (down + up), position.z);
+    const vec3 upwards = s->world_from_upright.y;
+    const float down = free_distance(s, position, vec3_negate(upwards)), up = free_distance(s, position, upwards);
+    *out_position = vec3_add_scaled(position, upwards, share * (down + up) - down);
     return down >= 0.0f && up >= 0.0f;
 }
 
@@ -127,7 +127,8 @@ static void find_heading(const scene *s, vec3 eye, view *best)
     int open_count = 0;
     for (int i = 0; i < HEADINGS; i++) {
         const double angle = 2.0 * 3.14159265358979323846 * i / HEADINGS;
-        headings[i] = vec3_make((float)sin(angle), 0.0f, (float)cos(angle));
+        headings[i] = vec3_add(vec3_scale(s->world_from_upright.x, (float)sin(angle)),
+                               vec3_scale(s->world_from_upright.z, (float)cos(angle)));
         distances[i] = free_distance(s, eye, headings[i]);
         open_count += distances[i] < 0.0f;
     }
@@ -144,13 +145,18 @@ static void find_heading(const scene *s, vec3 eye, view *best)
 
 static view find_view(const scene *s, bool has_outer)
 {
-    const vec3 low = s->bounds_min, size = vec3_sub(s->bounds_max, low);
+    const vec3 size = vec3_sub(s->bounds_max, s->bounds_min);
+    const vec3 middle = vec3_add_scaled(s->bounds_min, size, 0.5f);
+    const frame *f = &s->world_from_upright;
+    const float width = fabsf(vec3_dot(size, f->x)), height = fabsf(vec3_dot(size, f->y)),
+                depth = fabsf(vec3_dot(size, f->z));
     const float elbow_room = ELBOW_ROOM * vec3_length(size);
     view best = {.distance = -1.0f};
     for (int h = 0; h < HEIGHTS && best.distance < 0.0f; h++)
         for (int i = 0; i < GRID * GRID; i++) {
-            const float x = ((float)(i % GRID) + 0.5f) / GRID, z = ((float)(i / GRID) + 0.5f) / GRID;
-            const vec3 position = vec3_make(low.x + x * size.x, low.y + HEIGHT_SHARES[h] * size.y, low.z + z * size.z);
+            const float x = ((float)(i % GRID) + 0.5f) / GRID - 0.5f, z = ((float)(i / GRID) + 0.5f) / GRID - 0.5f;
+            const vec3 upright = vec3_make(x * width, (HEIGHT_SHARES[h] - 0.5f) * height, z * depth);
+            const vec3 position = vec3_add(middle, frame_to_world(f, upright));
             vec3 eye;
             surroundings around = look_around(s, position);
             if (!is_room(&around, has_outer) || !find_height(s, position, EYE_HEIGHT, &eye))
@@ -164,10 +170,10 @@ static view find_view(const scene *s, bool has_outer)
 
 static void set_camera(scene *s, const view *v, log_sink *log)
 {
-    const vec3 up = vec3_make(0.0f, 1.0f, 0.0f), right = vec3_cross(v->heading, up);
-    const double m[4][4] = {{(double)right.x, 0.0, (double)v->heading.x, (double)v->eye.x},
-                            {0.0, 1.0, 0.0, (double)v->eye.y},
-                            {(double)right.z, 0.0, (double)v->heading.z, (double)v->eye.z},
+    const vec3 up = s->world_from_upright.y, right = vec3_cross(v->heading, up);
+    const double m[4][4] = {{(double)right.x, (double)up.x, (double)v->heading.x, (double)v->eye.x},
+                            {(double)right.y, (double)up.y, (double)v->heading.y, (double)v->eye.y},
+                            {(double)right.z, (double)up.z, (double)v->heading.z, (double)v->eye.z},
                             {0.0, 0.0, 0.0, 1.0}};
     if (!transform_from_matrix(m, &s->camera.world_from_camera))
         return;
@@ -175,8 +181,9 @@ static void set_camera(scene *s, const view *v, log_sink *log)
     s->camera.focal_distance = v->distance;
     log_message(
         log, AG_LOG_INFO,
-        "the model is a closed room: the camera stands inside, at (%g, %g, %g), and looks along (%.3g, 0, %.3g)",
-        (double)v->eye.x, (double)v->eye.y, (double)v->eye.z, (double)v->heading.x, (double)v->heading.z);
+        "the model is a closed room: the camera stands inside, at (%g, %g, %g), and looks along (%.3g, %.3g, %.3g)",
+        (double)v->eye.x, (double)v->eye.y, (double)v->eye.z, (double)v->heading.x, (double)v->heading.y,
+        (double)v->heading.z);
 }
 
 /* A point in the middle of what is seen. The sky and the sun that were made up stay where the room has openings. */

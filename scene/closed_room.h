@@ -11,8 +11,8 @@
 
 #include "scene.h"
 
-/* y is up. Does nothing where neither was made up, or where there is no such room. Said at info level. Errors:
- * AG_ERROR_MEMORY. */
+/* scene.world_from_upright says what is up. Does nothing where neither was made up, or where there is no such room.
+ * Said at info level. Errors: AG_ERROR_MEMORY. */
 ag_status closed_room_furnish(scene *s, log_sink *log);
 
 #endif

@@ -60,6 +60,7 @@ typedef struct scene {
     camera camera;
     bool has_camera;
     bool is_camera_made_up, is_light_made_up; /* by import_defaults: see closed_room.h */
+    frame world_from_upright;                 /* then: of a world whose y is up; axes all */
     char *camera_names; /* of the file's cameras, for a message: quoted, with commas; NULL: none has one */
 
     scene_hints hints; /* what its file says of the picture */

@@ -179,6 +179,7 @@ static void add_light(hash128 *h, const light *l)
     ADD(l->direction);
     ADD(l->intensity);
     ADD(l->radiance);
+    ADD(l->disc_one_minus_cos);
     ADD(l->falloff_start);
     ADD(l->falloff_end);
     ADD(l->shape_index);

@@ -16,7 +16,7 @@ typedef enum gltf_light_units {
     GLTF_LIGHTS_RAW           /* points and spots in W over the whole sphere, suns in W/m^2 */
 } gltf_light_units;
 
-/* The axis of the world that points up, for directions of suns and skies. */
+/* The axis of the world that points up, for suns, skies and cameras that the file does not say. */
 typedef enum scene_up {
     UP_BY_FORMAT, /* y; in pbrt's text the one nearest to the camera's up */
     UP_X,
@@ -31,7 +31,8 @@ typedef enum scene_up {
 typedef struct scene_request {
     gltf_light_units gltf_light_units;
     bool has_camera; /* in the place of the file's */
-    vec3 camera_from, camera_to, camera_up;
+    vec3 camera_from, camera_to;
+    vec3 camera_up;                /* zero: the axis that points up */
     float fov_degrees;             /* across the shorter image axis, (0, 180) */
     const char *camera_name;       /* of the file's cameras this one; borrowed; NULL: the first */
     bool drops_lights;             /* all of the file's */
@@ -39,10 +40,11 @@ typedef struct scene_request {
     scene_up up;
     bool has_sun; /* beside the file's lights */
     float sun_azimuth_degrees, sun_elevation_degrees;
-    float sun_irradiance; /* W/m^2, on a surface that faces it */
-    bool has_sky;         /* in the place of the file's infinite lights */
-    rgb sky_radiance;     /* W/m^2/sr, linear Rec. 709; a picture is multiplied by it */
-    const char *sky_file; /* a picture of all directions; borrowed; NULL: none */
+    float sun_irradiance;    /* W/m^2, on a surface that faces it */
+    float sun_angle_degrees; /* across it, [0, 180] */
+    bool has_sky;            /* in the place of the file's infinite lights */
+    rgb sky_radiance;        /* W/m^2/sr, linear Rec. 709; a picture is multiplied by it */
+    const char *sky_file;    /* a picture of all directions; borrowed; NULL: none */
     float sky_rotation_degrees;
 } scene_request;
 

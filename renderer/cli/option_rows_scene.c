@@ -68,8 +68,9 @@ static bool take_camera_to(const char *value, options *o)
 
 static bool take_camera_up(const char *value, options *o)
 {
-    o->has_camera_detail = o->has_camera_up = true;
-    return take_vector(value, o->asked.camera_up);
+    const float *up = o->asked.camera_up;
+    o->has_camera_detail = true;
+    return take_vector(value, o->asked.camera_up) && (up[0] != 0.0f || up[1] != 0.0f || up[2] != 0.0f);
 }
 
 static bool take_fov(const char *value, options *o)
@@ -90,14 +91,16 @@ static bool take_up(const char *value, options *o)
 
 static bool take_sun(const char *value, options *o)
 {
-    float numbers[3] = {0.0f, 0.0f, o->asked.sun_irradiance};
+    float numbers[4] = {0.0f, 0.0f, o->asked.sun_irradiance, o->asked.sun_angle_degrees};
     int count;
-    if (!parse_floats(value, 3, numbers, &count) || count < 2 || fabsf(numbers[1]) > 90.0f || numbers[2] < 0.0f)
+    if (!parse_floats(value, 4, numbers, &count) || count < 2 || fabsf(numbers[1]) > 90.0f || numbers[2] < 0.0f ||
+        numbers[3] < 0.0f || numbers[3] > 180.0f)
         return false;
     o->asked.has_sun = true;
     o->asked.sun_azimuth_degrees = numbers[0];
     o->asked.sun_elevation_degrees = numbers[1];
     o->asked.sun_irradiance = numbers[2];
+    o->asked.sun_angle_degrees = numbers[3];
     return true;
 }
 
@@ -179,8 +182,8 @@ static const option_row ROWS[] = {
     {.text = {.name = "camera-up",
               .argument = "X,Y,Z",
               .section = "Scene",
-              .help = "what is up for it (default: 0,1,0)",
-              .manual = "What is up for the camera of *--camera-from*. Default: 0,1,0."},
+              .help = "what is up for it (default: the axis of --up)",
+              .manual = "What is up for the camera of *--camera-from*. Default: the axis that points up, see *--up*."},
      .take = take_camera_up},
     {.text =
          {.name = "fov",
@@ -193,24 +196,27 @@ static const option_row ROWS[] = {
     {.text = {.name = "up",
               .argument = "AXIS",
               .section = "Scene",
-              .help = "which axis points up, for --sun, --sky and --camera-up: x, y, z, -x, -y or -z (default: y; in "
-                      "pbrt's text the one nearest to the camera's up)",
-              .manual = "Which axis of the world points up for *--sun* and *--sky*, and for *--camera-up* where that "
-                        "is not given: *x*, *y*, *z*, *-x*, *-y* or *-z*. The default for *--sun* and *--sky* is *y* "
-                        "in glTF and models, and in pbrt's text the axis nearest to the camera's up."},
+              .help = "which axis points up, for --sun, --sky and cameras that the file has not: x, y, z, -x, -y or -z "
+                      "(default: y; in pbrt's text the one nearest to its camera's up)",
+              .manual =
+                  "Which axis of the world points up for *--sun*, *--sky*, *--camera-from*, and the camera that is "
+                  "made up for a model without one: *x*, *y*, *z*, *-x*, *-y* or *-z*. The default is *y* in glTF "
+                  "and models, and in pbrt's text the axis nearest to the up of the file's own camera."},
      .take = take_up},
     {.text = {.name = "sun",
-              .argument = "AZ,ELEV[,STRENGTH]",
+              .argument = "AZ,ELEV[,E[,ANGLE]]",
               .section = "Scene",
               .help = "a sun beside the file's lights: degrees from north over east, degrees above the horizon, W/m^2 "
-                      "on what faces it (default 3)",
-              .manual = "Add a sun: an azimuth in degrees from north over east, clockwise for who looks down; degrees "
-                        "above the horizon; and the irradiance in W/m^2 on a surface that faces it, as the strength "
-                        "of Blender's suns is, 3 by default, which makes white a little less than 1. It has no "
-                        "extent: its shadows are sharp. North is _-z_ where _y_ is up, and east is _x_; in pbrt's "
-                        "world, which is left-handed unless its camera mirrors it, north is _+z_ then. Where _z_ is "
-                        "up, north is _+y_. See *--up*. Where there is a sun or a sky, no light is made up for models "
-                        "without any."},
+                      "on what faces it (E, default 3), degrees across it (ANGLE, default 0)",
+              .manual =
+                  "Add a sun: an azimuth in degrees from north over east, clockwise for who looks down; degrees "
+                  "above the horizon; and the irradiance in W/m^2 on a surface that faces it, as the strength "
+                  "of Blender's suns is, 3 by default, which makes white a little less than 1; and the degrees "
+                  "across it, as the angle of Blender's suns is: 0 by default, which makes sharp shadows; ours is "
+                  "0.53 wide. Mirrors do not show it. North is _-z_ where _y_ is up, and east is _x_; in pbrt's "
+                  "world, which is left-handed unless its camera mirrors it, north is _+z_ then. Where _z_ is "
+                  "up, north is _+y_. See *--up*. Where there is a sun or a sky, no light is made up for models "
+                  "without any."},
      .take = take_sun},
     {.text = {.name = "sky",
               .argument = "SKY",

@@ -76,8 +76,6 @@ static bool has_idle_scene_option(const options *o)
     const ag_scene_settings *asked = &o->asked;
     if (o->has_sky_detail && !asked->has_sky)
         fprintf(stderr, "afterglow: --sky-strength and --sky-rotation are for --sky, which is not given\n");
-    else if (o->asked.up != AG_UP_AUTO && !asked->has_sky && !asked->has_sun && !asked->has_camera)
-        fprintf(stderr, "afterglow: --up is for --sun, --sky and --camera-from, and none is given\n");
     else if (asked->camera_name && asked->has_camera)
         fprintf(stderr, "afterglow: --camera and --camera-from are two cameras: give one\n");
     else
@@ -88,12 +86,8 @@ static bool has_idle_scene_option(const options *o)
 /* Settings that follow from several options together. */
 static void settle_scene_options(options *o)
 {
-    const int up = (int)o->asked.up - AG_UP_X;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         o->asked.sky_radiance[i] *= o->sky_strength;
-        if (o->asked.up != AG_UP_AUTO && !o->has_camera_up)
-            o->asked.camera_up[i] = up % 3 != i ? 0.0f : up < 3 ? 1.0f : -1.0f;
-    }
 }
 
 /* What is asked for must be for one of the files, where they are known. */

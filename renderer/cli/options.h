@@ -51,7 +51,7 @@ typedef struct options {
     double time_limit, begun;   /* s, 0: none; from when it counts, see passes_seconds */
     progress_style progress;
     int verbosity; /* -1 quiet, 0, 1 verbose, 2 debug */
-    bool has_camera_from, has_camera_to, has_camera_up;
+    bool has_camera_from, has_camera_to;
     bool has_camera_detail; /* its up or its field of view */
     bool has_sky_detail;    /* its strength or its rotation */
     float sky_strength;

@@ -15,7 +15,9 @@ typedef enum image_sample_type { IMAGE_UINT8, IMAGE_UINT16, IMAGE_HALF, IMAGE_FL
 /* A picture that was read: packed per pixel, top row first, just one of the two arrays. Integers become floats as parts
  * of the largest there is, 0 to 1; no curve is taken out, no alpha multiplied in. */
 typedef struct image {
-    int width, height; /* of the data window */
+    int width, height;           /* of the data window */
+    int x, y;                    /* of its top left corner in the display window, */
+    int full_width, full_height; /* which has this size */
     int channel_count;
     image_sample_type type; /* of the file; what is neither 8-bit, 16-bit nor half counts as float */
     float *pixels;

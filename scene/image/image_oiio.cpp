@@ -7,8 +7,10 @@
 #include <OpenImageIO/Imath.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 
 #include <algorithm>
+#include <climits>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -176,6 +178,8 @@ image_sample_type sample_type_of(OIIO::TypeDesc format)
     switch (format.basetype) {
     case OIIO::TypeDesc::UINT8:
     case OIIO::TypeDesc::INT8: return IMAGE_UINT8;
+    case OIIO::TypeDesc::UINT32:
+    case OIIO::TypeDesc::INT32:
     case OIIO::TypeDesc::UINT16:
     case OIIO::TypeDesc::INT16: return IMAGE_UINT16;
     case OIIO::TypeDesc::HALF: return IMAGE_HALF;
@@ -196,16 +200,54 @@ std::uint64_t count_values(const OIIO::ImageSpec &spec, std::uint64_t file_size)
     return pixels * channels;
 }
 
+/* Whether three channels from here on are red, green and blue of one layer, by their names. */
+bool is_color_triple(const std::vector<std::string> &names, size_t first)
+{
+    static const char *const suffixes[3][2] = {{"R", "RED"}, {"G", "GREEN"}, {"B", "BLUE"}};
+    std::string layer;
+    for (size_t k = 0; k < 3; k++) {
+        const std::string &name = names[first + k];
+        const size_t dot = name.rfind('.');
+        const std::string before = dot == std::string::npos ? std::string() : name.substr(0, dot);
+        const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
+        if (k > 0 && before != layer)
+            return false;
+        layer = before;
+        if (!OIIO::Strutil::iequals(last, suffixes[k][0]) && !OIIO::Strutil::iequals(last, suffixes[k][1]))
+            return false;
+    }
+    return true;
+}
+
+/* The first of the channels that are the picture: of many layers the one that has red, green and blue. 0 where none
+ * has, or the first does. */
+int find_colors(const OIIO::ImageSpec &spec)
+{
+    const std::vector<std::string> &names = spec.channelnames;
+    for (size_t first = 0; first + 3 <= names.size(); first++)
+        if (is_color_triple(names, first))
+            return static_cast<int>(first);
+    return 0;
+}
+
 template <typename Value>
-Value *read_values(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, std::uint64_t count, OIIO::TypeDesc type)
+Value *read_values(OIIO::ImageInput &input, int channel_begin, int channel_end, std::uint64_t count,
+                   OIIO::TypeDesc type)
 {
     std::unique_ptr<Value, decltype(&std::free)> values(static_cast<Value *>(std::malloc(count * sizeof(Value))),
                                                         &std::free);
     if (!values)
         throw std::bad_alloc();
-    if (!input.read_image(0, 0, 0, spec.nchannels, type, values.get()))
+    if (!input.read_image(0, 0, channel_begin, channel_end, type, values.get()))
         fail("OpenImageIO cannot decode it", input.geterror());
     return values.release();
+}
+
+/* Of what a file says; within the range of int. */
+int difference(int a, int b)
+{
+    const long long exact = static_cast<long long>(a) - b;
+    return static_cast<int>(std::min<long long>(std::max<long long>(exact, -INT_MAX), INT_MAX));
 }
 
 /* Without pixels. */
@@ -214,6 +256,10 @@ image describe(const OIIO::ImageSpec &spec)
     image read = image();
     read.width = spec.width;
     read.height = spec.height;
+    read.x = difference(spec.x, spec.full_x);
+    read.y = difference(spec.y, spec.full_y);
+    read.full_width = spec.full_width;
+    read.full_height = spec.full_height;
     read.channel_count = spec.nchannels;
     read.type = sample_type_of(spec.format);
     const OIIO::ParamValue *chromaticities =
@@ -246,11 +292,15 @@ image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::I
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
         throw std::runtime_error("it is not a flat picture");
     image read = describe(spec);
-    const std::uint64_t count = count_values(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path));
+    const int begin = find_colors(spec);
+    const std::uint64_t all = count_values(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path));
+    const std::uint64_t count =
+        all / static_cast<std::uint64_t>(spec.nchannels) * static_cast<std::uint64_t>(spec.nchannels - begin);
+    read.channel_count -= begin;
     if (keep_bytes && read.type == IMAGE_UINT8)
-        read.bytes = read_values<unsigned char>(*input, spec, count, OIIO::TypeUInt8);
+        read.bytes = read_values<unsigned char>(*input, begin, spec.nchannels, count, OIIO::TypeUInt8);
     else
-        read.pixels = read_values<float>(*input, spec, count, OIIO::TypeFloat);
+        read.pixels = read_values<float>(*input, begin, spec.nchannels, count, OIIO::TypeFloat);
     return read;
 }
 
@@ -309,7 +359,7 @@ ag_status open_levels(const char *path, void **out_file, image_levels_header *ou
         std::unique_ptr<OIIO::ImageInput> input = open_input(path, nullptr);
         image_levels_header header = image_levels_header();
         OIIO::ImageSpec spec = input->spec();
-        if (spec.tile_width == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
+        if (spec.tile_width == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || find_colors(spec) != 0)
             return;
         header.picture = describe(spec);
         count_values(spec, OIIO::Filesystem::file_size(path));

@@ -4,13 +4,22 @@
 #include "image/image_reader.h"
 
 #include "image/image_module_loader.h"
+#include "image/jpeg_end.h"
 
 #include <errno.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+static ag_status refuse_cut_jpeg(image *picture, char *message, size_t message_size)
+{
+    image_reset(picture);
+    snprintf(message, message_size, "the JPEG file is cut short");
+    return AG_ERROR_INPUT;
+}
 
 static ag_status read_picture(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size)
 {
@@ -26,7 +35,9 @@ static ag_status read_picture(const char *path, bool keep_bytes, image *out_imag
     if (!module)
         return AG_ERROR_SYSTEM;
     char reason[1024];
-    const ag_status status = module->decode(path, keep_bytes, out_image, reason, sizeof reason);
+    ag_status status = module->decode(path, keep_bytes, out_image, reason, sizeof reason);
+    if (status == AG_OK && jpeg_file_is_cut_short(path))
+        status = refuse_cut_jpeg(out_image, reason, sizeof reason);
     if (status != AG_OK)
         snprintf(message, message_size, "cannot read '%s': %s", path, reason);
     return status;
@@ -64,10 +75,49 @@ ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t
     if (!module)
         return AG_ERROR_SYSTEM;
     char reason[1024];
-    const ag_status status = module->decode_memory(extension, bytes, size, true, out_image, reason, sizeof reason);
+    ag_status status = module->decode_memory(extension, bytes, size, true, out_image, reason, sizeof reason);
+    if (status == AG_OK && jpeg_is_cut_short(bytes, size))
+        status = refuse_cut_jpeg(out_image, reason, sizeof reason);
     if (status != AG_OK)
         snprintf(message, message_size, "cannot read '%s': %s", name, reason);
     return status;
+}
+
+/* A row of the data window into that of the display window. */
+static void copy_row(const image *i, int y, size_t pixel_bytes, const unsigned char *from, unsigned char *out)
+{
+    const int begin = i->x > 0 ? i->x : 0, end = i->x + i->width < i->full_width ? i->x + i->width : i->full_width;
+    memcpy(out + ((size_t)(y + i->y) * (size_t)i->full_width + (size_t)begin) * pixel_bytes,
+           from + ((size_t)y * (size_t)i->width + (size_t)(begin - i->x)) * pixel_bytes,
+           (size_t)(end - begin) * pixel_bytes);
+}
+
+ag_status image_fill_window(image *i)
+{
+    static const int64_t PIXELS_MAX = (int64_t)1 << 28;
+    const bool is_filled = i->x == 0 && i->y == 0 && i->width == i->full_width && i->height == i->full_height;
+    const int64_t right = (int64_t)i->x + i->width, bottom = (int64_t)i->y + i->height;
+    if (is_filled || i->full_width < 1 || i->full_height < 1 || right <= 0 || bottom <= 0 || i->x >= i->full_width ||
+        i->y >= i->full_height || (int64_t)i->full_width * i->full_height > PIXELS_MAX)
+        return AG_OK;
+    const size_t pixel_bytes = (size_t)i->channel_count * (i->bytes ? 1 : sizeof *i->pixels);
+    void *window = calloc((size_t)i->full_width * (size_t)i->full_height, pixel_bytes);
+    if (!window)
+        return AG_ERROR_MEMORY;
+    for (int y = 0; y < i->height; y++)
+        if (y + i->y >= 0 && y + i->y < i->full_height)
+            copy_row(i, y, pixel_bytes, i->bytes ? i->bytes : (const unsigned char *)i->pixels, window);
+    if (i->bytes) {
+        free(i->bytes);
+        i->bytes = window;
+    } else {
+        free(i->pixels);
+        i->pixels = window;
+    }
+    i->width = i->full_width;
+    i->height = i->full_height;
+    i->x = i->y = 0;
+    return AG_OK;
 }
 
 void image_reset(image *picture)

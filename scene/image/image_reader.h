@@ -20,6 +20,10 @@ ag_status image_read_compact(const char *path, image *out_image, char *message, 
 ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t size, image *out_image, char *message,
                             size_t message_size);
 
+/* Brings a picture to its display window: what lies outside is cut off, what is missing is 0. Where the data window is
+ * none of it, or the window is larger than 2^28 pixels, the picture stays. Errors: AG_ERROR_MEMORY. */
+ag_status image_fill_window(image *in_out);
+
 void image_reset(image *picture); /* frees the pixels; leaves it zeroed */
 
 #endif

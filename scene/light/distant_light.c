@@ -1,22 +1,42 @@
-/* distant_light.c: light from infinitely far away in one direction, as the sun's nearly is. Threads: read-only. */
+/* distant_light.c: light from infinitely far away in one direction, or from a small disc around it, as the sun's is.
+ * Threads: read-only. */
 #include "light/light_type.h"
+#include "math/sampling.h"
 #include "scene.h"
+
+void light_set_disc(light *l, double angle)
+{
+    const double quarter = sin(0.25 * angle);
+    l->disc_one_minus_cos = (float)(2.0 * quarter * quarter);
+}
+
+/* On a surface that faces a point of the disc; the mean cosine of the others there is 1 - disc_one_minus_cos / 2. */
+static rgb irradiance(const light *l) { return rgb_scale(l->radiance, 1.0f / (1.0f - 0.5f * l->disc_one_minus_cos)); }
+
+/* The way of the light from a point of the disc. */
+static vec3 direction_from(const light *l, vec2 u)
+{
+    if (!(l->disc_one_minus_cos > 0.0f))
+        return l->direction;
+    const frame f = frame_from_z(l->direction);
+    return vec3_normalize(frame_to_world(&f, sample_uniform_cone(u, l->disc_one_minus_cos)));
+}
 
 static rgb power(const scene *s, const light *l)
 {
     float disc = AG_PI * s->bounding_radius * s->bounding_radius;
-    return rgb_scale(l->radiance, disc);
+    return rgb_scale(irradiance(l), disc);
 }
 
 static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
 {
-    (void)s, (void)u;
+    (void)s;
     out->is_delta = true;
     out->pdf_solid_angle = 1.0f;
-    out->direction = vec3_negate(l->direction);
+    out->direction = vec3_negate(direction_from(l, u));
     out->distance = INFINITY;
     out->shadow_target = point;
-    out->radiance = l->radiance;
+    out->radiance = irradiance(l);
     return true;
 }
 
@@ -24,7 +44,8 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
                  struct rng *random, light_emission *out)
 {
     (void)random;
-    return light_emit_from_afar(s, l, target, numbers, l->direction, l->radiance, 1.0f, out) &&
+    return light_emit_from_afar(s, l, target, numbers, direction_from(l, numbers->direction), irradiance(l), 1.0f,
+                                out) &&
            !rgb_is_black(out->flux);
 }
 

@@ -35,8 +35,9 @@ typedef struct light {
     vec3 position;  /* of all points: world space */
     vec3 direction; /* spot, projection, distant: the way the light goes, unit */
     rgb intensity;  /* point: W/sr; spot: along the axis; goniometric, projection: what the picture is multiplied by */
-    rgb radiance; /* area: W/m^2/sr; distant: irradiance on a surface facing it, W/m^2; infinite: W/m^2/sr, or what its
-                   * picture is multiplied by */
+    rgb radiance;   /* area: W/m^2/sr; distant: irradiance on a surface facing its middle, W/m^2; infinite: W/m^2/sr, or
+                     * what its   picture is multiplied by */
+    float disc_one_minus_cos; /* distant: 1 - cos of half the angle under which it is seen; 0: it has no extent */
     float falloff_start, falloff_end; /* spot: 1 - cos of the angles inside of which it is full and outside of which
                                        * there is nothing; smoothstep in the cosine between */
     uint32_t shape_index;             /* area: the shape that shines */
@@ -59,6 +60,9 @@ typedef struct light {
 light light_make(light_kind kind);
 /* A spot's cone: full inside the first angle from its axis, dark outside the second, radians in [0, pi]. */
 void light_set_cone(light *l, double full_angle, double dark_angle);
+/* A distant light's disc, which shines alike all over: the angle across it, radians in [0, pi]. Shadows alone show it.
+ */
+void light_set_disc(light *l, double angle);
 /* Frees the pictures and tables. */
 void light_reset(light *l);
 

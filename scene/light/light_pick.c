@@ -105,7 +105,9 @@ static bool has_direction(vec3 v) { return v.x != 0.0f || v.y != 0.0f || v.z != 
 static bool reaches(const light *l, vec3 point, vec3 normal)
 {
     if (l->kind == LIGHT_DISTANT)
-        return !has_direction(normal) || vec3_dot(normal, l->direction) < SLACK;
+        return !has_direction(normal) ||
+               vec3_dot(normal, l->direction) <
+                   SLACK + sqrtf(l->disc_one_minus_cos * (2.0f - l->disc_one_minus_cos)); /* sin of half its angle */
     const portal *p = l->portal;
     if (!p)
         return true;

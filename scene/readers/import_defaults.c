@@ -9,7 +9,6 @@ static const float FOV_DEGREES = 45.0f;
 static const double TAN_HALF_FOV = 0.41421356237309505;  /* tan 22.5 degrees = sqrt 2 - 1 */
 static const double MARGIN = 1.05;                       /* around the bounds */
 static const double FROM_CENTER[3] = {0.47, 0.34, 0.81}; /* 30 degrees to the right, 20 above the horizon */
-static const double UP[3] = {0.0, 1.0, 0.0};
 
 static const rgb SKY_RADIANCE = {0.5f, 0.5f, 0.5f};
 static const rgb SUN_IRRADIANCE = {1.5f, 1.5f, 1.5f};
@@ -31,12 +30,17 @@ static void cross(const double a[3], const double b[3], double out[3])
 }
 
 /* The camera's axes in the world: right, up, forward. Right is on the right in a right-handed world. */
-static void default_axes(double axes[3][3])
+static void default_axes(const frame *world_from_upright, double axes[3][3])
 {
-    for (int i = 0; i < 3; i++)
-        axes[2][i] = -FROM_CENTER[i];
+    const vec3 columns[3] = {world_from_upright->x, world_from_upright->y, world_from_upright->z};
+    const double up[3] = {(double)columns[1].x, (double)columns[1].y, (double)columns[1].z};
+    for (int k = 0; k < 3; k++) {
+        const double column[3] = {(double)columns[k].x, (double)columns[k].y, (double)columns[k].z};
+        for (int i = 0; i < 3; i++)
+            axes[2][i] = (k > 0 ? axes[2][i] : 0.0) - FROM_CENTER[k] * column[i];
+    }
     normalize(axes[2]);
-    cross(axes[2], UP, axes[0]);
+    cross(axes[2], up, axes[0]);
     normalize(axes[0]);
     cross(axes[0], axes[2], axes[1]);
 }
@@ -61,7 +65,8 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
     double axes[3][3], center[3] = {0.0, 0.0, 0.0}, half[3] = {1.0, 1.0, 1.0}, m[4][4] = {{0.0}};
     if (s->request && (s->request->has_camera || s->request->camera_name))
         return AG_OK; /* the one that is asked for is set, or missed, by scene_overrides */
-    default_axes(axes);
+    s->world_from_upright = scene_overrides_upright(s);
+    default_axes(&s->world_from_upright, axes);
     AG_TRY(scene_find_bounds(s, NULL, &low, &high));
     if (low.x <= high.x) {
         const double a[3] = {(double)low.x, (double)low.y, (double)low.z};
@@ -94,7 +99,7 @@ ag_status import_add_default_camera(scene *s, log_sink *log)
 static vec3 sun_direction(const scene *s)
 {
     double axes[3][3], way[3] = {0.0, 0.0, 0.0};
-    default_axes(axes);
+    default_axes(&s->world_from_upright, axes);
     if (s->has_camera)
         for (int k = 0; k < 3; k++) {
             for (int i = 0; i < 3; i++)
@@ -114,6 +119,7 @@ ag_status import_add_default_light(scene *s, log_sink *log)
     uint32_t index;
     if (scene_overrides_light(s))
         return AG_OK;
+    s->world_from_upright = scene_overrides_upright(s);
     sky.radiance = SKY_RADIANCE;
     sun.radiance = SUN_IRRADIANCE;
     sun.direction = sun_direction(s);

@@ -58,6 +58,8 @@ ag_status light_picture_read(const scene *s, const char *name, const char *path,
     image_colors colors = {0};
     *out_picture = (light_picture){0};
     ag_status status = image_read(path, &picture, reason, sizeof reason);
+    if (status == AG_OK)
+        status = image_fill_window(&picture);
     if (status == AG_OK && !is_gray)
         status = image_colors_find(s, image_colors_rule(s, path), &picture, &colors, reason, sizeof reason);
     if (status == AG_OK && !colors.space)

@@ -45,19 +45,22 @@ static ag_status check_named_camera(run_context *run, const char *path, bool is_
     return AG_ERROR_ARGUMENT;
 }
 
+static bool has_length(vec3 v) { return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f; }
+
 /* Whether x, y and z of the world, as the camera shows them, are as on the left hand. */
 static bool is_left_handed(const scene *s, bool is_pbrt)
 {
     return is_pbrt && !(s->has_camera && transform_swaps_handedness(&s->camera.world_from_camera));
 }
 
-/* The camera that is asked for in the place of the file's. */
-static ag_status set_camera(run_context *run, bool is_pbrt, scene *s)
+/* The camera that is asked for in the place of the file's. axis: that points up. */
+static ag_status set_camera(run_context *run, bool is_pbrt, vec3 axis, scene *s)
 {
     const scene_request *asked = s->request;
     const bool is_left = is_left_handed(s, is_pbrt);
+    const vec3 up = has_length(asked->camera_up) ? asked->camera_up : axis;
     const vec3 from = asked->camera_from, way = vec3_sub(asked->camera_to, from);
-    const vec3 across = is_left ? vec3_cross(asked->camera_up, way) : vec3_cross(way, asked->camera_up);
+    const vec3 across = is_left ? vec3_cross(up, way) : vec3_cross(way, up);
     const float distance = vec3_length(way), width = vec3_length(across);
     camera c = {.shutter_close = 1.0f};
     if (s->has_camera)
@@ -110,13 +113,30 @@ static vec3 find_up(const scene *s, bool is_pbrt, int *out_axis)
         *out_axis = ((int)asked - (int)UP_X) % 3;
         return axis_of(*out_axis, asked >= UP_MINUS_X);
     }
-    if (!is_pbrt || !s->has_camera)
+    if (!is_pbrt)
         return axis_of(1, false);
     const double(*m)[4] = s->camera.world_from_camera.m;
+    const vec3 own = s->request->camera_up; /* where the file has no camera */
+    double up[3] = {(double)own.x, (double)own.y, (double)own.z};
+    for (int i = 0; i < 3 && s->has_camera; i++)
+        up[i] = m[i][1];
     for (int i = 0; i < 3; i++)
-        if (fabs(m[i][1]) > fabs(m[*out_axis][1]) * 1.0001) /* a tie stays with y */
+        if (fabs(up[i]) > fabs(up[*out_axis]) * 1.0001) /* a tie stays with y */
             *out_axis = i;
-    return axis_of(*out_axis, m[*out_axis][1] < 0.0);
+    return axis_of(*out_axis, up[*out_axis] < 0.0);
+}
+
+frame scene_overrides_upright(const scene *s)
+{
+    const vec3 x = axis_of(0, false), y = axis_of(1, false), z = axis_of(2, false);
+    switch (s->request ? s->request->up : UP_BY_FORMAT) {
+    case UP_X: return (frame){vec3_negate(y), x, z};
+    case UP_Z: return (frame){x, z, vec3_negate(y)};
+    case UP_MINUS_X: return (frame){y, vec3_negate(x), z};
+    case UP_MINUS_Y: return (frame){vec3_negate(x), vec3_negate(y), z};
+    case UP_MINUS_Z: return (frame){x, vec3_negate(z), y};
+    default: return (frame){x, y, z};
+    }
 }
 
 /* North, east and up. */
@@ -156,6 +176,7 @@ static ag_status add_sun(run_context *run, const compass *c, scene *s)
     const vec3 across = heading(c, (double)asked->sun_azimuth_degrees);
     const vec3 to_sun = vec3_add(vec3_scale(across, (float)cos(elevation)), vec3_scale(c->up, (float)sin(elevation)));
     light sun = light_make(LIGHT_DISTANT);
+    light_set_disc(&sun, (double)asked->sun_angle_degrees * DEGREE);
     uint32_t index;
     sun.radiance = rgb_gray(asked->sun_irradiance);
     sun.direction = vec3_negate(vec3_normalize(to_sun));
@@ -207,9 +228,12 @@ ag_status scene_overrides_apply(run_context *run, const char *path, bool is_pbrt
 {
     const scene_request *asked = s->request;
     AG_TRY(check_named_camera(run, path, is_pbrt, s));
+    const compass c = compass_of(s, is_pbrt); /* by the file's own camera */
     if (asked->has_camera)
-        AG_TRY(set_camera(run, is_pbrt, s));
-    const compass c = compass_of(s, is_pbrt);
+        AG_TRY(set_camera(run, is_pbrt, c.up, s));
+    else if (asked->up != UP_BY_FORMAT && !asked->has_sun && !asked->has_sky && !s->is_camera_made_up)
+        log_message(run->log, AG_LOG_WARNING,
+                    "which axis points up is asked for, but no sun or sky is, and the file has its own camera");
     if (asked->drops_lights)
         scene_drop_all_lights(s);
     if (asked->has_sky)

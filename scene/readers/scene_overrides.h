@@ -1,11 +1,11 @@
 /* scene_overrides.h: what scene_request puts in the place of what a file says, or beside it: camera, sun, sky.
  *
  * Suns and skies have compass directions. Up is y in models and glTF; in pbrt's text it is the axis nearest to the
- * camera's up; scene_request.up says otherwise. North is, of the axes across up: where y is up, -z (in a left-handed
- * world, as pbrt's are, +z), so that east is +x; where z is up, +y; where x is up, +y. Azimuths go from north over
- * east, clockwise for who looks down from above: Blender's Sun Position has them so, and a Blender world whose z was up
- * and whose exporter has turned it keeps its north. A pbrt world is left-handed but for cameras that mirror it. Flow:
- * readers -> scene_file -> [here] -> scene. Threads: one per scene. */
+ * up of the file's own camera; scene_request.up says otherwise. North is, of the axes across up: where y is up, -z (in
+ * a left-handed world, as pbrt's are, +z), so that east is +x; where z is up, +y; where x is up, +y. Azimuths go from
+ * north over east, clockwise for who looks down from above: Blender's Sun Position has them so, and a Blender world
+ * whose z was up and whose exporter has turned it keeps its north. A pbrt world is left-handed but for cameras that
+ * mirror it. Flow: readers -> scene_file -> [here] -> scene. Threads: one per scene. */
 #ifndef AFTERGLOW_SCENE_OVERRIDES_H
 #define AFTERGLOW_SCENE_OVERRIDES_H
 
@@ -14,6 +14,9 @@
 /* For a reader that meets a camera: notes its names, the second NULL or "" where there is but one, and tells whether it
  * is the one to be used: the first, or the first of the name that is asked for. Errors: AG_ERROR_MEMORY. */
 ag_status scene_overrides_meet_camera(scene *s, const char *name, const char *second_name, bool *out_is_wanted);
+
+/* World from one whose y is up, for what is made up: axes all, by what is asked for. */
+frame scene_overrides_upright(const scene *s);
 
 /* Whether light is asked for, or that there be none of the file's: then none is made up. */
 bool scene_overrides_light(const scene *s);

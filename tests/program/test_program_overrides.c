@@ -187,6 +187,95 @@ static void a_sun_stands_where_it_should(void **state)
         }
 }
 
+/* Under the edge of a roof half of a sun at the zenith is seen; farther out all of it, farther in nothing. */
+static void a_sun_of_an_extent_has_penumbras(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *to;
+        double share;
+    } PLACES[] = {{"--camera-to=0.5,0,0", 1.0}, {"--camera-to=0,0,0", 0.5}, {"--camera-to=-0.5,0,0", 0.0}};
+    write_text("roof.pbrt", "LookAt 0 5 0 0 0 0 0 0 1 Camera \"perspective\" WorldBegin\n" FLOOR_PBRT
+                            "Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"bilinearmesh\" \"point3 P\" "
+                            "[-9 1 -9 0 1 -9 -9 1 9 0 1 9]\n");
+    for (size_t k = 0; k < 3; k++)
+        for (int maps = 0; maps < 2; maps++) { /* the standard error is 0.6 % */
+            picture p = RENDER("roof.pbrt", maps ? "--photons=1000" : "--integrator=path", "--size=8x8", "--spp=128",
+                               "--noise=0", "--sun=0,90,3,40", "--up=y", "--camera-from=5,5,0", PLACES[k].to,
+                               "--camera-up=0,0,1", "--fov=1");
+            expect_near(PLACES[k].to, picture_mean(&p, 1) + 0.1, 0.1 + PLACES[k].share * 0.5 * 3.0 / PI_D, 0.03);
+            picture_reset(&p);
+        }
+}
+
+static void expect_same(const char *scene, const char *const *some, const char *const *others)
+{
+    picture p = render(scene, some), q = render(scene, others);
+    assert_int_equal(p.width, q.width);
+    assert_memory_equal(p.pixels, q.pixels, 3 * (size_t)p.width * (size_t)p.height * sizeof *p.pixels);
+    assert_true(picture_mean(&p, 1) > 0.0);
+    picture_reset(&p);
+    picture_reset(&q);
+}
+
+/* What is up in a pbrt file is what its own camera has so, whatever camera takes its place. */
+static void up_is_that_of_the_file(void **state)
+{
+    (void)state;
+    write_floors();
+    write_sky();
+    expect_same(
+        "floor.pbrt", ARGUMENTS(PATH, "--sky=sky.exr", "--camera-from=3,5,1", "--camera-to=0,0,0"),
+        ARGUMENTS(PATH, "--sky=sky.exr", "--camera-from=3,5,1", "--camera-to=0,0,0", "--up=z", "--camera-up=0,0,1"));
+    expect_same(
+        "floor.pbrt", ARGUMENTS(PATH, "--sun=30,40", "--camera-from=3,5,1", "--camera-to=0,0,0", "--camera-up=0,1,1"),
+        ARGUMENTS(PATH, "--sun=30,40", "--camera-from=3,5,1", "--camera-to=0,0,0", "--up=z", "--camera-up=0,1,1"));
+    program_run run = RUN(PATH, "--up=y", "-ox.exr", "floor.pbrt");
+    expect_said(&run, "which axis points up is asked for, but no sun or sky is, and the file has its own camera");
+    program_run_reset(&run);
+}
+
+/* A closed room with a red floor and a blue ceiling; z_up: z is y, and y is -z. */
+static void write_room(const char *name, bool z_up)
+{
+    static const int CORNERS[6][4] = {{1, 5, 6, 2}, {3, 4, 8, 7}, {1, 2, 4, 3},
+                                      {5, 7, 8, 6}, {1, 3, 7, 5}, {2, 6, 8, 4}};
+    FILE *file = fopen(in_folder(name), "w");
+    assert_non_null(file);
+    fprintf(file, "mtllib room.mtl\n");
+    for (int k = 0; k < 8; k++) {
+        const int x = k & 1 ? 6 : 0, y = k & 2 ? 3 : 0, z = k & 4 ? 4 : 0;
+        fprintf(file, "v %d %d %d\n", x, z_up ? -z : y, z_up ? y : z);
+    }
+    for (int k = 0; k < 6; k++) /* faces look inwards */
+        fprintf(file, "usemtl %s\nf %d %d %d %d\n",
+                k == 0   ? "red"
+                : k == 1 ? "blue"
+                         : "grey",
+                CORNERS[k][0], CORNERS[k][1], CORNERS[k][2], CORNERS[k][3]);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* The camera that is made up in a closed room stands upright by --up: both rooms look alike. */
+static void a_camera_in_a_room_stands_upright(void **state)
+{
+    (void)state;
+    write_text("room.mtl", "newmtl red\nKd .8 .1 .1\nnewmtl blue\nKd .1 .1 .8\nnewmtl grey\nKd .5 .5 .5\n");
+    write_room("y.obj", false);
+    write_room("z.obj", true);
+    picture y = RENDER("y.obj", "--integrator=path", "--max-depth=1", "--size=32x18", "--spp=16"),
+            z = RENDER("z.obj", "--integrator=path", "--max-depth=1", "--size=32x18", "--spp=16", "--up=z");
+    double off = 0.0, below = 0.0;
+    for (int k = 0; k < 3 * 32 * 18; k++)
+        off += fabs((double)y.pixels[k] - (double)z.pixels[k]) / (3 * 32 * 18);
+    for (int x = 0; x < 32; x++)
+        below += (double)z.pixels[3 * (32 * 17 + x)] - (double)z.pixels[3 * (32 * 17 + x) + 2];
+    expect_near("both rooms", 1.0 + off, 1.0, 0.01 * picture_mean(&y, 1));
+    assert_true(below > 0.0); /* the floor is red */
+    picture_reset(&y);
+    picture_reset(&z);
+}
+
 /* Two cameras: one sees a wall of 1, the other one of 2. */
 static void a_camera_is_picked_by_its_name(void **state)
 {
@@ -245,7 +334,10 @@ static void mistakes_are_told(void **state)
         {{"--sun=1"}, "--sun: '1' is not valid", 2},
         {{"--sun=1,91"}, "--sun: '1,91' is not valid", 2},
         {{"--sun=1,2,-3"}, "--sun: '1,2,-3' is not valid", 2},
-        {{"--sun=1,2,3,4"}, "is not valid", 2},
+        {{"--sun=1,2,3,181"}, "--sun: '1,2,3,181' is not valid", 2},
+        {{"--sun=1,2,3,4,5"}, "is not valid", 2},
+        {{"--sky=2e38"}, "the sky that is asked for: the light is too bright for a float", 2},
+        {{"--camera-up=0,0,0", "--camera-from=1,2,3", "--camera-to=0,0,0"}, "is not valid", 2},
         {{"--sun=1,nan"}, "is not valid", 2},
         {{"--sky=1,2"}, "--sky: '1,2' is not valid", 2},
         {{"--sky=-1"}, "is not valid", 2},
@@ -253,7 +345,6 @@ static void mistakes_are_told(void **state)
         {{"--sky=none.exr"}, "the sky that is asked for: No such file", 1},
         {{"--sky=odd.exr"}, "\"odd.exr\" is 2 x 3: the picture of such a light is square", 1},
         {{"--sky-strength=2"}, "are for --sky, which is not given", 2},
-        {{"--up=z"}, "--up is for --sun, --sky and --camera-from", 2},
         {{"--up=w", "--sky=1"}, "--up: 'w' is not valid", 2},
         {{"--camera=a", "--camera-from=1,2,3", "--camera-to=0,0,0"}, "are two cameras: give one", 2},
         {{"--sky=o.exr", "-oo.exr"}, "cannot be written as well", 2},
@@ -297,6 +388,9 @@ int main(void)
         TEST_IN_FOLDER(what_the_file_has_is_dropped),
         TEST_IN_FOLDER(a_sky_stands_where_it_should),
         TEST_IN_FOLDER(a_sun_stands_where_it_should),
+        TEST_IN_FOLDER(a_sun_of_an_extent_has_penumbras),
+        TEST_IN_FOLDER(up_is_that_of_the_file),
+        TEST_IN_FOLDER(a_camera_in_a_room_stands_upright),
         TEST_IN_FOLDER(a_camera_is_picked_by_its_name),
         TEST_IN_FOLDER(mistakes_are_told),
         TEST_IN_FOLDER(a_sky_is_read_where_the_user_says),

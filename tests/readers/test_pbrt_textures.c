@@ -93,6 +93,113 @@ static void bad_values_are_told(void **state)
     reading_destroy(&r);
 }
 
+static void write_parts(const char *name, const image_description *description, const float *pixels)
+{
+    if (image_file_write(in_folder(name), description, pixels, message, sizeof message) != AG_OK)
+        fail_msg("%s", message);
+}
+
+/* A data window lies where it is in the display window, which a texture covers: outside is black, what is beyond the
+ * display window is not seen. */
+static void windows_of_pictures_are_heeded(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"R", "G", "B"};
+    float pixels[3 * 16];
+    for (int i = 0; i < 48; i++)
+        pixels[i] = (float)(i / 3 + 1);
+    image_description d = {.width = 2,
+                           .height = 2,
+                           .x = 1,
+                           .y = 2,
+                           .full_width = 4,
+                           .full_height = 4,
+                           .channel_count = 3,
+                           .channel_names = NAMES,
+                           .type = IMAGE_FLOAT};
+    write_parts("part.exr", &d, pixels);
+    d = (image_description){.width = 4,
+                            .height = 4,
+                            .x = -1,
+                            .y = -1,
+                            .full_width = 2,
+                            .full_height = 2,
+                            .channel_count = 3,
+                            .channel_names = NAMES,
+                            .type = IMAGE_FLOAT};
+    write_parts("more.exr", &d, pixels);
+#define PICTURE(name)                                                                                                  \
+    "Texture \"a\" \"spectrum\" \"imagemap\" \"string filter\" \"point\" \"string filename\" \"" name "\""
+    for (int y = 0; y < 4; y++)
+        for (int x = 0; x < 4; x++) {
+            const surface_hit at = hit_at(((float)x + 0.5f) / 4.0f, 1.0f - ((float)y + 0.5f) / 4.0f, 0, 0, 0);
+            const bool is_inside = x >= 1 && x < 3 && y >= 2;
+            assert_near(rgb_of(PICTURE("part.exr"), at).g, is_inside ? (y - 2) * 2 + x - 1 + 1 : 0, 0.0);
+        }
+    for (int y = 0; y < 2; y++)
+        for (int x = 0; x < 2; x++)
+            assert_near(
+                rgb_of(PICTURE("more.exr"), hit_at(((float)x + 0.5f) / 2.0f, 1.0f - ((float)y + 0.5f) / 2.0f, 0, 0, 0))
+                    .g,
+                (y + 1) * 4 + x + 1 + 1, 0.0);
+}
+
+/* Of a picture with layers the one that has red, green and blue, wherever it stands among the others. */
+static void colors_are_found_by_their_names(void **state)
+{
+    (void)state;
+    static const char *const NAMES[][6] = {{"N.X", "N.Y", "N.Z", "beauty.R", "beauty.G", "beauty.B"},
+                                           {"A.X", "B.X", "C.X", "R", "G", "B"},
+                                           {"Depth.Z", "N.X", "N.Y", "x.red", "x.green", "x.blue"}};
+    static const float PIXEL[6] = {7, 8, 9, 0.25f, 0.5f, 0.75f};
+    for (int k = 0; k < 3; k++) {
+        const image_description d = {.width = 1,
+                                     .height = 1,
+                                     .full_width = 1,
+                                     .full_height = 1,
+                                     .channel_count = 6,
+                                     .channel_names = NAMES[k],
+                                     .type = IMAGE_FLOAT};
+        write_parts("layers.exr", &d, PIXEL);
+        const rgb c = rgb_of(PICTURE("layers.exr"), hit_at(0.5f, 0.5f, 0, 0, 0));
+        if (c.r != 0.25f || c.g != 0.5f || c.b != 0.75f)
+            fail_msg("layers %d: %g %g %g", k, (double)c.r, (double)c.g, (double)c.b);
+    }
+}
+
+/* A JPEG file that is cut short is an error, wherever it is cut behind its header; one with something behind it is
+ * none.
+ */
+static void cut_jpeg_files_are_told(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"R", "G", "B"};
+    static float pixels[3 * 64 * 64];
+    for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++)
+        pixels[i] = 0.5f + 0.5f * texture_noise(vec3_make((float)i * 0.37f, 0.2f, 0.1f));
+    const image_description d = {.width = 64,
+                                 .height = 64,
+                                 .full_width = 64,
+                                 .full_height = 64,
+                                 .channel_count = 3,
+                                 .channel_names = NAMES,
+                                 .type = IMAGE_UINT8};
+    write_parts("cut.jpg", &d, pixels);
+    FILE *file = fopen(in_folder("cut.jpg"), "ab");
+    assert_non_null(file);
+    fputs("more", file);
+    const long size = ftell(file) - 4;
+    assert_int_equal(fclose(file), 0);
+    rgb_of(PICTURE("cut.jpg"), hit_at(0.5f, 0.5f, 0, 0, 0));
+    for (int k = 0; k < 3; k++) {
+        assert_int_equal(truncate(in_folder("cut.jpg"), k == 0 ? size - 1 : size * (4 - k) / 4), 0);
+        reading r = read_world(PICTURE("cut.jpg"));
+        assert_int_equal(r.status, AG_ERROR_INPUT);
+        assert_non_null(strstr(r.said[AG_LOG_ERROR], "cut.jpg': the JPEG file is cut short"));
+        reading_destroy(&r);
+    }
+}
+
 /* What can be read all the same is told of. */
 static void doubtful_textures_are_warned_of(void **state)
 {
@@ -144,9 +251,9 @@ static void exploding_graphs_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(wrong_textures_say_why),
-        TEST_IN_FOLDER(bad_values_are_told),
-        TEST_IN_FOLDER(doubtful_textures_are_warned_of),
+        TEST_IN_FOLDER(wrong_textures_say_why),         TEST_IN_FOLDER(bad_values_are_told),
+        TEST_IN_FOLDER(windows_of_pictures_are_heeded), TEST_IN_FOLDER(colors_are_found_by_their_names),
+        TEST_IN_FOLDER(cut_jpeg_files_are_told),        TEST_IN_FOLDER(doubtful_textures_are_warned_of),
         TEST_IN_FOLDER(exploding_graphs_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

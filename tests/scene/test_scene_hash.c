@@ -164,7 +164,9 @@ static void test_no_word_is_forgotten(void **state)
     WORDS_COUNT(scene_instance, &s->instances[0], {0, 0});
     for (uint32_t i = 0; i < s->light_count; i++)
         WORDS_COUNT(light, &s->lights[i], FIELD(light, environment), FIELD(light, projection), FIELD(light, portal),
-                    FIELD(light, radiance_map), FROM(light, power));
+                    FIELD(light, radiance_map), FROM(light, power),
+                    {offsetof(light, world_from_light) + sizeof(frame),
+                     offsetof(light, environment) - offsetof(light, world_from_light) - sizeof(frame)});
     WORDS_COUNT(shape, find_shape(s, SHAPE_MESH), {as + offsetof(mesh, positions), sizeof(shape)});
     WORDS_COUNT(shape, find_shape(s, SHAPE_DISK), {as + offsetof(quadric, center), sizeof(shape)});
     WORDS_COUNT(shape, find_shape(s, SHAPE_CURVES), {as + offsetof(curves, capacity), sizeof(shape)});

@@ -96,11 +96,13 @@ typedef enum ag_gltf_light_units {
     AG_GLTF_LIGHT_UNITS_RAW       /* points and spots in W over the whole sphere: divided by 4 pi; suns in W/m^2 */
 } ag_gltf_light_units;
 
-/* Which axis of the world points up, for the compass that suns and skies have. North, where azimuths begin, is -z where
+/* Which axis of the world points up, for cameras that are asked for or made up, and for the compass that suns and skies
+ * have. North, where azimuths begin, is -z where
  * y is up (+z in pbrt's left-handed world), so that east is +x; where z or x is up, it is +y. Azimuths go clockwise for
  * who looks down from above. */
 typedef enum ag_up_axis {
-    AG_UP_AUTO, /* y; of pbrt's text the axis nearest to the camera's up */
+    AG_UP_AUTO, /* y; of pbrt's text the axis nearest to the up of its camera, or where it has none of the one asked for
+                 */
     AG_UP_X,
     AG_UP_Y,
     AG_UP_Z,
@@ -121,7 +123,7 @@ typedef struct ag_scene_settings {
      * handed as pbrt is, or as models are. Directions from and to each other, and up, must not be parallel. */
     bool has_camera; /* default false */
     float camera_from[3], camera_to[3];
-    float camera_up[3];       /* default 0 1 0 */
+    float camera_up[3];       /* default 0 0 0: the axis that points up, see up */
     float camera_fov_degrees; /* across the shorter image axis, (0, 180); default 45 */
     /* Of the file's cameras the one of this name (glTF: its node's or its own); another one is an error that says which
      * there are. Not with has_camera. NULL, the default: the first. */
@@ -132,12 +134,13 @@ typedef struct ag_scene_settings {
                                       default AG_DEFAULT_TEXTURE_MEMORY_BYTES */
     bool drops_lights; /* no light of the file's shines, nor any surface; nor is light made up. Default false */
     ag_up_axis up;     /* default AG_UP_AUTO */
-    /* A sun beside the file's lights, infinitely far and without extent: its shadows are sharp. Where there is one, or
-     * a sky of the following, no light is made up. */
+    /* A sun beside the file's lights, infinitely far. Where there is one, or a sky of the following, no light is made
+     * up. */
     bool has_sun;                /* default false */
     float sun_azimuth_degrees;   /* from north over east; default 0 */
     float sun_elevation_degrees; /* above the horizon, [-90, 90]; default 45 */
     float sun_irradiance;        /* W/m^2 on a surface that faces it, >= 0; default 3 */
+    float sun_angle_degrees;     /* across it, [0, 180]: shadows have penumbras, mirrors do not show it; default 0 */
     /* A sky in the place of the file's infinite lights. */
     bool has_sky;          /* default false */
     float sky_radiance[3]; /* W/m^2/sr, linear Rec. 709, >= 0; a picture is multiplied by it; default 1 1 1 */
