@@ -18,7 +18,7 @@ typedef struct photon_collection {
     float other; /* squared distance of the nearest photon with another normal, but none about the opposite */
 } photon_collection;
 
-/* What the photons of a disc add up to, in whole numbers, so that their order does not matter. */
+/* The sums over a disc's photons, in whole numbers, so that their order does not matter. */
 typedef struct photon_disc_sums {
     int64_t flux[3];   /* in units of 2^(flux_exponent_max - 32); red, green, blue */
     int32_t offset[3]; /* from the point, in units of the radius over 2^12: 2^19 photons and no fewer fit */
@@ -82,7 +82,7 @@ static inline void photon_disc_add(const photon_disc *disc, photon_neighbor n, p
     sums->offset[2] += (int32_t)(offset.z * scale);
 }
 
-/* The same for one that is on the level; false for another. */
+/* Adds a photon to the sums if it lies on the point's level; false: it does not. */
 static inline bool photon_disc_keep(const photon_disc *disc, photon_neighbor n, photon_disc_sums *sums)
 {
     uint32_t index = photon_neighbor_index(n);

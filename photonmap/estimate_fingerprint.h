@@ -8,7 +8,7 @@
 #include "irradiance_estimate.h"
 #include "math/hash128.h"
 
-/* As irradiance_estimate_find. */
+/* A function like irradiance_estimate_find. */
 typedef irradiance_extent irradiance_estimate_fn(const photon_map *map, vec3 position, vec3 normal,
                                                  photon_neighbor *scratch, uint64_t *in_out_rays, rgb *out_irradiance);
 

@@ -31,13 +31,13 @@ typedef struct incident_light {
     uint32_t histogram_count;
 } incident_light;
 
-/* Of the map's photons, which must not move before it is reset. share, [0, 1]: how much photons decide where they are
- * many; 0 makes none. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+/* Makes the guides of a map's photons, which must not move before it is reset. share, [0, 1]: how much photons decide
+ * where they are many; 0 makes none. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status incident_light_create(run_context *run, const photon_map *map, float share, incident_light *out_light);
 void incident_light_reset(incident_light *l);
 uint64_t incident_light_bytes(const incident_light *l);
 
-/* What guides rays from a point. */
+/* The histogram that guides rays from a point, and its frame. */
 typedef struct incident_guide {
     frame around; /* z: the normal */
     const incident_histogram *histogram;
@@ -54,7 +54,7 @@ enum { INCIDENT_WARPS_MAX = 64 };
 void incident_guide_warp(const incident_guide *guide, uint32_t count, float in_out_u[2][INCIDENT_WARPS_MAX],
                          float out_weights[INCIDENT_WARPS_MAX]);
 
-/* The same for any processor, one by one: to the bit what incident_guide_warp does. */
+/* incident_guide_warp of a single pair of numbers, in plain C, with the same bits. */
 float incident_guide_warp_one(const incident_guide *guide, vec2 *in_out_u);
 
 #endif

@@ -200,7 +200,8 @@ void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words)
     cache->ready_before += irradiance_cache_distinct(cache) - distinct;
 }
 
-/* The answer where photon_map_nearest gave PHOTON_NONE or PHOTON_HIDDEN: an estimate at the point, or none. */
+/* The answer where no photon stands for the point (PHOTON_NONE), or one that is out of sight (PHOTON_HIDDEN): an
+ * estimate at the point, or none. */
 static bool answer_without_photon(irradiance_cache *cache, const irradiance_query *query, uint32_t nearest,
                                   unsigned worker_index, rgb *out_irradiance)
 {
@@ -219,10 +220,13 @@ static bool answer_by_word(irradiance_cache *cache, const irradiance_query *quer
     const photon_map *map = cache->map;
     uint32_t value = word & IRRADIANCE_VALUE_MASK;
     bool holds = value != PHOTON_NO_IRRADIANCE;
+    rgb irradiance = holds ? photon_map_decode_irradiance(map, value) : rgb_gray(0.0f);
+    if (holds && !photon_map_reaches(map, irradiance_photon, query->position, irradiance))
+        return answer_without_photon(cache, query, PHOTON_NONE, worker_index, out_irradiance);
     if (irradiance_word_state(word) == IRRADIANCE_READY_IN_SIGHT && map->surfaces)
         holds = !photon_map_is_behind_wall(map, map->irradiance_photons.blocks, query->position, query->normal,
                                            irradiance_photon, &cache->counters[worker_index].rays);
-    *out_irradiance = holds ? photon_map_decode_irradiance(cache->map, value) : rgb_gray(0.0f);
+    *out_irradiance = holds ? irradiance : rgb_gray(0.0f);
     cache->counters[worker_index].refused += !holds;
     return holds;
 }

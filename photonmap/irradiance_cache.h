@@ -63,8 +63,8 @@ void irradiance_cache_reset(irradiance_cache *cache);
 /* Computes what is not ready yet, at every irradiance photon. Errors: AG_CANCELLED. */
 ag_status irradiance_cache_precompute(irradiance_cache *cache, run_context *run);
 
-/* What is there already, a word for each irradiance photon, 0 where nothing is; and back into a cache over the same
- * map, where it counts as ready before. Not while anybody asks. */
+/* Saves the slots that are ready, a word for each irradiance photon, 0 where nothing is; and puts them back into a
+ * cache over the same map, where they count as ready before. Not while anybody asks. */
 void irradiance_cache_save(const irradiance_cache *cache, uint32_t *out_words);
 void irradiance_cache_restore(irradiance_cache *cache, const uint32_t *words);
 

@@ -54,6 +54,47 @@ static uint32_t sum_in_region(const photon_disc *disc, const surface_region *reg
     return inside;
 }
 
+/* Photons of one irradiance lie evenly, a quarter of them in each ring of a quarter of the disc's area. Where inner
+ * rings hold fewer than chance explains, by so many standard deviations, the disc has reached a place that is brighter.
+ */
+static const float RIM_SIGMAS = 3.25f;
+enum { RINGS = 4 };
+
+/* How many rings, from the innermost, have no more light than the point itself; RINGS where all are so. */
+static uint32_t rings_of_one_light(const photon_neighbor *n, uint32_t count, float radius_squared)
+{
+    uint32_t in_ring[RINGS] = {0}, inside = count;
+    float ring_of = (float)RINGS / radius_squared;
+    for (uint32_t i = 0; i < count; i++) {
+        float ring = photon_neighbor_distance_squared(n[i]) * ring_of;
+        in_ring[ring < (float)(RINGS - 1) ? (uint32_t)ring : RINGS - 1]++;
+    }
+    for (uint32_t rings = RINGS - 1; rings > 0; rings--) {
+        float share = (float)rings / (float)RINGS, expected = share * (float)count;
+        inside -= in_ring[rings];
+        float missing = expected - (float)inside;
+        if (missing > 0.0f && missing * missing > RIM_SIGMAS * RIM_SIGMAS * expected * (1.0f - share))
+            return rings;
+    }
+    return RINGS;
+}
+
+/* Makes the disc smaller until its rim is as bright as its middle, or has no photons. By their number, not by their
+ * flux: one bright photon, which is a matter of chance, would take itself out of the disc where it lies far from the
+ * point. Returns how many photons are left, first in n. */
+static uint32_t leave_brighter_rim(photon_neighbor *n, uint32_t count, float *in_out_radius_squared)
+{
+    for (uint32_t rings; (rings = rings_of_one_light(n, count, *in_out_radius_squared)) < RINGS;) {
+        uint32_t left = 0;
+        *in_out_radius_squared *= (float)rings / (float)RINGS;
+        for (uint32_t i = 0; i < count; i++)
+            if (photon_neighbor_distance_squared(n[i]) < *in_out_radius_squared)
+                n[left++] = n[i];
+        count = left;
+    }
+    return count;
+}
+
 /* A region holds an estimate when it is this share of the disc, and when photons as dense as they are in that disc, or
  * in the mean of the scene where they are denser there, would leave so many in it. Three walls meet in a quarter disc.
  */
@@ -84,6 +125,8 @@ irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position,
         count = map->nearest; /* the farthest is the last */
         radius_squared = photon_neighbor_distance_squared(scratch[count]);
     }
+    radius_squared = fmaxf(radius_squared, map->min_radius_squared);
+    count = leave_brighter_rim(scratch, count, &radius_squared);
     radius_squared = fmaxf(radius_squared, map->min_radius_squared);
     float radius = sqrtf(radius_squared);
     double area = (double)AG_PI * (double)radius_squared;

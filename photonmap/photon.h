@@ -96,7 +96,7 @@ static inline vec2 octahedral_encode(vec3 d)
     return (vec2){x, y};
 }
 
-/* Of any length from 0.57 to 1. */
+/* The vector of an octahedral code, of any length from 0.57 to 1. */
 static inline vec3 octahedral_decode(float x, float y)
 {
     float z = 1.0f - fabsf(x) - fabsf(y), fold = z < 0.0f ? -z : 0.0f;
@@ -113,7 +113,7 @@ static inline uint16_t direction_encode(vec3 d)
     return (uint16_t)(i << 8 | j);
 }
 
-/* Of any length from 0.57 to 1: enough to compare angles with. */
+/* The direction, of any length from 0.57 to 1, which is enough to compare angles with. */
 static inline vec3 direction_decode_unnormalized(uint16_t code)
 {
     return octahedral_decode(((float)(code >> 8) - 127.0f) * (1.0f / 127.0f),

@@ -140,7 +140,7 @@ static inline void photon_block_prefetch(const photon_block *b)
     __builtin_prefetch(b->normal);
 }
 
-/* As bits, which lanes have just that normal. */
+/* The lanes that have exactly that normal, as bits. */
 static inline uint32_t photon_block_with_normal(const photon_block *b, uint16_t normal)
 {
 #if defined(__SSE2__)

@@ -24,8 +24,8 @@
 
 enum { PHOTON_FILE_SETTINGS_MAX = 1024 };
 
-/* What photons and irradiances depend on: a file holds for one such key alone. Without gaps, and zeroed before it is
- * filled. */
+/* Everything that photons and irradiances depend on: a file holds for one key alone. It has no gaps, and is zeroed
+ * before it is filled. */
 typedef struct photon_file_key {
     hash128 scene;                           /* scene_hash_of_light */
     hash128 aim_view;                        /* what the photons are aimed at; zeros: at everything alike */

@@ -15,7 +15,7 @@ typedef struct photon_reach {
 
 enum { PHOTON_REACH_SQUARED = 3 };
 
-/* Which points are at which nodes, or leaves. */
+/* Pairs of a lookup and a node, or a leaf, that it has to visit. */
 enum { PHOTON_VISITS_MAX = 16 * PHOTON_LOOKUPS_MAX };
 typedef struct photon_visits {
     uint32_t count;
@@ -30,7 +30,7 @@ typedef struct photon_kernels {
     void (*find_leaves)(const photon_tree *tree, const float *positions, uint32_t stride, uint32_t count,
                         uint32_t *out_leaves);
 
-    /* As bits, which of PHOTON_LOOKUPS_MAX points have the plane within their reach. */
+    /* Which of PHOTON_LOOKUPS_MAX points have the plane within their reach, as bits. */
     uint64_t (*meet_plane)(const photon_reach *reach, photon_tree_node plane);
 
     /* From nodes, at most PHOTON_VISITS_MAX, to their children: the one on the lookup's side, and the other where its

@@ -203,6 +203,23 @@ void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const pho
                      photon_neighbor_distance_squared(nearest[i]), in_out_rays);
 }
 
+/* An irradiance is doubted where so many photons, on average, would lie nearer to the point than its own. */
+static const float EMPTY_DISC_PHOTONS = 8.0f;
+
+bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, vec3 position, rgb irradiance)
+{
+    const photon_block *blocks = map->irradiance_photons.blocks;
+    /* a record in a tree of its own has its photon's index in the place of a flux */
+    uint32_t photon_index =
+        photon_map_all_have_irradiance(map) ? irradiance_photon : photon_block_flux(blocks, irradiance_photon);
+    float distance_squared = vec3_distance_squared(position, photon_block_position(blocks, irradiance_photon));
+    double photons_each = (double)map->set.count / (double)map->irradiance_photons.count;
+    double flux =
+        (double)rgb_max(flux_decode(photon_block_flux(map->blocks, photon_index))) / (double)map->set.emitted_paths;
+    return (double)rgb_max(irradiance) * (double)AG_PI * (double)distance_squared <=
+           (double)EMPTY_DISC_PHOTONS * photons_each * flux;
+}
+
 uint32_t photon_map_leaf(const photon_map *map, vec3 position)
 {
     return map->irradiance_photons.count > 0 ? photon_tree_leaf(&map->irradiance_photons, position) : 0;

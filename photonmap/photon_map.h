@@ -43,7 +43,7 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
                             double progress_begin, double progress_end, photon_map *out_map);
 void photon_map_reset(photon_map *map);
 
-/* What the codes of irradiances stand for. For a map that comes from a file. */
+/* Sets the values that the codes of irradiances stand for, in a map that comes from a file. */
 void photon_map_set_bias(photon_map *map, int irradiance_bias);
 
 /* Whether all photons are irradiance photons; otherwise these have blocks and indices of their own. */
@@ -86,6 +86,12 @@ float photon_map_far(const photon_map *map);
  * largest radius. PHOTON_HIDDEN: the nearest one lies so far away, or so far off the point's tangent plane, that it
  * must be in sight, and it is not. The rays that find that out are added to *in_out_rays. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, uint64_t *in_out_rays);
+
+/* Whether the irradiance [W/m^2] of the photon nearest to a point may hold there. The disc around the point that ends
+ * at the photon is empty; of photons with this one's flux, as dense as the irradiance says, chance would leave it so in
+ * one case of three thousand. Where light ends at a shadow, the photons at its edge are the nearest to points far in
+ * the dark, and all of these would be as bright as the edge. */
+bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, vec3 position, rgb irradiance);
 
 /* The leaf of the irradiance photons' tree that a point lies in: lookups at points of like leaves touch the same
  * memory. */

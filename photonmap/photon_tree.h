@@ -91,8 +91,8 @@ typedef struct photon_lookup {
     uint32_t leaf;
 } photon_lookup;
 
-/* The same for `count` points, from 1 to PHOTON_LOOKUPS_MAX, in the order of their leaves: much cheaper. Where there is
- * none, the index is PHOTON_NONE. */
+/* Finds the nearest photons of `count` points, from 1 to PHOTON_LOOKUPS_MAX, in the order of their leaves: much
+ * cheaper. Where there is none, the index is PHOTON_NONE. */
 void photon_walk_nearest_many(photon_walk *walk, const photon_lookup *lookups, uint32_t count, float min_cos,
                               float radius, photon_neighbor *out_nearest);
 

@@ -9,10 +9,10 @@
 #include "math/hash128.h"
 #include "rendering.h"
 
-/* To be raised with every change of the header or of what the film's planes hold. */
+/* The layout's number is raised with every change of the header or of what the film's planes hold. */
 enum { CHECKPOINT_LAYOUT = 5, CHECKPOINT_SETTINGS_MAX = 512 };
 
-/* Without gaps: it is written as it is. */
+/* The header has no gaps: its bytes are written to the file as they are in memory. */
 typedef struct checkpoint_header {
     char magic[8];
     uint32_t layout, byte_order;
@@ -24,10 +24,10 @@ typedef struct checkpoint_header {
     unsigned char settings[CHECKPOINT_SETTINGS_MAX]; /* settings_of_picture */
 } checkpoint_header;
 
-/* What a rendering's header is to be. */
+/* Makes the header that the rendering's checkpoint has. */
 void checkpoint_header_make(const struct ag_rendering *r, checkpoint_header *out_header);
 
-/* In words, what differs between a file's header and the rendering's; NULL: nothing. */
+/* Names what differs between a file's header and the rendering's, in words; NULL: nothing does. */
 const char *checkpoint_header_difference(const checkpoint_header *file, const checkpoint_header *ours);
 
 #endif

@@ -48,9 +48,10 @@ double context_add_to_phase(ag_context *context, ag_phase phase, phase_begin beg
 /* Adds the time since `begin` to a phase, and says at info level how long it took. */
 void context_end_phase(ag_context *context, ag_phase phase, phase_begin begin);
 
-/* Notes in the statistics what the scene's textures take. */
+/* Notes in the statistics how much memory the scene's textures take. */
 void context_count_textures(ag_context *context, const scene *s);
-/* The same; AG_ERROR_SYSTEM, and says so, where they could not be read: what was made of them is not to be used. */
+/* Notes them too, and checks that all textures could be read: a picture made with one that could not is not to be used.
+ * Errors: AG_ERROR_SYSTEM, AG_ERROR_MEMORY, with a message in the log. */
 ag_status context_check_textures(ag_context *context, const scene *s);
 
 /* The context's colour config, and with it context->working_space; read when first asked for. What is wrong is said in

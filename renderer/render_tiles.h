@@ -6,7 +6,7 @@
 
 #include "rendering.h"
 
-/* What each thread has of its own, with all that it will use in reserve: nothing can fail while tiles run. NULL when
+/* Creates each thread's own state, with all the memory that it will use: nothing can fail while tiles run. NULL when
  * out of memory. */
 eye_worker *eye_workers_create(const transport *t, unsigned count);
 void eye_workers_destroy(eye_worker *workers, unsigned count); /* NULL is fine */

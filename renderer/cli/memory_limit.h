@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-/* From now on allocations fail that would bring the process beyond so many resident bytes, if it touched all that it
+/* Makes allocations fail that would bring the process beyond this many resident bytes, if it touched all that it
  * allocates. Since libraries and heaps reserve what they never touch, 24 MB more are allowed; before the scene is there
  * (is_loaded), and with it what ray tracing reserves, 256 MB. */
 void memory_limit_set(uint64_t bytes, bool is_loaded);

@@ -25,7 +25,7 @@ typedef struct given_setting {
     const char *name, *value;
 } given_setting;
 
-/* What the scene says holds where a value was not given. */
+/* The command line's values; the scene's hold where none was given. */
 typedef struct options {
     const char *scene;
     const char **outfiles;         /* owned array, the strings are argv's */

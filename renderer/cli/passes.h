@@ -13,7 +13,7 @@ typedef struct passes_result {
     bool is_partial; /* a signal ended it: the picture is what there was, and there may be none */
 } passes_result;
 
-/* Of a clock that only goes on; what options.begun is of. */
+/* Seconds of a monotonic clock, the one that options.begun is read from. */
 double passes_seconds(void);
 
 /* Renders, and writes every outfile. AG_CANCELLED: a signal ended it; *out_result is valid then too. Other errors as of

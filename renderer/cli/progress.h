@@ -28,10 +28,10 @@ typedef struct progress {
 /* Settles AUTO: a bar on a terminal, whole lines elsewhere; nothing when quiet. */
 void progress_init(progress *p, const options *o);
 
-/* The next of so many pictures: progress is that of all of them. */
+/* Begins the next of frame_count pictures; progress is told of all of them together. */
 void progress_begin_frame(progress *p, int frame, int frame_count, int frame_number);
 
-/* What was written, and how long this picture took; where progress is told at all. */
+/* Tells which files were written and how long this picture took, where progress is told at all. */
 void progress_tell_written(progress *p, const char *const *files, int file_count);
 
 /* For ag_context_settings, with a progress as user. Messages go to standard error. */

@@ -13,10 +13,10 @@ void signals_catch_abort(void);
 /* The first SIGINT, SIGTERM or SIGHUP lets the work end in order: rendering pauses, all else is cancelled. The second
  * ends the process at once. */
 void signals_catch(ag_context *context);
-/* From here on there is no context to cancel: signals wait. */
+/* Forgets the context, which is about to be destroyed: signals wait from here on. */
 void signals_release(void);
 
-/* Between these, a signal to stop pauses. */
+/* Between these two calls a signal to stop pauses the rendering. */
 void signals_begin_rendering(void);
 void signals_end_rendering(void);
 

@@ -9,7 +9,7 @@
 
 void summary_print(FILE *file, const ag_statistics *statistics);
 
-/* What a picture is expected to take. */
+/* Prints the predicted time and memory of a picture as a table. */
 void summary_print_prediction(FILE *file, const ag_prediction *prediction);
 
 #endif

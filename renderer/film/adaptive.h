@@ -14,8 +14,8 @@
 /* The number of samples up to which pixels are brought now: the next one at which it is decided. */
 uint32_t adaptive_barrier(const struct ag_film *film);
 
-/* To be called when all pixels have had what they are to have, and barrier is below `most`: says anew what each is to
- * have. *out_is_done: none needs more. Errors: AG_CANCELLED. */
+/* Decides anew how many samples each pixel is to have. Called when all pixels have had the samples of the last
+ * decision, and the barrier is below `most`. *out_is_done: no pixel needs more. Errors: AG_CANCELLED. */
 ag_status adaptive_decide(struct ag_film *film, run_context *run, const ag_render_settings *settings,
                           bool *out_is_done);
 

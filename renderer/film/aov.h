@@ -8,7 +8,7 @@
 #include "film/cryptomatte.h"
 #include "film/eye_sample.h"
 
-/* What is summed over a pixel's samples, each in so many channels. */
+/* The values that are summed over a pixel's samples, each in so many channels. */
 typedef enum film_sum {
     SUM_RADIANCE, /* 3, always, and at 0 */
     SUM_ALPHA,    /* 1: the ray met something */
@@ -28,7 +28,7 @@ typedef enum film_sum {
 } film_sum;
 enum { FILM_SUM_COUNT = SUM_HIT_DEVELOPED + 1 };
 
-/* What a channel of a file is made of. */
+/* The value that a channel of a file is made of. */
 typedef enum channel_source {
     CHANNEL_BEAUTY,    /* component of the picture itself */
     CHANNEL_COLOR,     /* a radiance: component of its mean, developed as the beauty */
@@ -47,7 +47,7 @@ typedef enum channel_source {
     CHANNEL_CRYPTO_COVERAGE
 } channel_source;
 
-/* What is known of a pixel as a whole, see debug_views.h. */
+/* A view of the photon map, one value for a pixel as a whole: see debug_views.h. */
 typedef enum film_view {
     VIEW_PHOTON_DENSITY,
     VIEW_CACHE_STATE,
@@ -79,7 +79,7 @@ typedef struct aov_layout {
     bool needs_first_hit, needs_nearest;
 } aov_layout;
 
-/* What is summed whether it becomes channels or not. */
+/* The sums that are needed even where they become no channels. */
 typedef struct aov_needs {
     bool albedo_and_normal; /* for denoising */
     bool variance;          /* for adaptive sampling */

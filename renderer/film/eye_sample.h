@@ -21,7 +21,7 @@ enum { LIGHT_PART_COUNT = PART_SPECULAR + 1 };
 /* Groups of lights by their names; behind them what comes through the photon map, of which no lamp is known. */
 enum { LIGHT_GROUPS_MAX = 32 };
 
-/* What the camera ray met first; all zero where nothing. Space is the film's: see aov.h. */
+/* The camera ray's first hit; all zero where there is none. Space is the film's: see aov.h. */
 typedef struct first_hit {
     bool is_hit;
     float depth;                             /* along the camera's axis; of spherical cameras the distance */
@@ -65,8 +65,9 @@ static inline float eye_bound(float most, rgb brought)
     return largest > most ? most / largest : 1.0f;
 }
 
-/* By what light that was scattered so many times between lamp and eye is to be multiplied: mostly 1. share: of the
- * sample, that its path has of a path that was split; all of them together bring no more than one would. */
+/* The factor, mostly 1, that bounds light scattered so many times between lamp and eye (--clamp-direct,
+ * --clamp-indirect). share: the path's share of the sample, where a path was split; all of them together bring no more
+ * than one would. */
 static inline float eye_sample_bound(const eye_sample *s, float share, int scatterings, rgb brought)
 {
     return eye_bound(share * (scatterings > 1 ? s->most_indirect : s->most_direct), brought);

@@ -18,7 +18,7 @@ typedef struct film_nearest {
     uint32_t object_id, material_id; /* 0: nothing met yet */
 } film_nearest;
 
-/* What a file says of where the picture comes from. */
+/* The settings and transforms that a file's header says the picture was made with. */
 typedef struct film_origin {
     ag_render_settings settings; /* nothing left open */
     float world_to_camera[16];   /* as OpenEXR has it: row by row, of row vectors; when the shutter opens */
@@ -32,7 +32,8 @@ typedef struct film_area {
     int x0, y0, width, height;
 } film_area;
 
-/* What adapts to the picture does so for blocks of so many pixels in width and height, aligned to the full picture. */
+/* Adaptive sampling and splitting decide for blocks of this many pixels in width and height, aligned to the full
+ * picture. */
 enum { FILM_BLOCK = 8 };
 
 struct ag_film {
@@ -119,8 +120,8 @@ static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint3
     return film->wanted && film->wanted[pixel] < all ? film->wanted[pixel] : all;
 }
 
-/* Of a pixel as the film develops it, over the three colours: the mean of their means, and of the variances of these. A
- * film that sums SUM_SQUARES. */
+/* Gives, of a pixel as the film develops it, the mean over the three colours, and the mean of the variances of these
+ * means. The film must sum SUM_SQUARES. */
 void film_read_noise(const struct ag_film *film, size_t pixel, double *out_mean, double *out_variance);
 
 /* How many samples pixels of the crop have had. */

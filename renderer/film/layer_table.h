@@ -30,7 +30,7 @@ typedef struct layer_row {
     bool is_of_photon_map;  /* path tracing leaves it out */
 } layer_row;
 
-/* In the order of their channels in a file; NULL: there are no more. */
+/* The rows in the order of their channels in a file; NULL: there are no more. */
 const layer_row *layer_at(size_t index);
 
 #endif

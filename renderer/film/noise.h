@@ -40,7 +40,7 @@ void noise_lattice_add(noise_lattice *lattice, const film_response *response, si
 /* The variance of what is shown of a value that is known with this variance; white is 1. */
 double noise_shown_variance(double mean, double variance);
 
-/* Of what is shown to what the film holds, as the settings say. */
+/* The ratio of shown values to the film's, by the settings' exposure. */
 static inline double noise_shown_scale(const ag_render_settings *settings)
 {
     return exp2((double)settings->shown_exposure_stops);

@@ -20,7 +20,7 @@
 
 struct ag_film;
 
-/* Of a pixel: sums over its samples, and how the next are split. Variances are of the mean of the three colours. */
+/* A pixel's sums over its samples, and how the next ones are split. Variances are of the mean of the three colours. */
 typedef struct split_trial {
     float value, square;    /* the mean of the three colours, and its square */
     float by_parts;         /* the variance by the choice of gather rays and light samples */
@@ -33,7 +33,7 @@ typedef struct split_trial {
 /* Whether blocks choose: the photon map's integrator, no number of gather rays is set, and there are samples left when
  * the first have told of the noise. */
 bool splitting_is_open(const ag_render_settings *settings);
-/* Of every sample where blocks do not choose, of the first ones where they do. */
+/* The counts of every sample where blocks do not choose, and of the first samples where they do. */
 split_counts splitting_first(const ag_render_settings *settings);
 
 /* No sample has more. */
@@ -41,8 +41,8 @@ split_counts splitting_most(const ag_render_settings *settings);
 
 void split_trial_add(split_trial *trial, const eye_sample *sample);
 
-/* To be called when no tile is rendered, before pixels are brought to `wanted` samples: decides where that is due, and
- * gives the number of samples to stop at next. Calling it again changes nothing. */
+/* Decides the blocks' counts where that is due, and returns the number of samples to stop at next. Called while no tile
+ * is rendered, before pixels are brought to `wanted` samples; calling it again changes nothing. */
 uint32_t splitting_decide(struct ag_film *film, const ag_render_settings *settings, uint32_t wanted);
 
 #endif

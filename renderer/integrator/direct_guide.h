@@ -78,15 +78,16 @@ void direct_guide_fill(direct_guide *g, uint32_t cell, float share, const float 
 /* The cell of a point, DIRECT_GUIDE_NO_CELL where nothing is known of it. normal: as above. g: NULL is fine. */
 uint32_t direct_guide_find(const direct_guide *g, vec3 point, vec3 normal);
 
-/* As scene_pick_light and scene_light_probability. */
+/* Picks a light as scene_pick_light does, guided by the cell, and gives the probability of a pick as
+ * scene_light_probability does. */
 uint32_t direct_guide_pick(const direct_guide *g, const scene *s, uint32_t cell, vec3 point, vec3 normal, float u,
                            float *out_probability);
 float direct_guide_probability(const direct_guide *g, const scene *s, uint32_t cell, uint32_t light_index, vec3 point,
                                vec3 normal);
 
-/* The numbers by which the light is sampled there, of even ones; and their density. */
+/* Turns evenly distributed numbers into those that the light is sampled with there; returns their density. */
 float direct_guide_warp(const direct_guide *g, const scene *s, uint32_t cell, uint32_t light_index, vec2 *in_out_u);
-/* Of the numbers that make it pick a direction. */
+/* The density, by direct_guide_warp, of the numbers that make the light's sampling pick a direction. */
 float direct_guide_density(const direct_guide *g, const scene *s, uint32_t cell, uint32_t light_index, vec3 direction);
 
 #endif

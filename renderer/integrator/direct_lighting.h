@@ -7,7 +7,8 @@
 
 #include "integrator/transport.h"
 
-/* What picking a lamp for these lobes knows of how the surface lies: see scene_pick_light. */
+/* The normal by which a lamp is picked for these lobes; zero where they take light from all sides: see
+ * scene_pick_light. */
 vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes);
 
 /* The share of a sample's light that reaches the vertex that `arrived` has met. */
@@ -19,7 +20,7 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, const sur
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
                            vec2 u, int lamp_count, int scatter_count);
 
-/* The same, and whose light it is. */
+/* One sample towards a lamp as direct_light_from_lamp takes it, with the lamp and the direction. */
 typedef struct lamp_light {
     rgb radiance;
     uint32_t lamp;  /* valid, like the next, where radiance is not black */

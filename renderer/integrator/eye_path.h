@@ -10,8 +10,8 @@
 #include "integrator/camera_sample.h"
 #include "integrator/transport.h"
 
-/* Which part light would belong to that the path met now, as shares that sum to 1 in each channel: where lobes of both
- * groups scatter into one direction, the path stands for both. */
+/* The shares of light met by the path now that belong to each part of the picture; they sum to 1 in each channel. Where
+ * lobes of both groups scatter into one direction, the path stands for both. */
 typedef struct part_shares {
     rgb of[LIGHT_PART_COUNT];
 } part_shares;

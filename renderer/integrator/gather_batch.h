@@ -52,7 +52,7 @@ typedef struct gather_detour {
     float share_seen; /* of the gather's radiance, by the eye */
 } gather_detour;
 
-/* What a sample has gathered. */
+/* The light that a sample's gather rays have found. */
 typedef struct gathered_light {
     rgb first, behind; /* radiance at the eye: where its ray met a surface first, and by way of traced lobes there */
     float variance;    /* of the mean of the three colours of both, from ray to ray: an estimate */

@@ -11,12 +11,12 @@
  * all of the columns up to a multiple of eight is overwritten. */
 void gather_numbers(sampler_sequence *sequence, uint32_t first, uint32_t count, float out_u[2][RAY_FAN_MAX]);
 
-/* What sample_cosine_hemisphere makes of them: unit directions around the frame's z, or where is_below around its
- * opposite. Columns x, y, z. */
+/* The directions that sample_cosine_hemisphere makes of such numbers: unit, around the frame's z, or where is_below
+ * around its opposite. Columns x, y, z. */
 void gather_directions(float u[2][RAY_FAN_MAX], uint32_t count, const frame *around, bool is_below,
                        float out_directions[3][RAY_FAN_MAX]);
 
-/* The same for any processor, which the above are where there is nothing faster. */
+/* gather_numbers and gather_directions in plain C: for processors without AVX2, and for tests of the others' bits. */
 void gather_numbers_plain(sampler_sequence *sequence, uint32_t first, uint32_t count, float out_u[2][RAY_FAN_MAX]);
 void gather_directions_plain(float u[2][RAY_FAN_MAX], uint32_t count, const frame *around, bool is_below,
                              float out_directions[3][RAY_FAN_MAX]);

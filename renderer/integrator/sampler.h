@@ -10,7 +10,7 @@
 
 #include "math/rng.h"
 
-/* What a pair of random numbers decides. One camera path uses each at each of its vertices. */
+/* The decision that a pair of random numbers makes. A camera path uses each once at each of its vertices. */
 typedef enum sample_use {
     SAMPLE_PIXEL,
     SAMPLE_LENS,
@@ -143,7 +143,7 @@ static inline sampler_sequence sampler_sequence_make(const sampler *s, sample_us
     return made;
 }
 
-/* What is at an index of the whole sequence, of which these are the low bits. */
+/* The pair of numbers at an index of the whole sequence, given the index's low bits. */
 static inline vec2 sampler_sequence_of_index(const sampler_sequence *s, uint32_t index)
 {
     uint32_t shuffled = sampler_scramble(index, s->shuffle);

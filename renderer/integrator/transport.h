@@ -46,9 +46,9 @@ typedef struct eye_worker {
     uint64_t cost_apart;                   /* of whatever samples' detours, in all */
 } eye_worker;
 
-/* What a worker's rays have cost so far, but for detours, which do not belong to the sample under way: in quarters of a
- * gather ray's time, as measured in five rooms. A camera ray's has the sample's whole way into the film with it, a
- * path's what is found out about the vertex that it meets. */
+/* The cost of a worker's rays so far in quarters of a gather ray's time, as measured in five rooms. Detours are left
+ * out: they do not belong to the sample under way. A camera ray's cost includes the sample's whole way into the film, a
+ * path ray's the shading of the vertex that it meets. */
 enum { EYE_COST_OF_RAY = 4, EYE_COST_OF_CAMERA_RAY = 24, EYE_COST_OF_PATH_RAY = 8 };
 static inline uint64_t eye_worker_cost(const eye_worker *w)
 {
@@ -75,7 +75,8 @@ sample_counts transport_sample_counts(const transport *t, uint32_t lights);
 /* Follows a ray of unit direction to the first surface that scatters. */
 bool transport_trace(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 
-/* The same in two steps, for those who may not need the second: how the vertex scatters, and whether it shines. */
+/* transport_trace in two steps, for callers that may not need the second: transport_meet finds the hit, and
+ * transport_complete how the vertex scatters and whether it shines. */
 bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 void transport_complete(const transport *t, vertex *in_out_vertex);
 
@@ -110,7 +111,7 @@ static inline scene_ray transport_scattered_ray(const transport *t, const vertex
 /* The cone that textures are filtered over along the ray of a sample of the vertex. */
 ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsdf_sample *next);
 
-/* Of gather rays, which are of no one sample. */
+/* The cone of gather rays, which have no sample of their own to take a density from. */
 static inline ray_cone transport_gather_cone(const vertex *v)
 {
     const ray_cone *c = &v->arrived.cone;

@@ -19,7 +19,7 @@ extern "C" {
  * left behind. Errors: AG_ERROR_OUTPUT, with path and reason in message (always terminated). */
 ag_status atomic_file_write(const char *path, const void *bytes, size_t size, char *message, size_t message_size);
 
-/* The same of bytes that lie apart, one behind the other. */
+/* A part of a file's bytes; atomic_file_write_pieces writes pieces one behind the other. */
 typedef struct atomic_file_piece {
     const void *bytes;
     size_t size;
@@ -27,8 +27,8 @@ typedef struct atomic_file_piece {
 ag_status atomic_file_write_pieces(const char *path, const atomic_file_piece *pieces, int count, char *message,
                                    size_t message_size);
 
-/* The same for what is not at hand as one piece: fill writes it to the descriptor, which is open for writing alone and
- * empty, and returns 0 or an errno. */
+/* Writes the file's bytes to the descriptor, which is open for writing alone and empty; returns 0 or an errno. For
+ * atomic_file_write_by. */
 typedef int atomic_file_fill(void *user, int descriptor);
 ag_status atomic_file_write_by(const char *path, atomic_file_fill *fill, void *user, char *message,
                                size_t message_size);
@@ -36,7 +36,7 @@ ag_status atomic_file_write_by(const char *path, atomic_file_fill *fill, void *u
 /* Whether atomic_file_write could begin now; found out by creating the temporary file and removing it. */
 ag_status atomic_file_check(const char *path, char *message, size_t message_size);
 
-/* From now on nobody waits for the reader of a FIFO or of standard output: where one is not ready, the writing fails.
+/* Ends all waits from now on for the reader of a FIFO or of standard output: where one is not ready, the writing fails.
  * For the handler of a signal: async-signal-safe. */
 void atomic_file_end_waits(void);
 

@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/* What a file name's extension stands for. */
+/* The format that a file name's extension stands for. */
 typedef struct image_format {
     const char *extension; /* lower case, without the dot */
     bool scene_linear;     /* EXR, Radiance, PFM: written as it is; the others through a display and view */

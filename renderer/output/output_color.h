@@ -10,12 +10,12 @@
  * for only where the file is not scene_linear. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 ag_status output_color_check(ag_context *context, const ag_output_settings *settings, bool scene_linear);
 
-/* In place, count pixels of 3 floats: scene_linear: to settings->color_space, where that is given; else to display and
- * view. Same bits whatever the threads. Errors: as above, AG_CANCELLED. */
+/* Converts count pixels of 3 floats in place: scene-linear ones to settings->color_space, where that is given; others
+ * to display and view. The bits do not depend on the number of threads. Errors: as above, AG_CANCELLED. */
 ag_status output_color_apply(ag_context *context, const ag_output_settings *settings, bool scene_linear, float *pixels,
                              uint64_t count);
 
-/* What a scene-linear file says of its colours. */
+/* The colour space that a scene-linear file names. */
 typedef struct output_color_tag {
     const char *color_space; /* for oiio:ColorSpace; lives as long as the context */
     bool has_chromaticities; /* not where it is no linear space */

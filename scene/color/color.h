@@ -41,7 +41,7 @@ const char *color_config_working_space(const color_config *config);
  * nor an interchange space: what its primaries are is not known. */
 bool color_config_from_rec709(const color_config *config, double out_matrix[9]);
 
-/* What there is: displays with their views, looks, colour spaces, roles; lines of text, to be freed. */
+/* Lists the config's displays with their views, looks, colour spaces and roles as lines of text, to be freed. */
 ag_status color_config_describe(const color_config *config, char *message, size_t message_size, char **out_text);
 
 /* The colour space of that name, alias or role, as the config spells it; NULL where there is none. Owned by the config.
@@ -51,7 +51,7 @@ const char *color_config_find_space(const color_config *config, const char *name
  * all other files fits, which says nothing of this one. Owned by the config. */
 const char *color_config_rule(const color_config *config, const char *path);
 
-/* What a colour space's values are, to the working space. */
+/* How a colour space's values relate to the working space's. */
 typedef enum color_curve {
     COLOR_CURVE_DATA,   /* no colours: never converted */
     COLOR_CURVE_LINEAR, /* a matrix leads to the working space */

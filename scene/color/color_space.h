@@ -30,8 +30,8 @@ void color_space_chromaticities(color_space space, double out_primaries[3][2], d
  * refracts the white is kept, by the Bradford transform: 1 1 1 reflects all light in every space. */
 color_matrix color_space_to_rec709(color_space from, bool is_light);
 
-/* The same of any chromaticities, as EXR files have them (red, green, blue, white, each x and y), of what reflects.
- * False where they are no primaries. */
+/* The matrix to Rec. 709, for reflectances, from any chromaticities, as EXR files have them (red, green, blue, white,
+ * each x and y). False where they are no primaries. */
 bool color_chromaticities_to_rec709(const float chromaticities[8], color_matrix *out_matrix);
 
 color_matrix color_xyz_from_rec709(void);

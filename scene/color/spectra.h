@@ -12,7 +12,7 @@
 #define SPECTRA_MIN_KELVIN 500.0
 #define SPECTRA_MAX_KELVIN 1e6
 
-/* What the values of a spectrum are. */
+/* The quantity that a spectrum's values are of. */
 typedef enum spectrum_use {
     SPECTRUM_LIGHT, /* emitted: the colour as it is seen, of luminance 1, as pbrt makes of a light whose scale is 1;
                      * so its values matter by their proportions alone. 0 outside its wavelengths */
@@ -31,7 +31,8 @@ rgb spectra_sampled(const double *pairs, size_t pair_count, spectrum_use use, co
 /* The colour of a black body, of luminance 1. Components outside the gamut become
  * 0. kelvin in [SPECTRA_MIN_KELVIN, SPECTRA_MAX_KELVIN]. */
 rgb spectra_blackbody(double kelvin, const working_space *space);
-/* Of a black body whose greatest spectral value is 1, relative to light that is 1 at all wavelengths. */
+/* Luminance of a black body whose greatest spectral value is 1, relative to light that is 1 at all wavelengths; and its
+ * chromaticity. */
 double spectra_blackbody_luminance(double kelvin);
 void spectra_blackbody_chromaticity(double kelvin, double out_xy[2]);
 

@@ -19,15 +19,15 @@ typedef struct working_space {
 
 working_space working_space_rec709(void);
 
-/* Of a matrix from linear Rec. 709, row by row. Near the unit matrix (by 1e-3: configs round) it is Rec. 709. False
- * where it cannot be undone. */
+/* Makes a working space of a matrix from linear Rec. 709, row by row. Near the unit matrix (by 1e-3: configs round) it
+ * is Rec. 709. False where it cannot be undone. */
 bool working_space_make(const double from_rec709[9], working_space *out_space);
 
 /* NULL for the space stands for Rec. 709 in all that follows. */
 
 /* Of light, and of densities (absorption per distance): what is outside the space's gamut is clipped to 0. */
 rgb working_space_light(const working_space *space, rgb rec709);
-/* Of what reflects or lets through: clipped to [0, 1] where it was no more than that. */
+/* A reflectance or transmittance in the working space: clipped to [0, 1] where it was no more than that. */
 rgb working_space_reflectance(const working_space *space, rgb rec709);
 /* Index and absorption of a metal, whose channels were Rec. 709's: what it reflects, head-on and at the edge, is
  * converted, and the index and absorption that reflect so. Where nothing absorbs that stays so. */

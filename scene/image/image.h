@@ -46,7 +46,7 @@ typedef struct image_attribute {
     int number_count;
 } image_attribute;
 
-/* What to write: float channels, packed per pixel, top row first. */
+/* The picture to write: float channels, packed per pixel, top row first. */
 typedef struct image_description {
     int width, height;           /* of the pixels given (the data window) */
     int x, y;                    /* of its top left corner in the full picture */

@@ -29,10 +29,11 @@ typedef struct image_module {
     ag_status (*encode)(const char *extension, const image_description *description, const float *pixels,
                         unsigned char **out_bytes, size_t *out_size, char *message, size_t message_size);
 
-    /* As image_read, or where keep_bytes is set as image_read_compact. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
+    /* Reads a file as image_read does, or with keep_bytes as image_read_compact does. Errors: AG_ERROR_INPUT,
+     * AG_ERROR_MEMORY. */
     ag_status (*decode)(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size);
 
-    /* The same of a file's bytes. extension: of their format, in lower case. */
+    /* decode for a file's bytes in memory. extension: of their format, in lower case. */
     ag_status (*decode_memory)(const char *extension, const unsigned char *bytes, size_t size, bool keep_bytes,
                                image *out_image, char *message, size_t message_size);
 

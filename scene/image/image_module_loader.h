@@ -10,7 +10,7 @@
  * place that was tried in message; the next call tries again. */
 const image_module *image_module_get(char *message, size_t message_size);
 
-/* As image_module_get, from these folders only, and without remembering it. */
+/* Opens the module as image_module_get does, from these folders only, and without remembering it. */
 const image_module *image_module_open_from(const char *const *folders, int folder_count, char *message,
                                            size_t message_size);
 

@@ -13,10 +13,11 @@
  */
 ag_status image_read(const char *path, image *out_image, char *message, size_t message_size);
 
-/* The same, but values of 8 bits stay bytes. */
+/* image_read, but values of 8 bits stay bytes. */
 ag_status image_read_compact(const char *path, image *out_image, char *message, size_t message_size);
 
-/* The same of a PNG or JPEG file in memory; what it is, its first bytes say. name stands for it in messages. */
+/* Reads a PNG or JPEG file in memory, which its first bytes tell apart; values of 8 bits stay bytes. name: for
+ * messages. */
 ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t size, image *out_image, char *message,
                             size_t message_size);
 

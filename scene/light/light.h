@@ -79,7 +79,7 @@ typedef struct light_sample {
     bool is_delta;         /* cannot be hit by a scattered ray: no MIS */
 } light_sample;
 
-/* What scene_commit sets, areas and bounds being there. Errors: AG_ERROR_MEMORY. */
+/* Sets the members that scene_commit is said to set, once areas and bounds are there. Errors: AG_ERROR_MEMORY. */
 ag_status light_commit(const struct scene *s, light *l);
 
 /* u in [0,1)^2. Returns false when no light can come from there. */
@@ -97,12 +97,12 @@ rgb light_texture_value(const struct scene *s, const light *l, const struct surf
 
 /* Whether an area light is not alike all over, by its texture or its shape's alpha. */
 bool light_varies(const struct scene *s, const light *l);
-/* What a point sampled on an area light has of its radiance: the texture's value, times the share of the shape that is
- * there unless it is invisible (alpha.h); rays that meet the lamp have taken account of that. at: read only if the
- * light varies. */
+/* The share of its radiance that a point sampled on an area light sends: the texture's value, times the share of the
+ * shape that is there unless it is invisible (alpha.h); rays that meet the lamp have taken account of that. at: read
+ * only if the light varies. */
 rgb light_sampled_value(const struct scene *s, const light *l, const struct surface_sample *at);
 
-/* Of the lights that are points: W/sr into direction (away from it, unit). */
+/* Intensity of a light that is a point, W/sr into direction (away from it, unit). */
 rgb light_intensity(const light *l, vec3 direction);
 
 /* The cone under which a ball is seen from a point outside it: true, and 1 - cos of its half angle; false when the

@@ -12,7 +12,7 @@
 enum { LIGHT_TREE_WIDTH = 8 };
 #define LIGHT_TREE_NONE UINT32_MAX
 
-/* What is known of lamps: all light leaves from within a ball, and the angle between its way and a direction is no more
+/* Bounds of lamps: all light leaves from within a ball, and the angle between its way and a direction is no more
  * than the two angles' sum: normals are within the first of the axis, light within the second of a normal. */
 typedef struct light_bounds {
     vec3 center;
@@ -29,12 +29,12 @@ typedef struct light_bounds {
 #define LIGHT_BOUNDS_ALL_AROUND (-1.0f)
 #define LIGHT_BOUNDS_SLACK      1e-3f
 
-/* Of a committed light; false for those that are everywhere. */
+/* The bounds of a committed light; false for lights that are everywhere. */
 bool light_find_bounds(const scene *s, const light *l, light_bounds *out_bounds);
 
 typedef struct light_tree light_tree;
 
-/* Of the lamps with these indices, all with power and bounds. count > 0. Errors: AG_ERROR_MEMORY. */
+/* Makes a tree of the lamps with these indices, all with power and bounds. count > 0. Errors: AG_ERROR_MEMORY. */
 ag_status light_tree_create(const scene *s, const uint32_t *lights, uint32_t count, light_tree **out_tree);
 void light_tree_destroy(light_tree *t); /* NULL is fine */
 
@@ -44,7 +44,7 @@ bool light_tree_reaches(const light_tree *t, vec3 point, vec3 normal);
 /* A lamp, and the probability with which it is picked; LIGHT_TREE_NONE and 0 where none reaches the point. u in [0,1).
  */
 uint32_t light_tree_pick(const light_tree *t, vec3 point, vec3 normal, float u, float *out_probability);
-/* Of a lamp in the tree. */
+/* The probability with which light_tree_pick picks a lamp of the tree. */
 float light_tree_probability(const light_tree *t, uint32_t light_index, vec3 point, vec3 normal);
 
 #endif

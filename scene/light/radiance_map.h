@@ -12,7 +12,7 @@ typedef struct radiance_map {
     rgb mean; /* of light_sampled_value over the shape's area */
 } radiance_map;
 
-/* Of an area light that varies, whose shape is committed. Errors: AG_ERROR_MEMORY. */
+/* Makes the map of an area light that varies, whose shape is committed. Errors: AG_ERROR_MEMORY. */
 ag_status radiance_map_create(const struct scene *s, const light *l, radiance_map **out_map);
 void radiance_map_destroy(radiance_map *m); /* NULL is fine */
 

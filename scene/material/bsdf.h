@@ -28,7 +28,8 @@
 
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
 
-/* What travels: radiance is scaled by the square of the relative index when it enters another medium, flux is not. */
+/* The quantity that is carried: radiance is scaled by the square of the relative index when it enters another medium,
+ * flux is not. */
 typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
 
 typedef enum bsdf_lobe_kind {
@@ -78,7 +79,7 @@ typedef struct bsdf_sample {
 
 /* out: back along the ray that met the surface, unit. */
 bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out);
-/* The same of a material that is no mix, and has been prepared. */
+/* bsdf_create for a material that is no mix and has been prepared. */
 bsdf bsdf_create_of(const material *parameters, const surface_hit *hit, vec3 out);
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
@@ -123,8 +124,8 @@ float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 d
 bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, float u_lobe, vec2 u,
                            bsdf_sample *out_sample);
 
-/* What arriving flux, from out, is multiplied by when it is stored: t(in), and |cos to shading normal| / |cos to
- * geometric normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
+/* The factor that arriving flux, from out, is multiplied by when it is stored: t(in), and |cos to shading normal| /
+ * |cos to geometric normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
 float bsdf_arrival_factor(const bsdf *b);
 
 /* bsdf_arrival_factor at a point that gathers nothing itself, while others of its surface do: beside the metal grains

@@ -7,7 +7,7 @@
 #include "material/bsdf.h"
 #include "material/microfacet.h"
 
-/* What a coat lets through, once, of light at that cosine outside; 1 where there is none. */
+/* The share of light at that cosine outside that a coat lets through, once; 1 where there is no coat. */
 float bsdf_lobe_transmittance(const material *m, float cos_theta);
 
 /* A of the diffuse reflection, under a coat what gets out of it. */

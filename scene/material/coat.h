@@ -29,7 +29,8 @@ float coat_crossing(const material *m, float cos_theta);
 /* t: of light at that cosine outside, what gets to a diffuse base. */
 float coat_entry(const material *m, float cos_theta);
 
-/* Of a diffuse base: all that gets out of light that got in; f is this times t(o) t(i) / pi. */
+/* The albedo of a diffuse base under a coat: the share of light that got in which gets out again; f is this times t(o)
+ * t(i) / pi. */
 rgb coat_diffuse_albedo(const material *m);
 
 /* Smooth on smooth: in through the coat, to and fro between metal and coat, and out again. metal: its reflectance. */

@@ -18,7 +18,7 @@ static inline float fresnel_dielectric(float cos_in, float eta)
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-/* Of a thin sheet, all reflections between its two faces together: a geometric series. */
+/* The reflectance of a thin sheet: all reflections between its two faces together, a geometric series. */
 static inline float fresnel_thin_dielectric(float cos_in, float eta)
 {
     float r = fresnel_dielectric(cos_in, eta);

@@ -71,7 +71,8 @@ typedef struct material {
     uint32_t metallic_texture, roughness_texture, transmission_texture, specular_texture, specular_color_texture,
         clearcoat_texture, clearcoat_roughness_texture; /* principled */
 
-    /* What tilts the shading normal, SCENE_NO_TEXTURE: nothing; of a mix those of the one picked (shading_frame.h). */
+    /* The textures that tilt the shading normal, SCENE_NO_TEXTURE: none; of a mix those of the one picked
+     * (shading_frame.h). */
     uint32_t displacement_texture; /* a float: how far the surface seems raised, along its normal */
     uint32_t normal_map_texture;   /* a colour: 2 c - 1 is the normal along dp/du, dp/dv and the shading normal */
     float normal_scale;            /* what its first two components are multiplied by, mostly 1 */

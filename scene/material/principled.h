@@ -24,11 +24,11 @@ bool principled_has_interface(const material *m);
  * is_inside: within the volume of a solid. The two are at most 1 together. */
 void principled_interface(const material *m, float cosine, bool is_inside, rgb *out_reflected, rgb *out_through);
 
-/* What the coat's facets reflect at a cosine. */
+/* The share of light at a cosine that the coat's facets reflect. */
 float principled_coat_reflectance(const material *m, float cosine);
 
-/* What the coat lets through to and from the interface, of light between cosines to the normal; signed, negative:
- * inside. */
+/* The factor of light that passes the coat to and from the interface, of light between cosines to the normal; signed,
+ * negative: inside. */
 float principled_coat_factor(const material *m, float cos_o, float cos_i);
 
 /* t and A of the diffuse base (bsdf.h); cosine: of either sign. */

@@ -18,8 +18,8 @@ bool affine_can_be_undone(const affine *a);
 affine affine_lerp(const affine *a, const affine *b, float t);
 
 double affine_determinant(const affine *a);
-/* Of the linear part: determinant times inverse transpose. It maps area vectors as the map does areas, but for a
- * mirror's sign. */
+/* The cofactors of the linear part: determinant times inverse transpose. It maps area vectors as the map does areas,
+ * but for a mirror's sign. */
 void affine_cofactors(const affine *a, double out_cofactors[3][3]);
 
 vec3 affine_point(const affine *a, vec3 p);

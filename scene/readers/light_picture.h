@@ -19,8 +19,9 @@ typedef struct light_picture {
 ag_status light_picture_read(const scene *s, const char *name, const char *path, bool is_gray,
                              light_picture *out_picture, char *message, size_t message_size);
 
-/* Of all directions: a square picture is octahedral, one twice as wide as high latitude-longitude. Takes the pixels,
- * on failure too. Errors: AG_ERROR_SCENE (another shape; the reason in message), AG_ERROR_MEMORY. */
+/* Makes an environment, a picture of all directions: a square picture is octahedral, one twice as wide as high
+ * latitude-longitude. Takes the pixels, on failure too. Errors: AG_ERROR_SCENE (another shape; the reason in message),
+ * AG_ERROR_MEMORY. */
 ag_status light_picture_surround(light_picture *picture, const char *name, struct environment **out_environment,
                                  char *message, size_t message_size);
 

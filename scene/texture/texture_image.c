@@ -156,17 +156,6 @@ void texture_image_destroy(texture_image *i)
     free(i);
 }
 
-texture_level texture_image_finest(const texture_image *i)
-{
-    return (texture_level){.width = i->width,
-                           .height = i->height,
-                           .channel_count = i->channel_count,
-                           .sample = i->bytes ? TEXTURE_BYTES : TEXTURE_FLOATS,
-                           .bytes = i->bytes,
-                           .table = i->table,
-                           .values = i->values};
-}
-
 static void add_array(hash128 *h, const void *items, size_t count, size_t item_size)
 {
     HASH128_ADD(h, count);

@@ -56,12 +56,36 @@ ag_status texture_image_take(const struct scene *s, texture_image *i, struct ima
 void texture_image_destroy(texture_image *i); /* NULL is fine */
 
 /* The picture itself as a level, whose memory stays the picture's. Not of one that is stored. */
-texture_level texture_image_finest(const texture_image *i);
+static inline texture_level texture_image_finest(const texture_image *i)
+{
+    return (texture_level){.width = i->width,
+                           .height = i->height,
+                           .channel_count = i->channel_count,
+                           .sample = i->bytes ? TEXTURE_BYTES : TEXTURE_FLOATS,
+                           .bytes = i->bytes,
+                           .table = i->table,
+                           .values = i->values};
+}
 
 /* Whether alpha is below 1 anywhere; not of one in tiles. */
 static inline bool texture_image_has_alpha(const texture_image *i)
 {
     return i->alpha_bytes || i->alpha_values || i->stored_alpha.tiles;
+}
+
+/* Its alpha as a level, stored or not, where it has one. is_encoded: bytes are decoded as those of colours are. */
+static inline texture_level texture_image_alpha(const texture_image *i, bool is_encoded)
+{
+    texture_level alpha = i->stored_alpha;
+    if (!i->is_stored)
+        alpha = (texture_level){.width = i->width,
+                                .height = i->height,
+                                .channel_count = 1,
+                                .sample = i->alpha_bytes ? TEXTURE_BYTES : TEXTURE_FLOATS,
+                                .bytes = i->alpha_bytes,
+                                .values = i->alpha_values};
+    alpha.table = is_encoded ? i->table : NULL;
+    return alpha;
 }
 
 /* A fingerprint of its pixels, the same whether they are stored or not. */

@@ -65,12 +65,7 @@ static ag_status put_into_store(run_context *run, scene *s, texture_image *i, ch
     AG_TRY(texture_mips_create(run, &finest, &i->mips));
     AG_TRY(texture_mips_put(run, i->mips, s->texture_store, message, message_size));
     if (texture_image_has_alpha(i)) {
-        i->stored_alpha = (texture_level){.width = i->width,
-                                          .height = i->height,
-                                          .channel_count = 1,
-                                          .sample = i->alpha_bytes ? TEXTURE_BYTES : TEXTURE_FLOATS,
-                                          .bytes = i->alpha_bytes,
-                                          .values = i->alpha_values};
+        i->stored_alpha = texture_image_alpha(i, false);
         AG_TRY(texture_level_put(run, &i->stored_alpha, s->texture_store, message, message_size));
     }
     free(i->bytes);

@@ -15,6 +15,14 @@ static float value_at(const texture_level *l, size_t at)
     }
 }
 
+static float blend_channel(const texture_level *l, const pixel_blend *blend, uint32_t channel)
+{
+    float sum = 0.0f;
+    for (int k = 0; k < blend->count; k++)
+        sum += blend->weight[k] * value_at(l, blend->pixel[k] * l->channel_count + channel);
+    return sum;
+}
+
 static rgb blend_values(const texture_level *l, const pixel_blend *blend)
 {
     float sums[3] = {0.0f, 0.0f, 0.0f};
@@ -24,28 +32,45 @@ static rgb blend_values(const texture_level *l, const pixel_blend *blend)
     return l->channel_count == 1 ? rgb_gray(sums[0]) : rgb_make(sums[0], sums[1], sums[2]);
 }
 
-/* The blend's pixels, one behind the other, are a level of their own. */
-static rgb blend_tiles(const texture_level *l, pixel_blend *blend)
+typedef union blend_pixels {
+    unsigned char bytes[4 * TEXTURE_PIXEL_BYTES_MAX];
+    uint16_t packed[4 * 3];
+    float values[4 * 3];
+} blend_pixels;
+
+/* The blend's pixels, read from their tiles one behind the other, as a level of their own, which the blend then is of.
+ */
+static texture_level read_tiles(const texture_level *l, pixel_blend *in_out_blend, blend_pixels *out_pixels)
 {
-    union {
-        unsigned char bytes[4 * TEXTURE_PIXEL_BYTES_MAX];
-        uint16_t packed[4 * 3];
-        float values[4 * 3];
-    } pixels;
-    texture_tiles_read(l->tiles, blend, pixels.bytes);
-    texture_level here = *l;
-    here.bytes = pixels.bytes;
-    here.packed = pixels.packed;
-    here.values = pixels.values;
-    for (int k = 0; k < blend->count; k++)
-        blend->pixel[k] = (size_t)k;
-    return blend_values(&here, blend);
+    texture_level read = *l;
+    texture_tiles_read(l->tiles, in_out_blend, out_pixels->bytes);
+    read.bytes = out_pixels->bytes;
+    read.packed = out_pixels->packed;
+    read.values = out_pixels->values;
+    for (int k = 0; k < in_out_blend->count; k++)
+        in_out_blend->pixel[k] = (size_t)k;
+    return read;
 }
 
 rgb texture_level_rgb(const texture_level *l, texture_wraps wraps, texture_filter filter, float s, float t)
 {
     pixel_blend blend = pixel_blend_at(l->width, l->height, wraps, filter, s, t);
-    return l->tiles ? blend_tiles(l, &blend) : blend_values(l, &blend);
+    if (!l->tiles)
+        return blend_values(l, &blend);
+    blend_pixels pixels;
+    const texture_level read = read_tiles(l, &blend, &pixels);
+    return blend_values(&read, &blend);
+}
+
+float texture_level_channel(const texture_level *l, uint32_t channel, texture_wraps wraps, texture_filter filter,
+                            float s, float t)
+{
+    pixel_blend blend = pixel_blend_at(l->width, l->height, wraps, filter, s, t);
+    if (!l->tiles)
+        return blend_channel(l, &blend, channel);
+    blend_pixels pixels;
+    const texture_level read = read_tiles(l, &blend, &pixels);
+    return blend_channel(&read, &blend, channel);
 }
 
 /* --- making them --- */

@@ -48,5 +48,8 @@ ag_status texture_level_put(run_context *run, texture_level *in_out, texture_sto
 
 /* Linear values between the middles of a level's pixels; of a grey picture all three are the same. */
 rgb texture_level_rgb(const texture_level *l, texture_wraps wraps, texture_filter filter, float s, float t);
+/* A single channel of these, below l->channel_count. */
+float texture_level_channel(const texture_level *l, uint32_t channel, texture_wraps wraps, texture_filter filter,
+                            float s, float t);
 
 #endif

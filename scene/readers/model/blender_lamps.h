@@ -17,7 +17,7 @@
 
 #include "model/import_model.h"
 
-/* Of a node of a Collada file. */
+/* A lamp of a Collada file's node. */
 typedef struct blender_lamp {
     char node[IMPORT_NAME_SIZE]; /* its id */
     bool is_area;

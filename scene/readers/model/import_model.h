@@ -22,7 +22,7 @@ typedef enum import_slot {
     IMPORT_SLOT_COUNT
 } import_slot;
 
-/* What lies beyond a picture's edges. */
+/* How a picture goes on beyond its edges. */
 typedef enum import_wrap { IMPORT_REPEATS, IMPORT_IS_CLAMPED, IMPORT_IS_MIRRORED, IMPORT_IS_BLACK } import_wrap;
 
 typedef struct import_picture {

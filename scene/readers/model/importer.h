@@ -34,7 +34,7 @@ ag_status importer_init(importer *i, run_context *run, const char *path, scene *
 /* For bump_unit, from the bounds of all that is there. MTL gives no unit: white is 0.002 of the diagonal high. */
 float importer_bump_unit(vec3 bounds_min, vec3 bounds_max);
 
-/* What a mesh is made of, other than its shape. */
+/* A mesh's material and other properties of its surface. */
 typedef struct import_surface {
     uint32_t material_index;
     float alpha;

@@ -10,7 +10,7 @@
 #define OBJ_NONE      UINT32_MAX
 #define OBJ_MAX_COUNT (UINT32_MAX / 4)
 
-/* What the corner's normal is: one of the file's (its number), one of a smoothing group's (OBJ_FIRST_SMOOTH + number),
+/* A corner's normal: one of the file's (its number), one of a smoothing group's (OBJ_FIRST_SMOOTH + number),
  * or OBJ_NONE. */
 #define OBJ_FIRST_SMOOTH (UINT32_MAX / 2)
 
