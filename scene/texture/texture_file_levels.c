@@ -1,10 +1,8 @@
 /* texture_file_levels.c: see texture_file_levels.h. */
 #define _POSIX_C_SOURCE 200809L
-#include "texture/texture_file_levels.h"
+#include "texture/texture_file_levels_private.h"
 
-#include "atomics.h"
 #include "clock.h"
-#include "image/image_levels.h"
 #include "scene.h"
 #include "status.h"
 
@@ -13,15 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-struct texture_file_levels {
-    image_levels *file;
-    const image_levels_header *header;
-    int color_count; /* channels that are colours: 1 or 3; alpha is the next one */
-    bool as_bytes;
-    atomic_u32 has_failed; /* relaxed: set by whoever reads a tile, read behind a barrier of the pass */
-    float *curve;          /* [65536], linear values of 16-bit integers; NULL: they are linear */
-};
 
 void texture_file_levels_destroy(texture_file_levels *l)
 {
@@ -60,17 +49,8 @@ hash128 texture_file_content(const char *path)
 
 /* --- tiles --- */
 
-static size_t tile_values(const texture_file_levels *l, int level, int channel_count)
-{
-    const image_level *of = &l->header->levels[level];
-    return (size_t)channel_count << (of->tile_width_bits + of->tile_height_bits);
-}
-
-static size_t value_bytes(const texture_file_levels *l) { return l->as_bytes ? 1 : sizeof(float); }
-
-/* Linear values, but for bytes. Values that are not finite become 0; out_bad_count, which may be NULL, is raised. */
-static ag_status fetch(const texture_file_levels *l, int level, uint32_t x, uint32_t y, bool is_alpha, void *out_pixels,
-                       uint64_t *out_bad_count)
+ag_status texture_file_levels_fetch(const texture_file_levels *l, int level, uint32_t x, uint32_t y, bool is_alpha,
+                                    void *out_pixels, uint64_t *out_bad_count)
 {
     const int begin = is_alpha ? l->color_count : 0, end = l->color_count + (is_alpha ? 1 : 0);
     const size_t count = tile_values(l, level, end - begin);
@@ -98,12 +78,12 @@ static ag_status note(texture_file_levels *l, ag_status status)
 
 static ag_status fetch_colors(void *user, int level, uint32_t x, uint32_t y, unsigned char *out_pixels)
 {
-    return note(user, fetch(user, level, x, y, false, out_pixels, NULL));
+    return note(user, texture_file_levels_fetch(user, level, x, y, false, out_pixels, NULL));
 }
 
 static ag_status fetch_alpha(void *user, int level, uint32_t x, uint32_t y, unsigned char *out_pixels)
 {
-    return note(user, fetch(user, level, x, y, true, out_pixels, NULL));
+    return note(user, texture_file_levels_fetch(user, level, x, y, true, out_pixels, NULL));
 }
 
 /* --- whole levels --- */
@@ -151,7 +131,7 @@ static ag_status go_over(run_context *run, const texture_file_levels *l, int lev
         if (run && run_is_cancelled(run))
             status = AG_CANCELLED;
         for (uint32_t x = 0; x < (uint32_t)of->width && status == AG_OK; x += 1u << of->tile_width_bits) {
-            status = fetch(l, level, x, y, is_alpha, tile, &out_look->bad_count);
+            status = texture_file_levels_fetch(l, level, x, y, is_alpha, tile, &out_look->bad_count);
             if (status == AG_OK)
                 take_tile(l, level, channel_count, x, y, tile, out_level, out_look);
         }
@@ -308,6 +288,8 @@ static ag_status read_levels(run_context *run, const struct scene *s, texture_fi
         return AG_ERROR_MEMORY;
     const bool is_kept = !s->texture_store || texture_store_keeps(s->texture_store, whole_bytes(l));
     const ag_status status = is_kept ? read_whole(run, l, i) : lend_tiles(run, l, s->texture_store, i);
+    if (status == AG_OK && (l->as_bytes || l->curve))
+        texture_file_levels_warn_of_loss(run, l, i);
     if (status == AG_ERROR_INPUT)
         snprintf(message, message_size, "cannot read '%s': OpenImageIO cannot decode its tiles", i->path);
     return status;

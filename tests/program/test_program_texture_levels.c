@@ -51,6 +51,36 @@ static void test_own_levels(void **state)
     picture_reset(&far);
 }
 
+/* Pixels of 0 and 255 whose next level is 128, as a mean of encoded values; 188 is the encoded mean of light. */
+static unsigned char dark_mean(uint32_t level, uint32_t x, uint32_t y, uint32_t channel)
+{
+    (void)channel;
+    return level > 0 ? 128 : (x + y) % 2 ? 255 : 0;
+}
+
+static unsigned char light_mean(uint32_t level, uint32_t x, uint32_t y, uint32_t channel)
+{
+    return level > 0 ? 188 : dark_mean(level, x, y, channel);
+}
+
+/* Levels that have less light than the picture are told. */
+static void test_dark_levels(void **state)
+{
+    (void)state;
+    write_scene(
+        "Camera \"perspective\" WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.tx\" "
+        "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"");
+    for (int k = 0; k < 4; k++) {
+        tiff_write_levels("a.tx", k < 2 ? 256 : 2048, 3, k % 2 ? light_mean : dark_mean);
+        program_run run =
+            RUN("--integrator=path", "--size=4x4", "--spp=1", "--texture-memory=16M", "-o", "x.exr", "scene.pbrt");
+        expect_exit(&run, 0);
+        const char *told = strstr(run.err, "'a.tx': from afar it is too dark: its second level has 43 % of the light");
+        assert_true(k % 2 ? !strstr(run.err, "too dark") : told != NULL);
+        program_run_reset(&run);
+    }
+}
+
 static const char *room(void)
 {
     tiff_write_levels("bytes.tx", 2048, 4, noise);
@@ -116,6 +146,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_own_levels),
+        TEST_IN_FOLDER(test_dark_levels),
         TEST_IN_FOLDER(test_memory),
         TEST_IN_FOLDER(test_broken),
     };

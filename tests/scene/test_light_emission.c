@@ -166,6 +166,43 @@ static void distant_light_fills_the_disc_around_the_scene(void **state)
     test_run_reset(&r);
 }
 
+/* Of a disc of h = 1 - cos a: directions are uniform in the cone, their mean cosine is 1 - h / 2, and what crosses a
+ * surface that faces its middle is the same as without an extent, of photons as of samples from a point. */
+static void a_sun_of_an_extent_gives_as_much(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(
+        &r,
+        "LightSource \"distant\" \"rgb L\" [3 2 1] \"point3 from\" [0 0 0] \"point3 to\" [1 2 2]\nShape \"sphere\"");
+    light *l = &s->lights[0];
+    const double plain_power = l->power.r, height = 1.0 - cos(20.0 * PI / 180.0);
+    light_set_disc(l, 40.0 * PI / 180.0);
+    assert_int_equal(light_commit(s, l), AG_OK);
+    rng random = test_random(14);
+    double facing = 0.0, cosines = 0.0, squares = 0.0, sampled = 0.0;
+    for (int i = 0; i < SAMPLES; i++) {
+        light_emission e;
+        light_sample at;
+        assert_true(light_sample_emission(s, l, NULL, &random, &e));
+        const double cosine = vec3_dot(e.direction, l->direction);
+        assert_true(cosine >= 1.0 - height - 1e-5);
+        facing += e.flux.r * cosine / SAMPLES;
+        cosines += cosine / SAMPLES;
+        squares += (1.0 - cosine) * (1.0 - cosine) / SAMPLES;
+        const vec2 u = {rng_float(&random), rng_float(&random)};
+        assert_true(light_sample_from_point(s, l, (vec3){1.0f, 2.0f, 3.0f}, u, &at));
+        sampled += at.radiance.r * -vec3_dot(at.direction, l->direction) / SAMPLES;
+    }
+    assert_relative(cosines, 1.0 - height / 2.0, 5.0 * 0.3 * height / sqrt(SAMPLES));
+    assert_relative(squares, height * height / 3.0, 5.0 / sqrt(SAMPLES));
+    assert_relative(facing, plain_power, 5.0 * 0.3 * height / sqrt(SAMPLES));
+    assert_relative(sampled, 3.0, 5.0 * 0.3 * height / sqrt(SAMPLES));
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 /* --- light aimed at a ball --- */
 
 static bool meets_ball(const light_emission *e, const light_target *ball)
@@ -312,6 +349,7 @@ int main(void)
         cmocka_unit_test(area_lights_emit_by_the_cosine),
         cmocka_unit_test(directions_are_spread_as_they_should),
         cmocka_unit_test(distant_light_fills_the_disc_around_the_scene),
+        cmocka_unit_test(a_sun_of_an_extent_gives_as_much),
         cmocka_unit_test(aimed_light_carries_the_same_flux),
         cmocka_unit_test(light_from_afar_finds_what_is_small),
         cmocka_unit_test(what_is_small_is_found_in_instances),
