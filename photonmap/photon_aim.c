@@ -1,6 +1,8 @@
 /* photon_aim.c: see photon_aim.h. */
 #include "photon_aim.h"
 
+#include "math/compare_floats.h"
+
 #include <stdlib.h>
 
 /* Paths of a round, as a share of the photons wanted and within bounds; the first round, by power alone, has half of
@@ -11,12 +13,12 @@ enum { BLIND_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
  * of the photons are of use, and a path leaves so many of those. */
 static const float LEAST_GAIN = 1.5f;
 static const double ENOUGH_ASKED = 0.5, ENOUGH_PER_PATH = 0.25;
-/* Paths are split that are worth more than SPLIT_RATIO times what a tenth of the useful ones is worth less than; or
- * more than that, so that no more than PARTS_PER_PATH come to one path on average. The first round with a guide splits
- * only what is worth more than nearly all paths are by power alone, and each further one at most what is worth so many
- * times less, so that no round takes long. */
-static const float SPLIT_RATIO = 2.0f, PARTS_PER_PATH = 0.5f, SPLIT_STEP = 5.0f;
-static const float LOW_SHARE = 0.1f, HIGH_SHARE = 0.99f;
+/* Paths are split that are worth more than SPLIT_RATIO times the tenth percentile of the useful paths' worths, and so
+ * much more that no more than about PARTS_PER_PATH come to one path. The first round with a guide splits above a high
+ * percentile by power alone, and each further one above no less than a SPLIT_STEP of that, so that no round takes long.
+ */
+static const float SPLIT_RATIO = 1.0f, PARTS_PER_PATH = 1.0f, SPLIT_STEP = 0.1f;
+static const float LOW_PERCENTILE = 0.1f, HIGH_PERCENTILE = 0.9f;
 
 typedef struct learner {
     const scene *s;
@@ -30,12 +32,6 @@ typedef struct learner {
     trial_counts counts, blind;        /* of all trials; of those by power alone */
 } learner;
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /* Sets what the next round splits by a round's trials, as bright as its guide made them, and by its number of parts. */
 static ag_status set_split(learner *l, const emission_trial *trials, uint32_t count, uint64_t parts)
 {
@@ -48,11 +44,12 @@ static ag_status set_split(learner *l, const emission_trial *trials, uint32_t co
             worths[useful++] = trials[i].value / trials[i].density;
     qsort(worths, useful, sizeof *worths, compare_floats);
     if (useful > 0 && l->round_count == 0) {
-        l->split_above = worths[(uint32_t)(HIGH_SHARE * (float)useful)];
+        l->split_above = worths[(uint32_t)(HIGH_PERCENTILE * (float)useful)];
     } else if (useful > 0) {
-        float by_worth = SPLIT_RATIO * worths[(uint32_t)(LOW_SHARE * (float)useful)];
+        float by_worth = SPLIT_RATIO * worths[(uint32_t)(LOW_PERCENTILE * (float)useful)];
         float by_parts = l->split_above * (float)parts / (PARTS_PER_PATH * (float)count);
-        l->split_above = fmaxf(fmaxf(by_worth, by_parts), l->split_above / SPLIT_STEP);
+        float least = l->round_count == ROUNDS - 1 ? l->split_above : l->split_above * SPLIT_STEP;
+        l->split_above = fmaxf(fmaxf(by_worth, by_parts), least);
     }
     free(worths);
     return AG_OK;

@@ -24,7 +24,7 @@ enum { FIRST_YIELD = 4, NO_YIELD_GROWTH = 8 };
 enum { BLOCKS_WHOLE_ROUND = 512 };
 /* Tracing gives up when so many paths have stored no photon at all. */
 static const uint64_t PATHS_WITHOUT_PHOTON_MAX = 1u << 20;
-/* A path is split into so many parts at one surface at most. */
+/* A begun path is split into so many parts at most, all surfaces together. */
 enum { SPLIT_MOST = 4096 };
 /* Random streams, apart from those of the eye. */
 enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2, STREAM_TRIALS = 2 /* added to those */ };
@@ -54,7 +54,8 @@ typedef struct photon_path {
     rgb flux;
     rng random;
     uint64_t key;
-    float weight;    /* by power over by the guide and by splitting: how much rarer its photons would be */
+    float weight;    /* how dense such paths would be by power alone, over how dense guide and parts make them */
+    float share;     /* of the begun path, that this part has */
     int scatterings; /* but for panes, where they are direct */
     int arrivals;    /* at surfaces, panes too */
     bool is_diffuse; /* has gone on from a place by its gathered lobes */
@@ -203,7 +204,7 @@ static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
     if (settings->filters_textures)
         ray.cone = (ray_cone){photon_width(s, settings->wanted), 0.0f, true};
     rgb flux = rgb_scale(start.flux, (t->trial ? 1.0f : weight) / probability);
-    *out_path = (photon_path){ray, flux, random, key, weight, 0, 0, false};
+    *out_path = (photon_path){ray, flux, random, key, weight, 1.0f, 0, 0, false};
     count_flux(t->out->balance.emitted, out_path->flux);
     return true;
 }
@@ -313,15 +314,16 @@ static bool scatter(tracer *t, photon_path *path, const surface_hit *hit, const 
 static uint32_t count_parts(const tracer *t, const photon_path *path, const surface_hit *hit, const arrival_surface *m)
 {
     const photon_tracing_settings *settings = t->settings;
-    if (!(settings->split_above > 0.0f) || !arrival_surface_has(m, BSDF_GATHERED))
+    bool is_last = path->scatterings >= settings->max_scatterings || path->arrivals >= SCATTERING_CAP;
+    if (!(settings->split_above > 0.0f) || is_last || !arrival_surface_has(m, BSDF_GATHERED))
         return 1;
     surface_rest at = rest_of_arrival(t->s, path, hit);
     float importance = place_importance_at(settings->onward, at.position, at.geometric_normal);
     float flux = path->flux.r + path->flux.g + path->flux.b;
     if (t->trial)
         flux /= t->trial->density;
-    float parts = flux * sqrtf(importance) / settings->split_above;
-    return !(parts > 1.0f) ? 1 : parts < (float)SPLIT_MOST ? (uint32_t)(parts + 0.5f) : SPLIT_MOST;
+    float parts = flux * sqrtf(importance) / settings->split_above, most = SPLIT_MOST * path->share;
+    return !(parts > 1.0f) ? 1 : (uint32_t)fmaxf(fminf(parts + 0.5f, most), 1.0f);
 }
 
 /* One of the parts, equally bright, each with random numbers of its own. */
@@ -332,6 +334,7 @@ static photon_path part_of_path(const photon_path *path, uint32_t part, uint32_t
     float share = 1.0f / (float)parts;
     out.flux = rgb_scale(path->flux, share);
     out.weight *= share;
+    out.share *= share;
     out.key = hash_combine(path->key, number);
     out.random.state = hash_combine(path->random.state, number);
     return out;

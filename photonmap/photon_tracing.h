@@ -67,7 +67,8 @@ typedef struct photon_tracing_settings {
     const emission_guide *guide;    /* where paths begin */
     const place_importance *asked;  /* elsewhere photons are stored no denser than power alone would have them */
     const place_importance *onward; /* diffuse surfaces whose light arrives where it is asked for */
-    float split_above; /* paths on those are split by their flux times the root of that importance; 0: they are not */
+    float split_above; /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
+                          importance, over this parts; > 0 only with `onward`; 0: paths are not split */
     double progress_begin, progress_end; /* of AG_PHASE_PHOTONS */
 } photon_tracing_settings;
 

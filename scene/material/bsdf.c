@@ -130,7 +130,7 @@ static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
     b->is_pane = pane_is_of(&b->parameters);
     b->lobe_count = 0;
     if (b->parameters.kind == MATERIAL_HAIR)
-        b->fibre = hair_fibre_at(&b->parameters, hit->uv.y);
+        b->fibre = hair_fibre_at(&b->parameters, hit->uv.y, frame_to_local(&b->shading, out));
     add_lobes(b);
     for (int k = 0; hit->is_strand && k < b->lobe_count; k++)
         b->lobes[k].group = BSDF_TRACED;
@@ -151,7 +151,7 @@ static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
     b->is_pane = true;
     b->lobe_count = 0;
     add_lobe(b, LOBE_SLAB, BSDF_TRACED, true, 1.0f);
-    slab_find_shares(&b->parameters, fabsf(vec3_dot(b->out, b->shading.z)), hit->slab.thickness, between,
+    slab_find_shares(&b->parameters, fabsf(vec3_dot(b->out, b->geometric_normal)), hit->slab.thickness, between,
                      &b->slab_reflected, &b->slab_through);
 }
 
@@ -281,11 +281,12 @@ bool bsdf_arrival_factor_beside(const scene *s, const surface_hit *hit, const bs
     return true;
 }
 
-rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)
+/* The value, and the density of sampling. */
+static rgb evaluate_all(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction, float *out_pdf)
 {
     vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
     rgb sum = rgb_gray(0.0f);
-    float correction = transport == BSDF_FLUX ? flux_correction(b, direction) : 1.0f;
+    float correction = transport == BSDF_FLUX ? flux_correction(b, direction) : 1.0f, density = 0.0f;
     for (int k = 0; k < b->lobe_count; k++) {
         rgb value;
         float pdf;
@@ -293,23 +294,23 @@ rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec
             continue;
         bsdf_lobe_evaluate(b, &b->lobes[k], transport, direction, o, i, &value, &pdf);
         sum = rgb_add(sum, bsdf_lobe_is_diffuse(b->lobes[k].kind) ? value : rgb_scale(value, correction));
+        density += pdf * b->lobes[k].probability;
     }
+    *out_pdf = density > 0.0f ? density / bsdf_probability(b, lobes) : 0.0f;
     return sum;
+}
+
+rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)
+{
+    float pdf;
+    return evaluate_all(b, lobes, transport, direction, &pdf);
 }
 
 float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction)
 {
-    vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
-    float sum = 0.0f;
-    for (int k = 0; k < b->lobe_count; k++) {
-        rgb value;
-        float pdf;
-        if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
-            continue;
-        bsdf_lobe_evaluate(b, &b->lobes[k], transport, direction, o, i, &value, &pdf);
-        sum += pdf * b->lobes[k].probability;
-    }
-    return sum > 0.0f ? sum / bsdf_probability(b, lobes) : 0.0f;
+    float pdf;
+    evaluate_all(b, lobes, transport, direction, &pdf);
+    return pdf;
 }
 
 /* Picks among the lobes asked for, and makes the random number fresh again. */
@@ -388,9 +389,9 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
         return false;
     frame around = is_by_geometry ? frame_from_z(b->geometric_normal) : b->shading;
     out->direction = vec3_normalize(frame_to_world(&around, i));
-    out->pdf_solid_angle = bsdf_pdf(b, lobes, transport, out->direction);
+    rgb value = evaluate_all(b, lobes, transport, out->direction, &out->pdf_solid_angle);
     if (!(out->pdf_solid_angle > 0.0f))
         return false;
-    out->weight = rgb_scale(bsdf_evaluate(b, lobes, transport, out->direction), 1.0f / out->pdf_solid_angle);
+    out->weight = rgb_scale(value, 1.0f / out->pdf_solid_angle);
     return rgb_is_finite(out->weight);
 }

@@ -142,10 +142,7 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
         if (bsdf_is_same_side(b, direction))
             coat_metal_lobe(m, o, i, out_value, out_pdf);
         return;
-    case LOBE_HAIR:
-        *out_value = transport == BSDF_RADIANCE ? hair_scatter(&b->fibre, o, i) : hair_scatter_flux(&b->fibre, o, i);
-        *out_pdf = hair_pdf(&b->fibre, o, i);
-        return;
+    case LOBE_HAIR: hair_evaluate(&b->fibre, transport == BSDF_FLUX, i, out_value, out_pdf); return;
     case LOBE_PRINCIPLED:
     case LOBE_CLEARCOAT:
         bsdf_principled_evaluate(b, lobe->kind, transport, direction, o, i, out_value, out_pdf);
@@ -220,7 +217,7 @@ bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_
     if (kind == LOBE_PRINCIPLED || kind == LOBE_CLEARCOAT)
         return bsdf_principled_sample_rough(m, kind, o, u_lobe, u, out_local);
     if (kind == LOBE_HAIR) {
-        *out_local = hair_sample(&b->fibre, o, u_lobe, u);
+        *out_local = hair_sample(&b->fibre, u_lobe, u);
         return true;
     }
     if (o.z == 0.0f)

@@ -36,27 +36,6 @@ rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n)
     return rgb_make(sigma_a[0], sigma_a[1], sigma_a[2]);
 }
 
-hair_fibre hair_fibre_at(const material *m, float v)
-{
-    hair_fibre h = {.ior = (double)m->ior,
-                    .sigma_a = {(double)m->hair_sigma_a.r, (double)m->hair_sigma_a.g, (double)m->hair_sigma_a.b}};
-    double bm = fmax((double)m->hair_beta_m, BETA_MIN), bn = fmax((double)m->hair_beta_n, BETA_MIN);
-    /* v grows to the axis' left as the ray comes, phi to its right */
-    h.offset = fmin(fmax(1.0 - 2.0 * (double)v, -1.0), 1.0);
-    h.variance[0] = square(0.726 * bm + 0.812 * bm * bm + 3.7 * power(bm, 20));
-    h.variance[1] = 0.25 * h.variance[0];
-    h.variance[2] = h.variance[3] = 4.0 * h.variance[0];
-    h.width = 0.62665706865775012560 * (0.265 * bn + 1.194 * bn * bn + 5.372 * power(bn, 22)); /* sqrt(pi / 8) */
-    float s, c;
-    sincos_turns(m->hair_tilt_degrees / 360.0f, &s, &c);
-    h.sin_tilt[0] = (double)s, h.cos_tilt[0] = (double)c;
-    for (int k = 1; k < HAIR_TILTED; k++) {
-        h.sin_tilt[k] = 2.0 * h.cos_tilt[k - 1] * h.sin_tilt[k - 1];
-        h.cos_tilt[k] = square(h.cos_tilt[k - 1]) - square(h.sin_tilt[k - 1]);
-    }
-    return h;
-}
-
 /* --- a direction, and what becomes of light that comes or goes along it --- */
 
 typedef struct inclination {
@@ -86,15 +65,9 @@ static double angle_of(double sine, double cosine)
     return TWO_PI * (turns > 0.5 ? turns - 1.0 : turns);
 }
 
-/* What each lobe carries, and the azimuth of its middle. */
-typedef struct fibre_lobes {
-    double share[HAIR_LOBES][3], mean[HAIR_LOBES];
-    double turn[HAIR_TILTED];
-} fibre_lobes;
-
-static fibre_lobes lobes_of(const hair_fibre *h, inclination o)
+static hair_lobes lobes_of(const hair_fibre *h, inclination o)
 {
-    fibre_lobes w;
+    hair_lobes w;
     double cos_gamma = sine_to_cosine(h->offset);
     double bent = sqrt(fmax(1e-12, h->ior * h->ior - o.sine * o.sine)) / fmax(o.cosine, 1e-6); /* Marschner's eta' */
     double sin_inside = fmin(fmax(h->offset / bent, -1.0), 1.0), cos_inside = sine_to_cosine(sin_inside);
@@ -117,130 +90,137 @@ static fibre_lobes lobes_of(const hair_fibre *h, inclination o)
 
 /* --- longitudinal scattering: its integral over cos(theta) dtheta is 1 --- */
 
-/* Abramowitz, Stegun, 9.6.12 and 9.7.1, times e^(-x). */
+/* I0(x) e^(-x), x >= 0, to 3e-7 (Abramowitz, Stegun, 9.8.1 and 9.8.2). */
 static double bessel_i0_scaled(double x)
 {
-    if (x > 12.0) {
-        double y = 1.0 / (8.0 * x);
-        return (1.0 + y * (1.0 + y * (4.5 + y * 37.5))) / sqrt(TWO_PI * x);
+    if (x < 3.75) {
+        double t = square(x / 3.75);
+        double i0 = 1.0 + t * (3.5156229 +
+                               t * (3.0899424 + t * (1.2067492 + t * (0.2659732 + t * (0.0360768 + t * 0.0045813)))));
+        return i0 * exponential(-x);
     }
-    double q = 0.25 * x * x, term = 1.0, sum = 1.0;
-    for (int k = 1; k <= 32 && term > 1e-10 * sum; k++) {
-        term *= q / (k * k);
-        sum += term;
-    }
-    return sum * exponential(-x);
+    double t = 3.75 / x;
+    double tail = -0.02057706 + t * (0.02635537 + t * (-0.01647633 + t * 0.00392377));
+    return (0.39894228 + t * (0.01328592 + t * (0.00225319 + t * (-0.00157565 + t * (0.00916281 + t * tail))))) /
+           sqrt(x);
 }
 
-static double longitudinal(inclination i, inclination o, double variance)
+static double longitudinal(const hair_fibre *h, int lobe, inclination i, inclination o)
 {
-    double inverse = 1.0 / variance, a = i.cosine * o.cosine * inverse, b = i.sine * o.sine * inverse;
-    return bessel_i0_scaled(a) * exponential(a - b - inverse) * inverse / (1.0 - exponential(-2.0 * inverse));
+    double precision = h->precision[lobe], a = i.cosine * o.cosine * precision, b = i.sine * o.sine * precision;
+    return bessel_i0_scaled(a) * exponential(a - b - precision) * h->norm[lobe];
 }
 
-static vec3 sample_longitudinal(inclination o, double variance, vec2 u, double *out_cosine)
+/* The sine of a direction's inclination. */
+static double sample_longitudinal(inclination o, double precision, vec2 u)
 {
-    double c = 1.0 + variance * natural_logarithm(fmax((double)u.x, 1e-10) +
-                                                  (1.0 - (double)u.x) * exponential(-2.0 / variance));
-    double s = sine_to_cosine(c);
+    double c = 1.0 + natural_logarithm(fmax((double)u.x, 1e-10) + (1.0 - (double)u.x) * exponential(-2.0 * precision)) /
+                         precision;
     float sin_turn, cos_turn;
     sincos_turns(u.y, &sin_turn, &cos_turn);
-    double sine = fmin(fmax(-c * o.sine + s * (double)cos_turn * o.cosine, -1.0), 1.0);
-    *out_cosine = sine_to_cosine(sine);
-    return (vec3){(float)sine, 0.0f, 0.0f};
+    return fmin(fmax(-c * o.sine + sine_to_cosine(c) * (double)cos_turn * o.cosine, -1.0), 1.0);
 }
 
 /* --- azimuthal scattering: its integral over phi is 1 --- */
 
-static double azimuthal(double angle, double width)
+static double azimuthal(const hair_fibre *h, double angle)
 {
-    double x = angle - TWO_PI * floor((angle + HALF_TURN) / TWO_PI), e = exponential(-fabs(x) / width);
-    double end = exponential(-HALF_TURN / width);
-    return e / (width * square(1.0 + e)) * (1.0 + end) / (1.0 - end);
+    double x = angle - TWO_PI * floor((angle + HALF_TURN) / TWO_PI), e = exponential(-fabs(x) / h->width);
+    return e / square(1.0 + e) * h->width_norm;
 }
 
 static double sample_azimuthal(double u, double width)
 {
     double end = exponential(-HALF_TURN / width), low = end / (1.0 + end), high = 1.0 / (1.0 + end);
-    double p = low + (high - low) * u;
-    p = fmin(fmax(p, 1e-12), 1.0 - 1e-12);
+    double p = fmin(fmax(low + (high - low) * u, 1e-12), 1.0 - 1e-12);
     return fmin(fmax(-width * natural_logarithm((1.0 - p) / p), -HALF_TURN), HALF_TURN);
 }
 
 /* --- all lobes together --- */
 
-/* From o, which decides what each lobe carries, to i. */
-static double lobe_value(const hair_fibre *h, const fibre_lobes *w, int lobe, inclination o, inclination i, double turn)
+hair_fibre hair_fibre_at(const material *m, float v, vec3 out)
 {
-    double around = lobe < HAIR_TILTED ? azimuthal(turn - w->turn[lobe], h->width) : 1.0 / TWO_PI;
-    return around > 0.0 ? around * longitudinal(i, tilted(h, o, lobe), h->variance[lobe]) : 0.0;
-}
-
-/* How far i lies about the axis from o. */
-static double turn_between(vec3 o, vec3 i)
-{
-    return angle_of((double)i.z, (double)i.y) - angle_of((double)o.z, (double)o.y);
-}
-
-static rgb scatter(const hair_fibre *h, inclination o, inclination i, double turn)
-{
-    fibre_lobes w = lobes_of(h, o);
-    double sum[3] = {0.0, 0.0, 0.0};
-    for (int k = 0; k < HAIR_LOBES; k++) {
-        double value = lobe_value(h, &w, k, o, i, turn);
-        for (int c = 0; c < 3; c++)
-            sum[c] += value * w.share[k][c];
+    hair_fibre h = {.ior = (double)m->ior,
+                    .sigma_a = {(double)m->hair_sigma_a.r, (double)m->hair_sigma_a.g, (double)m->hair_sigma_a.b}};
+    double bm = fmax((double)m->hair_beta_m, BETA_MIN), bn = fmax((double)m->hair_beta_n, BETA_MIN);
+    /* v grows to the axis' left as the ray comes, phi to its right */
+    h.offset = fmin(fmax(1.0 - 2.0 * (double)v, -1.0), 1.0);
+    double variance = square(0.726 * bm + 0.812 * bm * bm + 3.7 * power(bm, 20));
+    h.precision[0] = 1.0 / variance;
+    h.precision[1] = 4.0 / variance;
+    h.precision[2] = h.precision[3] = 0.25 / variance;
+    for (int k = 0; k < HAIR_LOBES; k++)
+        h.norm[k] = h.precision[k] / (1.0 - exponential(-2.0 * h.precision[k]));
+    h.width = 0.62665706865775012560 * (0.265 * bn + 1.194 * bn * bn + 5.372 * power(bn, 22)); /* sqrt(pi / 8) */
+    double end = exponential(-HALF_TURN / h.width);
+    h.width_norm = (1.0 + end) / ((1.0 - end) * h.width);
+    float s, c;
+    sincos_turns(m->hair_tilt_degrees / 360.0f, &s, &c);
+    h.sin_tilt[0] = (double)s, h.cos_tilt[0] = (double)c;
+    for (int k = 1; k < HAIR_TILTED; k++) {
+        h.sin_tilt[k] = 2.0 * h.cos_tilt[k - 1] * h.sin_tilt[k - 1];
+        h.cos_tilt[k] = square(h.cos_tilt[k - 1]) - square(h.sin_tilt[k - 1]);
     }
-    return rgb_make((float)sum[0], (float)sum[1], (float)sum[2]);
+    inclination o = inclination_of(out);
+    h.sine = o.sine, h.cosine = o.cosine;
+    h.azimuth = angle_of((double)out.z, (double)out.y);
+    h.lobes = lobes_of(&h, o);
+    return h;
 }
 
-rgb hair_scatter(const hair_fibre *h, vec3 eye, vec3 light)
+/* From o, whose lobes these are, to i, which lies so far about the axis from it. */
+static void lobe_values(const hair_fibre *h, const hair_lobes *of_o, inclination o, inclination i, double turn,
+                        double out[HAIR_LOBES])
 {
-    return scatter(h, inclination_of(eye), inclination_of(light), turn_between(eye, light));
+    for (int k = 0; k < HAIR_LOBES; k++) {
+        double around = k < HAIR_TILTED ? azimuthal(h, turn - of_o->turn[k]) : 1.0 / TWO_PI;
+        out[k] = around > 0.0 ? around * longitudinal(h, k, i, tilted(h, o, k)) : 0.0;
+    }
 }
 
-rgb hair_scatter_flux(const hair_fibre *h, vec3 light, vec3 eye)
+void hair_evaluate(const hair_fibre *h, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf)
 {
-    inclination from = inclination_of(light), to = inclination_of(eye);
-    /* all places across are as likely, so that turning the same sense about the axis serves both directions */
-    rgb value = scatter(h, to, from, turn_between(light, eye));
-    return from.cosine > 1e-6 ? rgb_scale(value, (float)(to.cosine / from.cosine)) : rgb_gray(0.0f);
+    inclination o = {h->sine, h->cosine}, i = inclination_of(direction);
+    double turn = angle_of((double)direction.z, (double)direction.y) - h->azimuth, values[HAIR_LOBES];
+    double sum[3] = {0.0, 0.0, 0.0}, density = 0.0, all = 0.0, narrower = 1.0;
+    const hair_lobes *carried = &h->lobes;
+    hair_lobes of_eye;
+    lobe_values(h, carried, o, i, turn, values);
+    for (int k = 0; k < HAIR_LOBES; k++) {
+        density += values[k] * carried->mean[k];
+        all += carried->mean[k];
+    }
+    if (is_flux) { /* all places across are as likely, so that turning the same sense about the axis serves both ways */
+        of_eye = lobes_of(h, i);
+        carried = &of_eye;
+        lobe_values(h, carried, i, o, turn, values);
+        narrower = i.cosine / fmax(o.cosine, 1e-6);
+    }
+    for (int k = 0; k < HAIR_LOBES; k++)
+        for (int c = 0; c < 3; c++)
+            sum[c] += values[k] * carried->share[k][c] * narrower;
+    *out_value = rgb_make((float)sum[0], (float)sum[1], (float)sum[2]);
+    *out_pdf = (float)(density / all);
 }
 
-vec3 hair_sample(const hair_fibre *h, vec3 o, float u_lobe, vec2 u)
+vec3 hair_sample(const hair_fibre *h, float u_lobe, vec2 u)
 {
-    inclination from = inclination_of(o);
-    fibre_lobes w = lobes_of(h, from);
-    double all = 0.0, before = 0.0, p = 0.0, x = (double)u_lobe, cosine;
+    double all = 0.0, before = 0.0, p = 0.0, x = (double)u_lobe;
     int lobe = 0;
     for (int k = 0; k < HAIR_LOBES; k++)
-        all += w.mean[k];
+        all += h->lobes.mean[k];
     for (lobe = 0; lobe < HAIR_LOBES; lobe++) {
-        p = w.mean[lobe] / all;
+        p = h->lobes.mean[lobe] / all;
         if (x < before + p || lobe == HAIR_LOBES - 1)
             break;
         before += p;
     }
     x = fmin(fmax((x - before) / fmax(p, 1e-12), 0.0), 0x1.fffffep-1);
-    vec3 i = sample_longitudinal(tilted(h, from, lobe), h->variance[lobe], u, &cosine);
-    double turn = lobe < HAIR_TILTED ? w.turn[lobe] + sample_azimuthal(x, h->width) : TWO_PI * x, s, c;
-    turn += angle_of((double)o.z, (double)o.y);
-    turn /= TWO_PI;
+    inclination o = {h->sine, h->cosine};
+    double sine = sample_longitudinal(tilted(h, o, lobe), h->precision[lobe], u), cosine = sine_to_cosine(sine);
+    double turn = lobe < HAIR_TILTED ? h->lobes.turn[lobe] + sample_azimuthal(x, h->width) : TWO_PI * x;
+    turn = (turn + h->azimuth) / TWO_PI;
     float sin_turn, cos_turn;
     sincos_turns((float)(turn - floor(turn)), &sin_turn, &cos_turn);
-    s = (double)sin_turn, c = (double)cos_turn;
-    i.y = (float)(cosine * c), i.z = (float)(cosine * s);
-    return i;
-}
-
-float hair_pdf(const hair_fibre *h, vec3 o, vec3 i)
-{
-    inclination from = inclination_of(o), to = inclination_of(i);
-    fibre_lobes w = lobes_of(h, from);
-    double turn = turn_between(o, i), sum = 0.0, all = 0.0;
-    for (int k = 0; k < HAIR_LOBES; k++) {
-        all += w.mean[k];
-        sum += w.mean[k] > 0.0 ? w.mean[k] * lobe_value(h, &w, k, from, to, turn) : 0.0;
-    }
-    return (float)(sum / all);
+    return (vec3){(float)sine, (float)cosine * cos_turn, (float)cosine * sin_turn};
 }

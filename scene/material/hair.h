@@ -14,30 +14,35 @@
 
 enum { HAIR_TILTED = 3, HAIR_LOBES = 4 }; /* R, TT, TRT, whose angles the scales shift, and all longer paths */
 
+/* What each lobe carries of light along one direction, and how far from its azimuth the lobe's middle is. */
+typedef struct hair_lobes {
+    double share[HAIR_LOBES][3], mean[HAIR_LOBES];
+    double turn[HAIR_TILTED];
+} hair_lobes;
+
+/* A place of a fibre, and the direction that light is scattered from or to. */
 typedef struct hair_fibre {
-    double ior;                  /* of the fibre in air */
-    double sigma_a[3];           /* absorbed per radius of the path within */
-    double offset;               /* place across: sine of the normal's angle to the ray, [-1, 1] */
-    double variance[HAIR_LOBES]; /* of the angle to the axis */
-    double width;                /* scale of the logistic distribution about the axis, radians */
+    double ior;                                     /* of the fibre in air */
+    double sigma_a[3];                              /* absorbed per radius of the path within */
+    double offset;                                  /* place across: sine of the normal's angle to the ray, [-1, 1] */
+    double precision[HAIR_LOBES], norm[HAIR_LOBES]; /* 1 / variance of the inclination, and its density's factor */
+    double width, width_norm; /* scale of the logistic distribution of the azimuth, and the factor */
     double sin_tilt[HAIR_TILTED], cos_tilt[HAIR_TILTED]; /* of once, twice and four times the scales' angle */
+    double sine, cosine, azimuth; /* of the direction: its inclination, and the angle about the axis */
+    hair_lobes lobes;             /* of the direction */
 } hair_fibre;
 
 /* The colour within hair that scatters much light back in this colour, each channel in [0, 1] (Chiang 2016, eq. 9). */
 rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n);
 
-/* v: the second surface parameter of the place. */
-hair_fibre hair_fibre_at(const material *m, float v);
+/* v: the second surface parameter of the place. out: in the shading frame, unit. */
+hair_fibre hair_fibre_at(const material *m, float v, vec3 out);
 
-/* f |cos| of radiance that comes from `light` and leaves to `eye`; directions in the shading frame, unit. */
-rgb hair_scatter(const hair_fibre *h, vec3 eye, vec3 light);
+/* f |cos|, and the density per solid angle with which hair_sample takes the direction: of radiance that comes from
+ * `direction` and leaves to `out`; or of flux that comes from `out` and leaves to `direction`, per flux that meets the
+ * fibre, which seems the narrower the more it points to the light. */
+void hair_evaluate(const hair_fibre *h, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf);
 
-/* Of flux, what is scattered from `light` to `eye` per flux that meets the fibre, which seems the narrower
- * the more it points to the light. */
-rgb hair_scatter_flux(const hair_fibre *h, vec3 light, vec3 eye);
-
-/* Samples a direction from o, and its density per solid angle. */
-vec3 hair_sample(const hair_fibre *h, vec3 o, float u_lobe, vec2 u);
-float hair_pdf(const hair_fibre *h, vec3 o, vec3 i);
+vec3 hair_sample(const hair_fibre *h, float u_lobe, vec2 u);
 
 #endif

@@ -7,6 +7,8 @@
 
 /* Of the triangles at one edge each is held against so many before it: more than two are rare. */
 enum { EDGE_NEIGHBORS_MAX = 8 };
+/* Normals of a file's vertices are off by this where they were rounded to bytes, radians: sqrt(3) / 2 / 127. */
+static const float VERTEX_ANGLE_MAX = 7e-3f;
 
 typedef struct corner {
     vec3 at;
@@ -72,10 +74,10 @@ static void difference(vec3 a, vec3 b, double out[3])
 }
 
 /* Both unit; the side does not matter. */
-static bool is_parallel(vec3 a, vec3 b)
+static bool is_parallel(vec3 a, vec3 b, float angle_max)
 {
     vec3 apart = vec3_sub(a, vec3_face_forward(b, a));
-    return vec3_length_squared(apart) <= FLAT_ANGLE_MAX * FLAT_ANGLE_MAX;
+    return vec3_length_squared(apart) <= angle_max * angle_max;
 }
 
 /* The normal and area of a triangle; zero where its vertices have other normals. */
@@ -94,7 +96,7 @@ static void measure(work *w, uint32_t triangle)
         return;
     vec3 normal = {(float)(n[0] / length), (float)(n[1] / length), (float)(n[2] / length)};
     for (int k = 0; m->normals && k < 3; k++)
-        if (!is_parallel(normal, m->normals[index[k]]))
+        if (!is_parallel(normal, m->normals[index[k]], VERTEX_ANGLE_MAX))
             return;
     w->normal[triangle] = normal;
 }
@@ -132,7 +134,7 @@ static void join_neighbors(work *w)
             const edge *x = &w->edges[k], *y = &w->edges[i];
             if (x->low != y->low || x->high != y->high)
                 break;
-            if (is_parallel(w->normal[x->triangle], w->normal[y->triangle]))
+            if (is_parallel(w->normal[x->triangle], w->normal[y->triangle], FLAT_ANGLE_MAX))
                 join(w, x->triangle, y->triangle);
         }
 }
@@ -167,7 +169,7 @@ static ag_status gather(work *w, double share_min, uint32_t *patch_of, flat_patc
         if (is_first)
             *p = (flat_patch){.normal = w->normal[t], .largest_triangle = t};
         /* a finely cut cylinder turns little from edge to edge, but more in all */
-        is_bent[i] = is_bent[i] || !is_parallel(p->normal, w->normal[t]);
+        is_bent[i] = is_bent[i] || !is_parallel(p->normal, w->normal[t], FLAT_ANGLE_MAX);
         if (w->area[t] > w->area[p->largest_triangle])
             p->largest_triangle = t;
         p->area += w->area[t];

@@ -88,11 +88,47 @@ static void odd_fields_are_safe(void **state)
     place_importance_reset(&importance);
 }
 
+/* 64 points a square meter on the left half of a square of 8 x 8, and none on the right one, as shares of twice as
+ * many: the left reads as it is, the right as more than nothing and less than two points for each part that was looked
+ * at, and whatever faces another way as nothing. */
+static void a_smooth_field_is_nowhere_nothing(void **state)
+{
+    (void)state;
+    enum { HALF_COUNT = 2048 };
+    asked_place *points = malloc(HALF_COUNT * sizeof *points);
+    place_importance importance;
+    const vec3 up = {0.0f, 0.0f, 1.0f};
+    assert_non_null(points);
+    rng random = test_random(4);
+    for (int i = 0; i < HALF_COUNT; i++)
+        points[i] = (asked_place){random_in_box(&random, (vec3){-4.0f, -4.0f, 0.0f}, (vec3){0.0f, 4.0f, 0.0f}), up};
+    assert_int_equal(place_importance_create_smooth(points, HALF_COUNT, 2 * HALF_COUNT, (vec3){-5.0f, -5.0f, -5.0f},
+                                                    (vec3){5.0f, 5.0f, 5.0f}, &importance),
+                     AG_OK);
+    double left = 0.0, right = 0.0, least = INFINITY;
+    for (int i = 0; i < 4000; i++) {
+        vec3 at = random_in_box(&random, (vec3){-3.9f, -3.9f, 0.0f}, (vec3){-0.1f, 3.9f, 0.0f});
+        left += (double)place_importance_at(&importance, at, up) / 4000.0;
+        assert_true(place_importance_at(&importance, at, vec3_negate(up)) == 0.0f);
+        at.x += 4.4f;
+        double there = (double)place_importance_at(&importance, at, up);
+        right += there / 4000.0;
+        least = fmin(least, there);
+    }
+    assert_relative(left, 0.5 / 32.0, 0.1);
+    assert_true(least > 0.0 && right < 0.02 * left);
+    place_importance_reset(&importance);
+    assert_int_equal(place_importance_create_smooth(NULL, 0, 0, up, up, &importance), AG_OK);
+    assert_true(place_importance_at(&importance, up, up) == 0.0f);
+    free(points);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_even_field_is_even),
         cmocka_unit_test(what_is_asked_more_counts_more),
+        cmocka_unit_test(a_smooth_field_is_nowhere_nothing),
         cmocka_unit_test(odd_fields_are_safe),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -20,15 +20,23 @@ static vec3 toward(double theta, double phi)
     return (vec3){(float)sin(theta), (float)(cos(theta) * cos(phi)), (float)(cos(theta) * sin(phi))};
 }
 
+static rgb scattered(const hair_fibre *h, bool is_flux, vec3 direction)
+{
+    rgb value;
+    float pdf;
+    hair_evaluate(h, is_flux, direction, &value, &pdf);
+    return value;
+}
+
 /* What leaves to the eye in a furnace of radiance 1. */
-static rgb furnace_of(const hair_fibre *h, vec3 eye)
+static rgb furnace_of(const hair_fibre *h)
 {
     enum { ROWS = 160, COLUMNS = 160 };
     double sum[3] = {0.0, 0.0, 0.0};
     for (int j = 0; j < ROWS; j++)
         for (int k = 0; k < COLUMNS; k++) {
             double sine = -1.0 + 2.0 * (j + 0.5) / ROWS;
-            rgb value = hair_scatter(h, eye, toward(asin(sine), 2.0 * PI * (k + 0.5) / COLUMNS));
+            rgb value = scattered(h, false, toward(asin(sine), 2.0 * PI * (k + 0.5) / COLUMNS));
             sum[0] += (double)value.r, sum[1] += (double)value.g, sum[2] += (double)value.b;
         }
     float cell = (float)(4.0 * PI / ROWS / COLUMNS);
@@ -42,8 +50,8 @@ static void white_hair_keeps_all(void **state)
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < 5; i++) {
             material m = hair(BETAS[k][0], BETAS[k][1], 2.0f, 0.0f);
-            hair_fibre h = hair_fibre_at(&m, 0.03f + 0.22f * (float)i);
-            rgb all = furnace_of(&h, toward(-1.2 + 0.6 * i, 0.4 + i));
+            hair_fibre h = hair_fibre_at(&m, 0.03f + 0.22f * (float)i, toward(-1.2 + 0.6 * i, 0.4 + i));
+            rgb all = furnace_of(&h);
             assert_close(all.r, 1.0, 2e-3);
         }
 }
@@ -54,8 +62,8 @@ static void colored_hair_absorbs(void **state)
     (void)state;
     for (int k = 0; k < 4; k++) {
         material m = hair(0.4f, 0.4f, 0.0f, 0.05f * (float)(1 + k));
-        hair_fibre h = hair_fibre_at(&m, 0.5f);
-        rgb all = furnace_of(&h, toward(0.0, 1.0));
+        hair_fibre h = hair_fibre_at(&m, 0.5f, toward(0.0, 1.0));
+        rgb all = furnace_of(&h);
         double r = (double)fresnel_dielectric(1.0f, 1.55f);
         const float values[3] = {all.r, all.g, all.b};
         for (int c = 0; c < 3; c++) {
@@ -110,11 +118,11 @@ static void values_are_those_of_the_model(void **state)
         material m = hair(0.15f + 0.8f * rng_float(&random), 0.1f + 0.9f * rng_float(&random),
                           6.0f * rng_float(&random), rng_float(&random));
         float v = rng_float(&random);
-        hair_fibre h = hair_fibre_at(&m, v);
         double o = 2.8 * (double)rng_float(&random) - 1.4, i = 2.8 * (double)rng_float(&random) - 1.4;
         double phi = 6.0 * (double)rng_float(&random), turn = 6.0 * (double)rng_float(&random) - 3.0;
         double expected = written_out(&m, 1.0 - 2.0 * (double)v, o, i, turn);
-        rgb value = hair_scatter(&h, toward(o, phi), toward(i, phi + turn));
+        hair_fibre h = hair_fibre_at(&m, v, toward(o, phi));
+        rgb value = scattered(&h, false, toward(i, phi + turn));
         assert_close(value.r, expected, 1e-3 * expected + 1e-5);
     }
 }
@@ -134,9 +142,10 @@ static void photons_and_eye_agree(void **state)
         double eye = 0.0, photons = 0.0;
         enum { PLACES = 64 };
         for (int i = 0; i < PLACES; i++) {
-            hair_fibre h = hair_fibre_at(&m, ((float)i + 0.5f) / PLACES);
-            eye += (double)hair_scatter(&h, b, a).r * cos(theta_b) / PLACES;
-            photons += (double)hair_scatter_flux(&h, a, b).r * cos(theta_a) / PLACES;
+            float v = ((float)i + 0.5f) / PLACES;
+            hair_fibre of_eye = hair_fibre_at(&m, v, b), of_photon = hair_fibre_at(&m, v, a);
+            eye += (double)scattered(&of_eye, false, a).r * cos(theta_b) / PLACES;
+            photons += (double)scattered(&of_photon, true, b).r * cos(theta_a) / PLACES;
         }
         assert_close(photons, eye, 1e-3 * eye + 1e-6);
     }

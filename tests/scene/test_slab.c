@@ -87,6 +87,15 @@ static void test_transmittance(void **state)
     slab_grid(&t, vec3_make(-20, -20, 1.25f), vec3_make(40, 0, 0), vec3_make(0, 40, 0), 7, "");
     expect_passed("faces of many triangles", &t, 1.5, CLEAR, 1);
 
+    /* a file's normals are rounded */
+    t.length = 0;
+    slab_say(&t, GLASS);
+    slab_grid(&t, LOW, vec3_make(0, 40, 0), vec3_make(40, 0, 0), 1,
+              "\"normal N\" [.004 .004 -1 0 .005 -1 -.004 -.004 -1 .004 0 -1]");
+    slab_grid(&t, vec3_make(-20, -20, 1.25f), vec3_make(40, 0, 0), vec3_make(0, 40, 0), 1,
+              "\"normal N\" [.004 -.004 1 -.003 .004 1 0 0 1 0 -.005 1]");
+    expect_passed("normals of bytes", &t, 1.5, CLEAR, 1);
+
     t.length = 0;
     slab_say(&t, GLASS);
     slab_box(&t, LOW, HIGH);
