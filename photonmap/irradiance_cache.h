@@ -82,7 +82,8 @@ typedef struct irradiance_request {
 
 /* Asks for the irradiance at a point, on the side of the unit normal. Either it is answered (request->irradiance_photon
  * is PHOTON_NONE), or another thread is computing it: then it is to be asked for again with irradiance_cache_retry,
- * after the caller's other work. Where no estimate holds (irradiance_estimate.h) at the photon that stands for the
+ * after the caller's other work. Where that photon's irradiance does not reach (photon_map_reaches), an estimate at the
+ * point answers. Where no estimate holds (irradiance_estimate.h) at the photon that stands for the
  * point, or the point does not see that photon and would have to, the answer is that there is none. */
 void irradiance_cache_get(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                           irradiance_request *out_request);

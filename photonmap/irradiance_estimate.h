@@ -16,8 +16,8 @@ typedef enum irradiance_extent {
 
 /* Irradiance [W/m^2] on the side of `normal` (unit), from the k nearest photons: their flux over the area out to the
  * next one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Near an edge, of either as far
- * as there is surface. scratch: photon_map_scratch_count(map) of them. The rays that it casts to find out where
- * surfaces end are added to *in_out_rays.
+ * as there is surface; beside brighter light, of the disc that ends before it. scratch: photon_map_scratch_count(map)
+ * of them. The rays that it casts to find out where surfaces end are added to *in_out_rays.
  *
  * Returns where the estimate holds. It holds nowhere if the surface within the disc is too small for the photons that a
  * disc holds: on a strip, a moulding, a leaf. There photons per area is right in the mean only, by values that are
