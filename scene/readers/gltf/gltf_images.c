@@ -17,7 +17,7 @@ static ag_status load_from_file(gltf_reader *r, const gltf_value *uri, const cha
     if (!path)
         return wrong ? gltf_error(r, uri, "%s", wrong) : AG_ERROR_MEMORY;
     ag_status status = texture_image_load(r->run, r->scene, path, encoding, out_image_index, message, sizeof message);
-    if (status != AG_OK)
+    if (status != AG_OK && status != AG_CANCELLED)
         gltf_error(r, uri, "%s", message[0] ? message : ag_status_text(status));
     free(path);
     return status;
@@ -56,7 +56,7 @@ ag_status gltf_load_image(gltf_reader *r, uint32_t index, image_encoding encodin
     snprintf(name, sizeof name, "%.400s#images[%u]", r->where.file, index);
     ag_status status = texture_image_load_memory(r->run, r->scene, name, bytes.data, bytes.size, encoding,
                                                  out_image_index, message, sizeof message);
-    if (status != AG_OK)
+    if (status != AG_OK && status != AG_CANCELLED)
         gltf_error(r, text ? &uri : &at, "%s", message[0] ? message : ag_status_text(status));
     return status;
 }

@@ -116,7 +116,7 @@ static ag_status add_picture(importer *i, const import_picture *p, picture_use u
     ag_status status = load_picture(i, p, encoding, &t.image_index, message, sizeof message);
     if (status == AG_ERROR_SYSTEM) /* no room for the picture, or no library that reads it */
         log_message(i->log, AG_LOG_ERROR, "%s", message);
-    if (status == AG_ERROR_MEMORY || status == AG_ERROR_SYSTEM)
+    if (status == AG_ERROR_MEMORY || status == AG_ERROR_SYSTEM || status == AG_CANCELLED)
         return status;
     if (status != AG_OK) {
         warn_picture(i, p, message);

@@ -288,7 +288,7 @@ ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const
         path ? texture_image_load(parser->run, s, path, encoding, &t->image_index, message, sizeof message)
              : AG_ERROR_MEMORY;
     free(path);
-    if (status && status != AG_ERROR_MEMORY)
+    if (status != AG_OK && status != AG_ERROR_MEMORY && status != AG_CANCELLED)
         pbrt_refuse(parser, list, parameter_name, "%s", message);
     if (status == AG_OK && t->image_index >= known_count && s->texture_images[t->image_index]->bad_count > 0)
         log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, parameter_name)->where,
