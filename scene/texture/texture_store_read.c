@@ -33,10 +33,11 @@ static ag_status read_packed(const texture_tiles *t, const texture_tile *tile, u
     unsigned char *packed = malloc(2 * size);
     if (!packed)
         return AG_ERROR_MEMORY;
-    const bool is_read = tile_file_read(t->store->file, packed, tile->file_bytes, tile->file_offset) &&
-                         tile_unpack(format_of(t), packed, tile->file_bytes, packed + size, out_pixels);
+    const ag_status status = tile_file_read(t->store->file, packed, tile->file_bytes, tile->file_offset)
+                                 ? tile_unpack(format_of(t), packed, tile->file_bytes, packed + size, out_pixels)
+                                 : AG_ERROR_SYSTEM;
     free(packed);
-    return is_read ? AG_OK : AG_ERROR_SYSTEM;
+    return status;
 }
 
 static ag_status read_tile(const texture_tiles *t, size_t number, unsigned char *out_pixels)

@@ -1,6 +1,7 @@
 /* texture_tile_packing.c: see texture_tile_packing.h. */
 #include "texture/texture_tile_packing.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 #include <zlib.h>
@@ -78,17 +79,18 @@ size_t tile_pack(tile_format f, const unsigned char *pixels, unsigned char *scra
     return size;
 }
 
-bool tile_unpack(tile_format f, const unsigned char *packed, size_t packed_bytes, unsigned char *scratch,
-                 unsigned char *out_pixels)
+ag_status tile_unpack(tile_format f, const unsigned char *packed, size_t packed_bytes, unsigned char *scratch,
+                      unsigned char *out_pixels)
 {
     const size_t size = tile_format_bytes(f);
     uLongf unpacked = (uLongf)size;
     if (packed_bytes == size) {
         memcpy(out_pixels, packed, size);
-        return true;
+        return AG_OK;
     }
-    if (uncompress(scratch, &unpacked, packed, (uLong)packed_bytes) != Z_OK || unpacked != size)
-        return false;
+    const int result = uncompress(scratch, &unpacked, packed, (uLong)packed_bytes);
+    if (result != Z_OK || unpacked != size)
+        return result == Z_MEM_ERROR ? AG_ERROR_MEMORY : AG_ERROR_SYSTEM;
     unfilter(f, scratch, out_pixels);
-    return true;
+    return AG_OK;
 }

@@ -6,7 +6,8 @@
 #ifndef AFTERGLOW_TEXTURE_TILE_PACKING_H
 #define AFTERGLOW_TEXTURE_TILE_PACKING_H
 
-#include <stdbool.h>
+#include "afterglow/base.h"
+
 #include <stddef.h>
 
 typedef struct tile_format {
@@ -21,8 +22,8 @@ static inline size_t tile_format_bytes(tile_format f) { return f.row_values * f.
 /* Gives how many bytes were written to out: at most half of tile_format_bytes, or all of them, as they were. scratch
  * and out have tile_format_bytes. 0: out of memory. */
 size_t tile_pack(tile_format f, const unsigned char *pixels, unsigned char *scratch, unsigned char *out);
-/* false: these bytes are no packed tile, or there is no memory. */
-bool tile_unpack(tile_format f, const unsigned char *packed, size_t packed_bytes, unsigned char *scratch,
-                 unsigned char *out_pixels);
+/* Errors: AG_ERROR_SYSTEM (these bytes are no packed tile), AG_ERROR_MEMORY. */
+ag_status tile_unpack(tile_format f, const unsigned char *packed, size_t packed_bytes, unsigned char *scratch,
+                      unsigned char *out_pixels);
 
 #endif
