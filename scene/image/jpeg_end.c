@@ -2,50 +2,84 @@
 #include "image/jpeg_end.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { START = 0xd8, SCAN = 0xda, END = 0xd9 };
 
-bool jpeg_is_cut_short(const unsigned char *bytes, size_t size)
+/* The byte that comes next. */
+typedef enum place { SEGMENT_BEGIN, SEGMENT_CODE, LENGTH_HIGH, LENGTH_LOW, IN_SCANS, AT_END } place;
+
+typedef struct walk {
+    place at;
+    size_t to_skip; /* of a segment: small pictures within are stepped over */
+    unsigned char before;
+} walk;
+
+static void step(walk *w, unsigned char byte)
 {
-    size_t at = 2;
-    if (size < 4 || bytes[0] != 0xff || bytes[1] != START)
-        return false;
-    while (at + 4 <= size && bytes[at] == 0xff && bytes[at + 1] != SCAN) { /* small pictures within are stepped over */
-        if (bytes[at + 1] == 0xff) {
-            at++; /* a byte of filling */
+    switch (w->at) {
+    case SEGMENT_BEGIN: w->at = byte == 0xff ? SEGMENT_CODE : IN_SCANS; break;
+    case SEGMENT_CODE:
+        if (byte != 0xff) /* a byte of filling */
+            w->at = byte == SCAN ? IN_SCANS : LENGTH_HIGH;
+        break;
+    case LENGTH_HIGH: w->at = LENGTH_LOW; break;
+    case LENGTH_LOW: {
+        const size_t length = (size_t)w->before << 8 | byte; /* with its own two bytes */
+        w->to_skip = length > 2 ? length - 2 : 0;
+        w->at = SEGMENT_BEGIN;
+        break;
+    }
+    case IN_SCANS: /* 0xff is followed by 0, or by a marker */
+        if (w->before == 0xff && byte == END)
+            w->at = AT_END;
+        break;
+    case AT_END: break;
+    }
+    w->before = byte;
+}
+
+/* Goes over the next bytes of a file, behind the marker that it begins with. */
+static void go_on(walk *w, const unsigned char *bytes, size_t size)
+{
+    for (size_t k = 0; k < size && w->at != AT_END; k++) {
+        if (w->to_skip > 0) {
+            const size_t skipped = w->to_skip < size - k ? w->to_skip : size - k;
+            w->to_skip -= skipped;
+            k += skipped - 1;
             continue;
         }
-        at += 2 + ((size_t)bytes[at + 2] << 8 | bytes[at + 3]);
+        if (w->at == IN_SCANS && w->before != 0xff) {
+            const unsigned char *next = memchr(bytes + k, 0xff, size - k);
+            k = next ? (size_t)(next - bytes) : size - 1;
+        }
+        step(w, bytes[k]);
     }
-    if (at + 4 > size)
-        return true;
-    for (; at + 1 < size; at++) { /* within a scan 0xff is followed by 0, or by a marker */
-        const unsigned char *next = memchr(bytes + at, 0xff, size - 1 - at);
-        if (!next)
-            return true;
-        at = (size_t)(next - bytes);
-        if (bytes[at + 1] == END)
-            return false;
-    }
-    return true;
+}
+
+bool jpeg_is_cut_short(const unsigned char *bytes, size_t size)
+{
+    walk w = {.at = SEGMENT_BEGIN};
+    if (size < 2 || bytes[0] != 0xff || bytes[1] != START)
+        return false;
+    go_on(&w, bytes + 2, size - 2);
+    return w.at != AT_END;
 }
 
 bool jpeg_file_is_cut_short(const char *path)
 {
-    unsigned char *bytes = NULL, begin[2];
-    bool is_cut = false;
+    unsigned char block[16384];
+    walk w = {.at = SEGMENT_BEGIN};
     FILE *file = fopen(path, "rb");
     if (!file)
         return false;
-    if (fread(begin, 1, 2, file) == 2 && begin[0] == 0xff && begin[1] == START && fseek(file, 0, SEEK_END) == 0) {
-        const long size = ftell(file);
-        bytes = size > 0 ? malloc((size_t)size) : NULL;
-        rewind(file);
-        is_cut = bytes && fread(bytes, 1, (size_t)size, file) == (size_t)size && jpeg_is_cut_short(bytes, (size_t)size);
+    size_t size = fread(block, 1, 2, file);
+    bool is_cut = size == 2 && block[0] == 0xff && block[1] == START;
+    while (is_cut && (size = fread(block, 1, sizeof block, file)) > 0) {
+        go_on(&w, block, size);
+        is_cut = w.at != AT_END;
     }
-    free(bytes);
+    is_cut = is_cut && !ferror(file);
     fclose(file);
     return is_cut;
 }

@@ -34,18 +34,21 @@ static double next_level_share(const texture_file_levels *l, const texture_image
         fine->tile_width_bits != coarse->tile_width_bits || fine->tile_height_bits != coarse->tile_height_bits)
         return 1.0;
     unsigned char *tile = malloc(bytes);
-    for (uint32_t k = 0; tile && k < TILES; k++) {
+    ag_status status = tile ? AG_OK : AG_ERROR_MEMORY;
+    for (uint32_t k = 0; k < TILES && status == AG_OK; k++) {
         const uint32_t width = 1u << fine->tile_width_bits, height = 1u << fine->tile_height_bits;
         const uint32_t x = (k * 5 % TILES * across / TILES) * width, y = (k * down / TILES) * height;
-        if (texture_file_levels_fetch(l, 0, x, y, false, tile, NULL) != AG_OK)
+        status = texture_file_levels_fetch(l, 0, x, y, false, tile, NULL);
+        if (status != AG_OK)
             break;
         fine_sum += sum_part(l, i, 0, tile, 0, 0, width, height);
-        if (texture_file_levels_fetch(l, 1, x / 2 & ~(width - 1), y / 2 & ~(height - 1), false, tile, NULL) != AG_OK)
-            break;
-        coarse_sum += 4.0 * sum_part(l, i, 1, tile, x / 2 & (width - 1), y / 2 & (height - 1), width / 2, height / 2);
+        status = texture_file_levels_fetch(l, 1, x / 2 & ~(width - 1), y / 2 & ~(height - 1), false, tile, NULL);
+        if (status == AG_OK)
+            coarse_sum +=
+                4.0 * sum_part(l, i, 1, tile, x / 2 & (width - 1), y / 2 & (height - 1), width / 2, height / 2);
     }
     free(tile);
-    return fine_sum > 0.0 ? coarse_sum / fine_sum : 1.0;
+    return status == AG_OK && fine_sum > 0.0 ? coarse_sum / fine_sum : 1.0;
 }
 
 void texture_file_levels_warn_of_loss(run_context *run, const texture_file_levels *l, const texture_image *i)
