@@ -26,6 +26,14 @@ typedef struct image {
     float chromaticities[8]; /* that the file brings: of red, green, blue, white, each x and y */
 } image;
 
+/* What is read of a picture. Its colours are red, green and blue and, where the same layer has it, alpha; all channels
+ * where none are named so. */
+typedef enum image_wish {
+    IMAGE_ALL_CHANNELS,  /* from the colours on, as floats */
+    IMAGE_COLORS,        /* as floats */
+    IMAGE_COMPACT_COLORS /* those of 8 bits as bytes */
+} image_wish;
+
 /* A file that holds tiles, and coarser levels as the one before halved. */
 enum { IMAGE_LEVELS_MAX = 32 };
 typedef struct image_level {

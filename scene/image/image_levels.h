@@ -1,6 +1,7 @@
-/* image_levels.h: parts of a picture whose file holds tiles and coarser levels, as maketx makes them (.tx), and tiled
- * OpenEXR and TIFF files with levels. At most some files are open at once; the others are opened for each part.
- * Flow: file -> image_module -> [here] -> texture_levels. Threads: one opens and closes; any number read. */
+/* image_levels.h: parts of a picture whose file holds tiles and coarser levels, down to a single pixel, as maketx makes
+ * them (.tx), and tiled OpenEXR and TIFF files with such levels. At most some files are open at once; the others are
+ * opened for each part. Flow: file -> image_module -> [here] -> texture_levels. Threads: one opens and closes; any
+ * number read. */
 #ifndef AFTERGLOW_IMAGE_LEVELS_H
 #define AFTERGLOW_IMAGE_LEVELS_H
 

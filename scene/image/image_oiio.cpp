@@ -34,6 +34,7 @@ const std::uint64_t trusted_values = std::uint64_t(1) << 28;
 const std::uint64_t values_per_byte = std::uint64_t(1) << 16;
 
 const int largest_tile_bits = 9; /* TEXTURE_TILE_BITS_MAX */
+const int least_tile_bits = 3;   /* reading smaller ones one by one costs more than their pixels are worth */
 
 /* Runs work and is the one place where an exception becomes a status. */
 template <typename Work>
@@ -200,45 +201,52 @@ std::uint64_t count_values(const OIIO::ImageSpec &spec, std::uint64_t file_size)
     return pixels * channels;
 }
 
-/* Whether three channels from here on are red, green and blue of one layer, by their names. */
-bool is_color_triple(const std::vector<std::string> &names, size_t first)
+/* How many channels from here on are red, green, blue and alpha of one layer, by their names. */
+int count_colors(const std::vector<std::string> &names, size_t first)
 {
-    static const char *const suffixes[3][2] = {{"R", "RED"}, {"G", "GREEN"}, {"B", "BLUE"}};
+    static const char *const suffixes[4][2] = {{"R", "RED"}, {"G", "GREEN"}, {"B", "BLUE"}, {"A", "ALPHA"}};
     std::string layer;
-    for (size_t k = 0; k < 3; k++) {
+    int count = 0;
+    for (size_t k = 0; k < 4 && first + k < names.size(); k++, count++) {
         const std::string &name = names[first + k];
         const size_t dot = name.rfind('.');
         const std::string before = dot == std::string::npos ? std::string() : name.substr(0, dot);
         const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
         if (k > 0 && before != layer)
-            return false;
+            break;
         layer = before;
         if (!OIIO::Strutil::iequals(last, suffixes[k][0]) && !OIIO::Strutil::iequals(last, suffixes[k][1]))
-            return false;
+            break;
     }
-    return true;
+    return count;
 }
 
-/* The first of the channels that are the picture: of many layers the one that has red, green and blue. 0 where none
- * has, or the first does. */
-int find_colors(const OIIO::ImageSpec &spec)
+struct channel_range {
+    int begin, count;
+};
+
+/* The channels that are the picture: of many layers the first that has red, green and blue, with alpha where that layer
+ * has it. All channels where none has. */
+channel_range find_colors(const OIIO::ImageSpec &spec)
 {
     const std::vector<std::string> &names = spec.channelnames;
-    for (size_t first = 0; first + 3 <= names.size(); first++)
-        if (is_color_triple(names, first))
-            return static_cast<int>(first);
-    return 0;
+    for (size_t first = 0; first + 3 <= names.size(); first++) {
+        const int count = count_colors(names, first);
+        if (count >= 3)
+            return {static_cast<int>(first), count};
+    }
+    return {0, spec.nchannels};
 }
 
 template <typename Value>
-Value *read_values(OIIO::ImageInput &input, int channel_begin, int channel_end, std::uint64_t count,
-                   OIIO::TypeDesc type)
+Value *read_values(OIIO::ImageInput &input, channel_range channels, std::uint64_t pixel_count, OIIO::TypeDesc type)
 {
+    const std::uint64_t count = pixel_count * static_cast<std::uint64_t>(channels.count);
     std::unique_ptr<Value, decltype(&std::free)> values(static_cast<Value *>(std::malloc(count * sizeof(Value))),
                                                         &std::free);
     if (!values)
         throw std::bad_alloc();
-    if (!input.read_image(0, 0, channel_begin, channel_end, type, values.get()))
+    if (!input.read_image(0, 0, channels.begin, channels.begin + channels.count, type, values.get()))
         fail("OpenImageIO cannot decode it", input.geterror());
     return values.release();
 }
@@ -285,39 +293,39 @@ std::unique_ptr<OIIO::ImageInput> open_input(const std::string &path, OIIO::File
 }
 
 /* proxy: the file's bytes, or NULL: they are read from path. */
-image read_picture(const std::string &path, bool keep_bytes, OIIO::Filesystem::IOProxy *proxy)
+image read_picture(const std::string &path, image_wish wish, OIIO::Filesystem::IOProxy *proxy)
 {
     const std::unique_ptr<OIIO::ImageInput> input = open_input(path, proxy);
     const OIIO::ImageSpec spec = input->spec();
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.deep)
         throw std::runtime_error("it is not a flat picture");
     image read = describe(spec);
-    const int begin = find_colors(spec);
-    const std::uint64_t all = count_values(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path));
-    const std::uint64_t count =
-        all / static_cast<std::uint64_t>(spec.nchannels) * static_cast<std::uint64_t>(spec.nchannels - begin);
-    read.channel_count -= begin;
-    if (keep_bytes && read.type == IMAGE_UINT8)
-        read.bytes = read_values<unsigned char>(*input, begin, spec.nchannels, count, OIIO::TypeUInt8);
+    channel_range channels = find_colors(spec);
+    if (wish == IMAGE_ALL_CHANNELS)
+        channels.count = spec.nchannels - channels.begin;
+    read.channel_count = channels.count;
+    const std::uint64_t pixel_count = count_values(spec, proxy ? proxy->size() : OIIO::Filesystem::file_size(path)) /
+                                      static_cast<std::uint64_t>(spec.nchannels);
+    if (wish == IMAGE_COMPACT_COLORS && read.type == IMAGE_UINT8)
+        read.bytes = read_values<unsigned char>(*input, channels, pixel_count, OIIO::TypeUInt8);
     else
-        read.pixels = read_values<float>(*input, begin, spec.nchannels, count, OIIO::TypeFloat);
+        read.pixels = read_values<float>(*input, channels, pixel_count, OIIO::TypeFloat);
     return read;
 }
 
-ag_status decode(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size) noexcept
+ag_status decode(const char *path, image_wish wish, image *out_image, char *message, size_t message_size) noexcept
 {
     *out_image = image();
-    return guarded(AG_ERROR_INPUT, message, message_size,
-                   [=] { *out_image = read_picture(path, keep_bytes, nullptr); });
+    return guarded(AG_ERROR_INPUT, message, message_size, [=] { *out_image = read_picture(path, wish, nullptr); });
 }
 
-ag_status decode_memory(const char *extension, const unsigned char *bytes, size_t size, bool keep_bytes,
+ag_status decode_memory(const char *extension, const unsigned char *bytes, size_t size, image_wish wish,
                         image *out_image, char *message, size_t message_size) noexcept
 {
     *out_image = image();
     return guarded(AG_ERROR_INPUT, message, message_size, [=] {
         OIIO::Filesystem::IOMemReader proxy(const_cast<unsigned char *>(bytes), size); /* which only reads */
-        *out_image = read_picture(std::string("picture.") + extension, keep_bytes, &proxy);
+        *out_image = read_picture(std::string("picture.") + extension, wish, &proxy);
     });
 }
 
@@ -334,19 +342,26 @@ int bits_of_side(int side)
 
 bool is_half_of(int side, int before) { return side == std::max(before / 2, 1) || side == (before + 1) / 2; }
 
+/* Whether tiles of that side are worth reading one by one, of a level so wide or high. */
+bool is_usable_tile(int tile_side, int level_side)
+{
+    const int bits = bits_of_side(tile_side);
+    return bits >= least_tile_bits || (bits >= 0 && level_side <= tile_side);
+}
+
 /* Whether a level is one that parts are read of: a flat picture that fills its frame, in tiles, as the first but for
  * its size, which is half of the one before. */
-bool is_usable_level(const OIIO::ImageSpec &spec, const image_levels_header &header)
+bool is_usable_level(const OIIO::ImageSpec &spec, int channel_count, const image_levels_header &header)
 {
     const image &picture = header.picture;
     if (spec.depth > 1 || spec.deep || spec.x != 0 || spec.y != 0 || spec.full_x != 0 || spec.full_y != 0 ||
         spec.full_width != spec.width || spec.full_height != spec.height || spec.tile_depth > 1 ||
-        bits_of_side(spec.tile_width) < 0 || bits_of_side(spec.tile_height) < 0)
+        !is_usable_tile(spec.tile_width, spec.width) || !is_usable_tile(spec.tile_height, spec.height))
         return false;
     if (header.level_count == 0)
         return true;
     const image_level &before = header.levels[header.level_count - 1];
-    return spec.nchannels == picture.channel_count && sample_type_of(spec.format) == picture.type &&
+    return spec.nchannels == channel_count && sample_type_of(spec.format) == picture.type &&
            is_half_of(spec.width, before.width) && is_half_of(spec.height, before.height);
 }
 
@@ -359,11 +374,14 @@ ag_status open_levels(const char *path, void **out_file, image_levels_header *ou
         std::unique_ptr<OIIO::ImageInput> input = open_input(path, nullptr);
         image_levels_header header = image_levels_header();
         OIIO::ImageSpec spec = input->spec();
-        if (spec.tile_width == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || find_colors(spec) != 0)
+        if (spec.tile_width == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
+            find_colors(spec).begin != 0)
             return;
+        const int channel_count = spec.nchannels;
         header.picture = describe(spec);
+        header.picture.channel_count = find_colors(spec).count;
         count_values(spec, OIIO::Filesystem::file_size(path));
-        while (header.level_count < IMAGE_LEVELS_MAX && is_usable_level(spec, header)) {
+        while (header.level_count < IMAGE_LEVELS_MAX && is_usable_level(spec, channel_count, header)) {
             header.levels[header.level_count++] = {spec.width, spec.height, bits_of_side(spec.tile_width),
                                                    bits_of_side(spec.tile_height)};
             if (!input->seek_subimage(0, header.level_count))
@@ -371,7 +389,9 @@ ag_status open_levels(const char *path, void **out_file, image_levels_header *ou
             spec = input->spec();
         }
         input->geterror(); /* that there is no further level is no error */
-        if (header.level_count < 2)
+        /* Overviews that end before a single pixel leave what is far away unfiltered. */
+        if (header.level_count < 2 || header.levels[header.level_count - 1].width != 1 ||
+            header.levels[header.level_count - 1].height != 1)
             return;
         *out_header = header;
         *out_file = input.release();

@@ -21,7 +21,7 @@ static ag_status refuse_cut_jpeg(image *picture, char *message, size_t message_s
     return AG_ERROR_INPUT;
 }
 
-static ag_status read_picture(const char *path, bool keep_bytes, image *out_image, char *message, size_t message_size)
+static ag_status read_picture(const char *path, image_wish wish, image *out_image, char *message, size_t message_size)
 {
     *out_image = (image){0};
     struct stat file;
@@ -35,7 +35,7 @@ static ag_status read_picture(const char *path, bool keep_bytes, image *out_imag
     if (!module)
         return AG_ERROR_SYSTEM;
     char reason[1024];
-    ag_status status = module->decode(path, keep_bytes, out_image, reason, sizeof reason);
+    ag_status status = module->decode(path, wish, out_image, reason, sizeof reason);
     if (status == AG_OK && jpeg_file_is_cut_short(path))
         status = refuse_cut_jpeg(out_image, reason, sizeof reason);
     if (status != AG_OK)
@@ -45,12 +45,17 @@ static ag_status read_picture(const char *path, bool keep_bytes, image *out_imag
 
 ag_status image_read(const char *path, image *out_image, char *message, size_t message_size)
 {
-    return read_picture(path, false, out_image, message, message_size);
+    return read_picture(path, IMAGE_ALL_CHANNELS, out_image, message, message_size);
+}
+
+ag_status image_read_colors(const char *path, image *out_image, char *message, size_t message_size)
+{
+    return read_picture(path, IMAGE_COLORS, out_image, message, message_size);
 }
 
 ag_status image_read_compact(const char *path, image *out_image, char *message, size_t message_size)
 {
-    return read_picture(path, true, out_image, message, message_size);
+    return read_picture(path, IMAGE_COMPACT_COLORS, out_image, message, message_size);
 }
 
 /* NULL: neither of the two that glTF knows. */
@@ -75,7 +80,8 @@ ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t
     if (!module)
         return AG_ERROR_SYSTEM;
     char reason[1024];
-    ag_status status = module->decode_memory(extension, bytes, size, true, out_image, reason, sizeof reason);
+    ag_status status =
+        module->decode_memory(extension, bytes, size, IMAGE_COMPACT_COLORS, out_image, reason, sizeof reason);
     if (status == AG_OK && jpeg_is_cut_short(bytes, size))
         status = refuse_cut_jpeg(out_image, reason, sizeof reason);
     if (status != AG_OK)
@@ -83,30 +89,36 @@ ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t
     return status;
 }
 
-/* A row of the data window into that of the display window. */
+/* A row of the data window into that of the display window, which has a part of it. */
 static void copy_row(const image *i, int y, size_t pixel_bytes, const unsigned char *from, unsigned char *out)
 {
-    const int begin = i->x > 0 ? i->x : 0, end = i->x + i->width < i->full_width ? i->x + i->width : i->full_width;
-    memcpy(out + ((size_t)(y + i->y) * (size_t)i->full_width + (size_t)begin) * pixel_bytes,
-           from + ((size_t)y * (size_t)i->width + (size_t)(begin - i->x)) * pixel_bytes,
-           (size_t)(end - begin) * pixel_bytes);
+    const int64_t right = (int64_t)i->x + i->width, row = (int64_t)i->y + y;
+    const int64_t begin = i->x > 0 ? i->x : 0, end = right < i->full_width ? right : i->full_width;
+    if (begin >= end || row < 0 || row >= i->full_height)
+        return;
+    memcpy(out + (size_t)(row * i->full_width + begin) * pixel_bytes,
+           from + (size_t)((int64_t)y * i->width + begin - i->x) * pixel_bytes, (size_t)(end - begin) * pixel_bytes);
 }
 
-ag_status image_fill_window(image *i)
+ag_status image_fill_window(image *i, const char *name, char *message, size_t message_size)
 {
     static const int64_t PIXELS_MAX = (int64_t)1 << 28;
     const bool is_filled = i->x == 0 && i->y == 0 && i->width == i->full_width && i->height == i->full_height;
-    const int64_t right = (int64_t)i->x + i->width, bottom = (int64_t)i->y + i->height;
-    if (is_filled || i->full_width < 1 || i->full_height < 1 || right <= 0 || bottom <= 0 || i->x >= i->full_width ||
-        i->y >= i->full_height || (int64_t)i->full_width * i->full_height > PIXELS_MAX)
+    if (is_filled || i->full_width < 1 || i->full_height < 1)
         return AG_OK;
+    if ((int64_t)i->full_width * i->full_height > PIXELS_MAX) {
+        snprintf(message, message_size,
+                 "cannot read '%s': its data window of %d x %d pixels from (%d, %d) on is not its display window of %d "
+                 "x %d, which is too large to be filled up with black",
+                 name, i->width, i->height, i->x, i->y, i->full_width, i->full_height);
+        return AG_ERROR_INPUT;
+    }
     const size_t pixel_bytes = (size_t)i->channel_count * (i->bytes ? 1 : sizeof *i->pixels);
     void *window = calloc((size_t)i->full_width * (size_t)i->full_height, pixel_bytes);
     if (!window)
         return AG_ERROR_MEMORY;
     for (int y = 0; y < i->height; y++)
-        if (y + i->y >= 0 && y + i->y < i->full_height)
-            copy_row(i, y, pixel_bytes, i->bytes ? i->bytes : (const unsigned char *)i->pixels, window);
+        copy_row(i, y, pixel_bytes, i->bytes ? i->bytes : (const unsigned char *)i->pixels, window);
     if (i->bytes) {
         free(i->bytes);
         i->bytes = window;

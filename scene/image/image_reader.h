@@ -8,12 +8,16 @@
 
 #include <stddef.h>
 
-/* The first picture of a file, as floats; *out_image is to be reset. On failure *out_image is empty and message says
- * why, with OpenImageIO's text. Errors: AG_ERROR_INPUT, AG_ERROR_SYSTEM (the module cannot be opened), AG_ERROR_MEMORY.
+/* All channels of the first picture of a file, from its colours on; *out_image is to be reset. On failure *out_image is
+ * empty and message says why, with OpenImageIO's text. Errors: AG_ERROR_INPUT, AG_ERROR_SYSTEM (the module cannot be
+ * opened), AG_ERROR_MEMORY.
  */
 ag_status image_read(const char *path, image *out_image, char *message, size_t message_size);
 
-/* image_read, but values of 8 bits stay bytes. */
+/* image_read of the colours alone: what textures and lights are made of. */
+ag_status image_read_colors(const char *path, image *out_image, char *message, size_t message_size);
+
+/* image_read_colors, but values of 8 bits stay bytes. */
 ag_status image_read_compact(const char *path, image *out_image, char *message, size_t message_size);
 
 /* Reads a PNG or JPEG file in memory, which its first bytes tell apart; values of 8 bits stay bytes. name: for
@@ -21,9 +25,9 @@ ag_status image_read_compact(const char *path, image *out_image, char *message, 
 ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t size, image *out_image, char *message,
                             size_t message_size);
 
-/* Brings a picture to its display window: what lies outside is cut off, what is missing is 0. Where the data window is
- * none of it, or the window is larger than 2^28 pixels, the picture stays. Errors: AG_ERROR_MEMORY. */
-ag_status image_fill_window(image *in_out);
+/* Brings a picture to its display window: what lies outside is cut off, what is missing is 0. name: for messages.
+ * Errors: AG_ERROR_INPUT (the picture does not fill a window of more than 2^28 pixels), AG_ERROR_MEMORY. */
+ag_status image_fill_window(image *in_out, const char *name, char *message, size_t message_size);
 
 void image_reset(image *picture); /* frees the pixels; leaves it zeroed */
 

@@ -57,9 +57,9 @@ ag_status light_picture_read(const scene *s, const char *name, const char *path,
     image picture = {0};
     image_colors colors = {0};
     *out_picture = (light_picture){0};
-    ag_status status = image_read(path, &picture, reason, sizeof reason);
+    ag_status status = image_read_colors(path, &picture, reason, sizeof reason);
     if (status == AG_OK)
-        status = image_fill_window(&picture);
+        status = image_fill_window(&picture, path, reason, sizeof reason);
     if (status == AG_OK && !is_gray)
         status = image_colors_find(s, image_colors_rule(s, path), &picture, &colors, reason, sizeof reason);
     if (status == AG_OK && !colors.space)

@@ -39,7 +39,7 @@ static ag_status read_image(const scene *s, texture_image *i, const source *from
                            ? image_read_memory(from->path, from->bytes, from->size, &picture, message, message_size)
                            : image_read_compact(from->path, &picture, message, message_size);
     if (status == AG_OK)
-        status = image_fill_window(&picture);
+        status = image_fill_window(&picture, from->path, message, message_size);
     if (status == AG_OK)
         status = texture_image_take(s, i, &picture, message, message_size);
     image_reset(&picture);

@@ -63,6 +63,18 @@ static unsigned char light_mean(uint32_t level, uint32_t x, uint32_t y, uint32_t
     return level > 0 ? 188 : dark_mean(level, x, y, channel);
 }
 
+/* Levels that end before a single pixel would leave what is far away unfiltered: the file's own are not used. */
+static void test_levels_that_end_early(void **state)
+{
+    (void)state;
+    tiff_least_side = 128;
+    tiff_write_levels("a.tx", 256, 3, colored);
+    tiff_least_side = 1;
+    picture far = look("16x16");
+    assert_true(picture_mean(&far, 0) > 0.9 && picture_mean(&far, 1) < 0.01);
+    picture_reset(&far);
+}
+
 /* Levels that have less light than the picture are told. */
 static void test_dark_levels(void **state)
 {
@@ -121,33 +133,37 @@ static void test_memory(void **state)
     picture_reset(&from_map);
 }
 
-/* Cut short: told while the scene is read, or where a tile is missing later on. */
+/* Cut short, or with tiles that cannot be read: told while the scene is read, or where a tile is missing later on.
+ * Tiles that cannot be read say nothing of the levels' light. */
 static void test_broken(void **state)
 {
     (void)state;
-    const char *scene = room();
-    struct stat file;
-    assert_int_equal(stat(in_folder("bytes.tx"), &file), 0);
-    for (int k = 1; k < 4; k += 2) {
-        assert_int_equal(truncate(in_folder("bytes.tx"), file.st_size * k / 4), 0);
+    for (int cut = 0; cut < 2; cut++) {
+        const char *scene = room();
+        tiff_broken_from = cut ? UINT32_MAX : 1;
+        tiff_write_levels("bytes.tx", 2048, 4, noise);
+        tiff_broken_from = UINT32_MAX;
+        struct stat file;
+        assert_int_equal(stat(in_folder("bytes.tx"), &file), 0);
+        if (cut)
+            assert_int_equal(truncate(in_folder("bytes.tx"), file.st_size / 4), 0);
         for (int tiled = 0; tiled < 2; tiled++) {
             program_run run = RUN("--noise=0", "--spp=1", "--photons=1e3", "-o", "no.exr",
                                   tiled ? "--texture-memory=16M" : "--texture-memory=0", scene);
             assert_true(run.exit_code > 0);
             assert_non_null(strstr(run.err, "bytes.tx"));
+            assert_null(strstr(run.err, "too dark"));
             assert_true(access(in_folder("no.exr"), F_OK) != 0);
             program_run_reset(&run);
         }
-        room();
     }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_own_levels),
-        TEST_IN_FOLDER(test_dark_levels),
-        TEST_IN_FOLDER(test_memory),
+        TEST_IN_FOLDER(test_own_levels),  TEST_IN_FOLDER(test_levels_that_end_early),
+        TEST_IN_FOLDER(test_dark_levels), TEST_IN_FOLDER(test_memory),
         TEST_IN_FOLDER(test_broken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,6 +2,8 @@
  * Flow: tests of scene/readers/pbrt/pbrt_textures.c. Threads: one. */
 #define _GNU_SOURCE
 #include "fixtures/texture_fixture.h"
+#include "image/image_levels.h"
+#include "image/image_reader.h"
 #include "texture/texture_noise.h"
 
 #include <math.h>
@@ -144,6 +146,99 @@ static void windows_of_pictures_are_heeded(void **state)
                 (y + 1) * 4 + x + 1 + 1, 0.0);
 }
 
+/* Of a data window wholly outside of the display window nothing is seen; a display window that is too large to be
+ * filled up is told. */
+static void far_windows_are_black_or_told(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"R", "G", "B"};
+    static const float WHITE[3] = {1, 1, 1};
+    static const int AT[][2] = {{4, 0}, {0, 4}, {-1, 0}, {0, -1}, {INT32_MAX / 2 - 9, 0}};
+    image_description d = {.width = 1,
+                           .height = 1,
+                           .full_width = 4,
+                           .full_height = 4,
+                           .channel_count = 3,
+                           .channel_names = NAMES,
+                           .type = IMAGE_FLOAT};
+    for (size_t k = 0; k < sizeof AT / sizeof *AT; k++) {
+        d.x = AT[k][0];
+        d.y = AT[k][1];
+        write_parts("far.exr", &d, WHITE);
+        assert_near(rgb_of(PICTURE("far.exr"), hit_at(0.9f, 0.9f, 0, 0, 0)).g, 0.0, 0.0);
+    }
+    d.x = 3;
+    d.y = 5;
+    d.full_width = d.full_height = 30000;
+    write_parts("vast.exr", &d, WHITE);
+    static const char *const WORLDS[] = {PICTURE("vast.exr"),
+                                         "LightSource \"infinite\" \"string filename\" \"vast.exr\" Shape \"sphere\""};
+    for (int k = 0; k < 2; k++) {
+        reading r = read_world(WORLDS[k]);
+        assert_int_equal(r.status, AG_ERROR_INPUT);
+        assert_non_null(strstr(r.said[AG_LOG_ERROR], "vast.exr': its data window of 1 x 1 pixels from (3, 5) on is "
+                                                     "not its display window of 30000 x 30000"));
+        reading_destroy(&r);
+    }
+}
+
+/* Alpha is the channel of that name in the layer of the colours, and no other that stands behind blue. */
+static void alpha_is_found_by_its_name(void **state)
+{
+    (void)state;
+    static const struct {
+        int channel_count;
+        bool has_alpha;
+        const char *names[6];
+    } CASES[] = {{6, false, {"diffuse.R", "diffuse.G", "diffuse.B", "specular.R", "specular.G", "specular.B"}},
+                 {4, false, {"R", "G", "B", "Z"}},
+                 {4, false, {"x.R", "x.G", "x.B", "y.A"}},
+                 {5, true, {"R", "G", "B", "A", "Z"}},
+                 {4, true, {"x.R", "x.G", "x.B", "x.A"}},
+                 {4, true, {"x.red", "x.green", "x.blue", "x.alpha"}},
+                 {2, true, {"Y", "A"}}};
+    static const float PIXEL[6] = {0.25f, 0.5f, 0.75f, 0.5f, 0.5f, 0.5f};
+    for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
+        const image_description d = {.width = 1,
+                                     .height = 1,
+                                     .full_width = 1,
+                                     .full_height = 1,
+                                     .channel_count = CASES[k].channel_count,
+                                     .channel_names = CASES[k].names,
+                                     .type = IMAGE_FLOAT};
+        write_parts("alpha.exr", &d, PIXEL);
+        image read;
+        assert_int_equal(image_read_colors(in_folder("alpha.exr"), &read, message, sizeof message), AG_OK);
+        assert_int_equal(read.channel_count, CASES[k].channel_count == 2 ? 2 : CASES[k].has_alpha ? 4 : 3);
+        image_reset(&read);
+        reading r = read_world(PICTURE("alpha.exr"));
+        assert_int_equal(r.status, AG_OK);
+        assert_int_equal(texture_image_has_alpha(r.scene->texture_images[0]), CASES[k].has_alpha);
+        reading_destroy(&r);
+    }
+}
+
+/* A file's own levels are used where its tiles are not too small; its alpha is that of its name. */
+static void levels_of_small_tiles_are_not_used(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *names;
+        int tile_side, channel_count; /* 0: the file's levels are not used */
+    } CASES[] = {{"R,G,B,A", 4, 0}, {"R,G,B,A", 8, 4}, {"R,G,B,Z", 8, 3}};
+    for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
+        char command[512];
+        image_levels *levels;
+        snprintf(command, sizeof command,
+                 "oiiotool --pattern noise 64x64 4 --chnames %s --tile %d %d -otex '%s' >/dev/null", CASES[k].names,
+                 CASES[k].tile_side, CASES[k].tile_side, in_folder("levels.exr"));
+        assert_int_equal(system(command), 0);
+        assert_int_equal(image_levels_open(in_folder("levels.exr"), &levels), AG_OK);
+        assert_int_equal(levels ? image_levels_describe(levels)->picture.channel_count : 0, CASES[k].channel_count);
+        image_levels_close(levels);
+    }
+}
+
 /* Of a picture with layers the one that has red, green and blue, wherever it stands among the others. */
 static void colors_are_found_by_their_names(void **state)
 {
@@ -174,13 +269,13 @@ static void cut_jpeg_files_are_told(void **state)
 {
     (void)state;
     static const char *const NAMES[] = {"R", "G", "B"};
-    static float pixels[3 * 64 * 64];
+    static float pixels[3 * 160 * 160]; /* more bytes than are read at once */
     for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++)
         pixels[i] = 0.5f + 0.5f * texture_noise(vec3_make((float)i * 0.37f, 0.2f, 0.1f));
-    const image_description d = {.width = 64,
-                                 .height = 64,
-                                 .full_width = 64,
-                                 .full_height = 64,
+    const image_description d = {.width = 160,
+                                 .height = 160,
+                                 .full_width = 160,
+                                 .full_height = 160,
                                  .channel_count = 3,
                                  .channel_names = NAMES,
                                  .type = IMAGE_UINT8};
@@ -252,9 +347,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(wrong_textures_say_why),         TEST_IN_FOLDER(bad_values_are_told),
-        TEST_IN_FOLDER(windows_of_pictures_are_heeded), TEST_IN_FOLDER(colors_are_found_by_their_names),
+        TEST_IN_FOLDER(windows_of_pictures_are_heeded), TEST_IN_FOLDER(far_windows_are_black_or_told),
+        TEST_IN_FOLDER(alpha_is_found_by_its_name),     TEST_IN_FOLDER(colors_are_found_by_their_names),
         TEST_IN_FOLDER(cut_jpeg_files_are_told),        TEST_IN_FOLDER(doubtful_textures_are_warned_of),
-        TEST_IN_FOLDER(exploding_graphs_are_refused),
+        TEST_IN_FOLDER(exploding_graphs_are_refused),   TEST_IN_FOLDER(levels_of_small_tiles_are_not_used),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
