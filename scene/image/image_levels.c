@@ -92,7 +92,19 @@ void image_levels_close(image_levels *l)
 
 const image_levels_header *image_levels_describe(const image_levels *l) { return &l->header; }
 
-/* For one part. Errors: as image_levels_read. */
+static bool is_same_header(const image_levels_header *a, const image_levels_header *b)
+{
+    bool is_same = a->level_count == b->level_count && a->picture.channel_count == b->picture.channel_count &&
+                   a->picture.type == b->picture.type;
+    for (int k = 0; k < a->level_count && is_same; k++) {
+        const image_level *of_a = &a->levels[k], *of_b = &b->levels[k];
+        is_same = of_a->width == of_b->width && of_a->height == of_b->height &&
+                  of_a->tile_width_bits == of_b->tile_width_bits && of_a->tile_height_bits == of_b->tile_height_bits;
+    }
+    return is_same;
+}
+
+/* For one part. *out_open NULL where it fails. Errors: as image_levels_read. */
 static ag_status open_again(const image_levels *l, void **out_open)
 {
     char message[1024];
@@ -100,6 +112,10 @@ static ag_status open_again(const image_levels *l, void **out_open)
     if (!image_levels_is_unchanged(l))
         return AG_ERROR_INPUT;
     AG_TRY(l->module->open_levels(l->path, out_open, &header, message, sizeof message));
+    if (*out_open && !is_same_header(&l->header, &header)) { /* it has changed since it was asked after */
+        l->module->close_levels(*out_open);
+        *out_open = NULL;
+    }
     return *out_open ? AG_OK : AG_ERROR_INPUT;
 }
 
@@ -110,7 +126,7 @@ ag_status image_levels_read(image_levels *l, int level, int x, int y, int channe
     void *open = l->open;
     ag_status status = open ? AG_OK : open_again(l, &open);
     if (status == AG_OK)
-        status = l->module->read_tile(open, level, x, y, channel_begin, channel_end, as_bytes, out_pixels);
+        status = l->module->read_tile(open, &l->header, level, x, y, channel_begin, channel_end, as_bytes, out_pixels);
     if (open && !l->open) {
         if (stay_open())
             l->open = open;

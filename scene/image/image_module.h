@@ -41,9 +41,10 @@ typedef struct image_module {
     ag_status (*open_levels)(const char *path, void **out_file, image_levels_header *out_header, char *message,
                              size_t message_size);
     /* A tile, from its upper left corner, of some of the channels, as bytes or floats; rows are as long as the level's
-     * tiles are wide. Any number of threads may read from one file; they wait for one another. Errors: as of decode. */
-    ag_status (*read_tile)(void *file, int level, int x, int y, int channel_begin, int channel_end, bool as_bytes,
-                           void *out_pixels);
+     * tiles are wide. header: what the caller's memory was measured by; where the file says other sizes by now, nothing
+     * is read. Any number of threads may read from one file; they wait for one another. Errors: as of decode. */
+    ag_status (*read_tile)(void *file, const image_levels_header *header, int level, int x, int y, int channel_begin,
+                           int channel_end, bool as_bytes, void *out_pixels);
     void (*close_levels)(void *file);
 } image_module;
 

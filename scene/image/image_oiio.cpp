@@ -398,18 +398,28 @@ ag_status open_levels(const char *path, void **out_file, image_levels_header *ou
     });
 }
 
-ag_status read_tile(void *file, int level, int x, int y, int channel_begin, int channel_end, bool as_bytes,
-                    void *out_pixels) noexcept
+/* The file is asked for its sizes again whenever another level of it is read, and may have been written to. */
+bool is_level_unchanged(const OIIO::ImageSpec &spec, const image_levels_header &header, const image_level &level)
+{
+    return spec.width == level.width && spec.height == level.height && spec.depth <= 1 &&
+           spec.tile_width == 1 << level.tile_width_bits && spec.tile_height == 1 << level.tile_height_bits &&
+           spec.tile_depth <= 1 && spec.nchannels == header.picture.channel_count;
+}
+
+ag_status read_tile(void *file, const image_levels_header *header, int level, int x, int y, int channel_begin,
+                    int channel_end, bool as_bytes, void *out_pixels) noexcept
 {
     char message[256];
     return guarded(AG_ERROR_INPUT, message, sizeof message, [=] {
         OIIO::ImageInput &input = *static_cast<OIIO::ImageInput *>(file);
         const OIIO::ImageSpec spec = input.spec_dimensions(0, level);
+        if (!is_level_unchanged(spec, *header, header->levels[level]))
+            fail("its sizes are not those that it began with", input.geterror());
         const OIIO::stride_t pixel_size =
             (channel_end - channel_begin) * static_cast<int>(as_bytes ? 1 : sizeof(float));
         const int right = std::min(x + spec.tile_width, spec.width),
                   bottom = std::min(y + spec.tile_height, spec.height);
-        if (spec.tile_width < 1 || x >= right || y >= bottom ||
+        if (x >= right || y >= bottom ||
             !input.read_tiles(0, level, x, right, y, bottom, 0, 1, channel_begin, channel_end,
                               as_bytes ? OIIO::TypeUInt8 : OIIO::TypeFloat, out_pixels, pixel_size,
                               pixel_size * spec.tile_width))

@@ -138,6 +138,10 @@ static ag_status read_tiles(scene *s, texture_image *i, const source *from, char
 {
     uint16_t *slots;
     uint32_t count;
+    if (texture_udim_is_ambiguous(from->path)) {
+        snprintf(message, message_size, "cannot read '%s': it holds more than one of <UDIM> and <UVTILE>", from->path);
+        return AG_ERROR_INPUT;
+    }
     AG_TRY(texture_udim_find(from->path, &slots, &count));
     ag_status status = AG_ERROR_INPUT;
     if (count > 0) {

@@ -36,6 +36,13 @@ bool texture_udim_is_pattern(const char *path)
     return find_token(path, &kind) != NULL;
 }
 
+bool texture_udim_is_ambiguous(const char *path)
+{
+    token_kind kind;
+    const char *token = find_token(path, &kind);
+    return token && find_token(token + strlen(TOKENS[kind]), &kind);
+}
+
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /* Digits without leading zeros, 1 to 4 of them; NULL where there are none. */

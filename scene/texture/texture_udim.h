@@ -29,6 +29,8 @@ typedef struct texture_udim {
 
 /* Whether a file name stands for tiles. */
 bool texture_udim_is_pattern(const char *path);
+/* Whether more than one token stands in such a name: which tile a file is would be open. */
+bool texture_udim_is_ambiguous(const char *path);
 
 /* The slots of which there are files by that name, ascending; *out_slots is to be freed. None is no error.
  * Errors: AG_ERROR_MEMORY. */

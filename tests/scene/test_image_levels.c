@@ -1,0 +1,73 @@
+/* test_image_levels.c: tiles are read into memory that was measured when the file was opened: a file that says other
+ * sizes by the time it is read is an error. Flow: tests of scene/image/image_levels.c. Threads: one. */
+#define _GNU_SOURCE
+#include "fixtures/tiled_tiff.h"
+#include "image/image_levels.h"
+#include "image/image_module_loader.h"
+
+#include <fcntl.h>
+
+enum { MANY = 129, TILE_BYTES = TIFF_TILE * TIFF_TILE * 3 }; /* so many files are not held open at once */
+
+static unsigned char number(uint32_t level, uint32_t x, uint32_t y, uint32_t channel)
+{
+    return (unsigned char)(50 * level + x + 2 * y + channel);
+}
+
+static void tiles_are_of_the_header(void **state)
+{
+    (void)state;
+    static unsigned char pixels[TILE_BYTES];
+    tiff_write_levels("a.tx", 256, 3, number);
+    const image_module *module = image_module_get(message, sizeof message);
+    assert_non_null(module);
+    image_levels_header header;
+    void *open;
+    assert_int_equal(module->open_levels(in_folder("a.tx"), &open, &header, message, sizeof message), AG_OK);
+    assert_non_null(open);
+    assert_int_equal(module->read_tile(open, &header, 1, 64, 0, 0, 3, true, pixels), AG_OK);
+    assert_int_equal(pixels[3 * (TIFF_TILE + 2) + 1], number(1, 66, 1, 1));
+    int *const said[5] = {&header.levels[1].width, &header.levels[1].height, &header.levels[1].tile_width_bits,
+                          &header.levels[1].tile_height_bits, &header.picture.channel_count};
+    for (int k = 0; k < 5; k++) {
+        --*said[k];
+        assert_int_equal(module->read_tile(open, &header, 1, 64, 0, 0, 3, true, pixels), AG_ERROR_INPUT);
+        ++*said[k];
+    }
+    assert_int_equal(module->read_tile(open, &header, 1, 64, 0, 0, 3, true, pixels), AG_OK);
+    module->close_levels(open);
+}
+
+/* Another picture in the same file, of the same size and time as far as stat can tell. */
+static void a_file_that_was_exchanged_is_an_error(void **state)
+{
+    (void)state;
+    static unsigned char pixels[TILE_BYTES];
+    image_levels *levels[MANY];
+    struct stat before;
+    tiff_write_levels("a.tx", 256, 3, number);
+    for (int k = 0; k < MANY; k++) {
+        assert_int_equal(image_levels_open(in_folder("a.tx"), &levels[k]), AG_OK);
+        assert_non_null(levels[k]);
+    }
+    image_levels *last = levels[MANY - 1];
+    assert_int_equal(image_levels_read(last, 0, 0, 0, 0, 3, true, pixels), AG_OK);
+    assert_int_equal(stat(in_folder("a.tx"), &before), 0);
+    tiff_write_levels("a.tx", 128, 3, number);
+    assert_int_equal(truncate(in_folder("a.tx"), before.st_size), 0);
+    const struct timespec times[2] = {before.st_atim, before.st_mtim};
+    assert_int_equal(utimensat(AT_FDCWD, in_folder("a.tx"), times, 0), 0);
+    assert_true(image_levels_is_unchanged(last));
+    assert_int_equal(image_levels_read(last, 0, 0, 0, 0, 3, true, pixels), AG_ERROR_INPUT);
+    for (int k = 0; k < MANY; k++)
+        image_levels_close(levels[k]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(tiles_are_of_the_header),
+        TEST_IN_FOLDER(a_file_that_was_exchanged_is_an_error),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
