@@ -42,7 +42,8 @@ typedef struct image_level {
 } image_level;
 
 typedef struct image_levels_header {
-    image picture; /* without pixels */
+    image picture;          /* without pixels; its channels are the colours and alpha alone, */
+    int file_channel_count; /* which are the first of so many */
     int level_count;
     image_level levels[IMAGE_LEVELS_MAX];
 } image_levels_header;

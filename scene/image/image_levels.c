@@ -95,7 +95,7 @@ const image_levels_header *image_levels_describe(const image_levels *l) { return
 static bool is_same_header(const image_levels_header *a, const image_levels_header *b)
 {
     bool is_same = a->level_count == b->level_count && a->picture.channel_count == b->picture.channel_count &&
-                   a->picture.type == b->picture.type;
+                   a->file_channel_count == b->file_channel_count && a->picture.type == b->picture.type;
     for (int k = 0; k < a->level_count && is_same; k++) {
         const image_level *of_a = &a->levels[k], *of_b = &b->levels[k];
         is_same = of_a->width == of_b->width && of_a->height == of_b->height &&

@@ -19,7 +19,7 @@ extern "C" {
 #define IMAGE_MODULE_ENTRY_NAME "afterglow_image_module"
 
 /* Raised whenever this file or image.h changes. */
-enum { IMAGE_MODULE_INTERFACE = 8 };
+enum { IMAGE_MODULE_INTERFACE = 9 };
 
 typedef struct image_module {
     int interface_number; /* IMAGE_MODULE_INTERFACE of the module */

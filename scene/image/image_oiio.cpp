@@ -351,7 +351,7 @@ bool is_usable_tile(int tile_side, int level_side)
 
 /* Whether a level is one that parts are read of: a flat picture that fills its frame, in tiles, as the first but for
  * its size, which is half of the one before. */
-bool is_usable_level(const OIIO::ImageSpec &spec, int channel_count, const image_levels_header &header)
+bool is_usable_level(const OIIO::ImageSpec &spec, const image_levels_header &header)
 {
     const image &picture = header.picture;
     if (spec.depth > 1 || spec.deep || spec.x != 0 || spec.y != 0 || spec.full_x != 0 || spec.full_y != 0 ||
@@ -361,7 +361,7 @@ bool is_usable_level(const OIIO::ImageSpec &spec, int channel_count, const image
     if (header.level_count == 0)
         return true;
     const image_level &before = header.levels[header.level_count - 1];
-    return spec.nchannels == channel_count && sample_type_of(spec.format) == picture.type &&
+    return spec.nchannels == header.file_channel_count && sample_type_of(spec.format) == picture.type &&
            is_half_of(spec.width, before.width) && is_half_of(spec.height, before.height);
 }
 
@@ -377,11 +377,11 @@ ag_status open_levels(const char *path, void **out_file, image_levels_header *ou
         if (spec.tile_width == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
             find_colors(spec).begin != 0)
             return;
-        const int channel_count = spec.nchannels;
         header.picture = describe(spec);
+        header.file_channel_count = spec.nchannels;
         header.picture.channel_count = find_colors(spec).count;
         count_values(spec, OIIO::Filesystem::file_size(path));
-        while (header.level_count < IMAGE_LEVELS_MAX && is_usable_level(spec, channel_count, header)) {
+        while (header.level_count < IMAGE_LEVELS_MAX && is_usable_level(spec, header)) {
             header.levels[header.level_count++] = {spec.width, spec.height, bits_of_side(spec.tile_width),
                                                    bits_of_side(spec.tile_height)};
             if (!input->seek_subimage(0, header.level_count))
@@ -403,7 +403,7 @@ bool is_level_unchanged(const OIIO::ImageSpec &spec, const image_levels_header &
 {
     return spec.width == level.width && spec.height == level.height && spec.depth <= 1 &&
            spec.tile_width == 1 << level.tile_width_bits && spec.tile_height == 1 << level.tile_height_bits &&
-           spec.tile_depth <= 1 && spec.nchannels == header.picture.channel_count;
+           spec.tile_depth <= 1 && spec.nchannels == header.file_channel_count;
 }
 
 ag_status read_tile(void *file, const image_levels_header *header, int level, int x, int y, int channel_begin,

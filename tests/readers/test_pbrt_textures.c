@@ -235,6 +235,9 @@ static void levels_of_small_tiles_are_not_used(void **state)
         assert_int_equal(system(command), 0);
         assert_int_equal(image_levels_open(in_folder("levels.exr"), &levels), AG_OK);
         assert_int_equal(levels ? image_levels_describe(levels)->picture.channel_count : 0, CASES[k].channel_count);
+        float tile[8 * 8 * 3];
+        if (levels)
+            assert_int_equal(image_levels_read(levels, 1, 8, 16, 0, 3, false, tile), AG_OK);
         image_levels_close(levels);
     }
 }

@@ -28,7 +28,7 @@ static void tiles_are_of_the_header(void **state)
     assert_int_equal(module->read_tile(open, &header, 1, 64, 0, 0, 3, true, pixels), AG_OK);
     assert_int_equal(pixels[3 * (TIFF_TILE + 2) + 1], number(1, 66, 1, 1));
     int *const said[5] = {&header.levels[1].width, &header.levels[1].height, &header.levels[1].tile_width_bits,
-                          &header.levels[1].tile_height_bits, &header.picture.channel_count};
+                          &header.levels[1].tile_height_bits, &header.file_channel_count};
     for (int k = 0; k < 5; k++) {
         --*said[k];
         assert_int_equal(module->read_tile(open, &header, 1, 64, 0, 0, 3, true, pixels), AG_ERROR_INPUT);
