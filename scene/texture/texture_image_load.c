@@ -107,6 +107,7 @@ static void add_tile(texture_image *i, uint32_t slot, texture_image *tile)
     i->height = tile->height > i->height ? tile->height : i->height;
     i->channel_count = tile->channel_count > i->channel_count ? tile->channel_count : i->channel_count;
     i->bad_count += tile->bad_count;
+    i->has_tile_alpha = i->has_tile_alpha || texture_image_has_alpha(tile);
 }
 
 static ag_status load(scene *s, const source *from, uint32_t *out_index, char *message, size_t message_size);
