@@ -54,14 +54,42 @@ static uint32_t sum_in_region(const photon_disc *disc, const surface_region *reg
     return inside;
 }
 
-/* Photons of one irradiance lie evenly, a quarter of them in each ring of a quarter of the disc's area. Where inner
- * rings hold fewer than chance explains, by so many standard deviations, the disc has reached a place that is brighter.
- */
+/* Under one irradiance each ring of a quarter of the disc's area holds a quarter of the photons, and of their flux.
+ * Where inner rings hold less of both than chance explains, by so many standard deviations, the disc has reached a
+ * place that is brighter. */
 static const float RIM_SIGMAS = 3.25f;
 enum { RINGS = 4 };
 
+/* Whether so many rings, from the innermost, lack flux: photons may be fewer there because they were thinned, and each
+ * is the brighter for it. Sums are of whole numbers, in any order. */
+static bool rings_lack_flux(const photon_map *map, const photon_neighbor *n, uint32_t count, float radius_squared,
+                            uint32_t rings)
+{
+    enum { FRACTION_BITS = 8 };
+    int exponent_max = FLUX_EXPONENT_MIN;
+    for (uint32_t i = 0; i < count; i++) {
+        int exponent = flux_exponent(photon_block_flux(map->blocks, photon_neighbor_index(n[i])));
+        exponent_max = exponent > exponent_max ? exponent : exponent_max;
+    }
+    float share = (float)rings / (float)RINGS, inner_squared = share * radius_squared;
+    uint64_t all = 0, inside = 0, squares = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t code = photon_block_flux(map->blocks, photon_neighbor_index(n[i]));
+        int shift = exponent_max - flux_exponent(code);
+        uint64_t r = code >> 16 & 255, g = code >> 8 & 255, b = code & 255, largest = r > g ? r : g;
+        uint64_t flux = shift > 2 * FRACTION_BITS ? 0 : ((largest > b ? largest : b) << FRACTION_BITS) >> shift;
+        all += flux;
+        squares += flux * flux;
+        inside += photon_neighbor_distance_squared(n[i]) < inner_squared ? flux : 0;
+    }
+    double missing = (double)share * (double)all - (double)inside;
+    double variance = (double)(share * (1.0f - share)) * (double)squares;
+    return missing > 0.0 && missing * missing > (double)(RIM_SIGMAS * RIM_SIGMAS) * variance;
+}
+
 /* How many rings, from the innermost, have no more light than the point itself; RINGS where all are so. */
-static uint32_t rings_of_one_light(const photon_neighbor *n, uint32_t count, float radius_squared)
+static uint32_t rings_of_one_light(const photon_map *map, const photon_neighbor *n, uint32_t count,
+                                   float radius_squared)
 {
     uint32_t in_ring[RINGS] = {0}, inside = count;
     float ring_of = (float)RINGS / radius_squared;
@@ -73,18 +101,20 @@ static uint32_t rings_of_one_light(const photon_neighbor *n, uint32_t count, flo
         float share = (float)rings / (float)RINGS, expected = share * (float)count;
         inside -= in_ring[rings];
         float missing = expected - (float)inside;
-        if (missing > 0.0f && missing * missing > RIM_SIGMAS * RIM_SIGMAS * expected * (1.0f - share))
+        if (missing > 0.0f && missing * missing > RIM_SIGMAS * RIM_SIGMAS * expected * (1.0f - share) &&
+            rings_lack_flux(map, n, count, radius_squared, rings))
             return rings;
     }
     return RINGS;
 }
 
-/* Makes the disc smaller until its rim is as bright as its middle, or has no photons. By their number, not by their
- * flux: one bright photon, which is a matter of chance, would take itself out of the disc where it lies far from the
- * point. Returns how many photons are left, first in n. */
-static uint32_t leave_brighter_rim(photon_neighbor *n, uint32_t count, float *in_out_radius_squared)
+/* Makes the disc smaller until its rim is as bright as its middle, or has no photons. By their number as well as by
+ * their flux: one bright photon, which is a matter of chance, would take itself out of the disc where it lies far from
+ * the point. Returns how many photons are left, first in n. */
+static uint32_t leave_brighter_rim(const photon_map *map, photon_neighbor *n, uint32_t count,
+                                   float *in_out_radius_squared)
 {
-    for (uint32_t rings; (rings = rings_of_one_light(n, count, *in_out_radius_squared)) < RINGS;) {
+    for (uint32_t rings; (rings = rings_of_one_light(map, n, count, *in_out_radius_squared)) < RINGS;) {
         uint32_t left = 0;
         *in_out_radius_squared *= (float)rings / (float)RINGS;
         for (uint32_t i = 0; i < count; i++)
@@ -126,7 +156,7 @@ irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position,
         radius_squared = photon_neighbor_distance_squared(scratch[count]);
     }
     radius_squared = fmaxf(radius_squared, map->min_radius_squared);
-    count = leave_brighter_rim(scratch, count, &radius_squared);
+    count = leave_brighter_rim(map, scratch, count, &radius_squared);
     radius_squared = fmaxf(radius_squared, map->min_radius_squared);
     float radius = sqrtf(radius_squared);
     double area = (double)AG_PI * (double)radius_squared;

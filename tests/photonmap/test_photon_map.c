@@ -68,6 +68,48 @@ static void the_mean_through_the_nearest_photon_is_right(void **state)
     expect_mean(FIELD_PLANE, 20, 60000, 100000, 1, true, 3e-3);
 }
 
+/* An even field of which one half has a tenth of the photons, each ten times as bright: beside the border estimates are
+ * right on average, although there are more photons on one side. */
+static void thinned_photons_give_the_same_light(void **state)
+{
+    (void)state;
+    enum { MAPS = 40 / (FEWER > 1 ? 4 : 1), FIELD = 30000, ASKED = 3000 };
+    test_run r;
+    test_run_init(&r, 1);
+    double sum = 0.0, squares = 0.0;
+    for (int m = 0; m < MAPS; m++) {
+        photon_set set = field_photons(FIELD_PLANE, FIELD, 77u + (unsigned)m);
+        rng random = test_random(500u + (unsigned)m);
+        uint32_t kept = 0;
+        for (uint32_t i = 0; i < set.count; i++) {
+            photon p = set.photons[i];
+            float u = rng_float(&random);
+            if (p.position[0] > 0.5f && u > 0.1f)
+                continue;
+            if (p.position[0] > 0.5f)
+                p.flux = flux_encode(rgb_scale(flux_decode(p.flux), 10.0f), rng_next(&random));
+            set.photons[kept++] = p;
+        }
+        set.count = kept;
+        photon_map map = field_map(&r, &set, 50, 0.15f);
+        photon_neighbor *scratch = malloc(photon_map_scratch_count(&map) * sizeof *scratch);
+        double mean = 0.0;
+        for (int i = 0; i < ASKED; i++) {
+            vec3 at = random_in_box(&random, (vec3){0.45f, 0.0f, 0.0f}, (vec3){0.57f, 1.0f, 0.0f});
+            mean += (double)irradiance_estimate(&map, at, (vec3){0.0f, 0.0f, 1.0f}, scratch).r / ASKED;
+        }
+        sum += mean / MAPS;
+        squares += mean * mean / MAPS;
+        free(scratch);
+        photon_map_reset(&map);
+    }
+    double error = sqrt((squares - sum * sum) / (MAPS - 1));
+    print_message("beside thinned photons: %+.2f %% +- %.2f %%\n", 100.0 * (sum / (double)FIELD_FLUX.r - 1.0),
+                  100.0 * error / (double)FIELD_FLUX.r);
+    assert_close(sum, (double)FIELD_FLUX.r, 0.005 * (double)FIELD_FLUX.r + 3.0 * error);
+    test_run_reset(&r);
+}
+
 /* --- single estimates --- */
 
 static photon_set few_photons(uint32_t count)
@@ -381,6 +423,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_mean_at_any_point_is_right),
         cmocka_unit_test(the_mean_through_the_nearest_photon_is_right),
+        cmocka_unit_test(thinned_photons_give_the_same_light),
         cmocka_unit_test(an_estimate_counts_k_and_reaches_to_the_next),
         cmocka_unit_test(coincident_photons_give_finite_values),
         cmocka_unit_test(a_very_small_disc_is_not_enlarged),
