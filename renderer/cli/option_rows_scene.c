@@ -265,12 +265,14 @@ static const option_row ROWS[] = {
           .argument = "SIZE",
           .section = "Scene",
           .help = "memory for pictures of textures, as 512M or 4G (default), at least 16M, 0: no bound; what is "
-                  "beyond it lies in a temporary file",
+                  "beyond it lies in a temporary file, or is read again from files that hold tiles (.tx)",
           .manual =
               "Memory for the pictures of textures: bytes, or with K, M, G or T 1024, 1024^2, ... times as many; *4G* by "
               "default, at least *16M*, *0* for no bound. Up to half of it pictures are held whole. What is "
               "beyond lies in a temporary file without a name, in $*TMPDIR* or _/tmp_, of "
-              "less than twice the pixels' size, and tiles of it are held in the rest. Pictures are decoded one "
+              "less than twice the pixels' size, and tiles of it are held in the rest. Files that themselves hold "
+              "tiles and coarser levels (.tx, tiled TIFF and OpenEXR) need no temporary file: their tiles are read from "
+              "them while the picture is rendered, and they are not to be changed meanwhile. Pictures are decoded one "
               "at a time. The picture that is rendered is the same."},
      .take = take_texture_memory},
     {.text = {.name = "confine",

@@ -143,14 +143,21 @@ static bool is_fit(const run_context *run, int descriptor, char *error, size_t e
     return false;
 }
 
+static const char OUTSIDE[] = "a confined scene may not read it: it lies outside of the scene's folder";
+
+bool input_file_may_ask(const run_context *run, const char *path, char *error, size_t error_size)
+{
+    if (is_allowed(run ? run->inputs : NULL, path))
+        return true;
+    snprintf(error, error_size, "%s", OUTSIDE);
+    return false;
+}
+
 int input_file_open(const run_context *run, const char *path, char *error, size_t error_size)
 {
-    static const char OUTSIDE[] = "a confined scene may not read it: it lies outside of the scene's folder";
     const input_files *files = run ? run->inputs : NULL;
-    if (!is_allowed(files, path)) {
-        snprintf(error, error_size, "%s", OUTSIDE);
+    if (!input_file_may_ask(run, path, error, error_size))
         return -1;
-    }
     /* O_NONBLOCK: a FIFO would wait for its writer; it means nothing for regular files */
     int descriptor = descriptor_beyond_standard(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (descriptor < 0) {

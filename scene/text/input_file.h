@@ -36,6 +36,10 @@ bool input_files_has(const input_files *files, uint64_t device, uint64_t inode);
  * error_size bytes, says why, without the path. */
 int input_file_open(const run_context *run, const char *path, char *error, size_t error_size);
 
+/* Whether the scene may know if there is a file of that name; else error says why not. Asked before a folder is
+ * searched, or a name tried: what it answers does not depend on whether there is such a file. */
+bool input_file_may_ask(const run_context *run, const char *path, char *error, size_t error_size);
+
 /* Whether a file may be read that a library opens by its name; notes it as input_file_open does. */
 bool input_file_allow(const run_context *run, const char *path, char *error, size_t error_size);
 /* Likewise for a file that the user has named, not the scene, which may lie anywhere. */

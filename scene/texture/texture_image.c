@@ -162,6 +162,17 @@ static void add_array(hash128 *h, const void *items, size_t count, size_t item_s
     hash128_add(h, items, items ? count * item_size : 0);
 }
 
+/* What the file's values become: the bytes of the file do not say that the scene has them decoded otherwise. */
+static hash128 file_content(const texture_image *i)
+{
+    const image_encoding encoding = i->colors.encoding;
+    const image_curve curve = encoding.curve == IMAGE_CURVE_DEFAULT ? IMAGE_CURVE_SRGB : encoding.curve;
+    hash128 h = texture_file_content(i->path);
+    HASH128_ADD(&h, curve);
+    HASH128_ADD(&h, encoding.gamma);
+    return h;
+}
+
 hash128 texture_image_content(const texture_image *i)
 {
     const size_t count = (size_t)i->width * i->height;
@@ -169,7 +180,7 @@ hash128 texture_image_content(const texture_image *i)
     if (i->udim)
         return texture_udim_content(i->udim);
     if (i->is_by_file)
-        return texture_file_content(i->path);
+        return file_content(i);
     if (i->is_stored)
         return i->stored_content;
     if (i->bytes)

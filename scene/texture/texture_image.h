@@ -18,7 +18,7 @@ struct scene;
 
 /* Of a grey picture all three colours are the same; alpha is 1 where it has none. */
 typedef enum texture_channel {
-    TEXTURE_CHANNEL_ALL,  /* as pbrt has it: alpha of pictures that have one, else the mean of the colours */
+    TEXTURE_CHANNEL_ALL,  /* as pbrt has it: alpha of pictures that have one (of tiles: any), else the colours' mean */
     TEXTURE_CHANNEL_MEAN, /* of the colours */
     TEXTURE_CHANNEL_R,
     TEXTURE_CHANNEL_G,
@@ -47,6 +47,7 @@ typedef struct texture_image {
     float least, most;                /* of the linear values, before `colors` */
     struct texture_udim *udim; /* many pictures side by side, see texture_udim.h, or NULL. Then the sizes above are the
                                   largest, the counts and bounds all of them's; it has no pixels or colours itself */
+    bool has_tile_alpha;       /* then, whether any of them has alpha */
 } texture_image;
 
 /* Takes the pixels of a picture that was read, of which *i has path and encoding so far. Errors: AG_ERROR_COLOR,
@@ -67,10 +68,10 @@ static inline texture_level texture_image_finest(const texture_image *i)
                            .values = i->values};
 }
 
-/* Whether alpha is below 1 anywhere; not of one in tiles. */
+/* Whether alpha is below 1 anywhere; of one in tiles, on any of them. */
 static inline bool texture_image_has_alpha(const texture_image *i)
 {
-    return i->alpha_bytes || i->alpha_values || i->stored_alpha.tiles;
+    return i->alpha_bytes || i->alpha_values || i->stored_alpha.tiles || i->has_tile_alpha;
 }
 
 /* Its alpha as a level, stored or not, where it has one. is_encoded: bytes are decoded as those of colours are. */

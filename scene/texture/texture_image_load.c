@@ -107,6 +107,7 @@ static void add_tile(texture_image *i, uint32_t slot, texture_image *tile)
     i->height = tile->height > i->height ? tile->height : i->height;
     i->channel_count = tile->channel_count > i->channel_count ? tile->channel_count : i->channel_count;
     i->bad_count += tile->bad_count;
+    i->has_tile_alpha = i->has_tile_alpha || texture_image_has_alpha(tile);
 }
 
 static ag_status load(scene *s, const source *from, uint32_t *out_index, char *message, size_t message_size);
@@ -136,10 +137,12 @@ static ag_status load_tiles(scene *s, texture_image *i, const source *from, cons
 
 static ag_status read_tiles(scene *s, texture_image *i, const source *from, char *message, size_t message_size)
 {
+    char reason[128] = "it holds more than one of <UDIM> and <UVTILE>";
     uint16_t *slots;
     uint32_t count;
-    if (texture_udim_is_ambiguous(from->path)) {
-        snprintf(message, message_size, "cannot read '%s': it holds more than one of <UDIM> and <UVTILE>", from->path);
+    if (texture_udim_is_ambiguous(from->path) ||
+        !input_file_may_ask(from->run, from->path, reason, sizeof reason)) { /* before its folder is searched */
+        snprintf(message, message_size, "cannot read '%s': %s", from->path, reason);
         return AG_ERROR_INPUT;
     }
     AG_TRY(texture_udim_find(from->path, &slots, &count));
@@ -147,9 +150,10 @@ static ag_status read_tiles(scene *s, texture_image *i, const source *from, char
     if (count > 0) {
         status = load_tiles(s, i, from, slots, count, message, message_size);
     } else {
-        char reason[128] = "No such file", *first = texture_udim_file(from->path, 0);
+        char *first = texture_udim_file(from->path, 0);
+        snprintf(reason, sizeof reason, "No such file");
         if (first)
-            input_file_allow(from->run, first, reason, sizeof reason); /* it may not be allowed either */
+            input_file_allow(from->run, first, reason, sizeof reason); /* its folder may be missing, too */
         snprintf(message, message_size, "cannot read '%s': there is no file of any tile, such as '%s': %s", from->path,
                  first ? first : "", reason);
         free(first);
@@ -158,10 +162,13 @@ static ag_status read_tiles(scene *s, texture_image *i, const source *from, char
     return status;
 }
 
-bool texture_image_is_there(const char *path)
+bool texture_image_is_there(const run_context *run, const char *path)
 {
+    char reason[128];
     uint16_t *slots;
     uint32_t count;
+    if (!input_file_may_ask(run, path, reason, sizeof reason))
+        return false;
     if (!texture_udim_is_pattern(path))
         return access(path, F_OK) == 0;
     if (texture_udim_find(path, &slots, &count) != AG_OK)

@@ -13,8 +13,8 @@
  * AG_ERROR_COLOR, AG_CANCELLED; text in message. */
 ag_status texture_image_load(run_context *run, struct scene *s, const char *path, image_encoding encoding,
                              uint32_t *out_index, char *message, size_t message_size);
-/* Whether there is a file of that name, or of any tile. */
-bool texture_image_is_there(const char *path);
+/* Whether there is a file of that name, or of any tile. False where the scene may not ask. */
+bool texture_image_is_there(const run_context *run, const char *path);
 /* From a PNG or JPEG file in memory, once for each name, which is to differ from all paths, and encoding. */
 ag_status texture_image_load_memory(run_context *run, struct scene *s, const char *name, const unsigned char *bytes,
                                     size_t size, image_encoding encoding, uint32_t *out_index, char *message,

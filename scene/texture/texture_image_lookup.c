@@ -43,12 +43,12 @@ static float alpha_at(const texture_image *i, bool is_encoded, texture_wraps wra
 float texture_image_float(const texture_image *i, texture_channel channel, texture_wraps wraps, texture_filter filter,
                           float s, float t)
 {
+    /* of the whole: a tile without alpha is opaque where others have it */
+    const bool is_encoded_alpha = channel == TEXTURE_CHANNEL_ALL && i->channel_count == 3 && texture_image_has_alpha(i);
     if (i->udim && !texture_udim_enter(&i, &wraps, &s, &t))
         return 0.0f;
-    if (channel == TEXTURE_CHANNEL_A)
-        return alpha_at(i, false, wraps, filter, s, t);
-    if (channel == TEXTURE_CHANNEL_ALL && i->channel_count == 3 && texture_image_has_alpha(i))
-        return alpha_at(i, true, wraps, filter, s, t);
+    if (is_encoded_alpha || channel == TEXTURE_CHANNEL_A)
+        return alpha_at(i, is_encoded_alpha, wraps, filter, s, t);
     const texture_level finest = finest_of(i);
     if (i->channel_count == 1)
         return texture_level_channel(&finest, 0, wraps, filter, s, t);

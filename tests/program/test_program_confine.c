@@ -140,6 +140,35 @@ static void test_models(void **state)
     program_run_reset(&run);
 }
 
+/* Of pictures in tiles nothing tells whether there are files outside, and the pattern is named, not a tile. */
+static void test_tiles(void **state)
+{
+    (void)state;
+    static const char *const NAMES[2] = {"scene/a.pbrt", "scene/a.obj"};
+    char *said[2] = {NULL, NULL};
+    write_files();
+    write_text("scene/a.pbrt",
+               BEGIN "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../z<UDIM>.png\"\n");
+    write_text("scene/a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+    write_text("scene/a.mtl", "newmtl m\nKd 1 1 1\nmap_Kd ../z<UDIM>.png\n");
+    for (int k = 0; k < 4; k++) {
+        if (k == 2)
+            write_text("z1001.png", SECRET "\n");
+        program_run run = RUN(QUICK, "--confine", "-o", "a.exr", NAMES[k % 2]);
+        expect_exit(&run, k % 2 ? 0 : 1);
+        expect_said(&run, REFUSED);
+        expect_said(&run, "../z<UDIM>.png");
+        assert_null(strstr(run.err, "1001"));
+        if (k < 2)
+            said[k] = strdup(run.err);
+        else
+            assert_string_equal(run.err, said[k % 2]);
+        program_run_reset(&run);
+    }
+    free(said[0]);
+    free(said[1]);
+}
+
 /* The stranger's name for the picture is not used; further folders may be named. */
 static void test_outputs_and_folders(void **state)
 {
@@ -172,6 +201,7 @@ int main(void)
         TEST_IN_FOLDER(test_pbrt),
         TEST_IN_FOLDER(test_gltf),
         TEST_IN_FOLDER(test_models),
+        TEST_IN_FOLDER(test_tiles),
         TEST_IN_FOLDER(test_outputs_and_folders),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

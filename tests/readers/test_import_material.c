@@ -249,6 +249,11 @@ static void opacity_is_alpha_where_there_is_one(void **state)
     r = quiet_material_of("map_d gray.exr");
     assert_int_equal(texture_of(&r, r.scene->shapes[0].alpha_texture)->channel, TEXTURE_CHANNEL_MEAN);
     reading_destroy(&r);
+    write_picture("tiles.1001.exr", 3);
+    write_picture("tiles.1012.exr", 4);
+    r = quiet_material_of("map_d tiles.<UDIM>.exr");
+    assert_int_equal(texture_of(&r, r.scene->shapes[0].alpha_texture)->channel, TEXTURE_CHANNEL_A);
+    reading_destroy(&r);
 }
 
 static void pictures_that_are_not_there_are_warnings(void **state)

@@ -1,6 +1,9 @@
 /* test_image_levels.c: tiles are read into memory that was measured when the file was opened: a file that says other
- * sizes by the time it is read is an error. Flow: tests of scene/image/image_levels.c. Threads: one. */
+ * sizes by the time it is read is an error. And a picture that is made of a file's own levels is fingerprinted by its
+ * bytes and by what they are decoded with. Flow: tests of scene/image/image_levels.c, scene/texture/texture_image.c.
+ * Threads: one. */
 #define _GNU_SOURCE
+#include "fixtures/texture_fixture.h"
 #include "fixtures/tiled_tiff.h"
 #include "image/image_levels.h"
 #include "image/image_module_loader.h"
@@ -63,11 +66,38 @@ static void a_file_that_was_exchanged_is_an_error(void **state)
         image_levels_close(levels[k]);
 }
 
+static hash128 content_of(const char *encoding)
+{
+    char world[256];
+    snprintf(world, sizeof world,
+             "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.tx\" \"string encoding\" \"%s\"",
+             encoding);
+    reading r = read_world(world);
+    assert_int_equal(r.status, AG_OK);
+    assert_true(r.scene->texture_images[0]->is_by_file);
+    const hash128 content = texture_image_content(r.scene->texture_images[0]);
+    reading_destroy(&r);
+    return content;
+}
+
+static void encodings_are_in_the_fingerprint(void **state)
+{
+    (void)state;
+    static const char *const OTHERS[] = {"linear", "gamma 2", "gamma 2.2"};
+    tiff_write_levels("a.tx", 128, 3, number);
+    const hash128 first = content_of("sRGB");
+    assert_true(hash128_is_equal(first, content_of("sRGB")));
+    for (int k = 0; k < 3; k++)
+        assert_false(hash128_is_equal(first, content_of(OTHERS[k])));
+    assert_false(hash128_is_equal(content_of("gamma 2"), content_of("gamma 2.2")));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(tiles_are_of_the_header),
         TEST_IN_FOLDER(a_file_that_was_exchanged_is_an_error),
+        TEST_IN_FOLDER(encodings_are_in_the_fingerprint),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* test_texture_udim.c: pictures in tiles: names that would stand for tiles of tiles are errors.
+/* test_texture_udim.c: pictures in tiles: names that would stand for tiles of tiles are errors; alpha is that of all
+ * tiles together.
  * Flow: tests of scene/texture/texture_udim.c, texture_image_load.c. Threads: one. */
 #define _GNU_SOURCE
 #include "fixtures/texture_fixture.h"
@@ -25,10 +26,37 @@ static void two_tokens_are_an_error(void **state)
     assert_false(texture_udim_is_ambiguous("t.exr"));
 }
 
+static const texture_image *whole_of(const reading *r)
+{
+    return r->scene->texture_images[r->scene->textures[r->scene->texture_count - 1].image_index];
+}
+
+/* Where one tile has alpha, numbers are alpha on all of them: 1 where a tile has none. */
+static void alpha_of_one_tile_is_that_of_all(void **state)
+{
+    (void)state;
+    static const float CUT[4] = {.5f, .5f, .5f, .25f};
+    static const char WORLD[] = "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"t<UDIM>.exr\"";
+    write_image("t1001.exr", 1, 1, 3, IMAGE_FLOAT, GRAY);
+    write_image("t1002.exr", 1, 1, 3, IMAGE_FLOAT, GRAY);
+    reading r = good_world(WORLD);
+    assert_false(texture_image_has_alpha(whole_of(&r)));
+    assert_near(last_float(&r, hit_at(.5f, .5f, 0, 0, 0)), .5, 1e-6);
+    reading_destroy(&r);
+    write_image("t1002.exr", 1, 1, 4, IMAGE_FLOAT, CUT);
+    r = good_world(WORLD);
+    assert_true(texture_image_has_alpha(whole_of(&r)));
+    assert_near(last_float(&r, hit_at(.5f, .5f, 0, 0, 0)), 1, 1e-6);
+    assert_near(last_float(&r, hit_at(1.5f, .5f, 0, 0, 0)), .25, 1e-6);
+    assert_near(last_float(&r, hit_at(5.5f, .5f, 0, 0, 0)), 0, 0);
+    reading_destroy(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(two_tokens_are_an_error),
+        TEST_IN_FOLDER(alpha_of_one_tile_is_that_of_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,6 +19,7 @@
 #include "model/importer.h"
 
 #include "status.h"
+#include "text/input_file.h"
 #include "texture/texture_image_load.h"
 
 #include <stdio.h>
@@ -27,9 +28,16 @@
 
 /* Pictures */
 
+/* message is left as it is where the scene may ask. */
+static bool is_there(const importer *i, const char *path, char *message, size_t message_size)
+{
+    return input_file_may_ask(i->run, path, message, message_size) && texture_image_is_there(i->run, path);
+}
+
 /* The path with slashes as they are here, below the folder of the model, or where the file says, or with the folders
- * that were there when it was made left out. Gives whether there is a file. */
-static bool find_picture(const importer *i, const char *name, char *out_path, size_t size)
+ * that were there when it was made left out. Gives whether there is a file; if not, message says why. */
+static bool find_picture(const importer *i, const char *name, char *out_path, size_t size, char *message,
+                         size_t message_size)
 {
     char plain[IMPORT_PATH_SIZE];
     snprintf(plain, sizeof plain, "%s", name);
@@ -37,17 +45,18 @@ static bool find_picture(const importer *i, const char *name, char *out_path, si
         if (*c == '\\')
             *c = '/';
     const char *slash = strrchr(i->where.file, '/'), *base = strrchr(plain, '/');
+    snprintf(message, message_size, "there is no such file");
     int folder = slash ? (int)(slash - i->where.file) + 1 : 0;
     if (plain[0] == '/') {
         snprintf(out_path, size, "%s", plain);
-        if (texture_image_is_there(out_path))
+        if (is_there(i, out_path, message, message_size))
             return true;
     }
     snprintf(out_path, size, "%.*s%s", folder, i->where.file, plain);
-    if (texture_image_is_there(out_path))
+    if (is_there(i, out_path, message, message_size))
         return true;
     snprintf(out_path, size, "%.*s%s", folder, i->where.file, base ? base + 1 : plain);
-    return texture_image_is_there(out_path);
+    return is_there(i, out_path, message, message_size);
 }
 
 static void warn_picture(importer *i, const import_picture *p, const char *reason)
@@ -72,10 +81,8 @@ static ag_status load_picture(importer *i, const import_picture *p, image_encodi
         return texture_image_load_memory(i->run, i->scene, p->path, i->embedded[number].bytes, i->embedded[number].size,
                                          encoding, out_image_index, message, message_size);
     }
-    if (!find_picture(i, p->path, path, sizeof path)) {
-        snprintf(message, message_size, "there is no such file");
+    if (!find_picture(i, p->path, path, sizeof path, message, message_size))
         return AG_ERROR_INPUT;
-    }
     if (encoding.curve == IMAGE_CURVE_DEFAULT) /* a colour's */
         encoding = image_colors_rule(i->scene, path);
     return texture_image_load(i->run, i->scene, path, encoding, out_image_index, message, message_size);

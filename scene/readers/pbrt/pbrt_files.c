@@ -73,9 +73,9 @@ char *pbrt_find_file(const pbrt_parser *parser, const char *name)
         name = "./-"; /* a file: only the user may name standard input */
     char *path = join(parser->top_directory, name);
     char *directory = directory_of(parser->files[parser->file_count - 1].lexer.file);
-    if (path && directory && !texture_image_is_there(path)) {
+    if (path && directory && !texture_image_is_there(parser->run, path)) {
         char *beside = join(directory, name);
-        if (!beside || texture_image_is_there(beside)) {
+        if (!beside || texture_image_is_there(parser->run, beside)) {
             free(path);
             path = beside;
         } else {
