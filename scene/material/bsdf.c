@@ -129,8 +129,10 @@ static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
     b->out = out;
     b->is_pane = pane_is_of(&b->parameters);
     b->lobe_count = 0;
-    if (b->parameters.kind == MATERIAL_HAIR)
+    if (b->parameters.kind == MATERIAL_HAIR) {
         b->fibre = hair_fibre_at(&b->parameters, hit->uv.y, frame_to_local(&b->shading, out));
+        b->fibre.faces_rays = hit->faces_rays;
+    }
     add_lobes(b);
     for (int k = 0; hit->is_strand && k < b->lobe_count; k++)
         b->lobes[k].group = BSDF_TRACED;
@@ -262,6 +264,18 @@ static float flux_correction(const bsdf *b, vec3 direction)
     return denominator > 0.0f ? fminf(numerator / denominator, BSDF_SHADING_NORMAL_MAX) : 0.0f;
 }
 
+/* Of flux by a rough lobe. Diffuse lobes go by the geometric normal already; what hair sends on knows of no normal, and
+ * the surface that it is on, unless it faces rays, is met by as much light as its geometric normal says. */
+static float rough_flux_factor(const bsdf *b, bsdf_lobe_kind kind, vec3 direction)
+{
+    if (bsdf_lobe_is_diffuse(kind) || (kind == LOBE_HAIR && b->fibre.faces_rays))
+        return 1.0f;
+    if (kind != LOBE_HAIR)
+        return flux_correction(b, direction);
+    float met = fabsf(vec3_dot(b->out, b->geometric_normal));
+    return met > 0.0f ? fminf(fabsf(vec3_dot(direction, b->geometric_normal)) / met, BSDF_SHADING_NORMAL_MAX) : 0.0f;
+}
+
 static float arrival_factor(const bsdf *b, const material *base)
 {
     float shading = vec3_dot(b->out, b->shading.z), geometric = vec3_dot(b->out, b->geometric_normal);
@@ -286,14 +300,16 @@ static rgb evaluate_all(const bsdf *b, bsdf_lobes lobes, bsdf_transport transpor
 {
     vec3 o = frame_to_local(&b->shading, b->out), i = frame_to_local(&b->shading, direction);
     rgb sum = rgb_gray(0.0f);
-    float correction = transport == BSDF_FLUX ? flux_correction(b, direction) : 1.0f, density = 0.0f;
+    float density = 0.0f;
     for (int k = 0; k < b->lobe_count; k++) {
         rgb value;
         float pdf;
         if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
             continue;
         bsdf_lobe_evaluate(b, &b->lobes[k], transport, direction, o, i, &value, &pdf);
-        sum = rgb_add(sum, bsdf_lobe_is_diffuse(b->lobes[k].kind) ? value : rgb_scale(value, correction));
+        if (transport == BSDF_FLUX)
+            value = rgb_scale(value, rough_flux_factor(b, b->lobes[k].kind, direction));
+        sum = rgb_add(sum, value);
         density += pdf * b->lobes[k].probability;
     }
     *out_pdf = density > 0.0f ? density / bsdf_probability(b, lobes) : 0.0f;

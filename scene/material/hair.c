@@ -141,6 +141,7 @@ static double sample_azimuthal(double u, double width)
 hair_fibre hair_fibre_at(const material *m, float v, vec3 out)
 {
     hair_fibre h = {.ior = (double)m->ior,
+                    .faces_rays = true,
                     .sigma_a = {(double)m->hair_sigma_a.r, (double)m->hair_sigma_a.g, (double)m->hair_sigma_a.b}};
     double bm = fmax((double)m->hair_beta_m, BETA_MIN), bn = fmax((double)m->hair_beta_n, BETA_MIN);
     /* v grows to the axis' left as the ray comes, phi to its right */
@@ -194,7 +195,7 @@ void hair_evaluate(const hair_fibre *h, bool is_flux, vec3 direction, rgb *out_v
         of_eye = lobes_of(h, i);
         carried = &of_eye;
         lobe_values(h, carried, i, o, turn, values);
-        narrower = i.cosine / fmax(o.cosine, 1e-6);
+        narrower = h->faces_rays ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
     }
     for (int k = 0; k < HAIR_LOBES; k++)
         for (int c = 0; c < 3; c++)

@@ -29,18 +29,20 @@ typedef struct hair_fibre {
     double width, width_norm; /* scale of the logistic distribution of the azimuth, and the factor */
     double sin_tilt[HAIR_TILTED], cos_tilt[HAIR_TILTED]; /* of once, twice and four times the scales' angle */
     double sine, cosine, azimuth; /* of the direction: its inclination, and the angle about the axis */
+    bool faces_rays;              /* its surface's normal is that of each ray: see hair_evaluate */
     hair_lobes lobes;             /* of the direction */
 } hair_fibre;
 
 /* The colour within hair that scatters much light back in this colour, each channel in [0, 1] (Chiang 2016, eq. 9). */
 rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n);
 
-/* v: the second surface parameter of the place. out: in the shading frame, unit. */
+/* v: the second surface parameter of the point. out: in the shading frame, unit. The fibre faces rays. */
 hair_fibre hair_fibre_at(const material *m, float v, vec3 out);
 
 /* f |cos|, and the density per solid angle with which hair_sample takes the direction: of radiance that comes from
  * `direction` and leaves to `out`; or of flux that comes from `out` and leaves to `direction`, per flux that meets the
- * fibre, which seems the narrower the more it points to the light. */
+ * fibre. One that faces rays seems the narrower the more it points to the light; of others the caller knows the normal,
+ * and multiplies by the ratio of its cosines. */
 void hair_evaluate(const hair_fibre *h, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf);
 
 vec3 hair_sample(const hair_fibre *h, float u_lobe, vec2 u);

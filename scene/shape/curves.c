@@ -289,6 +289,7 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
     h->epsilon = (float)epsilon + largest * SHAPE_EPSILON_RELATIVE;
     h->is_flat = false;
     h->is_strand = true;
+    h->faces_rays = c->type == CURVES_FLAT;
 }
 
 surface_differentials curves_differentials(const shape *s, const surface_hit *hit)

@@ -132,6 +132,22 @@ static void test_a_tuft_of_fibres(void **state)
     expect_both_alike(write_tuft(HAIR), NULL, 0.02, 0.15);
 }
 
+/* A ribbon of hair that the lamp meets at a slant: as much flux goes on as its own normal lets arrive. */
+static void test_a_slanting_ribbon_of_fibres(void **state)
+{
+    (void)state;
+    const char *scene = write_text(
+        "ribbon.pbrt", "LookAt 1.5 0 5  1.5 0 0  0 1 0\n"
+                       "Camera \"orthographic\" \"float screenwindow\" [-.5 .5 -.5 .5]\n"
+                       "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nWorldBegin\n"
+                       "LightSource \"distant\" \"point3 from\" [.2 0 1] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3]\n"
+                       "Material \"hair\" \"float eumelanin\" 0 \"float beta_m\" .8 \"float beta_n\" .9\n"
+                       "Shape \"curve\" \"string type\" \"ribbon\" \"normal N\" [1 0 0 1 0 0] \"float width\" .6 "
+                       "\"point3 P\" [0 -2 1 0 -.7 1 0 .7 1 0 2 1]\nMaterial \"diffuse\"\n"
+                       "Shape \"bilinearmesh\" \"point3 P\" [-4 -4 0 4 -4 0 -4 4 0 4 4 0]\n");
+    expect_both_alike(scene, "--only=indirect", 0.06, 0.3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -140,6 +156,7 @@ int main(void)
         TEST_IN_FOLDER(test_a_tube_is_as_bright_as_a_cylinder),
         TEST_IN_FOLDER(test_a_tuft_of_hair),
         TEST_IN_FOLDER(test_a_tuft_of_fibres),
+        TEST_IN_FOLDER(test_a_slanting_ribbon_of_fibres),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
