@@ -129,8 +129,9 @@ typedef struct ag_scene_settings {
      * there are. Not with has_camera. NULL, the default: the first. */
     const char *camera_name;
     uint64_t texture_memory_bytes; /* of the pictures of textures: up to half of it they are held whole, what is beyond
-                                      lies in a temporary file ($TMPDIR, else /tmp), of which tiles are held. The
-                                      picture is the same. 0: unbounded, else [AG_TEXTURE_MEMORY_LEAST_BYTES, ...];
+                                      lies in a temporary file ($TMPDIR, else /tmp), or in the picture's own file where
+                                      that holds tiles and coarser levels; some tiles are held. The picture is the
+                                      same. 0: unbounded, else [AG_TEXTURE_MEMORY_LEAST_BYTES, ...];
                                       default AG_DEFAULT_TEXTURE_MEMORY_BYTES */
     bool drops_lights; /* no light of the file's shines, nor any surface; nor is light made up. Default false */
     ag_up_axis up;     /* default AG_UP_AUTO */
