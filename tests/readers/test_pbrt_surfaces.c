@@ -377,6 +377,9 @@ static void hair_is_colored_by_one_of_its_words(void **state)
     m = warned_material(FLOATS "Material \"hair\" \"texture beta_m\" \"f\"",
                         "material \"hair\": a texture for \"beta_m\" is not supported: 0.3 stands in\n");
     assert_near(m.hair_beta_m, .3, 1e-6);
+    m = warned_material(FLOATS "Material \"hair\" \"texture eumelanin\" \"f\"",
+                        "material \"hair\": a texture for \"eumelanin\" is not supported: 1.3 stands in\n");
+    assert_rgb(m.hair_sigma_a, 1.3 * .419, 1.3 * .697, 1.3 * 1.37, 1e-5);
 }
 
 /* Whose scattering is that of a whole fibre. */

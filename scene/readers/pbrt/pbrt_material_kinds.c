@@ -247,11 +247,11 @@ static rgb hair_absorption(float eumelanin, float pheomelanin)
     return rgb_make(0.419f * e + 0.187f * p, 0.697f * e + 0.4f * p, 1.37f * e + 1.05f * p);
 }
 
-/* A number that may vary over the format's surfaces, but not over ours. */
-static ag_status read_constant(pbrt_parser *parser, parameter_list *list, const char *name, float *value)
+/* A number that may vary over the format's surfaces, but not over ours: then `otherwise`. */
+static ag_status read_constant(pbrt_parser *parser, parameter_list *list, const char *name, float otherwise,
+                               float *value)
 {
     uint32_t texture_index = SCENE_NO_TEXTURE;
-    const float otherwise = *value;
     AG_TRY(pbrt_get_float_texture(parser, list, name, value, &texture_index));
     if (texture_index == SCENE_NO_TEXTURE)
         return AG_OK;
@@ -270,11 +270,12 @@ static ag_status read_hair_color(pbrt_parser *parser, parameter_list *list, mate
         m->hair_sigma_a = hair_absorption_from_reflectance(m->reflectance, m->hair_beta_n);
         return AG_OK;
     }
+    const float brown = 1.3f;
     float eumelanin = 0.0f, pheomelanin = 0.0f;
     if (!parameter_list_find(list, "eumelanin") && !parameter_list_find(list, "pheomelanin"))
-        eumelanin = 1.3f;
-    AG_TRY(read_constant(parser, list, "eumelanin", &eumelanin));
-    AG_TRY(read_constant(parser, list, "pheomelanin", &pheomelanin));
+        eumelanin = brown;
+    AG_TRY(read_constant(parser, list, "eumelanin", brown, &eumelanin));
+    AG_TRY(read_constant(parser, list, "pheomelanin", brown, &pheomelanin));
     const rgb melanin = working_space_light(&parser->scene->space, hair_absorption(eumelanin, pheomelanin));
     m->hair_sigma_a = melanin;
     AG_TRY(pbrt_get_rgb_texture(parser, list, "sigma_a", &m->hair_sigma_a, &texture_index));
@@ -290,10 +291,10 @@ ag_status pbrt_read_hair(pbrt_parser *parser, parameter_list *list, material *m)
 {
     static const char *const COLORS[] = {"sigma_a", "reflectance", "color", "eumelanin", "pheomelanin"};
     m->ior = 1.55f;
-    AG_TRY(read_constant(parser, list, "eta", &m->ior));
-    AG_TRY(read_constant(parser, list, "beta_m", &m->hair_beta_m));
-    AG_TRY(read_constant(parser, list, "beta_n", &m->hair_beta_n));
-    AG_TRY(read_constant(parser, list, "alpha", &m->hair_tilt_degrees));
+    AG_TRY(read_constant(parser, list, "eta", m->ior, &m->ior));
+    AG_TRY(read_constant(parser, list, "beta_m", m->hair_beta_m, &m->hair_beta_m));
+    AG_TRY(read_constant(parser, list, "beta_n", m->hair_beta_n, &m->hair_beta_n));
+    AG_TRY(read_constant(parser, list, "alpha", m->hair_tilt_degrees, &m->hair_tilt_degrees));
     if (!(m->ior > 1.0f))
         return pbrt_refuse(parser, list, "eta", "\"eta\" of \"hair\" should be above 1");
     for (int i = 0; i < 2; i++) {
