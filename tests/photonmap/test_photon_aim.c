@@ -120,11 +120,11 @@ static photon_set trace(test_run *r, const scene *s, const place_importance *ask
         settings.asked = asked;
         settings.onward = onward;
         assert_int_equal(photon_aim_learn(s, &r->run, &settings, 0.8f, &aim), AG_OK);
-        assert_non_null(aim.guide.nodes);
+        assert_true(FEWER > 1 || aim.guide.nodes); /* fewer trials may not find a window */
         assert_true(aim.tried.paths > 0 && aim.tried.rays >= aim.tried.paths / 2 &&
                     aim.tried.photons >= aim.tried.asked && aim.tried.asked > 0);
-        assert_true(onward ? aim.split_above > 0.0f : aim.split_above == 0.0f);
-        settings.guide = &aim.guide;
+        assert_true(onward && aim.guide.nodes ? aim.split_above > 0.0f : aim.split_above == 0.0f);
+        settings.guide = aim.guide.nodes ? &aim.guide : NULL;
         settings.split_above = aim.split_above;
     }
     assert_int_equal(photon_tracing_run(s, &r->run, &settings, &set), AG_OK);
