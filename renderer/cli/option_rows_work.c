@@ -130,9 +130,10 @@ static const option_row ROWS[] = {
               .section = "Work",
               .help = "with --frames: each frame's number is added to the seed, so that noise differs from frame to "
                       "frame",
-              .manual = "With *--frames*: each frame's number is added to the seed, so that noise does not stand still "
-                        "over the moving picture. Without it all frames have one seed; *--seed* may also have a place "
-                        "for the number, _%d_ or _####_. With *--photon-map* the photons keep one seed."},
+              .manual =
+                  "With *--frames*: each frame's number is added to the seed, so that noise does not stand still "
+                  "over the moving picture. Without it all frames have one seed; *--seed* may also have a placeholder "
+                  "for the number, _%d_ or _####_. With *--photon-map* the photons keep one seed."},
      FLAG(seed_per_frame)},
     {.text = {.name = "checkpoint",
               .argument = "SECONDS",

@@ -120,7 +120,7 @@ typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
     size_t definition_count;              /* default 0 */
     ag_gltf_light_units gltf_light_units; /* default AG_GLTF_LIGHT_UNITS_AUTO */
-    /* A perspective camera in the place of the file's; its exposure and shutter stay. World space, as the file has it:
+    /* A perspective camera instead of the file's; its exposure and shutter stay. World space, as the file has it:
      * handed as pbrt is, or as models are. Directions from and to each other, and up, must not be parallel. */
     bool has_camera; /* default false */
     float camera_from[3], camera_to[3];
@@ -143,7 +143,7 @@ typedef struct ag_scene_settings {
     float sun_elevation_degrees; /* above the horizon, [-90, 90]; default 45 */
     float sun_irradiance;        /* W/m^2 on a surface that faces it, >= 0; default 3 */
     float sun_angle_degrees;     /* across it, [0, 180]: shadows have penumbras, mirrors do not show it; default 0 */
-    /* A sky in the place of the file's infinite lights. */
+    /* A sky instead of the file's infinite lights. */
     bool has_sky;          /* default false */
     float sky_radiance[3]; /* W/m^2/sr, linear Rec. 709, >= 0; a picture is multiplied by it; default 1 1 1 */
     const char *sky_file;  /* a picture of it, latitude-longitude, its middle in the east, north to the left of that;
@@ -220,7 +220,7 @@ typedef enum ag_layer {
     AG_LAYER_ID = 1 << 14,           /* id.object.V, id.material.V: of the nearest surface, from 1 on; 0: nothing */
     AG_LAYER_LIGHT_GROUPS = 1 << 15, /* light_NAME.R, G, B: what came from the lamps of a group to the first surface and
                                         by way of mirrors and glass; light_photons: through the photon map */
-    AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N in place of the above */
+    AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N instead of the above */
     /* How the photon map fared, at what the ray through the pixel's middle meets first; 0 where that gathers nothing.
      */
     AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density.V: photons per area, 1/m^2 */
@@ -526,7 +526,7 @@ typedef struct ag_output_settings {
     /* of all others: */
     const char *display;  /* NULL: the config's default */
     const char *view;     /* NULL: the display's default */
-    const char *look;     /* in place of the view's own: names with commas between them, undone with a - before it;
+    const char *look;     /* instead of the view's own: names with commas between them, undone with a - before it;
                              "none": none; NULL: the view's own */
     float exposure_stops; /* light is multiplied by 2 to this before the view; default 0 */
 } ag_output_settings;
@@ -606,10 +606,10 @@ typedef struct ag_statistics {
     unsigned threads;
     uint64_t photons_emitted, photons_stored_global, photons_stored_caustic, photon_bytes;
     ag_map_file map_file; /* of the last picture */
-    /* requests: places asked for; computed: estimates at photons; distinct: photons found ready afterwards that were
+    /* requests: points asked for; computed: estimates at photons; distinct: photons found ready afterwards that were
      * not before, counted by looking; deferred: set aside because another thread was computing; waited: had to wait in
-     * the end; duplicated: computed twice, 0; uncached: estimates at places themselves; refused:
-     * requests for places where no estimate holds, whose light was followed by further bounces instead; ready: photons
+     * the end; duplicated: computed twice, 0; uncached: estimates at hits themselves; refused:
+     * requests for points where no estimate holds, whose light was followed by further bounces instead; ready: photons
      * of a map from a file that were ready when it was opened; reclaimed: claims taken over from other processes that
      * had died. Where other processes fill the map too, distinct counts what they computed as well. */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
