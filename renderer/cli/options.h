@@ -40,6 +40,7 @@ typedef struct options {
     double checkpoint_seconds; /* 0: none but at signals, where resume is asked for */
     bool resume, preview, no_clobber;
     bool dry_run;               /* predicts, renders nothing */
+    const char *display_server; /* HOST:PORT of a viewer; NULL: none */
     uint64_t memory_limit;      /* bytes of the process; 0: none */
     ag_definition *definitions; /* owned, as are its strings */
     size_t definition_count;
@@ -62,6 +63,7 @@ typedef struct options {
     given_setting *given;      /* owned array, in the order of the command line; the strings are not */
     int given_count;
     options_asked asked_text;
+    struct display_server *display; /* main's, while it renders, or NULL */
 } options;
 
 typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE } options_result;
