@@ -3,7 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/collada_fixture.h"
 #include "fixtures/model_fixture.h"
-#include "model/mesh_import_assimp.h"
+#include "model/import_file.h"
 
 static const double PI_D = 3.14159265358979323846;
 
@@ -14,10 +14,14 @@ static void extensions(void **state)
     (void)state;
     static const char *const READS[] = {".stl", ".dae", ".fbx", ".3ds", ".OFF", ".x"}, *const NOT[] = {".pbrt", ".txt",
                                                                                                        ".exr", "."};
-    for (int k = 0; k < 6; k++)
-        assert_true(assimp_reads_extension(READS[k]));
-    for (int k = 0; k < 4; k++)
-        assert_false(assimp_reads_extension(NOT[k]));
+    bool reads;
+    run_context run;
+    run_context_init(&run, NULL, NULL, NULL, NULL);
+    for (int k = 0; k < 10; k++) {
+        assert_int_equal(import_reads_extension(&run, k < 6 ? READS[k] : NOT[k - 6], &reads), AG_OK);
+        assert_true(reads == (k < 6));
+    }
+    run_context_reset(&run);
 }
 
 /* z is up in STL; it is turned to y. */
