@@ -44,7 +44,8 @@ typedef enum bsdf_lobe_kind {
     LOBE_COAT_SCATTERED,       /* what leaves a coat at any angle (coat.h) */
     LOBE_HAIR,                 /* all ways by a fibre (hair.h) */
     LOBE_PRINCIPLED,           /* metal's and dielectric's reflection, and transmission, straight or refracted */
-    LOBE_CLEARCOAT             /* reflection by the coat of the principled one */
+    LOBE_CLEARCOAT,            /* reflection by the coat of the principled one */
+    LOBE_KIND_COUNT
 } bsdf_lobe_kind;
 
 typedef struct bsdf_lobe {
