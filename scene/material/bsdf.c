@@ -146,7 +146,7 @@ bsdf bsdf_create_of(const material *parameters, const surface_hit *hit, vec3 out
     return b;
 }
 
-/* Both faces and what is between them as one hit. */
+/* Makes one hit of both faces of a slab and what is between them. */
 static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
 {
     const medium *between = hit->slab.medium < s->medium_count ? &s->media[hit->slab.medium] : NULL;

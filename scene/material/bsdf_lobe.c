@@ -162,7 +162,7 @@ static vec3 mirror(vec3 o, vec3 *out_normal)
     return reflect_about(o, *out_normal);
 }
 
-/* What facets reflect at that cosine. */
+/* The share of light that facets reflect at that cosine. */
 typedef rgb facet_reflectance(const material *m, float cosine);
 
 static rgb metal_reflectance(const material *m, float cosine) { return fresnel_conductor(cosine, m->eta, m->k); }
