@@ -32,7 +32,7 @@ enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2, STREAM_TRIALS = 2 /* added to thos
 typedef struct block {
     photon *photons;
     uint32_t count, capacity;
-    uint32_t place; /* of its photons in the set */
+    uint32_t first; /* of its photons in the set */
     uint64_t paths, parts, rays, rays_cut;
     energy_balance balance;
     bool out_of_memory;
@@ -58,7 +58,7 @@ typedef struct photon_path {
     float share;     /* of the begun path, that this part has */
     int scatterings; /* but for panes, where they are direct */
     int arrivals;    /* at surfaces, panes too */
-    bool is_diffuse; /* has gone on from a place by its gathered lobes */
+    bool is_diffuse; /* has gone on from a surface by its gathered lobes */
 } photon_path;
 
 static void count_flux(double entry[3], rgb flux)
@@ -68,7 +68,7 @@ static void count_flux(double entry[3], rgb flux)
     entry[2] += (double)flux.b;
 }
 
-static photon *place_for_photon(block *out)
+static photon *append_photon(block *out)
 {
     if (out->count == out->capacity) {
         uint32_t capacity = out->capacity ? 2 * out->capacity : 4 * PATHS_PER_BLOCK;
@@ -87,8 +87,8 @@ static photon *place_for_photon(block *out)
  * had not been. false: this one is left out. */
 static bool keep(tracer *t, const photon_path *path, vec3 position, vec3 normal, uint64_t key, rgb *in_out_flux)
 {
-    const place_importance *asked = t->settings->asked;
-    if (!asked || !(path->weight < 1.0f) || place_importance_at(asked, position, normal) > 0.0f)
+    const importance_map *asked = t->settings->asked;
+    if (!asked || !(path->weight < 1.0f) || importance_map_at(asked, position, normal) > 0.0f)
         return true;
     rgb flux = *in_out_flux;
     bool is_kept = (float)(hash_combine(key, 0x6b656570u) >> 40) * 0x1p-24f < path->weight;
@@ -97,7 +97,7 @@ static bool keep(tracer *t, const photon_path *path, vec3 position, vec3 normal,
     return is_kept;
 }
 
-/* Where that place of a surface is when the shutter opens; its normal on the side that the path has arrived on. */
+/* Where that point of a surface is when the shutter opens; its normal on the side that the path has arrived on. */
 static surface_rest rest_of_arrival(const scene *s, const photon_path *path, const surface_hit *hit)
 {
     surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
@@ -120,7 +120,7 @@ static void store(tracer *t, const photon_path *path, const surface_hit *hit, fl
         alpha = alpha_at_hit(t->s, hit);
     flux = rgb_scale(flux, alpha > 0.0f ? arrival_factor * at.area_ratio / alpha : 0.0f);
     if (t->trial) {
-        float importance = place_importance_at(t->settings->asked, at.position, normal);
+        float importance = importance_map_at(t->settings->asked, at.position, normal);
         t->counts->photons++;
         t->counts->asked += importance > 0.0f;
         t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
@@ -133,7 +133,7 @@ static void store(tracer *t, const photon_path *path, const surface_hit *hit, fl
         count_flux(out->balance.cut, flux);
         return;
     }
-    photon *p = place_for_photon(out);
+    photon *p = append_photon(out);
     if (!p)
         return;
     p->position[0] = at.position.x;
@@ -211,7 +211,7 @@ static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
 
 /* What a path has arrived at. */
 typedef struct arrival_surface {
-    const rgb *albedo; /* of a Lambertian place; else NULL, and: */
+    const rgb *albedo; /* of a Lambertian surface; else NULL, and: */
     bsdf scattering;
 } arrival_surface;
 
@@ -318,7 +318,7 @@ static uint32_t count_parts(const tracer *t, const photon_path *path, const surf
     if (!(settings->split_above > 0.0f) || is_last || !arrival_surface_has(m, BSDF_GATHERED))
         return 1;
     surface_rest at = rest_of_arrival(t->s, path, hit);
-    float importance = place_importance_at(settings->onward, at.position, at.geometric_normal);
+    float importance = importance_map_at(settings->onward, at.position, at.geometric_normal);
     float flux = path->flux.r + path->flux.g + path->flux.b;
     if (t->trial)
         flux /= t->trial->density;
@@ -441,7 +441,7 @@ static ag_status account_block(round_job *job, photon_set *set, uint64_t first_p
         while (b->count < room)
             trace_path(&t, first_path + b->paths++);
     }
-    b->place = set->count;
+    b->first = set->count;
     set->count += b->count;
     set->emitted_paths += b->paths;
     set->rays += b->rays;
@@ -462,7 +462,7 @@ static void copy_blocks(void *user, uint64_t begin, uint64_t end, uint64_t index
     const merge_job *job = user;
     for (uint64_t i = begin; i < end; i++)
         if (job->blocks[i].count > 0)
-            memcpy(job->photons + job->blocks[i].place, job->blocks[i].photons, job->blocks[i].count * sizeof(photon));
+            memcpy(job->photons + job->blocks[i].first, job->blocks[i].photons, job->blocks[i].count * sizeof(photon));
 }
 
 /* Appends the round's blocks in their order, up to the one that fills the set. */

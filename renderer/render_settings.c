@@ -1,5 +1,5 @@
 /* render_settings.c: the renderer's settings: our defaults (settings_rows.c), and what the scene's file says of its
- * picture in the place of some.
+ * picture instead of some.
  * Flow: scene -> [here] -> render. Threads: as in afterglow.h. */
 #include "context.h"
 #include "settings_table.h"

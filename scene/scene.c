@@ -287,7 +287,7 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
     return AG_OK;
 }
 
-/* Drops the lights of a kind, or all. The others keep their order, and shapes learn their new place. */
+/* Drops the lights of a kind, or all. The others keep their order, and shapes learn their new index. */
 static void drop_lights(scene *s, light_kind kind, bool is_any_kind)
 {
     uint32_t kept = 0;

@@ -120,7 +120,7 @@ static bool is_filtered(const char *material)
     return !is_alike;
 }
 
-/* What cuts values, or picks among them, at each place is not the same of their mean: such textures stay unfiltered. */
+/* What cuts values, or picks among them, at each point is not the same of their mean: such textures stay unfiltered. */
 static void test_not_linear(void **state)
 {
     (void)state;

@@ -124,7 +124,7 @@ static void expect_film(const reading *r, double width, double height)
     assert_near((double)hints->height.value, height, 0);
 }
 
-/* Where the ray through the film's place goes, from a place on it in [0, 1]. */
+/* Where the ray through the film's point goes, from a point on it in [0, 1]. */
 static vec3 direction_at(const reading *r, float x, float y)
 {
     camera c = r->scene->camera;

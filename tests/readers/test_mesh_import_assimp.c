@@ -1,4 +1,4 @@
-/* test_mesh_import_assimp.c: what assimp reads arrives: meshes at their places, materials, cameras, lights, up axes;
+/* test_mesh_import_assimp.c: what assimp reads arrives: meshes at their nodes, materials, cameras, lights, up axes;
  * files that assimp refuses, or that it dies of, are errors. */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/collada_fixture.h"
@@ -47,7 +47,7 @@ static void stl_in_both_forms(void **state)
     reading_destroy(&r);
 }
 
-/* One mesh at two places, of which one is mirrored; a quad becomes two triangles. */
+/* One mesh at two nodes, of which one is mirrored; a quad becomes two triangles. */
 static void nodes_place_meshes(void **state)
 {
     (void)state;
@@ -86,7 +86,7 @@ static void the_up_axis_is_turned(void **state)
     reading_destroy(&r);
 }
 
-#define CAMERA(place) "<node id=\"camn\" name=\"camn\">" place "<instance_camera url=\"#cam\"/></node>"
+#define CAMERA(transform) "<node id=\"camn\" name=\"camn\">" transform "<instance_camera url=\"#cam\"/></node>"
 
 /* It looks along its node's -z; 40 degrees across, 2:1, so this is its height: */
 static void cameras_look_where_the_file_says(void **state)
@@ -108,12 +108,12 @@ static void cameras_look_where_the_file_says(void **state)
 #define LIGHT(kind, words)                                                                                             \
     "<light id=\"lam\" name=\"lam\"><technique_common><" kind "><color>1 0.5 0.25</color>" words "</" kind             \
     "></technique_common></light>"
-#define LAMP(place) "<node id=\"lamn\" name=\"lamn\">" place "<instance_light url=\"#lam\"/></node>"
+#define LAMP(transform) "<node id=\"lamn\" name=\"lamn\">" transform "<instance_light url=\"#lam\"/></node>"
 
-static reading lit(const char *lights, const char *place)
+static reading lit(const char *lights, const char *placement)
 {
     char text[8192];
-    snprintf(text, sizeof text, COLLADA("<up_axis>Y_UP</up_axis>", "%s", "%s"), lights, place);
+    snprintf(text, sizeof text, COLLADA("<up_axis>Y_UP</up_axis>", "%s", "%s"), lights, placement);
     return model_quietly("a.dae", text);
 }
 

@@ -1,4 +1,4 @@
-/* test_pbrt_parser.c: every error of the pbrt reader by its message and place, every warning once, blocks and
+/* test_pbrt_parser.c: every error of the pbrt reader by its message and location, every warning once, blocks and
  * transforms; damaged scenes.
  * Threads: one. */
 #define _POSIX_C_SOURCE 200809L
@@ -7,11 +7,11 @@
 
 #include "color/spectra.h"
 
-static void errors_name_place_and_reason(void **state)
+static void errors_name_location_and_reason(void **state)
 {
     (void)state;
     static const struct {
-        const char *text, *place, *message;
+        const char *text, *location, *message;
     } CASES[] = {
         {"Translate 1 2 3", "1:16", "the file ends without WorldBegin"},
         {"WorldBegin Shape \"sphere", "1:18", "unterminated string"},
@@ -183,7 +183,7 @@ static void errors_name_place_and_reason(void **state)
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         char expected[256];
-        snprintf(expected, sizeof expected, "t:%s: error: %s\n", CASES[i].place, CASES[i].message);
+        snprintf(expected, sizeof expected, "t:%s: error: %s\n", CASES[i].location, CASES[i].message);
         reading r = reading_create(NULL, CASES[i].text, strlen(CASES[i].text));
         if (r.status != AG_ERROR_SCENE || r.count[AG_LOG_ERROR] != 1 ||
             strncmp(r.said[AG_LOG_ERROR], expected, strlen(expected)) != 0)
@@ -356,7 +356,7 @@ static void hints_for_the_renderer(void **state)
     reading_destroy(&r);
 }
 
-/* WorldBegin settles them: an error names the parameter's place, and shows it. */
+/* WorldBegin settles them: an error names the parameter's location, and shows it. */
 static void wrong_hints(void **state)
 {
     (void)state;
@@ -615,7 +615,7 @@ static void cornell_box_is_read(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_name_place_and_reason),
+        cmocka_unit_test(errors_name_location_and_reason),
         cmocka_unit_test(errors_show_their_line),
         cmocka_unit_test(parameters_are_limited),
         cmocka_unit_test(warnings_are_given_once),

@@ -259,7 +259,7 @@ static void check_towards(const light_row *row, const scene *s, vec3 point)
         assert_chi_square(counts, bins, SAMPLES, 0.02 * WIDER);
 }
 
-static void light_towards_a_place_is_as_is_said(void **state)
+static void light_towards_a_point_is_as_is_said(void **state)
 {
     (void)state;
     for (int k = 0; k < ROW_COUNT; k++) {
@@ -330,7 +330,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_has_a_row),
-        cmocka_unit_test(light_towards_a_place_is_as_is_said),
+        cmocka_unit_test(light_towards_a_point_is_as_is_said),
         cmocka_unit_test(photons_carry_what_direct_light_says),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The installed tree works by itself, from another place than it was configured for: program, library, image module,
+# The installed tree works by itself, from another folder than it was configured for: program, library, image module,
 # headers, man page, pkg-config for users in C and in C++, and find_package.
 # ctest: install
 set -euo pipefail
@@ -11,7 +11,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/installed_tree.sh"
 cmake --install "$AFTERGLOW_BUILD_DIR" --prefix "$folder/elsewhere" >install.log || fail "cmake --install: $(<install.log)"
 DESTDIR=$folder/staging cmake --install "$AFTERGLOW_BUILD_DIR" >staging.log || fail "DESTDIR: $(<staging.log)"
 staged=$(find "$folder/staging" -name afterglow -path '*/bin/*' -printf '%h\n')
-mv elsewhere moved # no path of the place of installation is built in
+mv elsewhere moved # no path of the folder of installation is built in
 prefix=$folder/moved
 
 for program in "$prefix/bin/afterglow" "$staged/afterglow"; do

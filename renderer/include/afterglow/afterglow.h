@@ -4,7 +4,8 @@
  *     ag_context_create -> ag_scene_load -> ag_render -> ag_film_write
  *
  * Threads: a context and what was made with it belong to one thread at a time, but for ag_context_cancel and
- * ag_context_pause, which any thread and any signal handler may call. Several contexts may work side by side.
+ * ag_context_pause, which any thread and any signal handler may call, and for ag_film_read_tile and
+ * ag_film_read_picture, which any thread may. Several contexts may work side by side.
  * Errors: what can fail returns ag_status and writes its out-parameters on AG_OK alone; the text goes to the log.
  * Structs are plain, and filled by ag_default_...(): later releases add members. A program is built against the header
  * of the library that it runs with; the library's SONAME changes whenever a public struct or enum does. */
@@ -119,7 +120,7 @@ typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
     size_t definition_count;              /* default 0 */
     ag_gltf_light_units gltf_light_units; /* default AG_GLTF_LIGHT_UNITS_AUTO */
-    /* A perspective camera in the place of the file's; its exposure and shutter stay. World space, as the file has it:
+    /* A perspective camera instead of the file's; its exposure and shutter stay. World space, as the file has it:
      * handed as pbrt is, or as models are. Directions from and to each other, and up, must not be parallel. */
     bool has_camera; /* default false */
     float camera_from[3], camera_to[3];
@@ -142,7 +143,7 @@ typedef struct ag_scene_settings {
     float sun_elevation_degrees; /* above the horizon, [-90, 90]; default 45 */
     float sun_irradiance;        /* W/m^2 on a surface that faces it, >= 0; default 3 */
     float sun_angle_degrees;     /* across it, [0, 180]: shadows have penumbras, mirrors do not show it; default 0 */
-    /* A sky in the place of the file's infinite lights. */
+    /* A sky instead of the file's infinite lights. */
     bool has_sky;          /* default false */
     float sky_radiance[3]; /* W/m^2/sr, linear Rec. 709, >= 0; a picture is multiplied by it; default 1 1 1 */
     const char *sky_file;  /* a picture of it, latitude-longitude, its middle in the east, north to the left of that;
@@ -219,7 +220,7 @@ typedef enum ag_layer {
     AG_LAYER_ID = 1 << 14,           /* id.object.V, id.material.V: of the nearest surface, from 1 on; 0: nothing */
     AG_LAYER_LIGHT_GROUPS = 1 << 15, /* light_NAME.R, G, B: what came from the lamps of a group to the first surface and
                                         by way of mirrors and glass; light_photons: through the photon map */
-    AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N in place of the above */
+    AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N instead of the above */
     /* How the photon map fared, at what the ray through the pixel's middle meets first; 0 where that gathers nothing.
      */
     AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density.V: photons per area, 1/m^2 */
@@ -456,7 +457,9 @@ AG_API ag_status ag_rendering_read_checkpoint(ag_rendering *rendering, const cha
  * green, blue in W, caustic (0 global map, 1 caustic map), demanded (whether irradiance was computed there); written
  * atomically. Errors: AG_ERROR_ARGUMENT (path tracing has none), AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
 AG_API ag_status ag_rendering_write_photons(const ag_rendering *rendering, const char *path);
-/* The film as it is now. The rendering's. */
+/* The film as it is now, the rendering's; and the same one all along, which ag_rendering_finish hands over. While the
+ * rendering is at work, its size and names may be asked for, and it may be watched with ag_film_read_tile and
+ * ag_film_read_picture; all else waits until the call has returned. */
 AG_API const ag_film *ag_rendering_film(const ag_rendering *rendering);
 /* Ends the rendering, counts what was done, and hands its film over; out_film NULL: destroys that too. rendering NULL
  * is fine. */
@@ -472,6 +475,29 @@ AG_API int ag_film_channel_count(const ag_film *film);
 AG_API const char *ag_film_channel_name(const ag_film *film, int channel); /* the film's; NULL: there is none */
 /* Width * height values, top row first. Errors: AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_film_read_channel(const ag_film *film, int channel, float *out_values);
+
+/* A picture can be watched while it is rendered: from ag_rendering_film on, and for as long as the film is there, any
+ * thread may call the three functions below at any time, callbacks too. They copy the developed picture, R, G and B as
+ * ag_film_pixels has them, tile by tile: each tile as it was when it was finished last, in this pass over the picture
+ * or the one before. In the beginning it is black. None of them waits for longer than a tile takes to be copied, but
+ * while the film is denoised. */
+#define AG_TILE_SIZE 32
+/* A part of the picture: AG_TILE_SIZE pixels wide and high, or less at its right and lower edges. */
+typedef struct ag_tile {
+    int x, y; /* of its upper left pixel, from the upper left of the pixels rendered */
+    int width, height;
+    uint64_t version; /* higher with each change of any tile; 0: never shown, and black */
+} ag_tile;
+/* Tiles are numbered row by row from the upper left. */
+AG_API size_t ag_film_tile_count(const ag_film *film);
+/* Copies the tile of that number if it has changed since a version, else gives false and writes nothing. out_pixels:
+ * room for 3 * AG_TILE_SIZE * AG_TILE_SIZE floats; width * height pixels are written, rows without gaps. */
+AG_API bool ag_film_read_tile(const ag_film *film, size_t tile, uint64_t since_version, ag_tile *out_tile,
+                              float *out_pixels);
+/* Brings a copy of the whole picture up to date: writes the tiles that have changed since a version, 0 for all that
+ * have been shown, and gives the version that the copy then has. out_pixels: as large as ag_film_pixels, the caller's.
+ */
+AG_API uint64_t ag_film_read_picture(const ag_film *film, uint64_t since_version, float *out_pixels);
 
 /* Takes the noise out of R, G and B with Open Image Denoise, which is looked for when this is called; with albedo and
  * normals where the settings said denoise. The other channels stay, so the parts of light no longer add up. Errors:
@@ -500,7 +526,7 @@ typedef struct ag_output_settings {
     /* of all others: */
     const char *display;  /* NULL: the config's default */
     const char *view;     /* NULL: the display's default */
-    const char *look;     /* in place of the view's own: names with commas between them, undone with a - before it;
+    const char *look;     /* instead of the view's own: names with commas between them, undone with a - before it;
                              "none": none; NULL: the view's own */
     float exposure_stops; /* light is multiplied by 2 to this before the view; default 0 */
 } ag_output_settings;
@@ -580,10 +606,10 @@ typedef struct ag_statistics {
     unsigned threads;
     uint64_t photons_emitted, photons_stored_global, photons_stored_caustic, photon_bytes;
     ag_map_file map_file; /* of the last picture */
-    /* requests: places asked for; computed: estimates at photons; distinct: photons found ready afterwards that were
+    /* requests: points asked for; computed: estimates at photons; distinct: photons found ready afterwards that were
      * not before, counted by looking; deferred: set aside because another thread was computing; waited: had to wait in
-     * the end; duplicated: computed twice, 0; uncached: estimates at places themselves; refused:
-     * requests for places where no estimate holds, whose light was followed by further bounces instead; ready: photons
+     * the end; duplicated: computed twice, 0; uncached: estimates at hits themselves; refused:
+     * requests for points where no estimate holds, whose light was followed by further bounces instead; ready: photons
      * of a map from a file that were ready when it was opened; reclaimed: claims taken over from other processes that
      * had died. Where other processes fill the map too, distinct counts what they computed as well. */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,

@@ -25,7 +25,7 @@ bool gltf_matrix_axis(const gltf_matrix *m, int axis, double out_axis[3])
     return true;
 }
 
-/* The node's place and turn without its scale; a mirror stays one. Ours looks along +z. */
+/* The node's position and turn without its scale; a mirror stays one. Ours looks along +z. */
 static bool place_camera(const gltf_matrix *node, transform *out_world_from_camera)
 {
     double x[3], y[3], z[3], m[4][4] = {{0.0}}, along = 0.0, square = 0.0, side = 0.0;

@@ -61,7 +61,7 @@ typedef struct import_mesh {
     uint32_t left_out; /* points and lines */
 } import_mesh;
 
-/* A mesh at its place. */
+/* A mesh and its transform. */
 typedef struct import_instance {
     uint32_t mesh_index;
     uint32_t unused;

@@ -1,7 +1,7 @@
 /* mesh_import_assimp.c: see mesh_import_assimp.h. The only file that knows assimp.
- * Facts of assimp 5.2.5: camera angles are of the whole width; 3DS cameras have their place twice, in the node and in
- * the camera; FBX files keep their up axis, which stands in the metadata; STL, 3MF, AMF and Blender's files keep z up.
- * Threads: what is between "In the process" and "Here" runs in a process of its own. */
+ * Facts of assimp 5.2.5: camera angles are of the whole width; 3DS cameras have their position twice, in the node and
+ * in the camera; FBX files keep their up axis, which stands in the metadata; STL, 3MF, AMF and Blender's files keep z
+ * up. Threads: what is between "In the process" and "Here" runs in a process of its own. */
 #define _POSIX_C_SOURCE 200809L
 #include "model/mesh_import_assimp.h"
 
@@ -198,7 +198,7 @@ static void write_material(writer *w, const struct aiMaterial *m)
     for (int slot = 0; slot < IMPORT_SLOT_COUNT; slot++)
         get_picture(w, m, TYPES[slot], &out.pictures[slot]);
     if (w->is_blenders && w->is_fbx && out.pictures[IMPORT_COLOR].path[0] != '\0')
-        out.diffuse = rgb_gray(1.0f); /* a socket's value, which the picture takes the place of */
+        out.diffuse = rgb_gray(1.0f); /* a socket's value, which the picture replaces */
     write_record(w, IMPORT_RECORD_MATERIAL, &out, sizeof out);
 }
 
@@ -243,7 +243,7 @@ static void write_mesh(writer *w, const struct aiMesh *m)
     write_padding(w, size);
 }
 
-/* Places */
+/* Transforms */
 
 typedef double matrix[4][4];
 

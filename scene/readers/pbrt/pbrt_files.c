@@ -213,7 +213,7 @@ static ag_status next_of_value(pbrt_parser *parser, pbrt_value *value, pbrt_toke
     return status;
 }
 
-/* Puts values in the places of $name: into a string, or as tokens, which then are the next. */
+/* Puts values instead of $name: into a string, or as tokens, which then are the next. */
 static ag_status fill_in(pbrt_parser *parser, pbrt_file *file, pbrt_token *token)
 {
     char message[256], *text;

@@ -31,7 +31,7 @@ typedef struct pbrt_named_transform {
     transform start, end;
 } pbrt_named_transform;
 
-/* What stands in the place of $name. */
+/* What stands instead of $name. */
 typedef struct pbrt_value {
     char *text;       /* owned; the last token may lie in it */
     pbrt_lexer lexer; /* of a value that stands without quotes: tokens of its own, which come first */
@@ -203,13 +203,13 @@ typedef struct pbrt_parser {
     uint32_t alpha_texture;                                 /* likewise */
 } pbrt_parser;
 
-/* Every handler of a directive: where is the directive's place; its name has been read, nothing behind it. */
+/* Every handler of a directive: where is the directive's location; its name has been read, nothing behind it. */
 typedef ag_status pbrt_handler(pbrt_parser *parser, file_location where);
 
-/* pbrt_files.c: the stack of files and their tokens. The text of places: parser->source. */
+/* pbrt_files.c: the stack of files and their tokens. The text of locations: parser->source. */
 void pbrt_excerpt(const void *parser, file_location where, size_t width, char *out_text, size_t size);
 
-/* Opens a file as the innermost. name is as the user wrote it, where the place of the Include (zeroed for none). */
+/* Opens a file as the innermost. name is as the user wrote it, where the location of the Include (zeroed for none). */
 ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location where, size_t width);
 ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size);
 void pbrt_pop_file(pbrt_parser *parser);
@@ -245,8 +245,8 @@ pbrt_handler pbrt_color_space;
 /* Makes rgb parameters the working space's and reads the files of spectra. width: of the quoted "type name". Errors:
  * AG_ERROR_SCENE, AG_ERROR_INPUT (a file cannot be read), AG_ERROR_MEMORY. */
 ag_status pbrt_settle_color(pbrt_parser *parser, parameter *p, size_t width);
-/* A text file of nothing but numbers and comments, named at that place; hint ends the message where it cannot be read.
- * *out_numbers is to be freed. Errors: as above. */
+/* A text file of nothing but numbers and comments, named at that location; hint ends the message where it cannot be
+ * read. *out_numbers is to be freed. Errors: as above. */
 ag_status pbrt_read_number_file(pbrt_parser *parser, const char *name, file_location where, size_t width,
                                 const char *hint, double **out_numbers, size_t *out_count);
 
@@ -278,7 +278,7 @@ pbrt_handler pbrt_import, pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin
     pbrt_transform_begin, pbrt_transform_end, pbrt_reverse_orientation;
 ag_status pbrt_save_state(pbrt_parser *parser, file_location where, bool is_object, bool is_import);
 ag_status pbrt_restore_state(pbrt_parser *parser, file_location where, const char *directive, bool is_object);
-/* Error where a Begin of the file that ends at that place has no End there. */
+/* Error where a Begin of the file that ends at that location has no End there. */
 ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end);
 /* At the end of an imported file: what is open is an error, else the state that it began with is brought back and the
  * file popped. */
