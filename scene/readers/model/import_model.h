@@ -103,6 +103,7 @@ typedef struct import_light {
     uint32_t measure;             /* import_light_measure */
     float units_per_metre;        /* of IMPORT_LIGHT_WATTS, > 0 */
     float inner_cone, outer_cone; /* radians, the whole cone */
+    uint32_t dims_by_cosine;      /* spot: 1: multiplied by the cosine to its axis, too */
     float size[2];                /* area: across and along up */
 } import_light;
 

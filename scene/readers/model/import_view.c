@@ -207,6 +207,7 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
         double inner = fmin(fmax(0.5 * (double)source.inner_cone, 0.0), outer);
         l.kind = LIGHT_SPOT;
         light_set_cone(&l, inner, outer);
+        l.dims_by_cosine = source.dims_by_cosine == 1 && outer <= 0.5 * PI;
         break;
     }
     case IMPORT_LIGHT_DIRECTIONAL:
