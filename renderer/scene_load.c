@@ -74,12 +74,21 @@ static ag_status make_request(const ag_scene_settings *settings, scene_request *
                                    .has_sky = settings->has_sky,
                                    .sky_radiance = rgb_make(sky[0], sky[1], sky[2]),
                                    .sky_file = settings->sky_file,
-                                   .sky_rotation_degrees = settings->sky_rotation_degrees};
+                                   .sky_rotation_degrees = settings->sky_rotation_degrees,
+                                   .find_file = settings->find_file,
+                                   .find_file_user = settings->find_file_user};
     return AG_OK;
 }
 
+/* What is read: a file, or text of that name. */
+typedef struct scene_source {
+    const char *name;
+    const char *text; /* NULL: it is in the file */
+    size_t size_bytes;
+} scene_source;
+
 /* Reads and commits it. */
-static ag_status load(ag_context *context, const char *path, const definitions *d, const scene_request *request,
+static ag_status load(ag_context *context, const scene_source *from, const definitions *d, const scene_request *request,
                       scene *s, input_files *inputs)
 {
     const color_config *colors;
@@ -90,8 +99,9 @@ static ag_status load(ag_context *context, const char *path, const definitions *
     s->definitions = d;
     s->request = request;
     const char *wrong;
-    if (context->is_confined && !input_files_confine(inputs, path, (const char *const *)(void *)context->confined_to,
-                                                     context->confined_count, &wrong)) {
+    if (context->is_confined &&
+        !input_files_confine(inputs, from->name, (const char *const *)(void *)context->confined_to,
+                             context->confined_count, &wrong)) {
         if (!wrong)
             return AG_ERROR_MEMORY;
         log_message(context->log, AG_LOG_ERROR, "'%s': scenes cannot be confined to it: there is no such folder",
@@ -99,7 +109,8 @@ static ag_status load(ag_context *context, const char *path, const definitions *
         return AG_ERROR_ARGUMENT;
     }
     context->run.inputs = inputs;
-    ag_status status = scene_file_load(&context->run, path, s);
+    ag_status status = from->text ? scene_file_load_text(&context->run, from->name, from->text, from->size_bytes, s)
+                                  : scene_file_load(&context->run, from->name, s);
     context->run.inputs = NULL;
     inputs->scene = NULL; /* it was borrowed */
     if (status != AG_OK)
@@ -135,7 +146,7 @@ ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_def
     return ag_scene_load_as(context, path, &settings, out_scene);
 }
 
-ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
+static ag_status load_from(ag_context *context, const scene_source *from, const ag_scene_settings *settings,
                            ag_scene **out_scene)
 {
     const ag_scene_settings defaults = ag_default_scene_settings();
@@ -144,7 +155,8 @@ ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene
     const ag_definition *given = settings->definitions;
     const size_t count = settings->definition_count;
     scene_request request;
-    bool is_whole = context && path && out_scene && (given || count == 0) && make_request(settings, &request) == AG_OK;
+    bool is_whole =
+        context && from->name && out_scene && (given || count == 0) && make_request(settings, &request) == AG_OK;
     for (size_t i = 0; is_whole && i < count; i++)
         is_whole = given[i].name && given[i].value;
     if (!is_whole)
@@ -155,7 +167,7 @@ ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene
     scene *s = scene_create();
     ag_status status = copy_definitions(context, given, count, &d);
     if (status == AG_OK)
-        status = loaded && s ? load(context, path, &d, &request, s, &loaded->inputs) : AG_ERROR_MEMORY;
+        status = loaded && s ? load(context, from, &d, &request, s, &loaded->inputs) : AG_ERROR_MEMORY;
     if (status == AG_OK) {
         loaded->s = s;
         *out_scene = loaded;
@@ -168,6 +180,20 @@ ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene
     free(d.items);
     floating_point_leave(callers_arithmetic);
     return status;
+}
+
+ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
+                           ag_scene **out_scene)
+{
+    return load_from(context, &(scene_source){.name = path}, settings, out_scene);
+}
+
+ag_status ag_scene_load_text(ag_context *context, const char *name, const char *text, size_t size_bytes,
+                             const ag_scene_settings *settings, ag_scene **out_scene)
+{
+    if (!text)
+        return AG_ERROR_ARGUMENT;
+    return load_from(context, &(scene_source){name, text, size_bytes}, settings, out_scene);
 }
 
 void ag_scene_destroy(ag_scene *scene_to_destroy)

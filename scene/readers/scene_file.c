@@ -89,15 +89,27 @@ static bool is_pbrts(const char *path)
            !(dot && dot[1] != '\0' && assimp_reads_extension(dot));
 }
 
-ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
+/* Does what is asked for beyond what the file says. */
+static ag_status finish(run_context *run, const char *path, bool is_pbrt, scene *out_scene)
 {
-    AG_TRY(load(run, path, out_scene));
     if (out_scene->request)
-        AG_TRY(scene_overrides_apply(run, path, is_pbrts(path), out_scene));
+        AG_TRY(scene_overrides_apply(run, path, is_pbrt, out_scene));
     const definition *unused = definitions_unused(out_scene->definitions);
     if (!unused)
         return AG_OK;
     log_message(run->log, AG_LOG_ERROR, "%s: error: the scene has no $%s, which -D %s=%s is for", path, unused->name,
                 unused->name, unused->value);
     return AG_ERROR_ARGUMENT;
+}
+
+ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
+{
+    AG_TRY(load(run, path, out_scene));
+    return finish(run, path, is_pbrts(path), out_scene);
+}
+
+ag_status scene_file_load_text(run_context *run, const char *name, const char *text, size_t size, scene *out_scene)
+{
+    AG_TRY(pbrt_parse_text(run, name, text, size, out_scene));
+    return finish(run, name, true, out_scene);
 }

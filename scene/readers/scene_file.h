@@ -12,4 +12,7 @@
  * nowhere; formats other than pbrt's text use none). */
 ag_status scene_file_load(run_context *run, const char *path, scene *out_scene);
 
+/* scene_file_load of pbrt-v4 text in memory, as if it had been read from a file of that name. */
+ag_status scene_file_load_text(run_context *run, const char *name, const char *text, size_t size, scene *out_scene);
+
 #endif

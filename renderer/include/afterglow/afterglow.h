@@ -115,6 +115,11 @@ typedef enum ag_up_axis {
 #define AG_DEFAULT_TEXTURE_MEMORY_BYTES ((uint64_t)4 << 30)
 #define AG_TEXTURE_MEMORY_LEAST_BYTES   ((uint64_t)16 << 20)
 
+/* Finds a file that a scene names: a picture, an included text, a mesh, a spectrum. Writes its path to out_path, of
+ * path_size bytes, with a NUL at its end; false leaves it to the library, which looks in the scene's folder. Called on
+ * the thread that loads the scene, while it does so; it may call what an ag_log_fn may. */
+typedef bool ag_find_file_fn(void *user, const char *name, char *out_path, size_t path_size);
+
 /* Settings of a scene beyond what its file says. */
 typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
@@ -149,6 +154,9 @@ typedef struct ag_scene_settings {
     const char *sky_file;  /* a picture of it, latitude-longitude, its middle in the east, north to the left of that;
                               or square, octahedral. Read wherever it lies. NULL, the default: alike everywhere */
     float sky_rotation_degrees; /* turns the picture from north over east; default 0 */
+    ag_find_file_fn *find_file; /* of pbrt's text; what it names is read where the context's is_confined allows it.
+                                   Default NULL */
+    void *find_file_user;       /* handed to it */
 } ag_scene_settings;
 
 AG_API ag_scene_settings ag_default_scene_settings(void);
@@ -157,6 +165,11 @@ AG_API ag_scene_settings ag_default_scene_settings(void);
  * AG_ERROR_ARGUMENT (a setting is out of its range). */
 AG_API ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
                                   ag_scene **out_scene);
+/* ag_scene_load_as of pbrt-v4 text that lies in memory: size_bytes of it, which are needed for the time of the call
+ * alone. name: what messages call it; it need not exist, but the folder in front of its last slash is where files of
+ * the scene are looked for (none: the working folder), unless find_file of the settings knows better. */
+AG_API ag_status ag_scene_load_text(ag_context *context, const char *name, const char *text, size_t size_bytes,
+                                    const ag_scene_settings *settings, ag_scene **out_scene);
 AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
 
 /* Whether a path names one of the files that the scene was read from: its own, those that it includes, meshes,

@@ -65,8 +65,22 @@ static char *join(const char *directory, const char *name)
     return path;
 }
 
+/* The path that whoever loads the scene has for a name; to be freed. False: it has none. */
+static bool ask_for_file(const pbrt_parser *parser, const char *name, char **out_path)
+{
+    char path[4096];
+    const scene_request *asked = parser->scene->request;
+    if (!asked || !asked->find_file || !asked->find_file(asked->find_file_user, name, path, sizeof path))
+        return false;
+    *out_path = strndup(path, sizeof path - 1);
+    return true;
+}
+
 char *pbrt_find_file(const pbrt_parser *parser, const char *name)
 {
+    char *asked;
+    if (ask_for_file(parser, name, &asked))
+        return asked;
     if (name[0] == '/')
         return strdup(name);
     if (strcmp(name, "-") == 0)
@@ -174,7 +188,7 @@ ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location wh
 ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size)
 {
     text_file file = {.text = malloc(size + 1), .size = size};
-    parser->top_directory = strdup("");
+    parser->top_directory = directory_of(name);
     if (!file.text || !parser->top_directory) {
         free(file.text);
         return AG_ERROR_MEMORY;

@@ -213,8 +213,8 @@ void pbrt_excerpt(const void *parser, file_location where, size_t width, char *o
 ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location where, size_t width);
 ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size);
 void pbrt_pop_file(pbrt_parser *parser);
-/* Where a file that the scene names is: as pbrt has it, below the first file's directory; where there is none, below
- * that of the file that names it. To be freed; NULL when out of memory. */
+/* Where a file that the scene names is: where whoever loads it says; else as pbrt has it, below the first file's
+ * directory; where there is none, below that of the file that names it. To be freed; NULL when out of memory. */
 char *pbrt_find_file(const pbrt_parser *parser, const char *name);
 /* Whether a picture may be read (input_file.h); where not, message says why, with the path. Errors: AG_ERROR_INPUT. */
 ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size);
