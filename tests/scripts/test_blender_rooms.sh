@@ -58,6 +58,8 @@ expect principled glb 10
 for room in point spot sun area emission texture metal instances principled color; do
     expect "$room" fbx 12
 done
+expect shifted fbx 3
+expect shifted glb "is read without a shift"
 for room in point spot sun area texture instances color; do
     expect "$room" dae 18
 done

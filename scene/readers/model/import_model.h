@@ -75,6 +75,7 @@ typedef struct import_camera {
     float horizontal_fov;          /* radians, of the whole picture */
     float aspect;                  /* width / height; 0: not said */
     float orthographic_half_width; /* scene units; 0: perspective */
+    float shift[2];                /* of the picture, right and up, as a share of its longer side */
 } import_camera;
 
 typedef enum import_light_kind {

@@ -6,6 +6,7 @@
 #include "model/mesh_import_assimp.h"
 
 #include "model/blender_lamps.h"
+#include "model/blender_shifts.h"
 #include "model/import_confinement.h"
 #include "model/import_model.h"
 #include "model/import_process.h"
@@ -39,6 +40,7 @@ typedef struct writer {
     bool has_dimming_spots;
     float units_per_metre;  /* of such a one */
     blender_lamps lamps;    /* of such a one, of Collada */
+    blender_shifts shifts;  /* of such a one */
     bool has_plain_shining; /* a material shines */
 } writer;
 
@@ -326,7 +328,16 @@ static void write_camera(writer *w, const struct aiCamera *c, matrix root)
     out.horizontal_fov = c->mHorizontalFOV;
     out.aspect = c->mAspect;
     out.orthographic_half_width = c->mOrthographicWidth;
+    memcpy(out.shift, w->shifts.of_all, sizeof out.shift);
     write_record(w, IMPORT_RECORD_CAMERA, &out, sizeof out);
+    if (w->shifts.differ) {
+        char text[IMPORT_TEXT_SIZE];
+        snprintf(text, sizeof text,
+                 "camera \"%s\": the file's cameras shift their pictures differently, and which does so how is not "
+                 "read: this one is seen without a shift",
+                 out.name);
+        write_text(w, IMPORT_RECORD_WARNING, text);
+    }
 }
 
 /* Of the program that made the file, as "Blender (stable FBX IO) - 3.4.1 - 4.37.5"; "": it names none. */
@@ -370,6 +381,8 @@ static void find_maker(writer *w, const char *path)
     }
     if (w->is_blenders && is_collada)
         blender_lamps_read(path, &w->lamps);
+    if (w->is_blenders && s->mNumCameras > 0)
+        blender_shifts_read(path, is_fbx, &w->shifts);
 }
 
 /* The angle inside of which a spot of Blender's is full, from its half angle and blend: the edge takes that share of
