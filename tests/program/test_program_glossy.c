@@ -5,15 +5,14 @@
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 
-/* Standard error of the whole picture. */
-static const double SIGMA_MOST = 0.01;
+static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.01, 0.06};
 
 static void test_agreement(void **state)
 {
     (void)state;
-    compare_integrators("metal_plate", "--spp=128", NULL, SIGMA_MOST);
-    compare_integrators("metal_plate", "--spp=128", "--only=indirect", SIGMA_MOST);
-    compare_integrators("glass_ball_room", "--spp=512", "--only=indirect", 0.02); /* the path tracer's noise */
+    compare_integrators("metal_plate", "--spp=128", NULL, BOUNDS);
+    compare_integrators("metal_plate", "--spp=128", "--only=indirect", BOUNDS);
+    compare_integrators("glass_ball_room", "--spp=512", "--only=indirect", BOUNDS);
 }
 
 /* How far two pictures of four samples a pixel are apart, in the mean over all pixels, over their mean. */

@@ -359,7 +359,8 @@ static void test_small_stack(void **state)
 {
     (void)state;
     expect_end(RUN(QUICK, "--aov=all", "-o", "fresh.exr", ROOM), 0, NULL);
-    static const char *const LIMITS[] = {"-s 16", "-s 64", "-s 512"};
+    /* below 32 the loader itself runs out of it at times: the kernel leaves up to 8 KiB unused, by chance */
+    static const char *const LIMITS[] = {"-s 32", "-s 64", "-s 512"};
     for (int i = 0; i < 3; i++) {
         expect_limited_run(LIMITS[i], 0);
         expect_same_files("fresh.exr", "limited.exr");

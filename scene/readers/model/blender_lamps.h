@@ -13,7 +13,7 @@
  *                 cosine itself
  *   lengths       m                   100 / UnitScaleFactor units    m
  *
- * Flow: mesh_import_assimp, in its process -> [here]. Threads: plain data. */
+ * Flow: mesh_import_assimp -> [here]. Threads: plain data. */
 #ifndef AFTERGLOW_BLENDER_LAMPS_H
 #define AFTERGLOW_BLENDER_LAMPS_H
 

@@ -1,6 +1,6 @@
 /* import_model.h: what readers of foreign formats say of a file, in plain structs that hold no pointers, so that a
  * process can hand them to another: a row of records, each a head and its bytes. Whoever takes them believes nothing.
- * Flow: mesh_import_assimp (in a process of its own) -> [here] -> import_scene. Threads: plain data. */
+ * Flow: mesh_import_assimp (in afterglow-import) -> [here] -> import_scene. Threads: plain data. */
 #ifndef AFTERGLOW_IMPORT_MODEL_H
 #define AFTERGLOW_IMPORT_MODEL_H
 

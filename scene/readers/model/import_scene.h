@@ -1,5 +1,5 @@
 /* import_scene.h: the records of import_model.h made into a scene.
- * Flow: mesh_import_assimp -> [here] -> importer -> scene. Threads: one per scene. */
+ * Flow: import_file -> [here] -> importer -> scene. Threads: one per scene. */
 #ifndef AFTERGLOW_IMPORT_SCENE_H
 #define AFTERGLOW_IMPORT_SCENE_H
 

@@ -1,18 +1,13 @@
 /* mesh_import_assimp.c: see mesh_import_assimp.h. The only file that knows assimp.
  * Facts of assimp 5.2.5: camera angles are of the whole width; 3DS cameras have their position twice, in the node and
  * in the camera; FBX files keep their up axis, which stands in the metadata; STL, 3MF, AMF and Blender's files keep z
- * up. Threads: what is between "In the process" and "Here" runs in a process of its own. */
+ * up. Nothing is freed: the process ends. */
 #define _POSIX_C_SOURCE 200809L
 #include "model/mesh_import_assimp.h"
 
 #include "model/blender_lamps.h"
 #include "model/blender_shifts.h"
-#include "model/import_confinement.h"
 #include "model/import_model.h"
-#include "model/import_process.h"
-#include "model/import_scene.h"
-#include "status.h"
-#include "text/input_file.h"
 
 #include <assimp/ObjMaterial.h>
 #include <assimp/cimport.h>
@@ -25,12 +20,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 enum { MAX_DEPTH = 1000 }; /* of nodes within nodes */
-
-/* In the process */
 
 typedef struct writer {
     FILE *out;
@@ -497,23 +488,8 @@ static void write_scene(writer *w, const char *path)
     write_head(w, IMPORT_RECORD_END, 0);
 }
 
-typedef struct import_job {
-    const char *path;
-    const input_files *inputs; /* or NULL */
-} import_job;
-
-static bool import_in_process(void *user, FILE *answer)
+bool assimp_write_records(const char *path, FILE *answer)
 {
-    const import_job *job = user;
-    const char *path = job->path;
-    if (job->inputs && job->inputs->is_confined &&
-        !import_confine_process(job->inputs->roots, job->inputs->root_count)) {
-        writer refusal = {.out = answer, .is_sound = true};
-        write_text(
-            &refusal, IMPORT_RECORD_ERROR,
-            "a confined scene of this format cannot be read: the kernel has no Landlock to hold assimp in its folder");
-        return refusal.is_sound;
-    }
     writer w = {.out = answer, .is_sound = true};
     w.scene = aiImportFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate);
     if (w.scene && w.scene->mRootNode) {
@@ -522,51 +498,14 @@ static bool import_in_process(void *user, FILE *answer)
         const char *text = aiGetErrorString();
         write_text(&w, IMPORT_RECORD_ERROR, text && text[0] ? text : "assimp cannot read the file");
     }
-    return w.is_sound; /* nothing is freed: the process ends */
+    return w.is_sound;
 }
 
-/* Here */
+bool assimp_write_refusal(const char *text, FILE *answer)
+{
+    writer w = {.out = answer, .is_sound = true};
+    write_text(&w, IMPORT_RECORD_ERROR, text);
+    return w.is_sound;
+}
 
 bool assimp_reads_extension(const char *extension) { return aiIsExtensionSupported(extension) == AI_TRUE; }
-
-static ag_status refuse(const run_context *run, const char *path, const char *what, const char *reason)
-{
-    log_at(run->log, AG_LOG_ERROR, (file_location){path, 0, 0}, "%s: %s", what, reason);
-    return AG_ERROR_INPUT;
-}
-
-/* What assimp may take: some formats are packed, but none by more than this. */
-static ag_status find_memory_limit(const run_context *run, const char *path, uint64_t *out_bytes)
-{
-    const uint64_t base = UINT64_C(2) << 30, per_byte = 64;
-    struct stat info;
-    char error[128];
-    int file = input_file_open(run, path, error, sizeof error);
-    if (file < 0)
-        return refuse(run, path, "cannot read the file", error);
-    bool is_known = fstat(file, &info) == 0;
-    close(file);
-    if (!is_known)
-        return AG_ERROR_MEMORY;
-    *out_bytes = base + per_byte * (uint64_t)(info.st_size > 0 ? info.st_size : 0);
-    return AG_OK;
-}
-
-ag_status assimp_load_file(run_context *run, const char *path, scene *out_scene)
-{
-    char message[512];
-    import_answer answer;
-    uint64_t memory_bytes = 0;
-    AG_TRY(find_memory_limit(run, path, &memory_bytes));
-    run_progress(run, AG_PHASE_LOAD, 0.0);
-    import_job job = {path, run->inputs};
-    ag_status status = import_process_run(run, import_in_process, &job, memory_bytes, &answer, message, sizeof message);
-    if (status && status != AG_CANCELLED && message[0] != '\0')
-        refuse(run, path, "assimp cannot read the file", message);
-    if (status == AG_OK)
-        status = import_scene_fill(run, path, answer.bytes, answer.size, out_scene);
-    import_answer_reset(&answer);
-    if (status == AG_OK)
-        run_progress(run, AG_PHASE_LOAD, 1.0);
-    return status;
-}
