@@ -285,6 +285,7 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
 {
     if (!context || !loaded || !settings || !out_rendering)
         return AG_ERROR_ARGUMENT;
+    AG_TRY(scene_check_complete(context, loaded));
     ag_rendering *r = calloc(1, sizeof *r);
     if (!r)
         return AG_ERROR_MEMORY;

@@ -17,6 +17,10 @@ static const size_t PROGRESS_BYTES = (size_t)1 << 16;
 void pbrt_excerpt(const void *user, file_location where, size_t width, char *out_text, size_t size)
 {
     const pbrt_parser *parser = user;
+    if (parser->given && where.file == parser->given->where.file) {
+        snprintf(out_text, size, "\n    %s", parser->given->label);
+        return;
+    }
     for (int i = parser->file_count - 1; i >= 0; i--)
         if (parser->files[i].lexer.file == where.file) {
             pbrt_lexer_excerpt(&parser->files[i].lexer, where, width, out_text, size);
@@ -252,6 +256,18 @@ static ag_status fill_in(pbrt_parser *parser, pbrt_file *file, pbrt_token *token
     return AG_OK;
 }
 
+/* A call ends behind its strings. */
+static ag_status next_given(pbrt_given *given, pbrt_token *out_token)
+{
+    *out_token = (pbrt_token){.kind = PBRT_TOKEN_END, .where = given->where, .width = 1};
+    if (given->next_string < given->string_count) {
+        out_token->kind = PBRT_TOKEN_STRING;
+        out_token->text = given->strings[given->next_string++];
+        out_token->length = strlen(out_token->text);
+    }
+    return AG_OK;
+}
+
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
 {
     if (parser->has_peeked) {
@@ -259,6 +275,8 @@ ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
         *out_token = parser->peeked;
         return AG_OK;
     }
+    if (parser->given)
+        return next_given(parser->given, out_token);
     for (;;) {
         pbrt_file *file = &parser->files[parser->file_count - 1];
         if (file->value.has_tokens) {

@@ -156,7 +156,7 @@ ag_status pbrt_make_named_material(pbrt_parser *parser, file_location where)
 /* A named material, or where it is not made yet, as pbrt allows, an empty entry for it. */
 static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_index)
 {
-    const pbrt_named_material *named = find_named_material(parser, name);
+    pbrt_named_material *named = find_named_material(parser, name);
     if (!named) {
         pbrt_named_material used = {.where = where};
         material reserved = material_make(MATERIAL_DIFFUSE);
@@ -164,6 +164,7 @@ static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_loc
         AG_TRY(add_named_material(parser, name, used));
         named = find_named_material(parser, name);
     }
+    named->is_excused = false;
     *out_index = named->index;
     return AG_OK;
 }
@@ -234,7 +235,7 @@ ag_status pbrt_check_named_materials(pbrt_parser *parser)
 {
     for (size_t i = 0; i < parser->named_material_count; i++) {
         const pbrt_named_material *named = &parser->named_materials[i];
-        if (!named->is_defined)
+        if (!named->is_defined && !named->is_excused)
             return pbrt_error(parser, named->where, strlen("NamedMaterial"), "no material is named \"%s\"",
                               named->name);
     }

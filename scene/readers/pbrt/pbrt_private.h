@@ -111,6 +111,7 @@ typedef struct pbrt_named_material {
     char *name;
     uint32_t index; /* in the scene; filled in when MakeNamedMaterial comes, which may be after its use */
     bool is_defined;
+    bool is_excused;     /* only a call that failed has used it: it need not be made */
     file_location where; /* of its definition, or until then of its first use */
 } pbrt_named_material;
 
@@ -138,6 +139,7 @@ typedef struct pbrt_object {
     char *name;
     uint32_t object_index; /* the scene's, of the shapes that stand still in it */
     bool is_defined;
+    bool is_shown;       /* there is an instance of it */
     file_location where; /* of its ObjectBegin, or until then of its first ObjectInstance */
     pbrt_object_lamp *lamps;
     size_t lamp_count, lamp_capacity;
@@ -152,6 +154,16 @@ typedef struct pbrt_early_instance {
     file_location where;
 } pbrt_early_instance;
 
+/* What a call says in the place of text: the quoted strings behind the directive's name, and its parameters. */
+typedef struct pbrt_given {
+    const char *const *strings; /* [string_count], borrowed */
+    size_t string_count, next_string;
+    parameter *items; /* [item_count]; the list takes what they hold, and leaves them zeroed */
+    size_t item_count;
+    file_location where;
+    const char *label; /* of what is made, for messages */
+} pbrt_given;
+
 typedef struct pbrt_parser {
     run_context *run;
     log_sink *log;
@@ -165,6 +177,7 @@ typedef struct pbrt_parser {
     bool has_peeked;
     size_t told_bytes; /* of the first file, at the last progress */
 
+    pbrt_given *given;          /* borrowed; NULL: tokens come from the files */
     parameter_source source;    /* of the lists that are read */
     pbrt_attribute *attributes; /* all there have been, the newest first */
 
@@ -205,6 +218,10 @@ typedef struct pbrt_parser {
 
 /* Every handler of a directive: where is the directive's location; its name has been read, nothing behind it. */
 typedef ag_status pbrt_handler(pbrt_parser *parser, file_location where);
+
+/* pbrt_parser.c. NULL when out of memory. */
+pbrt_parser *pbrt_parser_create(run_context *run, scene *out_scene);
+void pbrt_parser_destroy(pbrt_parser *parser);
 
 /* pbrt_files.c: the stack of files and their tokens. The text of locations: parser->source. */
 void pbrt_excerpt(const void *parser, file_location where, size_t width, char *out_text, size_t size);
@@ -286,6 +303,10 @@ ag_status pbrt_end_import(pbrt_parser *parser, file_location end);
 
 /* pbrt_objects.c: what is kept once, and where it is shown. */
 pbrt_handler pbrt_object_begin, pbrt_object_end, pbrt_object_instance;
+/* The object of that name is the open one until pbrt_leave_object, once more where it was before; that ends with its
+ * first instance. */
+ag_status pbrt_enter_object(pbrt_parser *parser, const char *name, file_location where);
+void pbrt_leave_object(pbrt_parser *parser);
 /* Keeps a shape that shines within the open object. Takes its arrays, also on failure. */
 ag_status pbrt_add_object_lamp(pbrt_parser *parser, shape *s, file_location where);
 /* Shows a scene's object along the current transform as it moves: within the open object, or in the world. */
