@@ -208,6 +208,9 @@ void ag_scene_destroy(ag_scene *scene_to_destroy)
 {
     if (!scene_to_destroy)
         return;
+    scene_to_destroy->is_dropped = true;
+    if (scene_to_destroy->rendering_count > 0)
+        return; /* the last of them does it */
     scene_making_destroy(scene_to_destroy->making);
     scene_destroy(scene_to_destroy->s);
     input_files_reset(&scene_to_destroy->inputs);

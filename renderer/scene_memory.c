@@ -41,6 +41,7 @@ typedef struct scene_making {
     scene_request request;
     char *sky_file, *camera_name; /* of the request */
     int call_counts[CALL_KIND_COUNT];
+    bool is_change;  /* of a scene that is complete */
     bool has_moving; /* shapes or instances, whose motion was made for the camera's shutter */
 } scene_making;
 
@@ -357,6 +358,8 @@ static ag_status set_camera(making_call *c, const ag_camera *given)
     describe(c, "Camera", seen.type, "", NULL);
     if (c->making->has_moving)
         return refuse(c, "the camera comes before what moves: its shutter says when");
+    if (c->making->is_change && (seen.medium || strcmp(seen.type, "realistic") == 0))
+        return refuse(c, "of a scene that is complete the camera stays in its medium, and has no lens file");
     at.medium_outside = seen.medium;
     AG_TRY(take_matrices(c, seen.world_from_camera, seen.world_from_camera_end, &at));
     at.start = transform_invert(&at.start);
@@ -365,9 +368,49 @@ static ag_status set_camera(making_call *c, const ag_camera *given)
     return pbrt_builder_camera(c->making->builder, &c->call, &at, seen.type, c->items);
 }
 
+/* What a new camera may not change in a scene that is complete; NULL: nothing is wrong. */
+static const char *find_conflict(const scene *s, const camera *c)
+{
+    const bool has_shutter = c->shutter_open == s->camera.shutter_open && c->shutter_close == s->camera.shutter_close;
+    return s->instance_step_count > s->instance_count && !has_shutter
+               ? "what moves was made for another shutter: \"shutteropen\" and \"shutterclose\" should stay"
+               : NULL;
+}
+
+/* Of a scene that is complete, from a file or not: the camera is read into an empty scene. */
+static ag_status change_camera(ag_scene *made, const ag_camera *given)
+{
+    scene_making making = {.context = made->context, .s = scene_create(), .is_change = true};
+    making_call c = {.making = &making, .callers_arithmetic = floating_point_enter(), .begin = context_begin_phase()};
+    c.call.where = (file_location){FUNCTIONS[CALL_CAMERA], ++made->camera_calls, 0};
+    c.call.label = c.label;
+    ag_status status = AG_ERROR_MEMORY;
+    if (making.s) {
+        making.s->space = made->s->space;
+        making.builder = pbrt_builder_create(&made->context->run, making.s);
+    }
+    if (making.builder && made->rendering_count > 0)
+        status = refuse(&c, "a rendering of the scene is not finished yet");
+    else if (making.builder)
+        status = set_camera(&c, given);
+    const char *conflict = status == AG_OK ? find_conflict(made->s, &making.s->camera) : NULL;
+    if (conflict)
+        status = refuse(&c, conflict);
+    if (status == AG_OK) {
+        scene_set_camera(made->s, &making.s->camera);
+        made->s->has_camera = true;
+        made->s->is_camera_made_up = false;
+    }
+    pbrt_builder_destroy(making.builder);
+    scene_destroy(making.s);
+    return end_call(&c, status);
+}
+
 ag_status ag_scene_set_camera(ag_scene *made, const ag_camera *camera_to_set)
 {
     making_call c;
+    if (made && made->s)
+        return change_camera(made, camera_to_set);
     return begin_call(made, CALL_CAMERA, &c) ? end_call(&c, set_camera(&c, camera_to_set)) : AG_ERROR_ARGUMENT;
 }
 

@@ -413,6 +413,113 @@ static void calls_in_a_wrong_order_are_errors(void **state)
     end(&d);
 }
 
+static void photon_settings(ag_render_settings *settings, const char *map)
+{
+    settings->width = settings->height = SIZE;
+    settings->samples_per_pixel = 2;
+    settings->photon_count = 3000;
+    settings->gather_samples = 4;
+    settings->photon_map_file = map;
+}
+
+/* A scene whose camera was moved is one that had that camera from the beginning; a kept map serves both views. */
+static void a_moved_camera_is_as_one_from_the_beginning(void **state)
+{
+    (void)state;
+    static const double there[16] = {1, 0, 0, 0.2, 0, 1, 0, 1.1, 0, 0, -1, 3.7, 0, 0, 0, 1};
+    const ag_parameter fov = {.name = "fov", .type = AG_PARAMETER_FLOAT, .count = 1, .floats = (const float[]){50}};
+    desk d;
+    ag_scene *moved;
+    ag_camera eye = ag_default_camera();
+    ag_render_settings settings;
+    ag_film *film;
+    int width, height;
+    float first[3 * SIZE * SIZE], second[3 * SIZE * SIZE], again[3 * SIZE * SIZE];
+    char map[256];
+    snprintf(map, sizeof map, "%s", in_folder("kept.map"));
+    begin(&d);
+    assert_int_equal(ag_scene_load(d.context, LAYERS_SCENES "box_with_blocks.pbrt", &moved), AG_OK);
+    assert_int_equal(ag_render_settings_from_scene(d.context, moved, &settings), AG_OK);
+    photon_settings(&settings, map);
+    eye.world_from_camera = there;
+    eye.parameters = &fov;
+    eye.parameter_count = 1;
+    float *const pictures[] = {first, second};
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(ag_render(d.context, moved, &settings, &film), AG_OK);
+        assert_int_equal(ag_context_statistics(d.context).map_file, i == 0 ? AG_MAP_FILE_TRACED : AG_MAP_FILE_OPENED);
+        memcpy(pictures[i], ag_film_pixels(film, &width, &height), sizeof first);
+        ag_film_destroy(film);
+        assert_int_equal(ag_scene_set_camera(moved, &eye), AG_OK);
+    }
+    assert_memory_not_equal(first, second, sizeof first);
+
+    /* the same camera in a scene that is read anew, and a map of its own */
+    ag_scene *fresh;
+    char text_path[256];
+    snprintf(text_path, sizeof text_path, "%s", in_folder("fresh.pbrt"));
+    ag_scene *made;
+    assert_int_equal(ag_scene_create(d.context, NULL, &made), AG_OK);
+    transcribe(LAYERS_SCENES, "box_with_blocks.pbrt", made, text_path);
+    assert_int_equal(ag_scene_set_camera(made, &eye), AG_OK);
+    assert_int_equal(ag_scene_commit(made), AG_OK);
+    assert_int_equal(ag_scene_load(d.context, text_path, &fresh), AG_OK);
+    assert_int_equal(ag_scene_set_camera(fresh, &eye), AG_OK);
+    ag_scene *const same[] = {made, fresh};
+    float *const pixels[] = {first, again};
+    for (int i = 0; i < 2; i++) {
+        photon_settings(&settings, i == 0 ? in_folder("made.map") : in_folder("fresh.map"));
+        assert_int_equal(ag_render(d.context, same[i], &settings, &film), AG_OK);
+        memcpy(pixels[i], ag_film_pixels(film, &width, &height), sizeof first);
+        ag_film_destroy(film);
+        ag_scene_destroy(same[i]);
+    }
+    assert_memory_equal(first, again, sizeof first);
+    assert_string_equal(d.said, "");
+    ag_scene_destroy(moved);
+    end(&d);
+}
+
+static void a_camera_cannot_change_under_a_rendering(void **state)
+{
+    (void)state;
+    desk d;
+    square s;
+    ag_rendering *rendering;
+    ag_camera eye = ag_default_camera();
+    ag_render_settings settings;
+    begin(&d);
+    light_and_look(&d);
+    make_square(&s);
+    s.shape.world_from_shape_end = ASIDE;
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_OK);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    assert_int_equal(ag_render_settings_from_scene(d.context, d.made, &settings), AG_OK);
+    photon_settings(&settings, NULL);
+    assert_int_equal(ag_rendering_create(d.context, d.made, &settings, &rendering), AG_OK);
+    assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_ERROR_ARGUMENT);
+    expect_said(&d, "ag_scene_set_camera:1:0: error: a rendering of the scene is not finished yet");
+    ag_rendering_finish(rendering, NULL);
+    assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_OK);
+    eye.medium = "water";
+    assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_ERROR_ARGUMENT);
+    expect_said(&d, "the camera stays in its medium");
+    const ag_parameter close = {
+        .name = "shutterclose", .type = AG_PARAMETER_FLOAT, .count = 1, .floats = (const float[]){0.5f}};
+    eye = ag_default_camera();
+    eye.parameters = &close;
+    eye.parameter_count = 1;
+    assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_ERROR_ARGUMENT);
+    expect_said(&d, "what moves was made for another shutter");
+    /* destroyed too early, it stays until nobody needs it */
+    assert_int_equal(ag_rendering_create(d.context, d.made, &settings, &rendering), AG_OK);
+    ag_scene_destroy(d.made);
+    d.made = NULL;
+    assert_int_equal(ag_rendering_continue(rendering, 1), AG_OK);
+    ag_rendering_finish(rendering, NULL);
+    end(&d);
+}
+
 /* What is asked for beyond the scene is heeded as for a file. */
 static void settings_are_heeded(void **state)
 {
@@ -455,6 +562,8 @@ int main(void)
         cmocka_unit_test(matrices_and_order_are_checked),
         cmocka_unit_test(structs_of_other_sizes_are_refused),
         cmocka_unit_test(calls_in_a_wrong_order_are_errors),
+        TEST_IN_FOLDER(a_moved_camera_is_as_one_from_the_beginning),
+        cmocka_unit_test(a_camera_cannot_change_under_a_rendering),
         cmocka_unit_test(settings_are_heeded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -72,6 +72,16 @@ for user in use_c use_cpp; do
 done
 cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
 
+# A scene from memory, three views of it with one photon map.
+walk=$(find "$prefix" -name walk.c)
+[[ -s $walk ]] || fail "no example of a walk"
+"$CC" -std=c17 "${warnings[@]}" "$walk" -o walk "${flags[@]}"
+./walk walk.map view >said 2>told || fail "walk: $(<told)"
+[[ ! -s told && $(grep -Ec '^view [123]: a first picture after' said) == 3 ]] || fail "walk says: $(<said) $(<told)"
+grep -Eqx '[1-9][0-9]* updates of the window' said || fail "the window was never updated: $(<said)"
+[[ -s walk.map && -s view3.png ]] && ! cmp -s view1.png view3.png || fail "walk made no two views"
+echo "ok: walk"
+
 mkdir cmake_user
 cat >cmake_user/CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.25)

@@ -169,7 +169,8 @@ AG_API ag_status ag_scene_load_as(ag_context *context, const char *path, const a
  * the scene are looked for (none: the working folder), unless find_file of the settings knows better. */
 AG_API ag_status ag_scene_load_text(ag_context *context, const char *name, const char *text, size_t size_bytes,
                                     const ag_scene_settings *settings, ag_scene **out_scene);
-AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
+/* NULL is fine. Where renderings still borrow it, it goes with the last of them. */
+AG_API void ag_scene_destroy(ag_scene *scene);
 
 /* Whether a path names one of the files that the scene was read from: its own, those that it includes, meshes,
  * pictures; by device and inode, so that no other spelling or link hides it. To be asked before a picture is written
@@ -188,7 +189,7 @@ AG_API bool ag_scene_has_own_samples(const ag_scene *scene);
 
 /* A scene that calls put together:
  *
- *     ag_scene_create -> ag_scene_set_..., ag_scene_add_... -> ag_scene_commit -> ag_render
+ *     ag_scene_create -> ag_scene_set_..., ag_scene_add_... -> ag_scene_commit -> ag_render -> ag_scene_set_camera, ...
  *
  * Each call is a directive of pbrt-v4's text (pbrt.org/fileformat-v4), whose types, parameters, units, defaults and
  * limits it has, and goes the way of a file's directive: the picture has the bits of a file that says the same in the
@@ -237,7 +238,8 @@ typedef struct ag_parameter {
 /* An empty scene. settings: as for ag_scene_load_as, copied but for the definitions, of which there must be none;
  * NULL: the default ones. Until ag_scene_commit it can be added to and destroyed, and nothing else. */
 AG_API ag_status ag_scene_create(ag_context *context, const ag_scene_settings *settings, ag_scene **out_scene);
-/* Completes the scene and builds what rays need; it is then as one from a file, and takes no further calls. After an
+/* Completes the scene and builds what rays need; it is then as one from a file, of which the camera alone can change.
+ * After an
  * error it can only be destroyed. Errors also: AG_ERROR_RAY_TRACING. */
 AG_API ag_status ag_scene_commit(ag_scene *scene);
 
@@ -312,7 +314,9 @@ typedef struct ag_light {
 AG_API ag_light ag_default_light(void);
 AG_API ag_status ag_scene_add_light(ag_scene *scene, const ag_light *light);
 
-/* The last one counts; it comes before all that moves. */
+/* The last one counts; it comes before all that moves. Of a scene that is complete, from a file too, it may be changed
+ * as long as no rendering borrows the scene: nothing is rebuilt, and a photon map that is kept (photon_map_file) goes
+ * on serving. Its medium then stays (medium must be NULL), and where anything moves its shutter. */
 typedef struct ag_camera {
     size_t struct_size;
     const char *type; /* default "perspective" */
