@@ -201,6 +201,7 @@ static void lamps_of_blenders_are_in_watts(void **state)
     assert_rgb(l->intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
     assert_near(l->falloff_end, 1 - sqrt(0.5), 1e-5);
     assert_near(l->falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
+    assert_true(l->dims_by_cosine);
     reading_destroy(&r);
 
     /* 2 m by 0.5 m: a quarter of the W is what radiance times area is; it is not seen itself */
@@ -252,6 +253,7 @@ static void lamps_of_blenders_fbx_are_in_watts(void **state)
     assert_int_equal(r.scene->lights[0].kind, LIGHT_SPOT);
     assert_near(r.scene->lights[0].falloff_end, 1 - sqrt(0.5), 1e-5);
     assert_near(r.scene->lights[0].falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
+    assert_true(r.scene->lights[0].dims_by_cosine);
     reading_destroy(&r);
     r = model_of("a.fbx", FBX_LAMP("1", "3", ""));
     assert_int_equal(r.status, AG_OK);

@@ -123,6 +123,10 @@ ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_value *node
     AG_TRY(is_orthographic ? read_orthographic(r, &at, &c) : read_perspective(r, &at, &c));
     if (!place_camera(world_from_node, &c.world_from_camera))
         return gltf_error(r, &at, "its node leaves no room for it");
+    if (r->is_blenders)
+        log_at_once(r->run->log, AG_LOG_INFO, r->where, "gltf:shift",
+                    "camera \"%s\" is read without a shift: glTF files have none, whatever Blender's camera has",
+                    known_as);
     r->scene->camera = c;
     r->scene->has_camera = true;
     return AG_OK;

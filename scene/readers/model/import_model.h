@@ -75,6 +75,7 @@ typedef struct import_camera {
     float horizontal_fov;          /* radians, of the whole picture */
     float aspect;                  /* width / height; 0: not said */
     float orthographic_half_width; /* scene units; 0: perspective */
+    float shift[2];                /* of the picture, right and up, as a share of its longer side */
 } import_camera;
 
 typedef enum import_light_kind {
@@ -103,6 +104,7 @@ typedef struct import_light {
     uint32_t measure;             /* import_light_measure */
     float units_per_metre;        /* of IMPORT_LIGHT_WATTS, > 0 */
     float inner_cone, outer_cone; /* radians, the whole cone */
+    uint32_t dims_by_cosine;      /* spot: 1: multiplied by the cosine to its axis, too */
     float size[2];                /* area: across and along up */
 } import_light;
 

@@ -6,6 +6,7 @@
 #include "model/mesh_import_assimp.h"
 
 #include "model/blender_lamps.h"
+#include "model/blender_shifts.h"
 #include "model/import_model.h"
 
 #include <assimp/ObjMaterial.h>
@@ -27,9 +28,11 @@ typedef struct writer {
     const struct aiScene *scene;
     bool is_sound;            /* all could be written */
     bool is_blenders, is_fbx; /* the file is by Blender's exporter of Collada or FBX */
-    float units_per_metre;    /* of such a one */
-    blender_lamps lamps;      /* of such a one, of Collada */
-    bool has_plain_shining;   /* a material shines */
+    bool has_dimming_spots;
+    float units_per_metre;  /* of such a one */
+    blender_lamps lamps;    /* of such a one, of Collada */
+    blender_shifts shifts;  /* of such a one */
+    bool has_plain_shining; /* a material shines */
 } writer;
 
 static void write_bytes(writer *w, const void *bytes, size_t size)
@@ -316,16 +319,35 @@ static void write_camera(writer *w, const struct aiCamera *c, matrix root)
     out.horizontal_fov = c->mHorizontalFOV;
     out.aspect = c->mAspect;
     out.orthographic_half_width = c->mOrthographicWidth;
+    memcpy(out.shift, w->shifts.of_all, sizeof out.shift);
     write_record(w, IMPORT_RECORD_CAMERA, &out, sizeof out);
+    if (w->shifts.differ) {
+        char text[IMPORT_TEXT_SIZE];
+        snprintf(text, sizeof text,
+                 "camera \"%s\": the file's cameras shift their pictures differently, and which does so how is not "
+                 "read: this one is seen without a shift",
+                 out.name);
+        write_text(w, IMPORT_RECORD_WARNING, text);
+    }
 }
 
-static bool is_made_by(const struct aiScene *s, const char *maker)
+/* Of the program that made the file, as "Blender (stable FBX IO) - 3.4.1 - 4.37.5"; "": it names none. */
+static const char *maker_of(const struct aiScene *s)
 {
     for (unsigned k = 0; s->mMetaData && k < s->mMetaData->mNumProperties; k++)
         if (strcmp(s->mMetaData->mKeys[k].data, AI_METADATA_SOURCE_GENERATOR) == 0 &&
             s->mMetaData->mValues[k].mType == AI_AISTRING)
-            return strncmp(((const struct aiString *)s->mMetaData->mValues[k].mData)->data, maker, strlen(maker)) == 0;
-    return false;
+            return ((const struct aiString *)s->mMetaData->mValues[k].mData)->data;
+    return "";
+}
+
+/* Blender's spots were dimmer beside their axis before 3.5: see spot_light.c. */
+static bool has_dimming_spots(const char *maker)
+{
+    const char *version = maker + strcspn(maker, "0123456789");
+    char *end;
+    const long major = strtol(version, &end, 10), minor = *end == '.' ? strtol(end + 1, NULL, 10) : 0;
+    return end != version && (major < 3 || (major == 3 && minor < 5));
 }
 
 /* Whose file it is, for lamps: see blender_lamps.h. */
@@ -336,7 +358,8 @@ static void find_maker(writer *w, const char *path)
     const bool is_collada = dot && strcasecmp(dot, ".dae") == 0, is_fbx = dot && strcasecmp(dot, ".fbx") == 0;
     w->is_fbx = is_fbx;
     w->units_per_metre = is_fbx ? 100.0f : 1.0f;
-    w->is_blenders = (is_collada || is_fbx) && is_made_by(s, "Blender ");
+    w->is_blenders = (is_collada || is_fbx) && strncmp(maker_of(s), "Blender ", strlen("Blender ")) == 0;
+    w->has_dimming_spots = w->is_blenders && has_dimming_spots(maker_of(s));
     for (unsigned k = 0; is_fbx && s->mMetaData && k < s->mMetaData->mNumProperties; k++) {
         const struct aiMetadataEntry *value = &s->mMetaData->mValues[k];
         if (strcmp(s->mMetaData->mKeys[k].data, "UnitScaleFactor") != 0)
@@ -349,6 +372,8 @@ static void find_maker(writer *w, const char *path)
     }
     if (w->is_blenders && is_collada)
         blender_lamps_read(path, &w->lamps);
+    if (w->is_blenders && s->mNumCameras > 0)
+        blender_shifts_read(path, is_fbx, &w->shifts);
 }
 
 /* The angle inside of which a spot of Blender's is full, from its half angle and blend: the edge takes that share of
@@ -382,6 +407,7 @@ static void restore_blenders(writer *w, const struct aiLight *l, matrix world, i
         const double outer = (double)(lamp ? l->mAngleInnerCone : l->mAngleOuterCone); /* assimp widens Collada's */
         const double blend = lamp ? (double)lamp->spot_blend : 1.0 - (double)l->mAngleInnerCone / fmax(outer, 1e-6);
         out->outer_cone = (float)outer;
+        out->dims_by_cosine = w->has_dimming_spots;
         out->inner_cone = (float)(2.0 * full_angle(0.5 * outer, fmin(fmax(blend, 0.0), 1.0)));
     }
 }
