@@ -10,8 +10,7 @@
 
 /* All channels of the first picture of a file, from its colours on; *out_image is to be reset. On failure *out_image is
  * empty and message says why, with OpenImageIO's text. Errors: AG_ERROR_INPUT, AG_ERROR_SYSTEM (the module cannot be
- * opened), AG_ERROR_MEMORY.
- */
+ * opened), AG_ERROR_MEMORY. */
 ag_status image_read(const char *path, image *out_image, char *message, size_t message_size);
 
 /* image_read of the colours alone: what textures and lights are made of. */

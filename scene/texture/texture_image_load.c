@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What a picture is made of. */
+/* The inputs that a picture is made of. */
 typedef struct source {
     run_context *run;
     const char *path;

@@ -12,8 +12,8 @@
 typedef struct pbrt_builder pbrt_builder;
 struct image;
 
-/* Begins an empty, uncommitted scene; run and scene are borrowed until pbrt_builder_destroy. NULL when out of memory.
- */
+/* Begins an empty, uncommitted scene; run and scene are borrowed until pbrt_builder_destroy. NULL when out of
+ * memory. */
 pbrt_builder *pbrt_builder_create(run_context *run, scene *out_scene);
 void pbrt_builder_destroy(pbrt_builder *b); /* NULL is fine */
 

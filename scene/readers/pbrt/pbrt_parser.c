@@ -110,7 +110,7 @@ static ag_status do_directive(pbrt_parser *parser, const pbrt_token *token)
                       token->length > SHOWN ? "..." : "", token->kind == PBRT_TOKEN_STRING ? "\"" : "");
 }
 
-/* What only the end can tell. end: the location of the end of the first file. */
+/* Checks that only the end of the text allows. end: the location of the end of the first file. */
 static ag_status check_end(pbrt_parser *parser, file_location end)
 {
     if (!parser->in_world)

@@ -32,7 +32,7 @@ typedef struct pbrt_named_transform {
     transform start, end;
 } pbrt_named_transform;
 
-/* What stands instead of $name. */
+/* The value that stands instead of $name. */
 typedef struct pbrt_value {
     char *text;       /* owned; the last token may lie in it */
     pbrt_lexer lexer; /* of a value that stands without quotes: tokens of its own, which come first */
@@ -53,7 +53,7 @@ typedef struct pbrt_file {
     name_table coordinate_system_names;
 } pbrt_file;
 
-/* What Attribute speaks to. */
+/* The kinds of things that Attribute speaks to. */
 typedef enum pbrt_target {
     PBRT_TARGET_SHAPE,
     PBRT_TARGET_LIGHT,
@@ -85,7 +85,7 @@ typedef struct pbrt_area_light {
     file_location where;
 } pbrt_area_light;
 
-/* What AttributeBegin saves and AttributeEnd brings back. */
+/* The state that AttributeBegin saves and AttributeEnd brings back. */
 typedef struct pbrt_state {
     /* At the start and at the end of TransformTimes; before WorldBegin: camera_from_world. What does not move looks at
      * the start alone. */
@@ -365,8 +365,8 @@ pbrt_material_reader pbrt_read_diffuse, pbrt_read_diffuse_transmission, pbrt_rea
 /* "displacement" and "normalmap", of all kinds but mixes. */
 pbrt_material_reader pbrt_read_maps;
 
-/* pbrt_old_materials.c: where *type is one of pbrt-v3's names, makes it pbrt-v4's, and the list's parameters with it.
- */
+/* pbrt_old_materials.c: where *type is one of pbrt-v3's names, makes it pbrt-v4's, and the list's parameters with
+ * it. */
 ag_status pbrt_upgrade_material(pbrt_parser *parser, parameter_list *list, const char **type);
 
 /* pbrt_textures.c */
