@@ -28,6 +28,10 @@ ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t
  * Errors: AG_ERROR_INPUT (the picture does not fill a window of more than 2^28 pixels), AG_ERROR_MEMORY. */
 ag_status image_fill_window(image *in_out, const char *name, char *message, size_t message_size);
 
+/* A copy of a picture; as_floats: of bytes their floats, as a file's are read. False, and *out_copy zeroed, when out of
+ * memory. */
+bool image_copy(const image *picture, bool as_floats, image *out_copy);
+
 void image_reset(image *picture); /* frees the pixels; leaves it zeroed */
 
 #endif

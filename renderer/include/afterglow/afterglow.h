@@ -261,6 +261,18 @@ AG_API ag_status ag_scene_set_hint(ag_scene *scene, ag_scene_hint hint, const ch
  * origin goes. Each is given when the shutter opens (pbrt's time 0), and where something moves when it closes (time
  * 1). */
 
+/* A picture in memory, which stands in for the file of that name in every "string filename" of textures and lights from
+ * then on: packed, top row first; grey, grey and alpha, RGB, or RGB and alpha. */
+typedef struct ag_image {
+    size_t struct_size;
+    int width, height;          /* pixels; at most 2^28 in all */
+    int channel_count;          /* 1 to 4; default 3 */
+    const unsigned char *bytes; /* as the values of a file of 8 bits: sRGB where no "encoding" says otherwise; or */
+    const float *floats;        /* as those of an EXR file, linear */
+} ag_image;
+AG_API ag_image ag_default_image(void);
+AG_API ag_status ag_scene_add_image(ag_scene *scene, const char *name, const ag_image *image);
+
 typedef enum ag_texture_value { AG_TEXTURE_FLOAT, AG_TEXTURE_SPECTRUM } ag_texture_value;
 typedef struct ag_texture {
     size_t struct_size;

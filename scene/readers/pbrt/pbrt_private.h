@@ -8,6 +8,7 @@
 #define AFTERGLOW_PBRT_PRIVATE_H
 
 #include "color/color_space.h"
+#include "image/image.h"
 #include "math/motion.h"
 #include "pbrt/parameter_list.h"
 #include "pbrt/pbrt_lexer.h"
@@ -154,6 +155,12 @@ typedef struct pbrt_early_instance {
     file_location where;
 } pbrt_early_instance;
 
+/* A picture in memory, which stands in for the file of that name. */
+typedef struct pbrt_picture {
+    char *name;   /* owned */
+    image pixels; /* owned */
+} pbrt_picture;
+
 /* What a call says in the place of text: the quoted strings behind the directive's name, and its parameters. */
 typedef struct pbrt_given {
     const char *const *strings; /* [string_count], borrowed */
@@ -177,7 +184,9 @@ typedef struct pbrt_parser {
     bool has_peeked;
     size_t told_bytes; /* of the first file, at the last progress */
 
-    pbrt_given *given;          /* borrowed; NULL: tokens come from the files */
+    pbrt_given *given; /* borrowed; NULL: tokens come from the files */
+    pbrt_picture *pictures;
+    size_t picture_count;
     parameter_source source;    /* of the lists that are read */
     pbrt_attribute *attributes; /* all there have been, the newest first */
 
@@ -235,6 +244,8 @@ void pbrt_pop_file(pbrt_parser *parser);
 char *pbrt_find_file(const pbrt_parser *parser, const char *name);
 /* Whether a picture may be read (input_file.h); where not, message says why, with the path. Errors: AG_ERROR_INPUT. */
 ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size);
+/* The picture in memory of that name; NULL: there is none. */
+const image *pbrt_find_picture(const pbrt_parser *parser, const char *name);
 /* The next token; where an included file ends, the one that included it goes on. The end of an imported file is told,
  * as often as is asked, until it is popped. */
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);
