@@ -127,7 +127,7 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
         return;
     case LOBE_CONDUCTOR:
     case LOBE_COAT: {
-        if (!bsdf_is_same_side(b, direction) || o.z * i.z <= 0.0f)
+        if (o.z * i.z <= 0.0f)
             return;
         ggx facets = interface_of(m);
         vec3 h = ggx_half_vector(o, i);
@@ -139,13 +139,12 @@ void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport tra
         return;
     }
     case LOBE_CONDUCTOR_UNDER_COAT:
-        if (bsdf_is_same_side(b, direction))
-            coat_metal_lobe(m, o, i, out_value, out_pdf);
+        coat_metal_lobe(m, o, i, out_value, out_pdf);
         return;
     case LOBE_HAIR: hair_evaluate(&b->fibre, transport == BSDF_FLUX, i, out_value, out_pdf); return;
     case LOBE_PRINCIPLED:
     case LOBE_CLEARCOAT:
-        bsdf_principled_evaluate(b, lobe->kind, transport, direction, o, i, out_value, out_pdf);
+        bsdf_principled_evaluate(m, lobe->kind, transport, o, i, out_value, out_pdf);
         return;
     case LOBE_THIN_DIELECTRIC:
     case LOBE_SLAB: return; /* always smooth */

@@ -28,6 +28,13 @@ static inline bool bsdf_lobe_is_diffuse(bsdf_lobe_kind kind)
     return kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH;
 }
 
+/* Whether it is made of facets about the shading normal. Where they send light the shading normal alone decides, even
+ * through the surface, as pbrt has it: on a coarse mesh with smooth normals that light finds its way out again. */
+static inline bool bsdf_lobe_has_facets(bsdf_lobe_kind kind)
+{
+    return !bsdf_lobe_is_diffuse(kind) && kind != LOBE_COAT_SCATTERED && kind != LOBE_HAIR;
+}
+
 /* Value (f |cos|) and density of one lobe that is not smooth. direction: world; o, i: out and direction in the frame.
  * Of flux the value holds the shading normal's correction where the lobe is diffuse, and the density is flux's. */
 void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
