@@ -13,7 +13,7 @@
 #include "light/light.h"
 #include "math/rng.h"
 
-/* Light, direction (2), place (2), part. */
+/* Light, direction (2), point (2), part. */
 enum { EMISSION_DIMENSIONS = 6 };
 
 /* A path's beginning; each number in [0, 1). */

@@ -6,13 +6,13 @@
 #include "rays/transmittance.h"
 #include "surface_region.h"
 
-/* Photons this much higher or lower than the place, as a share of the radius, may lie on another surface. */
+/* Photons this much higher or lower than the point, as a share of the radius, may lie on another surface. */
 static const float LEVEL = 1.0f / 32.0f;
 
 /* Photons that crowd to one side of the disc, by more than this share of its radius on average, hint at an edge. */
 static const float LOPSIDED = 0.15f;
 
-/* Along the surface, as far as that is its place's plane: on a sphere all photons lie below it. */
+/* Along the surface, as far as that is its point's plane: on a sphere all photons lie below it. */
 static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t count)
 {
     double sum[3], n[3] = {(double)normal.x, (double)normal.y, (double)normal.z}, along = 0.0, square = 0.0;
@@ -26,7 +26,7 @@ static bool is_lopsided(const photon_disc_sums *sums, vec3 normal, uint32_t coun
 }
 
 /* Whether a photon within the radius, so high or low that it may lie on a floor above or below, lies on that at the
- * place. */
+ * point. */
 static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uint32_t index, uint64_t *in_out_rays)
 {
     vec3 at = photon_block_position(map->blocks, index);
@@ -56,7 +56,7 @@ static uint32_t sum_in_region(const photon_disc *disc, const surface_region *reg
 
 /* Under one irradiance each ring of a quarter of the disc's area holds a quarter of the photons, and of their flux.
  * Where inner rings hold less of both than chance explains, by so many standard deviations, the disc has reached a
- * place that is brighter. */
+ * point that is brighter. */
 static const float RIM_SIGMAS = 3.25f;
 enum { RINGS = 4 };
 
@@ -137,7 +137,7 @@ static bool region_holds(const photon_map *map, double area, float radius)
     return area >= (double)share_min * (double)AG_PI * (double)least_radius * (double)least_radius;
 }
 
-/* Of the photons found, so large a share must lie on the place's own level: the others have set the radius. */
+/* Of the photons found, so large a share must lie on the point's own level: the others have set the radius. */
 static const float LEVEL_SHARE_MIN = 0.5f;
 
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
@@ -186,7 +186,7 @@ irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position,
         bool is_k = found == map->nearest + 1 && inside == map->nearest;
         if (is_k || region_holds(map, region_area, radius)) {
             area = region_area;
-            /* farther places must see the photon anyway */
+            /* farther points must see the photon anyway */
             if (region.nearest_end < photon_map_far(map))
                 extent = IRRADIANCE_HOLDS_IN_SIGHT;
         } else {

@@ -17,7 +17,7 @@
 /* How many runs the photons are parted into: the fraction (0, 1] of them, but one at least where there are any. */
 uint32_t irradiance_photons_runs(uint32_t photon_count, float fraction);
 
-/* Picks the irradiance photons of a tree of photons: copies, with empty slots, and the photon's index in the place of
+/* Picks the irradiance photons of a tree of photons: copies, with empty slots, and the photon's index instead of
  * the flux. One stands for the photons that are no farther away than reach and have a normal whose cosine to its own is
  * above min_cos. Tree and blocks are the caller's: photon_tree_reset, and free of the blocks. Errors: AG_ERROR_MEMORY,
  * AG_CANCELLED. */

@@ -209,7 +209,7 @@ static const float EMPTY_DISC_PHOTONS = 8.0f;
 bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, vec3 position, rgb irradiance)
 {
     const photon_block *blocks = map->irradiance_photons.blocks;
-    /* a record in a tree of its own has its photon's index in the place of a flux */
+    /* a record in a tree of its own has its photon's index instead of a flux */
     uint32_t photon_index =
         photon_map_all_have_irradiance(map) ? irradiance_photon : photon_block_flux(blocks, irradiance_photon);
     float distance_squared = vec3_distance_squared(position, photon_block_position(blocks, irradiance_photon));

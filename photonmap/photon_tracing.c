@@ -3,18 +3,14 @@
  * Threads: blocks by the run's workers, each into its own buffer; merged in their order. */
 #include "photon_tracing.h"
 
-#include "material/lambert.h"
 #include "parallel_for.h"
-#include "rays/transmittance.h"
+#include "photon_path.h"
 #include "scene_extent.h"
-#include "shape/alpha.h"
 #include "status.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* A path ends here at the latest; what it still carries is booked as truncated. */
-enum { SCATTERING_CAP = 100 };
 enum { PATHS_PER_BLOCK = 256, BLOCKS_PER_FIRST_ROUND = 32, BLOCKS_PER_ROUND_MAX = 1024 };
 /* The first round takes it that each path leaves so many photons; most leave fewer. After one that leaves none at all
  * comes one so many times as large. */
@@ -24,381 +20,12 @@ enum { FIRST_YIELD = 4, NO_YIELD_GROWTH = 8 };
 enum { BLOCKS_WHOLE_ROUND = 512 };
 /* Tracing gives up when so many paths have stored no photon at all. */
 static const uint64_t PATHS_WITHOUT_PHOTON_MAX = 1u << 20;
-/* A begun path is split into so many parts at most, all surfaces together. */
-enum { SPLIT_MOST = 4096 };
-/* Random streams, apart from those of the eye. */
-enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2, STREAM_TRIALS = 2 /* added to those */ };
-
-typedef struct block {
-    photon *photons;
-    uint32_t count, capacity;
-    uint32_t place; /* of its photons in the set */
-    uint64_t paths, parts, rays, rays_cut;
-    energy_balance balance;
-    bool out_of_memory;
-    bool is_cut; /* cancelled before all of its paths were traced */
-} block;
-
-typedef struct tracer {
-    const scene *s;
-    const light_target *target; /* of a caustic map: what its paths must meet first; else NULL */
-    const photon_tracing_settings *settings;
-    block *out;
-    uint32_t limit;        /* photons to store at most; paths begun are finished for the balance */
-    emission_trial *trial; /* NULL, or nothing is stored, and this is valued */
-    trial_counts *counts;  /* with it */
-} tracer;
-
-typedef struct photon_path {
-    scene_ray ray;
-    rgb flux;
-    rng random;
-    uint64_t key;
-    float weight;    /* how dense such paths would be by power alone, over how dense guide and parts make them */
-    float share;     /* of the begun path, that this part has */
-    int scatterings; /* but for panes, where they are direct */
-    int arrivals;    /* at surfaces, panes too */
-    bool is_diffuse; /* has gone on from a place by its gathered lobes */
-} photon_path;
-
-static void count_flux(double entry[3], rgb flux)
-{
-    entry[0] += (double)flux.r;
-    entry[1] += (double)flux.g;
-    entry[2] += (double)flux.b;
-}
-
-static photon *place_for_photon(block *out)
-{
-    if (out->count == out->capacity) {
-        uint32_t capacity = out->capacity ? 2 * out->capacity : 4 * PATHS_PER_BLOCK;
-        photon *larger = realloc(out->photons, capacity * sizeof *larger);
-        if (!larger) {
-            out->out_of_memory = true;
-            return NULL;
-        }
-        out->photons = larger;
-        out->capacity = capacity;
-    }
-    return &out->photons[out->count++];
-}
-
-/* Where no light is asked for, photons whose paths were picked more often than by power are stored as rarely as if they
- * had not been. false: this one is left out. */
-static bool keep(tracer *t, const photon_path *path, vec3 position, vec3 normal, uint64_t key, rgb *in_out_flux)
-{
-    const place_importance *asked = t->settings->asked;
-    if (!asked || !(path->weight < 1.0f) || place_importance_at(asked, position, normal) > 0.0f)
-        return true;
-    rgb flux = *in_out_flux;
-    bool is_kept = (float)(hash_combine(key, 0x6b656570u) >> 40) * 0x1p-24f < path->weight;
-    *in_out_flux = is_kept ? rgb_scale(flux, 1.0f / path->weight) : rgb_gray(0.0f);
-    count_flux(t->out->balance.thinned, rgb_sub(flux, *in_out_flux));
-    return is_kept;
-}
-
-/* Where that place of a surface is when the shutter opens; its normal on the side that the path has arrived on. */
-static surface_rest rest_of_arrival(const scene *s, const photon_path *path, const surface_hit *hit)
-{
-    surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
-    if (hit->instance_index != SCENE_NO_INSTANCE)
-        at = surface_at_opening(s, hit);
-    if (vec3_dot(hit->geometric_normal, path->ray.direction) > 0.0f)
-        at.geometric_normal = vec3_negate(at.geometric_normal);
-    return at;
-}
-
-static void store(tracer *t, const photon_path *path, const surface_hit *hit, float arrival_factor)
-{
-    uint64_t key = hash_combine(path->key, (uint64_t)path->arrivals);
-    rgb flux = path->flux;
-    block *out = t->out;
-    surface_rest at = rest_of_arrival(t->s, path, hit);
-    vec3 normal = at.geometric_normal;
-    float alpha = 1.0f;
-    if (!shape_is_opaque(&t->s->shapes[hit->shape_index]))
-        alpha = alpha_at_hit(t->s, hit);
-    flux = rgb_scale(flux, alpha > 0.0f ? arrival_factor * at.area_ratio / alpha : 0.0f);
-    if (t->trial) {
-        float importance = place_importance_at(t->settings->asked, at.position, normal);
-        t->counts->photons++;
-        t->counts->asked += importance > 0.0f;
-        t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
-        return;
-    }
-    count_flux(out->balance.arrived, flux);
-    if (!keep(t, path, at.position, normal, key, &flux))
-        return;
-    if (out->count == t->limit) {
-        count_flux(out->balance.cut, flux);
-        return;
-    }
-    photon *p = place_for_photon(out);
-    if (!p)
-        return;
-    p->position[0] = at.position.x;
-    p->position[1] = at.position.y;
-    p->position[2] = at.position.z;
-    p->flux = flux_encode(flux, key);
-    p->direction = arrival_encode(path->ray.direction, path->is_diffuse);
-    p->normal = direction_encode(normal);
-    memset(&p->slot, 0, sizeof p->slot);
-    count_flux(out->balance.stored, flux_decode(p->flux));
-}
-
-/* Media take their share of a path's flux; roulette then keeps what it carries about as it was, so that no photons are
- * spent on light that hardly matters. False: the path ends here. No random number is drawn where nothing is taken. */
-static bool pass_media(energy_balance *balance, rgb transmittance, rng *random, rgb *in_out_flux)
-{
-    if (transmittance.r == 1.0f && transmittance.g == 1.0f && transmittance.b == 1.0f)
-        return true;
-    rgb flux = *in_out_flux, left = rgb_mul(flux, transmittance);
-    count_flux(balance->absorbed, rgb_sub(flux, left));
-    if (rgb_is_black(left))
-        return false;
-    float survival = fminf(1.0f, rgb_max(left) / rgb_max(flux));
-    if (rng_float(random) >= survival) {
-        count_flux(balance->lost, left);
-        return false;
-    }
-    *in_out_flux = rgb_scale(left, 1.0f / survival);
-    count_flux(balance->gained, rgb_sub(*in_out_flux, left));
-    return true;
-}
-
-/* --- a path --- */
-
-/* Of the area that a photon stands for where they lie evenly, in scene units; giants are not counted. */
-static float photon_width(const scene *s, uint32_t photon_count)
-{
-    static const float RADIUS_SHARE_MAX = 1.0f / 64.0f;
-    float radius = s->detail_radius > 0.0f ? s->detail_radius : s->bounding_radius;
-    return fminf(sqrtf(s->surface_area / (float)photon_count), RADIUS_SHARE_MAX * radius);
-}
-
-/* Leaves a lamp, picked by its power or by the guide, at a time of the path's own where that matters. false: nothing
- * leaves. */
-static bool begin_path(tracer *t, uint64_t number, photon_path *out_path)
-{
-    const scene *s = t->s;
-    const photon_tracing_settings *settings = t->settings;
-    uint64_t stream = settings->kind == PHOTON_GLOBAL ? STREAM_GLOBAL : STREAM_CAUSTIC;
-    rng random = rng_make(settings->seed, t->trial ? stream + STREAM_TRIALS : stream, number);
-    uint64_t key = hash_combine(random.state, 0x70686f746f6eu);
-    float probability, density = 1.0f, time = s->has_motion ? rng_float(&random) : 0.0f;
-    emission_start begun =
-        settings->guide ? emission_guide_sample(settings->guide, &random, &density) : emission_start_draw(&random);
-    if (t->trial)
-        *t->trial = (emission_trial){begun, 0.0f, density};
-    const light *lamp = &s->lights[scene_pick_light_by_power(s, begun.u[0], &probability)];
-    emission_numbers numbers = emission_start_numbers(&begun);
-    light_emission start;
-    if (!(probability > 0.0f) || !light_emit(s, lamp, t->target, &numbers, &random, &start))
-        return false;
-    float weight = 1.0f / density;
-    scene_ray ray = scene_ray_make(start.origin, start.direction);
-    ray.skips_uv = true;
-    ray.slabs_are_panes = settings->panes_are_direct;
-    ray.medium = start.medium;
-    ray.time = time;
-    if (settings->filters_textures)
-        ray.cone = (ray_cone){photon_width(s, settings->wanted), 0.0f, true};
-    rgb flux = rgb_scale(start.flux, (t->trial ? 1.0f : weight) / probability);
-    *out_path = (photon_path){ray, flux, random, key, weight, 1.0f, 0, 0, false};
-    count_flux(t->out->balance.emitted, out_path->flux);
-    return true;
-}
-
-/* What a path has arrived at. */
-typedef struct arrival_surface {
-    const rgb *albedo; /* of a Lambertian place; else NULL, and: */
-    bsdf scattering;
-} arrival_surface;
-
-static void arrival_surface_find(const scene *s, const surface_hit *hit, vec3 arrived, arrival_surface *out_surface)
-{
-    out_surface->albedo = lambert_albedo(s, hit);
-    if (!out_surface->albedo)
-        out_surface->scattering = bsdf_create(s, hit, vec3_negate(arrived));
-}
-
-static bool arrival_surface_has(const arrival_surface *m, bsdf_lobes lobes)
-{
-    return m->albedo ? (lobes & BSDF_GATHERED) != 0 : bsdf_has(&m->scattering, lobes);
-}
-
-/* Whether photons are stored there, as so much of what they carry: on surfaces that gather. */
-static bool arrival_surface_stores(const scene *s, const surface_hit *hit, vec3 arrived, const arrival_surface *m,
-                                   float *out_factor)
-{
-    if (m->albedo) {
-        *out_factor = lambert_arrival_factor(hit, arrived);
-        return true;
-    }
-    if (!bsdf_has(&m->scattering, BSDF_GATHERED))
-        return bsdf_arrival_factor_beside(s, hit, &m->scattering, out_factor);
-    *out_factor = bsdf_arrival_factor(&m->scattering);
-    return true;
-}
-
-/* Direction, weight, group and is_straight are set. */
-static bool arrival_surface_sample(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
-                                   float u_lobe, vec2 u, bsdf_sample *out_next)
-{
-    float correction;
-    if (!m->albedo)
-        return bsdf_sample_direction(&m->scattering, lobes, BSDF_FLUX, u_lobe, u, out_next);
-    if (!lambert_sample_flux(hit, arrived, u, &out_next->direction, &correction))
-        return false;
-    out_next->weight = rgb_scale(*m->albedo, correction);
-    out_next->group = BSDF_GATHERED;
-    out_next->is_straight = false;
-    return true;
-}
-
-/* Sends the path on from where its ray has arrived. false: it ends there. */
-static bool scatter(tracer *t, photon_path *path, const surface_hit *hit, const arrival_surface *m)
-{
-    const photon_tracing_settings *settings = t->settings;
-    energy_balance *balance = &t->out->balance;
-    vec3 arrived = path->ray.direction;
-    rgb flux = path->flux;
-    bool may_go_straight = settings->panes_are_direct && !m->albedo && m->scattering.is_pane;
-    bool is_last = path->scatterings >= settings->max_scatterings;
-    if (path->arrivals >= SCATTERING_CAP || (is_last && !may_go_straight)) {
-        count_flux(balance->truncated, flux);
-        return false;
-    }
-
-    /* a caustic map follows traced lobes alone */
-    bsdf_lobes lobes = settings->kind == PHOTON_GLOBAL ? BSDF_ALL : BSDF_TRACED;
-    if (!arrival_surface_has(m, lobes)) {
-        count_flux(balance->lost, flux);
-        return false;
-    }
-    float u_lobe = rng_float(&path->random), u_roulette = rng_float(&path->random);
-    vec2 u = rng_vec2(&path->random);
-    bsdf_sample next;
-    if (!arrival_surface_sample(m, hit, arrived, lobes, u_lobe, u, &next)) {
-        count_flux(balance->absorbed, flux);
-        return false;
-    }
-    bool goes_straight = may_go_straight && next.is_straight;
-    if (is_last && !goes_straight) {
-        count_flux(balance->truncated, flux);
-        return false;
-    }
-    rgb scattered = rgb_mul(flux, next.weight);
-    count_flux(balance->absorbed, rgb_sub(flux, scattered));
-
-    /* roulette keeps the flux of the survivors about what it was */
-    float largest = rgb_max(scattered), survival = largest > 0.0f ? largest / rgb_max(flux) : 0.0f;
-    survival = survival < 1.0f ? survival : 1.0f;
-    if (u_roulette >= survival) {
-        count_flux(balance->lost, scattered);
-        return false;
-    }
-    path->flux = rgb_scale(scattered, 1.0f / survival);
-    count_flux(balance->gained, rgb_sub(path->flux, scattered));
-    path->ray = goes_straight ? scene_ray_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
-    if (next.group == BSDF_GATHERED && settings->filters_textures)
-        path->ray.cone.spread = RAY_CONE_DIFFUSE_SPREAD;
-    path->scatterings += !goes_straight;
-    path->arrivals++;
-    path->is_diffuse = path->is_diffuse || next.group == BSDF_GATHERED;
-    return true;
-}
-
-/* Into how many parts a path is split before it is scattered. In proportion to its flux and to the root of the share of
- * it that arrives where light is asked for, their variance is least for the number of all parts. */
-static uint32_t count_parts(const tracer *t, const photon_path *path, const surface_hit *hit, const arrival_surface *m)
-{
-    const photon_tracing_settings *settings = t->settings;
-    bool is_last = path->scatterings >= settings->max_scatterings || path->arrivals >= SCATTERING_CAP;
-    if (!(settings->split_above > 0.0f) || is_last || !arrival_surface_has(m, BSDF_GATHERED))
-        return 1;
-    surface_rest at = rest_of_arrival(t->s, path, hit);
-    float importance = place_importance_at(settings->onward, at.position, at.geometric_normal);
-    float flux = path->flux.r + path->flux.g + path->flux.b;
-    if (t->trial)
-        flux /= t->trial->density;
-    float parts = flux * sqrtf(importance) / settings->split_above, most = SPLIT_MOST * path->share;
-    return !(parts > 1.0f) ? 1 : (uint32_t)fmaxf(fminf(parts + 0.5f, most), 1.0f);
-}
-
-/* One of the parts, equally bright, each with random numbers of its own. */
-static photon_path part_of_path(const photon_path *path, uint32_t part, uint32_t parts)
-{
-    photon_path out = *path;
-    uint64_t number = (uint64_t)path->arrivals << 32 | part;
-    float share = 1.0f / (float)parts;
-    out.flux = rgb_scale(path->flux, share);
-    out.weight *= share;
-    out.share *= share;
-    out.key = hash_combine(path->key, number);
-    out.random.state = hash_combine(path->random.state, number);
-    return out;
-}
-
-static void follow_path(tracer *t, photon_path *path);
-
-/* Stores a photon where the path's ray has arrived, and sends the path on, or its parts. false: it ends there. */
-static bool arrive(tracer *t, photon_path *path, const surface_hit *hit)
-{
-    vec3 arrived = path->ray.direction;
-    arrival_surface m;
-    float factor;
-    arrival_surface_find(t->s, hit, arrived, &m);
-    if ((t->settings->kind == PHOTON_GLOBAL || path->scatterings > 0) &&
-        arrival_surface_stores(t->s, hit, arrived, &m, &factor))
-        store(t, path, hit, factor);
-    uint32_t parts = count_parts(t, path, hit, &m);
-    t->out->parts += parts - 1;
-    for (uint32_t i = 1; i < parts; i++) {
-        photon_path part = part_of_path(path, i, parts);
-        if (scatter(t, &part, hit, &m))
-            follow_path(t, &part);
-    }
-    if (parts > 1)
-        *path = part_of_path(path, 0, parts);
-    return scatter(t, path, hit, &m);
-}
-
-static void follow_path(tracer *t, photon_path *path)
-{
-    energy_balance *balance = &t->out->balance;
-    bool goes_on = true;
-    while (goes_on) {
-        surface_hit hit;
-        rgb transmittance;
-        t->out->rays++;
-        bool is_met = transmittance_intersect(t->s, &path->ray, &t->out->rays_cut, &hit, &transmittance);
-        if (!pass_media(balance, transmittance, &path->random, &path->flux))
-            return;
-        if (!is_met)
-            count_flux(balance->escaped, path->flux);
-        if (is_met && ray_cone_is_wide(&path->ray.cone)) {
-            path->ray.cone = ray_cone_at(&path->ray.cone, hit.distance);
-            hit.footprint = ray_cone_footprint(&path->ray.cone, path->ray.direction);
-        }
-        goes_on = is_met && arrive(t, path, &hit);
-    }
-}
-
-static void trace_path(tracer *t, uint64_t number)
-{
-    photon_path path;
-    if (begin_path(t, number, &path))
-        follow_path(t, &path);
-}
-
-/* --- rounds of blocks --- */
 
 typedef struct round_job {
     const scene *s;
     const light_target *target;
     const photon_tracing_settings *settings;
-    block *blocks;
+    path_block *blocks;
     uint64_t first_path;
     run_context *run;
 } round_job;
@@ -409,10 +36,10 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
     round_job *job = user;
     /* each photon changes the balance, which lies beside that of another worker's block: a copy has its lines to itself
      */
-    block out = job->blocks[block_index];
-    tracer t = {job->s, job->target, job->settings, &out, UINT32_MAX, NULL, NULL};
+    path_block out = job->blocks[block_index];
+    photon_tracer t = {job->s, job->target, job->settings, &out, UINT32_MAX, NULL, NULL};
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)
-        trace_path(&t, job->first_path + i);
+        photon_path_trace(&t, job->first_path + i);
     out.paths = end - begin;
     out.is_cut = run_is_cancelled(job->run); /* or just behind the last path, which does no harm */
     job->blocks[block_index] = out;
@@ -428,7 +55,7 @@ static void add_balance(energy_balance *sum, const energy_balance *part)
 
 /* Takes a block into the account; where it overfills the set, its paths are traced again up to the one that fills it,
  * so that the balance tells of whole paths and of those alone. */
-static ag_status account_block(round_job *job, photon_set *set, uint64_t first_path, block *b)
+static ag_status account_block(round_job *job, photon_set *set, uint64_t first_path, path_block *b)
 {
     uint32_t room = job->settings->wanted - set->count;
     if (b->out_of_memory)
@@ -436,12 +63,12 @@ static ag_status account_block(round_job *job, photon_set *set, uint64_t first_p
     if (b->is_cut) /* all blocks may have been begun when it came: parallel_for then knows nothing of it */
         return AG_CANCELLED;
     if (b->count >= room) {
-        *b = (block){.photons = b->photons, .capacity = b->capacity};
-        tracer t = {job->s, job->target, job->settings, b, room, NULL, NULL};
+        *b = (path_block){.photons = b->photons, .capacity = b->capacity};
+        photon_tracer t = {job->s, job->target, job->settings, b, room, NULL, NULL};
         while (b->count < room)
-            trace_path(&t, first_path + b->paths++);
+            photon_path_trace(&t, first_path + b->paths++);
     }
-    b->place = set->count;
+    b->first = set->count;
     set->count += b->count;
     set->emitted_paths += b->paths;
     set->rays += b->rays;
@@ -452,7 +79,7 @@ static ag_status account_block(round_job *job, photon_set *set, uint64_t first_p
 }
 
 typedef struct merge_job {
-    const block *blocks;
+    const path_block *blocks;
     photon *photons;
 } merge_job;
 
@@ -462,7 +89,7 @@ static void copy_blocks(void *user, uint64_t begin, uint64_t end, uint64_t index
     const merge_job *job = user;
     for (uint64_t i = begin; i < end; i++)
         if (job->blocks[i].count > 0)
-            memcpy(job->photons + job->blocks[i].place, job->blocks[i].photons, job->blocks[i].count * sizeof(photon));
+            memcpy(job->photons + job->blocks[i].first, job->blocks[i].photons, job->blocks[i].count * sizeof(photon));
 }
 
 /* Appends the round's blocks in their order, up to the one that fills the set. */
@@ -521,6 +148,25 @@ static ag_status find_target(const scene *s, photon_kind kind, light_target *out
     return status;
 }
 
+/* Of the round after one of so many: as many blocks as the yield so far lets expect are needed, and one to spare. */
+static uint64_t next_block_count(const photon_set *set, uint32_t wanted, uint64_t block_count)
+{
+    double needed = (double)(wanted - set->count) * (double)set->emitted_paths;
+    double blocks =
+        set->count > 0 ? needed / set->count / PATHS_PER_BLOCK + 1.0 : NO_YIELD_GROWTH * (double)block_count;
+    if (blocks > BLOCKS_WHOLE_ROUND)
+        blocks *= 0.5;
+    return blocks < BLOCKS_PER_ROUND_MAX ? (uint64_t)blocks : BLOCKS_PER_ROUND_MAX;
+}
+
+/* From sums over paths, each of which stands for all the light, to their mean. */
+static void divide_balance(energy_balance *balance, uint64_t paths)
+{
+    double share = paths > 0 ? 1.0 / (double)paths : 0.0;
+    for (size_t i = 0; i < sizeof *balance / sizeof(double); i++)
+        ((double *)balance)[i] *= share;
+}
+
 ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,
                              photon_set *out_set)
 {
@@ -532,7 +178,7 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
     ag_status found = find_target(s, settings->kind, &traced_surfaces, &caustic_target, &has_any);
     if (found != AG_OK || !has_any)
         return found;
-    block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
+    path_block *blocks = calloc(BLOCKS_PER_ROUND_MAX, sizeof *blocks);
     set.photons = photon_records_create(settings->wanted);
     ag_status status = blocks && set.photons ? AG_OK : AG_ERROR_MEMORY;
     uint64_t next_path = 0, block_count = settings->wanted / (FIRST_YIELD * PATHS_PER_BLOCK) + 1;
@@ -545,7 +191,7 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         if (status == AG_OK)
             status = merge_round(&job, &set, block_count);
         for (uint64_t i = 0; i < block_count; i++)
-            blocks[i] = (block){.photons = blocks[i].photons, .capacity = blocks[i].capacity};
+            blocks[i] = (path_block){.photons = blocks[i].photons, .capacity = blocks[i].capacity};
         next_path += block_count * PATHS_PER_BLOCK;
 
         bool is_hopeless = set.emitted_paths >= PATHS_WITHOUT_PHOTON_MAX &&
@@ -554,13 +200,7 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
             explain_shortage(run, settings, &set);
             break;
         }
-        /* as many blocks as the yield so far lets expect are needed, and one to spare */
-        double needed = (double)(settings->wanted - set.count) * (double)set.emitted_paths;
-        double wanted_blocks =
-            set.count > 0 ? needed / set.count / PATHS_PER_BLOCK + 1.0 : NO_YIELD_GROWTH * (double)block_count;
-        if (wanted_blocks > BLOCKS_WHOLE_ROUND)
-            wanted_blocks *= 0.5;
-        block_count = wanted_blocks < BLOCKS_PER_ROUND_MAX ? (uint64_t)wanted_blocks : BLOCKS_PER_ROUND_MAX;
+        block_count = next_block_count(&set, settings->wanted, block_count);
         run_progress(run, AG_PHASE_PHOTONS,
                      settings->progress_begin +
                          (settings->progress_end - settings->progress_begin) * ((double)set.count / settings->wanted));
@@ -572,10 +212,7 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         photon_set_reset(&set);
         return status;
     }
-    /* the balance so far is of sums over paths that each stand for all the light */
-    double share = set.emitted_paths > 0 ? 1.0 / (double)set.emitted_paths : 0.0;
-    for (size_t i = 0; i < sizeof set.balance / sizeof(double); i++)
-        ((double *)&set.balance)[i] *= share;
+    divide_balance(&set.balance, set.emitted_paths);
     *out_set = set;
     return AG_OK;
 }
@@ -596,7 +233,7 @@ typedef struct trial_job {
     const photon_tracing_settings *settings;
     uint64_t first_path;
     emission_trial *trials;
-    trial_counts *counts; /* of each block */
+    trial_counts *counts; /* of each path_block */
     run_context *run;
 } trial_job;
 
@@ -604,11 +241,11 @@ static void try_block(void *user, uint64_t begin, uint64_t end, uint64_t block_i
 {
     (void)worker;
     trial_job *job = user;
-    block out = {0};
+    path_block out = {0};
     trial_counts counts = {0};
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++) {
-        tracer t = {job->s, job->target, job->settings, &out, 0, &job->trials[i], &counts};
-        trace_path(&t, job->first_path + i);
+        photon_tracer t = {job->s, job->target, job->settings, &out, 0, &job->trials[i], &counts};
+        photon_path_trace(&t, job->first_path + i);
     }
     counts.paths = end - begin;
     counts.parts = out.parts;

@@ -20,8 +20,8 @@
 #define AFTERGLOW_PHOTON_TRACING_H
 
 #include "emission_guide.h"
+#include "importance_map.h"
 #include "photon_block.h"
-#include "place_importance.h"
 #include "run_context.h"
 #include "scene.h"
 
@@ -64,9 +64,9 @@ typedef struct photon_tracing_settings {
     bool filters_textures; /* over about the area that a photon stands for, and more behind diffuse vertices */
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
-    const emission_guide *guide;    /* where paths begin */
-    const place_importance *asked;  /* elsewhere photons are stored no denser than power alone would have them */
-    const place_importance *onward; /* diffuse surfaces whose light arrives where it is asked for */
+    const emission_guide *guide;  /* where paths begin */
+    const importance_map *asked;  /* elsewhere photons are stored no denser than power alone would have them */
+    const importance_map *onward; /* diffuse surfaces whose light arrives where it is asked for */
     float split_above; /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
                           importance, over this parts; > 0 only with `onward`; 0: paths are not split */
     double progress_begin, progress_end; /* of AG_PHASE_PHOTONS */

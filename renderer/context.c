@@ -4,6 +4,7 @@
 #include "context.h"
 
 #include "clock.h"
+#include "film/film_tiles.h"
 #include "output/denoise.h"
 #include "texture/texture_file_levels.h"
 #include "texture/texture_udim.h"
@@ -133,8 +134,10 @@ ag_status ag_film_denoise(ag_context *context, ag_film *film)
             film_read_sum(film, SUM_ALBEDO, albedo);
         if (normal)
             film_read_sum(film, SUM_NORMAL, normal);
+        film_tiles_begin_change(film->tiles);
         status = denoise_picture(film->width, film->height, film->pixels, albedo, normal, context->statistics.threads,
                                  message, sizeof message);
+        film_tiles_end_change(film->tiles);
     }
     if (message[0])
         log_message(context->log, AG_LOG_ERROR, "%s", message);

@@ -8,6 +8,7 @@
 #include "integrator/integrator.h"
 #include "integrator/sample_queue.h"
 #include "render_maps.h"
+#include "status.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -271,6 +272,7 @@ static ag_status predict(ag_context *context, const ag_scene *loaded, const ag_r
 {
     if (!context || !loaded || !wanted || !out_prediction)
         return AG_ERROR_ARGUMENT;
+    AG_TRY(scene_check_complete(context, loaded));
     ag_render_settings settings;
     ag_prediction made = {0};
     int channel_count = 0;

@@ -285,11 +285,14 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
 {
     if (!context || !loaded || !settings || !out_rendering)
         return AG_ERROR_ARGUMENT;
+    AG_TRY(scene_check_complete(context, loaded));
     ag_rendering *r = calloc(1, sizeof *r);
     if (!r)
         return AG_ERROR_MEMORY;
     unsigned callers_arithmetic = floating_point_enter();
     r->context = context;
+    r->loaded = (ag_scene *)(uintptr_t)loaded; /* for the count alone */
+    r->loaded->rendering_count++;
     r->s = loaded->s;
     r->not_finite_before = context->statistics.samples_not_finite;
     ag_status status = rendering_settle(context, loaded->s, settings, &r->settings);
@@ -388,7 +391,10 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
     direct_guide_reset(&r->direct_guide);
     free(r->map_name);
     free(r->kept);
+    ag_scene *loaded = r->loaded;
     free(r);
+    if (--loaded->rendering_count == 0 && loaded->is_dropped)
+        ag_scene_destroy(loaded);
     context_add_to_phase(context, AG_PHASE_RENDER, begin);
 }
 

@@ -1,8 +1,9 @@
 /* render_settings.c: the renderer's settings: our defaults (settings_rows.c), and what the scene's file says of its
- * picture in the place of some.
+ * picture instead of some.
  * Flow: scene -> [here] -> render. Threads: as in afterglow.h. */
 #include "context.h"
 #include "settings_table.h"
+#include "status.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -27,13 +28,14 @@ static void take_float(float_hint hint, float *in_out_value)
 
 bool ag_scene_has_own_samples(const ag_scene *loaded)
 {
-    return loaded->s->hints.has_sampler && loaded->s->hints.is_for_photon_map;
+    return loaded && loaded->s && loaded->s->hints.has_sampler && loaded->s->hints.is_for_photon_map;
 }
 
 ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loaded, ag_render_settings *out_settings)
 {
     if (!context || !loaded || !out_settings)
         return AG_ERROR_ARGUMENT;
+    AG_TRY(scene_check_complete(context, loaded));
     const scene_hints *hints = &loaded->s->hints;
     ag_render_settings settings = ag_default_render_settings();
     take_int(hints->width, &settings.width);

@@ -2,6 +2,7 @@
 #include "render_tiles.h"
 
 #include "clock.h"
+#include "film/film_tiles.h"
 #include "integrator/first_hit.h"
 #include "integrator/integrator.h"
 #include "integrator/sample_queue.h"
@@ -48,12 +49,21 @@ eye_worker *eye_workers_create(const transport *t, unsigned count)
 
 /* --- tiles --- */
 
+/* Tiles that a worker is through with, whose last samples may still be under way. Beyond these many tiles are shown at
+ * the end of the pass. */
+enum { TILES_TO_SHOW = 16 };
+typedef struct tiles_to_show {
+    film_area areas[TILES_TO_SHOW];
+    int count;
+} tiles_to_show;
+
 typedef struct tile_job {
     ag_context *context;
     const transport *t;
     const integrator *kind;
     tile_scheduler *tiles;
     eye_worker *workers;
+    tiles_to_show *to_show; /* [worker_count] */
     ag_film *film;
     uint32_t wanted;          /* samples of each pixel */
     double sample_count;      /* all that are still to be taken */
@@ -96,6 +106,25 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
         first_hit_project(t, &on_film, &out->layers->first);
 }
 
+/* To be called when none of the worker's samples is under way. */
+static void show_tiles(const tile_job *job, const eye_worker *worker)
+{
+    tiles_to_show *done = &job->to_show[worker->index];
+    for (int i = 0; i < done->count; i++)
+        film_show(job->film, done->areas[i]);
+    done->count = 0;
+}
+
+/* The worker is through with the tile. */
+static void leave_tile(const tile_job *job, const eye_worker *worker, const tile *area)
+{
+    tiles_to_show *done = &job->to_show[worker->index];
+    if (done->count < TILES_TO_SHOW)
+        done->areas[done->count++] = (film_area){area->x0, area->y0, area->x1 - area->x0, area->y1 - area->y0};
+    if (worker->queue->count == 0)
+        show_tiles(job, worker);
+}
+
 /* Completes the samples under way. When the work is cancelled they do not count. */
 static void finish_samples(tile_job *job, eye_worker *worker)
 {
@@ -109,6 +138,7 @@ static void finish_samples(tile_job *job, eye_worker *worker)
     worker->samples_not_finite += sample_queue_deliver(worker->queue, batch ? batch->gathered : NULL,
                                                        (uint32_t)t->layout->group_count, job->film);
     uint64_t done = fetch_add_relaxed_u64(&job->samples_done, count) + count;
+    show_tiles(job, worker);
     double share = (double)done / job->sample_count;
     run_progress(&job->context->run, AG_PHASE_RENDER,
                  job->progress_begin + share * (job->progress_end - job->progress_begin));
@@ -178,6 +208,8 @@ static void work_on_tiles(void *user, unsigned worker_index)
             finish_samples(job, worker);
         if (times)
             add_tile_time(job->film, area, (float)(clock_seconds() - begin));
+        if (!run_is_cancelled(&job->context->run))
+            leave_tile(job, worker, &area);
     }
     finish_samples(job, worker);
 }
@@ -206,9 +238,15 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
     job.samples_per_pixel = job.sample_count / (double)film_area_count(film);
     run_progress(&context->run, AG_PHASE_RENDER, job.progress_begin); /* the first pixels may take long */
     run_allow_pause(&context->run);
+    job.to_show = calloc(job.worker_count, sizeof *job.to_show);
+    if (!job.to_show) {
+        tile_scheduler_destroy(job.tiles);
+        return AG_ERROR_MEMORY;
+    }
     thread_pool_run(context->pool, work_on_tiles, &job);
     bool is_paused = run_end_pause(&context->run);
     tile_scheduler_destroy(job.tiles);
+    free(job.to_show);
     AG_TRY(context_check_textures(context, r->s));
     return run_is_cancelled(&context->run) ? AG_CANCELLED : is_paused ? AG_PAUSED : AG_OK;
 }

@@ -18,7 +18,8 @@ typedef struct maps {
 
 struct ag_rendering {
     ag_context *context; /* borrowed */
-    const scene *s;      /* borrowed */
+    ag_scene *loaded;    /* borrowed; knows of it */
+    const scene *s;      /* its scene */
     ag_render_settings settings;
     maps maps;
     direct_guide direct_guide;

@@ -1,7 +1,7 @@
-/* scene_load.c: the scenes of the public interface: loading one from a file, destroying it. The only file above scene/
- * that sees the readers.
+/* scene_load.c: the scenes of the public interface: loading one from a file, destroying it. With scene_memory.c and
+ * scene_parameters.c the only file above scene/ that sees the readers.
  * Flow: scene_file -> [here] -> render. Threads: as in afterglow.h. */
-#include "context.h"
+#include "scene_load.h"
 
 #include "floating_point.h"
 #include "rays/bvh.h"
@@ -43,7 +43,7 @@ ag_scene_settings ag_default_scene_settings(void)
 
 static vec3 vec3_of(const float v[3]) { return vec3_make(v[0], v[1], v[2]); }
 
-static ag_status make_request(const ag_scene_settings *settings, scene_request *out_request)
+ag_status scene_request_make(const ag_scene_settings *settings, scene_request *out_request)
 {
     const float *sky = settings->sky_radiance;
     const bool is_sun_sound = isfinite(settings->sun_azimuth_degrees) && fabsf(settings->sun_elevation_degrees) <= 90 &&
@@ -74,51 +74,69 @@ static ag_status make_request(const ag_scene_settings *settings, scene_request *
                                    .has_sky = settings->has_sky,
                                    .sky_radiance = rgb_make(sky[0], sky[1], sky[2]),
                                    .sky_file = settings->sky_file,
-                                   .sky_rotation_degrees = settings->sky_rotation_degrees};
+                                   .sky_rotation_degrees = settings->sky_rotation_degrees,
+                                   .find_file = settings->find_file,
+                                   .find_file_user = settings->find_file_user};
     return AG_OK;
 }
 
-/* Reads and commits it. */
-static ag_status load(ag_context *context, const char *path, const definitions *d, const scene_request *request,
-                      scene *s, input_files *inputs)
+/* What is read: a file, or text of that name. */
+typedef struct scene_source {
+    const char *name;
+    const char *text; /* NULL: it is in the file */
+    size_t size_bytes;
+} scene_source;
+
+ag_status scene_prepare(ag_context *context, const char *name, const scene_request *request, scene *s,
+                        input_files *inputs)
 {
     const color_config *colors;
-    phase_begin begin = context_begin_phase();
     AG_TRY(context_color_config(context, &colors));
     s->space = context->working_space;
     s->color_config = colors;
-    s->definitions = d;
     s->request = request;
     const char *wrong;
-    if (context->is_confined && !input_files_confine(inputs, path, (const char *const *)(void *)context->confined_to,
-                                                     context->confined_count, &wrong)) {
-        if (!wrong)
-            return AG_ERROR_MEMORY;
-        log_message(context->log, AG_LOG_ERROR, "'%s': scenes cannot be confined to it: there is no such folder",
-                    wrong);
-        return AG_ERROR_ARGUMENT;
-    }
-    context->run.inputs = inputs;
-    ag_status status = scene_file_load(&context->run, path, s);
-    context->run.inputs = NULL;
-    inputs->scene = NULL; /* it was borrowed */
-    if (status != AG_OK)
-        return status;
-    s->definitions = NULL; /* they were borrowed */
-    s->request = NULL;
-    s->defined = definitions_describe(d);
-    if (!s->defined)
+    if (!context->is_confined || input_files_confine(inputs, name, (const char *const *)(void *)context->confined_to,
+                                                     context->confined_count, &wrong))
+        return AG_OK;
+    if (!wrong)
         return AG_ERROR_MEMORY;
-    context_end_phase(context, AG_PHASE_LOAD, begin);
-    begin = context_begin_phase();
-    status = scene_commit(s, &context->run, context->isa);
-    if (status != AG_OK)
-        return status;
+    log_message(context->log, AG_LOG_ERROR, "'%s': scenes cannot be confined to it: there is no such folder", wrong);
+    return AG_ERROR_ARGUMENT;
+}
+
+ag_status scene_complete(ag_context *context, scene *s)
+{
+    const phase_begin begin = context_begin_phase();
+    s->definitions = NULL; /* all three were borrowed */
+    s->request = NULL;
+    AG_TRY(scene_commit(s, &context->run, context->isa));
     context_end_phase(context, AG_PHASE_BVH, begin);
     context_count_textures(context, s);
     log_message(context->log, AG_LOG_INFO, "shapes: %u; lights: %u; materials: %u; BVH: %.1f MB (%s)", s->shape_count,
                 s->light_count, s->material_count, (double)bvh_memory_bytes(s->bvh) / 1e6, bvh_isa(s->bvh));
     return AG_OK;
+}
+
+/* Reads and completes it. */
+static ag_status load(ag_context *context, const scene_source *from, const definitions *d, const scene_request *request,
+                      scene *s, input_files *inputs)
+{
+    const phase_begin begin = context_begin_phase();
+    AG_TRY(scene_prepare(context, from->name, request, s, inputs));
+    s->definitions = d;
+    context->run.inputs = inputs;
+    ag_status status = from->text ? scene_file_load_text(&context->run, from->name, from->text, from->size_bytes, s)
+                                  : scene_file_load(&context->run, from->name, s);
+    context->run.inputs = NULL;
+    inputs->scene = NULL; /* it was borrowed */
+    if (status != AG_OK)
+        return status;
+    s->defined = definitions_describe(d);
+    if (!s->defined)
+        return AG_ERROR_MEMORY;
+    context_end_phase(context, AG_PHASE_LOAD, begin);
+    return scene_complete(context, s);
 }
 
 ag_status ag_scene_load(ag_context *context, const char *path, ag_scene **out_scene)
@@ -135,7 +153,7 @@ ag_status ag_scene_load_with(ag_context *context, const char *path, const ag_def
     return ag_scene_load_as(context, path, &settings, out_scene);
 }
 
-ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
+static ag_status load_from(ag_context *context, const scene_source *from, const ag_scene_settings *settings,
                            ag_scene **out_scene)
 {
     const ag_scene_settings defaults = ag_default_scene_settings();
@@ -144,7 +162,8 @@ ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene
     const ag_definition *given = settings->definitions;
     const size_t count = settings->definition_count;
     scene_request request;
-    bool is_whole = context && path && out_scene && (given || count == 0) && make_request(settings, &request) == AG_OK;
+    bool is_whole =
+        context && from->name && out_scene && (given || count == 0) && scene_request_make(settings, &request) == AG_OK;
     for (size_t i = 0; is_whole && i < count; i++)
         is_whole = given[i].name && given[i].value;
     if (!is_whole)
@@ -155,8 +174,9 @@ ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene
     scene *s = scene_create();
     ag_status status = copy_definitions(context, given, count, &d);
     if (status == AG_OK)
-        status = loaded && s ? load(context, path, &d, &request, s, &loaded->inputs) : AG_ERROR_MEMORY;
+        status = loaded && s ? load(context, from, &d, &request, s, &loaded->inputs) : AG_ERROR_MEMORY;
     if (status == AG_OK) {
+        loaded->context = context;
         loaded->s = s;
         *out_scene = loaded;
     } else {
@@ -170,16 +190,37 @@ ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene
     return status;
 }
 
+ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
+                           ag_scene **out_scene)
+{
+    return load_from(context, &(scene_source){.name = path}, settings, out_scene);
+}
+
+ag_status ag_scene_load_text(ag_context *context, const char *name, const char *text, size_t size_bytes,
+                             const ag_scene_settings *settings, ag_scene **out_scene)
+{
+    if (!text)
+        return AG_ERROR_ARGUMENT;
+    return load_from(context, &(scene_source){name, text, size_bytes}, settings, out_scene);
+}
+
 void ag_scene_destroy(ag_scene *scene_to_destroy)
 {
     if (!scene_to_destroy)
         return;
+    scene_to_destroy->is_dropped = true;
+    if (scene_to_destroy->rendering_count > 0)
+        return; /* the last of them does it */
+    scene_making_destroy(scene_to_destroy->making);
     scene_destroy(scene_to_destroy->s);
     input_files_reset(&scene_to_destroy->inputs);
     free(scene_to_destroy);
 }
 
-const char *ag_scene_film_file_name(const ag_scene *loaded) { return loaded->s->hints.file_name; }
+const char *ag_scene_film_file_name(const ag_scene *loaded)
+{
+    return loaded && loaded->s ? loaded->s->hints.file_name : NULL;
+}
 
 bool ag_scene_was_read_from(const ag_scene *loaded, const char *path)
 {

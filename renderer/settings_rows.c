@@ -31,7 +31,7 @@ static const setting_row ROWS[] = {
               .help = "irradiance at the photons: on-demand (default) and precompute give the same bits; off "
                       "computes it at every gather hit instead, with other bits",
               .manual = "When irradiance is computed at the photons: *on-demand* (default), *precompute* (at all of "
-                        "them, before rendering; the picture is the same), or *off* (an estimate at every place that "
+                        "them, before rendering; the picture is the same), or *off* (an estimate at every point that "
                         "a gather ray meets: another estimator, whose picture has other bits)."},
      FIELD(cache),
      .kind = SETTING_WORD,
@@ -61,11 +61,11 @@ static const setting_row ROWS[] = {
               .argument = "MODE",
               .section = "Light",
               .help = "colours of pictures: on (default), their mean over what a ray stands for, or off, at single "
-                      "places",
+                      "points",
               .manual = "How pictures are looked up as colours of surfaces. *on* (default) takes their mean over what "
                         "a ray stands for: of a camera ray its share of the pixel, also in mirrors and through glass, "
                         "and what gather rays and photons meet more coarsely. So few samples show distant textures "
-                        "without noise. *off* looks them up at single places. Where light is not proportional to the "
+                        "without noise. *off* looks them up at single points. Where light is not proportional to the "
                         "picture's value, in roughness, normals, metals, coated bases, cut-outs and emission, nothing "
                         "is filtered.",
               .is_of_photon_map = true},
@@ -414,7 +414,7 @@ static const setting_row ROWS[] = {
               .help = "keep the photon map and its irradiances in FILE: read where it is there, else traced; "
                       "processes that use it at once fill it together",
               .manual = "Keep the photon map in _FILE_, with the irradiances that were computed at its photons: a "
-                        "picture from another place, of another size or with other samples then begins where the "
+                        "picture from another point, of another size or with other samples then begins where the "
                         "last one ended, and is the same, bit for bit, as without the file. Where _FILE_ is not "
                         "there yet, photons are traced and it is written, whole or not at all. Processes on one "
                         "machine that use it at the same time trace once and fill it together; what one that is "

@@ -287,7 +287,7 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
     return AG_OK;
 }
 
-/* Drops the lights of a kind, or all. The others keep their order, and shapes learn their new place. */
+/* Drops the lights of a kind, or all. The others keep their order, and shapes learn their new index. */
 static void drop_lights(scene *s, light_kind kind, bool is_any_kind)
 {
     uint32_t kept = 0;
@@ -353,6 +353,14 @@ static ag_status list_object_shapes(scene *s)
     return AG_OK;
 }
 
+void scene_set_camera(scene *s, const camera *c)
+{
+    s->camera = *c;
+    s->has_motion = s->camera.is_moving || s->instance_step_count > s->instance_count;
+    s->camera.medium = s->camera_medium;
+    s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
+}
+
 ag_status scene_commit(scene *s, run_context *run, const char *isa)
 {
     ag_status status = AG_OK;
@@ -374,9 +382,8 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
         status = closed_room_furnish(s, run->log);
     if (status != AG_OK)
         return status;
-    s->has_motion = s->camera.is_moving || s->instance_step_count > s->instance_count;
-    s->camera.medium = s->camera_medium;
-    s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
+    const camera seen = s->camera;
+    scene_set_camera(s, &seen);
     status = material_mips_make(s, run);
     if (status == AG_OK)
         status = light_pick_commit(s, run->log);

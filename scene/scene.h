@@ -138,6 +138,9 @@ void scene_drop_all_lights(scene *s);
  * A scene without shapes is valid. Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING, AG_ERROR_SCENE, AG_CANCELLED. */
 ag_status scene_commit(scene *s, run_context *run, const char *isa);
 
+/* Another camera for a committed scene, that nobody renders meanwhile; nothing else of the scene depends on it. */
+void scene_set_camera(scene *s, const camera *c);
+
 /* Whether any light that meets it is traced on, rather than gathered: see bsdf.h. */
 bool scene_shape_is_traced(const scene *s, const shape *item);
 

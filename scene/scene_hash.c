@@ -182,6 +182,7 @@ static void add_light(hash128 *h, const light *l)
     ADD(l->disc_one_minus_cos);
     ADD(l->falloff_start);
     ADD(l->falloff_end);
+    ADD(l->dims_by_cosine);
     ADD(l->shape_index);
     ADD(l->two_sided);
     ADD(l->radiance_texture);

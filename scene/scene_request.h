@@ -6,6 +6,7 @@
 #include "math/vec3.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* The units of lamps in a glTF file, beside those of emissive surfaces; names as in Blender's exporter. */
@@ -27,10 +28,13 @@ typedef enum scene_up {
     UP_MINUS_Z
 } scene_up;
 
+/* Writes the path of a file that the scene names, with a NUL at its end; false: it is for the reader to find. */
+typedef bool scene_find_file(void *user, const char *name, char *out_path, size_t path_size);
+
 /* All zero: nothing is asked for. */
 typedef struct scene_request {
     gltf_light_units gltf_light_units;
-    bool has_camera; /* in the place of the file's */
+    bool has_camera; /* instead of the file's */
     vec3 camera_from, camera_to;
     vec3 camera_up;                /* zero: the axis that points up */
     float fov_degrees;             /* across the shorter image axis, (0, 180) */
@@ -42,10 +46,12 @@ typedef struct scene_request {
     float sun_azimuth_degrees, sun_elevation_degrees;
     float sun_irradiance;    /* W/m^2, on a surface that faces it */
     float sun_angle_degrees; /* across it, [0, 180] */
-    bool has_sky;            /* in the place of the file's infinite lights */
+    bool has_sky;            /* instead of the file's infinite lights */
     rgb sky_radiance;        /* W/m^2/sr, linear Rec. 709; a picture is multiplied by it */
     const char *sky_file;    /* a picture of all directions; borrowed; NULL: none */
     float sky_rotation_degrees;
+    scene_find_file *find_file; /* of pbrt's text; NULL: all are for the reader to find */
+    void *find_file_user;
 } scene_request;
 
 #endif

@@ -72,7 +72,7 @@ file(READ ${STAMP}.files files)
 file(READ ${STAMP}.folders allowed)
 set(roots threads threads/include scene scene/readers photonmap renderer renderer/include tests perf)
 list(TRANSFORM roots PREPEND ${ROOT}/)
-# Surfaces and textures know places (surface.h) and rays (ray.h), not the tree nor how rays are cast. Below them, each
+# Surfaces and textures know points (surface.h) and rays (ray.h), not the tree nor how rays are cast. Below them, each
 # folder of ag_image knows those before it: math and text, color, image. Materials know nothing of lights, nor the other
 # way round; what casts rays knows no lights. A format's reader knows no other's, but that meshes of pbrt may be PLY
 # files. What finds the light knows nothing of pictures' files.

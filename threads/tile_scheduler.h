@@ -12,7 +12,7 @@
 
 typedef struct tile {
     int x0, y0, x1, y1; /* pixels [x0, x1) x [y0, y1), in the coordinates of the bounds given */
-    uint32_t index;     /* place in the order of claiming */
+    uint32_t index;     /*/* position in the order of claiming */
     uint64_t left;      /* pixels of the tiles behind it in that order */
 } tile;
 

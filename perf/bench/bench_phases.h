@@ -10,7 +10,7 @@ typedef enum bench_phase {
     BENCH_PHASE_PHOTONS,   /* tracing them */
     BENCH_PHASE_TREE,      /* of the global map */
     BENCH_PHASE_ESTIMATES, /* irradiance at all of its photons */
-    BENCH_PHASE_LOOKUPS,   /* irradiance at places, all of it being there: the nearest photon */
+    BENCH_PHASE_LOOKUPS,   /* irradiance at points, all of it being there: the nearest photon */
     BENCH_PHASE_RAYS,      /* the nearest surface, one ray after the other, by Embree alone */
     BENCH_PHASE_SHADING,   /* a picture of direct light: camera rays, materials, lights, shadow rays */
     BENCH_PHASE_COLOR,     /* a picture through the default display and view */

@@ -74,8 +74,8 @@ static ag_status make_map(bench_stage *stage, ag_context *context)
     return status;
 }
 
-/* A ray goes where light comes from on its way to a photon's place. Most photons of an interior lie on the outside of
- * its walls, from where rays go nowhere: another photon is drawn then, up to so many times. */
+/* A ray goes where light comes from on its way to a photon's position. Most photons of an interior lie on the outside
+ * of its walls, from where rays go nowhere: another photon is drawn then, up to so many times. */
 static bool draw_ray(const bench_stage *stage, uint32_t index, scene_ray *out_ray, surface_hit *out_hit)
 {
     enum { TRIES = 32 };

@@ -1,7 +1,7 @@
 /* gather_rays.c: the program afterglow-gather-rays: what a final gather's ray costs in all and by part, against what
  * Embree alone needs for the very same rays. Room 20 of the forty, or another scene; all take turns in one process on
  * one thread; medians of the rounds' ratios, as CSV.
- * The rays are those of some tiles of a picture of 400 x 400, 64 from each place, guided as the renderer guides them;
+ * The rays are those of some tiles of a picture of 400 x 400, 64 from each hit, guided as the renderer guides them;
  * all irradiance is there already. Embree casts them one by one (rtcIntersect1), and the renderer's ray_fan 64
  * together: sorted, then in packets. Where a scene has media, or normals that turn within a triangle, the renderer
  * leaves out some of these rays. Use: afterglow-gather-rays [SCENE.pbrt]. Flow: [here]. Threads: one. */
@@ -18,14 +18,14 @@
 #include <unistd.h>
 
 enum { PICTURE = 400, TILE = 32, TILES = 5, GATHER_RAYS = ROOM_BENCH_GATHER_RAYS, ESTIMATES = 20000 };
-_Static_assert((int)GATHER_RAYS <= (int)RAY_FAN_MAX, "a place's rays are one fan");
-enum { PLACES_MAX = TILES * TILE * TILE, RAYS_MAX = PLACES_MAX * GATHER_RAYS };
+_Static_assert((int)GATHER_RAYS <= (int)RAY_FAN_MAX, "a hit's rays are one fan");
+enum { HITS_MAX = TILES * TILE * TILE, RAYS_MAX = HITS_MAX * GATHER_RAYS };
 
-typedef struct place {
+typedef struct bench_hit {
     vertex v;
     sampler where;
     ray_fan fan; /* its rays */
-} place;
+} bench_hit;
 
 typedef struct bench {
     scene *s;
@@ -35,12 +35,12 @@ typedef struct bench {
     ag_render_settings settings;
     transport t;
     eye_worker worker;
-    place *places; /* [place_count] */
+    bench_hit *hits; /* [hit_count] */
     scene_ray *rays;
     irradiance_query *queries; /* where the rays end */
     rgb *irradiance;
     bool *holds;
-    uint32_t place_count, ray_count, query_count;
+    uint32_t hit_count, ray_count, query_count;
     double sink; /* keeps the work from being optimised away */
 } bench;
 
@@ -55,9 +55,9 @@ static double embree(bench *b)
 
 static double embree_together(bench *b)
 {
-    for (uint32_t i = 0; i < b->place_count; i++) {
-        scene_intersect_fan(b->s, &b->places[i].fan);
-        b->sink += (double)b->places[i].fan.met[0].distance;
+    for (uint32_t i = 0; i < b->hit_count; i++) {
+        scene_intersect_fan(b->s, &b->hits[i].fan);
+        b->sink += (double)b->hits[i].fan.met[0].distance;
     }
     return b->ray_count;
 }
@@ -65,9 +65,9 @@ static double embree_together(bench *b)
 static double whole(bench *b)
 {
     uint64_t before = b->worker.rays_gather;
-    for (uint32_t i = 0; i < b->place_count; i++) {
-        gather_request request = {.from = &b->places[i].v,
-                                  .where = &b->places[i].where,
+    for (uint32_t i = 0; i < b->hit_count; i++) {
+        gather_request request = {.from = &b->hits[i].v,
+                                  .where = &b->hits[i].where,
                                   .is_first = true,
                                   .scatterings_left = 98,
                                   .count = (uint32_t)b->t.settings->gather_samples,
@@ -91,7 +91,7 @@ static double lookups(bench *b)
 }
 
 /* As final_gather makes them. */
-static void make_fan(const bench *b, const place *p, ray_fan *out_fan)
+static void make_fan(const bench *b, const bench_hit *p, ray_fan *out_fan)
 {
     const bsdf *scattering = &p->v.scattering;
     bool is_below = bsdf_is_below(scattering);
@@ -113,18 +113,18 @@ static void make_fan(const bench *b, const place *p, ray_fan *out_fan)
 static double directions(bench *b)
 {
     ray_fan fan;
-    for (uint32_t i = 0; i < b->place_count; i++) {
-        make_fan(b, &b->places[i], &fan);
+    for (uint32_t i = 0; i < b->hit_count; i++) {
+        make_fan(b, &b->hits[i], &fan);
         b->sink += (double)fan.direction[0][i % GATHER_RAYS];
     }
-    return (double)b->place_count * GATHER_RAYS;
+    return (double)b->hit_count * GATHER_RAYS;
 }
 
 static double fans(bench *b)
 {
     ray_fan fan;
-    for (uint32_t i = 0; i < b->place_count; i++) {
-        make_fan(b, &b->places[i], &fan);
+    for (uint32_t i = 0; i < b->hit_count; i++) {
+        make_fan(b, &b->hits[i], &fan);
         scene_intersect_fan(b->s, &fan);
         for (uint32_t k = 0; k < GATHER_RAYS; k++) {
             surface_point at;
@@ -132,7 +132,7 @@ static double fans(bench *b)
                 b->sink += (double)at.position.x;
         }
     }
-    return (double)b->place_count * GATHER_RAYS;
+    return (double)b->hit_count * GATHER_RAYS;
 }
 
 static double hits(bench *b)
@@ -182,15 +182,15 @@ static double (*const measured[ROWS])(bench *b) = {
 
 /* --- what they work on --- */
 
-static void add_place(bench *b, int x, int y)
+static void add_hit(bench *b, int x, int y)
 {
-    place *p = &b->places[b->place_count];
+    bench_hit *p = &b->hits[b->hit_count];
     p->where = sampler_make(0, x, y, 0, 0);
     scene_ray ray = camera_generate_ray(&b->s->camera, ((float)x + 0.5f) / PICTURE, ((float)y + 0.5f) / PICTURE, 1.0f,
                                         (vec2){0.5f, 0.5f}, 0.0f);
     if (!transport_trace(&b->t, &b->worker, ray, &p->v) || !bsdf_is_plain(&p->v.scattering))
         return;
-    b->place_count++;
+    b->hit_count++;
     make_fan(b, p, &p->fan);
     for (uint32_t k = 0; k < GATHER_RAYS; k++) {
         ray = surface_ray(&p->v.hit, p->v.arrived, ray_fan_direction(&p->fan, k));
@@ -206,20 +206,20 @@ static void add_place(bench *b, int x, int y)
 
 static ag_status make_work(bench *b)
 {
-    b->places = malloc(PLACES_MAX * sizeof *b->places);
+    b->hits = malloc(HITS_MAX * sizeof *b->hits);
     b->rays = malloc(RAYS_MAX * sizeof *b->rays);
     b->queries = malloc(RAYS_MAX * sizeof *b->queries);
     b->irradiance = malloc(IRRADIANCE_BATCH_MAX * sizeof *b->irradiance);
     b->holds = malloc(IRRADIANCE_BATCH_MAX * sizeof *b->holds);
     b->worker.batch = gather_batch_create(INFINITY);
     b->worker.scratch = arena_create(1 << 16);
-    if (!b->places || !b->rays || !b->queries || !b->irradiance || !b->holds || !b->worker.batch || !b->worker.scratch)
+    if (!b->hits || !b->rays || !b->queries || !b->irradiance || !b->holds || !b->worker.batch || !b->worker.scratch)
         return AG_ERROR_MEMORY;
     for (int tile = 0; tile < TILES; tile++) { /* across the picture, from corner to corner */
         int corner = tile * (PICTURE - TILE) / (TILES - 1);
         for (int y = corner; y < corner + TILE; y++)
             for (int x = corner; x < corner + TILE; x++)
-                add_place(b, x, y);
+                add_hit(b, x, y);
     }
     return AG_OK;
 }
@@ -251,7 +251,7 @@ static void bench_reset(bench *b)
     incident_light_reset(&b->incident);
     photon_map_reset(&b->map);
     scene_destroy(b->s);
-    free(b->places);
+    free(b->hits);
     free(b->rays);
     free(b->queries);
     free(b->irradiance);
@@ -286,7 +286,7 @@ int main(int argc, char **argv)
             rows[i].us[round] = (clock_thread_cpu_seconds() - begin) * 1e6 / count;
         }
     floating_point_leave(arithmetic);
-    fprintf(stderr, "%u photons, %u places, %u rays, %d rounds (checksum %g)\n", b.map.set.count, b.place_count,
+    fprintf(stderr, "%u photons, %u hits, %u rays, %d rounds (checksum %g)\n", b.map.set.count, b.hit_count,
             b.ray_count, ROOM_BENCH_ROUNDS, b.sink);
     room_bench_report(rows, ROWS);
     bench_reset(&b);

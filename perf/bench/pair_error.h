@@ -4,7 +4,7 @@
  * [here] -> equal_error.py. Threads: plain functions.
  *
  * Errors are relative: of each colour of a pixel squared, over the reference squared and a hundredth of the square of
- * the reference's mean, so that black places weigh no more than dark ones. */
+ * the reference's mean, so that black pixels weigh no more than dark ones. */
 #ifndef AFTERGLOW_PAIR_ERROR_H
 #define AFTERGLOW_PAIR_ERROR_H
 

@@ -173,7 +173,7 @@ static int by_order(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Gather rays from photon positions, as a picture's are: 64 from each place; a tile is 1,024 places' worth. */
+/* Gather rays from photon positions, as a picture's are: 64 from each hit; a tile is 1,024 hits' worth. */
 static void make_rays(bench *b, rng *random)
 {
     enum { FROM_EACH = 64, TILE = 65536 };

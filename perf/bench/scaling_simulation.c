@@ -117,7 +117,7 @@ static ag_status take_tile(simulation *s, worker *w)
         return AG_OK;
     }
     uint32_t pixels = (uint32_t)((t.x1 - t.x0) * (t.y1 - t.y0));
-    /* by its place: the same requests for any number of workers, and so for any tiles */
+    /* by its position: the same requests for any number of workers, and so for any tiles */
     for (int y = t.y0; y < t.y1; y++)
         for (int x = t.x0; x < t.x1; x++) {
             uint64_t pixel = (uint64_t)y * (uint64_t)f->width + (uint64_t)x;

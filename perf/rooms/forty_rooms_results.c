@@ -62,15 +62,15 @@ int *result_table_gathers(const result_table *table, size_t *out_count)
     size_t count = 0;
     for (size_t i = 0; gathers != NULL && i < table->count; ++i) {
         const int gather = table->rows[i].gather;
-        size_t place = 0;
-        while (place < count && gathers[place] < gather) {
-            ++place;
+        size_t at = 0;
+        while (at < count && gathers[at] < gather) {
+            ++at;
         }
-        if (place == count || gathers[place] != gather) {
-            for (size_t j = count; j > place; --j) {
+        if (at == count || gathers[at] != gather) {
+            for (size_t j = count; j > at; --j) {
                 gathers[j] = gathers[j - 1];
             }
-            gathers[place] = gather;
+            gathers[at] = gather;
             ++count;
         }
     }

@@ -46,7 +46,7 @@ typedef enum cache_mode {
     X(RESULT_DEFERRED, "deferred", "%.0f")                                                                             \
     X(RESULT_WAITED, "waited", "%.0f")                                                                                 \
     X(RESULT_DUPLICATED, "duplicated", "%.0f")                                                                         \
-    X(RESULT_UNCACHED, "uncached", "%.0f") /* estimates at the places themselves; nearly all for off */                \
+    X(RESULT_UNCACHED, "uncached", "%.0f") /* estimates at the hits themselves; nearly all for off */                  \
     X(RESULT_EMITTED, "emitted", "%.0f")                                                                               \
     X(RESULT_STORED, "stored", "%.0f")                                                                                 \
     X(RESULT_PHOTON_BYTES, "photon_bytes", "%.0f")                                                                     \
@@ -68,7 +68,7 @@ typedef enum result_form { RESULT_MEDIANS, RESULT_RUNS } result_form;
 typedef struct result_row {
     int room, gather;
     cache_mode mode;
-    /* of a single run, from 1: which repeat of its room and gather rays, and its place in it; else 0 */
+    /* of a single run, from 1: which repeat of its room and gather rays, and its turn in it; else 0 */
     int repeat, turn;
     double values[RESULT_COLUMN_COUNT];
 } result_row;

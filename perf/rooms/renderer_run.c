@@ -140,7 +140,7 @@ static ag_status read_statistics(const char *path, result_row *row)
             status = AG_ERROR_INPUT;
         }
     }
-    /* estimate_s covers both kinds: those kept at photons, and those at the places themselves. */
+    /* estimate_s covers both kinds: those kept at photons, and those at the hits themselves. */
     const double estimate_count = row->values[RESULT_COMPUTED] + row->values[RESULT_UNCACHED];
     const double estimate_s = number_at(root, "irradiance", "estimate_s");
     if (estimate_count > 0.0 && estimate_s > 0.0) {

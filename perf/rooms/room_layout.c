@@ -1,5 +1,5 @@
 /* room_layout.c: rejection sampling of forty spheres, driven by a hash of (seed, sphere, attempt, axis).
- * After the test suite of Neilson & Yang (TR 04-21, 2004); the paper tells sizes and counts, not places.
+ * After the test suite of Neilson & Yang (TR 04-21, 2004); the paper tells sizes and counts, not positions.
  * Flow: [here] -> room_file. Threads: any; no state. */
 #include "rooms/room_layout.h"
 
@@ -19,7 +19,7 @@ static uint64_t mix(uint64_t word)
     return word ^ (word >> 30);
 }
 
-/* Uniform in [0, 1), a function of its arguments alone: one sphere's place never shifts the numbers of another. */
+/* Uniform in [0, 1), a function of its arguments alone: one sphere's position never shifts the numbers of another. */
 static double unit_number(uint64_t seed, int sphere, int attempt, int axis)
 {
     uint64_t word = mix(seed);
@@ -74,7 +74,7 @@ static room_sphere large_sphere(void)
     return sphere;
 }
 
-/* Whether a drawn sphere may stand with the placed ones before it and the large one, which has its place already. */
+/* Whether a drawn sphere may stand with the placed ones before it and the large one, which stands already. */
 static bool is_free(const room_sphere *candidate, const room_sphere *placed, int placed_count)
 {
     const room_sphere large = large_sphere();

@@ -44,8 +44,8 @@ typedef struct room_clearance {
     double light;  /* sphere to light */
 } room_clearance;
 
-/* Fills all ROOM_COUNT spheres. Every gap above holds, sphere 33 included, which keeps its place from the beginning.
- * The same on every machine. Errors: AG_ERROR_SCENE when a seed leaves no place for some sphere (never ROOM_SEED). */
+/* Fills all ROOM_COUNT spheres. Every gap above holds, sphere 33 included, which keeps its position from the beginning.
+ * The same on every machine. Errors: AG_ERROR_SCENE when a seed leaves no room for some sphere (never ROOM_SEED). */
 ag_status room_layout_place(uint64_t seed, room_sphere out_spheres[ROOM_COUNT]);
 
 /* Measures the first count spheres against everything, without use of what placing them has checked. */

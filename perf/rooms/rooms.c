@@ -75,7 +75,7 @@ int main(int argc, char **argv)
 
     room_sphere spheres[ROOM_COUNT];
     if (room_layout_place(ROOM_SEED, spheres) != AG_OK) {
-        fprintf(stderr, "afterglow-rooms: error: no place is left for a sphere\n");
+        fprintf(stderr, "afterglow-rooms: error: no room is left for a sphere\n");
         return 1;
     }
     const room_clearance clearance = room_layout_clearance(spheres, last);

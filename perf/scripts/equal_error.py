@@ -269,10 +269,10 @@ def write_plot(path, table):
                     out.append(f'<text x="{x - 4:.1f}" y="{y + 4:.1f}" text-anchor="end">{label}</text>')
         for (method, kind), line in points.items():
             color, dash = COLORS[methods.index(method) % len(COLORS)], ' stroke-dasharray="5 3"' if kind else ""
-            places = [at(p) for p in sorted(line)]
-            out.append(f'<polyline points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in places)}" fill="none" '
+            points = [at(p) for p in sorted(line)]
+            out.append(f'<polyline points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in points)}" fill="none" '
                        f'stroke="{color}" stroke-width="1.8"{dash}/>')
-            out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" fill="{color}"/>' for x, y in places]
+            out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" fill="{color}"/>' for x, y in points]
     out.append("</svg>")
     Path(path).write_text("\n".join(out) + "\n")
 

@@ -32,7 +32,7 @@ done
 for part in ${parts//,/ }; do
     [[ ,$all_parts, == *,$part,* ]] || suite_fail "--parts does not know '$part'"
 done
-if [[ -z $results ]]; then # the machine's report is of all parts: some of them must not take its place
+if [[ -z $results ]]; then # the machine's report is of all parts: some of them must not replace it
     results=$suite_root/perf/results/$(suite_machine_name)
     [[ $is_partial == yes ]] && results=$out/report
 fi

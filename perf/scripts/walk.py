@@ -4,7 +4,7 @@
 Use: perf/scripts/walk.py camera FRAME.exr STEP COUNT      the walk's cameras, a line of six numbers for each
      perf/scripts/walk.py flicker FRAME.exr FRAME.exr ...  a line of CSV: pixels compared, and two ratios
 Frames are float EXR files with R, G, B and the layers P and variance, of the same number of samples a pixel. A pixel's
-place in the frame before is found by its world position; it counts where all four pixels around that place show the
+point in the frame before is found by its world position; it counts where all four pixels around that point show the
 same surface. The squared difference is held against what the samples' variances predict for independent pixels: by
 single pixels, and by means over 8 x 8 of them, in which noise averages out and a change of the light itself does not.
 1: what changes from frame to frame is noise.
@@ -164,8 +164,8 @@ def cameras(path, step, count):
         sys.exit('walk: error: nothing stands in the middle of the picture')
     target = [eye[i] + axes[2][i] * distance for i in range(3)]
     for number in range(count):
-        place = [eye[i] + axes[0][i] * step * number * distance for i in range(3)]
-        print(*(f'{value:.9g}' for value in place + target))
+        position = [eye[i] + axes[0][i] * step * number * distance for i in range(3)]
+        print(*(f'{value:.9g}' for value in position + target))
 
 
 if __name__ == '__main__':

@@ -65,7 +65,7 @@ void frames_reset(frame_list *frames)
     *frames = (frame_list){0};
 }
 
-/* The length of a place at the beginning of the text, 0: there is none; and its digits. */
+/* The length of a placeholder at the beginning of the text, 0: there is none; and its digits. */
 static int placeholder_at(const char *text, int *out_digits)
 {
     int used = (int)strspn(text, "#");
@@ -94,7 +94,7 @@ bool frames_has_placeholder(const char *name)
 
 char *frames_name(const char *name, int frame)
 {
-    char *made = malloc(strlen(name) * DIGITS_MAX + 1); /* no place is shorter than a character */
+    char *made = malloc(strlen(name) * DIGITS_MAX + 1); /* no placeholder is shorter than a character */
     size_t length = 0;
     for (; made && *name;) {
         int digits, used = placeholder_at(name, &digits);

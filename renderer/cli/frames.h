@@ -17,9 +17,9 @@ enum { FRAMES_MAX = 1000000 };
 bool frames_parse(const char *text, frame_list *out_frames);
 void frames_reset(frame_list *frames);
 
-/* Whether a name has a place for the number: %d, %04d, or a run of #, one for each digit at least. */
+/* Whether a name has a placeholder for the number: %d, %04d, or a run of #, one for each digit at least. */
 bool frames_has_placeholder(const char *name);
-/* The name with the number in every such place; to be freed, NULL when out of memory. */
+/* The name with the number in every placeholder; to be freed, NULL when out of memory. */
 char *frames_name(const char *name, int frame);
 
 #endif

@@ -1,6 +1,7 @@
 /* main.c: the program: scene -> picture -> files.
  * Threads: main alone. */
 #define _POSIX_C_SOURCE 200809L
+#include "display_server.h"
 #include "file_conflicts.h"
 #include "large_stack.h"
 #include "memory_limit.h"
@@ -353,7 +354,11 @@ static int run_program(int argc, char **argv)
     o.context.log = progress_log;
     o.context.progress = progress_tell;
     o.context.user = &told;
+    if (o.display_server && !(o.display = display_server_start(o.display_server, progress_log, &told)))
+        progress_log(&told, AG_LOG_WARNING,
+                     "--display-server: no thread can be had for it: no viewer is shown the picture");
     ag_status status = o.frames.count > 0 ? run_frames(&o, &told) : run_in_context(&o, -1, &told);
+    display_server_stop(o.display);
     options_reset(&o);
     return exit_code(status);
 }

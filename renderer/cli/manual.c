@@ -1,5 +1,5 @@
 /* manual.c: a tool of the build: copies the text of the man page, and puts the options, as option_help makes them, in
- * the place of a line "%OPTIONS%". Use: afterglow_manual TEXT OUT Threads: main alone. */
+ * a line "%OPTIONS%". Use: afterglow_manual TEXT OUT Threads: main alone. */
 #define _POSIX_C_SOURCE 200809L
 #include "option_help.h"
 

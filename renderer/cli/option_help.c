@@ -91,7 +91,7 @@ static void append_layers(text_list *list, bool is_manual)
     append(list, "%s", is_manual ? "." : "");
 }
 
-/* The text with lists in the place of their names. */
+/* The text with lists instead of their names. */
 static void fill_in(const char *text, bool is_manual, text_list *out)
 {
     static const struct {

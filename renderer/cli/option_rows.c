@@ -31,7 +31,7 @@ bool option_at(size_t index, listed_option *out_option)
     return false;
 }
 
-/* A seed with a place for the frame's number is tried with one. */
+/* A seed with a placeholder for the frame's number is tried with one. */
 static bool take_seed_pattern(const char *value, options *o)
 {
     char *tried = frames_name(value, 1);

@@ -112,7 +112,7 @@ static const option_row ROWS[] = {
               .section = "Output",
               .help = "looks of the config, with commas between them, - before one that is to be undone; none: not "
                       "even the view's own",
-              .manual = "Looks of the config in place of the view's own, with commas between them; *-* before one "
+              .manual = "Looks of the config instead of the view's own, with commas between them; *-* before one "
                         "undoes it, *none* leaves out the view's own too."},
      TEXT(output.look)},
     {.text = {.name = "exposure",

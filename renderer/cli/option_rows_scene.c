@@ -146,15 +146,16 @@ static const option_row ROWS[] = {
     {.text = {.name = "define",
               .argument = "NAME=VALUE",
               .section = "Scene",
-              .help = "put VALUE in the place of $NAME and ${NAME} in the scene's text; may be repeated; with "
+              .help = "put VALUE instead of $NAME and ${NAME} in the scene's text; may be repeated; with "
                       "--frames $frame is the frame's number",
-              .manual = "Put _VALUE_ in the place of $_NAME_ and ${_NAME_} in the scene's text, in strings and "
-                        "outside of them, where it may also be several numbers. May be repeated; of two with one "
-                        "name the last counts. ${_NAME_:-_OTHERWISE_} in a scene is _OTHERWISE_ where _NAME_ is not "
-                        "defined. A name of the scene's that is not defined is an error, and so is a definition that "
-                        "the scene does not use; without *-D*, strings with a $ in them stay as they are. With "
-                        "*--frames* *$frame* is the frame's number, and the places for it in _VALUE_ are filled in. "
-                        "Scenes in other formats than pbrt's text have no such names."},
+              .manual =
+                  "Put _VALUE_ instead of $_NAME_ and ${_NAME_} in the scene's text, in strings and "
+                  "outside of them, where it may also be several numbers. May be repeated; of two with one "
+                  "name the last counts. ${_NAME_:-_OTHERWISE_} in a scene is _OTHERWISE_ where _NAME_ is not "
+                  "defined. A name of the scene's that is not defined is an error, and so is a definition that "
+                  "the scene does not use; without *-D*, strings with a $ in them stay as they are. With "
+                  "*--frames* *$frame* is the frame's number, and the placeholders for it in _VALUE_ are filled in. "
+                  "Scenes in other formats than pbrt's text have no such names."},
      .letter = 'D',
      .take = take_definition},
     {.text = {.name = "camera",
@@ -169,9 +170,9 @@ static const option_row ROWS[] = {
          {.name = "camera-from",
           .argument = "X,Y,Z",
           .section = "Scene",
-          .help = "where a camera stands that takes the place of the file's; world space",
+          .help = "where a camera stands that replaces the file's; world space",
           .manual =
-              "Where a camera stands that takes the place of the file's, in world space; it is a pinhole that looks to *--camera-to*."},
+              "Where a camera stands that replaces the file's, in world space; it is a pinhole that looks to *--camera-to*."},
      .take = take_camera_from},
     {.text = {.name = "camera-to",
               .argument = "X,Y,Z",
@@ -221,9 +222,9 @@ static const option_row ROWS[] = {
     {.text = {.name = "sky",
               .argument = "SKY",
               .section = "Scene",
-              .help = "a sky in the place of the file's: a grey V, a colour R,G,B (radiance, W/m^2/sr), or a picture "
+              .help = "a sky instead of the file's: a grey V, a colour R,G,B (radiance, W/m^2/sr), or a picture "
                       "of all directions",
-              .manual = "Put a sky in the place of the file's own infinite lights: a grey _V_ or a colour _R,G,B_, "
+              .manual = "Put a sky instead of the file's own infinite lights: a grey _V_ or a colour _R,G,B_, "
                         "linear Rec. 709, its radiance in W/m^2/sr; or a picture (OpenEXR, Radiance, ...) of all "
                         "directions: twice as wide as high, latitude-longitude, its middle in the east (+_x_ where "
                         "_y_ or _z_ is up) and north a quarter to the left of that, as Blender's worlds have it; or "

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "option_row_lists.h"
 
+#include "display_address.h"
 #include "option_values.h"
 
 #include <stdio.h>
@@ -36,6 +37,13 @@ static bool take_checkpoint(const char *value, options *o) { return parse_second
 static bool take_time_limit(const char *value, options *o) { return parse_time(value, &o->time_limit); }
 
 static bool take_memory(const char *value, options *o) { return parse_bytes(value, &o->memory_limit); }
+
+static bool take_display_server(const char *value, options *o)
+{
+    display_address address;
+    o->display_server = value;
+    return display_address_parse(value, &address);
+}
 
 static bool take_progress(const char *value, options *o)
 {
@@ -122,9 +130,10 @@ static const option_row ROWS[] = {
               .section = "Work",
               .help = "with --frames: each frame's number is added to the seed, so that noise differs from frame to "
                       "frame",
-              .manual = "With *--frames*: each frame's number is added to the seed, so that noise does not stand still "
-                        "over the moving picture. Without it all frames have one seed; *--seed* may also have a place "
-                        "for the number, _%d_ or _####_. With *--photon-map* the photons keep one seed."},
+              .manual =
+                  "With *--frames*: each frame's number is added to the seed, so that noise does not stand still "
+                  "over the moving picture. Without it all frames have one seed; *--seed* may also have a placeholder "
+                  "for the number, _%d_ or _####_. With *--photon-map* the photons keep one seed."},
      FLAG(seed_per_frame)},
     {.text = {.name = "checkpoint",
               .argument = "SECONDS",
@@ -183,6 +192,21 @@ static const option_row ROWS[] = {
               .help = "write the picture after 1, 2, 4, ... samples per pixel, too",
               .manual = "Write the picture after 1, 2, 4, ... samples per pixel, too."},
      FLAG(preview)},
+    {.text = {.name = "display-server",
+              .argument = "HOST:PORT",
+              .section = "Work",
+              .help = "send the picture, tile by tile, to a viewer that listens there, as tev does on port 14158",
+              .manual =
+                  "Send the picture to a viewer that listens there while it is rendered, tile by tile as they are "
+                  "done: *tev* does, on port 14158 of its machine, and whatever else knows its protocol, which is "
+                  "that of pbrt's *--display-server* as well. The viewer shows it under the first outfile's name, "
+                  "with the values that the picture has in _.exr_ files in the working space; in the end it has "
+                  "all that the file has, denoised where that is asked for. The pixels are those that are "
+                  "rendered: of a crop window or a tile no more. A viewer that is not there, or is lost, is "
+                  "named in one warning and looked for again every two seconds; the render never waits for it, "
+                  "but for at most five seconds in the end where it takes nothing. An IPv6 address stands in "
+                  "brackets. The connection is not encrypted."},
+     .take = take_display_server},
     {.text = {.name = "progress",
               .argument = "STYLE",
               .section = "Work",

@@ -26,7 +26,7 @@ static bool has_frames_in_one_file(const options *o)
         if (!frames_has_placeholder(o->outfiles[i]))
             name = o->outfiles[i];
     if (name)
-        fprintf(stderr, "afterglow: '%s' has no place for the frame's number: %%04d or ####\n", name);
+        fprintf(stderr, "afterglow: '%s' has no placeholder for the frame's number: %%04d or ####\n", name);
     return name;
 }
 
@@ -52,15 +52,15 @@ static bool has_odd_seeds(const options *o)
         return false;
     if (o->frames.count == 0)
         fprintf(stderr, "afterglow: %s is for --frames, which is not given\n",
-                o->seed_per_frame ? "--seed-per-frame" : "a place for the frame's number in --seed");
+                o->seed_per_frame ? "--seed-per-frame" : "a placeholder for the frame's number in --seed");
     else if (o->seed_per_frame && o->seed_pattern)
-        fprintf(stderr, "afterglow: --seed-per-frame, and a place for the frame's number in --seed: give one\n");
+        fprintf(stderr, "afterglow: --seed-per-frame, and a placeholder for the frame's number in --seed: give one\n");
     else
         return false;
     return true;
 }
 
-/* A camera is asked for by its place and what it looks at. */
+/* A camera is asked for by its position and what it looks at. */
 static bool has_half_a_camera(const options *o)
 {
     const int parts = o->has_camera_from + o->has_camera_to;

@@ -17,7 +17,7 @@ typedef enum progress_style {
     PROGRESS_ALF
 } progress_style;
 
-/* A text that is printed in place of all work. */
+/* A text that is printed instead of all work. */
 typedef enum options_asked { OPTIONS_ASKED_NOTHING, OPTIONS_ASKED_HELP, OPTIONS_ASKED_VERSION } options_asked;
 
 /* A setting of the renderer, as ag_render_settings_set takes it. */
@@ -40,11 +40,12 @@ typedef struct options {
     double checkpoint_seconds; /* 0: none but at signals, where resume is asked for */
     bool resume, preview, no_clobber;
     bool dry_run;               /* predicts, renders nothing */
+    const char *display_server; /* HOST:PORT of a viewer; NULL: none */
     uint64_t memory_limit;      /* bytes of the process; 0: none */
     ag_definition *definitions; /* owned, as are its strings */
     size_t definition_count;
     bool seed_per_frame;        /* the frame's number is added to the seed */
-    const char *seed_pattern;   /* the seed, with a place for the frame's number; NULL: there is none */
+    const char *seed_pattern;   /* the seed, with a placeholder for the frame's number; NULL: there is none */
     int frame;                  /* of one of several pictures, its number */
     frame_list frames;          /* none: one picture, whose names are as they stand */
     int tile_index, tile_count; /* from 1 on; 0: the whole */
@@ -62,6 +63,7 @@ typedef struct options {
     given_setting *given;      /* owned array, in the order of the command line; the strings are not */
     int given_count;
     options_asked asked_text;
+    struct display_server *display; /* main's, while it renders, or NULL */
 } options;
 
 typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE } options_result;

@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "passes.h"
 
+#include "display_server.h"
 #include "memory_limit.h"
 #include "signals.h"
 #include "status.h"
@@ -334,6 +335,7 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
         memory_limit_lift(); /* the prediction does not know what the denoiser takes */
         AG_TRY(ag_film_denoise(p->context, film));
     }
+    display_server_leave(o->display);
     if (has_picture)
         AG_TRY(write_pictures(p, film, !result->is_partial && failed == AG_OK));
     if (failed != AG_OK) {
@@ -363,15 +365,20 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     *out_result = (passes_result){0};
     ag_status status = begin(&p, scene, settings);
     if (status == AG_OK) {
+        if (!o->photons_only)
+            display_server_show(o->display, ag_rendering_film(p.rendering), o->outfiles[0]);
         signals_begin_rendering(); /* until all is written: what has been rendered is not thrown away */
         status = render(&p, out_result, &noise, &failed);
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial && failed == AG_OK)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
+    if (status != AG_OK)
+        display_server_leave(o->display); /* the film goes */
     ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
     if (status == AG_OK)
         status = show(&p, film, settings, out_result, &noise, failed);
     signals_end_rendering();
+    display_server_leave(o->display);
     ag_film_destroy(film);
     free(p.checkpoint);
     return status == AG_OK && out_result->is_partial ? AG_CANCELLED : status;

@@ -218,7 +218,7 @@ void progress_log(void *user, ag_log_level level, const char *message)
         return;
     static const char *const prefixes[] = {"error: ", "warning: ", "", ""};
     static const char *const located[] = {": error: ", ": warning: "};
-    /* messages about a place in a file say themselves what they are */
+    /* messages about a location in a file say themselves what they are */
     bool has_location = level <= AG_LOG_WARNING && strstr(message, located[level]) != NULL;
     pthread_mutex_lock(&terminal);
     clear_bar(p);

@@ -3,7 +3,7 @@
 #SBATCH --requeue
 #SBATCH --open-mode=append
 # frames_slurm.sh SCENE OUT FRAMES [OPTION]...: an animation as an array of Slurm jobs, a frame each; returns when all are
-# there. FRAMES is as --frames has it, 1-100x2 say; OUT, and SCENE where each frame has its own, have a place for the
+# there. FRAMES is as --frames has it, 1-100x2 say; OUT, and SCENE where each frame has its own, have a placeholder for the
 # number: shot.%04d.exr. Names of files must mean the same on all nodes. A frame that is stopped goes on from its
 # checkpoint when it is requeued; called again, only frames that are missing are rendered. Where only the camera moves, all
 # frames may share one photon map: frames_slurm.sh shot.%04d.pbrt shot.%04d.exr 1-100 --photon-map shot.photons

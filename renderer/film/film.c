@@ -1,6 +1,8 @@
 /* film.c: see film.h. */
 #include "film/film.h"
 
+#include "film/film_tiles.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -72,7 +74,8 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
     film->sums = calloc(count, sums_of_pixel(film) * sizeof *film->sums);
     film->counts = calloc(count, sizeof *film->counts);
     film->pixels = calloc(pixel_count(film) + 1, 3 * sizeof *film->pixels);
-    bool is_whole = film->sums && film->counts && film->pixels;
+    film->tiles = film_tiles_create(film->width, film->height);
+    bool is_whole = film->sums && film->counts && film->pixels && film->tiles;
     if (filter->has_signs) {
         film->negatives = calloc(count, sizeof *film->negatives);
         is_whole = is_whole && film->negatives;
@@ -124,6 +127,7 @@ void ag_film_destroy(ag_film *film)
         cryptomatte_reset(&film->mattes[i]);
     }
     free(film->pixels);
+    film_tiles_destroy(film->tiles);
     noise_lattice_reset(&film->noise);
     free(film->origin.defined);
     aov_layout_reset(&film->layout);
@@ -363,7 +367,7 @@ static void read_color(const ag_film *film, size_t pixel, int offset, double out
 
 /* Where the parts of light are there, the picture is their sum in floats, in their order: so it is for whoever adds up
  * a file's layers. */
-static void resolve_pixel(const ag_film *film, size_t pixel, float out[3])
+void film_develop(const ag_film *film, size_t pixel, float out[3])
 {
     double color[3];
     const aov_layout *layout = &film->layout;
@@ -380,11 +384,7 @@ static void resolve_pixel(const ag_film *film, size_t pixel, float out[3])
     }
 }
 
-void film_resolve(ag_film *film)
-{
-    for (size_t i = 0; i < pixel_count(film); i++)
-        resolve_pixel(film, area_pixel(film, i), film->pixels + 3 * i);
-}
+void film_resolve(ag_film *film) { film_show(film, film->area); }
 
 static float read_value(const ag_film *film, size_t pixel_of_crop, const film_channel *channel)
 {

@@ -36,6 +36,8 @@ typedef struct film_area {
  * picture. */
 enum { FILM_BLOCK = 8 };
 
+typedef struct film_tiles film_tiles; /* see film_tiles.h */
+
 struct ag_film {
     int x0, y0, width, height; /* the crop, in pixels of the full picture */
     unsigned trial_step;       /* above 1: of its blocks each so manieth alone is rendered, as a trial of the whole */
@@ -61,7 +63,8 @@ struct ag_film {
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
     cryptomatte_slot *slots[CRYPTOMATTE_KIND_COUNT]; /* [CRYPTOMATTE_SLOTS]; NULL where not asked for */
     film_nearest *nearest;                           /* NULL where not asked for */
-    float *pixels;                                   /* 3, RGB, of the crop: set by film_resolve */
+    float *pixels;                                   /* 3, RGB, of the crop: set by film_resolve and film_show */
+    film_tiles *tiles;                               /* which of them have changed */
 
     noise_lattice noise; /* of some of them */
 };
@@ -89,8 +92,11 @@ void film_add(struct ag_film *film, size_t pixel, const eye_sample *sample);
 /* Empty again. */
 void film_clear(struct ag_film *film, const ag_render_settings *settings);
 
-/* Makes the pixels of the sums. */
+/* Makes all pixels of the sums, for all to see. */
 void film_resolve(struct ag_film *film);
+
+/* Gives one pixel of the area as the picture shows it. */
+void film_develop(const struct ag_film *film, size_t pixel, float out[3]);
 
 /* All that samples have brought, for writing it down and reading it back; gives how many there are. */
 typedef struct film_plane {

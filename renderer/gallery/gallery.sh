@@ -66,8 +66,8 @@ run oiiotool -i:ch=direct.R,direct.G,direct.B sunroom.exr --chnames R,G,B --powc
 show parts "Three pictures side by side: the sun's patches alone; an evenly lit room without them; reflections on the floor, glass and copper"
 
 say "## A caustic" "" \
-    "The same map, another place to look from: light that a glass, a glass ball and a copper ball throw on the table." \
-    "The scene leaves the place open (\`\${eye:-…}\`), \`-D\` fills it in." ""
+    "The same map, another point to look from: light that a glass, a glass ball and a copper ball throw on the table." \
+    "The scene leaves that point open (\`\${eye:-…}\`), \`-D\` fills it in." ""
 run afterglow -q "${size[@]}" --spp 32 --caustic-photons 2e6 --photon-map sunroom.map \
     -D 'eye=-0.1 1.42 -0.42' -D 'at=-0.66 0.76 0.40' -D fov=36 --exposure 0.2 -o caustic.png "$sunroom"
 show caustic "A table in the sun: a tumbler with bright curves in its shadow, a glass ball that focuses the light beside it, a copper ball"

@@ -22,7 +22,7 @@ enum { LIT_PATHS = 12288 };
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
 typedef struct point_list {
-    asked_place *points; /* owned */
+    query_point *points; /* owned */
     uint32_t count, capacity;
     bool out_of_memory;
 } point_list;
@@ -31,7 +31,7 @@ static void add_point(point_list *list, vec3 position, vec3 normal)
 {
     if (list->count == list->capacity) {
         uint32_t capacity = list->capacity ? 2 * list->capacity : 1024;
-        asked_place *larger = realloc(list->points, capacity * sizeof *larger);
+        query_point *larger = realloc(list->points, capacity * sizeof *larger);
         if (!larger) {
             list->out_of_memory = true;
             return;
@@ -39,7 +39,7 @@ static void add_point(point_list *list, vec3 position, vec3 normal)
         list->points = larger;
         list->capacity = capacity;
     }
-    list->points[list->count++] = (asked_place){position, normal};
+    list->points[list->count++] = (query_point){position, normal};
 }
 
 typedef struct lit_list {
@@ -203,7 +203,7 @@ static void divide_frame(int paths, float aspect, int *out_width, int *out_heigh
 }
 
 /* One list of all rows. out_points: to be freed by the caller, on success. */
-static ag_status merge(const pilot_job *job, int which, asked_place **out_points, uint32_t *out_count)
+static ag_status merge(const pilot_job *job, int which, query_point **out_points, uint32_t *out_count)
 {
     uint32_t count = 0, at = 0;
     for (int i = 0; i < job->height; i++) {
@@ -212,7 +212,7 @@ static ag_status merge(const pilot_job *job, int which, asked_place **out_points
             return AG_ERROR_MEMORY;
         count += list->count;
     }
-    asked_place *all = malloc((count + 1) * sizeof *all);
+    query_point *all = malloc((count + 1) * sizeof *all);
     if (!all)
         return AG_ERROR_MEMORY;
     for (int i = 0; i < job->height; i++) {
@@ -226,27 +226,27 @@ static ag_status merge(const pilot_job *job, int which, asked_place **out_points
     return AG_OK;
 }
 
-static ag_status merge_asked(const pilot_job *job, int which, place_importance *out_importance)
+static ag_status merge_asked(const pilot_job *job, int which, importance_map *out_importance)
 {
-    asked_place *points;
+    query_point *points;
     uint32_t count;
     AG_TRY(merge(job, which, &points, &count));
-    ag_status status = place_importance_create(points, count, out_importance);
+    ag_status status = importance_map_create(points, count, out_importance);
     free(points);
     return status;
 }
 
-static ag_status merge_onward(const pilot_job *job, place_importance *out_importance)
+static ag_status merge_onward(const pilot_job *job, importance_map *out_importance)
 {
     const scene *s = job->t.s;
-    asked_place *points;
+    query_point *points;
     uint32_t count, importons = 0;
     for (int i = 0; i < job->height; i++)
         importons += job->rows[i].importons;
     AG_TRY(merge(job, ONWARD, &points, &count));
     vec3 radius = {s->bounding_radius, s->bounding_radius, s->bounding_radius};
-    ag_status status = place_importance_create_smooth(points, count, importons, vec3_sub(s->bounding_center, radius),
-                                                      vec3_add(s->bounding_center, radius), out_importance);
+    ag_status status = importance_map_create_smooth(points, count, importons, vec3_sub(s->bounding_center, radius),
+                                                    vec3_add(s->bounding_center, radius), out_importance);
     free(points);
     return status;
 }
@@ -298,9 +298,9 @@ ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_setti
 
 void eye_pilot_reset(eye_pilot *pilot)
 {
-    place_importance_reset(&pilot->gathered);
-    place_importance_reset(&pilot->onward);
-    place_importance_reset(&pilot->seen);
+    importance_map_reset(&pilot->gathered);
+    importance_map_reset(&pilot->onward);
+    importance_map_reset(&pilot->seen);
 }
 
 ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_settings *settings,

@@ -1,6 +1,6 @@
 /* eye_pilot.h: where the picture will ask for light, found out beforehand by a few eye paths and gather rays.
  * Rests on: Peter, Pietrek, "Importance Driven Construction of Photon Maps", 1998.
- * Flow: camera -> [here] -> place_importance -> photon tracing. Threads: rows by the run's workers, merged in order.
+ * Flow: camera -> [here] -> importance_map -> photon tracing. Threads: rows by the run's workers, merged in order.
  *
  * The eye paths are spread over the whole frame, as many whatever its resolution, crop, tile and samples are: so
  * all parts of a picture, and all its sizes of one shape, have the same photons. */
@@ -8,14 +8,14 @@
 #define AFTERGLOW_EYE_PILOT_H
 
 #include "afterglow/afterglow.h"
-#include "place_importance.h"
+#include "importance_map.h"
 #include "rays/rays.h"
 #include "scene.h"
 
 typedef struct eye_pilot {
-    place_importance gathered; /* points where the global map will be asked */
-    place_importance onward;   /* diffuse surfaces whose light arrives at those */
-    place_importance seen;     /* points where the caustic map will be asked */
+    importance_map gathered; /* points where the global map will be asked */
+    importance_map onward;   /* diffuse surfaces whose light arrives at those */
+    importance_map seen;     /* points where the caustic map will be asked */
 } eye_pilot;
 
 /* Reads of the settings: width over height, depth, light through panes, number of photons, seed. Errors:

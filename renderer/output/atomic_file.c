@@ -399,7 +399,7 @@ static int fill_and_rename(output *out, atomic_file_fill *fill, void *user)
     const int lock_fd = fcntl(out->fd, F_DUPFD_CLOEXEC, 0); /* keeps the lock until the file has its name */
     const int closed = close_quietly(out->fd);
     out->fd = lock_fd;
-    if (closed != 0) /* the last place where a network file system tells of a failed write */
+    if (closed != 0) /* the last call where a network file system tells of a failed write */
         return -1;
     const int renamed =
         out->folder_fd < 0 ? 0 : renameat(out->folder_fd, out->temporary_name, out->folder_fd, out->name);
@@ -438,8 +438,8 @@ ag_status atomic_file_write_by(const char *path, atomic_file_fill *fill, void *u
         hide_pending(out.slot);
         /* EBADF: opened by O_PATH. EINVAL, ENOTSUP: a file system without it. The file is whole in any case. */
         if (fsync(out.folder_fd) != 0 && errno != EBADF && errno != EINVAL && errno != ENOTSUP)
-            status = failure(path, "it is in its place, but its folder cannot be synchronised: ", errno, message,
-                             message_size);
+            status =
+                failure(path, "it has its name, but its folder cannot be synchronised: ", errno, message, message_size);
         close_quietly(out.folder_fd);
     }
     return status;

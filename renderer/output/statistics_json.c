@@ -171,7 +171,7 @@ ag_status ag_statistics_write(ag_context *context, const char *path)
     if (!text)
         return AG_ERROR_MEMORY;
     size_t length = strlen(text);
-    text[length] = '\n'; /* in place of the terminator: the file needs none */
+    text[length] = '\n'; /* instead of the terminator: the file needs none */
     char message[1024];
     ag_status status = atomic_file_write(path, text, length + 1, message, sizeof message);
     if (status != AG_OK)

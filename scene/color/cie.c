@@ -122,21 +122,21 @@ void cie_match(double nm, double out_xyz[3])
     out_xyz[0] = out_xyz[1] = out_xyz[2] = 0.0;
     if (!(nm >= CIE_FIRST_NM && nm <= CIE_LAST_NM))
         return;
-    double place = (nm - CIE_FIRST_NM) / MATCH_STEP;
-    int low = place < MATCH_COUNT - 2 ? (int)place : MATCH_COUNT - 2;
+    double position = (nm - CIE_FIRST_NM) / MATCH_STEP;
+    int low = position < MATCH_COUNT - 2 ? (int)position : MATCH_COUNT - 2;
     for (int i = 0; i < 3; i++)
-        out_xyz[i] = MATCH[low][i] + (place - low) * (MATCH[low + 1][i] - MATCH[low][i]);
+        out_xyz[i] = MATCH[low][i] + (position - low) * (MATCH[low + 1][i] - MATCH[low][i]);
 }
 
 double cie_d65(double nm)
 {
     /* CIE 15:2004, 3.1: the weights of the components, rounded to three places as it says, for 6504 K */
     static const double M1 = -0.295, M2 = -0.689;
-    double place = (nm - CIE_FIRST_NM) / DAYLIGHT_STEP, value[2];
-    int low = place < DAYLIGHT_COUNT - 2 ? (int)place : DAYLIGHT_COUNT - 2;
+    double position = (nm - CIE_FIRST_NM) / DAYLIGHT_STEP, value[2];
+    int low = position < DAYLIGHT_COUNT - 2 ? (int)position : DAYLIGHT_COUNT - 2;
     for (int i = 0; i < 2; i++)
         value[i] = DAYLIGHT[low + i][0] + M1 * DAYLIGHT[low + i][1] + M2 * DAYLIGHT[low + i][2];
-    return value[0] + (place - low) * (value[1] - value[0]);
+    return value[0] + (position - low) * (value[1] - value[0]);
 }
 
 void cie_daylight_chromaticity(double kelvin, double out_xy[2])

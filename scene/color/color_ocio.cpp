@@ -42,7 +42,7 @@ const std::vector<const char *> KNOWN_REC709 = {"lin_rec709",
 /* Blender before 4.0, Filmic and the Nuke default: Rec. 709 there, but another config may mean other primaries. */
 const std::vector<const char *> LIKELY_REC709 = {"Linear"};
 
-/* Loads the config at path; OpenColorIO's own text is kept, after the place that named the file. */
+/* Loads the config at path; OpenColorIO's own text is kept, after the location that named the file. */
 OCIO::ConstConfigRcPtr config_from_file(const char *path, const char *named_by)
 {
     try {

@@ -50,7 +50,7 @@ class listening
     static void hear(const char *text);
 };
 
-/* Runs work and is the one place where an exception becomes a status. */
+/* Runs work and is the only function where an exception becomes a status. */
 template <typename Work>
 ag_status guarded(struct log_sink *log, char *message, size_t message_size, Work &&work) noexcept
 {

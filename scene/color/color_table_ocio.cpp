@@ -37,16 +37,16 @@ float of_bits(uint32_t bits)
 /* OpenColorIO's own logarithms and powers are that far from exact. */
 bool is_near(float v, float exact) { return std::fabs(v - exact) <= 2e-6f * std::fabs(exact) + 1e-7f; }
 
-/* The curve at many places; three go into a pixel. */
-std::vector<float> curve_at(const OCIO::ConstCPUProcessorRcPtr &cpu, const std::vector<float> &places)
+/* The curve at many arguments; three go into a pixel. */
+std::vector<float> curve_at(const OCIO::ConstCPUProcessorRcPtr &cpu, const std::vector<float> &arguments)
 {
-    const size_t pixels = (places.size() + 2) / 3;
-    std::vector<float> rgba(4 * pixels, 1.0f), values(places.size());
-    for (size_t i = 0; i < places.size(); i++)
-        rgba[4 * (i / 3) + i % 3] = places[i];
+    const size_t pixels = (arguments.size() + 2) / 3;
+    std::vector<float> rgba(4 * pixels, 1.0f), values(arguments.size());
+    for (size_t i = 0; i < arguments.size(); i++)
+        rgba[4 * (i / 3) + i % 3] = arguments[i];
     OCIO::PackedImageDesc description(rgba.data(), static_cast<long>(pixels), 1, 4);
     cpu->apply(description);
-    for (size_t i = 0; i < places.size(); i++)
+    for (size_t i = 0; i < arguments.size(); i++)
         values[i] = rgba[4 * (i / 3) + i % 3];
     return values;
 }
@@ -99,10 +99,10 @@ struct curve_table {
 
     explicit curve_table(const OCIO::ConstCPUProcessorRcPtr &cpu) : pieces(PIECES)
     {
-        std::vector<float> places;
+        std::vector<float> arguments;
         for (uint32_t i = 0; i <= 4 * PIECES; i++) /* the pieces' ends and quarters */
-            places.push_back(of_bits((FIRST << SHIFT) + (i << (SHIFT - 2))));
-        const std::vector<float> values = curve_at(cpu, places);
+            arguments.push_back(of_bits((FIRST << SHIFT) + (i << (SHIFT - 2))));
+        const std::vector<float> values = curve_at(cpu, arguments);
         for (size_t i = 0; i < PIECES; i++) {
             const float *v = &values[4 * i];
             piece p = {v[0], (v[4] - v[0]) / static_cast<float>(REST + 1)};
@@ -112,8 +112,8 @@ struct curve_table {
             bent_count += std::isnan(p.value);
             pieces[i] = p;
         }
-        small = straight(cpu, 1.0f, places[0]);
-        negative_piece = straight(cpu, -1.0f, places.back());
+        small = straight(cpu, 1.0f, arguments[0]);
+        negative_piece = straight(cpu, -1.0f, arguments.back());
         negative = !std::isnan(negative_piece.value) ? STRAIGHT : is_mirrored(cpu) ? MIRRORED : OTHER;
     }
 
@@ -121,27 +121,27 @@ struct curve_table {
     /* Of values from 0 to that size, of that sign, all on one line. */
     static piece straight(const OCIO::ConstCPUProcessorRcPtr &cpu, float sign, float largest)
     {
-        std::vector<float> places = {0.0f, sign * largest};
+        std::vector<float> arguments = {0.0f, sign * largest};
         for (int i = 1; i < 64; i++) {
-            places.push_back(sign * largest * static_cast<float>(i) / 64.0f);
-            places.push_back(sign * largest * std::exp2(-0.5f * static_cast<float>(i)));
+            arguments.push_back(sign * largest * static_cast<float>(i) / 64.0f);
+            arguments.push_back(sign * largest * std::exp2(-0.5f * static_cast<float>(i)));
         }
-        const std::vector<float> values = curve_at(cpu, places);
-        piece p = {values[0], (values[1] - values[0]) / places[1]};
-        for (size_t i = 0; i < places.size(); i++)
-            if (!is_near(p.value + p.slope * places[i], values[i]))
+        const std::vector<float> values = curve_at(cpu, arguments);
+        piece p = {values[0], (values[1] - values[0]) / arguments[1]};
+        for (size_t i = 0; i < arguments.size(); i++)
+            if (!is_near(p.value + p.slope * arguments[i], values[i]))
                 p.value = NAN;
         return p;
     }
 
     static bool is_mirrored(const OCIO::ConstCPUProcessorRcPtr &cpu)
     {
-        std::vector<float> places, mirrored;
+        std::vector<float> arguments, mirrored;
         for (int i = -80; i < 60; i++) {
-            places.push_back(std::exp2(0.25f * static_cast<float>(i)));
-            mirrored.push_back(-places.back());
+            arguments.push_back(std::exp2(0.25f * static_cast<float>(i)));
+            mirrored.push_back(-arguments.back());
         }
-        const std::vector<float> values = curve_at(cpu, places), others = curve_at(cpu, mirrored);
+        const std::vector<float> values = curve_at(cpu, arguments), others = curve_at(cpu, mirrored);
         for (size_t i = 0; i < values.size(); i++)
             if (!(values[i] == -others[i]))
                 return false;

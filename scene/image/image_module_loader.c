@@ -1,13 +1,14 @@
 /* image_module_loader.c: dlopen of the image module.
  * Flow: image_reader.c, image_file.c (renderer) -> [here] -> image_oiio.cpp.
  * Threads: any; one mutex, held while the module is being opened. */
-#define _GNU_SOURCE /* dladdr1, secure_getenv */
+#define _POSIX_C_SOURCE 200809L
 #include "image/image_module_loader.h"
+
+#include "image/module_folders.h"
 
 #include <dlfcn.h>
 #include <fenv.h>
 #include <limits.h>
-#include <link.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdbool.h>
@@ -16,7 +17,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { FOLDER_LIMIT = 4, MESSAGE_SIZE = 2048 };
+enum { MESSAGE_SIZE = 2048 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static const image_module *module;
@@ -91,42 +92,14 @@ const image_module *image_module_open_from(const char *const *folders, int folde
     return NULL;
 }
 
-/* The folder of the shared object, or of the program, that this code is part of. */
-static bool own_folder(char out_folder[PATH_MAX])
-{
-    Dl_info info;
-    struct link_map *map = NULL;
-    void *address;
-    const image_module *(*function)(char *, size_t) = image_module_get;
-    memcpy(&address, &function, sizeof address);
-    if (dladdr1(address, &info, (void **)&map, RTLD_DL_LINKMAP) == 0 || !map)
-        return false;
-    /* The program itself has an empty name there, and argv[0] would not do: it need not hold a path. */
-    if (!realpath(map->l_name[0] != '\0' ? map->l_name : "/proc/self/exe", out_folder))
-        return false;
-    char *slash = strrchr(out_folder, '/');
-    if (!slash)
-        return false;
-    *slash = '\0';
-    return true;
-}
-
 static const image_module *open_anywhere(char *message, size_t message_size)
 {
-    char own[PATH_MAX], beside[PATH_MAX + 32], in_lib[PATH_MAX + 32];
-    const char *folders[FOLDER_LIMIT];
-    int count = 0;
-    const char *environment = secure_getenv("AFTERGLOW_MODULE_DIR");
-    if (environment && environment[0] != '\0')
-        folders[count++] = environment;
-    if (own_folder(own)) {
-        snprintf(beside, sizeof beside, "%s/afterglow", own);
-        snprintf(in_lib, sizeof in_lib, "%s/../lib/afterglow", own);
-        folders[count++] = beside;
-        folders[count++] = in_lib;
-    }
-    folders[count++] = AG_MODULE_INSTALL_DIR;
-    return image_module_open_from(folders, count, message, message_size);
+    module_folders found;
+    const char *folders[MODULE_FOLDERS_MAX];
+    module_folders_find(&found);
+    for (int i = 0; i < found.count; i++)
+        folders[i] = found.paths[i];
+    return image_module_open_from(folders, found.count, message, message_size);
 }
 
 const image_module *image_module_get(char *message, size_t message_size)

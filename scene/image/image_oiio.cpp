@@ -36,7 +36,7 @@ const std::uint64_t values_per_byte = std::uint64_t(1) << 16;
 const int largest_tile_bits = 9; /* TEXTURE_TILE_BITS_MAX */
 const int least_tile_bits = 3;   /* reading smaller ones one by one costs more than their pixels are worth */
 
-/* Runs work and is the one place where an exception becomes a status. */
+/* Runs work and is the only function where an exception becomes a status. */
 template <typename Work>
 ag_status guarded(ag_status failure, char *message, size_t message_size, Work &&work) noexcept
 {

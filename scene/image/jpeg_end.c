@@ -7,10 +7,10 @@
 enum { START = 0xd8, SCAN = 0xda, END = 0xd9 };
 
 /* The byte that comes next. */
-typedef enum place { SEGMENT_BEGIN, SEGMENT_CODE, LENGTH_HIGH, LENGTH_LOW, IN_SCANS, AT_END } place;
+typedef enum jpeg_state { SEGMENT_BEGIN, SEGMENT_CODE, LENGTH_HIGH, LENGTH_LOW, IN_SCANS, AT_END } jpeg_state;
 
 typedef struct walk {
-    place at;
+    jpeg_state at;
     size_t to_skip; /* of a segment: small pictures within are stepped over */
     unsigned char before;
 } walk;

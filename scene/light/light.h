@@ -40,6 +40,7 @@ typedef struct light {
     float disc_one_minus_cos; /* distant: 1 - cos of half the angle under which it is seen; 0: it has no extent */
     float falloff_start, falloff_end; /* spot: 1 - cos of the angles inside of which it is full and outside of which
                                        * there is nothing; smoothstep in the cosine between */
+    bool dims_by_cosine;              /* spot: its intensity is multiplied by the cosine to its axis, too */
     uint32_t shape_index;             /* area: the shape that shines */
     bool two_sided;                   /* area */
     uint32_t radiance_texture;        /* area: multiplies radiance over the surface; SCENE_NO_TEXTURE: nowhere */

@@ -1,5 +1,6 @@
 /* spot_light.c: a point that shines into a cone, with a ramp at its rim.
- * Rests on: pbrt-v4's spot light (smoothstep in the cosine). Threads: read-only. */
+ * Rests on: pbrt-v4's spot light (smoothstep in the cosine); Blender's, whose Cycles multiplied that by the cosine
+ * itself before version 3.5, as was measured with 3.4. Threads: read-only. */
 #include "light/light_type.h"
 #include "math/rng.h"
 #include "math/sampling.h"
@@ -16,10 +17,9 @@ void light_set_cone(light *l, double full_angle, double dark_angle)
 /* 1 - cos of the angle between two unit directions, without cancellation. */
 static float one_minus_cos(vec3 a, vec3 b) { return 0.5f * vec3_distance_squared(a, b); }
 
-/* 1 inside falloff_start, 0 outside falloff_end, smoothstep in the cosine between, as pbrt-v4. */
-static float spot_falloff(const light *l, vec3 direction)
+/* 1 inside falloff_start, 0 outside falloff_end, smoothstep in the cosine between, as pbrt-v4. height: 1 - cos. */
+static float ramp_at(const light *l, float height)
 {
-    float height = one_minus_cos(l->direction, direction);
     if (height <= l->falloff_start)
         return 1.0f;
     if (height >= l->falloff_end)
@@ -28,16 +28,27 @@ static float spot_falloff(const light *l, vec3 direction)
     return x * x * (3.0f - 2.0f * x);
 }
 
-static rgb intensity(const light *l, vec3 direction) { return rgb_scale(l->intensity, spot_falloff(l, direction)); }
+static float dimming_at(const light *l, float height) { return l->dims_by_cosine ? fmaxf(1.0f - height, 0.0f) : 1.0f; }
 
-static rgb power(const scene *s, const light *l)
+static rgb intensity(const light *l, vec3 direction)
 {
-    (void)s;
-    return rgb_scale(l->intensity, AG_PI * (l->falloff_start + l->falloff_end)); /* half of the ramp */
+    float height = one_minus_cos(l->direction, direction);
+    return rgb_scale(l->intensity, ramp_at(l, height) * dimming_at(l, height));
 }
 
-/* A direction in the cone, uniform but thinned by the falloff, so that all photons are equal: on average at least half
- * are accepted, and what 64 trials refuse goes along the axis. */
+/* The integrals of ramp and dimming over the solid angle: half of the ramp's; a cone that dims ends at 90 degrees. */
+static rgb power(const scene *s, const light *l)
+{
+    float start = l->falloff_start, ramp = l->falloff_end - start;
+    (void)s;
+    if (!l->dims_by_cosine)
+        return rgb_scale(l->intensity, AG_PI * (start + l->falloff_end));
+    float full = start - 0.5f * start * start, edge = ramp * (0.5f * (1.0f - l->falloff_end) + 0.35f * ramp);
+    return rgb_scale(l->intensity, 2.0f * AG_PI * (full + edge));
+}
+
+/* A direction in the cone, uniform but thinned by the falloff, so that all photons are equal: on average at least a
+ * third are accepted, and what 64 trials refuse goes along the axis. */
 static vec3 sample_spot(const light *l, const emission_numbers *numbers, rng *random)
 {
     frame f = frame_from_z(l->direction);
@@ -46,7 +57,8 @@ static vec3 sample_spot(const light *l, const emission_numbers *numbers, rng *ra
     for (int trial = 0; trial < 64; trial++) {
         vec2 u = trial == 0 ? numbers->direction : rng_vec2(random);
         float x = ramp > 0.0f ? fminf((1.0f - u.x) * l->falloff_end / ramp, 1.0f) : 1.0f;
-        if (rng_float(random) < x * x * (3.0f - 2.0f * x)) {
+        float dimming = dimming_at(l, u.x * l->falloff_end);
+        if (rng_float(random) < x * x * (3.0f - 2.0f * x) * dimming) {
             local = sample_uniform_cone(u, l->falloff_end);
             break;
         }

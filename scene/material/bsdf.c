@@ -130,7 +130,8 @@ static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
     b->is_pane = pane_is_of(&b->parameters);
     b->lobe_count = 0;
     if (b->parameters.kind == MATERIAL_HAIR) {
-        b->fibre = hair_fibre_at(&b->parameters, hit->uv.y, frame_to_local(&b->shading, out));
+        float v = hit->is_mirrored ? 1.0f - hit->uv.y : hit->uv.y;
+        b->fibre = hair_fibre_at(&b->parameters, v, frame_to_local(&b->shading, out));
         b->fibre.faces_rays = hit->faces_rays;
     }
     add_lobes(b);

@@ -191,7 +191,7 @@ void hair_evaluate(const hair_fibre *h, bool is_flux, vec3 direction, rgb *out_v
         density += values[k] * carried->mean[k];
         all += carried->mean[k];
     }
-    if (is_flux) { /* all places across are as likely, so that turning the same sense about the axis serves both ways */
+    if (is_flux) { /* offsets across are all as likely: turning the same sense about the axis serves both ways */
         of_eye = lobes_of(h, i);
         carried = &of_eye;
         lobe_values(h, carried, i, o, turn, values);

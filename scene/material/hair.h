@@ -5,7 +5,7 @@
  * 2023, 9.9. Flow: material + surface hit -> [here] -> bsdf_lobe. Threads: pure functions.
  *
  * Light that meets the fibre is reflected (R), passes it (TT), is reflected once within (TRT), or more often. The
- * lobes depend on the place across the fibre, on its roughness, and on the angles to its axis, x of the shading frame;
+ * lobes depend on the offset across the fibre, on its roughness, and on the angles to its axis, x of the shading frame;
  * of the normal nothing is read, so that curves may be flat and turn to each ray. */
 #ifndef AFTERGLOW_HAIR_H
 #define AFTERGLOW_HAIR_H
@@ -20,11 +20,11 @@ typedef struct hair_lobes {
     double turn[HAIR_TILTED];
 } hair_lobes;
 
-/* A place of a fibre, and the direction that light is scattered from or to. */
+/* A point of a fibre, and the direction that light is scattered from or to. */
 typedef struct hair_fibre {
-    double ior;                                     /* of the fibre in air */
-    double sigma_a[3];                              /* absorbed per radius of the path within */
-    double offset;                                  /* place across: sine of the normal's angle to the ray, [-1, 1] */
+    double ior;        /* of the fibre in air */
+    double sigma_a[3]; /* absorbed per radius of the path within */
+    double offset;     /* across the fibre: sine of the normal's angle to the ray, [-1, 1] */
     double precision[HAIR_LOBES], norm[HAIR_LOBES]; /* 1 / variance of the inclination, and its density's factor */
     double width, width_norm; /* scale of the logistic distribution of the azimuth, and the factor */
     double sin_tilt[HAIR_TILTED], cos_tilt[HAIR_TILTED]; /* of once, twice and four times the scales' angle */

@@ -61,7 +61,7 @@ typedef struct material {
     rgb dielectric_f0;  /* of facets at normal incidence; at grazing they reflect `specular` */
     float base_through; /* of diffuse light from outside, what gets to the diffuse base */
 
-    /* Values that vary over the surface, in place of those above, or of MATERIAL_PRINCIPLED: which they are multiplied
+    /* Values that vary over the surface, instead of those above, or of MATERIAL_PRINCIPLED: which they are multiplied
      * by. Each is SCENE_NO_TEXTURE where there is none; read only where is_textured. */
     bool is_textured;      /* set by scene_add_material */
     bool remaps_roughness; /* alpha is the square root of the texture's value */

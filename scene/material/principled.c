@@ -54,12 +54,12 @@ float principled_base_transmittance(const material *m, float cosine)
 /* The mean of t over the hemisphere, by Gauss's rule of 6 points. */
 static float mean_base_transmittance(const material *m)
 {
-    static const float PLACES[3] = {0.2386191861f, 0.6612093865f, 0.9324695142f};
+    static const float NODES[3] = {0.2386191861f, 0.6612093865f, 0.9324695142f};
     static const float WEIGHTS[3] = {0.4679139346f, 0.3607615730f, 0.1713244924f};
     float sum = 0.0f;
     for (int i = 0; i < 3; i++)
         for (int side = -1; side <= 1; side += 2) {
-            float cosine = 0.5f + 0.5f * (float)side * PLACES[i];
+            float cosine = 0.5f + 0.5f * (float)side * NODES[i];
             sum += WEIGHTS[i] * cosine * principled_base_transmittance(m, cosine);
         }
     return sum; /* twice the integral of t cos over cos */

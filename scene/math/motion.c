@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Straight steps may stray so far, as a part of the linear map's size and of the way travelled; and as far as floats at
- * that place lie apart, which is some thousandth of that tolerance. */
+ * that point lie apart, which is some thousandth of that tolerance. */
 static const double STEP_TOLERANCE = 1e-4, WAY_OF_ROUNDING = 1e-3;
 
 /* Inverse transpose; false where there is none. */

@@ -315,7 +315,7 @@ ag_status bvh_create(const scene *s, run_context *run, const char *isa, bvh **ou
         b->attached[i] = (attached){s, &s->shapes[i]};
     snprintf(b->isa, sizeof b->isa, "%s", isa ? isa : "avx2");
 
-    /* Embree caps its threads at the affinity mask; more joiners than that would wait for a place. */
+    /* Embree caps its threads at the affinity mask; more joiners than that would wait for a free thread. */
     unsigned joiners = thread_pool_worker_count(run->pool), available = cpu_count_available();
     if (joiners > available)
         joiners = available;

@@ -2,8 +2,8 @@
 #include "scene_file.h"
 
 #include "gltf/gltf_reader.h"
+#include "model/import_file.h"
 #include "model/importer.h"
-#include "model/mesh_import_assimp.h"
 #include "model/obj_file.h"
 #include "model/ply_file.h"
 #include "pbrt/pbrt_parser.h"
@@ -63,41 +63,58 @@ static bool ends_with(const char *path, const char *ending)
     return length >= ending_length && strcasecmp(path + length - ending_length, ending) == 0;
 }
 
-static ag_status load(run_context *run, const char *path, scene *out_scene)
+/* Text whose name no reader knows may be of another renderer. */
+static ag_status load_unknown(run_context *run, const char *path, scene *out_scene)
 {
-    for (size_t k = 0; k < sizeof READERS / sizeof *READERS; k++)
-        if (ends_with(path, READERS[k].ending))
-            return READERS[k].load(run, path, out_scene);
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    bool is_assimps = dot && dot[1] != '\0' && assimp_reads_extension(dot);
-    if (is_assimps)
-        return assimp_load_file(run, path, out_scene);
     ag_status status = pbrt_parse_file(run, path, out_scene);
-    if (status == AG_ERROR_SCENE && dot && strcasecmp(dot, ".gz") != 0) /* may be of another renderer */
+    if (status == AG_ERROR_SCENE && dot && strcasecmp(dot, ".gz") != 0)
         log_message(run->log, AG_LOG_WARNING, "no reader knows files that end in %s: this one was read as pbrt text",
                     dot);
     return status;
 }
 
-static bool is_pbrts(const char *path)
+/* out_load: the reader of files of that name. */
+static ag_status find_reader(const run_context *run, const char *path, load_function **out_load)
 {
+    *out_load = load_unknown;
+    for (size_t k = 0; k < sizeof READERS / sizeof *READERS; k++)
+        if (ends_with(path, READERS[k].ending)) {
+            *out_load = READERS[k].load;
+            return AG_OK;
+        }
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    for (size_t k = 2; k < sizeof READERS / sizeof *READERS; k++)
-        if (ends_with(path, READERS[k].ending))
-            return false;
-    return ends_with(path, ".pbrt") || ends_with(path, ".pbrt.gz") ||
-           !(dot && dot[1] != '\0' && assimp_reads_extension(dot));
+    bool is_models = false;
+    if (dot && dot[1] != '\0')
+        AG_TRY(import_reads_extension(run, dot, &is_models));
+    if (is_models)
+        *out_load = import_file_load;
+    return AG_OK;
 }
 
-ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
+/* Does what is asked for beyond what the file says. */
+static ag_status finish(run_context *run, const char *path, bool is_pbrt, scene *out_scene)
 {
-    AG_TRY(load(run, path, out_scene));
     if (out_scene->request)
-        AG_TRY(scene_overrides_apply(run, path, is_pbrts(path), out_scene));
+        AG_TRY(scene_overrides_apply(run, path, is_pbrt, out_scene));
     const definition *unused = definitions_unused(out_scene->definitions);
     if (!unused)
         return AG_OK;
     log_message(run->log, AG_LOG_ERROR, "%s: error: the scene has no $%s, which -D %s=%s is for", path, unused->name,
                 unused->name, unused->value);
     return AG_ERROR_ARGUMENT;
+}
+
+ag_status scene_file_load(run_context *run, const char *path, scene *out_scene)
+{
+    load_function *load;
+    AG_TRY(find_reader(run, path, &load));
+    AG_TRY(load(run, path, out_scene));
+    return finish(run, path, load == pbrt_parse_file || load == load_unknown, out_scene);
+}
+
+ag_status scene_file_load_text(run_context *run, const char *name, const char *text, size_t size, scene *out_scene)
+{
+    AG_TRY(pbrt_parse_text(run, name, text, size, out_scene));
+    return finish(run, name, true, out_scene);
 }

@@ -53,7 +53,7 @@ static bool is_left_handed(const scene *s, bool is_pbrt)
     return is_pbrt && !(s->has_camera && transform_swaps_handedness(&s->camera.world_from_camera));
 }
 
-/* The camera that is asked for in the place of the file's. axis: that points up. */
+/* The camera that is asked for instead of the file's. axis: that points up. */
 static ag_status set_camera(run_context *run, bool is_pbrt, vec3 axis, scene *s)
 {
     const scene_request *asked = s->request;

@@ -1,4 +1,4 @@
-/* scene_overrides.h: what scene_request puts in the place of what a file says, or beside it: camera, sun, sky.
+/* scene_overrides.h: what scene_request puts instead of what a file says, or beside it: camera, sun, sky.
  *
  * Suns and skies have compass directions. Up is y in models and glTF; in pbrt's text it is the axis nearest to the
  * up of the file's own camera; scene_request.up says otherwise. North is, of the axes across up: where y is up, -z (in

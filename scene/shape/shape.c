@@ -311,7 +311,7 @@ bool shape_bare_point_at(const shape *s, uint32_t primitive_index, float u, floa
 static void surface_at(const shape *s, uint32_t primitive_index, float u, float v, vec3 position, vec3 direction,
                        bool with_uv, surface_hit *out_hit)
 {
-    out_hit->is_strand = out_hit->faces_rays = false;
+    out_hit->is_strand = out_hit->faces_rays = out_hit->is_mirrored = false;
     if (s->kind == SHAPE_MESH)
         mesh_surface_at(s, primitive_index, u, v, out_hit);
     else if (s->kind == SHAPE_CURVES)

@@ -6,7 +6,7 @@
 #define AFTERGLOW_DECIMAL_H
 
 /* Reads [+-]digits[.digits][e[+-]digits] at text, with at least one digit before or behind the point; text ends with
- * a NUL. Returns the place behind the number and writes its value, +-INFINITY where it is too large for a double;
+ * a NUL. Returns the address behind the number and writes its value, +-INFINITY where it is too large for a double;
  * returns NULL where there is no number. */
 const char *decimal_parse(const char *text, double *out_value);
 

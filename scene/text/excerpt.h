@@ -8,8 +8,8 @@
 #include <stddef.h>
 
 /* Writes the line at where with a mark below width bytes from its column on, "\n    line\n    ^~~", or "" where the
- * text has no such place. Long lines are cut around the mark; a byte order mark at the text's beginning counts for no
- * column. */
+ * text has no such position. Long lines are cut around the mark; a byte order mark at the text's beginning counts for
+ * no column. */
 void text_excerpt(const char *text, size_t text_size, file_location where, size_t width, char *out_excerpt,
                   size_t out_size);
 

@@ -1,4 +1,4 @@
-/* text_lines.h: a text file line by line, each as words, with the places of both for messages.
+/* text_lines.h: a text file line by line, each as words, with the locations of both for messages.
  * A backslash at the end of a line goes on with the next one; # begins a comment.
  * Flow: text_file -> [here] -> obj_file, mtl_file. Threads: one at a time. */
 #ifndef AFTERGLOW_TEXT_LINES_H

@@ -150,9 +150,9 @@ static rgb marble_color(float t)
     return rgb_scale(sum, 1.5f);
 }
 
-static rgb marble(const texture *t, vec3 place)
+static rgb marble(const texture *t, vec3 point)
 {
-    vec3 p = vec3_scale(place, t->scale);
+    vec3 p = vec3_scale(point, t->scale);
     double turns =
         ((double)p.y + (double)(t->variation * texture_fbm(p, t->roughness, t->octaves))) * 0.15915494309189534;
     float sine, cosine;

@@ -52,7 +52,7 @@ typedef struct texture {
     texture_filter filter;
     bool is_data;                             /* image: three numbers, not a colour */
     bool invert;                              /* image: 1 - value, after scale */
-    float scale;                              /* image: of values; marble: of the place */
+    float scale;                              /* image: of values; marble: of the point */
     int octaves;                              /* fbm, wrinkled, marble; [0, TEXTURE_MAX_OCTAVES] */
     float roughness;                          /* the same: of an octave over the one before */
     float variation;                          /* marble */

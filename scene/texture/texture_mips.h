@@ -26,7 +26,7 @@ typedef struct texture_level {
     const float *table; /* of bytes; NULL: they are in 1/255 */
     uint16_t *packed;   /* in 1/65535 */
     float *values;
-    texture_tiles *tiles; /* in the place of these; owned by whoever puts them there; NULL: they are in memory */
+    texture_tiles *tiles; /* instead of these; owned by whoever puts them there; NULL: they are in memory */
 } texture_level;
 
 typedef struct texture_mips {

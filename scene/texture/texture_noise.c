@@ -20,7 +20,7 @@ static const uint8_t PERMUTATION[256] = {
 
 static const float LACUNARITY = 1.99f, MEAN_ABSOLUTE_NOISE = 0.2f;
 
-/* A coordinate's cell, of 256, and the place within it. */
+/* A coordinate's cell, of 256, and the position within it. */
 static int find_cell(float x, float *out_within)
 {
     float in_period = isfinite(x) ? x - 256.0f * floorf(x * (1.0f / 256.0f)) : 0.0f; /* no rounding */

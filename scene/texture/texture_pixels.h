@@ -1,4 +1,4 @@
-/* texture_pixels.h: which pixels of a picture have a part in its value at a place, and how large a part.
+/* texture_pixels.h: which pixels of a picture have a part in its value at a point, and how large a part.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 10.4 (image texture).
  * Flow: texture_image, texture_mips -> [here]. Threads: pure functions. */
 #ifndef AFTERGLOW_TEXTURE_PIXELS_H

@@ -81,17 +81,17 @@ static ag_status bring_in(const texture_tiles *t, shard *of, size_t number)
     return AG_OK;
 }
 
-typedef struct tile_place {
+typedef struct tile_pixel {
     size_t number; /* of the tile */
     size_t pixel;  /* within it */
-} tile_place;
+} tile_pixel;
 
-static tile_place place_of(const texture_tiles *t, size_t pixel)
+static tile_pixel tile_pixel_of(const texture_tiles *t, size_t pixel)
 {
     const size_t x = pixel % t->width, y = pixel / t->width;
     const size_t in_x = x & (((size_t)1 << t->tile_width_bits) - 1),
                  in_y = y & (((size_t)1 << t->tile_height_bits) - 1);
-    return (tile_place){(y >> t->tile_height_bits) * t->tiles_across + (x >> t->tile_width_bits),
+    return (tile_pixel){(y >> t->tile_height_bits) * t->tiles_across + (x >> t->tile_width_bits),
                         (in_y << t->tile_width_bits) + in_x};
 }
 
@@ -106,8 +106,8 @@ void texture_tiles_read(const texture_tiles *t, const pixel_blend *blend, unsign
     texture_store *s = t->store;
     const size_t pixel_bytes = pixel_bytes_of(t);
     for (int k = 0; k < blend->count;) {
-        tile_place place = place_of(t, blend->pixel[k]);
-        const size_t number = place.number;
+        tile_pixel at = tile_pixel_of(t, blend->pixel[k]);
+        const size_t number = at.number;
         texture_tile *tile = &t->entries[number];
         shard *of = &s->shards[((t->first_number + number) * UINT64_C(0x9e3779b97f4a7c15)) >> (64 - SHARD_BITS)];
         pthread_mutex_lock(&of->lock);
@@ -115,12 +115,12 @@ void texture_tiles_read(const texture_tiles *t, const pixel_blend *blend, unsign
         do { /* what follows in the same tile at once */
             unsigned char *out = out_pixels + (size_t)k * pixel_bytes;
             if (status == AG_OK)
-                memcpy(out, tile->pixels + place.pixel * pixel_bytes, pixel_bytes);
+                memcpy(out, tile->pixels + at.pixel * pixel_bytes, pixel_bytes);
             else
                 memset(out, 0, pixel_bytes);
             if (++k < blend->count)
-                place = place_of(t, blend->pixel[k]);
-        } while (k < blend->count && place.number == number);
+                at = tile_pixel_of(t, blend->pixel[k]);
+        } while (k < blend->count && at.number == number);
         tile->was_asked = true;
         pthread_mutex_unlock(&of->lock);
         if (status != AG_OK)

@@ -22,7 +22,7 @@ typedef struct texture_udim {
     uint32_t slot_count;   /* at most TEXTURE_UDIM_SLOTS */
     texture_image **tiles; /* [slot_count], borrowed from the scene; slot u + 10 v; NULL: there is no such file */
     bool has_mips;         /* all of its tiles have coarser levels */
-    /* Which slots without a file were asked for, and whether a place beyond all slots was. Relaxed: set by whoever
+    /* Which slots without a file were asked for, and whether a coordinate beyond all slots was. Relaxed: set by whoever
      * looks up, read behind a barrier of the pass. */
     atomic_u32 missed[TEXTURE_UDIM_WORDS], is_outside;
 } texture_udim;
@@ -40,9 +40,9 @@ char *texture_udim_file(const char *path, uint32_t slot);
 
 void texture_udim_destroy(texture_udim *u); /* NULL is fine */
 
-/* From a picture in tiles and a place on it (t down from the top of tile 1001) to the tile there and the place on that,
- * which ends at its edges. Within 1e-4 of an edge the neighbour stands in for a tile that is not there, for corners of
- * meshes lie on edges. false: there is none; it is noted. */
+/* From a picture in tiles and coordinates on it (t down from the top of tile 1001) to the tile there and the
+ * coordinates on that, which ends at its edges. Within 1e-4 of an edge the neighbour stands in for a tile that is not
+ * there, for corners of meshes lie on edges. false: there is none; it is noted. */
 bool texture_udim_enter(const texture_image **in_out_picture, texture_wraps *out_wraps, float *in_out_s,
                         float *in_out_t);
 

@@ -132,7 +132,7 @@ static void read_dictionary(byte_lists *words, const char *path)
 static uint8_t input[INPUT_MAX];
 static size_t input_size;
 
-/* Puts size bytes in the place of removed ones; what does not fit is cut off. */
+/* Puts size bytes instead of removed ones; what does not fit is cut off. */
 static void replace(size_t at, size_t removed, const void *data, size_t size)
 {
     if (at > input_size)
@@ -151,7 +151,7 @@ static void replace(size_t at, size_t removed, const void *data, size_t size)
 
 static bool is_blank(uint8_t c) { return c <= ' ' || c == '[' || c == ']' || c == '"' || c == ',' || c == ':'; }
 
-/* A word of the text, at or behind some place. */
+/* A word of the text, at or behind some position. */
 static void find_word(size_t *out_at, size_t *out_size)
 {
     size_t at = below(input_size);
@@ -204,7 +204,7 @@ static void change_once(const byte_lists *seeds, const byte_lists *words)
         }
         break;
     case 6:
-    case 7: { /* a number in the place of a word that begins as one */
+    case 7: { /* a number instead of a word that begins as one */
         const char *number = NUMBERS[below(sizeof NUMBERS / sizeof *NUMBERS)];
         for (int i = 0; i < 8; i++) {
             find_word(&at, &size);
@@ -221,7 +221,7 @@ static void change_once(const byte_lists *seeds, const byte_lists *words)
         break;
     }
     case 9: /* cut short */ input_size = below(2) ? at : input_size - below(input_size < 8 ? input_size : 8); break;
-    case 10: /* a word in another's place */
+    case 10: /* a word in another's position */
         find_word(&at, &size);
         if (size > sizeof copy)
             size = sizeof copy;

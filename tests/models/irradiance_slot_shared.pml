@@ -1,11 +1,11 @@
 /* irradiance_slot_shared.pml: irradiance_slot.pml's protocol between processes that share a map's file, and die or are
- * stopped at any moment. Models photonmap/irradiance_slot.h (try_claim, take_over, publish), claim_owners.c (places,
+ * stopped at any moment. Models photonmap/irradiance_slot.h (try_claim, take_over, publish), claim_owners.c (entries,
  * generations, the lock that the kernel drops) and irradiance_cache.c (get, await).
  * Run by test_irradiance_slot_model.sh. The BROKEN_... variants must be caught; they show that the properties can fail.
  *
- * Processes of one thread each ask for slots. One that dies is gone; another may then begin in its place, with a new
- * generation: the place's lock is free. STOPS: one may be stopped instead of dying; others lose patience with it after
- * a while, take its claim over, and later it goes on. Two processes, and one in a dead one's place, take a second; set
+ * Processes of one thread each ask for slots. One that dies is gone; another may then begin in its entry, with a new
+ * generation: the entry's lock is free. STOPS: one may be stopped instead of dying; others lose patience with it after
+ * a while, take its claim over, and later it goes on. Two processes, and one in a dead one's entry, take a second; set
  * FIRST to 3, SLOTS and REQUESTS to 2 for a minute's search. */
 
 #ifndef FIRST
@@ -17,29 +17,29 @@
 #define ALL      FIRST
 #define DEATHS   0
 #else
-#define ALL      (FIRST + 1) /* one more, in a place that is free again */
+#define ALL      (FIRST + 1) /* one more, in an entry that is free again */
 #define DEATHS   2
 #endif
-#define PLACES   3
+#define ENTRIES   3
 
 #define EMPTY    0
-/* A claim: place and generation; READY: the number of the process that computed it. In the program all would compute
+/* A claim: entry and generation; READY: the number of the process that computed it. In the program all would compute
  * the same bits, here a second value would be seen to differ. */
 #define CLAIMED  10
 #define READY    100
 #ifdef BROKEN_GENERATION
-#define claim_of(place, generation) (CLAIMED + 8 * place)
+#define claim_of(entry, generation) (CLAIMED + 8 * entry)
 #else
-#define claim_of(place, generation) (CLAIMED + 8 * place + generation)
+#define claim_of(entry, generation) (CLAIMED + 8 * entry + generation)
 #endif
 #define is_claimed(word)    (word >= CLAIMED && word < READY)
 #define is_ready(word)      (word >= READY)
-#define place_of(word)      ((word - CLAIMED) / 8)
+#define entry_of(word)      ((word - CLAIMED) / 8)
 #define generation_of(word) ((word - CLAIMED) % 8)
 
 byte slot[SLOTS];          /* in the file */
-byte generation[PLACES];   /* in the file */
-bool locked[PLACES];       /* the kernel's: true while the process in the place lives */
+byte generation[ENTRIES];   /* in the file */
+bool locked[ENTRIES];       /* the kernel's: true while the process in the entry lives */
 
 /* What only the model sees. */
 byte begun = 0, ended = 0, died = 0;
@@ -57,16 +57,16 @@ inline ask_alive(word, alive)
 #ifdef BROKEN_LOCK
     alive = true /* the dead are never found */
 #elif defined(BROKEN_GENERATION)
-    alive = locked[place_of(word)]
+    alive = locked[entry_of(word)]
 #else
     atomic {
         if
-        :: generation[place_of(word)] != generation_of(word) -> alive = false
+        :: generation[entry_of(word)] != generation_of(word) -> alive = false
         :: else -> alive = true
         fi
     };
     if
-    :: alive -> alive = locked[place_of(word)]
+    :: alive -> alive = locked[entry_of(word)]
     :: else -> skip
     fi
 #endif
@@ -91,7 +91,7 @@ inline may_die(holds, index)
             :: holds -> holders[index]--; orphaned[index]++
             :: else -> skip
             fi;
-            locked[place] = false;
+            locked[entry] = false;
             goto dead
         }
     :: true
@@ -101,19 +101,19 @@ inline may_die(holds, index)
 
 proctype process(byte me)
 {
-    byte i = 0, index = 0, word = EMPTY, place = 0, found = EMPTY, mine = EMPTY;
+    byte i = 0, index = 0, word = EMPTY, entry = 0, found = EMPTY, mine = EMPTY;
     bool alive, takes;
 
-    /* claim_owners_join: a place whose lock is free; then its generation */
+    /* claim_owners_join: an entry whose lock is free; then its generation */
     atomic {
         if
-        :: !locked[0] -> place = 0
-        :: locked[0] && !locked[1] -> place = 1
-        :: locked[0] && locked[1] && !locked[2] -> place = 2
+        :: !locked[0] -> entry = 0
+        :: locked[0] && !locked[1] -> entry = 1
+        :: locked[0] && locked[1] && !locked[2] -> entry = 2
         fi;
-        locked[place] = true
+        locked[entry] = true
     };
-    atomic { generation[place]++; mine = claim_of(place, generation[place]) };
+    atomic { generation[entry]++; mine = claim_of(entry, generation[entry]) };
 
     do
     :: i == REQUESTS -> break
@@ -207,9 +207,9 @@ proctype process(byte me)
         may_die(false, index);
         atomic { i++; index = 0; word = EMPTY }
     od;
-    locked[place] = false; /* the file is closed */
+    locked[entry] = false; /* the file is closed */
 dead:
-    atomic { ended++; mine = EMPTY; place = 0; i = 0; index = 0; word = EMPTY }
+    atomic { ended++; mine = EMPTY; entry = 0; i = 0; index = 0; word = EMPTY }
 }
 
 #ifdef STOPS
@@ -236,7 +236,7 @@ init
 #endif
     };
 #ifndef STOPS
-    atomic { died + ended > 0 -> run process(FIRST) } /* a place is free again */
+    atomic { died + ended > 0 -> run process(FIRST) } /* an entry is free again */
 #endif
 }
 

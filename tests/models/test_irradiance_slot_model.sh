@@ -67,7 +67,7 @@ check "processes that are stopped: all end" holds "$liveness" "-a -f -N all_end"
 check "processes that are stopped: what is ready stays ready" holds "" "-a -N ready_is_final" -DSTOPS
 
 # shellcheck disable=SC2086
-check "a place without generations: safety" fails "$safety" "" -DBROKEN_GENERATION $three
+check "an entry without generations: safety" fails "$safety" "" -DBROKEN_GENERATION $three
 check "a claim taken over without comparing: safety" fails "$safety" "" -DBROKEN_TAKE_OVER
 check "a value published without comparing: safety" fails "$safety" "" -DBROKEN_PUBLISH -DSTOPS
 check "the dead are not found: liveness" fails "$liveness" "-a -f -N all_end" -DBROKEN_LOCK

@@ -108,19 +108,19 @@ static void test_rooms_are_cumulative(void **state)
     for (int number = 1; number <= ROOM_COUNT; ++number) {
         write_room(number, spheres, 64, text);
         assert_non_null(strstr(text, "\"integer finalgathersamples\" [ 64 ]"));
-        const char *place = text;
+        const char *at = text;
         for (int i = 0; i < number; ++i) {
-            place = strstr(place, "Translate ");
-            assert_non_null(place);
+            at = strstr(at, "Translate ");
+            assert_non_null(at);
             double center[3], radius;
-            assert_int_equal(sscanf(place, "Translate %lf %lf %lf Shape \"sphere\" \"float radius\" [ %lf ]",
-                                    &center[0], &center[1], &center[2], &radius),
+            assert_int_equal(sscanf(at, "Translate %lf %lf %lf Shape \"sphere\" \"float radius\" [ %lf ]", &center[0],
+                                    &center[1], &center[2], &radius),
                              4);
             assert_true(distance(center, spheres[i].center) < 1e-9);
             assert_true(fabs(radius - spheres[i].radius) < 1e-9);
-            ++place;
+            ++at;
         }
-        assert_null(strstr(place, "Translate "));
+        assert_null(strstr(at, "Translate "));
     }
 }
 
@@ -133,9 +133,9 @@ static void test_quads_face_inward(void **state)
     static char text[FILE_SIZE_MAX];
     write_room(1, spheres, 1, text);
     int quad_count = 0;
-    for (const char *place = strstr(text, "point3 P"); place != NULL; place = strstr(place + 1, "point3 P")) {
+    for (const char *at = strstr(text, "point3 P"); at != NULL; at = strstr(at + 1, "point3 P")) {
         double p[3][3];
-        assert_int_equal(sscanf(place, "point3 P\" [ %lf %lf %lf %lf %lf %lf %lf %lf %lf", &p[0][0], &p[0][1], &p[0][2],
+        assert_int_equal(sscanf(at, "point3 P\" [ %lf %lf %lf %lf %lf %lf %lf %lf %lf", &p[0][0], &p[0][1], &p[0][2],
                                 &p[1][0], &p[1][1], &p[1][2], &p[2][0], &p[2][1], &p[2][2]),
                          9);
         double towards_middle = 0.0;

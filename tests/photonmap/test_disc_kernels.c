@@ -148,11 +148,11 @@ static void leaves_of_subtrees_are_found(void **state)
     assert_true(tree.depth > PHOTON_SUBTREE_LEVELS);
     rng random = test_random(4);
     uint32_t base = (1u << (tree.depth - PHOTON_SUBTREE_LEVELS)) - 1, found_sum = 0;
-    for (uint32_t place = 0; place < 60 / FEWER; place++) {
+    for (uint32_t trial = 0; trial < 60 / FEWER; trial++) {
         vec3 at = random_in_box(&random, (vec3){-1.0f, -1.0f, 0.0f}, (vec3){1.0f, 1.0f, 1.5f});
         photon_query q;
         photon_query_init(&q, &tree, at, (vec3){0.0f, 0.0f, 1.0f}, 0.5f);
-        float most = place % 7 == 0 ? INFINITY : rng_float(&random);
+        float most = trial % 7 == 0 ? INFINITY : rng_float(&random);
         for (uint32_t i = 0; i <= base; i++) {
             uint32_t leaves[2][PHOTON_SUBTREE_LEAVES];
             photon_subtree subtree = {photon_lanes_fill(0.0f), base + i};

@@ -122,9 +122,9 @@ static void many_are_warped_as_each_alone(void **state)
         float u[2][INCIDENT_WARPS_MAX], many[2][INCIDENT_WARPS_MAX], weights[INCIDENT_WARPS_MAX];
         uint32_t count = 1 + round % INCIDENT_WARPS_MAX;
         for (uint32_t i = 0; i < INCIDENT_WARPS_MAX; i++) {
-            vec2 place = rng_vec2(&random);
-            u[0][i] = i % 16 == 3 ? 0x1.fffffep-1f : i % 16 == 4 ? 0.0f : place.x;
-            u[1][i] = i % 16 == 5 ? 0x1.fffffep-1f : i % 16 == 4 ? 0.0f : place.y;
+            vec2 point = rng_vec2(&random);
+            u[0][i] = i % 16 == 3 ? 0x1.fffffep-1f : i % 16 == 4 ? 0.0f : point.x;
+            u[1][i] = i % 16 == 5 ? 0x1.fffffep-1f : i % 16 == 4 ? 0.0f : point.y;
         }
         memcpy(many, u, sizeof u);
         incident_guide_warp(&g, count, many, weights);

@@ -273,7 +273,7 @@ static bool judge(test_run *r, const scene *s, const served_case *c, double phot
     bool is_right = fabs(mean - 1.0) <= 0.005 + 3.0 * sigma && largest <= bound;
     print_message("%s %s, %g photons a disc, %s: mean %.4f +- %.4f, largest %.3g of at most %.3g, %.0f %% without\n",
                   is_right ? "right:" : "WRONG:", c->name, photons_a_disc,
-                  mode == IRRADIANCE_UNCACHED ? "at the place" : "on demand", mean, sigma, largest, bound,
+                  mode == IRRADIANCE_UNCACHED ? "at the point" : "on demand", mean, sigma, largest, bound,
                   100.0 * refused / fields);
     return is_right;
 }

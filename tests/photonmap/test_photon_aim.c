@@ -48,7 +48,7 @@ static scene *scene_of(test_run *r, const char *shapes, const char *lights)
 static scene *room_scene(test_run *r, const char *lights) { return scene_of(r, ROOM, lights); }
 
 /* On the floor and the walls, from inside. */
-static void add_inside(asked_place points[POINTS])
+static void add_inside(query_point points[POINTS])
 {
     rng random = test_random(6);
     for (int i = 0; i < POINTS; i++) {
@@ -61,28 +61,28 @@ static void add_inside(asked_place points[POINTS])
         case 3: p.y = -1.0f, n = (vec3){0.0f, 1.0f, 0.0f}; break;
         default: p.y = 1.0f, n = (vec3){0.0f, -1.0f, 0.0f}; break;
         }
-        points[i] = (asked_place){p, n};
+        points[i] = (query_point){p, n};
     }
 }
 
-static place_importance ask_inside(void)
+static importance_map ask_inside(void)
 {
-    asked_place *points = malloc(POINTS * sizeof *points);
-    place_importance importance;
+    query_point *points = malloc(POINTS * sizeof *points);
+    importance_map importance;
     assert_non_null(points);
     add_inside(points);
-    assert_int_equal(place_importance_create(points, POINTS, &importance), AG_OK);
+    assert_int_equal(importance_map_create(points, POINTS, &importance), AG_OK);
     free(points);
     return importance;
 }
 
 /* Where about half of the light goes on to the inside of SIDE_ROOM, and a fortieth by its window: inside, and where
  * rays that leave by the window meet the ground. */
-static place_importance pass_to_inside(void)
+static importance_map pass_to_inside(void)
 {
     enum { OUTSIDE = POINTS / 20, WHOLE = 2 * POINTS };
-    asked_place *points = malloc((POINTS + OUTSIDE) * sizeof *points);
-    place_importance importance;
+    query_point *points = malloc((POINTS + OUTSIDE) * sizeof *points);
+    importance_map importance;
     uint32_t count = POINTS;
     assert_non_null(points);
     add_inside(points);
@@ -93,10 +93,10 @@ static place_importance pass_to_inside(void)
         vec3 way = vec3_sub(by, from);
         vec3 at = vec3_add(from, vec3_scale(way, from.z / fmaxf(-way.z, 1e-6f)));
         if (at.x < 8.0f && fabsf(at.y) < 8.0f)
-            points[count++] = (asked_place){{at.x, at.y, -0.01f}, {0.0f, 0.0f, 1.0f}};
+            points[count++] = (query_point){{at.x, at.y, -0.01f}, {0.0f, 0.0f, 1.0f}};
     }
     vec3 low = {-12.0f, -12.0f, -12.0f}, high = {12.0f, 12.0f, 12.0f};
-    assert_int_equal(place_importance_create_smooth(points, count, WHOLE, low, high, &importance), AG_OK);
+    assert_int_equal(importance_map_create_smooth(points, count, WHOLE, low, high, &importance), AG_OK);
     free(points);
     return importance;
 }
@@ -109,7 +109,7 @@ static bool is_inside(const photon *p)
            vec3_dot(to_middle, direction_decode(p->normal)) > 0.0f;
 }
 
-static photon_set trace(test_run *r, const scene *s, const place_importance *asked, const place_importance *onward,
+static photon_set trace(test_run *r, const scene *s, const importance_map *asked, const importance_map *onward,
                         uint64_t seed)
 {
     photon_tracing_settings settings = {
@@ -138,7 +138,7 @@ typedef struct result {
     double direct, direct_error, all, all_error;
 } result;
 
-static result trace_seeds(test_run *r, const scene *s, const place_importance *asked, const place_importance *onward)
+static result trace_seeds(test_run *r, const scene *s, const importance_map *asked, const importance_map *onward)
 {
     result sum = {0};
     double direct_squared = 0.0, all_squared = 0.0;
@@ -178,7 +178,7 @@ static void a_small_window_is_found_and_its_light_is_right(void **state)
     test_run r;
     test_run_init(&r, 2);
     scene *s = room_scene(&r, SKY);
-    place_importance asked = ask_inside();
+    importance_map asked = ask_inside();
     result plain = trace_seeds(&r, s, NULL, NULL), aimed = trace_seeds(&r, s, &asked, NULL);
     print_message("inside: share %.4f plain, %.4f aimed; direct %.4f +- %.4f, %.4f +- %.4f of %.4f; all %.4f +- %.4f, "
                   "%.4f +- %.4f\n",
@@ -188,7 +188,7 @@ static void a_small_window_is_found_and_its_light_is_right(void **state)
     assert_close(aimed.direct, THROUGH_WINDOW, 3.0 * aimed.direct_error);
     assert_close(aimed.all, plain.all, 3.0 * hypot(aimed.all_error, plain.all_error));
     assert_true(aimed.share > 10.0 * plain.share / WIDER);
-    place_importance_reset(&asked);
+    importance_map_reset(&asked);
     scene_destroy(s);
     test_run_reset(&r);
 }
@@ -199,7 +199,7 @@ static void no_photon_is_more_than_five_times_as_bright(void **state)
     test_run r;
     test_run_init(&r, 2);
     scene *s = room_scene(&r, SKY);
-    place_importance asked = ask_inside();
+    importance_map asked = ask_inside();
     photon_set plain = trace(&r, s, NULL, NULL, 1), aimed = trace(&r, s, &asked, NULL, 1);
     float most_plain = 0.0f, most_aimed = 0.0f;
     for (uint32_t i = 0; i < plain.count; i++)
@@ -209,7 +209,7 @@ static void no_photon_is_more_than_five_times_as_bright(void **state)
     assert_true(most_aimed <= 5.02f * most_plain);
     photon_set_reset(&plain);
     photon_set_reset(&aimed);
-    place_importance_reset(&asked);
+    importance_map_reset(&asked);
     scene_destroy(s);
     test_run_reset(&r);
 }
@@ -222,7 +222,7 @@ static void paths_are_split_where_their_light_comes_in(void **state)
     test_run r;
     test_run_init(&r, 2);
     scene *s = scene_of(&r, SIDE_ROOM, SKY);
-    place_importance asked = ask_inside(), onward = pass_to_inside();
+    importance_map asked = ask_inside(), onward = pass_to_inside();
     result plain = trace_seeds(&r, s, NULL, NULL), aimed = trace_seeds(&r, s, &asked, NULL);
     result split = trace_seeds(&r, s, &asked, &onward);
     print_message("inside: all %.4f +- %.4f plain, %.4f +- %.4f aimed, %.4f +- %.4f split; squares %.3g, %.3g, %.3g\n",
@@ -231,8 +231,8 @@ static void paths_are_split_where_their_light_comes_in(void **state)
     assert_close(split.all, plain.all, 3.0 * hypot(split.all_error, plain.all_error));
     assert_close(split.all, aimed.all, 3.0 * hypot(split.all_error, aimed.all_error));
     assert_true(FEWER > 1 || split.squares < 0.8 * aimed.squares);
-    place_importance_reset(&asked);
-    place_importance_reset(&onward);
+    importance_map_reset(&asked);
+    importance_map_reset(&onward);
     scene_destroy(s);
     test_run_reset(&r);
 }
@@ -241,7 +241,7 @@ static void any_number_of_threads_has_the_same_photons(void **state)
 {
     (void)state;
     photon_set first = {0};
-    place_importance asked = ask_inside(), onward = pass_to_inside();
+    importance_map asked = ask_inside(), onward = pass_to_inside();
     for (unsigned threads = 1; threads <= 3; threads++) {
         test_run r;
         test_run_init(&r, threads);
@@ -260,11 +260,11 @@ static void any_number_of_threads_has_the_same_photons(void **state)
         test_run_reset(&r);
     }
     photon_set_reset(&first);
-    place_importance_reset(&onward);
-    place_importance_reset(&asked);
+    importance_map_reset(&onward);
+    importance_map_reset(&asked);
 }
 
-static void expect_no_guide(const scene *s, test_run *r, photon_kind kind, const place_importance *asked)
+static void expect_no_guide(const scene *s, test_run *r, photon_kind kind, const importance_map *asked)
 {
     photon_tracing_settings settings = {.kind = kind, .wanted = 1000, .max_scatterings = 100, .asked = asked};
     photon_aim aim;
@@ -278,9 +278,9 @@ static void where_there_is_nothing_to_aim_at_power_decides(void **state)
     (void)state;
     test_run r;
     test_run_init(&r, 2);
-    place_importance inside = ask_inside(), nothing = {0}, elsewhere;
-    const asked_place far_away = {{0.0f, 0.0f, 500.0f}, {0.0f, 0.0f, 1.0f}};
-    assert_int_equal(place_importance_create(&far_away, 1, &elsewhere), AG_OK);
+    importance_map inside = ask_inside(), nothing = {0}, elsewhere;
+    const query_point far_away = {{0.0f, 0.0f, 500.0f}, {0.0f, 0.0f, 1.0f}};
+    assert_int_equal(importance_map_create(&far_away, 1, &elsewhere), AG_OK);
     scene *s = room_scene(&r, SKY);
     expect_no_guide(s, &r, PHOTON_GLOBAL, &nothing);
     expect_no_guide(s, &r, PHOTON_GLOBAL, &elsewhere);
@@ -295,8 +295,8 @@ static void where_there_is_nothing_to_aim_at_power_decides(void **state)
     s = test_scene_create(&r, "LightSource \"point\" \"rgb I\" [1 1 1]");
     expect_no_guide(s, &r, PHOTON_GLOBAL, &inside);
     scene_destroy(s);
-    place_importance_reset(&inside);
-    place_importance_reset(&elsewhere);
+    importance_map_reset(&inside);
+    importance_map_reset(&elsewhere);
     test_run_reset(&r);
 }
 
@@ -308,17 +308,17 @@ static void a_room_that_is_lit_from_within_needs_no_aim(void **state)
     test_run_init(&r, 2);
     scene *s = test_scene_create(&r, "LightSource \"point\" \"rgb I\" [1 1 1]\nMaterial \"diffuse\"\n"
                                      "Shape \"sphere\" \"float radius\" [1]");
-    asked_place *points = malloc(POINTS * sizeof *points);
-    place_importance asked;
+    query_point *points = malloc(POINTS * sizeof *points);
+    importance_map asked;
     assert_non_null(points);
     rng random = test_random(8);
     for (int i = 0; i < POINTS; i++) {
         vec3 d = random_direction(&random);
-        points[i] = (asked_place){d, vec3_negate(d)};
+        points[i] = (query_point){d, vec3_negate(d)};
     }
-    assert_int_equal(place_importance_create(points, POINTS, &asked), AG_OK);
+    assert_int_equal(importance_map_create(points, POINTS, &asked), AG_OK);
     expect_no_guide(s, &r, PHOTON_GLOBAL, &asked);
-    place_importance_reset(&asked);
+    importance_map_reset(&asked);
     free(points);
     scene_destroy(s);
     test_run_reset(&r);

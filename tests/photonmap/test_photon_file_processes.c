@@ -61,7 +61,7 @@ static void a_dead_process_leaves_no_claim(void **state)
     expect_right(&o.map, 0, ask(&o, 0));
     assert_int_equal(irradiance_cache_counters(&o.cache).reclaimed, 1);
 
-    /* nor where another has taken its place */
+    /* nor where another has taken its number */
     opened next;
     open_map(&next, path);
     assert_int_equal(next.file.owners.claimer & 255, word & 255);

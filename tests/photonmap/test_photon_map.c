@@ -43,7 +43,7 @@ static void expect_mean(field_kind kind, uint32_t nearest, uint32_t photons, uin
     test_run_reset(&r);
     double expected = field_irradiance(kind), share = 1.0 / ((double)points * seeds);
     print_message("%s, %3u nearest, %s: %+.3f %%\n", kind == FIELD_SPHERE ? "sphere" : "plane", nearest,
-                  is_cached ? "cached" : "at the place", 100.0 * (mean[0] * share / FIELD_FLUX.r / expected - 1.0));
+                  is_cached ? "cached" : "at the point", 100.0 * (mean[0] * share / FIELD_FLUX.r / expected - 1.0));
     assert_relative(mean[0] * share, expected * FIELD_FLUX.r, tolerance * WIDER);
     assert_relative(mean[1] * share, expected * FIELD_FLUX.g, tolerance * WIDER);
     assert_relative(mean[2] * share, expected * FIELD_FLUX.b, 1.5 * tolerance * WIDER);

@@ -2,38 +2,36 @@
  * glass, rough metal and a mirror; rough coats; glTF's material in many ways; alpha, bump maps and brushed metal. All
  * light, and indirect light alone. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#define AGREEMENT_BLOCK_SIGMA_MOST 0.04
 #include "fixtures/program_agreement.h"
 
-/* Standard error of the whole picture. */
-static const double SIGMA_MOST = 0.007;
+static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.007, 0.04};
 
 static void test_glass_and_metal(void **state)
 {
     (void)state;
-    compare_integrators("glass_and_metal", "--spp=64", NULL, SIGMA_MOST);
-    compare_integrators("glass_and_metal", "--spp=128", "--only=indirect", SIGMA_MOST);
+    compare_integrators("glass_and_metal", "--spp=64", NULL, BOUNDS);
+    compare_integrators("glass_and_metal", "--spp=128", "--only=indirect", BOUNDS);
 }
 
 static void test_rough_coats(void **state)
 {
     (void)state;
-    compare_integrators("rough_coats", "--spp=64", NULL, SIGMA_MOST);
-    compare_integrators("rough_coats", "--spp=64", "--only=indirect", SIGMA_MOST);
+    compare_integrators("rough_coats", "--spp=64", NULL, BOUNDS);
+    compare_integrators("rough_coats", "--spp=64", "--only=indirect", BOUNDS);
 }
 
 static void test_principled(void **state)
 {
     (void)state;
-    compare_integrators("principled", "--spp=64", NULL, SIGMA_MOST);
-    compare_integrators("principled", "--spp=64", "--only=indirect", SIGMA_MOST);
+    compare_integrators("principled", "--spp=64", NULL, BOUNDS);
+    compare_integrators("principled", "--spp=64", "--only=indirect", BOUNDS);
 }
 
 /* What is in question is in all light. */
 static void test_alpha_and_relief(void **state)
 {
     (void)state;
-    compare_integrators("alpha_and_relief", "--spp=64", NULL, SIGMA_MOST);
+    compare_integrators("alpha_and_relief", "--spp=64", NULL, BOUNDS);
 }
 
 int main(void)

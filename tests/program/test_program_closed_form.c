@@ -358,7 +358,7 @@ static double mirror_reflectance(double cosine, double eta, double k)
     return 0.5 * (perpendicular + parallel);
 }
 
-/* The cosine between the ray through a place of mirror.pbrt's picture and the mirror's normal. */
+/* The cosine between the ray through a point of mirror.pbrt's picture and the mirror's normal. */
 static double mirror_cosine(double u, double v)
 {
     double half = tan(30.0 * PI / 180.0), x = (2.0 * u - 1.0) * half, y = (1.0 - 2.0 * v) * half;

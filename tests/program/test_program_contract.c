@@ -167,7 +167,7 @@ static void test_help_and_version(void **state)
 
 /* ---- scenes ---- */
 
-static void test_scene_errors_name_the_place(void **state)
+static void test_scene_errors_name_the_location(void **state)
 {
     (void)state;
     write_text("inner.pbrt", "# a comment\n\n    Shape \"banana\"\n");
@@ -390,7 +390,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_usage),
         TEST_IN_FOLDER(test_help_and_version),
-        TEST_IN_FOLDER(test_scene_errors_name_the_place),
+        TEST_IN_FOLDER(test_scene_errors_name_the_location),
         TEST_IN_FOLDER(test_scenes_that_cannot_be_read),
         TEST_IN_FOLDER(test_scene_without_camera),
         TEST_IN_FOLDER(test_scene_without_light),

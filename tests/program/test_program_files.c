@@ -124,7 +124,7 @@ static void test_gzip_and_standard_input(void **state)
     expect_listing("packed.exr packed.pbrt.gz picture.exr piped.exr");
 }
 
-/* The pixels from ceil(x0 width) to ceil(x1 width) - 1, at their place in the full picture. */
+/* The pixels from ceil(x0 width) to ceil(x1 width) - 1, at their position in the full picture. */
 static void test_size_and_crop(void **state)
 {
     (void)state;

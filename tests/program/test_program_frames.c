@@ -28,7 +28,7 @@ static void test_frames(void **state)
     json_t *stats = stats_read(in_folder("s011.json")); /* of its own frame alone */
     assert_int_equal(stats_integer(stats, "rays.camera"), 64);
     json_decref(stats);
-    /* the scene's name has a place too; a film that names its file gets one */
+    /* the scene's name has a placeholder too; a film that names its file gets one */
     SCENE_WITH("floor.pbrt", "Film \"rgb\"", "Film \"rgb\" \"string filename\" \"f.exr\"");
     assert_int_equal(rename(in_folder("floor.pbrt"), in_folder("floor.7.pbrt")), 0);
     expect_end(ARGUMENTS(TINY, "--frames=7", "floor.#.pbrt"), 0, "");
@@ -38,7 +38,8 @@ static void test_frames(void **state)
                                         "--frames=1,", "--frames=0-9999999", "--frames=-1"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         expect_end(ARGUMENTS(TINY, wrong[i], "-o", "a.#.exr", BOX), 2, "frames");
-    expect_end(ARGUMENTS(TINY, "--frames=1-2", "-o", "a.exr", BOX), 2, "'a.exr' has no place for the frame's number");
+    expect_end(ARGUMENTS(TINY, "--frames=1-2", "-o", "a.exr", BOX), 2,
+               "'a.exr' has no placeholder for the frame's number");
 }
 
 static void test_no_clobber(void **state)

@@ -1,19 +1,18 @@
 /* test_program_glossy.c: rough metal and glass show the same light as in the path tracer, and with more gather rays a
- * sample less noise, for they go to many reflected or refracted places and not all to one.
+ * sample less noise, for they go to many reflected or refracted hits and not all to one.
  * Rests on: Arvo, Kirk, "Particle Transport and Image Synthesis", 1990 (splitting).
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "fixtures/program_agreement.h"
 
-/* Standard error of the whole picture. */
-static const double SIGMA_MOST = 0.01;
+static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.01, 0.06};
 
 static void test_agreement(void **state)
 {
     (void)state;
-    compare_integrators("metal_plate", "--spp=128", NULL, SIGMA_MOST);
-    compare_integrators("metal_plate", "--spp=128", "--only=indirect", SIGMA_MOST);
-    compare_integrators("glass_ball_room", "--spp=512", "--only=indirect", 0.02); /* the path tracer's noise */
+    compare_integrators("metal_plate", "--spp=128", NULL, BOUNDS);
+    compare_integrators("metal_plate", "--spp=128", "--only=indirect", BOUNDS);
+    compare_integrators("glass_ball_room", "--spp=512", "--only=indirect", BOUNDS);
 }
 
 /* How far two pictures of four samples a pixel are apart, in the mean over all pixels, over their mean. */
@@ -49,7 +48,7 @@ static void test_noise(void **state)
     expect_less_noise(PROGRAM_SCENES "glass_ball_room.pbrt", "--gather-samples=4", 1.4, 1.0);
 }
 
-/* A path that is split brings no more than one that is not: a shadow ray, reflected lamps, and from the diffuse places
+/* A path that is split brings no more than one that is not: a shadow ray, reflected lamps, and from the diffuse hits
  * that are reflected direct light, caustics and gathered light, each at most the bound. */
 static void test_bounds(void **state)
 {

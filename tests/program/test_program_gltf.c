@@ -133,7 +133,7 @@ static void lamp_units(void **state)
         }
 }
 
-/* A camera of the command line's in the place of the file's, which looks away: the wall at its left alone shines. */
+/* A camera of the command line's instead of the file's, which looks away: the wall at its left alone shines. */
 static void camera_of_the_command_line(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 /* test_program_hard_input.c: files that are missing, cut, damaged, of another kind or out of all proportion: the exit
- * code, the place that is named, and that nothing is left behind. What the readers say of each mistake is in their unit
- * tests.
+ * code, the location that is named, and that nothing is left behind. What the readers say of each mistake is in their
+ * unit tests.
  *
  * Flow: tests of the whole program. Threads: the program's. */
 /* ctest: sanitize */
@@ -32,14 +32,14 @@ static int count_of(const char *text, const char *part)
     return count;
 }
 
-/* The scene is refused: with 1, at that place, in one error; and no picture or statistics are there. */
-static void expect_refused(const char *scene, const char *place, const char *reason)
+/* The scene is refused: with 1, at that location, in one error; and no picture or statistics are there. */
+static void expect_refused(const char *scene, const char *location, const char *reason)
 {
     int before = entry_count();
     program_run run = RUN("-q", QUICK, "-o", "a.exr", "--stats=a.json", scene);
     expect_exit(&run, 1);
     assert_string_equal(run.out, "");
-    expect_said(&run, place);
+    expect_said(&run, location);
     expect_said(&run, reason);
     assert_int_equal(count_of(run.err, "error: "), 1);
     program_run_reset(&run);
@@ -102,7 +102,7 @@ static void test_byte_order_mark_and_line_ends(void **state)
                    "bad.pbrt:3:2: error: ", "unknown shape \"sphare\"");
 }
 
-/* A megabyte without a line's end: the place is right, and what is shown of it is short. */
+/* A megabyte without a line's end: the location is right, and what is shown of it is short. */
 static void test_long_lines(void **state)
 {
     (void)state;
@@ -114,11 +114,11 @@ static void test_long_lines(void **state)
     sprintf(text + used + LENGTH, "Shape \"sphere\"");
     expect_accepted(write_text("long.pbrt", text), NULL);
     sprintf(text + used + LENGTH, "Shape \"sphare\"");
-    char place[64];
-    snprintf(place, sizeof place, "bad.pbrt:1:%zu: error: ", used + LENGTH + 1);
+    char location[64];
+    snprintf(location, sizeof location, "bad.pbrt:1:%zu: error: ", used + LENGTH + 1);
     program_run run = RUN("-q", "-o", "b.exr", write_text("bad.pbrt", text));
     expect_exit(&run, 1);
-    expect_said(&run, place);
+    expect_said(&run, location);
     assert_true(strlen(run.err) < 600);
     program_run_reset(&run);
     /* one word, and one string, as long */

@@ -1,5 +1,5 @@
 /* test_program_hard_scenes.c: scenes that are right and yet hard: far too large or small, the eye or a lamp inside of
- * things, surfaces at the same place, lamps without area. What has an answer must have it; all else must end, in finite
+ * things, surfaces at the same point, lamps without area. What has an answer must have it; all else must end, in finite
  * pixels.
  *
  * Rests on: Hecht, "Optics", 5th ed., 2017, 4.6 (Fresnel at normal incidence).
@@ -206,9 +206,9 @@ static void test_lamp_inside_of_glass(void **state)
     picture_reset(&path);
 }
 
-/* ---- at the same place, and of no size ---- */
+/* ---- at the same point, and of no size ---- */
 
-static void test_surfaces_at_the_same_place(void **state)
+static void test_surfaces_at_the_same_point(void **state)
 {
     (void)state;
     static const char *const THINGS[] = {
@@ -266,7 +266,7 @@ int main(void)
         TEST_IN_FOLDER(test_beyond_all_measure),
         TEST_IN_FOLDER(test_eye_inside_of_opaque_things),
         TEST_IN_FOLDER(test_lamp_inside_of_glass),
-        TEST_IN_FOLDER(test_surfaces_at_the_same_place),
+        TEST_IN_FOLDER(test_surfaces_at_the_same_point),
         TEST_IN_FOLDER(test_things_of_no_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -23,8 +23,8 @@ static const char *const PIECE[PIECES] = {"Material \"diffuse\" \"rgb reflectanc
                                           METAL};
 static const struct {
     int piece;
-    const char *place;
-} PLACES[] = {
+    const char *placement;
+} PLACEMENTS[] = {
     {0, "Translate 0 0 1.5 Rotate 90 1 0 0 Scale 1 2.5 1"},
     {0, "Translate 0 2 1.5 Rotate -90 1 0 0 Scale -1 2.5 1"},
     {0, "Translate 0 1 -1"},
@@ -38,7 +38,7 @@ static const struct {
     {3, "Translate -.4 0 -.4 Rotate -90 1 0 0"},
     {3, "Translate .5 0 -.3 Rotate -80 1 0 0 Scale 1 -1 1.4"},
 };
-enum { PLACE_COUNT = sizeof PLACES / sizeof *PLACES };
+enum { PLACEMENT_COUNT = sizeof PLACEMENTS / sizeof *PLACEMENTS };
 
 static const char *write_room(const char *name, bool is_instanced)
 {
@@ -46,12 +46,12 @@ static const char *write_room(const char *name, bool is_instanced)
     size_t used = (size_t)snprintf(text, sizeof text, HEAD);
     for (int i = 0; is_instanced && i < PIECES; i++)
         used += (size_t)snprintf(text + used, sizeof text - used, "ObjectBegin \"%d\" %s ObjectEnd\n", i, PIECE[i]);
-    for (int i = 0; i < PLACE_COUNT; i++) {
-        used += (size_t)snprintf(text + used, sizeof text - used, "AttributeBegin %s ", PLACES[i].place);
+    for (int i = 0; i < PLACEMENT_COUNT; i++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "AttributeBegin %s ", PLACEMENTS[i].placement);
         if (is_instanced)
-            used += (size_t)snprintf(text + used, sizeof text - used, "ObjectInstance \"%d\"", PLACES[i].piece);
+            used += (size_t)snprintf(text + used, sizeof text - used, "ObjectInstance \"%d\"", PLACEMENTS[i].piece);
         else
-            used += (size_t)snprintf(text + used, sizeof text - used, "%s", PIECE[PLACES[i].piece]);
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s", PIECE[PLACEMENTS[i].piece]);
         used += (size_t)snprintf(text + used, sizeof text - used, " AttributeEnd\n");
     }
     assert_true(used < sizeof text);

@@ -1,5 +1,5 @@
 /* test_program_layers.c: layers and metadata in the program's files: parts that add up bit for bit, camera matrices
- * that lead from places to pixels, crops, tiles, halves, and files that are equal where pictures are. Threads: the
+ * that lead from points to pixels, crops, tiles, halves, and files that are equal where pictures are. Threads: the
  * program's. */
 #define _GNU_SOURCE
 #include "fixtures/program_picture.h"
@@ -41,7 +41,7 @@ static void test_parts_in_files(void **state)
             assert_memory_equal(&sum, pixel, sizeof sum);
         }
 
-    /* where a pixel's place is shown, worldToNDC puts it: within the pixel but for the mean over edges */
+    /* where a pixel's position is shown, worldToNDC puts it: within the pixel but for the mean over edges */
     float ndc[16];
     unsigned char *value = attribute_of("p.exr", "worldToNDC", "m44f");
     assert_non_null(value);
@@ -50,11 +50,11 @@ static void test_parts_in_files(void **state)
     int near = 0;
     for (int y = 0; y < p.height; y++)
         for (int x = 0; x < p.width; x++) {
-            const float *place = p.pixels + 21 * (y * p.width + x) + 3;
+            const float *position = p.pixels + 21 * (y * p.width + x) + 3;
             double projected[4];
             for (int k = 0; k < 4; k++)
-                projected[k] = (double)place[0] * (double)ndc[k] + (double)place[1] * (double)ndc[4 + k] +
-                               (double)place[2] * (double)ndc[8 + k] + (double)ndc[12 + k];
+                projected[k] = (double)position[0] * (double)ndc[k] + (double)position[1] * (double)ndc[4 + k] +
+                               (double)position[2] * (double)ndc[8 + k] + (double)ndc[12 + k];
             near += fabs(projected[0] / projected[3] * p.width - (x + 0.5)) < 0.6 &&
                     fabs(projected[1] / projected[3] * p.height - (y + 0.5)) < 0.6;
         }

@@ -1,4 +1,4 @@
-/* test_program_motion.c: what moves while the shutter is open: the part of the time that a place is covered, in closed
+/* test_program_motion.c: what moves while the shutter is open: the part of the time that a point is covered, in closed
  * form; a camera that moves and a world that moves the other way; photon map and path tracer where what moves reflects.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
@@ -13,7 +13,7 @@
 
 static double clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
-/* What is seen of the sky in pixel (i, j), by the mean over so many places in it; and in the picture. */
+/* What is seen of the sky in pixel (i, j), by the mean over so many points in it; and in the picture. */
 static void expect_picture(const char *what, const picture *p, double (*uncovered)(double x, double y))
 {
     enum { ACROSS = 8 };
@@ -117,7 +117,7 @@ static void test_turning_disk(void **state)
     "AttributeBegin Translate -.9 -.4 4 Rotate 30 1 1 0 Shape \"cylinder\" AttributeEnd\n"                             \
     "AttributeBegin Translate 0 -1 3 Rotate 50 1 0 0 Shape \"disk\" AttributeEnd\n"
 
-/* One object moves, so that all turns about one place as the camera does; what moves by itself turns about its own.
+/* One object moves, so that all turns about one point as the camera does; what moves by itself turns about its own.
  * Black before an even sky: each sample sees the one or the other, the same in both but for an edge now and then. */
 static void test_moving_camera(void **state)
 {
@@ -182,7 +182,7 @@ static void expect_agreement(const char *scene, const char *only, const char *sa
     expect_near(scene, map, path, tolerance);
 }
 
-/* A map knows the mean of the light on a place, not which light came when: where light and what hides it go together,
+/* A map knows the mean of the light on a point, not which light came when: where light and what hides it go together,
  * some of the indirect light is lost. */
 static void test_moving_blocks(void **state)
 {

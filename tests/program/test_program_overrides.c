@@ -1,5 +1,5 @@
 /* test_program_overrides.c: camera, sun and sky of the command line's through the whole program, for every format: as
- * bright as they say, from where they say, in the place of what the file has.
+ * bright as they say, from where they say, instead of what the file has.
  *
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
@@ -105,7 +105,7 @@ static void what_the_file_has_is_dropped(void **state)
     write_text("no_sky.pbrt", without);
     p = RENDER("lit.pbrt", PATH, "--sky=0");
     picture q = RENDER("no_sky.pbrt", PATH);
-    expect_near("a black sky in its place", picture_mean(&p, 0), picture_mean(&q, 0), 0.1);
+    expect_near("a black sky instead of it", picture_mean(&p, 0), picture_mean(&q, 0), 0.1);
     assert_true(picture_mean(&p, 0) > 0.3);
     picture_reset(&p);
     picture_reset(&q);
@@ -194,16 +194,16 @@ static void a_sun_of_an_extent_has_penumbras(void **state)
     static const struct {
         const char *to;
         double share;
-    } PLACES[] = {{"--camera-to=0.5,0,0", 1.0}, {"--camera-to=0,0,0", 0.5}, {"--camera-to=-0.5,0,0", 0.0}};
+    } CASES[] = {{"--camera-to=0.5,0,0", 1.0}, {"--camera-to=0,0,0", 0.5}, {"--camera-to=-0.5,0,0", 0.0}};
     write_text("roof.pbrt", "LookAt 0 5 0 0 0 0 0 0 1 Camera \"perspective\" WorldBegin\n" FLOOR_PBRT
                             "Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"bilinearmesh\" \"point3 P\" "
                             "[-9 1 -9 0 1 -9 -9 1 9 0 1 9]\n");
     for (size_t k = 0; k < 3; k++)
         for (int maps = 0; maps < 2; maps++) { /* the standard error is 0.6 % */
             picture p = RENDER("roof.pbrt", maps ? "--photons=1000" : "--integrator=path", "--size=8x8", "--spp=128",
-                               "--noise=0", "--sun=0,90,3,40", "--up=y", "--camera-from=5,5,0", PLACES[k].to,
+                               "--noise=0", "--sun=0,90,3,40", "--up=y", "--camera-from=5,5,0", CASES[k].to,
                                "--camera-up=0,0,1", "--fov=1");
-            expect_near(PLACES[k].to, picture_mean(&p, 1) + 0.1, 0.1 + PLACES[k].share * 0.5 * 3.0 / PI_D, 0.03);
+            expect_near(CASES[k].to, picture_mean(&p, 1) + 0.1, 0.1 + CASES[k].share * 0.5 * 3.0 / PI_D, 0.03);
             picture_reset(&p);
         }
 }
@@ -218,7 +218,7 @@ static void expect_same(const char *scene, const char *const *some, const char *
     picture_reset(&q);
 }
 
-/* What is up in a pbrt file is what its own camera has so, whatever camera takes its place. */
+/* What is up in a pbrt file is what its own camera has so, whatever camera replaces it. */
 static void up_is_that_of_the_file(void **state)
 {
     (void)state;

@@ -1,42 +1,23 @@
 /* test_program_texture_filter.c: textures filtered over ray cones: a plane to the horizon has less error at 4 samples
  * than unfiltered at 16, and the same mean; so have a room with pictures on its walls, by photon map and path tracing,
- * and the plane in a mirror; whatever the number of threads and the memory for
- * textures, in parts and as a whole the bits are the same.
+ * and the plane in a mirror; whatever the number of threads and the memory for textures, in parts and as a whole the
+ * bits are the same.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_textures.h"
 #include "math/rng.h"
-#include "output/image_file.h"
 
 /* Of random colours. */
 static void write_noise(const char *name, int side)
 {
-    static const char *const NAMES[3] = {"R", "G", "B"};
     float *pixels = malloc((size_t)side * (size_t)side * 3 * sizeof *pixels);
     assert_non_null(pixels);
     for (int i = 0; i < 3 * side * side; i++) {
         rng random = rng_make(1, 2, (uint64_t)i);
         pixels[i] = rng_float(&random);
     }
-    const image_description description = {.width = side,
-                                           .height = side,
-                                           .full_width = side,
-                                           .full_height = side,
-                                           .channel_count = 3,
-                                           .channel_names = NAMES,
-                                           .type = IMAGE_UINT8};
-    if (image_file_write(in_folder(name), &description, pixels, message, sizeof message) != AG_OK)
-        fail_msg("%s", message);
+    write_square(name, side, 3, IMAGE_UINT8, pixels);
     free(pixels);
-}
-
-static const char *write_scene(const char *text)
-{
-    FILE *file = fopen(in_folder("scene.pbrt"), "w");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-    return "scene.pbrt"; /* the program runs in the folder */
 }
 
 #define PICTURE                                                                                                          \
@@ -120,7 +101,7 @@ static bool is_filtered(const char *material)
     return !is_alike;
 }
 
-/* What cuts values, or picks among them, at each place is not the same of their mean: such textures stay unfiltered. */
+/* What cuts values, or picks among them, at each point is not the same of their mean: such textures stay unfiltered. */
 static void test_not_linear(void **state)
 {
     (void)state;
@@ -213,37 +194,16 @@ static void test_photon_map_file(void **state)
 static const char *large_room(void)
 {
     enum { SIDE = 1500 };
-    static const char *const NAMES[4] = {"R", "G", "B", "A"};
     float *pixels = malloc((size_t)SIDE * SIDE * 4 * sizeof *pixels);
     assert_non_null(pixels);
     for (int i = 0; i < 4 * SIDE * SIDE; i++) {
         rng random = rng_make(1, 3, (uint64_t)i);
         pixels[i] = rng_float(&random);
     }
-    for (int k = 0; k < 2; k++) {
-        const image_description description = {.width = SIDE,
-                                               .height = SIDE,
-                                               .full_width = SIDE,
-                                               .full_height = SIDE,
-                                               .channel_count = 4 - k,
-                                               .channel_names = NAMES,
-                                               .type = k ? IMAGE_FLOAT : IMAGE_UINT8};
-        if (image_file_write(in_folder(k ? "floats.exr" : "bytes.png"), &description, pixels, message,
-                             sizeof message) != AG_OK)
-            fail_msg("%s", message);
-    }
+    write_square("bytes.png", SIDE, 4, IMAGE_UINT8, pixels);
+    write_square("floats.exr", SIDE, 3, IMAGE_FLOAT, pixels);
     free(pixels);
-    return write_scene(
-        "LookAt 0 1 -3  0 1 0  0 1 0 Camera \"perspective\" \"float fov\" 60 "
-        "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24 WorldBegin "
-        "LightSource \"infinite\" \"rgb L\" [1 1 1] "
-        "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"bytes.png\" "
-        "Texture \"cut\" \"float\" \"imagemap\" \"string filename\" \"bytes.png\" \"string encoding\" \"sRGB\" "
-        "Texture \"b\" \"spectrum\" \"imagemap\" \"string filename\" \"floats.exr\" "
-        "Material \"diffuse\" \"texture reflectance\" \"a\" Shape \"trianglemesh\" \"point3 P\" [-9 0 -9 9 0 -9 9 0 "
-        "9 -9 0 9] \"point2 uv\" [0 0 1 0 1 1 0 1] \"integer indices\" [0 1 2 0 2 3] "
-        "Material \"coateddiffuse\" \"texture reflectance\" \"b\" Shape \"sphere\" \"float radius\" 0.7 "
-        "Translate 0 2 0 Shape \"sphere\" \"texture alpha\" \"cut\" \"float radius\" 0.7");
+    return write_room_of("bytes.png", "floats.exr");
 }
 
 static void test_memory(void **state)

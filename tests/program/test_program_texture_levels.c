@@ -2,7 +2,7 @@
  * the same bits in memory and tile by tile, by whatever threads, and in a photon map's fingerprint; broken ones are
  * told. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_textures.h"
 #include "fixtures/tiled_tiff.h"
 
 /* Each level of a colour of its own: the finest is red, the next one green, others blue. */
@@ -16,15 +16,6 @@ static unsigned char noise(uint32_t level, uint32_t x, uint32_t y, uint32_t chan
 {
     const uint32_t key = ((level * 4096 + y) * 4096 + x) * 4 + channel;
     return (unsigned char)((key * UINT64_C(0x9e3779b97f4a7c15)) >> 56);
-}
-
-static const char *write_scene(const char *text)
-{
-    FILE *file = fopen(in_folder("scene.pbrt"), "w");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-    return "scene.pbrt";
 }
 
 /* A square of 256 x 256 pixels of the picture, seen straight on over so many of ours, lit by pi W/m^2. */
@@ -97,17 +88,7 @@ static const char *room(void)
 {
     tiff_write_levels("bytes.tx", 2048, 4, noise);
     tiff_write_levels("gray.tif", 1024, 1, noise);
-    return write_scene(
-        "LookAt 0 1 -3  0 1 0  0 1 0 Camera \"perspective\" \"float fov\" 60 "
-        "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24 WorldBegin "
-        "LightSource \"infinite\" \"rgb L\" [1 1 1] "
-        "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"bytes.tx\" "
-        "Texture \"cut\" \"float\" \"imagemap\" \"string filename\" \"bytes.tx\" \"string encoding\" \"sRGB\" "
-        "Texture \"b\" \"spectrum\" \"imagemap\" \"string filename\" \"gray.tif\" "
-        "Material \"diffuse\" \"texture reflectance\" \"a\" Shape \"trianglemesh\" \"point3 P\" [-9 0 -9 9 0 -9 9 0 "
-        "9 -9 0 9] \"point2 uv\" [0 0 1 0 1 1 0 1] \"integer indices\" [0 1 2 0 2 3] "
-        "Material \"coateddiffuse\" \"texture reflectance\" \"b\" Shape \"sphere\" \"float radius\" 0.7 "
-        "Translate 0 2 0 Shape \"sphere\" \"texture alpha\" \"cut\" \"float radius\" 0.7");
+    return write_room_of("bytes.tx", "gray.tif");
 }
 
 static void test_memory(void **state)

@@ -2,27 +2,17 @@
  * what is missing is black and told once; names of which there is no file, or a wrong one, are errors. Flow: tests of
  * the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
-#include "output/image_file.h"
+#include "fixtures/program_textures.h"
 
 /* Linear values in 1/255 of red, green and blue, the same all over the picture. */
 static void write_tile(const char *name, int side, const unsigned char *color)
 {
-    static const char *const NAMES[3] = {"R", "G", "B"};
     const size_t count = (size_t)side * (size_t)side;
     float *pixels = malloc(3 * count * sizeof *pixels);
     assert_non_null(pixels);
     for (size_t i = 0; i < 3 * count; i++)
         pixels[i] = (float)color[i % 3] / 255.0f;
-    const image_description description = {.width = side,
-                                           .height = side,
-                                           .full_width = side,
-                                           .full_height = side,
-                                           .channel_count = 3,
-                                           .channel_names = NAMES,
-                                           .type = strstr(name, ".exr") ? IMAGE_FLOAT : IMAGE_UINT8};
-    if (image_file_write(in_folder(name), &description, pixels, message, sizeof message) != AG_OK)
-        fail_msg("%s", message);
+    write_square(name, side, 3, strstr(name, ".exr") ? IMAGE_FLOAT : IMAGE_UINT8, pixels);
     free(pixels);
 }
 
@@ -31,20 +21,18 @@ static const unsigned char COLORS[4][3] = {{51, 102, 204}, {255, 51, 0}, {0, 102
 /* u from 0 to 3, v from 0 to 2, four pixels to a tile; light of pi W/m^2 straight on it: radiance is reflectance. */
 static const char *plane(const char *file_name, const char *more)
 {
-    FILE *file = fopen(in_folder("scene.pbrt"), "w");
-    assert_non_null(file);
-    fprintf(file,
-            "LookAt 0 0 -5  0 0 0  0 1 0 Camera \"orthographic\" \"float screenwindow\" [-1.5 1.5 -1 1] "
-            "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 8 PixelFilter \"box\" WorldBegin "
-            "LightSource \"distant\" \"point3 from\" [0 0 -9] \"point3 to\" [0 0 0] "
-            "\"rgb L\" [3.14159265 3.14159265 3.14159265] "
-            "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" \"string encoding\" \"linear\" %s "
-            "Material \"diffuse\" \"texture reflectance\" \"t\" "
-            "Shape \"trianglemesh\" \"point3 P\" [-1.5 -1 0  1.5 -1 0  1.5 1 0 -1.5 1 0] \"point2 uv\" "
-            "[0 0 3 0 3 2 0 2] \"integer indices\" [0 1 2 0 2 3]",
-            file_name, more);
-    assert_int_equal(fclose(file), 0);
-    return "scene.pbrt";
+    char text[2048];
+    snprintf(text, sizeof text,
+             "LookAt 0 0 -5  0 0 0  0 1 0 Camera \"orthographic\" \"float screenwindow\" [-1.5 1.5 -1 1] "
+             "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 8 PixelFilter \"box\" WorldBegin "
+             "LightSource \"distant\" \"point3 from\" [0 0 -9] \"point3 to\" [0 0 0] "
+             "\"rgb L\" [3.14159265 3.14159265 3.14159265] "
+             "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" \"string encoding\" \"linear\" %s "
+             "Material \"diffuse\" \"texture reflectance\" \"t\" "
+             "Shape \"trianglemesh\" \"point3 P\" [-1.5 -1 0  1.5 -1 0  1.5 1 0 -1.5 1 0] \"point2 uv\" "
+             "[0 0 3 0 3 2 0 2] \"integer indices\" [0 1 2 0 2 3]",
+             file_name, more);
+    return write_scene(text);
 }
 
 /* The pixel of that column and row of the plane, counted from below. */

@@ -1,6 +1,6 @@
 /* test_gltf_document.c: the containers, syntax, versions, extensions and data URIs of glTF: what is right reads alike
  * whatever way it is packed, what is wrong is an error that says where; files cut short or damaged at every byte, and
- * documents with odd values in every place, end in a status. Threads: one. */
+ * documents with odd values in every field, end in a status. Threads: one. */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/gltf_fixture.h"
 
@@ -295,7 +295,7 @@ static void try_document(attempt *a)
     free(text);
 }
 
-/* Puts odd values in the place of each value below. */
+/* Puts odd values instead of each value below. */
 static void vary(attempt *a, json_t *container)
 {
     static const char *const ODD[] = {"null", "-1", "4294967295", "1e300", "0.5", "\"odd\"", "[]", "{}", "[[0]]"};

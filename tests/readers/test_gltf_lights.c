@@ -55,6 +55,25 @@ static void lamps(void **state)
     reading_destroy(&r);
 }
 
+/* Cycles dimmed spots beside their axis, before 3.5. */
+static void spots_of_old_blenders_dim(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *generator;
+        bool dims;
+    } GENERATORS[] = {{"", false},
+                      {"Khronos glTF Blender I/O v3.4.50", true},
+                      {"Khronos glTF Blender I/O v2.83.9", true},
+                      {"Khronos glTF Blender I/O v3.5.30", false},
+                      {"Khronos glTF Blender I/O v4.0.1", false}};
+    for (size_t k = 0; k < sizeof GENERATORS / sizeof *GENERATORS; k++) {
+        reading r = gltf_of(lamp_text(GENERATORS[k].generator, "{'type': 'spot', 'spot': {}}", ""));
+        assert_int_equal(r.scene->lights[0].dims_by_cosine, GENERATORS[k].dims);
+        reading_destroy(&r);
+    }
+}
+
 static void units(void **state)
 {
     (void)state;
@@ -124,7 +143,7 @@ static void expect_film(const reading *r, double width, double height)
     assert_near((double)hints->height.value, height, 0);
 }
 
-/* Where the ray through the film's place goes, from a place on it in [0, 1]. */
+/* Where the ray through the film's point goes, from a point on it in [0, 1]. */
 static vec3 direction_at(const reading *r, float x, float y)
 {
     camera c = r->scene->camera;
@@ -227,13 +246,10 @@ static void camera_errors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(lamps),
-        TEST_IN_FOLDER(units),
-        TEST_IN_FOLDER(lamp_errors),
-        TEST_IN_FOLDER(cameras),
-        TEST_IN_FOLDER(orthographic_camera),
-        TEST_IN_FOLDER(several_cameras),
-        TEST_IN_FOLDER(camera_errors),
+        TEST_IN_FOLDER(lamps),           TEST_IN_FOLDER(spots_of_old_blenders_dim),
+        TEST_IN_FOLDER(units),           TEST_IN_FOLDER(lamp_errors),
+        TEST_IN_FOLDER(cameras),         TEST_IN_FOLDER(orthographic_camera),
+        TEST_IN_FOLDER(several_cameras), TEST_IN_FOLDER(camera_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,7 +87,7 @@ static void front_is_in_front_and_nothing_is_mirrored(void **state)
     importing_reset(&i);
 }
 
-static void places_and_nothing_have_a_camera_too(void **state)
+static void points_and_nothing_have_a_camera_too(void **state)
 {
     (void)state;
     importing i;
@@ -149,7 +149,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_is_in_the_picture),
         cmocka_unit_test(front_is_in_front_and_nothing_is_mirrored),
-        cmocka_unit_test(places_and_nothing_have_a_camera_too),
+        cmocka_unit_test(points_and_nothing_have_a_camera_too),
         cmocka_unit_test(light_comes_over_the_left_shoulder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

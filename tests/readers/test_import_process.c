@@ -1,9 +1,11 @@
 /* test_import_process.c: the process's answer comes back whole; however it ends, that is an error and no more. */
 #define _GNU_SOURCE
 #include "model/import_process.h"
+#include "model/import_worker.h"
 
 #include "fixtures/temporary_folder.h"
 
+#include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
 
@@ -18,20 +20,105 @@
 
 enum { ANSWER_BYTES = 5000000, MEMORY_BYTES = 100000000 };
 
-static bool answer_much(void *user, FILE *answer)
+/* What the process does, by its name: this test's program, started anew. */
+typedef bool task(int number, FILE *answer);
+
+static bool answer_much(int number, FILE *answer)
 {
     for (int k = 0; k < ANSWER_BYTES; k++)
-        putc((k * 7 + *(int *)user) & 0xff, answer);
+        putc((k * 7 + number) & 0xff, answer);
     return true;
+}
+
+static bool crash(int number, FILE *answer)
+{
+    (void)answer;
+#ifdef UNDER_SANITIZER /* whose handlers these are */
+    if (number == SIGSEGV || number == SIGABRT)
+        signal(number, SIG_DFL);
+#endif
+    raise(number);
+    return true;
+}
+static bool fail_quietly(int number, FILE *answer)
+{
+    (void)number, (void)answer;
+    return false;
+}
+static bool say_nothing(int number, FILE *answer)
+{
+    printf("this goes nowhere");
+    fflush(stdout);
+    (void)number, (void)answer;
+    return true;
+}
+static bool leave(int number, FILE *answer)
+{
+    (void)answer;
+    _exit(number);
+}
+
+static bool take_memory(int number, FILE *answer)
+{
+    (void)number;
+    /* never touched; volatile, or a compiler sees that nobody needs them */
+    void *volatile half = malloc(MEMORY_BYTES / 2), *volatile whole = malloc(MEMORY_BYTES);
+    fprintf(answer, "%s %s", half ? "half" : "none", whole ? "whole" : "no more");
+    free(half);
+    free(whole);
+    return true;
+}
+
+/* How many are open. */
+static bool count_descriptors(int number, FILE *answer)
+{
+    int count = 0;
+    (void)number;
+    for (int k = 0; k < 1000; k++)
+        count += fcntl(k, F_GETFD) != -1;
+    putc(count, answer);
+    return true;
+}
+
+static bool never_end(int number, FILE *answer)
+{
+    (void)number, (void)answer;
+    while (pause() != 0)
+        continue;
+    return true;
+}
+
+static const struct {
+    const char *name;
+    task *run;
+} TASKS[] = {
+    {"answer", answer_much}, {"crash", crash},        {"fail", fail_quietly}, {"silence", say_nothing},
+    {"leave", leave},        {"memory", take_memory}, {"forever", never_end}, {"descriptors", count_descriptors}};
+
+/* The other side: this program's main, started by import_process_run. */
+static int work(char **arguments)
+{
+    FILE *answer = import_worker_begin(MEMORY_BYTES);
+    for (size_t k = 0; answer && k < sizeof TASKS / sizeof *TASKS; k++)
+        if (strcmp(TASKS[k].name, arguments[1]) == 0)
+            import_worker_end(answer, TASKS[k].run(atoi(arguments[2]), answer));
+    return 1;
+}
+
+static ag_status run_task(const run_context *run, const char *name, int number, import_answer *out_answer,
+                          char *out_message, size_t message_size)
+{
+    char text[16];
+    snprintf(text, sizeof text, "%d", number);
+    const char *const arguments[] = {"test_import_process", name, text, NULL};
+    return import_process_run(run, "/proc/self/exe", arguments, out_answer, out_message, message_size);
 }
 
 static void answers_come_back_whole(void **state)
 {
     (void)state;
     import_answer answer;
-    int number = 3;
-    assert_int_equal(import_process_run(NULL, answer_much, &number, MEMORY_BYTES, &answer, message, sizeof message),
-                     AG_OK);
+    assert_int_equal(run_task(NULL, "answer", 3, &answer, message, sizeof message), AG_OK);
     assert_int_equal(answer.size, ANSWER_BYTES);
     for (int k = 0; k < ANSWER_BYTES; k++)
         assert_true(answer.bytes[k] == ((k * 7 + 3) & 0xff));
@@ -39,34 +126,10 @@ static void answers_come_back_whole(void **state)
     assert_null(answer.bytes);
 }
 
-static bool crash(void *user, FILE *answer)
-{
-    (void)answer;
-    raise(*(int *)user);
-    return true;
-}
-static bool fail_quietly(void *user, FILE *answer)
-{
-    (void)user, (void)answer;
-    return false;
-}
-static bool say_nothing(void *user, FILE *answer)
-{
-    printf("this goes nowhere");
-    fflush(stdout);
-    (void)user, (void)answer;
-    return true;
-}
-static bool leave(void *user, FILE *answer)
-{
-    (void)answer;
-    _exit(*(int *)user);
-}
-
-static void expect_error(import_task *task, int number, const char *text)
+static void expect_error(const char *name, int number, const char *text)
 {
     import_answer answer;
-    ag_status status = import_process_run(NULL, task, &number, MEMORY_BYTES, &answer, message, sizeof message);
+    ag_status status = run_task(NULL, name, number, &answer, message, sizeof message);
     expect_failure(status, AG_ERROR_INPUT, text);
     assert_null(answer.bytes);
 }
@@ -74,13 +137,13 @@ static void expect_error(import_task *task, int number, const char *text)
 static void any_end_is_an_error(void **state)
 {
     (void)state;
-    expect_error(crash, SIGSEGV, "the importing process was ended by signal 11 (Segmentation fault)");
-    expect_error(crash, SIGABRT, "was ended by signal 6 (Aborted)");
-    expect_error(crash, SIGKILL, "was ended by signal 9 (Killed)");
-    expect_error(fail_quietly, 0, "the importing process failed");
-    expect_error(leave, 3, "the importing process failed");
-    expect_error(say_nothing, 0, "the importing process has answered nothing");
-    expect_error(leave, 0, "the importing process has answered nothing");
+    expect_error("crash", SIGSEGV, "the importing process was ended by signal 11 (Segmentation fault)");
+    expect_error("crash", SIGABRT, "was ended by signal 6 (Aborted)");
+    expect_error("crash", SIGKILL, "was ended by signal 9 (Killed)");
+    expect_error("fail", 0, "the importing process failed");
+    expect_error("leave", 3, "the importing process failed");
+    expect_error("silence", 0, "the importing process has answered nothing");
+    expect_error("leave", 0, "the importing process has answered nothing");
 }
 
 /* Handlers and masks of the caller do not reach there. */
@@ -95,7 +158,7 @@ static void signals_have_their_default_actions(void **state)
     sigemptyset(&mask);
     sigaddset(&mask, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &mask, &mask_before);
-    expect_error(crash, SIGTERM, "was ended by signal 15 (Terminated)");
+    expect_error("crash", SIGTERM, "was ended by signal 15 (Terminated)");
     sigset_t now;
     pthread_sigmask(SIG_SETMASK, &mask_before, &now);
     assert_true(sigismember(&now, SIGTERM)); /* and those here are as they were */
@@ -103,36 +166,16 @@ static void signals_have_their_default_actions(void **state)
 }
 
 #ifndef UNDER_SANITIZER
-static bool take_memory(void *user, FILE *answer)
-{
-    (void)user;
-    /* never touched; volatile, or a compiler sees that nobody needs them */
-    void *volatile half = malloc(MEMORY_BYTES / 2), *volatile whole = malloc(MEMORY_BYTES);
-    fprintf(answer, "%s %s", half ? "half" : "none", whole ? "whole" : "no more");
-    free(half);
-    free(whole);
-    return true;
-}
-
 static void memory_is_limited(void **state)
 {
     (void)state;
     import_answer answer;
-    assert_int_equal(import_process_run(NULL, take_memory, NULL, MEMORY_BYTES, &answer, message, sizeof message),
-                     AG_OK);
+    assert_int_equal(run_task(NULL, "memory", 0, &answer, message, sizeof message), AG_OK);
     assert_int_equal(answer.size, strlen("half no more"));
     assert_memory_equal(answer.bytes, "half no more", answer.size);
     import_answer_reset(&answer);
 }
 #endif
-
-static bool never_end(void *user, FILE *answer)
-{
-    (void)user, (void)answer;
-    while (pause() != 0)
-        continue;
-    return true;
-}
 
 static void *cancel(void *user)
 {
@@ -148,8 +191,7 @@ static void cancelling_ends_it(void **state)
     pthread_t thread;
     run_context_init(&run, NULL, NULL, NULL, NULL);
     assert_int_equal(pthread_create(&thread, NULL, cancel, &run), 0);
-    assert_int_equal(import_process_run(&run, never_end, NULL, MEMORY_BYTES, &answer, message, sizeof message),
-                     AG_CANCELLED);
+    assert_int_equal(run_task(&run, "forever", 0, &answer, message, sizeof message), AG_CANCELLED);
     pthread_join(thread, NULL);
     run_context_reset(&run);
 }
@@ -159,10 +201,34 @@ static void *run_one(void *user)
 {
     import_answer answer;
     char text[256];
-    bool is_right = import_process_run(NULL, answer_much, user, MEMORY_BYTES, &answer, text, sizeof text) == AG_OK &&
+    bool is_right = run_task(NULL, "answer", *(int *)user, &answer, text, sizeof text) == AG_OK &&
                     answer.size == ANSWER_BYTES && answer.bytes[0] == *(int *)user;
     import_answer_reset(&answer);
     return is_right ? user : NULL;
+}
+
+static void a_program_that_is_not_there_is_an_error(void **state)
+{
+    (void)state;
+    import_answer answer;
+    const char *const arguments[] = {"none", NULL};
+    ag_status status = import_process_run(NULL, "./none", arguments, &answer, message, sizeof message);
+    expect_failure(status, AG_ERROR_SYSTEM, "the program './none' cannot be started: No such file or directory");
+    assert_null(answer.bytes);
+}
+
+/* Nothing that the caller has open reaches the process but what it is to have. */
+static void descriptors_stay_here(void **state)
+{
+    (void)state;
+    import_answer answer;
+    int open_here = dup(1); /* without FD_CLOEXEC */
+    assert_true(open_here >= 0);
+    assert_int_equal(run_task(NULL, "descriptors", 0, &answer, message, sizeof message), AG_OK);
+    assert_int_equal(answer.size, 1);
+    assert_int_equal(answer.bytes[0], IMPORT_DESCRIPTORS_END);
+    import_answer_reset(&answer);
+    close(open_here);
 }
 
 static void threads_may_have_one_each(void **state)
@@ -179,8 +245,10 @@ static void threads_may_have_one_each(void **state)
     }
 }
 
-int main(void)
+int main(int count, char **arguments)
 {
+    if (count == 3)
+        return work(arguments);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(answers_come_back_whole),
         cmocka_unit_test(any_end_is_an_error),
@@ -189,6 +257,8 @@ int main(void)
         cmocka_unit_test(memory_is_limited),
 #endif
         cmocka_unit_test(cancelling_ends_it),
+        cmocka_unit_test(a_program_that_is_not_there_is_an_error),
+        cmocka_unit_test(descriptors_stay_here),
         cmocka_unit_test(threads_may_have_one_each),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,9 +1,9 @@
-/* test_mesh_import_assimp.c: what assimp reads arrives: meshes at their places, materials, cameras, lights, up axes;
+/* test_mesh_import_assimp.c: what assimp reads arrives: meshes at their nodes, materials, cameras, lights, up axes;
  * files that assimp refuses, or that it dies of, are errors. */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/collada_fixture.h"
 #include "fixtures/model_fixture.h"
-#include "model/mesh_import_assimp.h"
+#include "model/import_file.h"
 
 static const double PI_D = 3.14159265358979323846;
 
@@ -14,10 +14,14 @@ static void extensions(void **state)
     (void)state;
     static const char *const READS[] = {".stl", ".dae", ".fbx", ".3ds", ".OFF", ".x"}, *const NOT[] = {".pbrt", ".txt",
                                                                                                        ".exr", "."};
-    for (int k = 0; k < 6; k++)
-        assert_true(assimp_reads_extension(READS[k]));
-    for (int k = 0; k < 4; k++)
-        assert_false(assimp_reads_extension(NOT[k]));
+    bool reads;
+    run_context run;
+    run_context_init(&run, NULL, NULL, NULL, NULL);
+    for (int k = 0; k < 10; k++) {
+        assert_int_equal(import_reads_extension(&run, k < 6 ? READS[k] : NOT[k - 6], &reads), AG_OK);
+        assert_true(reads == (k < 6));
+    }
+    run_context_reset(&run);
 }
 
 /* z is up in STL; it is turned to y. */
@@ -47,7 +51,7 @@ static void stl_in_both_forms(void **state)
     reading_destroy(&r);
 }
 
-/* One mesh at two places, of which one is mirrored; a quad becomes two triangles. */
+/* One mesh at two nodes, of which one is mirrored; a quad becomes two triangles. */
 static void nodes_place_meshes(void **state)
 {
     (void)state;
@@ -86,7 +90,7 @@ static void the_up_axis_is_turned(void **state)
     reading_destroy(&r);
 }
 
-#define CAMERA(place) "<node id=\"camn\" name=\"camn\">" place "<instance_camera url=\"#cam\"/></node>"
+#define CAMERA(transform) "<node id=\"camn\" name=\"camn\">" transform "<instance_camera url=\"#cam\"/></node>"
 
 /* It looks along its node's -z; 40 degrees across, 2:1, so this is its height: */
 static void cameras_look_where_the_file_says(void **state)
@@ -108,12 +112,12 @@ static void cameras_look_where_the_file_says(void **state)
 #define LIGHT(kind, words)                                                                                             \
     "<light id=\"lam\" name=\"lam\"><technique_common><" kind "><color>1 0.5 0.25</color>" words "</" kind             \
     "></technique_common></light>"
-#define LAMP(place) "<node id=\"lamn\" name=\"lamn\">" place "<instance_light url=\"#lam\"/></node>"
+#define LAMP(transform) "<node id=\"lamn\" name=\"lamn\">" transform "<instance_light url=\"#lam\"/></node>"
 
-static reading lit(const char *lights, const char *place)
+static reading lit(const char *lights, const char *placement)
 {
     char text[8192];
-    snprintf(text, sizeof text, COLLADA("<up_axis>Y_UP</up_axis>", "%s", "%s"), lights, place);
+    snprintf(text, sizeof text, COLLADA("<up_axis>Y_UP</up_axis>", "%s", "%s"), lights, placement);
     return model_quietly("a.dae", text);
 }
 
@@ -197,6 +201,7 @@ static void lamps_of_blenders_are_in_watts(void **state)
     assert_rgb(l->intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
     assert_near(l->falloff_end, 1 - sqrt(0.5), 1e-5);
     assert_near(l->falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
+    assert_true(l->dims_by_cosine);
     reading_destroy(&r);
 
     /* 2 m by 0.5 m: a quarter of the W is what radiance times area is; it is not seen itself */
@@ -248,6 +253,7 @@ static void lamps_of_blenders_fbx_are_in_watts(void **state)
     assert_int_equal(r.scene->lights[0].kind, LIGHT_SPOT);
     assert_near(r.scene->lights[0].falloff_end, 1 - sqrt(0.5), 1e-5);
     assert_near(r.scene->lights[0].falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
+    assert_true(r.scene->lights[0].dims_by_cosine);
     reading_destroy(&r);
     r = model_of("a.fbx", FBX_LAMP("1", "3", ""));
     assert_int_equal(r.status, AG_OK);

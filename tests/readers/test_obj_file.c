@@ -1,5 +1,5 @@
 /* test_obj_file.c: OBJ files: vertices, references of all forms, polygons, smoothing groups, materials; every error by
- * its message and place; files cut short or damaged anywhere. */
+ * its message and location; files cut short or damaged anywhere. */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/model_fixture.h"
 
@@ -184,7 +184,7 @@ static void what_is_not_supported_is_named(void **state)
     reading_destroy(&r);
 }
 
-static void errors_name_their_place(void **state)
+static void errors_name_their_location(void **state)
 {
     (void)state;
     model_refused("a.obj", SQUARE "f 1 2 9\n", AG_ERROR_SCENE,
@@ -281,7 +281,7 @@ int main(void)
         TEST_IN_FOLDER(one_mesh_for_each_material),
         TEST_IN_FOLDER(libraries_have_blanks_or_are_several),
         TEST_IN_FOLDER(what_is_not_supported_is_named),
-        TEST_IN_FOLDER(errors_name_their_place),
+        TEST_IN_FOLDER(errors_name_their_location),
         TEST_IN_FOLDER(files_cut_anywhere_do_no_harm),
         TEST_IN_FOLDER(files_damaged_anywhere_do_no_harm),
     };

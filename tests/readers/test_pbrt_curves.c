@@ -6,7 +6,7 @@ static const double FOUR[4][3] = {{0, 1, 2}, {3, -1, 0.5}, {1, 4, 1}, {-2, 0, 3}
 #define POINTS_3 "\"point3 P\" [0 1 2 3 -1 .5 1 4 1] "
 #define POINTS_4 "\"point3 P\" [0 1 2 3 -1 .5 1 4 1 -2 0 3] "
 
-/* The place of a segment at u. */
+/* The point of a segment at u. */
 static void at(const curves *c, uint32_t segment, double u, double out[3])
 {
     double w = 1.0 - u, b[4] = {w * w * w, 3 * u * w * w, 3 * u * u * w, u * u * u};

@@ -1,4 +1,4 @@
-/* test_pbrt_lexer.c: tokens and their places, strings, numbers, what is refused; and the numbers' exact values.
+/* test_pbrt_lexer.c: tokens and their locations, strings, numbers, what is refused; and the numbers' exact values.
  * Threads: one. */
 #include "pbrt/pbrt_lexer.h"
 
@@ -49,7 +49,7 @@ static void check_tokens(const char *text, const expected_token *expected, size_
         check_tokens(text, expected, sizeof expected / sizeof *expected);                                              \
     } while (0)
 
-static void tokens_have_places(void **state)
+static void tokens_have_locations(void **state)
 {
     (void)state;
     CHECK_TOKENS("Shape \"sphere\"\n  \"float radius\"[ 1.5 ]", {PBRT_TOKEN_WORD, 1, 1, "Shape"},
@@ -146,7 +146,7 @@ static void numbers_are_read_in_blocks(void **state)
     pbrt_lexer_reset(&lexer);
 }
 
-static void excerpts_point_at_the_place(void **state)
+static void excerpts_point_at_the_column(void **state)
 {
     (void)state;
     const char *text = "one\n\ttwo three\r\nfour";
@@ -267,14 +267,10 @@ static void what_is_no_decimal_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tokens_have_places),
-        cmocka_unit_test(blanks_and_comments_are_skipped),
-        cmocka_unit_test(strings_have_escapes),
-        cmocka_unit_test(bad_text_is_refused),
-        cmocka_unit_test(numbers_are_read_in_blocks),
-        cmocka_unit_test(excerpts_point_at_the_place),
-        cmocka_unit_test(decimals_are_rounded_correctly),
-        cmocka_unit_test(half_way_decimals_are_rounded_correctly),
+        cmocka_unit_test(tokens_have_locations),          cmocka_unit_test(blanks_and_comments_are_skipped),
+        cmocka_unit_test(strings_have_escapes),           cmocka_unit_test(bad_text_is_refused),
+        cmocka_unit_test(numbers_are_read_in_blocks),     cmocka_unit_test(excerpts_point_at_the_column),
+        cmocka_unit_test(decimals_are_rounded_correctly), cmocka_unit_test(half_way_decimals_are_rounded_correctly),
         cmocka_unit_test(what_is_no_decimal_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

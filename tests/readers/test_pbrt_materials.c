@@ -251,11 +251,11 @@ static void deep_mixes_are_refused(void **state)
 
 /* --- what is refused, or warned of --- */
 
-static void errors_name_place_and_reason(void **state)
+static void errors_name_location_and_reason(void **state)
 {
     (void)state;
     static const struct {
-        const char *text, *place, *message;
+        const char *text, *location, *message;
     } CASES[] = {
         {"\"coateddiffuse\" \"rgb reflectance\" [ -1 0 0 ]", "1:37",
          "\"rgb reflectance\" has a negative component, -1"},
@@ -307,7 +307,7 @@ static void errors_name_place_and_reason(void **state)
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         char text[512], expected[256];
         int length = snprintf(text, sizeof text, "WorldBegin Material %s", CASES[i].text);
-        snprintf(expected, sizeof expected, "t:%s: error: %s\n", CASES[i].place, CASES[i].message);
+        snprintf(expected, sizeof expected, "t:%s: error: %s\n", CASES[i].location, CASES[i].message);
         reading r = reading_create(NULL, text, (size_t)length);
         if (r.status != AG_ERROR_SCENE || r.count[AG_LOG_ERROR] != 1 ||
             strncmp(r.said[AG_LOG_ERROR], expected, strlen(expected)) != 0)
@@ -376,7 +376,7 @@ static void principled_materials(void **state)
     assert_rgb(m.dielectric_f0, .5 * f0, f0, .5, 1e-6);
 }
 
-/* Factors that are textured start at 1; at a place they are what the texture says, and what follows from that. */
+/* Factors that are textured start at 1; at a point they are what the texture says, and what follows from that. */
 static void principled_textures(void **state)
 {
     (void)state;
@@ -421,7 +421,7 @@ int main(void)
         cmocka_unit_test(names_grow_while_a_mix_is_made),
         cmocka_unit_test(circles_of_mixes_are_refused),
         cmocka_unit_test(deep_mixes_are_refused),
-        cmocka_unit_test(errors_name_place_and_reason),
+        cmocka_unit_test(errors_name_location_and_reason),
         cmocka_unit_test(warnings_are_given_once),
         cmocka_unit_test(principled_materials),
         cmocka_unit_test(principled_textures),

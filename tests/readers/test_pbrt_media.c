@@ -192,7 +192,7 @@ static void interfaces_do_not_shine(void **state)
     }
 }
 
-static void errors_name_their_place(void **state)
+static void errors_name_their_location(void **state)
 {
     (void)state;
     static const struct {
@@ -244,7 +244,7 @@ int main(void)
         cmocka_unit_test(sides_are_kept),
         cmocka_unit_test(interfaces_are_kept_where_they_matter),
         cmocka_unit_test(interfaces_do_not_shine),
-        cmocka_unit_test(errors_name_their_place),
+        cmocka_unit_test(errors_name_their_location),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -128,13 +128,13 @@ static void lamps_within_objects_come_into_the_world(void **state)
     static const char *const INSIDE[] = {"Translate 1 1 1 " TRIANGLE, "Scale 1 2 3 Shape \"sphere\" "};
     for (int k = 0; k < 2; k++)
         for (int mirror = 0; mirror < 2; mirror++) {
-            char text[1024], place[128];
-            snprintf(place, sizeof place, "Rotate 40 1 2 3 Scale 2 %d 3 ", mirror ? -1 : 1);
+            char text[1024], placement[128];
+            snprintf(placement, sizeof placement, "Rotate 40 1 2 3 Scale 2 %d 3 ", mirror ? -1 : 1);
             snprintf(
                 text, sizeof text,
                 "WorldBegin ObjectBegin \"a\" Shape \"disk\" AreaLightSource \"diffuse\" \"rgb L\" [ 1 2 3 ] \"float "
                 "power\" 10 %s ObjectEnd AttributeBegin %s ObjectInstance \"a\" AttributeEnd ObjectInstance \"a\"",
-                INSIDE[k], place);
+                INSIDE[k], placement);
             reading r = reading_of(text);
             assert_int_equal(r.count[AG_LOG_INFO], 1);
             assert_non_null(strstr(r.said[AG_LOG_INFO], "shapes that shine within an object are copied"));
@@ -142,7 +142,7 @@ static void lamps_within_objects_come_into_the_world(void **state)
                 text, sizeof text,
                 "WorldBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 2 3 ] \"float power\" 10 AttributeBegin %s %s "
                 "AttributeEnd %s",
-                place, INSIDE[k], INSIDE[k]);
+                placement, INSIDE[k], INSIDE[k]);
             reading by_hand = reading_of(text);
             assert_int_equal(r.scene->shape_count, 3);
             assert_int_equal(r.scene->light_count, 2);

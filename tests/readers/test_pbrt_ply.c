@@ -1,4 +1,4 @@
-/* test_pbrt_ply.c: Shape "plymesh": as "trianglemesh" makes the same mesh, its errors and warnings by their places.
+/* test_pbrt_ply.c: Shape "plymesh": as "trianglemesh" makes the same mesh, its errors and warnings by their locations.
  * Threads: one. */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/ply_fixture.h"

@@ -237,7 +237,7 @@ static void flat_quadrilaterals_become_two_triangles(void **state)
     assert_int_equal(only_mesh(&r)->triangle_count, 2);
     assert_near(shape_area(&r.scene->shapes[0]), 2, 1e-6);
     reading_destroy(&r);
-    /* with two corners in one place it is one triangle, and no fault of the file */
+    /* with two corners at one point it is one triangle, and no fault of the file */
     r = reading_of("WorldBegin Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 0 1 0 ]");
     assert_int_equal(only_mesh(&r)->triangle_count, 1);
     assert_near(shape_area(&r.scene->shapes[0]), 0.5, 1e-6);

@@ -69,12 +69,12 @@ static void wrong_textures_say_why(void **state)
         const char *at = cases[i].world;
         for (const char *next = at; (next = strstr(next, cases[i].at)); next++)
             at = next;
-        char place[64];
-        snprintf(place, sizeof place, "scene.pbrt:1:%d: error: ", (int)(at - cases[i].world) + 12);
-        if (r.status != cases[i].status || r.count[AG_LOG_ERROR] != 1 || !strstr(r.said[AG_LOG_ERROR], place) ||
+        char location[64];
+        snprintf(location, sizeof location, "scene.pbrt:1:%d: error: ", (int)(at - cases[i].world) + 12);
+        if (r.status != cases[i].status || r.count[AG_LOG_ERROR] != 1 || !strstr(r.said[AG_LOG_ERROR], location) ||
             !strstr(r.said[AG_LOG_ERROR], cases[i].text))
             fail_msg("%s: %s, not at %s: %s", cases[i].world, r.said[AG_LOG_ERROR] ? r.said[AG_LOG_ERROR] : "(nothing)",
-                     place, cases[i].text);
+                     location, cases[i].text);
         reading_destroy(&r);
     }
 }

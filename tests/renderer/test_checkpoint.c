@@ -200,8 +200,8 @@ static void test_every_setting_counts(void **state)
     unsigned char *bytes = (unsigned char *)&r->settings;
     for (size_t at = 0; at < sizeof r->settings; at += 4) {
         const size_t gap = offsetof(ag_render_settings, only) + sizeof r->settings.only;
-        const bool is_place = at > offsetof(ag_render_settings, gather_samples); /* of the map's file */
-        if (at == offsetof(ag_render_settings, float_samples) || at == gap || is_place)
+        const bool is_map_name = at > offsetof(ag_render_settings, gather_samples); /* of the map's file */
+        if (at == offsetof(ag_render_settings, float_samples) || at == gap || is_map_name)
             continue;
         bytes[at] ^= 1;
         checkpoint_header_make(r, &after);

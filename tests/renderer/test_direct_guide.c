@@ -6,7 +6,7 @@
 #include "fixtures/test_scene.h"
 #include "light/environment.h"
 
-enum { SAMPLES = 400000 / FEWER, PLACES = 500, PARTS = 8 };
+enum { SAMPLES = 400000 / FEWER, POINTS = 500, PARTS = 8 };
 
 #define LIGHTS                                                                                                         \
     "LightSource \"distant\" \"rgb L\" [3 3 3] LightSource \"infinite\" \"rgb L\" [1 1 1]"                             \
@@ -17,26 +17,26 @@ static const float SHARE = 0.8f;
 static direct_guide guide_of(const scene *s, direct_bins *seen)
 {
     rng random = test_random(1);
-    vec3 positions[PLACES], normals[PLACES];
-    uint32_t order[PLACES];
-    for (int i = 0; i < PLACES; i++) {
+    vec3 positions[POINTS], normals[POINTS];
+    uint32_t order[POINTS];
+    for (int i = 0; i < POINTS; i++) {
         positions[i] = random_in_box(&random, (vec3){-1.0f, -1.0f, -1.0f}, (vec3){1.0f, 1.0f, 1.0f});
         normals[i] = (vec3){0.0f, 0.0f, i % 2 ? 1.0f : -1.0f};
     }
     direct_guide g;
     assert_true(direct_guide_serves(s));
-    assert_int_equal(direct_guide_create(s, positions, normals, PLACES, order, &g), AG_OK);
-    assert_true(g.cell_count > PLACES / DIRECT_GUIDE_CELL_POINTS && g.share_count == 3 && g.histogram_count == 1);
+    assert_int_equal(direct_guide_create(s, positions, normals, POINTS, order, &g), AG_OK);
+    assert_true(g.cell_count > POINTS / DIRECT_GUIDE_CELL_POINTS && g.share_count == 3 && g.histogram_count == 1);
     uint32_t placed = 0;
     for (uint32_t i = 0; i < g.cell_count; i++) {
         float way = normals[order[g.cells[i].begin]].z;
         for (uint32_t k = 0; k < g.cells[i].count; k++, placed++) {
-            uint32_t place = order[g.cells[i].begin + k];
-            assert_true(normals[place].z == way);
+            uint32_t point = order[g.cells[i].begin + k];
+            assert_true(normals[point].z == way);
         }
         assert_true(g.cells[i].count >= DIRECT_GUIDE_CELL_POINTS_MIN && g.cells[i].count <= DIRECT_GUIDE_CELL_POINTS);
     }
-    assert_int_equal(placed, PLACES);
+    assert_int_equal(placed, POINTS);
     assert_int_equal(direct_guide_find(&g, positions[0], normals[0]), DIRECT_GUIDE_NO_CELL); /* nothing is seen yet */
 
     /* a window, a dim part, and nothing else */
@@ -47,7 +47,7 @@ static direct_guide guide_of(const scene *s, direct_bins *seen)
             seen->of[y][x] = y > 4 && y < 8 && x > 20 && x < 26 ? 5.0f + (float)x : 0.1f;
     for (uint32_t i = 0; i < g.cell_count; i++)
         direct_guide_fill(&g, i, SHARE, brought, seen);
-    for (int i = 0; i < PLACES; i++)
+    for (int i = 0; i < POINTS; i++)
         assert_true(direct_guide_find(&g, positions[i], normals[i]) < g.cell_count);
     assert_int_equal(direct_guide_find(&g, positions[0], (vec3){1.0f, 0.0f, 0.0f}), DIRECT_GUIDE_NO_CELL);
     assert_int_equal(direct_guide_find(NULL, positions[0], normals[0]), DIRECT_GUIDE_NO_CELL);

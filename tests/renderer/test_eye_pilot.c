@@ -38,12 +38,12 @@ static eye_pilot look(test_run *r, const char *world, int max_depth)
 }
 
 /* Of points between low and high, which lie in one plane. */
-static double mean_importance(const place_importance *importance, vec3 low, vec3 high, vec3 normal)
+static double mean_importance(const importance_map *importance, vec3 low, vec3 high, vec3 normal)
 {
     rng random = test_random(3);
     double sum = 0.0;
     for (int i = 0; i < POINTS; i++)
-        sum += (double)place_importance_at(importance, random_in_box(&random, low, high), normal);
+        sum += (double)importance_map_at(importance, random_in_box(&random, low, high), normal);
     return sum / POINTS;
 }
 

@@ -123,13 +123,13 @@ static ag_film *film_of(uint32_t layers, bool has_signs)
     return film;
 }
 
-static void add(ag_film *film, float radiance, int sign, bool is_hit, float place)
+static void add(ag_film *film, float radiance, int sign, bool is_hit, float value)
 {
     sample_layers layers = {.first = {.is_hit = is_hit,
-                                      .depth = place,
-                                      .position = {place, 0.0f, 0.0f},
-                                      .geometric_normal = {place, 0.0f, 1.0f},
-                                      .object_id = (uint32_t)place,
+                                      .depth = value,
+                                      .position = {value, 0.0f, 0.0f},
+                                      .geometric_normal = {value, 0.0f, 1.0f},
+                                      .object_id = (uint32_t)value,
                                       .material_id = 7}};
     if (!is_hit)
         layers.first = (first_hit){0};

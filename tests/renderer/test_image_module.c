@@ -93,7 +93,7 @@ static void module_opens_once_and_quietly(void **state)
     free(pixels);
 }
 
-static void missing_module_names_the_places(void **state)
+static void missing_module_names_the_paths(void **state)
 {
     (void)state;
     assert_int_equal(mkdir(in_folder("empty"), 0777), 0);
@@ -116,7 +116,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(exr_needs_no_module),
         TEST_IN_FOLDER(module_opens_once_and_quietly),
-        TEST_IN_FOLDER(missing_module_names_the_places),
+        TEST_IN_FOLDER(missing_module_names_the_paths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

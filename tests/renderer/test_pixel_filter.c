@@ -77,12 +77,12 @@ static void check_distribution(const char *directive, double radius_x, double ra
         for (int x = 0; x < SIDE; x++) {
             int sign = 0;
             vec2 p = pixel_filter_sample(&f, (vec2){((float)x + 0.5f) / SIDE, ((float)y + 0.5f) / SIDE}, &sign);
-            const double place[2] = {p.x, p.y};
+            const double offset[2] = {p.x, p.y};
             assert_true(sign == 1 || sign == -1);
             signs += sign;
             for (int axis = 0; axis < 2; axis++) {
-                assert_true(fabs(place[axis]) <= radius[axis]);
-                got[axis][(int)fmin((place[axis] / radius[axis] + 1.0) / 2.0 * COLUMNS, COLUMNS - 1)] += sign;
+                assert_true(fabs(offset[axis]) <= radius[axis]);
+                got[axis][(int)fmin((offset[axis] / radius[axis] + 1.0) / 2.0 * COLUMNS, COLUMNS - 1)] += sign;
             }
         }
     double mean_sign = whole[0] / magnitude[0] * whole[1] / magnitude[1];

@@ -460,7 +460,7 @@ static void check_shares(const double shares[3], double white, double glass, dou
         assert_close(shares[k], expected[k], 5.0 * sqrt(expected[k] * (1.0 - expected[k]) / SAMPLES));
 }
 
-static void mixes_pick_by_place(void **state)
+static void mixes_pick_by_point(void **state)
 {
     (void)state;
     static const char *const AMOUNTS[] = {"0", "0.25", "0.8", "1", "-3", "7"};
@@ -523,7 +523,7 @@ int main(void)
         cmocka_unit_test(a_coat_gives_back_what_it_traps),
         cmocka_unit_test(a_ball_of_rough_glass_keeps_light_for_long),
         cmocka_unit_test(a_pane_reflects_and_passes_straight),
-        cmocka_unit_test(mixes_pick_by_place),
+        cmocka_unit_test(mixes_pick_by_point),
         cmocka_unit_test(materials_know_whether_they_are_traced),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -292,7 +292,7 @@ static void configs_of_aces_kind(void **state)
                   "ACEScg");
 }
 
-/* Light is multiplied before the view, and the looks that are asked for take the place of the view's own. */
+/* Light is multiplied before the view, and the looks that are asked for replace the view's own. */
 static void exposure_and_looks(void **state)
 {
     (void)state;

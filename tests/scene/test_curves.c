@@ -13,19 +13,19 @@
 
 static const struct {
     const char *before, *after;
-} PLACES[] = {{"", ""},
-              {PLACED, ""},
-              {PLACED "Scale 3 3 -3 ", ""},
-              {PLACED "Scale 1 2 0.7 ", ""},
-              {"Scale 0.002 0.002 0.002 ", ""},
-              {IN_OBJECT, SEEN},
-              {IN_OBJECT PLACED "Scale .5 1 1 ", SEEN}};
-enum { PLACE_COUNT = sizeof PLACES / sizeof *PLACES };
+} PLACEMENTS[] = {{"", ""},
+                  {PLACED, ""},
+                  {PLACED "Scale 3 3 -3 ", ""},
+                  {PLACED "Scale 1 2 0.7 ", ""},
+                  {"Scale 0.002 0.002 0.002 ", ""},
+                  {IN_OBJECT, SEEN},
+                  {IN_OBJECT PLACED "Scale .5 1 1 ", SEEN}};
+enum { PLACEMENT_COUNT = sizeof PLACEMENTS / sizeof *PLACEMENTS };
 
-static scene *make(test_run *r, int place, const char *what)
+static scene *make(test_run *r, int placement, const char *what)
 {
     char world[1024];
-    snprintf(world, sizeof world, "%s%s%s", PLACES[place].before, what, PLACES[place].after);
+    snprintf(world, sizeof world, "%s%s%s", PLACEMENTS[placement].before, what, PLACEMENTS[placement].after);
     return test_scene_create(r, world);
 }
 
@@ -86,10 +86,10 @@ static comparison compare(const scene *a, const scene *b, bool is_two_sided, dou
     return c;
 }
 
-static void expect_alike(const char *what, int place, comparison c)
+static void expect_alike(const char *what, int placement, comparison c)
 {
     if (c.met < c.rays / 16 || c.differ > c.rays / 500) /* rays that graze an edge */
-        fail_msg("%s, place %d: of %d rays %d meet both, %d differ", what, place, c.rays, c.met, c.differ);
+        fail_msg("%s, placement %d: of %d rays %d meet both, %d differ", what, placement, c.rays, c.met, c.differ);
 }
 
 static void a_straight_tube_is_a_cylinder(void **state)
@@ -97,15 +97,15 @@ static void a_straight_tube_is_a_cylinder(void **state)
     (void)state;
     test_run r;
     test_run_init(&r, 1);
-    for (int place = 0; place < PLACE_COUNT; place++)
+    for (int placement = 0; placement < PLACEMENT_COUNT; placement++)
         for (int side = 0; side < 2; side++) {
             char tube[256], cylinder[256];
             snprintf(tube, sizeof tube, "%s" TUBE STRAIGHT "\"float width\" .6", side ? "ReverseOrientation " : "");
             snprintf(cylinder, sizeof cylinder, "%sShape \"cylinder\" \"float radius\" .3",
                      side ? "ReverseOrientation " : "");
-            scene *a = make(&r, place, tube), *b = make(&r, place, cylinder);
-            expect_alike("tube", place, compare(a, b, false, 1e-4));
-            if (place == 0)
+            scene *a = make(&r, placement, tube), *b = make(&r, placement, cylinder);
+            expect_alike("tube", placement, compare(a, b, false, 1e-4));
+            if (placement == 0)
                 assert_relative(shape_area(&a->shapes[0]), shape_area(&b->shapes[0]), 1e-3);
             scene_destroy(a);
             scene_destroy(b);
@@ -118,11 +118,11 @@ static void a_straight_ribbon_is_a_rectangle(void **state)
     (void)state;
     test_run r;
     test_run_init(&r, 1);
-    for (int place = 0; place < PLACE_COUNT; place++) {
+    for (int placement = 0; placement < PLACEMENT_COUNT; placement++) {
         /* of the normals only what is across the curve counts */
-        scene *a = make(&r, place, RIBBON STRAIGHT "\"float width\" .6 \"normal N\" [0 2 0  0 2 1]");
-        scene *b = make(&r, place, "Shape \"bilinearmesh\" \"point3 P\" [-.3 0 -1 .3 0 -1 -.3 0 1 .3 0 1]");
-        expect_alike("ribbon", place, compare(a, b, true, 1e-4));
+        scene *a = make(&r, placement, RIBBON STRAIGHT "\"float width\" .6 \"normal N\" [0 2 0  0 2 1]");
+        scene *b = make(&r, placement, "Shape \"bilinearmesh\" \"point3 P\" [-.3 0 -1 .3 0 -1 -.3 0 1 .3 0 1]");
+        expect_alike("ribbon", placement, compare(a, b, true, 1e-4));
         scene_destroy(a);
         scene_destroy(b);
     }
@@ -254,8 +254,8 @@ static void rays_that_leave_do_not_come_back(void **state)
     test_run r;
     test_run_init(&r, 1);
     for (int k = 0; k < LEFT_COUNT; k++)
-        for (int place = 0; place < PLACE_COUNT; place++) {
-            scene *s = make(&r, place, LEFT[k].text);
+        for (int placement = 0; placement < PLACEMENT_COUNT; placement++) {
+            scene *s = make(&r, placement, LEFT[k].text);
             int left = 0, back = 0, in = 0, lost = 0;
             for (int i = 0; i < 2000 / FEWER; i++) {
                 rng random = test_random((uint64_t)i);
@@ -278,8 +278,8 @@ static void rays_that_leave_do_not_come_back(void **state)
             /* a long way off, a turned ribbon comes round again */
             if (left < 200 / FEWER || (LEFT[k].is_closed && in < 10 / FEWER) || back > (k == 5 ? left / 20 : 0) ||
                 lost > in / 50)
-                fail_msg("%s, place %d: of %d rays %d come back, of %d that go in %d are lost", LEFT[k].text, place,
-                         left, back, in, lost);
+                fail_msg("%s, placement %d: of %d rays %d come back, of %d that go in %d are lost", LEFT[k].text,
+                         placement, left, back, in, lost);
             scene_destroy(s);
         }
     test_run_reset(&r);
@@ -297,8 +297,8 @@ static void tangents_go_where_uv_goes(void **state)
     test_run r;
     test_run_init(&r, 1);
     for (int k = 0; k < 3; k++)
-        for (int place = 0; place < PLACE_COUNT; place++) {
-            scene *s = make(&r, place, CURVES[k]);
+        for (int placement = 0; placement < PLACEMENT_COUNT; placement++) {
+            scene *s = make(&r, placement, CURVES[k]);
             int tried = 0, wrong = 0;
             for (int i = 0; i < RAYS; i++) {
                 rng random = test_random((uint64_t)i);
@@ -324,7 +324,7 @@ static void tangents_go_where_uv_goes(void **state)
                 wrong += off > bound || (k == 0 && (double)vec3_dot(moved, dpdv) * (double)dv < -1e-3 * (double)step);
             }
             if (tried < RAYS / 100 || wrong > 1 + tried / 25)
-                fail_msg("%s, place %d: %d of %d wrong", CURVES[k], place, wrong, tried);
+                fail_msg("%s, placement %d: %d of %d wrong", CURVES[k], placement, wrong, tried);
             scene_destroy(s);
         }
     test_run_reset(&r);

@@ -139,7 +139,7 @@ static void a_scene_takes_values_everywhere(void **state)
     reading_destroy(&r);
 }
 
-static void mistakes_have_places(void **state)
+static void mistakes_have_locations(void **state)
 {
     (void)state;
     definition items[] = {{"a", "x", false, false}, {"s", "\"x", false, false}, {"big", "1e999", false, false}};
@@ -166,9 +166,9 @@ static void mistakes_have_places(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_stand_for_names), cmocka_unit_test(without_definitions_strings_stay),
-        cmocka_unit_test(what_is_used_is_known),  cmocka_unit_test(a_scene_takes_values_everywhere),
-        cmocka_unit_test(mistakes_have_places),
+        cmocka_unit_test(values_stand_for_names),  cmocka_unit_test(without_definitions_strings_stay),
+        cmocka_unit_test(what_is_used_is_known),   cmocka_unit_test(a_scene_takes_values_everywhere),
+        cmocka_unit_test(mistakes_have_locations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

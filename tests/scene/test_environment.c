@@ -137,7 +137,7 @@ static const struct {
 enum { SIZE_COUNT = sizeof SIZES / sizeof *SIZES };
 
 /* From a point on the picture to a direction and back is the same pixel, and a unit direction. */
-static void places_and_directions_round_trip(void **state)
+static void points_and_directions_round_trip(void **state)
 {
     (void)state;
     for (int k = 0; k < SIZE_COUNT; k++) {
@@ -386,7 +386,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cells_are_picked_by_weight),
         cmocka_unit_test(directions_are_those_of_pbrt),
-        cmocka_unit_test(places_and_directions_round_trip),
+        cmocka_unit_test(points_and_directions_round_trip),
         cmocka_unit_test(pixels_have_their_solid_angles),
         cmocka_unit_test(large_pictures_are_sharp),
         cmocka_unit_test(directions_are_sampled_by_their_density),

@@ -55,7 +55,7 @@ static void smooth_interfaces_are_schlicks(void **state)
     }
 }
 
-static void all_places_are_inside_the_table(void **state)
+static void all_arguments_are_inside_the_table(void **state)
 {
     (void)state;
     for (int k = 0; k <= 16; k++)
@@ -75,7 +75,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rough_interfaces),
         cmocka_unit_test(smooth_interfaces_are_schlicks),
-        cmocka_unit_test(all_places_are_inside_the_table),
+        cmocka_unit_test(all_arguments_are_inside_the_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -129,7 +129,7 @@ static void values_are_those_of_the_model(void **state)
 
 /* --- photons --- */
 
-/* Over all places across, light that comes from a and leaves to b is as much, seen from either end: photons meet a
+/* Over all offsets across, light that comes from a and leaves to b is as much, seen from either end: photons meet a
  * fibre as often as it seems wide to them. */
 static void photons_and_eye_agree(void **state)
 {
@@ -140,12 +140,12 @@ static void photons_and_eye_agree(void **state)
         double theta_a = 2.4 * (double)rng_float(&random) - 1.2, theta_b = 2.4 * (double)rng_float(&random) - 1.2;
         vec3 a = toward(theta_a, 6.0 * (double)rng_float(&random)), b = toward(theta_b, 1.0);
         double eye = 0.0, photons = 0.0;
-        enum { PLACES = 64 };
-        for (int i = 0; i < PLACES; i++) {
-            float v = ((float)i + 0.5f) / PLACES;
+        enum { OFFSETS = 64 };
+        for (int i = 0; i < OFFSETS; i++) {
+            float v = ((float)i + 0.5f) / OFFSETS;
             hair_fibre of_eye = hair_fibre_at(&m, v, b), of_photon = hair_fibre_at(&m, v, a);
-            eye += (double)scattered(&of_eye, false, a).r * cos(theta_b) / PLACES;
-            photons += (double)scattered(&of_photon, true, b).r * cos(theta_a) / PLACES;
+            eye += (double)scattered(&of_eye, false, a).r * cos(theta_b) / OFFSETS;
+            photons += (double)scattered(&of_photon, true, b).r * cos(theta_a) / OFFSETS;
         }
         assert_close(photons, eye, 1e-3 * eye + 1e-6);
     }

@@ -2,6 +2,7 @@
  * meet their own surface, far away and under any affine map; bounds and areas. Threads: the build's. */
 #include "fixtures/test_scene.h"
 
+#include "material/bsdf.h"
 #include "math/motion.h"
 #include "scene_extent.h"
 
@@ -109,6 +110,55 @@ static void instances_are_their_shapes_moved(void **state)
             assert_true(met > 100 / FEWER);
             assert_true(different <= 2);
             scene_destroy(moved);
+            scene_destroy(instanced);
+        }
+    test_run_reset(&r);
+}
+
+/* Both see the fibre at one place, and the place across it from the same side. */
+static void expect_same_hair(const scene *a, const scene *b, const scene_ray *ray, rng *random, uint32_t *met)
+{
+    surface_hit of_a, of_b;
+    if (!scene_intersect(a, *ray, INFINITY, &of_a) || !scene_intersect(b, *ray, INFINITY, &of_b) ||
+        of_a.primitive_index != of_b.primitive_index || fabsf(of_a.distance - of_b.distance) > 1e-3f)
+        return;
+    vec3 out = vec3_negate(ray->direction);
+    bsdf in_a = bsdf_create(a, &of_a, out), in_b = bsdf_create(b, &of_b, out);
+    for (int i = 0; i < 8; i++) {
+        vec3 from = random_direction(random);
+        rgb f = bsdf_evaluate(&in_a, BSDF_ALL, BSDF_RADIANCE, from);
+        rgb g = bsdf_evaluate(&in_b, BSDF_ALL, BSDF_RADIANCE, from);
+        assert_close(g.g, f.g, 0.02f * f.g + 0.002f);
+    }
+    ++*met;
+}
+
+static void hair_scatters_alike_in_a_mirror(void **state)
+{
+    (void)state;
+    static const char *const TYPES[] = {"flat", "cylinder", "ribbon"};
+    test_run r;
+    test_run_init(&r, 1);
+    rng random = test_random(2);
+    for (int k = 0; k < 3; k++)
+        for (int mirrored = 0; mirrored < 2; mirrored++) {
+            char hair[512], text[1024];
+            const char *map = mirrored ? "Rotate 40 1 2 3 Scale -1 1 1" : "Rotate 40 1 2 3";
+            snprintf(hair, sizeof hair,
+                     "Material \"hair\" \"rgb sigma_a\" [.1 .2 .4] Shape \"curve\" \"string type\" \"%s\" "
+                     "\"float width\" .6 \"point3 P\" [-1 0 0 -.3 .3 0 .3 .3 .2 1 0 .2] %s ",
+                     TYPES[k], k == 2 ? "\"normal N\" [0 0 1 0 .3 1]" : "");
+            snprintf(text, sizeof text, "%s %s", map, hair);
+            scene *by_hand = test_scene_create(&r, text);
+            snprintf(text, sizeof text, "ObjectBegin \"a\" %s ObjectEnd %s ObjectInstance \"a\"", hair, map);
+            scene *instanced = test_scene_create(&r, text);
+            uint32_t met = 0;
+            for (uint32_t i = 0; i < 2000 / FEWER; i++) {
+                scene_ray ray = random_ray(&random, by_hand);
+                expect_same_hair(by_hand, instanced, &ray, &random, &met);
+            }
+            assert_true(met > 100 / FEWER);
+            scene_destroy(by_hand);
             scene_destroy(instanced);
         }
     test_run_reset(&r);
@@ -434,6 +484,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(instances_are_their_shapes_moved),
+        cmocka_unit_test(hair_scatters_alike_in_a_mirror),
         cmocka_unit_test(starts_do_not_meet_their_own_surface),
         cmocka_unit_test(moving_shapes_are_met_where_they_are),
         cmocka_unit_test(a_surface_is_found_where_it_was_at_first),

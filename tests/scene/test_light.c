@@ -40,6 +40,10 @@ static void lamps_without_extent(void **state)
         assert_true(is_lit == (x > 0.0));
         if (is_lit)
             assert_close(at.radiance.g, 2.0 / 4.0 * x * x * (3.0 - 2.0 * x), 1e-4);
+        light dimming = s->lights[0];
+        dimming.dims_by_cosine = true;
+        if (light_sample_from_point(s, &dimming, point, (vec2){0.5f, 0.5f}, &at))
+            assert_close(at.radiance.g, 2.0 / 4.0 * c * x * x * (3.0 - 2.0 * x), 1e-4);
     }
     scene_destroy(s);
     test_run_reset(&r);

@@ -111,7 +111,7 @@ static double brought(const scene *s, uint32_t index, vec3 point, vec3 normal, v
            (double)at.pdf_solid_angle;
 }
 
-static void check_probabilities(const char *world, int place_count)
+static void check_probabilities(const char *world, int point_count)
 {
     test_run r;
     test_run_init(&r, 1);
@@ -121,7 +121,7 @@ static void check_probabilities(const char *world, int place_count)
     uint32_t *counts = malloc(s->light_count * sizeof *counts);
     assert_non_null(shares);
     assert_non_null(counts);
-    for (int k = 0; k < place_count; k++) {
+    for (int k = 0; k < point_count; k++) {
         vec3 point = random_in_box(&random, (vec3){-12.0f, -12.0f, -4.0f}, (vec3){12.0f, 12.0f, 4.0f});
         vec3 normal = k % 3 == 0 ? ALL_SIDES : random_direction(&random);
         double sum = 0.0;
@@ -183,8 +183,8 @@ static void many_lamps_are_found(void **state)
     rng random = test_random(12);
     double log_ratio = 0.0, *brings = malloc(s->light_count * sizeof *brings);
     assert_non_null(brings);
-    enum { PLACES = 40, SAMPLES = 64, PICKS = 40000 / FEWER };
-    for (int k = 0; k < PLACES; k++) {
+    enum { POINTS = 40, SAMPLES = 64, PICKS = 40000 / FEWER };
+    for (int k = 0; k < POINTS; k++) {
         vec3 point = random_in_box(&random, (vec3){-10.0f, -10.0f, -3.0f}, (vec3){10.0f, 10.0f, 3.0f});
         vec3 normal = k % 2 ? random_direction(&random) : ALL_SIDES;
         double all = 0.0, squares[2] = {0.0, 0.0};
@@ -205,7 +205,7 @@ static void many_lamps_are_found(void **state)
             mean += probability > 0.0f ? brings[index] / (double)probability / PICKS : 0.0;
         }
         assert_close(mean, all, 5.0 * sqrt(variance / PICKS));
-        log_ratio += 0.5 * log((squares[1] - all * all) / variance) / PLACES;
+        log_ratio += 0.5 * log((squares[1] - all * all) / variance) / POINTS;
     }
     free(brings);
     print_message("300 lamps: %.1f times less noise of the pick than by power\n", exp(log_ratio));
@@ -259,7 +259,7 @@ static void one_light_is_certain(void **state)
 }
 
 /* Points where bounds are at their worst: in lamps, on them, beside their planes, at the point of a spot, far away. */
-static void odd_places(void **state)
+static void odd_points(void **state)
 {
     (void)state;
     test_run r;
@@ -322,7 +322,7 @@ int main(void)
         cmocka_unit_test(many_lamps_are_found),
         cmocka_unit_test(the_near_lamp_and_the_sun),
         cmocka_unit_test(one_light_is_certain),
-        cmocka_unit_test(odd_places),
+        cmocka_unit_test(odd_points),
         cmocka_unit_test(scales_do_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

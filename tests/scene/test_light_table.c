@@ -6,7 +6,7 @@
 
 enum { SAMPLES = 16000 / FEWER };
 
-typedef enum builder { FROM_TEXT, GONIOMETRIC, PROJECTION, WINDOW } builder;
+typedef enum builder { FROM_TEXT, GONIOMETRIC, PROJECTION, WINDOW, DIMMING } builder;
 
 typedef struct light_row {
     const char *name, *text; /* the lamp, above the disc at the origin that faces up */
@@ -46,6 +46,9 @@ static const light_row ROWS[] = {
     {"spot",
      FLOOR "LightSource \"spot\" \"rgb I\" [3 2 1] " MIDDLE "\"float coneangle\" 35 \"float conedeltaangle\" 20", NULL,
      FROM_TEXT, 0, false, false},
+    {"spot that dims",
+     FLOOR "LightSource \"spot\" \"rgb I\" [3 2 1] " MIDDLE "\"float coneangle\" 70 \"float conedeltaangle\" 30", NULL,
+     DIMMING, 0, false, false},
     {"goniometric, octahedral", FAR, NULL, GONIOMETRIC, 0, false, false},
     {"goniometric, latitudes", FAR, NULL, GONIOMETRIC, 1, false, false},
     {"goniometric, even", FAR, NULL, GONIOMETRIC, 2, false, false},
@@ -117,8 +120,9 @@ static scene *row_scene(test_run *r, const light_row *row)
               : row->builder == WINDOW                     ? window_light_number(row->number)
                                                            : light_make(LIGHT_POINT);
     snprintf(world, sizeof world, "%s%s", row->texture ? row->texture : "", row->text);
-    scene *s = scene_with_light(r, world, row->builder == FROM_TEXT ? NULL : &l);
+    scene *s = scene_with_light(r, world, row->builder == FROM_TEXT || row->builder == DIMMING ? NULL : &l);
     assert_int_equal(s->light_count, 1);
+    s->lights[0].dims_by_cosine = row->builder == DIMMING;
     if (row->texture)
         s->lights[0].radiance_texture = s->texture_count - 1;
     assert_int_equal(scene_commit(s, &r->run, NULL), AG_OK);
@@ -259,7 +263,7 @@ static void check_towards(const light_row *row, const scene *s, vec3 point)
         assert_chi_square(counts, bins, SAMPLES, 0.02 * WIDER);
 }
 
-static void light_towards_a_place_is_as_is_said(void **state)
+static void light_towards_a_point_is_as_is_said(void **state)
 {
     (void)state;
     for (int k = 0; k < ROW_COUNT; k++) {
@@ -330,7 +334,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_has_a_row),
-        cmocka_unit_test(light_towards_a_place_is_as_is_said),
+        cmocka_unit_test(light_towards_a_point_is_as_is_said),
         cmocka_unit_test(photons_carry_what_direct_light_says),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,8 +13,8 @@ static scene *window_scene(test_run *r, int k)
     return s;
 }
 
-static const vec3 PLACES[] = {{0.0f, 0.0f, 0.0f}, {1.6f, 0.2f, 0.3f}, {-6.0f, 5.0f, -4.0f}, {1.5f, -4.0f, 0.0f}};
-enum { PLACE_COUNT = sizeof PLACES / sizeof *PLACES };
+static const vec3 POINTS[] = {{0.0f, 0.0f, 0.0f}, {1.6f, 0.2f, 0.3f}, {-6.0f, 5.0f, -4.0f}, {1.5f, -4.0f, 0.0f}};
+enum { POINT_COUNT = sizeof POINTS / sizeof *POINTS };
 
 static void only_rectangles_are_portals(void **state)
 {
@@ -83,11 +83,11 @@ static void directions_are_sampled_by_their_density(void **state)
         test_run_init(&r, 1);
         scene *s = window_scene(&r, k);
         const light *l = &s->lights[0];
-        for (int place = 0; place < PLACE_COUNT; place++) {
+        for (int index = 0; index < POINT_COUNT; index++) {
             struct {
                 const light *l;
                 vec3 point;
-            } v = {l, PLACES[place]};
+            } v = {l, POINTS[index]};
             static uint32_t counts[BIN_COUNT];
             static double bins[BIN_COUNT];
             memset(counts, 0, sizeof counts);
@@ -132,8 +132,8 @@ static void the_light_is_what_comes_through(void **state)
         test_run_init(&r, 1);
         scene *s = window_scene(&r, k);
         const light *l = &s->lights[0];
-        for (int place = 0; place < PLACE_COUNT; place++) {
-            vec3 point = PLACES[place];
+        for (int index = 0; index < POINT_COUNT; index++) {
+            vec3 point = POINTS[index];
             rng random = test_random(7);
             mean through = {0.0, 0.0}, all = {0.0, 0.0};
             enum { ALL = 10 * SAMPLES };
@@ -182,13 +182,13 @@ static void a_constant_sky_fills_the_windows_solid_angle(void **state)
     scene *s = window_scene(&r, 0);
     vec3 c[4];
     make_corners(c);
-    for (int place = 0; place < PLACE_COUNT; place++) {
-        double expected = solid_angle(PLACES[place], c) + solid_angle(PLACES[place], (vec3[]){c[0], c[2], c[3]});
+    for (int index = 0; index < POINT_COUNT; index++) {
+        double expected = solid_angle(POINTS[index], c) + solid_angle(POINTS[index], (vec3[]){c[0], c[2], c[3]});
         rng random = test_random(8);
         mean angle = {0.0, 0.0};
         for (int i = 0; i < SAMPLES; i++) {
             light_sample at;
-            assert_true(light_sample_from_point(s, &s->lights[0], PLACES[place], rng_vec2(&random), &at));
+            assert_true(light_sample_from_point(s, &s->lights[0], POINTS[index], rng_vec2(&random), &at));
             mean_add(&angle, 1.0 / (double)at.pdf_solid_angle, SAMPLES);
         }
         assert_close(angle.value, expected, 5.0 * mean_error(angle, SAMPLES) + 1e-5 * expected);
@@ -263,9 +263,9 @@ static void a_black_sky(void **state)
     rng random = test_random(10);
     light_sample at;
     light_emission e;
-    assert_false(light_sample_from_point(s, &s->lights[0], PLACES[0], (vec2){0.5f, 0.5f}, &at));
+    assert_false(light_sample_from_point(s, &s->lights[0], POINTS[0], (vec2){0.5f, 0.5f}, &at));
     assert_false(light_sample_emission(s, &s->lights[0], NULL, &random, &e));
-    assert_true(environment_pdf(&s->lights[0], PLACES[0], vec3_make(1.0f, 0.0f, 0.0f)) == 0.0f);
+    assert_true(environment_pdf(&s->lights[0], POINTS[0], vec3_make(1.0f, 0.0f, 0.0f)) == 0.0f);
     assert_true(rgb_is_black(s->light_power));
     scene_destroy(s);
     test_run_reset(&r);

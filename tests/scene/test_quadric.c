@@ -18,13 +18,14 @@ static const char *const SHAPES[] = {
     "Shape \"disk\" \"float radius\" [2] \"float innerradius\" [1] \"float height\" [-1] \"float phimax\" [120]",
     "Shape \"disk\" \"float phimax\" [200]",
 };
-static const char *const PLACES[] = {"", PLACED, PLACED "Scale 3 3 3 ", "Scale 3 1 -0.5 ", PLACED "Scale 1 -2 0.7 "};
-enum { SHAPE_COUNT = sizeof SHAPES / sizeof *SHAPES, PLACE_COUNT = sizeof PLACES / sizeof *PLACES };
+static const char *const PLACEMENTS[] = {"", PLACED, PLACED "Scale 3 3 3 ", "Scale 3 1 -0.5 ",
+                                         PLACED "Scale 1 -2 0.7 "};
+enum { SHAPE_COUNT = sizeof SHAPES / sizeof *SHAPES, PLACEMENT_COUNT = sizeof PLACEMENTS / sizeof *PLACEMENTS };
 
-static scene *make(test_run *r, int shape_index, int place)
+static scene *make(test_run *r, int shape_index, int placement)
 {
     char world[512];
-    snprintf(world, sizeof world, "%s" LAMP "%s", PLACES[place], SHAPES[shape_index]);
+    snprintf(world, sizeof world, "%s" LAMP "%s", PLACEMENTS[placement], SHAPES[shape_index]);
     return test_scene_create(r, world);
 }
 
@@ -124,8 +125,8 @@ static void bounds_are_tight(void **state)
     test_run r;
     test_run_init(&r, 1);
     for (int k = 0; k < SHAPE_COUNT; k++)
-        for (int place = 0; place < PLACE_COUNT; place++) {
-            scene *s = make(&r, k, place);
+        for (int placement = 0; placement < PLACEMENT_COUNT; placement++) {
+            scene *s = make(&r, k, placement);
             const shape *it = &s->shapes[0];
             vec3 low, high, seen_low = {INFINITY, INFINITY, INFINITY}, seen_high = vec3_negate(seen_low);
             shape_bounds(it, &low, &high);
@@ -171,8 +172,8 @@ static void rays_meet_every_point_with_its_uv(void **state)
     test_run r;
     test_run_init(&r, 1);
     for (int k = 0; k < SHAPE_COUNT; k++)
-        for (int place = 0; place < PLACE_COUNT; place++) {
-            scene *s = make(&r, k, place);
+        for (int placement = 0; placement < PLACEMENT_COUNT; placement++) {
+            scene *s = make(&r, k, placement);
             const shape *it = &s->shapes[0];
             const transform *world = &it->as.quadric.world_from_object;
             rng random = test_random((uint64_t)k);
@@ -186,7 +187,7 @@ static void rays_meet_every_point_with_its_uv(void **state)
                 vec3 from = vec3_add_scaled(p, n, 0.3f);
                 surface_hit hit;
                 if (!scene_intersect(s, scene_ray_make(from, vec3_negate(n)), INFINITY, &hit))
-                    fail_msg("%s%s is not met at %g, %g", PLACES[place], SHAPES[k], u, v);
+                    fail_msg("%s%s is not met at %g, %g", PLACEMENTS[placement], SHAPES[k], u, v);
                 double scale = s->bounding_radius + vec3_max_abs(s->bounding_center);
                 assert_close(hit.distance, 0.3, 1e-5 * scale);
                 assert_close(sqrt(vec3_distance_squared(hit.position, p)), 0.0, 1e-5 * scale);
@@ -212,8 +213,8 @@ static void rays_meet_the_part_alone(void **state)
     test_run r;
     test_run_init(&r, 1);
     for (int k = 0; k < SHAPE_COUNT; k++)
-        for (int place = 0; place < PLACE_COUNT; place++) {
-            scene *s = make(&r, k, place);
+        for (int placement = 0; placement < PLACEMENT_COUNT; placement++) {
+            scene *s = make(&r, k, placement);
             const shape *it = &s->shapes[0];
             rng random = test_random(100);
             int hits = 0, through = 0;
@@ -284,8 +285,8 @@ static void samples_are_even_over_the_part(void **state)
     test_run r;
     test_run_init(&r, 1);
     for (int k = 0; k < SHAPE_COUNT; k++)
-        for (int place = 0; place < PLACE_COUNT; place++) {
-            scene *s = make(&r, k, place);
+        for (int placement = 0; placement < PLACEMENT_COUNT; placement++) {
+            scene *s = make(&r, k, placement);
             const shape *it = &s->shapes[0];
             const quadric *q = &it->as.quadric;
             rng random = test_random(7);
@@ -330,8 +331,8 @@ static void lamps_shine_as_they_are_seen(void **state)
     test_run r;
     test_run_init(&r, 1);
     for (int k = 3; k < SHAPE_COUNT; k++)
-        for (int place = 1; place < PLACE_COUNT; place += 3) {
-            scene *s = make(&r, k, place);
+        for (int placement = 1; placement < PLACEMENT_COUNT; placement += 3) {
+            scene *s = make(&r, k, placement);
             const light *lamp = &s->lights[0];
             rng random = test_random(11);
             vec3 away = random_direction(&random);

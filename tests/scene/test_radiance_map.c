@@ -167,17 +167,17 @@ static void light_is_sampled_by_its_density(void **state)
                 }
             }
             /* points picked evenly */
-            surface_sample place = shape_sample_area(&s->shapes[0], rng_vec2(&random));
-            vec3 to = vec3_sub(place.position, point), d = vec3_normalize(to);
+            surface_sample sample = shape_sample_area(&s->shapes[0], rng_vec2(&random));
+            vec3 to = vec3_sub(sample.position, point), d = vec3_normalize(to);
             surface_hit there;
-            shape_sample_surface(&s->shapes[0], 0, &place, &there);
+            shape_sample_surface(&s->shapes[0], 0, &sample, &there);
             vec3 stop =
-                vec3_add_scaled(place.position, vec3_face_forward(place.geometric_normal, vec3_negate(d)), 1e-4f);
+                vec3_add_scaled(sample.position, vec3_face_forward(sample.geometric_normal, vec3_negate(d)), 1e-4f);
             if (!is_blocked_between(s, point, stop))
                 mean_add(&by_area,
                          (double)light_emitted_radiance(s, l, &there, vec3_negate(d)).g *
-                             fabs((double)vec3_dot(d, place.geometric_normal)) /
-                             ((double)vec3_length_squared(to) * (double)place.pdf_area),
+                             fabs((double)vec3_dot(d, sample.geometric_normal)) /
+                             ((double)vec3_length_squared(to) * (double)sample.pdf_area),
                          SAMPLES);
         }
         assert_true(strangers < SAMPLES / 100); /* at the borders of squares and of cells */

@@ -6,7 +6,7 @@
 #include "fixtures/test_scene.h"
 #include "material/bsdf.h"
 
-enum { PLACES = 300 / FEWER };
+enum { POINTS = 300 / FEWER };
 
 static test_run run;
 
@@ -90,7 +90,7 @@ static void a_ramp_on_a_sphere(void **state)
         scene *s = test_scene_create(&run, WORLDS[w]);
         rng random = test_random(5);
         double side = w == 0 ? 1.0 : -1.0; /* inwards, the raised sphere is a smaller one */
-        for (int i = 0; i < PLACES; i++) {
+        for (int i = 0; i < POINTS; i++) {
             vec3 out = random_direction(&random);
             surface_hit hit;
             assert_true(scene_intersect(s, scene_ray_make(vec3_scale(out, 5.0f), vec3_negate(out)), INFINITY, &hit));
@@ -133,7 +133,7 @@ static void mixes_have_the_maps_of_what_they_pick(void **state)
                    "Material \"mix\" \"string materials\" [ \"flat\" \"raised\" ]\n" PLANE);
     rng random = test_random(6);
     int raised = 0;
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < POINTS; i++) {
         surface_hit hit = hit_from_above(s, 1.8f * (rng_float(&random) - 0.5f), 3.8f * (rng_float(&random) - 0.5f));
         vec3 n = normal_at(s, &hit);
         bool is_raised = n.x < -0.01f;
@@ -143,7 +143,7 @@ static void mixes_have_the_maps_of_what_they_pick(void **state)
             assert_direction(n, 0.0, 0.0, 1.0, 0.0);
         raised += is_raised;
     }
-    assert_close((double)raised / PLACES, 0.5, 4.5 * sqrt(0.25 / PLACES));
+    assert_close((double)raised / POINTS, 0.5, 4.5 * sqrt(0.25 / POINTS));
     scene_destroy(s);
 }
 

@@ -4,7 +4,7 @@
 
 #include "fixtures/test_scene.h"
 
-enum { PLACES = 400 / FEWER };
+enum { POINTS = 400 / FEWER };
 
 static test_run run;
 
@@ -23,7 +23,7 @@ static int tear_down(void **state)
 }
 
 /* A point of the only shape that a ray from afar meets. */
-static bool random_place(const scene *s, rng *random, surface_hit *out_hit)
+static bool random_hit(const scene *s, rng *random, surface_hit *out_hit)
 {
     vec3 out = random_direction(random), into = random_in_box(random, (vec3){-1, -1, -1}, (vec3){1, 1, 1});
     vec3 from = vec3_add_scaled(into, out, 20.0f);
@@ -61,9 +61,9 @@ static void check_shape(const char *world, uint64_t seed)
     scene *s = test_scene_create(&run, world);
     rng random = test_random(seed);
     int checked = 0;
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < POINTS; i++) {
         surface_hit hit;
-        if (!random_place(s, &random, &hit))
+        if (!random_hit(s, &random, &hit))
             continue;
         surface_differentials d = surface_differentials_at(s, &hit);
         if (vec3_length(d.dpdu) < 0.1f)
@@ -75,8 +75,8 @@ static void check_shape(const char *world, uint64_t seed)
         assert_memory_equal(&dpdu, &d.dpdu, sizeof dpdu);
         assert_memory_equal(&dpdv, &d.dpdv, sizeof dpdv);
     }
-    if (checked < PLACES / 8)
-        fail_msg("only %d places checked of %s", checked, world);
+    if (checked < POINTS / 8)
+        fail_msg("only %d points checked of %s", checked, world);
     scene_destroy(s);
 }
 
@@ -118,7 +118,8 @@ static void meshes(void **state)
         check_shape(WORLDS[i], 200 + i);
 }
 
-#define INSTANCE(before, shape, place) before "ObjectBegin \"o\" " shape " ObjectEnd " place "ObjectInstance \"o\""
+#define INSTANCE(before, shape, transform)                                                                             \
+    before "ObjectBegin \"o\" " shape " ObjectEnd " transform "ObjectInstance \"o\""
 
 static void instances(void **state)
 {

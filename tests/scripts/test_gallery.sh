@@ -20,8 +20,8 @@ done <"$folder/shown"
 echo "ok: $(wc -l <"$folder/shown") pictures"
 
 cd "$folder"
-for place in "" "-Deye=-0.1 1.42 -0.42"; do
-    "$AFTERGLOW_PROGRAM" -q ${place:+"$place"} --size 24x15 --spp 1 --gather-samples 2 --photons 2000 \
+for definition in "" "-Deye=-0.1 1.42 -0.42"; do
+    "$AFTERGLOW_PROGRAM" -q ${definition:+"$definition"} --size 24x15 --spp 1 --gather-samples 2 --photons 2000 \
         --caustic-photons 200 -o picture.png "$root/renderer/examples/sunroom.pbrt" 2>said || { cat said; exit 1; }
     [[ -s picture.png && ! -s said ]] || { echo "FAILED: $(<said)"; exit 1; }
 done

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The installed tree works by itself, from another place than it was configured for: program, library, image module,
+# The installed tree works by itself, from another folder than it was configured for: program, library, image module,
 # headers, man page, pkg-config for users in C and in C++, and find_package.
 # ctest: install
 set -euo pipefail
@@ -11,7 +11,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/installed_tree.sh"
 cmake --install "$AFTERGLOW_BUILD_DIR" --prefix "$folder/elsewhere" >install.log || fail "cmake --install: $(<install.log)"
 DESTDIR=$folder/staging cmake --install "$AFTERGLOW_BUILD_DIR" >staging.log || fail "DESTDIR: $(<staging.log)"
 staged=$(find "$folder/staging" -name afterglow -path '*/bin/*' -printf '%h\n')
-mv elsewhere moved # no path of the place of installation is built in
+mv elsewhere moved # no path of the folder of installation is built in
 prefix=$folder/moved
 
 for program in "$prefix/bin/afterglow" "$staged/afterglow"; do
@@ -71,6 +71,16 @@ for user in use_c use_cpp; do
     echo "ok: $user"
 done
 cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
+
+# A scene from memory, three views of it with one photon map.
+walk=$(find "$prefix" -name walk.c)
+[[ -s $walk ]] || fail "no example of a walk"
+"$CC" -std=c17 "${warnings[@]}" "$walk" -o walk "${flags[@]}"
+./walk walk.map view >said 2>told || fail "walk: $(<told)"
+[[ ! -s told && $(grep -Ec '^view [123]: a first picture after' said) == 3 ]] || fail "walk says: $(<said) $(<told)"
+grep -Eqx '[1-9][0-9]* updates of the window' said || fail "the window was never updated: $(<said)"
+[[ -s walk.map && -s view3.png ]] && ! cmp -s view1.png view3.png || fail "walk made no two views"
+echo "ok: walk"
 
 mkdir cmake_user
 cat >cmake_user/CMakeLists.txt <<'END'

@@ -28,9 +28,9 @@ static int make_root(void **state)
     return mkdtemp(root) ? 0 : -1;
 }
 
-static int remove_entry(const char *path, const struct stat *info, int kind, struct FTW *place)
+static int remove_entry(const char *path, const struct stat *info, int kind, struct FTW *walk)
 {
-    (void)info, (void)kind, (void)place;
+    (void)info, (void)kind, (void)walk;
     return remove(path);
 }
 
@@ -128,7 +128,7 @@ static void test_v1(void **state)
     assert_quota(groups, V1_MOUNTS, 3.5); /* a quota without a period is none */
     put("/sys/fs/cgroup/cpu,cpuacct/job/cpu.cfs_period_us", "100000\n");
     assert_quota(groups, V1_MOUNTS, 2.0);
-    /* neither the same group of another controller, nor another controller's group in the same place */
+    /* neither the same group of another controller, nor another controller's group at the same path */
     put("/sys/fs/cgroup/cpuset/job/cpu.cfs_quota_us", "10000\n");
     put("/sys/fs/cgroup/cpuset/job/cpu.cfs_period_us", "100000\n");
     put("/sys/fs/cgroup/cpu,cpuacct/other/cpu.cfs_quota_us", "10000\n");

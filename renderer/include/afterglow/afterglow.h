@@ -4,7 +4,8 @@
  *     ag_context_create -> ag_scene_load -> ag_render -> ag_film_write
  *
  * Threads: a context and what was made with it belong to one thread at a time, but for ag_context_cancel and
- * ag_context_pause, which any thread and any signal handler may call. Several contexts may work side by side.
+ * ag_context_pause, which any thread and any signal handler may call, and for ag_film_read_tile and
+ * ag_film_read_picture, which any thread may. Several contexts may work side by side.
  * Errors: what can fail returns ag_status and writes its out-parameters on AG_OK alone; the text goes to the log.
  * Structs are plain, and filled by ag_default_...(): later releases add members. A program is built against the header
  * of the library that it runs with; the library's SONAME changes whenever a public struct or enum does. */
@@ -114,12 +115,17 @@ typedef enum ag_up_axis {
 #define AG_DEFAULT_TEXTURE_MEMORY_BYTES ((uint64_t)4 << 30)
 #define AG_TEXTURE_MEMORY_LEAST_BYTES   ((uint64_t)16 << 20)
 
+/* Finds a file that a scene names: a picture, an included text, a mesh, a spectrum. Writes its path to out_path, of
+ * path_size bytes, with a NUL at its end; false leaves it to the library, which looks in the scene's folder. Called on
+ * the thread that loads the scene, while it does so; it may call what an ag_log_fn may. */
+typedef bool ag_find_file_fn(void *user, const char *name, char *out_path, size_t path_size);
+
 /* Settings of a scene beyond what its file says. */
 typedef struct ag_scene_settings {
     const ag_definition *definitions;     /* as in ag_scene_load_with; default NULL */
     size_t definition_count;              /* default 0 */
     ag_gltf_light_units gltf_light_units; /* default AG_GLTF_LIGHT_UNITS_AUTO */
-    /* A perspective camera in the place of the file's; its exposure and shutter stay. World space, as the file has it:
+    /* A perspective camera instead of the file's; its exposure and shutter stay. World space, as the file has it:
      * handed as pbrt is, or as models are. Directions from and to each other, and up, must not be parallel. */
     bool has_camera; /* default false */
     float camera_from[3], camera_to[3];
@@ -142,12 +148,15 @@ typedef struct ag_scene_settings {
     float sun_elevation_degrees; /* above the horizon, [-90, 90]; default 45 */
     float sun_irradiance;        /* W/m^2 on a surface that faces it, >= 0; default 3 */
     float sun_angle_degrees;     /* across it, [0, 180]: shadows have penumbras, mirrors do not show it; default 0 */
-    /* A sky in the place of the file's infinite lights. */
+    /* A sky instead of the file's infinite lights. */
     bool has_sky;          /* default false */
     float sky_radiance[3]; /* W/m^2/sr, linear Rec. 709, >= 0; a picture is multiplied by it; default 1 1 1 */
     const char *sky_file;  /* a picture of it, latitude-longitude, its middle in the east, north to the left of that;
                               or square, octahedral. Read wherever it lies. NULL, the default: alike everywhere */
     float sky_rotation_degrees; /* turns the picture from north over east; default 0 */
+    ag_find_file_fn *find_file; /* of pbrt's text; what it names is read where the context's is_confined allows it.
+                                   Default NULL */
+    void *find_file_user;       /* handed to it */
 } ag_scene_settings;
 
 AG_API ag_scene_settings ag_default_scene_settings(void);
@@ -156,7 +165,13 @@ AG_API ag_scene_settings ag_default_scene_settings(void);
  * AG_ERROR_ARGUMENT (a setting is out of its range). */
 AG_API ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
                                   ag_scene **out_scene);
-AG_API void ag_scene_destroy(ag_scene *scene); /* NULL is fine */
+/* ag_scene_load_as of pbrt-v4 text that lies in memory: size_bytes of it, which are needed for the time of the call
+ * alone. name: what messages call it; it need not exist, but the folder in front of its last slash is where files of
+ * the scene are looked for (none: the working folder), unless find_file of the settings knows better. */
+AG_API ag_status ag_scene_load_text(ag_context *context, const char *name, const char *text, size_t size_bytes,
+                                    const ag_scene_settings *settings, ag_scene **out_scene);
+/* NULL is fine. Where renderings still borrow it, it goes with the last of them. */
+AG_API void ag_scene_destroy(ag_scene *scene);
 
 /* Whether a path names one of the files that the scene was read from: its own, those that it includes, meshes,
  * pictures; by device and inode, so that no other spelling or link hides it. To be asked before a picture is written
@@ -170,6 +185,151 @@ AG_API const char *ag_scene_film_file_name(const ag_scene *scene);
 /* Whether the scene is written for this renderer (Integrator "photonmap") and has a Sampler: then its number of samples
  * is meant. That of other scenes is for another renderer. */
 AG_API bool ag_scene_has_own_samples(const ag_scene *scene);
+
+/* --- scenes from memory --- */
+
+/* A scene that calls put together:
+ *
+ *     ag_scene_create -> ag_scene_set_..., ag_scene_add_... -> ag_scene_commit -> ag_render -> ag_scene_set_camera, ...
+ *
+ * Each call is a directive of pbrt-v4's text (pbrt.org/fileformat-v4), whose types, parameters, units, defaults and
+ * limits it has, and goes the way of a file's directive: the picture has the bits of a file that says the same in the
+ * same order. What is handed over is copied before the call returns.
+ * Threads: the scene is its context's. Errors of all of them: AG_ERROR_ARGUMENT (what must be there is NULL, a number
+ * is not finite, an array is not of the parameter's type, a struct's size is not known, the scene is committed),
+ * AG_ERROR_SCENE (as in a file), AG_ERROR_INPUT (a file that a parameter names), AG_ERROR_COLOR, AG_ERROR_MEMORY,
+ * AG_CANCELLED. The log names the function, the number of its call for this scene and the number of the parameter that
+ * is wrong, both from 1 on (0: none of them), and below that what was to be made:
+ *
+ *     ag_scene_add_shape:17:2: error: index 9 (value 3 of "indices") is out of range, there are 4 vertices
+ *         Shape "trianglemesh" of material "red"
+ *
+ * What was made before a call that fails stays, and further calls may follow. */
+
+typedef enum ag_parameter_type {
+    AG_PARAMETER_FLOAT,
+    AG_PARAMETER_INTEGER,
+    AG_PARAMETER_STRING,
+    AG_PARAMETER_BOOL,
+    AG_PARAMETER_POINT2,
+    AG_PARAMETER_VECTOR2,
+    AG_PARAMETER_POINT3,
+    AG_PARAMETER_VECTOR3,
+    AG_PARAMETER_NORMAL,
+    AG_PARAMETER_RGB,       /* linear Rec. 709 */
+    AG_PARAMETER_SPECTRUM,  /* wavelength in nm and value, in pairs; or the name of one, as a string */
+    AG_PARAMETER_BLACKBODY, /* K */
+    AG_PARAMETER_TEXTURE    /* the name of one, as a string */
+} ag_parameter_type;
+
+/* One of a directive's parameters: "point3 P", "rgb reflectance", ... This struct will not change. */
+typedef struct ag_parameter {
+    const char *name; /* "P" */
+    ag_parameter_type type;
+    size_t count; /* of numbers, three for each point3; of strings; of bools */
+    /* One of these arrays [count], the others NULL: integers of AG_PARAMETER_INTEGER, bools of AG_PARAMETER_BOOL,
+     * strings of strings and names, floats or doubles of all else. */
+    const float *floats;
+    const double *doubles;
+    const int32_t *integers;
+    const char *const *strings;
+    const bool *bools;
+} ag_parameter;
+
+/* An empty scene. settings: as for ag_scene_load_as, copied but for the definitions, of which there must be none;
+ * NULL: the default ones. Until ag_scene_commit it can be added to and destroyed, and nothing else. */
+AG_API ag_status ag_scene_create(ag_context *context, const ag_scene_settings *settings, ag_scene **out_scene);
+/* Completes the scene and builds what rays need; it is then as one from a file, of which the camera alone can change.
+ * After an
+ * error it can only be destroyed. Errors also: AG_ERROR_RAY_TRACING. */
+AG_API ag_status ag_scene_commit(ag_scene *scene);
+
+/* Each name of a material, a medium and a kind of texture is made once. Materials and media may be used before they are
+ * made, textures only afterwards. type: "diffuse", "homogeneous", ... */
+AG_API ag_status ag_scene_add_material(ag_scene *scene, const char *name, const char *type,
+                                       const ag_parameter *parameters, size_t parameter_count);
+AG_API ag_status ag_scene_add_medium(ag_scene *scene, const char *name, const char *type,
+                                     const ag_parameter *parameters, size_t parameter_count);
+
+/* What the scene says of its picture; the last of each counts. type: "rgb", "independent", "photonmap", "gaussian", ...
+ */
+typedef enum ag_scene_hint { AG_HINT_FILM, AG_HINT_SAMPLER, AG_HINT_INTEGRATOR, AG_HINT_PIXEL_FILTER } ag_scene_hint;
+AG_API ag_status ag_scene_set_hint(ag_scene *scene, ag_scene_hint hint, const char *type,
+                                   const ag_parameter *parameters, size_t parameter_count);
+
+/* The structs that follow begin with their size, which ag_default_...() sets: a library that knows more members takes
+ * the rest for their defaults. Matrices have 16 numbers, row by row, of column vectors: the last column is where the
+ * origin goes. Each is given when the shutter opens (pbrt's time 0), and where something moves when it closes (time 1).
+ */
+
+typedef enum ag_texture_value { AG_TEXTURE_FLOAT, AG_TEXTURE_SPECTRUM } ag_texture_value;
+typedef struct ag_texture {
+    size_t struct_size;
+    const char *name;
+    ag_texture_value value; /* that it has at a point: a number, or a colour; default AG_TEXTURE_SPECTRUM */
+    const char *type;       /* "imagemap", "scale", "checkerboard", ... */
+    const ag_parameter *parameters;
+    size_t parameter_count;
+    const double *world_from_texture; /* of textures in space; NULL, the default: as it is */
+} ag_texture;
+AG_API ag_texture ag_default_texture(void);
+AG_API ag_status ag_scene_add_texture(ag_scene *scene, const ag_texture *texture);
+
+typedef struct ag_shape {
+    size_t struct_size;
+    const char *type; /* "trianglemesh", "sphere", "curve", ... */
+    const ag_parameter *parameters;
+    size_t parameter_count;
+    const char *material; /* NULL, the default: diffuse, grey */
+    const char *object;   /* that it is part of, made where there is none of that name, and seen where instances of it
+                             are;   NULL, the default: it is in the world itself */
+    const double *world_from_shape;     /* of an object's: from shape to object; NULL, the default: as it is */
+    const double *world_from_shape_end; /* NULL, the default: it does not move */
+    bool reverse_orientation;           /* default false */
+    bool is_light;                      /* it shines, with AreaLightSource's parameters: default false */
+    const ag_parameter *light_parameters;
+    size_t light_parameter_count;
+    const char *medium_inside, *medium_outside; /* NULL, the default: none */
+} ag_shape;
+AG_API ag_shape ag_default_shape(void);
+AG_API ag_status ag_scene_add_shape(ag_scene *scene, const ag_shape *shape);
+
+/* An object is complete with its first instance: nothing can be added to it afterwards. */
+typedef struct ag_instance {
+    size_t struct_size;
+    const char *object;
+    const double *world_from_object;     /* NULL, the default: as it is */
+    const double *world_from_object_end; /* NULL, the default: it does not move */
+} ag_instance;
+AG_API ag_instance ag_default_instance(void);
+AG_API ag_status ag_scene_add_instance(ag_scene *scene, const ag_instance *instance);
+
+typedef struct ag_light {
+    size_t struct_size;
+    const char *type; /* "point", "spot", "distant", "infinite", ... */
+    const ag_parameter *parameters;
+    size_t parameter_count;
+    const double *world_from_light; /* NULL, the default: as it is */
+    const char *medium_outside;     /* NULL, the default: none */
+} ag_light;
+AG_API ag_light ag_default_light(void);
+AG_API ag_status ag_scene_add_light(ag_scene *scene, const ag_light *light);
+
+/* The last one counts; it comes before all that moves. Of a scene that is complete, from a file too, it may be changed
+ * as long as no rendering borrows the scene: nothing is rebuilt, and a photon map that is kept (photon_map_file) goes
+ * on serving. Its medium then stays (medium must be NULL), and where anything moves its shutter. */
+typedef struct ag_camera {
+    size_t struct_size;
+    const char *type; /* default "perspective" */
+    const ag_parameter *parameters;
+    size_t parameter_count;
+    const double *world_from_camera; /* as pbrt's: it looks along +z, x is to the right and y up. NULL, the default: as
+                                        it is */
+    const double *world_from_camera_end; /* NULL, the default: it does not move */
+    const char *medium;                  /* that it is in; NULL, the default: none */
+} ag_camera;
+AG_API ag_camera ag_default_camera(void);
+AG_API ag_status ag_scene_set_camera(ag_scene *scene, const ag_camera *camera);
 
 /* --- rendering --- */
 
@@ -219,7 +379,7 @@ typedef enum ag_layer {
     AG_LAYER_ID = 1 << 14,           /* id.object.V, id.material.V: of the nearest surface, from 1 on; 0: nothing */
     AG_LAYER_LIGHT_GROUPS = 1 << 15, /* light_NAME.R, G, B: what came from the lamps of a group to the first surface and
                                         by way of mirrors and glass; light_photons: through the photon map */
-    AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N in place of the above */
+    AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N instead of the above */
     /* How the photon map fared, at what the ray through the pixel's middle meets first; 0 where that gathers nothing.
      */
     AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density.V: photons per area, 1/m^2 */
@@ -456,7 +616,9 @@ AG_API ag_status ag_rendering_read_checkpoint(ag_rendering *rendering, const cha
  * green, blue in W, caustic (0 global map, 1 caustic map), demanded (whether irradiance was computed there); written
  * atomically. Errors: AG_ERROR_ARGUMENT (path tracing has none), AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
 AG_API ag_status ag_rendering_write_photons(const ag_rendering *rendering, const char *path);
-/* The film as it is now. The rendering's. */
+/* The film as it is now, the rendering's; and the same one all along, which ag_rendering_finish hands over. While the
+ * rendering is at work, its size and names may be asked for, and it may be watched with ag_film_read_tile and
+ * ag_film_read_picture; all else waits until the call has returned. */
 AG_API const ag_film *ag_rendering_film(const ag_rendering *rendering);
 /* Ends the rendering, counts what was done, and hands its film over; out_film NULL: destroys that too. rendering NULL
  * is fine. */
@@ -472,6 +634,29 @@ AG_API int ag_film_channel_count(const ag_film *film);
 AG_API const char *ag_film_channel_name(const ag_film *film, int channel); /* the film's; NULL: there is none */
 /* Width * height values, top row first. Errors: AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_film_read_channel(const ag_film *film, int channel, float *out_values);
+
+/* A picture can be watched while it is rendered: from ag_rendering_film on, and for as long as the film is there, any
+ * thread may call the three functions below at any time, callbacks too. They copy the developed picture, R, G and B as
+ * ag_film_pixels has them, tile by tile: each tile as it was when it was finished last, in this pass over the picture
+ * or the one before. In the beginning it is black. None of them waits for longer than a tile takes to be copied, but
+ * while the film is denoised. */
+#define AG_TILE_SIZE 32
+/* A part of the picture: AG_TILE_SIZE pixels wide and high, or less at its right and lower edges. */
+typedef struct ag_tile {
+    int x, y; /* of its upper left pixel, from the upper left of the pixels rendered */
+    int width, height;
+    uint64_t version; /* higher with each change of any tile; 0: never shown, and black */
+} ag_tile;
+/* Tiles are numbered row by row from the upper left. */
+AG_API size_t ag_film_tile_count(const ag_film *film);
+/* Copies the tile of that number if it has changed since a version, else gives false and writes nothing. out_pixels:
+ * room for 3 * AG_TILE_SIZE * AG_TILE_SIZE floats; width * height pixels are written, rows without gaps. */
+AG_API bool ag_film_read_tile(const ag_film *film, size_t tile, uint64_t since_version, ag_tile *out_tile,
+                              float *out_pixels);
+/* Brings a copy of the whole picture up to date: writes the tiles that have changed since a version, 0 for all that
+ * have been shown, and gives the version that the copy then has. out_pixels: as large as ag_film_pixels, the caller's.
+ */
+AG_API uint64_t ag_film_read_picture(const ag_film *film, uint64_t since_version, float *out_pixels);
 
 /* Takes the noise out of R, G and B with Open Image Denoise, which is looked for when this is called; with albedo and
  * normals where the settings said denoise. The other channels stay, so the parts of light no longer add up. Errors:
@@ -500,7 +685,7 @@ typedef struct ag_output_settings {
     /* of all others: */
     const char *display;  /* NULL: the config's default */
     const char *view;     /* NULL: the display's default */
-    const char *look;     /* in place of the view's own: names with commas between them, undone with a - before it;
+    const char *look;     /* instead of the view's own: names with commas between them, undone with a - before it;
                              "none": none; NULL: the view's own */
     float exposure_stops; /* light is multiplied by 2 to this before the view; default 0 */
 } ag_output_settings;
@@ -580,10 +765,10 @@ typedef struct ag_statistics {
     unsigned threads;
     uint64_t photons_emitted, photons_stored_global, photons_stored_caustic, photon_bytes;
     ag_map_file map_file; /* of the last picture */
-    /* requests: places asked for; computed: estimates at photons; distinct: photons found ready afterwards that were
+    /* requests: points asked for; computed: estimates at photons; distinct: photons found ready afterwards that were
      * not before, counted by looking; deferred: set aside because another thread was computing; waited: had to wait in
-     * the end; duplicated: computed twice, 0; uncached: estimates at places themselves; refused:
-     * requests for places where no estimate holds, whose light was followed by further bounces instead; ready: photons
+     * the end; duplicated: computed twice, 0; uncached: estimates at hits themselves; refused:
+     * requests for points where no estimate holds, whose light was followed by further bounces instead; ready: photons
      * of a map from a file that were ready when it was opened; reclaimed: claims taken over from other processes that
      * had died. Where other processes fill the map too, distinct counts what they computed as well. */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,

@@ -78,7 +78,7 @@ static ag_status read_component_type(const gltf_reader *r, const gltf_value *at,
     return AG_OK;
 }
 
-/* Values that take the place of others, by rising indices. */
+/* Values that replace others, by rising indices. */
 static ag_status open_sparse(gltf_reader *r, const gltf_value *accessor, gltf_accessor *a)
 {
     gltf_value sparse, indices, values;

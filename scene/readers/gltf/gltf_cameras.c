@@ -25,7 +25,7 @@ bool gltf_matrix_axis(const gltf_matrix *m, int axis, double out_axis[3])
     return true;
 }
 
-/* The node's place and turn without its scale; a mirror stays one. Ours looks along +z. */
+/* The node's position and turn without its scale; a mirror stays one. Ours looks along +z. */
 static bool place_camera(const gltf_matrix *node, transform *out_world_from_camera)
 {
     double x[3], y[3], z[3], m[4][4] = {{0.0}}, along = 0.0, square = 0.0, side = 0.0;
@@ -123,6 +123,10 @@ ag_status gltf_add_camera(gltf_reader *r, uint32_t index, const gltf_value *node
     AG_TRY(is_orthographic ? read_orthographic(r, &at, &c) : read_perspective(r, &at, &c));
     if (!place_camera(world_from_node, &c.world_from_camera))
         return gltf_error(r, &at, "its node leaves no room for it");
+    if (r->is_blenders)
+        log_at_once(r->run->log, AG_LOG_INFO, r->where, "gltf:shift",
+                    "camera \"%s\" is read without a shift: glTF files have none, whatever Blender's camera has",
+                    known_as);
     r->scene->camera = c;
     r->scene->has_camera = true;
     return AG_OK;

@@ -12,12 +12,12 @@
 
 /* Syntax */
 
-/* The line around a place and a mark below it, as messages of other scene files have them. Long lines are cut. */
-static void make_excerpt(const char *json, size_t size, size_t place, char *excerpt, size_t excerpt_size)
+/* The line around a position and a mark below it, as messages of other scene files have them. Long lines are cut. */
+static void make_excerpt(const char *json, size_t size, size_t position, char *excerpt, size_t excerpt_size)
 {
     enum { BEFORE = 60, SHOWN = 100 };
-    size_t begin = place, end = place, mark = 0;
-    while (begin > 0 && json[begin - 1] != '\n' && place - begin < BEFORE)
+    size_t begin = position, end = position, mark = 0;
+    while (begin > 0 && json[begin - 1] != '\n' && position - begin < BEFORE)
         begin--;
     while (end < size && json[end] != '\n' && json[end] != '\r' && end - begin < SHOWN)
         end++;
@@ -25,7 +25,7 @@ static void make_excerpt(const char *json, size_t size, size_t place, char *exce
     for (size_t i = begin; i < end; i++) {
         unsigned char c = (unsigned char)json[i];
         line[i - begin] = c < ' ' || c == 0x7f ? ' ' : (char)c;
-        if (i < place && (c & 0xc0) != 0x80) /* one column for each character of UTF-8 */
+        if (i < position && (c & 0xc0) != 0x80) /* one column for each character of UTF-8 */
             below[mark++] = ' ';
     }
     line[end - begin] = below[mark] = '\0';
@@ -43,9 +43,9 @@ static ag_status parse_json(gltf_reader *r, const char *json, size_t size, bool 
         if (json_error_code(&error) == json_error_out_of_memory)
             return AG_ERROR_MEMORY;
         file_location where = {r->where.file, error.line, error.column > 0 ? error.column : 1};
-        size_t place = error.position > 0 ? (size_t)error.position - 1 : 0;
-        if (place <= size)
-            make_excerpt(json, size, place, excerpt, sizeof excerpt);
+        size_t position = error.position > 0 ? (size_t)error.position - 1 : 0;
+        if (position <= size)
+            make_excerpt(json, size, position, excerpt, sizeof excerpt);
         log_at(r->run->log, AG_LOG_ERROR, where, "%s%s%s", is_chunk ? "in the JSON chunk: " : "", error.text, excerpt);
         return AG_ERROR_SCENE;
     }

@@ -24,7 +24,7 @@ static double triangle_count(const gltf_reader *r, uint32_t mesh_index)
     return count / 3.0;
 }
 
-/* The node's mesh, if it is as other nodes have it but for its place; else GLTF_NONE. */
+/* The node's mesh, if it is as other nodes have it but for its transform; else GLTF_NONE. */
 static ag_status find_shared_mesh(const gltf_reader *r, const gltf_value *node, uint32_t *out_mesh_index)
 {
     *out_mesh_index = GLTF_NONE;
@@ -73,18 +73,18 @@ static ag_status add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t 
 {
     uint32_t shared_index, instance_index;
     const gltf_destination world = {GLTF_ALL_PARTS, SCENE_NO_OBJECT}, shining = {GLTF_SHINING_PART, SCENE_NO_OBJECT};
-    affine place;
+    affine world_from_object;
     for (int e = 0; e < 12; e++)
-        place.m[e / 4][e % 4] = (float)world_from_node->m[e / 4][e % 4];
+        world_from_object.m[e / 4][e % 4] = (float)world_from_node->m[e / 4][e % 4];
     AG_TRY(find_shared_mesh(r, node, &shared_index));
     gltf_mesh_use *use = &r->mesh_uses[mesh_index];
-    if (shared_index == GLTF_NONE || use->node_count < 2 || !affine_can_be_undone(&place) ||
+    if (shared_index == GLTF_NONE || use->node_count < 2 || !affine_can_be_undone(&world_from_object) ||
         use->node_count * triangle_count(r, mesh_index) <= MAX_COPIED_TRIANGLES)
         return add_posed(r, node, mesh_index, world_from_node, world);
     if (!use->is_made)
         AG_TRY(make_object(r, node, mesh_index, use));
     if (use->object_index != SCENE_NO_OBJECT)
-        AG_TRY(scene_add_instance(r->scene, use->object_index, &place, 1, &instance_index));
+        AG_TRY(scene_add_instance(r->scene, use->object_index, &world_from_object, 1, &instance_index));
     return add_posed(r, node, mesh_index, world_from_node, shining);
 }
 

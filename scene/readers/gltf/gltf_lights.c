@@ -26,13 +26,20 @@
 static const double LUMENS_PER_WATT = 683.0;
 static const double SPHERE = 4.0 * 3.14159265358979323846; /* sr */
 
-static gltf_light_units units_by_generator(const char *generator)
+/* The version of Blender's exporter, which is that of Blender, times a thousand; 0: of none. */
+static int exporter_version(const char *generator)
 {
     int major = 0, minor = 0;
     const char *blender = generator ? strstr(generator, "glTF Blender I/O v") : NULL;
-    if (!blender || sscanf(blender + strlen("glTF Blender I/O v"), "%4d.%4d", &major, &minor) != 2)
-        return GLTF_LIGHTS_UNITLESS;
-    return major > 3 || (major == 3 && minor >= 4) ? GLTF_LIGHTS_STANDARD : GLTF_LIGHTS_RAW;
+    if (!blender || sscanf(blender + strlen("glTF Blender I/O v"), "%4d.%3d", &major, &minor) != 2)
+        return 0;
+    return 1000 * major + minor;
+}
+
+static gltf_light_units units_by_generator(const char *generator)
+{
+    int version = exporter_version(generator);
+    return version == 0 ? GLTF_LIGHTS_UNITLESS : version >= 3004 ? GLTF_LIGHTS_STANDARD : GLTF_LIGHTS_RAW;
 }
 
 gltf_lamp_units gltf_lamp_units_of(gltf_light_units asked, const char *generator)
@@ -67,7 +74,7 @@ static void tell_units(gltf_reader *r)
 
 /* Cones: full inside the inner one, a smoothstep in the cosine out to the outer one. Blender's lamps end so too, but
  * its exporter writes an inner angle that is the outer one less its share "blend", where Blender takes that share of
- * what the cosine has to go: so that is undone. */
+ * what the cosine has to go: so that is undone. Its spots were dimmer beside their axis before 3.5 (spot_light.c). */
 static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
 {
     double inner = 0.0, outer = 0.78539816339744831;
@@ -78,6 +85,8 @@ static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
     if (!(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= 1.5708))
         return gltf_error(r, &spot, "its angles are %g and %g, which should be 0 <= inner < outer <= pi / 2", inner,
                           outer);
+    int version = exporter_version(r->generator);
+    l->dims_by_cosine = version > 0 && version < 3005;
     if (r->is_blenders && outer > 0.0)
         inner = acos(fmin(cos(outer) + (1.0 - cos(outer)) * (1.0 - inner / outer), 1.0));
     light_set_cone(l, inner, outer);

@@ -48,8 +48,21 @@ static ag_status read_transmission(gltf_reader *r, const gltf_value *at, const g
     return gltf_get_texture(r, extension, "transmissionTexture", RED, &out->uv_set, &m->transmission_texture);
 }
 
-/* Of which that share is left after that distance in the world, as the format has it. */
-static float absorption(float share, double distance) { return (float)(-log(fmax((double)share, 1e-6)) / distance); }
+/* Of which that share is left after that distance in the world, as the format has it. Blender's exporter writes the
+ * colour and 1 / density of a Volume Absorption as they stand, and Cycles absorbs (1 - colour) density. */
+static float absorption(const gltf_reader *r, float share, double distance)
+{
+    double depth = r->is_blenders ? fmax(1.0 - (double)share, 0.0) : -log(fmax((double)share, 1e-6));
+    return (float)(depth / distance);
+}
+
+static void tell_absorption(const gltf_reader *r)
+{
+    if (r->is_blenders)
+        log_at_once(r->run->log, AG_LOG_INFO, r->where, "gltf:absorption",
+                    "glass absorbs as Blender's Volume Absorption does, (1 - colour) / distance, whose colour its "
+                    "exporter writes as it stands; the format itself means -ln(colour) / distance");
+}
 
 /* How thick it is, the mesh says better than the factor: only whether there is a volume is read from that. */
 static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
@@ -70,9 +83,12 @@ static ag_status read_volume(gltf_reader *r, const gltf_value *at, const gltf_va
         return AG_OK;
     m->is_thin = false;
     bool absorbs = v.json && (color.r < 1.0f || color.g < 1.0f || color.b < 1.0f);
-    medium filling = {
-        .sigma_a = {absorption(color.r, distance), absorption(color.g, distance), absorption(color.b, distance)}};
-    return absorbs ? scene_add_medium(r->scene, &filling, &out->medium_inside) : AG_OK;
+    medium filling = {.sigma_a = {absorption(r, color.r, distance), absorption(r, color.g, distance),
+                                  absorption(r, color.b, distance)}};
+    if (!absorbs)
+        return AG_OK;
+    tell_absorption(r);
+    return scene_add_medium(r->scene, &filling, &out->medium_inside);
 }
 
 static ag_status read_clearcoat(gltf_reader *r, const gltf_value *at, const gltf_value *extension, material *m,
@@ -162,7 +178,9 @@ static void tell_thin_glass(const gltf_reader *r, const gltf_value *at, const ma
                 "the glass of material \"%s\" is a thin shell, which bends no light: the file gives it no thickness "
                 "(KHR_materials_volume)%s",
                 name,
-                r->is_blenders ? "; Blender writes one where the material has a \"glTF Settings\" node group" : "");
+                r->is_blenders ? "; Blender writes one where the material has a node group \"glTF Material "
+                                 "Output\" (before 3.4 \"glTF Settings\") with a Thickness"
+                               : "");
 }
 
 ag_status gltf_read_material_extensions(gltf_reader *r, const gltf_value *at, material *m, gltf_material *out)

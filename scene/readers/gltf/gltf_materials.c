@@ -13,7 +13,7 @@ static const gltf_texture_use METALLIC = {.channel = TEXTURE_CHANNEL_B, .scale =
 static const gltf_texture_use ROUGHNESS = {.channel = TEXTURE_CHANNEL_G, .scale = 1.0f};
 
 /* What shares of a surface are there: of what gives the base colour, the alpha. base: of pbrMetallicRoughness, or of
- * the extension that takes its place. */
+ * the extension that replaces it. */
 ag_status gltf_read_alpha(gltf_reader *r, const gltf_value *at, const gltf_value *base, const char *texture_key,
                           float factor, gltf_material *out)
 {

@@ -78,7 +78,7 @@ typedef struct gltf_mesh_use {
     uint32_t object_index; /* the scene's; SCENE_NO_OBJECT: there is nothing in it */
 } gltf_mesh_use;
 
-/* A node's place in the world: affine, of any rank. Row, column. */
+/* A node's transform to world space: affine, of any rank. Row, column. */
 typedef struct gltf_matrix {
     double m[3][4];
 } gltf_matrix;

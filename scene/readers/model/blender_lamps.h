@@ -8,10 +8,12 @@
  *   area          W; pi/4 of it goes  without size or shape          a point; size and shape stand in <extra>
  *                 out (Cycles)
  *   spot's edge   smoothstep in the   angles in proportion           a falloff exponent; "spotblend" in <extra>
- *                 cosine, by "blend"
+ *                 cosine, by "blend";
+ *                 before 3.5 times the
+ *                 cosine itself
  *   lengths       m                   100 / UnitScaleFactor units    m
  *
- * Flow: mesh_import_assimp, in its process -> [here]. Threads: plain data. */
+ * Flow: mesh_import_assimp -> [here]. Threads: plain data. */
 #ifndef AFTERGLOW_BLENDER_LAMPS_H
 #define AFTERGLOW_BLENDER_LAMPS_H
 

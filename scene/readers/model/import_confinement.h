@@ -1,5 +1,5 @@
 /* import_confinement.h: a process reads below some folders alone, and writes nowhere: the kernel sees to it.
- * Rests on: landlock(7). Flow: mesh_import_assimp's process. Threads: the only one of that process. */
+ * Rests on: landlock(7). Flow: import_program -> [here]. Threads: the only one of that process. */
 #ifndef AFTERGLOW_IMPORT_CONFINEMENT_H
 #define AFTERGLOW_IMPORT_CONFINEMENT_H
 

@@ -1,6 +1,6 @@
 /* import_model.h: what readers of foreign formats say of a file, in plain structs that hold no pointers, so that a
  * process can hand them to another: a row of records, each a head and its bytes. Whoever takes them believes nothing.
- * Flow: mesh_import_assimp (in a process of its own) -> [here] -> import_scene. Threads: plain data. */
+ * Flow: mesh_import_assimp (in afterglow-import) -> [here] -> import_scene. Threads: plain data. */
 #ifndef AFTERGLOW_IMPORT_MODEL_H
 #define AFTERGLOW_IMPORT_MODEL_H
 
@@ -61,7 +61,7 @@ typedef struct import_mesh {
     uint32_t left_out; /* points and lines */
 } import_mesh;
 
-/* A mesh at its place. */
+/* A mesh and its transform. */
 typedef struct import_instance {
     uint32_t mesh_index;
     uint32_t unused;
@@ -75,6 +75,7 @@ typedef struct import_camera {
     float horizontal_fov;          /* radians, of the whole picture */
     float aspect;                  /* width / height; 0: not said */
     float orthographic_half_width; /* scene units; 0: perspective */
+    float shift[2];                /* of the picture, right and up, as a share of its longer side */
 } import_camera;
 
 typedef enum import_light_kind {
@@ -103,6 +104,7 @@ typedef struct import_light {
     uint32_t measure;             /* import_light_measure */
     float units_per_metre;        /* of IMPORT_LIGHT_WATTS, > 0 */
     float inner_cone, outer_cone; /* radians, the whole cone */
+    uint32_t dims_by_cosine;      /* spot: 1: multiplied by the cosine to its axis, too */
     float size[2];                /* area: across and along up */
 } import_light;
 

@@ -1,67 +1,24 @@
 /* import_process.c: see import_process.h. The answer is written to memory that both processes see as a file.
- * Threads: any; the new process has only the one that called. */
-#define _GNU_SOURCE /* memfd_create, pipe2 */
+ * Rests on: posix_spawn(3): a fork of a process with threads may do next to nothing before it becomes another program.
+ * Threads: any. */
+#define _GNU_SOURCE /* memfd_create, pipe2, posix_spawn_file_actions_addclosefrom_np */
 #include "model/import_process.h"
 
-#include "descriptor.h"
+#include "model/import_worker.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 enum { LOOK_UP_EVERY_MS = 50 }; /* for cancellation */
-
-/* So much on top of what is mapped already, which a sanitizer's shadow is part of; and no more than the machine has. */
-static void limit_memory(uint64_t memory_bytes)
-{
-    unsigned long pages = 0;
-    FILE *file = fopen("/proc/self/statm", "r");
-    bool is_read = file && fscanf(file, "%lu", &pages) == 1;
-    if (file)
-        fclose(file);
-    long page_bytes = sysconf(_SC_PAGESIZE), all_pages = sysconf(_SC_PHYS_PAGES);
-    struct rlimit limit;
-    if (!is_read || page_bytes <= 0 || all_pages <= 0 || getrlimit(RLIMIT_AS, &limit) != 0)
-        return;
-    rlim_t of_machine = (rlim_t)all_pages * (rlim_t)page_bytes;
-    rlim_t most = (rlim_t)pages * (rlim_t)page_bytes + (memory_bytes < of_machine ? memory_bytes : of_machine);
-    if (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur > most) {
-        limit.rlim_cur = most;
-        setrlimit(RLIMIT_AS, &limit);
-    }
-}
-
-static void keep_to_itself(uint64_t memory_bytes)
-{
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    setpgid(0, 0); /* the terminal's signals are for the caller, who ends this process then */
-    for (int number = 1; number < NSIG; number++)
-        signal(number, SIG_DFL);
-    sigset_t none;
-    sigemptyset(&none);
-    pthread_sigmask(SIG_SETMASK, &none, NULL);
-    int nowhere = open("/dev/null", O_RDWR);
-    for (int descriptor = 0; descriptor < 3 && nowhere >= 0; descriptor++)
-        dup2(nowhere, descriptor);
-    setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-    limit_memory(memory_bytes);
-}
-
-static void work_and_exit(import_task *task, void *user, uint64_t memory_bytes, int answer_descriptor)
-{
-    keep_to_itself(memory_bytes);
-    FILE *answer = fdopen(answer_descriptor, "wb");
-    bool is_done = answer && task(user, answer) && fflush(answer) == 0;
-    _exit(is_done ? 0 : 1);
-}
 
 /* Waits until the process has closed its end of the pipe, which its end does. */
 static bool wait_for_end(const run_context *run, pid_t process, int pipe_end)
@@ -109,52 +66,88 @@ static ag_status take_answer(int descriptor, import_answer *out_answer, char *me
     return AG_OK;
 }
 
-static ag_status run_process(const run_context *run, import_task *task, void *user, uint64_t memory_bytes,
-                             int answer_descriptor, int pipe_ends[2], import_answer *out_answer, char *message,
-                             size_t message_size)
+/* 0, or the reason as an errno. The new process gets the default actions of all signals, a group of its own, for the
+ * terminal's signals are the caller's, who ends this process then, and no descriptor but those of import_worker.h. */
+static int start(const char *program, const char *const *arguments, int answer, int pipe_end, pid_t *out_process)
 {
-    /* No signal of the caller's may meet its handlers in the new process. */
-    sigset_t all, saved;
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    sigset_t all, none;
     sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &saved);
-    pid_t process = fork();
-    if (process == 0) {
-        close(pipe_ends[0]);
-        work_and_exit(task, user, memory_bytes, answer_descriptor);
+    sigemptyset(&none);
+    int error = posix_spawn_file_actions_init(&actions);
+    if (error != 0)
+        return error;
+    error = posix_spawnattr_init(&attributes);
+    if (error != 0) {
+        posix_spawn_file_actions_destroy(&actions);
+        return error;
     }
-    int error = errno;
-    pthread_sigmask(SIG_SETMASK, &saved, NULL);
-    close(pipe_ends[1]);
-    pipe_ends[1] = -1;
-    if (process < 0) {
-        snprintf(message, message_size, "no process can be started: %s", strerror(error));
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setsigdefault(&attributes, &all);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    for (int descriptor = 0; descriptor < 3 && error == 0; descriptor++)
+        error = posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_RDWR, 0);
+    if (error == 0)
+        error = posix_spawn_file_actions_adddup2(&actions, answer, IMPORT_ANSWER_DESCRIPTOR);
+    if (error == 0)
+        error = posix_spawn_file_actions_adddup2(&actions, pipe_end, IMPORT_END_DESCRIPTOR);
+    if (error == 0)
+        error = posix_spawn_file_actions_addclosefrom_np(&actions, IMPORT_DESCRIPTORS_END);
+    if (error == 0) /* it promises not to change the strings; its type is older than const */
+        error = posix_spawn(out_process, program, &actions, &attributes, (char *const *)(uintptr_t)arguments, environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    return error;
+}
+
+static ag_status run_process(const run_context *run, const char *program, const char *const *arguments, int answer,
+                             int pipe_ends[2], import_answer *out_answer, char *message, size_t message_size)
+{
+    pid_t process;
+    int error = start(program, arguments, answer, pipe_ends[1], &process);
+    if (error != 0) {
+        snprintf(message, message_size, "the program '%s' cannot be started: %s", program, strerror(error));
         return AG_ERROR_SYSTEM;
     }
+    close(pipe_ends[1]);
+    pipe_ends[1] = -1;
     bool has_ended = wait_for_end(run, process, pipe_ends[0]);
     ag_status status = judge_end(process, message, message_size);
     if (!has_ended || (run && run_is_cancelled(run)))
         return AG_CANCELLED;
-    return status != AG_OK ? status : take_answer(answer_descriptor, out_answer, message, message_size);
+    return status != AG_OK ? status : take_answer(answer, out_answer, message, message_size);
 }
 
-ag_status import_process_run(const run_context *run, import_task *task, void *user, uint64_t memory_bytes,
+/* The same open file by a number that the new process has no other use for. -1 stays -1. */
+static int beyond_the_workers(int descriptor)
+{
+    if (descriptor < 0 || descriptor >= IMPORT_DESCRIPTORS_END)
+        return descriptor;
+    int moved = fcntl(descriptor, F_DUPFD_CLOEXEC, IMPORT_DESCRIPTORS_END);
+    int error = errno;
+    close(descriptor);
+    errno = error;
+    return moved;
+}
+
+ag_status import_process_run(const run_context *run, const char *program, const char *const *arguments,
                              import_answer *out_answer, char *message, size_t message_size)
 {
     *out_answer = (import_answer){NULL, 0};
     snprintf(message, message_size, "%s", "");
-    /* none of them may be one of the standard three, which go nowhere in the new process */
     int pipe_ends[2] = {-1, -1};
-    int answer = descriptor_beyond_standard(memfd_create("afterglow import", MFD_CLOEXEC));
+    int answer = beyond_the_workers(memfd_create("afterglow import", MFD_CLOEXEC));
     bool has_pipe = answer >= 0 && pipe2(pipe_ends, O_CLOEXEC) == 0;
     for (int i = 0; i < 2; i++) {
-        pipe_ends[i] = descriptor_beyond_standard(pipe_ends[i]);
+        pipe_ends[i] = beyond_the_workers(pipe_ends[i]);
         has_pipe = has_pipe && pipe_ends[i] >= 0;
     }
     ag_status status = AG_ERROR_SYSTEM;
     if (!has_pipe)
         snprintf(message, message_size, "no process can be prepared: %s", strerror(errno));
     else
-        status = run_process(run, task, user, memory_bytes, answer, pipe_ends, out_answer, message, message_size);
+        status = run_process(run, program, arguments, answer, pipe_ends, out_answer, message, message_size);
     for (int i = 0; i < 2; i++)
         if (pipe_ends[i] >= 0)
             close(pipe_ends[i]);

@@ -213,7 +213,7 @@ static bool get_instance(const model *m, const record *r, import_instance *out_i
     return true;
 }
 
-/* Where object instances are wanted instead of copies: here a mesh is met again for each of its places. */
+/* Where object instances are wanted instead of copies: here a mesh is met again for each of its nodes. */
 static ag_status add_instance(model *m, const record *r)
 {
     import_instance instance;

@@ -65,6 +65,20 @@ static double shorter_fov_degrees(const import_camera *source)
     return (aspect_of(source) > 1.0 ? atan(tan(half) / aspect_of(source)) : half) * 360.0 / PI;
 }
 
+/* The longer side of the screen is 2 aspect long, or 2 / aspect; the shorter one 2. */
+static void shift_picture(const import_camera *source, camera *c)
+{
+    const double aspect = aspect_of(source), half[2] = {fmax(aspect, 1.0), fmax(1.0 / aspect, 1.0)};
+    if ((source->shift[0] == 0.0f && source->shift[1] == 0.0f) || !isfinite(source->shift[0] + source->shift[1]))
+        return;
+    for (int k = 0; k < 2; k++) {
+        const double way = 2.0 * fmax(half[0], half[1]) * (double)source->shift[k];
+        c->screen_window[2 * k] = (float)(way - half[k]);
+        c->screen_window[2 * k + 1] = (float)(way + half[k]);
+    }
+    c->has_screen_window = true;
+}
+
 ag_status importer_add_camera(importer *i, const import_camera *source)
 {
     camera c = {.kind = CAMERA_PERSPECTIVE, .fov_degrees = 90.0f, .focal_distance = 1e6f};
@@ -85,6 +99,7 @@ ag_status importer_add_camera(importer *i, const import_camera *source)
         log_at(i->log, AG_LOG_WARNING, i->where, "camera \"%s\" makes no sense and is left out", source->name);
         return AG_OK;
     }
+    shift_picture(source, &c);
     i->scene->camera = c;
     i->scene->has_camera = true;
     return AG_OK;
@@ -207,6 +222,7 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
         double inner = fmin(fmax(0.5 * (double)source.inner_cone, 0.0), outer);
         l.kind = LIGHT_SPOT;
         light_set_cone(&l, inner, outer);
+        l.dims_by_cosine = source.dims_by_cosine == 1 && outer <= 0.5 * PI;
         break;
     }
     case IMPORT_LIGHT_DIRECTIONAL:

@@ -47,9 +47,9 @@ typedef struct import_surface {
  * warning. Errors: AG_ERROR_MEMORY. */
 ag_status importer_add_material(importer *i, const import_material *m, import_surface *out_surface);
 
-/* Adds a mesh at its place, which also is a lamp where its surface shines. Its arrays pass into the scene's ownership,
- * on failure too (they are then freed). Checks all: indices, coordinates; triangles without area are left out. name is
- * for messages. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
+/* Adds a mesh, transformed to world space, which also is a lamp where its surface shines. Its arrays pass into the
+ * scene's ownership, on failure too (they are then freed). Checks all: indices, coordinates; triangles without area are
+ * left out. name is for messages. Errors: AG_ERROR_INPUT, AG_ERROR_MEMORY. */
 ag_status importer_add_mesh(importer *i, const char *name, mesh *m, const transform *world_from_mesh,
                             const import_surface *surface);
 

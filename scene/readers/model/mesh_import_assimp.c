@@ -1,17 +1,13 @@
 /* mesh_import_assimp.c: see mesh_import_assimp.h. The only file that knows assimp.
- * Facts of assimp 5.2.5: camera angles are of the whole width; 3DS cameras have their place twice, in the node and in
- * the camera; FBX files keep their up axis, which stands in the metadata; STL, 3MF, AMF and Blender's files keep z up.
- * Threads: what is between "In the process" and "Here" runs in a process of its own. */
+ * Facts of assimp 5.2.5: camera angles are of the whole width; 3DS cameras have their position twice, in the node and
+ * in the camera; FBX files keep their up axis, which stands in the metadata; STL, 3MF, AMF and Blender's files keep z
+ * up. Nothing is freed: the process ends. */
 #define _POSIX_C_SOURCE 200809L
 #include "model/mesh_import_assimp.h"
 
 #include "model/blender_lamps.h"
-#include "model/import_confinement.h"
+#include "model/blender_shifts.h"
 #include "model/import_model.h"
-#include "model/import_process.h"
-#include "model/import_scene.h"
-#include "status.h"
-#include "text/input_file.h"
 
 #include <assimp/ObjMaterial.h>
 #include <assimp/cimport.h>
@@ -24,21 +20,19 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 enum { MAX_DEPTH = 1000 }; /* of nodes within nodes */
-
-/* In the process */
 
 typedef struct writer {
     FILE *out;
     const struct aiScene *scene;
     bool is_sound;            /* all could be written */
     bool is_blenders, is_fbx; /* the file is by Blender's exporter of Collada or FBX */
-    float units_per_metre;    /* of such a one */
-    blender_lamps lamps;      /* of such a one, of Collada */
-    bool has_plain_shining;   /* a material shines */
+    bool has_dimming_spots;
+    float units_per_metre;  /* of such a one */
+    blender_lamps lamps;    /* of such a one, of Collada */
+    blender_shifts shifts;  /* of such a one */
+    bool has_plain_shining; /* a material shines */
 } writer;
 
 static void write_bytes(writer *w, const void *bytes, size_t size)
@@ -198,7 +192,7 @@ static void write_material(writer *w, const struct aiMaterial *m)
     for (int slot = 0; slot < IMPORT_SLOT_COUNT; slot++)
         get_picture(w, m, TYPES[slot], &out.pictures[slot]);
     if (w->is_blenders && w->is_fbx && out.pictures[IMPORT_COLOR].path[0] != '\0')
-        out.diffuse = rgb_gray(1.0f); /* a socket's value, which the picture takes the place of */
+        out.diffuse = rgb_gray(1.0f); /* a socket's value, which the picture replaces */
     write_record(w, IMPORT_RECORD_MATERIAL, &out, sizeof out);
 }
 
@@ -243,7 +237,7 @@ static void write_mesh(writer *w, const struct aiMesh *m)
     write_padding(w, size);
 }
 
-/* Places */
+/* Transforms */
 
 typedef double matrix[4][4];
 
@@ -325,16 +319,35 @@ static void write_camera(writer *w, const struct aiCamera *c, matrix root)
     out.horizontal_fov = c->mHorizontalFOV;
     out.aspect = c->mAspect;
     out.orthographic_half_width = c->mOrthographicWidth;
+    memcpy(out.shift, w->shifts.of_all, sizeof out.shift);
     write_record(w, IMPORT_RECORD_CAMERA, &out, sizeof out);
+    if (w->shifts.differ) {
+        char text[IMPORT_TEXT_SIZE];
+        snprintf(text, sizeof text,
+                 "camera \"%s\": the file's cameras shift their pictures differently, and which does so how is not "
+                 "read: this one is seen without a shift",
+                 out.name);
+        write_text(w, IMPORT_RECORD_WARNING, text);
+    }
 }
 
-static bool is_made_by(const struct aiScene *s, const char *maker)
+/* Of the program that made the file, as "Blender (stable FBX IO) - 3.4.1 - 4.37.5"; "": it names none. */
+static const char *maker_of(const struct aiScene *s)
 {
     for (unsigned k = 0; s->mMetaData && k < s->mMetaData->mNumProperties; k++)
         if (strcmp(s->mMetaData->mKeys[k].data, AI_METADATA_SOURCE_GENERATOR) == 0 &&
             s->mMetaData->mValues[k].mType == AI_AISTRING)
-            return strncmp(((const struct aiString *)s->mMetaData->mValues[k].mData)->data, maker, strlen(maker)) == 0;
-    return false;
+            return ((const struct aiString *)s->mMetaData->mValues[k].mData)->data;
+    return "";
+}
+
+/* Blender's spots were dimmer beside their axis before 3.5: see spot_light.c. */
+static bool has_dimming_spots(const char *maker)
+{
+    const char *version = maker + strcspn(maker, "0123456789");
+    char *end;
+    const long major = strtol(version, &end, 10), minor = *end == '.' ? strtol(end + 1, NULL, 10) : 0;
+    return end != version && (major < 3 || (major == 3 && minor < 5));
 }
 
 /* Whose file it is, for lamps: see blender_lamps.h. */
@@ -345,7 +358,8 @@ static void find_maker(writer *w, const char *path)
     const bool is_collada = dot && strcasecmp(dot, ".dae") == 0, is_fbx = dot && strcasecmp(dot, ".fbx") == 0;
     w->is_fbx = is_fbx;
     w->units_per_metre = is_fbx ? 100.0f : 1.0f;
-    w->is_blenders = (is_collada || is_fbx) && is_made_by(s, "Blender ");
+    w->is_blenders = (is_collada || is_fbx) && strncmp(maker_of(s), "Blender ", strlen("Blender ")) == 0;
+    w->has_dimming_spots = w->is_blenders && has_dimming_spots(maker_of(s));
     for (unsigned k = 0; is_fbx && s->mMetaData && k < s->mMetaData->mNumProperties; k++) {
         const struct aiMetadataEntry *value = &s->mMetaData->mValues[k];
         if (strcmp(s->mMetaData->mKeys[k].data, "UnitScaleFactor") != 0)
@@ -358,6 +372,8 @@ static void find_maker(writer *w, const char *path)
     }
     if (w->is_blenders && is_collada)
         blender_lamps_read(path, &w->lamps);
+    if (w->is_blenders && s->mNumCameras > 0)
+        blender_shifts_read(path, is_fbx, &w->shifts);
 }
 
 /* The angle inside of which a spot of Blender's is full, from its half angle and blend: the edge takes that share of
@@ -391,6 +407,7 @@ static void restore_blenders(writer *w, const struct aiLight *l, matrix world, i
         const double outer = (double)(lamp ? l->mAngleInnerCone : l->mAngleOuterCone); /* assimp widens Collada's */
         const double blend = lamp ? (double)lamp->spot_blend : 1.0 - (double)l->mAngleInnerCone / fmax(outer, 1e-6);
         out->outer_cone = (float)outer;
+        out->dims_by_cosine = w->has_dimming_spots;
         out->inner_cone = (float)(2.0 * full_angle(0.5 * outer, fmin(fmax(blend, 0.0), 1.0)));
     }
 }
@@ -471,23 +488,8 @@ static void write_scene(writer *w, const char *path)
     write_head(w, IMPORT_RECORD_END, 0);
 }
 
-typedef struct import_job {
-    const char *path;
-    const input_files *inputs; /* or NULL */
-} import_job;
-
-static bool import_in_process(void *user, FILE *answer)
+bool assimp_write_records(const char *path, FILE *answer)
 {
-    const import_job *job = user;
-    const char *path = job->path;
-    if (job->inputs && job->inputs->is_confined &&
-        !import_confine_process(job->inputs->roots, job->inputs->root_count)) {
-        writer refusal = {.out = answer, .is_sound = true};
-        write_text(
-            &refusal, IMPORT_RECORD_ERROR,
-            "a confined scene of this format cannot be read: the kernel has no Landlock to hold assimp in its folder");
-        return refusal.is_sound;
-    }
     writer w = {.out = answer, .is_sound = true};
     w.scene = aiImportFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate);
     if (w.scene && w.scene->mRootNode) {
@@ -496,51 +498,14 @@ static bool import_in_process(void *user, FILE *answer)
         const char *text = aiGetErrorString();
         write_text(&w, IMPORT_RECORD_ERROR, text && text[0] ? text : "assimp cannot read the file");
     }
-    return w.is_sound; /* nothing is freed: the process ends */
+    return w.is_sound;
 }
 
-/* Here */
+bool assimp_write_refusal(const char *text, FILE *answer)
+{
+    writer w = {.out = answer, .is_sound = true};
+    write_text(&w, IMPORT_RECORD_ERROR, text);
+    return w.is_sound;
+}
 
 bool assimp_reads_extension(const char *extension) { return aiIsExtensionSupported(extension) == AI_TRUE; }
-
-static ag_status refuse(const run_context *run, const char *path, const char *what, const char *reason)
-{
-    log_at(run->log, AG_LOG_ERROR, (file_location){path, 0, 0}, "%s: %s", what, reason);
-    return AG_ERROR_INPUT;
-}
-
-/* What assimp may take: some formats are packed, but none by more than this. */
-static ag_status find_memory_limit(const run_context *run, const char *path, uint64_t *out_bytes)
-{
-    const uint64_t base = UINT64_C(2) << 30, per_byte = 64;
-    struct stat info;
-    char error[128];
-    int file = input_file_open(run, path, error, sizeof error);
-    if (file < 0)
-        return refuse(run, path, "cannot read the file", error);
-    bool is_known = fstat(file, &info) == 0;
-    close(file);
-    if (!is_known)
-        return AG_ERROR_MEMORY;
-    *out_bytes = base + per_byte * (uint64_t)(info.st_size > 0 ? info.st_size : 0);
-    return AG_OK;
-}
-
-ag_status assimp_load_file(run_context *run, const char *path, scene *out_scene)
-{
-    char message[512];
-    import_answer answer;
-    uint64_t memory_bytes = 0;
-    AG_TRY(find_memory_limit(run, path, &memory_bytes));
-    run_progress(run, AG_PHASE_LOAD, 0.0);
-    import_job job = {path, run->inputs};
-    ag_status status = import_process_run(run, import_in_process, &job, memory_bytes, &answer, message, sizeof message);
-    if (status && status != AG_CANCELLED && message[0] != '\0')
-        refuse(run, path, "assimp cannot read the file", message);
-    if (status == AG_OK)
-        status = import_scene_fill(run, path, answer.bytes, answer.size, out_scene);
-    import_answer_reset(&answer);
-    if (status == AG_OK)
-        run_progress(run, AG_PHASE_LOAD, 1.0);
-    return status;
-}

@@ -16,7 +16,7 @@ typedef struct mtl_library {
 } mtl_library;
 
 /* Adds what is in the file. What is not supported is named in a warning, once; a number that is none is an error, with
- * its place. file is for messages and lives as long as they. Errors: AG_ERROR_SCENE, AG_ERROR_MEMORY. */
+ * its location. file is for messages and lives as long as they. Errors: AG_ERROR_SCENE, AG_ERROR_MEMORY. */
 ag_status mtl_library_read(mtl_library *library, log_sink *log, const char *file, const char *text, size_t size);
 void mtl_library_reset(mtl_library *library);
 

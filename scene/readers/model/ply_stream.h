@@ -59,7 +59,7 @@ ag_status ply_fail(ply_stream *s, const char *format, ...) AG_PRINTF(2, 3);
 ag_status ply_fill(ply_stream *s, size_t wanted);
 /* The next line of the header without its end, cut to size - 1 characters. *out_is_end: there is none. */
 ag_status ply_read_line(ply_stream *s, char *line, size_t size, bool *out_is_end);
-/* A number of a binary file in the place where it lies. */
+/* A number of a binary file at the address where it lies. */
 double ply_decode(const unsigned char *bytes, ply_type type, ply_format format);
 /* The next number of the body. */
 ag_status ply_read_number(ply_stream *s, ply_type type, double *out_value);

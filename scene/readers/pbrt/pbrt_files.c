@@ -17,6 +17,10 @@ static const size_t PROGRESS_BYTES = (size_t)1 << 16;
 void pbrt_excerpt(const void *user, file_location where, size_t width, char *out_text, size_t size)
 {
     const pbrt_parser *parser = user;
+    if (parser->given && where.file == parser->given->where.file) {
+        snprintf(out_text, size, "\n    %s", parser->given->label);
+        return;
+    }
     for (int i = parser->file_count - 1; i >= 0; i--)
         if (parser->files[i].lexer.file == where.file) {
             pbrt_lexer_excerpt(&parser->files[i].lexer, where, width, out_text, size);
@@ -65,8 +69,22 @@ static char *join(const char *directory, const char *name)
     return path;
 }
 
+/* The path that whoever loads the scene has for a name; to be freed. False: it has none. */
+static bool ask_for_file(const pbrt_parser *parser, const char *name, char **out_path)
+{
+    char path[4096];
+    const scene_request *asked = parser->scene->request;
+    if (!asked || !asked->find_file || !asked->find_file(asked->find_file_user, name, path, sizeof path))
+        return false;
+    *out_path = strndup(path, sizeof path - 1);
+    return true;
+}
+
 char *pbrt_find_file(const pbrt_parser *parser, const char *name)
 {
+    char *asked;
+    if (ask_for_file(parser, name, &asked))
+        return asked;
     if (name[0] == '/')
         return strdup(name);
     if (strcmp(name, "-") == 0)
@@ -174,7 +192,7 @@ ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location wh
 ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size)
 {
     text_file file = {.text = malloc(size + 1), .size = size};
-    parser->top_directory = strdup("");
+    parser->top_directory = directory_of(name);
     if (!file.text || !parser->top_directory) {
         free(file.text);
         return AG_ERROR_MEMORY;
@@ -213,7 +231,7 @@ static ag_status next_of_value(pbrt_parser *parser, pbrt_value *value, pbrt_toke
     return status;
 }
 
-/* Puts values in the places of $name: into a string, or as tokens, which then are the next. */
+/* Puts values instead of $name: into a string, or as tokens, which then are the next. */
 static ag_status fill_in(pbrt_parser *parser, pbrt_file *file, pbrt_token *token)
 {
     char message[256], *text;
@@ -238,6 +256,18 @@ static ag_status fill_in(pbrt_parser *parser, pbrt_file *file, pbrt_token *token
     return AG_OK;
 }
 
+/* A call ends behind its strings. */
+static ag_status next_given(pbrt_given *given, pbrt_token *out_token)
+{
+    *out_token = (pbrt_token){.kind = PBRT_TOKEN_END, .where = given->where, .width = 1};
+    if (given->next_string < given->string_count) {
+        out_token->kind = PBRT_TOKEN_STRING;
+        out_token->text = given->strings[given->next_string++];
+        out_token->length = strlen(out_token->text);
+    }
+    return AG_OK;
+}
+
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
 {
     if (parser->has_peeked) {
@@ -245,6 +275,8 @@ ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token)
         *out_token = parser->peeked;
         return AG_OK;
     }
+    if (parser->given)
+        return next_given(parser->given, out_token);
     for (;;) {
         pbrt_file *file = &parser->files[parser->file_count - 1];
         if (file->value.has_tokens) {

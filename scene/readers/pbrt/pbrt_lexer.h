@@ -1,4 +1,4 @@
-/* pbrt_lexer.h: the text of a pbrt-v4 scene file as tokens, each with its place.
+/* pbrt_lexer.h: the text of a pbrt-v4 scene file as tokens, each with its location in the file.
  * Rests on the format's description, pbrt.org/fileformat-v4.
  * Flow: text_file -> [here] -> pbrt_parser. Threads: one at a time. */
 #ifndef AFTERGLOW_PBRT_LEXER_H

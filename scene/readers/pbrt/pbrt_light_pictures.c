@@ -44,7 +44,7 @@ ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, 
     return AG_OK;
 }
 
-/* Tells the reason at its place; memory has none. */
+/* Tells the reason at its location; memory has none. */
 static ag_status refuse_picture(pbrt_parser *parser, const parameter_list *list, ag_status status, const char *message)
 {
     if (status != AG_ERROR_MEMORY)

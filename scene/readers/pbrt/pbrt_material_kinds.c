@@ -179,7 +179,7 @@ ag_status pbrt_read_diffuse(pbrt_parser *parser, parameter_list *list, material 
     return read_reflectance(parser, list, m);
 }
 
-/* A texture times a number, in place of the texture. */
+/* A texture times a number, instead of the texture. */
 static ag_status scale_texture(pbrt_parser *parser, const parameter_list *list, float scale, uint32_t *texture_index)
 {
     if (*texture_index == SCENE_NO_TEXTURE || scale == 1.0f)

@@ -134,10 +134,10 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
                           named->where.line, named->where.column);
     AG_TRY(read_material(parser, list, type, &m));
     AG_TRY(scene_add_material(parser->scene, &m, &made.index));
-    named = find_named_material(parser, list->name); /* anew: a mix may have kept places for others, or for itself */
+    named = find_named_material(parser, list->name); /* anew: a mix may have made entries for others, or for itself */
     if (!named)
         return add_named_material(parser, list->name, made);
-    /* it has been used before: fill the place that was made for it then */
+    /* it has been used before: fill the entry that was made for it then */
     parser->scene->materials[named->index] = parser->scene->materials[made.index];
     named->is_defined = true;
     named->where = made.where;
@@ -153,10 +153,10 @@ ag_status pbrt_make_named_material(pbrt_parser *parser, file_location where)
     return status;
 }
 
-/* A named material, or where it is not made yet, as pbrt allows, a place for it. */
+/* A named material, or where it is not made yet, as pbrt allows, an empty entry for it. */
 static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_index)
 {
-    const pbrt_named_material *named = find_named_material(parser, name);
+    pbrt_named_material *named = find_named_material(parser, name);
     if (!named) {
         pbrt_named_material used = {.where = where};
         material reserved = material_make(MATERIAL_DIFFUSE);
@@ -164,6 +164,7 @@ static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_loc
         AG_TRY(add_named_material(parser, name, used));
         named = find_named_material(parser, name);
     }
+    named->is_excused = false;
     *out_index = named->index;
     return AG_OK;
 }
@@ -234,7 +235,7 @@ ag_status pbrt_check_named_materials(pbrt_parser *parser)
 {
     for (size_t i = 0; i < parser->named_material_count; i++) {
         const pbrt_named_material *named = &parser->named_materials[i];
-        if (!named->is_defined)
+        if (!named->is_defined && !named->is_excused)
             return pbrt_error(parser, named->where, strlen("NamedMaterial"), "no material is named \"%s\"",
                               named->name);
     }

@@ -1,6 +1,6 @@
 /* pbrt_media.c: MakeNamedMedium and MediumInterface of a pbrt-v4 scene.
  * Rests on the format's description, pbrt.org/fileformat-v4, "Participating media"; defaults as in pbrt-v4's media.cpp.
- * Media that scatter, or vary from place to place, get a stand-in that absorbs alike everywhere; those that do both,
+ * Media that scatter, or vary from point to point, get a stand-in that absorbs alike everywhere; those that do both,
  * one that does nothing.
  * Flow: pbrt_parser -> [here] -> scene.media; shapes, lights and the camera use them. Threads: one per scene. */
 #define _POSIX_C_SOURCE 200809L
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a medium scatters has no place here. Its absorption alone is nearest to it: light that scatters is not lost, and
+/* What a medium scatters is not kept. Its absorption alone is nearest to it: light that scatters is not lost, and
  * most liquids scatter it forwards. */
 static void tell_scattering(pbrt_parser *parser, const parameter_list *list)
 {
@@ -178,7 +178,7 @@ static ag_status read_medium(pbrt_parser *parser, parameter_list *list, medium *
     return pbrt_refuse(parser, list, "type", "unknown medium \"%s\"", type);
 }
 
-/* The place of a name among the named media, new where it is not there yet. */
+/* The index of a name among the named media, new where it is not there yet. */
 static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_location where, size_t *out_named)
 {
     uint32_t found;

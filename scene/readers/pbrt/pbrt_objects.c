@@ -50,6 +50,25 @@ static ag_status find_object(pbrt_parser *parser, const char *name, file_locatio
     return scene_set_name(parser->scene, NAMED_OBJECT, made.object_index, name);
 }
 
+ag_status pbrt_enter_object(pbrt_parser *parser, const char *name, file_location where)
+{
+    uint32_t object;
+    AG_TRY(find_object(parser, name, where, &object));
+    pbrt_object *o = &parser->objects[object];
+    if (o->is_shown)
+        return pbrt_error(parser, where, 1, "object \"%s\" has an instance already: nothing can be added to it", name);
+    o->is_defined = true;
+    parser->open_object = o;
+    parser->shapes_object_index = o->object_index;
+    return AG_OK;
+}
+
+void pbrt_leave_object(pbrt_parser *parser)
+{
+    parser->open_object = NULL;
+    parser->shapes_object_index = SCENE_NO_OBJECT;
+}
+
 ag_status pbrt_object_begin(pbrt_parser *parser, file_location where)
 {
     char *name;
@@ -77,8 +96,7 @@ ag_status pbrt_object_begin(pbrt_parser *parser, file_location where)
 ag_status pbrt_object_end(pbrt_parser *parser, file_location where)
 {
     AG_TRY(pbrt_restore_state(parser, where, "ObjectEnd", true));
-    parser->open_object = NULL;
-    parser->shapes_object_index = SCENE_NO_OBJECT;
+    pbrt_leave_object(parser);
     return AG_OK;
 }
 
@@ -201,6 +219,7 @@ ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
     ag_status status = find_object(parser, name, where, &object);
     free(name);
     AG_TRY(status);
+    parser->objects[object].is_shown = true;
     if (pbrt_is_flattened(parser, where, "ObjectInstance"))
         return AG_OK;
     if (parser->objects[object].is_defined)

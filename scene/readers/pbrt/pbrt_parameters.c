@@ -240,8 +240,27 @@ static ag_status read_parameter(pbrt_parser *parser, parameter_list *list)
     return AG_OK;
 }
 
+/* The parameters of a call, which are of their types. */
+static ag_status take_given(pbrt_parser *parser, parameter_list *list)
+{
+    pbrt_given *given = parser->given;
+    list->items = calloc(given->item_count + 1, sizeof *list->items);
+    if (!list->items)
+        return AG_ERROR_MEMORY;
+    for (size_t i = 0; i < given->item_count; i++) {
+        parameter *p = &list->items[list->count++];
+        *p = given->items[i];
+        given->items[i] = (parameter){0};
+        AG_TRY(pbrt_settle_color(parser, p, 1));
+        drop_shadowed(parser, list);
+    }
+    return AG_OK;
+}
+
 static ag_status read_all(pbrt_parser *parser, parameter_list *list)
 {
+    if (parser->given)
+        return take_given(parser, list);
     size_t capacity = 0;
     for (;;) {
         pbrt_token token;

@@ -109,7 +109,7 @@ static ag_status do_directive(pbrt_parser *parser, const pbrt_token *token)
                       token->length > SHOWN ? "..." : "", token->kind == PBRT_TOKEN_STRING ? "\"" : "");
 }
 
-/* What only the end can tell. end: the place of the end of the first file. */
+/* What only the end can tell. end: the location of the end of the first file. */
 static ag_status check_end(pbrt_parser *parser, file_location end)
 {
     if (!parser->in_world)
@@ -142,7 +142,7 @@ static ag_status parse(pbrt_parser *parser)
     return AG_OK;
 }
 
-static pbrt_parser *parser_create(run_context *run, scene *out_scene)
+pbrt_parser *pbrt_parser_create(run_context *run, scene *out_scene)
 {
     pbrt_parser *parser = calloc(1, sizeof *parser);
     if (parser) {
@@ -160,7 +160,7 @@ static pbrt_parser *parser_create(run_context *run, scene *out_scene)
     return parser;
 }
 
-static void parser_destroy(pbrt_parser *parser)
+void pbrt_parser_destroy(pbrt_parser *parser)
 {
     while (parser->file_count > 0)
         pbrt_pop_file(parser);
@@ -186,7 +186,7 @@ static void parser_destroy(pbrt_parser *parser)
 
 ag_status pbrt_parse_file(run_context *run, const char *path, scene *out_scene)
 {
-    pbrt_parser *parser = parser_create(run, out_scene);
+    pbrt_parser *parser = pbrt_parser_create(run, out_scene);
     if (!parser)
         return AG_ERROR_MEMORY;
     ag_status status = pbrt_push_file(parser, path, (file_location){NULL, 0, 0}, 0);
@@ -194,13 +194,13 @@ ag_status pbrt_parse_file(run_context *run, const char *path, scene *out_scene)
         status = parse(parser);
     if (status == AG_OK)
         pbrt_warn_unused_attributes(parser);
-    parser_destroy(parser);
+    pbrt_parser_destroy(parser);
     return status;
 }
 
 ag_status pbrt_parse_text(run_context *run, const char *name, const char *text, size_t size, scene *out_scene)
 {
-    pbrt_parser *parser = parser_create(run, out_scene);
+    pbrt_parser *parser = pbrt_parser_create(run, out_scene);
     if (!parser)
         return AG_ERROR_MEMORY;
     ag_status status = pbrt_push_text(parser, name, text, size);
@@ -208,6 +208,6 @@ ag_status pbrt_parse_text(run_context *run, const char *name, const char *text, 
         status = parse(parser);
     if (status == AG_OK)
         pbrt_warn_unused_attributes(parser);
-    parser_destroy(parser);
+    pbrt_parser_destroy(parser);
     return status;
 }

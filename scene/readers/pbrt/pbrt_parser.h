@@ -12,8 +12,7 @@
  * AG_CANCELLED. */
 ag_status pbrt_parse_file(run_context *run, const char *path, scene *out_scene);
 
-/* pbrt_parse_file of a text in memory; name stands for the file in messages, Include is relative to the working
- * directory. */
+/* pbrt_parse_file of a text in memory, as if it had been read from a file of that name. */
 ag_status pbrt_parse_text(run_context *run, const char *name, const char *text, size_t size, scene *out_scene);
 
 #endif

@@ -242,7 +242,7 @@ ag_status pbrt_bilinear_mesh(pbrt_parser *parser, parameter_list *list)
     double *arrays[3] = {NULL, NULL, NULL};
     AG_TRY(pbrt_read_mesh_arrays(parser, list, 4, &source, &index_count));
     parameter_list_warn_unused(list, parser->log);
-    source.expects_degenerate = true; /* a patch may well have two corners in one place */
+    source.expects_degenerate = true; /* a patch may well have two corners at one point */
     size_t patch_count = index_count / 4, steps = count_steps(&source, patch_count);
     ag_status status = give_uvs(&source, patch_count, arrays);
     if (status != AG_OK)

@@ -3,7 +3,7 @@
  * material. Threads: one per scene. */
 #include "pbrt/pbrt_private.h"
 
-/* A number, or a texture in its place, which multiplies what then is 1. */
+/* A number, or a texture instead of it, which multiplies what then is 1. */
 static ag_status read_number(pbrt_parser *parser, parameter_list *list, const char *name, float *value,
                              uint32_t *texture_index)
 {

@@ -31,7 +31,7 @@ typedef struct pbrt_named_transform {
     transform start, end;
 } pbrt_named_transform;
 
-/* What stands in the place of $name. */
+/* What stands instead of $name. */
 typedef struct pbrt_value {
     char *text;       /* owned; the last token may lie in it */
     pbrt_lexer lexer; /* of a value that stands without quotes: tokens of its own, which come first */
@@ -111,6 +111,7 @@ typedef struct pbrt_named_material {
     char *name;
     uint32_t index; /* in the scene; filled in when MakeNamedMaterial comes, which may be after its use */
     bool is_defined;
+    bool is_excused;     /* only a call that failed has used it: it need not be made */
     file_location where; /* of its definition, or until then of its first use */
 } pbrt_named_material;
 
@@ -138,6 +139,7 @@ typedef struct pbrt_object {
     char *name;
     uint32_t object_index; /* the scene's, of the shapes that stand still in it */
     bool is_defined;
+    bool is_shown;       /* there is an instance of it */
     file_location where; /* of its ObjectBegin, or until then of its first ObjectInstance */
     pbrt_object_lamp *lamps;
     size_t lamp_count, lamp_capacity;
@@ -152,6 +154,16 @@ typedef struct pbrt_early_instance {
     file_location where;
 } pbrt_early_instance;
 
+/* What a call says in the place of text: the quoted strings behind the directive's name, and its parameters. */
+typedef struct pbrt_given {
+    const char *const *strings; /* [string_count], borrowed */
+    size_t string_count, next_string;
+    parameter *items; /* [item_count]; the list takes what they hold, and leaves them zeroed */
+    size_t item_count;
+    file_location where;
+    const char *label; /* of what is made, for messages */
+} pbrt_given;
+
 typedef struct pbrt_parser {
     run_context *run;
     log_sink *log;
@@ -165,6 +177,7 @@ typedef struct pbrt_parser {
     bool has_peeked;
     size_t told_bytes; /* of the first file, at the last progress */
 
+    pbrt_given *given;          /* borrowed; NULL: tokens come from the files */
     parameter_source source;    /* of the lists that are read */
     pbrt_attribute *attributes; /* all there have been, the newest first */
 
@@ -203,18 +216,22 @@ typedef struct pbrt_parser {
     uint32_t alpha_texture;                                 /* likewise */
 } pbrt_parser;
 
-/* Every handler of a directive: where is the directive's place; its name has been read, nothing behind it. */
+/* Every handler of a directive: where is the directive's location; its name has been read, nothing behind it. */
 typedef ag_status pbrt_handler(pbrt_parser *parser, file_location where);
 
-/* pbrt_files.c: the stack of files and their tokens. The text of places: parser->source. */
+/* pbrt_parser.c. NULL when out of memory. */
+pbrt_parser *pbrt_parser_create(run_context *run, scene *out_scene);
+void pbrt_parser_destroy(pbrt_parser *parser);
+
+/* pbrt_files.c: the stack of files and their tokens. The text of locations: parser->source. */
 void pbrt_excerpt(const void *parser, file_location where, size_t width, char *out_text, size_t size);
 
-/* Opens a file as the innermost. name is as the user wrote it, where the place of the Include (zeroed for none). */
+/* Opens a file as the innermost. name is as the user wrote it, where the location of the Include (zeroed for none). */
 ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location where, size_t width);
 ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size);
 void pbrt_pop_file(pbrt_parser *parser);
-/* Where a file that the scene names is: as pbrt has it, below the first file's directory; where there is none, below
- * that of the file that names it. To be freed; NULL when out of memory. */
+/* Where a file that the scene names is: where whoever loads it says; else as pbrt has it, below the first file's
+ * directory; where there is none, below that of the file that names it. To be freed; NULL when out of memory. */
 char *pbrt_find_file(const pbrt_parser *parser, const char *name);
 /* Whether a picture may be read (input_file.h); where not, message says why, with the path. Errors: AG_ERROR_INPUT. */
 ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size);
@@ -245,8 +262,8 @@ pbrt_handler pbrt_color_space;
 /* Makes rgb parameters the working space's and reads the files of spectra. width: of the quoted "type name". Errors:
  * AG_ERROR_SCENE, AG_ERROR_INPUT (a file cannot be read), AG_ERROR_MEMORY. */
 ag_status pbrt_settle_color(pbrt_parser *parser, parameter *p, size_t width);
-/* A text file of nothing but numbers and comments, named at that place; hint ends the message where it cannot be read.
- * *out_numbers is to be freed. Errors: as above. */
+/* A text file of nothing but numbers and comments, named at that location; hint ends the message where it cannot be
+ * read. *out_numbers is to be freed. Errors: as above. */
 ag_status pbrt_read_number_file(pbrt_parser *parser, const char *name, file_location where, size_t width,
                                 const char *hint, double **out_numbers, size_t *out_count);
 
@@ -278,7 +295,7 @@ pbrt_handler pbrt_import, pbrt_world_begin, pbrt_world_end, pbrt_attribute_begin
     pbrt_transform_begin, pbrt_transform_end, pbrt_reverse_orientation;
 ag_status pbrt_save_state(pbrt_parser *parser, file_location where, bool is_object, bool is_import);
 ag_status pbrt_restore_state(pbrt_parser *parser, file_location where, const char *directive, bool is_object);
-/* Error where a Begin of the file that ends at that place has no End there. */
+/* Error where a Begin of the file that ends at that location has no End there. */
 ag_status pbrt_check_blocks(pbrt_parser *parser, file_location end);
 /* At the end of an imported file: what is open is an error, else the state that it began with is brought back and the
  * file popped. */
@@ -286,6 +303,10 @@ ag_status pbrt_end_import(pbrt_parser *parser, file_location end);
 
 /* pbrt_objects.c: what is kept once, and where it is shown. */
 pbrt_handler pbrt_object_begin, pbrt_object_end, pbrt_object_instance;
+/* The object of that name is the open one until pbrt_leave_object, once more where it was before; that ends with its
+ * first instance. */
+ag_status pbrt_enter_object(pbrt_parser *parser, const char *name, file_location where);
+void pbrt_leave_object(pbrt_parser *parser);
 /* Keeps a shape that shines within the open object. Takes its arrays, also on failure. */
 ag_status pbrt_add_object_lamp(pbrt_parser *parser, shape *s, file_location where);
 /* Shows a scene's object along the current transform as it moves: within the open object, or in the world. */

@@ -43,9 +43,10 @@ AG_API const char *ag_status_text(ag_status status);
  */
 typedef enum ag_log_level { AG_LOG_ERROR, AG_LOG_WARNING, AG_LOG_INFO, AG_LOG_DEBUG } ag_log_level;
 
-/* Receives one message without a line end; of a place in a file "FILE:LINE:COLUMN: error: ...", others do not say their
- * level. Calls are serialised, on the thread that speaks. Of this interface it may call ag_context_cancel and
- * ag_context_pause, and nothing else with the context that it is called for. */
+/* Receives one message without a line end; about a location in a file "FILE:LINE:COLUMN: error: ...", others do not say
+ * their level. Calls are serialised, on the thread that speaks. Of this interface it may call ag_context_cancel,
+ * ag_context_pause, ag_film_read_tile and ag_film_read_picture, and nothing else with the context that it is called
+ * for. */
 typedef void ag_log_fn(void *user, ag_log_level level, const char *message);
 
 /* The phases of a run, in their order. */

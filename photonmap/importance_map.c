@@ -1,12 +1,12 @@
-/* place_importance.c: see place_importance.h. */
-#include "place_importance.h"
+/* importance_map.c: see importance_map.h. */
+#include "importance_map.h"
 
 #include <stdlib.h>
 
-/* A cube is divided while it holds more places than LEAF_MOST: a surface that passes through leaves about a quarter of
+/* A cube is divided while it holds more points than LEAF_MOST: a surface that passes through leaves about a quarter of
  * them to each part that it passes through, so that hardly any of those is empty by chance. */
 enum { WAYS = 6, LEAF_MOST = 24, DEPTH_MAX = 24, PARTS = 8 };
-/* A place counts for each way that its normal is within 60 degrees of. */
+/* A point counts for each way that its normal is within 60 degrees of. */
 static const float WAY_COSINE = 0.5f;
 
 struct importance_node {
@@ -14,12 +14,12 @@ struct importance_node {
     float density;       /* of a leaf */
 };
 
-/* The nodes while they grow, and room to sort the places of one tree. */
+/* The nodes while they grow, and room to sort the points of one tree. */
 typedef struct builder {
     importance_node *nodes;
     uint32_t count, capacity;
-    vec3 *places, *scratch;
-    float unit; /* share of one place */
+    vec3 *points, *scratch;
+    float unit; /* share of one point */
     bool is_smooth;
 } builder;
 
@@ -39,10 +39,10 @@ static bool add_parts(builder *b, uint32_t *out_first)
     return true;
 }
 
-static uint32_t part_of(vec3 place, vec3 middle)
+static uint32_t part_of(vec3 point, vec3 middle)
 {
-    return (uint32_t)(place.x >= middle.x) | (uint32_t)(place.y >= middle.y) << 1 |
-           (uint32_t)(place.z >= middle.z) << 2;
+    return (uint32_t)(point.x >= middle.x) | (uint32_t)(point.y >= middle.y) << 1 |
+           (uint32_t)(point.z >= middle.z) << 2;
 }
 
 static vec3 part_corner(vec3 corner, float half, uint32_t part)
@@ -51,45 +51,45 @@ static vec3 part_corner(vec3 corner, float half, uint32_t part)
                   corner.z + (part & 4 ? half : 0.0f)};
 }
 
-/* Puts the places of a cube in the order of its parts. */
-static void sort_places(builder *b, uint32_t begin, uint32_t end, vec3 middle, uint32_t out_ends[PARTS])
+/* Puts the points of a cube in the order of its parts. */
+static void sort_points(builder *b, uint32_t begin, uint32_t end, vec3 middle, uint32_t out_ends[PARTS])
 {
-    uint32_t places[PARTS] = {0}, sum = begin;
+    uint32_t points[PARTS] = {0}, sum = begin;
     for (uint32_t i = begin; i < end; i++)
-        places[part_of(b->places[i], middle)]++;
+        points[part_of(b->points[i], middle)]++;
     for (int i = 0; i < PARTS; i++) {
-        uint32_t count = places[i];
-        places[i] = sum;
+        uint32_t count = points[i];
+        points[i] = sum;
         sum += count;
         out_ends[i] = sum;
     }
     for (uint32_t i = begin; i < end; i++)
-        b->scratch[places[part_of(b->places[i], middle)]++] = b->places[i];
+        b->scratch[points[part_of(b->points[i], middle)]++] = b->points[i];
     for (uint32_t i = begin; i < end; i++)
-        b->places[i] = b->scratch[i];
+        b->points[i] = b->scratch[i];
 }
 
-/* The mean of what a count of places by chance leaves open, where `around` were to be expected before it was known: of
+/* The mean of what a count of points by chance leaves open, where `around` were to be expected before it was known: of
  * the gamma distribution whose shape is 1. */
 static float smooth_count(uint32_t count, float around) { return around * ((float)count + 1.0f) / (around + 1.0f); }
 
-/* around: how many places there would be if those of the cube above were spread over its surface. */
+/* around: how many points there would be if those of the cube above were spread over its surface. */
 static bool divide(builder *b, uint32_t node, uint32_t begin, uint32_t end, vec3 corner, float size, float around,
                    int depth)
 {
-    float places = b->is_smooth ? smooth_count(end - begin, around) : (float)(end - begin);
+    float points = b->is_smooth ? smooth_count(end - begin, around) : (float)(end - begin);
     if (end - begin <= LEAF_MOST || depth == DEPTH_MAX) {
-        b->nodes[node].density = places * b->unit / (size * size);
+        b->nodes[node].density = points * b->unit / (size * size);
         return true;
     }
     float half = 0.5f * size;
     uint32_t first, ends[PARTS];
-    sort_places(b, begin, end, part_corner(corner, half, PARTS - 1), ends);
+    sort_points(b, begin, end, part_corner(corner, half, PARTS - 1), ends);
     if (!add_parts(b, &first))
         return false;
     b->nodes[node].first_part = first;
     for (uint32_t i = 0; i < PARTS; i++) {
-        if (!divide(b, first + i, begin, ends[i], part_corner(corner, half, i), half, 0.25f * places, depth + 1))
+        if (!divide(b, first + i, begin, ends[i], part_corner(corner, half, i), half, 0.25f * points, depth + 1))
             return false;
         begin = ends[i];
     }
@@ -98,7 +98,7 @@ static bool divide(builder *b, uint32_t node, uint32_t begin, uint32_t end, vec3
 
 static float component(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-static void set_cube(vec3 low, vec3 high, place_importance *out)
+static void set_cube(vec3 low, vec3 high, importance_map *out)
 {
     vec3 extent = vec3_sub(high, low);
     float largest = fmaxf(fmaxf(extent.x, extent.y), extent.z);
@@ -107,26 +107,26 @@ static void set_cube(vec3 low, vec3 high, place_importance *out)
     out->corner = vec3_sub(low, (vec3){0.011f * out->size, 0.012f * out->size, 0.013f * out->size});
 }
 
-static ag_status build(const asked_place *places, uint32_t count, float unit, bool is_smooth, vec3 low, vec3 high,
-                       place_importance *out_importance)
+static ag_status build(const query_point *points, uint32_t count, float unit, bool is_smooth, vec3 low, vec3 high,
+                       importance_map *out_importance)
 {
-    place_importance made = {0};
+    importance_map made = {0};
     set_cube(low, high, &made);
     builder b = {.capacity = WAYS + 1024, .count = WAYS, .unit = unit, .is_smooth = is_smooth};
     b.nodes = calloc(b.capacity, sizeof *b.nodes);
-    b.places = malloc(count * sizeof *b.places);
+    b.points = malloc(count * sizeof *b.points);
     b.scratch = malloc(count * sizeof *b.scratch);
-    bool is_made = b.nodes && b.places && b.scratch;
+    bool is_made = b.nodes && b.points && b.scratch;
     for (uint32_t way = 0; is_made && way < WAYS; way++) {
         uint32_t facing = 0;
         for (uint32_t i = 0; i < count; i++) {
-            float along = component(places[i].normal, (int)way / 2);
+            float along = component(points[i].normal, (int)way / 2);
             if ((way % 2 ? -along : along) > WAY_COSINE)
-                b.places[facing++] = places[i].position;
+                b.points[facing++] = points[i].position;
         }
         is_made = divide(&b, way, 0, facing, made.corner, made.size, (float)facing, 0);
     }
-    free(b.places);
+    free(b.points);
     free(b.scratch);
     if (!is_made) {
         free(b.nodes);
@@ -138,34 +138,34 @@ static ag_status build(const asked_place *places, uint32_t count, float unit, bo
     return AG_OK;
 }
 
-ag_status place_importance_create(const asked_place *places, uint32_t count, place_importance *out_importance)
+ag_status importance_map_create(const query_point *points, uint32_t count, importance_map *out_importance)
 {
-    *out_importance = (place_importance){0};
+    *out_importance = (importance_map){0};
     if (count == 0)
         return AG_OK;
-    vec3 low = places[0].position, high = low;
+    vec3 low = points[0].position, high = low;
     for (uint32_t i = 1; i < count; i++) {
-        vec3 p = places[i].position;
+        vec3 p = points[i].position;
         low = (vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
         high = (vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
     }
-    return build(places, count, 1.0f / (float)count, false, low, high, out_importance);
+    return build(points, count, 1.0f / (float)count, false, low, high, out_importance);
 }
 
-ag_status place_importance_create_smooth(const asked_place *places, uint32_t count, uint32_t whole, vec3 low, vec3 high,
-                                         place_importance *out_importance)
+ag_status importance_map_create_smooth(const query_point *points, uint32_t count, uint32_t whole, vec3 low, vec3 high,
+                                       importance_map *out_importance)
 {
-    *out_importance = (place_importance){0};
-    return count == 0 ? AG_OK : build(places, count, 1.0f / (float)whole, true, low, high, out_importance);
+    *out_importance = (importance_map){0};
+    return count == 0 ? AG_OK : build(points, count, 1.0f / (float)whole, true, low, high, out_importance);
 }
 
-void place_importance_reset(place_importance *importance)
+void importance_map_reset(importance_map *importance)
 {
     free(importance->nodes);
-    *importance = (place_importance){0};
+    *importance = (importance_map){0};
 }
 
-float place_importance_at(const place_importance *importance, vec3 position, vec3 normal)
+float importance_map_at(const importance_map *importance, vec3 position, vec3 normal)
 {
     vec3 corner = importance->corner;
     float size = importance->size;

@@ -1,0 +1,361 @@
+/* photon_path.c: see photon_path.h. */
+#include "photon_path.h"
+
+#include "material/lambert.h"
+#include "rays/transmittance.h"
+#include "scene_extent.h"
+#include "shape/alpha.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A path ends here at the latest; what it still carries is booked as truncated. */
+enum { SCATTERING_CAP = 100 };
+/* A begun path is split into so many parts at most, all surfaces together. */
+enum { SPLIT_MOST = 4096 };
+/* The room that a block's first photon makes. */
+enum { PHOTONS_FIRST = 1024 };
+/* Random streams, apart from those of the eye. */
+enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2, STREAM_TRIALS = 2 /* added to those */ };
+
+typedef struct photon_path {
+    scene_ray ray;
+    rgb flux;
+    rng random;
+    uint64_t key;
+    float weight;    /* how dense such paths would be by power alone, over how dense guide and parts make them */
+    float share;     /* of the begun path, that this part has */
+    int scatterings; /* but for panes, where they are direct */
+    int arrivals;    /* at surfaces, panes too */
+    bool is_diffuse; /* has gone on from a surface by its gathered lobes */
+} photon_path;
+
+static void count_flux(double entry[3], rgb flux)
+{
+    entry[0] += (double)flux.r;
+    entry[1] += (double)flux.g;
+    entry[2] += (double)flux.b;
+}
+
+static photon *append_photon(path_block *out)
+{
+    if (out->count == out->capacity) {
+        uint32_t capacity = out->capacity ? 2 * out->capacity : PHOTONS_FIRST;
+        photon *larger = realloc(out->photons, capacity * sizeof *larger);
+        if (!larger) {
+            out->out_of_memory = true;
+            return NULL;
+        }
+        out->photons = larger;
+        out->capacity = capacity;
+    }
+    return &out->photons[out->count++];
+}
+
+/* Where no light is asked for, photons whose paths were picked more often than by power are stored as rarely as if they
+ * had not been. false: this one is left out. */
+static bool keep(photon_tracer *t, const photon_path *path, vec3 position, vec3 normal, uint64_t key, rgb *in_out_flux)
+{
+    const importance_map *asked = t->settings->asked;
+    if (!asked || !(path->weight < 1.0f) || importance_map_at(asked, position, normal) > 0.0f)
+        return true;
+    rgb flux = *in_out_flux;
+    bool is_kept = (float)(hash_combine(key, 0x6b656570u) >> 40) * 0x1p-24f < path->weight;
+    *in_out_flux = is_kept ? rgb_scale(flux, 1.0f / path->weight) : rgb_gray(0.0f);
+    count_flux(t->out->balance.thinned, rgb_sub(flux, *in_out_flux));
+    return is_kept;
+}
+
+/* Where that point of a surface is when the shutter opens; its normal on the side that the path has arrived on. */
+static surface_rest rest_of_arrival(const scene *s, const photon_path *path, const surface_hit *hit)
+{
+    surface_rest at = {hit->position, hit->geometric_normal, 1.0f};
+    if (hit->instance_index != SCENE_NO_INSTANCE)
+        at = surface_at_opening(s, hit);
+    if (vec3_dot(hit->geometric_normal, path->ray.direction) > 0.0f)
+        at.geometric_normal = vec3_negate(at.geometric_normal);
+    return at;
+}
+
+static void store(photon_tracer *t, const photon_path *path, const surface_hit *hit, float arrival_factor)
+{
+    uint64_t key = hash_combine(path->key, (uint64_t)path->arrivals);
+    rgb flux = path->flux;
+    path_block *out = t->out;
+    surface_rest at = rest_of_arrival(t->s, path, hit);
+    vec3 normal = at.geometric_normal;
+    float alpha = 1.0f;
+    if (!shape_is_opaque(&t->s->shapes[hit->shape_index]))
+        alpha = alpha_at_hit(t->s, hit);
+    flux = rgb_scale(flux, alpha > 0.0f ? arrival_factor * at.area_ratio / alpha : 0.0f);
+    if (t->trial) {
+        float importance = importance_map_at(t->settings->asked, at.position, normal);
+        t->counts->photons++;
+        t->counts->asked += importance > 0.0f;
+        t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
+        return;
+    }
+    count_flux(out->balance.arrived, flux);
+    if (!keep(t, path, at.position, normal, key, &flux))
+        return;
+    if (out->count == t->limit) {
+        count_flux(out->balance.cut, flux);
+        return;
+    }
+    photon *p = append_photon(out);
+    if (!p)
+        return;
+    p->position[0] = at.position.x;
+    p->position[1] = at.position.y;
+    p->position[2] = at.position.z;
+    p->flux = flux_encode(flux, key);
+    p->direction = arrival_encode(path->ray.direction, path->is_diffuse);
+    p->normal = direction_encode(normal);
+    memset(&p->slot, 0, sizeof p->slot);
+    count_flux(out->balance.stored, flux_decode(p->flux));
+}
+
+/* Media take their share of a path's flux; roulette then keeps what it carries about as it was, so that no photons are
+ * spent on light that hardly matters. False: the path ends here. No random number is drawn where nothing is taken. */
+static bool pass_media(energy_balance *balance, rgb transmittance, rng *random, rgb *in_out_flux)
+{
+    if (transmittance.r == 1.0f && transmittance.g == 1.0f && transmittance.b == 1.0f)
+        return true;
+    rgb flux = *in_out_flux, left = rgb_mul(flux, transmittance);
+    count_flux(balance->absorbed, rgb_sub(flux, left));
+    if (rgb_is_black(left))
+        return false;
+    float survival = fminf(1.0f, rgb_max(left) / rgb_max(flux));
+    if (rng_float(random) >= survival) {
+        count_flux(balance->lost, left);
+        return false;
+    }
+    *in_out_flux = rgb_scale(left, 1.0f / survival);
+    count_flux(balance->gained, rgb_sub(*in_out_flux, left));
+    return true;
+}
+
+/* Of the area that a photon stands for where they lie evenly, in scene units; giants are not counted. */
+static float photon_width(const scene *s, uint32_t photon_count)
+{
+    static const float RADIUS_SHARE_MAX = 1.0f / 64.0f;
+    float radius = s->detail_radius > 0.0f ? s->detail_radius : s->bounding_radius;
+    return fminf(sqrtf(s->surface_area / (float)photon_count), RADIUS_SHARE_MAX * radius);
+}
+
+/* Leaves a lamp, picked by its power or by the guide, at a time of the path's own where that matters. false: nothing
+ * leaves. */
+static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
+{
+    const scene *s = t->s;
+    const photon_tracing_settings *settings = t->settings;
+    uint64_t stream = settings->kind == PHOTON_GLOBAL ? STREAM_GLOBAL : STREAM_CAUSTIC;
+    rng random = rng_make(settings->seed, t->trial ? stream + STREAM_TRIALS : stream, number);
+    uint64_t key = hash_combine(random.state, 0x70686f746f6eu);
+    float probability, density = 1.0f, time = s->has_motion ? rng_float(&random) : 0.0f;
+    emission_start begun =
+        settings->guide ? emission_guide_sample(settings->guide, &random, &density) : emission_start_draw(&random);
+    if (t->trial)
+        *t->trial = (emission_trial){begun, 0.0f, density};
+    const light *lamp = &s->lights[scene_pick_light_by_power(s, begun.u[0], &probability)];
+    emission_numbers numbers = emission_start_numbers(&begun);
+    light_emission start;
+    if (!(probability > 0.0f) || !light_emit(s, lamp, t->target, &numbers, &random, &start))
+        return false;
+    float weight = 1.0f / density;
+    scene_ray ray = scene_ray_make(start.origin, start.direction);
+    ray.skips_uv = true;
+    ray.slabs_are_panes = settings->panes_are_direct;
+    ray.medium = start.medium;
+    ray.time = time;
+    if (settings->filters_textures)
+        ray.cone = (ray_cone){photon_width(s, settings->wanted), 0.0f, true};
+    rgb flux = rgb_scale(start.flux, (t->trial ? 1.0f : weight) / probability);
+    *out_path = (photon_path){ray, flux, random, key, weight, 1.0f, 0, 0, false};
+    count_flux(t->out->balance.emitted, out_path->flux);
+    return true;
+}
+
+/* What a path has arrived at. */
+typedef struct arrival_surface {
+    const rgb *albedo; /* of a Lambertian surface; else NULL, and: */
+    bsdf scattering;
+} arrival_surface;
+
+static void arrival_surface_find(const scene *s, const surface_hit *hit, vec3 arrived, arrival_surface *out_surface)
+{
+    out_surface->albedo = lambert_albedo(s, hit);
+    if (!out_surface->albedo)
+        out_surface->scattering = bsdf_create(s, hit, vec3_negate(arrived));
+}
+
+static bool arrival_surface_has(const arrival_surface *m, bsdf_lobes lobes)
+{
+    return m->albedo ? (lobes & BSDF_GATHERED) != 0 : bsdf_has(&m->scattering, lobes);
+}
+
+/* Whether photons are stored there, as so much of what they carry: on surfaces that gather. */
+static bool arrival_surface_stores(const scene *s, const surface_hit *hit, vec3 arrived, const arrival_surface *m,
+                                   float *out_factor)
+{
+    if (m->albedo) {
+        *out_factor = lambert_arrival_factor(hit, arrived);
+        return true;
+    }
+    if (!bsdf_has(&m->scattering, BSDF_GATHERED))
+        return bsdf_arrival_factor_beside(s, hit, &m->scattering, out_factor);
+    *out_factor = bsdf_arrival_factor(&m->scattering);
+    return true;
+}
+
+/* Direction, weight, group and is_straight are set. */
+static bool arrival_surface_sample(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
+                                   float u_lobe, vec2 u, bsdf_sample *out_next)
+{
+    float correction;
+    if (!m->albedo)
+        return bsdf_sample_direction(&m->scattering, lobes, BSDF_FLUX, u_lobe, u, out_next);
+    if (!lambert_sample_flux(hit, arrived, u, &out_next->direction, &correction))
+        return false;
+    out_next->weight = rgb_scale(*m->albedo, correction);
+    out_next->group = BSDF_GATHERED;
+    out_next->is_straight = false;
+    return true;
+}
+
+/* Sends the path on from where its ray has arrived. false: it ends there. */
+static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit, const arrival_surface *m)
+{
+    const photon_tracing_settings *settings = t->settings;
+    energy_balance *balance = &t->out->balance;
+    vec3 arrived = path->ray.direction;
+    rgb flux = path->flux;
+    bool may_go_straight = settings->panes_are_direct && !m->albedo && m->scattering.is_pane;
+    bool is_last = path->scatterings >= settings->max_scatterings;
+    if (path->arrivals >= SCATTERING_CAP || (is_last && !may_go_straight)) {
+        count_flux(balance->truncated, flux);
+        return false;
+    }
+
+    /* a caustic map follows traced lobes alone */
+    bsdf_lobes lobes = settings->kind == PHOTON_GLOBAL ? BSDF_ALL : BSDF_TRACED;
+    if (!arrival_surface_has(m, lobes)) {
+        count_flux(balance->lost, flux);
+        return false;
+    }
+    float u_lobe = rng_float(&path->random), u_roulette = rng_float(&path->random);
+    vec2 u = rng_vec2(&path->random);
+    bsdf_sample next;
+    if (!arrival_surface_sample(m, hit, arrived, lobes, u_lobe, u, &next)) {
+        count_flux(balance->absorbed, flux);
+        return false;
+    }
+    bool goes_straight = may_go_straight && next.is_straight;
+    if (is_last && !goes_straight) {
+        count_flux(balance->truncated, flux);
+        return false;
+    }
+    rgb scattered = rgb_mul(flux, next.weight);
+    count_flux(balance->absorbed, rgb_sub(flux, scattered));
+
+    /* roulette keeps the flux of the survivors about what it was */
+    float largest = rgb_max(scattered), survival = largest > 0.0f ? largest / rgb_max(flux) : 0.0f;
+    survival = survival < 1.0f ? survival : 1.0f;
+    if (u_roulette >= survival) {
+        count_flux(balance->lost, scattered);
+        return false;
+    }
+    path->flux = rgb_scale(scattered, 1.0f / survival);
+    count_flux(balance->gained, rgb_sub(path->flux, scattered));
+    path->ray = goes_straight ? scene_ray_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
+    if (next.group == BSDF_GATHERED && settings->filters_textures)
+        path->ray.cone.spread = RAY_CONE_DIFFUSE_SPREAD;
+    path->scatterings += !goes_straight;
+    path->arrivals++;
+    path->is_diffuse = path->is_diffuse || next.group == BSDF_GATHERED;
+    return true;
+}
+
+/* Into how many parts a path is split before it is scattered. In proportion to its flux and to the root of the share of
+ * it that arrives where light is asked for, their variance is least for the number of all parts. */
+static uint32_t count_parts(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
+                            const arrival_surface *m)
+{
+    const photon_tracing_settings *settings = t->settings;
+    bool is_last = path->scatterings >= settings->max_scatterings || path->arrivals >= SCATTERING_CAP;
+    if (!(settings->split_above > 0.0f) || is_last || !arrival_surface_has(m, BSDF_GATHERED))
+        return 1;
+    surface_rest at = rest_of_arrival(t->s, path, hit);
+    float importance = importance_map_at(settings->onward, at.position, at.geometric_normal);
+    float flux = path->flux.r + path->flux.g + path->flux.b;
+    if (t->trial)
+        flux /= t->trial->density;
+    float parts = flux * sqrtf(importance) / settings->split_above, most = SPLIT_MOST * path->share;
+    return !(parts > 1.0f) ? 1 : (uint32_t)fmaxf(fminf(parts + 0.5f, most), 1.0f);
+}
+
+/* One of the parts, equally bright, each with random numbers of its own. */
+static photon_path part_of_path(const photon_path *path, uint32_t part, uint32_t parts)
+{
+    photon_path out = *path;
+    uint64_t number = (uint64_t)path->arrivals << 32 | part;
+    float share = 1.0f / (float)parts;
+    out.flux = rgb_scale(path->flux, share);
+    out.weight *= share;
+    out.share *= share;
+    out.key = hash_combine(path->key, number);
+    out.random.state = hash_combine(path->random.state, number);
+    return out;
+}
+
+static void follow_path(photon_tracer *t, photon_path *path);
+
+/* Stores a photon where the path's ray has arrived, and sends the path on, or its parts. false: it ends there. */
+static bool arrive(photon_tracer *t, photon_path *path, const surface_hit *hit)
+{
+    vec3 arrived = path->ray.direction;
+    arrival_surface m;
+    float factor;
+    arrival_surface_find(t->s, hit, arrived, &m);
+    if ((t->settings->kind == PHOTON_GLOBAL || path->scatterings > 0) &&
+        arrival_surface_stores(t->s, hit, arrived, &m, &factor))
+        store(t, path, hit, factor);
+    uint32_t parts = count_parts(t, path, hit, &m);
+    t->out->parts += parts - 1;
+    for (uint32_t i = 1; i < parts; i++) {
+        photon_path part = part_of_path(path, i, parts);
+        if (scatter(t, &part, hit, &m))
+            follow_path(t, &part);
+    }
+    if (parts > 1)
+        *path = part_of_path(path, 0, parts);
+    return scatter(t, path, hit, &m);
+}
+
+static void follow_path(photon_tracer *t, photon_path *path)
+{
+    energy_balance *balance = &t->out->balance;
+    bool goes_on = true;
+    while (goes_on) {
+        surface_hit hit;
+        rgb transmittance;
+        t->out->rays++;
+        bool is_met = transmittance_intersect(t->s, &path->ray, &t->out->rays_cut, &hit, &transmittance);
+        if (!pass_media(balance, transmittance, &path->random, &path->flux))
+            return;
+        if (!is_met)
+            count_flux(balance->escaped, path->flux);
+        if (is_met && ray_cone_is_wide(&path->ray.cone)) {
+            path->ray.cone = ray_cone_at(&path->ray.cone, hit.distance);
+            hit.footprint = ray_cone_footprint(&path->ray.cone, path->ray.direction);
+        }
+        goes_on = is_met && arrive(t, path, &hit);
+    }
+}
+
+void photon_path_trace(photon_tracer *t, uint64_t number)
+{
+    photon_path path;
+    if (begin_path(t, number, &path))
+        follow_path(t, &path);
+}

@@ -1,0 +1,18 @@
+/* scene_parameters.h: parameters as a caller hands them over, as the readers have them.
+ * Flow: scene_memory -> [here] -> pbrt_builder. Threads: any. */
+#ifndef AFTERGLOW_SCENE_PARAMETERS_H
+#define AFTERGLOW_SCENE_PARAMETERS_H
+
+#include "afterglow/afterglow.h"
+#include "text/file_location.h"
+
+struct pbrt_items;
+
+/* Copies them; *out_items is to be freed, and what its items hold is for whoever takes them. where: of the call. What
+ * is wrong is said in the log, at the number of the parameter. Errors: AG_ERROR_ARGUMENT, AG_ERROR_MEMORY. */
+ag_status scene_parameters_copy(log_sink *log, file_location where, const ag_parameter *given, size_t count,
+                                struct pbrt_items *out_items);
+/* Frees them with all that they still hold. */
+void scene_parameters_free(struct pbrt_items *items);
+
+#endif

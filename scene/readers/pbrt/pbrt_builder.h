@@ -1,0 +1,71 @@
+/* pbrt_builder.h: a scene made by calls in the place of text. Each is one or a few of pbrt-v4's directives, with
+ * strings and parameters from memory, and goes through the very functions that a file's directives go through: what is
+ * true of one is true of the other, to the last bit. Flow: scene_memory -> [here] -> pbrt_shapes, pbrt_materials, ...
+ * -> scene. Threads: one per scene. */
+#ifndef AFTERGLOW_PBRT_BUILDER_H
+#define AFTERGLOW_PBRT_BUILDER_H
+
+#include "math/transform.h"
+#include "pbrt/parameter_list.h"
+#include "scene.h"
+
+typedef struct pbrt_builder pbrt_builder;
+
+/* Begins an empty, uncommitted scene; run and scene are borrowed until pbrt_builder_destroy. NULL when out of memory.
+ */
+pbrt_builder *pbrt_builder_create(run_context *run, scene *out_scene);
+void pbrt_builder_destroy(pbrt_builder *b); /* NULL is fine */
+
+/* Who calls, for messages: FUNCTION:NUMBER:PARAMETER. Parameters hold their own `where` in the same way. */
+typedef struct pbrt_call {
+    file_location where; /* of column 0 */
+    const char *label;   /* of what is made, borrowed for the time of the call */
+} pbrt_call;
+
+/* Parameters in an array; what they hold is taken, on failure too, and the array left zeroed. */
+typedef struct pbrt_items {
+    parameter *items;
+    size_t count;
+} pbrt_items;
+
+/* Where something is, and what it is made of. */
+typedef struct pbrt_placement {
+    transform start, end; /* world from its own space, while the shutter is open; of a camera: camera from world */
+    bool reverse_orientation;
+    const char *material;                       /* may be made later; NULL: diffuse grey */
+    const char *object;                         /* that it is part of; NULL: of the world */
+    const char *medium_inside, *medium_outside; /* may be made later; NULL: none */
+} pbrt_placement;
+
+/* All give errors as a file's directives do, told to the run's log; what was made before stays. */
+
+/* emission: of AreaLightSource; NULL: it does not shine. */
+ag_status pbrt_builder_shape(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
+                             pbrt_items items, pbrt_items *emission);
+ag_status pbrt_builder_light(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
+                             pbrt_items items);
+ag_status pbrt_builder_camera(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
+                              pbrt_items items);
+/* An instance of the object that at->object names, which is complete with it. */
+ag_status pbrt_builder_instance(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at);
+
+/* strings: name, "float" or "spectrum", class. */
+ag_status pbrt_builder_texture(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at,
+                               const char *const strings[3], pbrt_items items);
+
+/* What has no place: strings stand behind the directive's name. */
+typedef enum pbrt_statement {
+    PBRT_MATERIAL, /* MakeNamedMaterial: name, type */
+    PBRT_MEDIUM,   /* MakeNamedMedium: name, type */
+    PBRT_FILM,     /* Film and the following: type; the last of each counts */
+    PBRT_SAMPLER,
+    PBRT_INTEGRATOR,
+    PBRT_PIXEL_FILTER
+} pbrt_statement;
+ag_status pbrt_builder_state(pbrt_builder *b, const pbrt_call *call, pbrt_statement statement,
+                             const char *const *strings, pbrt_items items);
+
+/* Settles what only the end can tell. To be called once; nothing more can be added. */
+ag_status pbrt_builder_finish(pbrt_builder *b);
+
+#endif
