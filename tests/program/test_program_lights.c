@@ -216,8 +216,8 @@ static void test_many_lamps(void **state)
     compare("many lamps", room_with(text), MORE, NULL, 0.01, 0.05);
 }
 
-/* "photons" 0 takes a lamp's light out of the map, and leaves it in direct light; another factor changes noise alone.
- */
+/* "photons" 0 takes a lamp's light out of the map, and leaves it in direct light; another factor changes noise
+ * alone. */
 static void test_photons(void **state)
 {
     (void)state;
