@@ -227,7 +227,7 @@ static bool open_picture(display_server *d, uint64_t turn)
     return true;
 }
 
-/* Gives a tile that the viewer does not have as it is now; which is the first place to look at. */
+/* Gives a tile that the viewer does not have as it is now; which: where the search begins; then the tile behind. */
 static bool take_changed_tile(display_server *d, uint64_t turn, size_t *which, ag_tile *out_tile, float *out_pixels)
 {
     bool is_taken = false;

@@ -115,7 +115,7 @@ static void instances_are_their_shapes_moved(void **state)
     test_run_reset(&r);
 }
 
-/* Both see the fibre at one place, and the place across it from the same side. */
+/* Both see the fibre at one point, and the offset across it from the same side. */
 static void expect_same_hair(const scene *a, const scene *b, const scene_ray *ray, rng *random, uint32_t *met)
 {
     surface_hit of_a, of_b;

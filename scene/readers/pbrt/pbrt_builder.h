@@ -1,4 +1,4 @@
-/* pbrt_builder.h: a scene made by calls in the place of text. Each is one or a few of pbrt-v4's directives, with
+/* pbrt_builder.h: a scene made by calls instead of text. Each is one or a few of pbrt-v4's directives, with
  * strings and parameters from memory, and goes through the very functions that a file's directives go through: what is
  * true of one is true of the other, to the last bit. Flow: scene_memory -> [here] -> pbrt_shapes, pbrt_materials, ...
  * -> scene. Threads: one per scene. */
@@ -54,7 +54,7 @@ ag_status pbrt_builder_instance(pbrt_builder *b, const pbrt_call *call, const pb
 ag_status pbrt_builder_texture(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at,
                                const char *const strings[3], pbrt_items items);
 
-/* What has no place: strings stand behind the directive's name. */
+/* Directives that place nothing in the scene; the strings after each are those behind its name. */
 typedef enum pbrt_statement {
     PBRT_MATERIAL, /* MakeNamedMaterial: name, type */
     PBRT_MEDIUM,   /* MakeNamedMedium: name, type */

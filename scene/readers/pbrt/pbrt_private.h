@@ -161,7 +161,8 @@ typedef struct pbrt_picture {
     image pixels; /* owned */
 } pbrt_picture;
 
-/* What a call says in the place of text: the quoted strings behind the directive's name, and its parameters. */
+/* The content of a call, which stands instead of text: the quoted strings behind the directive's name, and its
+ * parameters. */
 typedef struct pbrt_given {
     const char *const *strings; /* [string_count], borrowed */
     size_t string_count, next_string;
