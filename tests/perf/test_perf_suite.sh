@@ -22,7 +22,7 @@ expect verdicts.csv 0
 expect frame.csv 2
 expect scaling.csv 0
 expect waiting.csv 0
-expect exponents.csv 8
+expect exponents.csv 14
 expect scale.csv 10
 expect contention.csv 3
 expect memory.csv 2
