@@ -34,9 +34,9 @@ typedef struct claim_owners {
 bool claim_owners_join(int file, claim_owner *table, claim_owners *out_owners);
 void claim_owners_reset(claim_owners *owners); /* frees what is owned; all zero is fine */
 
-/* After a claim of ours, which carried this number, turned out to have been taken over: we have stood still, and others
- * remember it. Our further claims carry a new number, and are waited for again. By any thread; the first one does it.
- */
+/* After a claim of ours, which carried this number, turned out to have been taken over: we have stood still, and
+ * others remember it. Our further claims carry a new number, and are waited for again. By any thread; the first one
+ * does it. */
 void claim_owners_renew(claim_owners *owners, uint32_t claimer);
 
 /* Whether the process that a claim names still lives. */

@@ -12,7 +12,8 @@ enum { WAYS = 6, BLOCKS_LOG2 = 5, CELLS_AT_ONCE = 16 };
 /* A histogram takes so many photons; one of `FEW` decides half as much as one of very many would. */
 enum { LEAST = 8 };
 static const float FEW = 64.0f;
-/* What a bin's photons count in each of its four neighbours: a histogram of some hundred photons is noise, mostly. */
+/* The share of a bin's photons that counts in each of its four neighbours: a histogram of some hundred photons is
+ * noise, mostly. */
 static const float SPREAD = 0.5f;
 /* So that sums stay finite. */
 static const float FLUX_MAX = 1e30f;

@@ -48,8 +48,8 @@ bool incident_light_find(const incident_light *l, vec3 position, vec3 normal, in
 
 /* Warps points of the unit square, up to INCIDENT_WARPS_MAX, to ones by the guide's density. out_weights: 1 / that
  * density: what a ray by the new point, warped on by sample_cosine_hemisphere in the guide's frame, weighs more than
- * one by the cosine alone. All of the columns up to a multiple of eight is overwritten, and must be numbers of [0, 1).
- */
+ * one by the cosine alone. All of the columns up to a multiple of eight is overwritten, and must be numbers of
+ * [0, 1). */
 enum { INCIDENT_WARPS_MAX = 64 };
 void incident_guide_warp(const incident_guide *guide, uint32_t count, float in_out_u[2][INCIDENT_WARPS_MAX],
                          float out_weights[INCIDENT_WARPS_MAX]);

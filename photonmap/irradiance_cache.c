@@ -88,7 +88,7 @@ static bool estimate_at_point(irradiance_cache *cache, vec3 position, vec3 norma
 
 void irradiance_cache_share(irradiance_cache *cache, claim_owners *owners) { cache->owners = owners; }
 
-/* What the worker's claims carry: among processes, the process is enough. */
+/* The number in the worker's claims: among processes, the process is enough. */
 static uint32_t claimer_of(const irradiance_cache *cache, unsigned worker_index)
 {
     return cache->owners ? load_relaxed_u32(&cache->owners->claimer) : worker_index;

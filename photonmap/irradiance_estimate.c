@@ -125,9 +125,9 @@ static uint32_t leave_brighter_rim(const photon_map *map, photon_neighbor *n, ui
     return count;
 }
 
-/* A region holds an estimate when it is this share of the disc, and when photons as dense as they are in that disc, or
- * in the mean of the scene where they are denser there, would leave so many in it. Three walls meet in a quarter disc.
- */
+/* A region holds an estimate when it is this share of the disc, and when photons as dense as they are in that disc,
+ * or in the mean of the scene where they are denser there, would leave so many in it. Three walls meet in a quarter
+ * disc. */
 static const float REGION_SHARE_MIN = 0.2f, REGION_PHOTONS_MIN = 10.0f;
 
 static bool region_holds(const photon_map *map, double area, float radius)

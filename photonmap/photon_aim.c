@@ -15,8 +15,8 @@ static const float LEAST_GAIN = 1.5f;
 static const double ENOUGH_ASKED = 0.5, ENOUGH_PER_PATH = 0.25;
 /* Paths are split that are worth more than SPLIT_RATIO times the tenth percentile of the useful paths' worths, and so
  * much more that no more than about PARTS_PER_PATH come to one path. The first round with a guide splits above a high
- * percentile by power alone, and each further one above no less than a SPLIT_STEP of that, so that no round takes long.
- */
+ * percentile by power alone, and each further one above no less than a SPLIT_STEP of that, so that no round takes
+ * long. */
 static const float SPLIT_RATIO = 1.0f, PARTS_PER_PATH = 1.0f, SPLIT_STEP = 0.1f;
 static const float LOW_PERCENTILE = 0.1f, HIGH_PERCENTILE = 0.9f;
 

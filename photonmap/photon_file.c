@@ -201,7 +201,7 @@ int photon_file_write(const run_context *run, int descriptor, const photon_file_
         return ECANCELED;
     h.self = hash_of_header(&h);
 
-    /* What is mapped must have its space on the disk: a disk that is full later would end processes by SIGBUS. A file
+    /* A mapped file must have its space on the disk: a disk that is full later would end processes by SIGBUS. A file
      * system that cannot reserve gets all bytes written below: none is left out. */
     int error = posix_fallocate(descriptor, 0, (off_t)h.file_bytes);
     if (error != 0 && error != EOPNOTSUPP && error != EINVAL && error != ENOSYS && error != EBADF)
@@ -248,7 +248,7 @@ static void describe_other_setting(const char *is, const char *wanted, char *out
         snprintf(out, size, "it was made with other kinds of settings");
 }
 
-/* What the file was made of, where it is another than the key's; "" where it fits. */
+/* Names what the file was made of, where that differs from the key; "" where it fits. */
 static void describe_difference(const photon_file_key *is, const photon_file_key *wanted, char *out, size_t size)
 {
     snprintf(out, size, "%s", "");

@@ -69,8 +69,8 @@ photon_file_result photon_file_read(const run_context *run, const char *path, ph
                                     photon_map *out_caustic, char *message, size_t message_size);
 
 /* Whether the file is still the one that was opened. Somebody may cut it short, or copy another one over it, while it
- * is mapped: what was read since the last time this was true need not be the maps'. A copy in memory is always intact.
- */
+ * is mapped: what was read since the last time this was true need not be the maps'. A copy in memory is always
+ * intact. */
 bool photon_file_is_intact(const photon_file *file);
 
 /* After the maps, and when none of our claims is held. {0} is fine. */

@@ -176,7 +176,7 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
     return true;
 }
 
-/* What a path has arrived at. */
+/* The surface that a path has arrived at. */
 typedef struct arrival_surface {
     const rgb *albedo; /* of a Lambertian surface; else NULL, and: */
     bsdf scattering;

@@ -16,7 +16,7 @@ typedef struct path_block {
     bool is_cut; /* cancelled before all of its paths were traced */
 } path_block;
 
-/* What a path needs to be traced. */
+/* Everything that tracing a path reads and writes. */
 typedef struct photon_tracer {
     const scene *s;
     const light_target *target; /* of a caustic map: what its paths must meet first; else NULL */

@@ -7,8 +7,8 @@
 
 #include "photon_tree.h"
 
-/* x, y, z, and nothing: in registers, since a single lane that is stored cannot soon be read back with its neighbours.
- */
+/* x, y, z, and nothing: in registers, since a single lane that is stored cannot soon be read back with its
+ * neighbours. */
 typedef float photon_lanes __attribute__((vector_size(16)));
 typedef int32_t photon_lane_bits __attribute__((vector_size(16)));
 

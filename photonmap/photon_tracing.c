@@ -34,8 +34,8 @@ static void trace_block(void *user, uint64_t begin, uint64_t end, uint64_t block
 {
     (void)worker;
     round_job *job = user;
-    /* each photon changes the balance, which lies beside that of another worker's block: a copy has its lines to itself
-     */
+    /* each photon changes the balance, which lies beside that of another worker's block: a copy has its lines to
+     * itself */
     path_block out = job->blocks[block_index];
     photon_tracer t = {job->s, job->target, job->settings, &out, UINT32_MAX, NULL, NULL};
     for (uint64_t i = begin; i < end && !run_is_cancelled(job->run); i++)

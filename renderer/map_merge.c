@@ -98,7 +98,7 @@ static bool is_one_of(const char *path, const char *const *paths, size_t count)
     return false;
 }
 
-/* What stands there is replaced by a photon map alone where it is one. out_is_sound: it can be read. */
+/* A file that is there is replaced only where it is a photon map. out_is_sound: it can be read. */
 static ag_status check_output(ag_context *context, const char *path, bool *out_is_sound)
 {
     char why[1024];

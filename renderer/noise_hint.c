@@ -1,5 +1,6 @@
 /* noise_hint.c: how noisy the picture is, and what would help most, in words.
  * Flow: film/noise.h -> [here] -> the program's last lines. Threads: as in afterglow.h. */
+#include "integrator/integrator.h"
 #include "light/light.h"
 #include "rendering.h"
 
@@ -37,7 +38,7 @@ static const char *find_windows_help(const struct ag_rendering *r)
 
 static advice advise(const struct ag_rendering *r, ag_noise_source source, const noise_summary *noise)
 {
-    bool is_path = r->settings.integrator == AG_INTEGRATOR_PATH;
+    bool is_path = !integrator_of(r->settings.integrator)->has_photon_map;
     switch (source) {
     case AG_NOISE_EMISSION: return (advice){"at the edges of lamps and of the sky", MORE_SAMPLES};
     case AG_NOISE_LAMPS: return (advice){"in direct light from lamps", MORE_SAMPLES};

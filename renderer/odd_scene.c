@@ -1,6 +1,7 @@
 /* odd_scene.c: see odd_scene.h. */
 #include "odd_scene.h"
 
+#include "integrator/integrator.h"
 #include "light/light.h"
 #include "material/pane.h"
 #include "math/rng.h"
@@ -149,7 +150,7 @@ static bool is_all_panes(const scene *s, uint32_t material_index)
 static void warn_of_light_behind_glass(const struct ag_rendering *r)
 {
     const scene *s = r->s;
-    if (r->settings.integrator != AG_INTEGRATOR_PATH || !has_lights_without_extent(s))
+    if (integrator_of(r->settings.integrator)->has_photon_map || !has_lights_without_extent(s))
         return;
     for (uint32_t i = 0; i < s->shape_count; i++) {
         uint32_t material_index = s->shapes[i].material_index;

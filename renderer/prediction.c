@@ -52,7 +52,7 @@ static double pixels_of(const ag_render_settings *settings)
     return (crop[1] - crop[0]) * settings->width * (crop[3] - crop[2]) * settings->height;
 }
 
-/* What a pixel takes in the film, and on its way to a file, by a small film of these settings. */
+/* The bytes of a pixel in the film, and on its way to a file, by a small film of these settings. */
 static ag_status measure_pixel(ag_context *context, const scene *s, const ag_render_settings *settings,
                                double *out_film_bytes, double *out_file_bytes, int *out_channel_count)
 {
@@ -126,7 +126,7 @@ static double predict_reached(double count, double reached, double trial_request
     return count * share_reached(requests / count, low);
 }
 
-/* What the blocks of a trial have taken. */
+/* The time that the blocks of a trial have taken. */
 typedef struct trial {
     double cpu_s, pixels, samples;
     double computed; /* irradiance at photons */

@@ -47,7 +47,7 @@ static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
     return status;
 }
 
-/* What the workers counted since they were asked last. */
+/* Adds the workers' counts since the last call to the statistics. */
 static void collect_counts(ag_rendering *r)
 {
     ag_statistics *statistics = &r->context->statistics;

@@ -5,6 +5,7 @@
 #include "scene_load.h"
 
 #include "floating_point.h"
+#include "image/image_reader.h"
 #include "pbrt/pbrt_builder.h"
 #include "scene_overrides.h"
 #include "scene_parameters.h"
@@ -27,12 +28,14 @@ typedef enum call_kind {
     CALL_MEDIUM,
     CALL_TEXTURE,
     CALL_HINT,
+    CALL_IMAGE,
     CALL_KIND_COUNT
 } call_kind;
 
 static const char *const FUNCTIONS[CALL_KIND_COUNT] = {
-    "ag_scene_add_shape",    "ag_scene_add_light",  "ag_scene_add_instance", "ag_scene_set_camera",
-    "ag_scene_add_material", "ag_scene_add_medium", "ag_scene_add_texture",  "ag_scene_set_hint"};
+    "ag_scene_add_shape",   "ag_scene_add_light",    "ag_scene_add_instance",
+    "ag_scene_set_camera",  "ag_scene_add_material", "ag_scene_add_medium",
+    "ag_scene_add_texture", "ag_scene_set_hint",     "ag_scene_add_image"};
 
 typedef struct scene_making {
     ag_context *context; /* the scene's */
@@ -319,6 +322,39 @@ ag_status ag_scene_add_instance(ag_scene *made, const ag_instance *instance)
 {
     making_call c;
     return begin_call(made, CALL_INSTANCE, &c) ? end_call(&c, add_instance(&c, instance)) : AG_ERROR_ARGUMENT;
+}
+
+ag_image ag_default_image(void) { return (ag_image){.struct_size = sizeof(ag_image), .channel_count = 3}; }
+
+static ag_status add_image(making_call *c, const char *name, const ag_image *given)
+{
+    static const int64_t PIXELS_MAX = (int64_t)1 << 28;
+    ag_image i = ag_default_image();
+    image copy;
+    AG_TRY(take_struct(c, given, sizeof i, sizeof i, &i));
+    if (!name || !name[0])
+        return refuse(c, "the picture has no name");
+    if (i.width < 1 || i.height < 1 || (int64_t)i.width * i.height > PIXELS_MAX || i.channel_count < 1 ||
+        i.channel_count > 4)
+        return refuse(c, "a picture has 1 to 2^28 pixels and 1 to 4 channels");
+    if (!i.bytes == !i.floats)
+        return refuse(c, "either bytes or floats should be there");
+    const image borrowed = {.width = i.width,
+                            .height = i.height,
+                            .full_width = i.width,
+                            .full_height = i.height,
+                            .channel_count = i.channel_count,
+                            .type = i.bytes ? IMAGE_UINT8 : IMAGE_FLOAT,
+                            .pixels = (float *)(uintptr_t)i.floats, /* to be copied */
+                            .bytes = (unsigned char *)(uintptr_t)i.bytes};
+    return image_copy(&borrowed, false, &copy) ? pbrt_builder_picture(c->making->builder, &c->call, name, &copy)
+                                               : AG_ERROR_MEMORY;
+}
+
+ag_status ag_scene_add_image(ag_scene *made, const char *name, const ag_image *picture)
+{
+    making_call c;
+    return begin_call(made, CALL_IMAGE, &c) ? end_call(&c, add_image(&c, name, picture)) : AG_ERROR_ARGUMENT;
 }
 
 ag_texture ag_default_texture(void)

@@ -1,8 +1,8 @@
 /* settings_table.h: every field of ag_render_settings as a row of one table: what it is called, its default and range,
  * its help, and what it is a part of. Defaults, checks, ag_render_settings_set, --help, the man page's options, the
  * statistics, EXR headers, checkpoints and photon maps' files are made from it: cli/README.md tells how to add a row.
- * Rests on: FFmpeg's AVOption, for the idea. Flow: settings_rows -> [here] -> who asks. Threads: any; rows are const.
- */
+ * Rests on: FFmpeg's AVOption, for the idea. Flow: settings_rows -> [here] -> who asks. Threads: any; rows are
+ * const. */
 #ifndef AFTERGLOW_SETTINGS_TABLE_H
 #define AFTERGLOW_SETTINGS_TABLE_H
 

@@ -73,7 +73,7 @@ static void projective_ray(const camera *c, vec2 screen, vec2 lens_u, vec3 *out_
     *out_direction = direction;
 }
 
-/* Both maps have their pole at z, the camera's is y. */
+/* Both spherical mappings have their pole at z, the camera's is y. */
 static vec3 spherical_direction(camera_kind kind, double x, double y)
 {
     if (kind == CAMERA_EQUIRECTANGULAR) {

@@ -4,8 +4,8 @@
  * A position is in a room where rays in nearly all directions end at surfaces, thin glass not counted, and these are
  * walls that face it, or lie on the bounds of all there is with something else between: so a closed solid, whose faces
  * all turn away from its inside, is none. What is decided depends on the scene alone.
- * Flow: scene_commit, once rays can be cast -> [here] -> camera and lights, before these are committed. Threads: one.
- */
+ * Flow: scene_commit, once rays can be cast -> [here] -> camera and lights, before these are committed. Threads:
+ * one. */
 #ifndef AFTERGLOW_CLOSED_ROOM_H
 #define AFTERGLOW_CLOSED_ROOM_H
 

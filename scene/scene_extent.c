@@ -152,8 +152,8 @@ static void take_in_shape(size_census *c, const shape *item, float small)
     }
 }
 
-/* The boxes around a mesh's triangles of each octave: many instances of many triangles would take minutes one by one.
- */
+/* The boxes around a mesh's triangles of each octave: many instances of many triangles would take minutes one by
+ * one. */
 static void sort_triangles(const mesh *m, box by_octave[OCTAVES])
 {
     for (int i = 0; i < OCTAVES; i++)

@@ -8,8 +8,8 @@
 
 struct scene;
 
-/* What the way of the photons depends on: shapes, objects, instances, materials, textures and their pictures, media,
- * lights. Camera, film, names and groups of lights may differ. */
+/* Hashes all that the photons' paths depend on: shapes, objects, instances, materials, textures and their pictures,
+ * media, lights. Camera, film, names and groups of lights may differ. */
 hash128 scene_hash_of_light(const struct scene *s);
 
 /* The rest that a picture depends on: camera, jitter, names, groups of lights. Of the other hints the renderer's

@@ -31,7 +31,7 @@ typedef struct filter_hint {
     file_location where; /* of what asks for it, for messages */
 } filter_hint;
 
-/* What the picture's pixels keep of the first surface beside their colour, and in which space. */
+/* The values of the first surface that pixels keep beside their colour, and their space. */
 typedef enum surface_layers_hint {
     SURFACE_LAYERS_NONE,
     SURFACE_LAYERS_CAMERA,

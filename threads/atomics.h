@@ -14,8 +14,8 @@
 #elif defined(__SANITIZE_THREAD__)
 #define AFTERGLOW_TSAN 1
 #endif
-#ifdef AFTERGLOW_TSAN /* by hand: with gcc, <sanitizer/tsan_interface.h> defines __has_feature, as if this were clang  \
-                       */
+/* Declared by hand: with gcc, <sanitizer/tsan_interface.h> defines __has_feature, as if this were clang. */
+#ifdef AFTERGLOW_TSAN
 void __tsan_acquire(void *address);
 void __tsan_release(void *address);
 #endif

@@ -115,7 +115,7 @@ static double quota_of_hierarchy(const char *root, const char *mount_point, cons
     return quota;
 }
 
-/* What of the cgroup's path lies below the part of the hierarchy that is mounted ("" or "/..."); NULL if the mount
+/* The part of the cgroup's path below the part of the hierarchy that is mounted ("" or "/..."); NULL if the mount
  * shows another part, or if the path leaves a cgroup namespace by "..". */
 static const char *path_below_mount(const char *cgroup_path, const char *mounted_part)
 {

@@ -12,7 +12,8 @@ typedef struct loop {
     void *user;
     ag_phase phase;
     double progress_begin, progress_end;
-    /* Both only count, and order nothing else, so relaxed: what fn reads and writes is ordered by thread_pool_run. */
+    /* Both counters only count, and order nothing else, so relaxed: what fn reads and writes is ordered by
+     * thread_pool_run. */
     atomic_u64 next_block; /* pairs with itself: each worker's addition claims a different block */
     atomic_u64 done_count; /* pairs with itself for progress, and is read for good after all have returned */
 } loop;

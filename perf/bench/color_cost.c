@@ -1,8 +1,7 @@
 /* color_cost.c: the program afterglow-color-cost: what the colour transform of a picture of 1920 x 1080 costs beside
  * rendering it, for every display and view of the config. Both in one run, by elapsed time and by the CPU time of the
  * process, which other work on the machine disturbs less. Flow: a scene -> film -> output_color. Threads: the
- * context's.
- */
+ * context's. */
 #include "clock.h"
 #include "output/output_color.h"
 

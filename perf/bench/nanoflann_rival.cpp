@@ -1,5 +1,5 @@
-/* nanoflann_rival.cpp: see nanoflann_rival.h. Its own recommendation for points in space: single index, leaves of ten.
- */
+/* nanoflann_rival.cpp: see nanoflann_rival.h. Its own recommendation for points in space: single index, leaves of
+ * ten. */
 #include "bench/nanoflann_rival.h"
 
 #pragma GCC diagnostic push

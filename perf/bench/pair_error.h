@@ -11,8 +11,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Means over pixels and colours: error = variance + bias squared. The latter may come out below 0 where there is none.
- */
+/* Means over pixels and colours: error = variance + bias squared. The latter may come out below 0 where there is
+ * none. */
 typedef struct pair_error {
     double error, variance, bias_squared;
 } pair_error;

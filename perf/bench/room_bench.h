@@ -1,6 +1,6 @@
-/* room_bench.h: what the microbenchmarks share: room 20 of the forty, or another scene, its photon map as the paper has
- * it, and medians. Flow: room_layout, room_file -> [here] -> photon_search, gather_rays, photon_making. Threads: one.
- */
+/* room_bench.h: what the microbenchmarks share: room 20 of the forty, or another scene, its photon map as the paper
+ * has it, and medians. Flow: room_layout, room_file -> [here] -> photon_search, gather_rays, photon_making. Threads:
+ * one. */
 #ifndef AFTERGLOW_ROOM_BENCH_H
 #define AFTERGLOW_ROOM_BENCH_H
 

@@ -1,8 +1,7 @@
 /* scaling_simulation_program.c: the program afterglow-scaling-simulation: how the rendering of a frame would scale to
  * so many workers, from the statistics of a run on one thread: scheduling and slots alone, without what more workers do
  * to caches and memory. CSV; rows beyond this machine's processors are marked as extrapolations. Use: afterglow -t 1
- * --stats one.json ...; afterglow-scaling-simulation one.json [SPREAD]. Flow: [here]. Threads: one.
- */
+ * --stats one.json ...; afterglow-scaling-simulation one.json [SPREAD]. Flow: [here]. Threads: one. */
 #include "bench/scaling_simulation.h"
 #include "cpu_count.h"
 

@@ -90,7 +90,7 @@ static void settle_scene_options(options *o)
         o->asked.sky_radiance[i] *= o->sky_strength;
 }
 
-/* What is asked for must be for one of the files, where they are known. */
+/* Each wish must be for one of the files, where they are known. */
 static bool has_idle_picture_option(const options *o)
 {
     int exr_count = 0, linear_count = 0;
@@ -163,7 +163,7 @@ static listed_option option_of_code(int code)
     return option;
 }
 
-/* What getopt_long did not take, in our words. */
+/* Says in our words which option getopt_long did not take. */
 static void tell_wrong_option(int code, char **argv)
 {
     char name[64];

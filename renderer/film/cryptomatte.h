@@ -8,8 +8,8 @@
 
 #include "scene.h"
 
-/* Ranks in a file, two to a layer; ids of a pixel that are kept while rendering: what comes later has little to show.
- */
+/* Ranks in a file, two to a layer; ids of a pixel that are kept while rendering: what comes later has little to
+ * show. */
 enum { CRYPTOMATTE_RANKS = 6, CRYPTOMATTE_SLOTS = 10 };
 
 typedef enum cryptomatte_kind { CRYPTOMATTE_OBJECT, CRYPTOMATTE_MATERIAL } cryptomatte_kind;

@@ -3,7 +3,7 @@
 
 #include "film/film.h"
 
-/* It is decided at FIRST_BARRIER samples, and each time that there are BARRIER_STEP times as many. */
+/* The split is decided at FIRST_BARRIER samples, and each time that there are BARRIER_STEP times as many. */
 enum { FIRST_BARRIER = 4, BARRIER_STEP = 4 };
 
 /* Where pixels may get more samples, so many share AG_DEFAULT_GATHER_RAYS_PER_PIXEL. */

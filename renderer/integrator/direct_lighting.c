@@ -37,7 +37,7 @@ static uint32_t pick_lamp(const transport *t, vec3 from, vec3 normal, float u_pi
     return lamp;
 }
 
-/* That factor of a direction, which infinite lights alone ask for. */
+/* The lamp's probability, times the density of the guide's warp in that direction, which infinite lights alone have. */
 static float lamp_factor(const transport *t, vec3 from, vec3 normal, uint32_t lamp, vec3 direction)
 {
     const direct_guide *guide = t->direct_guide;

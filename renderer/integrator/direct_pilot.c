@@ -32,8 +32,8 @@ static float cosine_at(const lit_point *point, vec3 direction)
     return has_normal ? fmaxf(vec3_dot(point->normal, direction), 0.0f) : 1.0f;
 }
 
-/* The light that one sample of a lamp or sky brings, over the density of its numbers. *out_possible: whether it might.
- */
+/* The light that one sample of a lamp or sky brings, over the density of its numbers. *out_possible: whether it
+ * might. */
 static float look_at(const transport *t, eye_worker *worker, const lit_point *point, uint32_t light_index, vec2 u,
                      bool *out_possible)
 {

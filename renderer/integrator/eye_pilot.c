@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each point that they see.
- */
+/* Eye paths over the frame, about one for so many photons and within bounds; gather rays of each point that they
+ * see. */
 enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHER_RAYS = 8, GRID_MAX = 4096 };
 /* One importon for so many points that are asked, and the scatterings that it has at most. */
 enum { POINTS_PER_IMPORTON = 2, IMPORTON_SCATTERINGS_MAX = 8 };

@@ -26,8 +26,8 @@ static rng ray_random(const gathering *g, uint32_t number)
 /* Between a ray's end and the lamp. */
 static int scatterings_left(const gathering *g) { return g->request->scatterings_left - 1; }
 
-/* What is behind a gather ray of that number, which has met *v, and weighs `first` at its start: asks for irradiance,
- * and adds to what is known. */
+/* Finds the light behind a gather ray of that number, which has met *v, and weighs `first` at its start: asks for
+ * irradiance, and adds to what is known. */
 static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
 {
     gather_end end;
@@ -57,8 +57,8 @@ static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weig
         follow(g, number, weight, &v);
 }
 
-/* Some of a gather's rays, to the side that the path came from: with what weighs what is behind each, and its number.
- */
+/* Some of a gather's rays, to the side that the path came from: with what weighs what is behind each, and its
+ * number. */
 typedef struct gather_rays {
     ray_fan fan;
     rgb weight[RAY_FAN_MAX];

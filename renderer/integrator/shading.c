@@ -15,7 +15,7 @@ static const float SQRT_2 = 1.41421356f;
  * are of other sequences, and so are those that decide whether there is a gather ray. */
 enum { KEY_OF_BRANCHES = 1 << 16, KEY_OF_RAYS = 1 << 24, KEY_OF_CHANCE = 1 << 30 };
 
-/* What a diffuse vertex sends on: its parts, but for what is gathered, which comes to the sample later. */
+/* The light that a diffuse vertex sends on, in its parts; gathered light comes to the sample later. */
 typedef struct diffuse_light {
     rgb direct, caustic, indirect;
     rgb sky; /* of the direct light, from infinite lights */

@@ -447,7 +447,8 @@ ag_status atomic_file_write_by(const char *path, atomic_file_fill *fill, void *u
 
 ag_status atomic_file_check(const char *path, char *message, size_t message_size)
 {
-    /* What is no regular file is only looked at: opening a FIFO would wait for its reader, and end its reading. */
+    /* A target that is no regular file is only looked at: opening a FIFO would wait for its reader, and end its
+     * reading. */
     char resolved[PATH_MAX];
     struct stat status;
     snprintf(message, message_size, "%s", "");

@@ -136,7 +136,7 @@ static void read_cpu_name(char *out, size_t size)
         fclose(file);
 }
 
-/* What differs from run to run. */
+/* Attributes that differ from run to run. */
 static void describe_run(ag_context *context, const ag_output_settings *settings, picture_layers *out)
 {
     ag_statistics s = ag_context_statistics(context);

@@ -81,7 +81,7 @@ OCIO::GroupTransformRcPtr aces_from_rec709()
     return group;
 }
 
-/* What of the config light is carried in. */
+/* The colour space of the config that light is carried in. */
 std::string working_space_of(const OCIO::ConstConfigRcPtr &config, const char *wanted)
 {
     if (wanted) {

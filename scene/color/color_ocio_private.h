@@ -102,7 +102,7 @@ void set_unit_matrix(double matrix[9]);
 
 struct curve_table;
 
-/* What a processor does, one thing after the other, quicker where it may be. */
+/* The steps of a processor, one after the other, faster where they may be. */
 class stages
 {
   public:

@@ -152,7 +152,7 @@ struct curve_table {
 namespace
 {
 
-/* What may be a curve for each channel, and costs more than a look into a table. */
+/* A step that may be a curve for each channel, and costs more than a look into a table. */
 bool is_curve(const OCIO::ConstTransformRcPtr &transform)
 {
     switch (transform->getTransformType()) {

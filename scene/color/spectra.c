@@ -74,8 +74,8 @@ void spectra_blackbody_chromaticity(double kelvin, double out_xy[2])
     out_xy[1] = xyz[1] / (xyz[0] + xyz[1] + xyz[2]);
 }
 
-/* Of the pairs, at a wavelength; *in_out_next is the first pair beyond the last wavelength asked for, which was below.
- */
+/* Of the pairs, at a wavelength; *in_out_next is the first pair beyond the last wavelength asked for, which was
+ * below. */
 static double value_at(const double *pairs, size_t count, double nm, bool goes_on, size_t *in_out_next)
 {
     while (*in_out_next < count && pairs[2 * *in_out_next] <= nm)

@@ -18,8 +18,7 @@ typedef enum spectrum_use {
                      * so its values matter by their proportions alone. 0 outside its wavelengths */
     SPECTRUM_REFLECTANCE, /* a share of the light: its colour under D65, so that a constant becomes that grey */
     SPECTRUM_INDEX, /* of refraction and absorption in metals: for each channel of Rec. 709, whatever the working space,
-                     * the mean over the wavelengths that it is most sensitive to, never outside the range of the values
-                     */
+                     * the mean over the wavelengths that it is most sensitive to, within the range of the values */
     SPECTRUM_DENSITY /* absorbed, scattered per distance: as an index, but converted to the working space */
 } spectrum_use;
 
@@ -38,8 +37,7 @@ void spectra_blackbody_chromaticity(double kelvin, double out_xy[2]);
 
 /* "metal-Ag-eta", "metal-Ag-k", ... (index of refraction and absorption for red, green and blue), "glass-BK7", ...
  * (index at the d line, three times the same; indices are Rec. 709's), "stdillum-A", ... (colour, of luminance 1).
- * False where there is none.
- */
+ * False where there is none. */
 bool spectra_find_named(const char *name, const working_space *space, rgb *out_value);
 
 /* Whether pbrt-v4 has a spectrum of that name, and we have not: the sensitivities of cameras. */

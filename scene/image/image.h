@@ -27,8 +27,8 @@ typedef struct image {
     float chromaticities[8]; /* that the file brings: of red, green, blue, white, each x and y */
 } image;
 
-/* What is read of a picture. Its colours are red, green and blue and, where the same layer has it, alpha; all channels
- * where none are named so. */
+/* The channels to read of a picture. Its colours are red, green and blue and, where the same layer has it, alpha; all
+ * channels where none are named so. */
 typedef enum image_wish {
     IMAGE_ALL_CHANNELS,  /* from the colours on, as floats */
     IMAGE_COLORS,        /* as floats */

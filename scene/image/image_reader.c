@@ -132,6 +132,25 @@ ag_status image_fill_window(image *i, const char *name, char *message, size_t me
     return AG_OK;
 }
 
+bool image_copy(const image *picture, bool as_floats, image *out_copy)
+{
+    const size_t count = (size_t)picture->width * (size_t)picture->height * (size_t)picture->channel_count;
+    const size_t value_bytes = picture->bytes && !as_floats ? 1 : sizeof *picture->pixels;
+    void *values = malloc(count * value_bytes);
+    *out_copy = values ? *picture : (image){0};
+    if (!values)
+        return false;
+    out_copy->bytes = value_bytes == 1 ? values : NULL;
+    out_copy->pixels = value_bytes == 1 ? NULL : values;
+    if (!picture->bytes || !as_floats) {
+        memcpy(values, picture->bytes ? (const void *)picture->bytes : picture->pixels, count * value_bytes);
+        return true;
+    }
+    for (size_t i = 0; i < count; i++)
+        out_copy->pixels[i] = (float)picture->bytes[i] * (1.0f / 255.0f);
+    return true;
+}
+
 void image_reset(image *picture)
 {
     free(picture->pixels);

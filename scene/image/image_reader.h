@@ -10,8 +10,7 @@
 
 /* All channels of the first picture of a file, from its colours on; *out_image is to be reset. On failure *out_image is
  * empty and message says why, with OpenImageIO's text. Errors: AG_ERROR_INPUT, AG_ERROR_SYSTEM (the module cannot be
- * opened), AG_ERROR_MEMORY.
- */
+ * opened), AG_ERROR_MEMORY. */
 ag_status image_read(const char *path, image *out_image, char *message, size_t message_size);
 
 /* image_read of the colours alone: what textures and lights are made of. */
@@ -28,6 +27,10 @@ ag_status image_read_memory(const char *name, const unsigned char *bytes, size_t
 /* Brings a picture to its display window: what lies outside is cut off, what is missing is 0. name: for messages.
  * Errors: AG_ERROR_INPUT (the picture does not fill a window of more than 2^28 pixels), AG_ERROR_MEMORY. */
 ag_status image_fill_window(image *in_out, const char *name, char *message, size_t message_size);
+
+/* A copy of a picture; as_floats: of bytes their floats, as a file's are read. False, and *out_copy zeroed, when out of
+ * memory. */
+bool image_copy(const image *picture, bool as_floats, image *out_copy);
 
 void image_reset(image *picture); /* frees the pixels; leaves it zeroed */
 

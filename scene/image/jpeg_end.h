@@ -1,6 +1,6 @@
 /* jpeg_end.h: whether a JPEG file was cut short. Its library fills what is missing with grey, and OpenImageIO says
- * nothing of it. Rests on: ITU-T T.81, 1992, annex B (markers). Flow: image_reader -> [here]. Threads: pure functions.
- */
+ * nothing of it. Rests on: ITU-T T.81, 1992, annex B (markers). Flow: image_reader -> [here]. Threads: pure
+ * functions. */
 #ifndef AFTERGLOW_JPEG_END_H
 #define AFTERGLOW_JPEG_END_H
 

@@ -178,7 +178,7 @@ static float pixel_pdf(const environment *e, float probability, uint32_t y)
     return (float)((double)probability / environment_pixel_solid_angle(e, y));
 }
 
-/* What the picture is multiplied by. */
+/* The factor that the picture is multiplied by. */
 static rgb factor_of(const light *l) { return l->kind == LIGHT_INFINITE ? l->radiance : l->intensity; }
 
 rgb environment_whole_radiance(const light *l, vec3 direction)

@@ -52,7 +52,8 @@ float environment_pdf(const light *l, vec3 point, vec3 direction);
 bool environment_sample(const light *l, vec3 point, vec2 u, vec3 *out_direction, rgb *out_radiance,
                         float *out_pdf_solid_angle);
 
-/* These know of no portal. They serve LIGHT_GONIOMETRIC too: intensity, W/sr, by directions that leave the light. */
+/* The functions below know of no portal. They serve LIGHT_GONIOMETRIC too: intensity, W/sr, by directions that leave
+ * the light. */
 rgb environment_whole_radiance(const light *l, vec3 direction);
 bool environment_sample_whole(const light *l, vec2 u, vec3 *out_direction, rgb *out_radiance,
                               float *out_pdf_solid_angle);

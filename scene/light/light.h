@@ -61,8 +61,8 @@ typedef struct light {
 light light_make(light_kind kind);
 /* A spot's cone: full inside the first angle from its axis, dark outside the second, radians in [0, pi]. */
 void light_set_cone(light *l, double full_angle, double dark_angle);
-/* A distant light's disc, which shines alike all over: the angle across it, radians in [0, pi]. Shadows alone show it.
- */
+/* A distant light's disc, which shines alike all over: the angle across it, radians in [0, pi]. Shadows alone show
+ * it. */
 void light_set_disc(light *l, double angle);
 /* Frees the pictures and tables. */
 void light_reset(light *l);

@@ -41,8 +41,8 @@ void light_tree_destroy(light_tree *t); /* NULL is fine */
 /* Whether any of its lamps may send light to a point. normal: unit, of a surface that scatters light from its own side
  * alone, or zero for all sides; so in the following. */
 bool light_tree_reaches(const light_tree *t, vec3 point, vec3 normal);
-/* A lamp, and the probability with which it is picked; LIGHT_TREE_NONE and 0 where none reaches the point. u in [0,1).
- */
+/* A lamp, and the probability with which it is picked; LIGHT_TREE_NONE and 0 where none reaches the point. u in
+ * [0,1). */
 uint32_t light_tree_pick(const light_tree *t, vec3 point, vec3 normal, float u, float *out_probability);
 /* The probability with which light_tree_pick picks a lamp of the tree. */
 float light_tree_probability(const light_tree *t, uint32_t light_index, vec3 point, vec3 normal);

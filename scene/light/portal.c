@@ -39,7 +39,7 @@ static double stretch_at(vec3 w)
 
 static vec3 to_local(const portal *p, vec3 point) { return frame_to_local(&p->axes, vec3_sub(point, p->corner)); }
 
-/* What a point of the room (local, z < 0) sees through the portal. */
+/* The part of the sky that a point of the room (local, z < 0) sees through the portal. */
 static window window_from(const portal *p, vec3 local)
 {
     double inverse = 1.0 / -(double)local.z, n = p->size;
@@ -281,8 +281,8 @@ float portal_pdf(const portal *p, vec3 point, vec3 direction)
     return whole > 0.0 ? (float)(cell_density(p->light, n, i, j, whole) / stretch_at(w)) : 0.0f;
 }
 
-/* The tangents from a ball to a portal from 0 to length, `near` and `far` from its plane: the least, then the largest.
- */
+/* The tangents from a ball to a portal from 0 to length, `near` and `far` from its plane: the least, then the
+ * largest. */
 static void tangents_from_ball(double center, double radius, double length, double near, double far, double out[2])
 {
     double low = -(center + radius), high = length - (center - radius);

@@ -19,8 +19,8 @@ typedef struct portal {
     rgb irradiance; /* on its plane from outside, W/m^2 */
 } portal;
 
-/* Corners as pbrt's "portal", in world space: edges 0 to 3 and 0 to 1 are x and y. false where they are no rectangle.
- */
+/* Corners as pbrt's "portal", in world space: edges 0 to 3 and 0 to 1 are x and y. false where they are no
+ * rectangle. */
 bool portal_init(const vec3 corners[4], portal *out_portal);
 
 /* l: the infinite light that shines through it, complete but for the portal. placed: see portal_init.

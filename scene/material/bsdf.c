@@ -147,7 +147,7 @@ bsdf bsdf_create_of(const material *parameters, const surface_hit *hit, vec3 out
     return b;
 }
 
-/* Both faces and what is between them as one hit. */
+/* Makes one hit of both faces of a slab and what is between them. */
 static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
 {
     const medium *between = hit->slab.medium < s->medium_count ? &s->media[hit->slab.medium] : NULL;
@@ -192,16 +192,20 @@ bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes)
     return false;
 }
 
+/* Whether the lobe sends light to the other side too. */
+static bool lobe_passes(const bsdf *b, const bsdf_lobe *lobe)
+{
+    const bsdf_lobe_type *type = bsdf_lobe_type_of(lobe->kind);
+    return type->passes && type->passes(&b->parameters);
+}
+
 bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)
 {
     for (int i = 0; i < b->lobe_count; i++) {
         const bsdf_lobe *lobe = &b->lobes[i];
         if (!(lobe->group & lobes) || !(lobe->probability > 0.0f))
             continue;
-        bool is_two_ways = lobe->kind == LOBE_DIELECTRIC || lobe->kind == LOBE_THIN_DIELECTRIC ||
-                           lobe->kind == LOBE_SLAB ||
-                           (lobe->kind == LOBE_PRINCIPLED && principled_transmits(&b->parameters));
-        if (!lobe->is_delta || is_two_ways) /* all others are mirrors, and of the same normal */
+        if (!lobe->is_delta || lobe_passes(b, lobe)) /* all others are mirrors, and of the same normal */
             return true;
     }
     return false;
@@ -209,23 +213,9 @@ bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)
 
 bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
 {
-    for (int i = 0; i < b->lobe_count; i++) {
-        if (!(b->lobes[i].group & lobes) || b->lobes[i].is_delta)
-            continue;
-        switch (b->lobes[i].kind) {
-        case LOBE_DIFFUSE:
-        case LOBE_CONDUCTOR:
-        case LOBE_COAT:
-        case LOBE_CLEARCOAT:
-        case LOBE_COAT_SCATTERED:
-        case LOBE_CONDUCTOR_UNDER_COAT: break;
-        case LOBE_PRINCIPLED:
-            if (principled_transmits(&b->parameters))
-                return true;
-            break;
-        default: return true;
-        }
-    }
+    for (int i = 0; i < b->lobe_count; i++)
+        if ((b->lobes[i].group & lobes) && !b->lobes[i].is_delta && lobe_passes(b, &b->lobes[i]))
+            return true;
     return false;
 }
 
@@ -303,11 +293,11 @@ static rgb evaluate_all(const bsdf *b, bsdf_lobes lobes, bsdf_transport transpor
     rgb sum = rgb_gray(0.0f);
     float density = 0.0f;
     for (int k = 0; k < b->lobe_count; k++) {
-        rgb value;
-        float pdf;
+        rgb value = rgb_gray(0.0f);
+        float pdf = 0.0f;
         if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
             continue;
-        bsdf_lobe_evaluate(b, &b->lobes[k], transport, direction, o, i, &value, &pdf);
+        bsdf_lobe_type_of(b->lobes[k].kind)->evaluate(b, transport, direction, o, i, &value, &pdf);
         if (transport == BSDF_FLUX)
             value = rgb_scale(value, rough_flux_factor(b, b->lobes[k].kind, direction));
         sum = rgb_add(sum, value);
@@ -381,13 +371,14 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
     const bsdf_lobe *lobe = pick_lobe(b, lobes, &u_lobe, &probability);
     if (!lobe)
         return false;
+    const bsdf_lobe_type *type = bsdf_lobe_type_of(lobe->kind);
     vec3 o = frame_to_local(&b->shading, b->out), i;
     bsdf_sample *out = out_sample;
     out->group = lobe->group;
     out->is_delta = lobe->is_delta;
     out->is_straight = false;
     if (lobe->is_delta) {
-        if (!bsdf_lobe_sample_smooth(b, lobe->kind, transport, o, u_lobe, &i, &out->weight))
+        if (!type->sample_smooth(b, transport, o, u_lobe, &i, &out->weight))
             return false;
         out->direction = vec3_normalize(frame_to_world(&b->shading, i));
         out->pdf_solid_angle = 0.0f;
@@ -401,8 +392,7 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
         return true;
     }
     bool is_by_geometry = transport == BSDF_FLUX && bsdf_lobe_is_diffuse(lobe->kind);
-    if ((is_by_geometry && !(bsdf_arrival_factor(b) > 0.0f)) ||
-        !bsdf_lobe_sample_rough(b, lobe->kind, o, u_lobe, u, &i))
+    if ((is_by_geometry && !(bsdf_arrival_factor(b) > 0.0f)) || !type->sample_rough(b, o, u_lobe, u, &i))
         return false;
     frame around = is_by_geometry ? frame_from_z(b->geometric_normal) : b->shading;
     out->direction = vec3_normalize(frame_to_world(&around, i));

@@ -44,7 +44,8 @@ typedef enum bsdf_lobe_kind {
     LOBE_COAT_SCATTERED,       /* what leaves a coat at any angle (coat.h) */
     LOBE_HAIR,                 /* all ways by a fibre (hair.h) */
     LOBE_PRINCIPLED,           /* metal's and dielectric's reflection, and transmission, straight or refracted */
-    LOBE_CLEARCOAT             /* reflection by the coat of the principled one */
+    LOBE_CLEARCOAT,            /* reflection by the coat of the principled one */
+    LOBE_KIND_COUNT
 } bsdf_lobe_kind;
 
 typedef struct bsdf_lobe {
@@ -108,16 +109,16 @@ bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes);
 /* With which probability bsdf_sample_direction, asked for all, picks one of these. */
 float bsdf_probability(const bsdf *b, bsdf_lobes lobes);
 
-/* The factor A t(out), of irradiance on out's side and on the other, each to be divided by pi: what leaves as radiance.
- */
+/* The factor A t(out), of irradiance on out's side and on the other, each to be divided by pi: what leaves as
+ * radiance. */
 rgb bsdf_gathered_reflection(const bsdf *b);
 rgb bsdf_gathered_transmission(const bsdf *b);
 
 /* f |cos(direction, shading normal)| for light from `direction` (unit, away from the surface) leaving to out; smooth
  * lobes count as 0. */
 rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction);
-/* Of sampling. Radiance is sampled about shading normals; flux leaves diffuse lobes by the cosine to the geometric one.
- */
+/* Of sampling. Radiance is sampled about shading normals; flux leaves diffuse lobes by the cosine to the geometric
+ * one. */
 float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction);
 
 /* Samples the way on. false: absorbed. */

@@ -93,109 +93,166 @@ static void rough_dielectric(const material *m, bsdf_transport transport, vec3 o
     *out_pdf *= share;
 }
 
-/* Value (f |cos|) and density of one lobe that is not smooth. */
-void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
-                        rgb *out_value, float *out_pdf)
+/* --- the lobes, one row each --- */
+
+/* Values (f |cos|) and densities come in as 0. Smooth lobes reflect and refract by shares of their own, so that their
+ * weights are 1 but for what is absorbed. */
+
+static void evaluate_diffuse_kind(const bsdf *b, bsdf_lobe_kind kind, rgb albedo, bsdf_transport transport,
+                                  vec3 direction, vec3 o, vec3 i, rgb *out_value, float *out_pdf)
 {
     const material *m = &b->parameters;
-    *out_value = rgb_gray(0.0f);
-    *out_pdf = 0.0f;
-    switch (lobe->kind) {
-    case LOBE_DIFFUSE:
-    case LOBE_DIFFUSE_THROUGH: {
-        bool is_flux = transport == BSDF_FLUX;
-        float arrived = is_flux ? bsdf_arrival_factor(b) : bsdf_lobe_transmittance(m, o.z);
-        float cosine =
-            is_flux ? geometric_cosine(b, lobe->kind, direction) : diffuse_cosine(b, lobe->kind, direction, i);
-        rgb albedo = lobe->kind == LOBE_DIFFUSE ? bsdf_lobe_diffuse_albedo(m) : m->transmittance;
-        if (is_flux && !(arrived > 0.0f))
-            return;
-        *out_pdf = cosine * AG_INV_PI;
-        *out_value = rgb_scale(albedo, *out_pdf * arrived * bsdf_lobe_transmittance(m, i.z));
+    bool is_flux = transport == BSDF_FLUX;
+    float arrived = is_flux ? bsdf_arrival_factor(b) : bsdf_lobe_transmittance(m, o.z);
+    float cosine = is_flux ? geometric_cosine(b, kind, direction) : diffuse_cosine(b, kind, direction, i);
+    if (is_flux && !(arrived > 0.0f))
         return;
-    }
-    case LOBE_DIELECTRIC: {
-        float value;
-        rough_dielectric(m, transport, o, i, &value, out_pdf);
-        *out_value = rgb_gray(value);
-        return;
-    }
-    case LOBE_COAT_SCATTERED:
-        *out_pdf = diffuse_cosine(b, lobe->kind, direction, i) * AG_INV_PI;
-        if (*out_pdf > 0.0f)
-            *out_value = rgb_scale(coat_scattered(m, o, i), *out_pdf);
-        return;
-    case LOBE_CONDUCTOR:
-    case LOBE_COAT: {
-        if (!bsdf_is_same_side(b, direction) || o.z * i.z <= 0.0f)
-            return;
-        ggx facets = interface_of(m);
-        vec3 h = ggx_half_vector(o, i);
-        float cosine = fabsf(vec3_dot(o, h));
-        rgb reflected = lobe->kind == LOBE_CONDUCTOR ? fresnel_conductor(cosine, m->eta, m->k)
-                                                     : rgb_gray(fresnel_dielectric(cosine, m->ior));
-        *out_value = rgb_scale(reflected, ggx_reflection(facets, o, i, h));
-        *out_pdf = ggx_reflection_pdf(facets, o, h);
-        return;
-    }
-    case LOBE_CONDUCTOR_UNDER_COAT:
-        if (bsdf_is_same_side(b, direction))
-            coat_metal_lobe(m, o, i, out_value, out_pdf);
-        return;
-    case LOBE_HAIR: hair_evaluate(&b->fibre, transport == BSDF_FLUX, i, out_value, out_pdf); return;
-    case LOBE_PRINCIPLED:
-    case LOBE_CLEARCOAT:
-        bsdf_principled_evaluate(b, lobe->kind, transport, direction, o, i, out_value, out_pdf);
-        return;
-    case LOBE_THIN_DIELECTRIC:
-    case LOBE_SLAB: return; /* always smooth */
-    }
+    *out_pdf = cosine * AG_INV_PI;
+    *out_value = rgb_scale(albedo, *out_pdf * arrived * bsdf_lobe_transmittance(m, i.z));
 }
 
-/* --- sampling --- */
-
-/* A smooth lobe's one direction, and its weight once it has been picked. */
-/* *in_out_local is the mirror's direction. false: all is absorbed. */
-static bool sample_slab(const bsdf *b, vec3 o, float u_lobe, vec3 *in_out_local, rgb *out_weight)
+static void evaluate_diffuse(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
+                             float *out_pdf)
 {
-    float reflected = rgb_max(b->slab_reflected), all = reflected + rgb_max(b->slab_through);
-    if (!(all > 0.0f))
-        return false;
-    float share = reflected / all;
-    bool goes_through = u_lobe >= share;
-    if (goes_through)
-        *in_out_local = vec3_negate(o);
-    *out_weight =
-        goes_through ? rgb_scale(b->slab_through, 1.0f / (1.0f - share)) : rgb_scale(b->slab_reflected, 1.0f / share);
+    evaluate_diffuse_kind(b, LOBE_DIFFUSE, bsdf_lobe_diffuse_albedo(&b->parameters), transport, direction, o, i,
+                          out_value, out_pdf);
+}
+
+static void evaluate_diffuse_through(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
+                                     rgb *out_value, float *out_pdf)
+{
+    evaluate_diffuse_kind(b, LOBE_DIFFUSE_THROUGH, b->parameters.transmittance, transport, direction, o, i, out_value,
+                          out_pdf);
+}
+
+/* To the side that the lobe is on. */
+static bool sample_cosine(const bsdf *b, bool is_through, vec2 u, vec3 *out_local)
+{
+    *out_local = sample_cosine_hemisphere(u);
+    if ((vec3_dot(b->out, b->geometric_normal) < 0.0f) != is_through)
+        out_local->z = -out_local->z;
     return true;
 }
 
-bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, float u_lobe,
-                             vec3 *out_local, rgb *out_weight)
+static bool sample_diffuse(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
-    const material *m = &b->parameters;
-    if (kind == LOBE_PRINCIPLED || kind == LOBE_CLEARCOAT)
-        return bsdf_principled_sample_smooth(m, kind, transport, o, u_lobe, out_local, out_weight);
-    vec3 n = {0.0f, 0.0f, o.z >= 0.0f ? 1.0f : -1.0f};
-    float cosine = fabsf(o.z), eta = o.z >= 0.0f ? m->ior : 1.0f / m->ior;
-    *out_local = reflect_about(o, n);
-    *out_weight = rgb_gray(1.0f); /* reflection and refraction are picked by their own shares */
-    switch (kind) {
-    case LOBE_CONDUCTOR: *out_weight = fresnel_conductor(cosine, m->eta, m->k); return true;
-    case LOBE_COAT: *out_weight = rgb_gray(fresnel_dielectric(cosine, m->ior)); return true;
-    case LOBE_CONDUCTOR_UNDER_COAT: {
-        rgb metal = fresnel_conductor(fabsf(coat_refract(m, o).z), m->eta, m->k);
-        *out_weight = coat_series(m, metal, o.z);
-        return true;
-    }
-    case LOBE_THIN_DIELECTRIC:
-        if (u_lobe >= fresnel_thin_dielectric(cosine, m->ior))
-            *out_local = vec3_negate(o);
-        return true;
-    case LOBE_SLAB: return sample_slab(b, o, u_lobe, out_local, out_weight);
-    default: break;
-    }
-    if (u_lobe < fresnel_dielectric(cosine, eta))
+    (void)o, (void)u_lobe;
+    return sample_cosine(b, false, u, out_local);
+}
+
+static bool sample_diffuse_through(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+{
+    (void)o, (void)u_lobe;
+    return sample_cosine(b, true, u, out_local);
+}
+
+static void evaluate_coat_scattered(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
+                                    rgb *out_value, float *out_pdf)
+{
+    (void)transport;
+    *out_pdf = diffuse_cosine(b, LOBE_COAT_SCATTERED, direction, i) * AG_INV_PI;
+    if (*out_pdf > 0.0f)
+        *out_value = rgb_scale(coat_scattered(&b->parameters, o, i), *out_pdf);
+}
+
+/* The normal on o's side, and the mirror's direction about it. */
+static vec3 mirror(vec3 o, vec3 *out_normal)
+{
+    *out_normal = (vec3){0.0f, 0.0f, o.z >= 0.0f ? 1.0f : -1.0f};
+    return reflect_about(o, *out_normal);
+}
+
+/* The share of light that facets reflect at that cosine. */
+typedef rgb facet_reflectance(const material *m, float cosine);
+
+static rgb metal_reflectance(const material *m, float cosine) { return fresnel_conductor(cosine, m->eta, m->k); }
+
+static rgb coat_reflectance(const material *m, float cosine) { return rgb_gray(fresnel_dielectric(cosine, m->ior)); }
+
+static void evaluate_facets(const bsdf *b, facet_reflectance *reflectance, vec3 direction, vec3 o, vec3 i,
+                            rgb *out_value, float *out_pdf)
+{
+    if (!bsdf_is_same_side(b, direction) || o.z * i.z <= 0.0f)
+        return;
+    ggx facets = interface_of(&b->parameters);
+    vec3 h = ggx_half_vector(o, i);
+    *out_value = rgb_scale(reflectance(&b->parameters, fabsf(vec3_dot(o, h))), ggx_reflection(facets, o, i, h));
+    *out_pdf = ggx_reflection_pdf(facets, o, h);
+}
+
+static void evaluate_conductor(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
+                               float *out_pdf)
+{
+    (void)transport;
+    evaluate_facets(b, metal_reflectance, direction, o, i, out_value, out_pdf);
+}
+
+static void evaluate_coat(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
+                          float *out_pdf)
+{
+    (void)transport;
+    evaluate_facets(b, coat_reflectance, direction, o, i, out_value, out_pdf);
+}
+
+static bool mirror_conductor(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
+                             rgb *out_weight)
+{
+    vec3 n;
+    (void)transport, (void)u_lobe;
+    *out_local = mirror(o, &n);
+    *out_weight = metal_reflectance(&b->parameters, fabsf(o.z));
+    return true;
+}
+
+static bool mirror_coat(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local, rgb *out_weight)
+{
+    vec3 n;
+    (void)transport, (void)u_lobe;
+    *out_local = mirror(o, &n);
+    *out_weight = coat_reflectance(&b->parameters, fabsf(o.z));
+    return true;
+}
+
+/* A facet that o sees; its side, +1 or -1, and o on the upper side. false: facets have no density there. */
+static bool sample_facet(const material *m, vec3 o, vec2 u, vec3 *out_upper, vec3 *out_facet, float *out_side)
+{
+    if (o.z == 0.0f)
+        return false;
+    *out_side = o.z >= 0.0f ? 1.0f : -1.0f;
+    *out_upper = vec3_scale(o, *out_side);
+    *out_facet = ggx_sample_visible(interface_of(m), *out_upper, u);
+    return true;
+}
+
+static bool sample_facets(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+{
+    vec3 upper, h;
+    float side;
+    (void)u_lobe;
+    if (!sample_facet(&b->parameters, o, u, &upper, &h, &side))
+        return false;
+    vec3 i = reflect_about(upper, h);
+    *out_local = vec3_scale(i, side);
+    return i.z > 0.0f; /* else the facet sends it below the surface, where another facet would meet it */
+}
+
+static void evaluate_dielectric(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
+                                float *out_pdf)
+{
+    float value;
+    (void)direction;
+    rough_dielectric(&b->parameters, transport, o, i, &value, out_pdf);
+    *out_value = rgb_gray(value);
+}
+
+static bool mirror_dielectric(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
+                              rgb *out_weight)
+{
+    vec3 n;
+    float ior = b->parameters.ior, eta = o.z >= 0.0f ? ior : 1.0f / ior;
+    *out_local = mirror(o, &n);
+    *out_weight = rgb_gray(1.0f);
+    if (u_lobe < fresnel_dielectric(fabsf(o.z), eta))
         return true;
     if (!refract_through(o, n, eta, out_local))
         return false;
@@ -204,41 +261,152 @@ bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport 
     return true;
 }
 
-/* A direction of a lobe that is not smooth, in the shading frame. */
-bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_dielectric(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
     const material *m = &b->parameters;
-    if (kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH || kind == LOBE_COAT_SCATTERED) {
-        *out_local = sample_cosine_hemisphere(u);
-        if ((vec3_dot(b->out, b->geometric_normal) < 0.0f) != (kind == LOBE_DIFFUSE_THROUGH))
-            out_local->z = -out_local->z;
-        return true;
-    }
-    if (kind == LOBE_PRINCIPLED || kind == LOBE_CLEARCOAT)
-        return bsdf_principled_sample_rough(m, kind, o, u_lobe, u, out_local);
-    if (kind == LOBE_HAIR) {
-        *out_local = hair_sample(&b->fibre, u_lobe, u);
-        return true;
-    }
-    if (o.z == 0.0f)
-        return false; /* facets have no density there */
-    float side = o.z >= 0.0f ? 1.0f : -1.0f;
-    vec3 upper = vec3_scale(o, side), i;
-    if (kind == LOBE_CONDUCTOR_UNDER_COAT) {
-        if (!coat_sample_metal_lobe(m, upper, u, &i))
-            return false;
-        *out_local = vec3_scale(i, side);
-        return true;
-    }
-    vec3 h = ggx_sample_visible(interface_of(m), upper, u);
+    vec3 upper, h, i;
+    float side;
+    if (!sample_facet(m, o, u, &upper, &h, &side))
+        return false;
     float eta = side > 0.0f ? m->ior : 1.0f / m->ior;
-    bool is_reflection = kind != LOBE_DIELECTRIC || u_lobe < fresnel_dielectric(fabsf(vec3_dot(upper, h)), eta);
+    bool is_reflection = u_lobe < fresnel_dielectric(fabsf(vec3_dot(upper, h)), eta);
     if (is_reflection)
         i = reflect_about(upper, h);
     else if (!refract_through(upper, h, eta, &i))
         return false;
-    if (is_reflection != (i.z > 0.0f))
-        return false; /* the facet sends it to the wrong side of the surface, where another facet would meet it */
+    *out_local = vec3_scale(i, side);
+    return is_reflection == (i.z > 0.0f); /* else another facet would meet it */
+}
+
+static bool mirror_thin_dielectric(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
+                                   rgb *out_weight)
+{
+    vec3 n;
+    (void)transport;
+    *out_local = u_lobe >= fresnel_thin_dielectric(fabsf(o.z), b->parameters.ior) ? vec3_negate(o) : mirror(o, &n);
+    *out_weight = rgb_gray(1.0f);
+    return true;
+}
+
+/* false: all is absorbed. */
+static bool mirror_slab(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local, rgb *out_weight)
+{
+    vec3 n;
+    float reflected = rgb_max(b->slab_reflected), all = reflected + rgb_max(b->slab_through);
+    (void)transport;
+    if (!(all > 0.0f))
+        return false;
+    float share = reflected / all;
+    bool goes_through = u_lobe >= share;
+    *out_local = goes_through ? vec3_negate(o) : mirror(o, &n);
+    *out_weight =
+        goes_through ? rgb_scale(b->slab_through, 1.0f / (1.0f - share)) : rgb_scale(b->slab_reflected, 1.0f / share);
+    return true;
+}
+
+static void evaluate_coated_conductor(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
+                                      rgb *out_value, float *out_pdf)
+{
+    (void)transport;
+    if (bsdf_is_same_side(b, direction))
+        coat_metal_lobe(&b->parameters, o, i, out_value, out_pdf);
+}
+
+static bool mirror_coated_conductor(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
+                                    rgb *out_weight)
+{
+    const material *m = &b->parameters;
+    vec3 n;
+    (void)transport, (void)u_lobe;
+    *out_local = mirror(o, &n);
+    *out_weight = coat_series(m, metal_reflectance(m, fabsf(coat_refract(m, o).z)), o.z);
+    return true;
+}
+
+static bool sample_coated_conductor(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+{
+    float side = o.z >= 0.0f ? 1.0f : -1.0f;
+    vec3 i;
+    (void)u_lobe;
+    if (o.z == 0.0f || !coat_sample_metal_lobe(&b->parameters, vec3_scale(o, side), u, &i))
+        return false;
     *out_local = vec3_scale(i, side);
     return true;
+}
+
+static void evaluate_hair(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
+                          float *out_pdf)
+{
+    (void)direction, (void)o;
+    hair_evaluate(&b->fibre, transport == BSDF_FLUX, i, out_value, out_pdf);
+}
+
+static bool sample_hair(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+{
+    (void)o;
+    *out_local = hair_sample(&b->fibre, u_lobe, u);
+    return true;
+}
+
+static void evaluate_principled(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
+                                float *out_pdf)
+{
+    bsdf_principled_evaluate(b, LOBE_PRINCIPLED, transport, direction, o, i, out_value, out_pdf);
+}
+
+static bool mirror_principled(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
+                              rgb *out_weight)
+{
+    return bsdf_principled_sample_smooth(&b->parameters, LOBE_PRINCIPLED, transport, o, u_lobe, out_local, out_weight);
+}
+
+static bool sample_principled(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+{
+    return bsdf_principled_sample_rough(&b->parameters, LOBE_PRINCIPLED, o, u_lobe, u, out_local);
+}
+
+static void evaluate_clearcoat(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
+                               float *out_pdf)
+{
+    bsdf_principled_evaluate(b, LOBE_CLEARCOAT, transport, direction, o, i, out_value, out_pdf);
+}
+
+static bool mirror_clearcoat(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
+                             rgb *out_weight)
+{
+    return bsdf_principled_sample_smooth(&b->parameters, LOBE_CLEARCOAT, transport, o, u_lobe, out_local, out_weight);
+}
+
+static bool sample_clearcoat(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+{
+    return bsdf_principled_sample_rough(&b->parameters, LOBE_CLEARCOAT, o, u_lobe, u, out_local);
+}
+
+static bool always(const material *m)
+{
+    (void)m;
+    return true;
+}
+
+const bsdf_lobe_type *bsdf_lobe_type_of(bsdf_lobe_kind kind)
+{
+    static const bsdf_lobe_type TYPES[] = {
+        [LOBE_DIFFUSE] = {.evaluate = evaluate_diffuse, .sample_rough = sample_diffuse},
+        [LOBE_DIFFUSE_THROUGH] = {.evaluate = evaluate_diffuse_through,
+                                  .sample_rough = sample_diffuse_through,
+                                  .passes = always},
+        [LOBE_CONDUCTOR] = {evaluate_conductor, mirror_conductor, sample_facets, NULL},
+        [LOBE_DIELECTRIC] = {evaluate_dielectric, mirror_dielectric, sample_dielectric, always},
+        [LOBE_THIN_DIELECTRIC] = {.sample_smooth = mirror_thin_dielectric, .passes = always},
+        [LOBE_SLAB] = {.sample_smooth = mirror_slab, .passes = always},
+        [LOBE_COAT] = {evaluate_coat, mirror_coat, sample_facets, NULL},
+        [LOBE_CONDUCTOR_UNDER_COAT] = {evaluate_coated_conductor, mirror_coated_conductor, sample_coated_conductor,
+                                       NULL},
+        [LOBE_COAT_SCATTERED] = {.evaluate = evaluate_coat_scattered, .sample_rough = sample_diffuse},
+        [LOBE_HAIR] = {.evaluate = evaluate_hair, .sample_rough = sample_hair, .passes = always},
+        [LOBE_PRINCIPLED] = {evaluate_principled, mirror_principled, sample_principled, principled_transmits},
+        [LOBE_CLEARCOAT] = {evaluate_clearcoat, mirror_clearcoat, sample_clearcoat, NULL},
+    };
+    _Static_assert(sizeof TYPES / sizeof *TYPES == LOBE_KIND_COUNT, "a row for each lobe");
+    return &TYPES[kind];
 }

@@ -28,16 +28,23 @@ static inline bool bsdf_lobe_is_diffuse(bsdf_lobe_kind kind)
     return kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH;
 }
 
-/* Value (f |cos|) and density of one lobe that is not smooth. direction: world; o, i: out and direction in the frame.
- * Of flux the value holds the shading normal's correction where the lobe is diffuse, and the density is flux's. */
-void bsdf_lobe_evaluate(const bsdf *b, const bsdf_lobe *lobe, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
-                        rgb *out_value, float *out_pdf);
+/* What a lobe of a kind does: its row in bsdf_lobe.c. o, i: out and the other direction in the shading frame. */
+typedef struct bsdf_lobe_type {
+    /* Of a lobe that is not smooth: sets value (f |cos|) and density, which come in as 0. direction: i in world space.
+     * Of flux the value holds the shading normal's correction where the lobe is diffuse, and the density is flux's.
+     * NULL: the lobe is always smooth. */
+    void (*evaluate)(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
+                     float *out_pdf);
+    /* The one direction of a smooth lobe, and its weight once it has been picked. NULL: the lobe is never smooth. */
+    bool (*sample_smooth)(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
+                          rgb *out_weight);
+    /* A direction of a lobe that is not smooth; for flux of a diffuse lobe, in the geometric frame. NULL: always
+     * smooth. */
+    bool (*sample_rough)(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local);
+    /* Whether it sends light on to the other side too, by this material. NULL: by none. */
+    bool (*passes)(const material *m);
+} bsdf_lobe_type;
 
-/* A smooth lobe's one direction, and its weight once it has been picked. */
-bool bsdf_lobe_sample_smooth(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, float u_lobe,
-                             vec3 *out_local, rgb *out_weight);
-
-/* A direction of a lobe that is not smooth, in the shading frame; for flux of a diffuse lobe, in the geometric one. */
-bool bsdf_lobe_sample_rough(const bsdf *b, bsdf_lobe_kind kind, vec3 o, float u_lobe, vec2 u, vec3 *out_local);
+const bsdf_lobe_type *bsdf_lobe_type_of(bsdf_lobe_kind kind);
 
 #endif

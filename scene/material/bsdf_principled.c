@@ -19,7 +19,7 @@ static bool is_inside(const material *m, vec3 o) { return o.z < 0.0f && principl
 
 static float sum_of(rgb v) { return v.r + v.g + v.b; }
 
-/* What a facet reflects and lets through, and how often reflection is picked. */
+/* The shares of light that a facet reflects and lets through, and how often reflection is picked. */
 typedef struct facet_shares {
     rgb reflected, through;
     float reflection_probability;

@@ -7,7 +7,7 @@
 
 #include "material/bsdf.h"
 
-/* Value, density and sampling of LOBE_PRINCIPLED and LOBE_CLEARCOAT, like their namesakes in bsdf_lobe.h. */
+/* Value, density and sampling of LOBE_PRINCIPLED and LOBE_CLEARCOAT, as bsdf_lobe_type has them (bsdf_lobe.h). */
 void bsdf_principled_evaluate(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 direction, vec3 o,
                               vec3 i, rgb *out_value, float *out_pdf);
 bool bsdf_principled_sample_smooth(const material *m, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o,

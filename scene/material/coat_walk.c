@@ -47,7 +47,7 @@ static float unmasked(ggx facets, vec3 v, vec3 w)
     return ggx_masking_shadowing(facets, v, w) / ggx_masking(facets, v);
 }
 
-/* Both leave *weight without the share of Fresnel's term. false: lost. */
+/* Both functions below leave *weight without the share of Fresnel's term. false: lost. */
 static bool reflect_at(const coat_layers *c, vec3 v, vec3 h, float *weight, vec3 *out)
 {
     *out = reflect_about(v, h);

@@ -8,7 +8,7 @@
 
 enum { GGX_ALBEDO_ROUGHNESSES = 32, GGX_ALBEDO_COSINES = 32 };
 
-/* What facets with Schlick's Fresnel reflect of f0 … */
+/* The share that facets with Schlick's Fresnel reflect of f0 … */
 static const uint16_t GGX_ALBEDO_F0[GGX_ALBEDO_ROUGHNESSES][GGX_ALBEDO_COSINES] = {
     {33,    340,   1353,  3012,  5277,  8092,  11389, 15089, 19103, 23339, 27702, 32096, 36430, 40619, 44586, 48267,
      51610, 54578, 57149, 59318, 61092, 62495, 63561, 64332, 64859, 65193, 65385, 65481, 65521, 65533, 65535, 65535},

@@ -14,7 +14,7 @@
 
 enum { HAIR_TILTED = 3, HAIR_LOBES = 4 }; /* R, TT, TRT, whose angles the scales shift, and all longer paths */
 
-/* What each lobe carries of light along one direction, and how far from its azimuth the lobe's middle is. */
+/* The share of light that each lobe carries along one direction, and how far from its azimuth the lobe's middle is. */
 typedef struct hair_lobes {
     double share[HAIR_LOBES][3], mean[HAIR_LOBES];
     double turn[HAIR_TILTED];

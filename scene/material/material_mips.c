@@ -19,8 +19,8 @@ static float bound_of_color(const scene *s, rgb color, uint32_t texture_index)
     return texture_index == SCENE_NO_TEXTURE ? rgb_max(color) : s->textures[texture_index].most;
 }
 
-/* Where reflectance and transmittance together are above 1 they are scaled down: the mean of that is not that of means.
- */
+/* Where reflectance and transmittance together are above 1 they are scaled down: the mean of that is not that of
+ * means. */
 static bool is_cut_by_its_sum(const scene *s, const material *m)
 {
     return m->kind == MATERIAL_DIFFUSE_TRANSMISSION &&

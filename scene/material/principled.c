@@ -15,7 +15,7 @@ static float clamp_to_unit(float x) { return fminf(fmaxf(x, 0.0f), 1.0f); }
 
 static float coat_alpha(const material *m) { return m->clearcoat_roughness * m->clearcoat_roughness; }
 
-/* What of the light that meets the interface may enter, and go through. */
+/* The shares of the light at the interface that may enter, and go through. */
 static float through_share(const material *m) { return m->ior > 0.0f ? (1.0f - m->metallic) * m->transmission : 0.0f; }
 
 static float base_share(const material *m) { return (1.0f - m->metallic) * (1.0f - m->transmission); }
@@ -104,8 +104,8 @@ void principled_interface(const material *m, float cosine, bool is_inside, rgb *
     float weight = fresnel_schlick_weight(cosine), through = through_share(m);
     rgb dielectric = schlick(m->dielectric_f0, m->specular, weight), from_within = dielectric;
     if (is_inside) {
-        /* what is seen from outside at the refracted angle, so that both ways are the same; total reflection is total
-         */
+        /* what is seen from outside at the refracted angle, so that both ways are the same; total reflection is
+         * total */
         float sin2 = (1.0f - fminf(cosine * cosine, 1.0f)) * m->ior * m->ior;
         from_within = sin2 >= 1.0f ? rgb_gray(1.0f)
                                    : schlick(m->dielectric_f0, m->specular, fresnel_schlick_weight(sqrtf(1.0f - sin2)));

@@ -16,13 +16,13 @@
 
 enum { JOINED_ITEMS_MIN = 2048 };
 
-/* What Embree gives back to our functions. */
+/* Our user data, which Embree gives back to our functions. */
 typedef struct attached {
     const scene *s;
     const shape *shape;
 } attached;
 
-/* What a build's calls to us from Embree's threads read was written before it, and what it wrote is read after it. */
+/* Calls to us from Embree's threads read what was written before the build, and what they write is read after it. */
 static char embree_threads;
 
 static bool count_memory(void *user, ssize_t bytes, bool post)

@@ -101,7 +101,7 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
  * gather: 1.15 times in all). */
 enum { PACKET = 8, SINGLES_MAX = 15 };
 
-/* Those of one octant side by side, and there by one coordinate: what goes about the same way is cast together. */
+/* Sorts rays by octant, and there by one coordinate, so that rays of about one direction are cast together. */
 static void put_in_order(const ray_fan *f, uint8_t out_order[RAY_FAN_MAX])
 {
     enum { SLICES = 8, KEYS = 8 * SLICES };

@@ -28,7 +28,7 @@ double slab_faces_share(const scene *s, uint32_t material_index);
 /* Fills in the hit's slab where the ray, of unit direction, has met a slab that it passes straight. */
 void slab_faces_meet(const scene *s, const scene_ray *ray, surface_hit *in_out_hit);
 
-/* Likewise for those who may not have slabs, or whose rays see them as the glass they are. */
+/* slab_faces_meet for scenes that may have no slabs, and for rays that see slabs as the glass they are. */
 static inline void slab_meet(const scene *s, const scene_ray *ray, surface_hit *in_out_hit)
 {
     if (s->slab_faces && ray->slabs_are_panes)

@@ -50,16 +50,13 @@ static ag_status describe_failure(ag_status status, const char *name, const char
     return status;
 }
 
-ag_status light_picture_read(const scene *s, const char *name, const char *path, bool is_gray,
-                             light_picture *out_picture, char *message, size_t message_size)
+/* path: by which the config's rules know it. Takes the picture. */
+static ag_status take(const scene *s, const char *name, const char *path, image picture, bool is_gray,
+                      light_picture *out_picture, char *message, size_t message_size)
 {
     char reason[512] = "";
-    image picture = {0};
     image_colors colors = {0};
-    *out_picture = (light_picture){0};
-    ag_status status = image_read_colors(path, &picture, reason, sizeof reason);
-    if (status == AG_OK)
-        status = image_fill_window(&picture, path, reason, sizeof reason);
+    ag_status status = image_fill_window(&picture, path, reason, sizeof reason);
     if (status == AG_OK && !is_gray)
         status = image_colors_find(s, image_colors_rule(s, path), &picture, &colors, reason, sizeof reason);
     if (status == AG_OK && !colors.space)
@@ -89,6 +86,29 @@ ag_status light_picture_read(const scene *s, const char *name, const char *path,
     p.bad_count = clean_pixels(&colors, p.pixels, count);
     *out_picture = p;
     return AG_OK;
+}
+
+ag_status light_picture_read(const scene *s, const char *name, const char *path, bool is_gray,
+                             light_picture *out_picture, char *message, size_t message_size)
+{
+    char reason[512] = "";
+    image picture = {0};
+    *out_picture = (light_picture){0};
+    const ag_status status = image_read_colors(path, &picture, reason, sizeof reason);
+    if (status != AG_OK) {
+        image_reset(&picture);
+        return describe_failure(status, name, reason, message, message_size);
+    }
+    return take(s, name, path, picture, is_gray, out_picture, message, message_size);
+}
+
+ag_status light_picture_take(const scene *s, const char *name, image *pixels, bool is_gray, light_picture *out_picture,
+                             char *message, size_t message_size)
+{
+    const image picture = *pixels;
+    *pixels = (image){0};
+    *out_picture = (light_picture){0};
+    return take(s, name, name, picture, is_gray, out_picture, message, message_size);
 }
 
 ag_status light_picture_surround(light_picture *picture, const char *name, environment **out_environment, char *message,

@@ -19,6 +19,12 @@ typedef struct light_picture {
 ag_status light_picture_read(const scene *s, const char *name, const char *path, bool is_gray,
                              light_picture *out_picture, char *message, size_t message_size);
 
+struct image;
+
+/* light_picture_read of floats in memory, which are taken, on failure too. */
+ag_status light_picture_take(const scene *s, const char *name, struct image *pixels, bool is_gray,
+                             light_picture *out_picture, char *message, size_t message_size);
+
 /* Makes an environment, a picture of all directions: a square picture is octahedral, one twice as wide as high
  * latitude-longitude. Takes the pixels, on failure too. Errors: AG_ERROR_SCENE (another shape; the reason in message),
  * AG_ERROR_MEMORY. */

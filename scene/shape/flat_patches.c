@@ -73,7 +73,7 @@ static void difference(vec3 a, vec3 b, double out[3])
     out[0] = (double)a.x - (double)b.x, out[1] = (double)a.y - (double)b.y, out[2] = (double)a.z - (double)b.z;
 }
 
-/* Both unit; the side does not matter. */
+/* Whether two unit normals are parallel, of one sense or the opposite ones. */
 static bool is_parallel(vec3 a, vec3 b, float angle_max)
 {
     vec3 apart = vec3_sub(a, vec3_face_forward(b, a));

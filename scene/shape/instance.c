@@ -5,7 +5,7 @@
 
 #include "scene.h"
 
-/* What the traversal loses on its way into the object's space and back, as a part of all that is added up there. */
+/* The error of the traversal's way into the object's space and back, as a part of all that is added up there. */
 #define FLAT_EPSILON_RELATIVE  0x1p-19f
 #define ROUND_EPSILON_RELATIVE 0x1p-19f
 

@@ -255,8 +255,8 @@ static void smooth_vertex(const level *l, size_t v, bool to_limit, double out_po
     memcpy(out_position, p, sizeof p);
 }
 
-/* The limit surface's normal, by the tangents along and across (Hoppe et al. 1994; on the boundary as in Pharr et al.).
- */
+/* The limit surface's normal, by the tangents along and across (Hoppe et al. 1994; on the boundary as in Pharr et
+ * al.). */
 static void limit_normal(const level *l, size_t v, double out_normal[3])
 {
     double s[3] = {0.0, 0.0, 0.0}, t[3] = {0.0, 0.0, 0.0};

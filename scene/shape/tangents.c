@@ -128,8 +128,8 @@ static surface_differentials quadric_differentials(const shape *s, const surface
                                    turn_of_normal(s, normal, dndv, hit->shading_normal)};
 }
 
-/* How the world's unit normal turns where the object's, of unit length, turns by dn: both go by the inverse transpose.
- */
+/* How the world's unit normal turns where the object's, of unit length, turns by dn: both go by the inverse
+ * transpose. */
 static vec3 turn_to_world(const affine *a, vec3 object_normal, vec3 dn, vec3 world_normal)
 {
     double c[3][3], turned[3], square = 0.0;

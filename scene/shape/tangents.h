@@ -1,7 +1,6 @@
 /* tangents.h: how a surface runs along its u and v, and how its normal turns on the way.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, ch. 6 (the parametrisations), 3.9.
- * Flow: surface hit -> [here] -> shading_frame, and whoever asks for surface_tangents. Threads: pure functions.
- */
+ * Flow: surface hit -> [here] -> shading_frame, and whoever asks for surface_tangents. Threads: pure functions. */
 #ifndef AFTERGLOW_TANGENTS_H
 #define AFTERGLOW_TANGENTS_H
 

@@ -33,8 +33,8 @@ ag_status definitions_expand(const definitions *d, const char *text, size_t leng
 /* The first that is neither used nor optional; NULL: there is none. */
 const definition *definitions_unused(const definitions *d);
 
-/* "name=value, name=value" of those used, for metadata; "" where there are none. To be freed; NULL when out of memory.
- */
+/* "name=value, name=value" of those used, for metadata; "" where there are none. To be freed; NULL when out of
+ * memory. */
 char *definitions_describe(const definitions *d);
 
 #endif

@@ -6,7 +6,7 @@
 
 static const char *const LEVEL_NAMES[] = {"error", "warning", "info", "debug"};
 
-/* What the format says, in fixed if it fits, else from the heap; *out_heap is to be freed. */
+/* The formatted text, in fixed if it fits, else from the heap; *out_heap is to be freed. */
 static const char *format_text(char *fixed, size_t fixed_size, const char *format, va_list arguments, char **out_heap)
 {
     va_list again;

@@ -42,7 +42,7 @@ bool input_file_may_ask(const run_context *run, const char *path, char *error, s
 
 /* Whether a file may be read that a library opens by its name; notes it as input_file_open does. */
 bool input_file_allow(const run_context *run, const char *path, char *error, size_t error_size);
-/* Likewise for a file that the user has named, not the scene, which may lie anywhere. */
+/* input_file_open for a file that the user has named, not the scene, which may lie anywhere. */
 bool input_file_allow_named(const run_context *run, const char *path, char *error, size_t error_size);
 
 #endif

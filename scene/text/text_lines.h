@@ -31,7 +31,7 @@ bool text_lines_next(text_lines *lines);
 
 /* The line's next word; false at its end. */
 bool text_lines_word(text_lines *lines, text_word *out_word);
-/* What is left of the line, blanks at both ends cut off; its length may be 0. */
+/* The rest of the line, blanks at both ends cut off; its length may be 0. */
 text_word text_lines_rest(text_lines *lines);
 
 bool text_word_is(const text_word *word, const char *text); /* in any case */

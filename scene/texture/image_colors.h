@@ -11,7 +11,7 @@
 struct image;
 struct scene;
 
-/* What remains to be done with values that were made linear by `encoding`. */
+/* The conversion that is left for values that were made linear by `encoding`. */
 typedef struct image_colors {
     image_encoding encoding; /* never of a colour space */
     const char *space;       /* the values are taken as they are, and decoded from this one; or NULL. The config's */

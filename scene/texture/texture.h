@@ -18,7 +18,7 @@ struct surface_hit;
 enum { TEXTURE_MAX_COST = 4096 };  /* nodes met in one look-up, each as often as it is met */
 enum { TEXTURE_MAX_OCTAVES = 32 }; /* finer ones are beyond a float's resolution */
 
-/* What the inputs are, in their order. */
+/* The inputs' meaning, in their order. */
 typedef enum texture_kind {
     TEXTURE_CONSTANT,      /* value */
     TEXTURE_SCALE,         /* texture, float factor */
@@ -63,7 +63,7 @@ typedef struct texture {
                                                  may be below 0, where values are cut */
 } texture;
 
-/* What a ray's cone cuts out of a surface, see material/surface_footprint.h. */
+/* The footprint of a ray's cone on a surface, see material/surface_footprint.h. */
 typedef struct surface_footprint {
     vec3 axes[2];    /* diameters of an ellipse, world space */
     vec2 uv_axes[2]; /* the same in the surface's u and v */

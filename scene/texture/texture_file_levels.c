@@ -88,7 +88,7 @@ static ag_status fetch_alpha(void *user, int level, uint32_t x, uint32_t y, unsi
 
 /* --- whole levels --- */
 
-/* What is found out while a level is gone over. */
+/* The findings while a level is gone over. */
 typedef struct level_look {
     float least, most;
     bool is_opaque; /* all values are the largest that a byte has, or 1 */

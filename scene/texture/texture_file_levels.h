@@ -16,7 +16,7 @@ ag_status texture_file_levels_read(run_context *run, const struct scene *s, text
                                    char *message, size_t message_size);
 void texture_file_levels_destroy(texture_file_levels *l); /* NULL is fine; after the tiles that were lent */
 
-/* What is wrong with the file that tiles are read from, as the end of a sentence that begins with its name; or NULL. */
+/* The fault of the file that tiles are read from, as the end of a sentence that begins with its name; or NULL. */
 const char *texture_file_levels_problem(const texture_file_levels *l);
 
 /* A fingerprint of a file's bytes; where it cannot be read, one like no other. */

@@ -162,7 +162,7 @@ static void add_array(hash128 *h, const void *items, size_t count, size_t item_s
     hash128_add(h, items, items ? count * item_size : 0);
 }
 
-/* What the file's values become: the bytes of the file do not say that the scene has them decoded otherwise. */
+/* How the file's values are converted: the bytes of the file do not say that the scene has them decoded otherwise. */
 static hash128 file_content(const texture_image *i)
 {
     const image_encoding encoding = i->colors.encoding;

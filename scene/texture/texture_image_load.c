@@ -14,19 +14,20 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What a picture is made of. */
+/* The inputs that a picture is made of. */
 typedef struct source {
     run_context *run;
     const char *path;
     const unsigned char *bytes; /* the file's; NULL: it is on disk */
     size_t size;
+    const image *pixels; /* NULL: as above */
     image_encoding encoding;
 } source;
 
 static ag_status allow(const source *from, char *message, size_t message_size)
 {
     char reason[128];
-    if (from->bytes || input_file_allow(from->run, from->path, reason, sizeof reason))
+    if (from->bytes || from->pixels || input_file_allow(from->run, from->path, reason, sizeof reason))
         return AG_OK;
     snprintf(message, message_size, "cannot read '%s': %s", from->path, reason);
     return AG_ERROR_INPUT;
@@ -34,10 +35,14 @@ static ag_status allow(const source *from, char *message, size_t message_size)
 
 static ag_status read_image(const scene *s, texture_image *i, const source *from, char *message, size_t message_size)
 {
-    image picture;
-    ag_status status = from->bytes
-                           ? image_read_memory(from->path, from->bytes, from->size, &picture, message, message_size)
-                           : image_read_compact(from->path, &picture, message, message_size);
+    image picture = {0};
+    ag_status status = AG_OK;
+    if (from->pixels)
+        status = image_copy(from->pixels, false, &picture) ? AG_OK : AG_ERROR_MEMORY;
+    else if (from->bytes)
+        status = image_read_memory(from->path, from->bytes, from->size, &picture, message, message_size);
+    else
+        status = image_read_compact(from->path, &picture, message, message_size);
     if (status == AG_OK)
         status = image_fill_window(&picture, from->path, message, message_size);
     if (status == AG_OK)
@@ -193,14 +198,14 @@ static ag_status load(scene *s, const source *from, uint32_t *out_index, char *m
     i->encoding = from->encoding;
     i->path = strdup(from->path);
     ag_status status = i->path ? AG_OK : AG_ERROR_MEMORY;
-    if (status == AG_OK && !from->bytes && texture_udim_is_pattern(from->path)) {
+    if (status == AG_OK && !from->bytes && !from->pixels && texture_udim_is_pattern(from->path)) {
         status = read_tiles(s, i, from, message, message_size);
     } else if (status == AG_OK) {
         bool is_read = false;
         status = allow(from, message, message_size);
         if (status == AG_OK)
             status = make_store(s);
-        if (status == AG_OK && !from->bytes)
+        if (status == AG_OK && !from->bytes && !from->pixels)
             status = texture_file_levels_read(from->run, s, i, &is_read, message, message_size);
         if (status == AG_OK && !is_read)
             status = read_image(s, i, from, message, message_size);
@@ -222,5 +227,13 @@ ag_status texture_image_load_memory(run_context *run, struct scene *s, const cha
                                     size_t size, image_encoding encoding, uint32_t *out_index, char *message,
                                     size_t message_size)
 {
-    return load(s, &(source){run, name, bytes, size, encoding}, out_index, message, message_size);
+    const source from = {.run = run, .path = name, .bytes = bytes, .size = size, .encoding = encoding};
+    return load(s, &from, out_index, message, message_size);
+}
+
+ag_status texture_image_load_pixels(run_context *run, struct scene *s, const char *name, const image *pixels,
+                                    image_encoding encoding, uint32_t *out_index, char *message, size_t message_size)
+{
+    const source from = {.run = run, .path = name, .pixels = pixels, .encoding = encoding};
+    return load(s, &from, out_index, message, message_size);
 }

@@ -38,8 +38,8 @@ typedef union blend_pixels {
     float values[4 * 3];
 } blend_pixels;
 
-/* The blend's pixels, read from their tiles one behind the other, as a level of their own, which the blend then is of.
- */
+/* The blend's pixels, read from their tiles one behind the other, as a level of their own, which the blend then is
+ * of. */
 static texture_level read_tiles(const texture_level *l, pixel_blend *in_out_blend, blend_pixels *out_pixels)
 {
     texture_level read = *l;

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What lies beyond the picture's edges. */
+/* How the picture goes on beyond its edges. */
 typedef enum texture_wrap {
     TEXTURE_WRAP_REPEAT,
     TEXTURE_WRAP_BLACK,

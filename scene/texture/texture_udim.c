@@ -57,7 +57,8 @@ static const char *read_number(const char *text, uint32_t *out_number)
     return count >= 1 && count <= 4 ? text + count : NULL;
 }
 
-/* What stands for the token at the beginning of text; gives what follows, or NULL where that is no tile. */
+/* The tile's number or coordinates that stand for the token at the beginning of text; gives what follows, or NULL where
+ * that is no tile. */
 static const char *read_slot(const char *text, token_kind kind, uint32_t *out_slot)
 {
     uint32_t column, row;

@@ -1,7 +1,7 @@
 /* test_bench_result.c: what afterglow-bench makes of figures, on made-up ones: a busy machine is known and gets no
  * score, spread turns a score into an interval, numbers of threads follow the machine, options are read.
- * Flow: tests of perf/bench/bench_load.c, bench_machine.c, bench_score.c, bench_json.c, bench_options.c. Threads: one.
- */
+ * Flow: tests of perf/bench/bench_load.c, bench_machine.c, bench_score.c, bench_json.c, bench_options.c. Threads:
+ * one. */
 #define _GNU_SOURCE
 #include "bench/bench_json.h"
 #include "bench/bench_options.h"

@@ -160,8 +160,7 @@ static void threads_do_not_matter(void **state)
 }
 
 /* In an even field the irradiance that points get from their nearest irradiance photons is right on average, in each
- * map.
- */
+ * map. */
 static void the_mean_through_the_nearest_irradiance_photon_is_right(void **state)
 {
     (void)state;

@@ -15,8 +15,8 @@ static const char *const BOX = "Shape \"trianglemesh\" \"integer indices\" [0 1 
                                "2 7 6 0 2 6 0 6 4 1 5 7 1 7 3]\n"
                                "\"point3 P\" [-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1]\n";
 
-/* A turned room with coloured walls, two boxes, a mirror, glass smooth and rough, and an area light below the ceiling.
- */
+/* A turned room with coloured walls, two boxes, a mirror, glass smooth and rough, and an area light below the
+ * ceiling. */
 static const char *const ROOM =
     "Rotate 33 1 2 3\nTranslate 100 20 -7\n"
     "AttributeBegin\nScale 5 4 6\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.2]\n%s AttributeEnd\n"
@@ -458,8 +458,8 @@ static void *cancel_later(void *user)
     return NULL;
 }
 
-/* Cancelled at any moment, most often while the last of the blocks are traced: either there is nothing, or all of it.
- */
+/* Cancelled at any moment, most often while the last of the blocks are traced: either there is nothing, or all of
+ * it. */
 static void cancelling_leaves_all_or_nothing(void **state)
 {
     (void)state;

@@ -463,8 +463,8 @@ static int occurrences(const char *text, const char *part)
     return count;
 }
 
-/* What OpenColorIO has to say is said as all else is: once, by level, and not at all where the program is to be quiet.
- */
+/* What OpenColorIO has to say is said as all else is: once, by level, and not at all where the program is to be
+ * quiet. */
 static void what_the_library_says(void **state)
 {
     (void)state;

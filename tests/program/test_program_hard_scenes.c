@@ -154,8 +154,7 @@ static void test_beyond_all_measure(void **state)
     "Camera \"perspective\"\nWorldBegin\nLightSource \"point\" \"point3 from\" [ 0 5 0 ]\nLightSource \"infinite\"\n"
 
 /* Outside of all that is looked at: where nothing is diffuse, photons are sent by the million before the map is given
- * up.
- */
+ * up. */
 #define SCREEN                                                                                                         \
     "AttributeBegin\nMaterial \"diffuse\"\nTranslate 0 0 -5\nShape \"disk\" \"float radius\" 3\nAttributeEnd\n"
 

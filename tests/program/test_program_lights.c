@@ -254,8 +254,8 @@ static void test_a_thousand_lamps_are_one(void **state)
     picture_reset(&one);
 }
 
-/* "photons" 0 takes a lamp's light out of the map, and leaves it in direct light; another factor changes noise alone.
- */
+/* "photons" 0 takes a lamp's light out of the map, and leaves it in direct light; another factor changes noise
+ * alone. */
 static void test_photons(void **state)
 {
     (void)state;

@@ -40,8 +40,8 @@ static void expect_same(const char *what, const picture *p, const picture *refer
                      (double)p->pixels[i], (double)reference->pixels[i]);
 }
 
-/* Checks what must hold of every picture by photon map. irradiance_photons: the most that a tree of their own may hold.
- */
+/* Checks what must hold of every picture by photon map. irradiance_photons: the most that a tree of their own may
+ * hold. */
 static void expect_balance(const char *stats_file, long long photons, long long irradiance_photons)
 {
     json_t *stats = stats_read(in_folder(stats_file));

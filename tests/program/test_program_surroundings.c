@@ -308,8 +308,8 @@ static void test_signal_ends_reading(void **state)
     expect_listing("pipe");
 }
 
-/* A picture into a pipe waits for its reader; a signal ends the wait, and the exit code says that the picture is lost.
- */
+/* A picture into a pipe waits for its reader; a signal ends the wait, and the exit code says that the picture is
+ * lost. */
 static void test_pipe_as_output(void **state)
 {
     (void)state;

@@ -1,6 +1,5 @@
 /* test_import_material.c: what becomes of the words of an MTL file: each line of the table in
- * scene/readers/model/import_material.c.
- */
+ * scene/readers/model/import_material.c. */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/model_fixture.h"
 

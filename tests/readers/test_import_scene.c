@@ -1,5 +1,5 @@
-/* test_import_scene.c: records become a scene; records that do not hold together, cut or damaged anywhere, are errors.
- */
+/* test_import_scene.c: records become a scene; records that do not hold together, cut or damaged anywhere, are
+ * errors. */
 #define _POSIX_C_SOURCE 200809L
 #include "model/import_scene.h"
 

@@ -1,5 +1,5 @@
-/* test_pbrt_light_pictures.c: lights with pictures, windows and "photons", as the pbrt reader makes them. Threads: one.
- */
+/* test_pbrt_light_pictures.c: lights with pictures, windows and "photons", as the pbrt reader makes them. Threads:
+ * one. */
 #define _GNU_SOURCE
 #include "fixtures/pbrt_fixture.h" /* first: its arguments would hide what the next one declares */
 

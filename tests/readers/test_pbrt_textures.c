@@ -266,8 +266,7 @@ static void colors_are_found_by_their_names(void **state)
 }
 
 /* A JPEG file that is cut short is an error, wherever it is cut behind its header; one with something behind it is
- * none.
- */
+ * none. */
 static void cut_jpeg_files_are_told(void **state)
 {
     (void)state;

@@ -2,6 +2,7 @@
  * names in the manifest, through the ids' bits, to mattes that are the shares of the pixels.
  * Threads: the renderer's. */
 #define _GNU_SOURCE
+#include "context.h"
 #include "film/cryptomatte.h"
 #include "fixtures/layers_fixture.h"
 
@@ -99,7 +100,7 @@ static void test_scene(void **state)
     ag_film *film = studio_render(s);
     assert_int_equal(ag_film_channel_count(film), 3 + 2 * 2 * CRYPTOMATTE_RANKS);
     cryptomatte objects, materials;
-    const scene *loaded = *(scene *const *)(const void *)s->scene; /* the only member of ag_scene */
+    const scene *loaded = s->scene->s;
     assert_int_equal(cryptomatte_create(loaded, CRYPTOMATTE_OBJECT, &objects), AG_OK);
     assert_int_equal(cryptomatte_create(loaded, CRYPTOMATTE_MATERIAL, &materials), AG_OK);
     /* keys of seven digits, from the layers' names: the same in every frame */

@@ -5,6 +5,7 @@
 #include "fixtures/layers_fixture.h"
 #include "fixtures/pbrt_transcript.h"
 #include "fixtures/shared_folder.h"
+#include "image/image_reader.h"
 
 enum { SIZE = 20 };
 
@@ -413,6 +414,125 @@ static void calls_in_a_wrong_order_are_errors(void **state)
     end(&d);
 }
 
+/* A floor with a picture under a sky that is one: of bytes or floats, from files or from memory. */
+static void expect_same_pictures(desk *d, const char *texture, const char *sky, bool is_as_floats)
+{
+    char text[1024];
+    image pixels[2];
+    square s;
+    ag_scene *read;
+    float of_memory[3 * SIZE * SIZE], of_file[3 * SIZE * SIZE];
+    snprintf(text, sizeof text,
+             "Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 2 1] Camera \"perspective\" WorldBegin\n"
+             "LightSource \"infinite\" \"string filename\" \"%s\"\n"
+             "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\"\n"
+             "MakeNamedMaterial \"m\" \"string type\" \"diffuse\" \"texture reflectance\" \"t\" NamedMaterial \"m\"\n"
+             "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 1 1 0 -1 1 0] \"integer indices\" [0 1 2 0 2 3]\n",
+             sky, texture);
+    assert_int_equal(ag_scene_load_text(d->context, "text", text, strlen(text), NULL, &read), AG_OK);
+    render(d->context, read, of_file);
+    ag_scene_destroy(read);
+
+    const char *const files[] = {texture, sky}, *const names[] = {"a picture", "a sky"};
+    assert_int_equal(ag_scene_create(d->context, NULL, &d->made), AG_OK);
+    for (int i = 0; i < 2; i++) {
+        ag_image picture = ag_default_image();
+        assert_int_equal(is_as_floats ? image_read_colors(files[i], &pixels[i], message, sizeof message)
+                                      : image_read_compact(files[i], &pixels[i], message, sizeof message),
+                         AG_OK);
+        picture.width = pixels[i].width;
+        picture.height = pixels[i].height;
+        picture.channel_count = pixels[i].channel_count;
+        picture.bytes = pixels[i].bytes;
+        picture.floats = pixels[i].pixels;
+        assert_true(!picture.bytes == is_as_floats);
+        assert_int_equal(ag_scene_add_image(d->made, names[i], &picture), AG_OK);
+        image_reset(&pixels[i]); /* it was copied */
+    }
+    const ag_parameter sky_of = {
+        .name = "filename", .type = AG_PARAMETER_STRING, .count = 1, .strings = (const char *const[]){"a sky"}};
+    const ag_parameter floor_of = {
+        .name = "filename", .type = AG_PARAMETER_STRING, .count = 1, .strings = (const char *const[]){"a picture"}};
+    const ag_parameter reflectance = {
+        .name = "reflectance", .type = AG_PARAMETER_TEXTURE, .count = 1, .strings = (const char *const[]){"t"}};
+    ag_light light = ag_default_light();
+    ag_texture image_map = ag_default_texture();
+    ag_camera eye = ag_default_camera();
+    eye.world_from_camera = AWAY;
+    light.type = "infinite";
+    light.parameters = &sky_of;
+    image_map.name = "t";
+    image_map.type = "imagemap";
+    image_map.parameters = &floor_of;
+    light.parameter_count = image_map.parameter_count = 1;
+    make_square(&s);
+    s.shape.material = "m";
+    assert_int_equal(ag_scene_set_camera(d->made, &eye), AG_OK);
+    assert_int_equal(ag_scene_add_light(d->made, &light), AG_OK);
+    assert_int_equal(ag_scene_add_texture(d->made, &image_map), AG_OK);
+    assert_int_equal(ag_scene_add_material(d->made, "m", "diffuse", &reflectance, 1), AG_OK);
+    assert_int_equal(ag_scene_add_shape(d->made, &s.shape), AG_OK);
+    assert_int_equal(ag_scene_commit(d->made), AG_OK);
+    render(d->context, d->made, of_memory);
+    assert_memory_equal(of_memory, of_file, sizeof of_file);
+    assert_string_equal(d->said, "");
+    ag_scene_destroy(d->made);
+    d->made = NULL;
+}
+
+static void pictures_in_memory_have_the_bits_of_files(void **state)
+{
+    (void)state;
+    desk d;
+    ag_scene *room;
+    ag_film *film;
+    ag_render_settings settings;
+    ag_output_settings output = ag_default_output_settings();
+    char png[256], exr[256];
+    snprintf(png, sizeof png, "%s", in_folder("a.png"));
+    snprintf(exr, sizeof exr, "%s", in_folder("a.exr"));
+    begin(&d);
+    ag_scene_destroy(d.made);
+    assert_int_equal(ag_scene_load(d.context, LAYERS_SCENES "box_with_blocks.pbrt", &room), AG_OK);
+    assert_int_equal(ag_render_settings_from_scene(d.context, room, &settings), AG_OK);
+    settings.width = settings.height = 16;
+    settings.photon_count = 1000;
+    assert_int_equal(ag_render(d.context, room, &settings, &film), AG_OK);
+    output.type = AG_SAMPLE_FLOAT;
+    assert_int_equal(ag_film_write(d.context, film, &output, exr), AG_OK);
+    assert_int_equal(ag_film_write(d.context, film, NULL, png), AG_OK);
+    ag_film_destroy(film);
+    ag_scene_destroy(room);
+    expect_same_pictures(&d, png, png, false);
+    expect_same_pictures(&d, exr, exr, true);
+
+    const unsigned char grey[4] = {0, 80, 160, 240};
+    const float greys[4] = {0, 1, 2, 3};
+    ag_image picture = ag_default_image();
+    assert_int_equal(ag_scene_create(d.context, NULL, &d.made), AG_OK);
+    picture.width = picture.height = 2;
+    picture.channel_count = 1;
+    assert_int_equal(ag_scene_add_image(d.made, "grey", &picture), AG_ERROR_ARGUMENT);
+    expect_said(&d, "ag_scene_add_image:1:0: error: either bytes or floats should be there");
+    picture.bytes = grey;
+    picture.floats = greys;
+    assert_int_equal(ag_scene_add_image(d.made, "grey", &picture), AG_ERROR_ARGUMENT);
+    picture.floats = NULL;
+    assert_int_equal(ag_scene_add_image(d.made, NULL, &picture), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_image(d.made, "grey", &picture), AG_OK);
+    d.said[0] = '\0';
+    assert_int_equal(ag_scene_add_image(d.made, "grey", &picture), AG_ERROR_SCENE);
+    expect_said(&d, "there is a picture \"grey\" already");
+    picture.channel_count = 5;
+    assert_int_equal(ag_scene_add_image(d.made, "five", &picture), AG_ERROR_ARGUMENT);
+    picture.channel_count = 1;
+    picture.width = 1 << 20;
+    picture.height = 1 << 20;
+    assert_int_equal(ag_scene_add_image(d.made, "large", &picture), AG_ERROR_ARGUMENT);
+    expect_said(&d, "1 to 2^28 pixels");
+    end(&d);
+}
+
 static void photon_settings(ag_render_settings *settings, const char *map)
 {
     settings->width = settings->height = SIZE;
@@ -563,6 +683,7 @@ int main(void)
         cmocka_unit_test(structs_of_other_sizes_are_refused),
         cmocka_unit_test(calls_in_a_wrong_order_are_errors),
         TEST_IN_FOLDER(a_moved_camera_is_as_one_from_the_beginning),
+        TEST_IN_FOLDER(pictures_in_memory_have_the_bits_of_files),
         cmocka_unit_test(a_camera_cannot_change_under_a_rendering),
         cmocka_unit_test(settings_are_heeded),
     };

@@ -295,8 +295,8 @@ static void the_bound_of_shading_normals_keeps_nearly_all_flux(void **state)
                 if (k == 0 || !bsdf_sample_direction(&b, BSDF_TRACED, BSDF_FLUX, u_lobe, u, &of_flux) ||
                     !bsdf_sample_direction(&b, BSDF_TRACED, BSDF_RADIANCE, u_lobe, u, &of_radiance))
                     continue;
-                /* the flux through the surface, and the same by the cosines of the shading normal (Veach 1997, 5.3.2)
-                 */
+                /* the flux through the surface, and the same by the cosines of the shading normal (Veach 1997,
+                 * 5.3.2) */
                 flux += (double)of_flux.weight.g * (double)from.z;
                 seen +=
                     (double)of_radiance.weight.g *

@@ -133,8 +133,8 @@ static double density(void *user, vec3 d)
     return light_pdf_from_point(v->s, &v->s->lights[0], v->point, &hit);
 }
 
-/* Towards a point: the density said is the one sampled, at hits as at samples, and the light is that of even samples.
- */
+/* Towards a point: the density said is the one sampled, at hits as at samples, and the light is that of even
+ * samples. */
 static void light_is_sampled_by_its_density(void **state)
 {
     (void)state;

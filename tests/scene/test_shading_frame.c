@@ -79,8 +79,8 @@ static void a_ramp_on_a_plane(void **state)
     scene_destroy(s);
 }
 
-/* r(u, v) = R + d: its normal is n - (dd/du u^ / |dp/du| + dd/dv v^ / |dp/dv|) with the tangents of the raised sphere.
- */
+/* r(u, v) = R + d: its normal is n - (dd/du u^ / |dp/du| + dd/dv v^ / |dp/dv|) with the tangents of the raised
+ * sphere. */
 static void a_ramp_on_a_sphere(void **state)
 {
     (void)state;

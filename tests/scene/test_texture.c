@@ -118,8 +118,8 @@ static void checkerboards(void **state)
     reading_destroy(&r);
 }
 
-/* Cells around whole numbers have a dot of radius 0.35, or none, by the noise at their corner; all of it lies inside.
- */
+/* Cells around whole numbers have a dot of radius 0.35, or none, by the noise at their corner; all of it lies
+ * inside. */
 static void dots_fill_their_share(void **state)
 {
     (void)state;

@@ -60,8 +60,8 @@ AG_API void ag_context_clear_cancel(ag_context *context);
  * called again. No other work is touched. Safe in a signal handler. */
 AG_API void ag_context_pause(ag_context *context);
 
-/* What the colour config has, as lines of text: displays and their views, looks, colour spaces, roles. The context's.
- * Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
+/* Lists what the colour config has, as lines of text: displays and their views, looks, colour spaces, roles. The
+ * context's. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 AG_API ag_status ag_color_summary(ag_context *context, const char **out_text);
 
 /* --- scene --- */
@@ -102,8 +102,7 @@ typedef enum ag_gltf_light_units {
  * y is up (+z in pbrt's left-handed world), so that east is +x; where z or x is up, it is +y. Azimuths go clockwise for
  * who looks down from above. */
 typedef enum ag_up_axis {
-    AG_UP_AUTO, /* y; of pbrt's text the axis nearest to the up of its camera, or where it has none of the one asked for
-                 */
+    AG_UP_AUTO, /* y; of pbrt's text the axis nearest to the up of its camera, or of the one asked for */
     AG_UP_X,
     AG_UP_Y,
     AG_UP_Z,
@@ -175,8 +174,8 @@ AG_API void ag_scene_destroy(ag_scene *scene);
 
 /* Whether a path names one of the files that the scene was read from: its own, those that it includes, meshes,
  * pictures; by device and inode, so that no other spelling or link hides it. To be asked before a picture is written
- * there. What a model of a format that assimp reads brings beside the model itself is not among them, but for pictures.
- */
+ * there. What a model of a format that assimp reads brings beside the model itself is not among them, but for
+ * pictures. */
 AG_API bool ag_scene_was_read_from(const ag_scene *scene, const char *path);
 
 /* The Film directive's "filename", NULL where there is none. Lives as long as the scene. */
@@ -251,16 +250,28 @@ AG_API ag_status ag_scene_add_material(ag_scene *scene, const char *name, const 
 AG_API ag_status ag_scene_add_medium(ag_scene *scene, const char *name, const char *type,
                                      const ag_parameter *parameters, size_t parameter_count);
 
-/* What the scene says of its picture; the last of each counts. type: "rgb", "independent", "photonmap", "gaussian", ...
- */
+/* What the scene says of its picture; the last of each counts. type: "rgb", "independent", "photonmap", "gaussian",
+ * ... */
 typedef enum ag_scene_hint { AG_HINT_FILM, AG_HINT_SAMPLER, AG_HINT_INTEGRATOR, AG_HINT_PIXEL_FILTER } ag_scene_hint;
 AG_API ag_status ag_scene_set_hint(ag_scene *scene, ag_scene_hint hint, const char *type,
                                    const ag_parameter *parameters, size_t parameter_count);
 
 /* The structs that follow begin with their size, which ag_default_...() sets: a library that knows more members takes
  * the rest for their defaults. Matrices have 16 numbers, row by row, of column vectors: the last column is where the
- * origin goes. Each is given when the shutter opens (pbrt's time 0), and where something moves when it closes (time 1).
- */
+ * origin goes. Each is given when the shutter opens (pbrt's time 0), and where something moves when it closes (time
+ * 1). */
+
+/* A picture in memory, which stands in for the file of that name in every "string filename" of textures and lights from
+ * then on: packed, top row first; grey, grey and alpha, RGB, or RGB and alpha. */
+typedef struct ag_image {
+    size_t struct_size;
+    int width, height;          /* pixels; at most 2^28 in all */
+    int channel_count;          /* 1 to 4; default 3 */
+    const unsigned char *bytes; /* as the values of a file of 8 bits: sRGB where no "encoding" says otherwise; or */
+    const float *floats;        /* as those of an EXR file, linear */
+} ag_image;
+AG_API ag_image ag_default_image(void);
+AG_API ag_status ag_scene_add_image(ag_scene *scene, const char *name, const ag_image *image);
 
 typedef enum ag_texture_value { AG_TEXTURE_FLOAT, AG_TEXTURE_SPECTRUM } ag_texture_value;
 typedef struct ag_texture {
@@ -380,8 +391,8 @@ typedef enum ag_layer {
     AG_LAYER_LIGHT_GROUPS = 1 << 15, /* light_NAME.R, G, B: what came from the lamps of a group to the first surface and
                                         by way of mirrors and glass; light_photons: through the photon map */
     AG_LAYER_GBUFFER = 1 << 16,      /* the channels of pbrt-v4's film "gbuffer"; its P and N instead of the above */
-    /* How the photon map fared, at what the ray through the pixel's middle meets first; 0 where that gathers nothing.
-     */
+    /* How the photon map fared, at what the ray through the pixel's middle meets first; 0 where that gathers
+     * nothing. */
     AG_LAYER_PHOTON_DENSITY = 1 << 17, /* photon_density.V: photons per area, 1/m^2 */
     AG_LAYER_CACHE_STATE = 1 << 18, /* cache_state.V: of the photon nearest there: 1 its irradiance was not demanded, 2
                                        it was; 0: no photon is near */
@@ -654,8 +665,8 @@ AG_API size_t ag_film_tile_count(const ag_film *film);
 AG_API bool ag_film_read_tile(const ag_film *film, size_t tile, uint64_t since_version, ag_tile *out_tile,
                               float *out_pixels);
 /* Brings a copy of the whole picture up to date: writes the tiles that have changed since a version, 0 for all that
- * have been shown, and gives the version that the copy then has. out_pixels: as large as ag_film_pixels, the caller's.
- */
+ * have been shown, and gives the version that the copy then has. out_pixels: as large as ag_film_pixels, the
+ * caller's. */
 AG_API uint64_t ag_film_read_picture(const ag_film *film, uint64_t since_version, float *out_pixels);
 
 /* Takes the noise out of R, G and B with Open Image Denoise, which is looked for when this is called; with albedo and

@@ -72,7 +72,7 @@ static ag_status read_perspective(gltf_reader *r, const gltf_value *at, camera *
     return AG_OK;
 }
 
-/* What is seen lies within xmag and ymag of the middle, however far away. */
+/* An orthographic picture shows all within xmag and ymag of the middle, however far away. */
 static ag_status read_orthographic(gltf_reader *r, const gltf_value *at, camera *c)
 {
     double half[2] = {0.0, 0.0};

@@ -104,7 +104,7 @@ static ag_status open_container(gltf_reader *r, size_t size)
     return parse_json(r, (const char *)json.data, json.size, true);
 }
 
-/* What the document says of itself */
+/* The document's head: version and required extensions */
 
 static ag_status check_asset(gltf_reader *r)
 {

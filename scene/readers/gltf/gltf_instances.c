@@ -88,7 +88,7 @@ static ag_status add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t 
     return add_posed(r, node, mesh_index, world_from_node, shining);
 }
 
-/* What the file calls it, or NULL. */
+/* The name that the file gives it, or NULL. */
 static const char *name_of(const gltf_value *item) { return json_string_value(gltf_member(item, "name").json); }
 
 ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t mesh_index,

@@ -15,8 +15,8 @@
  *
  * The choice came in October 2022 with version 3.4 (pull request 1760), standard by default; there was raw alone
  * before. No file says which one it was, not even its extras. So the rule is: Blender from 3.4 on is standard, before
- * that raw, all others are unitless; --gltf-light-units overrules it, and what was taken is said where there are lamps.
- */
+ * that raw, all others are unitless; --gltf-light-units overrules it, and what was taken is said where there are
+ * lamps. */
 #include "gltf/gltf_private.h"
 
 #include <math.h>

@@ -151,7 +151,7 @@ static ag_status read_unlit(gltf_reader *r, const gltf_value *at, const gltf_val
     return AG_OK;
 }
 
-/* What the picture can go without is named. */
+/* Extensions that the picture can go without are named in a warning. */
 static void warn_others(const gltf_reader *r, const gltf_value *extensions, const char *name)
 {
     static const char *const OTHERS[] = {"KHR_materials_anisotropy", "KHR_materials_diffuse_transmission",

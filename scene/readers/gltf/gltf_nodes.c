@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is done to a node's children and to what hangs on it */
+/* Passing transforms on to a node's children and to its mesh, camera and light */
 
 static ag_status read_matrix(const gltf_reader *r, const gltf_value *node, gltf_matrix *out)
 {
@@ -163,7 +163,7 @@ static ag_status push_roots(gltf_reader *r, tree *t)
     return status;
 }
 
-/* What hangs on a node */
+/* A node's mesh, camera and light */
 
 static ag_status add_node(gltf_reader *r, uint32_t index)
 {

@@ -248,8 +248,8 @@ void gltf_vertices_close(gltf_vertices *v);
 /* Vertex i < count in world space. out_normal NULL or unit, or zero where there is none; out_uv NULL or left alone. */
 ag_status gltf_vertices_get(gltf_reader *r, const gltf_vertices *v, uint32_t i, vec3 *out_position, vec3 *out_normal,
                             vec2 *out_uv);
-/* Cofactors of the linear part, of a mirror with the sign changed: what takes normals along. Returns whether it is one.
- */
+/* Cofactors of the linear part, of a mirror with the sign changed: what takes normals along. Returns whether it is
+ * one. */
 bool gltf_matrix_cofactors(const gltf_matrix *matrix, double out_cofactors[3][3]);
 
 /* gltf_meshes.c: adds a mesh's primitives to the scene. */

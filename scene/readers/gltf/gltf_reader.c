@@ -1,6 +1,6 @@
 /* gltf_reader.c: see gltf_reader.h. The whole way of a glTF file on one page.
- * Flow: file -> gltf_document -> [here] -> gltf_nodes, and import_defaults for what is missing. Threads: one per scene.
- */
+ * Flow: file -> gltf_document -> [here] -> gltf_nodes, and import_defaults for what is missing. Threads: one per
+ * scene. */
 #define _POSIX_C_SOURCE 200809L
 #include "gltf/gltf_private.h"
 #include "import_defaults.h"
@@ -33,7 +33,7 @@ static ag_status allocate_lists(gltf_reader *r)
     return r->buffers && r->images && r->materials && r->mesh_uses && r->world_from_nodes ? AG_OK : AG_ERROR_MEMORY;
 }
 
-/* What a renderer of still pictures has no use for, or the file forgot. */
+/* Warns of what a renderer of still pictures has no use for, and of what the file forgot. */
 static ag_status end(gltf_reader *r)
 {
     gltf_value animations = gltf_member(&r->document, "animations");

@@ -48,7 +48,7 @@ static ag_status warn_colors(gltf_reader *r, const gltf_value *at)
     return AG_OK;
 }
 
-/* Those morph targets that have a weight. */
+/* The morph targets that have a weight. */
 static ag_status open_morphs(gltf_reader *r, const gltf_value *primitive, gltf_vertices *v)
 {
     gltf_value targets, weights = v->pose->weights;
@@ -149,8 +149,8 @@ static vec3 point_to_world(const gltf_matrix *matrix, const double *v)
     return vec3_make((float)world[0], (float)world[1], (float)world[2]);
 }
 
-/* By cofactors, so that a flattening matrix will do. Zero where there is none: the triangle's own normal is then used.
- */
+/* By cofactors, so that a flattening matrix will do. Zero where there is none: the triangle's own normal is then
+ * used. */
 static vec3 normal_to_world(double cofactors[3][3], const double *v)
 {
     double world[3], square = 0.0;

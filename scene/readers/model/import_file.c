@@ -23,7 +23,7 @@ static ag_status refuse(const run_context *run, const char *path, const char *wh
     return AG_ERROR_INPUT;
 }
 
-/* What the program may take: some formats are packed, but none by more than this. */
+/* The memory that the program may take: some formats are packed, but none by more than this. */
 static ag_status find_memory_limit(const run_context *run, const char *path, uint64_t *out_bytes)
 {
     const uint64_t base = UINT64_C(2) << 30, per_byte = 64;

@@ -96,7 +96,7 @@ static texture_wrap wrap_of(uint32_t wrap)
                                         : TEXTURE_WRAP_REPEAT;
 }
 
-/* What is read of a picture. */
+/* The channels to read of a picture. */
 typedef enum picture_use {
     PICTURE_COLOR,
     PICTURE_DIRECTION, /* three numbers, as they are */

@@ -8,7 +8,7 @@
 
 enum { PLY_MAX_ELEMENTS = 64, PLY_MAX_PROPERTIES = 512 };
 
-/* What a property is to us: the first eight are a vertex's, the last a face's. */
+/* The meaning of a property: the first eight are a vertex's, the last a face's. */
 enum {
     PLY_X,
     PLY_Y,

@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "pbrt/pbrt_builder.h"
 
+#include "image/image_reader.h"
 #include "pbrt/pbrt_private.h"
 
 #include <stdlib.h>
@@ -188,6 +189,28 @@ ag_status pbrt_builder_state(pbrt_builder *b, const pbrt_call *call, pbrt_statem
     return end_call(is_named ? make_named(b->parser, call, handle, strings, items)
                              : direct(b->parser, call, handle, strings, 1, items),
                     items);
+}
+
+ag_status pbrt_builder_picture(pbrt_builder *b, const pbrt_call *call, const char *name, image *picture)
+{
+    pbrt_parser *parser = b->parser;
+    pbrt_picture added = {strdup(name), *picture};
+    pbrt_picture *larger = realloc(parser->pictures, (parser->picture_count + 1) * sizeof *larger);
+    ag_status status = AG_ERROR_MEMORY;
+    *picture = (image){0};
+    if (larger)
+        parser->pictures = larger;
+    if (larger && added.name && !pbrt_find_picture(parser, name)) {
+        parser->pictures[parser->picture_count++] = added;
+        return AG_OK;
+    }
+    if (larger && added.name) {
+        log_at(parser->log, AG_LOG_ERROR, call->where, "there is a picture \"%s\" already", name);
+        status = AG_ERROR_SCENE;
+    }
+    free(added.name);
+    image_reset(&added.pixels);
+    return status;
 }
 
 ag_status pbrt_builder_finish(pbrt_builder *b)

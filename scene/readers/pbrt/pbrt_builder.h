@@ -10,9 +10,10 @@
 #include "scene.h"
 
 typedef struct pbrt_builder pbrt_builder;
+struct image;
 
-/* Begins an empty, uncommitted scene; run and scene are borrowed until pbrt_builder_destroy. NULL when out of memory.
- */
+/* Begins an empty, uncommitted scene; run and scene are borrowed until pbrt_builder_destroy. NULL when out of
+ * memory. */
 pbrt_builder *pbrt_builder_create(run_context *run, scene *out_scene);
 void pbrt_builder_destroy(pbrt_builder *b); /* NULL is fine */
 
@@ -64,6 +65,9 @@ typedef enum pbrt_statement {
 } pbrt_statement;
 ag_status pbrt_builder_state(pbrt_builder *b, const pbrt_call *call, pbrt_statement statement,
                              const char *const *strings, pbrt_items items);
+
+/* A picture that stands in for the file of that name; taken, on failure too. */
+ag_status pbrt_builder_picture(pbrt_builder *b, const pbrt_call *call, const char *name, struct image *picture);
 
 /* Settles what only the end can tell. To be called once; nothing more can be added. */
 ag_status pbrt_builder_finish(pbrt_builder *b);

@@ -1,8 +1,8 @@
 /* pbrt_curves.c: Shape "curve" of a pbrt-v4 scene.
  * Rests on the format's description, pbrt.org/fileformat-v4, "Curves"; and for what a segment is in each basis on
  * Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 6.7; Farin, "Curves and Surfaces for CAGD",
- * 2002 (all become cubic Bezier curves, exactly). Flow: pbrt_shapes -> [here] -> scene.shapes. Threads: one per scene.
- */
+ * 2002 (all become cubic Bezier curves, exactly). Flow: pbrt_shapes -> [here] -> scene.shapes. Threads: one per
+ * scene. */
 #include "pbrt/pbrt_private.h"
 
 #include "math/sampling.h"
@@ -76,7 +76,7 @@ static segment make_segment(const curve_source *source, size_t index)
     return s;
 }
 
-/* What of a segment lies between two of its parameters, by its blossom. */
+/* The part of a segment between two of its parameters, by its blossom. */
 static segment cut(const segment *whole, double from, double to)
 {
     segment part;

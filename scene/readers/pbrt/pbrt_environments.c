@@ -44,7 +44,7 @@ static ag_status read_portal(pbrt_parser *parser, parameter_list *list, bool *ou
     return AG_OK;
 }
 
-/* What of the light makes "illuminance" 1. With a portal a constant light is, to pbrt, a picture of one pixel. */
+/* The radiance that makes "illuminance" 1. With a portal a constant light is, to pbrt, a picture of one pixel. */
 static double find_measure(const working_space *space, const light *l, bool has_portal)
 {
     if (l->environment)

@@ -104,6 +104,14 @@ char *pbrt_find_file(const pbrt_parser *parser, const char *name)
     return path;
 }
 
+const image *pbrt_find_picture(const pbrt_parser *parser, const char *name)
+{
+    for (size_t i = 0; i < parser->picture_count; i++)
+        if (strcmp(parser->pictures[i].name, name) == 0)
+            return &parser->pictures[i].pixels;
+    return NULL;
+}
+
 ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size)
 {
     char reason[128];

@@ -3,6 +3,7 @@
  * behaviour. Square pictures of directions are equal-area octahedral, as pbrt-v4 wants them; those twice as wide as
  * high, which it refuses, are latitude-longitude, as pbrt-v3 had them. Flow: pbrt_lights, pbrt_environments -> [here]
  * -> environment, projection. Threads: one per scene. */
+#include "image/image_reader.h"
 #include "light/environment.h"
 #include "light/projection.h"
 #include "light_picture.h"
@@ -52,21 +53,34 @@ static ag_status refuse_picture(pbrt_parser *parser, const parameter_list *list,
     return status;
 }
 
-/* A picture's pixels, from malloc. is_gray: they are no colours. */
-static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
-                             light_picture *out_picture)
+static ag_status read_file(pbrt_parser *parser, const char *name, bool is_gray, light_picture *out_picture,
+                           char *message, size_t message_size)
 {
-    char message[768] = "";
     char *path = pbrt_find_file(parser, name);
     if (!path)
         return AG_ERROR_MEMORY;
     char reason[512];
     ag_status status = pbrt_allow_picture(parser, path, reason, sizeof reason);
     if (status == AG_OK)
-        status = light_picture_read(parser->scene, name, path, is_gray, out_picture, message, sizeof message);
+        status = light_picture_read(parser->scene, name, path, is_gray, out_picture, message, message_size);
     else
-        snprintf(message, sizeof message, "cannot read the picture \"%s\": %s", name, reason);
+        snprintf(message, message_size, "cannot read the picture \"%s\": %s", name, reason);
     free(path);
+    return status;
+}
+
+/* A picture's pixels, from malloc. is_gray: they are no colours. */
+static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
+                             light_picture *out_picture)
+{
+    char message[768] = "";
+    const image *in_memory = pbrt_find_picture(parser, name);
+    ag_status status = AG_ERROR_MEMORY;
+    image copy;
+    if (in_memory && image_copy(in_memory, true, &copy))
+        status = light_picture_take(parser->scene, name, &copy, is_gray, out_picture, message, sizeof message);
+    else if (!in_memory)
+        status = read_file(parser, name, is_gray, out_picture, message, sizeof message);
     if (status != AG_OK)
         return refuse_picture(parser, list, status, message);
     if (out_picture->bad_count > 0)

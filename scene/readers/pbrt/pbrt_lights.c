@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* What all lights have. */
+/* The parameters that all lights have. */
 typedef struct light_common {
     rgb color; /* "I" or "L" */
     float scale;

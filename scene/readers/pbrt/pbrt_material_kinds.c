@@ -232,7 +232,7 @@ static void tell_stand_in(pbrt_parser *parser, const parameter_list *list, const
                 stand_in);
 }
 
-/* Those that a stand-in has no use for. */
+/* Marks the parameters that a stand-in has no use for as read, so that no warning names them. */
 static void pass_over(parameter_list *list, const char *const *names, size_t count)
 {
     for (size_t i = 0; i < list->count; i++)
@@ -310,7 +310,7 @@ ag_status pbrt_read_hair(pbrt_parser *parser, parameter_list *list, material *m)
     return AG_OK;
 }
 
-/* What a half space that scatters and absorbs so sends back diffusely, its surface left out: that is the coat's. */
+/* The albedo of a half space that scatters and absorbs so; its surface, which is the coat's, is left out. */
 static float half_space_reflectance(float sigma_a, float reduced_sigma_s)
 {
     double sum = (double)sigma_a + (double)reduced_sigma_s, albedo = sum > 0.0 ? (double)reduced_sigma_s / sum : 0.0;
@@ -355,7 +355,7 @@ ag_status pbrt_read_measured(pbrt_parser *parser, parameter_list *list, material
     return parameter_get_string(list, parser->log, "filename", &ignored);
 }
 
-/* What tilts the shading normal, of all kinds alike. */
+/* The parameters that tilt the shading normal, which all kinds have. */
 
 static ag_status read_normal_map(pbrt_parser *parser, parameter_list *list, material *m)
 {

@@ -22,7 +22,7 @@ static ag_status read_mix(pbrt_parser *parser, parameter_list *list, material *m
     return AG_OK;
 }
 
-/* It has no parameters. */
+/* The material has no parameters. */
 static ag_status read_interface(pbrt_parser *parser, parameter_list *list, material *m)
 {
     (void)parser, (void)list, (void)m;

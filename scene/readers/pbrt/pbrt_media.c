@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a medium scatters is not kept. Its absorption alone is nearest to it: light that scatters is not lost, and
- * most liquids scatter it forwards. */
+/* Scattering within a medium is not simulated. Its absorption alone is nearest to it: light that scatters is not lost,
+ * and most liquids scatter it forwards. */
 static void tell_scattering(pbrt_parser *parser, const parameter_list *list)
 {
     log_at_once(parser->log, AG_LOG_WARNING, list->where, "scattering medium",
@@ -89,8 +89,8 @@ static void tell_stand_in(pbrt_parser *parser, const parameter_list *list, const
                 "media of type \"%s\" are not supported: \"%s\" %s, as do any others", type, list->name, stand_in);
 }
 
-/* What scatters and varies is mostly a cloud in a container that it does not fill: absorbing everywhere in it would
- * hide all behind. */
+/* A medium that scatters and varies is mostly a cloud in a container that it does not fill: absorbing everywhere in it
+ * would hide all behind. */
 static void tell_grid(pbrt_parser *parser, const parameter_list *list, const char *type, bool scatters, medium *m)
 {
     if (scatters)

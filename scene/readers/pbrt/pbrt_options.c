@@ -9,7 +9,7 @@
 
 typedef enum option_value { VALUE_BOOL, VALUE_NUMBER, VALUE_TEXT } option_value;
 
-/* What is not heeded: why, for a warning; "" where it makes no difference to the picture. */
+/* Why an option is not heeded, for a warning; "" where it makes no difference to the picture. */
 static const struct {
     const char *name;
     option_value value;

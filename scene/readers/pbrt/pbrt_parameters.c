@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the values of a type are made of. */
+/* How many numbers a value of a type has, and of which kind. */
 typedef struct value_type {
     const char *name;
     parameter_type type;

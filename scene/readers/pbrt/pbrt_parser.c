@@ -5,6 +5,7 @@
  * pbrt_lights, pbrt_camera, pbrt_hints -> scene. Threads: one per scene. */
 #include "pbrt/pbrt_parser.h"
 
+#include "image/image_reader.h"
 #include "pbrt/pbrt_private.h"
 
 #include <stdio.h>
@@ -109,7 +110,7 @@ static ag_status do_directive(pbrt_parser *parser, const pbrt_token *token)
                       token->length > SHOWN ? "..." : "", token->kind == PBRT_TOKEN_STRING ? "\"" : "");
 }
 
-/* What only the end can tell. end: the location of the end of the first file. */
+/* Checks that only the end of the text allows. end: the location of the end of the first file. */
 static ag_status check_end(pbrt_parser *parser, file_location end)
 {
     if (!parser->in_world)
@@ -168,6 +169,11 @@ void pbrt_parser_destroy(pbrt_parser *parser)
         free(parser->named_materials[i].name);
     for (size_t i = 0; i < parser->named_medium_count; i++)
         free(parser->named_media[i].name);
+    for (size_t i = 0; i < parser->picture_count; i++) {
+        free(parser->pictures[i].name);
+        image_reset(&parser->pictures[i].pixels);
+    }
+    free(parser->pictures);
     pbrt_reset_objects(parser);
     name_table_reset(&parser->material_names);
     name_table_reset(&parser->medium_names);

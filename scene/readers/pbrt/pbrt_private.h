@@ -8,6 +8,7 @@
 #define AFTERGLOW_PBRT_PRIVATE_H
 
 #include "color/color_space.h"
+#include "image/image.h"
 #include "math/motion.h"
 #include "pbrt/parameter_list.h"
 #include "pbrt/pbrt_lexer.h"
@@ -31,7 +32,7 @@ typedef struct pbrt_named_transform {
     transform start, end;
 } pbrt_named_transform;
 
-/* What stands instead of $name. */
+/* The value that stands instead of $name. */
 typedef struct pbrt_value {
     char *text;       /* owned; the last token may lie in it */
     pbrt_lexer lexer; /* of a value that stands without quotes: tokens of its own, which come first */
@@ -52,7 +53,7 @@ typedef struct pbrt_file {
     name_table coordinate_system_names;
 } pbrt_file;
 
-/* What Attribute speaks to. */
+/* The kinds of things that Attribute speaks to. */
 typedef enum pbrt_target {
     PBRT_TARGET_SHAPE,
     PBRT_TARGET_LIGHT,
@@ -84,7 +85,7 @@ typedef struct pbrt_area_light {
     file_location where;
 } pbrt_area_light;
 
-/* What AttributeBegin saves and AttributeEnd brings back. */
+/* The state that AttributeBegin saves and AttributeEnd brings back. */
 typedef struct pbrt_state {
     /* At the start and at the end of TransformTimes; before WorldBegin: camera_from_world. What does not move looks at
      * the start alone. */
@@ -154,6 +155,12 @@ typedef struct pbrt_early_instance {
     file_location where;
 } pbrt_early_instance;
 
+/* A picture in memory, which stands in for the file of that name. */
+typedef struct pbrt_picture {
+    char *name;   /* owned */
+    image pixels; /* owned */
+} pbrt_picture;
+
 /* What a call says in the place of text: the quoted strings behind the directive's name, and its parameters. */
 typedef struct pbrt_given {
     const char *const *strings; /* [string_count], borrowed */
@@ -177,7 +184,9 @@ typedef struct pbrt_parser {
     bool has_peeked;
     size_t told_bytes; /* of the first file, at the last progress */
 
-    pbrt_given *given;          /* borrowed; NULL: tokens come from the files */
+    pbrt_given *given; /* borrowed; NULL: tokens come from the files */
+    pbrt_picture *pictures;
+    size_t picture_count;
     parameter_source source;    /* of the lists that are read */
     pbrt_attribute *attributes; /* all there have been, the newest first */
 
@@ -235,6 +244,8 @@ void pbrt_pop_file(pbrt_parser *parser);
 char *pbrt_find_file(const pbrt_parser *parser, const char *name);
 /* Whether a picture may be read (input_file.h); where not, message says why, with the path. Errors: AG_ERROR_INPUT. */
 ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size);
+/* The picture in memory of that name; NULL: there is none. */
+const image *pbrt_find_picture(const pbrt_parser *parser, const char *name);
 /* The next token; where an included file ends, the one that included it goes on. The end of an imported file is told,
  * as often as is asked, until it is popped. */
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);
@@ -354,8 +365,8 @@ pbrt_material_reader pbrt_read_diffuse, pbrt_read_diffuse_transmission, pbrt_rea
 /* "displacement" and "normalmap", of all kinds but mixes. */
 pbrt_material_reader pbrt_read_maps;
 
-/* pbrt_old_materials.c: where *type is one of pbrt-v3's names, makes it pbrt-v4's, and the list's parameters with it.
- */
+/* pbrt_old_materials.c: where *type is one of pbrt-v3's names, makes it pbrt-v4's, and the list's parameters with
+ * it. */
 ag_status pbrt_upgrade_material(pbrt_parser *parser, parameter_list *list, const char **type);
 
 /* pbrt_textures.c */

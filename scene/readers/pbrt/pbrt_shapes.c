@@ -33,8 +33,8 @@ ag_status pbrt_add_shape(pbrt_parser *parser, const parameter_list *list, shape 
     return shines ? pbrt_add_area_light(parser, &parser->state.area_light, index, list->where) : AG_OK;
 }
 
-/* Whether normals can be computed in floats, whose squares end at 1e38 and 1e-38, in object space and in the world's.
- */
+/* Whether normals can be computed in floats, whose squares end at 1e38 and 1e-38, in object space and in the
+ * world's. */
 static bool is_in_reach_of_floats(const quadric *q)
 {
     double r = q->radius, largest = fmax(r, 1.0 / r);

@@ -275,18 +275,32 @@ static ag_status read_encoding(pbrt_parser *parser, parameter_list *list, bool i
                        spaces[0] ? "; " : "", spaces);
 }
 
+/* No path of a file begins so; to be freed, NULL when out of memory. */
+static char *name_picture(const char *name)
+{
+    static const char BEFORE[] = "memory:";
+    char *all = malloc(sizeof BEFORE + strlen(name));
+    if (all)
+        sprintf(all, "%s%s", BEFORE, name);
+    return all;
+}
+
 ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const char *parameter_name,
                           const char *file_name, image_encoding encoding, texture *t)
 {
     char message[1024] = "";
     scene *s = parser->scene;
     uint32_t known_count = s->texture_image_count;
-    char *path = pbrt_find_file(parser, file_name);
+    const image *picture = pbrt_find_picture(parser, file_name);
+    char *path = picture ? name_picture(file_name) : pbrt_find_file(parser, file_name);
     if (path && t->is_spectrum && !t->is_data && encoding.curve == IMAGE_CURVE_DEFAULT)
         encoding = image_colors_rule(s, path);
-    ag_status status =
-        path ? texture_image_load(parser->run, s, path, encoding, &t->image_index, message, sizeof message)
-             : AG_ERROR_MEMORY;
+    ag_status status = AG_ERROR_MEMORY;
+    if (path && picture)
+        status = texture_image_load_pixels(parser->run, s, path, picture, encoding, &t->image_index, message,
+                                           sizeof message);
+    else if (path)
+        status = texture_image_load(parser->run, s, path, encoding, &t->image_index, message, sizeof message);
     free(path);
     if (status != AG_OK && status != AG_ERROR_MEMORY && status != AG_CANCELLED)
         pbrt_refuse(parser, list, parameter_name, "%s", message);

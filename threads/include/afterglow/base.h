@@ -39,8 +39,8 @@ typedef enum ag_status {
 /* One line of plain text, never NULL, never freed. */
 AG_API const char *ag_status_text(ag_status status);
 
-/* Levels by how often they speak: errors end the work; warnings once per cause; info once per phase; debug more often.
- */
+/* Levels by how often they speak: errors end the work; warnings once per cause; info once per phase; debug more
+ * often. */
 typedef enum ag_log_level { AG_LOG_ERROR, AG_LOG_WARNING, AG_LOG_INFO, AG_LOG_DEBUG } ag_log_level;
 
 /* Receives one message without a line end; about a location in a file "FILE:LINE:COLUMN: error: ...", others do not say

@@ -1,0 +1,405 @@
+"""Afterglow, a global illumination renderer with photon mapping and final gathering, over its C library.
+
+    with afterglow.Context() as context, context.scene() as scene:
+        scene.camera("perspective", {"float fov": 40}, world_from_camera=matrix)
+        scene.material("red", "diffuse", {"rgb reflectance": (0.6, 0.1, 0.1)})
+        scene.shape("trianglemesh", {"point3 P": positions, "integer indices": triangles}, material="red")
+        scene.light("point", {"rgb I": (10, 10, 10)})
+        pixels = scene.render(size="320x180", spp=16)
+
+Directives, parameters, units and defaults are those of pbrt-v4's text (pbrt.org/fileformat-v4). Values are numbers,
+strings, sequences, or numpy arrays: those of 32-bit floats, 64-bit floats and 32-bit integers are handed to the library
+where they lie, which copies them once. Pictures are arrays of shape (height, width, 3), linear RGB of the working space.
+
+The library is libafterglow.so, found as the system finds libraries, or named by $AFTERGLOW_LIBRARY. A context and its
+scenes belong to one thread at a time; rendering lets go of Python's lock, so that other threads go on meanwhile.
+"""
+
+import ctypes
+import ctypes.util
+import os
+import threading
+from ctypes import POINTER, byref, c_bool, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_ubyte, c_uint, c_void_p
+
+import numpy
+
+__all__ = ["Context", "Scene", "Error", "Cancelled", "version"]
+
+_CANCELLED = 9  # AG_CANCELLED
+_PARAMETER_TYPES = ["float", "integer", "string", "bool", "point2", "vector2", "point3", "vector3", "normal", "rgb",
+                    "spectrum", "blackbody", "texture"]
+_HINTS = {"film": 0, "sampler": 1, "integrator": 2, "pixelfilter": 3}
+_SETTINGS_ROOM = 4096  # bytes for an ag_render_settings, which is only handed on
+
+_LOG = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p)
+_PROGRESS = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_double)
+
+
+class Error(Exception):
+    """What the library could not do, with what its log says of it."""
+
+
+class Cancelled(Error):
+    """The work was called off, by Context.cancel."""
+
+
+class _ContextSettings(ctypes.Structure):
+    _fields_ = [("thread_count", c_uint), ("isa", c_char_p), ("color_config", c_char_p), ("working_space", c_char_p),
+                ("is_confined", c_bool), ("confined_to", POINTER(c_char_p)), ("confined_count", c_size_t),
+                ("log", _LOG), ("progress", _PROGRESS), ("user", c_void_p)]
+
+
+class _Parameter(ctypes.Structure):
+    _fields_ = [("name", c_char_p), ("type", c_int), ("count", c_size_t), ("floats", c_void_p), ("doubles", c_void_p),
+                ("integers", c_void_p), ("strings", POINTER(c_char_p)), ("bools", c_void_p)]
+
+
+class _Shape(ctypes.Structure):
+    _fields_ = [("struct_size", c_size_t), ("type", c_char_p), ("parameters", POINTER(_Parameter)),
+                ("parameter_count", c_size_t), ("material", c_char_p), ("object", c_char_p),
+                ("world_from_shape", c_void_p), ("world_from_shape_end", c_void_p), ("reverse_orientation", c_bool),
+                ("is_light", c_bool), ("light_parameters", POINTER(_Parameter)), ("light_parameter_count", c_size_t),
+                ("medium_inside", c_char_p), ("medium_outside", c_char_p)]
+
+
+class _Instance(ctypes.Structure):
+    _fields_ = [("struct_size", c_size_t), ("object", c_char_p), ("world_from_object", c_void_p),
+                ("world_from_object_end", c_void_p)]
+
+
+class _Light(ctypes.Structure):
+    _fields_ = [("struct_size", c_size_t), ("type", c_char_p), ("parameters", POINTER(_Parameter)),
+                ("parameter_count", c_size_t), ("world_from_light", c_void_p), ("medium_outside", c_char_p)]
+
+
+class _Camera(ctypes.Structure):
+    _fields_ = [("struct_size", c_size_t), ("type", c_char_p), ("parameters", POINTER(_Parameter)),
+                ("parameter_count", c_size_t), ("world_from_camera", c_void_p), ("world_from_camera_end", c_void_p),
+                ("medium", c_char_p)]
+
+
+class _Texture(ctypes.Structure):
+    _fields_ = [("struct_size", c_size_t), ("name", c_char_p), ("value", c_int), ("type", c_char_p),
+                ("parameters", POINTER(_Parameter)), ("parameter_count", c_size_t), ("world_from_texture", c_void_p)]
+
+
+class _Image(ctypes.Structure):
+    _fields_ = [("struct_size", c_size_t), ("width", c_int), ("height", c_int), ("channel_count", c_int),
+                ("bytes", c_void_p), ("floats", c_void_p)]
+
+
+def _load_library():
+    name = os.environ.get("AFTERGLOW_LIBRARY") or ctypes.util.find_library("afterglow")
+    if not name:
+        raise ImportError("libafterglow is not installed, and $AFTERGLOW_LIBRARY does not name it")
+    library = ctypes.CDLL(name)
+    parameters = [POINTER(_Parameter), c_size_t]
+    signatures = {
+        "ag_version": (c_char_p, []),
+        "ag_status_text": (c_char_p, [c_int]),
+        "ag_context_create": (c_int, [POINTER(_ContextSettings), POINTER(c_void_p)]),
+        "ag_context_destroy": (None, [c_void_p]),
+        "ag_context_cancel": (None, [c_void_p]),
+        "ag_context_clear_cancel": (None, [c_void_p]),
+        "ag_scene_create": (c_int, [c_void_p, c_void_p, POINTER(c_void_p)]),
+        "ag_scene_load": (c_int, [c_void_p, c_char_p, POINTER(c_void_p)]),
+        "ag_scene_load_text": (c_int, [c_void_p, c_char_p, c_char_p, c_size_t, c_void_p, POINTER(c_void_p)]),
+        "ag_scene_commit": (c_int, [c_void_p]),
+        "ag_scene_destroy": (None, [c_void_p]),
+        "ag_scene_add_shape": (c_int, [c_void_p, POINTER(_Shape)]),
+        "ag_scene_add_instance": (c_int, [c_void_p, POINTER(_Instance)]),
+        "ag_scene_add_light": (c_int, [c_void_p, POINTER(_Light)]),
+        "ag_scene_set_camera": (c_int, [c_void_p, POINTER(_Camera)]),
+        "ag_scene_add_texture": (c_int, [c_void_p, POINTER(_Texture)]),
+        "ag_scene_add_image": (c_int, [c_void_p, c_char_p, POINTER(_Image)]),
+        "ag_scene_add_material": (c_int, [c_void_p, c_char_p, c_char_p] + parameters),
+        "ag_scene_add_medium": (c_int, [c_void_p, c_char_p, c_char_p] + parameters),
+        "ag_scene_set_hint": (c_int, [c_void_p, c_int, c_char_p] + parameters),
+        "ag_render_settings_from_scene": (c_int, [c_void_p, c_void_p, c_void_p]),
+        "ag_render_settings_set": (c_int, [c_void_p, c_char_p, c_char_p]),
+        "ag_render": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(c_void_p)]),
+        "ag_film_destroy": (None, [c_void_p]),
+        "ag_film_pixels": (POINTER(c_float), [c_void_p, POINTER(c_int), POINTER(c_int)]),
+        "ag_film_write": (c_int, [c_void_p, c_void_p, c_void_p, c_char_p]),
+    }
+    for function, (result, arguments) in signatures.items():
+        getattr(library, function).restype = result
+        getattr(library, function).argtypes = arguments
+    return library
+
+
+_library = _load_library()
+
+
+def version() -> str:
+    """The library's version, "MAJOR.MINOR.PATCH"."""
+    return _library.ag_version().decode()
+
+
+def _text(value):
+    return None if value is None else os.fsencode(value)
+
+
+def _matrix(value, kept):
+    """The address of 16 numbers, row by row, which `kept` keeps; None: no matrix."""
+    if value is None:
+        return None
+    rows = numpy.ascontiguousarray(value, dtype=numpy.float64)
+    if rows.size != 16:
+        raise ValueError("a matrix has 4 x 4 numbers")
+    kept.append(rows)
+    return rows.ctypes.data
+
+
+def _strings(values, kept):
+    array = (c_char_p * len(values))(*[_text(value) for value in values])
+    kept.append(array)
+    return ctypes.cast(array, POINTER(c_char_p))
+
+
+def _parameter(declaration, value, kept):
+    """One of {"rgb reflectance": (1, 0, 0)}; what it points to is kept by `kept`."""
+    words = declaration.split()
+    if len(words) != 2 or words[0] not in _PARAMETER_TYPES:
+        raise ValueError(f'"{declaration}" is no "type name" of a parameter')
+    made = _Parameter(name=words[1].encode(), type=_PARAMETER_TYPES.index(words[0]))
+    if isinstance(value, (str, os.PathLike)):
+        value = [value]
+    if isinstance(value, (list, tuple)) and value and isinstance(value[0], (str, os.PathLike)):
+        made.count, made.strings = len(value), _strings(value, kept)
+        return made
+    array = numpy.asarray(value)
+    if words[0] == "bool":
+        array, field = array.astype(numpy.bool_), "bools"
+    elif words[0] == "integer":
+        whole = array.astype(numpy.int32)
+        if not numpy.array_equal(whole, array):
+            raise ValueError(f'"{declaration}": the values are no integers of 32 bits')
+        array, field = whole if array.dtype != numpy.int32 else array, "integers"
+    elif array.dtype == numpy.float32:
+        field = "floats"
+    else:
+        array, field = array.astype(numpy.float64, copy=False), "doubles"
+    array = numpy.ascontiguousarray(array)
+    kept.append(array)
+    made.count = array.size
+    setattr(made, field, array.ctypes.data)
+    return made
+
+
+def _parameters(values, kept):
+    items = [_parameter(declaration, value, kept) for declaration, value in (values or {}).items()]
+    array = (_Parameter * max(len(items), 1))(*items)
+    kept.append(array)
+    return array, len(items)
+
+
+class Context:
+    """Threads, log and progress. `threads`: 0 for as many as there are; `progress`: called with the name of a phase's
+    number and how far it is, in [0, 1], on the library's threads; an exception there calls the work off."""
+
+    def __init__(self, threads: int = 0, progress=None, working_space=None, color_config=None):
+        self._said = []
+        self._progress = progress
+        self._failed = None
+        self._callbacks = (_LOG(self._hear), _PROGRESS(self._tell))  # they live as long as the context
+        self._pointer = c_void_p()
+        settings = _ContextSettings(thread_count=threads, working_space=_text(working_space),
+                                    color_config=_text(color_config), log=self._callbacks[0],
+                                    progress=self._callbacks[1])
+        self._check(_library.ag_context_create(byref(settings), byref(self._pointer)))
+
+    def _hear(self, _user, level, message):
+        if level <= 1:
+            self._said.append(message.decode(errors="replace"))
+
+    def _tell(self, _user, phase, fraction):
+        if not self._progress or self._failed:
+            return
+        try:
+            self._progress(phase, fraction)
+        except BaseException as failed:  # it is raised where the work was begun
+            self._failed = failed
+            self.cancel()
+
+    def _check(self, status):
+        said, self._said = self._said, []
+        failed, self._failed = self._failed, None
+        if failed:
+            _library.ag_context_clear_cancel(self._pointer)
+            raise failed
+        if status == 0:
+            for message in said:
+                import warnings
+                warnings.warn(message, stacklevel=3)
+            return
+        text = "\n".join(said) or _library.ag_status_text(status).decode()
+        raise (Cancelled if status == _CANCELLED else Error)(text)
+
+    def _work(self, function, *arguments):
+        """Calls the library on a thread of its own, so that Ctrl-C is heard here meanwhile, and calls it off."""
+        result = []
+        is_done = threading.Event()  # an interrupted Thread.join takes the thread for ended (bpo-45274)
+
+        def work():
+            result.append(function(*arguments))
+            is_done.set()
+
+        threading.Thread(target=work).start()
+        try:
+            while not is_done.wait(0.1):
+                pass
+        except BaseException:
+            self.cancel()
+            is_done.wait()
+            _library.ag_context_clear_cancel(self._pointer)
+            self._said = []
+            raise
+        self._check(result[0])
+
+    def cancel(self):
+        """Calls the work under way off, within 50 ms; from any thread."""
+        _library.ag_context_cancel(self._pointer)
+
+    def scene(self) -> "Scene":
+        """An empty scene."""
+        return Scene(self, _library.ag_scene_create, None)
+
+    def load(self, path) -> "Scene":
+        """The scene of a file."""
+        return Scene(self, _library.ag_scene_load, _text(path), is_complete=True)
+
+    def load_text(self, text, name="text") -> "Scene":
+        """The scene of pbrt-v4's text; files are looked for in the folder in front of the name's last slash."""
+        text = text.encode() if isinstance(text, str) else text
+        return Scene(self, _library.ag_scene_load_text, _text(name), text, len(text), None, is_complete=True)
+
+    def close(self):
+        if self._pointer:
+            _library.ag_context_destroy(self._pointer)
+            self._pointer = c_void_p()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+class Scene:
+    """Made by Context.scene, load or load_text. Of one that is complete, by rendering it, the camera alone can change.
+    Matrices are 4 x 4, row by row, of column vectors."""
+
+    def __init__(self, context, function, *arguments, is_complete=False):
+        self._context = context
+        self._pointer = c_void_p()
+        self._is_complete = is_complete
+        context._work(function, context._pointer, *arguments, byref(self._pointer))
+
+    def _call(self, function, *arguments):
+        self._context._check(function(self._pointer, *arguments))
+
+    def _named(self, function, name, kind, parameters):
+        kept = []
+        self._call(function, name, _text(kind), *_parameters(parameters, kept))
+
+    def hint(self, directive: str, type: str, parameters=None):
+        """"Film", "Sampler", "Integrator" or "PixelFilter"."""
+        self._named(_library.ag_scene_set_hint, _HINTS[directive.lower()], type, parameters)
+
+    def material(self, name: str, type: str, parameters=None):
+        self._named(_library.ag_scene_add_material, _text(name), type, parameters)
+
+    def medium(self, name: str, type: str, parameters=None):
+        self._named(_library.ag_scene_add_medium, _text(name), type, parameters)
+
+    def texture(self, name: str, value: str, type: str, parameters=None, world_from_texture=None):
+        """value: "float" or "spectrum"."""
+        kept = []
+        items, count = _parameters(parameters, kept)
+        self._call(_library.ag_scene_add_texture, byref(_Texture(
+            ctypes.sizeof(_Texture), _text(name), ("float", "spectrum").index(value), _text(type), items, count,
+            _matrix(world_from_texture, kept))))
+
+    def image(self, name: str, pixels):
+        """Pixels that stand in for the file of that name: (height, width) or (height, width, channels), bytes as an
+        8-bit file has them, all else as linear floats."""
+        array = numpy.asarray(pixels)
+        if array.ndim not in (2, 3):
+            raise ValueError("a picture has two or three dimensions")
+        is_bytes = array.dtype == numpy.uint8
+        array = numpy.ascontiguousarray(array if is_bytes else array.astype(numpy.float32, copy=False))
+        made = _Image(ctypes.sizeof(_Image), array.shape[1], array.shape[0], array.shape[2] if array.ndim == 3 else 1)
+        setattr(made, "bytes" if is_bytes else "floats", array.ctypes.data)
+        self._call(_library.ag_scene_add_image, _text(name), byref(made))
+
+    def shape(self, type: str, parameters=None, *, material=None, light=None, object=None, world_from_shape=None,
+              world_from_shape_end=None, reverse_orientation=False, medium_inside=None, medium_outside=None):
+        """light: the parameters of an AreaLightSource, {} for its defaults; None: it does not shine."""
+        kept = []
+        items, count = _parameters(parameters, kept)
+        light_items, light_count = _parameters(light, kept)
+        self._call(_library.ag_scene_add_shape, byref(_Shape(
+            ctypes.sizeof(_Shape), _text(type), items, count, _text(material), _text(object),
+            _matrix(world_from_shape, kept), _matrix(world_from_shape_end, kept), reverse_orientation,
+            light is not None, light_items, light_count, _text(medium_inside), _text(medium_outside))))
+
+    def instance(self, object: str, world_from_object=None, world_from_object_end=None):
+        kept = []
+        self._call(_library.ag_scene_add_instance, byref(_Instance(
+            ctypes.sizeof(_Instance), _text(object), _matrix(world_from_object, kept),
+            _matrix(world_from_object_end, kept))))
+
+    def light(self, type: str, parameters=None, *, world_from_light=None, medium_outside=None):
+        kept = []
+        items, count = _parameters(parameters, kept)
+        self._call(_library.ag_scene_add_light, byref(_Light(
+            ctypes.sizeof(_Light), _text(type), items, count, _matrix(world_from_light, kept),
+            _text(medium_outside))))
+
+    def camera(self, type: str = "perspective", parameters=None, *, world_from_camera=None, world_from_camera_end=None,
+               medium=None):
+        """It looks along +z; x is to the right and y up."""
+        kept = []
+        items, count = _parameters(parameters, kept)
+        self._call(_library.ag_scene_set_camera, byref(_Camera(
+            ctypes.sizeof(_Camera), _text(type), items, count, _matrix(world_from_camera, kept),
+            _matrix(world_from_camera_end, kept), _text(medium))))
+
+    def render(self, write_to=None, **settings):
+        """Completes the scene, renders it, and gives its pixels. settings: options of the program by name, with _ for
+        -: size="320x180", spp=16, noise=0.02, integrator="path", photon_map="room.map"; True for those without a
+        value. write_to: a file that the picture is written to as well."""
+        context, film = self._context, c_void_p()
+        if not self._is_complete:
+            context._work(_library.ag_scene_commit, self._pointer)
+            self._is_complete = True
+        room = ctypes.create_string_buffer(_SETTINGS_ROOM)
+        context._check(_library.ag_render_settings_from_scene(context._pointer, self._pointer, room))
+        kept = []
+        for name, value in settings.items():
+            kept.append(None if value is True else _text(str(value)))  # the settings may borrow it
+            name = name.replace("_", "-")
+            if _library.ag_render_settings_set(room, name.encode(), kept[-1]) != 0:
+                raise ValueError(f"{name}: there is no such setting, or {value!r} is no value of it")
+        try:
+            context._work(_library.ag_render, context._pointer, self._pointer, room, byref(film))
+            width, height = c_int(), c_int()
+            pixels = _library.ag_film_pixels(film, byref(width), byref(height))
+            array = numpy.ctypeslib.as_array(pixels, (height.value, width.value, 3)).copy()
+            if write_to is not None:
+                context._work(_library.ag_film_write, context._pointer, film, None, _text(write_to))
+            return array
+        finally:
+            _library.ag_film_destroy(film)
+
+    def close(self):
+        if self._pointer:
+            _library.ag_scene_destroy(self._pointer)
+            self._pointer = c_void_p()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()

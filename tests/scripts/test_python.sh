@@ -1,0 +1,139 @@
+#!/usr/bin/env bash
+# The Python module: its structs are the header's, README's lines run, errors are exceptions with the library's text, a
+# callback's exception calls the work off, and the picture has the program's bits.
+set -euo pipefail
+# shellcheck source=tests/fixtures/shell_test.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+
+python=
+for candidate in python3 /usr/bin/python3; do
+    if "$candidate" -c 'import numpy' 2>/dev/null; then
+        python=$candidate
+        break
+    fi
+done
+[[ -n $python ]] || skip "numpy for Python (python3-numpy) is not installed"
+export AFTERGLOW_LIBRARY=$AFTERGLOW_BUILD_DIR/lib/libafterglow.so PYTHONPATH=$root/renderer/python PYTHONDONTWRITEBYTECODE=1
+cd "$folder"
+
+"$python" - >layout.c <<'END'
+import ctypes, afterglow
+print('#include "afterglow/afterglow.h"')
+for name in ["ContextSettings", "Parameter", "Shape", "Instance", "Light", "Camera", "Texture", "Image"]:
+    struct = getattr(afterglow, "_" + name)
+    public = "ag_context_settings" if name == "ContextSettings" else "ag_" + name.lower()
+    print(f'_Static_assert(sizeof({public}) == {ctypes.sizeof(struct)}, "size of {public}");')
+    for field, *_ in struct._fields_:
+        offset = getattr(struct, field).offset
+        print(f'_Static_assert(offsetof({public}, {field}) == {offset}, "{public}.{field}");')
+for i, name in enumerate(afterglow._PARAMETER_TYPES):
+    print(f'_Static_assert(AG_PARAMETER_{name.upper()} == {i}, "{name}");')
+for name, i in afterglow._HINTS.items():
+    print(f'_Static_assert(AG_HINT_{name.upper().replace("PIXELF", "PIXEL_F")} == {i}, "{name}");')
+print(f'_Static_assert(AG_CANCELLED == {afterglow._CANCELLED}, "AG_CANCELLED");')
+print(f'_Static_assert(sizeof(ag_render_settings) <= {afterglow._SETTINGS_ROOM}, "room for settings");')
+END
+"$CC" -std=c17 -I "$root/renderer/include" -I "$root/threads/include" -fsyntax-only layout.c ||
+    fail "the module's structs are not the header's"
+echo "ok: layout"
+
+sed -n '/^```python$/,/^```$/p' "$root/README.md" | sed '/^```/d' >readme.py
+[[ $(wc -l <readme.py) -ge 8 ]] || fail "README has no lines of Python"
+"$python" -W error readme.py >said || fail "README's lines do not run"
+grep -Eqx '\(90, 160, 3\) [0-9.]+' said || fail "README's lines say: $(<said)"
+[[ $(od -An -tx1 -N4 clay.png | tr -d ' ') == 89504e47 ]] || fail "README's lines wrote no picture"
+echo "ok: README"
+
+cat >scene.pbrt <<'END'
+Transform [1 0 0 0  0 1 0 0  0 0 1 0  0 0 3 1] Camera "perspective" "float fov" 60
+WorldBegin
+LightSource "point" "rgb I" [9 9 9] "point3 from" [1 1 -2]
+MakeNamedMaterial "clay" "string type" "diffuse" "rgb reflectance" [0.7 0.4 0.3]
+NamedMaterial "clay"
+Shape "trianglemesh" "point3 P" [-1 -1 0  1 -1 0  1 1 0  -1 1 0] "integer indices" [0 1 2 0 2 3]
+END
+"$AFTERGLOW_PROGRAM" -q --size 40x30 --spp 4 --noise 0 --photons 2000 -o program.pfm scene.pbrt
+"$python" - <<'END'
+import os, signal
+import numpy, afterglow
+
+def refused(kind, text, function, *arguments, **named):
+    try:
+        function(*arguments, **named)
+    except kind as error:
+        assert text in str(error), f"'{text}' is not in: {error}"
+        return
+    raise AssertionError(f"no {kind.__name__}: {text}")
+
+away = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -3], [0, 0, 0, 1]]
+corners = numpy.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], numpy.float32)
+triangles = numpy.array([[0, 1, 2], [0, 2, 3]], numpy.int32)
+picture = dict(size="40x30", spp=4, noise=0, photons=2000)
+
+def fill(scene):
+    scene.camera("perspective", {"float fov": 60}, world_from_camera=away)
+    scene.light("point", {"rgb I": (9, 9, 9), "point3 from": (1, 1, -2)})
+    scene.material("clay", "diffuse", {"rgb reflectance": (0.7, 0.4, 0.3)})
+    scene.shape("trianglemesh", {"point3 P": corners, "integer indices": triangles}, material="clay")
+
+with open("program.pfm", "rb") as file:
+    assert file.readline() == b"PF\n" and file.readline() == b"40 30\n" and float(file.readline()) < 0
+    expected = numpy.frombuffer(file.read(), "<f4").reshape(30, 40, 3)[::-1]
+
+phases = []
+with afterglow.Context(threads=2, progress=lambda phase, fraction: phases.append((phase, fraction))) as context:
+    with context.scene() as scene:
+        fill(scene)
+        pixels = scene.render(**picture)
+        assert pixels.dtype == numpy.float32 and pixels.shape == (30, 40, 3) and pixels.max() > 0
+        assert numpy.array_equal(pixels, expected), "another picture than the program's"
+        assert phases and phases[-1][1] == 1.0
+        scene.camera("perspective", {"float fov": 30}, world_from_camera=away)
+        assert not numpy.array_equal(scene.render(**picture), pixels)
+        refused(afterglow.Error, "is complete already", scene.light, "point")
+        refused(ValueError, "there is no such setting", scene.render, sise="1x1")
+    with context.load("scene.pbrt") as scene:
+        assert numpy.array_equal(scene.render(**picture), pixels)
+    with context.load_text(open("scene.pbrt").read()) as scene:
+        assert numpy.array_equal(scene.render(**picture), pixels)
+    refused(afterglow.Error, "missing.pbrt: error: cannot read the file", context.load, "missing.pbrt")
+    with context.scene() as scene:
+        refused(afterglow.Error, "index 9 (value 3", scene.shape, "trianglemesh",
+                {"point3 P": corners, "integer indices": [0, 1, 9]})
+        refused(afterglow.Error, "is not finite", scene.shape, "sphere", {"float radius": float("nan")})
+        refused(ValueError, "no \"type name\"", scene.shape, "sphere", {"radius": 1})
+        refused(ValueError, "no integers", scene.shape, "trianglemesh", {"integer indices": [0.5]})
+        refused(ValueError, "4 x 4", scene.shape, "sphere", world_from_shape=[1, 2, 3])
+        scene.image("checks", numpy.array([[0, 255], [255, 0]], numpy.uint8))
+        scene.texture("t", "spectrum", "imagemap", {"string filename": "checks"})
+        scene.material("checked", "diffuse", {"texture reflectance": "t"})
+        fill(scene)
+        scene.shape("sphere", {"float radius": numpy.float32(0.25)}, material="checked", object="ball")
+        for x in (-0.5, 0.5):
+            scene.instance("ball", [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, -0.5], [0, 0, 0, 1]])
+        assert not numpy.array_equal(scene.render(**picture), pixels)
+
+class Enough(Exception):
+    pass
+
+def stop(phase, fraction):
+    if phase == 5:  # AG_PHASE_RENDER
+        raise Enough
+
+with afterglow.Context(progress=stop) as context, context.load("scene.pbrt") as scene:
+    refused(Enough, "", scene.render, **picture)
+    refused(Enough, "", scene.render, **picture)  # the context goes on
+
+# Ctrl-C, which Python hears on its main thread.
+interrupts = []
+def interrupt(phase, fraction):
+    if phase == 5 and not interrupts:
+        interrupts.append(phase)
+        os.kill(os.getpid(), signal.SIGINT)
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+with afterglow.Context(progress=interrupt) as context, context.load("scene.pbrt") as scene:
+    refused(KeyboardInterrupt, "", scene.render, **{**picture, "spp": 100000})
+    assert numpy.array_equal(scene.render(**picture), pixels)
+END
+echo "ok: scenes, errors, cancellation"
