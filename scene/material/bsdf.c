@@ -20,7 +20,7 @@ static void add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_del
     b->lobes[b->lobe_count++] = (bsdf_lobe){kind, group, is_delta, share};
 }
 
-/* Of three lobes: those that carry anything get the least share at the cost of the others. */
+/* Gives each of three lobes that carries anything the least share, at the cost of the others. */
 static void normalize_many(bsdf *b)
 {
     float sum = 0.0f, free_sum = 0.0f, left = 1.0f;

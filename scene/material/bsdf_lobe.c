@@ -125,7 +125,7 @@ static void evaluate_diffuse_through(const bsdf *b, bsdf_transport transport, ve
                           out_pdf);
 }
 
-/* To the side that the lobe is on. */
+/* Samples the cosine lobe on the side of the surface that the lobe is on. */
 static bool sample_cosine(const bsdf *b, bool is_through, vec2 u, vec3 *out_local)
 {
     *out_local = sample_cosine_hemisphere(u);
