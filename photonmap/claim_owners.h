@@ -15,7 +15,7 @@
 
 enum { CLAIM_OWNERS_MAX = 256 };
 
-/* In the file. All zero: nobody yet. */
+/* A process's entry in the file. All zero: nobody has taken it yet. */
 typedef struct claim_owner {
     atomic_u32 generation; /* of 22 bits; changed by the lock's holder alone, before its first claim */
     atomic_u32 process;    /* its id, for people who look into the file */

@@ -281,7 +281,7 @@ AVX2 static inline __m256i gather_words(const void *column, __m256i low, __m256i
 
 AVX2 static inline __m256i word_of_lane(lanes_4 p) { return _mm256_add_epi64(p.block, _mm256_slli_epi64(p.lane, 2)); }
 
-/* Of half-words, the word with the pair that the lane is in. */
+/* Gives the 32-bit word that holds a lane's half-word and its neighbour. */
 AVX2 static inline __m256i pair_of_lane(lanes_4 p)
 {
     __m256i pair = _mm256_srli_epi64(p.lane, 1);

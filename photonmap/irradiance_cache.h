@@ -19,7 +19,7 @@ typedef enum irradiance_cache_mode {
     IRRADIANCE_UNCACHED    /* an estimate at every point asked for: another estimator, without the mosaic */
 } irradiance_cache_mode;
 
-/* Of one worker; summed when all is done. Padded apart: they change all the time. */
+/* The counters of one worker, summed when all is done. They are padded apart, since they change all the time. */
 typedef struct irradiance_counters {
     _Alignas(64) uint64_t requests; /* points asked for */
     uint64_t computed;              /* estimates at photons, published */
@@ -36,7 +36,8 @@ typedef struct irradiance_counters {
     double waited_seconds;          /* CPU time of waiting */
 } irradiance_counters;
 
-/* Of one worker: an estimate's neighbours, and the leaves of a batch's queries and the order by them. */
+/* The scratch memory of one worker: an estimate's neighbours, and the leaves of a batch's queries and the order by
+ * them. */
 typedef struct irradiance_scratch {
     photon_neighbor *neighbors;
     uint32_t *leaves;   /* [IRRADIANCE_BATCH_MAX] */

@@ -21,8 +21,8 @@
 
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
 
-/* To be raised whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
-enum { LAYOUT_VERSION = 15 };
+/* Raise this whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
+enum { LAYOUT_VERSION = 16 };
 enum { GLOBAL, CAUSTIC, MAP_COUNT, IRRADIANCE_PHOTONS = MAP_COUNT, TREE_COUNT };
 enum { PAGE = 4096, CHUNK_BYTES = 1 << 22 };
 static const uint32_t BYTE_ORDER_MARK = 0x01020304;
@@ -70,7 +70,7 @@ static uint64_t blocks_bytes(const tree_record *t) { return photon_block_count(t
 
 static uint64_t nodes_bytes(const tree_record *t) { return photon_tree_bytes(&(photon_tree){.depth = t->depth}); }
 
-/* Of the global map. */
+/* The number of the global map's irradiance photons. */
 static uint32_t irradiance_photon_count(const tree_record trees[TREE_COUNT])
 {
     return trees[IRRADIANCE_PHOTONS].count > 0 ? trees[IRRADIANCE_PHOTONS].count : trees[GLOBAL].count;
@@ -99,7 +99,7 @@ static hash128 hash_of_header(const file_header *h)
     return hash;
 }
 
-/* Of what never changes. False when cancelled. */
+/* Hashes the photons, which never change. False when cancelled. */
 static bool hash_content(const run_context *run, const photon_tree trees[TREE_COUNT], hash128 *out_hash)
 {
     hash128 hash = hash128_begin();
@@ -156,7 +156,7 @@ static int write_at(const run_context *run, int descriptor, const void *bytes, u
     return 0;
 }
 
-/* Of all irradiance photons, by pages; 0 where a slot is not ready, and behind the last one. */
+/* Writes the check values of all irradiance photons, by pages; 0 where a slot is not ready, and behind the last one. */
 static int write_checks(const run_context *run, int descriptor, const photon_tree *irradiance_photons, uint64_t at)
 {
     int error = 0;
@@ -406,7 +406,7 @@ static uint32_t empty_damaged(photon_map *map, const claim_owners *owners)
     return damaged;
 }
 
-/* In a copy nobody will publish what was being computed. */
+/* Empties claimed slots: in a copy nobody will publish what was being computed. */
 static void drop_claims(photon_map *map)
 {
     for (uint32_t i = 0; i < map->irradiance_photons.count; i++) {
@@ -455,7 +455,7 @@ static photon_file_result open_maps(const run_context *run, int descriptor, cons
     return PHOTON_FILE_OPEN;
 }
 
-/* For writing where that may be shared. may_share: false where it may not be written. */
+/* Opens the file for writing where it may be shared; may_share becomes false where it may not be written. */
 static int open_descriptor(const char *path, bool *in_out_may_share)
 {
     /* O_NONBLOCK: a FIFO would wait for its writer */

@@ -160,7 +160,7 @@ bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks
 /* An irradiance photon higher or lower than the point by this share of its distance may lie on a board or a frame. */
 static const float LEVEL_SLOPE = 0.1f;
 
-/* In mean spacings of the irradiance photons. */
+/* A distance in mean spacings of the irradiance photons. */
 static const float FAR_SPACINGS = 1.4f;
 
 float photon_map_far(const photon_map *map)

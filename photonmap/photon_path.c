@@ -135,7 +135,7 @@ static bool pass_media(energy_balance *balance, rgb transmittance, rng *random, 
     return true;
 }
 
-/* Of the area that a photon stands for where they lie evenly, in scene units; giants are not counted. */
+/* The width of the area that a photon stands for where they lie evenly, in scene units; giants are not counted. */
 static float photon_width(const scene *s, uint32_t photon_count)
 {
     static const float RADIUS_SHARE_MAX = 1.0f / 64.0f;

@@ -148,7 +148,7 @@ static ag_status find_target(const scene *s, photon_kind kind, light_target *out
     return status;
 }
 
-/* Of the round after one of so many: as many blocks as the yield so far lets expect are needed, and one to spare. */
+/* The next round's blocks: as many as the yield so far lets expect are needed, and one to spare. */
 static uint64_t next_block_count(const photon_set *set, uint32_t wanted, uint64_t block_count)
 {
     double needed = (double)(wanted - set->count) * (double)set->emitted_paths;

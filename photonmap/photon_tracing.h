@@ -79,7 +79,7 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
                              photon_set *out_set);
 void photon_set_reset(photon_set *set);
 
-/* Of all trials so far. */
+/* The sums over all trials so far. */
 typedef struct trial_counts {
     uint64_t paths, rays;
     uint64_t parts;          /* that splitting has added to the paths */

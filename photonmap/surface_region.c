@@ -144,7 +144,7 @@ static void find_tangents(vec3 position, vec3 normal, vec3 *out_x, vec3 *out_y)
     *out_y = vec3_add_scaled(vec3_scale(f.y, cosine), f.x, -sine);
 }
 
-/* Of the region, how much is there: looked up at one point in each of 8 by 8 parts of the disc. */
+/* The share of the region where surface is, looked up at one point in each of 8 by 8 parts of the disc. */
 static float share_that_is_there(const probe *p, const surface_region *r)
 {
     enum { PARTS = 8 };

@@ -216,7 +216,7 @@ static ag_status write_file(const map_request *r, const photon_map *global, cons
     return status;
 }
 
-/* As if they had just been made, but for the rays. */
+/* Counts the photons as if they had just been traced, but not their rays. */
 static void count_photons(ag_context *context, const opened_maps *maps)
 {
     ag_statistics *statistics = &context->statistics;

@@ -132,7 +132,7 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
     return AG_ERROR_SCENE;
 }
 
-/* As OpenEXR's standard attributes describe them. Errors: AG_ERROR_MEMORY. */
+/* Notes camera and settings as OpenEXR's standard attributes describe them. Errors: AG_ERROR_MEMORY. */
 static ag_status note_origin(const ag_rendering *r, film_origin *out)
 {
     const camera *c = &r->s->camera;

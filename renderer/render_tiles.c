@@ -106,7 +106,7 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
         first_hit_project(t, &on_film, &out->layers->first);
 }
 
-/* To be called when none of the worker's samples is under way. */
+/* Shows the tiles that the worker has finished, while none of its samples is under way. */
 static void show_tiles(const tile_job *job, const eye_worker *worker)
 {
     tiles_to_show *done = &job->to_show[worker->index];

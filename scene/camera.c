@@ -51,7 +51,7 @@ bool camera_film_from_camera(const camera *c, float aspect, double near, double 
     return true;
 }
 
-/* In camera space; the direction need not be unit. */
+/* Makes the ray in camera space; its direction need not be unit. */
 static void projective_ray(const camera *c, vec2 screen, vec2 lens_u, vec3 *out_origin, vec3 *out_direction)
 {
     bool is_perspective = c->kind == CAMERA_PERSPECTIVE;

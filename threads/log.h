@@ -16,7 +16,7 @@ void log_destroy(log_sink *log); /* NULL is fine */
 /* log NULL is fine: the message is dropped. Line ends at the end are cut. fn must not log to the same sink. */
 void log_message(log_sink *log, ag_log_level level, const char *format, ...) AG_PRINTF(3, 4);
 
-/* As log_message, but each distinct key speaks once in the life of the sink. Returns whether it spoke. */
+/* Logs as log_message does, but once for each distinct key in the life of the sink. Returns whether it spoke. */
 bool log_once(log_sink *log, ag_log_level level, const char *key, const char *format, ...) AG_PRINTF(4, 5);
 
 #endif

@@ -30,7 +30,7 @@ static bool has_frames_in_one_file(const options *o)
     return name;
 }
 
-/* With a blank between; to be freed, NULL when out of memory. */
+/* Joins the arguments with blanks between; the text is to be freed, NULL when out of memory. */
 static char *join_arguments(int argc, char **argv)
 {
     size_t size = 1;

@@ -202,7 +202,7 @@ static ag_status resume(passes *p)
 /* The whole picture is brought to 1 sample, then to 4, to 16, ...: what there is when a render ends early is a picture
  * of one quality. Previews take smaller steps. */
 enum { PASS_GROWTH = 4, PREVIEW_GROWTH = 2 };
-/* Of the time that is left, a pass is planned to take so much: a machine is not always as fast as before. */
+/* A pass is planned to take so much of the time that is left: a machine is not always as fast as before. */
 static const double PLANNED_SHARE = 0.9;
 
 /* The samples after which the next pass ends; 0: there is no time for one more. */

@@ -34,7 +34,7 @@ void progress_begin_frame(progress *p, int frame, int frame_count, int frame_num
 /* Tells which files were written and how long this picture took, where progress is told at all. */
 void progress_tell_written(progress *p, const char *const *files, int file_count);
 
-/* For ag_context_settings, with a progress as user. Messages go to standard error. */
+/* The progress callback of ag_context_settings, whose user is a progress. Messages go to standard error. */
 void progress_tell(void *user, ag_phase phase, double fraction);
 void progress_log(void *user, ag_log_level level, const char *message);
 

@@ -35,7 +35,7 @@ uint32_t cryptomatte_hash(const char *name)
     return exponent == 0 || exponent == 255 ? hash ^ 1u << 23 : hash;
 }
 
-/* Of a shape that stands in the world, or of an instance; number is what there is where nothing has a name. */
+/* The name of a shape that stands in the world, or of an instance; where neither has one, its number. */
 static const char *object_name(const scene *s, uint32_t index, char *number, size_t size)
 {
     const char *name;

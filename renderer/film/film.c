@@ -328,7 +328,7 @@ static double read_total(const ag_film *film, size_t pixel, int offset)
     return sums[offset] + (film->filter.has_signs ? sums[film->layout.sum_count + offset] : 0.0);
 }
 
-/* Of the samples, not of their mean. */
+/* The variance of the samples, not of their mean. */
 static double read_variance(const ag_film *film, size_t pixel, const film_channel *channel, bool is_relative)
 {
     bool is_of_hits = channel->sum == SUM_HIT_SQUARES;

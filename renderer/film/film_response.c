@@ -4,7 +4,7 @@
 #include "color/cie.h"
 #include "color/spectra.h"
 
-/* As pbrt has it: below 4000 K daylight is not defined, and a black body stands in. */
+/* The chromaticity that pbrt gives a temperature: below 4000 K daylight is not defined, and a black body stands in. */
 static void light_chromaticity(double kelvin, double out_xy[2])
 {
     if (kelvin >= 4000.0) {

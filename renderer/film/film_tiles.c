@@ -37,7 +37,7 @@ void film_tiles_destroy(film_tiles *tiles)
     free(tiles);
 }
 
-/* In pixels of the crop. */
+/* The tile's rectangle in pixels of the crop. */
 static ag_tile tile_at(const ag_film *film, size_t index)
 {
     const int x = (int)(index % film->tiles->columns) * AG_TILE_SIZE,
@@ -52,7 +52,7 @@ static float *row_of(const ag_film *film, int x, int y)
     return film->pixels + 3 * ((size_t)y * (size_t)film->width + (size_t)x);
 }
 
-/* Of one tile the part [x0, x1) x [y0, y1) of the crop. It is developed without the lock. */
+/* Shows the part [x0, x1) x [y0, y1) of one tile. The part is developed without the lock. */
 static void show_part(ag_film *film, size_t index, int x0, int y0, int x1, int y1)
 {
     float developed[3 * AG_TILE_SIZE * AG_TILE_SIZE], *out = developed;

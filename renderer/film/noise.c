@@ -16,7 +16,7 @@ enum {
     NOISE_VALUES = SUM_SOURCE_SQUARES + AG_NOISE_SOURCE_COUNT
 };
 enum { LATTICE_PIXELS_MAX = 1 << 14 };
-/* In the dark, noise below this part of white is not seen. */
+/* Noise below this part of white is not seen in the dark. */
 static const double DARKEST = 1e-3;
 
 static int steps(int length, int stride) { return (length + stride - 1) / stride; }
@@ -92,7 +92,7 @@ double noise_shown_variance(double mean, double variance)
     return 0.25 * variance / (fmax(mean, DARKEST) * fmax(mean, 1.0));
 }
 
-/* Of the mean of so many samples. */
+/* The variance of the mean of so many samples. */
 static double variance_of_mean(double count, double sum, double squares)
 {
     return fmax(squares - sum * sum / count, 0.0) / ((count - 1.0) * count);

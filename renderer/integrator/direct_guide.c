@@ -201,7 +201,7 @@ uint32_t direct_guide_find(const direct_guide *g, vec3 point, vec3 normal)
                                                                                            : DIRECT_GUIDE_NO_CELL;
 }
 
-/* Of a light with power; the last: all lamps'. */
+/* The index of a light's share in a cell; lamps have the last share together. */
 static uint32_t share_of(const scene *s, uint32_t light_index)
 {
     uint32_t i = 0;
@@ -263,7 +263,7 @@ static uint32_t warp(const uint16_t *begins, float *in_out_u)
     return low;
 }
 
-/* Of the numbers of a bin. */
+/* The density of the random numbers in a bin. */
 static float density_of(const direct_histogram *h, uint32_t row, uint32_t column)
 {
     const float even = (float)DIRECT_GUIDE_SIDE / DIRECT_GUIDE_ONE;

@@ -116,7 +116,7 @@ rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direct
     return sum;
 }
 
-/* Of the mean of samples, by how they differ; of one alone it is not known: 0. */
+/* The variance of the samples' mean, by how they differ; 0 for a single one, of which it is not known. */
 static float variance_of_mean(float sum, float squares, int count)
 {
     if (count < 2)

@@ -63,7 +63,7 @@ static void add_lit(lit_list *list, const vertex *v, bsdf_lobes lobes)
     list->points[list->count++] = (lit_point){v->hit, v->arrived, direct_light_normal(v, lobes)};
 }
 
-/* As eye_pilot has them. */
+/* The lists of points, in the order of eye_pilot's members. */
 enum { GATHERED, ONWARD, SEEN, LIST_COUNT };
 
 typedef struct row_points {
@@ -150,7 +150,7 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
     }
 }
 
-/* As shading.c follows an eye path, but for all that is light. */
+/* Follows an eye path as shading.c does, but looks for no light. */
 static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_points *out)
 {
     const transport *t = &job->t;

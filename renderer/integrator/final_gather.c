@@ -121,7 +121,7 @@ static void sample_plain(const gathering *g, const incident_guide *guide, sample
     }
 }
 
-/* Of any other vertex; what goes through is followed at once. */
+/* Samples a vertex that is not plain; rays that go through are followed at once. */
 static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin, uint32_t end, gather_rays *r)
 {
     const bsdf *b = &g->request->from->scattering;

@@ -57,7 +57,7 @@ static void scale_layers(sample_layers *layers, float factor)
         layers->groups[i] = rgb_scale(layers->groups[i], factor);
 }
 
-/* Of samples that are too bright all parts are scaled alike. false: it was not finite. */
+/* Scales all parts of a sample that is too bright alike. false: the sample was not finite. */
 static bool bound_sample(const struct ag_film *film, eye_sample *sample)
 {
     const film_response *response = &film->response;

@@ -112,7 +112,7 @@ rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
     return rgb_scale(sum, AG_INV_PI);
 }
 
-/* Of what is found by chance, weighed by that, no more than this share reaches the eye. */
+/* Caustics are looked up where this share of them, or more, reaches the eye; below that by chance, in proportion. */
 static const float CAUSTIC_SHARE_MAX = 0.25f;
 
 rgb transport_some_caustics(const transport *t, eye_worker *worker, const vertex *v, float share_seen, float u)

@@ -35,7 +35,7 @@ enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 static const char *const type_names[] = {
     [IMAGE_UINT8] = "8-bit", [IMAGE_UINT16] = "16-bit", [IMAGE_HALF] = "half", [IMAGE_FLOAT] = "float"};
 
-/* In ASCII, whatever the locale. */
+/* Compares ASCII letters, whatever the locale. */
 static bool same_letters(const char *text, const char *lower_case)
 {
     for (; *text != '\0' && *lower_case != '\0'; text++, lower_case++) {

@@ -129,7 +129,7 @@ ag_status output_color_apply(ag_context *context, const ag_output_settings *sett
     return status;
 }
 
-/* Of a linear space other than the working space: from Rec. 709 to the working space, and back from that to it. */
+/* Finds a linear space other than the film's, by its matrix to the film's working space. */
 static bool find_other_space(const working_space *film_space, const double to_working[9], working_space *out_space)
 {
     color_matrix to, from;

@@ -31,7 +31,7 @@ ag_status color_config_create(const char *path, const char *working_space, struc
 ag_status color_config_create_builtin(char *message, size_t message_size, color_config **out_config);
 void color_config_destroy(color_config *config); /* NULL is fine */
 
-/* For the metadata: the config's name (or file) and the hash of its contents. Owned by the config. */
+/* The text for the metadata: the config's name (or file) and the hash of its contents. Owned by the config. */
 const char *color_config_name(const color_config *config);
 const char *color_config_hash(const color_config *config);
 
@@ -85,7 +85,7 @@ ag_status color_encoder_create(const color_config *config, const char *space, ch
                                color_processor **out_processor);
 void color_processor_destroy(color_processor *processor); /* NULL is fine */
 
-/* In place: count pixels of 3 packed floats. Every part of a picture may be done apart, with the same bits. */
+/* Converts count pixels of 3 packed floats in place. Every part of a picture may be done apart, with the same bits. */
 ag_status color_processor_apply(const color_processor *processor, float *rgb_pixels, size_t count, char *message,
                                 size_t message_size);
 

@@ -35,7 +35,7 @@ void put_message(char *message, size_t message_size, const char *text) noexcept;
 
 /* --- color_log_ocio.cpp --- */
 
-/* For as long as it lives, what OpenColorIO says on this thread goes to a log; nullptr: it is dropped. */
+/* While a listening lives, OpenColorIO's messages on this thread go to a log; nullptr: they are dropped. */
 class listening
 {
   public:
@@ -81,7 +81,7 @@ std::vector<std::string> all_looks(const OCIO::ConstConfigRcPtr &config);
 std::string chosen(const char *what, const char *name, const std::vector<std::string> &names,
                    const std::string &holder = "the OpenColorIO config");
 
-/* By name, alias or role; unknown: an error that lists the config's. */
+/* Finds a space by name, alias or role; throws an error that lists the config's where there is none. */
 OCIO::ConstColorSpaceRcPtr space_of(const OCIO::ConstConfigRcPtr &config, const char *name);
 
 /* --- color_cycle_ocio.cpp --- */

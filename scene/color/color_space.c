@@ -55,7 +55,7 @@ void color_matrix_apply(const color_matrix *a, const double in[3], double out[3]
         out[i] = a->m[i][0] * x + a->m[i][1] * y + a->m[i][2] * z;
 }
 
-/* By cofactors. */
+/* Inverts by cofactors. */
 static color_matrix invert(const color_matrix *a)
 {
     color_matrix c;
@@ -80,7 +80,7 @@ bool color_matrix_invert(const color_matrix *a, color_matrix *out_inverse)
     return true;
 }
 
-/* Of luminance 1. */
+/* The XYZ of a chromaticity at luminance 1. */
 static void xyz_of(const double xy[2], double out_xyz[3])
 {
     out_xyz[0] = xy[0] / xy[1];

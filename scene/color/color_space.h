@@ -21,7 +21,7 @@ typedef struct color_matrix {
     double m[3][3]; /* row, column */
 } color_matrix;
 
-/* By pbrt's names: "srgb", "dci-p3", "rec2020", "aces2065-1", in any case; and "acescg". */
+/* Finds a space by pbrt's names: "srgb", "dci-p3", "rec2020", "aces2065-1", in any case; and "acescg". */
 bool color_space_find(const char *name, color_space *out_space);
 /* x and y of red, green, blue, and of white. */
 void color_space_chromaticities(color_space space, double out_primaries[3][2], double out_white[2]);
@@ -37,7 +37,7 @@ bool color_chromaticities_to_rec709(const float chromaticities[8], color_matrix 
 color_matrix color_xyz_from_rec709(void);
 color_matrix color_rec709_from_xyz(void);
 
-/* In XYZ: what has one chromaticity gets the other, and all else is bent along, by the Bradford transform. */
+/* The Bradford transform in XYZ that takes one chromaticity to the other, and bends all others along. */
 color_matrix color_adaptation(const double from_xy[2], const double to_xy[2]);
 /* The chromaticity of our white, D65. */
 extern const double COLOR_WHITE_XY[2];

@@ -25,7 +25,7 @@ bool working_space_make(const double from_rec709[9], working_space *out_space);
 
 /* NULL for the space stands for Rec. 709 in all that follows. */
 
-/* Of light, and of densities (absorption per distance): what is outside the space's gamut is clipped to 0. */
+/* Converts light and densities (absorption per distance); colours outside the space's gamut are clipped to 0. */
 rgb working_space_light(const working_space *space, rgb rec709);
 /* A reflectance or transmittance in the working space: clipped to [0, 1] where it was no more than that. */
 rgb working_space_reflectance(const working_space *space, rgb rec709);

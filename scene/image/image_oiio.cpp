@@ -251,7 +251,7 @@ Value *read_values(OIIO::ImageInput &input, channel_range channels, std::uint64_
     return values.release();
 }
 
-/* Of what a file says; within the range of int. */
+/* The difference of two numbers of a file, clamped to the range of int. */
 int difference(int a, int b)
 {
     const long long exact = static_cast<long long>(a) - b;

@@ -7,7 +7,7 @@
 
 enum { MODULE_FOLDERS_MAX = 4, MODULE_PATH_MAX = PATH_MAX + 64 };
 
-/* In the order in which they are to be tried. */
+/* The folders in the order in which they are to be tried. */
 typedef struct module_folders {
     char paths[MODULE_FOLDERS_MAX][PATH_MAX + 32];
     int count;

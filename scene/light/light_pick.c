@@ -13,10 +13,10 @@
 /* Of the photons, so many are dealt out to all lights alike: a lamp in a room beside a sun that shines on all the land
  * would else send two or three, each as bright as the sun's. The sun's grow brighter by a third at most. */
 static const double EVEN_SHARE = 0.25;
-/* For rounding: what is this little behind a surface still counts. */
+/* Slack for rounding: a light this little behind a surface still counts. */
 static const float SLACK = 1e-3f;
 
-/* By the mean of the channels: luminance would all but leave out blue lamps. */
+/* The mean of the channels: luminance would all but leave out blue lamps. */
 static double mean_power(const light *l) { return ((double)l->power.r + l->power.g + l->power.b) / 3.0; }
 
 static ag_status find_powers(scene *s, log_sink *log)

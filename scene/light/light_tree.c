@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* For rounding: what is this little beyond a horizon still counts. */
+/* Slack for rounding: a lamp this little beyond a horizon still counts. */
 static const float SLACK = 1e-3f;
 /* Of the cosine to the point's normal and of the lamp's own: what may count for more by a shading normal, or where the
  * ball hides how the lamp lies. */
@@ -371,7 +371,7 @@ static void build(light_tree *t, lamp *lamps, uint32_t count, group *queue)
     }
 }
 
-/* In the tree's units. */
+/* Finds the lamps' bounds and power in the tree's units. */
 static void find_lamps(const scene *s, const light_tree *t, const uint32_t *lights, uint32_t count, lamp *out_lamps)
 {
     double total = 0.0;

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 
 static const double PI = 3.14159265358979323846;
-/* Of the mean of all cells: what even a black one keeps, so that no light is missed between the points looked at. */
+/* The share of the mean of all cells that even a black one keeps, so that no light is missed between the points looked
+ * at. */
 static const double FLOOR = 0.01;
 enum { MAP_SIZE_MIN = 64, MAP_SIZE_MAX = 1024 };
 
@@ -190,7 +191,7 @@ static void add_up(portal *p, const float *seen)
         }
 }
 
-/* Of the picture's own pixels, or of constant radiance pi L. */
+/* The irradiance on the portal by the picture's own pixels, or by constant radiance pi L. */
 static rgb irradiance_on(const portal *p, const light *l)
 {
     const environment *e = l->environment;

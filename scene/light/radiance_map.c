@@ -6,7 +6,8 @@
 #include <stdlib.h>
 
 enum { SIZE = 64, LOOKS = 16 * SIZE * SIZE }; /* cells along a side; points looked at */
-/* Of the mean of all cells: what even a black one keeps, so that nothing is missed between the points looked at. */
+/* The share of the mean of all cells that even a black one keeps, so that nothing is missed between the points looked
+ * at. */
 static const double FLOOR = 0.1;
 
 /* Looks at points of a lattice by the golden ratio: no two alike in either number, so that meshes of many triangles are

@@ -20,7 +20,7 @@ static void add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_del
     b->lobes[b->lobe_count++] = (bsdf_lobe){kind, group, is_delta, share};
 }
 
-/* Of three lobes: those that carry anything get the least share at the cost of the others. */
+/* Gives each of three lobes that carries anything the least share, at the cost of the others. */
 static void normalize_many(bsdf *b)
 {
     float sum = 0.0f, free_sum = 0.0f, left = 1.0f;
@@ -382,9 +382,6 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
             return false;
         out->direction = vec3_normalize(frame_to_world(&b->shading, i));
         out->pdf_solid_angle = 0.0f;
-        /* a shading normal may send it through the surface, or not: the geometry decides */
-        if (bsdf_is_same_side(b, out->direction) != (i.z * o.z > 0.0f))
-            return false;
         out->is_straight = b->is_pane && i.z * o.z < 0.0f;
         out->weight = rgb_scale(out->weight, 1.0f / probability);
         if (transport == BSDF_FLUX)
@@ -396,6 +393,9 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
         return false;
     frame around = is_by_geometry ? frame_from_z(b->geometric_normal) : b->shading;
     out->direction = vec3_normalize(frame_to_world(&around, i));
+    if (!bsdf_lobe_has_facets(lobe->kind) && lobe->kind != LOBE_HAIR &&
+        bsdf_is_same_side(b, out->direction) == (lobe->kind == LOBE_DIFFUSE_THROUGH))
+        return false; /* which facets alone may cross */
     rgb value = evaluate_all(b, lobes, transport, out->direction, &out->pdf_solid_angle);
     if (!(out->pdf_solid_angle > 0.0f))
         return false;

@@ -106,7 +106,7 @@ bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes);
 /* Whether any of these that a lamp can find scatter light that comes from behind the surface, as `out` sees it. */
 bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes);
 
-/* With which probability bsdf_sample_direction, asked for all, picks one of these. */
+/* The probability with which bsdf_sample_direction, asked for all lobes, picks one of these. */
 float bsdf_probability(const bsdf *b, bsdf_lobes lobes);
 
 /* The factor A t(out), of irradiance on out's side and on the other, each to be divided by pi: what leaves as

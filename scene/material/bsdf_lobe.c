@@ -125,7 +125,7 @@ static void evaluate_diffuse_through(const bsdf *b, bsdf_transport transport, ve
                           out_pdf);
 }
 
-/* To the side that the lobe is on. */
+/* Samples the cosine lobe on the side of the surface that the lobe is on. */
 static bool sample_cosine(const bsdf *b, bool is_through, vec2 u, vec3 *out_local)
 {
     *out_local = sample_cosine_hemisphere(u);
@@ -169,10 +169,10 @@ static rgb metal_reflectance(const material *m, float cosine) { return fresnel_c
 
 static rgb coat_reflectance(const material *m, float cosine) { return rgb_gray(fresnel_dielectric(cosine, m->ior)); }
 
-static void evaluate_facets(const bsdf *b, facet_reflectance *reflectance, vec3 direction, vec3 o, vec3 i,
-                            rgb *out_value, float *out_pdf)
+static void evaluate_facets(const bsdf *b, facet_reflectance *reflectance, vec3 o, vec3 i, rgb *out_value,
+                            float *out_pdf)
 {
-    if (!bsdf_is_same_side(b, direction) || o.z * i.z <= 0.0f)
+    if (o.z * i.z <= 0.0f)
         return;
     ggx facets = interface_of(&b->parameters);
     vec3 h = ggx_half_vector(o, i);
@@ -183,15 +183,15 @@ static void evaluate_facets(const bsdf *b, facet_reflectance *reflectance, vec3 
 static void evaluate_conductor(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
                                float *out_pdf)
 {
-    (void)transport;
-    evaluate_facets(b, metal_reflectance, direction, o, i, out_value, out_pdf);
+    (void)transport, (void)direction;
+    evaluate_facets(b, metal_reflectance, o, i, out_value, out_pdf);
 }
 
 static void evaluate_coat(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
                           float *out_pdf)
 {
-    (void)transport;
-    evaluate_facets(b, coat_reflectance, direction, o, i, out_value, out_pdf);
+    (void)transport, (void)direction;
+    evaluate_facets(b, coat_reflectance, o, i, out_value, out_pdf);
 }
 
 static bool mirror_conductor(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
@@ -307,9 +307,8 @@ static bool mirror_slab(const bsdf *b, bsdf_transport transport, vec3 o, float u
 static void evaluate_coated_conductor(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i,
                                       rgb *out_value, float *out_pdf)
 {
-    (void)transport;
-    if (bsdf_is_same_side(b, direction))
-        coat_metal_lobe(&b->parameters, o, i, out_value, out_pdf);
+    (void)transport, (void)direction;
+    coat_metal_lobe(&b->parameters, o, i, out_value, out_pdf);
 }
 
 static bool mirror_coated_conductor(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
@@ -351,7 +350,8 @@ static bool sample_hair(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_l
 static void evaluate_principled(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
                                 float *out_pdf)
 {
-    bsdf_principled_evaluate(b, LOBE_PRINCIPLED, transport, direction, o, i, out_value, out_pdf);
+    (void)direction;
+    bsdf_principled_evaluate(&b->parameters, LOBE_PRINCIPLED, transport, o, i, out_value, out_pdf);
 }
 
 static bool mirror_principled(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
@@ -368,7 +368,8 @@ static bool sample_principled(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 
 static void evaluate_clearcoat(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
                                float *out_pdf)
 {
-    bsdf_principled_evaluate(b, LOBE_CLEARCOAT, transport, direction, o, i, out_value, out_pdf);
+    (void)direction;
+    bsdf_principled_evaluate(&b->parameters, LOBE_CLEARCOAT, transport, o, i, out_value, out_pdf);
 }
 
 static bool mirror_clearcoat(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,

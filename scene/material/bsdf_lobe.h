@@ -28,6 +28,13 @@ static inline bool bsdf_lobe_is_diffuse(bsdf_lobe_kind kind)
     return kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH;
 }
 
+/* Whether it is made of facets about the shading normal. Where they send light the shading normal alone decides, even
+ * through the surface, as pbrt has it: on a coarse mesh with smooth normals that light finds its way out again. */
+static inline bool bsdf_lobe_has_facets(bsdf_lobe_kind kind)
+{
+    return !bsdf_lobe_is_diffuse(kind) && kind != LOBE_COAT_SCATTERED && kind != LOBE_HAIR;
+}
+
 /* What a lobe of a kind does: its row in bsdf_lobe.c. o, i: out and the other direction in the shading frame. */
 typedef struct bsdf_lobe_type {
     /* Of a lobe that is not smooth: sets value (f |cos|) and density, which come in as 0. direction: i in world space.

@@ -66,16 +66,12 @@ static void transmission(const material *m, bsdf_transport transport, vec3 o, ve
     *out_pdf *= 1.0f - f.reflection_probability;
 }
 
-void bsdf_principled_evaluate(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 direction, vec3 o,
-                              vec3 i, rgb *out_value, float *out_pdf)
+void bsdf_principled_evaluate(const material *m, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, vec3 i,
+                              rgb *out_value, float *out_pdf)
 {
-    const material *m = &b->parameters;
-    bool is_reflection = o.z * i.z > 0.0f;
-    if (o.z * i.z == 0.0f || bsdf_is_same_side(b, direction) != is_reflection)
-        return; /* between the two horizons of a leaning normal */
-    if (is_reflection)
+    if (o.z * i.z > 0.0f)
         reflection(m, kind, o, i, out_value, out_pdf);
-    else if (kind == LOBE_PRINCIPLED && principled_transmits(m))
+    else if (o.z * i.z < 0.0f && kind == LOBE_PRINCIPLED && principled_transmits(m))
         transmission(m, transport, o, i, out_value, out_pdf);
 }
 

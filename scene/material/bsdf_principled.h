@@ -8,8 +8,8 @@
 #include "material/bsdf.h"
 
 /* Value, density and sampling of LOBE_PRINCIPLED and LOBE_CLEARCOAT, as bsdf_lobe_type has them (bsdf_lobe.h). */
-void bsdf_principled_evaluate(const bsdf *b, bsdf_lobe_kind kind, bsdf_transport transport, vec3 direction, vec3 o,
-                              vec3 i, rgb *out_value, float *out_pdf);
+void bsdf_principled_evaluate(const material *m, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o, vec3 i,
+                              rgb *out_value, float *out_pdf);
 bool bsdf_principled_sample_smooth(const material *m, bsdf_lobe_kind kind, bsdf_transport transport, vec3 o,
                                    float u_lobe, vec3 *out_local, rgb *out_weight);
 bool bsdf_principled_sample_rough(const material *m, bsdf_lobe_kind kind, vec3 o, float u_lobe, vec2 u,

@@ -11,7 +11,7 @@ enum {
     COAT_ORDERS = 8    /* reflections by the metal that are told apart; of the last, and more */
 };
 
-/* Of one roughness of the interface and one of the metal. */
+/* The tables of one roughness of the interface and one of the metal. */
 typedef struct coat_cell {
     /* A diffuse base. Of light from outside, what gets to it; of what leaves it upwards, what comes back. */
     float entry[COAT_COSINES];

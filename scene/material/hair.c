@@ -10,7 +10,7 @@
 static const double TWO_PI = 6.28318530717958647693, HALF_TURN = 3.14159265358979323846;
 /* Roughness below which scattering would hardly have a density. */
 static const double BETA_MIN = 0.01;
-/* Of a colour's channel, so that black absorbs finitely. */
+/* The least reflectance of a channel, so that black absorbs finitely. */
 static const float REFLECTANCE_MIN = 1e-4f;
 
 static double square(double x) { return x * x; }

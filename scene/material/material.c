@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-/* Of an index of refraction out of a texture, which may be black. */
+/* The least index of refraction: a texture of it may be black. */
 #define ETA_MIN 1e-3f
 
 static void make_rough_on_both_axes(float *alpha_u, float *alpha_v)

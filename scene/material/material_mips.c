@@ -56,7 +56,7 @@ static ag_status make_of_picture(scene *s, run_context *run, texture_image *i)
     return texture_mips_create(run, &finest, &i->mips);
 }
 
-/* Of the pictures in a texture that is filtered or a part of one. */
+/* Makes the levels of the pictures in a texture that is filtered, or a part of one that is. */
 static ag_status make_of_texture(scene *s, run_context *run, uint32_t index)
 {
     const texture *t = &s->textures[index];

@@ -8,7 +8,7 @@
 /* A ray along the surface meets an ellipse of this many times its width at most. */
 static const float COSINE_MIN = 1e-3f;
 
-/* Of a step in the surface, by least squares. */
+/* The step in uv of a step in the surface, by least squares. */
 static vec2 uv_step(vec3 dpdu, vec3 dpdv, vec3 step)
 {
     const double uu = vec3_dot(dpdu, dpdu), uv = vec3_dot(dpdu, dpdv), vv = vec3_dot(dpdv, dpdv);

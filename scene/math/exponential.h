@@ -24,7 +24,7 @@ static inline double exponential(double x)
     return (low + r2 * r2 * r2 * high) * two_to_power;
 }
 
-/* Of x > 0; right to 1e-13. */
+/* The logarithm of x > 0, right to 1e-13. */
 static inline double natural_logarithm(double x)
 {
     int power;

@@ -16,7 +16,7 @@ static inline hash128 hash128_begin(void) { return (hash128){{0x9e3779b97f4a7c15
 
 /* bytes may be NULL if size is 0. */
 void hash128_add(hash128 *hash, const void *bytes, size_t size);
-/* With its terminator; NULL is another than "". */
+/* Adds the text with its terminator; NULL is another than "". */
 void hash128_add_text(hash128 *hash, const char *text);
 
 static inline int hash128_is_equal(hash128 a, hash128 b) { return a.bits[0] == b.bits[0] && a.bits[1] == b.bits[1]; }

@@ -74,7 +74,7 @@ static bool decompose(const double linear[3][3], double rotation[3][3], double s
     return true;
 }
 
-/* By the largest of the four components, from which the others follow without loss. */
+/* Computes the largest of the four components first, from which the others follow without loss. */
 static void quaternion_of(const double r[3][3], double q[4])
 {
     double squares[4] = {1.0 + r[0][0] + r[1][1] + r[2][2], 1.0 + r[0][0] - r[1][1] - r[2][2],

@@ -58,7 +58,7 @@ static inline rgb rgb_add(rgb a, rgb b) { return (rgb){a.r + b.r, a.g + b.g, a.b
 static inline rgb rgb_sub(rgb a, rgb b) { return (rgb){a.r - b.r, a.g - b.g, a.b - b.b}; }
 static inline rgb rgb_mul(rgb a, rgb b) { return (rgb){a.r * b.r, a.g * b.g, a.b * b.b}; }
 static inline rgb rgb_scale(rgb a, float s) { return (rgb){a.r * s, a.g * s, a.b * s}; }
-/* As fmaxf, of which the compiler would make a call: what is no number does not count. */
+/* fmaxf without a call, which the compiler would make of that: a NaN does not count. */
 static inline float float_max(float a, float b)
 {
     float larger = a > b ? a : b;

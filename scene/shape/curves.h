@@ -20,10 +20,11 @@ ag_status curves_join(curves *c, const curves *from);
 float curves_area(const shape *s); /* of the side that is seen of flat ones; needs no commit */
 void curves_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
 
-/* As shape_surface_at. u: Embree's. direction: in which the ray goes, for a flat one turns to meet it. */
+/* Does for curves what shape_surface_at does for shapes. u: Embree's. direction: in which the ray goes, for a flat one
+ * turns to meet it. */
 void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 position, vec3 direction,
                        surface_hit *out_hit);
-/* In the shape's own space. */
+/* The differentials in the shape's own space. */
 surface_differentials curves_differentials(const shape *s, const surface_hit *hit);
 
 #endif

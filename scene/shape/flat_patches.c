@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the triangles at one edge each is held against so many before it: more than two are rare. */
+/* Each triangle at an edge is held against so many before it: more than two at one edge are rare. */
 enum { EDGE_NEIGHBORS_MAX = 8 };
 /* Normals of a file's vertices are off by this where they were rounded to bytes, radians: sqrt(3) / 2 / 127. */
 static const float VERTEX_ANGLE_MAX = 7e-3f;

@@ -108,7 +108,7 @@ static vec3 mesh_area_vector(const mesh *m, uint32_t triangle, double *out_lengt
                        out_length);
 }
 
-/* Of fmaxf the compiler makes a call. */
+/* fmaxf without the call that the compiler makes of it. */
 static inline float larger_size(float a, float b) { return fabsf(b) > a ? fabsf(b) : a; }
 static inline float largest_size(vec3 a) { return larger_size(larger_size(fabsf(a.x), a.y), a.z); }
 

@@ -16,7 +16,7 @@ typedef struct file_location {
 
 /* FILE:LINE:COLUMN: error|warning|info|debug: message */
 void log_at(log_sink *log, ag_log_level level, file_location where, const char *format, ...) AG_PRINTF(4, 5);
-/* As log_at, but once for each distinct key. */
+/* Speaks as log_at does, but once for each distinct key. */
 void log_at_once(log_sink *log, ag_log_level level, file_location where, const char *key, const char *format, ...)
     AG_PRINTF(5, 6);
 /* An error whose message is followed by excerpt: lines of the file's text, each after a newline, or "". */

@@ -80,7 +80,7 @@ static bool is_below_root(const input_files *files, const char *path)
     return false;
 }
 
-/* Of what is not there, by its folder: so that nothing is told of what lies elsewhere. */
+/* Whether a file may be read; one that is not there, by its folder, so that nothing is told of what lies elsewhere. */
 static bool is_allowed(const input_files *files, const char *path)
 {
     if (!files || !files->is_confined || strcmp(path, files->scene) == 0)
@@ -125,7 +125,7 @@ static bool note(input_files *files, const struct stat *status)
     return true;
 }
 
-/* Of an open file. */
+/* Whether an open file is a regular one that may be read. */
 static bool is_fit(const run_context *run, int descriptor, char *error, size_t error_size)
 {
     struct stat status;

@@ -35,7 +35,7 @@ ag_status image_colors_find(const struct scene *s, image_encoding encoding, cons
 ag_status image_colors_decode(const struct scene *s, const image_colors *colors, float *rgb_pixels, size_t count,
                               char *message, size_t message_size);
 
-/* By the matrix; what is outside the gamut is clipped to 0. Asked for only where has_matrix. */
+/* Converts by the matrix; colours outside the gamut are clipped to 0. Asked for only where has_matrix. */
 static inline rgb image_colors_convert(const image_colors *colors, rgb c)
 {
     const float *m = colors->matrix;

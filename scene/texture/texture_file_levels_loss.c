@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Of a part of a tile, by its table or curve linear already. */
+/* The sum over a part of a tile, which its table or curve has made linear. */
 static double sum_part(const texture_file_levels *l, const texture_image *i, int level, const unsigned char *tile,
                        uint32_t x, uint32_t y, uint32_t width, uint32_t height)
 {

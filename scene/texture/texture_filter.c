@@ -13,7 +13,7 @@ enum { COARSE_SIDE_BITS = 8 };
  * two of them. */
 static const float PIXEL_SHARE = 0.6f;
 
-/* In pixels of the finest level. */
+/* The footprint in pixels of the finest level. */
 typedef struct ellipse {
     float length, width; /* of its axes, length >= width */
     vec2 along;          /* the longer axis, unit */

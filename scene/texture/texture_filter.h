@@ -13,7 +13,7 @@ typedef struct texture_footprint {
     bool is_coarse; /* a gather ray's or a photon's: one probe, at no coarser a level than one of 256 pixels */
 } texture_footprint;
 
-/* As texture_image_color and texture_image_rgb, over the footprint. The picture has mips. */
+/* texture_image_color and texture_image_rgb over the footprint, of a picture that has mips. */
 rgb texture_filter_color(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t,
                          const texture_footprint *footprint);
 rgb texture_filter_rgb(const texture_image *i, texture_wraps wraps, texture_filter filter, float s, float t,

@@ -16,7 +16,7 @@
 struct image;
 struct scene;
 
-/* Of a grey picture all three colours are the same; alpha is 1 where it has none. */
+/* The channels of a picture: all three colours of a grey one are the same; alpha is 1 where it has none. */
 typedef enum texture_channel {
     TEXTURE_CHANNEL_ALL,  /* as pbrt has it: alpha of pictures that have one (of tiles: any), else the colours' mean */
     TEXTURE_CHANNEL_MEAN, /* of the colours */

@@ -53,7 +53,7 @@ static ag_status read_image(const scene *s, texture_image *i, const source *from
 
 /* --- those that do not fit into memory --- */
 
-/* With its coarser levels, which may be made later, and alpha. */
+/* The picture's bytes with its coarser levels, which may be made later, and alpha. */
 static uint64_t whole_bytes(const texture_image *i)
 {
     const uint64_t pixels = (uint64_t)i->width * i->height, values = pixels * i->channel_count;

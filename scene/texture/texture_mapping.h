@@ -15,7 +15,7 @@ typedef enum texture_mapping_kind {
     TEXTURE_MAPPING_UV_AFFINE    /* the surface's own u and v under any affine map */
 } texture_mapping_kind;
 
-/* Of each kind the fields named at it; the others, and texture_from_world of uv, are not read. */
+/* Each kind reads the fields named at it; uv reads no texture_from_world. */
 typedef struct texture_mapping {
     texture_mapping_kind kind;
     float texture_from_world[3][4];

@@ -81,7 +81,7 @@ typedef struct cover {
     float share[3];
 } cover;
 
-/* In units of 1 / coarse of a fine pixel everything is whole. */
+/* All numbers are whole in units of 1 / coarse of a fine pixel. */
 static cover cover_of(uint32_t fine, uint32_t coarse, uint32_t index)
 {
     uint64_t begin = (uint64_t)index * fine, end = begin + fine;

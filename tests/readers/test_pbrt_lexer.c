@@ -110,7 +110,7 @@ static void bad_text_is_refused(void **state)
         pbrt_lexer_init(&lexer, "f", CASES[i].text, CASES[i].size);
         do
             status = pbrt_lexer_next(&lexer, &token);
-        while (!status && token.kind != PBRT_TOKEN_END);
+        while (status == AG_OK && token.kind != PBRT_TOKEN_END);
         assert_int_equal(status, AG_ERROR_SCENE);
         assert_string_equal(lexer.error, CASES[i].error);
         assert_int_equal(token.where.line, CASES[i].line);

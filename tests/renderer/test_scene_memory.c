@@ -7,6 +7,14 @@
 #include "fixtures/shared_folder.h"
 #include "image/image_reader.h"
 
+#include <malloc.h>
+
+/* Of the scenes that are said both ways each so manieth, where all that is done takes long. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { SCENE_STEP = 4 };
+#else
+enum { SCENE_STEP = 1 };
+#endif
 enum { SIZE = 20 };
 
 typedef struct desk {
@@ -112,7 +120,7 @@ static void memory_has_the_bits_of_files(void **state)
                                         "tea_in_glass",
                                         "tuft",
                                         "step"};
-    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++) {
+    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i += SCENE_STEP) {
         char name[64];
         snprintf(name, sizeof name, "%s.pbrt", NAMES[i]);
         expect_same_both_ways(LAYERS_SCENES, name);
@@ -132,7 +140,7 @@ static void public_scenes_have_the_bits_of_files(void **state)
         print_message("SKIPPED: the public scenes are not there\n");
         skip();
     }
-    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++) {
+    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i += SCENE_STEP) {
         char path[512];
         snprintf(path, sizeof path, "%s/scenes/%s/", shared, NAMES[i][0]);
         expect_same_both_ways(path, NAMES[i][1]);
@@ -600,6 +608,57 @@ static void a_moved_camera_is_as_one_from_the_beginning(void **state)
     end(&d);
 }
 
+/* Memory in use, of the process's own heap. */
+static size_t used_bytes(void)
+{
+    const struct mallinfo2 heap = mallinfo2();
+    return heap.uordblks + heap.hblkhd;
+}
+
+/* A host that goes on for hours: views, renders and whole scenes without end. */
+static void edits_and_renders_leave_no_memory_behind(void **state)
+{
+    (void)state;
+    enum { ROUNDS = 60, WARM_UP = 10, EDITS = 20 };
+    desk d;
+    square s;
+    ag_render_settings settings;
+    ag_film *film;
+    size_t before = 0;
+    begin(&d);
+    ag_scene_destroy(d.made);
+    for (int i = 0; i < ROUNDS; i++) {
+        if (i == WARM_UP)
+            before = used_bytes();
+        assert_int_equal(ag_scene_create(d.context, NULL, &d.made), AG_OK);
+        light_and_look(&d);
+        make_square(&s);
+        assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_OK);
+        s.shape.type = "cube";
+        assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_SCENE);
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        assert_int_equal(ag_render_settings_from_scene(d.context, d.made, &settings), AG_OK);
+        photon_settings(&settings, NULL);
+        settings.width = settings.height = 4;
+        settings.integrator = i % 8 == 0 ? AG_INTEGRATOR_PHOTONMAP : AG_INTEGRATOR_PATH;
+        settings.photon_count = settings.caustic_photon_count = 100;
+        for (int k = 0; k < EDITS; k++) {
+            ag_camera eye = ag_default_camera();
+            eye.world_from_camera = k % 2 == 0 ? AWAY : ASIDE;
+            assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_OK);
+        }
+        assert_int_equal(ag_render(d.context, d.made, &settings, &film), AG_OK);
+        ag_film_destroy(film);
+        ag_scene_destroy(d.made);
+        d.said[0] = '\0';
+    }
+    const size_t after = used_bytes();
+    if (after > before + 64 * 1024)
+        fail_msg("%zu bytes were in use, and %zu are", before, after);
+    d.made = NULL;
+    end(&d);
+}
+
 static void a_camera_cannot_change_under_a_rendering(void **state)
 {
     (void)state;
@@ -684,6 +743,7 @@ int main(void)
         cmocka_unit_test(calls_in_a_wrong_order_are_errors),
         TEST_IN_FOLDER(a_moved_camera_is_as_one_from_the_beginning),
         TEST_IN_FOLDER(pictures_in_memory_have_the_bits_of_files),
+        cmocka_unit_test(edits_and_renders_leave_no_memory_behind),
         cmocka_unit_test(a_camera_cannot_change_under_a_rendering),
         cmocka_unit_test(settings_are_heeded),
     };

@@ -239,8 +239,7 @@ typedef struct ag_parameter {
  * NULL: the default ones. Until ag_scene_commit it can be added to and destroyed, and nothing else. */
 AG_API ag_status ag_scene_create(ag_context *context, const ag_scene_settings *settings, ag_scene **out_scene);
 /* Completes the scene and builds what rays need; it is then as one from a file, of which the camera alone can change.
- * After an
- * error it can only be destroyed. Errors also: AG_ERROR_RAY_TRACING. */
+ * After an error it can only be destroyed. Errors also: AG_ERROR_RAY_TRACING. */
 AG_API ag_status ag_scene_commit(ag_scene *scene);
 
 /* Each name of a material, a medium and a kind of texture is made once. Materials and media may be used before they are

@@ -10,7 +10,7 @@ static const uint32_t MAX_ZEROS = (uint32_t)1 << 24;
 
 typedef enum component_type { INT8 = 5120, UINT8, INT16, UINT16, UINT32 = 5125, FLOAT32 } component_type;
 
-/* In bytes; 0: there is no such type. */
+/* The size in bytes; 0: there is no such type. */
 static size_t component_size(int type)
 {
     switch (type) {

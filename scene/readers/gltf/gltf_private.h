@@ -201,7 +201,7 @@ ag_status gltf_accessor_open(gltf_reader *r, const gltf_value *at, uint32_t inde
                              int components_max, gltf_accessor *out_accessor);
 /* Element i < count, all components, integers normalised where it says so. */
 void gltf_accessor_get(const gltf_accessor *a, uint32_t i, float *out_values);
-/* Of indices: unsigned integers. */
+/* An index of an accessor of unsigned integers. */
 uint32_t gltf_accessor_get_index(const gltf_accessor *a, uint32_t i);
 
 /* gltf_poses.c: how a node holds its mesh. */

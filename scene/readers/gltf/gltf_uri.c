@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a base64 digit of either alphabet; -1: it is none. */
+/* The value of a base64 digit of either alphabet; -1: it is none. */
 static int base64_value(char c)
 {
     if (c >= 'A' && c <= 'Z')

@@ -27,8 +27,8 @@ static void take_shift(reading *r, double x, double y)
     r->has_camera = true;
 }
 
-/* The number of a property whose name has just ended: three strings, each a letter S, a length and its bytes, then D.
- */
+/* The number of a property whose name has just ended: three strings, each a letter S, a length and its bytes, then
+ * D. */
 static bool get_double(const unsigned char *at, const unsigned char *end, double *out)
 {
     for (int k = 0; k < 3; k++) {

@@ -40,7 +40,7 @@ static ag_status find_memory_limit(const run_context *run, const char *path, uin
     return AG_OK;
 }
 
-/* By its path, or NULL: an error says where it was looked for. */
+/* Gives the program's path, or NULL: an error says where it was looked for. */
 static const char *find_program(const run_context *run, char *path, size_t path_size)
 {
     module_folders folders;

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of no more than this is asked whether assimp knows an extension. */
+/* The memory that is enough to ask whether assimp knows an extension. */
 static const uint64_t LITTLE_MEMORY = UINT64_C(1) << 30;
 
 int main(int count, char **arguments)

@@ -32,7 +32,8 @@ static void cross(const double a[3], const double b[3], double out[3])
         out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-/* Of a right-handed world: right is forward x up. size: what 1 on the screen of an orthographic camera stands for. */
+/* Makes the transform of a camera in a right-handed world: right is forward x up. size: what 1 on the screen of an
+ * orthographic camera stands for. */
 static bool place_camera(const import_camera *source, double size, transform *out_transform)
 {
     double forward[3], up[3], right[3], matrix[4][4] = {{0.0}};

@@ -31,7 +31,8 @@ typedef struct importer {
 /* Errors: AG_ERROR_MEMORY. */
 ag_status importer_init(importer *i, run_context *run, const char *path, scene *out_scene);
 
-/* For bump_unit, from the bounds of all that is there. MTL gives no unit: white is 0.002 of the diagonal high. */
+/* The value of bump_unit, from the bounds of all that is there. MTL gives no unit: white is 0.002 of the diagonal
+ * high. */
 float importer_bump_unit(vec3 bounds_min, vec3 bounds_max);
 
 /* A mesh's material and other properties of its surface. */

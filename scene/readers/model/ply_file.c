@@ -121,7 +121,7 @@ static ag_status read_vertex(loader *l, const ply_element *e, uint64_t index)
     return store_vertex(l, index, values);
 }
 
-/* As many vertices as lie in the buffer: binary, without lists. */
+/* Reads as many vertices as lie in the buffer: binary, without lists. */
 static ag_status read_vertex_block(loader *l, const ply_element *e, uint64_t begin, uint64_t *out_end)
 {
     ply_stream *s = &l->stream;

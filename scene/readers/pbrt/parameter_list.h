@@ -28,7 +28,7 @@ typedef enum parameter_type {
     PARAMETER_TEXTURE
 } parameter_type;
 
-/* As the scene file spells it: "float", "point3", ... */
+/* The type's name as the scene file spells it: "float", "point3", ... */
 const char *parameter_type_name(parameter_type type);
 
 typedef struct parameter {

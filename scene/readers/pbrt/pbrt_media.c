@@ -72,7 +72,7 @@ static ag_status read_homogeneous(pbrt_parser *parser, parameter_list *list, med
     return set_absorption(parser, list, sigma_a, (double)scale, m);
 }
 
-/* Of one component of `components`. */
+/* The mean of one of `components` components. */
 static double mean_of(const double *values, size_t count, size_t components, size_t component)
 {
     double sum = 0.0;

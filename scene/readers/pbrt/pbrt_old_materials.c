@@ -38,7 +38,7 @@ static bool drop(pbrt_parser *parser, parameter_list *list, const char *type, co
     return is_silent;
 }
 
-/* Of "uber" and "plastic": without gloss they are but diffuse. */
+/* The kind of "uber" and "plastic", which without gloss are but diffuse. */
 static const char *plastic_kind(pbrt_parser *parser, parameter_list *list, const char *type)
 {
     static const char *const OF_COAT[] = {"roughness", "uroughness", "vroughness", "eta", "remaproughness"};

@@ -205,7 +205,7 @@ static ag_status read_declaration(pbrt_parser *parser, const pbrt_token *token, 
     return AG_OK;
 }
 
-/* Of two with one name the last counts, as in pbrt. */
+/* Drops all but the last of parameters with one name, as pbrt does. */
 static void drop_shadowed(pbrt_parser *parser, parameter_list *list)
 {
     parameter *last = &list->items[list->count - 1];

@@ -297,7 +297,7 @@ void pbrt_free_attributes(pbrt_parser *parser);
 /* pbrt_options.c */
 pbrt_handler pbrt_option;
 
-/* As pbrt_error, at the parameter of that name, or where there is none at the directive. */
+/* Tells an error as pbrt_error does, at the parameter of that name, or where there is none at the directive. */
 ag_status pbrt_refuse(pbrt_parser *parser, const parameter_list *list, const char *name, const char *format, ...)
     AG_PRINTF(4, 5);
 

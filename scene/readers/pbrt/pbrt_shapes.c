@@ -140,7 +140,7 @@ static bool is_nothing(const pbrt_parser *parser)
            parser->state.medium_inside == parser->state.medium_outside;
 }
 
-/* Of the shape that is read next. */
+/* Reads the alpha of the shape that is read next. */
 static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
 {
     float alpha = 1.0f;
