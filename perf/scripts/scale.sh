@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# scale.sh: how the time of a phase grows with what it works on: photons, pixels, gather rays, spheres, triangles, over
-# three decades each; the exponent e of time ~ size^e, by least squares over all sizes, and over the last decade alone.
+# scale.sh: how the time of a phase grows with what it works on: photons, pixels, gather rays, spheres, triangles,
+# instances, materials, lamps, over two to three decades each; the exponent e of time ~ size^e, by least squares over all sizes, and over the last decade alone.
 # Use: perf/scripts/scale.sh [--quick] [--repeats N] [--out DIR]
 # CPU time of one thread, which a busy machine disturbs least. Writes scale.csv, exponents.csv (and .json), runs.csv and
 # the figure.
@@ -9,21 +9,22 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/suite.sh"
 
 suite_begin scale "usage: perf/scripts/scale.sh [options]
-Exponents: CPU time against photons, pixels, gather rays, spheres and triangles." "$@"
+Exponents: CPU time against photons, pixels, gather rays, spheres, triangles, instances, materials and lamps." "$@"
 suite_no_more_options
 photons=(1000 10000 100000 1000000) sides=(32 100 316 1000) gathers=(1 10 100 1000)
 spheres=(100 1000 10000 100000) triangles=(1000 10000 100000 1000000)
+instances=(1000 10000 100000 1000000) materials=(100 1000 10000) lamps=(10 100 1000)
 if [[ $quick == yes ]]; then
     photons=(1000 10000) sides=(16 50) gathers=(1 10) spheres=(100 1000) triangles=(1000 10000)
+    instances=(100 1000) materials=(100 1000) lamps=(10 100)
 fi
 suite_room 20
-for n in "${spheres[@]}"; do
-    mkdir -p "$suite_work/scale-$n"
-    "$suite_bin/afterglow-large-scene" spheres "$n" "$suite_work/scale-$n"
-done
-for n in "${triangles[@]}"; do
-    mkdir -p "$suite_work/scale-$n"
-    "$suite_bin/afterglow-large-scene" triangles "$n" "$suite_work/scale-$n"
+for kind in spheres triangles instances materials lamps; do
+    declare -n sizes=$kind
+    for n in "${sizes[@]}"; do
+        mkdir -p "$suite_work/scale-$n"
+        "$suite_bin/afterglow-large-scene" "$kind" "$n" "$suite_work/scale-$n"
+    done
 done
 
 common=(-t 1 --only indirect --spp 1)
@@ -39,12 +40,15 @@ for ((r = 1; r <= repeats; r++)); do
         suite_run gather "$n" "$r" "$room" "${common[@]}" --size 40x40 --gather-samples "$n" --photons 10000 \
             --cache precompute
     done
-    for n in "${spheres[@]}"; do
-        suite_run spheres "$n" "$r" "$suite_work/scale-$n/spheres.pbrt" "${common[@]}" --gather-samples 4 \
-            --photons 10000 --cache precompute
+    for kind in spheres triangles instances materials; do
+        declare -n sizes=$kind
+        for n in "${sizes[@]}"; do
+            suite_run "$kind" "$n" "$r" "$suite_work/scale-$n/$kind.pbrt" "${common[@]}" --gather-samples 4 \
+                --photons 10000 --cache precompute
+        done
     done
-    for n in "${triangles[@]}"; do
-        suite_run triangles "$n" "$r" "$suite_work/scale-$n/triangles.pbrt" "${common[@]}" --gather-samples 4 \
+    for n in "${lamps[@]}"; do # all light, of which most is direct
+        suite_run lamps "$n" "$r" "$suite_work/scale-$n/lamps.pbrt" -t 1 --spp 4 --noise 0 --gather-samples 4 \
             --photons 10000 --cache precompute
     done
 done
@@ -76,7 +80,9 @@ function add(name, size, seconds) {
 }
 $1 == "photons" { add("photons.tracing", $2, $at["photons_s"]); add("photons.map", $2, $at["map_s"]) }
 $1 == "pixels" || $1 == "gather" { add($1 ".render", $2, $at["render_s"]) }
-$1 == "spheres" || $1 == "triangles" { add($1 ".load", $2, $at["load_s"]); add($1 ".render", $2, $at["render_s"]) }
+$1 ~ /^(spheres|triangles|instances|materials|lamps)$/ {
+    add($1 ".load", $2, $at["load_s"]); add($1 ".render", $2, $at["render_s"])
+}
 END {
     print "what,sizes,exponent,last_decade"
     for (k = 1; k <= names; k++) {
@@ -90,7 +96,7 @@ suite_json "$out/scale.csv"
 suite_json "$out/exponents.csv"
 
 suite_plot "$out/scale" <<PLOT
-set logscale xy; set xlabel "photons, pixels, gather rays a pixel, spheres, triangles"; set ylabel "CPU seconds"
+set logscale xy; set xlabel "photons, pixels, gather rays a pixel, spheres, triangles, instances, materials, lamps"; set ylabel "CPU seconds"
 set key outside right; set title "How the time grows; grey: in proportion"
 of(bench, column) = sprintf("< grep '^%s,' '$out/scale.csv' | cut -d, -f2,%d", bench, column)
 plot of("photons", 4) using 1:2 with linespoints lw 2 title "photons: tracing", \
@@ -101,6 +107,9 @@ plot of("photons", 4) using 1:2 with linespoints lw 2 title "photons: tracing", 
     of("spheres", 6) using 1:2 with linespoints lw 2 title "spheres: render", \
     of("triangles", 3) using 1:2 with linespoints lw 2 title "triangles: load", \
     of("triangles", 6) using 1:2 with linespoints lw 2 title "triangles: render", \
+    of("instances", 3) using 1:2 with linespoints lw 2 title "instances: load", \
+    of("materials", 3) using 1:2 with linespoints lw 2 title "materials: load", \
+    of("lamps", 6) using 1:2 with linespoints lw 2 title "lamps: render", \
     1e-6 * x with lines lc rgb "#bbbbbb" dt 2 notitle, 1e-5 * x with lines lc rgb "#bbbbbb" dt 2 notitle
 PLOT
 

@@ -22,6 +22,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT) # afterglow_VERSION-1_ARCHITECTURE.deb
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy") # for the Python module
 # Who links against the library depends on this package; installing it renews the linker's cache (deb-triggers(5)).
 set(control ${CMAKE_CURRENT_BINARY_DIR}/debian)
 get_target_property(soversion afterglow SOVERSION)

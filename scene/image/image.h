@@ -21,7 +21,8 @@ typedef struct image {
     int channel_count;
     image_sample_type type; /* of the file; what is neither 8-bit, 16-bit nor half counts as float */
     float *pixels;
-    unsigned char *bytes; /* of 8-bit files, where they were asked for */
+    unsigned char *bytes;        /* of 8-bit files, where they were asked for */
+    bool is_multiplied_by_alpha; /* the file says so of its colours, and they are as stored */
     bool has_chromaticities;
     float chromaticities[8]; /* that the file brings: of red, green, blue, white, each x and y */
 } image;

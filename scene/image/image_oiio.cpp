@@ -270,6 +270,7 @@ image describe(const OIIO::ImageSpec &spec)
     read.full_height = spec.full_height;
     read.channel_count = spec.nchannels;
     read.type = sample_type_of(spec.format);
+    read.is_multiplied_by_alpha = spec.alpha_channel >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     const OIIO::ParamValue *chromaticities =
         spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
     if (chromaticities) {

@@ -275,6 +275,19 @@ static ag_status find_curve(texture_file_levels *l, texture_image *i, char *mess
                     : AG_ERROR_MEMORY;
 }
 
+/* maketx multiplies the colours by alpha, which those of PNG are not, and TIFF stores what it did. */
+static void tell_of_alpha(run_context *run, const texture_file_levels *l, const texture_image *i)
+{
+    char key[4096];
+    if (!run || !l->header->picture.is_multiplied_by_alpha || !texture_image_has_alpha(i))
+        return;
+    snprintf(key, sizeof key, "alpha:%s", i->path);
+    log_once(run->log, AG_LOG_WARNING, key,
+             "'%s': its colours are multiplied by its alpha, as maketx does, and used so: where alpha is below 1 they "
+             "are darker than in the picture that it was made of (make it of one without alpha)",
+             i->path);
+}
+
 static ag_status read_levels(run_context *run, const struct scene *s, texture_file_levels *l, texture_image *i,
                              char *message, size_t message_size)
 {
@@ -290,6 +303,8 @@ static ag_status read_levels(run_context *run, const struct scene *s, texture_fi
     const ag_status status = is_kept ? read_whole(run, l, i) : lend_tiles(run, l, s->texture_store, i);
     if (status == AG_OK && (l->as_bytes || l->curve))
         texture_file_levels_warn_of_loss(run, l, i);
+    if (status == AG_OK)
+        tell_of_alpha(run, l, i);
     if (status == AG_ERROR_INPUT)
         snprintf(message, message_size, "cannot read '%s': OpenImageIO cannot decode its tiles", i->path);
     return status;

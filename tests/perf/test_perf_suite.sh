@@ -22,8 +22,8 @@ expect verdicts.csv 0
 expect frame.csv 2
 expect scaling.csv 0
 expect waiting.csv 0
-expect exponents.csv 8
-expect scale.csv 10
+expect exponents.csv 14
+expect scale.csv 16
 expect contention.csv 3
 expect memory.csv 2
 expect error.csv 2

@@ -216,6 +216,44 @@ static void test_many_lamps(void **state)
     compare("many lamps", room_with(text), MORE, NULL, 0.01, 0.05);
 }
 
+/* A square of so many lamps side by side, in a file of its own. */
+static const char *room_under_lamps(int side)
+{
+    char text[1024];
+    const char *path = in_folder(side == 1 ? "one.pbrt" : "lamps.pbrt");
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (int i = 0; i < side * side; i++) {
+        double size = 0.8 / side, x = -0.4 + size * (i % side), y = -0.4 + size * (i / side);
+        fprintf(file,
+                "AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] \"bool twosided\" true Shape \"bilinearmesh\" "
+                "\"point3 P\" [%.9g %.9g 1.7 %.9g %.9g 1.7 %.9g %.9g 1.7 %.9g %.9g 1.7]\n",
+                x, y, x + size, y, x, y + size, x + size, y + size);
+    }
+    assert_int_equal(fclose(file), 0);
+    snprintf(text, sizeof text, "AttributeBegin Include \"%s\" AttributeEnd", path);
+    return room_with(text);
+}
+
+/* Side by side they are one large lamp, whichever of them each shadow ray picks and each photon leaves. */
+static void test_a_thousand_lamps_are_one(void **state)
+{
+    (void)state;
+    picture one = RENDER(room_under_lamps(1), "--integrator=path", "--spp=512");
+    for (int is_map = 0; is_map < 2; is_map++) {
+        picture many = is_map ? RENDER(room_under_lamps(32), MORE.photons, "--nearest=30", MORE.spp, MORE.gather)
+                              : RENDER(room_under_lamps(32), "--integrator=path", "--spp=512");
+        for (int c = 0; c < 3; c++)
+            expect_near(is_map ? "a thousand lamps" : "a thousand lamps, paths", picture_mean(&many, c),
+                        picture_mean(&one, c), 0.01);
+        for (int y = 0; y < one.height; y += BLOCK)
+            for (int x = 0; x < one.width; x += BLOCK)
+                expect_near("a block", picture_block(&many, x, y, BLOCK, 1), picture_block(&one, x, y, BLOCK, 1), 0.05);
+        picture_reset(&many);
+    }
+    picture_reset(&one);
+}
+
 /* "photons" 0 takes a lamp's light out of the map, and leaves it in direct light; another factor changes noise
  * alone. */
 static void test_photons(void **state)
@@ -238,10 +276,15 @@ static void test_photons(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_goniometric),         TEST_IN_FOLDER(test_projection),
-        TEST_IN_FOLDER(test_textured_lamps),      TEST_IN_FOLDER(test_portal),
-        TEST_IN_FOLDER(test_portal_adds_nothing), TEST_IN_FOLDER(test_floor_under_a_portal),
-        TEST_IN_FOLDER(test_many_lamps),          TEST_IN_FOLDER(test_photons),
+        TEST_IN_FOLDER(test_goniometric),
+        TEST_IN_FOLDER(test_projection),
+        TEST_IN_FOLDER(test_textured_lamps),
+        TEST_IN_FOLDER(test_portal),
+        TEST_IN_FOLDER(test_portal_adds_nothing),
+        TEST_IN_FOLDER(test_floor_under_a_portal),
+        TEST_IN_FOLDER(test_many_lamps),
+        TEST_IN_FOLDER(test_photons),
+        TEST_IN_FOLDER(test_a_thousand_lamps_are_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

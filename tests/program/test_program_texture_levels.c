@@ -84,6 +84,31 @@ static void test_dark_levels(void **state)
     }
 }
 
+static unsigned char half_clear(uint32_t level, uint32_t x, uint32_t y, uint32_t channel)
+{
+    (void)level, (void)x, (void)y;
+    return channel == 3 ? 128 : 100;
+}
+
+/* Colours that are multiplied by alpha are darker than those of the picture that they were made of. */
+static void test_multiplied_colors(void **state)
+{
+    (void)state;
+    write_scene(
+        "Camera \"perspective\" WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.tx\" "
+        "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"");
+    for (int k = 0; k < 4; k++) {
+        tiff_is_multiplied = k % 2;
+        tiff_write_levels("a.tx", k < 2 ? 256 : 2048, 4, half_clear);
+        tiff_is_multiplied = false;
+        program_run run =
+            RUN("--integrator=path", "--size=4x4", "--spp=1", "--texture-memory=16M", "-o", "x.exr", "scene.pbrt");
+        expect_exit(&run, 0);
+        assert_true((k % 2 == 1) == (strstr(run.err, "'a.tx': its colours are multiplied by its alpha") != NULL));
+        program_run_reset(&run);
+    }
+}
+
 static const char *room(void)
 {
     tiff_write_levels("bytes.tx", 2048, 4, noise);
@@ -144,8 +169,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_own_levels),  TEST_IN_FOLDER(test_levels_that_end_early),
-        TEST_IN_FOLDER(test_dark_levels), TEST_IN_FOLDER(test_memory),
-        TEST_IN_FOLDER(test_broken),
+        TEST_IN_FOLDER(test_dark_levels), TEST_IN_FOLDER(test_multiplied_colors),
+        TEST_IN_FOLDER(test_memory),      TEST_IN_FOLDER(test_broken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

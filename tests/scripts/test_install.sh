@@ -72,6 +72,17 @@ for user in use_c use_cpp; do
 done
 cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
 
+# The Python module, beside the library that was installed.
+module=$(find "$prefix" -path '*/lib/python3/dist-packages/afterglow.py')
+[[ -s $module ]] || fail "no Python module"
+for python in python3 /usr/bin/python3; do
+    "$python" -c 'import numpy' 2>/dev/null || continue
+    said=$(AFTERGLOW_LIBRARY=$library PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${module%/*} "$python" -c 'import afterglow; print(afterglow.version())')
+    [[ "afterglow $said" == "$(<version)" ]] || fail "the Python module knows another version: $said"
+    echo "ok: Python"
+    break
+done
+
 # A scene from memory, three views of it with one photon map.
 walk=$(find "$prefix" -name walk.c)
 [[ -s $walk ]] || fail "no example of a walk"
