@@ -313,12 +313,9 @@ static void the_bound_of_shading_normals_keeps_nearly_all_flux(void **state)
 static void facets_lose_nothing_where_normals_lean(void **state)
 {
     (void)state;
-    material all[] = {conductor(0.0f, 0.0f),
-                      conductor(0.1f, 0.3f),
-                      dielectric(1.5f, 0.0f, 0.0f),
-                      coated_diffuse(0.0f, 0.0f),
-                      dielectric(1.5f, 0.4f, 0.2f),
-                      principled(1.0f, 0.5f, 0.0f, 0.8f, 0.5f)};
+    material all[] = {conductor(0.0f, 0.0f),        conductor(0.1f, 0.3f),
+                      dielectric(1.5f, 0.0f, 0.0f), coated_diffuse(0.0f, 0.0f),
+                      dielectric(1.5f, 0.4f, 0.2f), principled(1.0f, 0.5f, 0.0f, 0.8f, 0.5f)};
     rng random = test_random(14);
     for (int k = 0; k < 6; k++) {
         int crossed = 0, compared = 0;
