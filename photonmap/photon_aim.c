@@ -55,15 +55,21 @@ static ag_status set_split(learner *l, const emission_trial *trials, uint32_t co
     return AG_OK;
 }
 
+static float caustic_root(const learner *l)
+{
+    return l->counts.asked > 0 ? (float)(l->counts.roots / (double)l->counts.asked) : 0.0f;
+}
+
 static ag_status trace_round(learner *l, uint32_t count)
 {
     uint64_t parts = l->counts.parts;
     emission_trial *trials = l->trials + l->count;
     l->settings.guide = &l->guides[l->round_count];
     l->settings.split_above = l->round_count > 0 ? l->split_above : 0.0f;
+    l->settings.caustic_root = caustic_root(l);
     ag_status status = photon_tracing_try(l->s, l->run, &l->settings, l->count, count, trials, &l->counts);
     l->count += count;
-    if (status == AG_OK && l->settings.onward)
+    if (status == AG_OK && (l->settings.onward || l->settings.kind == PHOTON_CAUSTIC))
         status = set_split(l, trials, count, l->counts.parts - parts);
     return status;
 }
@@ -146,6 +152,7 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     if (out_aim->guide.nodes) {
         out_aim->wanted = fewer_by_power(&l.blind, settings->wanted);
         out_aim->split_above = l.split_above;
+        out_aim->caustic_root = caustic_root(&l);
     }
     for (int i = 0; i <= ROUNDS; i++)
         emission_guide_reset(&l.guides[i]);

@@ -10,8 +10,9 @@
 typedef struct photon_aim {
     emission_guide guide; /* owned; empty: photons go by power alone */
     uint32_t wanted;      /* photons to store, > 0 */
-    float split_above;    /* as photon_tracing_settings has it; 0 without a guide */
-    trial_counts tried;   /* in all */
+    float split_above;    /* as photon_tracing_settings has it, and the next one; 0 without a guide */
+    float caustic_root;
+    trial_counts tried; /* in all */
 } photon_aim;
 
 /* For photon tracing with these settings, of which guide and split_above are not read; share: of the paths, that follow

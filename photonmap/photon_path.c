@@ -92,6 +92,7 @@ static void store(photon_tracer *t, const photon_path *path, const surface_hit *
         float importance = importance_map_at(t->settings->asked, at.position, normal);
         t->counts->photons++;
         t->counts->asked += importance > 0.0f;
+        t->counts->roots += (double)sqrtf(importance);
         t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
         return;
     }
@@ -276,6 +277,20 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
     return true;
 }
 
+/* The root of the share of a path's flux that arrives where light is asked for, by the lobes that may split it; 0: it
+ * is not split. Mirrors would send all parts the same way. */
+static float root_of_onward_importance(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
+                                       const arrival_surface *m)
+{
+    const photon_tracing_settings *settings = t->settings;
+    if (settings->kind == PHOTON_CAUSTIC)
+        return !m->albedo && bsdf_is_sampled_from_light(&m->scattering, BSDF_TRACED) ? settings->caustic_root : 0.0f;
+    if (!arrival_surface_has(m, BSDF_GATHERED))
+        return 0.0f;
+    surface_rest at = rest_of_arrival(t->s, path, hit);
+    return sqrtf(importance_map_at(settings->onward, at.position, at.geometric_normal));
+}
+
 /* Into how many parts a path is split before it is scattered. In proportion to its flux and to the root of the share of
  * it that arrives where light is asked for, their variance is least for the number of all parts. */
 static uint32_t count_parts(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
@@ -283,14 +298,13 @@ static uint32_t count_parts(const photon_tracer *t, const photon_path *path, con
 {
     const photon_tracing_settings *settings = t->settings;
     bool is_last = path->scatterings >= settings->max_scatterings || path->arrivals >= SCATTERING_CAP;
-    if (!(settings->split_above > 0.0f) || is_last || !arrival_surface_has(m, BSDF_GATHERED))
+    if (!(settings->split_above > 0.0f) || is_last)
         return 1;
-    surface_rest at = rest_of_arrival(t->s, path, hit);
-    float importance = importance_map_at(settings->onward, at.position, at.geometric_normal);
     float flux = path->flux.r + path->flux.g + path->flux.b;
     if (t->trial)
         flux /= t->trial->density;
-    float parts = flux * sqrtf(importance) / settings->split_above, most = SPLIT_MOST * path->share;
+    float parts = flux * root_of_onward_importance(t, path, hit, m) / settings->split_above;
+    float most = SPLIT_MOST * path->share;
     return !(parts > 1.0f) ? 1 : (uint32_t)fmaxf(fminf(parts + 0.5f, most), 1.0f);
 }
 

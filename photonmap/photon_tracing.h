@@ -67,8 +67,10 @@ typedef struct photon_tracing_settings {
     const emission_guide *guide;  /* where paths begin */
     const importance_map *asked;  /* elsewhere photons are stored no denser than power alone would have them */
     const importance_map *onward; /* diffuse surfaces whose light arrives where it is asked for */
-    float split_above; /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
-                          importance, over this parts; > 0 only with `onward`; 0: paths are not split */
+    float split_above;  /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
+                           importance, over this parts; 0: paths are not split */
+    float caustic_root; /* the root of importance of a caustic map, whose paths are split at rough traced lobes: the
+                           mean over the photons of trials that arrive where light is asked for */
     double progress_begin, progress_end; /* of AG_PHASE_PHOTONS */
 } photon_tracing_settings;
 
@@ -84,6 +86,7 @@ typedef struct trial_counts {
     uint64_t paths, rays;
     uint64_t parts;          /* that splitting has added to the paths */
     uint64_t photons, asked; /* that would be stored; and of those, where light is asked for */
+    double roots;            /* of importance at the latter, their sum */
 } trial_counts;
 
 /* Tries so many paths, from that number on, which store nothing: a trial's value is the sum over the photons that it

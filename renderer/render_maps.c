@@ -46,6 +46,7 @@ static ag_status trace_aimed(ag_context *context, const scene *s, float share, p
     tracing.asked = guide->nodes ? tracing.asked : NULL;
     tracing.wanted = aim.wanted;
     tracing.split_above = aim.split_above;
+    tracing.caustic_root = aim.caustic_root;
     if (status == AG_OK)
         status = photon_tracing_run(s, &context->run, &tracing, out_set);
     if (status == AG_OK && out_set->parts > 0)

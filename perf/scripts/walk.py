@@ -164,8 +164,8 @@ def cameras(path, step, count):
         sys.exit('walk: error: nothing stands in the middle of the picture')
     target = [eye[i] + axes[2][i] * distance for i in range(3)]
     for number in range(count):
-        position = [eye[i] + axes[0][i] * step * number * distance for i in range(3)]
-        print(*(f'{value:.9g}' for value in position + target))
+        stand = [eye[i] + axes[0][i] * step * number * distance for i in range(3)]
+        print(*(f'{value:.9g}' for value in stand + target))
 
 
 if __name__ == '__main__':
