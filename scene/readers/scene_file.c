@@ -68,7 +68,7 @@ static ag_status load_unknown(run_context *run, const char *path, scene *out_sce
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     ag_status status = pbrt_parse_file(run, path, out_scene);
-    if (status == AG_ERROR_SCENE && dot && strcasecmp(dot, ".gz") != 0)
+    if (status == AG_ERROR_SCENE && dot && strcasecmp(dot, ".gz") != 0 && import_finds_program(run, AG_LOG_WARNING))
         log_message(run->log, AG_LOG_WARNING, "no reader knows files that end in %s: this one was read as pbrt text",
                     dot);
     return status;

@@ -2,6 +2,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/model_fixture.h"
 
+#include "image/module_folders.h"
+
 #include <zlib.h>
 
 #define TRIANGLE                                                                                                       \
@@ -39,6 +41,38 @@ static void the_name_picks_the_reader(void **state)
         assert_int_equal(r.scene->has_camera, FILES[k].kind == SHAPE_MESH);
         reading_destroy(&r);
     }
+}
+
+/* Without it every file whose name no reader knows may be pbrt text; one that is not is told with the reason. */
+static void pbrt_text_needs_no_program_that_imports(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"a", "a.txt", "a.scene", "a.fbx"};
+    const char *before = getenv("AFTERGLOW_MODULE_DIR");
+    char *saved = before ? strdup(before) : NULL;
+    module_folders folders;
+    assert_int_equal(setenv("AFTERGLOW_MODULE_DIR", folder, 1), 0);
+    module_folders_find(&folders);
+    for (int k = 0; k < folders.count; k++) {
+        char path[MODULE_PATH_MAX];
+        snprintf(path, sizeof path, "%s/afterglow-import", folders.paths[k]);
+        if (access(path, X_OK) == 0) {
+            printf("SKIPPED: '%s' is installed\n", path);
+            skip();
+        }
+    }
+    for (int k = 0; k < 4; k++) {
+        reading r = model_quietly(NAMES[k], PBRT);
+        assert_int_equal(r.scene->shape_count, 1);
+        reading_destroy(&r);
+    }
+    reading r = model_of("a.stl", "solid a\n");
+    assert_int_equal(r.status, AG_ERROR_SCENE);
+    assert_non_null(r.said[AG_LOG_WARNING]);
+    assert_non_null(strstr(r.said[AG_LOG_WARNING], "the program afterglow-import, which reads other formats, is not"));
+    reading_destroy(&r);
+    assert_int_equal(saved ? setenv("AFTERGLOW_MODULE_DIR", saved, 1) : unsetenv("AFTERGLOW_MODULE_DIR"), 0);
+    free(saved);
 }
 
 static void gzip_is_read_where_the_reader_is_ours(void **state)
@@ -110,8 +144,11 @@ static void files_that_are_not_there_are_errors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(the_name_picks_the_reader),           TEST_IN_FOLDER(gzip_is_read_where_the_reader_is_ours),
-        TEST_IN_FOLDER(a_ply_file_alone_is_grey_and_lit),    TEST_IN_FOLDER(ply_errors_name_the_file),
+        TEST_IN_FOLDER(the_name_picks_the_reader),
+        TEST_IN_FOLDER(gzip_is_read_where_the_reader_is_ours),
+        TEST_IN_FOLDER(pbrt_text_needs_no_program_that_imports),
+        TEST_IN_FOLDER(a_ply_file_alone_is_grey_and_lit),
+        TEST_IN_FOLDER(ply_errors_name_the_file),
         TEST_IN_FOLDER(files_that_are_not_there_are_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #define PROGRAM_NAME "afterglow-import"
+enum { TRIED_SIZE = 1024 };
 
 static ag_status refuse(const run_context *run, const char *path, const char *what, const char *reason)
 {
@@ -40,33 +41,40 @@ static ag_status find_memory_limit(const run_context *run, const char *path, uin
     return AG_OK;
 }
 
-/* Gives the program's path, or NULL: an error says where it was looked for. */
-static const char *find_program(const run_context *run, char *path, size_t path_size)
+/* Gives the program's path, or NULL and where it was looked for. */
+static const char *find_program(char *path, size_t path_size, char tried[TRIED_SIZE])
 {
     module_folders folders;
-    char tried[1024] = "";
     size_t length = 0;
+    tried[0] = '\0';
     module_folders_find(&folders);
     for (int i = 0; i < folders.count; i++) {
         if (snprintf(path, path_size, "%s/%s", folders.paths[i], PROGRAM_NAME) >= (int)path_size)
             continue;
         if (access(path, X_OK) == 0)
             return path;
-        if (length < sizeof tried)
-            length += (size_t)snprintf(tried + length, sizeof tried - length, "%s'%s'", i ? ", " : "", path);
+        if (length < TRIED_SIZE)
+            length += (size_t)snprintf(tried + length, TRIED_SIZE - length, "%s'%s'", i ? ", " : "", path);
     }
-    log_message(run->log, AG_LOG_ERROR, "the program " PROGRAM_NAME ", which reads other formats, is not there: %s",
-                tried);
     return NULL;
+}
+
+bool import_finds_program(const run_context *run, ag_log_level level)
+{
+    char path[MODULE_PATH_MAX], tried[TRIED_SIZE];
+    if (find_program(path, sizeof path, tried))
+        return true;
+    log_message(run->log, level, "the program " PROGRAM_NAME ", which reads other formats, is not there: %s", tried);
+    return false;
 }
 
 ag_status import_reads_extension(const run_context *run, const char *extension, bool *out_reads)
 {
-    char path[MODULE_PATH_MAX], message[512];
+    char path[MODULE_PATH_MAX], tried[TRIED_SIZE], message[512];
     import_answer answer;
     *out_reads = false;
-    if (!find_program(run, path, sizeof path))
-        return AG_ERROR_SYSTEM;
+    if (!find_program(path, sizeof path, tried))
+        return AG_OK;
     const char *const arguments[] = {PROGRAM_NAME, "reads", extension, NULL};
     ag_status status = import_process_run(run, path, arguments, &answer, message, sizeof message);
     if (status == AG_OK)
@@ -82,9 +90,11 @@ static ag_status read_records(run_context *run, const char *path, uint64_t memor
     const input_files *inputs = run->inputs;
     const bool is_confined = inputs && inputs->is_confined;
     const size_t folder_count = is_confined ? inputs->root_count : 0;
-    char program[MODULE_PATH_MAX], memory[32], message[512];
-    if (!find_program(run, program, sizeof program))
+    char program[MODULE_PATH_MAX], tried[TRIED_SIZE], memory[32], message[512];
+    if (!find_program(program, sizeof program, tried)) {
+        import_finds_program(run, AG_LOG_ERROR);
         return AG_ERROR_SYSTEM;
+    }
     const char **arguments = calloc(folder_count + 5, sizeof *arguments);
     if (!arguments)
         return AG_ERROR_MEMORY;
