@@ -6,8 +6,10 @@
 #include "fixtures/temporary_folder.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
+#include <sys/wait.h>
 
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
@@ -88,12 +90,26 @@ static bool never_end(int number, FILE *answer)
     return true;
 }
 
+/* A process of its group, which says that it is there, and neither ends. */
+static bool have_a_child(int number, FILE *answer)
+{
+    (void)number, (void)answer;
+    const int told = open(getenv("CHILD_TELLS"), O_WRONLY);
+    const pid_t child = fork();
+    if (child == 0 && write(told, &(pid_t){getpid()}, sizeof child) != (ssize_t)sizeof child)
+        _exit(1);
+    if (child != 0)
+        close(told);
+    return never_end(number, answer);
+}
+
 static const struct {
     const char *name;
     task *run;
 } TASKS[] = {
     {"answer", answer_much}, {"crash", crash},        {"fail", fail_quietly}, {"silence", say_nothing},
-    {"leave", leave},        {"memory", take_memory}, {"forever", never_end}, {"descriptors", count_descriptors}};
+    {"leave", leave},        {"memory", take_memory}, {"forever", never_end}, {"descriptors", count_descriptors},
+    {"child", have_a_child}};
 
 /* The other side: this program's main, started by import_process_run. */
 static int work(char **arguments)
@@ -196,6 +212,74 @@ static void cancelling_ends_it(void **state)
     run_context_reset(&run);
 }
 
+/* Cancels when the child is there. */
+typedef struct child_cancel {
+    run_context run;
+    int told;
+    pid_t child;
+} child_cancel;
+
+static void *cancel_with_child(void *user)
+{
+    child_cancel *c = user;
+    struct pollfd waiting = {.fd = c->told, .events = POLLIN};
+    if (poll(&waiting, 1, 60000) != 1 || read(c->told, &c->child, sizeof c->child) != (ssize_t)sizeof c->child)
+        c->child = 0;
+    run_cancel(&c->run);
+    return NULL;
+}
+
+static void cancelling_ends_its_children(void **state)
+{
+    (void)state;
+    import_answer answer;
+    child_cancel c = {.child = 0};
+    pthread_t thread;
+    run_context_init(&c.run, NULL, NULL, NULL, NULL);
+    assert_int_equal(mkfifo(in_folder("told"), 0600), 0);
+    c.told = open(in_folder("told"), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    assert_true(c.told >= 0);
+    assert_int_equal(setenv("CHILD_TELLS", in_folder("told"), 1), 0);
+    assert_int_equal(pthread_create(&thread, NULL, cancel_with_child, &c), 0);
+    assert_int_equal(run_task(&c.run, "child", 0, &answer, message, sizeof message), AG_CANCELLED);
+    pthread_join(thread, NULL);
+    assert_true(c.child > 0);
+    struct pollfd waiting = {.fd = c.told}; /* nobody has its other end when the child has ended */
+    const int ended = poll(&waiting, 1, 10000);
+    if (ended != 1)
+        kill(c.child, SIGKILL);
+    assert_int_equal(ended, 1);
+    close(c.told);
+    run_context_reset(&c.run);
+}
+
+/* Its caller ended before the process could ask to be ended with it: the task is not begun. */
+static void nothing_is_done_for_a_caller_that_is_gone(void **state)
+{
+    (void)state;
+    for (int is_gone = 0; is_gone < 2; is_gone++) {
+        int ends[2], how;
+        assert_int_equal(pipe2(ends, O_CLOEXEC), 0);
+        if (is_gone)
+            close(ends[0]);
+        const pid_t id = fork();
+        if (id == 0) {
+            const int answer = fcntl(open("/dev/null", O_WRONLY), F_DUPFD, 10), end = fcntl(ends[1], F_DUPFD, 10);
+            dup2(answer, IMPORT_ANSWER_DESCRIPTOR);
+            dup2(end, IMPORT_END_DESCRIPTOR);
+            execl("/proc/self/exe", "test_import_process", "leave", "7", (char *)NULL);
+            _exit(99);
+        }
+        assert_true(id > 0);
+        close(ends[1]);
+        assert_int_equal(waitpid(id, &how, 0), id);
+        assert_true(WIFEXITED(how));
+        assert_int_equal(WEXITSTATUS(how), is_gone ? 1 : 7);
+        if (!is_gone)
+            close(ends[0]);
+    }
+}
+
 /* Many at once, each with its own. */
 static void *run_one(void *user)
 {
@@ -257,6 +341,8 @@ int main(int count, char **arguments)
         cmocka_unit_test(memory_is_limited),
 #endif
         cmocka_unit_test(cancelling_ends_it),
+        cmocka_unit_test_setup_teardown(cancelling_ends_its_children, make_folder, remove_folder),
+        cmocka_unit_test(nothing_is_done_for_a_caller_that_is_gone),
         cmocka_unit_test(a_program_that_is_not_there_is_an_error),
         cmocka_unit_test(descriptors_stay_here),
         cmocka_unit_test(threads_may_have_one_each),

@@ -26,7 +26,7 @@ static bool wait_for_end(const run_context *run, pid_t process, int pipe_end)
     struct pollfd at = {.fd = pipe_end, .events = POLLIN};
     for (;;) {
         if (run && run_is_cancelled(run)) {
-            kill(process, SIGKILL);
+            kill(-process, SIGKILL); /* the whole group, which start made */
             return false;
         }
         int ready = poll(&at, 1, LOOK_UP_EVERY_MS);

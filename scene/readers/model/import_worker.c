@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "model/import_worker.h"
 
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -27,9 +28,18 @@ static void limit_memory(uint64_t memory_bytes)
     }
 }
 
+/* The caller alone has the other end of the pipe. Its number would say less: it may be of another namespace. */
+static bool caller_is_gone(void)
+{
+    struct pollfd pipe_end = {.fd = IMPORT_END_DESCRIPTOR};
+    return poll(&pipe_end, 1, 0) > 0 && (pipe_end.revents & POLLERR) != 0;
+}
+
 FILE *import_worker_begin(uint64_t memory_bytes)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (caller_is_gone()) /* before that */
+        return NULL;
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
     limit_memory(memory_bytes);
     return fdopen(IMPORT_ANSWER_DESCRIPTOR, "wb");

@@ -12,7 +12,7 @@
 enum { IMPORT_ANSWER_DESCRIPTOR = 3, IMPORT_END_DESCRIPTOR = 4, IMPORT_DESCRIPTORS_END = 5 };
 
 /* Sees to it that the process dies with its caller, leaves no core, and takes memory_bytes at most on top of what it
- * has. Returns the stream to write the answer to; NULL where it is not there. */
+ * has. Returns the stream to write the answer to; NULL where it is not there, or the caller is gone already. */
 FILE *import_worker_begin(uint64_t memory_bytes);
 
 /* Ends the process at once, without freeing anything: with success where all that was written is there and is_sound. */
