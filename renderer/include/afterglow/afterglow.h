@@ -115,8 +115,8 @@ typedef enum ag_up_axis {
 #define AG_TEXTURE_MEMORY_LEAST_BYTES   ((uint64_t)16 << 20)
 
 /* Finds a file that a scene names: a picture, an included text, a mesh, a spectrum. Writes its path to out_path, of
- * path_size bytes, with a NUL at its end; false leaves it to the library, which looks in the scene's folder. Called on
- * the thread that loads the scene, while it does so; it may call what an ag_log_fn may. */
+ * path_size bytes, with a NUL at its end (an empty one is an error); false leaves it to the library, which looks in the
+ * scene's folder. Called on the thread that loads the scene, while it does so; it may call what an ag_log_fn may. */
 typedef bool ag_find_file_fn(void *user, const char *name, char *out_path, size_t path_size);
 
 /* Settings of a scene beyond what its file says. */
@@ -161,7 +161,7 @@ typedef struct ag_scene_settings {
 AG_API ag_scene_settings ag_default_scene_settings(void);
 
 /* ag_scene_load with settings; NULL: the default ones. They are needed for the time of the call alone. Errors also:
- * AG_ERROR_ARGUMENT (a setting is out of its range). */
+ * AG_ERROR_ARGUMENT (a setting is out of its range; the log says which). */
 AG_API ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
                                   ag_scene **out_scene);
 /* ag_scene_load_as of pbrt-v4 text that lies in memory: size_bytes of it, which are needed for the time of the call
