@@ -223,6 +223,14 @@ static ag_status take_parameters(making_call *c, const ag_parameter *given, size
     return scene_parameters_copy(c->making->context->log, c->call.where, given, count, out_items);
 }
 
+/* Whether the last row is 0 0 0 1, up to the rounding of whoever has undone a matrix. */
+static bool is_affine(const double *rows)
+{
+    static const double ROUNDING = 1e-6;
+    return fabs(rows[12]) <= ROUNDING && fabs(rows[13]) <= ROUNDING && fabs(rows[14]) <= ROUNDING &&
+           fabs(rows[15] - 1.0) <= ROUNDING;
+}
+
 /* Rows of world from own space; NULL: no change. */
 static ag_status take_matrix(const making_call *c, const double *rows, transform *out_transform)
 {
@@ -234,6 +242,9 @@ static ag_status take_matrix(const making_call *c, const double *rows, transform
     for (int i = 0; i < 16; i++)
         if (!isfinite(rows[i]))
             return refuse(c, "a number of its matrix is not finite");
+    if (!is_affine(rows))
+        return refuse(c, "the last row of its matrix is not 0 0 0 1: the 16 numbers go row by row, and the translation "
+                         "is in the last column");
     if (!transform_from_matrix((const double(*)[4])m, out_transform))
         return refuse(c, "its matrix cannot be undone");
     return AG_OK;
@@ -270,8 +281,10 @@ static ag_status add_shape(making_call *c, const ag_shape *given)
     AG_TRY(take_matrices(c, s.world_from_shape, s.world_from_shape_end, &at));
     AG_TRY(take_parameters(c, s.parameters, s.parameter_count, &c->items));
     AG_TRY(take_parameters(c, s.light_parameters, s.light_parameter_count, &c->light_items));
+    AG_TRY(
+        pbrt_builder_shape(c->making->builder, &c->call, &at, s.type, c->items, s.is_light ? &c->light_items : NULL));
     c->making->has_moving = c->making->has_moving || s.world_from_shape_end;
-    return pbrt_builder_shape(c->making->builder, &c->call, &at, s.type, c->items, s.is_light ? &c->light_items : NULL);
+    return AG_OK;
 }
 
 ag_status ag_scene_add_shape(ag_scene *made, const ag_shape *shape_to_add)
@@ -314,8 +327,9 @@ static ag_status add_instance(making_call *c, const ag_instance *given)
     describe(c, "ObjectInstance", i.object, "", NULL);
     at.object = i.object;
     AG_TRY(take_matrices(c, i.world_from_object, i.world_from_object_end, &at));
+    AG_TRY(pbrt_builder_instance(c->making->builder, &c->call, &at));
     c->making->has_moving = c->making->has_moving || i.world_from_object_end;
-    return pbrt_builder_instance(c->making->builder, &c->call, &at);
+    return AG_OK;
 }
 
 ag_status ag_scene_add_instance(ag_scene *made, const ag_instance *instance)

@@ -4,9 +4,11 @@
 
 #include "display_address.h"
 #include "display_packet.h"
+#include "signals.h"
 
 #include <errno.h>
 #include <linux/sockios.h>
+#include <math.h>
 #include <netdb.h>
 #include <poll.h>
 #include <pthread.h>
@@ -25,7 +27,8 @@ enum {
     CONNECT_PATIENCE_MS = 3000,   /* for a host that does not answer */
     RETRY_MS = 2000,              /* between attempts to connect */
     SEND_PATIENCE_MS = 30000,     /* for a viewer that is busy, while there is still work to do */
-    LEAVE_PATIENCE_MS = 5000,     /* and when it alone is waited for */
+    LEAVE_PATIENCE_MS = 5000,     /* and when it alone is waited for, and takes nothing */
+    LEAVE_TOTAL_MS = 10000,       /* and takes something now and then */
     SEND_BUFFER_BYTES = 256 << 10 /* what the kernel holds back for a slow viewer */
 };
 
@@ -43,12 +46,14 @@ struct display_server {
     char name[512];
     bool is_leaving, is_done; /* main waits for the film to be sent; it is, or cannot be */
     bool is_stopping;
+    bool is_reached; /* there has been a connection */
+    bool has_warned;
     uint64_t sent_bytes;
     /* the sender's alone */
     int socket; /* -1: none */
     int64_t next_attempt_ms;
-    uint64_t opened_turn; /* which film the viewer has a picture of; 0: none */
-    bool has_warned;
+    uint64_t opened_turn;  /* which film the viewer has a picture of; 0: none */
+    char opened_name[512]; /* and under which name */
 };
 
 static int64_t now_ms(void)
@@ -66,18 +71,22 @@ static bool is_wanted(display_server *d, uint64_t turn)
     return wanted;
 }
 
-/* --- the connection, the sender's --- */
-
+/* Tells the first misfortune only. */
 static void warn(display_server *d, const char *what, const char *why)
 {
     char text[512];
-    if (d->has_warned)
-        return;
+    pthread_mutex_lock(&d->lock);
+    const bool has_warned = d->has_warned;
     d->has_warned = true;
+    pthread_mutex_unlock(&d->lock);
+    if (has_warned)
+        return;
     snprintf(text, sizeof text, "--display-server %s: %s: %s; the picture is rendered all the same", d->address_text,
              what, why);
     d->warn(d->user, AG_LOG_WARNING, text);
 }
+
+/* --- the connection, the sender's --- */
 
 static void disconnect(display_server *d)
 {
@@ -146,7 +155,12 @@ static bool connect_to_viewer(display_server *d, uint64_t turn)
     freeaddrinfo(found);
     if (d->socket < 0 && error != ECANCELED)
         warn(d, "no viewer answers", strerror(error));
-    return d->socket >= 0;
+    if (d->socket < 0)
+        return false;
+    pthread_mutex_lock(&d->lock);
+    d->is_reached = true;
+    pthread_mutex_unlock(&d->lock);
+    return true;
 }
 
 static void lose_viewer(display_server *d, int error)
@@ -217,7 +231,8 @@ static bool open_picture(display_server *d, uint64_t turn)
     if (is_there) {
         int width, height;
         ag_film_pixels(d->film, &width, &height);
-        display_packet_create_picture(&packet, d->name, width, height);
+        memcpy(d->opened_name, d->name, sizeof d->opened_name);
+        display_packet_create_picture(&packet, d->opened_name, width, height);
         memset(d->versions, 0, ag_film_tile_count(d->film) * sizeof *d->versions);
     }
     pthread_mutex_unlock(&d->lock);
@@ -257,7 +272,7 @@ static void send_film(display_server *d, uint64_t turn, bool is_last)
         return;
     while (take_changed_tile(d, turn, &which, &tile, pixels))
         for (int channel = 0; channel < 3; channel++) {
-            display_packet_update_channel(&packet, d->name, channel, &tile, pixels);
+            display_packet_update_channel(&packet, d->opened_name, channel, &tile, pixels);
             if (!send_packet(d, &packet, turn))
                 return;
         }
@@ -386,26 +401,40 @@ void display_server_show(display_server *d, const ag_film *film, const char *nam
     pthread_mutex_unlock(&d->lock);
 }
 
-void display_server_leave(display_server *d)
+/* Waits until the film is sent, with the lock: false where it is not when the patience is over, or a signal to stop has
+ * come. */
+static bool await_sent(display_server *d, int64_t patience_ms)
+{
+    const int64_t end_ms = now_ms() + (patience_ms < LEAVE_TOTAL_MS ? patience_ms : LEAVE_TOTAL_MS);
+    int64_t idle_end_ms = now_ms() + LEAVE_PATIENCE_MS;
+    uint64_t sent = d->sent_bytes;
+    while (!d->is_done) {
+        const int64_t now = now_ms();
+        if (d->sent_bytes != sent)
+            idle_end_ms = now + LEAVE_PATIENCE_MS;
+        sent = d->sent_bytes;
+        if (signals_stop() || now >= end_ms || now >= idle_end_ms)
+            return false;
+        wait_until(d, now + POLL_MS < end_ms ? now + POLL_MS : end_ms);
+    }
+    return true;
+}
+
+void display_server_leave(display_server *d, double patience_seconds)
 {
     if (!d)
         return;
     pthread_mutex_lock(&d->lock);
     d->is_leaving = d->film != NULL;
     pthread_cond_broadcast(&d->changed);
-    uint64_t sent = d->sent_bytes;
-    int64_t end_ms = now_ms() + LEAVE_PATIENCE_MS;
-    while (d->is_leaving && !d->is_done && now_ms() < end_ms) {
-        wait_until(d, end_ms);
-        if (d->sent_bytes != sent)
-            end_ms = now_ms() + LEAVE_PATIENCE_MS;
-        sent = d->sent_bytes;
-    }
-    const bool is_given_up = d->is_leaving && !d->is_done;
+    const bool is_given_up = d->is_leaving && !await_sent(d, (int64_t)(1000.0 * fmin(patience_seconds, 3600.0)));
+    const bool is_reached = d->is_reached;
     d->film = NULL;
     d->is_leaving = false;
     pthread_mutex_unlock(&d->lock);
-    if (is_given_up)
+    if (is_given_up && is_reached)
         d->warn(d->user, AG_LOG_WARNING,
-                "--display-server: the viewer takes nothing any more: what it shows is not complete");
+                "--display-server: the viewer has not taken the whole picture: what it shows is not complete");
+    else if (is_given_up)
+        warn(d, "no viewer answers", "it is not waited for any longer");
 }

@@ -23,7 +23,8 @@ void display_server_stop(display_server *d);
  * until display_server_leave. server NULL is fine, here and below. */
 void display_server_show(display_server *d, const ag_film *film, const char *name);
 /* Sends what has not been sent of the film, and lets go of it. Returns when all is sent, or the viewer is not there, or
- * has not taken anything for some seconds, which is told. */
-void display_server_leave(display_server *d);
+ * has not taken anything for five seconds, or after ten seconds or patience_seconds (>= 0; INFINITY is fine) in all, or
+ * at a signal to stop; a picture that is given up is told of. */
+void display_server_leave(display_server *d, double patience_seconds);
 
 #endif

@@ -203,9 +203,11 @@ static const option_row ROWS[] = {
                   "with the values that the picture has in _.exr_ files in the working space; in the end it has "
                   "all that the file has, denoised where that is asked for. The pixels are those that are "
                   "rendered: of a crop window or a tile no more. A viewer that is not there, or is lost, is "
-                  "named in one warning and looked for again every two seconds; the render never waits for it, "
-                  "but for at most five seconds in the end where it takes nothing. An IPv6 address stands in "
-                  "brackets. The connection is not encrypted."},
+                  "named in one warning and looked for again every two seconds; the render never waits for it. "
+                  "When the files are written, the program waits until it has the whole picture, but for at most "
+                  "five seconds in which it takes nothing, ten seconds in all, and no longer than *--time-limit* "
+                  "allows; a signal ends the wait. An IPv6 address stands in brackets. The connection is not "
+                  "encrypted."},
      .take = take_display_server},
     {.text = {.name = "progress",
               .argument = "STYLE",

@@ -335,7 +335,6 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
         memory_limit_lift(); /* the prediction does not know what the denoiser takes */
         AG_TRY(ag_film_denoise(p->context, film));
     }
-    display_server_leave(o->display);
     if (has_picture)
         AG_TRY(write_pictures(p, film, !result->is_partial && failed == AG_OK));
     if (failed != AG_OK) {
@@ -352,6 +351,9 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
         tell_noise(noise, &result->samples, settings);
     return AG_OK;
 }
+
+/* The viewer is waited for within the time limit. */
+static void leave_viewer(const passes *p) { display_server_leave(p->o->display, fmax(p->deadline - now(), 0.0)); }
 
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result)
@@ -373,12 +375,12 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     if (status == AG_OK && o->photons_file && !out_result->is_partial && failed == AG_OK)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
     if (status != AG_OK)
-        display_server_leave(o->display); /* the film goes */
+        leave_viewer(&p); /* the film goes */
     ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
     if (status == AG_OK)
         status = show(&p, film, settings, out_result, &noise, failed);
+    leave_viewer(&p); /* when the files are written: they do not wait for a viewer */
     signals_end_rendering();
-    display_server_leave(o->display);
     ag_film_destroy(film);
     free(p.checkpoint);
     return status == AG_OK && out_result->is_partial ? AG_CANCELLED : status;

@@ -149,10 +149,88 @@ static void a_viewer_that_does_not_listen_holds_nobody_up(void **state)
     viewer_stop(&v);
     expect_exit(&run, 0);
     assert_int_equal(count_said(run.err, "--display-server"), 1);
-    expect_said(&run, "the viewer takes nothing any more");
+    expect_said(&run, "the viewer has not taken the whole picture");
     program_run_reset(&run);
     expect_listing("picture.exr");
     viewer_reset(&v);
+}
+
+/* A picture of 8 MB, of which the viewer reads a small part. */
+static program_process start_for_a_slow_viewer(const viewer *v)
+{
+    const program_setting usual = {0};
+    return program_start(&usual, ARGUMENTS("--progress", "none", "--type", "float", "--size", "800x800", "--integrator",
+                                           "path", "--max-depth", "1", "--spp", "1", "-o", "picture.pfm",
+                                           "--display-server", address_of(v), PROGRAM_SCENES "lamp_point.pbrt"));
+}
+
+static void a_slow_viewer_is_not_waited_for_without_end(void **state)
+{
+    (void)state;
+    viewer v = {.is_slow = true};
+    start(&v);
+    program_process process = start_for_a_slow_viewer(&v);
+    program_run run = program_finish(&process);
+    viewer_stop(&v);
+    expect_exit(&run, 0);
+    expect_said(&run, "the viewer has not taken the whole picture");
+    program_run_reset(&run);
+    expect_listing("picture.pfm");
+}
+
+/* The file is there while the viewer still reads, and a signal then ends the wait, not the picture. */
+static void the_file_does_not_wait_for_a_slow_viewer(void **state)
+{
+    (void)state;
+    viewer v = {.is_slow = true};
+    start(&v);
+    program_process process = start_for_a_slow_viewer(&v);
+    siginfo_t info = {0};
+    while (access(in_folder("picture.pfm"), F_OK) != 0 && info.si_pid == 0) {
+        assert_int_equal(waitid(P_PID, (id_t)process.id, &info, WEXITED | WNOHANG | WNOWAIT), 0);
+        program_pause();
+    }
+    assert_int_equal(waitid(P_PID, (id_t)process.id, &info, WEXITED | WNOHANG | WNOWAIT), 0);
+    assert_int_equal(info.si_pid, 0); /* it waits for the viewer */
+    assert_true(v.slow_bytes < 800 * 800 * 12 * 3 / 4);
+    assert_int_equal(kill(process.id, SIGTERM), 0);
+    program_run run = program_finish(&process);
+    viewer_stop(&v);
+    expect_exit(&run, 0);
+    program_run_reset(&run);
+    expect_listing("picture.pfm");
+    picture written = picture_read(in_folder("picture.pfm"));
+    assert_int_equal(written.width, 800);
+    picture_reset(&written);
+}
+
+/* The queue of its listener is full, so that nobody gets an answer. */
+static void a_viewer_that_never_answers_is_not_said_to_be_slow(void **state)
+{
+    (void)state;
+    enum { WAITING = 4 };
+    int waiting[WAITING];
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    socklen_t size = sizeof address;
+    viewer v = {.listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+    assert_int_equal(bind(v.listener, (const struct sockaddr *)&address, sizeof address), 0);
+    assert_int_equal(listen(v.listener, 0), 0);
+    assert_int_equal(getsockname(v.listener, (struct sockaddr *)&address, &size), 0);
+    v.port = ntohs(address.sin_port);
+    for (int i = 0; i < WAITING; i++) {
+        waiting[i] = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+        connect(waiting[i], (const struct sockaddr *)&address, sizeof address);
+    }
+    program_run run = RUN("--progress", "none", "--size", "16x16", "--spp", "1", "-o", "picture.exr",
+                          "--display-server", address_of(&v), PROGRAM_SCENES "lamp_point.pbrt");
+    for (int i = 0; i < WAITING; i++)
+        close(waiting[i]);
+    close(v.listener);
+    expect_exit(&run, 0);
+    assert_int_equal(count_said(run.err, "--display-server"), 1);
+    expect_said(&run, "no viewer answers");
+    program_run_reset(&run);
+    expect_listing("picture.exr");
 }
 
 static void addresses_are_checked_before_any_work(void **state)
@@ -177,6 +255,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_viewer_that_is_not_there_costs_a_warning, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(a_viewer_that_comes_back_is_shown_all_again, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(a_viewer_that_does_not_listen_holds_nobody_up, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(a_slow_viewer_is_not_waited_for_without_end, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(the_file_does_not_wait_for_a_slow_viewer, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(a_viewer_that_never_answers_is_not_said_to_be_slow, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(addresses_are_checked_before_any_work, make_folder, remove_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

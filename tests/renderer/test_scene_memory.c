@@ -4,6 +4,7 @@
 #define _GNU_SOURCE
 #include "fixtures/layers_fixture.h"
 #include "fixtures/pbrt_transcript.h"
+#include "fixtures/scene_desk.h"
 #include "fixtures/shared_folder.h"
 #include "image/image_reader.h"
 
@@ -15,65 +16,6 @@ enum { SCENE_STEP = 4 };
 #else
 enum { SCENE_STEP = 1 };
 #endif
-enum { SIZE = 20 };
-
-typedef struct desk {
-    ag_context *context;
-    ag_scene *made;
-    char said[4096]; /* errors and warnings */
-} desk;
-
-static void hear(void *user, ag_log_level level, const char *text)
-{
-    desk *d = user;
-    size_t length = strlen(d->said);
-    if (level <= AG_LOG_WARNING)
-        snprintf(d->said + length, sizeof d->said - length, "%s\n", text);
-}
-
-static void begin(desk *d)
-{
-    *d = (desk){.context = NULL};
-    ag_context_settings made = ag_default_context_settings();
-    made.thread_count = 2;
-    made.log = hear;
-    made.user = d;
-    assert_int_equal(ag_context_create(&made, &d->context), AG_OK);
-    assert_int_equal(ag_scene_create(d->context, NULL, &d->made), AG_OK);
-}
-
-static void end(desk *d)
-{
-    ag_scene_destroy(d->made);
-    ag_context_destroy(d->context);
-}
-
-static void expect_said(desk *d, const char *text)
-{
-    if (!strstr(d->said, text))
-        fail_msg("'%s' is not in: %s", text, d->said);
-    d->said[0] = '\0';
-}
-
-static void render(ag_context *context, const ag_scene *made, float *out_pixels)
-{
-    ag_render_settings settings;
-    ag_film *film;
-    int width, height;
-    assert_int_equal(ag_render_settings_from_scene(context, made, &settings), AG_OK);
-    settings.width = settings.height = SIZE;
-    settings.samples_per_pixel = 2;
-    settings.photon_count = settings.caustic_photon_count = 1500;
-    settings.gather_samples = 4;
-    memset(settings.crop_window, 0, sizeof settings.crop_window);
-    settings.crop_window[1] = settings.crop_window[3] = 1.0;
-    assert_int_equal(ag_render(context, made, &settings, &film), AG_OK);
-    const float *pixels = ag_film_pixels(film, &width, &height);
-    assert_int_equal(width * height, SIZE * SIZE);
-    memcpy(out_pixels, pixels, 3 * SIZE * SIZE * sizeof *out_pixels);
-    ag_film_destroy(film);
-}
-
 static void expect_same_both_ways(const char *folder_of_file, const char *name)
 {
     desk d;
@@ -145,40 +87,6 @@ static void public_scenes_have_the_bits_of_files(void **state)
         snprintf(path, sizeof path, "%s/scenes/%s/", shared, NAMES[i][0]);
         expect_same_both_ways(path, NAMES[i][1]);
     }
-}
-
-/* A square of a metre, seen from two metres, under a light; the caller changes what it likes. */
-static const float CORNERS[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-static const int32_t TRIANGLES[] = {0, 1, 2, 0, 2, 3};
-static const double AWAY[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2, 0, 0, 0, 1};
-static const double ASIDE[16] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-
-typedef struct square {
-    ag_parameter parameters[2];
-    ag_shape shape;
-} square;
-
-static void make_square(square *out)
-{
-    out->parameters[0] = (ag_parameter){"P", AG_PARAMETER_POINT3, 12, .floats = CORNERS};
-    out->parameters[1] = (ag_parameter){"indices", AG_PARAMETER_INTEGER, 6, .integers = TRIANGLES};
-    out->shape = ag_default_shape();
-    out->shape.type = "trianglemesh";
-    out->shape.parameters = out->parameters;
-    out->shape.parameter_count = 2;
-}
-
-static void light_and_look(desk *d)
-{
-    const ag_parameter from = {"from", AG_PARAMETER_POINT3, 3, .floats = (const float[]){0, 0, -3}};
-    ag_light lamp = ag_default_light();
-    ag_camera eye = ag_default_camera();
-    lamp.type = "point";
-    lamp.parameters = &from;
-    lamp.parameter_count = 1;
-    eye.world_from_camera = AWAY;
-    assert_int_equal(ag_scene_set_camera(d->made, &eye), AG_OK);
-    assert_int_equal(ag_scene_add_light(d->made, &lamp), AG_OK);
 }
 
 /* What moves and what is an instance, as the text says it. */
@@ -355,9 +263,13 @@ static void matrices_and_order_are_checked(void **state)
     expect_said(&d, "the camera comes before what moves");
     instance.object = "nothing";
     instance.world_from_object_end = NULL;
-    assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_OK); /* it may still come */
+    assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_ERROR_SCENE);
+    expect_said(&d, "ag_scene_add_instance:4:0: error: no object is named \"nothing\"");
+    s.shape.object = NULL;
+    s.shape.material = "nothing";
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_OK); /* it may still come */
     assert_int_equal(ag_scene_commit(d.made), AG_ERROR_SCENE);
-    expect_said(&d, "no object is named \"nothing\"");
+    expect_said(&d, "no material is named \"nothing\"");
     assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT); /* no more */
     assert_int_equal(ag_scene_commit(d.made), AG_ERROR_ARGUMENT);
     end(&d);

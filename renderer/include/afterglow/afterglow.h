@@ -203,7 +203,7 @@ AG_API bool ag_scene_has_own_samples(const ag_scene *scene);
  *     ag_scene_add_shape:17:2: error: index 9 (value 3 of "indices") is out of range, there are 4 vertices
  *         Shape "trianglemesh" of material "red"
  *
- * What was made before a call that fails stays, and further calls may follow. */
+ * What was made before a call that fails stays; the call itself then has no effect, and further calls may follow. */
 
 typedef enum ag_parameter_type {
     AG_PARAMETER_FLOAT,
@@ -257,8 +257,8 @@ AG_API ag_status ag_scene_set_hint(ag_scene *scene, ag_scene_hint hint, const ch
 
 /* The structs that follow begin with their size, which ag_default_...() sets: a library that knows more members takes
  * the rest for their defaults. Matrices have 16 numbers, row by row, of column vectors: the last column is where the
- * origin goes. Each is given when the shutter opens (pbrt's time 0), and where something moves when it closes (time
- * 1). */
+ * origin goes, the last row is 0 0 0 1. Each is given when the shutter opens (pbrt's time 0), and where something moves
+ * when it closes (time 1). */
 
 /* A picture in memory, which stands in for the file of that name in every "string filename" of textures and lights from
  * then on: packed, top row first; grey, grey and alpha, RGB, or RGB and alpha. */
@@ -304,7 +304,8 @@ typedef struct ag_shape {
 AG_API ag_shape ag_default_shape(void);
 AG_API ag_status ag_scene_add_shape(ag_scene *scene, const ag_shape *shape);
 
-/* An object is complete with its first instance: nothing can be added to it afterwards. */
+/* An object has at least one shape when its first instance is made, and is complete with that: nothing can be added to
+ * it afterwards. */
 typedef struct ag_instance {
     size_t struct_size;
     const char *object;

@@ -101,12 +101,15 @@ static ag_status direct_at(pbrt_parser *parser, const pbrt_call *call, const pbr
     const pbrt_state before = parser->state;
     const size_t known_count = parser->named_material_count;
     ag_status status = enter_placement(parser, call, at);
+    const pbrt_mark mark = pbrt_set_mark(parser);
     if (status == AG_OK && emission)
         status = direct(parser, call, pbrt_area_light_source, &AREA_LIGHT, 1, *emission);
     if (status == AG_OK)
         status = direct(parser, call, handle, strings, string_count, items);
-    if (status != AG_OK)
+    if (status != AG_OK) {
         excuse_materials(parser, known_count);
+        pbrt_go_back(parser, &mark);
+    }
     parser->state = before;
     return status;
 }
@@ -123,6 +126,8 @@ ag_status pbrt_builder_shape(pbrt_builder *b, const pbrt_call *call, const pbrt_
     parser->given = NULL;
     if (status == AG_OK)
         status = direct_at(parser, call, at, pbrt_shape, &type, 1, items, emission);
+    if (status == AG_OK && at->object)
+        parser->open_object->is_defined = true;
     pbrt_leave_object(parser);
     end_call(status, emission ? *emission : NOTHING);
     return end_call(status, items);

@@ -38,7 +38,8 @@ typedef struct pbrt_placement {
     const char *medium_inside, *medium_outside; /* may be made later; NULL: none */
 } pbrt_placement;
 
-/* All give errors as a file's directives do, told to the run's log; what was made before stays. */
+/* All give errors as a file's directives do, told to the run's log; what was made before stays, and the call itself has
+ * then no effect. */
 
 /* emission: of AreaLightSource; NULL: it does not shine. */
 ag_status pbrt_builder_shape(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
@@ -47,7 +48,8 @@ ag_status pbrt_builder_light(pbrt_builder *b, const pbrt_call *call, const pbrt_
                              pbrt_items items);
 ag_status pbrt_builder_camera(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
                               pbrt_items items);
-/* An instance of the object that at->object names, which is complete with it. */
+/* An instance of the object that at->object names, which is complete with it. Errors also: AG_ERROR_SCENE (nothing has
+ * been added to such an object yet). */
 ag_status pbrt_builder_instance(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at);
 
 /* strings: name, "float" or "spectrum", class. */

@@ -128,7 +128,7 @@ ag_status pbrt_camera(pbrt_parser *parser, file_location where)
     if (status == AG_OK) {
         parameter_list_warn_unused(&list, parser->log);
         parser->scene->camera = c;
-        parser->scene->camera_medium = pbrt_use_medium(parser, parser->state.medium_outside);
+        parser->scene->camera_medium = pbrt_medium_index(parser, parser->state.medium_outside);
         parser->scene->has_camera = true;
         status = set_motion(parser, &end, where);
     }

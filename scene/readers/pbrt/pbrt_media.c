@@ -218,9 +218,12 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
                           "medium \"%s\" is made twice, first at %s:%d:%d", list->name, named->where.file,
                           named->where.line, named->where.column);
+    medium made = {{0.0f, 0.0f, 0.0f}};
+    AG_TRY(read_medium(parser, list, &made));
+    parser->scene->media[named->index] = made;
     named->is_defined = true;
     named->where = list->where;
-    return read_medium(parser, list, &parser->scene->media[named->index]);
+    return AG_OK;
 }
 
 ag_status pbrt_make_named_medium(pbrt_parser *parser, file_location where)
@@ -256,19 +259,24 @@ ag_status pbrt_medium_interface(pbrt_parser *parser, file_location where)
     return status;
 }
 
+uint32_t pbrt_medium_index(const pbrt_parser *parser, size_t named)
+{
+    return named == PBRT_NO_MEDIUM ? SCENE_NO_MEDIUM : parser->named_media[named].index;
+}
+
 uint32_t pbrt_use_medium(pbrt_parser *parser, size_t named)
 {
-    if (named == PBRT_NO_MEDIUM)
-        return SCENE_NO_MEDIUM;
-    parser->named_media[named].is_used = true;
-    return parser->named_media[named].index;
+    if (named != PBRT_NO_MEDIUM)
+        parser->named_media[named].is_used = true;
+    return pbrt_medium_index(parser, named);
 }
 
 ag_status pbrt_check_named_media(pbrt_parser *parser)
 {
     for (size_t i = 0; i < parser->named_medium_count; i++) {
         const pbrt_named_medium *named = &parser->named_media[i];
-        if (named->is_used && !named->is_defined)
+        const bool is_used = named->is_used || named->index == parser->scene->camera_medium;
+        if (is_used && !named->is_defined)
             return pbrt_error(parser, named->where, strlen("MediumInterface"), "no medium is named \"%s\"",
                               named->name);
     }

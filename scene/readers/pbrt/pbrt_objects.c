@@ -57,7 +57,6 @@ ag_status pbrt_enter_object(pbrt_parser *parser, const char *name, file_location
     pbrt_object *o = &parser->objects[object];
     if (o->is_shown)
         return pbrt_error(parser, where, 1, "object \"%s\" has an instance already: nothing can be added to it", name);
-    o->is_defined = true;
     parser->open_object = o;
     parser->shapes_object_index = o->object_index;
     return AG_OK;
@@ -206,6 +205,27 @@ static ag_status add_instance(pbrt_parser *parser, const pbrt_object *o, const t
     return AG_OK;
 }
 
+/* The object of an instance: in a file it may come later, for a call it has to be there. */
+static ag_status find_shown_object(pbrt_parser *parser, const char *name, file_location where, uint32_t *out_object)
+{
+    const bool is_there =
+        name_table_find(&parser->object_names, name, out_object) && parser->objects[*out_object].is_defined;
+    if (parser->given && !is_there)
+        return pbrt_error(parser, where, 1, "no object is named \"%s\"", name);
+    return find_object(parser, name, where, out_object);
+}
+
+static ag_status keep_early_instance(pbrt_parser *parser, uint32_t object, file_location where)
+{
+    const pbrt_state *state = &parser->state;
+    if (!reserve((void **)&parser->early_instances, parser->early_instance_count, &parser->early_instance_capacity,
+                 sizeof *parser->early_instances))
+        return AG_ERROR_MEMORY;
+    parser->early_instances[parser->early_instance_count++] =
+        (pbrt_early_instance){object, state->world_from_object, state->world_from_object_end, where};
+    return AG_OK;
+}
+
 ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
 {
     char *name;
@@ -216,21 +236,16 @@ ag_status pbrt_object_instance(pbrt_parser *parser, file_location where)
         free(name);
         return pbrt_error(parser, where, strlen("ObjectInstance"), "ObjectInstance within an object");
     }
-    ag_status status = find_object(parser, name, where, &object);
+    ag_status status = find_shown_object(parser, name, where, &object);
     free(name);
     AG_TRY(status);
-    parser->objects[object].is_shown = true;
-    if (pbrt_is_flattened(parser, where, "ObjectInstance"))
-        return AG_OK;
-    if (parser->objects[object].is_defined)
-        return add_instance(parser, &parser->objects[object], &state->world_from_object, &state->world_from_object_end,
-                            where);
-    if (!reserve((void **)&parser->early_instances, parser->early_instance_count, &parser->early_instance_capacity,
-                 sizeof *parser->early_instances))
-        return AG_ERROR_MEMORY;
-    parser->early_instances[parser->early_instance_count++] =
-        (pbrt_early_instance){object, state->world_from_object, state->world_from_object_end, where};
-    return AG_OK;
+    pbrt_object *o = &parser->objects[object];
+    if (!pbrt_is_flattened(parser, where, "ObjectInstance"))
+        status = o->is_defined
+                     ? add_instance(parser, o, &state->world_from_object, &state->world_from_object_end, where)
+                     : keep_early_instance(parser, object, where);
+    o->is_shown = o->is_shown || status == AG_OK;
+    return status;
 }
 
 ag_status pbrt_end_objects(pbrt_parser *parser)

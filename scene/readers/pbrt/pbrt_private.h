@@ -119,7 +119,8 @@ typedef struct pbrt_named_material {
 typedef struct pbrt_named_medium {
     char *name;
     uint32_t index; /* in the scene, where it absorbs nothing until MakeNamedMedium comes, which may be after its use */
-    bool is_defined, is_used;
+    bool is_defined,
+        is_used;         /* is_used: by a shape or a light; of cameras the last one counts, see scene.camera_medium */
     file_location where; /* of its definition, or until then of the first MediumInterface that names it */
 } pbrt_named_medium;
 
@@ -316,7 +317,7 @@ ag_status pbrt_end_import(pbrt_parser *parser, file_location end);
 /* pbrt_objects.c: what is kept once, and where it is shown. */
 pbrt_handler pbrt_object_begin, pbrt_object_end, pbrt_object_instance;
 /* The object of that name is the open one until pbrt_leave_object, once more where it was before; that ends with its
- * first instance. */
+ * first instance. It is defined when whoever adds to it says so. */
 ag_status pbrt_enter_object(pbrt_parser *parser, const char *name, file_location where);
 void pbrt_leave_object(pbrt_parser *parser);
 /* Keeps a shape that shines within the open object. Takes its arrays, also on failure. */
@@ -350,9 +351,26 @@ ag_status pbrt_add_default_material(pbrt_parser *parser);
 /* Error where a material was used and never made. */
 ag_status pbrt_check_named_materials(pbrt_parser *parser);
 
+/* pbrt_undo.c: how far a scene had come before a call, and the way back there when the call fails. */
+typedef struct pbrt_mark {
+    uint32_t shape_count, light_count, instance_count, instance_step_count, camera_medium;
+    camera camera;
+    bool has_camera;
+    double film_distance;
+    size_t lamp_copy_count, lamp_copy_vertex_count;
+    size_t lamp_count, part_count; /* of the open object */
+    size_t media[2];               /* of the graphics state, which the call must not change */
+    bool are_media_used[2];
+} pbrt_mark;
+pbrt_mark pbrt_set_mark(const pbrt_parser *parser);
+/* Drops shapes, lights, instances and the camera that were added since, with all that was noted of them. */
+void pbrt_go_back(pbrt_parser *parser, const pbrt_mark *mark);
+
 /* pbrt_media.c */
 pbrt_handler pbrt_make_named_medium, pbrt_medium_interface;
-/* The scene's medium for one of the state's, which something is in now. */
+/* The scene's medium for one of the state's. */
+uint32_t pbrt_medium_index(const pbrt_parser *parser, size_t named);
+/* pbrt_medium_index of one that a shape or a light is in now: it has to be made. */
 uint32_t pbrt_use_medium(pbrt_parser *parser, size_t named);
 /* Error where a medium was used and never made. */
 ag_status pbrt_check_named_media(pbrt_parser *parser);
