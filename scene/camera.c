@@ -9,7 +9,8 @@
 
 #include <string.h>
 
-/* x0, x1, y0, y1 of the screen: its shorter axis spans [-1, 1], unless a window says otherwise. */
+/* x0, x1, y0, y1 of the screen: its shorter axis spans [-1, 1], unless a window says otherwise, before it is
+ * shifted. */
 static void screen_edges(const camera *c, float aspect, float out[4])
 {
     float frame_aspect = c->frame_aspect_ratio > 0.0f ? c->frame_aspect_ratio : aspect;
@@ -21,6 +22,8 @@ static void screen_edges(const camera *c, float aspect, float out[4])
         out[0] = -frame_aspect, out[1] = frame_aspect;
     else
         out[2] = -1.0f / frame_aspect, out[3] = 1.0f / frame_aspect;
+    for (int k = 0; k < 4; k++)
+        out[k] += c->screen_shift[k / 2];
 }
 
 static vec2 screen_point(const camera *c, float film_x, float film_y, float aspect)

@@ -26,11 +26,12 @@ typedef struct camera {
     float screen_window[4]; /* x0, x1, y0, y1 in units of tan(fov/2) at distance 1 (orthographic: scene units); used if
                              * has_screen_window */
     bool has_screen_window;
-    float lens_radius;    /* scene units, >= 0; 0 is a pinhole; perspective and orthographic */
-    float focal_distance; /* scene units, > 0 */
-    float exposure;       /* what pixels are of the radiance: the shutter's time, times what a lens leaves; 0: 1 */
-    float tan_half_fov;   /* set by scene_commit */
-    uint32_t medium;      /* that the eye is in; set by scene_commit, from scene.camera_medium */
+    float screen_shift[2]; /* by which the screen, with a window or without, is moved right and up, in its units */
+    float lens_radius;     /* scene units, >= 0; 0 is a pinhole; perspective and orthographic */
+    float focal_distance;  /* scene units, > 0 */
+    float exposure;        /* what pixels are of the radiance: the shutter's time, times what a lens leaves; 0: 1 */
+    float tan_half_fov;    /* set by scene_commit */
+    uint32_t medium;       /* that the eye is in; set by scene_commit, from scene.camera_medium */
 } camera;
 
 /* film_x, film_y: in [0, 1] from the left and from the top of the full image, and a filter's radius beyond; aspect: its

@@ -264,6 +264,7 @@ static void add_camera(hash128 *h, const camera *c)
     ADD(c->has_screen_window);
     if (c->has_screen_window)
         ADD(c->screen_window);
+    ADD(c->screen_shift);
     ADD(c->lens_radius);
     ADD(c->focal_distance);
     ADD(c->exposure);

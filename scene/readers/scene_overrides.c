@@ -89,6 +89,7 @@ static ag_status set_camera(run_context *run, bool is_pbrt, vec3 axis, scene *s)
     c.focal_distance = distance;
     c.lens_radius = 0.0f;
     c.is_moving = c.has_screen_window = false;
+    c.screen_shift[0] = c.screen_shift[1] = 0.0f;
     s->camera = c;
     s->has_camera = true;
     s->is_camera_made_up = false;

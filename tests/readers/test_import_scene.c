@@ -146,6 +146,50 @@ static void orthographic_cameras_are_as_wide_as_the_file_says(void **state)
     reading_destroy(&r);
 }
 
+/* By a tenth to the right and a quarter down, of the longer side of a picture of 2:1 whose shorter one is 2: squares
+ * stay squares in pictures of any proportions. */
+static void a_shift_does_not_stretch_the_picture(void **state)
+{
+    (void)state;
+    static const float ASPECTS[] = {2, 1, .5f, 16.0f / 9.0f};
+    triangle t = plain_triangle();
+    import_instance i = plain_instance();
+    import_camera c = {.position = {0, 0, 9},
+                       .forward = {0, 0, -1},
+                       .up = {0, 1, 0},
+                       .aspect = 2,
+                       .orthographic_half_width = 2,
+                       .shift = {.1f, -.25f}};
+    for (int is_perspective = 0; is_perspective < 2; is_perspective++) {
+        if (is_perspective)
+            c.orthographic_half_width = 0, c.horizontal_fov = 2 * (float)atan(2); /* 90 degrees high */
+        b.size = 0;
+        put(&b, IMPORT_RECORD_MESH, &t, sizeof t);
+        put(&b, IMPORT_RECORD_INSTANCE, &i, sizeof i);
+        put(&b, IMPORT_RECORD_CAMERA, &c, sizeof c);
+        put(&b, IMPORT_RECORD_END, NULL, 0);
+        reading r = fill(b.bytes, b.size);
+        assert_int_equal(r.status, AG_OK);
+        camera seen = r.scene->camera;
+        seen.tan_half_fov = 1.0f; /* as scene_commit does */
+        assert_float_equal(seen.fov_degrees, 90, 1e-4);
+        for (int k = 0; k < 4; k++)
+            for (int corner = 0; corner < 2; corner++) {
+                const float aspect = ASPECTS[k], sign = corner ? 1.0f : -1.0f;
+                const float x = .4f + sign * fmaxf(aspect, 1.0f), y = -1.0f - sign * fmaxf(1.0f / aspect, 1.0f);
+                const float at = (float)corner;
+                scene_ray ray = camera_generate_ray(&seen, at, at, aspect, (vec2){.5f, .5f}, 0.0f);
+                if (is_perspective) {
+                    const vec3 way = vec3_normalize(vec3_make(x, y, -1));
+                    assert_vec3(ray.direction, way.x, way.y, way.z, 1e-6);
+                } else {
+                    assert_vec3(ray.origin, x, y, 9, 1e-5);
+                }
+            }
+        reading_destroy(&r);
+    }
+}
+
 /* A PNG of one red pixel, and one that is none. */
 static void pictures_within_the_file(void **state)
 {
@@ -328,6 +372,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(records_become_a_scene),
         cmocka_unit_test(orthographic_cameras_are_as_wide_as_the_file_says),
+        cmocka_unit_test(a_shift_does_not_stretch_the_picture),
         cmocka_unit_test(pictures_within_the_file),
         cmocka_unit_test(errors_of_the_process_are_told),
         cmocka_unit_test(what_does_not_hold_together_is_refused),

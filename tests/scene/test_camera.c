@@ -55,6 +55,9 @@ static void orthographic(void **state)
     c = camera_of("Camera \"orthographic\" \"float screenwindow\" [ -3 1 0 5 ]");
     check_ray(&c, 0.0, 0.0, 2.0, vec3_make(-3, 5, 0), vec3_make(0, 0, 1));
     check_ray(&c, 1.0, 1.0, 2.0, vec3_make(1, 0, 0), vec3_make(0, 0, 1));
+    c.screen_shift[0] = 2.0f, c.screen_shift[1] = -1.0f;
+    check_ray(&c, 0.0, 0.0, 2.0, vec3_make(-1, 4, 0), vec3_make(0, 0, 1));
+    check_ray(&c, 1.0, 1.0, 2.0, vec3_make(3, -1, 0), vec3_make(0, 0, 1));
     c = camera_of("Translate 1 0 0 Scale 2 2 2 Camera \"orthographic\" \"float frameaspectratio\" 1");
     check_ray(&c, 1.0, 0.5, 2.0, vec3_make(0, 0, 0), vec3_make(0, 0, 1));
 }

@@ -66,18 +66,14 @@ static double shorter_fov_degrees(const import_camera *source)
     return (aspect_of(source) > 1.0 ? atan(tan(half) / aspect_of(source)) : half) * 360.0 / PI;
 }
 
-/* The longer side of the screen is 2 aspect long, or 2 / aspect; the shorter one 2. */
+/* The longer side of the file's picture is 2 aspect long, or 2 / aspect, whatever picture is rendered. */
 static void shift_picture(const import_camera *source, camera *c)
 {
-    const double aspect = aspect_of(source), half[2] = {fmax(aspect, 1.0), fmax(1.0 / aspect, 1.0)};
-    if ((source->shift[0] == 0.0f && source->shift[1] == 0.0f) || !isfinite(source->shift[0] + source->shift[1]))
+    const double aspect = aspect_of(source), longer_side = 2.0 * fmax(aspect, 1.0 / aspect);
+    if (!isfinite(source->shift[0] + source->shift[1]))
         return;
-    for (int k = 0; k < 2; k++) {
-        const double way = 2.0 * fmax(half[0], half[1]) * (double)source->shift[k];
-        c->screen_window[2 * k] = (float)(way - half[k]);
-        c->screen_window[2 * k + 1] = (float)(way + half[k]);
-    }
-    c->has_screen_window = true;
+    for (int k = 0; k < 2; k++)
+        c->screen_shift[k] = (float)(longer_side * (double)source->shift[k]);
 }
 
 ag_status importer_add_camera(importer *i, const import_camera *source)
