@@ -8,6 +8,7 @@
 #include "scene_file.h"
 #include "status.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,19 +44,54 @@ ag_scene_settings ag_default_scene_settings(void)
 
 static vec3 vec3_of(const float v[3]) { return vec3_make(v[0], v[1], v[2]); }
 
-ag_status scene_request_make(const ag_scene_settings *settings, scene_request *out_request)
+static bool is_in(float value, float least, float most) { return value >= least && value <= most; } /* no NaN is */
+
+static const char *find_wrong_sun(const ag_scene_settings *s)
+{
+    if (!isfinite(s->sun_azimuth_degrees))
+        return "sun_azimuth_degrees should be finite";
+    if (!is_in(s->sun_elevation_degrees, -90.0f, 90.0f))
+        return "sun_elevation_degrees should be from -90 to 90";
+    if (!is_in(s->sun_irradiance, 0.0f, FLT_MAX))
+        return "sun_irradiance should be finite, and not negative";
+    return is_in(s->sun_angle_degrees, 0.0f, 180.0f) ? NULL : "sun_angle_degrees should be from 0 to 180";
+}
+
+static const char *find_wrong_sky(const ag_scene_settings *s)
+{
+    for (int i = 0; i < 3; i++)
+        if (!is_in(s->sky_radiance[i], 0.0f, FLT_MAX))
+            return "sky_radiance should be finite, and not negative";
+    return isfinite(s->sky_rotation_degrees) ? NULL : "sky_rotation_degrees should be finite";
+}
+
+/* NULL: nothing is wrong. */
+static const char *find_wrong_setting(const ag_scene_settings *s)
+{
+    if ((unsigned)s->gltf_light_units > AG_GLTF_LIGHT_UNITS_RAW)
+        return "gltf_light_units is none that there is";
+    if ((unsigned)s->up > AG_UP_MINUS_Z)
+        return "up is no axis that there is";
+    if (s->texture_memory_bytes > 0 && s->texture_memory_bytes < AG_TEXTURE_MEMORY_LEAST_BYTES)
+        return "texture_memory_bytes should be 0, or at least AG_TEXTURE_MEMORY_LEAST_BYTES";
+    if (s->has_camera && s->camera_name)
+        return "has_camera and camera_name exclude each other";
+    const char *wrong = s->has_sun ? find_wrong_sun(s) : NULL;
+    return !wrong && s->has_sky ? find_wrong_sky(s) : wrong;
+}
+
+ag_status scene_settings_refuse(ag_context *context, const char *what)
+{
+    log_message(context->log, AG_LOG_ERROR, "the settings of the scene: %s", what);
+    return AG_ERROR_ARGUMENT;
+}
+
+ag_status scene_request_make(ag_context *context, const ag_scene_settings *settings, scene_request *out_request)
 {
     const float *sky = settings->sky_radiance;
-    const bool is_sun_sound = isfinite(settings->sun_azimuth_degrees) && fabsf(settings->sun_elevation_degrees) <= 90 &&
-                              settings->sun_irradiance >= 0 && isfinite(settings->sun_irradiance) &&
-                              settings->sun_angle_degrees >= 0 && settings->sun_angle_degrees <= 180;
-    const bool is_sky_sound = sky[0] >= 0 && sky[1] >= 0 && sky[2] >= 0 && isfinite(sky[0]) && isfinite(sky[1]) &&
-                              isfinite(sky[2]) && isfinite(settings->sky_rotation_degrees);
-    if ((unsigned)settings->gltf_light_units > AG_GLTF_LIGHT_UNITS_RAW || (unsigned)settings->up > AG_UP_MINUS_Z ||
-        (settings->texture_memory_bytes > 0 && settings->texture_memory_bytes < AG_TEXTURE_MEMORY_LEAST_BYTES) ||
-        (settings->has_camera && settings->camera_name) || (settings->has_sun && !is_sun_sound) ||
-        (settings->has_sky && !is_sky_sound))
-        return AG_ERROR_ARGUMENT;
+    const char *wrong = find_wrong_setting(settings);
+    if (wrong)
+        return scene_settings_refuse(context, wrong);
     *out_request = (scene_request){.gltf_light_units = (gltf_light_units)settings->gltf_light_units,
                                    .has_camera = settings->has_camera,
                                    .camera_from = vec3_of(settings->camera_from),
@@ -162,12 +198,19 @@ static ag_status load_from(ag_context *context, const scene_source *from, const 
     const ag_definition *given = settings->definitions;
     const size_t count = settings->definition_count;
     scene_request request;
-    bool is_whole =
-        context && from->name && out_scene && (given || count == 0) && scene_request_make(settings, &request) == AG_OK;
-    for (size_t i = 0; is_whole && i < count; i++)
-        is_whole = given[i].name && given[i].value;
-    if (!is_whole)
+    if (!context)
         return AG_ERROR_ARGUMENT;
+    if (!from->name || !out_scene) {
+        log_message(context->log, AG_LOG_ERROR, "a scene cannot be loaded: %s is NULL",
+                    from->name ? "where it is to go" : "its name");
+        return AG_ERROR_ARGUMENT;
+    }
+    AG_TRY(scene_request_make(context, settings, &request));
+    if (!given && count > 0)
+        return scene_settings_refuse(context, "definitions is NULL, and definition_count is not 0");
+    for (size_t i = 0; i < count; i++)
+        if (!given[i].name || !given[i].value)
+            return scene_settings_refuse(context, "a name or a value of definitions is NULL");
     unsigned callers_arithmetic = floating_point_enter();
     definitions d = {0};
     ag_scene *loaded = calloc(1, sizeof *loaded);
@@ -199,6 +242,8 @@ ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene
 ag_status ag_scene_load_text(ag_context *context, const char *name, const char *text, size_t size_bytes,
                              const ag_scene_settings *settings, ag_scene **out_scene)
 {
+    if (context && !text)
+        log_message(context->log, AG_LOG_ERROR, "a scene cannot be loaded: its text is NULL");
     if (!text)
         return AG_ERROR_ARGUMENT;
     return load_from(context, &(scene_source){name, text, size_bytes}, settings, out_scene);

@@ -5,8 +5,10 @@
 
 #include "context.h"
 
-/* Borrows the strings of the settings. Errors: AG_ERROR_ARGUMENT (one is out of its range). */
-ag_status scene_request_make(const ag_scene_settings *settings, scene_request *out_request);
+/* Says in the log what is wrong with settings; gives AG_ERROR_ARGUMENT. */
+ag_status scene_settings_refuse(ag_context *context, const char *what);
+/* Borrows the strings of the settings. Errors: AG_ERROR_ARGUMENT (one is out of its range; the log says which). */
+ag_status scene_request_make(ag_context *context, const ag_scene_settings *settings, scene_request *out_request);
 
 /* Before anything is read: colours, what is asked for, and which files may be read; name: the scene's file. Borrows
  * request and name. Errors: those of context_color_config, AG_ERROR_ARGUMENT, AG_ERROR_MEMORY. */

@@ -72,8 +72,8 @@ ag_status scene_check_complete(ag_context *context, const ag_scene *made)
 static ag_status copy_request(const ag_scene_settings *settings, scene_making *making)
 {
     if (settings->definition_count > 0)
-        return AG_ERROR_ARGUMENT; /* there is no text that could use them */
-    AG_TRY(scene_request_make(settings, &making->request));
+        return scene_settings_refuse(making->context, "a scene from memory has no text for definitions");
+    AG_TRY(scene_request_make(making->context, settings, &making->request));
     making->sky_file = settings->sky_file ? strdup(settings->sky_file) : NULL;
     making->camera_name = settings->camera_name ? strdup(settings->camera_name) : NULL;
     making->request.sky_file = making->sky_file;
@@ -102,6 +102,8 @@ static ag_status begin(ag_context *context, const ag_scene_settings *settings, a
 ag_status ag_scene_create(ag_context *context, const ag_scene_settings *settings, ag_scene **out_scene)
 {
     const ag_scene_settings defaults = ag_default_scene_settings();
+    if (context && !out_scene)
+        log_message(context->log, AG_LOG_ERROR, "ag_scene_create: out_scene is NULL");
     if (!context || !out_scene)
         return AG_ERROR_ARGUMENT;
     ag_scene *made = calloc(1, sizeof *made);
@@ -190,6 +192,8 @@ static bool begin_call(ag_scene *made, call_kind kind, making_call *out)
 static ag_status end_call(making_call *c, ag_status status)
 {
     ag_context *context = c->making->context;
+    if (status == AG_ERROR_MEMORY)
+        log_at(context->log, AG_LOG_ERROR, c->call.where, "out of memory");
     scene_parameters_free(&c->items);
     scene_parameters_free(&c->light_items);
     context->run.inputs = NULL;
@@ -510,7 +514,9 @@ ag_status ag_scene_set_hint(ag_scene *made, ag_scene_hint hint, const char *type
                  {PBRT_PIXEL_FILTER, "PixelFilter"}};
     making_call c;
     const char *const strings[] = {type, NULL, NULL};
-    if ((unsigned)hint > AG_HINT_PIXEL_FILTER || !begin_call(made, CALL_HINT, &c))
+    if (!begin_call(made, CALL_HINT, &c))
         return AG_ERROR_ARGUMENT;
+    if ((unsigned)hint > AG_HINT_PIXEL_FILTER)
+        return end_call(&c, refuse(&c, "there is no such hint"));
     return end_call(&c, state(&c, HINTS[hint].statement, HINTS[hint].directive, strings, 1, parameters, count));
 }

@@ -16,6 +16,9 @@ _Static_assert((int)AG_PARAMETER_FLOAT == (int)PARAMETER_FLOAT && (int)AG_PARAME
 /* By type: numbers of one value; 0: none. */
 static const unsigned char COMPONENTS[] = {1, 1, 0, 0, 2, 2, 3, 3, 3, 3, 2, 1, 0};
 
+/* More than the points of the largest mesh, of 2^31 vertices, have. */
+static const uint64_t VALUES_MAX = (uint64_t)1 << 33;
+
 static bool takes_strings(ag_parameter_type type)
 {
     return type == AG_PARAMETER_STRING || type == AG_PARAMETER_TEXTURE || type == AG_PARAMETER_SPECTRUM;
@@ -108,8 +111,8 @@ static ag_status copy_parameter(log_sink *log, const ag_parameter *from, paramet
     const char *wrong = find_wrong_array(from);
     if (wrong)
         return refuse(log, to, wrong);
-    if (from->count > SIZE_MAX / sizeof *to->numbers)
-        return refuse(log, to, "it has too many values");
+    if ((uint64_t)from->count > VALUES_MAX)
+        return refuse(log, to, "it has more than 2^33 values");
     if (!from->strings && COMPONENTS[from->type] > 1 && from->count % COMPONENTS[from->type] != 0) {
         log_at(log, AG_LOG_ERROR, to->where, "\"%s %s\" has %zu numbers, which is no multiple of %d",
                parameter_type_name(to->type), to->name, from->count, COMPONENTS[from->type]);

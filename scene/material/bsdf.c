@@ -128,6 +128,7 @@ static void set_up(bsdf *b, frame shading, const surface_hit *hit, vec3 out)
     b->geometric_normal = hit->geometric_normal;
     b->out = out;
     b->is_pane = pane_is_of(&b->parameters);
+    b->is_tilted = shading_frame_is_tilted(&b->parameters);
     b->lobe_count = 0;
     if (b->parameters.kind == MATERIAL_HAIR) {
         float v = hit->is_mirrored ? 1.0f - hit->uv.y : hit->uv.y;
@@ -286,6 +287,16 @@ bool bsdf_arrival_factor_beside(const scene *s, const surface_hit *hit, const bs
     return true;
 }
 
+/* Whether the lobe sends light from out to `direction` by the sides of the surface that they are on. o, i: the two in
+ * the shading frame. */
+static bool is_on_its_side(const bsdf *b, bsdf_lobe_kind kind, vec3 direction, vec3 o, vec3 i)
+{
+    if (kind == LOBE_HAIR || (bsdf_lobe_has_facets(kind) && !b->is_tilted))
+        return true;
+    bool is_reflection = bsdf_lobe_has_facets(kind) ? o.z * i.z > 0.0f : kind != LOBE_DIFFUSE_THROUGH;
+    return bsdf_is_same_side(b, direction) == is_reflection;
+}
+
 /* The value, and the density of sampling. */
 static rgb evaluate_all(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction, float *out_pdf)
 {
@@ -295,7 +306,8 @@ static rgb evaluate_all(const bsdf *b, bsdf_lobes lobes, bsdf_transport transpor
     for (int k = 0; k < b->lobe_count; k++) {
         rgb value = rgb_gray(0.0f);
         float pdf = 0.0f;
-        if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta)
+        if (!(b->lobes[k].group & lobes) || b->lobes[k].is_delta ||
+            (b->is_tilted && !is_on_its_side(b, b->lobes[k].kind, direction, o, i)))
             continue;
         bsdf_lobe_type_of(b->lobes[k].kind)->evaluate(b, transport, direction, o, i, &value, &pdf);
         if (transport == BSDF_FLUX)
@@ -381,6 +393,8 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
         if (!type->sample_smooth(b, transport, o, u_lobe, &i, &out->weight))
             return false;
         out->direction = vec3_normalize(frame_to_world(&b->shading, i));
+        if (!is_on_its_side(b, lobe->kind, out->direction, o, i))
+            return false;
         out->pdf_solid_angle = 0.0f;
         out->is_straight = b->is_pane && i.z * o.z < 0.0f;
         out->weight = rgb_scale(out->weight, 1.0f / probability);
@@ -393,9 +407,8 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
         return false;
     frame around = is_by_geometry ? frame_from_z(b->geometric_normal) : b->shading;
     out->direction = vec3_normalize(frame_to_world(&around, i));
-    if (!bsdf_lobe_has_facets(lobe->kind) && lobe->kind != LOBE_HAIR &&
-        bsdf_is_same_side(b, out->direction) == (lobe->kind == LOBE_DIFFUSE_THROUGH))
-        return false; /* which facets alone may cross */
+    if (!is_by_geometry && !is_on_its_side(b, lobe->kind, out->direction, o, i))
+        return false;
     rgb value = evaluate_all(b, lobes, transport, out->direction, &out->pdf_solid_angle);
     if (!(out->pdf_solid_angle > 0.0f))
         return false;

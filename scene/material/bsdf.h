@@ -62,6 +62,8 @@ typedef struct bsdf {
     vec3 geometric_normal;            /* to the outside */
     vec3 out;                         /* back along the ray that arrived, unit */
     material parameters;              /* as it is at this hit */
+    bool is_tilted;                   /* by a bump or normal map: facets send nothing through the surface, which a room
+                                         of walls without thickness would see as light from outside */
     bool is_pane;                     /* lets light straight through (pane.h, slab.h), and does not shine itself */
     rgb slab_reflected, slab_through; /* of LOBE_SLAB, which then is the only lobe */
     hair_fibre fibre;                 /* of LOBE_HAIR */

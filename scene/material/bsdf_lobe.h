@@ -29,7 +29,8 @@ static inline bool bsdf_lobe_is_diffuse(bsdf_lobe_kind kind)
 }
 
 /* Whether it is made of facets about the shading normal. Where they send light the shading normal alone decides, even
- * through the surface, as pbrt has it: on a coarse mesh with smooth normals that light finds its way out again. */
+ * through the surface, as pbrt has it: on a coarse mesh with smooth normals that light finds its way out again. Not so
+ * where a map tilts the normal (is_tilted of a bsdf). */
 static inline bool bsdf_lobe_has_facets(bsdf_lobe_kind kind)
 {
     return !bsdf_lobe_is_diffuse(kind) && kind != LOBE_COAT_SCATTERED && kind != LOBE_HAIR;

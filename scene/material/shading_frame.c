@@ -8,7 +8,7 @@
  * is then, all but at the very edge, on that of the normal too. */
 static const float COSINE_MIN = 0.02f;
 
-static bool has_maps(const material *m)
+bool shading_frame_is_tilted(const material *m)
 {
     return m->normal_map_texture != SCENE_NO_TEXTURE || m->displacement_texture != SCENE_NO_TEXTURE;
 }
@@ -89,7 +89,7 @@ static vec3 make_usable(vec3 v, const surface_hit *hit)
 frame shading_frame_at(const scene *s, const surface_hit *hit, const material *m)
 {
     vec3 z = hit->shading_normal, dpdu, dpdv;
-    if (has_maps(m)) {
+    if (shading_frame_is_tilted(m)) {
         z = m->normal_map_texture != SCENE_NO_TEXTURE ? map_normal(s, hit, m) : bump_normal(s, hit, m);
         z = make_usable(z, hit);
     }

@@ -8,6 +8,9 @@
 #include "material/material.h"
 #include "scene.h"
 
+/* Whether a bump or normal map tilts it. */
+bool shading_frame_is_tilted(const material *m);
+
 /* m: as it is at the point, no mix. z: the shading normal, on the geometric normal's side; x: along dp/du, but of
  * material that is alike all round, and has no maps, any. */
 frame shading_frame_at(const scene *s, const surface_hit *hit, const material *m);

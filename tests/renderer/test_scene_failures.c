@@ -228,6 +228,76 @@ static void transposed_matrices_are_refused(void **state)
     end(&d);
 }
 
+static void expect_settings_refused(desk *d, const ag_scene_settings *asked, const char *said)
+{
+    ag_scene *scene = NULL;
+    assert_int_equal(ag_scene_load_text(d->context, "t", "WorldBegin", 10, asked, &scene), AG_ERROR_ARGUMENT);
+    expect_said(d, said);
+    assert_int_equal(ag_scene_create(d->context, asked, &scene), AG_ERROR_ARGUMENT);
+    expect_said(d, "the settings of the scene: ");
+    assert_null(scene);
+}
+
+static void settings_out_of_range_are_named(void **state)
+{
+    (void)state;
+    const ag_scene_settings sound = ag_default_scene_settings();
+    desk d;
+    begin(&d);
+    ag_scene_settings asked = sound;
+    asked.texture_memory_bytes = 5;
+    expect_settings_refused(&d, &asked, "the settings of the scene: texture_memory_bytes should be");
+    asked = sound;
+    asked.has_sun = true;
+    asked.sun_irradiance = NAN;
+    expect_settings_refused(&d, &asked, "sun_irradiance should be finite");
+    asked.sun_irradiance = INFINITY;
+    expect_settings_refused(&d, &asked, "sun_irradiance should be finite");
+    asked = sound;
+    asked.has_sky = true;
+    asked.sky_radiance[1] = -1.0f;
+    expect_settings_refused(&d, &asked, "sky_radiance should be finite, and not negative");
+    asked = sound;
+    asked.definition_count = 1;
+    expect_settings_refused(&d, &asked, "definitions is NULL");
+    asked = sound;
+    asked.has_camera = true;
+    asked.camera_name = "eye";
+    expect_settings_refused(&d, &asked, "has_camera and camera_name exclude each other");
+    asked = sound;
+    asked.up = (ag_up_axis)99;
+    expect_settings_refused(&d, &asked, "up is no axis");
+    end(&d);
+}
+
+/* No error is without a word. */
+static void misuse_is_named(void **state)
+{
+    (void)state;
+    desk d;
+    ag_scene *scene = NULL;
+    begin(&d);
+    assert_int_equal(ag_scene_set_hint(d.made, (ag_scene_hint)77, "rgb", NULL, 0), AG_ERROR_ARGUMENT);
+    expect_said(&d, "ag_scene_set_hint:1:0: error: there is no such hint");
+    assert_int_equal(ag_scene_create(d.context, NULL, NULL), AG_ERROR_ARGUMENT);
+    expect_said(&d, "out_scene is NULL");
+    assert_int_equal(ag_scene_load_text(d.context, "t", NULL, 10, NULL, &scene), AG_ERROR_ARGUMENT);
+    expect_said(&d, "its text is NULL");
+    assert_int_equal(ag_scene_load_text(d.context, NULL, "WorldBegin", 10, NULL, &scene), AG_ERROR_ARGUMENT);
+    expect_said(&d, "its name is NULL");
+    assert_int_equal(ag_scene_load_text(d.context, "t", "WorldBegin", SIZE_MAX, NULL, &scene), AG_ERROR_INPUT);
+    expect_said(&d, "t: the text is larger than ");
+    ag_shape ball = make_ball(NULL);
+    ag_parameter many = RADIUS;
+    ball.parameters = &many;
+    for (int i = 0; i < 2; i++) {
+        many.count = SIZE_MAX / (i == 0 ? 8 : 9);
+        assert_int_equal(ag_scene_add_shape(d.made, &ball), AG_ERROR_ARGUMENT);
+        expect_said(&d, "\"float radius\": it has more than 2^33 values");
+    }
+    end(&d);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -236,6 +306,8 @@ int main(void)
         cmocka_unit_test(an_instance_has_its_body_and_its_lamps_or_neither),
         cmocka_unit_test(cameras_that_failed_or_were_replaced_leave_no_trace),
         cmocka_unit_test(transposed_matrices_are_refused),
+        cmocka_unit_test(settings_out_of_range_are_named),
+        cmocka_unit_test(misuse_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -642,6 +642,58 @@ static void settings_are_heeded(void **state)
     end(&d);
 }
 
+/* A ball under a sun, or what the settings ask for, seen by a camera whose up is z: set before the commit, after it, or
+ * both. */
+static void render_ball(desk *d, const ag_scene_settings *asked, bool is_before, bool is_after, float *out_pixels)
+{
+    static const double upright[16] = {1, 0, 0, 0, 0, 0, 1, -3, 0, 1, 0, 0, 0, 0, 0, 1}; /* it looks along y */
+    ag_scene *scene;
+    ag_shape ball = ag_default_shape();
+    ag_camera eye = ag_default_camera();
+    eye.world_from_camera = upright;
+    ball.type = "sphere";
+    assert_int_equal(ag_scene_create(d->context, asked, &scene), AG_OK);
+    if (is_before)
+        assert_int_equal(ag_scene_set_camera(scene, &eye), AG_OK);
+    assert_int_equal(ag_scene_add_shape(scene, &ball), AG_OK);
+    assert_int_equal(ag_scene_commit(scene), AG_OK);
+    if (is_after)
+        assert_int_equal(ag_scene_set_camera(scene, &eye), AG_OK);
+    render(d->context, scene, out_pixels);
+    ag_scene_destroy(scene);
+}
+
+static void settings_take_effect_at_the_commit(void **state)
+{
+    (void)state;
+    enum { COUNT = 3 * SIZE * SIZE };
+    desk d;
+    float before[COUNT], after[COUNT], both[COUNT], dark[COUNT] = {0};
+    ag_scene_settings asked = ag_default_scene_settings();
+    begin(&d);
+    asked.has_sun = true;
+    asked.sun_elevation_degrees = 90.0f;
+    render_ball(&d, &asked, true, false, before);
+    render_ball(&d, &asked, true, true, both);
+    assert_memory_equal(before, both, sizeof both);
+    render_ball(&d, &asked, false, true, after); /* without a camera y is up: the sun is behind the ball */
+    assert_memory_equal(after, dark, sizeof dark);
+    assert_memory_not_equal(before, dark, sizeof dark);
+    asked.up = AG_UP_Z;
+    render_ball(&d, &asked, false, true, after);
+    assert_memory_equal(before, after, sizeof after);
+
+    asked.has_camera = true; /* it takes the place of one that was set before, and not of one after */
+    asked.camera_from[0] = -4.0f;
+    render_ball(&d, &asked, false, false, after);
+    assert_memory_not_equal(before, after, sizeof after);
+    render_ball(&d, &asked, true, false, both);
+    assert_memory_equal(after, both, sizeof both);
+    render_ball(&d, &asked, true, true, both);
+    assert_memory_equal(before, both, sizeof both);
+    end(&d);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -658,6 +710,7 @@ int main(void)
         cmocka_unit_test(edits_and_renders_leave_no_memory_behind),
         cmocka_unit_test(a_camera_cannot_change_under_a_rendering),
         cmocka_unit_test(settings_are_heeded),
+        cmocka_unit_test(settings_take_effect_at_the_commit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

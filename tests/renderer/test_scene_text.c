@@ -114,6 +114,36 @@ static void the_caller_may_find_files(void **state)
     ag_context_destroy(d.context);
 }
 
+static bool find_nothing(void *user, const char *name, char *out_path, size_t path_size)
+{
+    (void)user;
+    (void)name;
+    assert_string_equal(out_path, "");
+    assert_true(path_size > 0);
+    return true;
+}
+
+static void an_empty_path_is_an_error(void **state)
+{
+    (void)state;
+    static const char *const TEXTS[] = {
+        "WorldBegin Include \"block.pbrt\"", "WorldBegin Shape \"plymesh\" \"string filename\" \"a.ply\"",
+        "WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"",
+        "WorldBegin LightSource \"infinite\" \"string filename\" \"a.exr\""};
+    desk d;
+    ag_scene *scene = NULL;
+    begin(&d, false);
+    d.settings.find_file = find_nothing;
+    for (size_t i = 0; i < sizeof TEXTS / sizeof *TEXTS; i++) {
+        d.said[0] = '\0';
+        assert_int_equal(ag_scene_load_text(d.context, "told", TEXTS[i], strlen(TEXTS[i]), &d.settings, &scene),
+                         AG_ERROR_INPUT);
+        assert_non_null(strstr(d.said, "find_file knows \""));
+        assert_non_null(strstr(d.said, "told:1:"));
+    }
+    ag_context_destroy(d.context);
+}
+
 /* The caller finds them; a scene that is not trusted may read them where it may read at all. */
 static void confined_scenes_stay_confined(void **state)
 {
@@ -154,6 +184,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(text_has_the_bits_of_the_file),
         cmocka_unit_test(the_caller_may_find_files),
+        cmocka_unit_test(an_empty_path_is_an_error),
         TEST_IN_FOLDER(confined_scenes_stay_confined),
         cmocka_unit_test(misuse_is_an_error),
     };

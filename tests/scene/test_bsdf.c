@@ -341,6 +341,44 @@ static void facets_lose_nothing_where_normals_lean(void **state)
     }
 }
 
+/* A normal that a map tilts sends nothing through the surface, which may be a wall without thickness: neither what is
+ * drawn nor what is claimed crosses it, but by glass. */
+static void tilted_normals_do_not_leak(void **state)
+{
+    (void)state;
+    material all[] = {conductor(0.0f, 0.0f), conductor(0.3f, 0.3f), coated_diffuse(0.4f, 0.4f),
+                      dielectric(1.5f, 0.4f, 0.4f)};
+    rng random = test_random(15);
+    for (int k = 0; k < 4; k++) {
+        int drawn = 0, kept = 0;
+        for (int i = 0; i < 5000; i++) {
+            vec3 normal = vec3_face_forward(random_direction(&random), UP), out = random_direction(&random);
+            vec3 direction = random_direction(&random);
+            bsdf leaning = bsdf_at(&all[k], normal, out), tilted = leaning;
+            tilted.is_tilted = true;
+            bool is_apart =
+                (direction.z * out.z > 0.0f) != (vec3_dot(direction, normal) * vec3_dot(out, normal) > 0.0f);
+            if (is_apart)
+                assert_true(rgb_is_black(bsdf_evaluate(&tilted, BSDF_TRACED, BSDF_RADIANCE, direction)));
+            bsdf_sample s;
+            float u_lobe = rng_float(&random);
+            vec2 u = rng_vec2(&random);
+            drawn += bsdf_sample_direction(&leaning, BSDF_TRACED, BSDF_RADIANCE, u_lobe, u, &s);
+            if (!bsdf_sample_direction(&tilted, BSDF_TRACED, BSDF_RADIANCE, u_lobe, u, &s))
+                continue;
+            kept++;
+            assert_true((s.direction.z * out.z > 0.0f) ==
+                        (vec3_dot(s.direction, normal) * vec3_dot(out, normal) > 0.0f));
+        }
+        assert_true(kept > 1000 && kept < drawn - 300);
+        for (int i = 0; i < 3; i++) {
+            bsdf b = bsdf_at(&all[k], direction_at(30.0, 0.0), direction_at(20.0 + 30.0 * i, 180.0));
+            b.is_tilted = true;
+            check_lobes(&b, BSDF_ALL, SAMPLES / 5, false);
+        }
+    }
+}
+
 /* Seen from both sides, and from between the two horizons: all that is claimed is drawn. */
 static void leaning_normals_claim_what_is_drawn(void **state)
 {
@@ -431,6 +469,7 @@ int main(void)
         cmocka_unit_test(diffuse_light_ends_at_the_shading_horizon),
         cmocka_unit_test(the_bound_of_shading_normals_keeps_nearly_all_flux),
         cmocka_unit_test(facets_lose_nothing_where_normals_lean),
+        cmocka_unit_test(tilted_normals_do_not_leak),
         cmocka_unit_test(leaning_normals_claim_what_is_drawn),
         cmocka_unit_test(flux_goes_where_radiance_comes_from),
         cmocka_unit_test(lambert_alone_is_the_same),

@@ -115,8 +115,8 @@ typedef enum ag_up_axis {
 #define AG_TEXTURE_MEMORY_LEAST_BYTES   ((uint64_t)16 << 20)
 
 /* Finds a file that a scene names: a picture, an included text, a mesh, a spectrum. Writes its path to out_path, of
- * path_size bytes, with a NUL at its end; false leaves it to the library, which looks in the scene's folder. Called on
- * the thread that loads the scene, while it does so; it may call what an ag_log_fn may. */
+ * path_size bytes, with a NUL at its end (an empty one is an error); false leaves it to the library, which looks in the
+ * scene's folder. Called on the thread that loads the scene, while it does so; it may call what an ag_log_fn may. */
 typedef bool ag_find_file_fn(void *user, const char *name, char *out_path, size_t path_size);
 
 /* Settings of a scene beyond what its file says. */
@@ -161,7 +161,7 @@ typedef struct ag_scene_settings {
 AG_API ag_scene_settings ag_default_scene_settings(void);
 
 /* ag_scene_load with settings; NULL: the default ones. They are needed for the time of the call alone. Errors also:
- * AG_ERROR_ARGUMENT (a setting is out of its range). */
+ * AG_ERROR_ARGUMENT (a setting is out of its range; the log says which). */
 AG_API ag_status ag_scene_load_as(ag_context *context, const char *path, const ag_scene_settings *settings,
                                   ag_scene **out_scene);
 /* ag_scene_load_as of pbrt-v4 text that lies in memory: size_bytes of it, which are needed for the time of the call
@@ -236,7 +236,12 @@ typedef struct ag_parameter {
 } ag_parameter;
 
 /* An empty scene. settings: as for ag_scene_load_as, copied but for the definitions, of which there must be none;
- * NULL: the default ones. Until ag_scene_commit it can be added to and destroyed, and nothing else. */
+ * NULL: the default ones. Until ag_scene_commit it can be added to and destroyed, and nothing else.
+ *
+ * The settings take effect at the commit. The camera that was set last before it says then where sun and sky stand:
+ * which axis AG_UP_AUTO takes for up, and whether the world is left-handed; after that the camera of has_camera takes
+ * its place. A camera that is set after the commit counts instead of either, and moves neither sun nor sky. So a host
+ * that asks for them sets a camera of its convention before the commit too. */
 AG_API ag_status ag_scene_create(ag_context *context, const ag_scene_settings *settings, ag_scene **out_scene);
 /* Completes the scene and builds what rays need; it is then as one from a file, of which the camera alone can change.
  * After an error it can only be destroyed. Errors also: AG_ERROR_RAY_TRACING. */
@@ -326,9 +331,10 @@ typedef struct ag_light {
 AG_API ag_light ag_default_light(void);
 AG_API ag_status ag_scene_add_light(ag_scene *scene, const ag_light *light);
 
-/* The last one counts; it comes before all that moves. Of a scene that is complete, from a file too, it may be changed
- * as long as no rendering borrows the scene: nothing is rebuilt, and a photon map that is kept (photon_map_file) goes
- * on serving. Its medium then stays (medium must be NULL), and where anything moves its shutter. */
+/* The last one counts, but for has_camera (see ag_scene_create); it comes before all that moves. Of a scene that is
+ * complete, from a file too, it may be changed as long as no rendering borrows the scene: nothing is rebuilt, and a
+ * photon map that is kept (photon_map_file) goes on serving. Its medium then stays (medium must be NULL), and where
+ * anything moves its shutter. */
 typedef struct ag_camera {
     size_t struct_size;
     const char *type; /* default "perspective" */

@@ -69,13 +69,16 @@ static char *join(const char *directory, const char *name)
     return path;
 }
 
-/* The path that whoever loads the scene has for a name; to be freed. False: it has none. */
+/* The path that whoever loads the scene has for a name; to be freed. False: it has none. An empty one is said here, and
+ * names no file that could be read. */
 static bool ask_for_file(const pbrt_parser *parser, const char *name, char **out_path)
 {
-    char path[4096];
+    char path[4096] = "";
     const scene_request *asked = parser->scene->request;
     if (!asked || !asked->find_file || !asked->find_file(asked->find_file_user, name, path, sizeof path))
         return false;
+    if (!path[0])
+        log_message(parser->log, AG_LOG_ERROR, "find_file knows \"%s\", and gives no path", name);
     *out_path = strndup(path, sizeof path - 1);
     return true;
 }
@@ -199,6 +202,11 @@ ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location wh
 
 ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size)
 {
+    if (size > text_file_max_bytes()) {
+        log_message(parser->log, AG_LOG_ERROR, "%s: the text is larger than %zu MiB, which is the most", name,
+                    text_file_max_bytes() >> 20);
+        return AG_ERROR_INPUT;
+    }
     text_file file = {.text = malloc(size + 1), .size = size};
     parser->top_directory = directory_of(name);
     if (!file.text || !parser->top_directory) {
