@@ -58,6 +58,18 @@ static void shifts_of_blenders_cameras_are_read(void **state)
     blender_shifts_read(model_write_text("shifts.dae", EXTRA), false, &shifts);
     assert_float_equal(shifts.of_all[0], 0.5, 0);
     assert_float_equal(shifts.of_all[1], -0.125, 0);
+    static const char ONE_LINE[] = "<extra><shiftx sid=\"shiftx\">0.5</shiftx><shifty sid=\"shifty\">-0.125</shifty>",
+                      LINES[] = "<shiftx\n sid=\"shiftx\">\n0.5</shiftx\n><shifty sid=\"shifty\"\n>-0.125</shifty>",
+                      TWO_CAMERAS[] = "<a><shiftx sid=\"x\">0.5</shiftx><shifty sid=\"y\">0</shifty></a>"
+                                      "<b><shiftx sid=\"x\">0.5</shiftx><shifty sid=\"y\">0.25</shifty></b>";
+    static const char *const LAYOUTS[] = {ONE_LINE, LINES};
+    for (int k = 0; k < 2; k++) {
+        blender_shifts_read(model_write_text("shifts.dae", LAYOUTS[k]), false, &shifts);
+        assert_float_equal(shifts.of_all[0], 0.5, 0);
+        assert_float_equal(shifts.of_all[1], -0.125, 0);
+    }
+    blender_shifts_read(model_write_text("shifts.dae", TWO_CAMERAS), false, &shifts);
+    assert_true(shifts.differ);
     blender_shifts_read("nothing.fbx", true, &shifts);
     assert_float_equal(shifts.of_all[0], 0, 0);
 }

@@ -83,9 +83,11 @@ static void read_fbx(FILE *file, unsigned char *block, reading *r)
     }
 }
 
-static bool get_number(const char *line, const char *name, double *out)
+/* The number behind an opening tag of that name and its attributes. */
+static bool get_number(const char *tag, const char *name, double *out)
 {
-    const char *at = strstr(line, name), *begin = at ? strchr(at, '>') : NULL;
+    const size_t length = strcspn(tag, " \t\r\n>");
+    const char *begin = length == strlen(name) && memcmp(tag, name, length) == 0 ? strchr(tag, '>') : NULL;
     if (begin)
         *out = strtod(begin + 1, NULL);
     return begin != NULL;
@@ -93,13 +95,13 @@ static bool get_number(const char *line, const char *name, double *out)
 
 static void read_collada(FILE *file, reading *r)
 {
-    char *line = NULL;
+    char *tag = NULL; /* and what is behind it, with the next one's < */
     size_t size = 0;
     double y;
-    while (getline(&line, &size, file) >= 0)
-        if (!get_number(line, "<shiftx ", &r->x) && get_number(line, "<shifty ", &y))
+    while (getdelim(&tag, &size, '<', file) >= 0)
+        if (!get_number(tag, "shiftx", &r->x) && get_number(tag, "shifty", &y))
             take_shift(r, r->x, y);
-    free(line);
+    free(tag);
 }
 
 void blender_shifts_read(const char *path, bool is_fbx, blender_shifts *out_shifts)
