@@ -212,11 +212,21 @@ bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes)
     return false;
 }
 
+/* Whether facets may send light through the surface: between the horizons of two normals that are apart. */
+static bool facets_cross(const bsdf *b)
+{
+    static const float SAME = 0.9999f;
+    return !b->is_tilted && fabsf(vec3_dot(b->shading.z, b->geometric_normal)) < SAME;
+}
+
 bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes)
 {
-    for (int i = 0; i < b->lobe_count; i++)
-        if ((b->lobes[i].group & lobes) && !b->lobes[i].is_delta && lobe_passes(b, &b->lobes[i]))
+    for (int i = 0; i < b->lobe_count; i++) {
+        const bsdf_lobe *lobe = &b->lobes[i];
+        if ((lobe->group & lobes) && !lobe->is_delta &&
+            (lobe_passes(b, lobe) || (bsdf_lobe_has_facets(lobe->kind) && facets_cross(b))))
             return true;
+    }
     return false;
 }
 
