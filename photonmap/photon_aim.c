@@ -152,7 +152,7 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     if (out_aim->guide.nodes) {
         out_aim->wanted = fewer_by_power(&l.blind, settings->wanted);
         out_aim->split_above = l.split_above;
-        out_aim->caustic_root = caustic_root(&l);
+        out_aim->caustic_root = l.settings.caustic_root; /* by which the last round has set what is split */
     }
     for (int i = 0; i <= ROUNDS; i++)
         emission_guide_reset(&l.guides[i]);
