@@ -116,7 +116,7 @@ ag_status scene_request_make(ag_context *context, const ag_scene_settings *setti
     return AG_OK;
 }
 
-/* What is read: a file, or text of that name. */
+/* A scene is read from a file, or from text of that name. */
 typedef struct scene_source {
     const char *name;
     const char *text; /* NULL: it is in the file */

@@ -45,7 +45,8 @@ typedef struct room_clearance {
 } room_clearance;
 
 /* Fills all ROOM_COUNT spheres. Every gap above holds, sphere 33 included, which keeps its position from the beginning.
- * The same on every machine. Errors: AG_ERROR_SCENE when a seed leaves no room for some sphere (never ROOM_SEED). */
+ * The room is the same on every machine. Errors: AG_ERROR_SCENE when a seed leaves no room for some sphere (never
+ * ROOM_SEED). */
 ag_status room_layout_place(uint64_t seed, room_sphere out_spheres[ROOM_COUNT]);
 
 /* Measures the first count spheres against everything, without use of what placing them has checked. */

@@ -14,7 +14,7 @@
 
 enum { WIDTH = 160, HEIGHT = 90, SAMPLES = 4, VIEWS = 3 };
 
-/* What a window would show. */
+/* The picture that a window would show. */
 static struct {
     const ag_film *film; /* that is rendered, or NULL */
     uint64_t version;    /* of the pixels below */

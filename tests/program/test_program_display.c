@@ -119,15 +119,20 @@ static void a_viewer_that_is_not_there_costs_a_warning(void **state)
     program_run_reset(&run);
 }
 
-/* There is more to be sent than the connection can hold, so it goes while the picture is sent. */
+/* The picture is more than a connection can hold at once. */
+static program_run render_large_picture(viewer *v)
+{
+    return RUN("--progress", "none", "--type", "float", "--size", "400x400", "--integrator", "path", "--max-depth", "1",
+               "--spp", "1", "-o", "picture.exr", "--display-server", address_of(v), PROGRAM_SCENES "lamp_point.pbrt");
+}
+
+/* There is more to be sent than the connection can hold, so the viewer goes while the picture is sent. */
 static void a_viewer_that_comes_back_is_shown_all_again(void **state)
 {
     (void)state;
     viewer v = {.leaves_after = 2};
     start(&v);
-    program_run run =
-        RUN("--progress", "none", "--type", "float", "--size", "400x400", "--integrator", "path", "--max-depth", "1",
-            "--spp", "1", "-o", "picture.exr", "--display-server", address_of(&v), PROGRAM_SCENES "lamp_point.pbrt");
+    program_run run = render_large_picture(&v);
     viewer_stop(&v);
     expect_exit(&run, 0);
     assert_int_equal(count_said(run.err, "--display-server"), 1);
@@ -143,9 +148,7 @@ static void a_viewer_that_does_not_listen_holds_nobody_up(void **state)
     (void)state;
     viewer v = {.is_deaf = true};
     start(&v);
-    program_run run =
-        RUN("--progress", "none", "--type", "float", "--size", "400x400", "--integrator", "path", "--max-depth", "1",
-            "--spp", "1", "-o", "picture.exr", "--display-server", address_of(&v), PROGRAM_SCENES "lamp_point.pbrt");
+    program_run run = render_large_picture(&v);
     viewer_stop(&v);
     expect_exit(&run, 0);
     assert_int_equal(count_said(run.err, "--display-server"), 1);

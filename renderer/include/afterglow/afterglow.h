@@ -254,7 +254,8 @@ AG_API ag_status ag_scene_add_material(ag_scene *scene, const char *name, const 
 AG_API ag_status ag_scene_add_medium(ag_scene *scene, const char *name, const char *type,
                                      const ag_parameter *parameters, size_t parameter_count);
 
-/* What the scene says of its picture; the last of each counts. type: "rgb", "independent", "photonmap", "gaussian",
+/* Tells what the scene says of its picture; the last of each counts. type: "rgb", "independent", "photonmap",
+ * "gaussian",
  * ... */
 typedef enum ag_scene_hint { AG_HINT_FILM, AG_HINT_SAMPLER, AG_HINT_INTEGRATOR, AG_HINT_PIXEL_FILTER } ag_scene_hint;
 AG_API ag_status ag_scene_set_hint(ag_scene *scene, ag_scene_hint hint, const char *type,
