@@ -99,7 +99,8 @@ static void distant_lights(void **state)
     r = reading_of("WorldBegin LightSource \"distant\" \"float angle\" 10");
     assert_near(only_light(&r)->disc_one_minus_cos, 1 - cos(5 * PI / 180), 1e-9);
     reading_destroy(&r);
-    assert_refused("WorldBegin LightSource \"distant\" \"float angle\" 181", "\"angle\" should be from 0 to 180 degrees");
+    assert_refused("WorldBegin LightSource \"distant\" \"float angle\" 181",
+                   "\"angle\" should be from 0 to 180 degrees");
 }
 
 static void area_lights(void **state)
