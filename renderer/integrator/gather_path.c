@@ -101,7 +101,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
 
 void gather_end_make_white(const gather_end *end, vertex *v)
 {
-    static const material WHITE = {.kind = MATERIAL_DIFFUSE, .reflectance = {1.0f, 1.0f, 1.0f}};
+    static const material_point WHITE = {.kind = MATERIAL_DIFFUSE, .diffuse = {.reflectance = {1.0f, 1.0f, 1.0f}}};
     const surface_point *at = &end->point;
     v->hit = (surface_hit){.position = at->position,
                            .geometric_normal = at->normal,

@@ -16,8 +16,8 @@ static double gathered_furnace(const bsdf *b)
     double mean = 0.0;
     for (int i = 0; i < STEPS; i++) {
         double cosine = (i + 0.5) / STEPS;
-        bsdf in =
-            flat(&b->parameters, (vec3){(float)sqrt(1.0 - cosine * cosine), 0.0f, copysignf((float)cosine, b->out.z)});
+        bsdf in = bsdf_of_point(&b->material, UP,
+                                (vec3){(float)sqrt(1.0 - cosine * cosine), 0.0f, copysignf((float)cosine, b->out.z)});
         mean += 2.0 * cosine * (double)bsdf_arrival_factor(&in) / STEPS;
     }
     return mean * (double)bsdf_gathered_reflection(b).g;
