@@ -91,7 +91,7 @@ static void compare(const char *what, const char *scene, const char *only, agree
     compare_integrators_by(
         what, scene,
         ARGUMENTS("--photons=2e5", "--caustic-photons=2e5", "--nearest=16", "--gather-samples=4", "--spp=10", only),
-        ARGUMENTS("--integrator=path", "--spp=64", only), bounds);
+        ARGUMENTS("--integrator=path", only ? "--spp=128" : "--spp=64", only), bounds);
 }
 
 static void test_a_tuft_of_hair(void **state)
