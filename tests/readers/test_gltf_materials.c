@@ -223,7 +223,7 @@ static void write_picture(const char *name)
 
 #define ONE_TEXTURE "'textures': [{'source': 0, 'sampler': 0}], 'samplers': [{}], 'images': [{'uri': 'p.png'}],"
 
-/* What a texture of the scene is at uv. */
+/* The value that a texture of the scene has at uv. */
 static rgb value_at(const reading *r, uint32_t texture_index, float u, float v)
 {
     surface_hit hit;
@@ -554,7 +554,7 @@ static void material_errors(void **state)
         gltf_expect_error(material_text(WRONG[i].material_json, WRONG[i].others), WRONG[i].status, WRONG[i].error);
 }
 
-/* Of glass without a volume, by name; of Blender's files, where it was solid, louder. */
+/* Glass without a volume is told of by name; in Blender's files, where it was solid, by a warning. */
 static void thin_glass_is_told(void **state)
 {
     (void)state;

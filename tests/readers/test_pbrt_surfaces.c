@@ -38,7 +38,8 @@ static material silent_material(const char *text)
     return m;
 }
 
-/* With its warnings, each without its location, and a line end behind. */
+/* The material that the text makes, and the warnings that come with it, each without its location, and a line end
+ * behind. */
 static material warned_material(const char *text, const char *warnings)
 {
     reading r = read_world(text);

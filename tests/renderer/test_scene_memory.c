@@ -10,7 +10,7 @@
 
 #include <malloc.h>
 
-/* Of the scenes that are said both ways each so manieth, where all that is done takes long. */
+/* Where everything takes long, one in so many of the scenes that are said both ways is tested. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 enum { SCENE_STEP = 4 };
 #else
@@ -69,7 +69,7 @@ static void memory_has_the_bits_of_files(void **state)
     }
 }
 
-/* Of the public scenes those whose files are there. */
+/* The public scenes whose files are there have the bits of their files. */
 static void public_scenes_have_the_bits_of_files(void **state)
 {
     (void)state;
@@ -89,7 +89,7 @@ static void public_scenes_have_the_bits_of_files(void **state)
     }
 }
 
-/* What moves and what is an instance, as the text says it. */
+/* Motion and instances made by calls have the bits of the text that says them. */
 static void motion_and_instances_have_the_bits_of_text(void **state)
 {
     (void)state;
@@ -611,7 +611,7 @@ static void a_camera_cannot_change_under_a_rendering(void **state)
     end(&d);
 }
 
-/* What is asked for beyond the scene is heeded as for a file. */
+/* Settings that ask for more than the scene says are heeded as they are for a file. */
 static void settings_are_heeded(void **state)
 {
     (void)state;

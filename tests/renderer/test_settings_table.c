@@ -114,7 +114,7 @@ static void change(const setting_row *row, ag_render_settings *settings)
     }
 }
 
-/* And with no others: what is not marked changes neither. */
+/* Fingerprints change with the settings that are marked for them, and with no others. */
 static void fingerprints_change_with_what_is_marked(void **state)
 {
     (void)state;

@@ -84,7 +84,7 @@ static double fresnel(double cosine, double eta)
     return 0.5 * (s * s + p * p);
 }
 
-/* The same of diffuse light. */
+/* Fresnel reflectance of diffuse light. */
 static double fresnel_diffuse(double eta)
 {
     enum { STEPS = 20000 };

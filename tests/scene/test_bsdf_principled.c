@@ -23,7 +23,8 @@ static double gathered_furnace(const bsdf *b)
     return mean * (double)bsdf_gathered_reflection(b).g;
 }
 
-/* The same of all lobes asked for: the others' weights, a mean over an even grid for each lobe. */
+/* The furnace's value of the lobes asked for: a mean over an even grid for each lobe, weighted by the lobe's
+ * probability. */
 static double furnace_of(const bsdf *b, bsdf_lobes lobes)
 {
     enum { STEPS = 24 };
@@ -142,7 +143,7 @@ static void metals_and_plastics_reflect_as_gltf_says(void **state)
     }
 }
 
-/* Of a smooth surface seen under an angle: what goes where, by the share of u_lobe. */
+/* The shares of u_lobe that a smooth surface, seen under an angle, gives to each way on. */
 typedef struct ways {
     double reflected, through;
     vec3 passed;

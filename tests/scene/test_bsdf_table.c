@@ -282,7 +282,8 @@ static void scattering_is_reciprocal(void **state)
     }
 }
 
-/* What photons store and what the eye looks up are together the value: also where the shading normal leans. */
+/* Photons' share and the eye's share of a gathered lobe multiply to its value, where the shading normal leans as well.
+ */
 static void gathered_lobes_are_products(void **state)
 {
     const table *t = *state;

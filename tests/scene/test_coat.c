@@ -245,7 +245,7 @@ static void coats_send_light_where_walks_go(void **state)
     }
 }
 
-/* Where a texture says how rough, between the cells of the table: against the table of that one roughness. */
+/* A roughness from a texture, between the cells of the table, gives what the table of that one roughness gives. */
 static void textured_roughness_is_interpolated(void **state)
 {
     (void)state;

@@ -106,7 +106,7 @@ static void known_values(void **state)
     apply(config, "Display P3 - Display", "Un-tone-mapped", red, 1);
     assert_rgb(red, 0.9175, 0.2003, 0.1386, 1e-4);
 
-    /* The same light on the P3-D65 display, whose curve is a plain power of 2.6. */
+    /* A P3-D65 display's curve is a plain power of 2.6. */
     float projected[3] = {1.0f, 0.0f, 0.0f};
     apply(config, "P3-D65 - Display", "Un-tone-mapped", projected, 1);
     for (int c = 0; c < 3; c++)
@@ -356,7 +356,7 @@ static void working_space_by_name(void **state)
     color_config_destroy(config);
 }
 
-/* What OpenColorIO would follow for ever. */
+/* Definitions that OpenColorIO would follow for ever are refused. */
 static void what_is_made_of_itself_is_refused(void **state)
 {
     (void)state;
@@ -422,7 +422,7 @@ static void tells_what_there_is(void **state)
     color_config_destroy(config);
 }
 
-/* Neither a known name nor an interchange space: the role is all there is. */
+/* Without a known name and an interchange space only the role is left. */
 static void falls_back_to_the_role(void **state)
 {
     (void)state;
@@ -496,7 +496,7 @@ static void agrees_with_oiiotool(void **state)
     image_reset(&theirs);
 }
 
-/* What textures rest on: the sRGB curve of IEC 61966-2-1, one value after another. */
+/* Textures rest on the sRGB curve of IEC 61966-2-1, tested value by value. */
 static void decodes_srgb(void **state)
 {
     (void)state;

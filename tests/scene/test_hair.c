@@ -14,7 +14,7 @@ static material hair(float beta_m, float beta_n, float tilt_degrees, float sigma
     return m;
 }
 
-/* Of theta, the angle to the plane across the axis x, and phi about it. */
+/* The direction of theta, the angle to the plane across the axis x, and of phi about that axis. */
 static vec3 toward(double theta, double phi)
 {
     return (vec3){(float)sin(theta), (float)(cos(theta) * cos(phi)), (float)(cos(theta) * sin(phi))};
@@ -36,7 +36,7 @@ static rgb scattered(const hair_point *h, bool is_flux, vec3 direction)
     return value;
 }
 
-/* What leaves to the eye in a furnace of radiance 1. */
+/* The radiance that leaves for the eye in a furnace of radiance 1. */
 static rgb furnace_of(const hair_point *h)
 {
     enum { ROWS = 160, COLUMNS = 160 };

@@ -51,8 +51,8 @@ static void expect_near_point(vec3 a, vec3 b, float tolerance)
                  (double)b.y, (double)b.z, (double)tolerance);
 }
 
-/* The same point, as two scenes see it; tolerance in lengths of the scene. Where the ray grazes, roundings go far along
- * the surface, and nothing is asked. */
+/* Holds a hit in one scene against the hit of the same ray in another; tolerance in lengths of the scene. Where the ray
+ * grazes, roundings go far along the surface, and nothing is asked. */
 static void expect_same_hit(const scene_ray *ray, const surface_hit *a, const surface_hit *b, float tolerance)
 {
     if (fabsf(vec3_dot(ray->direction, a->geometric_normal)) < 0.1f)
@@ -115,7 +115,7 @@ static void instances_are_their_shapes_moved(void **state)
     test_run_reset(&r);
 }
 
-/* Both see the fibre at one point, and the offset across it from the same side. */
+/* Both scenes show the fibre at one point, and the offset across it on the same side. */
 static void expect_same_hair(const scene *a, const scene *b, const scene_ray *ray, rng *random, uint32_t *met)
 {
     surface_hit of_a, of_b;
@@ -166,7 +166,7 @@ static void hair_scatters_alike_in_a_mirror(void **state)
     test_run_reset(&r);
 }
 
-/* What leaves the outside of a convex shape meets nothing; what goes into a closed one meets it again. */
+/* A ray that leaves the outside of a convex shape meets nothing; one that goes into a closed shape meets it again. */
 static void expect_clean_starts(const scene *s, rng *random, const scene_ray *ray, bool is_closed)
 {
     surface_hit hit, next;

@@ -125,7 +125,7 @@ static void a_relief_in_space(void **state)
     scene_destroy(s);
 }
 
-/* What a mix has picked has its own maps. */
+/* The material that a mix picks keeps its own maps. */
 static void mixes_have_the_maps_of_what_they_pick(void **state)
 {
     (void)state;
