@@ -5,6 +5,7 @@
 #include "output/atomic_file.h"
 #include "photon_file.h"
 #include "photon_merge.h"
+#include "status.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -310,7 +310,7 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
     return status;
 }
 
-static ag_status render_tiles(ag_rendering *r, const integrator *kind, uint32_t wanted)
+static ag_status render_wanted(ag_rendering *r, const integrator *kind, uint32_t wanted)
 {
     if (kind->begin_pass) {
         AG_TRY(kind->begin_pass(r));
@@ -322,7 +322,7 @@ static ag_status render_tiles(ag_rendering *r, const integrator *kind, uint32_t 
 static ag_status render_pass(ag_rendering *r, uint32_t wanted)
 {
     const integrator *kind = integrator_of(r->settings.integrator);
-    ag_status status = render_tiles(r, kind, wanted);
+    ag_status status = render_wanted(r, kind, wanted);
     film_resolve(r->film);
     AG_TRY(status);
     if (kind->end_pass) {

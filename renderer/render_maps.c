@@ -6,6 +6,7 @@
 #include "map_file.h"
 #include "photon_aim.h"
 #include "rays/transmittance.h"
+#include "status.h"
 
 void maps_reset(maps *m)
 {
@@ -162,12 +163,9 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
             map_file_obtain(context, s, settings, trace_maps, &out_maps->file, &out_maps->global, &out_maps->caustic);
     else
         status = trace_maps(context, s, settings, &out_maps->global, &out_maps->caustic);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(status);
     phase_begin guiding = context_begin_phase();
-    status = incident_light_create(&context->run, &out_maps->global, settings->gather_guiding, &out_maps->incident);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(incident_light_create(&context->run, &out_maps->global, settings->gather_guiding, &out_maps->incident));
     context_add_to_phase(context, AG_PHASE_MAP, guiding);
     statistics->photon_bytes += photon_map_bytes(&out_maps->global) + photon_map_bytes(&out_maps->caustic) +
                                 incident_light_bytes(&out_maps->incident);
