@@ -63,10 +63,12 @@ def _focus(camera, world_from_camera, lens_radius):
     return {"float lensradius": lens_radius, "float focaldistance": max(depth, 1e-5)}
 
 
-def add_camera(scene, camera_object, render, notes):
+def add_camera(scene, camera_object, render, motion, notes):
     """Sets the camera of the renderer's scene to a Blender object of the type CAMERA."""
     camera, size = camera_object.data, picture_size(render)
-    world_from_camera = unscaled(matrix_of(camera_object.matrix_world)) @ _FLIPPED_Z
+    start, end = motion.of_camera(matrix_of(camera_object.matrix_world))
+    world_from_camera = unscaled(start) @ _FLIPPED_Z
+    world_from_camera_end = None if end is None else unscaled(end) @ _FLIPPED_Z
     if camera.type == "PANO":
         notes.say(f'camera "{camera_object.name}": panoramas are not translated, it is a perspective camera here')
     if camera.type == "ORTHO":
@@ -81,4 +83,4 @@ def add_camera(scene, camera_object, render, notes):
         parameters.update(_focus(camera, world_from_camera, lens_radius))
         if camera.dof.aperture_blades or camera.dof.aperture_ratio != 1:
             notes.say(f'camera "{camera_object.name}": its aperture is round here')
-    scene.camera(kind, parameters, world_from_camera=world_from_camera)
+    scene.camera(kind, parameters, world_from_camera=world_from_camera, world_from_camera_end=world_from_camera_end)

@@ -244,6 +244,27 @@ def _subsurface(baker, node, path):
     return Surface("diffuse", baker.color("reflectance", node.inputs["Color"], path))
 
 
+def _hair(baker, node, path):
+    """Principled Hair by melanin, colour or absorption; of Hair BSDF a Principled one of its colour."""
+    inputs = node.inputs
+    if node.type == "BSDF_HAIR":
+        baker.graph.skip(node, "hair of its colour stands in")
+        return Surface("hair", {"rgb reflectance": np.clip(baker.graph.color(inputs["Color"], path), 0.01, 0.99)})
+    constant = {name: float(baker.graph.number(inputs[name], path)) for name in (
+        "Roughness", "Radial Roughness", "IOR", "Offset", "Melanin", "Melanin Redness")}
+    made = {"float beta_m": min(max(constant["Roughness"], 0.01), 1), "float eta": max(constant["IOR"], 1.01),
+            "float beta_n": min(max(constant["Radial Roughness"], 0.01), 1), "float alpha": np.degrees(constant["Offset"])}
+    if node.parametrization == "COLOR":
+        made["rgb reflectance"] = np.clip(baker.graph.color(inputs["Color"], path), 0.01, 0.99)
+    elif node.parametrization == "ABSORPTION":
+        made["rgb sigma_a"] = np.maximum(baker.graph.color(inputs["Absorption Coefficient"], path), 0)
+    else:
+        amount = -np.log(max(1 - min(constant["Melanin"], 1.0), 1e-4))
+        made.update({"float eumelanin": amount * (1 - constant["Melanin Redness"]),
+                     "float pheomelanin": amount * constant["Melanin Redness"]})
+    return Surface("hair", made)
+
+
 def _sheen(baker, node, path):
     return _subsurface(baker, node, path)
 
@@ -252,5 +273,5 @@ _SHADERS = {
     "BSDF_PRINCIPLED": _principled, "BSDF_DIFFUSE": _diffuse, "BSDF_GLOSSY": _glossy, "BSDF_GLASS": _glass,
     "BSDF_REFRACTION": _refraction, "BSDF_TRANSLUCENT": _translucent, "BSDF_TRANSPARENT": _transparent,
     "BSDF_ANISOTROPIC": _glossy, "BSDF_VELVET": _sheen, "BSDF_TOON": _sheen, "SUBSURFACE_SCATTERING": _subsurface,
-    "EMISSION": _shines, "MIX_SHADER": _mix, "ADD_SHADER": _add, "HOLDOUT": lambda baker, node, path: Surface(),
+    "BSDF_HAIR": _hair, "BSDF_HAIR_PRINCIPLED": _hair, "EMISSION": _shines, "MIX_SHADER": _mix, "ADD_SHADER": _add, "HOLDOUT": lambda baker, node, path: Surface(),
 }

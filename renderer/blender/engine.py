@@ -5,7 +5,7 @@ import time
 import bpy
 import numpy as np
 
-from . import cameras, library, passes, translation
+from . import cameras, library, motion, passes, translation
 from .notes import Notes
 
 _PHASES = ("Reading", "Building trees", "Tracing photons", "Building maps", "Computing irradiance", "Rendering", "Writing")
@@ -71,13 +71,15 @@ class _Frame:
         made = {"size": f"{size[0]}x{size[1]}", "cropwindow": cameras.crop_window(border, size), "seed": seed,
                 "spp": own.samples, "noise": own.noise, "photons": own.photons, "caustic_photons": own.caustic_photons,
                 "radius": own.radius, "clamp_direct": own.clamp_direct, "clamp_indirect": own.clamp_indirect,
-                "aov": passes.layers_of(self._passes)}
+                "aov": passes.layers_of(self._passes, self._scene.render.film_transparent)}
         if own.gather_samples:
             made["gather_samples"] = own.gather_samples
         if own.use_path_tracing:
             made["integrator"] = "path"
         if own.use_denoising:
             made["denoise"] = True
+        if own.photon_map:
+            made.update(photon_map=bpy.path.abspath(own.photon_map), photon_map_refresh=True, photon_seed=own.seed)
         return made
 
     def render(self):
@@ -89,7 +91,8 @@ class _Frame:
         with self._afterglow.Context(threads=threads, progress=self._hear_progress, warn=self._notes.say) as context, \
                 context.scene() as scene:
             self._hint(scene)
-            translation.translate(scene, self._depsgraph, self._notes, self._poll)
+            moved = motion.look_ahead(self._engine, self._depsgraph, self._notes)
+            translation.translate(scene, self._depsgraph, moved, self._notes, self._poll)
             scene.complete(self._watch_phase)
             with scene.rendering(poll=self._watch_phase, **self._library_settings(size, border)) as rendering:
                 self._refine(rendering)
@@ -153,7 +156,7 @@ class _Frame:
         rgb = np.stack([channels[name] for name in "RGB"], -1)
         alpha = channels["A"] if self._scene.render.film_transparent else None
         if alpha is not None:
-            self._notes.say("a transparent film: alpha is what the picture covers, and the sky stays in its colours")
+            rgb = passes.without_sky(rgb, channels)
         found = result.layers[0].passes
         found["Combined"].rect = passes.combined_pixels(rgb, alpha)
         for one in self._passes:

@@ -98,20 +98,23 @@ class Baker:
         if output is None or output.node.type != "TEX_IMAGE" or output.name != "Color" or output.node.mute:
             return None
         image = output.node.image
-        if not image or image.is_float or image.source not in ("FILE", "GENERATED") or pictures.is_linear(image, self.notes):
+        if not image or image.is_float or pictures.is_linear(image, self.notes):
             return None
         if self.layout and not np.allclose(self.graph.layout(output.node, path)[1], self.layout[1]):
             return None
         key = image.as_pointer(), output.node.extension, output.node.interpolation, scale
         if key not in self._made:
-            raw = pictures.raw_pixels(image)
-            if raw is None:
-                return None
             self.count += 1
-            name = f"{self.name}/{self.count}"
-            self.scene.image(name, np.round(raw[::-1, :, :3] * 255).astype(np.uint8))
+            name = file_name = f"{self.name}/{self.count}"
+            if image.source == "TILED":
+                file_name = pictures.tiled_file(image)
+            else:
+                raw = pictures.raw_pixels(image)
+                if raw is None:
+                    return None
+                self.scene.image(name, np.round(raw[::-1, :, :3] * 255).astype(np.uint8))
             self.scene.texture(name, "spectrum", "imagemap",
-                               {"string filename": name, "string encoding": "sRGB", "float scale": scale,
+                               {"string filename": file_name, "string encoding": "sRGB", "float scale": scale,
                                 **_way_of(output.node)})
             self._made[key] = name
         return self._made[key]

@@ -77,22 +77,31 @@ def _lookup(values, table):
     return np.stack([np.interp(at, np.arange(_RAMP_STEPS), table[:, k]) for k in range(table.shape[1])], -1)
 
 
-def _black_body(kelvin):
-    """Linear Rec. 709 of the luminance 1, after Planck and the sensitivities of Wyman, Sloan, Shirley, "Simple Analytic
-    Approximations to the CIE XYZ Color Matching Functions", 2013."""
-    def lobe(nm, middle, below, above):
-        return np.exp(-0.5 * ((nm - middle) * np.where(nm < middle, below, above)) ** 2)
+# The CIE's observer of 1931 from 380 to 780 nm, every 20.
+_OBSERVER_NM = np.arange(380.0, 781.0, 20.0)
+_OBSERVER = np.array([
+    [.0014, .0143, .1344, .3483, .2908, .0956, .0049, .0633, .2904, .5945, .9163, 1.0622, .8544, .4479, .1649, .0468, .0114,
+     .0029, .0007, .0002, .0000],
+    [.0000, .0004, .0040, .0230, .0600, .1390, .3230, .7100, .9540, .9950, .8700, .6310, .3810, .1750, .0610, .0170, .0041,
+     .0010, .0002, .0001, .0000],
+    [.0065, .0679, .6456, 1.7471, 1.6692, .8130, .2720, .0782, .0203, .0039, .0017, .0008, .0002, .0000, .0000, .0000, .0000,
+     .0000, .0000, .0000, .0000]])
+_REC709_FROM_XYZ = np.array([[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560],
+                             [0.0556434, -0.2040259, 1.0572252]])
 
+
+def rgb_of_spectrum(nm, spectrum):
+    """Linear Rec. 709 of spectra (..., waves) at evenly spaced wavelengths; Y is the integral of power times
+    sensitivity."""
+    xyz = [(spectrum * np.interp(nm, _OBSERVER_NM, row)).sum(axis=-1) for row in _OBSERVER]
+    return np.stack(xyz, -1) * (nm[1] - nm[0]) @ _REC709_FROM_XYZ.T
+
+
+def _black_body(kelvin):
+    """Linear Rec. 709 of the luminance 1, after Planck."""
     nm = np.arange(380.0, 781.0, 5.0)
-    power = nm ** -5 / np.expm1(1.4388e7 / (nm * max(float(kelvin), 800.0)))
-    x = 1.056 * lobe(nm, 599.8, 1 / 37.9, 1 / 31.0) + 0.362 * lobe(nm, 442.0, 1 / 16.0, 1 / 26.7) - 0.065 * lobe(
-        nm, 501.1, 1 / 20.4, 1 / 26.2)
-    y = 0.821 * lobe(nm, 568.8, 1 / 46.9, 1 / 40.5) + 0.286 * lobe(nm, 530.9, 1 / 16.3, 1 / 31.1)
-    z = 1.217 * lobe(nm, 437.0, 1 / 11.8, 1 / 36.0) + 0.681 * lobe(nm, 459.0, 1 / 26.0, 1 / 13.8)
-    xyz = np.array([(power * c).sum() for c in (x, y, z)])
-    rgb = np.array([[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560],
-                    [0.0556434, -0.2040259, 1.0572252]]) @ (xyz / xyz[1])
-    return np.maximum(rgb, 0)
+    rgb = rgb_of_spectrum(nm, nm ** -5 / np.expm1(1.4388e7 / (nm * max(float(kelvin), 800.0))))
+    return np.maximum(rgb / (rgb @ (0.2126, 0.7152, 0.0722)), 0)
 
 
 def _mix(graph, node, path, sheet):

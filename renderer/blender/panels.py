@@ -34,7 +34,7 @@ class AFTERGLOW_PT_light(_RenderPanel, bpy.types.Panel):
     def draw(self, context):
         _props(self.layout, context.scene.afterglow, (
             "photons", "caustic_photons", "radius", "gather_samples", "clamp_direct", "clamp_indirect",
-            "use_path_tracing"))
+            "photon_map", "use_path_tracing"))
 
 
 class AFTERGLOW_PT_passes(_RenderPanel, bpy.types.Panel):

@@ -46,8 +46,9 @@ def passes_of(view_layer):
     return asked
 
 
-def layers_of(asked):
-    return ",".join(dict.fromkeys(["A", *(one.layer for one in asked)] + (["A"] if _UV in asked else [])))
+def layers_of(asked, is_transparent):
+    """The renderer's layers; a transparent film needs to know what comes straight from the sky."""
+    return ",".join(dict.fromkeys(["A", *(one.layer for one in asked), *(["emission"] if is_transparent else [])]))
 
 
 def pixels_of(one, channels, shape):
@@ -55,6 +56,12 @@ def pixels_of(one, channels, shape):
     black = np.zeros(shape, np.float32)
     planes = [channels.get(name, black)[::-1] for name in one.names]
     return np.ascontiguousarray(np.stack(planes, -1).reshape(-1, len(planes)))
+
+
+def without_sky(rgb, channels):
+    """Of a transparent film: where the picture is not covered whole, what comes straight to the eye is the sky's."""
+    emission = np.stack([channels[f"emission.{c}"] for c in "RGB"], -1)
+    return rgb - emission * (channels["A"] < 1)[..., None]
 
 
 def combined_pixels(rgb, alpha=None):

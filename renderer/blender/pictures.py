@@ -1,8 +1,14 @@
 """Blender's images as arrays: (height, width, 4), lowest row first, scene-linear."""
 
+import bpy
 import numpy as np
 
 _LINEAR = {"Non-Color", "Raw", "Linear", "Linear BT.709", "Linear Rec.709", "Generic Data"}
+
+
+def tiled_file(image):
+    """The name that the tiles of an image have in common, with <UDIM> in it."""
+    return bpy.path.abspath(image.filepath, library=image.library)
 
 
 def raw_pixels(image):

@@ -1,7 +1,7 @@
 """What a user may set: of a scene, and of a view layer the passes that Blender itself has no switch for."""
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 
 class AfterglowSceneSettings(bpy.types.PropertyGroup):
@@ -25,6 +25,9 @@ class AfterglowSceneSettings(bpy.types.PropertyGroup):
                                   description="No sample gets more; 0: unbounded")
     use_path_tracing: BoolProperty(name="Path Tracing", default=False,
                                    description="Without photons, to compare with: slower, and without caustics of points")
+    photon_map: StringProperty(name="Photon Map", subtype="FILE_PATH",
+                               description="A file that keeps the photon map from frame to frame, where nothing but the "
+                                           "camera moves; traced anew where the scene is another one")
     use_denoising: BoolProperty(name="Denoise", default=False,
                                 description="With Open Image Denoise, where its library is installed")
 

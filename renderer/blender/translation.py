@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import cameras, lamps, meshes, worlds
+from . import cameras, hair, lamps, meshes, worlds
 from .materials import Materials
 from .passes import group_of
 
@@ -10,7 +10,7 @@ _SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
 class _Model:
-    """The parts of one mesh, and the matrices of all places where it stands."""
+    """The parts of one mesh, and where it stands: pairs of matrices, as the shutter opens and closes (or None)."""
 
     def __init__(self, name, parts, looks, group):
         self.name, self.parts, self.looks, self.group, self.places = name, parts, looks, group, []
@@ -56,30 +56,34 @@ def _add_part(scene, model, part, **where):
 
 
 def _add_model(scene, model):
-    """One that stands in several places is instanced, but for what shines in it, which stands in each place."""
+    """One that stands in several places is instanced, but for what shines in it, which stands still in each place."""
     dark = [part for part in model.parts if model.looks[part.slot].light is None]
     shining = [part for part in model.parts if model.looks[part.slot].light is not None]
     if len(model.places) == 1:
         shining, dark = shining + dark, []
-    for place in model.places:
+    for place, end in model.places:
         for part in shining:
-            _add_part(scene, model, part, world_from_shape=place)
+            still = model.looks[part.slot].light is not None
+            _add_part(scene, model, part, world_from_shape=place, world_from_shape_end=None if still else end)
     for part in dark:
         _add_part(scene, model, part, object=model.name)
-    for place in model.places if dark else ():
-        scene.instance(model.name, place)
+    for place, end in model.places if dark else ():
+        scene.instance(model.name, place, end)
 
 
-def translate(scene, depsgraph, notes, poll):
-    """Fills an empty scene, up to its completion. poll: called between objects; an exception there ends it."""
+def translate(scene, depsgraph, motion, notes, poll):
+    """Fills an empty scene, up to its completion. motion: see motion.py. poll: called between objects; an exception there ends it."""
     blender_scene = depsgraph.scene_eval
     if blender_scene.camera is None:
         raise RuntimeError("the scene has no camera")
-    cameras.add_camera(scene, blender_scene.camera.evaluated_get(depsgraph), blender_scene.render, notes)
+    cameras.add_camera(scene, blender_scene.camera.evaluated_get(depsgraph), blender_scene.render, motion,
+                       notes)
     materials, models, lights = Materials(scene, notes), {}, []
     for instance in depsgraph.object_instances:
         poll()
         shown = instance.object
+        if instance.show_particles and not instance.is_instance and shown.type == "MESH":
+            hair.add_particle_hair(scene, shown, materials, poll)
         if not instance.show_self:
             continue
         matrix = cameras.matrix_of(instance.matrix_world)
@@ -92,8 +96,10 @@ def translate(scene, depsgraph, notes, poll):
             if key not in models:
                 models[key] = _model(shown, materials, f"{shown.name_full}#{len(models)}", notes)
             if models[key]:
-                models[key].places.append(matrix)
-        elif shown.type in ("VOLUME", "CURVES", "POINTCLOUD", "GPENCIL"):
+                models[key].places.append(motion.of_instance(instance, matrix))
+        elif shown.type == "CURVES":
+            hair.add_curves(scene, shown, matrix, materials, poll)
+        elif shown.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
             notes.say(f'object "{shown.name}": a {shown.type.lower()} is not translated')
     for model in models.values():
         poll()

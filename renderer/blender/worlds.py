@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import node_math, pictures
+from . import node_math, pictures, skies
 from .nodes import Graph, source
 from .passes import group_of
 
@@ -26,13 +26,13 @@ def _background(graph, socket, path):
 
 
 def _sky_picture(graph, socket, path, strength):
-    """A picture of all directions behind a socket, and how it is turned."""
+    """A picture of all directions behind a socket, how it is turned, and the node's sky or None."""
     output, _, path = source(socket, path)
     node = output.node
-    if node.type != "TEX_ENVIRONMENT" or not node.image:
+    if node.type != "TEX_SKY" and not (node.type == "TEX_ENVIRONMENT" and node.image):
         return None
     matrix = np.eye(4)
-    if node.projection != "EQUIRECTANGULAR":
+    if node.type == "TEX_ENVIRONMENT" and node.projection != "EQUIRECTANGULAR":
         graph.skip(node, "its picture is read as latitude and longitude")
     vector, _, path = source(node.inputs["Vector"], path)
     while vector is not None and vector.node.type == "MAPPING":
@@ -40,7 +40,21 @@ def _sky_picture(graph, socket, path, strength):
         vector, _, path = source(vector.node.inputs["Vector"], path)
     turn, _, other = np.linalg.svd(matrix[:3, :3])
     matrix[:3, :3], matrix[:3, 3] = turn @ other, 0  # what it does beyond turning has no meaning here
-    return pictures.linear_pixels(node.image, graph.notes)[..., :3] * np.float32(strength), matrix
+    sky = None
+    if node.type == "TEX_SKY":
+        if node.sky_type != "NISHITA":
+            graph.skip(node, "Nishita's sky stands in for the other kinds, with this node's settings of that")
+        sky = skies.Sky(node)
+    pixels = sky.picture() if sky else pictures.linear_pixels(node.image, graph.notes)[..., :3]
+    return pixels * np.float32(strength), matrix, sky if sky and node.sun_disc else None, node
+
+
+def _add_sun(scene, sky, node, strength, world_from_picture, group):
+    direction = world_from_picture[:3, :3] @ sky.sun_direction()
+    irradiance = sky.sun_irradiance() * node.sun_intensity * strength
+    if (irradiance > 0).any():
+        scene.light("distant", {"rgb L": irradiance, "float angle": np.degrees(node.sun_size),
+                                "point3 from": direction, "point3 to": (0, 0, 0), **group})
 
 
 def add_world(scene, world, notes):
@@ -62,9 +76,11 @@ def add_world(scene, world, notes):
         color = graph.color(node.inputs["Color"], path) * strength if picture is None else None
     group = group_of(world)
     if picture is not None:
-        pixels, picture_from_world = picture
+        pixels, picture_from_world, sky, node = picture
         scene.image("(world)", np.maximum(pixels[::-1], 0))
         scene.light("infinite", {"string filename": "(world)", **group},
                     world_from_light=np.linalg.inv(picture_from_world) @ _MIRRORED_X)
+        if sky:
+            _add_sun(scene, sky, node, strength, np.linalg.inv(picture_from_world), group)
     elif (color > 0).any():
         scene.light("infinite", {"rgb L": np.maximum(color, 0), **group})
