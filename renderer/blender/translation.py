@@ -72,7 +72,8 @@ def _add_model(scene, model):
 
 
 def translate(scene, depsgraph, motion, notes, poll, view=None):
-    """Fills an empty scene, up to its completion. view: instead of the scene's camera (cameras.View). motion: see motion.py. poll: called between objects; an exception there ends it."""
+    """Fills an empty scene, up to its completion. view: instead of the scene's camera (cameras.View). motion: see
+    motion.py. poll: called between objects; an exception there ends it."""
     blender_scene = depsgraph.scene_eval
     if view:
         cameras.add_view(scene, view)
