@@ -118,6 +118,7 @@ static void count_irradiance(ag_statistics *statistics, const irradiance_cache *
 ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_settings *wanted,
                            ag_render_settings *out_settings)
 {
+    AG_TRY(context_check_struct(context, "ag_render_settings", wanted->struct_size, sizeof *wanted));
     *out_settings = *wanted;
     if (out_settings->photon_seed == AG_PHOTON_SEED_AUTOMATIC)
         out_settings->photon_seed = out_settings->seed;

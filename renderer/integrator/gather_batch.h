@@ -16,7 +16,7 @@
 
 enum { GATHER_BATCH_GATHERS = 1 << 14, GATHER_BATCH_SAMPLES = 1 << 14, GATHER_BATCH_DETOURS = 1 << 12 };
 
-/* Where a gather ray ends: irradiance is asked for there, and where none holds its light is followed on. */
+/* The end of a gather ray: irradiance is asked for there, and where none holds its light is followed on. */
 typedef struct gather_end {
     surface_point point;  /* as the photons have it: when the shutter opens */
     uint32_t medium;      /* that the ray arrived in */

@@ -50,9 +50,9 @@ class Cancelled(Error):
 
 
 class _ContextSettings(ctypes.Structure):
-    _fields_ = [("thread_count", c_uint), ("isa", c_char_p), ("color_config", c_char_p), ("working_space", c_char_p),
-                ("is_confined", c_bool), ("confined_to", POINTER(c_char_p)), ("confined_count", c_size_t),
-                ("log", _LOG), ("progress", _PROGRESS), ("user", c_void_p)]
+    _fields_ = [("struct_size", c_size_t), ("thread_count", c_uint), ("isa", c_char_p), ("color_config", c_char_p),
+                ("working_space", c_char_p), ("is_confined", c_bool), ("confined_to", POINTER(c_char_p)),
+                ("confined_count", c_size_t), ("log", _LOG), ("progress", _PROGRESS), ("user", c_void_p)]
 
 
 class _Parameter(ctypes.Structure):
@@ -226,9 +226,9 @@ class Context:
         self._failed = None
         self._callbacks = (_LOG(self._hear), _PROGRESS(self._tell))  # they live as long as the context
         self._pointer = c_void_p()
-        settings = _ContextSettings(thread_count=threads, working_space=_text(working_space),
-                                    color_config=_text(color_config), log=self._callbacks[0],
-                                    progress=self._callbacks[1])
+        settings = _ContextSettings(struct_size=ctypes.sizeof(_ContextSettings), thread_count=threads,
+                                    working_space=_text(working_space), color_config=_text(color_config),
+                                    log=self._callbacks[0], progress=self._callbacks[1])
         self._check(_library.ag_context_create(byref(settings), byref(self._pointer)))
 
     def _hear(self, _user, level, message):
