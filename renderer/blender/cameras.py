@@ -1,7 +1,12 @@
 """Blender's camera as the renderer's. The field of view is 90 degrees always, and the screen window says the rest: its
 numbers are tangents then, or for a parallel projection lengths."""
 
+from collections import namedtuple
+
 import numpy as np
+
+# A camera of a 3D view: kind, screen window (x0, x1, y0, y1), matrix row by row, (width, height); as tuples, to compare.
+View = namedtuple("View", "kind window world_from_camera size")
 
 _FLIPPED_Z = np.diag([1.0, 1.0, -1.0, 1.0])  # Blender's cameras look along -z, the renderer's along +z
 
@@ -53,6 +58,26 @@ def _screen_window(camera, render, size, half_width_of_sensor):
     window = half_width_of_sensor * np.array([middle[0] - half[0], middle[0] + half[0],
                                               middle[1] - half[1], middle[1] + half[1]])
     return window.astype(np.float32)
+
+
+def view_of(view_matrix, window_matrix, is_perspective, size):
+    """The view of a region: its matrices say where it is, and which part of its screen it shows."""
+    projection = matrix_of(window_matrix)
+    window = []
+    for axis in (0, 1):
+        offset = projection[axis, 2] if is_perspective else -projection[axis, 3]
+        window += [(-1 + offset) / projection[axis, axis], (1 + offset) / projection[axis, axis]]
+    world_from_camera = np.linalg.inv(matrix_of(view_matrix)) @ _FLIPPED_Z
+    return View("perspective" if is_perspective else "orthographic", tuple(window),
+                tuple(world_from_camera.ravel()), tuple(size))
+
+
+def add_view(scene, view):
+    """Sets the camera to a view; of a complete scene, too."""
+    parameters = {"float screenwindow": np.array(view.window, np.float32)}
+    if view.kind == "perspective":
+        parameters["float fov"] = 90
+    scene.camera(view.kind, parameters, world_from_camera=np.reshape(view.world_from_camera, (4, 4)))
 
 
 def _focus(camera, world_from_camera, lens_radius):

@@ -273,5 +273,6 @@ _SHADERS = {
     "BSDF_PRINCIPLED": _principled, "BSDF_DIFFUSE": _diffuse, "BSDF_GLOSSY": _glossy, "BSDF_GLASS": _glass,
     "BSDF_REFRACTION": _refraction, "BSDF_TRANSLUCENT": _translucent, "BSDF_TRANSPARENT": _transparent,
     "BSDF_ANISOTROPIC": _glossy, "BSDF_VELVET": _sheen, "BSDF_TOON": _sheen, "SUBSURFACE_SCATTERING": _subsurface,
-    "BSDF_HAIR": _hair, "BSDF_HAIR_PRINCIPLED": _hair, "EMISSION": _shines, "MIX_SHADER": _mix, "ADD_SHADER": _add, "HOLDOUT": lambda baker, node, path: Surface(),
+    "BSDF_HAIR": _hair, "BSDF_HAIR_PRINCIPLED": _hair, "EMISSION": _shines,
+    "MIX_SHADER": _mix, "ADD_SHADER": _add, "HOLDOUT": lambda baker, node, path: Surface(),
 }

@@ -1,11 +1,12 @@
 """The render engine: a picture's way from the dependency graph to Blender's render result."""
 
 import time
+import weakref
 
 import bpy
 import numpy as np
 
-from . import cameras, library, motion, passes, translation
+from . import cameras, library, motion, passes, translation, view_drawing, viewport
 from .notes import Notes
 
 _PHASES = ("Reading", "Building trees", "Tracing photons", "Building maps", "Computing irradiance", "Rendering", "Writing")
@@ -13,8 +14,24 @@ _PHASE_RENDER = 5
 _SHOW_S = 0.5  # the picture is shown no more often than this, nor does showing it take more than a tenth of the time
 
 
+_VIEWPORTS = {}  # of engines that draw a 3D view, by their id
+
+
 class _Stopped(Exception):
     pass
+
+
+def _redrawing(engine):
+    """Asks for a redraw as long as the engine is there; it does not keep it."""
+    reference = weakref.ref(engine)
+
+    def redraw():
+        try:
+            reference().tag_redraw()
+        except (AttributeError, ReferenceError):
+            pass  # the view has been closed
+
+    return redraw
 
 
 class AfterglowEngine(bpy.types.RenderEngine):
@@ -22,12 +39,50 @@ class AfterglowEngine(bpy.types.RenderEngine):
     bl_label = "Afterglow"
     bl_use_preview = False
     bl_use_shading_nodes_custom = False
-    bl_use_eevee_viewport = True
+    bl_use_eevee_viewport = True  # materials are previewed by it
 
     def update_render_passes(self, scene=None, renderlayer=None):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
         for one in passes.passes_of(renderlayer):
             self.register_pass(scene, renderlayer, one.name, len(one.channels), one.channels, one.kind)
+
+    def _viewport_of(self, context):
+        """Made when it is first asked for; None where the library cannot be used."""
+        if id(self) not in _VIEWPORTS:
+            _VIEWPORTS[id(self)] = None
+            try:
+                _VIEWPORTS[id(self)] = viewport.Viewport(library.load(), _redrawing(self),
+                                                         lambda text: print(f"Afterglow: {text}"))
+            except ImportError as error:
+                self.update_stats("Afterglow", str(error))
+        region, view = context.region, context.region_data
+        return _VIEWPORTS[id(self)], cameras.view_of(view.view_matrix, view.window_matrix, view.is_perspective,
+                                               (max(region.width, 1), max(region.height, 1)))
+
+    def view_update(self, context, depsgraph):
+        shown, view = self._viewport_of(context)
+        if shown:
+            try:
+                shown.update(depsgraph, view)
+            except Exception as error:  # of a scene: the view stays as it is, and says so
+                self.update_stats("Afterglow", str(error))
+
+    def view_draw(self, context, depsgraph):
+        shown, view = self._viewport_of(context)
+        if not shown:
+            return
+        shown.look(view)
+        self.update_stats("Afterglow", shown.status)
+        pixels = shown.picture()
+        if pixels is not None:
+            self.bind_display_space_shader(depsgraph.scene)
+            view_drawing.draw(pixels, view.size)
+            self.unbind_display_space_shader()
+
+    def __del__(self):  # of what Blender has taken away already: there are no attributes any more
+        shown = _VIEWPORTS.pop(id(self), None)
+        if shown:
+            shown.close()
 
     def render(self, depsgraph):
         try:

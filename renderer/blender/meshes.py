@@ -40,6 +40,30 @@ def _layout(mesh, how, positions, loop_vertices):
     return np.ascontiguousarray(uvs @ matrix[:, :2].T + matrix[:, 2], np.float32)
 
 
+def _unit(vectors):
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-30)
+
+
+def _plain_normals(mesh, positions, loop_vertices, is_smooth):
+    """Of the loops: at smooth faces the mean of the normals around the vertex by their angles. Blender's own are the same
+    but for the order in which its threads add, so that their last bits differ from time to time."""
+    starts, counts = _array(mesh.polygons, "loop_start", 1, np.int32), _array(mesh.polygons, "loop_total", 1, np.int32)
+    faces = _array(mesh.polygons, "normal", 3, np.float32).astype(np.float64)
+    face_of = np.empty(len(loop_vertices), np.int64)
+    at = np.repeat(starts - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())  # loops, face by face
+    face_of[at] = np.repeat(np.arange(len(starts)), counts)
+    loops = np.arange(len(loop_vertices))
+    first, last = starts[face_of], (starts + counts - 1)[face_of]
+    corners = positions[loop_vertices].astype(np.float64)
+    before = _unit(corners[np.where(loops == first, last, loops - 1)] - corners)
+    after = _unit(corners[np.where(loops == last, first, loops + 1)] - corners)
+    angles = np.arccos(np.clip((before * after).sum(axis=-1), -1, 1))
+    weighted = faces[face_of] * angles[:, None]
+    sums = [np.bincount(loop_vertices, weighted[:, axis], len(positions)) for axis in range(3)]
+    smooth = _unit(np.stack(sums, -1))[loop_vertices]
+    return np.where(is_smooth[face_of][:, None], smooth, faces[face_of]).astype(np.float32)
+
+
 def parts_of(mesh, layouts):
     """The parts of an evaluated mesh. layouts: for each material slot how its pictures are laid out (see _layout)."""
     mesh.calc_loop_triangles()
@@ -52,8 +76,11 @@ def parts_of(mesh, layouts):
     is_smooth = _array(mesh.polygons, "use_smooth", 1, bool)
     normals = None
     if is_smooth.any():
-        mesh.calc_normals_split()
-        normals = _array(mesh.loops, "normal", 3, np.float32)
+        if mesh.use_auto_smooth or mesh.has_custom_normals:
+            mesh.calc_normals_split()
+            normals = _array(mesh.loops, "normal", 3, np.float32)
+        else:
+            normals = _plain_normals(mesh, positions, loop_vertices, is_smooth)
     parts = []
     slots = np.clip(slots, 0, max(len(layouts) - 1, 0))
     for slot in np.unique(slots):

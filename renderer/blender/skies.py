@@ -76,7 +76,8 @@ class Sky:
                   3 / (8 * math.pi) * (1 - g * g) * (1 + cosine ** 2) / ((2 + g * g) * (1 + g * g - 2 * g * cosine) ** 1.5))
         eye = np.broadcast_to(self._eye, directions.shape)
         step = _length_to(_TOP_M, eye, directions)[..., None] / _VIEW_STEPS
-        made, passed, spectrum = np.zeros((*directions.shape[:-1], len(_NM))), np.zeros((*directions.shape[:-1], 3)), _sun_spectrum()
+        made = np.zeros((*directions.shape[:-1], len(_NM)))
+        passed = np.zeros((*directions.shape[:-1], 3))
         for k in range(_VIEW_STEPS):
             point = eye + directions * step * (k + 0.5)
             here = _densities(np.maximum(np.linalg.norm(point, axis=-1) - _EARTH_M, 0))
@@ -87,7 +88,7 @@ class Sky:
             for wave in range(len(_NM)):
                 made[..., wave] += self._transmittance(depths, wave) * (
                     air * _AIR_SCATTERING[wave] + dust * _DUST_SCATTERING)
-        return made * spectrum
+        return made * _sun_spectrum()
 
     def picture(self):
         """(height, width, 3), lowest row first, as Blender's equirectangular pictures lie; below the horizon its light

@@ -71,13 +71,16 @@ def _add_model(scene, model):
         scene.instance(model.name, place, end)
 
 
-def translate(scene, depsgraph, motion, notes, poll):
-    """Fills an empty scene, up to its completion. motion: see motion.py. poll: called between objects; an exception there ends it."""
+def translate(scene, depsgraph, motion, notes, poll, view=None):
+    """Fills an empty scene, up to its completion. view: instead of the scene's camera (cameras.View). motion: see
+    motion.py. poll: called between objects; an exception there ends it."""
     blender_scene = depsgraph.scene_eval
-    if blender_scene.camera is None:
+    if view:
+        cameras.add_view(scene, view)
+    elif blender_scene.camera is None:
         raise RuntimeError("the scene has no camera")
-    cameras.add_camera(scene, blender_scene.camera.evaluated_get(depsgraph), blender_scene.render, motion,
-                       notes)
+    else:
+        cameras.add_camera(scene, blender_scene.camera.evaluated_get(depsgraph), blender_scene.render, motion, notes)
     materials, models, lights = Materials(scene, notes), {}, []
     for instance in depsgraph.object_instances:
         poll()
