@@ -12,6 +12,7 @@
 #include "rays/transmittance.h"
 #include "render_maps.h"
 #include "render_tiles.h"
+#include "split_pilot.h"
 #include "status.h"
 
 #include <stdlib.h>
@@ -275,8 +276,9 @@ static ag_status prepare(ag_rendering *r)
         return status;
     begin = context_begin_phase();
     r->workers = eye_workers_create(&r->t, context->statistics.threads);
+    status = r->workers ? split_pilot_run(r) : AG_ERROR_MEMORY;
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
-    return r->workers ? AG_OK : AG_ERROR_MEMORY;
+    return status;
 }
 
 /* light's side: lamps -> photons -> maps -> cache */
