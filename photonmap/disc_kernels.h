@@ -153,7 +153,7 @@ static inline bool photon_selection_find_bin(photon_selection *s, photon_neighbo
     return false;
 }
 
-/* All moves without a branch to be mispredicted. */
+/* Moves every photon by the same instructions, so that no branch is mispredicted. */
 static inline void photon_selection_part(photon_selection *s, photon_neighbor *n, uint32_t begin, uint32_t end)
 {
     for (uint32_t i = begin; i < end; i++) {
@@ -166,7 +166,7 @@ static inline void photon_selection_part(photon_selection *s, photon_neighbor *n
     }
 }
 
-/* Once all are parted. */
+/* Called once all photons are parted. */
 static inline void photon_selection_end(photon_selection *s, photon_neighbor *n, uint32_t wanted)
 {
     photon_neighbors_quickselect(s->in_bin, s->in_bin_count, wanted - s->kept);

@@ -30,8 +30,8 @@ typedef struct importance_map {
 /* Reads the points. Without any, no point has importance. Errors: AG_ERROR_MEMORY. */
 ag_status importance_map_create(const query_point *points, uint32_t count, importance_map *out_importance);
 
-/* For points that are few and by chance, shares of so large a whole (>= 1): between low and high, where all of them
- * lie, a part of a surface that has none counts as if it had up to one, by how many lie around it. */
+/* Reads points that are few and lie there by chance, and that are shares of a whole of so many (>= 1). They all lie
+ * between low and high. A part of a surface that has none counts as if it had up to one, by how many lie around it. */
 ag_status importance_map_create_smooth(const query_point *points, uint32_t count, uint32_t whole, vec3 low, vec3 high,
                                        importance_map *out_importance);
 void importance_map_reset(importance_map *importance);

@@ -17,8 +17,8 @@
 
 enum { INCIDENT_SIDE = 8, INCIDENT_BINS = INCIDENT_SIDE * INCIDENT_SIDE, INCIDENT_ONE = 1 << 16 };
 
-/* Where each bin begins in [0, INCIDENT_ONE): strictly ascending from 0, row by row; by column and row, so that a
- * column is what a vector holds. */
+/* The beginnings of the bins in [0, INCIDENT_ONE), strictly ascending from 0, row by row. They are stored by column and
+ * row, so that a column is what a vector holds. */
 typedef struct incident_histogram {
     uint16_t begins[INCIDENT_SIDE][INCIDENT_SIDE];
 } incident_histogram;

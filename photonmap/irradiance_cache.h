@@ -57,7 +57,7 @@ typedef struct irradiance_cache {
 /* Borrows the map. Errors: AG_ERROR_MEMORY. */
 ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, unsigned worker_count,
                                   irradiance_cache *out_cache);
-/* Before the first request: the map is filled by other processes, too. Borrows. */
+/* Tells, before the first request, that other processes fill the map too. Borrows. */
 void irradiance_cache_share(irradiance_cache *cache, claim_owners *owners);
 void irradiance_cache_reset(irradiance_cache *cache);
 

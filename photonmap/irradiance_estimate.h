@@ -7,7 +7,7 @@
 
 #include "photon_map.h"
 
-/* At which points an estimate holds, of those that are nearest to its photon. */
+/* The points at which an estimate holds, of those that are nearest to its photon. */
 typedef enum irradiance_extent {
     IRRADIANCE_HOLDS_NOWHERE,
     IRRADIANCE_HOLDS_IN_SIGHT,  /* where the point is seen from: a surface ends near by, or another level is there */

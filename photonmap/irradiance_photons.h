@@ -14,7 +14,8 @@
 
 #include "photon_tree.h"
 
-/* How many runs the photons are parted into: the fraction (0, 1] of them, but one at least where there are any. */
+/* The number of runs that the photons are parted into: the fraction (0, 1] of them, but one at least where there are
+ * any. */
 uint32_t irradiance_photons_runs(uint32_t photon_count, float fraction);
 
 /* Picks the irradiance photons of a tree of photons: copies, with empty slots, and the photon's index instead of

@@ -10,9 +10,9 @@
 /* Guards a mapping; gives its number, or -1 where too many are guarded. The first one catches SIGBUS; faults elsewhere
  * go to who had it before. */
 int map_guard_add(void *memory, size_t size_bytes);
-/* Before it is unmapped. -1 is fine. */
+/* Called before the memory is unmapped. -1 is fine. */
 void map_guard_remove(int guard);
-/* Whether some of it was found gone: all of it is zeros since. */
+/* Whether a part of the memory was found gone; all of it has been zeros since. */
 bool map_guard_is_lost(int guard);
 
 #endif

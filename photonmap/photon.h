@@ -85,7 +85,7 @@ static inline rgb flux_decode(uint32_t code)
 
 /* --- directions: octahedral, 8 + 8 bits; within 1 degree --- */
 
-/* Both in [-1, 1]. */
+/* Coordinates are in [-1, 1]. */
 static inline vec2 octahedral_encode(vec3 d)
 {
     float sum = fabsf(d.x) + fabsf(d.y) + fabsf(d.z), x = d.x / sum, y = d.y / sum;

@@ -15,10 +15,10 @@ typedef struct photon_aim {
     trial_counts tried; /* in all */
 } photon_aim;
 
-/* For photon tracing with these settings, of which guide and split_above are not read; share: of the paths, that follow
- * what is learned, [0, 1). The guide is empty where none of the trials arrives where light is asked for, and where
- * enough do without one. wanted: the settings', or, by a guide, no more than power alone would have stored before it
- * gave up: estimates take the longer the more photons they find. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+/* Learns for photon tracing with these settings, of which guide and split_above are not read; share: of the paths, that
+ * follow what is learned, [0, 1). The guide is empty where none of the trials arrives where light is asked for, and
+ * where enough do without one. wanted is the settings', or with a guide no more than power alone would have stored
+ * before it gave up: estimates take longer the more photons they find. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings, float share,
                            photon_aim *out_aim);
 void photon_aim_reset(photon_aim *aim);

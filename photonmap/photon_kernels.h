@@ -30,11 +30,11 @@ typedef struct photon_kernels {
     void (*find_leaves)(const photon_tree *tree, const float *positions, uint32_t stride, uint32_t count,
                         uint32_t *out_leaves);
 
-    /* Which of PHOTON_LOOKUPS_MAX points have the plane within their reach, as bits. */
+    /* Finds the points, of PHOTON_LOOKUPS_MAX, that have the plane within their reach; as bits. */
     uint64_t (*meet_plane)(const photon_reach *reach, photon_tree_node plane);
 
-    /* From nodes, at most PHOTON_VISITS_MAX, to their children: the one on the lookup's side, and the other where its
-     * plane is within reach. */
+    /* Goes from nodes, at most PHOTON_VISITS_MAX, to their children: the one on the lookup's side, and the other where
+     * its plane is within reach. */
     void (*descend)(const photon_tree *tree, const photon_reach *reach, const photon_visits *nodes,
                     photon_visits *out_children);
 

@@ -63,9 +63,9 @@ uint64_t photon_map_bytes(const photon_map *map);
 /* Room for one worker's neighbours: photon_map_scratch_count(map) of them. */
 uint32_t photon_map_scratch_count(const photon_map *map);
 
-/* How similar two normals must be: photons of an estimate lie within 60 degrees, so that on a convex surface the chord
- * of the search can grow to the radius of curvature, and no photon of a wall at a right angle counts; the photon whose
- * irradiance stands for a point lies within 25 degrees. Cosines. */
+/* The cosine between two normals is at least this. Photons of an estimate lie within 60 degrees, so that on a convex
+ * surface the chord of the search can grow to the radius of curvature, and no photon of a wall at a right angle counts;
+ * the photon whose irradiance stands for a point lies within 25 degrees. */
 #define PHOTON_ESTIMATE_MIN_COS 0.5f
 #define PHOTON_NEAREST_MIN_COS  0.9f
 

@@ -17,7 +17,7 @@ typedef enum photon_merge_result {
 photon_merge_result photon_merge(photon_map *into, const photon_map *from, uint64_t *in_out_added,
                                  uint32_t *out_irradiance_photon);
 
-/* How many slots are ready. */
+/* The number of slots that are ready. */
 uint64_t photon_merge_count_ready(const photon_map *map);
 
 #endif

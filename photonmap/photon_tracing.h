@@ -30,9 +30,8 @@ enum { PHOTON_PATHS_MAX = 16 };
 
 typedef enum photon_kind { PHOTON_GLOBAL, PHOTON_CAUSTIC } photon_kind;
 
-/* Where the flux went, W, for the whole of the emitted paths.
- * emitted + gained = absorbed + escaped + lost + truncated;  arrived = stored + cut + thinned.
- * By a guide each of them is right on average. */
+/* The ways that the flux went, W, for the whole of the emitted paths. emitted + gained = absorbed + escaped + lost +
+ * truncated; arrived = stored + cut + thinned. With a guide each of them is right on average. */
 typedef struct energy_balance {
     double emitted[3];   /* at the lamps */
     double gained[3];    /* by the survivors of roulette */

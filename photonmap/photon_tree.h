@@ -18,7 +18,7 @@ typedef struct photon_tree_node {
     uint32_t axis;
 } photon_tree_node;
 
-/* So many of the lowest levels may be looked at as a whole: what is empty there lies beyond planes at infinity. */
+/* The number of the lowest levels that may be looked at as a whole; what is empty there lies beyond infinite planes. */
 enum { PHOTON_SUBTREE_LEVELS = 3, PHOTON_SUBTREE_LEAVES = 1 << PHOTON_SUBTREE_LEVELS };
 
 typedef struct photon_tree {

@@ -12,7 +12,7 @@
 
 enum { SURFACE_REGION_SECTORS = 8 };
 
-/* In the tangent plane: around the centre, in each octant of the frame x, y, what lies on the near side of a chord,
+/* A region of the tangent plane around its centre: in each octant of the frame x, y it is the near side of a chord,
  * line[0] x + line[1] y <= 1; a line of zeros bounds nothing. */
 typedef struct surface_region {
     vec3 center, x, y;

@@ -13,7 +13,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-ag_context_settings ag_default_context_settings(void) { return (ag_context_settings){0}; }
+ag_context_settings ag_default_context_settings(void)
+{
+    return (ag_context_settings){.struct_size = sizeof(ag_context_settings)};
+}
+
+ag_status context_check_struct(ag_context *context, const char *type, size_t size, size_t known_size)
+{
+    if (size == known_size)
+        return AG_OK;
+    log_message(context->log, AG_LOG_ERROR,
+                "%s: struct_size is %zu, and of this library's %zu: it is set by ag_default_...()", type, size,
+                known_size);
+    return AG_ERROR_ARGUMENT;
+}
 
 static bool copy_confinement(const ag_context_settings *settings, ag_context *c)
 {
@@ -38,6 +51,8 @@ ag_status ag_context_create(const ag_context_settings *settings, ag_context **ou
     ag_context_settings defaults = ag_default_context_settings();
     if (!settings)
         settings = &defaults;
+    if (settings->struct_size != sizeof *settings)
+        return AG_ERROR_ARGUMENT;
     const char *isa = settings->isa ? settings->isa : "avx2";
     bool is_known = false;
     for (size_t i = 0; i < sizeof known_isas / sizeof *known_isas; i++)

@@ -66,6 +66,10 @@ ag_status context_check_textures(ag_context *context, const scene *s);
  * the log. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. (output_color.c) */
 ag_status context_color_config(ag_context *context, const color_config **out_config);
 
+/* Whether a struct of the caller's, of that type, has the size that the library knows: to be asked before any other
+ * member is read. Errors: AG_ERROR_ARGUMENT, with a message. */
+ag_status context_check_struct(ag_context *context, const char *type, size_t size, size_t known_size);
+
 /* Whether settings are in range; says in the log which is not. */
 ag_status render_settings_check(ag_context *context, const ag_render_settings *settings);
 

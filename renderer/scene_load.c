@@ -35,7 +35,8 @@ static ag_status copy_definitions(ag_context *context, const ag_definition *give
 
 ag_scene_settings ag_default_scene_settings(void)
 {
-    return (ag_scene_settings){.texture_memory_bytes = AG_DEFAULT_TEXTURE_MEMORY_BYTES,
+    return (ag_scene_settings){.struct_size = sizeof(ag_scene_settings),
+                               .texture_memory_bytes = AG_DEFAULT_TEXTURE_MEMORY_BYTES,
                                .camera_fov_degrees = 45.0f,
                                .sun_elevation_degrees = 45.0f,
                                .sun_irradiance = 3.0f,
@@ -88,6 +89,7 @@ ag_status scene_settings_refuse(ag_context *context, const char *what)
 
 ag_status scene_request_make(ag_context *context, const ag_scene_settings *settings, scene_request *out_request)
 {
+    AG_TRY(context_check_struct(context, "ag_scene_settings", settings->struct_size, sizeof *settings));
     const float *sky = settings->sky_radiance;
     const char *wrong = find_wrong_setting(settings);
     if (wrong)
@@ -195,8 +197,6 @@ static ag_status load_from(ag_context *context, const scene_source *from, const 
     const ag_scene_settings defaults = ag_default_scene_settings();
     if (!settings)
         settings = &defaults;
-    const ag_definition *given = settings->definitions;
-    const size_t count = settings->definition_count;
     scene_request request;
     if (!context)
         return AG_ERROR_ARGUMENT;
@@ -206,6 +206,8 @@ static ag_status load_from(ag_context *context, const scene_source *from, const 
         return AG_ERROR_ARGUMENT;
     }
     AG_TRY(scene_request_make(context, settings, &request));
+    const ag_definition *given = settings->definitions;
+    const size_t count = settings->definition_count;
     if (!given && count > 0)
         return scene_settings_refuse(context, "definitions is NULL, and definition_count is not 0");
     for (size_t i = 0; i < count; i++)

@@ -71,9 +71,9 @@ ag_status scene_check_complete(ag_context *context, const ag_scene *made)
 
 static ag_status copy_request(const ag_scene_settings *settings, scene_making *making)
 {
+    AG_TRY(scene_request_make(making->context, settings, &making->request));
     if (settings->definition_count > 0)
         return scene_settings_refuse(making->context, "a scene from memory has no text for definitions");
-    AG_TRY(scene_request_make(making->context, settings, &making->request));
     making->sky_file = settings->sky_file ? strdup(settings->sky_file) : NULL;
     making->camera_name = settings->camera_name ? strdup(settings->camera_name) : NULL;
     making->request.sky_file = making->sky_file;
@@ -208,17 +208,16 @@ static ag_status refuse(const making_call *c, const char *what)
     return AG_ERROR_ARGUMENT;
 }
 
-/* Copies a struct of the caller's over one with the defaults. The caller's may be shorter than ours, of an earlier
- * release; size_least is that of the first one. */
-static ag_status take_struct(const making_call *c, const void *given, size_t size_least, size_t size, void *in_out)
+/* Copies a struct of the caller's, which begins with its size. */
+static ag_status take_struct(const making_call *c, const void *given, size_t size, void *out)
 {
     size_t given_size;
     if (!given)
         return refuse(c, "there is no description");
     memcpy(&given_size, given, sizeof given_size);
-    if (given_size < size_least || given_size > size)
+    if (given_size != size)
         return refuse(c, "struct_size is not one that this library knows: it is set by ag_default_...()");
-    memcpy(in_out, given, given_size);
+    memcpy(out, given, size);
     return AG_OK;
 }
 
@@ -273,7 +272,7 @@ ag_shape ag_default_shape(void) { return (ag_shape){.struct_size = sizeof(ag_sha
 static ag_status add_shape(making_call *c, const ag_shape *given)
 {
     ag_shape s = ag_default_shape();
-    AG_TRY(take_struct(c, given, sizeof s, sizeof s, &s));
+    AG_TRY(take_struct(c, given, sizeof s, &s));
     if (!s.type)
         return refuse(c, "the shape has no type");
     describe(c, "Shape", s.type, s.object ? " of object" : " of material", s.object ? s.object : s.material);
@@ -303,7 +302,7 @@ static ag_status add_light(making_call *c, const ag_light *given)
 {
     ag_light l = ag_default_light();
     pbrt_placement at = {0};
-    AG_TRY(take_struct(c, given, sizeof l, sizeof l, &l));
+    AG_TRY(take_struct(c, given, sizeof l, &l));
     if (!l.type)
         return refuse(c, "the light has no type");
     describe(c, "LightSource", l.type, "", NULL);
@@ -325,7 +324,7 @@ static ag_status add_instance(making_call *c, const ag_instance *given)
 {
     ag_instance i = ag_default_instance();
     pbrt_placement at = {0};
-    AG_TRY(take_struct(c, given, sizeof i, sizeof i, &i));
+    AG_TRY(take_struct(c, given, sizeof i, &i));
     if (!i.object)
         return refuse(c, "the instance names no object");
     describe(c, "ObjectInstance", i.object, "", NULL);
@@ -349,7 +348,7 @@ static ag_status add_image(making_call *c, const char *name, const ag_image *giv
     static const int64_t PIXELS_MAX = (int64_t)1 << 28;
     ag_image i = ag_default_image();
     image copy;
-    AG_TRY(take_struct(c, given, sizeof i, sizeof i, &i));
+    AG_TRY(take_struct(c, given, sizeof i, &i));
     if (!name || !name[0])
         return refuse(c, "the picture has no name");
     if (i.width < 1 || i.height < 1 || (int64_t)i.width * i.height > PIXELS_MAX || i.channel_count < 1 ||
@@ -384,7 +383,7 @@ static ag_status add_texture(making_call *c, const ag_texture *given)
 {
     ag_texture t = ag_default_texture();
     pbrt_placement at = {0};
-    AG_TRY(take_struct(c, given, sizeof t, sizeof t, &t));
+    AG_TRY(take_struct(c, given, sizeof t, &t));
     if (!t.name || !t.type || (unsigned)t.value > AG_TEXTURE_SPECTRUM)
         return refuse(c, "the texture has no name, no type or no kind of value");
     describe(c, "Texture", t.name, ",", t.type);
@@ -406,7 +405,7 @@ static ag_status set_camera(making_call *c, const ag_camera *given)
 {
     ag_camera seen = ag_default_camera();
     pbrt_placement at = {0};
-    AG_TRY(take_struct(c, given, sizeof seen, sizeof seen, &seen));
+    AG_TRY(take_struct(c, given, sizeof seen, &seen));
     if (!seen.type)
         return refuse(c, "the camera has no type");
     describe(c, "Camera", seen.type, "", NULL);

@@ -59,6 +59,7 @@ ag_render_settings ag_default_render_settings(void)
 {
     ag_render_settings settings;
     memset(&settings, 0, sizeof settings);
+    settings.struct_size = sizeof settings;
     for (size_t i = 0; setting_at(i); i++)
         set_number(setting_at(i), setting_at(i)->initial, &settings);
     return settings;
@@ -277,7 +278,7 @@ const ag_setting *ag_setting_at(size_t index)
 
 ag_status ag_render_settings_set(ag_render_settings *settings, const char *name, const char *value)
 {
-    if (!settings || !name)
+    if (!settings || settings->struct_size != sizeof *settings || !name)
         return AG_ERROR_ARGUMENT;
     for (size_t i = 0; setting_at(i); i++) {
         const setting_row *row = setting_at(i);

@@ -8,6 +8,7 @@
 #include "material/bsdf.h"
 #include "material/coat.h"
 #include "material/coat_table.h"
+#include "material/hair.h"
 #include "material/material_mips.h"
 #include "material/pane.h"
 #include "rays/bvh.h"
@@ -64,6 +65,9 @@ void scene_destroy(scene *s)
     for (uint32_t i = 0; i < s->coat_table_count; i++)
         coat_table_destroy(s->coat_tables[i]);
     free(s->coat_tables);
+    for (uint32_t i = 0; i < s->hair_fibre_count; i++)
+        free(s->hair_fibres[i]);
+    free(s->hair_fibres);
     free(s->media);
     free(s->textures);
     free(s->texture_images);
@@ -137,6 +141,19 @@ static ag_status find_coat_table(scene *s, const material *m, const coat_table *
     return AG_OK;
 }
 
+static ag_status make_fibre(scene *s, material *m)
+{
+    if (!grow((void **)&s->hair_fibres, s->hair_fibre_count, sizeof *s->hair_fibres))
+        return AG_ERROR_MEMORY;
+    hair_fibre *fibre = malloc(sizeof *fibre);
+    if (!fibre)
+        return AG_ERROR_MEMORY;
+    *fibre = hair_fibre_make(m->ior, m->hair_beta_m, m->hair_beta_n, m->hair_tilt_degrees);
+    s->hair_fibres[s->hair_fibre_count++] = fibre;
+    m->fibre = fibre;
+    return AG_OK;
+}
+
 ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index)
 {
     if (!grow((void **)&s->materials, s->material_count, sizeof *s->materials))
@@ -147,6 +164,10 @@ ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index
     m->coat = NULL;
     if (coat_needs_table(m)) {
         AG_TRY(find_coat_table(s, m, &m->coat));
+    }
+    m->fibre = NULL;
+    if (m->kind == MATERIAL_HAIR) {
+        AG_TRY(make_fibre(s, m));
     }
     *out_index = s->material_count++;
     return AG_OK;

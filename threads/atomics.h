@@ -66,8 +66,8 @@ static inline uint64_t fetch_add_relaxed_u64(atomic_u64 *a, uint64_t v)
     return atomic_fetch_add_explicit(a, v, memory_order_relaxed);
 }
 
-/* For a call that a library makes from a thread of its own: an order that the library keeps, but by locks that TSan
- * does not see (libraries are not instrumented). Told to TSan; otherwise nothing. */
+/* Tells TSan of an order that a library keeps, when it calls back from a thread of its own, by locks that TSan does not
+ * see (libraries are not instrumented). Otherwise nothing. */
 static inline void order_before_library(void *a)
 {
 #ifdef AFTERGLOW_TSAN

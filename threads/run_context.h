@@ -33,12 +33,12 @@ void run_context_init(run_context *run, thread_pool *pool, log_sink *log, ag_pro
 void run_context_reset(run_context *run); /* releases what init took; pool and log stay the caller's */
 
 static inline void run_cancel(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_CANCELLED); }
-/* Not while a phase works. */
+/* Must not be called while a phase works. */
 static inline void run_clear_cancel(run_context *run) { fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_CANCELLED); }
 static inline void run_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_WANTED); }
-/* From here on run_is_cancelled is true where a pause is wanted, so that all that stops for good also pauses. */
+/* From this call on run_is_cancelled is true where a pause is wanted, so that all that stops for good also pauses. */
 static inline void run_allow_pause(run_context *run) { fetch_or_relaxed_u32(&run->stop, RUN_PAUSE_ALLOWED); }
-/* No longer. Whether there was a pause, which is over then. */
+/* Ends that again. Returns whether there was a pause, which is over then. */
 static inline bool run_end_pause(run_context *run)
 {
     uint32_t now = fetch_and_relaxed_u32(&run->stop, ~(uint32_t)RUN_PAUSE_ALLOWED);

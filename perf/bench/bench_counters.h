@@ -15,7 +15,7 @@ typedef struct bench_counts {
     uint64_t cycles, instructions;
 } bench_counts;
 
-/* In user space alone. Before threads are started. */
+/* Counts in user space alone. To be called before threads are started. */
 bench_counters bench_counters_open(void);
 void bench_counters_close(bench_counters *counters);
 /* Since they were opened. Where more is counted than the processor has registers for, and each only at times, nothing

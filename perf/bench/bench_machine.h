@@ -48,7 +48,7 @@ unsigned bench_levels_of(unsigned cores, unsigned threads, unsigned out_levels[B
  * workers than processors, they may go anywhere on these. False: the kernel refuses. */
 bool bench_machine_pin(const bench_machine *machine, thread_pool *pool);
 
-/* Of the first so many processors: cores, and NUMA nodes, that they are on. */
+/* The cores and NUMA nodes that the first so many processors are on. */
 void bench_machine_span(const bench_machine *machine, unsigned threads, unsigned *out_cores, unsigned *out_numa_nodes);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-/* For free(); NULL when out of memory. */
+/* The page as text, for free(); NULL when out of memory. */
 char *bench_page(const json_t *result);
 
 #endif

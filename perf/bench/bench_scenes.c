@@ -69,7 +69,7 @@ const bench_work *bench_work_of(bench_size size)
 
 /* --- parts of scenes --- */
 
-/* Which way it faces does not matter: what shines is a lamp of two sides, or faces the room by its order. */
+/* The side that it faces does not matter: lamps have two sides, or face the room by the order of their corners. */
 static void quad(FILE *file, double p[4][3])
 {
     fprintf(file, "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [");

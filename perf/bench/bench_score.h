@@ -5,12 +5,12 @@
 
 #include "bench/bench_run.h"
 
-/* Of the turns. */
+/* The interval that the turns of a phase give. */
 typedef struct bench_interval {
     double median, least, most;
 } bench_interval;
 
-/* Of so many values, 1 to BENCH_TURNS_MAX. */
+/* The interval of so many values, 1 to BENCH_TURNS_MAX. */
 bench_interval bench_interval_of(const double *values, unsigned count);
 /* (most - least) / median; 0 where the median is 0. */
 double bench_spread(bench_interval interval);

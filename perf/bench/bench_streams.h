@@ -12,8 +12,8 @@ typedef struct stream_turn {
     double amount; /* multiplications and additions, or bytes read and written */
 } stream_turn;
 
-/* So many units of arithmetic, 64 blocks of some hundred microseconds each, shared out as the renderer shares out its
- * own work. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+/* Does so many units of arithmetic, 64 blocks of some hundred microseconds each, shared out as the renderer shares out
+ * its own work. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status stream_arithmetic(run_context *run, uint64_t units, stream_turn *out_turn);
 
 /* a[i] = b[i] + s c[i] over arrays that are size_bytes together, a worker's share of them its own and first touched by

@@ -74,7 +74,9 @@ static ag_status measure_all(ag_context *context, const ag_film *film, float *pi
         if (!is_view)
             continue;
         cost c = {0};
-        const ag_output_settings settings = {.display = display, .view = view};
+        ag_output_settings settings = ag_default_output_settings();
+        settings.display = display;
+        settings.view = view;
         status = measure_view(context, &settings, film, pixels, &c);
         if (status == AG_OK)
             print_row(display, view, c, ag_context_thread_count(context));

@@ -90,7 +90,7 @@ static double lookups(bench *b)
     return b->query_count;
 }
 
-/* As final_gather makes them. */
+/* Makes the rays as final_gather does. */
 static void make_fan(const bench *b, const bench_hit *p, ray_fan *out_fan)
 {
     const bsdf *scattering = &p->v.scattering;

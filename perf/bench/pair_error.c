@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of one pixel, the mean over its colours. */
+/* The error of one pixel, the mean over its colours. */
 typedef struct pixel_error {
     double measured; /* against the reference, whose own variance is in it */
     double variance, reference_variance;

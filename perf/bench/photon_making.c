@@ -56,7 +56,7 @@ static double embree(bench *b)
     return (clock_thread_cpu_seconds() - begin) * 1e6 / (double)b->ray_count;
 }
 
-/* By the process: the one worker is a thread of its own. */
+/* Measured by the process, since the one worker is a thread of its own. */
 static double tracing(bench *b)
 {
     photon_set set;

@@ -81,7 +81,7 @@ static uint32_t nearest_as_they_come(bench *b)
     return b->hit_count;
 }
 
-/* As irradiance_cache_get_many does it, once the queries are in order. */
+/* Searches as irradiance_cache_get_many does once the queries are in order. */
 static uint32_t nearest_sorted(bench *b)
 {
     photon_walk walk;

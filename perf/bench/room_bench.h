@@ -21,7 +21,7 @@ ag_status room_bench_trace(run_context *run, const scene *s, photon_set *out_set
 /* The global map of those: estimates of the 300 nearest within 3.0. Borrows the scene. */
 ag_status room_bench_map(run_context *run, const scene *s, photon_map *out_map);
 
-/* Of an odd number of values, which are put in order. */
+/* The median of an odd number of values, which are put in order. */
 double room_bench_median(double *values, size_t count);
 
 typedef struct room_bench_row {

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* As the renderer has them: render_tiles.c, irradiance_cache.h. */
+/* The renderer's own numbers: render_tiles.c, irradiance_cache.h. */
 enum { TILE_SIZE = 32, BATCH_REQUESTS = 1 << 16 };
-/* Of a request's own time, the lookup's share (perf/README.md, "Where the time goes": 20 of 72). A batch has all its
+/* The lookup's share of a request's own time (perf/README.md, "Where the time goes": 20 of 72). A batch has all its
  * lookups first, then computes what nobody has claimed, then reads what others have computed. */
 static const double LOOKUP_SHARE = 0.28;
 /* Looking at a slot that needs no work. */
@@ -141,7 +141,8 @@ static ag_status take_tile(simulation *s, worker *w)
     return AG_OK;
 }
 
-/* What is still being computed when the batch is read is set aside, and waited for where that does not suffice. */
+/* Irradiances that are still being computed when the batch is read are set aside, and waited for where that does not
+ * suffice. */
 static void end_batch(simulation *s, worker *w)
 {
     double read_s = w->now_s;

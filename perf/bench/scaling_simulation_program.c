@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* What no statistics tell: a cache line that another core has written, and an addition that all cores make. */
+/* Costs that no statistics tell: a cache line that another core has written, and an addition that all cores make. */
 static const double CLAIM_S = 100e-9, TILE_CLAIM_S = 200e-9;
 
 static double number_at(const json_t *root, const char *group, const char *name)

@@ -62,7 +62,7 @@ typedef enum result_column {
         RESULT_COLUMN_COUNT
 } result_column;
 
-/* What a file holds. The columns that need several runs are empty in a line of RESULT_RUNS. */
+/* The contents of a file. The columns that need several runs are empty in a line of RESULT_RUNS. */
 typedef enum result_form { RESULT_MEDIANS, RESULT_RUNS } result_form;
 
 typedef struct result_row {

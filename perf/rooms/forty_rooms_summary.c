@@ -190,7 +190,7 @@ static void print_lost_rooms(FILE *file, const result_table *table, int gather)
     fprintf(file, ")\n");
 }
 
-/* Where off's time becomes precompute's as the gather count grows, in requests per photon: a straight line between the
+/* The gather count, in requests per photon, at which off takes as long as precompute: on a straight line between the
  * two neighbouring measurements, both axes logarithmic. NaN where the room has no such neighbours. */
 static double find_crossing(const result_table *table, int room, const int *gathers, size_t gather_count)
 {

@@ -18,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* Which statistic fills which column; a missing one is an error. */
+/* Names the statistic of each column; a missing one is an error. */
 typedef struct statistic {
     const char *group, *name; /* group NULL: at the top */
     result_column column;
@@ -231,7 +231,7 @@ size_t renderer_picture_difference_count(const renderer_picture *a, const render
     const size_t channel_count = (size_t)a->channel_count;
     size_t count = 0;
     for (size_t i = 0; i < pixel_count; ++i) {
-        /* As bytes: -0 and 0 count as different, as do two kinds of NaN. */
+        /* Compared as bytes: -0 and 0 count as different, as do two kinds of NaN. */
         const float *pixel_a = a->pixels + i * channel_count;
         const float *pixel_b = b->pixels + i * channel_count;
         count += memcmp(pixel_a, pixel_b, channel_count * sizeof *pixel_a) != 0;

@@ -29,7 +29,7 @@ static void report_failed_check(run_group *group, const result_row *row, const c
     ++*group->failed_checks;
 }
 
-/* What every run owes, whatever its mode. Counts are whole numbers, exact in a double. */
+/* Checks that hold for every run, whatever its mode. Counts are whole numbers, exact in a double. */
 static void check_run(run_group *group, const result_row *row)
 {
     const double *values = row->values;

@@ -40,7 +40,7 @@ typedef struct sample_layers {
     first_hit first;
 } sample_layers;
 
-/* How many inner samples a camera sample is split into; >= 1. */
+/* The number of inner samples that a camera sample is split into; >= 1. */
 typedef struct split_counts {
     uint32_t rays;      /* gather rays */
     uint32_t lights;    /* samples towards lamps where its ray meets a diffuse surface first */

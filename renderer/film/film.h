@@ -53,7 +53,7 @@ struct ag_film {
     aov_layout layout;
     film_origin origin;
 
-    /* Of each pixel of the area, top row first; all owned. */
+    /* These are of each pixel of the area, top row first; all owned. */
     double *sums;                  /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
@@ -99,7 +99,8 @@ void film_resolve(struct ag_film *film);
 /* Gives one pixel of the area as the picture shows it. */
 void film_develop(const struct ag_film *film, size_t pixel, float out[3]);
 
-/* All that samples have brought, for writing it down and reading it back; gives how many there are. */
+/* One of the arrays that samples have filled, for writing them down and reading them back. film_planes gives them
+ * all, and returns how many there are. */
 typedef struct film_plane {
     void *bytes; /* the film's */
     size_t size;
@@ -119,7 +120,7 @@ static inline bool film_is_left_out(const struct ag_film *film, size_t pixel)
     return film->trial_step > 1 && (column + film->trial_turn * row) % film->trial_step != film->trial_first;
 }
 
-/* How many samples a pixel is to have in a pass that brings all to `all`. */
+/* The number of samples that a pixel is to have in a pass that brings all to `all`. */
 static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint32_t all)
 {
     if (film_is_left_out(film, pixel))
@@ -131,7 +132,7 @@ static inline uint32_t film_goal(const struct ag_film *film, size_t pixel, uint3
  * means. The film must sum SUM_SQUARES. */
 void film_read_noise(const struct ag_film *film, size_t pixel, double *out_mean, double *out_variance);
 
-/* How many samples pixels of the crop have had. */
+/* The numbers of samples that pixels of the crop have had. */
 typedef struct film_count {
     uint32_t least, most;
     double mean;

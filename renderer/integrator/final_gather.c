@@ -115,7 +115,7 @@ static void sample_plain(const gathering *g, const incident_guide *guide, sample
         for (int a = 0; a < 3; a++)
             fan->direction[a][k] = fan->direction[a][i];
         r->number[k] = begin + i;
-        r->weight[k] = guide ? rgb_scale(b->parameters.reflectance, weights[i]) : b->parameters.reflectance;
+        r->weight[k] = guide ? rgb_scale(b->material.diffuse.reflectance, weights[i]) : b->material.diffuse.reflectance;
         fan->count +=
             vec3_dot(direction, n) > 0.0f; /* a shading normal sends some through the surface: they are lost */
     }

@@ -13,10 +13,10 @@ typedef struct film_point {
     float time;
 } film_point;
 
-/* All but the slopes. */
+/* Fills in everything but the slopes. */
 void first_hit_fill(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, first_hit *out);
 
-/* The slopes, of a film of that size in pixels; and what is to be in the camera's space is taken there. */
+/* Adds the slopes, for a film of that size in pixels, and takes to the camera's space what is to be in it. */
 void first_hit_project(const transport *t, const film_point *from, first_hit *in_out);
 
 #endif

@@ -83,7 +83,8 @@ uint32_t gather_batch_make_detours(gather_batch *b, uint32_t *in_out_query)
 static float sum_variance(const gather *g)
 {
     float count = (float)g->ray_count, sum = rgb_mean(rgb_add(g->known, g->read)), weight = rgb_mean(g->throughput);
-    float of_ray = g->ray_count > 1 ? fmaxf(g->squares - sum * sum / count, 0.0f) / (count - 1.0f) : g->squares * 0.5f;
+    float squares = g->known_squares + g->read_squares;
+    float of_ray = g->ray_count > 1 ? fmaxf(squares - sum * sum / count, 0.0f) / (count - 1.0f) : squares * 0.5f;
     return weight * weight * count * of_ray;
 }
 
@@ -98,7 +99,7 @@ void gather_batch_sum(gather_batch *b)
             rgb read = rgb_mul(b->weights[query], b->irradiance[query]);
             float brought = rgb_mean(read) + b->rests[query].known;
             g->read = rgb_add(g->read, read);
-            g->squares += brought * brought;
+            g->read_squares += brought * brought;
         }
         if (i >= over)
             break;

@@ -5,7 +5,8 @@
  * there. Threads: a batch belongs to one worker.
  *
  * When a batch is resolved depends on what else the worker has done, and must not reach the picture: each gather has
- * two sums of its own, each in ray order; they are added once, and gathers to their sample in their order. */
+ * sums of its own, one of what rays brought themselves and one of what was read, each in ray order; they are added
+ * once, and gathers to their sample in their order. */
 #ifndef AFTERGLOW_GATHER_BATCH_H
 #define AFTERGLOW_GATHER_BATCH_H
 
@@ -15,7 +16,7 @@
 
 enum { GATHER_BATCH_GATHERS = 1 << 14, GATHER_BATCH_SAMPLES = 1 << 14, GATHER_BATCH_DETOURS = 1 << 12 };
 
-/* Where a gather ray ends: irradiance is asked for there, and where none holds its light is followed on. */
+/* The end of a gather ray: irradiance is asked for there, and where none holds its light is followed on. */
 typedef struct gather_end {
     surface_point point;  /* as the photons have it: when the shutter opens */
     uint32_t medium;      /* that the ray arrived in */
@@ -24,15 +25,16 @@ typedef struct gather_end {
 
 /* All rays from one diffuse vertex of a camera path. */
 typedef struct gather {
-    rgb throughput;     /* from the vertex to the eye, over the number of rays */
-    rgb known, read;    /* radiance, W/m^2/sr: brought by short rays' own bounces, and what was read from the cache */
-    float most;         /* of a component of what it brings the eye; INFINITY: no bound */
-    float squares;      /* of rays that asked for nothing: see known of gather_query_rest */
-    uint32_t ray_count; /* of those that brought nothing, too */
-    uint32_t sample;    /* the number of its sample, see camera_sample.h */
-    uint32_t query_end; /* its queries go up to here, from where the last gather's end */
-    bool is_first;      /* the vertex is what the eye sees */
-    uint64_t key;       /* of the random numbers of its rays' detours */
+    rgb throughput;  /* from the vertex to the eye, over the number of rays */
+    rgb known, read; /* radiance, W/m^2/sr: brought by short rays' own bounces, and what was read from the cache */
+    float most;      /* of a component of what it brings the eye; INFINITY: no bound */
+    float known_squares, read_squares; /* of what single rays brought, see known of gather_query_rest: of those that
+                                          asked for nothing, and of the others; apart for the reason above */
+    uint32_t ray_count;                /* of those that brought nothing, too */
+    uint32_t sample;                   /* the number of its sample, see camera_sample.h */
+    uint32_t query_end;                /* its queries go up to here, from where the last gather's end */
+    bool is_first;                     /* the vertex is what the eye sees */
+    uint64_t key;                      /* of the random numbers of its rays' detours */
 } gather;
 
 /* The rest of a query's end, and which of its gather's rays it is of. */
@@ -105,7 +107,7 @@ static inline void gather_batch_ask(gather_batch *b, const gather_end *end, uint
 /* A ray of the open gather that asks for nothing. */
 static inline void gather_batch_note(gather_batch *b, float known)
 {
-    b->gathers[b->gather_count - 1].squares += known * known;
+    b->gathers[b->gather_count - 1].known_squares += known * known;
 }
 
 /* Makes detours of up to GATHER_BATCH_DETOURS queries without an answer, from the query *in_out_query on, which becomes

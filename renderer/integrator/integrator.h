@@ -14,16 +14,16 @@ typedef struct integrator {
     bool has_photon_map;  /* it traces photons: their settings, layers and statistics mean something */
     float direct_guiding; /* the default of that setting */
 
-    /* Once, before all tiles: makes what they read, in the rendering, and refers to it in its transport. Errors:
+    /* Called once, before all tiles: makes what they read, in the rendering, and refers to it in its transport. Errors:
      * AG_ERROR_MEMORY, AG_CANCELLED, those of a photon map's file. */
     ag_status (*prepare)(struct ag_rendering *r);
     /* Makes what the worker has of its own, of full size, so that nothing can fail while tiles run; false when out of
      * memory. eye_workers_destroy frees it. */
     bool (*reserve)(const transport *t, eye_worker *worker);
 
-    /* Before and behind a pass, one ag_rendering_continue. Behind a whole one each pixel has as many samples as
-     * settings and film say: what is learned from them for the next is the same for any number of threads. end_pass is
-     * left out where the pass was cancelled or has failed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+    /* Called before and after a pass, which is one ag_rendering_continue. After a whole one each pixel has as many
+     * samples as settings and film say, so what is learned from them for the next is the same for any number of
+     * threads. end_pass is left out where the pass was cancelled or failed. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
     ag_status (*begin_pass)(struct ag_rendering *r);
     ag_status (*end_pass)(struct ag_rendering *r);
 
@@ -36,7 +36,7 @@ typedef struct integrator {
 
 extern const integrator photon_map_integrator, path_integrator;
 
-/* NULL for a number that is no integrator's, which render_settings_check refuses. */
+/* The integrator of that kind; NULL for a number that is no integrator's, which render_settings_check refuses. */
 const integrator *integrator_of(ag_integrator kind);
 
 #endif

@@ -33,7 +33,7 @@ ray_cone transport_scattered_cone(const transport *t, const vertex *v, const bsd
     if (next->group == BSDF_GATHERED)
         return transport_gather_cone(v);
     return next->is_delta
-               ? ray_cone_bent(t->s, c, &v->hit, v->arrived.direction, next->direction, v->scattering.parameters.ior)
+               ? ray_cone_bent(t->s, c, &v->hit, v->arrived.direction, next->direction, bsdf_index(&v->scattering))
                : ray_cone_scattered(c, next->pdf_solid_angle);
 }
 
@@ -41,7 +41,7 @@ void transport_complete(const transport *t, vertex *v)
 {
     const scene *s = t->s;
     const shape *where = &s->shapes[v->hit.shape_index];
-    v->scattering = bsdf_create(s, &v->hit, vec3_negate(v->arrived.direction));
+    bsdf_init(s, &v->hit, vec3_negate(v->arrived.direction), &v->scattering);
     v->lamp = where->light_index == SHAPE_NO_LIGHT ? NULL : &s->lights[where->light_index];
 }
 

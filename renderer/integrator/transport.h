@@ -65,7 +65,7 @@ typedef struct vertex {
     const light *lamp; /* the area light that shines there, or NULL */
 } vertex;
 
-/* How many samples direct light takes at a diffuse vertex. */
+/* The numbers of samples that direct light takes at a diffuse vertex. */
 typedef struct sample_counts {
     int light;   /* towards lamps */
     int scatter; /* by scattering, 0 where that cannot meet a lamp */
@@ -135,7 +135,7 @@ static inline bool transport_survives(rgb *in_out_throughput, float u)
 /* The geometric normal on the side that the ray came from. */
 vec3 transport_facing_normal(const vertex *v);
 
-/* Where the photons of a vertex lie, and its geometric normal there on the side that the ray came from; see
+/* The place where the photons of a vertex lie, and its geometric normal there on the side that the ray came from; see
  * photon_tracing.h. */
 typedef struct map_point {
     vec3 position, facing_normal;

@@ -14,7 +14,10 @@
 
 enum { MESSAGE_SIZE = 1024 };
 
-ag_output_settings ag_default_output_settings(void) { return (ag_output_settings){0}; }
+ag_output_settings ag_default_output_settings(void)
+{
+    return (ag_output_settings){.struct_size = sizeof(ag_output_settings)};
+}
 
 static image_sample_type stored_type(const image_format *format, ag_sample_type wanted)
 {
@@ -54,6 +57,7 @@ ag_status ag_output_check(ag_context *context, const ag_output_settings *setting
         return AG_ERROR_ARGUMENT;
     if (!settings)
         settings = &defaults;
+    AG_TRY(context_check_struct(context, "ag_output_settings", settings->struct_size, sizeof *settings));
     const image_format *format;
     AG_TRY(find_format(context, settings, path, &format));
     char message[MESSAGE_SIZE];
@@ -193,6 +197,7 @@ ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_outpu
         return AG_ERROR_ARGUMENT;
     if (!settings)
         settings = &defaults;
+    AG_TRY(context_check_struct(context, "ag_output_settings", settings->struct_size, sizeof *settings));
     if (run_is_cancelled(&context->run))
         return AG_CANCELLED;
     phase_begin begin = context_begin_phase();

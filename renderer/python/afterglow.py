@@ -11,6 +11,11 @@ Directives, parameters, units and defaults are those of pbrt-v4's text (pbrt.org
 strings, sequences, or numpy arrays: those of 32-bit floats, 64-bit floats and 32-bit integers are handed to the library
 where they lie, which copies them once. Pictures are arrays of shape (height, width, 3), linear RGB of the working space.
 
+    with scene.rendering(size="320x180", spp=64, aov="Z") as rendering:
+        for samples in (1, 4, 16, 64):
+            rendering.advance(samples)  # the same bits as at once
+        depth = rendering.channels()["Z"]
+
 The library is libafterglow.so, found as the system finds libraries, or named by $AFTERGLOW_LIBRARY. A context and its
 scenes belong to one thread at a time; rendering lets go of Python's lock, so that other threads go on meanwhile.
 """
@@ -19,11 +24,12 @@ import ctypes
 import ctypes.util
 import os
 import threading
-from ctypes import POINTER, byref, c_bool, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_ubyte, c_uint, c_void_p
+import warnings
+from ctypes import (POINTER, byref, c_bool, c_char_p, c_double, c_float, c_int, c_size_t, c_uint, c_uint64, c_void_p)
 
 import numpy
 
-__all__ = ["Context", "Scene", "Error", "Cancelled", "version"]
+__all__ = ["Context", "Scene", "Rendering", "Error", "Cancelled", "version"]
 
 _CANCELLED = 9  # AG_CANCELLED
 _PARAMETER_TYPES = ["float", "integer", "string", "bool", "point2", "vector2", "point3", "vector3", "normal", "rgb",
@@ -44,9 +50,9 @@ class Cancelled(Error):
 
 
 class _ContextSettings(ctypes.Structure):
-    _fields_ = [("thread_count", c_uint), ("isa", c_char_p), ("color_config", c_char_p), ("working_space", c_char_p),
-                ("is_confined", c_bool), ("confined_to", POINTER(c_char_p)), ("confined_count", c_size_t),
-                ("log", _LOG), ("progress", _PROGRESS), ("user", c_void_p)]
+    _fields_ = [("struct_size", c_size_t), ("thread_count", c_uint), ("isa", c_char_p), ("color_config", c_char_p),
+                ("working_space", c_char_p), ("is_confined", c_bool), ("confined_to", POINTER(c_char_p)),
+                ("confined_count", c_size_t), ("log", _LOG), ("progress", _PROGRESS), ("user", c_void_p)]
 
 
 class _Parameter(ctypes.Structure):
@@ -88,6 +94,10 @@ class _Image(ctypes.Structure):
                 ("bytes", c_void_p), ("floats", c_void_p)]
 
 
+class _SampleCounts(ctypes.Structure):
+    _fields_ = [("least", c_int), ("most", c_int), ("mean", c_double)]
+
+
 def _load_library():
     name = os.environ.get("AFTERGLOW_LIBRARY") or ctypes.util.find_library("afterglow")
     if not name:
@@ -118,6 +128,16 @@ def _load_library():
         "ag_render_settings_from_scene": (c_int, [c_void_p, c_void_p, c_void_p]),
         "ag_render_settings_set": (c_int, [c_void_p, c_char_p, c_char_p]),
         "ag_render": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(c_void_p)]),
+        "ag_rendering_create": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(c_void_p)]),
+        "ag_rendering_continue": (c_int, [c_void_p, c_int]),
+        "ag_rendering_sample_counts": (_SampleCounts, [c_void_p]),
+        "ag_rendering_film": (c_void_p, [c_void_p]),
+        "ag_rendering_finish": (None, [c_void_p, POINTER(c_void_p)]),
+        "ag_film_channel_count": (c_int, [c_void_p]),
+        "ag_film_channel_name": (c_char_p, [c_void_p, c_int]),
+        "ag_film_read_channel": (c_int, [c_void_p, c_int, POINTER(c_float)]),
+        "ag_film_read_picture": (c_uint64, [c_void_p, c_uint64, POINTER(c_float)]),
+        "ag_film_denoise": (c_int, [c_void_p, c_void_p]),
         "ag_film_destroy": (None, [c_void_p]),
         "ag_film_pixels": (POINTER(c_float), [c_void_p, POINTER(c_int), POINTER(c_int)]),
         "ag_film_write": (c_int, [c_void_p, c_void_p, c_void_p, c_char_p]),
@@ -196,17 +216,19 @@ def _parameters(values, kept):
 
 class Context:
     """Threads, log and progress. `threads`: 0 for as many as there are; `progress`: called with the name of a phase's
-    number and how far it is, in [0, 1], on the library's threads; an exception there calls the work off."""
+    number and how far it is, in [0, 1], on the library's threads; an exception there calls the work off. `warn`: called
+    with the text of each warning, on the thread that works with the context; None: Python's warnings."""
 
-    def __init__(self, threads: int = 0, progress=None, working_space=None, color_config=None):
+    def __init__(self, threads: int = 0, progress=None, working_space=None, color_config=None, warn=None):
         self._said = []
         self._progress = progress
+        self._warn = warn or (lambda message: warnings.warn(message, stacklevel=4))
         self._failed = None
         self._callbacks = (_LOG(self._hear), _PROGRESS(self._tell))  # they live as long as the context
         self._pointer = c_void_p()
-        settings = _ContextSettings(thread_count=threads, working_space=_text(working_space),
-                                    color_config=_text(color_config), log=self._callbacks[0],
-                                    progress=self._callbacks[1])
+        settings = _ContextSettings(struct_size=ctypes.sizeof(_ContextSettings), thread_count=threads,
+                                    working_space=_text(working_space), color_config=_text(color_config),
+                                    log=self._callbacks[0], progress=self._callbacks[1])
         self._check(_library.ag_context_create(byref(settings), byref(self._pointer)))
 
     def _hear(self, _user, level, message):
@@ -230,14 +252,14 @@ class Context:
             raise failed
         if status == 0:
             for message in said:
-                import warnings
-                warnings.warn(message, stacklevel=3)
+                self._warn(message)
             return
         text = "\n".join(said) or _library.ag_status_text(status).decode()
         raise (Cancelled if status == _CANCELLED else Error)(text)
 
-    def _work(self, function, *arguments):
-        """Calls the library on a thread of its own, so that Ctrl-C is heard here meanwhile, and calls it off."""
+    def _work(self, function, *arguments, poll=None):
+        """Calls the library on a thread of its own, so that Ctrl-C is heard here meanwhile, and calls it off. poll: called
+        about every 0.1 s; so does an exception there."""
         result = []
         is_done = threading.Event()  # an interrupted Thread.join takes the thread for ended (bpo-45274)
 
@@ -248,7 +270,8 @@ class Context:
         threading.Thread(target=work).start()
         try:
             while not is_done.wait(0.1):
-                pass
+                if poll:
+                    poll()
         except BaseException:
             self.cancel()
             is_done.wait()
@@ -366,37 +389,124 @@ class Scene:
             ctypes.sizeof(_Camera), _text(type), items, count, _matrix(world_from_camera, kept),
             _matrix(world_from_camera_end, kept), _text(medium))))
 
+    def complete(self, poll=None):
+        """Builds what rays need; rendering does so where it is not done yet. poll: as for Rendering.advance."""
+        if not self._is_complete:
+            self._context._work(_library.ag_scene_commit, self._pointer, poll=poll)
+            self._is_complete = True
+
+    def _settings(self, values):
+        """An ag_render_settings, and what it borrows."""
+        room = ctypes.create_string_buffer(_SETTINGS_ROOM)
+        self._context._check(_library.ag_render_settings_from_scene(self._context._pointer, self._pointer, room))
+        kept = [room]
+        for name, value in values.items():
+            kept.append(None if value is True else _text(str(value)))
+            name = name.replace("_", "-")
+            if _library.ag_render_settings_set(room, name.encode(), kept[-1]) != 0:
+                raise ValueError(f"{name}: there is no such setting, or {value!r} is no value of it")
+        return room, kept
+
     def render(self, write_to=None, **settings):
         """Completes the scene, renders it, and gives its pixels. settings: options of the program by name, with _ for
         -: size="320x180", spp=16, noise=0.02, integrator="path", photon_map="room.map"; True for those without a
         value. write_to: a file that the picture is written to as well."""
         context, film = self._context, c_void_p()
-        if not self._is_complete:
-            context._work(_library.ag_scene_commit, self._pointer)
-            self._is_complete = True
-        room = ctypes.create_string_buffer(_SETTINGS_ROOM)
-        context._check(_library.ag_render_settings_from_scene(context._pointer, self._pointer, room))
-        kept = []
-        for name, value in settings.items():
-            kept.append(None if value is True else _text(str(value)))  # the settings may borrow it
-            name = name.replace("_", "-")
-            if _library.ag_render_settings_set(room, name.encode(), kept[-1]) != 0:
-                raise ValueError(f"{name}: there is no such setting, or {value!r} is no value of it")
+        self.complete()
+        room, _kept = self._settings(settings)
         try:
             context._work(_library.ag_render, context._pointer, self._pointer, room, byref(film))
-            width, height = c_int(), c_int()
-            pixels = _library.ag_film_pixels(film, byref(width), byref(height))
-            array = numpy.ctypeslib.as_array(pixels, (height.value, width.value, 3)).copy()
             if write_to is not None:
                 context._work(_library.ag_film_write, context._pointer, film, None, _text(write_to))
-            return array
+            return _pixels(film)
         finally:
             _library.ag_film_destroy(film)
+
+    def rendering(self, poll=None, **settings) -> "Rendering":
+        """A picture that grows. Completes the scene and traces its photons. settings: as for render."""
+        return Rendering(self, settings, poll)
 
     def close(self):
         if self._pointer:
             _library.ag_scene_destroy(self._pointer)
             self._pointer = c_void_p()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+def _pixels(film):
+    width, height = c_int(), c_int()
+    pixels = _library.ag_film_pixels(film, byref(width), byref(height))
+    return numpy.ctypeslib.as_array(pixels, (height.value, width.value, 3)).copy()
+
+
+def _floats(array):
+    return array.ctypes.data_as(POINTER(c_float))
+
+
+class Rendering:
+    """Made by Scene.rendering. The scene and its camera stay as they are until it is closed. `shape` is the picture's,
+    (height, width)."""
+
+    def __init__(self, scene, settings, poll):
+        self._context, self._pointer, self._film = scene._context, c_void_p(), c_void_p()
+        scene.complete(poll)
+        room, _kept = scene._settings(settings)
+        self._context._work(_library.ag_rendering_create, self._context._pointer, scene._pointer, room,
+                            byref(self._pointer), poll=poll)
+        width, height = c_int(), c_int()
+        _library.ag_film_pixels(self._shown(), byref(width), byref(height))
+        self.shape = (height.value, width.value)
+        self._watched, self._version = numpy.zeros((*self.shape, 3), numpy.float32), 0
+
+    def _shown(self):
+        return self._film or c_void_p(_library.ag_rendering_film(self._pointer))
+
+    def advance(self, samples: int, poll=None):
+        """Brings every pixel to so many samples, or to the noise that was asked for: those of the settings at most. poll:
+        called about every 0.1 s meanwhile, on the calling thread; an exception there calls the work off."""
+        self._context._work(_library.ag_rendering_continue, self._pointer, samples, poll=poll)
+
+    def watch(self):
+        """The picture as far as it is shown by now, whole tiles, from any thread and while it is at work; None where
+        nothing is new. The array is the same in each call."""
+        version = _library.ag_film_read_picture(self._shown(), self._version, _floats(self._watched))
+        is_new, self._version = version != self._version, version
+        return self._watched if is_new else None
+
+    def sample_counts(self):
+        """The least, the most, and the mean number of samples that a pixel has had."""
+        counts = _library.ag_rendering_sample_counts(self._pointer)
+        return counts.least, counts.most, counts.mean
+
+    def pixels(self):
+        """A copy of the picture."""
+        return _pixels(self._shown())
+
+    def channels(self) -> dict:
+        """Copies of picture and layers, (height, width) each, by the names that they have in a file: "R", "Z", "N.X"."""
+        film, found = self._shown(), {}
+        for number in range(_library.ag_film_channel_count(film)):
+            values = numpy.empty(self.shape, numpy.float32)
+            self._context._check(_library.ag_film_read_channel(film, number, _floats(values)))
+            found[_library.ag_film_channel_name(film, number).decode()] = values
+        return found
+
+    def denoise(self, poll=None):
+        """Ends the rendering and takes the noise out of R, G and B, by Open Image Denoise; denoise=True among the
+        settings has kept what it needs. The channels stay to be read."""
+        _library.ag_rendering_finish(self._pointer, byref(self._film))
+        self._pointer = c_void_p()
+        self._context._work(_library.ag_film_denoise, self._context._pointer, self._film, poll=poll)
+
+    def close(self):
+        _library.ag_rendering_finish(self._pointer, None)
+        _library.ag_film_destroy(self._film)
+        self._pointer, self._film = c_void_p(), c_void_p()
 
     def __enter__(self):
         return self

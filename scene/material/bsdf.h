@@ -2,7 +2,7 @@
  * Rests on: Lambert; Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007 (GGX); Heitz,
  * "Sampling the GGX Distribution of Visible Normals", 2018; Pharr, Jakob, Humphreys, 4th ed., 2023, ch. 9; for coats,
  * Weidlich, Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", 2007.
- * Flow: material + surface hit -> [here] -> photon tracing, shading, path tracing.
+ * Flow: material_point + surface hit -> [here] -> photon tracing, shading, path tracing.
  * Threads: pure functions.
  *
  * One predicate splits the lobes, for photons and for the eye alike: GATHERED lobes (diffuse ones) store photons and
@@ -17,8 +17,7 @@
 #ifndef AFTERGLOW_BSDF_H
 #define AFTERGLOW_BSDF_H
 
-#include "material/hair.h"
-#include "material/material.h"
+#include "material/material_point.h"
 #include "scene.h"
 
 /* The largest factor that a shading normal may multiply a photon's flux by: where it arrives at a surface, and where a
@@ -33,8 +32,10 @@ typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsd
 typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
 
 typedef enum bsdf_lobe_kind {
-    LOBE_DIFFUSE,         /* to the side it came from, perhaps through a coat */
+    LOBE_DIFFUSE,         /* to the side it came from */
     LOBE_DIFFUSE_THROUGH, /* to the other side */
+    LOBE_COATED_BASE,     /* diffuse, under a coat */
+    LOBE_PRINCIPLED_BASE, /* diffuse, under the interface of the principled one */
     LOBE_CONDUCTOR,
     LOBE_DIELECTRIC,           /* reflection and refraction */
     LOBE_THIN_DIELECTRIC,      /* a pane: reflection, and straight through */
@@ -49,8 +50,8 @@ typedef enum bsdf_lobe_kind {
 } bsdf_lobe_kind;
 
 typedef struct bsdf_lobe {
-    bsdf_lobe_kind kind;
-    bsdf_lobes group;
+    uint8_t kind;  /* bsdf_lobe_kind */
+    uint8_t group; /* bsdf_lobes */
     bool is_delta;
     float probability; /* of being picked among all lobes; they sum to 1 */
 } bsdf_lobe;
@@ -58,18 +59,19 @@ typedef struct bsdf_lobe {
 enum { BSDF_LOBES_MAX = 3 };
 
 typedef struct bsdf {
-    frame shading;                    /* z: shading normal, to the outside */
-    vec3 geometric_normal;            /* to the outside */
-    vec3 out;                         /* back along the ray that arrived, unit */
-    material parameters;              /* as it is at this hit */
-    bool is_tilted;                   /* by a bump or normal map: facets send nothing through the surface, which a room
-                                         of walls without thickness would see as light from outside */
-    bool is_pane;                     /* lets light straight through (pane.h, slab.h), and does not shine itself */
-    rgb slab_reflected, slab_through; /* of LOBE_SLAB, which then is the only lobe */
-    hair_fibre fibre;                 /* of LOBE_HAIR */
-    int lobe_count;
-    bsdf_lobe lobes[BSDF_LOBES_MAX];
+    material_point material; /* what all lobes are evaluated from */
+    frame shading;           /* z: shading normal, to the outside */
+    vec3 geometric_normal;   /* to the outside */
+    vec3 out;                /* back along the ray that arrived, unit */
+    bool is_tilted;          /* by a bump or normal map: facets send nothing through the surface, which a room of walls
+                                without thickness would see as light from outside */
+    bool is_pane;            /* lets light straight through (pane.h, slab.h), and does not shine itself */
+    uint8_t lobe_count;
+    bsdf_lobe lobes[BSDF_LOBES_MAX]; /* a diffuse one that reflects is the first */
 } bsdf;
+
+_Static_assert(sizeof(bsdf_lobe) == 8, "each bsdf has BSDF_LOBES_MAX of them");
+_Static_assert(sizeof(bsdf) <= 192, "three lines of the cache: each hit that is shaded makes a bsdf");
 
 typedef struct bsdf_sample {
     vec3 direction;        /* unit, away from the surface */
@@ -80,17 +82,19 @@ typedef struct bsdf_sample {
     bsdf_lobes group; /* of the lobe that was picked */
 } bsdf_sample;
 
-/* out: back along the ray that met the surface, unit. */
-bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out);
-/* bsdf_create for a material that is no mix and has been prepared. */
-bsdf bsdf_create_of(const material *parameters, const surface_hit *hit, vec3 out);
+/* out: back along the ray that met the surface, unit. The bsdf is filled where it stands: a struct returned would be
+ * copied, twice. */
+void bsdf_init(const scene *s, const surface_hit *hit, vec3 out, bsdf *out_bsdf);
+/* bsdf_init of a material's values, about the hit's own shading normal: no map tilts it, and no grain turns it. */
+void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsdf *out_bsdf);
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
 
-/* A Lambertian surface and nothing else: sampling it needs no u_lobe. */
+/* A Lambertian lobe and no other: sampling it needs no u_lobe, so that a gather draws its directions many at once, and
+ * may draw them where a guide says that light is. */
 static inline bool bsdf_is_plain(const bsdf *b)
 {
-    return b->parameters.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;
+    return b->material.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;
 }
 
 /* Whether `out` is on the inside, by the geometric normal: what does not go through stays there. */
@@ -115,6 +119,9 @@ float bsdf_probability(const bsdf *b, bsdf_lobes lobes);
  * radiance. */
 rgb bsdf_gathered_reflection(const bsdf *b);
 rgb bsdf_gathered_transmission(const bsdf *b);
+
+/* The index inside over that outside by which light that goes through is refracted; 1: it goes straight. */
+float bsdf_index(const bsdf *b);
 
 /* f |cos(direction, shading normal)| for light from `direction` (unit, away from the surface) leaving to out; smooth
  * lobes count as 0. */

@@ -1,4 +1,5 @@
-/* bsdf_lobe.h: one lobe of a bsdf: its value, its density, and sampling it. Private to bsdf.c.
+/* bsdf_lobe.h: the kinds of lobes of a bsdf, one row each: its value, its density, and sampling it. Private to bsdf.c,
+ * bsdf_init.c and the files of lobes.
  * Rests on: Walter et al. 2007; Heitz 2018; Weidlich, Wilkie 2007; Pharr, Jakob, Humphreys, 4th ed., 2023, ch. 9.
  * Threads: pure functions. */
 #ifndef AFTERGLOW_BSDF_LOBE_H
@@ -7,37 +8,20 @@
 #include "material/bsdf.h"
 #include "material/microfacet.h"
 
-/* The share of light at that cosine outside that a coat lets through, once; 1 where there is no coat. */
-float bsdf_lobe_transmittance(const material *m, float cos_theta);
+/* Where a lobe sends light that comes from `out`. */
+typedef enum bsdf_lobe_side {
+    LOBE_REFLECTS,  /* to the side it came from, judged by the geometry, which alone cannot leak */
+    LOBE_TRANSMITS, /* to the other side, judged likewise */
+    /* By facets about the shading normal, which alone decides, even through the surface, as pbrt has it: on a coarse
+     * mesh with smooth normals that light finds its way out again. Not so where a map tilts the normal (is_tilted of a
+     * bsdf): there both normals must agree on whether it is a reflection. */
+    LOBE_BY_FACETS,
+    LOBE_BY_FIBRE /* all round, whatever the normals */
+} bsdf_lobe_side;
 
-/* A of the diffuse reflection, under a coat what gets out of it. */
-rgb bsdf_lobe_diffuse_albedo(const material *m);
-
-/* Refraction by rough facets from o to i, on different sides, Fresnel's term left out: its value (f |cos|), its
- * density, and the cosine (>= 0) at which o meets the facet. false: there is no such facet. */
-bool bsdf_lobe_refraction(ggx facets, float ior, bsdf_transport transport, vec3 o, vec3 i, float *out_cosine,
-                          float *out_value, float *out_pdf);
-
-/* Whether a direction is on out's side; judged by the geometry, which alone cannot leak. */
-bool bsdf_is_same_side(const bsdf *b, vec3 direction);
-
-/* Whether radiance leaves it in all directions alike, but for a coat. Flux leaves it by the cosine to the geometric
- * normal then, whatever the shading normal, which counts where flux arrives. */
-static inline bool bsdf_lobe_is_diffuse(bsdf_lobe_kind kind)
-{
-    return kind == LOBE_DIFFUSE || kind == LOBE_DIFFUSE_THROUGH;
-}
-
-/* Whether it is made of facets about the shading normal. Where they send light the shading normal alone decides, even
- * through the surface, as pbrt has it: on a coarse mesh with smooth normals that light finds its way out again. Not so
- * where a map tilts the normal (is_tilted of a bsdf). */
-static inline bool bsdf_lobe_has_facets(bsdf_lobe_kind kind)
-{
-    return !bsdf_lobe_is_diffuse(kind) && kind != LOBE_COAT_SCATTERED && kind != LOBE_HAIR;
-}
-
-/* What a lobe of a kind does: its row in bsdf_lobe.c. o, i: out and the other direction in the shading frame. */
+/* One kind of lobe. o, i: out and the other direction in the shading frame. */
 typedef struct bsdf_lobe_type {
+    bsdf_lobe_side side;
     /* Of a lobe that is not smooth: sets value (f |cos|) and density, which come in as 0. direction: i in world space.
      * Of flux the value holds the shading normal's correction where the lobe is diffuse, and the density is flux's.
      * NULL: the lobe is always smooth. */
@@ -50,9 +34,64 @@ typedef struct bsdf_lobe_type {
      * smooth. */
     bool (*sample_rough)(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local);
     /* Whether it sends light on to the other side too, by this material. NULL: by none. */
-    bool (*passes)(const material *m);
+    bool (*passes)(const material_point *m);
+    /* A of a lobe whose radiance leaves in all directions alike, but for what a coat lets through (bsdf.h): a diffuse
+     * one. Flux leaves it by the cosine to the geometric normal, whatever the shading normal, which counts where flux
+     * arrives. NULL: the lobe is not diffuse. */
+    rgb (*albedo)(const material_point *m);
+    /* t of a diffuse lobe: the share of light at a cosine outside, of either sign, that gets to it. NULL: 1. */
+    float (*transmittance)(const material_point *m, float cosine);
+    /* The index inside over that outside by which it refracts. NULL: what it lets through goes straight. */
+    float (*index)(const material_point *m);
 } bsdf_lobe_type;
 
-const bsdf_lobe_type *bsdf_lobe_type_of(bsdf_lobe_kind kind);
+/* lobes_diffuse.c */
+extern const bsdf_lobe_type bsdf_lobe_diffuse, bsdf_lobe_diffuse_through, bsdf_lobe_coated_base,
+    bsdf_lobe_principled_base, bsdf_lobe_coat_scattered;
+/* lobes_metal.c */
+extern const bsdf_lobe_type bsdf_lobe_conductor, bsdf_lobe_coat, bsdf_lobe_conductor_under_coat;
+/* lobes_glass.c */
+extern const bsdf_lobe_type bsdf_lobe_dielectric, bsdf_lobe_thin_dielectric, bsdf_lobe_slab;
+/* lobes_principled.c */
+extern const bsdf_lobe_type bsdf_lobe_principled, bsdf_lobe_clearcoat;
+
+extern const bsdf_lobe_type *const bsdf_lobe_types[LOBE_KIND_COUNT];
+
+static inline const bsdf_lobe_type *bsdf_lobe_type_of(const bsdf_lobe *lobe) { return bsdf_lobe_types[lobe->kind]; }
+
+/* What of light at that cosine gets to a diffuse lobe of the type. */
+static inline float bsdf_lobe_transmittance(const bsdf_lobe_type *type, const material_point *m, float cosine)
+{
+    return type->transmittance ? type->transmittance(m, cosine) : 1.0f;
+}
+
+/* The diffuse lobe that reflects, which is the first then; NULL: there is none. */
+static inline const bsdf_lobe_type *bsdf_base_of(const bsdf *b)
+{
+    const bsdf_lobe_type *first = b->lobe_count > 0 ? bsdf_lobe_type_of(&b->lobes[0]) : NULL;
+    return first && first->albedo ? first : NULL;
+}
+
+/* The type of a diffuse base of the material's kind, whether or not it reflects anything there. */
+const bsdf_lobe_type *bsdf_base_of_kind(material_kind kind);
+
+/* Whether a direction is on out's side; judged by the geometry, which alone cannot leak. */
+static inline bool bsdf_is_same_side(const bsdf *b, vec3 direction)
+{
+    return vec3_dot(b->out, b->geometric_normal) * vec3_dot(direction, b->geometric_normal) > 0.0f;
+}
+
+/* --- what several files of lobes share --- */
+
+/* The normal on o's side, and the mirror's direction about it. */
+vec3 bsdf_lobe_mirror(vec3 o, vec3 *out_normal);
+
+/* A facet that o sees; its side, +1 or -1, and o on the upper side. false: facets have no density there. */
+bool bsdf_lobe_sample_facet(ggx facets, vec3 o, vec2 u, vec3 *out_upper, vec3 *out_facet, float *out_side);
+
+/* Refraction by rough facets from o to i, on different sides, Fresnel's term left out: its value (f |cos|), its
+ * density, and the cosine (>= 0) at which o meets the facet. false: there is no such facet. */
+bool bsdf_lobe_refraction(ggx facets, float ior, bsdf_transport transport, vec3 o, vec3 i, float *out_cosine,
+                          float *out_value, float *out_pdf);
 
 #endif

@@ -9,9 +9,25 @@
 /* The cosine at which light that has lost its direction meets the metal: about its mean over the hemisphere. */
 static const float MEAN_COSINE = 0.6f;
 
-static bool scatters(const material *m) { return !rgb_is_black(m->coat_albedo); }
+coat_point coat_point_of(const material *m)
+{
+    return (coat_point){.interface = {m->alpha_u, m->alpha_v},
+                        .base = {m->base_alpha_u, m->base_alpha_v},
+                        .ior = m->ior,
+                        .thickness = m->coat_thickness,
+                        .table = m->coat,
+                        .eta = m->eta,
+                        .k = m->k,
+                        .reflectance = m->reflectance,
+                        .bounces = m->coat_bounces,
+                        .has_metal = m->kind == MATERIAL_COATED_CONDUCTOR,
+                        .scatters = !rgb_is_black(m->coat_albedo)};
+}
 
-bool coat_is_smooth(const material *m) { return material_is_smooth(m->alpha_u, m->alpha_v) || m->ior == 1.0f; }
+bool coat_is_smooth(const coat_point *m)
+{
+    return material_is_smooth(m->interface.alpha_u, m->interface.alpha_v) || m->ior == 1.0f;
+}
 
 bool coat_needs_table(const material *m)
 {
@@ -19,22 +35,24 @@ bool coat_needs_table(const material *m)
         return true;
     if (m->kind != MATERIAL_COATED_CONDUCTOR)
         return false;
+    coat_point constant = coat_point_of(m);
     bool varies = m->alpha_u_texture != SCENE_NO_TEXTURE || m->alpha_v_texture != SCENE_NO_TEXTURE ||
                   m->base_alpha_u_texture != SCENE_NO_TEXTURE || m->base_alpha_v_texture != SCENE_NO_TEXTURE;
-    return varies || scatters(m) || !coat_is_smooth(m) || !material_is_smooth(m->base_alpha_u, m->base_alpha_v);
+    return varies || constant.scatters || !coat_is_smooth(&constant) ||
+           !material_is_smooth(m->base_alpha_u, m->base_alpha_v);
 }
 
-vec3 coat_refract(const material *m, vec3 v)
+vec3 coat_refract(const coat_point *m, vec3 v)
 {
     float sin2 = fmaxf(0.0f, 1.0f - v.z * v.z) / (m->ior * m->ior);
     return (vec3){v.x / m->ior, v.y / m->ior, copysignf(sqrtf(fmaxf(0.0f, 1.0f - sin2)), v.z)};
 }
 
-float coat_crossing(const material *m, float cos_theta)
+float coat_crossing(const coat_point *m, float cos_theta)
 {
     float through = 1.0f - fresnel_dielectric(fabsf(cos_theta), m->ior);
-    if (m->coat_thickness > 0.0f && through > 0.0f)
-        through *= attenuation(m->coat_thickness / fabsf(coat_refract(m, (vec3){0.0f, 0.0f, cos_theta}).z));
+    if (m->thickness > 0.0f && through > 0.0f)
+        through *= attenuation(m->thickness / fabsf(coat_refract(m, (vec3){0.0f, 0.0f, cos_theta}).z));
     return through;
 }
 
@@ -45,26 +63,26 @@ static rgb sum_of_series(rgb first, rgb again)
 
 /* --- a diffuse base --- */
 
-float coat_entry(const material *m, float cos_theta)
+float coat_entry(const coat_point *m, float cos_theta)
 {
-    if (coat_is_smooth(m) && !scatters(m))
+    if (coat_is_smooth(m) && !m->scatters)
         return coat_crossing(m, cos_theta);
-    coat_blend blend = coat_table_find(m->coat, m);
+    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
     return coat_blend_at(&blend, COAT_ENTRY, fabsf(cos_theta));
 }
 
 /* Light that leaves a coat is spread over a wider solid angle: the squared index. */
-rgb coat_diffuse_albedo(const material *m)
+rgb coat_diffuse_albedo(const coat_point *m)
 {
-    coat_blend blend = coat_table_find(m->coat, m);
+    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
     rgb back = rgb_gray(0.0f), tint = rgb_gray(0.0f), r = m->reflectance;
     for (int k = 0; k < blend.count; k++) {
         back = rgb_add(back, rgb_scale(blend.cells[k]->back, blend.weights[k]));
         tint = rgb_add(tint, rgb_scale(blend.cells[k]->entry_tint, blend.weights[k]));
     }
     /* r + r (r back) + r (r back)^2 + ...: light that goes to and fro between base and coat */
-    rgb again = rgb_mul(r, back), lost = rgb_gray(m->coat_bounces > 0 ? 1.0f : 0.0f);
-    for (int i = 0; i < m->coat_bounces; i++)
+    rgb again = rgb_mul(r, back), lost = rgb_gray(m->bounces > 0 ? 1.0f : 0.0f);
+    for (int i = 0; i < m->bounces; i++)
         lost = rgb_mul(lost, again);
     rgb sum = sum_of_series(rgb_mul(r, rgb_sub(rgb_gray(1.0f), lost)), again);
     return rgb_scale(rgb_mul(sum, tint), 1.0f / (m->ior * m->ior));
@@ -72,13 +90,13 @@ rgb coat_diffuse_albedo(const material *m)
 
 /* --- a metal --- */
 
-rgb coat_series(const material *m, rgb metal, float cos_theta)
+rgb coat_series(const coat_point *m, rgb metal, float cos_theta)
 {
     float crossing = coat_crossing(m, cos_theta), back = fresnel_dielectric(fabsf(cos_theta), m->ior);
     if (!(crossing > 0.0f))
         return rgb_gray(0.0f); /* total reflection, by a coat of a lesser index than what is around */
-    if (m->coat_thickness > 0.0f)
-        back *= attenuation(2.0f * m->coat_thickness / fabsf(coat_refract(m, (vec3){0.0f, 0.0f, cos_theta}).z));
+    if (m->thickness > 0.0f)
+        back *= attenuation(2.0f * m->thickness / fabsf(coat_refract(m, (vec3){0.0f, 0.0f, cos_theta}).z));
     return sum_of_series(rgb_scale(metal, crossing * crossing), rgb_scale(metal, back));
 }
 
@@ -103,7 +121,7 @@ static rgb lobe_color(const coat_blend *blend, rgb metal)
     return by_orders(shares, metal);
 }
 
-static ggx outer_facets(const material *m, const coat_blend *blend)
+static ggx outer_facets(const coat_point *m, const coat_blend *blend)
 {
     float breadth = 0.0f;
     for (int k = 0; k < blend->count; k++)
@@ -111,21 +129,21 @@ static ggx outer_facets(const material *m, const coat_blend *blend)
     return coat_lobe_facets(m, breadth);
 }
 
-void coat_metal_lobe(const material *m, vec3 o, vec3 i, rgb *out_value, float *out_pdf)
+void coat_metal_lobe(const coat_point *m, vec3 o, vec3 i, rgb *out_value, float *out_pdf)
 {
     *out_value = rgb_gray(0.0f);
     *out_pdf = 0.0f;
     vec3 oc = coat_refract(m, o), ic = coat_refract(m, i);
     if (o.z * i.z <= 0.0f)
         return;
-    coat_blend blend = coat_table_find(m->coat, m);
+    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
     float scale = coat_blend_at(&blend, COAT_SCALE, fabsf(o.z)) * coat_blend_at(&blend, COAT_SCALE, fabsf(i.z));
     float value;
     if (coat_is_smooth(m)) {
         if (oc.z == 0.0f || ic.z == 0.0f)
             return; /* beyond total reflection, by a coat of a lesser index */
         vec3 h = ggx_half_vector(oc, ic);
-        ggx facets = {m->base_alpha_u, m->base_alpha_v};
+        ggx facets = m->base;
         /* f |cos i|: reflection's value has |cos ic| in it; the squared index is the change of solid angles */
         float cosines = fabsf(i.z / ic.z) / (m->ior * m->ior);
         scale *= coat_crossing(m, o.z) * coat_crossing(m, i.z);
@@ -141,15 +159,15 @@ void coat_metal_lobe(const material *m, vec3 o, vec3 i, rgb *out_value, float *o
     *out_value = rgb_scale(lobe_color(&blend, metal), scale * value);
 }
 
-bool coat_sample_metal_lobe(const material *m, vec3 o, vec2 u, vec3 *out_i)
+bool coat_sample_metal_lobe(const coat_point *m, vec3 o, vec2 u, vec3 *out_i)
 {
     if (!coat_is_smooth(m)) {
-        coat_blend blend = coat_table_find(m->coat, m);
+        coat_blend blend = coat_table_find(m->table, m->interface, m->base);
         *out_i = reflect_about(o, ggx_sample_visible(outer_facets(m, &blend), o, u));
         return out_i->z > 0.0f;
     }
     vec3 oc = coat_refract(m, o);
-    vec3 ic = reflect_about(oc, ggx_sample_visible((ggx){m->base_alpha_u, m->base_alpha_v}, oc, u));
+    vec3 ic = reflect_about(oc, ggx_sample_visible(m->base, oc, u));
     float sin2 = (1.0f - ic.z * ic.z) * m->ior * m->ior;
     if (ic.z <= 0.0f || sin2 >= 1.0f)
         return false;
@@ -157,29 +175,29 @@ bool coat_sample_metal_lobe(const material *m, vec3 o, vec2 u, vec3 *out_i)
     return true;
 }
 
-rgb coat_metal_lobe_albedo(const material *m, float cos_o)
+rgb coat_metal_lobe_albedo(const coat_point *m, float cos_o)
 {
     rgb metal = fresnel_conductor(MEAN_COSINE, m->eta, m->k);
-    if (!m->coat)
+    if (!m->table)
         return coat_series(m, metal, cos_o);
-    coat_blend blend = coat_table_find(m->coat, m);
+    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
     return rgb_scale(lobe_color(&blend, metal), coat_blend_at(&blend, COAT_ALBEDO, fabsf(cos_o)));
 }
 
 /* --- the scattered lobe --- */
 
 /* The metal's reflectance at the mean cosine; 0 over a diffuse base. */
-static rgb scattering_metal(const material *m)
+static rgb scattering_metal(const coat_point *m)
 {
-    return m->kind == MATERIAL_COATED_CONDUCTOR ? fresnel_conductor(MEAN_COSINE, m->eta, m->k) : rgb_gray(0.0f);
+    return m->has_metal ? fresnel_conductor(MEAN_COSINE, m->eta, m->k) : rgb_gray(0.0f);
 }
 
-rgb coat_scattered_albedo(const material *m, float cos_o)
+rgb coat_scattered_albedo(const coat_point *m, float cos_o)
 {
     rgb sum = rgb_gray(0.0f);
-    if (!m->coat)
+    if (!m->table)
         return sum;
-    coat_blend blend = coat_table_find(m->coat, m);
+    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
     rgb metal = scattering_metal(m);
     for (int k = 0; k < blend.count; k++)
         if (blend.cells[k]->scattered_mean > 0.0f) {
@@ -198,12 +216,12 @@ static float turned(float eccentricity, vec3 o, vec3 i)
     return (1.0f - e * e) / (1.0f + e * e - 2.0f * e * cosine);
 }
 
-rgb coat_scattered(const material *m, vec3 o, vec3 i)
+rgb coat_scattered(const coat_point *m, vec3 o, vec3 i)
 {
     rgb sum = rgb_gray(0.0f);
-    if (!m->coat)
+    if (!m->table)
         return sum;
-    coat_blend blend = coat_table_find(m->coat, m);
+    coat_blend blend = coat_table_find(m->table, m->interface, m->base);
     rgb metal = scattering_metal(m);
     for (int k = 0; k < blend.count; k++)
         if (blend.cells[k]->scattered_mean > 0.0f) {

@@ -181,6 +181,7 @@ static metal_sums walk_to_metal(const material *m, const coat_layers *layers, fl
 static bool fill_metal(coat_cell *cell, const material *m, int walks, uint64_t key)
 {
     const coat_layers layers = layers_of(m);
+    const coat_point point = coat_point_of(m);
     float orders[COAT_ORDERS] = {0.0f}, once[COAT_COSINES], whole = 0.0f;
     rgb scattered[COAT_ORDERS] = {{0.0f, 0.0f, 0.0f}};
     for (int number = 0; number < COAT_COSINES; number++) {
@@ -199,8 +200,8 @@ static bool fill_metal(coat_cell *cell, const material *m, int walks, uint64_t k
     for (int n = 0; n < COAT_ORDERS && whole > 0.0f; n++)
         cell->lobe_share[n] = orders[n] / whole;
     fill_scattered_shares(cell, scattered);
-    cell->breadth = layers.interface_is_smooth ? 1.0f : coat_lobe_fit_breadth(m, &layers, key);
-    return coat_lobe_fit_scales(cell, m, &layers, once);
+    cell->breadth = layers.interface_is_smooth ? 1.0f : coat_lobe_fit_breadth(&point, &layers, key);
+    return coat_lobe_fit_scales(cell, &point, &layers, once);
 }
 
 bool coat_cell_fill(coat_cell *out_cell, const material *m, int metal_walks, uint64_t key)

@@ -1,7 +1,6 @@
 /* coat_lobe.c: see coat_lobe.h. */
 #include "material/coat_lobe.h"
 
-#include "material/coat.h"
 #include "material/fresnel.h"
 
 #include <stddef.h>
@@ -20,13 +19,15 @@ static vec2 lattice(int k, int count)
     return (vec2){((float)k + 0.5f) / (float)count, (float)(y - floor(y))};
 }
 
-ggx coat_lobe_facets(const material *m, float breadth)
+ggx coat_lobe_facets(const coat_point *m, float breadth)
 {
     /* small angles: a facet of the interface turns light by ior - 1 times its tilt, twice; one of the metal by twice
      * its tilt, which refraction widens by ior */
     float bend = 0.70710678f * (m->ior - 1.0f), widen = m->ior;
-    float u = bend * bend * m->alpha_u * m->alpha_u + widen * widen * m->base_alpha_u * m->base_alpha_u;
-    float v = bend * bend * m->alpha_v * m->alpha_v + widen * widen * m->base_alpha_v * m->base_alpha_v;
+    float u =
+        bend * bend * m->interface.alpha_u * m->interface.alpha_u + widen * widen * m->base.alpha_u * m->base.alpha_u;
+    float v =
+        bend * bend * m->interface.alpha_v * m->interface.alpha_v + widen * widen * m->base.alpha_v * m->base.alpha_v;
     return (ggx){fmaxf(breadth * sqrtf(u), MATERIAL_SMOOTH_ALPHA), fmaxf(breadth * sqrtf(v), MATERIAL_SMOOTH_ALPHA)};
 }
 
@@ -63,15 +64,15 @@ static float median_tangent(const tangents *t)
  * lamps see, is larger than what its samples come to, since the two weights by which it joins its two estimates do not
  * sum to 1: by 3 % for a coat of 0.1 on a metal of 0.2, 14 % for one of 0.6. A broader lobe has the brightness of the
  * former towards lamps in front, within 6 %, and the albedo of the latter. */
-static float breadth_correction(const material *m)
+static float breadth_correction(const coat_point *m)
 {
-    float metal = m->ior * m->ior * m->base_alpha_u * m->base_alpha_v, bend = 0.5f * (m->ior - 1.0f) * (m->ior - 1.0f);
-    float share = metal / fmaxf(metal + bend * m->alpha_u * m->alpha_v, 1e-12f);
+    float metal = m->ior * m->ior * m->base.alpha_u * m->base.alpha_v, bend = 0.5f * (m->ior - 1.0f) * (m->ior - 1.0f);
+    float share = metal / fmaxf(metal + bend * m->interface.alpha_u * m->interface.alpha_v, 1e-12f);
     return 0.8f + 0.2f * share + 1.5f * share * (1.0f - share);
 }
 
 /* How broad the lobe is where neither end is at grazing, against facets seen from there. */
-float coat_lobe_fit_breadth(const material *m, const coat_layers *layers, uint64_t key)
+float coat_lobe_fit_breadth(const coat_point *m, const coat_layers *layers, uint64_t key)
 {
     static const float COSINE = 0.9f;
     vec3 out = coat_direction(COSINE);
@@ -104,7 +105,7 @@ typedef struct lobe_sample {
     float cosine, weight;
 } lobe_sample;
 
-static void sample_lobe(const material *m, const coat_layers *layers, float breadth, float cosine,
+static void sample_lobe(const coat_point *m, const coat_layers *layers, float breadth, float cosine,
                         lobe_sample out_samples[LOBE_FACETS])
 {
     vec3 out = coat_direction(cosine);
@@ -137,7 +138,8 @@ static float lobe_albedo(const coat_cell *cell, const lobe_sample *samples, int 
     return sum * cell->scale[number];
 }
 
-bool coat_lobe_fit_scales(coat_cell *cell, const material *m, const coat_layers *layers, const float once[COAT_COSINES])
+bool coat_lobe_fit_scales(coat_cell *cell, const coat_point *m, const coat_layers *layers,
+                          const float once[COAT_COSINES])
 {
     lobe_sample *samples = calloc((size_t)COAT_COSINES * LOBE_FACETS, sizeof *samples);
     if (!samples)

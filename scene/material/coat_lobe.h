@@ -4,19 +4,20 @@
 #ifndef AFTERGLOW_COAT_LOBE_H
 #define AFTERGLOW_COAT_LOBE_H
 
+#include "material/coat.h"
 #include "material/coat_cell.h"
 
 /* Facets that reflect outside about as the metal does under the coat: of the lobe under a rough interface. breadth:
  * what their roughness is multiplied by. */
-ggx coat_lobe_facets(const material *m, float breadth);
+ggx coat_lobe_facets(const coat_point *m, float breadth);
 
 /* The breadth that fits walks; key: of their random numbers. */
-float coat_lobe_fit_breadth(const material *m, const coat_layers *layers, uint64_t key);
+float coat_lobe_fit_breadth(const coat_point *m, const coat_layers *layers, uint64_t key);
 
 /* Sets the cell's scales, so that the lobe has its albedo. once: the albedo of walks that met the metal once. Under a
  * smooth interface the lobe of one reflection is exact, so walks tell only how much the others add, and the cell's
  * albedo is set anew. false: no memory. */
-bool coat_lobe_fit_scales(coat_cell *cell, const material *m, const coat_layers *layers,
+bool coat_lobe_fit_scales(coat_cell *cell, const coat_point *m, const coat_layers *layers,
                           const float once[COAT_COSINES]);
 
 #endif

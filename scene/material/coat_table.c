@@ -94,13 +94,13 @@ coat_table *coat_table_create(const material *m)
     return table;
 }
 
-static float side_coordinate(float alpha_u, float alpha_v)
+static float side_coordinate(ggx facets)
 {
-    float alpha = fminf(fmaxf(sqrtf(alpha_u * alpha_v), ALPHA_MIN), ALPHA_MAX);
+    float alpha = fminf(fmaxf(sqrtf(facets.alpha_u * facets.alpha_v), ALPHA_MIN), ALPHA_MAX);
     return sqrtf((alpha - ALPHA_MIN) / (ALPHA_MAX - ALPHA_MIN)) * (float)(SIDE - 1);
 }
 
-coat_blend coat_table_find(const coat_table *table, const material *m)
+coat_blend coat_table_find(const coat_table *table, ggx interface, ggx base)
 {
     coat_blend blend = {{table->cells}, {1.0f}, 1};
     if (table->count == 1 && table->base_count == 1)
@@ -108,13 +108,13 @@ coat_blend coat_table_find(const coat_table *table, const material *m)
     int base_step = 0, step = 0, across = 1, along = 1;
     float base_u = 0.0f, u = 0.0f;
     if (table->base_count > 1) {
-        float coordinate = side_coordinate(m->base_alpha_u, m->base_alpha_v);
+        float coordinate = side_coordinate(base);
         base_step = coordinate < (float)(SIDE - 2) ? (int)coordinate : SIDE - 2;
         base_u = coordinate - (float)base_step;
         across = 2;
     }
-    if (table->has_smooth && !material_is_smooth(m->alpha_u, m->alpha_v)) {
-        float coordinate = side_coordinate(m->alpha_u, m->alpha_v);
+    if (table->has_smooth && !material_is_smooth(interface.alpha_u, interface.alpha_v)) {
+        float coordinate = side_coordinate(interface);
         step = coordinate < (float)(SIDE - 2) ? (int)coordinate : SIDE - 2;
         u = coordinate - (float)step;
         step++; /* past those of a smooth one */

@@ -18,14 +18,14 @@ void coat_table_destroy(coat_table *table);
 /* Whether it is the one that coat_table_create would make of that material. */
 bool coat_table_serves(const coat_table *table, const material *m);
 
-/* Cells about a material at a point, with weights that sum to 1. */
+/* Cells about two roughnesses, of interface and base, with weights that sum to 1. */
 typedef struct coat_blend {
     const coat_cell *cells[4];
     float weights[4];
     int count;
 } coat_blend;
 
-coat_blend coat_table_find(const coat_table *table, const material *m);
+coat_blend coat_table_find(const coat_table *table, ggx interface, ggx base);
 
 typedef enum coat_function { COAT_ENTRY, COAT_SCALE, COAT_ALBEDO, COAT_SCATTERED, COAT_FORWARD } coat_function;
 

@@ -42,9 +42,9 @@ typedef struct inclination {
     double sine, cosine; /* of theta */
 } inclination;
 
-static inclination inclination_of(vec3 d)
+static inclination inclination_of(float sine)
 {
-    double s = fmin(fmax((double)d.x, -1.0), 1.0);
+    double s = fmin(fmax((double)sine, -1.0), 1.0);
     return (inclination){s, sine_to_cosine(s)};
 }
 
@@ -65,27 +65,51 @@ static double angle_of(double sine, double cosine)
     return TWO_PI * (turns > 0.5 ? turns - 1.0 : turns);
 }
 
-static hair_lobes lobes_of(const hair_fibre *h, inclination o)
+/* The offset across the fibre: sine of the normal's angle to the ray, [-1, 1]. v grows to the axis' left as the ray
+ * comes, phi to its right. */
+static double offset_of(const hair_point *p) { return fmin(fmax(1.0 - 2.0 * (double)p->offset, -1.0), 1.0); }
+
+static hair_passage passage_of(const hair_point *p, inclination o)
 {
-    hair_lobes w;
-    double cos_gamma = sine_to_cosine(h->offset);
-    double bent = sqrt(fmax(1e-12, h->ior * h->ior - o.sine * o.sine)) / fmax(o.cosine, 1e-6); /* Marschner's eta' */
-    double sin_inside = fmin(fmax(h->offset / bent, -1.0), 1.0), cos_inside = sine_to_cosine(sin_inside);
-    double within = 2.0 * cos_inside / fmax(sine_to_cosine(o.sine / h->ior), 1e-6);
-    double f = (double)fresnel_dielectric((float)fmin(o.cosine * cos_gamma, 1.0), (float)h->ior);
-    double gamma = angle_of(h->offset, cos_gamma), gamma_inside = angle_of(sin_inside, cos_inside);
-    for (int k = 0; k < HAIR_TILTED; k++)
-        w.turn[k] = 2.0 * k * gamma_inside - 2.0 * gamma + k * HALF_TURN;
+    hair_passage w;
+    double ior = p->fibre->ior, offset = offset_of(p), cos_gamma = sine_to_cosine(offset);
+    double bent = sqrt(fmax(1e-12, ior * ior - o.sine * o.sine)) / fmax(o.cosine, 1e-6); /* Marschner's eta' */
+    double sin_inside = fmin(fmax(offset / bent, -1.0), 1.0), cos_inside = sine_to_cosine(sin_inside);
+    double within = 2.0 * cos_inside / fmax(sine_to_cosine(o.sine / ior), 1e-6);
+    const double sigma_a[3] = {(double)p->sigma_a.r, (double)p->sigma_a.g, (double)p->sigma_a.b};
+    w.reflected = (double)fresnel_dielectric((float)fmin(o.cosine * cos_gamma, 1.0), (float)ior);
+    w.gamma = angle_of(offset, cos_gamma);
+    w.gamma_inside = angle_of(sin_inside, cos_inside);
+    for (int c = 0; c < 3; c++)
+        w.left[c] = exponential(-sigma_a[c] * within);
+    return w;
+}
+
+/* The share of light that each lobe carries along one direction. */
+typedef struct hair_shares {
+    double of[HAIR_LOBES][3], mean[HAIR_LOBES];
+} hair_shares;
+
+static hair_shares shares_of(const hair_passage *w)
+{
+    hair_shares shares;
+    double f = w->reflected;
     for (int c = 0; c < 3; c++) {
-        double t = exponential(-h->sigma_a[c] * within);
-        w.share[0][c] = f;
-        w.share[1][c] = square(1.0 - f) * t;
-        w.share[2][c] = w.share[1][c] * t * f;
-        w.share[3][c] = w.share[2][c] * f * t / fmax(1.0 - t * f, 1e-6);
+        double t = w->left[c];
+        shares.of[0][c] = f;
+        shares.of[1][c] = square(1.0 - f) * t;
+        shares.of[2][c] = shares.of[1][c] * t * f;
+        shares.of[3][c] = shares.of[2][c] * f * t / fmax(1.0 - t * f, 1e-6);
     }
     for (int k = 0; k < HAIR_LOBES; k++)
-        w.mean[k] = (w.share[k][0] + w.share[k][1] + w.share[k][2]) / 3.0;
-    return w;
+        shares.mean[k] = (shares.of[k][0] + shares.of[k][1] + shares.of[k][2]) / 3.0;
+    return shares;
+}
+
+/* How far from the direction's azimuth the lobe's middle is. */
+static double turn_of(const hair_passage *w, int lobe)
+{
+    return 2.0 * lobe * w->gamma_inside - 2.0 * w->gamma + lobe * HALF_TURN;
 }
 
 /* --- longitudinal scattering: its integral over cos(theta) dtheta is 1 --- */
@@ -138,14 +162,10 @@ static double sample_azimuthal(double u, double width)
 
 /* --- all lobes together --- */
 
-hair_fibre hair_fibre_at(const material *m, float v, vec3 out)
+hair_fibre hair_fibre_make(float ior, float beta_m, float beta_n, float tilt_degrees)
 {
-    hair_fibre h = {.ior = (double)m->ior,
-                    .faces_rays = true,
-                    .sigma_a = {(double)m->hair_sigma_a.r, (double)m->hair_sigma_a.g, (double)m->hair_sigma_a.b}};
-    double bm = fmax((double)m->hair_beta_m, BETA_MIN), bn = fmax((double)m->hair_beta_n, BETA_MIN);
-    /* v grows to the axis' left as the ray comes, phi to its right */
-    h.offset = fmin(fmax(1.0 - 2.0 * (double)v, -1.0), 1.0);
+    hair_fibre h = {.ior = (double)ior};
+    double bm = fmax((double)beta_m, BETA_MIN), bn = fmax((double)beta_n, BETA_MIN);
     double variance = square(0.726 * bm + 0.812 * bm * bm + 3.7 * power(bm, 20));
     h.precision[0] = 1.0 / variance;
     h.precision[1] = 4.0 / variance;
@@ -156,71 +176,76 @@ hair_fibre hair_fibre_at(const material *m, float v, vec3 out)
     double end = exponential(-HALF_TURN / h.width);
     h.width_norm = (1.0 + end) / ((1.0 - end) * h.width);
     float s, c;
-    sincos_turns(m->hair_tilt_degrees / 360.0f, &s, &c);
+    sincos_turns(tilt_degrees / 360.0f, &s, &c);
     h.sin_tilt[0] = (double)s, h.cos_tilt[0] = (double)c;
     for (int k = 1; k < HAIR_TILTED; k++) {
         h.sin_tilt[k] = 2.0 * h.cos_tilt[k - 1] * h.sin_tilt[k - 1];
         h.cos_tilt[k] = square(h.cos_tilt[k - 1]) - square(h.sin_tilt[k - 1]);
     }
-    inclination o = inclination_of(out);
-    h.sine = o.sine, h.cosine = o.cosine;
-    h.azimuth = angle_of((double)out.z, (double)out.y);
-    h.lobes = lobes_of(&h, o);
     return h;
 }
 
-/* From o, whose lobes these are, to i, which lies so far about the axis from it. */
-static void lobe_values(const hair_fibre *h, const hair_lobes *of_o, inclination o, inclination i, double turn,
+hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out)
+{
+    hair_point p = {.fibre = fibre, .sigma_a = sigma_a, .offset = v, .sine = out.x, .faces_rays = true};
+    p.azimuth = angle_of((double)out.z, (double)out.y);
+    p.passage = passage_of(&p, inclination_of(out.x));
+    return p;
+}
+
+/* From o, whose passage it is, to i, which lies so far about the axis from it. */
+static void lobe_values(const hair_fibre *h, const hair_passage *of_o, inclination o, inclination i, double turn,
                         double out[HAIR_LOBES])
 {
     for (int k = 0; k < HAIR_LOBES; k++) {
-        double around = k < HAIR_TILTED ? azimuthal(h, turn - of_o->turn[k]) : 1.0 / TWO_PI;
+        double around = k < HAIR_TILTED ? azimuthal(h, turn - turn_of(of_o, k)) : 1.0 / TWO_PI;
         out[k] = around > 0.0 ? around * longitudinal(h, k, i, tilted(h, o, k)) : 0.0;
     }
 }
 
-void hair_evaluate(const hair_fibre *h, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf)
+void hair_evaluate(const hair_point *p, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf)
 {
-    inclination o = {h->sine, h->cosine}, i = inclination_of(direction);
-    double turn = angle_of((double)direction.z, (double)direction.y) - h->azimuth, values[HAIR_LOBES];
+    inclination o = inclination_of(p->sine), i = inclination_of(direction.x);
+    double turn = angle_of((double)direction.z, (double)direction.y) - p->azimuth, values[HAIR_LOBES];
     double sum[3] = {0.0, 0.0, 0.0}, density = 0.0, all = 0.0, narrower = 1.0;
-    const hair_lobes *carried = &h->lobes;
-    hair_lobes of_eye;
-    lobe_values(h, carried, o, i, turn, values);
+    hair_shares carried = shares_of(&p->passage);
+    lobe_values(p->fibre, &p->passage, o, i, turn, values);
     for (int k = 0; k < HAIR_LOBES; k++) {
-        density += values[k] * carried->mean[k];
-        all += carried->mean[k];
+        density += values[k] * carried.mean[k];
+        all += carried.mean[k];
     }
     if (is_flux) { /* offsets across are all as likely: turning the same sense about the axis serves both ways */
-        of_eye = lobes_of(h, i);
-        carried = &of_eye;
-        lobe_values(h, carried, i, o, turn, values);
-        narrower = h->faces_rays ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
+        const hair_passage of_eye = passage_of(p, i);
+        carried = shares_of(&of_eye);
+        lobe_values(p->fibre, &of_eye, i, o, turn, values);
+        narrower = p->faces_rays ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
     }
     for (int k = 0; k < HAIR_LOBES; k++)
         for (int c = 0; c < 3; c++)
-            sum[c] += values[k] * carried->share[k][c] * narrower;
+            sum[c] += values[k] * carried.of[k][c] * narrower;
     *out_value = rgb_make((float)sum[0], (float)sum[1], (float)sum[2]);
     *out_pdf = (float)(density / all);
 }
 
-vec3 hair_sample(const hair_fibre *h, float u_lobe, vec2 u)
+vec3 hair_sample(const hair_point *point, float u_lobe, vec2 u)
 {
     double all = 0.0, before = 0.0, p = 0.0, x = (double)u_lobe;
     int lobe = 0;
+    const hair_fibre *h = point->fibre;
+    const hair_shares shares = shares_of(&point->passage);
     for (int k = 0; k < HAIR_LOBES; k++)
-        all += h->lobes.mean[k];
+        all += shares.mean[k];
     for (lobe = 0; lobe < HAIR_LOBES; lobe++) {
-        p = h->lobes.mean[lobe] / all;
+        p = shares.mean[lobe] / all;
         if (x < before + p || lobe == HAIR_LOBES - 1)
             break;
         before += p;
     }
     x = fmin(fmax((x - before) / fmax(p, 1e-12), 0.0), 0x1.fffffep-1);
-    inclination o = {h->sine, h->cosine};
+    inclination o = inclination_of(point->sine);
     double sine = sample_longitudinal(tilted(h, o, lobe), h->precision[lobe], u), cosine = sine_to_cosine(sine);
-    double turn = lobe < HAIR_TILTED ? h->lobes.turn[lobe] + sample_azimuthal(x, h->width) : TWO_PI * x;
-    turn = (turn + h->azimuth) / TWO_PI;
+    double turn = lobe < HAIR_TILTED ? turn_of(&point->passage, lobe) + sample_azimuthal(x, h->width) : TWO_PI * x;
+    turn = (turn + point->azimuth) / TWO_PI;
     float sin_turn, cos_turn;
     sincos_turns((float)(turn - floor(turn)), &sin_turn, &cos_turn);
     return (vec3){(float)sine, (float)cosine * cos_turn, (float)cosine * sin_turn};

@@ -10,41 +10,52 @@
 #ifndef AFTERGLOW_HAIR_H
 #define AFTERGLOW_HAIR_H
 
-#include "material/material.h"
+#include "math/vec3.h"
 
 enum { HAIR_TILTED = 3, HAIR_LOBES = 4 }; /* R, TT, TRT, whose angles the scales shift, and all longer paths */
 
-/* The share of light that each lobe carries along one direction, and how far from its azimuth the lobe's middle is. */
-typedef struct hair_lobes {
-    double share[HAIR_LOBES][3], mean[HAIR_LOBES];
-    double turn[HAIR_TILTED];
-} hair_lobes;
-
-/* A point of a fibre, and the direction that light is scattered from or to. */
+/* What of a fibre is the same at all its points. */
 typedef struct hair_fibre {
-    double ior;        /* of the fibre in air */
-    double sigma_a[3]; /* absorbed per radius of the path within */
-    double offset;     /* across the fibre: sine of the normal's angle to the ray, [-1, 1] */
+    double ior;                                     /* of the fibre in air */
     double precision[HAIR_LOBES], norm[HAIR_LOBES]; /* 1 / variance of the inclination, and its density's factor */
     double width, width_norm; /* scale of the logistic distribution of the azimuth, and the factor */
     double sin_tilt[HAIR_TILTED], cos_tilt[HAIR_TILTED]; /* of once, twice and four times the scales' angle */
-    double sine, cosine, azimuth; /* of the direction: its inclination, and the angle about the axis */
-    bool faces_rays;              /* its surface's normal is that of each ray: see hair_evaluate */
-    hair_lobes lobes;             /* of the direction */
 } hair_fibre;
+
+/* How light that comes along one direction enters the fibre and crosses it; the shares of the lobes and their middles
+ * follow from it. */
+typedef struct hair_passage {
+    double reflected;           /* by the surface */
+    double left[3];             /* of each channel, after one way across */
+    double gamma, gamma_inside; /* angles of the ray to the normal, outside and within, across the fibre */
+} hair_passage;
+
+/* A point of a fibre, and the direction that light is scattered from or to. */
+typedef struct hair_point {
+    const hair_fibre *fibre;
+    double azimuth;       /* of the direction: its angle about the axis */
+    hair_passage passage; /* of the direction */
+    rgb sigma_a;          /* absorbed per radius of the path within */
+    float offset;         /* across the fibre, from 0 to 1 */
+    float sine;           /* of the direction's inclination */
+    bool faces_rays;      /* its surface's normal is that of each ray: see hair_evaluate */
+} hair_point;
 
 /* The colour within hair that scatters much light back in this colour, each channel in [0, 1] (Chiang 2016, eq. 9). */
 rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n);
 
-/* v: the second surface parameter of the point. out: in the shading frame, unit. The fibre faces rays. */
-hair_fibre hair_fibre_at(const material *m, float v, vec3 out);
+hair_fibre hair_fibre_make(float ior, float beta_m, float beta_n, float tilt_degrees);
+
+/* v: the second surface parameter of the point. out: in the shading frame, unit. The point keeps the fibre's address
+ * and faces rays. */
+hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out);
 
 /* f |cos|, and the density per solid angle with which hair_sample takes the direction: of radiance that comes from
  * `direction` and leaves to `out`; or of flux that comes from `out` and leaves to `direction`, per flux that meets the
  * fibre. One that faces rays seems the narrower the more it points to the light; of others the caller knows the normal,
  * and multiplies by the ratio of its cosines. */
-void hair_evaluate(const hair_fibre *h, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf);
+void hair_evaluate(const hair_point *p, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf);
 
-vec3 hair_sample(const hair_fibre *h, float u_lobe, vec2 u);
+vec3 hair_sample(const hair_point *point, float u_lobe, vec2 u);
 
 #endif

@@ -1,4 +1,5 @@
-/* material.h: what a surface is made of, as the scene file says it; bsdf.h makes scattering of it.
+/* material.h: what a surface is made of, as the scene file says it. material_point.h holds what of it is evaluated at a
+ * hit, and bsdf.h makes scattering of that.
  * The parameters and their defaults are pbrt-v4's (pbrt.org/fileformat-v4, "Materials"), those of MATERIAL_PRINCIPLED
  * glTF's (Khronos, "glTF 2.0 Specification", appendix B; KHR_materials_transmission, _ior, _specular, _clearcoat).
  * Threads: read-only once the scene is committed. */
@@ -23,10 +24,12 @@ typedef enum material_kind {
     MATERIAL_COATED_CONDUCTOR, /* a dielectric coat on a conductor */
     MATERIAL_HAIR,             /* a fibre, coloured within (hair.h); mostly on curves */
     MATERIAL_PRINCIPLED,       /* glTF 2.0's metallic-roughness, with transmission, ior, specular and clearcoat */
-    MATERIAL_MIX               /* one of two others, picked by position */
+    MATERIAL_MIX,              /* one of two others, picked by position */
+    MATERIAL_KIND_COUNT
 } material_kind;
 
 struct coat_table;
+struct hair_fibre;
 
 typedef struct material {
     material_kind kind;
@@ -41,6 +44,7 @@ typedef struct material {
     float coat_g;                     /* mean cosine of its scattering, in (-1, 1) */
     int coat_bounces; /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
     const struct coat_table *coat;  /* where coat_needs_table; set by scene_add_material, and the scene's own */
+    const struct hair_fibre *fibre; /* of hair; set by scene_add_material, and the scene's own */
     rgb hair_sigma_a;               /* per radius of the way within a fibre, >= 0; ior is the fibre's */
     float hair_beta_m, hair_beta_n; /* roughness along the fibre and about it, [0, 1] */
     float hair_tilt_degrees;        /* of its scales */
@@ -57,7 +61,7 @@ typedef struct material {
     float clearcoat_roughness; /* as it is perceived, [0, 1] */
     bool is_thin; /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
 
-    /* of the same, set by scene_add_material, and at a point */
+    /* of the same, set by scene_add_material */
     rgb dielectric_f0;  /* of facets at normal incidence; at grazing they reflect `specular` */
     float base_through; /* of diffuse light from outside, what gets to the diffuse base */
 
@@ -77,10 +81,14 @@ typedef struct material {
     uint32_t normal_map_texture;   /* a colour: 2 c - 1 is the normal along dp/du, dp/dv and the shading normal */
     float normal_scale;            /* what its first two components are multiplied by, mostly 1 */
 
-    /* Lambertian and nothing else, the same all over, and nothing turns its shading normal: see lambert.h. Set by
-     * scene_add_material. */
+    /* Lambertian and nothing else, the same all over, and nothing turns its shading normal. Set by scene_add_material.
+     * Two places do without a bsdf there: photon paths (lambert.h) and the ends of gather rays (ray_fan_plain_point).
+     */
     bool is_lambertian;
 } material;
+
+/* The albedo of a material that is_lambertian; NULL of others. Not for curves, whose lobes are traced (bsdf.h). */
+static inline const rgb *material_plain_albedo(const material *m) { return m->is_lambertian ? &m->reflectance : NULL; }
 
 /* The k with which a conductor of index 1 reflects r at normal incidence, as pbrt-v4 has it. */
 static inline float material_k_from_reflectance(float r)
@@ -116,14 +124,13 @@ bool material_is_interface(const struct scene *s, const struct surface_hit *hit)
 /* Whether that is so anywhere on surfaces of the material. */
 bool material_may_be_interface(const struct scene *s, uint32_t material_index);
 
-/* The albedo of a material that is Lambertian, and the same all over; NULL of others. Not for curves: see bsdf.h. */
-const rgb *material_plain_albedo(const struct scene *s, uint32_t material_index);
+/* Of a mix, the one of its materials that is picked at the hit. */
+const material *material_resolve_mix(const struct scene *s, const material *m, const struct surface_hit *hit);
 
-/* The material at a point: mixes picked, textures looked up. */
-void material_at(const struct scene *s, const struct surface_hit *hit, material *out_material);
+/* The material, or the first of those mixed, that has a diffuse base anywhere; NULL: none has. */
+const material *material_with_base(const struct scene *s, uint32_t material_index);
 
-/* Of a surface that gathers light anywhere (bsdf.h), the material by which it does, at a point where that one may not
- * have been picked or has a black texel. false: no point of the surface gathers. */
-bool material_gathering_at(const struct scene *s, const struct surface_hit *hit, material *out_material);
+/* Facets that are rough along one axis get a least roughness along the other, which must not divide by zero. */
+void material_make_rough_on_both_axes(float *alpha_u, float *alpha_v);
 
 #endif

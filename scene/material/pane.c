@@ -2,18 +2,18 @@
 #include "material/pane.h"
 
 #include "material/fresnel.h"
-#include "material/principled.h"
 #include "scene.h"
 
-static bool is_straight_principled(const material *m) { return m->is_thin || m->ior == 1.0f; }
+static bool is_straight(bool is_thin, float ior) { return is_thin || ior == 1.0f; }
 
-bool pane_is_of(const material *m)
+bool pane_is_of(const material_point *m)
 {
     switch (m->kind) {
     case MATERIAL_THIN_DIELECTRIC: return true;
-    case MATERIAL_DIELECTRIC: return m->ior == 1.0f;
+    case MATERIAL_DIELECTRIC: return m->glass.ior == 1.0f;
     case MATERIAL_PRINCIPLED:
-        return is_straight_principled(m) && principled_transmits(m) && material_is_smooth(m->alpha_u, m->alpha_v);
+        return is_straight(m->principled.is_thin, m->principled.ior) && principled_transmits(&m->principled) &&
+               material_is_smooth(m->principled.alpha, m->principled.alpha);
     default: return false;
     }
 }
@@ -21,23 +21,27 @@ bool pane_is_of(const material *m)
 bool pane_may_be_of(const scene *s, uint32_t material_index)
 {
     const material *m = &s->materials[material_index];
-    if (m->kind == MATERIAL_MIX)
-        return pane_may_be_of(s, m->mixed[0]) || pane_may_be_of(s, m->mixed[1]);
-    if (m->kind != MATERIAL_PRINCIPLED)
-        return pane_is_of(m);
-    /* textures multiply: they may take metal and roughness away */
-    bool may_be_smooth = m->roughness_texture != SCENE_NO_TEXTURE || material_is_smooth(m->alpha_u, m->alpha_v);
-    return is_straight_principled(m) && m->transmission > 0.0f && may_be_smooth;
+    switch (m->kind) {
+    case MATERIAL_MIX: return pane_may_be_of(s, m->mixed[0]) || pane_may_be_of(s, m->mixed[1]);
+    case MATERIAL_THIN_DIELECTRIC: return true;
+    case MATERIAL_DIELECTRIC: return m->ior == 1.0f;
+    case MATERIAL_PRINCIPLED:
+        /* textures multiply: they may take metal and roughness away */
+        return is_straight(m->is_thin, m->ior) && m->transmission > 0.0f &&
+               (m->roughness_texture != SCENE_NO_TEXTURE || material_is_smooth(m->alpha_u, m->alpha_v));
+    default: return false;
+    }
 }
 
-rgb pane_transmittance(const material *m, float cosine)
+rgb pane_transmittance(const material_point *m, float cosine)
 {
     float c = fminf(fabsf(cosine), 1.0f);
     if (m->kind == MATERIAL_THIN_DIELECTRIC)
-        return rgb_gray(1.0f - fresnel_thin_dielectric(c, m->ior));
+        return rgb_gray(1.0f - fresnel_thin_dielectric(c, m->glass.ior));
     if (m->kind == MATERIAL_DIELECTRIC)
         return rgb_gray(1.0f);
     rgb reflected, through;
-    principled_interface(m, c, cosine < 0.0f && principled_is_solid(m), &reflected, &through);
-    return rgb_scale(through, principled_coat_factor(m, cosine, -cosine));
+    const principled_point *p = &m->principled;
+    principled_interface(p, c, cosine < 0.0f && principled_is_solid(p), &reflected, &through);
+    return rgb_scale(through, principled_coat_factor(p, cosine, -cosine));
 }

@@ -13,18 +13,21 @@ static const float ROUGH_IOR_MIN = 1.001f;
 
 static float clamp_to_unit(float x) { return fminf(fmaxf(x, 0.0f), 1.0f); }
 
-static float coat_alpha(const material *m) { return m->clearcoat_roughness * m->clearcoat_roughness; }
+static float coat_alpha(const principled_point *m) { return m->clearcoat_roughness * m->clearcoat_roughness; }
 
 /* The shares of the light at the interface that may enter, and go through. */
-static float through_share(const material *m) { return m->ior > 0.0f ? (1.0f - m->metallic) * m->transmission : 0.0f; }
+static float through_share(const principled_point *m)
+{
+    return m->ior > 0.0f ? (1.0f - m->metallic) * m->transmission : 0.0f;
+}
 
-static float base_share(const material *m) { return (1.0f - m->metallic) * (1.0f - m->transmission); }
+static float base_share(const principled_point *m) { return (1.0f - m->metallic) * (1.0f - m->transmission); }
 
-bool principled_transmits(const material *m) { return through_share(m) > 0.0f; }
+bool principled_transmits(const principled_point *m) { return through_share(m) > 0.0f; }
 
-bool principled_is_solid(const material *m) { return !m->is_thin && principled_transmits(m); }
+bool principled_is_solid(const principled_point *m) { return !m->is_thin && principled_transmits(m); }
 
-bool principled_has_interface(const material *m)
+bool principled_has_interface(const principled_point *m)
 {
     return m->metallic > 0.0f || m->specular > 0.0f || principled_transmits(m);
 }
@@ -34,7 +37,7 @@ static rgb schlick(rgb f0, float f90, float weight)
     return rgb_add(rgb_scale(f0, 1.0f - weight), rgb_gray(f90 * weight));
 }
 
-static float coat_through(const material *m, float cosine)
+static float coat_through(const principled_point *m, float cosine)
 {
     if (m->clearcoat == 0.0f)
         return 1.0f;
@@ -42,17 +45,17 @@ static float coat_through(const material *m, float cosine)
     return 1.0f - m->clearcoat * (COAT_F0 * coat.of_f0 + coat.of_f90);
 }
 
-float principled_base_transmittance(const material *m, float cosine)
+float principled_base_transmittance(const principled_point *m, float cosine)
 {
     cosine = fabsf(cosine);
-    ggx_albedo interface = ggx_albedo_of(m->alpha_u, cosine);
+    ggx_albedo interface = ggx_albedo_of(m->alpha, cosine);
     /* the colour that is reflected most: the base gets no light twice, whatever its own colour */
     float reflected = rgb_max(m->dielectric_f0) * interface.of_f0 + m->specular * interface.of_f90;
     return fmaxf(0.0f, 1.0f - reflected) * coat_through(m, cosine);
 }
 
 /* The mean of t over the hemisphere, by Gauss's rule of 6 points. */
-static float mean_base_transmittance(const material *m)
+static float mean_base_transmittance(const principled_point *m)
 {
     static const float NODES[3] = {0.2386191861f, 0.6612093865f, 0.9324695142f};
     static const float WEIGHTS[3] = {0.4679139346f, 0.3607615730f, 0.1713244924f};
@@ -65,33 +68,65 @@ static float mean_base_transmittance(const material *m)
     return sum; /* twice the integral of t cos over cos */
 }
 
-void principled_resolve(material *m)
+static rgb bound_below(rgb v) { return rgb_make(fmaxf(v.r, 0.0f), fmaxf(v.g, 0.0f), fmaxf(v.b, 0.0f)); }
+
+static rgb bound_above(rgb v) { return rgb_make(fminf(v.r, 1.0f), fminf(v.g, 1.0f), fminf(v.b, 1.0f)); }
+
+void principled_resolve(principled_point *p, rgb specular_color, float roughness)
 {
-    rgb *const colors[2] = {&m->reflectance, &m->specular_color};
-    for (int i = 0; i < 2; i++)
-        *colors[i] = rgb_make(fmaxf(colors[i]->r, 0.0f), fmaxf(colors[i]->g, 0.0f), fmaxf(colors[i]->b, 0.0f));
-    m->reflectance =
-        rgb_make(fminf(m->reflectance.r, 1.0f), fminf(m->reflectance.g, 1.0f), fminf(m->reflectance.b, 1.0f));
-    float *const shares[] = {&m->metallic, &m->roughness, &m->transmission,
-                             &m->specular, &m->clearcoat, &m->clearcoat_roughness};
+    p->reflectance = bound_above(bound_below(p->reflectance));
+    float *const shares[] = {&p->metallic, &p->transmission, &p->specular, &p->clearcoat, &p->clearcoat_roughness};
     for (size_t i = 0; i < sizeof shares / sizeof *shares; i++)
         *shares[i] = clamp_to_unit(*shares[i]);
-    m->alpha_u = m->alpha_v = m->roughness * m->roughness;
+    roughness = clamp_to_unit(roughness);
+    p->alpha = roughness * roughness;
     float f0 = 1.0f; /* ior 0 is glTF's word for an infinite one */
-    if (m->ior > 0.0f) {
-        m->ior = fmaxf(m->ior, 1.0f);
-        if (m->alpha_u >= MATERIAL_SMOOTH_ALPHA && principled_is_solid(m))
-            m->ior = fmaxf(m->ior, ROUGH_IOR_MIN);
-        float root = (m->ior - 1.0f) / (m->ior + 1.0f);
+    if (p->ior > 0.0f) {
+        p->ior = fmaxf(p->ior, 1.0f);
+        if (p->alpha >= MATERIAL_SMOOTH_ALPHA && principled_is_solid(p))
+            p->ior = fmaxf(p->ior, ROUGH_IOR_MIN);
+        float root = (p->ior - 1.0f) / (p->ior + 1.0f);
         f0 = root * root;
     }
-    rgb color = m->specular_color;
-    m->dielectric_f0 = rgb_scale(
-        rgb_make(fminf(f0 * color.r, 1.0f), fminf(f0 * color.g, 1.0f), fminf(f0 * color.b, 1.0f)), m->specular);
-    m->base_through = base_share(m) > 0.0f ? mean_base_transmittance(m) : 0.0f;
+    rgb color = rgb_scale(bound_below(specular_color), f0);
+    p->dielectric_f0 = rgb_scale(bound_above(color), p->specular);
+    p->base_through = base_share(p) > 0.0f ? mean_base_transmittance(p) : 0.0f;
 }
 
-rgb principled_base_albedo(const material *m)
+principled_point principled_point_of(const material *m)
+{
+    return (principled_point){.reflectance = m->reflectance,
+                              .dielectric_f0 = m->dielectric_f0,
+                              .ior = m->ior,
+                              .alpha = m->alpha_u,
+                              .metallic = m->metallic,
+                              .transmission = m->transmission,
+                              .specular = m->specular,
+                              .clearcoat = m->clearcoat,
+                              .clearcoat_roughness = m->clearcoat_roughness,
+                              .base_through = m->base_through,
+                              .is_thin = m->is_thin};
+}
+
+void principled_prepare(material *m)
+{
+    principled_point p = principled_point_of(m);
+    principled_resolve(&p, m->specular_color, m->roughness);
+    m->reflectance = p.reflectance;
+    m->specular_color = bound_below(m->specular_color);
+    m->metallic = p.metallic;
+    m->roughness = clamp_to_unit(m->roughness);
+    m->transmission = p.transmission;
+    m->specular = p.specular;
+    m->clearcoat = p.clearcoat;
+    m->clearcoat_roughness = p.clearcoat_roughness;
+    m->ior = p.ior;
+    m->alpha_u = m->alpha_v = p.alpha;
+    m->dielectric_f0 = p.dielectric_f0;
+    m->base_through = p.base_through;
+}
+
+rgb principled_base_albedo(const principled_point *m)
 {
     /* nothing gets through worth a base: 0 over 0 */
     if (m->base_through < 1e-4f)
@@ -99,7 +134,7 @@ rgb principled_base_albedo(const material *m)
     return rgb_scale(m->reflectance, base_share(m) / m->base_through);
 }
 
-void principled_interface(const material *m, float cosine, bool is_inside, rgb *out_reflected, rgb *out_through)
+void principled_interface(const principled_point *m, float cosine, bool is_inside, rgb *out_reflected, rgb *out_through)
 {
     float weight = fresnel_schlick_weight(cosine), through = through_share(m);
     rgb dielectric = schlick(m->dielectric_f0, m->specular, weight), from_within = dielectric;
@@ -117,12 +152,12 @@ void principled_interface(const material *m, float cosine, bool is_inside, rgb *
     *out_through = rgb_scale(m->reflectance, through * (1.0f - rgb_max(from_within)));
 }
 
-float principled_coat_reflectance(const material *m, float cosine)
+float principled_coat_reflectance(const principled_point *m, float cosine)
 {
     return m->clearcoat * (COAT_F0 + (1.0f - COAT_F0) * fresnel_schlick_weight(cosine));
 }
 
-float principled_coat_factor(const material *m, float cos_o, float cos_i)
+float principled_coat_factor(const principled_point *m, float cos_o, float cos_i)
 {
     if (m->clearcoat == 0.0f)
         return 1.0f;
@@ -133,9 +168,9 @@ float principled_coat_factor(const material *m, float cos_o, float cos_i)
     return fminf(o, i);
 }
 
-principled_shares principled_shares_at(const material *m, float cosine)
+principled_shares principled_shares_at(const principled_point *m, float cosine)
 {
-    ggx_albedo albedo = ggx_albedo_of(m->alpha_u, cosine);
+    ggx_albedo albedo = ggx_albedo_of(m->alpha, cosine);
     float under_coat = coat_through(m, cosine), base = rgb_max(m->reflectance);
     float dielectric = rgb_max(m->dielectric_f0) * albedo.of_f0 + m->specular * albedo.of_f90;
     float metal = base * albedo.of_f0 + albedo.of_f90, entered = base * (1.0f - dielectric);

@@ -13,11 +13,6 @@ bool shading_frame_is_tilted(const material *m)
     return m->normal_map_texture != SCENE_NO_TEXTURE || m->displacement_texture != SCENE_NO_TEXTURE;
 }
 
-static bool has_grain(const material *m)
-{
-    return m->alpha_u != m->alpha_v || m->base_alpha_u != m->base_alpha_v || m->kind == MATERIAL_HAIR;
-}
-
 /* x along a tangent as far as it goes across z; any where it does not. */
 static frame frame_along(vec3 z, vec3 tangent)
 {
@@ -86,14 +81,14 @@ static vec3 make_usable(vec3 v, const surface_hit *hit)
     return square > 4.0f * COSINE_MIN * COSINE_MIN ? vec3_scale(v, 1.0f / sqrtf(square)) : hit->shading_normal;
 }
 
-frame shading_frame_at(const scene *s, const surface_hit *hit, const material *m)
+frame shading_frame_at(const scene *s, const surface_hit *hit, const material *m, bool has_grain)
 {
     vec3 z = hit->shading_normal, dpdu, dpdv;
     if (shading_frame_is_tilted(m)) {
         z = m->normal_map_texture != SCENE_NO_TEXTURE ? map_normal(s, hit, m) : bump_normal(s, hit, m);
         z = make_usable(z, hit);
     }
-    if (!has_grain(m))
+    if (!has_grain)
         return frame_from_z(z);
     surface_tangents(s, hit, &dpdu, &dpdv);
     return frame_along(z, dpdu);

@@ -11,8 +11,8 @@
 /* Whether a bump or normal map tilts it. */
 bool shading_frame_is_tilted(const material *m);
 
-/* m: as it is at the point, no mix. z: the shading normal, on the geometric normal's side; x: along dp/du, but of
- * material that is alike all round, and has no maps, any. */
-frame shading_frame_at(const scene *s, const surface_hit *hit, const material *m);
+/* m: no mix. z: the shading normal, on the geometric normal's side; x: along dp/du where there is a grain
+ * (material_point_has_grain), else any. */
+frame shading_frame_at(const scene *s, const surface_hit *hit, const material *m, bool has_grain);
 
 #endif

@@ -7,7 +7,7 @@
 #ifndef AFTERGLOW_SLAB_H
 #define AFTERGLOW_SLAB_H
 
-#include "material/material.h"
+#include "material/material_point.h"
 
 struct medium;
 
@@ -17,7 +17,6 @@ bool slab_may_be_of(const struct scene *s, uint32_t material_index);
 /* Of light that meets a plate of such a material at a cosine (>= 0) from outside, all that it reflects and all that it
  * lets through; together at most 1. Where each face reflects R and a is left of light on its way between them,
  * T = (1 - R)^2 a / (1 - R^2 a^2). thickness: scene units; between: what fills the plate, NULL: nothing absorbs. */
-void slab_find_shares(const material *m, float cosine, float thickness, const struct medium *between,
-                      rgb *out_reflected, rgb *out_through);
+slab_point slab_point_at(const material_point *face, float cosine, float thickness, const struct medium *between);
 
 #endif

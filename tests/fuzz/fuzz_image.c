@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* By their first bytes, as OpenImageIO would find out by trying all of its readers. */
+/* Names formats by their first bytes, as OpenImageIO would find out by trying all of its readers. */
 static const char *name_of(const uint8_t *data, size_t size)
 {
     static const struct {

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* What stands for $a, $b, $c. */
+/* The values of $a, $b and $c. */
 static const definition GIVEN[] = {{"a", "1", false, false}, {"b", "[ 0.5 2", false, false}, {"c", "x\"", true, false}};
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

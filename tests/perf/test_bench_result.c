@@ -99,7 +99,7 @@ static void test_levels(void **state)
 
 /* --- scores --- */
 
-/* Of one and two threads, an idle machine; the second turn of each phase is faster by `spread`. */
+/* Makes a run of one and two threads on an idle machine; the second turn of each phase is faster by `spread`. */
 static void make_run(double spread)
 {
     static bench_cpu cpus[2];

@@ -49,7 +49,7 @@ static void test_not_finite(void **state)
     expect_near(e.whole.error, 0.0, 0.0);
 }
 
-/* Of mean 0 and that standard deviation, uniform. */
+/* Uniform noise of mean 0 and that standard deviation. */
 static float noise_of(uint64_t key, size_t i, double deviation)
 {
     double u = (double)(hash_mix64(key * 0x9e3779b97f4a7c15u + (uint64_t)i) >> 11) * 0x1p-53;

@@ -100,7 +100,7 @@ static void no_more_than_the_table_holds(void **state)
         }
 }
 
-/* What is no claim that anybody has made may be taken over at once; what is no claim at all is not waited for. */
+/* A claim that nobody has made may be taken over at once, and a word that is no claim is not waited for. */
 static void what_need_not_be_waited_for(void **state)
 {
     (void)state;

@@ -135,8 +135,8 @@ static void the_nearest_are_selected(void **state)
     }
 }
 
-/* Of every subtree, from points within and without, the same leaves; and none that holds a photon within reach is left
- * out. */
+/* All kernels find the same leaves of every subtree, from points within and without, and leave out none that holds a
+ * photon within reach. */
 static void leaves_of_subtrees_are_found(void **state)
 {
     (void)state;

@@ -49,7 +49,7 @@ static emission_guide learn(float (*value)(const emission_start *), uint32_t cou
     return guides[rounds];
 }
 
-/* By what is drawn: weights are 1 in the mean, the value has the mean that it has by plain draws, within 4 sigma. */
+/* Weights of guided draws have the mean 1, and the value has the mean of plain draws within 4 sigma. */
 static void expect_right(float (*value)(const emission_start *), int rounds, double least_useful)
 {
     emission_guide guide = learn(value, TRIALS, rounds);

@@ -25,7 +25,7 @@ static void same_for_threads_and_isas(void **state)
     assert_true(hash128_is_equal(one, fingerprint(3, "sse2", irradiance_estimate_find)));
 }
 
-/* Of without_surfaces: those whose value is another. */
+/* Counts calls of without_surfaces, and those that give another value. */
 static int calls, at_rims;
 
 /* One unit in the last place more. */
@@ -60,7 +60,7 @@ static irradiance_extent without_surfaces(const photon_map *map, vec3 position, 
     return extent;
 }
 
-/* The same values, which are said to hold everywhere. */
+/* An estimate with the map's own values that says they hold everywhere. */
 static irradiance_extent sure(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                               uint64_t *in_out_rays, rgb *out)
 {

@@ -70,7 +70,7 @@ static photon_set mostly_from_one_side(rng *random)
     return set;
 }
 
-/* By a regular grid: the weights' mean is the density's integral, and of weighted cosines pi / pi times their means. */
+/* Over a regular grid the weights' mean is the density's integral, and the mean of weighted cosines is theirs. */
 static void the_density_integrates_to_one(void **state)
 {
     (void)state;
@@ -171,7 +171,8 @@ static double mean_cosine_to(const incident_guide *g, vec3 to)
     return sum;
 }
 
-/* For all six ways of a normal, and normals between; without guiding the mean is two thirds of the cosine to it. */
+/* Tested with normals along all six axes and between them; without guiding the mean is two thirds of the cosine to the
+ * normal. */
 static void rays_go_where_photons_came_from(void **state)
 {
     (void)state;

@@ -256,7 +256,7 @@ typedef struct crowd {
     uint32_t open[64]; /* set aside, by worker */
 } crowd;
 
-/* As a final gather: ask for all, come back to those that another computes. */
+/* Works as a final gather does: asks for all, and comes back to those that another thread computes. */
 static void demand(void *user, unsigned worker)
 {
     crowd *all = user;

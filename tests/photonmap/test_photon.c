@@ -54,7 +54,7 @@ static void flux_at_the_ends_of_its_range(void **state)
         }
 }
 
-/* Without libm, and the same. */
+/* Exponents read from the bits, without libm, are those that libm gives. */
 static void exponents_are_read_from_the_bits(void **state)
 {
     (void)state;
@@ -128,7 +128,7 @@ static void axes_survive_exactly(void **state)
     }
 }
 
-/* By 181 x 181 steps, beside a mark. */
+/* Directions of arrival are kept as one of 181 x 181 steps, beside a mark. */
 static void arrivals_survive_within_two_degrees(void **state)
 {
     (void)state;

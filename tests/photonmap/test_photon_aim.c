@@ -24,7 +24,7 @@ static const double THROUGH_WINDOW = 3.14159265358979 * 0.5 * 0.5; /* W: pi radi
 
 enum { POINTS = 8000, PHOTONS = 100000, SEEDS = 8 };
 
-/* The same room on a ground of 16 x 16 with a window of 0.8 x 0.8 in the wall x = 1 instead. */
+/* The closed room of ROOM, on a ground of 16 x 16, with a window of 0.8 x 0.8 in the wall x = 1. */
 static const char *const SIDE_ROOM =
     "%s\nMaterial \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
     "Shape \"bilinearmesh\" \"point3 P\" [-8 -8 -0.01  8 -8 -0.01  -8 8 -0.01  8 8 -0.01]\n"
@@ -76,8 +76,8 @@ static importance_map ask_inside(void)
     return importance;
 }
 
-/* Where about half of the light goes on to the inside of SIDE_ROOM, and a fortieth by its window: inside, and where
- * rays that leave by the window meet the ground. */
+/* An importance map by which about half of the light goes on to the inside of SIDE_ROOM, and a fortieth by its window:
+ * points lie inside, and where rays that leave by the window meet the ground. */
 static importance_map pass_to_inside(void)
 {
     enum { OUTSIDE = POINTS / 20, WHOLE = 2 * POINTS };
@@ -109,7 +109,7 @@ static bool is_inside(const photon *p)
            vec3_dot(to_middle, direction_decode(p->normal)) > 0.0f;
 }
 
-/* What is traced how; without importance by power alone. */
+/* How photons are traced; without importance they begin by power alone. */
 typedef struct photon_order {
     photon_kind kind;
     const importance_map *asked, *onward;
@@ -224,8 +224,8 @@ static void no_photon_is_more_than_five_times_as_bright(void **state)
     test_run_reset(&r);
 }
 
-/* By aim and by parts the light inside is what it is by power alone, within 3 sigma; with parts fewer photons hold less
- * of it. */
+/* Aimed and split paths bring as much light inside as paths by power alone, within 3 sigma; with split paths fewer
+ * photons hold less of it. */
 static void paths_are_split_where_their_light_comes_in(void **state)
 {
     (void)state;

@@ -71,7 +71,7 @@ static float other_by_brute_force(const photon_tree *tree, vec3 at, vec3 normal,
     return nearest;
 }
 
-/* By one set of kernels. */
+/* Holds the k nearest photons that one set of kernels finds against brute force. */
 static void check_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 at, vec3 normal, float min_cos,
                             float radius, uint32_t wanted, const photon_neighbor *expected, uint32_t all,
                             photon_neighbor *found)

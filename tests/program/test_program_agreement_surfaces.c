@@ -27,7 +27,7 @@ static void test_principled(void **state)
     compare_integrators("principled", "--spp=64", "--only=indirect", BOUNDS);
 }
 
-/* What is in question is in all light. */
+/* Alpha and relief show in all light; indirect light alone tells no more. */
 static void test_alpha_and_relief(void **state)
 {
     (void)state;

@@ -93,7 +93,7 @@ static void test_parts_have_the_bits_of_the_whole(void **state)
 
 /* --- the same light --- */
 
-/* Of few photons, for many gather rays. */
+/* The share of irradiance photons that are asked for, with few photons and many gather rays. */
 static double share_asked_for(const char *scene, const char *aim)
 {
     picture p = RENDER(scene, aim, "--photons=4e4", "--spp=64", "--gather-samples=8", "--stats=stats.json");

@@ -110,7 +110,7 @@ static void metals_and_media(void **state)
     picture_reset(&p);
 }
 
-/* What is grey is the same numbers in all spaces, down to the last bit: the mean is a furnace's 1 / (1 - 0.5). */
+/* Grey has the same numbers in all spaces, down to the last bit: the mean is a furnace's 1 / (1 - 0.5). */
 static void grey_furnace(void **state)
 {
     (void)state;
@@ -346,7 +346,7 @@ static void displays_as_the_tools(void **state)
     }
 }
 
-/* The same light carried in two spaces is shown alike. */
+/* Light that is carried in two spaces is shown alike. */
 static void views_of_both_spaces(void **state)
 {
     (void)state;
@@ -463,8 +463,7 @@ static int occurrences(const char *text, const char *part)
     return count;
 }
 
-/* What OpenColorIO has to say is said as all else is: once, by level, and not at all where the program is to be
- * quiet. */
+/* Messages of OpenColorIO come as all others do: once, by level, and not at all where the program is to be quiet. */
 static void what_the_library_says(void **state)
 {
     (void)state;

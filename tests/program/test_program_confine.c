@@ -26,7 +26,7 @@ static void write_files(void)
     assert_int_equal(symlink("..", in_folder("scene/up")), 0);
 }
 
-/* Of all that the program says, nothing of the files is in it, and nothing but the picture was written. */
+/* Fails where the program has told anything of the files, or written anything but the picture. */
 static void expect_nothing_told(const program_run *run)
 {
     if (strstr(run->err, SECRET) || strstr(run->out, SECRET))
@@ -140,7 +140,7 @@ static void test_models(void **state)
     program_run_reset(&run);
 }
 
-/* Of pictures in tiles nothing tells whether there are files outside, and the pattern is named, not a tile. */
+/* Nothing tells whether tiles of a picture lie outside, and messages name the pattern, not a tile. */
 static void test_tiles(void **state)
 {
     (void)state;

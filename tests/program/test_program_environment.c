@@ -2,16 +2,17 @@
  * sky that photon map and path tracer must show alike. Rests on: Pharr, Jakob, Humphreys, 4th ed., 2023, 4.2 (furnace
  * tests). Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_agreement.h"
 
 #include "fixtures/environment_picture.h"
 #include "light/environment.h"
 
 static const double PI = 3.14159265358979323846;
-static const char *const INTEGRATORS[] = {"photonmap", "path"};
-enum { INTEGRATOR_COUNT = 2, BLOCK = 8 };
+static const char *const INTEGRATORS[] = {"--integrator=photonmap", "--integrator=path"};
+enum { INTEGRATOR_COUNT = 2 };
+static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.005, 0.03}, UNBIASED = {0.0, 0.003, 0.02};
 
-static const char *spp_of(int integrator) { return integrator == 0 ? "8" : "128"; }
+static const char *spp_of(int integrator) { return integrator == 0 ? "--spp=8" : "--spp=64"; }
 
 static const char *world_with(const char *name, const char *world)
 {
@@ -28,15 +29,16 @@ static const char *world_with(const char *name, const char *world)
 static void test_convex_body(void **state)
 {
     (void)state;
+    const char *body_alone = SCENE_WITH("environment.pbrt", "53.13", "20");
+    agreement_means exact = agreement_uniform(0.9, 0.9, 0.9);
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(PROGRAM_SCENES "environment.pbrt", "--integrator", INTEGRATORS[k], "--spp", spp_of(k),
-                           "--photons=20000");
-        expect_near(INTEGRATORS[k], picture_block(&p, 12, 12, BLOCK, 0), 0.9, 0.01);
+        agreement_means means = agreement_render(body_alone, ARGUMENTS(INTEGRATORS[k], spp_of(k), "--photons=20000"));
+        expect_agreement(INTEGRATORS[k], &means, &exact, UNBIASED);
+        picture p = RENDER(PROGRAM_SCENES "environment.pbrt", INTEGRATORS[k], "--spp=4", "--photons=20000");
         for (int c = 0; c < 3; c++)
             expect_near(INTEGRATORS[k], picture_block(&p, 0, 0, 4, c), 1.5, 1e-6);
         picture_reset(&p);
-        p = RENDER(PROGRAM_SCENES "environment.pbrt", "--integrator", INTEGRATORS[k], "--spp=4", "--photons=20000",
-                   "--only=indirect");
+        p = RENDER(PROGRAM_SCENES "environment.pbrt", INTEGRATORS[k], "--spp=4", "--photons=20000", "--only=indirect");
         for (int i = 0; i < p.width * p.height * 3; i++)
             assert_true(p.pixels[i] == 0.0f);
         picture_reset(&p);
@@ -50,23 +52,21 @@ static void test_floor(void **state)
     const char *scene = write_text("scene.pbrt", "Include \"" PROGRAM_SCENES "floor.pbrt\"\n"
                                                  "LightSource \"infinite\" \"rgb L\" [1 0.5 0.2] \"float scale\" 2\n"
                                                  "LightSource \"infinite\" \"rgb L\" [0.1 0.2 2]\n");
-    static const double EXPECTED[3] = {0.6 * 2.1, 0.6 * 1.2, 0.6 * 2.4};
+    agreement_means exact = agreement_uniform(0.6 * 2.1, 0.6 * 1.2, 0.6 * 2.4);
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp", spp_of(k), "--photons=20000");
-        for (int c = 0; c < 3; c++)
-            expect_near(INTEGRATORS[k], picture_mean(&p, c), EXPECTED[c], 0.005);
-        picture_reset(&p);
+        agreement_means means = agreement_render(scene, ARGUMENTS(INTEGRATORS[k], spp_of(k), "--photons=20000"));
+        expect_agreement(INTEGRATORS[k], &means, &exact, UNBIASED);
     }
 }
 
 static void test_furnace(void **state)
 {
     (void)state;
+    agreement_means exact = agreement_uniform(1.5, 1.5, 1.5);
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(PROGRAM_SCENES "environment_furnace.pbrt", "--integrator", INTEGRATORS[k], "--spp",
-                           spp_of(k), "--photons=1e6", "--nearest=30");
-        expect_uniform(INTEGRATORS[k], &p, 1.5, 0.01, BLOCK, 0.03);
-        picture_reset(&p);
+        agreement_means means = agreement_render(PROGRAM_SCENES "environment_furnace.pbrt",
+                                                 ARGUMENTS(INTEGRATORS[k], spp_of(k), "--photons=3e5", "--nearest=16"));
+        expect_agreement(INTEGRATORS[k], &means, &exact, k == 0 ? BOUNDS : UNBIASED);
     }
 }
 
@@ -74,12 +74,13 @@ static void test_furnace(void **state)
 static void test_glass(void **state)
 {
     (void)state;
+    const char *scene =
+        SCENE_WITH("environment.pbrt", "\"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]", "\"dielectric\"");
+    agreement_means exact = agreement_uniform(1.5, 1.5, 1.5);
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        const char *scene =
-            SCENE_WITH("environment.pbrt", "\"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]", "\"dielectric\"");
-        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp=256", "--photons=1000", "--caustic-photons=0");
-        expect_uniform(INTEGRATORS[k], &p, 1.5, 0.005, BLOCK, 0.02);
-        picture_reset(&p);
+        agreement_means means =
+            agreement_render(scene, ARGUMENTS(INTEGRATORS[k], "--spp=32", "--photons=1000", "--caustic-photons=0"));
+        expect_agreement(INTEGRATORS[k], &means, &exact, UNBIASED);
     }
 }
 
@@ -88,7 +89,7 @@ static void test_nothing_else(void **state)
     (void)state;
     const char *scene = world_with("scene.pbrt", "LightSource \"infinite\" \"rgb L\" [1 2 3]");
     for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-        picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp=1");
+        picture p = RENDER(scene, INTEGRATORS[k], "--spp=1");
         for (int i = 0; i < p.width * p.height * 3; i++)
             assert_true(p.pixels[i] == 1.0f + (float)(i % 3));
         picture_reset(&p);
@@ -159,11 +160,10 @@ static void test_small_sun(void **state)
                     256;
         assert_true(cosine > 0.5);
         double expected = 0.6 / PI * 1000.0 * environment_pixel_solid_angle(&e, y) * cosine;
+        agreement_means exact = agreement_uniform(expected, 0.8 * expected, 0.1 * expected);
         for (int k = 0; k < INTEGRATOR_COUNT; k++) {
-            picture p = RENDER(scene, "--integrator", INTEGRATORS[k], "--spp=16", "--photons=1000");
-            expect_near(INTEGRATORS[k], picture_mean(&p, 0), expected, 0.003);
-            expect_near(INTEGRATORS[k], picture_mean(&p, 1), 0.8 * expected, 0.003);
-            picture_reset(&p);
+            agreement_means means = agreement_render(scene, ARGUMENTS(INTEGRATORS[k], "--spp=4", "--photons=1000"));
+            expect_agreement(INTEGRATORS[k], &means, &exact, UNBIASED);
         }
     }
 }
@@ -188,39 +188,16 @@ static void write_sky(void)
     write_environment("sky.exr", SIZE, SIZE, IMAGE_FLOAT, pixels);
 }
 
-/* of_mean: what the estimates lose along the edges of surfaces weighs more where direct light is left out. */
-static void compare_open_box(const char *only, double of_mean)
-{
-    const char *block = PROGRAM_SCENES "block.pbrt";
-    const char *scene = SCENE_WITH("open_box.pbrt", "block.pbrt", block);
-    write_sky();
-    picture map = RENDER(scene, "--photons=1e6", "--nearest=30", "--spp=16", "--gather-samples=16", only);
-    picture path = RENDER(scene, "--integrator=path", "--spp=256", only);
-    double worst = 0.0;
-    for (int c = 0; c < 3; c++)
-        expect_near(only ? only : "all light", picture_mean(&map, c), picture_mean(&path, c), of_mean);
-    for (int y = 0; y < path.height; y += BLOCK)
-        for (int x = 0; x < path.width; x += BLOCK) {
-            double a = picture_block(&map, x, y, BLOCK, 1), b = picture_block(&path, x, y, BLOCK, 1);
-            worst = fmax(worst, fabs(a / b - 1.0));
-        }
-    print_message("%s: mean %+.2f %%, blocks within %.2f %%\n", only ? only : "all light",
-                  100.0 * (picture_mean(&map, 1) / picture_mean(&path, 1) - 1.0), 100.0 * worst);
-    assert_true(worst < 0.05);
-    picture_reset(&map);
-    picture_reset(&path);
-}
-
 static void test_open_box(void **state)
 {
     (void)state;
-    compare_open_box(NULL, 0.01);
-}
-
-static void test_open_box_indirect(void **state)
-{
-    (void)state;
-    compare_open_box("--only=indirect", 0.02);
+    static const char *const ONLY[] = {NULL, "--only=indirect"};
+    const char *scene = SCENE_WITH("open_box.pbrt", "block.pbrt", PROGRAM_SCENES "block.pbrt");
+    write_sky();
+    for (int i = 0; i < 2; i++)
+        compare_integrators_by(i == 0 ? "open box" : "open box, indirect", scene,
+                               ARGUMENTS(AGREEMENT_MAP, "--spp=12", ONLY[i]),
+                               ARGUMENTS("--integrator=path", "--spp=64", ONLY[i]), BOUNDS);
 }
 
 int main(void)
@@ -228,7 +205,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_convex_body), TEST_IN_FOLDER(test_floor),        TEST_IN_FOLDER(test_furnace),
         TEST_IN_FOLDER(test_glass),       TEST_IN_FOLDER(test_nothing_else), TEST_IN_FOLDER(test_what_the_eye_sees),
-        TEST_IN_FOLDER(test_small_sun),   TEST_IN_FOLDER(test_open_box),     TEST_IN_FOLDER(test_open_box_indirect),
+        TEST_IN_FOLDER(test_small_sun),   TEST_IN_FOLDER(test_open_box),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -227,7 +227,7 @@ static void test_one_of_several_fails(void **state)
     expect_listing("a.exr full.png");
 }
 
-/* What fails before the picture is made leaves a file of the same name as it was. */
+/* An error before the picture is made leaves a file of its name as it was. */
 static void test_old_picture_outlives_an_error(void **state)
 {
     (void)state;

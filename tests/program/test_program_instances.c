@@ -2,7 +2,9 @@
  * stretched, glass that throws caustics, lamps; by photon map and by path tracing.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_agreement.h"
+
+static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.007, 0.04}, UNBIASED = {0.0, 0.007, 0.04};
 
 #define HEAD                                                                                                           \
     "LookAt 0 1 3.9 0 0.9 0 0 1 0 Camera \"perspective\" \"float fov\" 40\n"                                           \
@@ -58,59 +60,36 @@ static const char *write_room(const char *name, bool is_instanced)
     return write_text(name, text);
 }
 
-/* Some rays differ by a rounding and go on differently: the same light, and all but the same noise. */
-static void expect_same_picture(const picture *a, const picture *b, double of_mean, double of_block)
-{
-    for (int c = 0; c < 3; c++)
-        expect_near("mean", picture_mean(a, c), picture_mean(b, c), of_mean);
-    for (int y = 0; y < a->height; y += 8)
-        for (int x = 0; x < a->width; x += 8)
-            expect_near("block", picture_block(a, x, y, 8, 1), picture_block(b, x, y, 8, 1), of_block);
-}
-
 static void test_path_tracer(void **state)
 {
     (void)state;
-    picture hand = RENDER(write_room("hand.pbrt", false), "--integrator=path", "--spp=32");
-    picture instances = RENDER(write_room("instances.pbrt", true), "--integrator=path", "--spp=32");
-    expect_same_picture(&instances, &hand, 0.01, 0.1);
-    picture_reset(&hand);
-    picture_reset(&instances);
+    agreement_means hand = agreement_render(write_room("hand.pbrt", false), ARGUMENTS("--integrator=path", "--spp=64"));
+    agreement_means instances =
+        agreement_render(write_room("instances.pbrt", true), ARGUMENTS("--integrator=path", "--spp=64"));
+    expect_agreement("paths in instances", &instances, &hand, UNBIASED);
 }
 
-/* The same photons are stored: caustics are aimed at glass and metal that only instances show. */
+/* As many photons are stored: caustics are aimed at glass and metal that only instances show. The light is that of
+ * paths in the room put there by hand. */
 static void test_photon_map(void **state)
 {
     (void)state;
-    picture p[2];
     long long caustic_emitted[2];
+    const char *rooms[2] = {write_room("hand.pbrt", false), write_room("instances.pbrt", true)};
     for (int i = 0; i < 2; i++) {
-        p[i] = RENDER(write_room(i ? "instances.pbrt" : "hand.pbrt", i == 1), "--spp=8", "--gather-samples=16",
-                      "--photons=200000", "--caustic-photons=100000", "--stats=stats.json");
+        picture p = RENDER(rooms[i], "--spp=1", "--gather-samples=1", "--size=24x24", "--photons=200000",
+                           "--caustic-photons=100000", "--stats=stats.json");
         json_t *stats = stats_read(in_folder("stats.json"));
         assert_int_equal(stats_integer(stats, "photons.stored_caustic"), 100000);
         assert_int_equal(stats_integer(stats, "photons.stored_global"), 200000);
         caustic_emitted[i] = stats_integer(stats, "photons.emitted");
         json_decref(stats);
+        picture_reset(&p);
     }
     expect_near("paths", (double)caustic_emitted[1], (double)caustic_emitted[0], 0.03);
-    expect_same_picture(&p[1], &p[0], 0.01, 0.06);
-    picture_reset(&p[0]);
-    picture_reset(&p[1]);
-}
-
-/* Both show the same light in the room of instances. */
-static void test_agreement(void **state)
-{
-    (void)state;
-    const char *room = write_room("instances.pbrt", true);
-    picture path = RENDER(room, "--integrator=path", "--spp=512");
-    picture map =
-        RENDER(room, "--spp=32", "--gather-samples=8", "--photons=1e6", "--caustic-photons=3e5", "--nearest=30");
-    print_message("instances: %+.2f %%\n", 100.0 * (picture_mean(&map, 1) / picture_mean(&path, 1) - 1.0));
-    expect_near("mean", picture_mean(&map, 1), picture_mean(&path, 1), 0.02);
-    picture_reset(&path);
-    picture_reset(&map);
+    agreement_means path = agreement_render(rooms[0], ARGUMENTS("--integrator=path", "--spp=64"));
+    agreement_means map = agreement_render(rooms[1], ARGUMENTS(AGREEMENT_MAP, "--spp=12"));
+    expect_agreement("photons in instances", &map, &path, BOUNDS);
 }
 
 int main(void)
@@ -118,7 +97,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST_IN_FOLDER(test_path_tracer),
         TEST_IN_FOLDER(test_photon_map),
-        TEST_IN_FOLDER(test_agreement),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

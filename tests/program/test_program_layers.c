@@ -151,7 +151,7 @@ static void test_crop_and_tiles(void **state)
     free(tiled.pixels);
 }
 
-/* What halves cannot hold is clamped and counted; floats can. */
+/* Values that halves cannot hold are clamped and counted; floats can hold them. */
 static void test_half(void **state)
 {
     (void)state;

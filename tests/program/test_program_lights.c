@@ -1,13 +1,12 @@
 /* test_program_lights.c: lights with pictures, windows, and many lamps in a room: photon map and path tracer show the
  * same. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_agreement.h"
 
 #include "fixtures/environment_picture.h"
 #include "light/environment.h"
 
 static const double PI = 3.14159265358979323846;
-enum { BLOCK = 8 };
 
 #define WINDOW "\"point3 portal\" [1 -0.5 0.6  1 -0.5 1.6  1 0.5 1.6  1 0.5 0.6]"
 
@@ -16,41 +15,24 @@ static const char *room_with(const char *lights)
     return SCENE_WITH("window_room.pbrt", "THE_LIGHTS", lights, "block.pbrt", PROGRAM_SCENES "block.pbrt");
 }
 
-typedef struct effort {
-    const char *photons, *spp, *gather, *path_spp;
-} effort;
+static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.006, 0.03};
+static const agreement_bounds UNBIASED = {0.0, 0.005, 0.03};
 
-static const effort USUAL = {"--photons=5e5", "--spp=16", "--gather-samples=16", "--spp=256"};
-/* Lamps that cover but a few pixels. */
-static const effort MORE = {"--photons=1e6", "--spp=64", "--gather-samples=4", "--spp=512"};
-
-static void compare(const char *what, const char *scene, effort e, const char *only, double of_mean, double of_block)
+static void compare(const char *what, const char *scene, const char *samples, const char *path_samples,
+                    const char *only)
 {
-    picture map = RENDER(scene, e.photons, "--nearest=30", e.spp, e.gather, only);
-    picture path = RENDER(scene, "--integrator=path", e.path_spp, only);
-    double worst = 0.0;
-    for (int y = 0; y < path.height; y += BLOCK)
-        for (int x = 0; x < path.width; x += BLOCK) {
-            double a = picture_block(&map, x, y, BLOCK, 1), b = picture_block(&path, x, y, BLOCK, 1);
-            worst = fmax(worst, fabs(a / b - 1.0));
-        }
-    print_message("%s: mean %+.2f %%, blocks within %.2f %%\n", what,
-                  100.0 * (picture_mean(&map, 1) / picture_mean(&path, 1) - 1.0), 100.0 * worst);
-    for (int c = 0; c < 3; c++)
-        expect_near(what, picture_mean(&map, c), picture_mean(&path, c), of_mean);
-    assert_true(worst < of_block);
-    picture_reset(&map);
-    picture_reset(&path);
+    compare_integrators_by(what, scene, ARGUMENTS(AGREEMENT_MAP, samples, only),
+                           ARGUMENTS("--integrator=path", path_samples, only), BOUNDS);
 }
 
 /* All light, and indirect light alone. */
-static void compare_both(const char *what, const char *lights, effort e)
+static void compare_both(const char *what, const char *lights)
 {
     char name[64];
     const char *scene = room_with(lights);
-    compare(what, scene, e, NULL, 0.01, 0.05);
+    compare(what, scene, "--spp=8", "--spp=32", NULL);
     snprintf(name, sizeof name, "%s, indirect", what);
-    compare(name, scene, e, "--only=indirect", 0.02, 0.06);
+    compare(name, scene, "--spp=8", "--spp=32", "--only=indirect");
 }
 
 /* ---- pictures ---- */
@@ -89,8 +71,7 @@ static void test_goniometric(void **state)
 {
     (void)state;
     write_two_tones("lamp.exr");
-    compare_both("goniometric", "Translate 0.2 -0.3 1.4 LightSource \"goniometric\" \"string filename\" \"lamp.exr\"",
-                 USUAL);
+    compare_both("goniometric", "Translate 0.2 -0.3 1.4 LightSource \"goniometric\" \"string filename\" \"lamp.exr\"");
 }
 
 static void test_projection(void **state)
@@ -99,8 +80,7 @@ static void test_projection(void **state)
     write_two_tones("slide.exr");
     compare_both("projection",
                  "Translate -0.5 0 1 Rotate 70 0 1 0 LightSource \"projection\" \"float fov\" 70 \"string "
-                 "filename\" \"slide.exr\"",
-                 USUAL);
+                 "filename\" \"slide.exr\"");
 }
 
 static void test_textured_lamps(void **state)
@@ -110,15 +90,14 @@ static void test_textured_lamps(void **state)
     compare_both("textured lamps",
                  "AreaLightSource \"diffuse\" \"string filename\" \"screen.exr\"\n"
                  "Shape \"bilinearmesh\" \"point3 P\" [-0.5 -0.4 1.98  -0.5 0.4 1.98  0.5 -0.4 1.98  0.5 0.4 1.98]\n"
-                 "Translate -0.5 0.6 0.5 Shape \"sphere\" \"float radius\" 0.2",
-                 USUAL);
+                 "Translate -0.5 0.6 0.5 Shape \"sphere\" \"float radius\" 0.2");
 }
 
 static void test_portal(void **state)
 {
     (void)state;
     write_sky();
-    compare_both("window", "LightSource \"infinite\" \"string filename\" \"sky.exr\" " WINDOW, USUAL);
+    compare_both("window", "LightSource \"infinite\" \"string filename\" \"sky.exr\" " WINDOW);
 }
 
 /* Where the window is the only way in, all that the portal changes is the noise. */
@@ -126,49 +105,47 @@ static void test_portal_adds_nothing(void **state)
 {
     (void)state;
     write_sky();
-    picture p[2];
-    for (int k = 0; k < 2; k++) {
-        const char *scene = room_with(k ? "LightSource \"infinite\" \"string filename\" \"sky.exr\" " WINDOW
-                                        : "LightSource \"infinite\" \"string filename\" \"sky.exr\"");
-        p[k] = RENDER(scene, "--integrator=path", k ? "--spp=256" : "--spp=1024");
-    }
-    for (int c = 0; c < 3; c++)
-        expect_near("with and without", picture_mean(&p[1], c), picture_mean(&p[0], c), 0.01);
-    picture_reset(&p[0]);
-    picture_reset(&p[1]);
+    agreement_means with =
+        agreement_render(room_with("LightSource \"infinite\" \"string filename\" \"sky.exr\" " WINDOW),
+                         ARGUMENTS("--integrator=path", "--spp=64"));
+    agreement_means without = agreement_render(room_with("LightSource \"infinite\" \"string filename\" \"sky.exr\""),
+                                               ARGUMENTS("--integrator=path", "--spp=256"));
+    expect_agreement("with and without a portal", &with, &without, UNBIASED);
 }
 
-/* A floor lit through a window of constant radiance in a plane at right angles to it: irradiance is that of an
- * emitting rectangle, by the form factor of a small area and a rectangle (Siegel, Howell, "Thermal Radiation Heat
- * Transfer", configuration 4 of the catalogue's differential planes). What the eye sees of the sky beside the portal is
- * black. */
+/* On a floor that is seen from above, x and y from -1 to 1, of which the eye may see either mirrored: light of a window
+ * of radiance 1 in the plane x = 3, as high as it is far, y from -2 to 2; mean over both ways to see it. Irradiance is
+ * that of an emitting rectangle, by the form factor of a small area and a rectangle (Siegel, Howell, "Thermal Radiation
+ * Heat Transfer", configuration 4 of the catalogue's differential planes): z from 0 to c, y from 0 to b, at distance a:
+ * E = L / 2 (atan(b/a) - a / sqrt(a^2 + c^2) atan(b / sqrt(a^2 + c^2))). */
+static void floor_by_a_portal(const void *mirrored, double x, double y, double out_rgb[3])
+{
+    double wx = (*(const bool *)mirrored ? -1.0 : 1.0) * (2.0 * x - 1.0), wy = 2.0 * y - 1.0;
+    double a = 3.0 - wx, c = 3.0, s = sqrt(a * a + c * c), irradiance = 0.0;
+    for (int side = -1; side <= 1; side += 2) {
+        double b = 2.0 + side * wy;
+        irradiance += 0.5 * (atan(b / a) - a / s * atan(b / s));
+    }
+    out_rgb[0] = 2.0 * 0.6 / PI * irradiance;
+    out_rgb[1] = 0.5 * out_rgb[0];
+    out_rgb[2] = 0.25 * out_rgb[0];
+}
+
+/* A floor lit through a window of constant radiance in a plane at right angles to it. The eye sees nothing of the sky
+ * beside the portal. */
 static void test_floor_under_a_portal(void **state)
 {
     (void)state;
-    /* z from 0 to c, y from 0 to b, at distance a: E = L / 2 (atan(b/a) - a / sqrt(a^2 + c^2) atan(b / sqrt(a^2 +
-     * c^2))) */
     const char *scene =
         write_text("scene.pbrt",
                    "Include \"" PROGRAM_SCENES "floor.pbrt\"\n"
                    "LightSource \"infinite\" \"rgb L\" [2 1 0.5] \"point3 portal\" [3 -2 0  3 -2 3  3 2 3  3 2 0]\n");
+    const bool is_mirrored = true;
+    agreement_means exact = agreement_exact(floor_by_a_portal, &is_mirrored);
     for (int k = 0; k < 2; k++) {
-        picture p = RENDER(scene, "--integrator", k ? "path" : "photonmap", "--spp=64", "--photons=20000");
-        double sum = 0.0;
-        for (int y = 0; y < p.height; y++)
-            for (int x = 0; x < p.width; x++) {
-                /* the picture covers x and y from -1 to 1, of which one is mirrored: of no account for y, and for x the
-                 * mean is taken over both */
-                double wx = 2.0 * (x + 0.5) / p.width - 1.0, wy = 2.0 * (y + 0.5) / p.height - 1.0;
-                double a = 3.0 - wx, c = 3.0, s = sqrt(a * a + c * c);
-                for (int side = -1; side <= 1; side += 2) {
-                    double b = 2.0 + side * wy;
-                    sum += 0.5 * (atan(b / a) - a / s * atan(b / s));
-                }
-            }
-        double expected = 0.6 / PI * sum / (p.width * p.height);
-        expect_near("red", picture_mean(&p, 0), 2.0 * expected, 0.004);
-        expect_near("blue", picture_mean(&p, 2), 0.5 * expected, 0.004);
-        picture_reset(&p);
+        agreement_means means = agreement_render(
+            scene, ARGUMENTS(k ? "--integrator=path" : "--integrator=photonmap", "--spp=16", "--photons=20000"));
+        expect_agreement(k ? "a floor by a portal, paths" : "a floor by a portal", &means, &exact, UNBIASED);
     }
     /* towards the sky: through the portal, and beside it */
     scene = write_text("sky.pbrt", "LookAt 0 0 0  1 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 90\n"
@@ -213,7 +190,7 @@ static void test_many_lamps(void **state)
     (void)state;
     char text[8192];
     write_lamps(text, sizeof text);
-    compare("many lamps", room_with(text), MORE, NULL, 0.01, 0.05);
+    compare("many lamps", room_with(text), "--spp=48", "--spp=128", NULL);
 }
 
 /* A square of so many lamps side by side, in a file of its own. */
@@ -239,19 +216,12 @@ static const char *room_under_lamps(int side)
 static void test_a_thousand_lamps_are_one(void **state)
 {
     (void)state;
-    picture one = RENDER(room_under_lamps(1), "--integrator=path", "--spp=512");
-    for (int is_map = 0; is_map < 2; is_map++) {
-        picture many = is_map ? RENDER(room_under_lamps(32), MORE.photons, "--nearest=30", MORE.spp, MORE.gather)
-                              : RENDER(room_under_lamps(32), "--integrator=path", "--spp=512");
-        for (int c = 0; c < 3; c++)
-            expect_near(is_map ? "a thousand lamps" : "a thousand lamps, paths", picture_mean(&many, c),
-                        picture_mean(&one, c), 0.01);
-        for (int y = 0; y < one.height; y += BLOCK)
-            for (int x = 0; x < one.width; x += BLOCK)
-                expect_near("a block", picture_block(&many, x, y, BLOCK, 1), picture_block(&one, x, y, BLOCK, 1), 0.05);
-        picture_reset(&many);
-    }
-    picture_reset(&one);
+    agreement_means one = agreement_render(room_under_lamps(1), ARGUMENTS("--integrator=path", "--spp=128"));
+    const char *scene = room_under_lamps(32);
+    agreement_means paths = agreement_render(scene, ARGUMENTS("--integrator=path", "--spp=128"));
+    agreement_means map = agreement_render(scene, ARGUMENTS(AGREEMENT_MAP, "--spp=48"));
+    expect_agreement("a thousand lamps, paths", &paths, &one, UNBIASED);
+    expect_agreement("a thousand lamps", &map, &one, BOUNDS);
 }
 
 /* "photons" 0 takes a lamp's light out of the map, and leaves it in direct light; another factor changes noise
@@ -270,7 +240,7 @@ static void test_photons(void **state)
     compare("a quarter of the photons",
             room_with("LightSource \"point\" \"point3 from\" [0 0 1] \"float photons\" 0.25\n"
                       "LightSource \"point\" \"point3 from\" [0.5 -0.5 0.4] \"rgb I\" [0.1 0.2 1]"),
-            USUAL, "--only=indirect", 0.02, 0.06);
+            "--spp=8", "--spp=32", "--only=indirect");
 }
 
 int main(void)

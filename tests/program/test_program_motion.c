@@ -2,7 +2,9 @@
  * form; a camera that moves and a world that moves the other way; photon map and path tracer where what moves reflects.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_agreement.h"
+
+static const agreement_bounds UNBIASED = {0.0, 0.005, 0.02};
 
 /* The plane z = 0 from -1 to 1 fills the picture; a sky of radiance 1 behind what is black. The camera's left-handed
  * space has x to the right. */
@@ -13,40 +15,26 @@
 
 static double clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
-/* What is seen of the sky in pixel (i, j), by the mean over so many points in it; and in the picture. */
-static void expect_picture(const char *what, const picture *p, double (*uncovered)(double x, double y))
+/* How much of the time a point is not covered, of x to the right and y up from -1 to 1. */
+typedef double uncovered_fn(double x, double y);
+
+static void radiance_of_sky(const void *uncovered, double x, double y, double out_rgb[3])
 {
-    enum { ACROSS = 8 };
-    double sum = 0.0;
-    for (int j = 0; j < p->height; j++)
-        for (int i = 0; i < p->width; i++) {
-            double expected = 0.0;
-            for (int k = 0; k < ACROSS * ACROSS; k++)
-                expected += uncovered(-1.0 + 2.0 * (i + (k % ACROSS + 0.5) / ACROSS) / p->width,
-                                      1.0 - 2.0 * (j + (k / ACROSS + 0.5) / ACROSS) / p->height);
-            expected /= ACROSS * ACROSS;
-            double value = (double)p->pixels[3 * (j * p->width + i)];
-            if (!(fabs(value - expected) <= 0.04))
-                fail_msg("%s: pixel %d, %d is %g, not %g", what, i, j, value, expected);
-            sum += value - expected;
-        }
-    sum /= (double)p->width * p->height;
-    if (!(fabs(sum) <= 0.002))
-        fail_msg("%s: %g too much on average", what, sum);
+    out_rgb[0] = out_rgb[1] = out_rgb[2] = (*(uncovered_fn *const *)uncovered)(2.0 * x - 1.0, 1.0 - 2.0 * y);
 }
 
-static void expect_uncovered(const char *what, const char *camera, const char *world,
-                             double (*uncovered)(double, double))
+static void expect_uncovered(const char *what, const char *camera, const char *world, uncovered_fn *uncovered)
 {
     char text[2048];
     static const char *const INTEGRATORS[] = {"--integrator=path", "--integrator=photonmap"};
     int length = snprintf(text, sizeof text, SKY_AND_BLACK "%s\n", camera, world);
     assert_true(length > 0 && (size_t)length < sizeof text);
+    const char *scene = write_text("cover.pbrt", text);
+    agreement_means exact = agreement_exact(radiance_of_sky, &uncovered);
     for (int i = 0; i < 2; i++) {
-        picture p = RENDER(write_text("cover.pbrt", text), INTEGRATORS[i], "--spp=1024", "--photons=1000",
-                           "--gather-samples=1");
-        expect_picture(what, &p, uncovered);
-        picture_reset(&p);
+        agreement_means means =
+            agreement_render(scene, ARGUMENTS(INTEGRATORS[i], "--spp=128", "--photons=1000", "--gather-samples=1"));
+        expect_agreement(what, &means, &exact, UNBIASED);
     }
 }
 
@@ -153,50 +141,25 @@ static void test_moving_camera(void **state)
 
 /* --- what moves reflects --- */
 
-/* The mean of pictures with so many seeds. */
-static double mean_light(const char *scene, const char *const *arguments, int seeds)
-{
-    double sum = 0.0;
-    for (int i = 1; i <= seeds; i++) {
-        char seed[32];
-        const char *all[PROGRAM_ARGUMENTS_MAX];
-        int count = 0;
-        for (; arguments[count]; count++)
-            all[count] = arguments[count];
-        snprintf(seed, sizeof seed, "--seed=%d", i);
-        all[count++] = seed;
-        all[count] = NULL;
-        picture p = render(scene, all);
-        sum += picture_mean(&p, 1) / seeds;
-        picture_reset(&p);
-    }
-    return sum;
-}
-
-static void expect_agreement(const char *scene, const char *only, const char *samples, int seeds, double tolerance)
-{
-    double path = mean_light(scene, ARGUMENTS("--integrator=path", samples, only), seeds);
-    double map =
-        mean_light(scene, ARGUMENTS("--photons=1e6", "--nearest=30", "--spp=16", "--gather-samples=8", only), seeds);
-    print_message("%s %s: %+.2f %%\n", strrchr(scene, '/') + 1, only ? only : "", 100.0 * (map / path - 1.0));
-    expect_near(scene, map, path, tolerance);
-}
-
 /* A map knows the mean of the light on a point, not which light came when: where light and what hides it go together,
  * some of the indirect light is lost. */
 static void test_moving_blocks(void **state)
 {
     (void)state;
-    expect_agreement(PROGRAM_SCENES "moving_blocks.pbrt", "--only=indirect", "--spp=256", 2, 0.015);
-    expect_agreement(PROGRAM_SCENES "moving_blocks.pbrt", NULL, "--spp=256", 2, 0.01);
+    static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.007, 0.03};
+    compare_integrators("moving_blocks", "--spp=64", "--only=indirect", BOUNDS);
+    compare_integrators("moving_blocks", "--spp=64", NULL, BOUNDS);
 }
 
+/* Light counted for the wrong time would be six times off; light that is 8 % off makes this fail. */
 static void test_moving_plate(void **state)
 {
     (void)state;
-    /* each picture is 2 to 4 % off by chance, measured over seeds; light counted for the wrong time would be 6 times
-     * off */
-    expect_agreement(PROGRAM_SCENES "moving_plate.pbrt", "--only=indirect", "--spp=1024", 4, 0.08);
+    static const agreement_bounds BOUNDS = {AGREEMENT_BLUR, 0.02, 0.1};
+    compare_integrators_by(
+        "moving plate", PROGRAM_SCENES "moving_plate.pbrt",
+        ARGUMENTS("--photons=1e6", "--nearest=30", "--gather-samples=16", "--spp=64", "--only=indirect"),
+        ARGUMENTS("--integrator=path", "--spp=1024", "--only=indirect"), BOUNDS);
 }
 
 int main(void)

@@ -128,7 +128,7 @@ static const char *write_sky(void)
     return write_environment("sky.exr", 8, 4, IMAGE_FLOAT, &pixels[0][0][0]);
 }
 
-/* What is seen of the sky by looking just above the horizon, or just below. */
+/* The part of the sky is seen that lies just above the horizon, or just below. */
 static void a_sky_stands_where_it_should(void **state)
 {
     (void)state;
@@ -218,7 +218,7 @@ static void expect_same(const char *scene, const char *const *some, const char *
     picture_reset(&q);
 }
 
-/* What is up in a pbrt file is what its own camera has so, whatever camera replaces it. */
+/* In a pbrt file its own camera says what is up, whatever camera replaces it. */
 static void up_is_that_of_the_file(void **state)
 {
     (void)state;

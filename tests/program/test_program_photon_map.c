@@ -75,7 +75,7 @@ static void test_camera_move(void **state)
         "kept2.exr kept3.exr");
 }
 
-/* What a dump says of a map from a file. */
+/* A dump tells the photons of a map from a file. */
 static void test_dump(void **state)
 {
     (void)state;
@@ -166,7 +166,7 @@ static void test_photons_only(void **state)
     expect_end(RUN(QUICK, MAP, "--photons-only", "--integrator=path", scene), 2, "path tracing has no photons");
 }
 
-/* What may not be written is used, and left as it is. */
+/* A map that may not be written is used, and left as it is. */
 static void test_read_only(void **state)
 {
     (void)state;

@@ -14,7 +14,7 @@
             QUAD("0 0 5 4 0 5 4 3 5 0 3 5") QUAD("0 0 0 0 0 5 0 .8 5 0 .8 0") QUAD("0 2.2 0 0 2.2 5 0 3 5 0 3 0")      \
                 QUAD("0 .8 0 0 .8 1 0 2.2 1 0 2.2 0") QUAD("0 .8 3.5 0 .8 5 0 2.2 5 0 2.2 3.5")
 
-/* Both integrators' means of green, and of four parts of the picture. */
+/* Holds both integrators' means of green against each other, over the picture and over its quarters. */
 static void expect_both_alike(const char *name, const char *text, double of_mean, double of_part)
 {
     const char *scene = write_text("scene.pbrt", text);
@@ -28,7 +28,7 @@ static void expect_both_alike(const char *name, const char *text, double of_mean
     picture_reset(&truth);
 }
 
-/* Before discs kept to the floor they lie on: three times too bright, on the smaller ground. */
+/* The smaller ground was three times too bright before discs kept to the floor they lie on. */
 static void test_a_house_with_a_window(void **state)
 {
     (void)state;
@@ -46,7 +46,7 @@ static void test_a_house_with_a_window(void **state)
     }
 }
 
-/* Before: without the light that the glass gathers. */
+/* The light that the glass gathers was missing once. */
 static void test_a_glass_ball(void **state)
 {
     (void)state;

@@ -9,7 +9,7 @@
 
 #define BOX PROGRAM_SCENES "box_with_blocks.pbrt"
 
-/* What a render that was ended may leave: both pictures or none, since there may be no sample yet. */
+/* A render that was ended leaves both pictures or none, since there may be no sample yet. */
 static void expect_partial_pictures(void)
 {
     if (access(in_folder("a.exr"), F_OK) != 0) {
@@ -167,7 +167,7 @@ static void test_second_signal(void **state)
     expect_listing("pipe");
 }
 
-/* What nohup has set to be ignored stays so. */
+/* A signal that nohup has set to be ignored stays so. */
 static void test_ignored_signal(void **state)
 {
     (void)state;

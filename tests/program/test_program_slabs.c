@@ -81,13 +81,13 @@ static void test_absorption(void **state)
     }
 }
 
-/* By shadow rays and scattered rays, weighed against each other; and by paths that bend at both faces. */
+/* Tested by shadow rays and scattered rays, weighed against each other, and by paths that bend at both faces. */
 static void test_sky(void **state)
 {
     (void)state;
     const char *above = box_of(SKY GLASS, 1.0f, 1.5f);
     expect_gray_floor("a sky", above, sky_through_glass(), 0.004, "--spp=2048");
-    /* Of the dark floor's own light, which counts alone, in 1e-4; what the slab mirrors from below is black. */
+    /* The dark floor's own light alone counts, in 1e-4; what the slab mirrors from below is black. */
     slab_say(&text, "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n" SQUARE("60", "-0.1"));
     picture p = RENDER(scene_of("Material \"diffuse\" \"rgb reflectance\" [1e-4 1e-4 1e-4]\n", text.text), "--size=8x8",
                        PATH, TRACED, "--spp=4096");
@@ -176,7 +176,7 @@ static void test_layers(void **state)
     assert_true(map.caustic < 1e-3 * map.direct); /* the rims are far away */
 }
 
-/* What path tracing cannot find it tells of: bent by blocks, not of slabs. */
+/* Path tracing tells of light that it cannot find: bent by blocks, not by slabs. */
 static void test_warning(void **state)
 {
     (void)state;

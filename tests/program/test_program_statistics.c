@@ -125,7 +125,7 @@ static void expect_end(const char *const *arguments, const char *reason, int lea
     json_decref(stats);
 }
 
-/* What a farm asks for: why a picture ended, and how good it is. */
+/* A farm asks why a picture ended, and how good it is. */
 static void test_end(void **state)
 {
     (void)state;

@@ -143,8 +143,8 @@ static void test_a_coarse_rod_of_smooth_normals(void **state)
     }
 }
 
-/* What leaves a coarse rod of rough metal again is lit by a sun that no scattered ray can hit: shadow rays look for it
- * behind the faces too, whether there is another lamp to choose or not. */
+/* Light that leaves a coarse rod of rough metal again comes from a sun that no scattered ray can hit: shadow rays look
+ * for it behind the faces too, whether there is another lamp to choose or not. */
 static void test_a_sun_behind_the_faces_of_a_coarse_rod(void **state)
 {
     (void)state;

@@ -116,7 +116,7 @@ static void test_mark_of_long_name(void **state)
                0, "skipped");
 }
 
-/* Without a mark no partial picture. */
+/* A mark that cannot be made leaves no partial picture. */
 static void test_mark_that_cannot_be_made(void **state)
 {
     (void)state;
@@ -133,7 +133,8 @@ static void expect_refused(const char *const *arguments, const char *said)
     expect_end(program_execute(NULL, arguments), 2, said);
 }
 
-/* By name, by device and inode, and by links; before anything is rendered or written. */
+/* One file for two things is found by name, by device and inode, and by links, before anything is rendered or written.
+ */
 static void test_one_file_twice(void **state)
 {
     (void)state;

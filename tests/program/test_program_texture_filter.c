@@ -7,7 +7,7 @@
 #include "fixtures/program_textures.h"
 #include "math/rng.h"
 
-/* Of random colours. */
+/* Writes a picture of random colours. */
 static void write_noise(const char *name, int side)
 {
     float *pixels = malloc((size_t)side * (size_t)side * 3 * sizeof *pixels);
@@ -101,7 +101,8 @@ static bool is_filtered(const char *material)
     return !is_alike;
 }
 
-/* What cuts values, or picks among them, at each point is not the same of their mean: such textures stay unfiltered. */
+/* Textures that cut values, or pick among them, at each point give another mean than that of their filtered values, so
+ * they stay unfiltered. */
 static void test_not_linear(void **state)
 {
     (void)state;

@@ -76,7 +76,8 @@ static vec3 eye_of(const scene *s)
         {-0.2f, -0.2f, -0.2f}, {6.2f, 3.2f, 4.2f}, false                                                               \
     }
 
-/* In a corner, at half the height, looking along the room's length; lit by a lamp under the ceiling, and no sun. */
+/* The camera stands in a corner, at half the height, and looks along the room's length; a lamp under the ceiling lights
+ * it, and no sun. */
 static void the_camera_stands_in_the_room(void **state)
 {
     (void)state;

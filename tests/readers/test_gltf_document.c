@@ -325,7 +325,7 @@ static void vary(attempt *a, json_t *container)
     }
 }
 
-/* Of members named, or all. */
+/* Reads the document with odd values in each of the members named, or in all. */
 static void vary_document(const char *document, const char *const *members, int *out_count)
 {
     char *text = json_text(document);

@@ -143,7 +143,7 @@ static void expect_film(const reading *r, double width, double height)
     assert_near((double)hints->height.value, height, 0);
 }
 
-/* Where the ray through the film's point goes, from a point on it in [0, 1]. */
+/* The direction of the ray through a point of the film, which lies in [0, 1]. */
 static vec3 direction_at(const reading *r, float x, float y)
 {
     camera c = r->scene->camera;
@@ -192,7 +192,7 @@ static void cameras(void **state)
     reading_destroy(&r);
 }
 
-/* The same in parallel: what is at the picture's edge is xmag and ymag off its middle. */
+/* Rays of an orthographic camera are parallel; those at the picture's edge are xmag and ymag off its middle. */
 static void orthographic_camera(void **state)
 {
     (void)state;

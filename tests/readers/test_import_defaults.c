@@ -28,7 +28,7 @@ static void importing_reset(importing *i)
 
 static double tan_half(const camera *c) { return tan((double)c->fov_degrees * (3.14159265358979323846 / 360.0)); }
 
-/* In camera space; z is the depth, x and y are 1 at the edges of a square picture. */
+/* The point in camera space; z is the depth, x and y are 1 at the edges of a square picture. */
 static vec3 on_screen(const camera *c, vec3 world)
 {
     transform camera_from_world = transform_invert(&c->world_from_camera);

@@ -22,7 +22,7 @@
 
 enum { ANSWER_BYTES = 5000000, MEMORY_BYTES = 100000000 };
 
-/* What the process does, by its name: this test's program, started anew. */
+/* The work of the process, by its name: this test's program, started anew. */
 typedef bool task(int number, FILE *answer);
 
 static bool answer_much(int number, FILE *answer)

@@ -146,8 +146,8 @@ static void orthographic_cameras_are_as_wide_as_the_file_says(void **state)
     reading_destroy(&r);
 }
 
-/* By a tenth to the right and a quarter down, of the longer side of a picture of 2:1 whose shorter one is 2: squares
- * stay squares in pictures of any proportions. */
+/* The shift is a tenth to the right and a quarter down, of the longer side of a picture of 2:1 whose shorter one is 2.
+ * Squares stay squares in pictures of any proportions. */
 static void a_shift_does_not_stretch_the_picture(void **state)
 {
     (void)state;

@@ -112,7 +112,8 @@ static void transforms(void **state)
     reading_destroy(&r);
 }
 
-/* As pbrt-v4 has it: each pixel of the upper half counts 2 pi / count cos theta; of L everywhere that is pi L / 2. */
+/* Illuminance is pbrt-v4's: each pixel of the upper half counts 2 pi / count cos theta; of L everywhere that is pi L
+ * / 2. */
 static void illuminance(void **state)
 {
     (void)state;

@@ -64,8 +64,8 @@ static void goniometric(void **state)
     reading_destroy(&r);
 }
 
-/* Which pixel goes where: +x, -x, +y, -y of the picture's space are the right, left, bottom and top edges' middles, its
- * z the middle. */
+/* The directions of pixels: +x, -x, +y, -y of the picture's space are the right, left, bottom and top edges' middles,
+ * its z the middle. */
 static void goniometric_directions(void **state)
 {
     (void)state;

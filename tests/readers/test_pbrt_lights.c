@@ -12,6 +12,14 @@ static const light *only_light(const reading *r)
     return &r->scene->lights[0];
 }
 
+static void assert_refused(const char *text, const char *message)
+{
+    reading r = reading_create(NULL, text, strlen(text));
+    assert_int_equal(r.status, AG_ERROR_SCENE);
+    assert_non_null(strstr(r.said[AG_LOG_ERROR], message));
+    reading_destroy(&r);
+}
+
 static void point_lights(void **state)
 {
     (void)state;
@@ -60,7 +68,15 @@ static void spot_lights(void **state)
     /* a cone narrower than the default penumbra: pbrt counts on beyond the axis */
     r = reading_of("WorldBegin LightSource \"spot\" \"float coneangle\" 3");
     assert_near(only_light(&r)->falloff_start, 1 - cos(2 * PI / 180), 1e-9);
+    assert_false(only_light(&r)->dims_by_cosine);
     reading_destroy(&r);
+    r = reading_of("WorldBegin LightSource \"spot\" \"bool cosine\" true");
+    assert_true(only_light(&r)->dims_by_cosine);
+    reading_destroy(&r);
+    assert_refused("WorldBegin LightSource \"spot\" \"bool cosine\" true \"float coneangle\" 91",
+                   "t:1:31: error: a \"cosine\" goes with a \"coneangle\" of at most 90 degrees");
+    assert_refused("WorldBegin LightSource \"spot\" \"float power\" 1 \"bool cosine\" true",
+                   "a \"cosine\" goes with a \"coneangle\" of at most 90 degrees, and not with \"power\"");
 }
 
 static void distant_lights(void **state)
@@ -78,7 +94,13 @@ static void distant_lights(void **state)
     l = only_light(&r);
     assert_rgb(l->radiance, 100, 200, 300, 0);
     assert_vec3(l->direction, 0, -1, 0, 1e-6);
+    assert_near(l->disc_one_minus_cos, 0, 0);
     reading_destroy(&r);
+    r = reading_of("WorldBegin LightSource \"distant\" \"float angle\" 10");
+    assert_near(only_light(&r)->disc_one_minus_cos, 1 - cos(5 * PI / 180), 1e-9);
+    reading_destroy(&r);
+    assert_refused("WorldBegin LightSource \"distant\" \"float angle\" 181",
+                   "\"angle\" should be from 0 to 180 degrees");
 }
 
 static void area_lights(void **state)

@@ -3,6 +3,7 @@
  * Threads: one. */
 #include "color/spectra.h"
 #include "fixtures/pbrt_fixture.h"
+#include "material/material_point.h"
 #include "rays/rays.h"
 #include "scene.h"
 
@@ -390,22 +391,24 @@ static void principled_textures(void **state)
         "\"texture specular\" \"f\" \"texture clearcoat\" \"f\" \"texture clearcoat_roughness\" \"f\"\n"
         "Shape \"sphere\"");
     scene *s = r.scene;
-    material *given = &s->materials[s->shapes[0].material_index], m;
+    material *given = &s->materials[s->shapes[0].material_index];
+    material_point point;
+    const principled_point *m = &point.principled;
     surface_hit hit = {.uv = {0.5f, 0.5f}};
     assert_true(given->is_textured && given->metallic == 1.0f && given->clearcoat == 1.0f);
-    material_at(s, &hit, &m);
-    assert_rgb(m.reflectance, .1, .2, .3, 1e-6);
-    assert_rgb(m.dielectric_f0, .5 * .04 * .1, .5 * .04 * .2, .5 * .04 * .3, 1e-7);
-    assert_true(m.metallic == 0.5f && m.roughness == 0.5f && m.transmission == 0.5f && m.specular == 0.5f);
-    assert_true(m.clearcoat == 0.5f && m.clearcoat_roughness == 0.5f);
-    assert_roughness(m.alpha_u, m.alpha_v, .25, .25);
+    assert_ptr_equal(material_at(s, &hit, &point), given);
+    assert_int_equal(point.kind, MATERIAL_PRINCIPLED);
+    assert_rgb(m->reflectance, .1, .2, .3, 1e-6);
+    assert_rgb(m->dielectric_f0, .5 * .04 * .1, .5 * .04 * .2, .5 * .04 * .3, 1e-7);
+    assert_true(m->metallic == 0.5f && m->transmission == 0.5f && m->specular == 0.5f);
+    assert_true(m->clearcoat == 0.5f && m->clearcoat_roughness == 0.5f && m->alpha == 0.25f);
     /* they multiply what is given for the whole */
     given->metallic = 0.5f, given->roughness = 0.8f, given->reflectance = rgb_gray(0.5f);
-    material_at(s, &hit, &m);
-    assert_true(m.metallic == 0.25f);
-    assert_near(m.roughness, .4, 1e-6);
-    assert_rgb(m.reflectance, .05, .1, .15, 1e-6);
-    assert_true(m.base_through > 0.5f && m.base_through < 1.0f);
+    material_at(s, &hit, &point);
+    assert_true(m->metallic == 0.25f);
+    assert_near(m->alpha, .4 * .4, 1e-6);
+    assert_rgb(m->reflectance, .05, .1, .15, 1e-6);
+    assert_true(m->base_through > 0.5f && m->base_through < 1.0f);
     reading_destroy(&r);
 }
 

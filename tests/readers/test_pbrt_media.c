@@ -110,7 +110,7 @@ static void what_varies_gets_its_mean(void **state)
 
 #define MEDIUM(name) "MakeNamedMedium \"" name "\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0 0 0]\n"
 
-/* What is in which medium; media may be made after shapes name them. */
+/* Shapes keep the media on both of their sides; media may be made after shapes name them. */
 static void sides_are_kept(void **state)
 {
     (void)state;
@@ -168,7 +168,7 @@ static void interfaces_are_kept_where_they_matter(void **state)
     reading_destroy(&r);
 }
 
-/* As in pbrt. */
+/* As in pbrt, interfaces do not shine. */
 static void interfaces_do_not_shine(void **state)
 {
     (void)state;

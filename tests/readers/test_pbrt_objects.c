@@ -66,7 +66,7 @@ static affine step_of(const reading *r, uint32_t instance, uint32_t step)
     return r->scene->instance_steps[r->scene->instances[instance].first_step + step];
 }
 
-/* Where the origin of the object comes to lie. */
+/* Fails unless the origin of the object comes to lie there. */
 static void check_step(const reading *r, uint32_t instance, uint32_t step, double x, double y, double z)
 {
     affine a = step_of(r, instance, step);
@@ -121,7 +121,7 @@ static void state_returns_at_the_end_of_an_object(void **state)
     reading_destroy(&r);
 }
 
-/* What shines is copied: the same shape and the same light as if it stood there without an object. */
+/* Shapes that shine are copied: shape and light are as if they stood there without an object. */
 static void lamps_within_objects_come_into_the_world(void **state)
 {
     (void)state;
@@ -301,7 +301,7 @@ static void cameras_move(void **state)
     reading_destroy(&r);
 }
 
-/* As pbrt-v4: they are warned of, and stand as they do at the start. */
+/* Lights and textures that move are warned of, and stand as they do at the start, as in pbrt-v4. */
 static void lights_and_textures_stand_still(void **state)
 {
     (void)state;

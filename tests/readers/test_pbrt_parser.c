@@ -98,7 +98,7 @@ static void wrong_hints(void **state)
     }
 }
 
-/* Where the origin of the only sphere comes to lie. */
+/* Fails unless the origin of the only sphere comes to lie there. */
 static void check_origin(const char *text, double x, double y, double z)
 {
     reading r = reading_of(text);
@@ -107,7 +107,7 @@ static void check_origin(const char *text, double x, double y, double z)
     reading_destroy(&r);
 }
 
-/* As exporters write them around what is not there: nothing is made below them, and the rest is read. */
+/* Exporters write singular transforms around what is not there: nothing is made below them, and the rest is read. */
 static void singular_transforms_leave_out_what_they_hold(void **state)
 {
     (void)state;

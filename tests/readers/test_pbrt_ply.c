@@ -16,7 +16,8 @@ static reading read_scene(const char *name, const char *world)
 #define NORMALS "0 0 1 0 3 4 1 0 0 0 -2 0"
 #define UVS     "0 0 1 0 0 1 .5 .25"
 
-/* The same mesh as PLY and in the scene file, moved, mirrored and reversed: the same to the last bit. */
+/* A mesh from a PLY file and the same one in the scene file, moved, mirrored and reversed, are the same to the last
+ * bit. */
 static void plymesh_is_as_trianglemesh(void **state)
 {
     (void)state;

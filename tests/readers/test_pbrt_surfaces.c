@@ -3,6 +3,7 @@
  * stands in. Threads: one. */
 #define _GNU_SOURCE
 #include "fixtures/pbrt_fixture.h"
+#include "material/material_point.h"
 
 #include "color/spectra.h"
 #include "fixtures/environment_picture.h"
@@ -37,7 +38,8 @@ static material silent_material(const char *text)
     return m;
 }
 
-/* With its warnings, each without its location, and a line end behind. */
+/* The material that the text makes, and the warnings that come with it, each without its location, and a line end
+ * behind. */
 static material warned_material(const char *text, const char *warnings)
 {
     reading r = read_world(text);
@@ -204,14 +206,14 @@ static void metals_from_textures(void **state)
         "\"float v11\" .16\n";
     char text[1024];
     surface_hit hit = {.uv = {0.0f, 0.5f}};
-    material m;
+    material_point m;
     snprintf(text, sizeof text, "%s Material \"conductor\" \"texture eta\" \"e\" \"texture k\" \"e\" Shape \"sphere\"",
              colors);
     reading r = read_world(text);
     expect_silence(&r);
     material_at(r.scene, &hit, &m);
-    assert_rgb(m.eta, .2, .4, .6, 1e-6);
-    assert_rgb(m.k, .2, .4, .6, 1e-6);
+    assert_rgb(m.metal.eta, .2, .4, .6, 1e-6);
+    assert_rgb(m.metal.k, .2, .4, .6, 1e-6);
     reading_destroy(&r);
     /* relative to the coat; the base's roughness is its own */
     snprintf(
@@ -223,11 +225,11 @@ static void metals_from_textures(void **state)
     expect_silence(&r);
     hit.uv.x = 1.0f;
     material_at(r.scene, &hit, &m);
-    assert_rgb(m.eta, 1, 1.5, 2, 1e-6);
-    assert_rgb(m.k, 1.5, 1.5, 1.5, 1e-6);
-    assert_near(m.base_alpha_u, .4, 1e-6);
-    assert_near(m.base_alpha_v, .4, 1e-6);
-    assert_near(m.alpha_u, .3, 1e-6);
+    assert_rgb(m.coat.eta, 1, 1.5, 2, 1e-6);
+    assert_rgb(m.coat.k, 1.5, 1.5, 1.5, 1e-6);
+    assert_near(m.coat.base.alpha_u, .4, 1e-6);
+    assert_near(m.coat.base.alpha_v, .4, 1e-6);
+    assert_near(m.coat.interface.alpha_u, .3, 1e-6);
     reading_destroy(&r);
 }
 
@@ -256,10 +258,10 @@ static void transmission_is_scaled_in_textures(void **state)
                            "remaproughness\" true Shape \"sphere\"");
     expect_silence(&r);
     surface_hit hit = {.uv = {0.0f, 0.5f}};
-    material m;
+    material_point m;
     material_at(r.scene, &hit, &m);
-    assert_rgb(m.transmittance, .1, .2, .3, 1e-6);
-    assert_rgb(m.reflectance, .125, .125, .125, 1e-6);
+    assert_rgb(m.diffuse.transmittance, .1, .2, .3, 1e-6);
+    assert_rgb(m.diffuse.reflectance, .125, .125, .125, 1e-6);
     reading_destroy(&r);
 }
 

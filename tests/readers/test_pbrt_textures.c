@@ -146,8 +146,8 @@ static void windows_of_pictures_are_heeded(void **state)
                 (y + 1) * 4 + x + 1 + 1, 0.0);
 }
 
-/* Of a data window wholly outside of the display window nothing is seen; a display window that is too large to be
- * filled up is told. */
+/* A data window wholly outside of the display window shows nothing; a display window that is too large to be filled up
+ * is told of. */
 static void far_windows_are_black_or_told(void **state)
 {
     (void)state;
@@ -242,7 +242,7 @@ static void levels_of_small_tiles_are_not_used(void **state)
     }
 }
 
-/* Of a picture with layers the one that has red, green and blue, wherever it stands among the others. */
+/* A picture with layers shows the one that has red, green and blue, wherever it stands among the others. */
 static void colors_are_found_by_their_names(void **state)
 {
     (void)state;
@@ -297,7 +297,7 @@ static void cut_jpeg_files_are_told(void **state)
     }
 }
 
-/* What can be read all the same is told of. */
+/* Doubtful textures that can be read all the same are warned of. */
 static void doubtful_textures_are_warned_of(void **state)
 {
     (void)state;

@@ -43,7 +43,8 @@ static void the_name_picks_the_reader(void **state)
     }
 }
 
-/* Without it every file whose name no reader knows may be pbrt text; one that is not is told with the reason. */
+/* Without the program that imports, every file whose name no reader knows may be pbrt text; one that is not is told
+ * with the reason. */
 static void pbrt_text_needs_no_program_that_imports(void **state)
 {
     (void)state;

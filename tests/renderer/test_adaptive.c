@@ -56,7 +56,7 @@ static void test_same_bits(void **state)
     studio_close(threaded);
 }
 
-/* Of crops that cut through blocks of pixels, the full picture's, samples included. */
+/* A crop that cuts through blocks of pixels has the full picture's values, and its sample counts. */
 static void test_crops(void **state)
 {
     (void)state;

@@ -8,7 +8,7 @@
 
 enum { JOB_COUNT = 6, SIZE = 24, PATH_SIZE = 160 };
 
-/* What one thread does with its context, and what came of it. No asserts in threads. */
+/* A thread's work with its context, and its results. Threads make no asserts. */
 typedef struct job {
     const char *scene;
     char file[2][PATH_SIZE]; /* to write; "": none */
@@ -131,7 +131,7 @@ typedef struct canceller {
     bool has_cancelled;
 } canceller;
 
-/* In the middle of the phase, once. */
+/* Cancels once, in the middle of the phase. */
 static void cancel_in_phase(void *user, ag_phase phase, double fraction)
 {
     canceller *c = user;

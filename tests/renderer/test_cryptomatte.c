@@ -126,7 +126,7 @@ static void test_scene(void **state)
     studio_close(s);
 }
 
-/* What the file says of it: header and manifest are there. */
+/* The file has Cryptomatte's header and its manifest. */
 static void test_file(void **state)
 {
     (void)state;

@@ -37,7 +37,7 @@ static eye_pilot look(test_run *r, const char *world, int max_depth)
     return pilot;
 }
 
-/* Of points between low and high, which lie in one plane. */
+/* The mean importance at points between low and high, which lie in one plane. */
 static double mean_importance(const importance_map *importance, vec3 low, vec3 high, vec3 normal)
 {
     rng random = test_random(3);
@@ -162,7 +162,7 @@ typedef struct spread {
     double brightest;       /* photon of those that have been scattered, on average over the seeds */
 } spread;
 
-/* Of the flux of a map's photons that lie inside of ROOM. */
+/* How the flux of a map's photons inside of ROOM is spread. */
 static spread spread_inside(test_run *r, const scene *s, const eye_pilot *pilot, bool is_split)
 {
     double sum = 0.0, squares = 0.0, brightest = 0.0;

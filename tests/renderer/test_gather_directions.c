@@ -57,7 +57,8 @@ static void the_index_may_grow_beyond_32_bits(void **state)
         expect_the_same(&sequence, before - 9 * k, RAY_FAN_MAX, (vec3){0.0f, 0.6f, 0.8f}, false);
 }
 
-/* By the cosine: its mean is 2/3, that of its square 1/2, and about the axis nothing is preferred. */
+/* Rays are distributed by the cosine: its mean is 2/3, the mean of its square 1/2, and no direction about the axis is
+ * preferred. */
 static void they_are_spread_by_the_cosine(void **state)
 {
     (void)state;

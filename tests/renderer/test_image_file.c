@@ -374,7 +374,7 @@ static void broken_pictures_are_errors(void **state)
     assert_null(back.bytes);
 }
 
-/* What a file holds is told, bytes stay bytes where that is wished, and alpha is not multiplied in. */
+/* The reader tells what a file holds, keeps bytes as bytes where that is wished, and does not multiply by alpha. */
 static void values_are_as_stored(void **state)
 {
     (void)state;

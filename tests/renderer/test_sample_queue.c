@@ -76,7 +76,7 @@ static void gathered_light_arrives(void **state)
     sample_queue_destroy(q);
 }
 
-/* What is gathered where the eye sees it is indirect light, what is behind a mirror specular. */
+/* Light gathered at what the eye sees is indirect light; light gathered behind a mirror is specular light. */
 static void gathered_light_has_its_parts(void **state)
 {
     (void)state;

@@ -81,7 +81,7 @@ static void samples_are_in_the_unit_square(void **state)
     assert_close(mean[1], 0.5, tolerance);
 }
 
-/* What a sample draws one by one for itself are its numbers of the sequence of all samples. */
+/* The numbers that a sample draws one by one are its own in the sequence of all samples. */
 static void a_sampler_knows_its_sample(void **state)
 {
     (void)state;
@@ -150,7 +150,7 @@ static void orders_are_independent(void **state)
     expect_none(seeds);
 }
 
-/* What stratification is for: a smooth integral comes out far nearer than from random numbers. */
+/* Stratified samples integrate a smooth function far better than random numbers do. */
 static void a_smooth_integral_converges_fast(void **state)
 {
     (void)state;

@@ -31,7 +31,7 @@ static size_t alignment_of(const setting_row *row)
 static void every_field_has_a_row(void **state)
 {
     (void)state;
-    size_t end = 0;
+    size_t end = sizeof(size_t); /* struct_size comes first */
     const setting_row *row;
     for (size_t i = 0; (row = setting_at(i)) != NULL; i++) {
         size_t alignment = alignment_of(row);
@@ -114,7 +114,7 @@ static void change(const setting_row *row, ag_render_settings *settings)
     }
 }
 
-/* And with no others: what is not marked changes neither. */
+/* Fingerprints change with the settings that are marked for them, and with no others. */
 static void fingerprints_change_with_what_is_marked(void **state)
 {
     (void)state;

@@ -49,7 +49,7 @@ static void panes(void **state)
     eye_reset(&e);
 }
 
-/* What survives carries the others' share: the mean is what there was. */
+/* Paths that survive roulette carry the share of those that do not, so the mean stays. */
 static void roulette(void **state)
 {
     (void)state;

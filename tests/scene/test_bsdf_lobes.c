@@ -84,7 +84,7 @@ static double fresnel(double cosine, double eta)
     return 0.5 * (s * s + p * p);
 }
 
-/* The same of diffuse light. */
+/* Fresnel reflectance of diffuse light. */
 static double fresnel_diffuse(double eta)
 {
     enum { STEPS = 20000 };
@@ -330,7 +330,7 @@ static void a_coat_gives_back_what_it_traps(void **state)
             m.coat_thickness = 0.1f, m.coat_bounces = 5;
         for (double degrees = 2.0; degrees < 90.0; degrees += 38.0) {
             bsdf b = flat(&m, direction_at(degrees, 70.0));
-            rgb expected = walk_between(&b.parameters, b.out, WALKS), got = sampled_albedo(&b, WALKS);
+            rgb expected = walk_between(&m, b.out, WALKS), got = sampled_albedo(&b, WALKS);
             double error = fmax(fabs((double)(got.r - expected.r)), fabs((double)(got.b - expected.b)));
             worst = fmax(worst, error);
             if (!(error < 0.06 * WIDER && (double)got.r < 1.0 + 0.01 * WIDER))
@@ -440,13 +440,15 @@ static void mix_shares(const scene *s, uint32_t shape_index, bool in_a_row, doub
     for (int i = 0; i < SAMPLES; i++) {
         surface_hit hit = {.geometric_normal = UP, .shading_normal = UP, .shape_index = shape_index};
         hit.position = in_a_row ? (vec3){1e-4f * (float)i, 0.5f, 0.0f} : random_direction(&random);
-        bsdf b = bsdf_create(s, &hit, direction_at(30.0, 20.0));
-        material_kind kind = b.parameters.kind;
+        bsdf b;
+        bsdf_init(s, &hit, direction_at(30.0, 20.0), &b);
+        material_kind kind = b.material.kind;
         assert_true(kind == MATERIAL_DIFFUSE || kind == MATERIAL_DIELECTRIC || kind == MATERIAL_CONDUCTOR);
         counts[kind == MATERIAL_DIFFUSE ? 0 : kind == MATERIAL_DIELECTRIC ? 1 : 2]++;
         /* the same point is the same for all that meet it */
-        bsdf again = bsdf_create(s, &hit, direction_at(i % 180, 10.0 * i));
-        assert_int_equal(again.parameters.kind, kind);
+        bsdf again;
+        bsdf_init(s, &hit, direction_at(i % 180, 10.0 * i), &again);
+        assert_int_equal(again.material.kind, kind);
         assert_int_equal(again.lobes[0].group, kind == MATERIAL_DIFFUSE ? BSDF_GATHERED : BSDF_TRACED);
     }
     for (int k = 0; k < 3; k++)
@@ -503,7 +505,8 @@ static void materials_know_whether_they_are_traced(void **state)
         scene *s = test_scene_create(&run, text);
         assert_int_equal(material_is_traced(s, s->shapes[0].material_index), CASES[i].is_traced);
         surface_hit hit = {.geometric_normal = UP, .shading_normal = UP};
-        bsdf b = bsdf_create(s, &hit, UP);
+        bsdf b;
+        bsdf_init(s, &hit, UP, &b);
         assert_int_equal(bsdf_has(&b, BSDF_TRACED), CASES[i].is_traced);
         scene_destroy(s);
     }

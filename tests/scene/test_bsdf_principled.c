@@ -16,14 +16,15 @@ static double gathered_furnace(const bsdf *b)
     double mean = 0.0;
     for (int i = 0; i < STEPS; i++) {
         double cosine = (i + 0.5) / STEPS;
-        bsdf in =
-            flat(&b->parameters, (vec3){(float)sqrt(1.0 - cosine * cosine), 0.0f, copysignf((float)cosine, b->out.z)});
+        bsdf in = bsdf_of_point(&b->material, UP,
+                                (vec3){(float)sqrt(1.0 - cosine * cosine), 0.0f, copysignf((float)cosine, b->out.z)});
         mean += 2.0 * cosine * (double)bsdf_arrival_factor(&in) / STEPS;
     }
     return mean * (double)bsdf_gathered_reflection(b).g;
 }
 
-/* The same of all lobes asked for: the others' weights, a mean over an even grid for each lobe. */
+/* The furnace's value of the lobes asked for: a mean over an even grid for each lobe, weighted by the lobe's
+ * probability. */
 static double furnace_of(const bsdf *b, bsdf_lobes lobes)
 {
     enum { STEPS = 24 };
@@ -142,7 +143,7 @@ static void metals_and_plastics_reflect_as_gltf_says(void **state)
     }
 }
 
-/* Of a smooth surface seen under an angle: what goes where, by the share of u_lobe. */
+/* The shares of u_lobe that a smooth surface, seen under an angle, gives to each way on. */
 typedef struct ways {
     double reflected, through;
     vec3 passed;

@@ -11,7 +11,7 @@ enum { SAMPLES = 20000 / FEWER };
 /* A material made here, or the text of one, met at a point of a disk that faces up. */
 typedef struct row {
     const char *name, *text;
-    material parameters;
+    material_point point;
     scene *s; /* of the text */
     surface_hit hit;
 } row;
@@ -28,7 +28,7 @@ static void add(table *t, const char *name, material m)
 {
     assert_true(t->count < ROWS_MAX);
     prepare(&m);
-    t->rows[t->count++] = (row){.name = name, .parameters = m};
+    t->rows[t->count++] = (row){.name = name, .point = point_of(&m)};
 }
 
 /* The text sets the material of what follows; x: the point on the disk. */
@@ -41,14 +41,18 @@ static void add_text(table *t, const char *name, const char *text, const char *m
     scene_ray down = scene_ray_make((vec3){x, 0.3f, 2.0f}, (vec3){0.0f, 0.0f, -1.0f});
     down.alpha_rule = RAY_MEETS_ALPHA;
     assert_true(scene_intersect(r.s, down, INFINITY, &r.hit));
-    material_at(r.s, &r.hit, &r.parameters);
+    material_at(r.s, &r.hit, &r.point);
     assert_true(t->count < ROWS_MAX);
     t->rows[t->count++] = r;
 }
 
 static bsdf row_bsdf(const row *r, vec3 out)
 {
-    return r->s ? bsdf_create(r->s, &r->hit, out) : bsdf_of(&r->parameters, UP, out);
+    bsdf b;
+    if (!r->s)
+        return bsdf_of_point(&r->point, UP, out);
+    bsdf_init(r->s, &r->hit, out, &b);
+    return b;
 }
 
 static material thin(float ior)
@@ -140,20 +144,20 @@ static int tear_down(void **state)
 static void every_kind_has_a_row(void **state)
 {
     const table *t = *state;
-    bool is_there[MATERIAL_MIX + 1] = {false};
+    bool is_there[MATERIAL_KIND_COUNT] = {false};
     for (int k = 0; k < t->count; k++) {
-        is_there[t->rows[k].parameters.kind] = true;
+        is_there[t->rows[k].point.kind] = true;
         if (t->rows[k].s &&
             t->rows[k].s->materials[t->rows[k].s->shapes[t->rows[k].hit.shape_index].material_index].kind ==
                 MATERIAL_MIX)
             is_there[MATERIAL_MIX] = true;
     }
-    for (int kind = 0; kind <= MATERIAL_MIX; kind++)
+    for (int kind = 0; kind < MATERIAL_KIND_COUNT; kind++)
         assert_true(is_there[kind]);
 }
 
 /* Hair does not scatter alike both ways, by its model; test_hair.c says what holds for photons in it. */
-static bool scatters_one_way(const row *r) { return r->parameters.kind == MATERIAL_HAIR; }
+static bool scatters_one_way(const row *r) { return r->point.kind == MATERIAL_HAIR; }
 
 /* --- (a), (d): density, weight; (b): flux --- */
 
@@ -166,7 +170,7 @@ static void check_row(const row *r)
         double probability = 0.0;
         for (int k = 0; k < b.lobe_count; k++)
             probability += (double)b.lobes[k].probability;
-        bool is_empty = r->parameters.kind == MATERIAL_INTERFACE;
+        bool is_empty = r->point.kind == MATERIAL_INTERFACE;
         assert_close(probability, is_empty ? 0.0 : 1.0, 1e-6);
         assert_close(bsdf_probability(&b, BSDF_ALL), probability, 1e-6);
         assert_close(bsdf_probability(&b, BSDF_GATHERED) + bsdf_probability(&b, BSDF_TRACED), probability, 1e-6);
@@ -200,9 +204,10 @@ static void samples_fall_and_weigh_as_is_said(void **state)
 /* The square of the index beyond over that on out's side, where what passes is bent; else 1. */
 static double square_beyond(const bsdf *b)
 {
-    const material *m = &b->parameters;
-    bool bends = m->kind == MATERIAL_DIELECTRIC || (m->kind == MATERIAL_PRINCIPLED && principled_is_solid(m));
-    double square = bends ? (double)m->ior * (double)m->ior : 1.0;
+    const material_point *m = &b->material;
+    bool bends =
+        m->kind == MATERIAL_DIELECTRIC || (m->kind == MATERIAL_PRINCIPLED && principled_is_solid(&m->principled));
+    double index = (double)bsdf_index(b), square = bends ? index * index : 1.0;
     return vec3_dot(b->out, UP) > 0.0f ? square : 1.0 / square;
 }
 
@@ -277,7 +282,8 @@ static void scattering_is_reciprocal(void **state)
     }
 }
 
-/* What photons store and what the eye looks up are together the value: also where the shading normal leans. */
+/* Photons' share and the eye's share of a gathered lobe multiply to its value, where the shading normal leans as well.
+ */
 static void gathered_lobes_are_products(void **state)
 {
     const table *t = *state;
@@ -291,7 +297,7 @@ static void gathered_lobes_are_products(void **state)
         for (int i = 0; i < 3000; i++) {
             vec3 normal = i % 2 ? UP : vec3_face_forward(random_direction(&random), UP);
             vec3 o = random_direction(&random), d = random_direction(&random);
-            bsdf out = bsdf_of(&r->parameters, normal, o), in = bsdf_of(&r->parameters, normal, d);
+            bsdf out = bsdf_of_point(&r->point, normal, o), in = bsdf_of_point(&r->point, normal, d);
             if (vec3_dot(d, normal) / d.z > 7.9f)
                 continue; /* bounded, at grazing silhouettes */
             double expected = (double)bsdf_arrival_factor(&in) * fabs((double)d.z) / PI;

@@ -90,6 +90,7 @@ static double balanced(double pdf, double other) { return pdf / (pdf + other); }
 
 static sphere_pictures picture_sphere(const material *prepared, int samples)
 {
+    const material_point point = point_of(prepared);
     sphere_pictures sum = {0.0, 0.0, 0.0};
     vec3 out = {0.0f, 0.0f, 1.0f}, sun = vec3_normalize((vec3){1.0f, 1.0f, 3.0f}), lamp = {2.0f, 2.0f, 4.0f};
     rng random = test_random(42);
@@ -98,7 +99,8 @@ static sphere_pictures picture_sphere(const material *prepared, int samples)
         sincos_turns(rng_float(&random), &s, &c);
         vec3 n = {radius * c, radius * s, sqrtf(square)};
         surface_hit hit = {.geometric_normal = n, .shading_normal = n};
-        bsdf b = bsdf_create_of(prepared, &hit, out);
+        bsdf b;
+        bsdf_init_of(&point, &hit, out, &b);
         sum.distant += (double)bsdf_evaluate(&b, BSDF_ALL, BSDF_RADIANCE, sun).g;
         vec3 to_lamp = vec3_sub(lamp, n);
         float distance_squared = vec3_length_squared(to_lamp);
@@ -243,7 +245,7 @@ static void coats_send_light_where_walks_go(void **state)
     }
 }
 
-/* Where a texture says how rough, between the cells of the table: against the table of that one roughness. */
+/* A roughness from a texture, between the cells of the table, gives what the table of that one roughness gives. */
 static void textured_roughness_is_interpolated(void **state)
 {
     (void)state;

@@ -16,7 +16,7 @@ typedef struct shown_view {
     char display[64], view[64];
 } shown_view;
 
-/* As they are listed to users. */
+/* Reads the displays' views as users see them listed. */
 static int read_views(const color_config *config, shown_view *views)
 {
     char *text, *rest, display[64] = "";

@@ -14,13 +14,21 @@ static material hair(float beta_m, float beta_n, float tilt_degrees, float sigma
     return m;
 }
 
-/* Of theta, the angle to the plane across the axis x, and phi about it. */
+/* The direction of theta, the angle to the plane across the axis x, and of phi about that axis. */
 static vec3 toward(double theta, double phi)
 {
     return (vec3){(float)sin(theta), (float)(cos(theta) * cos(phi)), (float)(cos(theta) * sin(phi))};
 }
 
-static rgb scattered(const hair_fibre *h, bool is_flux, vec3 direction)
+/* The fibre is kept for the next point alone, or for two of one material. */
+static hair_point point_at(const material *m, float v, vec3 out)
+{
+    static hair_fibre fibre;
+    fibre = hair_fibre_make(m->ior, m->hair_beta_m, m->hair_beta_n, m->hair_tilt_degrees);
+    return hair_point_at(&fibre, m->hair_sigma_a, v, out);
+}
+
+static rgb scattered(const hair_point *h, bool is_flux, vec3 direction)
 {
     rgb value;
     float pdf;
@@ -28,8 +36,8 @@ static rgb scattered(const hair_fibre *h, bool is_flux, vec3 direction)
     return value;
 }
 
-/* What leaves to the eye in a furnace of radiance 1. */
-static rgb furnace_of(const hair_fibre *h)
+/* The radiance that leaves for the eye in a furnace of radiance 1. */
+static rgb furnace_of(const hair_point *h)
 {
     enum { ROWS = 160, COLUMNS = 160 };
     double sum[3] = {0.0, 0.0, 0.0};
@@ -50,7 +58,7 @@ static void white_hair_keeps_all(void **state)
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < 5; i++) {
             material m = hair(BETAS[k][0], BETAS[k][1], 2.0f, 0.0f);
-            hair_fibre h = hair_fibre_at(&m, 0.03f + 0.22f * (float)i, toward(-1.2 + 0.6 * i, 0.4 + i));
+            hair_point h = point_at(&m, 0.03f + 0.22f * (float)i, toward(-1.2 + 0.6 * i, 0.4 + i));
             rgb all = furnace_of(&h);
             assert_close(all.r, 1.0, 2e-3);
         }
@@ -62,7 +70,7 @@ static void colored_hair_absorbs(void **state)
     (void)state;
     for (int k = 0; k < 4; k++) {
         material m = hair(0.4f, 0.4f, 0.0f, 0.05f * (float)(1 + k));
-        hair_fibre h = hair_fibre_at(&m, 0.5f, toward(0.0, 1.0));
+        hair_point h = point_at(&m, 0.5f, toward(0.0, 1.0));
         rgb all = furnace_of(&h);
         double r = (double)fresnel_dielectric(1.0f, 1.55f);
         const float values[3] = {all.r, all.g, all.b};
@@ -121,7 +129,7 @@ static void values_are_those_of_the_model(void **state)
         double o = 2.8 * (double)rng_float(&random) - 1.4, i = 2.8 * (double)rng_float(&random) - 1.4;
         double phi = 6.0 * (double)rng_float(&random), turn = 6.0 * (double)rng_float(&random) - 3.0;
         double expected = written_out(&m, 1.0 - 2.0 * (double)v, o, i, turn);
-        hair_fibre h = hair_fibre_at(&m, v, toward(o, phi));
+        hair_point h = point_at(&m, v, toward(o, phi));
         rgb value = scattered(&h, false, toward(i, phi + turn));
         assert_close(value.r, expected, 1e-3 * expected + 1e-5);
     }
@@ -143,7 +151,7 @@ static void photons_and_eye_agree(void **state)
         enum { OFFSETS = 64 };
         for (int i = 0; i < OFFSETS; i++) {
             float v = ((float)i + 0.5f) / OFFSETS;
-            hair_fibre of_eye = hair_fibre_at(&m, v, b), of_photon = hair_fibre_at(&m, v, a);
+            hair_point of_eye = point_at(&m, v, b), of_photon = point_at(&m, v, a);
             eye += (double)scattered(&of_eye, false, a).r * cos(theta_b) / OFFSETS;
             photons += (double)scattered(&of_photon, true, b).r * cos(theta_a) / OFFSETS;
         }
@@ -173,7 +181,8 @@ static void reflection_is_that_of_a_tube(void **state)
             scene_ray down = scene_ray_make((vec3){x, 0.5f, 5.0f}, (vec3){0.0f, 0.0f, -1.0f});
             surface_hit hit;
             assert_true(scene_intersect(s, down, INFINITY, &hit));
-            bsdf b = bsdf_create(s, &hit, UP);
+            bsdf b;
+            bsdf_init(s, &hit, UP, &b);
             vec3 normal = {x, 0.0f, sqrtf(1.0f - x * x)}, mean = {0.0f, 0.0f, 0.0f};
             rng random = test_random(7);
             for (int n = 0; n < 400; n++) {

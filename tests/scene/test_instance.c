@@ -51,8 +51,8 @@ static void expect_near_point(vec3 a, vec3 b, float tolerance)
                  (double)b.y, (double)b.z, (double)tolerance);
 }
 
-/* The same point, as two scenes see it; tolerance in lengths of the scene. Where the ray grazes, roundings go far along
- * the surface, and nothing is asked. */
+/* Holds a hit in one scene against the hit of the same ray in another; tolerance in lengths of the scene. Where the ray
+ * grazes, roundings go far along the surface, and nothing is asked. */
 static void expect_same_hit(const scene_ray *ray, const surface_hit *a, const surface_hit *b, float tolerance)
 {
     if (fabsf(vec3_dot(ray->direction, a->geometric_normal)) < 0.1f)
@@ -115,7 +115,7 @@ static void instances_are_their_shapes_moved(void **state)
     test_run_reset(&r);
 }
 
-/* Both see the fibre at one point, and the offset across it from the same side. */
+/* Both scenes show the fibre at one point, and the offset across it on the same side. */
 static void expect_same_hair(const scene *a, const scene *b, const scene_ray *ray, rng *random, uint32_t *met)
 {
     surface_hit of_a, of_b;
@@ -123,7 +123,9 @@ static void expect_same_hair(const scene *a, const scene *b, const scene_ray *ra
         of_a.primitive_index != of_b.primitive_index || fabsf(of_a.distance - of_b.distance) > 1e-3f)
         return;
     vec3 out = vec3_negate(ray->direction);
-    bsdf in_a = bsdf_create(a, &of_a, out), in_b = bsdf_create(b, &of_b, out);
+    bsdf in_a, in_b;
+    bsdf_init(a, &of_a, out, &in_a);
+    bsdf_init(b, &of_b, out, &in_b);
     for (int i = 0; i < 8; i++) {
         vec3 from = random_direction(random);
         rgb f = bsdf_evaluate(&in_a, BSDF_ALL, BSDF_RADIANCE, from);
@@ -164,7 +166,7 @@ static void hair_scatters_alike_in_a_mirror(void **state)
     test_run_reset(&r);
 }
 
-/* What leaves the outside of a convex shape meets nothing; what goes into a closed one meets it again. */
+/* A ray that leaves the outside of a convex shape meets nothing; one that goes into a closed shape meets it again. */
 static void expect_clean_starts(const scene *s, rng *random, const scene_ray *ray, bool is_closed)
 {
     surface_hit hit, next;

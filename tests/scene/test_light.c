@@ -106,7 +106,7 @@ static rgb *constant_pixels(uint32_t count)
     return pixels;
 }
 
-/* The same from everywhere: a point light. */
+/* A goniometric light whose picture is constant shines as a point light does. */
 static void a_constant_goniometric_light_is_a_point(void **state)
 {
     (void)state;

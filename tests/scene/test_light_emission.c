@@ -166,8 +166,8 @@ static void distant_light_fills_the_disc_around_the_scene(void **state)
     test_run_reset(&r);
 }
 
-/* Of a disc of h = 1 - cos a: directions are uniform in the cone, their mean cosine is 1 - h / 2, and what crosses a
- * surface that faces its middle is the same as without an extent, of photons as of samples from a point. */
+/* Directions to a disc of h = 1 - cos a are uniform in the cone, and their mean cosine is 1 - h / 2. The flux through a
+ * surface that faces its middle is that of a sun without extent, for photons as for samples from a point. */
 static void a_sun_of_an_extent_gives_as_much(void **state)
 {
     (void)state;

@@ -129,7 +129,7 @@ static scene *row_scene(test_run *r, const light_row *row)
     return s;
 }
 
-/* Where the row's light goes: the disc that it is asked about. */
+/* The disc that a row's light is asked about. */
 static disc row_disc(const light_row *row, const light *l, int which)
 {
     disc d = {{0.1f, -0.2f, 0.0f}, {0.0f, 0.0f, 1.0f}, 0.8f};

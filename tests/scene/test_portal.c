@@ -197,7 +197,8 @@ static void a_constant_sky_fills_the_windows_solid_angle(void **state)
     test_run_reset(&r);
 }
 
-/* What enters is area times irradiance: of a constant sky pi L. The photons carry it, each nearly as much. */
+/* The flux that enters is area times irradiance, which is pi L for a constant sky. The photons carry it in nearly equal
+ * parts. */
 static void photons_enter_by_the_window(void **state)
 {
     (void)state;

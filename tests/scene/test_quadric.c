@@ -324,7 +324,7 @@ static void samples_are_even_over_the_part(void **state)
     test_run_reset(&r);
 }
 
-/* What a lamp sends to a point, by its samples, is what rays from there see of it. */
+/* The light that a lamp sends to a point, by its samples, is the light that rays from there find on it. */
 static void lamps_shine_as_they_are_seen(void **state)
 {
     (void)state;

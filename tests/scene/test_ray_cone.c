@@ -85,7 +85,8 @@ static void glass(void **state)
     compare_bent(BALL, -0.5f, 1.0f, 1.5f, 1.0f); /* and out of one */
 }
 
-/* Of a mesh with smooth normals: a patch of 2 degrees of the unit sphere, within what its corners leave. */
+/* A mesh with smooth normals, a patch of 2 degrees of the unit sphere, has the sphere's curvature within what its
+ * corners leave. */
 static void smooth_mesh(void **state)
 {
     (void)state;

@@ -109,7 +109,7 @@ static void every_level_has_the_mean(void **state)
     }
 }
 
-/* In linear values: half of the pixels at 1, the other half at 0 by a table that is far from straight. */
+/* Means are of linear values: half of the pixels at 1, the other half at 0 by a table that is far from straight. */
 static void means_are_of_linear_values(void **state)
 {
     (void)state;
@@ -276,7 +276,7 @@ static float most_of(scene *s, const texture *t)
     return found.most;
 }
 
-/* What may be above 1 is cut there, and what may be below 0 as well. */
+/* Values that a texture bounds by 1 or 0 are cut there. */
 static void bounds_of_values(void **state)
 {
     (void)state;

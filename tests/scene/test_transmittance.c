@@ -31,7 +31,7 @@ static scene_ray ray_between(vec3 from, vec3 to, uint32_t medium_index)
     return ray;
 }
 
-/* Both ways of asking, along the whole of the straight line to a surface. */
+/* Asks in both ways, along the whole straight line to a surface. */
 static void expect_way(const scene *s, vec3 from, vec3 to, uint32_t start, double in_a, double in_b, uint32_t end)
 {
     scene_ray ray = ray_between(from, to, start);

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-/* As the Academy's transforms have it. */
+/* ACEScg from linear Rec. 709, as the Academy's transforms have it. */
 static const double ACESCG[9] = {0.613097402, 0.339523146, 0.047379451, 0.070193822, 0.916353879,
                                  0.013452399, 0.020615593, 0.109569773, 0.869814635};
 

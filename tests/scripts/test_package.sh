@@ -46,7 +46,8 @@ while read -r name relation least; do
 done < <(tr -d '()' <<<"${depends//, /$'\n'}")
 echo "ok: depends on $depends"
 
-for file in bin/afterglow bin/afterglow-map share/man/man1/afterglow-map.1.gz include/afterglow/afterglow.h include/afterglow/base.h share/man/man1/afterglow.1.gz \
+mapfile -t headers < <(cd "$root" && printf '%s\n' {threads,renderer}/include/afterglow/*.h | sed 's|.*/include/|include/|')
+for file in "${headers[@]}" bin/afterglow bin/afterglow-map share/man/man1/afterglow-map.1.gz share/man/man1/afterglow.1.gz \
     share/doc/afterglow/copyright share/doc/afterglow/changelog.gz share/doc/afterglow/changelog.Debian.gz share/doc/afterglow/examples/room.pbrt; do
     [[ -s tree/usr/$file ]] || fail "no $file"
 done

@@ -4,7 +4,7 @@
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
-headers=(afterglow/base.h afterglow/afterglow.h)
+mapfile -t headers < <(cd "$root" && printf '%s\n' {threads,renderer}/include/afterglow/*.h | sed 's|.*/include/||')
 includes=(-I "$root/renderer/include" -I "$root/threads/include")
 warnings=(-Wall -Wextra -Wshadow -Wconversion -Wundef -pedantic -Werror)
 
@@ -17,7 +17,7 @@ for header in "${headers[@]}"; do
 done
 
 # What is declared: the last word before the bracket of each AG_API declaration.
-cat "$root/threads/include/afterglow/base.h" "$root/renderer/include/afterglow/afterglow.h" |
+cat "$root"/{threads,renderer}/include/afterglow/*.h |
     sed -nE 's/^AG_API .*[ *](ag_[a-z0-9_]+)\(.*/\1/p' | sort >"$folder/declared"
 nm --dynamic --defined-only --format=posix "$AFTERGLOW_BUILD_DIR/lib/libafterglow.so" |
     awk '{ print $1 }' | sed 's/@.*//' | sort >"$folder/exported"

@@ -92,6 +92,18 @@ with afterglow.Context(threads=2, progress=lambda phase, fraction: phases.append
         assert not numpy.array_equal(scene.render(**picture), pixels)
         refused(afterglow.Error, "is complete already", scene.light, "point")
         refused(ValueError, "there is no such setting", scene.render, sise="1x1")
+        scene.camera("perspective", {"float fov": 60}, world_from_camera=away)
+        with scene.rendering(aov="Z,A", **picture) as rendering:
+            assert rendering.shape == (30, 40) and rendering.watch() is None
+            rendering.advance(1)
+            first = rendering.watch().copy()
+            assert rendering.watch() is None and rendering.sample_counts() == (1, 1, 1.0)
+            rendering.advance(4)
+            assert numpy.array_equal(rendering.pixels(), pixels) and numpy.array_equal(rendering.watch(), pixels)
+            assert not numpy.array_equal(first, pixels)
+            channels = rendering.channels()
+            assert set(channels) == {"R", "G", "B", "A", "Z"} and numpy.array_equal(channels["R"], pixels[..., 0])
+            assert abs(channels["Z"][15, 20] - 3) < 0.01
     with context.load("scene.pbrt") as scene:
         assert numpy.array_equal(scene.render(**picture), pixels)
     with context.load_text(open("scene.pbrt").read()) as scene:
@@ -119,6 +131,19 @@ class Enough(Exception):
 def stop(phase, fraction):
     if phase == 5:  # AG_PHASE_RENDER
         raise Enough
+
+def stop_here():
+    raise Enough
+
+with afterglow.Context() as context, context.load("scene.pbrt") as scene:
+    with scene.rendering(**{**picture, "spp": 100000}) as rendering:
+        refused(Enough, "", rendering.advance, 100000, stop_here)
+    assert numpy.array_equal(scene.render(**picture), pixels)
+
+said = []
+with afterglow.Context(warn=said.append) as context, context.scene() as scene:
+    scene.light("point", {"float unknown": 1})
+assert len(said) == 1 and "unknown" in said[0], said
 
 with afterglow.Context(progress=stop) as context, context.load("scene.pbrt") as scene:
     refused(Enough, "", scene.render, **picture)

@@ -265,7 +265,7 @@ static void test_names_and_signals(void **state)
     thread_pool_destroy(pool);
 }
 
-/* In a process of its own, with address space for some of the stacks but not for all. */
+/* Runs in a process of its own, with address space for some of the stacks but not for all. */
 static void test_creation_fails_part_way(void **state)
 {
     (void)state;

@@ -120,7 +120,7 @@ static void test_neighbours_follow_one_another(void **state)
         }
 }
 
-/* What the curve is for: tiles claimed in a row lie in a compact patch, which rows of an image would not. */
+/* The curve keeps tiles that are claimed in a row in a compact patch, which rows of an image would not. */
 static void test_runs_are_compact(void **state)
 {
     (void)state;

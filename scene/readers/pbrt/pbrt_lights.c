@@ -88,11 +88,15 @@ static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
     AG_TRY(set_position(parser, list, c.from, l));
     AG_TRY(parameter_get_float(list, parser->log, "coneangle", &cone));
     AG_TRY(parameter_get_float(list, parser->log, "conedeltaangle", &delta));
+    AG_TRY(parameter_get_bool(list, parser->log, "cosine", &l->dims_by_cosine)); /* which pbrt does not have */
     if (!(cone > 0.0f && cone <= 180.0f))
         return pbrt_refuse(parser, list, "coneangle", "\"coneangle\" should be within (0, 180] degrees");
     if (!(delta >= 0.0f && delta <= 2.0f * cone)) /* beyond the axis pbrt counts on at the other side */
         return pbrt_refuse(parser, list, "conedeltaangle",
                            "\"conedeltaangle\" should be from 0 to twice \"coneangle\"");
+    if (l->dims_by_cosine && (cone > 90.0f || c.power > 0.0f))
+        return pbrt_refuse(parser, list, "cosine",
+                           "a \"cosine\" goes with a \"coneangle\" of at most 90 degrees, and not with \"power\"");
     light_set_cone(l, ((double)cone - delta) * (PI / 180.0), cone * (PI / 180.0));
     double cone_measure =
         PI * ((double)l->falloff_start + l->falloff_end); /* the ramp is half of its height, on average */
@@ -103,9 +107,14 @@ static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
 static ag_status read_distant(pbrt_parser *parser, parameter_list *list, light *l)
 {
     light_common c;
+    float angle = 0.0f; /* which pbrt does not have: degrees across the disc that shines */
     l->kind = LIGHT_DISTANT;
     AG_TRY(read_common(parser, list, "L", "illuminance", &c));
     AG_TRY(read_direction(parser, list, &c, &l->direction));
+    AG_TRY(parameter_get_float(list, parser->log, "angle", &angle));
+    if (!(angle >= 0.0f && angle <= 180.0f))
+        return pbrt_refuse(parser, list, "angle", "\"angle\" should be from 0 to 180 degrees");
+    light_set_disc(l, (double)angle * (PI / 180.0));
     double factor = c.power > 0.0f ? (double)c.scale * c.power : c.scale;
     return scale_color(parser, list, c.color, factor, &l->radiance);
 }

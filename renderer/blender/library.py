@@ -1,0 +1,18 @@
+"""The Python module of Afterglow, a copy of which lies beside this file, and the library that it finds."""
+
+import os
+
+import bpy
+
+
+def load():
+    """Errors: ImportError, whose text is for the user."""
+    preferences = bpy.context.preferences.addons.get(__package__)
+    path = preferences.preferences.library if preferences and preferences.preferences else ""
+    if path and "AFTERGLOW_LIBRARY" not in os.environ:
+        os.environ["AFTERGLOW_LIBRARY"] = bpy.path.abspath(path)
+    try:
+        from . import afterglow
+    except OSError as error:  # of a library that is there, and cannot be used
+        raise ImportError(f"libafterglow cannot be used: {error}") from error
+    return afterglow

@@ -1,0 +1,191 @@
+"""Blender's materials as the renderer's: what a node tree says of surface, emission and alpha, with pictures baked to
+sheets of the material's own coordinates."""
+
+import math
+from collections import namedtuple
+
+import numpy as np
+
+from . import closures, pictures
+from .nodes import Graph, Sheet, source
+
+_SHEET_MOST = 4096
+
+# What a mesh's part needs: the material's name, parameters of the shape (alpha), those of its light or None, and how its
+# pictures lie (meshes.py).
+Look = namedtuple("Look", "name shape light layout")
+
+
+class MaterialSheet(Sheet):
+    """A sheet whose unit square is that of the material's layout; pictures with another one are looked up there."""
+
+    def __init__(self, width, height, layout):
+        super().__init__(width, height)
+        self._layout = layout
+
+    def relative(self, layout):
+        """None where it is the sheet's own."""
+        own = np.vstack([self._layout[1], [0, 0, 1]])
+        if np.allclose(own, np.vstack([layout[1], [0, 0, 1]])) or abs(np.linalg.det(own)) < 1e-12:
+            return None
+        return (np.vstack([layout[1], [0, 0, 1]]) @ np.linalg.inv(own))[:2]
+
+
+def _way_of(node):
+    """How a texture goes on beyond its picture, and between its pixels."""
+    return {"string wrap": {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black"}[node.extension],
+            "string filter": "point" if node.interpolation == "Closest" else "bilinear"}
+
+
+class Baker:
+    """The values of one material: constants, or textures that are added to the scene."""
+
+    def __init__(self, scene, material, notes):
+        self.scene, self.name, self.notes = scene, material.name_full, notes
+        self.graph = Graph(f'material "{material.name_full}"', notes)
+        self.layout = None
+        self._way = {}
+        self._made = {}
+        self.count = 0
+
+    def look_for_layout(self, socket):
+        found = self.graph.pictures(socket)
+        layouts = [self.graph.layout(node, path) for node, path in found]
+        if not layouts:
+            return
+        self._way = _way_of(found[0][0])
+        self.layout = layouts[0]
+        for layout in layouts[1:]:
+            if layout[0] != self.layout[0]:
+                self.notes.say(f'material "{self.name}": its pictures lie by several coordinates: the first counts')
+            elif not np.allclose(layout[1], self.layout[1]):
+                self.layout = (self.layout[0], np.eye(3)[:2])  # they repeat by a common square
+
+    def bake(self, socket, path, is_color, change=None):
+        """A constant (3,) or (), or an array of the sheet's size; change: applied to what the sockets say."""
+        found = self.graph.pictures(socket, path)
+        sheet = None
+        if found:
+            sizes = np.array([node.image.size[:] for node, _ in found if node.image.size[0] > 0] or [(1, 1)])
+            width, height = np.minimum(sizes.max(axis=0), _SHEET_MOST)
+            sheet = MaterialSheet(int(width), int(height), self.layout)
+        values = (self.graph.color if is_color else self.graph.number)(socket, path, sheet)
+        return change(values) if change else values
+
+    def parameter(self, name, values, is_color, low=None, high=None):
+        """{"rgb name": ...} of a constant, {"texture name": ...} of an array."""
+        values = np.clip(np.nan_to_num(values), low, high) if low is not None else np.nan_to_num(values)
+        if values.ndim == (1 if is_color else 0):
+            return {("rgb " if is_color else "float ") + name: values}
+        return {f"texture {name}": self.texture(values, is_color)}
+
+    def image(self, values):
+        """Adds an array as a picture in memory; gives its name."""
+        self.count += 1
+        name = f"{self.name}/{self.count}"
+        self.scene.image(name, values[::-1].astype(np.float32))
+        return name
+
+    def texture(self, values, is_color):
+        name = self.image(values)
+        self.scene.texture(name, "spectrum" if is_color else "float", "imagemap",
+                           {"string filename": name, **self._way})
+        return name
+
+    def direct_picture(self, socket, path, scale):
+        """A colour socket that is a plain picture of 8 bits: its texture without a detour by floats."""
+        output, _, _ = source(socket, path)
+        if output is None or output.node.type != "TEX_IMAGE" or output.name != "Color" or output.node.mute:
+            return None
+        image = output.node.image
+        if not image or image.is_float or pictures.is_linear(image, self.notes):
+            return None
+        if self.layout and not np.allclose(self.graph.layout(output.node, path)[1], self.layout[1]):
+            return None
+        key = image.as_pointer(), output.node.extension, output.node.interpolation, scale
+        if key not in self._made:
+            self.count += 1
+            name = file_name = f"{self.name}/{self.count}"
+            if image.source == "TILED":
+                file_name = pictures.tiled_file(image)
+            else:
+                raw = pictures.raw_pixels(image)
+                if raw is None:
+                    return None
+                self.scene.image(name, np.round(raw[::-1, :, :3] * 255).astype(np.uint8))
+            self.scene.texture(name, "spectrum", "imagemap",
+                               {"string filename": file_name, "string encoding": "sRGB", "float scale": scale,
+                                **_way_of(output.node)})
+            self._made[key] = name
+        return self._made[key]
+
+    def color(self, name, socket, path, scale=1.0):
+        """A colour in [0, 1], times the scale."""
+        texture = self.direct_picture(socket, path, scale)
+        if texture:
+            return {f"texture {name}": texture}
+        return self.parameter(name, scale * self.bake(socket, path, True), True, 0.0, 1.0)
+
+    def number(self, name, socket, path, low=0.0, high=1.0, change=None):
+        return self.parameter(name, self.bake(socket, path, False, change), False, low, high)
+
+
+class Materials:
+    """The looks of the materials that meshes ask for, each made once."""
+
+    def __init__(self, scene, notes):
+        self._scene, self._notes, self._looks = scene, notes, {}
+
+    def look(self, material):
+        key = material.name_full if material else None
+        if key not in self._looks:
+            self._looks[key] = self._make(material)
+        return self._looks[key]
+
+    def _make(self, material):
+        if material is None or not material.use_nodes or not material.node_tree:
+            name = "(none)" if material is None else material.name_full
+            color = (0.8, 0.8, 0.8) if material is None else material.diffuse_color[:3]
+            self._scene.material(name, "diffuse", {"rgb reflectance": np.clip(color, 0, 1)})
+            return Look(name, {}, None, None)
+        output = material.node_tree.get_output_node("CYCLES")
+        baker = Baker(self._scene, material, self._notes)
+        if output is None:
+            self._scene.material(baker.name, "diffuse", {"rgb reflectance": (0, 0, 0)})
+            return Look(baker.name, {}, None, None)
+        for socket, what in ((output.inputs["Volume"], "volume"), (output.inputs["Displacement"], "displacement")):
+            if socket.is_linked:
+                self._notes.say(f'material "{baker.name}": its {what} is not translated')
+        baker.look_for_layout(output.inputs["Surface"])
+        surface = closures.translate(baker, output.inputs["Surface"], ())
+        return self._finish(baker, surface)
+
+    def _finish(self, baker, surface):
+        closures.add_material(baker, baker.name, surface)
+        shape, light = {}, None
+        if surface.alpha is not None and (surface.alpha < 1).any():
+            shape = baker.parameter("alpha", surface.alpha, False, 0.0, 1.0)
+        if surface.emission is not None and (surface.emission > 0).any():
+            if surface.emission.ndim == 1:
+                light = {"rgb L": np.maximum(surface.emission, 0)}
+            else:
+                light = {"string filename": baker.image(np.maximum(surface.emission, 0))}
+            light["bool twosided"] = True
+        return Look(baker.name, shape, light, baker.layout)
+
+
+def roughness_squared(value):
+    return np.square(np.clip(value, 0, 1))
+
+
+def reflected_by_interface(specular, roughness):
+    """About the share of even light that a dielectric interface of Blender's Principled BSDF reflects: the mean of
+    Schlick's approximation, less what rough facets lose to one another."""
+    normal = 0.08 * min(max(specular, 0.0), 1.0)
+    return 0.0 if normal == 0 else (normal + (1 - normal) / 21) * (1 - 0.4 * roughness ** 4)
+
+
+def index_of_specular(specular):
+    """The index whose reflectance at the normal is Blender's 0.08 specular."""
+    root = math.sqrt(min(max(0.08 * float(specular), 0.0), 0.99))
+    return (1 + root) / (1 - root)

@@ -1,0 +1,106 @@
+"""Meshes as arrays: for each material the triangles that have it, with normals where any face is smooth, and with the
+coordinates that the material's pictures are laid out by."""
+
+from collections import namedtuple
+
+import numpy as np
+
+Part = namedtuple("Part", "slot positions triangles normals uvs")
+
+
+def _array(collection, name, width, dtype):
+    values = np.empty(len(collection) * width, dtype)
+    collection.foreach_get(name, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+def _uvs(mesh, name):
+    """Of the loops; None where there is no such map."""
+    layer = mesh.uv_layers.get(name) if name else None
+    if not layer:
+        layer = next((candidate for candidate in mesh.uv_layers if candidate.active_render), None)
+    return _array(layer.data, "uv", 2, np.float32) if layer else None
+
+
+def _layout(mesh, how, positions, loop_vertices):
+    """The coordinates of a material's pictures, of the loops; how: None, or a source and an affine matrix, 2 x 3."""
+    if not how:
+        return None
+    source, matrix = how
+    if source[0] == "UV":
+        uvs = _uvs(mesh, source[1])
+    else:
+        space = positions
+        if source[0] == "GENERATED":
+            low, high = positions.min(axis=0), positions.max(axis=0)
+            space = (positions - low) / np.maximum(high - low, 1e-30)
+        uvs = space[loop_vertices][:, :2]
+    if uvs is None:
+        return None
+    return np.ascontiguousarray(uvs @ matrix[:, :2].T + matrix[:, 2], np.float32)
+
+
+def _unit(vectors):
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-30)
+
+
+def _plain_normals(mesh, positions, loop_vertices, is_smooth):
+    """Of the loops: at smooth faces the mean of the normals around the vertex by their angles. Blender's own are the same
+    but for the order in which its threads add, so that their last bits differ from time to time."""
+    starts, counts = _array(mesh.polygons, "loop_start", 1, np.int32), _array(mesh.polygons, "loop_total", 1, np.int32)
+    faces = _array(mesh.polygons, "normal", 3, np.float32).astype(np.float64)
+    face_of = np.empty(len(loop_vertices), np.int64)
+    at = np.repeat(starts - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())  # loops, face by face
+    face_of[at] = np.repeat(np.arange(len(starts)), counts)
+    loops = np.arange(len(loop_vertices))
+    first, last = starts[face_of], (starts + counts - 1)[face_of]
+    corners = positions[loop_vertices].astype(np.float64)
+    before = _unit(corners[np.where(loops == first, last, loops - 1)] - corners)
+    after = _unit(corners[np.where(loops == last, first, loops + 1)] - corners)
+    angles = np.arccos(np.clip((before * after).sum(axis=-1), -1, 1))
+    weighted = faces[face_of] * angles[:, None]
+    sums = [np.bincount(loop_vertices, weighted[:, axis], len(positions)) for axis in range(3)]
+    smooth = _unit(np.stack(sums, -1))[loop_vertices]
+    return np.where(is_smooth[face_of][:, None], smooth, faces[face_of]).astype(np.float32)
+
+
+def parts_of(mesh, layouts):
+    """The parts of an evaluated mesh. layouts: for each material slot how its pictures are laid out (see _layout)."""
+    mesh.calc_loop_triangles()
+    if not mesh.loop_triangles:
+        return []
+    positions = _array(mesh.vertices, "co", 3, np.float32)
+    loop_vertices = _array(mesh.loops, "vertex_index", 1, np.int32)
+    triangles = _array(mesh.loop_triangles, "loops", 3, np.int32)
+    slots = _array(mesh.loop_triangles, "material_index", 1, np.int32)
+    is_smooth = _array(mesh.polygons, "use_smooth", 1, bool)
+    normals = None
+    if is_smooth.any():
+        if mesh.use_auto_smooth or mesh.has_custom_normals:
+            mesh.calc_normals_split()
+            normals = _array(mesh.loops, "normal", 3, np.float32)
+        else:
+            normals = _plain_normals(mesh, positions, loop_vertices, is_smooth)
+    parts = []
+    slots = np.clip(slots, 0, max(len(layouts) - 1, 0))
+    for slot in np.unique(slots):
+        chosen = triangles[slots == slot]
+        uvs = _layout(mesh, layouts[slot] if layouts else None, positions, loop_vertices)
+        if normals is None and uvs is None:
+            used, indices = np.unique(loop_vertices[chosen], return_inverse=True)
+            parts.append(Part(int(slot), positions[used], indices.astype(np.int32), None, None))
+            continue
+        used, indices = np.unique(chosen, return_inverse=True)
+        parts.append(Part(int(slot), positions[loop_vertices[used]], indices.astype(np.int32),
+                          None if normals is None else normals[used], None if uvs is None else uvs[used]))
+    return parts
+
+
+def parameters_of(part):
+    """As those of a shape "trianglemesh"."""
+    parameters = {"point3 P": part.positions, "integer indices": part.triangles}
+    if part.normals is not None:
+        parameters["normal N"] = part.normals
+    if part.uvs is not None:
+        parameters["point2 uv"] = part.uvs
+    return parameters

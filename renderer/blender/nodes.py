@@ -1,0 +1,161 @@
+"""Node trees as arrays: what a socket says, at one point where no picture is behind it, or at all points of a sheet of
+picture coordinates. A colour is an array (..., 3), a number (...); both scene-linear."""
+
+import numpy as np
+
+from . import node_math, pictures
+
+_LUMA = np.array([0.2126, 0.7152, 0.0722])
+_LIGHT_PATH = {"Is Camera Ray": 1.0}  # as the eye meets it; other kinds of rays see that, too
+
+
+class Sheet:
+    """Points in the unit square of a material's picture coordinates, v from below."""
+
+    def __init__(self, width, height):
+        self.width, self.height = width, height
+        u, v = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
+        self.points = np.stack([u, v], -1)
+
+
+def source(socket, path):
+    """The output that a socket is linked to, through groups and reroutes, with the groups that it is in; None, and the
+    socket whose own value counts."""
+    while True:
+        if not socket.is_linked or not socket.links[0].is_valid:
+            return None, socket, path
+        output = socket.links[0].from_socket
+        node = output.node
+        if node.type == "REROUTE":
+            socket = node.inputs[0]
+        elif node.type == "GROUP" and node.node_tree:
+            inner = next((n for n in node.node_tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output), None)
+            if not inner:
+                return None, socket, path
+            socket = next(s for s in inner.inputs if s.identifier == output.identifier)
+            path = path + (node,)
+        elif node.type == "GROUP_INPUT" and path:
+            socket = next(s for s in path[-1].inputs if s.identifier == output.identifier)
+            path = path[:-1]
+        else:
+            return output, socket, path
+
+
+def _default(socket):
+    value = getattr(socket, "default_value", 0.0)
+    if isinstance(value, (int, float, bool)):
+        return np.float64(value)
+    if isinstance(value, str):
+        return np.float64(0.0)
+    return np.array(value[:3], np.float64)
+
+
+def as_color(value, is_color):
+    return value if is_color else np.repeat(np.asarray(value)[..., None], 3, axis=-1)
+
+
+def as_number(value, is_color, is_vector=False):
+    if not is_color:
+        return value
+    return value.mean(axis=-1) if is_vector else value @ _LUMA
+
+
+class Graph:
+    """The node tree of one material, world or lamp."""
+
+    def __init__(self, name, notes):
+        self._name = name
+        self.notes = notes
+
+    def skip(self, node, stand_in):
+        self.notes.say(f'{self._name}: node "{node.bl_label}" is not translated: {stand_in}')
+
+    def pictures(self, socket, path=()):
+        """The image nodes behind a socket, with the groups that they are in."""
+        found, seen, open_sockets = [], set(), [(socket, path)]
+        while open_sockets:
+            output, _, inside = source(*open_sockets.pop())
+            if output is None or (output.node.as_pointer(), inside) in seen:
+                continue
+            node = output.node
+            seen.add((node.as_pointer(), inside))
+            if node.type == "TEX_IMAGE" and node.image:
+                found.append((node, inside))
+            elif node.type not in ("TEX_ENVIRONMENT", "TEX_COORD", "UVMAP"):
+                open_sockets += [(s, inside) for s in node.inputs if s.enabled]
+        return found
+
+    def layout(self, node, path):
+        """How a picture lies: ((source, name of the uv map), affine matrix 2 x 3)."""
+        matrix = np.eye(4)
+        output, _, path = source(node.inputs["Vector"], path)
+        while output is not None and output.node.type == "MAPPING":
+            matrix = matrix @ node_math.mapping_matrix(output.node, lambda s: self.constant(s, path), self)
+            output, _, path = source(output.node.inputs["Vector"], path)
+        where = ("UV", "")
+        if output is not None:
+            inner = output.node
+            if inner.type == "UVMAP":
+                where = ("UV", inner.uv_map)
+            elif inner.type == "TEX_COORD" and output.name in ("UV", "Generated", "Object"):
+                where = (output.name.upper(), "")
+                if inner.object:
+                    self.skip(inner, "another object's coordinates are its own")
+            else:
+                self.skip(inner, "pictures lie by the uv map")
+        return where, matrix[:2][:, [0, 1, 3]]
+
+    def constant(self, socket, path):
+        return self.value(socket, path, None)[0]
+
+    def color(self, socket, path=(), sheet=None):
+        return np.asarray(as_color(*self.value(socket, path, sheet)), np.float64)
+
+    def number(self, socket, path=(), sheet=None):
+        output = source(socket, path)[0]
+        return np.asarray(as_number(*self.value(socket, path, sheet), output is not None and output.type == "VECTOR"),
+                          np.float64)
+
+    def value(self, socket, path, sheet):
+        """A value, and whether it is a colour or vector."""
+        output, own, path = source(socket, path)
+        if output is None:
+            value = _default(own)
+            return value, value.ndim > 0
+        return self._evaluate(output, path, sheet)
+
+    def _evaluate(self, output, path, sheet):
+        node = output.node
+        if node.mute:
+            link = next((l for l in node.internal_links if l.to_socket == output), None)
+            return self.value(link.from_socket, path, sheet) if link else (np.zeros(3), True)
+        kind = node.type
+        if kind == "RGB":
+            return np.array(output.default_value[:3]), True
+        if kind == "VALUE":
+            return np.float64(output.default_value), False
+        if kind == "TEX_IMAGE":
+            return self._picture(node, output, path, sheet)
+        if kind == "LIGHT_PATH":
+            self.skip(node, "all rays see what the camera's do")
+            return np.float64(_LIGHT_PATH.get(output.name, 0.0)), False
+        made = node_math.evaluate(self, node, output, path, sheet)
+        if made is not None:
+            return made
+        if output.type == "RGBA":
+            self.skip(node, "grey stands in")
+            return np.full(3, 0.5), True
+        if output.type == "VECTOR":
+            self.skip(node, "a vector of 0 stands in")
+            return np.zeros(3), True
+        self.skip(node, "0.5 stands in" if kind.startswith("TEX_") else "0 stands in")
+        return np.float64(0.5 if kind.startswith("TEX_") else 0.0), False
+
+    def _picture(self, node, output, path, sheet):
+        if not node.image or sheet is None:
+            return (np.array([1.0, 0.0, 1.0]), True) if output.name == "Color" else (np.float64(1.0), False)
+        pixels = pictures.linear_pixels(node.image, self.notes)
+        matrix = sheet.relative(self.layout(node, path)) if hasattr(sheet, "relative") else None
+        points = sheet.points if matrix is None else sheet.points @ matrix[:, :2].T + matrix[:, 2]
+        sampled = pictures.sample(pixels, points, node.extension, node.interpolation == "Closest")
+        return (sampled[..., :3], True) if output.name == "Color" else (sampled[..., 3], False)

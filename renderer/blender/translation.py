@@ -1,0 +1,111 @@
+"""From the dependency graph to a scene of the renderer: what is drawn, once each, and where."""
+
+import numpy as np
+
+from . import cameras, hair, lamps, meshes, worlds
+from .materials import Materials
+from .passes import group_of
+
+_SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
+
+class _Model:
+    """The parts of one mesh, and where it stands: pairs of matrices, as the shutter opens and closes (or None)."""
+
+    def __init__(self, name, parts, looks, group):
+        self.name, self.parts, self.looks, self.group, self.places = name, parts, looks, group, []
+
+
+def _look_list(owner, materials):
+    slots = [slot.material for slot in owner.material_slots] or [None]
+    return [materials.look(material) for material in slots]
+
+
+def _model(instance_object, materials, name, notes):
+    """Reads the mesh at once: what Blender makes for an instance goes with it."""
+    looks = _look_list(instance_object, materials)
+    try:
+        mesh = instance_object.to_mesh()
+    except RuntimeError:
+        mesh = None
+    if mesh is None:
+        return None
+    try:
+        parts = meshes.parts_of(mesh, [look.layout for look in looks])
+    finally:
+        instance_object.to_mesh_clear()
+    bad = [part for part in parts if not np.isfinite(part.positions).all()]
+    if bad:
+        notes.say(f'object "{instance_object.name}": vertices that are not finite are left out with their material')
+        parts = [part for part in parts if np.isfinite(part.positions).all()]
+    return _Model(name, parts, looks, group_of(instance_object))
+
+
+def _key(instance_object):
+    data = instance_object.data
+    slots = tuple(slot.material.name_full if slot.material else "" for slot in instance_object.material_slots)
+    return data.as_pointer(), slots, instance_object.lightgroup
+
+
+def _add_part(scene, model, part, **where):
+    look = model.looks[part.slot]
+    light = look.light
+    if light is not None:
+        light = {**light, **model.group}
+    scene.shape("trianglemesh", {**meshes.parameters_of(part), **look.shape}, material=look.name, light=light, **where)
+
+
+def _add_model(scene, model):
+    """One that stands in several places is instanced, but for what shines in it, which stands still in each place."""
+    dark = [part for part in model.parts if model.looks[part.slot].light is None]
+    shining = [part for part in model.parts if model.looks[part.slot].light is not None]
+    if len(model.places) == 1:
+        shining, dark = shining + dark, []
+    for place, end in model.places:
+        for part in shining:
+            still = model.looks[part.slot].light is not None
+            _add_part(scene, model, part, world_from_shape=place, world_from_shape_end=None if still else end)
+    for part in dark:
+        _add_part(scene, model, part, object=model.name)
+    for place, end in model.places if dark else ():
+        scene.instance(model.name, place, end)
+
+
+def translate(scene, depsgraph, motion, notes, poll, view=None):
+    """Fills an empty scene, up to its completion. view: instead of the scene's camera (cameras.View). motion: see
+    motion.py. poll: called between objects; an exception there ends it."""
+    blender_scene = depsgraph.scene_eval
+    if view:
+        cameras.add_view(scene, view)
+    elif blender_scene.camera is None:
+        raise RuntimeError("the scene has no camera")
+    else:
+        cameras.add_camera(scene, blender_scene.camera.evaluated_get(depsgraph), blender_scene.render, motion, notes)
+    materials, models, lights = Materials(scene, notes), {}, []
+    for instance in depsgraph.object_instances:
+        poll()
+        shown = instance.object
+        if instance.show_particles and not instance.is_instance and shown.type == "MESH":
+            hair.add_particle_hair(scene, shown, materials, poll)
+        if not instance.show_self:
+            continue
+        matrix = cameras.matrix_of(instance.matrix_world)
+        if shown.type == "LIGHT":
+            lamps.add_lamp(scene, shown, matrix, notes)
+        elif shown.type in _SURFACES:
+            if abs(np.linalg.det(matrix[:3, :3])) < 1e-30:
+                continue
+            key = _key(shown)
+            if key not in models:
+                models[key] = _model(shown, materials, f"{shown.name_full}#{len(models)}", notes)
+            if models[key]:
+                models[key].places.append(motion.of_instance(instance, matrix))
+        elif shown.type == "CURVES":
+            hair.add_curves(scene, shown, matrix, materials, poll)
+        elif shown.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
+            notes.say(f'object "{shown.name}": a {shown.type.lower()} is not translated')
+    for model in models.values():
+        poll()
+        if model:
+            _add_model(scene, model)
+    worlds.add_world(scene, blender_scene.world, notes)

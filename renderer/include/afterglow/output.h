@@ -1,0 +1,60 @@
+/* output.h: writes films to files.
+ * Part of afterglow.h, which tells about threads and errors. */
+#ifndef AFTERGLOW_PUBLIC_OUTPUT_H
+#define AFTERGLOW_PUBLIC_OUTPUT_H
+
+#include "afterglow/film.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum ag_sample_type {
+    AG_SAMPLE_DEFAULT,
+    AG_SAMPLE_UINT8,
+    AG_SAMPLE_UINT16,
+    AG_SAMPLE_HALF,
+    AG_SAMPLE_FLOAT
+} ag_sample_type;
+
+typedef struct ag_output_settings {
+    size_t struct_size;
+    ag_sample_type type;      /* default: half for EXR, float for Radiance and PFM, 16 bit for TIFF, 8 bit for others */
+    bool tiled;               /* EXR in tiles of 64 x 64 pixels; default: in lines */
+    bool reproducible;        /* EXR without what differs from run to run: equal pictures are equal files */
+    const char *command_line; /* to be noted in EXR files, or NULL */
+    const char *color_space;  /* of EXR, Radiance and PFM files, by the config's name, an alias or a role; NULL: the
+                                 working space */
+    /* of all others: */
+    const char *display;  /* NULL: the config's default */
+    const char *view;     /* NULL: the display's default */
+    const char *look;     /* instead of the view's own: names with commas between them, undone with a - before it;
+                             "none": none; NULL: the view's own */
+    float exposure_stops; /* light is multiplied by 2 to this before the view; default 0 */
+} ag_output_settings;
+
+AG_API ag_output_settings ag_default_output_settings(void);
+
+/* Whether a file of that name could be written with these settings: the extension is known, the folder there, the
+ * colour config and what is asked of it usable. To be asked before a long render. Errors: AG_ERROR_ARGUMENT (extension
+ * or type), AG_ERROR_OUTPUT, AG_ERROR_COLOR. */
+AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *settings, const char *path);
+
+/* Writes the film: scene-linear, with its layers and chromaticities, for .exr; scene-linear for .hdr (which clips what
+ * is below 0) and .pfm, which cannot say their colour space; through look, display and view for .png, .tif, .jpg. The
+ * file appears complete or not at all. settings NULL: the defaults. */
+AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
+                               const char *path);
+
+/* From now on no context waits for the reader of a FIFO, or of standard output, that it writes to: such a write fails
+ * where the reader is not ready. For the handler of a signal that is to end the process in order: safe in it. */
+AG_API void ag_end_waits(void);
+
+/* Removes the temporary files of writes under way, in any context. For the handler of a signal that ends the process at
+ * once: safe in it. */
+AG_API void ag_abandon_files(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,78 @@
+/* rendering.h: renders a scene into a film, at once or in passes.
+ * Part of afterglow.h, which tells about threads and errors. */
+#ifndef AFTERGLOW_PUBLIC_RENDERING_H
+#define AFTERGLOW_PUBLIC_RENDERING_H
+
+#include "afterglow/film.h"
+#include "afterglow/render_settings.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Traces photons, builds the maps, renders. The picture depends on scene, settings and seed alone.
+ * Errors: AG_ERROR_ARGUMENT (settings out of range), AG_ERROR_SCENE (no camera), AG_ERROR_INPUT (the photon map's file
+ * is refused), AG_ERROR_OUTPUT (it cannot be written), AG_ERROR_MEMORY, AG_CANCELLED. */
+AG_API ag_status ag_render(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
+                           ag_film **out_film);
+
+/* ag_render in passes over the whole picture: previews, checkpoints and limits of time are built on it. Samples [0, a)
+ * and then [a, b) give the bits of [0, b) at once. The rendering borrows scene and context. */
+typedef struct ag_rendering ag_rendering;
+
+/* Traces photons and builds the maps. Errors as ag_render. */
+AG_API ag_status ag_rendering_create(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
+                                     ag_rendering **out_rendering);
+/* Brings every pixel to so many samples, or to fewer where the settings' noise level is reached before; those that have
+ * them already stay as they are. samples_per_pixel: [1, that of the settings]. Errors: AG_ERROR_ARGUMENT; AG_CANCELLED,
+ * AG_PAUSED: the film is then as good as it is, each pixel with the samples that it has had; AG_ERROR_SYSTEM: the
+ * photon map's file was cut short or overwritten meanwhile, and the film is that of the call before. */
+AG_API ag_status ag_rendering_continue(ag_rendering *rendering, int samples_per_pixel);
+/* How many samples pixels have had so far. */
+typedef struct ag_sample_counts {
+    int least, most;
+    double mean;
+} ag_sample_counts;
+AG_API ag_sample_counts ag_rendering_sample_counts(const ag_rendering *rendering);
+/* Where a picture's noise comes from: the light that the camera's rays bring, by its way. */
+typedef enum ag_noise_source {
+    AG_NOISE_EMISSION, /* straight from lamps and sky to the eye: their edges */
+    AG_NOISE_LAMPS,    /* direct light of all lights but the infinite ones */
+    AG_NOISE_SKY,      /* direct light of infinite ones */
+    AG_NOISE_INDIRECT,
+    AG_NOISE_CAUSTIC,
+    AG_NOISE_SPECULAR /* by way of mirrors, glass and glossy surfaces */
+} ag_noise_source;
+#define AG_NOISE_SOURCE_COUNT 6
+
+typedef struct ag_noise {
+    double level; /* the standard error of what is shown (see noise_level), root mean square over the picture; below 0:
+                     not known, as pixels have had fewer than two samples */
+    double share[AG_NOISE_SOURCE_COUNT]; /* of the variance; they sum to 1, or are all 0 where there is no noise */
+    char hint[256];                      /* what makes most of it, and what would help most, a line; may be empty */
+} ag_noise;
+/* How noisy the picture is by now; from up to 16,384 of its pixels, spread evenly. The caustics' share counts the grain
+ * of their photons too, which more samples do not lessen. */
+AG_API ag_noise ag_rendering_noise(const ag_rendering *rendering);
+/* All that samples have brought so far, as a file; written atomically. Another process that makes the same rendering
+ * reads it, and goes on to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
+AG_API ag_status ag_rendering_write_checkpoint(const ag_rendering *rendering, const char *path);
+/* To be called before the first ag_rendering_continue. The log says why a file is refused: damaged, or of another
+ * scene, other settings, another version. The rendering is then as it was. Errors: AG_ERROR_INPUT. */
+AG_API ag_status ag_rendering_read_checkpoint(ag_rendering *rendering, const char *path);
+/* The photons as binary PLY, for viewers and scripts: x, y, z, nx, ny, nz, the way the light went dx, dy, dz, red,
+ * green, blue in W, caustic (0 global map, 1 caustic map), demanded (whether irradiance was computed there); written
+ * atomically. Errors: AG_ERROR_ARGUMENT (path tracing has none), AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
+AG_API ag_status ag_rendering_write_photons(const ag_rendering *rendering, const char *path);
+/* The film as it is now, the rendering's; and the same one all along, which ag_rendering_finish hands over. While the
+ * rendering is at work, its size and names may be asked for, and it may be watched with ag_film_read_tile and
+ * ag_film_read_picture; all else waits until the call has returned. */
+AG_API const ag_film *ag_rendering_film(const ag_rendering *rendering);
+/* Ends the rendering, counts what was done, and hands its film over; out_film NULL: destroys that too. rendering NULL
+ * is fine. */
+AG_API void ag_rendering_finish(ag_rendering *rendering, ag_film **out_film);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

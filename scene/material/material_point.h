@@ -1,0 +1,61 @@
+/* material_point.h: a material at one point of a surface: mixes picked, textures looked up. It holds the values that
+ * lobes are evaluated from, and no more, since each bsdf has one of its own; what the scene file says is in material.h.
+ * Flow: material + surface hit -> [here] -> bsdf, which makes lobes of it. Threads: pure functions. */
+#ifndef AFTERGLOW_MATERIAL_POINT_H
+#define AFTERGLOW_MATERIAL_POINT_H
+
+#include "material/coat.h"
+#include "material/hair.h"
+#include "material/principled.h"
+
+struct scene;
+struct surface_hit;
+
+typedef struct diffuse_point {
+    rgb reflectance, transmittance; /* [0, 1], together at most 1 */
+} diffuse_point;
+
+typedef struct metal_point {
+    ggx facets;
+    rgb eta, k;
+} metal_point;
+
+typedef struct glass_point {
+    ggx facets; /* none where the glass is thin */
+    float ior;
+} glass_point;
+
+/* Both faces of a plate and what is between them, met as one (slab.h). */
+typedef struct slab_point {
+    rgb reflected, through;
+} slab_point;
+
+typedef struct material_point {
+    material_kind kind; /* never MATERIAL_MIX */
+    union {
+        diffuse_point diffuse;       /* MATERIAL_DIFFUSE, MATERIAL_DIFFUSE_TRANSMISSION */
+        metal_point metal;           /* MATERIAL_CONDUCTOR */
+        glass_point glass;           /* MATERIAL_DIELECTRIC, MATERIAL_THIN_DIELECTRIC */
+        coat_point coat;             /* MATERIAL_COATED_DIFFUSE, MATERIAL_COATED_CONDUCTOR */
+        principled_point principled; /* MATERIAL_PRINCIPLED */
+        hair_point hair;             /* MATERIAL_HAIR; bsdf_init adds the direction to fibre and colour */
+        slab_point slab;             /* of a bsdf whose lobe is LOBE_SLAB, whatever the kind */
+    };
+} material_point;
+
+_Static_assert(sizeof(material_point) <= 96, "each hit on a surface makes a material_point");
+
+/* Of a prepared material without textures, or before they are looked up.. */
+void material_point_of(const material *m, material_point *out_point);
+
+/* The material at a hit, which is no mix, and its values there. */
+const material *material_at(const struct scene *s, const struct surface_hit *hit, material_point *out_point);
+
+/* Of a surface that gathers light anywhere (bsdf.h), the material by which it does, at a point where that one may not
+ * have been picked or has a black texel. false: no point of the surface gathers. */
+bool material_gathering_at(const struct scene *s, const struct surface_hit *hit, material_point *out_point);
+
+/* Whether light is scattered otherwise along the surface's grain than across it, or by a fibre's axis. */
+bool material_point_has_grain(const material_point *p);
+
+#endif

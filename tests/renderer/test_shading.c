@@ -1,0 +1,128 @@
+/* test_shading.c: radiance along single camera rays in closed form: lamps and mirrors, direct light, what settings
+ * leave out, chains that roulette ends, and what is looked up instead of gathered. Gathered light: test_final_gather.c.
+ * Threads: one. */
+#include "fixtures/eye_fixture.h"
+
+#include "integrator/final_gather.h"
+#include "integrator/shading.h"
+
+enum { SAMPLES = 20000 / FEWER, PHOTONS = 200000 / FEWER, NEAREST = 50, LOOKED_UP = 2000 / FEWER };
+
+#define FLOOR               "Material \"diffuse\" \"rgb reflectance\" [0.4 0.4 0.4] Shape \"disk\" \"float radius\" 100 "
+#define MIRROR(reflectance) "Material \"conductor\" \"float roughness\" 0 \"rgb reflectance\" [" reflectance "] "
+
+/* One sample along a ray; nothing of it may wait for the batch. */
+static float radiance_along(eye *e, uint32_t i, vec3 from, vec3 direction, float most_direct)
+{
+    eye_sample s = {.most_direct = most_direct, .most_indirect = INFINITY};
+    camera_sample c = {.ray = scene_ray_make(from, vec3_normalize(direction)),
+                       .where = sampler_make(i, 3, 4, 0, 0),
+                       .split = {.rays = 16, .lights = 1}};
+    shading_radiance(&e->t, e->worker, &c, &s);
+    assert_int_equal(e->worker->batch->gather_count, 0);
+    return s.radiance.r;
+}
+
+/* A lamp is seen as bright as it is, and in a mirror by its reflectance; not where indirect light alone is wanted. */
+static void lamp_in_a_mirror(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init_with_photons(
+        &e,
+        MIRROR(
+            "0.5 0.5 0.5") "Shape \"disk\" \"float radius\" 1 AttributeBegin Translate 0 0 3 "
+                           "Material \"diffuse\" \"rgb reflectance\" [0 0 0] AreaLightSource \"diffuse\" \"rgb L\" [6 6 6] Shape \"sphere\" "
+                           "AttributeEnd",
+        1000, NEAREST);
+    e.settings.max_depth = 1;
+    vec3 middle = {0.0f, 0.0f, 1.0f}, up = {0.0f, 0.0f, 1.0f}, down = {0.0f, 0.0f, -1.0f};
+    assert_relative((double)radiance_along(&e, 0, middle, up, INFINITY), 6.0, 1e-6);
+    assert_relative((double)radiance_along(&e, 0, middle, down, INFINITY), 3.0, 1e-5);
+    assert_relative((double)radiance_along(&e, 0, middle, down, 2.0f), 2.0, 1e-5);
+    e.settings.max_depth = 0;
+    assert_relative((double)radiance_along(&e, 0, middle, up, INFINITY), 6.0, 1e-6);
+    assert_true(radiance_along(&e, 0, middle, down, INFINITY) == 0.0f);
+    e.settings.max_depth = 1;
+    e.settings.only = AG_ONLY_INDIRECT;
+    assert_true(radiance_along(&e, 0, middle, up, INFINITY) == 0.0f);
+    eye_reset(&e);
+}
+
+/* One scattering on a floor under a ball of radius r whose middle is h above: E = pi L (r / h)^2. */
+static void floor_under_a_ball(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init_with_photons(&e,
+                          FLOOR "AttributeBegin Translate 0 0 2 AreaLightSource \"diffuse\" \"rgb L\" [10 10 10] "
+                                "Shape \"sphere\" AttributeEnd",
+                          1000, NEAREST);
+    e.settings.max_depth = 1;
+    mean_sum all = {0}, bounded = {0};
+    vec3 from = {0.0f, 0.0f, 0.5f}, down = {0.0f, 0.0f, -1.0f};
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        mean_add(&all, (double)radiance_along(&e, i, from, down, INFINITY));
+        mean_add(&bounded, (double)radiance_along(&e, i, from, down, 0.3f));
+    }
+    assert_mean(&all, 0.4 * 10.0 * 0.25, 1e-4);
+    assert_true(bounded.sum <= 0.3 * SAMPLES * (1.0 + 1e-5) && bounded.sum > 0.25 * SAMPLES);
+    e.settings.only = AG_ONLY_INDIRECT;
+    assert_true(radiance_along(&e, 0, from, down, INFINITY) == 0.0f);
+    eye_reset(&e);
+}
+
+/* A ray that meets two mirrors ten times before it leaves for the sky: roulette ends most of its paths, and the mean is
+ * that of the whole way. */
+static void chain_of_mirrors(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init_with_photons(
+        &e,
+        "LightSource \"infinite\" \"rgb L\" [5 5 5] " MIRROR(
+            "0.8 0.8 0.8") "AttributeBegin Translate 0 0 0.5 Shape \"disk\" \"float radius\" 0.2 AttributeEnd "
+                           "AttributeBegin Translate 0 0 -0.5 Shape \"disk\" \"float radius\" 0.2 AttributeEnd",
+        1000, NEAREST);
+    mean_sum sum = {0};
+    uint32_t ended = 0;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        float radiance = radiance_along(&e, i, (vec3){0.0f, 0.0f, 0.0f}, (vec3){0.02f, 0.0f, 1.0f}, INFINITY);
+        mean_add(&sum, (double)radiance);
+        ended += radiance == 0.0f;
+    }
+    assert_true(ended > SAMPLES / 10 && ended < SAMPLES * 19 / 20);
+    assert_mean(&sum, 5.0 * pow(0.8, 10.0), 1e-3);
+    eye_reset(&e);
+}
+
+/* Behind a mirror that hardly reflects, a diffuse surface shows the estimate at it: no gather ray is sent. Photons lie
+ * evenly over the unit sphere, and the bound is as in test_final_gather.c. */
+static void low_contributions_are_looked_up(void **state)
+{
+    (void)state;
+    eye e;
+    eye_init_with_photons(
+        &e,
+        "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] ReverseOrientation Shape \"sphere\" "
+        "\"float radius\" 1 " MIRROR("0.02 0.02 0.02") "ReverseOrientation Shape \"disk\" \"float radius\" 0.5",
+        PHOTONS, NEAREST);
+    mean_sum sum = {0};
+    for (uint32_t i = 0; i < LOOKED_UP; i++) {
+        rng random = test_random(i);
+        vec3 at = {0.1f * rng_float(&random), 0.0f, 0.3f},
+             slope = {0.3f * rng_float(&random) - 0.15f, 0.3f * rng_float(&random) - 0.15f, -1.0f};
+        mean_add(&sum, (double)radiance_along(&e, i, at, slope, INFINITY));
+    }
+    double irradiance = (double)FIELD_FLUX.r * field_irradiance(FIELD_SPHERE);
+    assert_mean(&sum, 0.02 * 0.5 * irradiance / PI, 0.01 + 4.0 / sqrt(0.02 * PHOTONS));
+    eye_reset(&e);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lamp_in_a_mirror), cmocka_unit_test(floor_under_a_ball),
+                                       cmocka_unit_test(chain_of_mirrors),
+                                       cmocka_unit_test(low_contributions_are_looked_up)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,239 @@
+/* test_struct_sizes.c: every public call that takes settings or a description refuses a struct of another size than the
+ * library's, and one of zeros, with a message and without an effect. Threads: one. */
+#define _GNU_SOURCE
+#include "fixtures/scene_desk.h"
+
+#include <stdint.h>
+
+/* A scene of the desk, complete, and its film. */
+typedef struct bench {
+    desk d;
+    ag_scene *complete;
+    ag_film *film;
+} bench;
+
+static void begin_bench(bench *b)
+{
+    square s;
+    ag_render_settings settings;
+    begin(&b->d);
+    assert_int_equal(ag_scene_create(b->d.context, NULL, &b->complete), AG_OK);
+    ag_scene *open = b->d.made;
+    b->d.made = b->complete;
+    make_square(&s);
+    light_and_look(&b->d);
+    assert_int_equal(ag_scene_add_shape(b->complete, &s.shape), AG_OK);
+    assert_int_equal(ag_scene_commit(b->complete), AG_OK);
+    b->d.made = open;
+    assert_int_equal(ag_render_settings_from_scene(b->d.context, b->complete, &settings), AG_OK);
+    settings.width = settings.height = 4;
+    settings.samples_per_pixel = 1;
+    settings.photon_count = 100;
+    assert_int_equal(ag_render(b->d.context, b->complete, &settings, &b->film), AG_OK);
+}
+
+static void end_bench(bench *b)
+{
+    ag_film_destroy(b->film);
+    ag_scene_destroy(b->complete);
+    end(&b->d);
+}
+
+/* One call with a struct that is filled, but for its size; size 0: all of it is zeros. */
+typedef ag_status sized_call(bench *b, size_t size);
+
+#define SIZED(type, name, filled)                                                                                      \
+    type name = filled;                                                                                                \
+    name.struct_size = size;                                                                                           \
+    if (size == 0)                                                                                                     \
+    memset(&name, 0, sizeof name)
+
+static ag_status load(bench *b, size_t size)
+{
+    ag_scene *scene = NULL;
+    SIZED(ag_scene_settings, s, ag_default_scene_settings());
+    ag_status status = ag_scene_load_as(b->d.context, "none.pbrt", &s, &scene);
+    assert_null(scene);
+    return status;
+}
+
+static ag_status load_text(bench *b, size_t size)
+{
+    ag_scene *scene = NULL;
+    SIZED(ag_scene_settings, s, ag_default_scene_settings());
+    ag_status status = ag_scene_load_text(b->d.context, "t", "WorldBegin", 10, &s, &scene);
+    assert_null(scene);
+    return status;
+}
+
+static ag_status create(bench *b, size_t size)
+{
+    ag_scene *scene = NULL;
+    SIZED(ag_scene_settings, s, ag_default_scene_settings());
+    ag_status status = ag_scene_create(b->d.context, &s, &scene);
+    assert_null(scene);
+    return status;
+}
+
+static ag_status render_film(bench *b, size_t size)
+{
+    ag_film *film = NULL;
+    SIZED(ag_render_settings, s, ag_default_render_settings());
+    ag_status status = ag_render(b->d.context, b->complete, &s, &film);
+    assert_null(film);
+    return status;
+}
+
+static ag_status create_rendering(bench *b, size_t size)
+{
+    ag_rendering *rendering = NULL;
+    SIZED(ag_render_settings, s, ag_default_render_settings());
+    ag_status status = ag_rendering_create(b->d.context, b->complete, &s, &rendering);
+    assert_null(rendering);
+    return status;
+}
+
+static ag_status predict_memory(bench *b, size_t size)
+{
+    ag_prediction prediction;
+    SIZED(ag_render_settings, s, ag_default_render_settings());
+    return ag_predict_memory(b->d.context, b->complete, &s, &prediction);
+}
+
+static ag_status predict(bench *b, size_t size)
+{
+    ag_prediction prediction;
+    SIZED(ag_render_settings, s, ag_default_render_settings());
+    return ag_predict(b->d.context, b->complete, &s, &prediction);
+}
+
+static ag_status check_output(bench *b, size_t size)
+{
+    SIZED(ag_output_settings, s, ag_default_output_settings());
+    return ag_output_check(b->d.context, &s, in_folder("a.exr"));
+}
+
+static ag_status write_film(bench *b, size_t size)
+{
+    SIZED(ag_output_settings, s, ag_default_output_settings());
+    return ag_film_write(b->d.context, b->film, &s, in_folder("a.exr"));
+}
+
+static ag_status add_shape(bench *b, size_t size)
+{
+    square made;
+    make_square(&made);
+    SIZED(ag_shape, s, made.shape);
+    return ag_scene_add_shape(b->d.made, &s);
+}
+
+static ag_status add_light(bench *b, size_t size)
+{
+    SIZED(ag_light, s, ag_default_light());
+    return ag_scene_add_light(b->d.made, &s);
+}
+
+static ag_status add_instance(bench *b, size_t size)
+{
+    SIZED(ag_instance, s, ag_default_instance());
+    return ag_scene_add_instance(b->d.made, &s);
+}
+
+static ag_status add_image(bench *b, size_t size)
+{
+    SIZED(ag_image, s, ag_default_image());
+    return ag_scene_add_image(b->d.made, "a.png", &s);
+}
+
+static ag_status add_texture(bench *b, size_t size)
+{
+    SIZED(ag_texture, s, ag_default_texture());
+    return ag_scene_add_texture(b->d.made, &s);
+}
+
+static ag_status set_camera(bench *b, size_t size)
+{
+    SIZED(ag_camera, s, ag_default_camera());
+    return ag_scene_set_camera(b->d.made, &s);
+}
+
+static ag_status change_camera(bench *b, size_t size)
+{
+    SIZED(ag_camera, s, ag_default_camera());
+    return ag_scene_set_camera(b->complete, &s);
+}
+
+static void other_sizes_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        sized_call *call;
+        size_t size;
+        const char *said;
+    } CALLS[] = {
+        {load, sizeof(ag_scene_settings), "ag_scene_settings: struct_size is "},
+        {load_text, sizeof(ag_scene_settings), "ag_scene_settings: struct_size is "},
+        {create, sizeof(ag_scene_settings), "ag_scene_settings: struct_size is "},
+        {render_film, sizeof(ag_render_settings), "ag_render_settings: struct_size is "},
+        {create_rendering, sizeof(ag_render_settings), "ag_render_settings: struct_size is "},
+        {predict_memory, sizeof(ag_render_settings), "ag_render_settings: struct_size is "},
+        {predict, sizeof(ag_render_settings), "ag_render_settings: struct_size is "},
+        {check_output, sizeof(ag_output_settings), "ag_output_settings: struct_size is "},
+        {write_film, sizeof(ag_output_settings), "ag_output_settings: struct_size is "},
+        {add_shape, sizeof(ag_shape), "ag_scene_add_shape:"},
+        {add_light, sizeof(ag_light), "ag_scene_add_light:"},
+        {add_instance, sizeof(ag_instance), "ag_scene_add_instance:"},
+        {add_image, sizeof(ag_image), "ag_scene_add_image:"},
+        {add_texture, sizeof(ag_texture), "ag_scene_add_texture:"},
+        {set_camera, sizeof(ag_camera), "ag_scene_set_camera:"},
+        {change_camera, sizeof(ag_camera), "ag_scene_set_camera:"},
+    };
+    bench b;
+    begin_bench(&b);
+    for (size_t i = 0; i < sizeof CALLS / sizeof *CALLS; i++) {
+        const size_t sizes[] = {0, sizeof(size_t), CALLS[i].size - 1, CALLS[i].size + 8, SIZE_MAX};
+        for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+            b.d.said[0] = '\0';
+            assert_int_equal(CALLS[i].call(&b, sizes[k]), AG_ERROR_ARGUMENT);
+            if (!strstr(b.d.said, CALLS[i].said) || !strstr(b.d.said, "struct_size is "))
+                fail_msg("call %zu, size %zu: %s", i, sizes[k], b.d.said);
+        }
+    }
+    assert_int_equal(entry_count(), 0);
+    end_bench(&b);
+}
+
+/* Of these no message can come: a context's log is a member of the struct itself, and settings by name have none. */
+static void other_sizes_are_refused_in_silence(void **state)
+{
+    (void)state;
+    const size_t sizes[] = {0, sizeof(ag_context_settings) - 1, sizeof(ag_context_settings) + 8};
+    ag_context *context = NULL;
+    ag_render_settings zeros = {0};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        ag_context_settings s = ag_default_context_settings();
+        s.struct_size = sizes[i];
+        assert_int_equal(ag_context_create(&s, &context), AG_ERROR_ARGUMENT);
+        assert_null(context);
+    }
+    assert_int_equal(ag_render_settings_set(&zeros, "spp", "4"), AG_ERROR_ARGUMENT);
+    assert_int_equal(zeros.samples_per_pixel, 0);
+}
+
+static void descriptions_are_needed(void **state)
+{
+    (void)state;
+    desk d;
+    begin(&d);
+    assert_int_equal(ag_scene_add_shape(d.made, NULL), AG_ERROR_ARGUMENT);
+    expect_said(&d, "there is no description");
+    end(&d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {TEST_IN_FOLDER(other_sizes_are_refused),
+                                       cmocka_unit_test(other_sizes_are_refused_in_silence),
+                                       cmocka_unit_test(descriptions_are_needed)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
