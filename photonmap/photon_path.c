@@ -187,7 +187,7 @@ static void arrival_surface_find(const scene *s, const surface_hit *hit, vec3 ar
 {
     out_surface->albedo = lambert_albedo(s, hit);
     if (!out_surface->albedo)
-        out_surface->scattering = bsdf_create(s, hit, vec3_negate(arrived));
+        bsdf_init(s, hit, vec3_negate(arrived), &out_surface->scattering);
 }
 
 static bool arrival_surface_has(const arrival_surface *m, bsdf_lobes lobes)

@@ -5,6 +5,7 @@
 #include "output/atomic_file.h"
 #include "photon_file.h"
 #include "photon_merge.h"
+#include "status.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -123,26 +124,34 @@ static ag_status check_output(ag_context *context, const char *path, bool *out_i
     return status;
 }
 
-static ag_status add(ag_context *context, const char *first_path, read_map *into, const char *path)
+/* Adds the irradiances of `from`, which was read from path. */
+static ag_status take_irradiances(ag_context *context, const char *first_path, read_map *into, const char *path,
+                                  read_map *from)
 {
-    read_map m;
     uint64_t added = 0;
     uint32_t irradiance_photon;
-    ag_status status = read_map_open(context, path, &m);
-    if (status == AG_OK && !hash128_is_equal(m.fixed, into->fixed)) {
+    if (!hash128_is_equal(from->fixed, into->fixed)) {
         log_message(context->log, AG_LOG_ERROR,
                     "%s: error: it is another map than %s: scene, settings, view, program, machine or photons differ",
                     path, first_path);
-        status = AG_ERROR_INPUT;
-    } else if (status == AG_OK &&
-               photon_merge(&into->global, &m.global, &added, &irradiance_photon) != PHOTON_MERGE_DONE) {
+        return AG_ERROR_INPUT;
+    }
+    if (photon_merge(&into->global, &from->global, &added, &irradiance_photon) != PHOTON_MERGE_DONE) {
         log_message(context->log, AG_LOG_ERROR,
                     "%s: error: irradiance %u is another one than in the files before: one of them is damaged", path,
                     irradiance_photon);
-        status = AG_ERROR_INPUT;
-    } else if (status == AG_OK) {
-        log_message(context->log, AG_LOG_INFO, "%s: %llu irradiances added", path, (unsigned long long)added);
+        return AG_ERROR_INPUT;
     }
+    log_message(context->log, AG_LOG_INFO, "%s: %llu irradiances added", path, (unsigned long long)added);
+    return AG_OK;
+}
+
+static ag_status add(ag_context *context, const char *first_path, read_map *into, const char *path)
+{
+    read_map m;
+    ag_status status = read_map_open(context, path, &m);
+    if (status == AG_OK)
+        status = take_irradiances(context, first_path, into, path, &m);
     read_map_reset(&m);
     return status;
 }
@@ -158,29 +167,41 @@ static int fill(void *user, int descriptor)
     return photon_file_write(&job->context->run, descriptor, &job->map->key, &job->map->global, &job->map->caustic);
 }
 
+static ag_status write_map(ag_context *context, const char *path, const read_map *map)
+{
+    char message[1024];
+    write_job job = {context, map};
+    ag_status status = atomic_file_write_by(path, fill, &job, message, sizeof message);
+    if (status == AG_OK)
+        return AG_OK;
+    if (run_is_cancelled(&context->run))
+        return AG_CANCELLED;
+    log_message(context->log, AG_LOG_ERROR, "%s", message);
+    return status;
+}
+
+/* merged: reset by the caller, whatever is returned. */
+static ag_status merge_files(ag_context *context, const char *out_path, const char *const *paths, size_t count,
+                             read_map *merged)
+{
+    bool is_sound = false;
+    AG_TRY(check_output(context, out_path, &is_sound));
+    AG_TRY(read_map_open(context, paths[0], merged));
+    for (size_t i = 1; i < count; i++)
+        AG_TRY(add(context, paths[0], merged, paths[i]));
+    if (is_sound && !is_one_of(out_path, paths, count)) { /* nothing that it holds is lost */
+        AG_TRY(add(context, paths[0], merged, out_path));
+    }
+    return write_map(context, out_path, merged);
+}
+
 ag_status ag_photon_map_merge(ag_context *context, const char *out_path, const char *const *paths, size_t count,
                               ag_photon_map_info *out_info)
 {
     if (!context || !out_path || !paths || count == 0)
         return AG_ERROR_ARGUMENT;
-    char message[1024];
     read_map merged = {0};
-    bool is_sound = false;
-    ag_status status = check_output(context, out_path, &is_sound);
-    if (status == AG_OK)
-        status = read_map_open(context, paths[0], &merged);
-    for (size_t i = 1; i < count && status == AG_OK; i++)
-        status = add(context, paths[0], &merged, paths[i]);
-    if (status == AG_OK && is_sound && !is_one_of(out_path, paths, count)) /* nothing that it holds is lost */
-        status = add(context, paths[0], &merged, out_path);
-    if (status == AG_OK) {
-        write_job job = {context, &merged};
-        status = atomic_file_write_by(out_path, fill, &job, message, sizeof message);
-        if (status != AG_OK && run_is_cancelled(&context->run))
-            status = AG_CANCELLED;
-        else if (status != AG_OK)
-            log_message(context->log, AG_LOG_ERROR, "%s", message);
-    }
+    ag_status status = merge_files(context, out_path, paths, count, &merged);
     if (status == AG_OK && out_info) {
         *out_info = info_of(&merged);
         out_info->damaged = 0;

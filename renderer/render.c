@@ -171,22 +171,17 @@ ag_status rendering_create_film(ag_rendering *r)
         group_names = (const char *const *)(void *)r->s->light_group_names;
         group_count = (int)r->s->light_group_count;
     }
-    ag_status status =
-        pixel_filter_create(&r->s->hints.filter, r->s->hints.disable_pixel_jitter, r->context->log, &filter);
-    if (status == AG_OK)
-        status = aov_layout_create(settings->layers, also, !integrator_of(settings->integrator)->has_photon_map,
-                                   group_names, group_count, &layout);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(pixel_filter_create(&r->s->hints.filter, r->s->hints.disable_pixel_jitter, r->context->log, &filter));
+    AG_TRY(aov_layout_create(settings->layers, also, !integrator_of(settings->integrator)->has_photon_map, group_names,
+                             group_count, &layout));
     r->film = film_create(settings, &r->s->space, &filter, &layout);
     if (!r->film)
         return AG_ERROR_MEMORY;
-    status = note_origin(r, &r->film->origin);
-    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT && status == AG_OK; i++)
-        if (r->film->layout.has_matte[i])
-            status = cryptomatte_create(r->s, (cryptomatte_kind)i, &r->film->mattes[i]);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(note_origin(r, &r->film->origin));
+    for (int i = 0; i < CRYPTOMATTE_KIND_COUNT; i++)
+        if (r->film->layout.has_matte[i]) {
+            AG_TRY(cryptomatte_create(r->s, (cryptomatte_kind)i, &r->film->mattes[i]));
+        }
     if (r->film->width > 0)
         return AG_OK;
     log_message(r->context->log, AG_LOG_ERROR, "the crop window holds no pixel");
@@ -264,20 +259,30 @@ static ag_status prepare(ag_rendering *r)
     phase_begin begin = context_begin_phase();
     ag_status status = rendering_create_film(r);
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(status);
     const integrator *kind = integrator_of(r->settings.integrator);
     r->t = make_transport(context, r->s, &r->settings, &r->film->layout);
-    if (kind->prepare)
-        status = kind->prepare(r);
-    if (status == AG_OK)
-        status = guide_direct_light(r);
-    if (status != AG_OK)
-        return status;
+    if (kind->prepare) {
+        AG_TRY(kind->prepare(r));
+    }
+    AG_TRY(guide_direct_light(r));
     begin = context_begin_phase();
     r->workers = eye_workers_create(&r->t, context->statistics.threads);
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
     return r->workers ? AG_OK : AG_ERROR_MEMORY;
+}
+
+/* Settings, film, maps and guides, of a rendering that knows its scene. */
+static ag_status begin_rendering(ag_rendering *r, const ag_render_settings *settings)
+{
+    ag_status status = rendering_settle(r->context, r->s, settings, &r->settings);
+    r->context->rendered = r->settings;
+    r->context->rendered.photon_map_file = NULL; /* the caller's */
+    AG_TRY(status);
+    AG_TRY(prepare(r));
+    if (r->settings.photon_map_file)
+        r->map_name = strdup(r->settings.photon_map_file);
+    return check_map(r, AG_OK); /* caches and guides have been made of it */
 }
 
 /* light's side: lamps -> photons -> maps -> cache */
@@ -296,15 +301,7 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
     r->loaded->rendering_count++;
     r->s = loaded->s;
     r->not_finite_before = context->statistics.samples_not_finite;
-    ag_status status = rendering_settle(context, loaded->s, settings, &r->settings);
-    context->rendered = r->settings;
-    context->rendered.photon_map_file = NULL; /* the caller's */
-    if (status == AG_OK)
-        status = prepare(r);
-    if (status == AG_OK && r->settings.photon_map_file)
-        r->map_name = strdup(r->settings.photon_map_file);
-    if (status == AG_OK)
-        status = check_map(r, AG_OK);   /* caches and guides have been made of it */
+    ag_status status = begin_rendering(r, settings);
     r->settings.photon_map_file = NULL; /* the caller's, and done with */
     floating_point_leave(callers_arithmetic);
     if (status == AG_OK)
@@ -312,6 +309,27 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
     else
         ag_rendering_finish(r, NULL);
     return status;
+}
+
+static ag_status render_wanted(ag_rendering *r, const integrator *kind, uint32_t wanted)
+{
+    if (kind->begin_pass) {
+        AG_TRY(kind->begin_pass(r));
+    }
+    return r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
+}
+
+/* Up to `wanted` samples a pixel. The film is resolved also where that fails. */
+static ag_status render_pass(ag_rendering *r, uint32_t wanted)
+{
+    const integrator *kind = integrator_of(r->settings.integrator);
+    ag_status status = render_wanted(r, kind, wanted);
+    film_resolve(r->film);
+    AG_TRY(status);
+    if (kind->end_pass) {
+        AG_TRY(kind->end_pass(r));
+    }
+    return debug_views_render(&r->t, &r->context->run, r->workers, r->film);
 }
 
 /* the eye's side: tiles -> film */
@@ -323,16 +341,7 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     ag_context *context = r->context;
     uint32_t wanted = (uint32_t)samples_per_pixel;
     phase_begin begin = context_begin_phase();
-    const integrator *kind = integrator_of(r->settings.integrator);
-    ag_status status = kind->begin_pass ? kind->begin_pass(r) : AG_OK;
-    if (status == AG_OK)
-        status = r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
-    film_resolve(r->film);
-    if (status == AG_OK && kind->end_pass)
-        status = kind->end_pass(r);
-    if (status == AG_OK)
-        status = debug_views_render(&r->t, &context->run, r->workers, r->film);
-    status = check_map(r, status);
+    ag_status status = check_map(r, render_pass(r, wanted));
     if (status == AG_OK)
         run_progress(&context->run, AG_PHASE_RENDER, (double)wanted / (double)r->settings.samples_per_pixel);
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);

@@ -6,6 +6,7 @@
 #include "map_file.h"
 #include "photon_aim.h"
 #include "rays/transmittance.h"
+#include "status.h"
 
 void maps_reset(maps *m)
 {
@@ -56,15 +57,12 @@ static ag_status trace_aimed(ag_context *context, const scene *s, float share, p
     return status;
 }
 
-static ag_status trace_photons(ag_context *context, const scene *s, const ag_render_settings *settings,
-                               photon_set *out_global, photon_set *out_caustic)
+/* pilot: may be empty. */
+static ag_status trace_after(ag_context *context, const scene *s, const ag_render_settings *settings,
+                             const eye_pilot *pilot, photon_set *out_global, photon_set *out_caustic)
 {
     bool wants_caustics = maps_have_caustics(s, settings);
     float share = settings->photon_aim;
-    eye_pilot pilot = {0};
-    ag_status status = AG_OK;
-    if (share > 0.0f && settings->max_depth >= 2)
-        status = eye_pilot_look(s, &context->run, settings, &pilot);
     /* an arrival after n scatterings reaches the eye after n + 2 (gathered), or n + 1 (a caustic seen) */
     photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL,
                                        .wanted = (uint32_t)settings->photon_count,
@@ -73,28 +71,55 @@ static ag_status trace_photons(ag_context *context, const scene *s, const ag_ren
                                        .filters_textures =
                                            settings->texture_filter == AG_TEXTURE_FILTER_ON && s->has_mips,
                                        .seed = settings->photon_seed,
-                                       .asked = &pilot.gathered,
-                                       .onward = &pilot.onward,
+                                       .asked = &pilot->gathered,
+                                       .onward = &pilot->onward,
                                        .progress_begin = 0.0,
                                        .progress_end = wants_caustics ? 0.7 : 1.0};
-    if (status == AG_OK && settings->max_depth >= 2)
-        status = trace_aimed(context, s, share, tracing, out_global);
-    if (status == AG_OK && wants_caustics) {
+    if (settings->max_depth >= 2) {
+        AG_TRY(trace_aimed(context, s, share, tracing, out_global));
+    }
+    if (wants_caustics) {
         tracing.kind = PHOTON_CAUSTIC;
-        tracing.asked = &pilot.seen;
+        tracing.asked = &pilot->seen;
         tracing.onward = NULL;
         tracing.wanted = (uint32_t)settings->caustic_photon_count;
         tracing.max_scatterings = settings->max_depth - 1;
         tracing.progress_begin = 0.7;
         tracing.progress_end = 1.0;
-        status = trace_aimed(context, s, share, tracing, out_caustic);
+        AG_TRY(trace_aimed(context, s, share, tracing, out_caustic));
     }
+    return AG_OK;
+}
+
+static ag_status trace_photons(ag_context *context, const scene *s, const ag_render_settings *settings,
+                               photon_set *out_global, photon_set *out_caustic)
+{
+    eye_pilot pilot = {0};
+    if (settings->photon_aim > 0.0f && settings->max_depth >= 2) {
+        AG_TRY(eye_pilot_look(s, &context->run, settings, &pilot));
+    }
+    ag_status status = trace_after(context, s, settings, &pilot, out_global, out_caustic);
     eye_pilot_reset(&pilot);
-    if (status == AG_OK)
-        status = context_check_textures(context, s);
-    if (status == AG_OK)
-        run_progress(&context->run, AG_PHASE_PHOTONS, 1.0);
-    return status;
+    AG_TRY(status);
+    AG_TRY(context_check_textures(context, s));
+    run_progress(&context->run, AG_PHASE_PHOTONS, 1.0);
+    return AG_OK;
+}
+
+/* The maps take over what the sets hold. */
+static ag_status build_maps(ag_context *context, const scene *s, const ag_render_settings *settings, photon_set *global,
+                            photon_set *caustic, photon_map *out_global, photon_map *out_caustic)
+{
+    photon_map_settings map_settings = {.nearest = (uint32_t)settings->nearest,
+                                        .max_radius = settings->radius,
+                                        .surface_area = s->surface_area,
+                                        .irradiance_fraction = settings->irradiance_fraction,
+                                        .surfaces = s};
+    AG_TRY(photon_map_create(&context->run, global, &map_settings, 0.0, 0.7, out_global));
+    /* caustics gather in spots: how many of their photons there are does not tell how far apart they lie */
+    AG_TRY(caustic_radius_find(out_global, caustic, &map_settings.radius_bound));
+    map_settings.irradiance_fraction = 1.0f;
+    return photon_map_create(&context->run, caustic, &map_settings, 0.7, 1.0, out_caustic);
 }
 
 static ag_status trace_maps(ag_context *context, const scene *s, const ag_render_settings *settings,
@@ -115,18 +140,7 @@ static ag_status trace_maps(ag_context *context, const scene *s, const ag_render
         log_message(context->log, AG_LOG_INFO, "photons: %u in the global map, %u in the caustic map, %llu paths",
                     global.count, caustic.count, (unsigned long long)(global.emitted_paths + caustic.emitted_paths));
         begin = context_begin_phase();
-        photon_map_settings map_settings = {.nearest = (uint32_t)settings->nearest,
-                                            .max_radius = settings->radius,
-                                            .surface_area = s->surface_area,
-                                            .irradiance_fraction = settings->irradiance_fraction,
-                                            .surfaces = s};
-        status = photon_map_create(&context->run, &global, &map_settings, 0.0, 0.7, out_global);
-        /* caustics gather in spots: how many of their photons there are does not tell how far apart they lie */
-        if (status == AG_OK)
-            status = caustic_radius_find(out_global, &caustic, &map_settings.radius_bound);
-        map_settings.irradiance_fraction = 1.0f;
-        if (status == AG_OK)
-            status = photon_map_create(&context->run, &caustic, &map_settings, 0.7, 1.0, out_caustic);
+        status = build_maps(context, s, settings, &global, &caustic, out_global, out_caustic);
     }
     photon_set_reset(&global); /* empty, where the maps have taken them over */
     photon_set_reset(&caustic);
@@ -149,12 +163,9 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
             map_file_obtain(context, s, settings, trace_maps, &out_maps->file, &out_maps->global, &out_maps->caustic);
     else
         status = trace_maps(context, s, settings, &out_maps->global, &out_maps->caustic);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(status);
     phase_begin guiding = context_begin_phase();
-    status = incident_light_create(&context->run, &out_maps->global, settings->gather_guiding, &out_maps->incident);
-    if (status != AG_OK)
-        return status;
+    AG_TRY(incident_light_create(&context->run, &out_maps->global, settings->gather_guiding, &out_maps->incident));
     context_add_to_phase(context, AG_PHASE_MAP, guiding);
     statistics->photon_bytes += photon_map_bytes(&out_maps->global) + photon_map_bytes(&out_maps->caustic) +
                                 incident_light_bytes(&out_maps->incident);

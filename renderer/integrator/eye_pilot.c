@@ -274,6 +274,13 @@ static void free_rows(pilot_job *job)
     free(job->rows);
 }
 
+static ag_status merge_lists(const pilot_job *job, eye_pilot *out_pilot)
+{
+    AG_TRY(merge_asked(job, GATHERED, &out_pilot->gathered));
+    AG_TRY(merge_onward(job, &out_pilot->onward));
+    return merge_asked(job, SEEN, &out_pilot->seen);
+}
+
 ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_settings *settings, eye_pilot *out_pilot)
 {
     *out_pilot = (eye_pilot){0};
@@ -283,11 +290,7 @@ ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_setti
     eye_pilot made = {0};
     ag_status status = look_over_frame(&job, run, paths, settings);
     if (status == AG_OK)
-        status = merge_asked(&job, GATHERED, &made.gathered);
-    if (status == AG_OK)
-        status = merge_onward(&job, &made.onward);
-    if (status == AG_OK)
-        status = merge_asked(&job, SEEN, &made.seen);
+        status = merge_lists(&job, &made);
     free_rows(&job);
     if (status == AG_OK)
         *out_pilot = made;

@@ -41,7 +41,7 @@ void transport_complete(const transport *t, vertex *v)
 {
     const scene *s = t->s;
     const shape *where = &s->shapes[v->hit.shape_index];
-    v->scattering = bsdf_create(s, &v->hit, vec3_negate(v->arrived.direction));
+    bsdf_init(s, &v->hit, vec3_negate(v->arrived.direction), &v->scattering);
     v->lamp = where->light_index == SHAPE_NO_LIGHT ? NULL : &s->lights[where->light_index];
 }
 

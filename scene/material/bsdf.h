@@ -82,14 +82,16 @@ typedef struct bsdf_sample {
     bsdf_lobes group; /* of the lobe that was picked */
 } bsdf_sample;
 
-/* out: back along the ray that met the surface, unit. */
-bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out);
-/* bsdf_create of a material's values, about the hit's own shading normal: no map tilts it, and no grain turns it. */
-bsdf bsdf_create_of(const material_point *m, const surface_hit *hit, vec3 out);
+/* out: back along the ray that met the surface, unit. The bsdf is filled where it stands: a struct returned would be
+ * copied, twice. */
+void bsdf_init(const scene *s, const surface_hit *hit, vec3 out, bsdf *out_bsdf);
+/* bsdf_init of a material's values, about the hit's own shading normal: no map tilts it, and no grain turns it. */
+void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsdf *out_bsdf);
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
 
-/* A Lambertian surface and nothing else: sampling it needs no u_lobe. */
+/* A Lambertian lobe and no other: sampling it needs no u_lobe, so that a gather draws its directions many at once, and
+ * may draw them where a guide says that light is. */
 static inline bool bsdf_is_plain(const bsdf *b)
 {
     return b->material.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;

@@ -1,5 +1,5 @@
 /* bsdf_lobe.h: the kinds of lobes of a bsdf, one row each: its value, its density, and sampling it. Private to bsdf.c,
- * bsdf_create.c and the files of lobes.
+ * bsdf_init.c and the files of lobes.
  * Rests on: Walter et al. 2007; Heitz 2018; Weidlich, Wilkie 2007; Pharr, Jakob, Humphreys, 4th ed., 2023, ch. 9.
  * Threads: pure functions. */
 #ifndef AFTERGLOW_BSDF_LOBE_H

@@ -65,8 +65,7 @@ void material_prepare(material *m)
         principled_prepare(m);
     material_make_rough_on_both_axes(&m->alpha_u, &m->alpha_v);
     material_make_rough_on_both_axes(&m->base_alpha_u, &m->base_alpha_v);
-    m->is_lambertian = m->kind == MATERIAL_DIFFUSE && !m->is_textured && m->alpha_u == m->alpha_v &&
-                       m->base_alpha_u == m->base_alpha_v && m->displacement_texture == SCENE_NO_TEXTURE &&
+    m->is_lambertian = m->kind == MATERIAL_DIFFUSE && !m->is_textured && m->displacement_texture == SCENE_NO_TEXTURE &&
                        m->normal_map_texture == SCENE_NO_TEXTURE;
 }
 
@@ -123,12 +122,6 @@ bool material_is_interface(const scene *s, const surface_hit *hit)
     if (m->kind == MATERIAL_MIX)
         m = material_resolve_mix(s, m, hit);
     return m->kind == MATERIAL_INTERFACE;
-}
-
-const rgb *material_plain_albedo(const scene *s, uint32_t material_index)
-{
-    const material *m = &s->materials[material_index];
-    return m->kind == MATERIAL_DIFFUSE && !m->is_textured ? &m->reflectance : NULL;
 }
 
 bool material_may_be_interface(const scene *s, uint32_t material_index)

@@ -81,10 +81,14 @@ typedef struct material {
     uint32_t normal_map_texture;   /* a colour: 2 c - 1 is the normal along dp/du, dp/dv and the shading normal */
     float normal_scale;            /* what its first two components are multiplied by, mostly 1 */
 
-    /* Lambertian and nothing else, the same all over, and nothing turns its shading normal: see lambert.h. Set by
-     * scene_add_material. */
+    /* Lambertian and nothing else, the same all over, and nothing turns its shading normal. Set by scene_add_material.
+     * Two places do without a bsdf there: photon paths (lambert.h) and the ends of gather rays (ray_fan_plain_point).
+     */
     bool is_lambertian;
 } material;
+
+/* The albedo of a material that is_lambertian; NULL of others. Not for curves, whose lobes are traced (bsdf.h). */
+static inline const rgb *material_plain_albedo(const material *m) { return m->is_lambertian ? &m->reflectance : NULL; }
 
 /* The k with which a conductor of index 1 reflects r at normal incidence, as pbrt-v4 has it. */
 static inline float material_k_from_reflectance(float r)
@@ -119,9 +123,6 @@ bool material_is_interface(const struct scene *s, const struct surface_hit *hit)
 
 /* Whether that is so anywhere on surfaces of the material. */
 bool material_may_be_interface(const struct scene *s, uint32_t material_index);
-
-/* The albedo of a material that is Lambertian, and the same all over; NULL of others. Not for curves: see bsdf.h. */
-const rgb *material_plain_albedo(const struct scene *s, uint32_t material_index);
 
 /* Of a mix, the one of its materials that is picked at the hit. */
 const material *material_resolve_mix(const struct scene *s, const material *m, const struct surface_hit *hit);

@@ -38,7 +38,7 @@ typedef struct material_point {
         glass_point glass;           /* MATERIAL_DIELECTRIC, MATERIAL_THIN_DIELECTRIC */
         coat_point coat;             /* MATERIAL_COATED_DIFFUSE, MATERIAL_COATED_CONDUCTOR */
         principled_point principled; /* MATERIAL_PRINCIPLED */
-        hair_point hair;             /* MATERIAL_HAIR; bsdf_create adds the direction to fibre and colour */
+        hair_point hair;             /* MATERIAL_HAIR; bsdf_init adds the direction to fibre and colour */
         slab_point slab;             /* of a bsdf whose lobe is LOBE_SLAB, whatever the kind */
     };
 } material_point;

@@ -37,7 +37,9 @@ void scene_intersect_fan(const scene *s, ray_fan *f);
 void ray_fan_hit(const scene *s, const ray_fan *f, uint32_t i, surface_hit *out_hit);
 
 /* The short way for a ray that met a Lambertian surface and nothing else: its reflectance and where the ray hit, with
- * the normal on the ray's side. NULL: it is not to be told so easily, and ray_fan_hit tells all there is. */
+ * the normal on the ray's side. NULL: it is not to be told so easily, and ray_fan_hit tells all there is. Measured:
+ * without it, by ray_fan_hit and a bsdf at each end, a frame of the Cornell box takes 7 % more CPU time
+ * (material/README.md). */
 const rgb *ray_fan_plain_point(const scene *s, const ray_fan *f, uint32_t i, surface_point *out_point);
 
 /* How far along the ray the nearest surface is, INFINITY where there is none: traversal alone, without looking at what

@@ -201,7 +201,7 @@ const rgb *ray_fan_plain_point(const scene *s, const ray_fan *f, uint32_t i, sur
     if (met->instance != RTC_INVALID_GEOMETRY_ID)
         return NULL;
     const shape *at = &s->shapes[met->geometry];
-    const rgb *albedo = material_plain_albedo(s, at->material_index);
+    const rgb *albedo = material_plain_albedo(&s->materials[at->material_index]);
     vec3 direction = ray_fan_direction(f, i);
     vec3 position = vec3_add_scaled(f->common.origin, direction, met->distance);
     if (!albedo || !shape_bare_point_at(at, met->primitive, met->u, met->v, position, out_point))

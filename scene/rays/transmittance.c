@@ -26,7 +26,8 @@ static rgb let_through(const scene *s, const surface_hit *hit, const scene_ray *
     bool is_slab = hit->slab.thickness > 0.0f;
     if (!through_panes || !(is_slab || pane_may_be_of(s, s->shapes[hit->shape_index].material_index)))
         return rgb_gray(0.0f);
-    bsdf at = bsdf_create(s, hit, vec3_negate(ray->direction));
+    bsdf at;
+    bsdf_init(s, hit, vec3_negate(ray->direction), &at);
     return bsdf_straight_transmittance(&at);
 }
 

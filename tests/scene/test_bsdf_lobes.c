@@ -440,12 +440,14 @@ static void mix_shares(const scene *s, uint32_t shape_index, bool in_a_row, doub
     for (int i = 0; i < SAMPLES; i++) {
         surface_hit hit = {.geometric_normal = UP, .shading_normal = UP, .shape_index = shape_index};
         hit.position = in_a_row ? (vec3){1e-4f * (float)i, 0.5f, 0.0f} : random_direction(&random);
-        bsdf b = bsdf_create(s, &hit, direction_at(30.0, 20.0));
+        bsdf b;
+        bsdf_init(s, &hit, direction_at(30.0, 20.0), &b);
         material_kind kind = b.material.kind;
         assert_true(kind == MATERIAL_DIFFUSE || kind == MATERIAL_DIELECTRIC || kind == MATERIAL_CONDUCTOR);
         counts[kind == MATERIAL_DIFFUSE ? 0 : kind == MATERIAL_DIELECTRIC ? 1 : 2]++;
         /* the same point is the same for all that meet it */
-        bsdf again = bsdf_create(s, &hit, direction_at(i % 180, 10.0 * i));
+        bsdf again;
+        bsdf_init(s, &hit, direction_at(i % 180, 10.0 * i), &again);
         assert_int_equal(again.material.kind, kind);
         assert_int_equal(again.lobes[0].group, kind == MATERIAL_DIFFUSE ? BSDF_GATHERED : BSDF_TRACED);
     }
@@ -503,7 +505,8 @@ static void materials_know_whether_they_are_traced(void **state)
         scene *s = test_scene_create(&run, text);
         assert_int_equal(material_is_traced(s, s->shapes[0].material_index), CASES[i].is_traced);
         surface_hit hit = {.geometric_normal = UP, .shading_normal = UP};
-        bsdf b = bsdf_create(s, &hit, UP);
+        bsdf b;
+        bsdf_init(s, &hit, UP, &b);
         assert_int_equal(bsdf_has(&b, BSDF_TRACED), CASES[i].is_traced);
         scene_destroy(s);
     }

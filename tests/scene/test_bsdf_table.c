@@ -48,7 +48,11 @@ static void add_text(table *t, const char *name, const char *text, const char *m
 
 static bsdf row_bsdf(const row *r, vec3 out)
 {
-    return r->s ? bsdf_create(r->s, &r->hit, out) : bsdf_of_point(&r->point, UP, out);
+    bsdf b;
+    if (!r->s)
+        return bsdf_of_point(&r->point, UP, out);
+    bsdf_init(r->s, &r->hit, out, &b);
+    return b;
 }
 
 static material thin(float ior)

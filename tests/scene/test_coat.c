@@ -99,7 +99,8 @@ static sphere_pictures picture_sphere(const material *prepared, int samples)
         sincos_turns(rng_float(&random), &s, &c);
         vec3 n = {radius * c, radius * s, sqrtf(square)};
         surface_hit hit = {.geometric_normal = n, .shading_normal = n};
-        bsdf b = bsdf_create_of(&point, &hit, out);
+        bsdf b;
+        bsdf_init_of(&point, &hit, out, &b);
         sum.distant += (double)bsdf_evaluate(&b, BSDF_ALL, BSDF_RADIANCE, sun).g;
         vec3 to_lamp = vec3_sub(lamp, n);
         float distance_squared = vec3_length_squared(to_lamp);

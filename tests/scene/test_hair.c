@@ -181,7 +181,8 @@ static void reflection_is_that_of_a_tube(void **state)
             scene_ray down = scene_ray_make((vec3){x, 0.5f, 5.0f}, (vec3){0.0f, 0.0f, -1.0f});
             surface_hit hit;
             assert_true(scene_intersect(s, down, INFINITY, &hit));
-            bsdf b = bsdf_create(s, &hit, UP);
+            bsdf b;
+            bsdf_init(s, &hit, UP, &b);
             vec3 normal = {x, 0.0f, sqrtf(1.0f - x * x)}, mean = {0.0f, 0.0f, 0.0f};
             rng random = test_random(7);
             for (int n = 0; n < 400; n++) {

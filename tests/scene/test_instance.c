@@ -123,7 +123,9 @@ static void expect_same_hair(const scene *a, const scene *b, const scene_ray *ra
         of_a.primitive_index != of_b.primitive_index || fabsf(of_a.distance - of_b.distance) > 1e-3f)
         return;
     vec3 out = vec3_negate(ray->direction);
-    bsdf in_a = bsdf_create(a, &of_a, out), in_b = bsdf_create(b, &of_b, out);
+    bsdf in_a, in_b;
+    bsdf_init(a, &of_a, out, &in_a);
+    bsdf_init(b, &of_b, out, &in_b);
     for (int i = 0; i < 8; i++) {
         vec3 from = random_direction(random);
         rgb f = bsdf_evaluate(&in_a, BSDF_ALL, BSDF_RADIANCE, from);

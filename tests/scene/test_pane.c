@@ -151,7 +151,8 @@ static void test_samples(void **state)
                 scene_ray ray = scene_ray_make(vec3_make(0.0f, 0.1f, 1.0f - (float)side), direction);
                 surface_hit hit;
                 assert_true(scene_intersect(s, ray, INFINITY, &hit));
-                bsdf b = bsdf_create(s, &hit, vec3_negate(direction));
+                bsdf b;
+                bsdf_init(s, &hit, vec3_negate(direction), &b);
                 assert_true(b.is_pane);
                 rng random = test_random(7);
                 double sum = 0.0, squares = 0.0;

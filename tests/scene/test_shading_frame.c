@@ -42,7 +42,9 @@ static surface_hit hit_from_above(const scene *s, float x, float y)
 
 static vec3 normal_at(const scene *s, const surface_hit *hit)
 {
-    return bsdf_create(s, hit, hit->geometric_normal).shading.z;
+    bsdf b;
+    bsdf_init(s, hit, hit->geometric_normal, &b);
+    return b.shading.z;
 }
 
 static void assert_direction(vec3 value, double x, double y, double z, double tolerance)

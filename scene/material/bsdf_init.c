@@ -1,4 +1,4 @@
-/* bsdf_create.c: which lobes a material has at a point, and how often each is picked. One row for each kind of
+/* bsdf_init.c: which lobes a material has at a point, and how often each is picked. One row for each kind of
  * material. Flow: material_point -> [here] -> bsdf. Threads: pure functions. */
 #include "material/bsdf.h"
 #include "material/bsdf_lobe.h"
@@ -176,12 +176,10 @@ static void set_up(bsdf *b, frame shading, bool is_tilted, const surface_hit *hi
         b->lobes[k].group = BSDF_TRACED;
 }
 
-bsdf bsdf_create_of(const material_point *m, const surface_hit *hit, vec3 out)
+void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsdf *out_bsdf)
 {
-    bsdf b;
-    b.material = *m;
-    set_up(&b, frame_from_z(hit->shading_normal), false, hit, out);
-    return b;
+    out_bsdf->material = *m;
+    set_up(out_bsdf, frame_from_z(hit->shading_normal), false, hit, out);
 }
 
 /* Makes one hit of both faces of a slab and what is between them. */
@@ -195,14 +193,12 @@ static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
         slab_point_at(&b->material, fabsf(vec3_dot(b->out, b->geometric_normal)), hit->slab.thickness, between);
 }
 
-bsdf bsdf_create(const scene *s, const surface_hit *hit, vec3 out)
+void bsdf_init(const scene *s, const surface_hit *hit, vec3 out, bsdf *b)
 {
-    bsdf b;
-    const material *m = material_at(s, hit, &b.material);
-    frame shading = shading_frame_at(s, hit, m, material_point_has_grain(&b.material));
-    set_up(&b, shading, shading_frame_is_tilted(m), hit, out);
-    b.is_pane = b.is_pane && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
+    const material *m = material_at(s, hit, &b->material);
+    frame shading = shading_frame_at(s, hit, m, material_point_has_grain(&b->material));
+    set_up(b, shading, shading_frame_is_tilted(m), hit, out);
+    b->is_pane = b->is_pane && s->shapes[hit->shape_index].light_index == SHAPE_NO_LIGHT;
     if (hit->slab.thickness > 0.0f)
-        make_slab(s, hit, &b);
-    return b;
+        make_slab(s, hit, b);
 }
