@@ -20,16 +20,25 @@ The library is libafterglow.so, found as the system finds libraries, or named by
 scenes belong to one thread at a time; rendering lets go of Python's lock, so that other threads go on meanwhile.
 """
 
+from __future__ import annotations
+
 import ctypes
 import ctypes.util
 import os
 import threading
 import warnings
+from collections.abc import Callable, Mapping
+from typing import Any, Optional, Union
 from ctypes import (POINTER, byref, c_bool, c_char_p, c_double, c_float, c_int, c_size_t, c_uint, c_uint64, c_void_p)
 
 import numpy
+from numpy.typing import ArrayLike
 
 __all__ = ["Context", "Scene", "Rendering", "Error", "Cancelled", "version"]
+
+_Path = Union[str, bytes, os.PathLike]
+_Parameters = Optional[Mapping[str, Any]]  # {"rgb reflectance": (1, 0, 0)}
+_Poll = Optional[Callable[[], None]]
 
 _CANCELLED = 9  # AG_CANCELLED
 _PARAMETER_TYPES = ["float", "integer", "string", "bool", "point2", "vector2", "point3", "vector3", "normal", "rgb",
@@ -215,11 +224,14 @@ def _parameters(values, kept):
 
 
 class Context:
-    """Threads, log and progress. `threads`: 0 for as many as there are; `progress`: called with the name of a phase's
-    number and how far it is, in [0, 1], on the library's threads; an exception there calls the work off. `warn`: called
-    with the text of each warning, on the thread that works with the context; None: Python's warnings."""
+    """Threads, log and progress. `threads`: 0 for as many as there are; `progress`: called with the number of a phase
+    (AG_PHASE_..., from 0 on) and how far it is, in [0, 1], on the library's threads; an exception there calls the work
+    off. `warn`: called with the text of each warning, on the thread that works with the context; None: Python's
+    warnings. `color_config` and `working_space` are those of the program's options."""
 
-    def __init__(self, threads: int = 0, progress=None, working_space=None, color_config=None, warn=None):
+    def __init__(self, threads: int = 0, progress: Optional[Callable[[int, float], None]] = None,
+                 working_space: Optional[str] = None, color_config: Optional[_Path] = None,
+                 warn: Optional[Callable[[str], None]] = None) -> None:
         self._said = []
         self._progress = progress
         self._warn = warn or (lambda message: warnings.warn(message, stacklevel=4))
@@ -280,32 +292,33 @@ class Context:
             raise
         self._check(result[0])
 
-    def cancel(self):
+    def cancel(self) -> None:
         """Calls the work under way off, within 50 ms; from any thread."""
         _library.ag_context_cancel(self._pointer)
 
-    def scene(self) -> "Scene":
+    def scene(self) -> Scene:
         """An empty scene."""
         return Scene(self, _library.ag_scene_create, None)
 
-    def load(self, path) -> "Scene":
-        """The scene of a file."""
+    def load(self, path: _Path) -> Scene:
+        """The scene of a file: pbrt-v4's text, glTF, OBJ and what else the program reads."""
         return Scene(self, _library.ag_scene_load, _text(path), is_complete=True)
 
-    def load_text(self, text, name="text") -> "Scene":
+    def load_text(self, text: Union[str, bytes], name: str = "text") -> Scene:
         """The scene of pbrt-v4's text; files are looked for in the folder in front of the name's last slash."""
         text = text.encode() if isinstance(text, str) else text
         return Scene(self, _library.ag_scene_load_text, _text(name), text, len(text), None, is_complete=True)
 
-    def close(self):
+    def close(self) -> None:
+        """Ends the context; its scenes are to be closed before."""
         if self._pointer:
             _library.ag_context_destroy(self._pointer)
             self._pointer = c_void_p()
 
-    def __enter__(self):
+    def __enter__(self) -> Context:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: Any) -> None:
         self.close()
 
 
@@ -326,25 +339,28 @@ class Scene:
         kept = []
         self._call(function, name, _text(kind), *_parameters(parameters, kept))
 
-    def hint(self, directive: str, type: str, parameters=None):
-        """"Film", "Sampler", "Integrator" or "PixelFilter"."""
+    def hint(self, directive: str, type: str, parameters: _Parameters = None) -> None:
+        """What the scene wishes of the picture; directive: "Film", "Sampler", "Integrator" or "PixelFilter"."""
         self._named(_library.ag_scene_set_hint, _HINTS[directive.lower()], type, parameters)
 
-    def material(self, name: str, type: str, parameters=None):
+    def material(self, name: str, type: str, parameters: _Parameters = None) -> None:
+        """A material for shapes to name."""
         self._named(_library.ag_scene_add_material, _text(name), type, parameters)
 
-    def medium(self, name: str, type: str, parameters=None):
+    def medium(self, name: str, type: str, parameters: _Parameters = None) -> None:
+        """A medium for shapes, lights and the camera to name."""
         self._named(_library.ag_scene_add_medium, _text(name), type, parameters)
 
-    def texture(self, name: str, value: str, type: str, parameters=None, world_from_texture=None):
-        """value: "float" or "spectrum"."""
+    def texture(self, name: str, value: str, type: str, parameters: _Parameters = None,
+                world_from_texture: Optional[ArrayLike] = None) -> None:
+        """A texture for parameters of type "texture" to name; value: "float" or "spectrum"."""
         kept = []
         items, count = _parameters(parameters, kept)
         self._call(_library.ag_scene_add_texture, byref(_Texture(
             ctypes.sizeof(_Texture), _text(name), ("float", "spectrum").index(value), _text(type), items, count,
             _matrix(world_from_texture, kept))))
 
-    def image(self, name: str, pixels):
+    def image(self, name: str, pixels: ArrayLike) -> None:
         """Pixels that stand in for the file of that name: (height, width) or (height, width, channels), bytes as an
         8-bit file has them, all else as linear floats."""
         array = numpy.asarray(pixels)
@@ -356,9 +372,12 @@ class Scene:
         setattr(made, "bytes" if is_bytes else "floats", array.ctypes.data)
         self._call(_library.ag_scene_add_image, _text(name), byref(made))
 
-    def shape(self, type: str, parameters=None, *, material=None, light=None, object=None, world_from_shape=None,
-              world_from_shape_end=None, reverse_orientation=False, medium_inside=None, medium_outside=None):
-        """light: the parameters of an AreaLightSource, {} for its defaults; None: it does not shine."""
+    def shape(self, type: str, parameters: _Parameters = None, *, material: Optional[str] = None,
+              light: _Parameters = None, object: Optional[str] = None, world_from_shape: Optional[ArrayLike] = None,
+              world_from_shape_end: Optional[ArrayLike] = None, reverse_orientation: bool = False,
+              medium_inside: Optional[str] = None, medium_outside: Optional[str] = None) -> None:
+        """A shape. object: the name of what it is a part of, which instances show; None: it stands where it is. light:
+        the parameters of an AreaLightSource, {} for its defaults; None: it does not shine."""
         kept = []
         items, count = _parameters(parameters, kept)
         light_items, light_count = _parameters(light, kept)
@@ -367,29 +386,34 @@ class Scene:
             _matrix(world_from_shape, kept), _matrix(world_from_shape_end, kept), reverse_orientation,
             light is not None, light_items, light_count, _text(medium_inside), _text(medium_outside))))
 
-    def instance(self, object: str, world_from_object=None, world_from_object_end=None):
+    def instance(self, object: str, world_from_object: Optional[ArrayLike] = None,
+                 world_from_object_end: Optional[ArrayLike] = None) -> None:
+        """Shows the shapes that were made with that object's name."""
         kept = []
         self._call(_library.ag_scene_add_instance, byref(_Instance(
             ctypes.sizeof(_Instance), _text(object), _matrix(world_from_object, kept),
             _matrix(world_from_object_end, kept))))
 
-    def light(self, type: str, parameters=None, *, world_from_light=None, medium_outside=None):
+    def light(self, type: str, parameters: _Parameters = None, *, world_from_light: Optional[ArrayLike] = None,
+              medium_outside: Optional[str] = None) -> None:
+        """A light that is no shape: "point", "spot", "distant", "infinite" and so on."""
         kept = []
         items, count = _parameters(parameters, kept)
         self._call(_library.ag_scene_add_light, byref(_Light(
             ctypes.sizeof(_Light), _text(type), items, count, _matrix(world_from_light, kept),
             _text(medium_outside))))
 
-    def camera(self, type: str = "perspective", parameters=None, *, world_from_camera=None, world_from_camera_end=None,
-               medium=None):
-        """It looks along +z; x is to the right and y up."""
+    def camera(self, type: str = "perspective", parameters: _Parameters = None, *,
+               world_from_camera: Optional[ArrayLike] = None, world_from_camera_end: Optional[ArrayLike] = None,
+               medium: Optional[str] = None) -> None:
+        """The camera, instead of the one before. It looks along +z; x is to the right and y up."""
         kept = []
         items, count = _parameters(parameters, kept)
         self._call(_library.ag_scene_set_camera, byref(_Camera(
             ctypes.sizeof(_Camera), _text(type), items, count, _matrix(world_from_camera, kept),
             _matrix(world_from_camera_end, kept), _text(medium))))
 
-    def complete(self, poll=None):
+    def complete(self, poll: _Poll = None) -> None:
         """Builds what rays need; rendering does so where it is not done yet. poll: as for Rendering.advance."""
         if not self._is_complete:
             self._context._work(_library.ag_scene_commit, self._pointer, poll=poll)
@@ -407,7 +431,7 @@ class Scene:
                 raise ValueError(f"{name}: there is no such setting, or {value!r} is no value of it")
         return room, kept
 
-    def render(self, write_to=None, **settings):
+    def render(self, write_to: Optional[_Path] = None, **settings: Any) -> numpy.ndarray:
         """Completes the scene, renders it, and gives its pixels. settings: options of the program by name, with _ for
         -: size="320x180", spp=16, noise=0.02, integrator="path", photon_map="room.map"; True for those without a
         value. write_to: a file that the picture is written to as well."""
@@ -422,19 +446,20 @@ class Scene:
         finally:
             _library.ag_film_destroy(film)
 
-    def rendering(self, poll=None, **settings) -> "Rendering":
+    def rendering(self, poll: _Poll = None, **settings: Any) -> Rendering:
         """A picture that grows. Completes the scene and traces its photons. settings: as for render."""
         return Rendering(self, settings, poll)
 
-    def close(self):
+    def close(self) -> None:
+        """Forgets the scene."""
         if self._pointer:
             _library.ag_scene_destroy(self._pointer)
             self._pointer = c_void_p()
 
-    def __enter__(self):
+    def __enter__(self) -> Scene:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: Any) -> None:
         self.close()
 
 
@@ -452,6 +477,8 @@ class Rendering:
     """Made by Scene.rendering. The scene and its camera stay as they are until it is closed. `shape` is the picture's,
     (height, width)."""
 
+    shape: tuple[int, int]
+
     def __init__(self, scene, settings, poll):
         self._context, self._pointer, self._film = scene._context, c_void_p(), c_void_p()
         scene.complete(poll)
@@ -466,28 +493,28 @@ class Rendering:
     def _shown(self):
         return self._film or c_void_p(_library.ag_rendering_film(self._pointer))
 
-    def advance(self, samples: int, poll=None):
+    def advance(self, samples: int, poll: _Poll = None) -> None:
         """Brings every pixel to so many samples, or to the noise that was asked for: those of the settings at most. poll:
         called about every 0.1 s meanwhile, on the calling thread; an exception there calls the work off."""
         self._context._work(_library.ag_rendering_continue, self._pointer, samples, poll=poll)
 
-    def watch(self):
+    def watch(self) -> Optional[numpy.ndarray]:
         """The picture as far as it is shown by now, whole tiles, from any thread and while it is at work; None where
         nothing is new. The array is the same in each call."""
         version = _library.ag_film_read_picture(self._shown(), self._version, _floats(self._watched))
         is_new, self._version = version != self._version, version
         return self._watched if is_new else None
 
-    def sample_counts(self):
+    def sample_counts(self) -> tuple[int, int, float]:
         """The least, the most, and the mean number of samples that a pixel has had."""
         counts = _library.ag_rendering_sample_counts(self._pointer)
         return counts.least, counts.most, counts.mean
 
-    def pixels(self):
+    def pixels(self) -> numpy.ndarray:
         """A copy of the picture."""
         return _pixels(self._shown())
 
-    def channels(self) -> dict:
+    def channels(self) -> dict[str, numpy.ndarray]:
         """Copies of picture and layers, (height, width) each, by the names that they have in a file: "R", "Z", "N.X"."""
         film, found = self._shown(), {}
         for number in range(_library.ag_film_channel_count(film)):
@@ -496,20 +523,21 @@ class Rendering:
             found[_library.ag_film_channel_name(film, number).decode()] = values
         return found
 
-    def denoise(self, poll=None):
+    def denoise(self, poll: _Poll = None) -> None:
         """Ends the rendering and takes the noise out of R, G and B, by Open Image Denoise; denoise=True among the
         settings has kept what it needs. The channels stay to be read."""
         _library.ag_rendering_finish(self._pointer, byref(self._film))
         self._pointer = c_void_p()
         self._context._work(_library.ag_film_denoise, self._context._pointer, self._film, poll=poll)
 
-    def close(self):
+    def close(self) -> None:
+        """Ends the rendering and forgets its picture."""
         _library.ag_rendering_finish(self._pointer, None)
         _library.ag_film_destroy(self._film)
         self._pointer, self._film = c_void_p(), c_void_p()
 
-    def __enter__(self):
+    def __enter__(self) -> Rendering:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: Any) -> None:
         self.close()

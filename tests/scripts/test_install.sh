@@ -6,6 +6,8 @@ set -euo pipefail
 
 # shellcheck source=tests/fixtures/installed_tree.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/installed_tree.sh"
+# shellcheck source=tests/fixtures/python.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/python.sh"
 
 # Two ways there: another prefix, and a staging folder as packagers use it.
 cmake --install "$AFTERGLOW_BUILD_DIR" --prefix "$folder/elsewhere" >install.log || fail "cmake --install: $(<install.log)"
@@ -75,13 +77,11 @@ cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
 # The Python module, beside the library that was installed.
 module=$(find "$prefix" -path '*/lib/python3/dist-packages/afterglow.py')
 [[ -s $module ]] || fail "no Python module"
-for python in python3 /usr/bin/python3; do
-    "$python" -c 'import numpy' 2>/dev/null || continue
+if find_python_with_numpy; then
     said=$(AFTERGLOW_LIBRARY=$library PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${module%/*} "$python" -c 'import afterglow; print(afterglow.version())')
     [[ "afterglow $said" == "$(<version)" ]] || fail "the Python module knows another version: $said"
     echo "ok: Python"
-    break
-done
+fi
 
 # A scene from memory, three views of it with one photon map.
 walk=$(find "$prefix" -name walk.c)

@@ -1,18 +1,13 @@
 #!/usr/bin/env bash
-# The Python module: its structs are the header's, README's lines run, errors are exceptions with the library's text, a
-# callback's exception calls the work off, and the picture has the program's bits.
+# The Python module: its structs are the header's, public names have docstrings and type hints, README's lines run, errors
+# are exceptions with the library's text, a callback's exception calls the work off, and the picture has the program's bits.
 set -euo pipefail
 # shellcheck source=tests/fixtures/shell_test.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/shell_test.sh"
+# shellcheck source=tests/fixtures/python.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../fixtures/python.sh"
 
-python=
-for candidate in python3 /usr/bin/python3; do
-    if "$candidate" -c 'import numpy' 2>/dev/null; then
-        python=$candidate
-        break
-    fi
-done
-[[ -n $python ]] || skip "numpy for Python (python3-numpy) is not installed"
+find_python_with_numpy || skip "numpy for Python (python3-numpy) is not installed"
 export AFTERGLOW_LIBRARY=$AFTERGLOW_BUILD_DIR/lib/libafterglow.so PYTHONPATH=$root/renderer/python PYTHONDONTWRITEBYTECODE=1
 cd "$folder"
 
@@ -37,11 +32,40 @@ END
     fail "the module's structs are not the header's"
 echo "ok: layout"
 
-sed -n '/^```python$/,/^```$/p' "$root/README.md" | sed '/^```/d' >readme.py
-[[ $(wc -l <readme.py) -ge 8 ]] || fail "README has no lines of Python"
-"$python" -W error readme.py >said || fail "README's lines do not run"
-grep -Eqx '\(90, 160, 3\) [0-9.]+' said || fail "README's lines say: $(<said)"
-[[ $(od -An -tx1 -N4 clay.png | tr -d ' ') == 89504e47 ]] || fail "README's lines wrote no picture"
+"$python" - <<'END' || fail "public names lack a docstring or a type hint"
+import inspect, sys, typing, afterglow
+
+def lacks(name, item):
+    """Names what a public class, function or method lacks."""
+    if not (item.__doc__ or "").strip() and not name.endswith("__"):
+        yield f"{name}: a docstring"
+    if inspect.isclass(item):
+        for member, value in vars(item).items():
+            # contexts alone are made by their class, the others by methods
+            is_public = not member.startswith("_") or member in ("__enter__", "__exit__")
+            if inspect.isfunction(value) and (is_public or (name, member) == ("Context", "__init__")):
+                yield from lacks(f"{name}.{member}", value)
+    elif inspect.isfunction(item):
+        hints = typing.get_type_hints(item)  # raises where one names nothing
+        wanted = [parameter for parameter in inspect.signature(item).parameters if parameter != "self"] + ["return"]
+        yield from (f"{name}: the type of {each}" for each in wanted if each not in hints)
+
+class Bare:
+    def method(self, a, b: int):
+        pass
+
+assert len(list(lacks("Bare", Bare))) == 4, list(lacks("Bare", Bare))
+for name, item in vars(afterglow).items():
+    if getattr(item, "__module__", None) == "afterglow" and not name.startswith("_"):
+        assert name in afterglow.__all__, f"{name} is not in __all__"
+found = [lack for name in afterglow.__all__ for lack in lacks(name, getattr(afterglow, name))]
+for lack in found:
+    print("lacking:", lack, file=sys.stderr)
+sys.exit(1 if found else 0)
+END
+echo "ok: docstrings and type hints"
+
+check_readme_python
 echo "ok: README"
 
 cat >scene.pbrt <<'END'
