@@ -180,13 +180,22 @@ class _Frame:
                     break  # the noise that was asked for is reached everywhere
             if self._settings.use_denoising:
                 self._engine.update_stats("", "Denoising")
-                rendering.denoise(self._poll)
+                self._denoise(rendering)
             self._fill(result, rendering)
             is_whole = True
         finally:
             if not is_whole:
                 self._show(rendering, result)
             self._engine.end_result(result, cancel=False)
+
+    def _denoise(self, rendering):
+        """A picture that cannot be denoised is whole for all that."""
+        try:
+            rendering.denoise(self._poll)
+        except self._afterglow.Cancelled:
+            raise
+        except self._afterglow.Error as error:
+            self._notes.say(f"the picture is not denoised: {error}")
 
     def _watch(self, rendering, result, before, samples, most):
         self._poll()

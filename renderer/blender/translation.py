@@ -47,6 +47,20 @@ def _key(instance_object):
     return data.as_pointer(), slots, instance_object.lightgroup
 
 
+_VISIBILITIES = {"visible_camera": "camera", "visible_diffuse": "diffuse", "visible_glossy": "glossy",
+                 "visible_transmission": "transmission", "visible_shadow": "shadow"}
+
+
+def _tell_visibility(shown, notes):
+    if shown.type == "LIGHT":
+        return  # it is hidden from the camera anyway, and casts no shadow
+    hidden = [kind for name, kind in _VISIBILITIES.items() if not getattr(shown, name)]
+    if hidden:
+        notes.say(f'object "{shown.name}": it is hidden from {", ".join(hidden)} rays in Blender, and seen by all here')
+    if shown.is_holdout or shown.is_shadow_catcher:
+        notes.say(f'object "{shown.name}": it is an object like others here, no holdout or shadow catcher')
+
+
 def _add_part(scene, model, part, **where):
     look = model.looks[part.slot]
     light = look.light
@@ -89,6 +103,7 @@ def translate(scene, depsgraph, motion, notes, poll, view=None):
             hair.add_particle_hair(scene, shown, materials, poll)
         if not instance.show_self:
             continue
+        _tell_visibility(shown, notes)
         matrix = cameras.matrix_of(instance.matrix_world)
         if shown.type == "LIGHT":
             lamps.add_lamp(scene, shown, matrix, notes)
