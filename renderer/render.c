@@ -12,6 +12,7 @@
 #include "rays/transmittance.h"
 #include "render_maps.h"
 #include "render_tiles.h"
+#include "split_pilot.h"
 #include "status.h"
 
 #include <stdlib.h>
@@ -268,8 +269,9 @@ static ag_status prepare(ag_rendering *r)
     AG_TRY(guide_direct_light(r));
     begin = context_begin_phase();
     r->workers = eye_workers_create(&r->t, context->statistics.threads);
+    status = r->workers ? split_pilot_run(r) : AG_ERROR_MEMORY;
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
-    return r->workers ? AG_OK : AG_ERROR_MEMORY;
+    return status;
 }
 
 /* Settings, film, maps and guides, of a rendering that knows its scene. */

@@ -226,8 +226,8 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
                     .workers = r->workers,
                     .wanted = wanted,
                     .worker_count = context->statistics.threads,
-                    .progress_begin = film_count_samples(film).mean / most,
-                    .progress_end = (double)wanted / most};
+                    .progress_begin = r->is_pilot ? 0.0 : film_count_samples(film).mean / most,
+                    .progress_end = r->is_pilot ? 0.0 : (double)wanted / most};
     const film_area *area = &film->area;
     AG_TRY(tile_scheduler_create(area->x0, area->y0, area->x0 + area->width, area->y0 + area->height, TILE_SIZE,
                                  context->statistics.threads, &job.tiles));
@@ -237,14 +237,15 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
     }
     job.samples_per_pixel = job.sample_count / (double)film_area_count(film);
     run_progress(&context->run, AG_PHASE_RENDER, job.progress_begin); /* the first pixels may take long */
-    run_allow_pause(&context->run);
+    if (!r->is_pilot)
+        run_allow_pause(&context->run);
     job.to_show = calloc(job.worker_count, sizeof *job.to_show);
     if (!job.to_show) {
         tile_scheduler_destroy(job.tiles);
         return AG_ERROR_MEMORY;
     }
     thread_pool_run(context->pool, work_on_tiles, &job);
-    bool is_paused = run_end_pause(&context->run);
+    bool is_paused = !r->is_pilot && run_end_pause(&context->run);
     tile_scheduler_destroy(job.tiles);
     free(job.to_show);
     AG_TRY(context_check_textures(context, r->s));

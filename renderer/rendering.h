@@ -26,6 +26,7 @@ struct ag_rendering {
     transport t;
     eye_worker *workers;
     ag_film *film;
+    bool is_pilot; /* not the picture itself: neither tells of progress nor pauses */
     uint64_t not_finite_before;
     uint64_t camera_rays, camera_rays_met; /* of all passes; the latter met a surface */
     double seconds;                        /* of all passes */

@@ -51,8 +51,11 @@ static void set_crop(ag_film *film, const ag_render_settings *settings)
 
 static void begin_splits(ag_film *film, const ag_render_settings *settings)
 {
+    size_t width = (size_t)film->area.width, columns = (width + FILM_BLOCK - 1) / FILM_BLOCK;
     for (size_t i = 0; film->splits && i < film_area_count(film); i++)
-        film->splits[i].counts = splitting_first(settings);
+        film->splits[i].counts = film->first_splits
+                                     ? film->first_splits[i / width / FILM_BLOCK * columns + i % width / FILM_BLOCK]
+                                     : splitting_first(settings);
 }
 
 ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
@@ -118,6 +121,7 @@ void ag_film_destroy(ag_film *film)
     free(film->counts);
     free(film->wanted);
     free(film->splits);
+    free(film->first_splits);
     free(film->negatives);
     free(film->nearest);
     for (int i = 0; i < FILM_VIEW_COUNT; i++)

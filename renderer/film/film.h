@@ -58,6 +58,7 @@ struct ag_film {
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
     split_trial *splits;           /* see splitting.h; NULL: all samples are split alike */
+    split_counts *first_splits;    /* of the first samples of each block, row by row; NULL: splitting_first */
     uint32_t *negatives;           /* those with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];

@@ -3,6 +3,8 @@
 
 #include "film/film.h"
 
+#include <stdlib.h>
+
 /* The split is decided at FIRST_BARRIER samples, and each time that there are BARRIER_STEP times as many. */
 enum { FIRST_BARRIER = 4, BARRIER_STEP = 4 };
 
@@ -26,14 +28,17 @@ enum { FIXED_SHARE = 2 };
 /* Then a block needs no less noise than this, a standard error as in noise.h: nobody sees it. */
 static const double FIXED_CLEAN = 0.003;
 
+/* A block is told of by so many of the pilot's pixels on each side of its middle, at least: four samples of one alone
+ * do not tell a variance. */
+static const double PILOT_HALF_WINDOW = 2.0;
+
 /* Of the variance between samples, at least this part is taken for the camera samples' own: what is left when the
  * others are taken off is not well known. */
 static const double LEAST_REST = 1.0 / 64.0;
 
 bool splitting_is_open(const ag_render_settings *settings)
 {
-    return settings->integrator == AG_INTEGRATOR_PHOTONMAP && settings->gather_samples == 0 &&
-           (settings->noise_level > 0.0f || settings->samples_per_pixel > FIRST_BARRIER);
+    return settings->integrator == AG_INTEGRATOR_PHOTONMAP && settings->gather_samples == 0;
 }
 
 split_counts splitting_first(const ag_render_settings *settings)
@@ -125,6 +130,28 @@ static uint32_t best_count(const block_sums *sums, double by_one, double cost_of
     return count < most ? count : most;
 }
 
+static split_counts best_counts(const block_sums *sums, const choice *c)
+{
+    return (split_counts){
+        .rays = best_count(sums, sums->by_ray, sums->cost_of_ray, c, c->least.rays, c->most.rays),
+        .lights = best_count(sums, sums->by_light, sums->cost_of_light, c, c->least.lights, c->most.lights)};
+}
+
+static choice make_choice(const ag_render_settings *settings)
+{
+    choice c = {noise_shown_scale(settings) * (double)settings->exposure,
+                1.0,
+                0.0,
+                {.rays = 1, .lights = 1},
+                splitting_most(settings)};
+    if (settings->noise_level > 0.0f)
+        return c;
+    c.factor = FIXED_FACTOR;
+    c.clean = FIXED_CLEAN * FIXED_CLEAN * settings->samples_per_pixel;
+    c.least.rays = (c.most.rays + FIXED_SHARE - 1) / FIXED_SHARE;
+    return c;
+}
+
 /* A block all of whose pixels have had `barrier` samples; another was decided on before, or needs no more. */
 static void decide_block(struct ag_film *film, film_area block, uint32_t barrier, const choice *c)
 {
@@ -137,9 +164,7 @@ static void decide_block(struct ag_film *film, film_area block, uint32_t barrier
             add_pixel(&film->splits[pixel], (double)barrier, c->scale, &sums);
         }
     split_counts before = film->splits[film_pixel_at(film, block.x0, block.y0)].counts;
-    split_counts counts = {
-        .rays = best_count(&sums, sums.by_ray, sums.cost_of_ray, c, c->least.rays, c->most.rays),
-        .lights = best_count(&sums, sums.by_light, sums.cost_of_light, c, c->least.lights, c->most.lights)};
+    split_counts counts = best_counts(&sums, c);
     uint32_t used = (barrier + before.ray_shift) * before.rays;
     counts.ray_shift = (used + counts.rays - 1) / counts.rays - barrier;
     for (int y = block.y0; y < block.y0 + block.height; y++)
@@ -157,6 +182,44 @@ static uint32_t least_count(const struct ag_film *film, uint32_t wanted)
     return least;
 }
 
+/* The pixels of the pilot, within [0, size), that tell of pixels [begin, begin + count) of the large picture: those
+ * that lie there, and enough of those around. */
+static void find_window(int begin, int count, int large_size, int size, int *out_first, int *out_last)
+{
+    double scale = (double)size / (double)large_size, middle = scale * (begin + 0.5 * count);
+    double half = fmax(0.5 * scale * count, PILOT_HALF_WINDOW);
+    *out_first = (int)fmax(floor(middle - half), 0.0);
+    *out_last = (int)fmin(ceil(middle + half), (double)size) - 1;
+}
+
+ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, const ag_render_settings *settings)
+{
+    int columns = (film->area.width + FILM_BLOCK - 1) / FILM_BLOCK,
+        rows = (film->area.height + FILM_BLOCK - 1) / FILM_BLOCK;
+    choice c = make_choice(settings);
+    if (!film->first_splits)
+        film->first_splits = malloc((size_t)columns * (size_t)rows * sizeof *film->first_splits);
+    if (!film->first_splits)
+        return AG_ERROR_MEMORY;
+    for (int i = 0; i < columns * rows; i++) {
+        film_area block = film_block_at(film, i % columns, i / columns);
+        int x0, x1, y0, y1;
+        block_sums sums = {0};
+        find_window(block.x0, FILM_BLOCK, film->full_width, pilot->full_width, &x0, &x1);
+        find_window(block.y0, FILM_BLOCK, film->full_height, pilot->full_height, &y0, &y1);
+        for (int y = y0; y <= y1; y++)
+            for (int x = x0; x <= x1; x++) {
+                size_t pixel = film_pixel_at(pilot, x, y);
+                add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c.scale, &sums);
+            }
+        film->first_splits[i] = best_counts(&sums, &c);
+        for (int y = block.y0; y < block.y0 + block.height; y++)
+            for (int x = block.x0; x < block.x0 + block.width; x++)
+                film->splits[film_pixel_at(film, x, y)].counts = film->first_splits[i];
+    }
+    return AG_OK;
+}
+
 uint32_t splitting_decide(struct ag_film *film, const ag_render_settings *settings, uint32_t wanted)
 {
     uint32_t least = least_count(film, wanted);
@@ -164,16 +227,7 @@ uint32_t splitting_decide(struct ag_film *film, const ag_render_settings *settin
     while (barrier < least)
         barrier *= BARRIER_STEP;
     if (barrier == least && least < wanted) {
-        choice c = {noise_shown_scale(settings) * (double)settings->exposure,
-                    1.0,
-                    0.0,
-                    {.rays = 1, .lights = 1},
-                    splitting_most(settings)};
-        if (!(settings->noise_level > 0.0f)) {
-            c.factor = FIXED_FACTOR;
-            c.clean = FIXED_CLEAN * FIXED_CLEAN * settings->samples_per_pixel;
-            c.least.rays = (c.most.rays + FIXED_SHARE - 1) / FIXED_SHARE;
-        }
+        choice c = make_choice(settings);
         for (int row = 0; row * FILM_BLOCK < film->area.height; row++)
             for (int column = 0; column * FILM_BLOCK < film->area.width; column++)
                 decide_block(film, film_block_at(film, column, row), least, &c);

@@ -7,8 +7,8 @@
  * at n = sqrt(G / V * v / g), m = sqrt(L / V * v / l). Flow: film -> [here] -> the next pass. Threads: a pixel belongs
  * to one worker at a time; decided when no tile is rendered.
  *
- * It is decided for blocks, as in adaptive.h, at fixed numbers of samples and from the block's own samples; costs are
- * numbers of rays and no times. How a sample is split depends on samples before it alone, so its expectation does not,
+ * It is decided for blocks, as in adaptive.h: for their first samples by a small picture of the whole frame, later, at
+ * fixed numbers of samples, from the block's own; costs are numbers of rays and no times. How a sample is split depends on samples before it alone, so its expectation does not,
  * and all samples weigh alike: the picture's expectation stays. */
 #ifndef AFTERGLOW_SPLITTING_H
 #define AFTERGLOW_SPLITTING_H
@@ -30,8 +30,7 @@ typedef struct split_trial {
     split_counts counts;
 } split_trial;
 
-/* Whether blocks choose: the photon map's integrator, no number of gather rays is set, and there are samples left when
- * the first have told of the noise. */
+/* Whether blocks choose: with the photon map's integrator, where no number of gather rays is set. */
 bool splitting_is_open(const ag_render_settings *settings);
 /* The counts of every sample where blocks do not choose, and of the first samples where they do. */
 split_counts splitting_first(const ag_render_settings *settings);
@@ -40,6 +39,10 @@ split_counts splitting_first(const ag_render_settings *settings);
 split_counts splitting_most(const ag_render_settings *settings);
 
 void split_trial_add(split_trial *trial, const eye_sample *sample);
+
+/* Decides the blocks' counts before their first samples, by those of a small picture of the whole frame, all of whose
+ * pixels have had so many samples. Errors: AG_ERROR_MEMORY. */
+ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, const ag_render_settings *settings);
 
 /* Decides the blocks' counts where that is due, and returns the number of samples to stop at next. Called while no tile
  * is rendered, before pixels are brought to `wanted` samples; calling it again changes nothing. */

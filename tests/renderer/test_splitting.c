@@ -94,6 +94,35 @@ static void test_best_numbers(void **state)
     }
 }
 
+/* Before the first sample, by a picture of the whole frame; the same counts again when the film is emptied. */
+static void test_first_numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        float noise_level;
+        uint32_t rays, lights, no_rays; /* as above; of two samples each may have 128 gather rays, and has half of them, at least */
+    } cases[] = {{0.0f, 64, 4, 64}, {0.01f, 4, 2, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        ag_render_settings settings = settings_of(cases[i].noise_level, 2), pilots = settings_of(0.0f, 4);
+        ag_film *pilot = create_film(&pilots), *film;
+        add_block(pilot, 0, 0.04, 0.04, 0.02);
+        add_block(pilot, FILM_BLOCK, 0.04, 0.0, 0.0);
+        settings.width = 5 * WIDTH; /* five blocks of it lie in one of the pilot */
+        settings.crop_window[0] = 0.3;
+        film = create_film(&settings);
+        assert_int_equal(splitting_begin(film, pilot, &settings), AG_OK);
+        for (int times = 0; times < 2; times++) {
+            split_counts lit = film->splits[film_pixel_at(film, 31, 3)].counts,
+                         dark = film->splits[film_pixel_at(film, 64, 3)].counts;
+            assert_true(lit.rays == cases[i].rays && lit.lights == cases[i].lights && lit.ray_shift == 0);
+            assert_true(dark.rays == cases[i].no_rays && dark.lights == 1);
+            film_clear(film, &settings);
+        }
+        ag_film_destroy(film);
+        ag_film_destroy(pilot);
+    }
+}
+
 static void test_given_number(void **state)
 {
     (void)state;
@@ -255,7 +284,7 @@ static void test_crops(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_best_numbers), cmocka_unit_test(test_given_number),
+        cmocka_unit_test(test_best_numbers), cmocka_unit_test(test_first_numbers), cmocka_unit_test(test_given_number),
         cmocka_unit_test(test_expectation),  TEST_IN_FOLDER(test_same_bits),
         TEST_IN_FOLDER(test_crops),          TEST_IN_FOLDER(test_checkpoint_of_other),
     };

@@ -1,0 +1,68 @@
+/* split_pilot.c: see split_pilot.h. */
+#include "split_pilot.h"
+
+#include "render_tiles.h"
+#include "status.h"
+
+/* Of the small picture: pixels of its longer side, samples of each pixel, and how each is split. */
+enum { SIDE = 64, SAMPLES = 4, RAYS = 8, LIGHTS = 8 };
+/* The sampler's key is apart from the picture's own. */
+static const uint64_t PILOT_SEED = 0x73706c6974u;
+
+static ag_render_settings pilot_settings(const ag_render_settings *settings, float *out_scale)
+{
+    ag_render_settings small = *settings;
+    int longer = settings->width > settings->height ? settings->width : settings->height;
+    *out_scale = longer > SIDE ? (float)SIDE / (float)longer : 1.0f;
+    small.width = (int)fmaxf(roundf(*out_scale * (float)settings->width), 1.0f);
+    small.height = (int)fmaxf(roundf(*out_scale * (float)settings->height), 1.0f);
+    small.crop_window[0] = small.crop_window[2] = 0.0;
+    small.crop_window[1] = small.crop_window[3] = 1.0;
+    small.samples_per_pixel = SAMPLES;
+    small.noise_level = 0.0f;
+    small.layers = 0;
+    small.denoise = false;
+    small.seed ^= PILOT_SEED;
+    return small;
+}
+
+/* Errors: AG_ERROR_MEMORY. */
+static ag_status create_film(const ag_rendering *r, const ag_render_settings *small, float scale, ag_film **out_film)
+{
+    static const char *const no_groups[] = {"default"};
+    pixel_filter filter = r->film->filter;
+    aov_layout layout;
+    filter.radius[0] *= scale;
+    filter.radius[1] *= scale;
+    AG_TRY(aov_layout_create(0, (aov_needs){0}, false, no_groups, 1, &layout));
+    *out_film = film_create(small, &r->s->space, &filter, &layout);
+    if (!*out_film)
+        return AG_ERROR_MEMORY;
+    for (size_t i = 0; i < film_area_count(*out_film); i++)
+        (*out_film)->splits[i].counts = (split_counts){.rays = RAYS, .lights = LIGHTS};
+    return AG_OK;
+}
+
+ag_status split_pilot_run(ag_rendering *r)
+{
+    if (!r->film->splits)
+        return AG_OK;
+    float scale;
+    ag_rendering pilot = {.context = r->context,
+                          .s = r->s,
+                          .settings = pilot_settings(&r->settings, &scale),
+                          .t = r->t,
+                          .workers = r->workers,
+                          .is_pilot = true};
+    AG_TRY(create_film(r, &pilot.settings, scale, &pilot.film));
+    pilot.t.settings = &pilot.settings;
+    pilot.t.layout = &pilot.film->layout;
+    pilot.t.wants_layers = pilot.t.wants_groups = false;
+    pilot.t.split = (split_counts){.rays = RAYS, .lights = LIGHTS};
+    pilot.t.pixel_share *= scale;
+    ag_status status = render_tiles(&pilot, SAMPLES);
+    if (status == AG_OK)
+        status = splitting_begin(r->film, pilot.film, &r->settings);
+    ag_film_destroy(pilot.film);
+    return status;
+}
