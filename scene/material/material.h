@@ -82,8 +82,7 @@ typedef struct material {
     float normal_scale;            /* what its first two components are multiplied by, mostly 1 */
 
     /* Lambertian and nothing else, the same all over, and nothing turns its shading normal. Set by scene_add_material.
-     * Two places do without a bsdf there: photon paths (lambert.h) and the ends of gather rays (ray_fan_plain_point).
-     */
+     * Some places do without a bsdf there (README.md). */
     bool is_lambertian;
 } material;
 
