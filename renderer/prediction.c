@@ -8,6 +8,7 @@
 #include "integrator/integrator.h"
 #include "integrator/sample_queue.h"
 #include "render_maps.h"
+#include "split_pilot.h"
 #include "status.h"
 
 #include <math.h>
@@ -129,7 +130,7 @@ static double predict_reached(double count, double reached, double trial_request
 /* The time that the blocks of a trial have taken. */
 typedef struct trial {
     double cpu_s, pixels, samples;
-    double computed; /* irradiance at photons */
+    double computed, requests; /* of irradiance at photons */
 } trial;
 
 /* Of two trials one after the other. The second finds most of the irradiance there: what it takes less tells what
@@ -142,33 +143,34 @@ static double seconds_of_estimate(const trial *first, const trial *second, doubl
     return fmin(fmax(estimate_s, 0.5 * timed_s), timed_s);
 }
 
-/* CPU seconds of the whole picture's samples, and of the irradiance that is computed before. count: the
- * irradiance photons. */
-static double predict_samples(const ag_rendering *r, const ag_render_settings *settings, const trial trials[2],
-                              double photons_grown, double *out_precompute_s)
+/* CPU seconds of the whole picture's samples, with the pilot's, and of the irradiance that is computed before. */
+static double predict_samples(const ag_rendering *r, const ag_render_settings *settings, const trial *pilot,
+                              const trial trials[2], double photons_grown, double *out_precompute_s)
 {
     const double grown = (double)film_area_count(r->film) / (trials[0].pixels + trials[1].pixels);
     const double cpu_s = trials[0].cpu_s + trials[1].cpu_s;
     *out_precompute_s = 0.0;
     if (!r->t.cache)
-        return cpu_s * grown;
+        return pilot->cpu_s + cpu_s * grown;
     const irradiance_counters c = irradiance_cache_counters(r->t.cache);
-    const double computed = (double)c.computed, made = computed + (double)c.uncached;
+    const double computed = trials[0].computed + trials[1].computed, made = (double)c.computed + (double)c.uncached;
     const double timed_s = made > 0.0 ? irradiance_counters_estimate_seconds(&c) / made : 0.0;
     const double each_s = seconds_of_estimate(&trials[0], &trials[1], timed_s);
     const double count = (double)r->maps.global.irradiance_photons.count,
-                 rest_s = fmax(cpu_s - each_s * computed, 0.0) * grown;
+                 rest_s =
+                     fmax(pilot->cpu_s - each_s * pilot->computed, 0.0) + fmax(cpu_s - each_s * computed, 0.0) * grown;
     if (settings->cache == AG_CACHE_PRECOMPUTE) {
         *out_precompute_s = each_s * count * photons_grown;
         return rest_s;
     }
-    const double requests = (double)c.requests;
-    return rest_s +
-           each_s * photons_grown * predict_reached(count, computed, requests, requests * grown / photons_grown);
+    const double tried = trials[0].requests + trials[1].requests, requests = pilot->requests + tried * grown;
+    const double reached =
+        predict_reached(count, pilot->computed + computed, pilot->requests + tried, requests / photons_grown);
+    return rest_s + each_s * photons_grown * reached;
 }
 
-/* Renders the blocks of one trial. */
-static ag_status render_trial(ag_rendering *r, trial *out)
+/* The picture's pilot (split_pilot.h), or the blocks of one trial. */
+static ag_status render_trial(ag_rendering *r, bool is_pilot, trial *out)
 {
     ag_film *film = r->film;
     const double cpu_before = clock_process_cpu_seconds();
@@ -177,12 +179,13 @@ static ag_status render_trial(ag_rendering *r, trial *out)
         before = irradiance_cache_counters(r->t.cache);
     ag_status status;
     do /* a pause is for snapshots, and there is none of a trial */
-        status = ag_rendering_continue(r, r->settings.samples_per_pixel);
+        status = is_pilot ? split_pilot_run(r) : ag_rendering_continue(r, r->settings.samples_per_pixel);
     while (status == AG_PAUSED);
     if (r->t.cache)
         after = irradiance_cache_counters(r->t.cache);
     *out = (trial){.cpu_s = clock_process_cpu_seconds() - cpu_before,
-                   .computed = (double)(after.computed - before.computed)};
+                   .computed = (double)(after.computed - before.computed),
+                   .requests = (double)(after.requests - before.requests)};
     for (size_t i = 0; i < film_area_count(film); i++) {
         out->pixels += !film_is_left_out(film, i);
         out->samples += film->counts[i];
@@ -211,10 +214,10 @@ static ag_status render_trials(ag_rendering *r, trial out_trials[2])
     const double blocks = (double)film_area_count(film) / (FILM_BLOCK * FILM_BLOCK);
     film->trial_step = blocks < 4.0 * TRIAL_BLOCKS ? 4 : (unsigned)(blocks / TRIAL_BLOCKS);
     film->trial_turn = even_turn(film->trial_step);
-    ag_status status = render_trial(r, &out_trials[0]);
+    ag_status status = render_trial(r, false, &out_trials[0]);
     film_clear(film, &r->settings);
     film->trial_first = film->trial_step / 2;
-    return status == AG_OK ? render_trial(r, &out_trials[1]) : status;
+    return status == AG_OK ? render_trial(r, false, &out_trials[1]) : status;
 }
 
 static double at_most(uint64_t count, uint64_t most) { return count > most ? (double)count / (double)most : 1.0; }
@@ -232,7 +235,7 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
     tried.cache = settings->cache == AG_CACHE_PRECOMPUTE ? AG_CACHE_ON_DEMAND : settings->cache;
     const ag_statistics before = context->statistics;
     ag_rendering *r;
-    trial trials[2] = {0};
+    trial pilot = {0}, trials[2] = {0};
     double precompute_cpu_s;
     ag_status status = ag_rendering_create(context, loaded, &tried, &r);
     if (status != AG_OK)
@@ -240,15 +243,18 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
     const ag_statistics *s = &context->statistics;
     const double threads = s->threads,
                  preparing = s->phase_cpu_s[AG_PHASE_RENDER] - before.phase_cpu_s[AG_PHASE_RENDER];
-    status = render_trials(r, trials);
+    status = render_trial(r, true, &pilot);
+    if (status == AG_OK)
+        status = render_trials(r, trials);
     if (status == AG_OK) {
         const double trial_photons = (double)(tried.photon_count + tried.caustic_photon_count);
         const double photons_grown = (double)(settings->photon_count + caustic_count) / fmax(trial_photons, 1.0);
         out->samples_per_pixel = (trials[0].samples + trials[1].samples) / (trials[0].pixels + trials[1].pixels);
         for (int i = 0; i < AG_PHASE_COUNT; i++) /* of the scene: they are over */
             out->time_s[i] = before.time_s[i];
-        const double render_cpu_s = preparing + predict_samples(r, settings, trials, global_grown, &precompute_cpu_s);
-        double cpu_before = clock_process_cpu_seconds() - trials[0].cpu_s - trials[1].cpu_s - preparing;
+        const double render_cpu_s =
+            preparing + predict_samples(r, settings, &pilot, trials, global_grown, &precompute_cpu_s);
+        double cpu_before = clock_process_cpu_seconds() - pilot.cpu_s - trials[0].cpu_s - trials[1].cpu_s - preparing;
         for (int i = AG_PHASE_PHOTONS; i <= AG_PHASE_MAP; i++) {
             const double phase_cpu_s = s->phase_cpu_s[i] - before.phase_cpu_s[i];
             /* some of it is one thread's; what takes longer than that has waited for a processor */

@@ -269,18 +269,17 @@ static ag_status prepare(ag_rendering *r)
     AG_TRY(guide_direct_light(r));
     begin = context_begin_phase();
     r->workers = eye_workers_create(&r->t, context->statistics.threads);
-    status = r->workers ? split_pilot_run(r) : AG_ERROR_MEMORY;
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
-    return status;
+    return r->workers ? AG_OK : AG_ERROR_MEMORY;
 }
 
 /* Settings, film, maps and guides, of a rendering that knows its scene. */
 static ag_status begin_rendering(ag_rendering *r, const ag_render_settings *settings)
 {
-    ag_status status = rendering_settle(r->context, r->s, settings, &r->settings);
+    AG_TRY(rendering_settle(r->context, r->s, settings, &r->settings));
     r->context->rendered = r->settings;
     r->context->rendered.photon_map_file = NULL; /* the caller's */
-    AG_TRY(status);
+    r->aspect = (float)r->settings.width / (float)r->settings.height;
     AG_TRY(prepare(r));
     if (r->settings.photon_map_file)
         r->map_name = strdup(r->settings.photon_map_file);
@@ -318,6 +317,7 @@ static ag_status render_wanted(ag_rendering *r, const integrator *kind, uint32_t
     if (kind->begin_pass) {
         AG_TRY(kind->begin_pass(r));
     }
+    AG_TRY(split_pilot_run(r));
     return r->film->wanted ? render_adaptively(r, wanted) : render_passes(r, wanted);
 }
 
@@ -398,6 +398,7 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
         *out_film = r->film;
     else
         ag_film_destroy(r->film);
+    ag_film_destroy(r->pilot);
     eye_workers_destroy(r->workers, r->context->statistics.threads);
     maps_reset(&r->maps);
     direct_guide_reset(&r->direct_guide);

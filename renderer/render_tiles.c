@@ -65,6 +65,7 @@ typedef struct tile_job {
     eye_worker *workers;
     tiles_to_show *to_show; /* [worker_count] */
     ag_film *film;
+    float aspect;             /* of the frame */
     uint32_t wanted;          /* samples of each pixel */
     double sample_count;      /* all that are still to be taken */
     double samples_per_pixel; /* of those, in the mean */
@@ -87,7 +88,7 @@ static void render_sample(const tile_job *job, eye_worker *worker, int x, int y,
                  : t->s->hints.disable_pixel_jitter ? 0.5f
                                                     : sampler_2d(&where, SAMPLE_TIME, 0).x;
     float width = (float)settings->width, height = (float)settings->height;
-    film_point on_film = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, width / height,
+    film_point on_film = {((float)x + 0.5f + offset.x) / width, ((float)y + 0.5f + offset.y) / height, job->aspect,
                           lens, time};
     camera_sample from = {
         .ray = camera_generate_ray(&t->s->camera, on_film.film_x, on_film.film_y, on_film.aspect, lens, time),
@@ -223,6 +224,7 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
                     .t = &r->t,
                     .kind = integrator_of(r->settings.integrator),
                     .film = film,
+                    .aspect = r->aspect,
                     .workers = r->workers,
                     .wanted = wanted,
                     .worker_count = context->statistics.threads,
@@ -237,15 +239,14 @@ ag_status render_tiles(ag_rendering *r, uint32_t wanted)
     }
     job.samples_per_pixel = job.sample_count / (double)film_area_count(film);
     run_progress(&context->run, AG_PHASE_RENDER, job.progress_begin); /* the first pixels may take long */
-    if (!r->is_pilot)
-        run_allow_pause(&context->run);
+    run_allow_pause(&context->run);
     job.to_show = calloc(job.worker_count, sizeof *job.to_show);
     if (!job.to_show) {
         tile_scheduler_destroy(job.tiles);
         return AG_ERROR_MEMORY;
     }
     thread_pool_run(context->pool, work_on_tiles, &job);
-    bool is_paused = !r->is_pilot && run_end_pause(&context->run);
+    bool is_paused = run_end_pause(&context->run);
     tile_scheduler_destroy(job.tiles);
     free(job.to_show);
     AG_TRY(context_check_textures(context, r->s));

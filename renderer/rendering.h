@@ -26,7 +26,9 @@ struct ag_rendering {
     transport t;
     eye_worker *workers;
     ag_film *film;
-    bool is_pilot; /* not the picture itself: neither tells of progress nor pauses */
+    ag_film *pilot; /* see split_pilot.h; NULL before and behind it */
+    bool is_pilot;  /* this is not the picture itself, whose progress stays at 0 */
+    float aspect;   /* of the frame: width over height */
     uint64_t not_finite_before;
     uint64_t camera_rays, camera_rays_met; /* of all passes; the latter met a surface */
     double seconds;                        /* of all passes */

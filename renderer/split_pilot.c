@@ -43,9 +43,19 @@ static ag_status create_film(const ag_rendering *r, const ag_render_settings *sm
     return AG_OK;
 }
 
+/* Camera rays and faulty samples in the statistics are the picture's. */
+static void count_camera_rays_apart(eye_worker *workers, unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        workers[i].rays_path += workers[i].rays_camera;
+        workers[i].rays_camera = workers[i].camera_rays_met = workers[i].samples_not_finite = 0;
+    }
+}
+
 ag_status split_pilot_run(ag_rendering *r)
 {
-    if (!r->film->splits)
+    ag_film *film = r->film;
+    if (!film->splits || film->first_splits || film_count_samples(film).most > 0)
         return AG_OK;
     float scale;
     ag_rendering pilot = {.context = r->context,
@@ -53,16 +63,24 @@ ag_status split_pilot_run(ag_rendering *r)
                           .settings = pilot_settings(&r->settings, &scale),
                           .t = r->t,
                           .workers = r->workers,
+                          .aspect = r->aspect,
                           .is_pilot = true};
-    AG_TRY(create_film(r, &pilot.settings, scale, &pilot.film));
+    if (!r->pilot)
+        AG_TRY(create_film(r, &pilot.settings, scale, &r->pilot));
+    pilot.film = r->pilot;
     pilot.t.settings = &pilot.settings;
     pilot.t.layout = &pilot.film->layout;
     pilot.t.wants_layers = pilot.t.wants_groups = false;
     pilot.t.split = (split_counts){.rays = RAYS, .lights = LIGHTS};
+    pilot.t.ray_bits = sampler_bits(RAYS);
     pilot.t.pixel_share *= scale;
     ag_status status = render_tiles(&pilot, SAMPLES);
+    count_camera_rays_apart(r->workers, r->context->statistics.threads);
     if (status == AG_OK)
-        status = splitting_begin(r->film, pilot.film, &r->settings);
-    ag_film_destroy(pilot.film);
+        status = splitting_begin(film, pilot.film, &r->settings);
+    if (status == AG_PAUSED)
+        return status;
+    ag_film_destroy(r->pilot);
+    r->pilot = NULL;
     return status;
 }

@@ -10,8 +10,8 @@
 
 #include "rendering.h"
 
-/* Sets the film's first counts, where blocks choose; the rendering has its maps and workers. Errors: AG_ERROR_MEMORY,
- * AG_CANCELLED. */
+/* Sets the film's first counts, where blocks choose and there is no sample yet; the rendering has its maps and workers.
+ * Errors: those of render_tiles; after AG_PAUSED the next call goes on. */
 ag_status split_pilot_run(ag_rendering *r);
 
 #endif

@@ -351,6 +351,7 @@ static int run_program(int argc, char **argv)
     }
     progress told;
     progress_init(&told, &o);
+    o.told = &told;
     o.context.log = progress_log;
     o.context.progress = progress_tell;
     o.context.user = &told;

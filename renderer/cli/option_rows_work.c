@@ -47,10 +47,11 @@ static bool take_display_server(const char *value, options *o)
 
 static bool take_progress(const char *value, options *o)
 {
-    static const progress_style styles[] = {PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_PLAIN, PROGRESS_JSON,
-                                            PROGRESS_NONE, PROGRESS_ALF, PROGRESS_PLAIN, PROGRESS_NONE};
+    static const progress_style styles[] = {PROGRESS_AUTO,  PROGRESS_BAR,  PROGRESS_PLAIN,
+                                            PROGRESS_JSON,  PROGRESS_NONE, PROGRESS_ALF,
+                                            PROGRESS_PLAIN, PROGRESS_NONE, PROGRESS_PICTURE};
     int word;
-    if (!parse_word(value, WORDS("auto", "bar", "plain", "json", "none", "alf", "lines", "off"), &word))
+    if (!parse_word(value, WORDS("auto", "bar", "plain", "json", "none", "alf", "lines", "off", "picture"), &word))
         return false;
     o->progress = styles[word];
     return true;
@@ -209,14 +210,22 @@ static const option_row ROWS[] = {
                   "allows; a signal ends the wait. An IPv6 address stands in brackets. The connection is not "
                   "encrypted."},
      .take = take_display_server},
-    {.text = {.name = "progress",
-              .argument = "STYLE",
-              .section = "Work",
-              .help = "auto (default), bar, plain (or lines), alf, json or none (or off)",
-              .manual = "*auto* (default: a bar on a terminal, else plain), *bar*, *plain* or *lines* (whole lines "
-                        "with *Progress: NN%*), *alf* (lines with *ALF_PROGRESS NN%* on standard output, as render "
-                        "queues read them), *json* (one object per line), *none* or *off*. Where it can be told, "
-                        "each says how long the phase will take."},
+    {.text =
+         {.name = "progress",
+          .argument = "STYLE",
+          .section = "Work",
+          .help = "auto (default), bar, picture (in the terminal), plain (or lines), alf, json or none (or off)",
+          .manual =
+              "*auto* (default: a bar on a terminal, else plain), *bar*, *picture* (see below), *plain* or *lines* (whole lines "
+              "with *Progress: NN%*), *alf* (lines with *ALF_PROGRESS NN%* on standard output, as render "
+              "queues read them), *json* (one object per line), *none* or *off*. Where it can be told, "
+              "each says how long the phase will take. *picture* draws the picture into the terminal while it is "
+              "rendered, above the bar: as half blocks (U+2580) in 24-bit colours, through *--display*, "
+              "*--view* and *--exposure* as a _.png_ file, as large as fits, at most four times a second. It "
+              "stays there in the end, after *--denoise* where that is asked for. Where standard error is "
+              "no terminal, or one without colours or of less than 20 columns and 6 rows, a warning says "
+              "so, and progress is *auto*. Graphics by sixels are not made: no environment says whether a "
+              "terminal has them."},
      .take = take_progress},
     {.text = {.name = "quiet", .section = "Work", .help = "errors only", .manual = "Errors only."},
      .letter = 'q',

@@ -108,7 +108,8 @@ static bool has_idle_picture_option(const options *o)
                               : s->look                ? "look"
                               : s->exposure_stops != 0 ? "exposure"
                                                        : NULL;
-    if (of_displays && linear_count == o->outfile_count)
+    const bool is_shown = o->progress == PROGRESS_PICTURE; /* by display and view as well */
+    if (of_displays && linear_count == o->outfile_count && !is_shown)
         fprintf(stderr, "afterglow: --%s is for pictures that are not .exr, .hdr or .pfm, and there is none\n",
                 of_displays);
     else if (s->color_space && linear_count == 0)

@@ -11,6 +11,7 @@
 typedef enum progress_style {
     PROGRESS_AUTO,
     PROGRESS_BAR,
+    PROGRESS_PICTURE, /* with a bar below */
     PROGRESS_PLAIN,
     PROGRESS_JSON,
     PROGRESS_NONE,
@@ -64,6 +65,7 @@ typedef struct options {
     int given_count;
     options_asked asked_text;
     struct display_server *display; /* main's, while it renders, or NULL */
+    struct progress *told;          /* likewise */
 } options;
 
 typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE } options_result;

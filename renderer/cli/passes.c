@@ -4,6 +4,7 @@
 
 #include "display_server.h"
 #include "memory_limit.h"
+#include "progress.h"
 #include "signals.h"
 #include "status.h"
 
@@ -271,6 +272,8 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
             return AG_ERROR_MEMORY;
         AG_TRY(ag_statistics_check(p->context, p->checkpoint)); /* as for any file */
     }
+    if (!o->photons_only)
+        AG_TRY(progress_prepare_film(o->told, p->context, &o->output));
     AG_TRY(ag_rendering_create(p->context, scene, settings, &p->rendering));
     if (o->resume)
         AG_TRY(resume(p));
@@ -335,8 +338,10 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
         memory_limit_lift(); /* the prediction does not know what the denoiser takes */
         AG_TRY(ag_film_denoise(p->context, film));
     }
-    if (has_picture)
+    if (has_picture) {
         AG_TRY(write_pictures(p, film, !result->is_partial && failed == AG_OK));
+        progress_leave_film(o->told, true); /* what is said from here on stands below */
+    }
     if (failed != AG_OK) {
         fprintf(stderr, "afterglow: error: the picture is not complete: it has %.4g of %d samples per pixel\n",
                 result->samples.mean, p->final);
@@ -366,6 +371,8 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     ag_status failed = AG_OK;
     *out_result = (passes_result){0};
     ag_status status = begin(&p, scene, settings);
+    if (status == AG_OK && !o->photons_only)
+        status = progress_show_film(o->told, ag_rendering_film(p.rendering));
     if (status == AG_OK) {
         if (!o->photons_only)
             display_server_show(o->display, ag_rendering_film(p.rendering), o->outfiles[0]);
@@ -374,11 +381,14 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial && failed == AG_OK)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
-    if (status != AG_OK)
-        leave_viewer(&p); /* the film goes */
+    if (status != AG_OK) { /* the film goes */
+        progress_leave_film(o->told, false);
+        leave_viewer(&p);
+    }
     ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
     if (status == AG_OK)
         status = show(&p, film, settings, out_result, &noise, failed);
+    progress_leave_film(o->told, false);
     leave_viewer(&p); /* when the files are written: they do not wait for a viewer */
     signals_end_rendering();
     ag_film_destroy(film);

@@ -3,6 +3,9 @@
 #include "progress.h"
 
 #include "passes.h"
+#include "signals.h"
+#include "status.h"
+#include "terminal_picture.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -17,6 +20,14 @@ static pthread_mutex_t terminal = PTHREAD_MUTEX_INITIALIZER; /* one line at a ti
 void progress_init(progress *p, const options *o)
 {
     *p = (progress){.style = o->progress, .verbosity = o->verbosity, .told_percent = -1, .phase = AG_PHASE_COUNT};
+    const char *obstacle = p->style == PROGRESS_PICTURE ? terminal_picture_obstacle(STDERR_FILENO) : NULL;
+    if (obstacle) {
+        if (o->verbosity >= 0)
+            fprintf(stderr, "afterglow: warning: --progress picture: %s: the picture is not shown\n", obstacle);
+        p->style = PROGRESS_AUTO;
+    }
+    if (p->style == PROGRESS_PICTURE)
+        signals_reset_terminal();
     if (p->style == PROGRESS_AUTO)
         p->style = o->verbosity < 0 ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_PLAIN;
     p->has_precompute = o->render.cache == AG_CACHE_PRECOMPUTE;
@@ -151,11 +162,38 @@ static void clear_bar(progress *p)
     p->bar_is_shown = false;
 }
 
+/* Takes away all that will be drawn anew: messages stand above it. */
+static void clear_all(progress *p)
+{
+    if (p->watch.drawn_rows > 0)
+        p->bar_is_shown = false; /* with it */
+    film_watch_erase(&p->watch, stderr);
+    clear_bar(p);
+}
+
 static void tell_frame_as_json(const progress *p)
 {
     if (p->frame_count > 0)
         fprintf(stderr, ", \"frame\": %d, \"frame_index\": %d, \"frame_count\": %d", p->frame_number, p->frame + 1,
                 p->frame_count);
+}
+
+static void tell_bar(progress *p, const char *frame, double left)
+{
+    enum { WIDTH = 40 };
+    terminal_size size;
+    char bar[WIDTH + 1], left_for[48], line[256];
+    const int filled = p->told_percent * WIDTH / 100;
+    memset(bar, '.', WIDTH);
+    memset(bar, '#', (size_t)(filled < WIDTH ? filled : WIDTH));
+    bar[WIDTH] = '\0';
+    snprintf(line, sizeof line, "%s%-10s [%s] %3d%%%s", frame, ag_phase_name(p->phase), bar, p->told_percent,
+             left_text(left, left_for, sizeof left_for));
+    /* a line that wraps cannot be cleared, nor the picture above it */
+    const bool is_narrow = p->style == PROGRESS_PICTURE && terminal_picture_room(STDERR_FILENO, &size);
+    fprintf(stderr, "\r\033[K%.*s", is_narrow ? size.columns - 1 : (int)sizeof line, line);
+    fflush(stderr);
+    p->bar_is_shown = true;
 }
 
 void progress_tell(void *user, ag_phase phase, double fraction)
@@ -173,19 +211,11 @@ void progress_tell(void *user, ag_phase phase, double fraction)
     if (is_new && (p->style != PROGRESS_PLAIN || is_new_line || p->told_percent < 0))
         p->told_percent = percent;
     switch (p->style) {
-    case PROGRESS_BAR: {
-        enum { WIDTH = 40 };
-        char bar[WIDTH + 1];
-        int filled = p->told_percent * WIDTH / 100;
-        memset(bar, '.', WIDTH);
-        memset(bar, '#', (size_t)(filled < WIDTH ? filled : WIDTH));
-        bar[WIDTH] = '\0';
-        fprintf(stderr, "\r\033[K%s%-10s [%s] %3d%%%s", frame, ag_phase_name(phase), bar, p->told_percent,
-                left_text(left, left_for, sizeof left_for));
-        fflush(stderr);
-        p->bar_is_shown = true;
+    case PROGRESS_PICTURE:
+        film_watch_draw(&p->watch, stderr, now, false);
+        tell_bar(p, frame, left);
         break;
-    }
+    case PROGRESS_BAR: tell_bar(p, frame, left); break;
     case PROGRESS_PLAIN:
         if (is_new && p->told_percent == percent)
             fprintf(stderr, "Progress: %d%% (%s%s%s)\n", percent, frame, ag_phase_name(phase),
@@ -221,7 +251,7 @@ void progress_log(void *user, ag_log_level level, const char *message)
     /* messages about a location in a file say themselves what they are */
     bool has_location = level <= AG_LOG_WARNING && strstr(message, located[level]) != NULL;
     pthread_mutex_lock(&terminal);
-    clear_bar(p);
+    clear_all(p);
     fprintf(stderr, "%s%s%s\n", has_location ? "" : "afterglow: ", has_location ? "" : prefixes[level], message);
     pthread_mutex_unlock(&terminal);
 }
@@ -244,7 +274,8 @@ void progress_tell_written(progress *p, const char *const *files, int file_count
     const bool is_json = p->style == PROGRESS_JSON;
     const double now = passes_seconds();
     char time[32];
-    if (file_count == 0 || (!is_json && p->style != PROGRESS_BAR && p->style != PROGRESS_PLAIN))
+    const bool is_for_people = p->style == PROGRESS_BAR || p->style == PROGRESS_PICTURE || p->style == PROGRESS_PLAIN;
+    if (file_count == 0 || (!is_json && !is_for_people))
         return;
     pthread_mutex_lock(&terminal);
     clear_bar(p);
@@ -267,6 +298,37 @@ void progress_tell_written(progress *p, const char *const *files, int file_count
             fprintf(stderr, " (frame %d of %d)", p->frame + 1, p->frame_count);
         fputc('\n', stderr);
     }
+    pthread_mutex_unlock(&terminal);
+}
+
+ag_status progress_prepare_film(progress *p, ag_context *context, const ag_output_settings *output)
+{
+    ag_view *view;
+    if (p->style != PROGRESS_PICTURE)
+        return AG_OK;
+    AG_TRY(ag_view_create(context, output, &view)); /* it may say something, which takes the lock */
+    pthread_mutex_lock(&terminal);
+    film_watch_begin(&p->watch, view);
+    pthread_mutex_unlock(&terminal);
+    return AG_OK;
+}
+
+ag_status progress_show_film(progress *p, const ag_film *film)
+{
+    pthread_mutex_lock(&terminal);
+    const ag_status status = film_watch_show(&p->watch, film);
+    pthread_mutex_unlock(&terminal);
+    return status;
+}
+
+void progress_leave_film(progress *p, bool is_drawn)
+{
+    pthread_mutex_lock(&terminal);
+    if (p->watch.film)
+        clear_bar(p);
+    if (is_drawn)
+        film_watch_draw(&p->watch, stderr, passes_seconds(), true);
+    film_watch_end(&p->watch);
     pthread_mutex_unlock(&terminal);
 }
 

@@ -3,6 +3,7 @@
 #ifndef AFTERGLOW_PROGRESS_H
 #define AFTERGLOW_PROGRESS_H
 
+#include "film_watch.h"
 #include "options.h"
 
 #include <stdbool.h>
@@ -23,9 +24,11 @@ typedef struct progress {
     double phase_seconds[AG_PHASE_COUNT];   /* of the phases of this picture that are over */
     double learned_seconds[AG_PHASE_COUNT]; /* of all pictures before, in sum */
     int learned_count;                      /* of those pictures */
+    film_watch watch;                       /* of PROGRESS_PICTURE */
 } progress;
 
-/* Settles AUTO: a bar on a terminal, whole lines elsewhere; nothing when quiet. */
+/* Settles AUTO: a bar on a terminal, whole lines elsewhere; nothing when quiet. So it does PICTURE, with a warning,
+ * where none can be shown. */
 void progress_init(progress *p, const options *o);
 
 /* Begins the next of frame_count pictures; progress is told of all of them together. */
@@ -37,6 +40,13 @@ void progress_tell_written(progress *p, const char *const *files, int file_count
 /* The progress callback of ag_context_settings, whose user is a progress. Messages go to standard error. */
 void progress_tell(void *user, ag_phase phase, double fraction);
 void progress_log(void *user, ag_log_level level, const char *message);
+
+/* For PROGRESS_PICTURE, else they do nothing: makes the view, before there is a film; shows a film from now on; draws
+ * it for the last time, where is_drawn, and forgets it: what is drawn stays. The film lives until then. Errors: those
+ * of ag_view_create. */
+ag_status progress_prepare_film(progress *p, ag_context *context, const ag_output_settings *output);
+ag_status progress_show_film(progress *p, const ag_film *film);
+void progress_leave_film(progress *p, bool is_drawn);
 
 /* Takes the bar away. */
 void progress_finish(progress *p);

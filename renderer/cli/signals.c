@@ -11,13 +11,27 @@
 static ag_context *signalled_context;
 static volatile sig_atomic_t stop_signal, wants_snapshot, is_rendering;
 
+static volatile sig_atomic_t resets_terminal;
+
 static bool is_released; /* signals are blocked, by us */
 
 static const int STOPPING[] = {SIGINT, SIGTERM, SIGHUP};
 
+static void reset_terminal(void)
+{
+    static const char RESET[] = "\033[0m\r\n";
+    if (!resets_terminal)
+        return;
+    ssize_t ignored = write(STDERR_FILENO, RESET, sizeof RESET - 1);
+    (void)ignored;
+}
+
+void signals_reset_terminal(void) { resets_terminal = 1; }
+
 static void on_stop(int number)
 {
     if (stop_signal) {
+        reset_terminal();
         ag_abandon_files();
         _exit(128 + number);
     }
@@ -60,6 +74,7 @@ static void on_abort(int number)
         "afterglow: error: a library has given up, for the reason above if there is one; most often threads or memory are "
         "limited: try -t with fewer threads, or higher limits (ulimit -u, ulimit -v)\n";
     (void)number;
+    reset_terminal();
     ssize_t ignored = write(STDERR_FILENO, TEXT, sizeof TEXT - 1);
     (void)ignored;
     ag_abandon_files();

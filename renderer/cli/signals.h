@@ -10,6 +10,9 @@
 /* A library that aborts, since it cannot have threads or memory, ends the program with 3 and a message. */
 void signals_catch_abort(void);
 
+/* From now on a signal that ends the process at once resets the terminal's attributes, and begins a line. */
+void signals_reset_terminal(void);
+
 /* The first SIGINT, SIGTERM or SIGHUP lets the work end in order: rendering pauses, all else is cancelled. The second
  * ends the process at once. */
 void signals_catch(ag_context *context);

@@ -40,7 +40,7 @@ static void set_crop(ag_film *film, const ag_render_settings *settings)
     if (film->width < 1 || film->height < 1)
         film->width = film->height = 0;
     film->area = (film_area){film->x0, film->y0, film->width, film->height};
-    if ((settings->noise_level > 0.0f || splitting_is_open(settings)) && film->width > 0) {
+    if ((settings->noise_level > 0.0f || splitting_goes_on(settings)) && film->width > 0) {
         int x0 = edges[0] / FILM_BLOCK * FILM_BLOCK, y0 = edges[2] / FILM_BLOCK * FILM_BLOCK;
         int x1 = (edges[1] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK,
             y1 = (edges[3] + FILM_BLOCK - 1) / FILM_BLOCK * FILM_BLOCK;
@@ -49,13 +49,20 @@ static void set_crop(ag_film *film, const ag_render_settings *settings)
     }
 }
 
-static void begin_splits(ag_film *film, const ag_render_settings *settings)
+size_t film_block_number(const ag_film *film, int x, int y)
 {
-    size_t width = (size_t)film->area.width, columns = (width + FILM_BLOCK - 1) / FILM_BLOCK;
-    for (size_t i = 0; film->splits && i < film_area_count(film); i++)
-        film->splits[i].counts = film->first_splits
-                                     ? film->first_splits[i / width / FILM_BLOCK * columns + i % width / FILM_BLOCK]
-                                     : splitting_first(settings);
+    const film_area *all = &film->area;
+    int column = all->x0 / FILM_BLOCK, columns = (all->x0 + all->width - 1) / FILM_BLOCK - column + 1;
+    return (size_t)(y / FILM_BLOCK - all->y0 / FILM_BLOCK) * (size_t)columns + (size_t)(x / FILM_BLOCK - column);
+}
+
+void film_begin_splits(ag_film *film, const ag_render_settings *settings)
+{
+    const film_area *all = &film->area;
+    for (int y = all->y0; film->splits && y < all->y0 + all->height; y++)
+        for (int x = all->x0; x < all->x0 + all->width; x++)
+            film->splits[film_pixel_at(film, x, y)].counts =
+                film->first_splits ? film->first_splits[film_block_number(film, x, y)] : splitting_first(settings);
 }
 
 ag_film *film_create(const ag_render_settings *settings, const working_space *space, const pixel_filter *filter,
@@ -100,7 +107,7 @@ ag_film *film_create(const ag_render_settings *settings, const working_space *sp
     if (splitting_is_open(settings)) {
         film->splits = calloc(count, sizeof *film->splits);
         is_whole = is_whole && film->splits;
-        begin_splits(film, settings);
+        film_begin_splits(film, settings);
     }
     if (film->layout.needs_nearest) {
         film->nearest = calloc(count, sizeof *film->nearest);
@@ -167,7 +174,7 @@ void film_clear(ag_film *film, const ag_render_settings *settings)
     film_plane planes[FILM_PLANES_MAX];
     for (int i = film_planes(film, planes) - 1; i >= 0; i--)
         memset(planes[i].bytes, 0, planes[i].size);
-    begin_splits(film, settings);
+    film_begin_splits(film, settings);
 }
 
 film_area film_block_at(const ag_film *film, int column, int row)

@@ -58,7 +58,7 @@ struct ag_film {
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
     split_trial *splits;           /* see splitting.h; NULL: all samples are split alike */
-    split_counts *first_splits;    /* of the first samples of each block, row by row; NULL: splitting_first */
+    split_counts *first_splits;    /* of the first samples, by film_block_number; NULL: splitting_first */
     uint32_t *negatives;           /* those with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
@@ -107,6 +107,12 @@ typedef struct film_plane {
 } film_plane;
 enum { FILM_PLANES_MAX = 7 + FILM_VIEW_COUNT + CRYPTOMATTE_KIND_COUNT };
 int film_planes(const struct ag_film *film, film_plane out_planes[FILM_PLANES_MAX]);
+
+/* The number, row by row, of the block that a pixel of the full picture lies in, among those that the area touches. */
+size_t film_block_number(const struct ag_film *film, int x, int y);
+
+/* Sets how the first samples of all pixels are split. */
+void film_begin_splits(struct ag_film *film, const ag_render_settings *settings);
 
 /* A block's pixels, those of the area alone, by its column and row there. */
 film_area film_block_at(const struct ag_film *film, int column, int row);

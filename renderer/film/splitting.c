@@ -16,8 +16,9 @@ enum { ADAPTIVE_SAMPLES = 64 };
 enum { GATHER_RAYS_PER_LIGHT_SAMPLE = 8, FIRST_LIGHTS = 16 };
 enum { RAYS_MAX = 64, LIGHTS_MAX = 16 };
 
-/* Rays of the first samples, at least: from one the variance cannot be told. */
-enum { FIRST_RAYS_MIN = 4 };
+/* Rays and light samples of the first camera samples, at least: from one the variance cannot be told, and the pilot may
+ * have looked past small things. */
+enum { FIRST_RAYS_MIN = 4, FIRST_LIGHTS_MIN = 4 };
 
 /* With a fixed number of camera samples noisy blocks cannot have more of these, and are better helped by inner ones
  * than the cost of their own noise says: by this factor, as measured in five rooms. */
@@ -39,6 +40,11 @@ static const double LEAST_REST = 1.0 / 64.0;
 bool splitting_is_open(const ag_render_settings *settings)
 {
     return settings->integrator == AG_INTEGRATOR_PHOTONMAP && settings->gather_samples == 0;
+}
+
+bool splitting_goes_on(const ag_render_settings *settings)
+{
+    return splitting_is_open(settings) && (settings->noise_level > 0.0f || settings->samples_per_pixel > FIRST_BARRIER);
 }
 
 split_counts splitting_first(const ag_render_settings *settings)
@@ -182,41 +188,53 @@ static uint32_t least_count(const struct ag_film *film, uint32_t wanted)
     return least;
 }
 
-/* The pixels of the pilot, within [0, size), that tell of pixels [begin, begin + count) of the large picture: those
+/* The pixels of the pilot, within [0, size), that tell of the block that begins at a pixel of the large picture: those
  * that lie there, and enough of those around. */
-static void find_window(int begin, int count, int large_size, int size, int *out_first, int *out_last)
+static void find_window(int begin, int large_size, int size, int *out_first, int *out_last)
 {
-    double scale = (double)size / (double)large_size, middle = scale * (begin + 0.5 * count);
-    double half = fmax(0.5 * scale * count, PILOT_HALF_WINDOW);
+    int end = begin + FILM_BLOCK < large_size ? begin + FILM_BLOCK : large_size;
+    double scale = (double)size / (double)large_size, middle = 0.5 * scale * (begin + end);
+    double half = fmax(0.5 * scale * (end - begin), PILOT_HALF_WINDOW);
     *out_first = (int)fmax(floor(middle - half), 0.0);
     *out_last = (int)fmin(ceil(middle + half), (double)size) - 1;
 }
 
+static split_counts counts_by_pilot(const struct ag_film *film, const struct ag_film *pilot, int x, int y,
+                                    const choice *c, const ag_render_settings *settings)
+{
+    int x0, x1, y0, y1;
+    block_sums sums = {0};
+    find_window(x, film->full_width, pilot->full_width, &x0, &x1);
+    find_window(y, film->full_height, pilot->full_height, &y0, &y1);
+    for (int row = y0; row <= y1; row++)
+        for (int column = x0; column <= x1; column++) {
+            size_t pixel = film_pixel_at(pilot, column, row);
+            add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c->scale, &sums);
+        }
+    split_counts counts = best_counts(&sums, c), unknown = splitting_first(settings);
+    if (!(sums.cost_of_ray > 0.0)) /* the pilot has met nothing there that gathers */
+        counts.rays = unknown.rays;
+    if (!(sums.cost_of_light > 0.0))
+        counts.lights = unknown.lights;
+    return counts;
+}
+
 ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, const ag_render_settings *settings)
 {
-    int columns = (film->area.width + FILM_BLOCK - 1) / FILM_BLOCK,
-        rows = (film->area.height + FILM_BLOCK - 1) / FILM_BLOCK;
+    const film_area *all = &film->area;
+    const int right = all->x0 + all->width, bottom = all->y0 + all->height;
     choice c = make_choice(settings);
+    c.least.lights = FIRST_LIGHTS_MIN;
+    if (c.least.rays < FIRST_RAYS_MIN)
+        c.least.rays = FIRST_RAYS_MIN < c.most.rays ? FIRST_RAYS_MIN : c.most.rays;
     if (!film->first_splits)
-        film->first_splits = malloc((size_t)columns * (size_t)rows * sizeof *film->first_splits);
+        film->first_splits = malloc((film_block_number(film, right - 1, bottom - 1) + 1) * sizeof *film->first_splits);
     if (!film->first_splits)
         return AG_ERROR_MEMORY;
-    for (int i = 0; i < columns * rows; i++) {
-        film_area block = film_block_at(film, i % columns, i / columns);
-        int x0, x1, y0, y1;
-        block_sums sums = {0};
-        find_window(block.x0, FILM_BLOCK, film->full_width, pilot->full_width, &x0, &x1);
-        find_window(block.y0, FILM_BLOCK, film->full_height, pilot->full_height, &y0, &y1);
-        for (int y = y0; y <= y1; y++)
-            for (int x = x0; x <= x1; x++) {
-                size_t pixel = film_pixel_at(pilot, x, y);
-                add_pixel(&pilot->splits[pixel], (double)pilot->counts[pixel], c.scale, &sums);
-            }
-        film->first_splits[i] = best_counts(&sums, &c);
-        for (int y = block.y0; y < block.y0 + block.height; y++)
-            for (int x = block.x0; x < block.x0 + block.width; x++)
-                film->splits[film_pixel_at(film, x, y)].counts = film->first_splits[i];
-    }
+    for (int y = all->y0 / FILM_BLOCK * FILM_BLOCK; y < bottom; y += FILM_BLOCK)
+        for (int x = all->x0 / FILM_BLOCK * FILM_BLOCK; x < right; x += FILM_BLOCK)
+            film->first_splits[film_block_number(film, x, y)] = counts_by_pilot(film, pilot, x, y, &c, settings);
+    film_begin_splits(film, settings);
     return AG_OK;
 }
 

@@ -8,8 +8,9 @@
  * to one worker at a time; decided when no tile is rendered.
  *
  * It is decided for blocks, as in adaptive.h: for their first samples by a small picture of the whole frame, later, at
- * fixed numbers of samples, from the block's own; costs are numbers of rays and no times. How a sample is split depends on samples before it alone, so its expectation does not,
- * and all samples weigh alike: the picture's expectation stays. */
+ * fixed numbers of samples, from the block's own; costs are numbers of rays and no times. How a sample is split depends
+ * on samples before it alone, so its expectation does not, and all samples weigh alike: the picture's expectation
+ * stays. */
 #ifndef AFTERGLOW_SPLITTING_H
 #define AFTERGLOW_SPLITTING_H
 
@@ -32,6 +33,8 @@ typedef struct split_trial {
 
 /* Whether blocks choose: with the photon map's integrator, where no number of gather rays is set. */
 bool splitting_is_open(const ag_render_settings *settings);
+/* Whether they choose again by their own samples: then a film holds all pixels of its blocks. */
+bool splitting_goes_on(const ag_render_settings *settings);
 /* The counts of every sample where blocks do not choose, and of the first samples where they do. */
 split_counts splitting_first(const ag_render_settings *settings);
 

@@ -60,6 +60,10 @@ ag_status ag_color_summary(ag_context *context, const char **out_text)
     return AG_OK;
 }
 
+struct ag_view {
+    color_processor *processor; /* owned */
+};
+
 /* NULL where values stay as they are. */
 static ag_status create_processor(ag_context *context, const ag_output_settings *settings, bool scene_linear,
                                   color_processor **out_processor)
@@ -88,6 +92,43 @@ ag_status output_color_check(ag_context *context, const ag_output_settings *sett
         color_processor_destroy(processor);
     }
     return AG_OK;
+}
+
+ag_status ag_view_create(ag_context *context, const ag_output_settings *settings, ag_view **out_view)
+{
+    const ag_output_settings defaults = ag_default_output_settings();
+    color_processor *processor = NULL;
+    if (!context || !out_view)
+        return AG_ERROR_ARGUMENT;
+    *out_view = NULL;
+    if (!settings)
+        settings = &defaults;
+    AG_TRY(context_check_struct(context, "ag_output_settings", settings->struct_size, sizeof *settings));
+    AG_TRY(create_processor(context, settings, false, &processor));
+    ag_view *view = calloc(1, sizeof *view);
+    if (!view) {
+        color_processor_destroy(processor);
+        return AG_ERROR_MEMORY;
+    }
+    view->processor = processor;
+    *out_view = view;
+    return AG_OK;
+}
+
+void ag_view_destroy(ag_view *view)
+{
+    if (!view)
+        return;
+    color_processor_destroy(view->processor);
+    free(view);
+}
+
+ag_status ag_view_apply(const ag_view *view, float *pixels, size_t count)
+{
+    char message[MESSAGE_SIZE];
+    if (!view || !pixels)
+        return AG_ERROR_ARGUMENT;
+    return color_processor_apply(view->processor, pixels, count, message, sizeof message);
 }
 
 typedef struct color_job {

@@ -203,9 +203,46 @@ static void what_was_cancelled_can_go_on(void **state)
     }
 }
 
+/* A view without tone mapping is the display's curve alone, sRGB's. */
+static void views_are_those_of_files(void **state)
+{
+    (void)state;
+    ag_context *context;
+    ag_view *view = NULL, *none = NULL;
+    ag_context_settings made = ag_default_context_settings();
+    ag_output_settings output = ag_default_output_settings();
+    made.thread_count = 1;
+    assert_int_equal(ag_context_create(&made, &context), AG_OK);
+    output.view = "Un-tone-mapped";
+    output.exposure_stops = 1.0f;
+    assert_int_equal(ag_view_create(context, &output, &view), AG_OK);
+    float pixels[6] = {0.0f, 0.25f, 0.5f, 0.1f, 0.05f, 0.0f};
+    const double linear[6] = {0.0, 0.5, 1.0, 0.2, 0.1, 0.0};
+    assert_int_equal(ag_view_apply(view, pixels, 2), AG_OK);
+    for (int i = 0; i < 6; i++)
+        assert_true(fabs((double)pixels[i] - (linear[i] > 0.0 ? 1.055 * pow(linear[i], 1.0 / 2.4) - 0.055 : 0.0)) <
+                    1e-4);
+    assert_int_equal(ag_view_apply(view, NULL, 2), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_view_apply(NULL, pixels, 2), AG_ERROR_ARGUMENT);
+    ag_view_destroy(view);
+    ag_view_destroy(NULL);
+
+    assert_int_equal(ag_view_create(context, NULL, &view), AG_OK);
+    ag_view_destroy(view);
+    output.view = "no such view";
+    assert_int_equal(ag_view_create(context, &output, &none), AG_ERROR_COLOR);
+    output.struct_size = 3;
+    assert_int_equal(ag_view_create(context, &output, &none), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_view_create(NULL, NULL, &none), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_view_create(context, NULL, NULL), AG_ERROR_ARGUMENT);
+    assert_null(none);
+    ag_context_destroy(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {TEST_IN_FOLDER(contexts_work_side_by_side),
+                                       cmocka_unit_test(views_are_those_of_files),
                                        cmocka_unit_test(what_was_cancelled_can_go_on)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

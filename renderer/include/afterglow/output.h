@@ -46,6 +46,16 @@ AG_API ag_status ag_output_check(ag_context *context, const ag_output_settings *
 AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const ag_output_settings *settings,
                                const char *path);
 
+/* The way from the working space to a display, as ag_film_write takes it for .png: for who shows pictures himself. */
+typedef struct ag_view ag_view;
+/* Of the settings display, view, look and exposure_stops are heeded; NULL: the defaults. The view is to be
+ * destroyed before the context. Errors: AG_ERROR_ARGUMENT, AG_ERROR_COLOR, AG_ERROR_MEMORY; *out_view is NULL then. */
+AG_API ag_status ag_view_create(ag_context *context, const ag_output_settings *settings, ag_view **out_view);
+AG_API void ag_view_destroy(ag_view *view); /* NULL is fine */
+/* Converts count pixels of 3 floats in place; of the values, [0, 1] is what the display shows. Any thread may call it
+ * at any time, several at once too. Errors: AG_ERROR_ARGUMENT, AG_ERROR_COLOR. */
+AG_API ag_status ag_view_apply(const ag_view *view, float *pixels, size_t count);
+
 /* From now on no context waits for the reader of a FIFO, or of standard output, that it writes to: such a write fails
  * where the reader is not ready. For the handler of a signal that is to end the process in order: safe in it. */
 AG_API void ag_end_waits(void);

@@ -1,0 +1,38 @@
+/* film_watch.h: a film that is shown in a terminal while it is rendered, through the view that a .png would have.
+ * Flow: passes, progress -> [here] -> terminal_picture. Threads: one at a time, as progress sees to. */
+#ifndef AFTERGLOW_FILM_WATCH_H
+#define AFTERGLOW_FILM_WATCH_H
+
+#include "afterglow/afterglow.h"
+#include "terminal_picture.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct film_watch {
+    ag_view *view;       /* owned; NULL: nothing is watched */
+    const ag_film *film; /* borrowed; NULL: there is none to be shown */
+    int width, height;   /* the film's */
+    float *pixels;       /* owned: the film as it was read last */
+    float *shown;        /* owned: reduced, and seen through the view; as large as pixels */
+    uint64_t version;    /* of the pixels */
+    double next_seconds; /* when the picture may be drawn again */
+    int drawn_rows;      /* that stand above the cursor's line; 0: none */
+    terminal_size drawn_in;
+} film_watch;
+
+/* Takes the view over. */
+void film_watch_begin(film_watch *w, ag_view *view);
+/* Forgets the view and the film; what is drawn stays. */
+void film_watch_end(film_watch *w);
+
+/* From now on this film is shown. Errors: AG_ERROR_MEMORY. */
+ag_status film_watch_show(film_watch *w, const ag_film *film);
+
+/* Draws the picture in place of the one before, where there is a new one and drawing has not just been done; is_last:
+ * in any case. The cursor is then at the line below, which is empty. */
+void film_watch_draw(film_watch *w, FILE *terminal, double now_seconds, bool is_last);
+/* Takes the picture away, so that a message can stand there. */
+void film_watch_erase(film_watch *w, FILE *terminal);
+
+#endif

@@ -1,0 +1,35 @@
+/* terminal_picture.h: a picture as text for a terminal: half blocks (U+2580), each two pixels, one above the other, in
+ * 24-bit colours (ISO/IEC 8613-6). Flow: pixels as they are shown -> [here] -> progress. Threads: the caller's. */
+#ifndef AFTERGLOW_TERMINAL_PICTURE_H
+#define AFTERGLOW_TERMINAL_PICTURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/* A terminal's size in characters. */
+typedef struct terminal_size {
+    int columns, rows;
+} terminal_size;
+
+/* Why no picture can be shown there, NULL: one can. */
+const char *terminal_picture_obstacle(int descriptor);
+/* False where it is not known, or too small for a picture. */
+bool terminal_picture_room(int descriptor, terminal_size *out_size);
+
+/* The picture's size in half blocks: no larger than it is, nor than a terminal whose last column and last two rows stay
+ * free. */
+void terminal_picture_fit(int width, int height, const terminal_size *terminal, int *out_width, int *out_height);
+
+/* Means of the pixels under each half block; pixels: RGB, top row first. out_means: 3 * out_width * out_height. */
+void terminal_picture_reduce(const float *pixels, int width, int height, float *out_means, int out_width,
+                             int out_height);
+
+/* Writes the rows, each ended by the attributes' reset and a line feed. shown: RGB, of which [0, 1] is what the
+ * terminal can show. Gives the number of rows. */
+int terminal_picture_write(FILE *file, const float *shown, int width, int height);
+
+/* The codes that take rows above the cursor's line away, and what stands on the line. */
+void terminal_picture_erase(FILE *file, int rows);
+
+#endif
