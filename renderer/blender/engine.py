@@ -7,7 +7,7 @@ import weakref
 import bpy
 import numpy as np
 
-from . import cameras, library, motion, passes, translation, view_drawing, viewport
+from . import cameras, library, motion, passes, translation, untranslated, view_drawing, viewport
 from .notes import Notes
 
 _PHASES = ("Reading", "Building trees", "Tracing photons", "Building maps", "Computing irradiance", "Rendering", "Writing")
@@ -148,6 +148,7 @@ class _Frame:
         self._engine.update_stats("", _PHASES[0])
         with self._afterglow.Context(threads=threads, progress=self._hear_progress, warn=self._notes.say) as context, \
                 context.scene() as scene:
+            untranslated.tell(self._scene, self._layer, self._notes)
             self._hint(scene)
             moved = motion.look_ahead(self._engine, self._depsgraph, self._notes)
             translation.translate(scene, self._depsgraph, moved, self._notes, self._poll)

@@ -109,6 +109,10 @@ class Graph:
                     self.skip(inner, "another object's coordinates are its own")
             else:
                 self.skip(inner, "pictures lie by the uv map")
+        if where[0] != "UV" and np.abs(matrix[:2, 2]).max() > 1e-6 * np.abs(matrix[:2, :3]).max():
+            self.notes.say(f"{self._name}: a picture that is turned about x or y lies as seen from above")
+        if getattr(node, "projection", "FLAT") != "FLAT":
+            self.notes.say(f'{self._name}: a picture lies flat here, by no "{node.projection.lower()}"')
         return where, matrix[:2][:, [0, 1, 3]]
 
     def constant(self, socket, path):
@@ -169,6 +173,8 @@ class Graph:
 
     def _picture(self, node, output, path, sheet):
         if not node.image or sheet is None:
+            if node.image:
+                self.skip(node, "of a constant its colour is magenta, and its alpha 1")
             return (np.array([1.0, 0.0, 1.0]), True) if output.name == "Color" else (np.float64(1.0), False)
         pixels = pictures.linear_pixels(node.image, self.notes)
         matrix = sheet.relative(self.layout(node, path)) if hasattr(sheet, "relative") else None

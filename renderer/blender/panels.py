@@ -1,6 +1,7 @@
 """Panels of render and view layer properties; and those of Blender's own that go with any engine."""
 
 import bpy
+from bl_ui.properties_view_layer import ViewLayerLightgroupsPanel
 
 
 class _RenderPanel:
@@ -47,32 +48,77 @@ class AFTERGLOW_PT_passes(_RenderPanel, bpy.types.Panel):
             "use_albedo", "use_emission", "use_direct", "use_indirect", "use_caustic", "use_specular"))
 
 
+class AFTERGLOW_PT_lightgroups(_RenderPanel, ViewLayerLightgroupsPanel):
+    bl_label = "Light Groups"
+    bl_context = "view_layer"
+    bl_parent_id = "AFTERGLOW_PT_passes"
+
+
+class AFTERGLOW_PT_object_lightgroup(_RenderPanel, bpy.types.Panel):
+    bl_label = "Light Group"
+    bl_context = "object"
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.prop_search(context.object, "lightgroup", context.view_layer, "lightgroups")
+
+
 # Panels for lamps, materials and the world that draw nothing but what Blender itself and its nodes have.
 _EXCLUDED = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_simplify"}
 _CYCLES_PANELS = {"CYCLES_LIGHT_PT_light", "CYCLES_LIGHT_PT_nodes", "CYCLES_MATERIAL_PT_surface",
                   "CYCLES_WORLD_PT_surface", "CYCLES_CAMERA_PT_dof", "CYCLES_CAMERA_PT_dof_aperture",
-                  "CYCLES_RENDER_PT_light_groups", "CYCLES_RENDER_PT_passes_lightgroups"}
-_CLASSES = (AFTERGLOW_PT_sampling, AFTERGLOW_PT_light, AFTERGLOW_PT_passes)
+                  "CYCLES_WORLD_PT_settings", "CYCLES_WORLD_PT_settings_light_group"}
+_given = []  # what panels of Blender have got: panel, attribute, what the panel itself had there before or None
+_CLASSES = (AFTERGLOW_PT_sampling, AFTERGLOW_PT_light, AFTERGLOW_PT_passes, AFTERGLOW_PT_lightgroups,
+            AFTERGLOW_PT_object_lightgroup)
 
 
-def _foreign_panels():
-    for panel in bpy.types.Panel.__subclasses__():
-        engines = getattr(panel, "COMPAT_ENGINES", None)
-        if engines is None:
-            continue
-        if ("BLENDER_RENDER" in engines and panel.__name__ not in _EXCLUDED) or panel.__name__ in _CYCLES_PANELS:
-            yield engines
+class _AsCycles:
+    """A context in which the engine is Cycles."""
+    engine = "CYCLES"
+
+    def __init__(self, context):
+        self._context = context
+
+    def __getattr__(self, name):
+        return getattr(self._context, name)
+
+
+def _panels(base=bpy.types.Panel):
+    for panel in base.__subclasses__():
+        yield panel
+        yield from _panels(panel)
+
+
+def _give(panel, name, value):
+    _given.append((panel, name, vars(panel).get(name)))
+    setattr(panel, name, value)
+
+
+def _poll_as_cycles(own):
+    """Cycles' panels share one set of engines, and ask that which all inherit: each is asked as if for Cycles."""
+    def poll(_panel, context):
+        return own(_AsCycles(context) if context.engine == "AFTERGLOW" else context)
+    return classmethod(poll)
 
 
 def register():
     for one in _CLASSES:
         bpy.utils.register_class(one)
-    for engines in _foreign_panels():
-        engines.add("AFTERGLOW")
+    for panel in set(_panels()):
+        engines = getattr(panel, "COMPAT_ENGINES", ())
+        if panel.__name__ in _CYCLES_PANELS:
+            _give(panel, "poll", _poll_as_cycles(panel.poll))
+        elif "BLENDER_RENDER" in engines and panel.__name__ not in _EXCLUDED:
+            _give(panel, "COMPAT_ENGINES", engines | {"AFTERGLOW"})
 
 
 def unregister():
-    for engines in _foreign_panels():
-        engines.discard("AFTERGLOW")
+    while _given:
+        panel, name, before = _given.pop()
+        if before is None:
+            delattr(panel, name)
+        else:
+            setattr(panel, name, before)
     for one in reversed(_CLASSES):
         bpy.utils.unregister_class(one)

@@ -36,6 +36,8 @@ def _model(instance_object, materials, name, notes):
         parts = meshes.parts_of(mesh, [look.layout for look in looks])
     finally:
         instance_object.to_mesh_clear()
+    if any(look.layout and look.layout[0][0] == "GENERATED" for look in looks) and instance_object.modifiers:
+        notes.say(f'object "{instance_object.name}": Generated coordinates are those after its modifiers')
     bad = [part for part in parts if not np.isfinite(part.positions).all()]
     if bad:
         notes.say(f'object "{instance_object.name}": vertices that are not finite are left out with their material')
