@@ -64,12 +64,12 @@ static void projective_ray(const camera *c, vec2 screen, vec2 lens_u, vec3 *out_
     else
         origin = (vec3){screen.x, screen.y, 0.0f};
 
-    /* thin lens: all rays through one point of the film meet on the plane in focus */
+    /* Thin lens: all rays through one point of the film meet on the plane in focus. Of an orthographic camera each such
+     * point has a lens of its own around it, so that the picture stays a parallel one; pbrt-v4 has one lens for all. */
     if (c->lens_radius > 0.0f) {
         vec2 lens = sample_disk_concentric(lens_u);
-        vec3 focus =
-            is_perspective ? vec3_scale(direction, c->focal_distance) : (vec3){screen.x, screen.y, c->focal_distance};
-        origin = (vec3){lens.x * c->lens_radius, lens.y * c->lens_radius, 0.0f};
+        vec3 focus = vec3_add_scaled(origin, direction, c->focal_distance);
+        origin = (vec3){origin.x + lens.x * c->lens_radius, origin.y + lens.y * c->lens_radius, 0.0f};
         direction = vec3_sub(focus, origin);
     }
     *out_origin = origin;

@@ -29,11 +29,11 @@ def picture_size(render):
 
 
 def border_of(render, size):
-    """The pixels that are rendered: x0, y0, x1, y1, y from below."""
+    """The pixels that are rendered: x0, y0, x1, y1, y from below. Blender computes them by floats of 32 bits."""
     if not render.use_border:
         return 0, 0, *size
-    x0, x1 = int(render.border_min_x * size[0]), int(render.border_max_x * size[0])
-    y0, y1 = int(render.border_min_y * size[1]), int(render.border_max_y * size[1])
+    x0, x1 = (int(np.float32(edge) * np.float32(size[0])) for edge in (render.border_min_x, render.border_max_x))
+    y0, y1 = (int(np.float32(edge) * np.float32(size[1])) for edge in (render.border_min_y, render.border_max_y))
     return x0, y0, max(x1, x0 + 1), max(y1, y0 + 1)
 
 
@@ -89,7 +89,9 @@ def _focus(camera, world_from_camera, lens_radius):
 
 
 def add_camera(scene, camera_object, render, motion, notes):
-    """Sets the camera of the renderer's scene to a Blender object of the type CAMERA."""
+    """Sets the camera of the renderer's scene to a Blender object. Errors: RuntimeError, where it is no camera."""
+    if camera_object.type != "CAMERA":
+        raise RuntimeError(f'the scene\'s camera "{camera_object.name}" is a {camera_object.type.lower()}, no camera')
     camera, size = camera_object.data, picture_size(render)
     start, end = motion.of_camera(matrix_of(camera_object.matrix_world))
     world_from_camera = unscaled(start) @ _FLIPPED_Z

@@ -1,6 +1,7 @@
 """The render engine: a picture's way from the dependency graph to Blender's render result."""
 
 import time
+import traceback
 import weakref
 
 import bpy
@@ -95,7 +96,9 @@ class AfterglowEngine(bpy.types.RenderEngine):
             _Frame(self, depsgraph, afterglow).render()
         except (_Stopped, afterglow.Cancelled):
             pass
-        except (afterglow.Error, RuntimeError, ValueError) as error:
+        except Exception as error:  # one that left this function could end Blender
+            if not isinstance(error, (afterglow.Error, RuntimeError)):
+                traceback.print_exc()
             self.report({"ERROR"}, f"Afterglow: {error}")
             self.error_set(f"Afterglow: {error}")
 

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from . import cameras
+from .nodes import Graph, source
 from .passes import group_of
 
 _DISK_SIDES = 64
@@ -17,12 +18,36 @@ def _color(lamp, notes, name):
     """Energy and colour, with those of its nodes."""
     color = np.array(lamp.color, np.float64) * lamp.energy
     if lamp.use_nodes and lamp.node_tree:
-        emission = next((n for n in lamp.node_tree.nodes if n.type == "EMISSION"), None)
-        if emission and not any(emission.inputs[k].is_linked for k in ("Color", "Strength")):
-            color = color * np.array(emission.inputs["Color"].default_value[:3]) * emission.inputs["Strength"].default_value
-        elif emission:
-            notes.say(f'lamp "{name}": what its emission is linked to is not translated')
+        output = lamp.node_tree.get_output_node("CYCLES")
+        emission, _, path = source(output.inputs["Surface"], ()) if output else (None, None, ())
+        if emission is None:
+            return np.zeros(3)
+        if emission.node.type != "EMISSION":
+            notes.say(f'lamp "{name}": node "{emission.node.bl_label}" is not translated, an even Emission stands in')
+            return color
+        graph = Graph(f'lamp "{name}"', notes)
+        strength = emission.node.inputs["Strength"]
+        falloff, _, inside = source(strength, path)
+        if falloff is not None and falloff.node.type == "LIGHT_FALLOFF":
+            if falloff.name != "Quadratic" or graph.number(falloff.node.inputs["Smooth"], inside) > 0:
+                graph.skip(falloff.node, "light falls off with the square of the distance")
+            strength, path_of_strength = falloff.node.inputs["Strength"], inside
+        else:
+            path_of_strength = path
+        color = color * graph.color(emission.node.inputs["Color"], path) * graph.number(strength, path_of_strength)
     return color
+
+
+_VISIBILITIES = {"visible_diffuse": "diffuse", "visible_glossy": "glossy", "visible_transmission": "transmission"}
+
+
+def _tell(lamp_object, notes):
+    hidden = [kind for name, kind in _VISIBILITIES.items() if not getattr(lamp_object, name)]
+    if hidden:
+        notes.say(f'lamp "{lamp_object.name}": it is hidden from {", ".join(hidden)} rays in Blender, and seen by all here')
+    cycles = getattr(lamp_object.data, "cycles", None)
+    if cycles and not cycles.cast_shadow:
+        notes.say(f'lamp "{lamp_object.name}": what it lights casts shadows here')
 
 
 def _point(scene, lamp_object, matrix, color, notes):
@@ -82,12 +107,17 @@ def _area(scene, lamp_object, matrix, color, notes):
 
 def add_lamp(scene, lamp_object, matrix, notes):
     """Adds a Blender object of the type LIGHT, at a 4 x 4 matrix."""
-    color = _color(lamp_object.data, notes, lamp_object.name)
-    if not (color > 0).any():
+    cycles = getattr(lamp_object.data, "cycles", None)
+    if lamp_object.data.type == "AREA" and cycles and cycles.is_portal:
+        notes.say(f'lamp "{lamp_object.name}": a portal does not shine, and guides nothing here')
         return
+    color = _color(lamp_object.data, notes, lamp_object.name)
     if (color < 0).any():
         notes.say(f'lamp "{lamp_object.name}": light below 0 is not translated')
         color = np.maximum(color, 0)
+    if not (color > 0).any():
+        return
+    _tell(lamp_object, notes)
     kind = lamp_object.data.type
     {"POINT": _point, "SPOT": _spot, "SUN": _sun, "AREA": _area}[kind](
         scene, lamp_object, matrix if kind == "AREA" else cameras.unscaled(matrix), color, notes)

@@ -95,7 +95,7 @@ class Baker:
     def direct_picture(self, socket, path, scale):
         """A colour socket that is a plain picture of 8 bits: its texture without a detour by floats."""
         output, _, _ = source(socket, path)
-        if output is None or output.node.type != "TEX_IMAGE" or output.name != "Color" or output.node.mute:
+        if output is None or output.node.type != "TEX_IMAGE" or output.name != "Color":
             return None
         image = output.node.image
         if not image or image.is_float or pictures.is_linear(image, self.notes):
@@ -108,6 +108,9 @@ class Baker:
             name = file_name = f"{self.name}/{self.count}"
             if image.source == "TILED":
                 file_name = pictures.tiled_file(image)
+                if not pictures.has_all_tiles(image, file_name):
+                    self.notes.say(f'picture "{image.name}": a file of its UDIM tiles is missing')
+                    return None
             else:
                 raw = pictures.raw_pixels(image)
                 if raw is None:

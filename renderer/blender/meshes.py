@@ -15,11 +15,12 @@ def _array(collection, name, width, dtype):
 
 
 def _uvs(mesh, name):
-    """Of the loops; None where there is no such map."""
-    layer = mesh.uv_layers.get(name) if name else None
-    if not layer:
+    """Of the loops; zeros where there is no such map, as in Blender."""
+    if name:
+        layer = mesh.uv_layers.get(name)
+    else:
         layer = next((candidate for candidate in mesh.uv_layers if candidate.active_render), None)
-    return _array(layer.data, "uv", 2, np.float32) if layer else None
+    return _array(layer.data, "uv", 2, np.float32) if layer else np.zeros((len(mesh.loops), 2), np.float32)
 
 
 def _layout(mesh, how, positions, loop_vertices):
@@ -35,8 +36,6 @@ def _layout(mesh, how, positions, loop_vertices):
             low, high = positions.min(axis=0), positions.max(axis=0)
             space = (positions - low) / np.maximum(high - low, 1e-30)
         uvs = space[loop_vertices][:, :2]
-    if uvs is None:
-        return None
     return np.ascontiguousarray(uvs @ matrix[:, :2].T + matrix[:, 2], np.float32)
 
 

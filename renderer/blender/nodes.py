@@ -19,14 +19,19 @@ class Sheet:
 
 
 def source(socket, path):
-    """The output that a socket is linked to, through groups and reroutes, with the groups that it is in; None, and the
-    socket whose own value counts."""
+    """The output that a socket is linked to, through groups, reroutes and muted nodes, with the groups that it is in;
+    None, and the socket whose own value counts."""
     while True:
-        if not socket.is_linked or not socket.links[0].is_valid:
+        if not socket.is_linked or not socket.links[0].is_valid or socket.links[0].is_muted:
             return None, socket, path
         output = socket.links[0].from_socket
         node = output.node
-        if node.type == "REROUTE":
+        if node.mute:
+            link = next((link for link in node.internal_links if link.to_socket == output), None)
+            if not link:
+                return None, socket, path
+            socket = link.from_socket
+        elif node.type == "REROUTE":
             socket = node.inputs[0]
         elif node.type == "GROUP" and node.node_tree:
             inner = next((n for n in node.node_tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output), None)
@@ -66,6 +71,7 @@ class Graph:
     def __init__(self, name, notes):
         self._name = name
         self.notes = notes
+        self._shared, self._depth = {}, 0  # values of outputs that are asked for more than once; how deep value is in itself
 
     def skip(self, node, stand_in):
         self.notes.say(f'{self._name}: node "{node.bl_label}" is not translated: {stand_in}')
@@ -118,17 +124,27 @@ class Graph:
 
     def value(self, socket, path, sheet):
         """A value, and whether it is a colour or vector."""
-        output, own, path = source(socket, path)
+        output, own, inside = source(socket, path)
         if output is None:
             value = _default(own)
             return value, value.ndim > 0
-        return self._evaluate(output, path, sheet)
+        is_shared = len(output.links) > 1 or socket.links[0].from_socket != output
+        key = output.as_pointer(), inside, id(sheet)
+        if key in self._shared:
+            return self._shared[key]
+        self._depth += 1
+        try:
+            made = self._evaluate(output, inside, sheet)
+        finally:
+            self._depth -= 1
+            if self._depth == 0:  # large arrays are not kept for long
+                self._shared.clear()
+        if is_shared and self._depth > 0:
+            self._shared[key] = made
+        return made
 
     def _evaluate(self, output, path, sheet):
         node = output.node
-        if node.mute:
-            link = next((l for l in node.internal_links if l.to_socket == output), None)
-            return self.value(link.from_socket, path, sheet) if link else (np.zeros(3), True)
         kind = node.type
         if kind == "RGB":
             return np.array(output.default_value[:3]), True

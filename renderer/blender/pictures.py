@@ -1,5 +1,7 @@
 """Blender's images as arrays: (height, width, 4), lowest row first, scene-linear."""
 
+import os
+
 import bpy
 import numpy as np
 
@@ -9,6 +11,10 @@ _LINEAR = {"Non-Color", "Raw", "Linear", "Linear BT.709", "Linear Rec.709", "Gen
 def tiled_file(image):
     """The name that the tiles of an image have in common, with <UDIM> in it."""
     return bpy.path.abspath(image.filepath, library=image.library)
+
+
+def has_all_tiles(image, file_name):
+    return all(os.path.isfile(file_name.replace("<UDIM>", str(tile.number))) for tile in image.tiles)
 
 
 def raw_pixels(image):

@@ -1,5 +1,7 @@
 """From the dependency graph to a scene of the renderer: what is drawn, once each, and where."""
 
+import itertools
+
 import numpy as np
 
 from . import cameras, hair, lamps, meshes, worlds
@@ -69,8 +71,19 @@ def _add_part(scene, model, part, **where):
     scene.shape("trianglemesh", {**meshes.parameters_of(part), **look.shape}, material=look.name, light=light, **where)
 
 
+def _is_flat(matrix):
+    """Whether it has no inverse."""
+    return abs(np.linalg.det(matrix[:3, :3])) < 1e-30
+
+
 def _add_model(scene, model):
-    """One that stands in several places is instanced, but for what shines in it, which stands still in each place."""
+    """One that stands in several places is instanced, but for what shines in it, which stands still in each place. Where
+    a scale of 0 makes it flat it stands still as well, with its vertices in world space."""
+    flat = [place for place, _ in model.places if _is_flat(place)]
+    for place, part in itertools.product(flat, model.parts):
+        positions = part.positions @ place[:3, :3].T + place[:3, 3]
+        _add_part(scene, model, part._replace(positions=positions, normals=None))
+    model.places = [both for both in model.places if not _is_flat(both[0])]
     dark = [part for part in model.parts if model.looks[part.slot].light is None]
     shining = [part for part in model.parts if model.looks[part.slot].light is not None]
     if len(model.places) == 1:
@@ -108,8 +121,6 @@ def translate(scene, depsgraph, motion, notes, poll, view=None):
         if shown.type == "LIGHT":
             lamps.add_lamp(scene, shown, matrix, notes)
         elif shown.type in _SURFACES:
-            if abs(np.linalg.det(matrix[:3, :3])) < 1e-30:
-                continue
             key = _key(shown)
             if key not in models:
                 models[key] = _model(shown, materials, f"{shown.name_full}#{len(models)}", notes)

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import ctypes
 import ctypes.util
+import operator
 import os
 import threading
 import warnings
@@ -165,6 +166,13 @@ def version() -> str:
     return _library.ag_version().decode()
 
 
+def _opened(held, what):
+    """A pointer that the library may be given. Errors: Error, where what it points to is closed."""
+    if not held:
+        raise Error(f"the {what} is closed")
+    return held
+
+
 def _text(value):
     return None if value is None else os.fsencode(value)
 
@@ -237,11 +245,16 @@ class Context:
         self._warn = warn or (lambda message: warnings.warn(message, stacklevel=4))
         self._failed = None
         self._callbacks = (_LOG(self._hear), _PROGRESS(self._tell))  # they live as long as the context
-        self._pointer = c_void_p()
+        self._held = c_void_p()
+        self._scenes = []  # that are not closed
         settings = _ContextSettings(struct_size=ctypes.sizeof(_ContextSettings), thread_count=threads,
                                     working_space=_text(working_space), color_config=_text(color_config),
                                     log=self._callbacks[0], progress=self._callbacks[1])
-        self._check(_library.ag_context_create(byref(settings), byref(self._pointer)))
+        self._check(_library.ag_context_create(byref(settings), byref(self._held)))
+
+    @property
+    def _pointer(self):
+        return _opened(self._held, "context")
 
     def _hear(self, _user, level, message):
         if level <= 1:
@@ -272,12 +285,16 @@ class Context:
     def _work(self, function, *arguments, poll=None):
         """Calls the library on a thread of its own, so that Ctrl-C is heard here meanwhile, and calls it off. poll: called
         about every 0.1 s; so does an exception there."""
-        result = []
+        result, failed = [], []
         is_done = threading.Event()  # an interrupted Thread.join takes the thread for ended (bpo-45274)
 
         def work():
-            result.append(function(*arguments))
-            is_done.set()
+            try:
+                result.append(function(*arguments))
+            except BaseException as error:  # of an argument's type; it is raised on the calling thread
+                failed.append(error)
+            finally:
+                is_done.set()
 
         threading.Thread(target=work).start()
         try:
@@ -290,6 +307,8 @@ class Context:
             _library.ag_context_clear_cancel(self._pointer)
             self._said = []
             raise
+        if failed:
+            raise failed[0]
         self._check(result[0])
 
     def cancel(self) -> None:
@@ -310,10 +329,12 @@ class Context:
         return Scene(self, _library.ag_scene_load_text, _text(name), text, len(text), None, is_complete=True)
 
     def close(self) -> None:
-        """Ends the context; its scenes are to be closed before."""
-        if self._pointer:
-            _library.ag_context_destroy(self._pointer)
-            self._pointer = c_void_p()
+        """Ends the context; closes its scenes and their renderings."""
+        for scene in list(self._scenes):
+            scene.close()
+        if self._held:
+            _library.ag_context_destroy(self._held)
+            self._held = c_void_p()
 
     def __enter__(self) -> Context:
         return self
@@ -328,9 +349,19 @@ class Scene:
 
     def __init__(self, context, function, *arguments, is_complete=False):
         self._context = context
-        self._pointer = c_void_p()
+        self._held = c_void_p()
+        self._renderings = []  # that are not closed
         self._is_complete = is_complete
-        context._work(function, context._pointer, *arguments, byref(self._pointer))
+        context._scenes.append(self)
+        try:
+            context._work(function, context._pointer, *arguments, byref(self._held))
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def _pointer(self):
+        return _opened(self._held, "scene")
 
     def _call(self, function, *arguments):
         self._context._check(function(self._pointer, *arguments))
@@ -451,10 +482,14 @@ class Scene:
         return Rendering(self, settings, poll)
 
     def close(self) -> None:
-        """Forgets the scene."""
-        if self._pointer:
-            _library.ag_scene_destroy(self._pointer)
-            self._pointer = c_void_p()
+        """Forgets the scene; closes its renderings."""
+        for rendering in list(self._renderings):
+            rendering.close()
+        if self in self._context._scenes:
+            self._context._scenes.remove(self)
+        if self._held:
+            _library.ag_scene_destroy(self._held)
+            self._held = c_void_p()
 
     def __enter__(self) -> Scene:
         return self
@@ -480,15 +515,24 @@ class Rendering:
     shape: tuple[int, int]
 
     def __init__(self, scene, settings, poll):
-        self._context, self._pointer, self._film = scene._context, c_void_p(), c_void_p()
+        self._context, self._scene, self._held, self._film = scene._context, scene, c_void_p(), c_void_p()
         scene.complete(poll)
         room, _kept = scene._settings(settings)
-        self._context._work(_library.ag_rendering_create, self._context._pointer, scene._pointer, room,
-                            byref(self._pointer), poll=poll)
+        scene._renderings.append(self)
+        try:
+            self._context._work(_library.ag_rendering_create, self._context._pointer, scene._pointer, room,
+                                byref(self._held), poll=poll)
+        except BaseException:
+            self.close()
+            raise
         width, height = c_int(), c_int()
         _library.ag_film_pixels(self._shown(), byref(width), byref(height))
         self.shape = (height.value, width.value)
         self._watched, self._version = numpy.zeros((*self.shape, 3), numpy.float32), 0
+
+    @property
+    def _pointer(self):
+        return _opened(self._held, "rendering")
 
     def _shown(self):
         return self._film or c_void_p(_library.ag_rendering_film(self._pointer))
@@ -496,7 +540,7 @@ class Rendering:
     def advance(self, samples: int, poll: _Poll = None) -> None:
         """Brings every pixel to so many samples, or to the noise that was asked for: those of the settings at most. poll:
         called about every 0.1 s meanwhile, on the calling thread; an exception there calls the work off."""
-        self._context._work(_library.ag_rendering_continue, self._pointer, samples, poll=poll)
+        self._context._work(_library.ag_rendering_continue, self._pointer, operator.index(samples), poll=poll)
 
     def watch(self) -> Optional[numpy.ndarray]:
         """The picture as far as it is shown by now, whole tiles, from any thread and while it is at work; None where
@@ -527,14 +571,16 @@ class Rendering:
         """Ends the rendering and takes the noise out of R, G and B, by Open Image Denoise; denoise=True among the
         settings has kept what it needs. The channels stay to be read."""
         _library.ag_rendering_finish(self._pointer, byref(self._film))
-        self._pointer = c_void_p()
+        self._held = c_void_p()
         self._context._work(_library.ag_film_denoise, self._context._pointer, self._film, poll=poll)
 
     def close(self) -> None:
         """Ends the rendering and forgets its picture."""
-        _library.ag_rendering_finish(self._pointer, None)
+        if self in self._scene._renderings:
+            self._scene._renderings.remove(self)
+        _library.ag_rendering_finish(self._held, None)
         _library.ag_film_destroy(self._film)
-        self._pointer, self._film = c_void_p(), c_void_p()
+        self._held, self._film = c_void_p(), c_void_p()
 
     def __enter__(self) -> Rendering:
         return self

@@ -62,7 +62,8 @@ static void orthographic(void **state)
     check_ray(&c, 1.0, 0.5, 2.0, vec3_make(0, 0, 0), vec3_make(0, 0, 1));
 }
 
-/* From all over the lens, rays of one point on the film meet where the plane in focus is. */
+/* From all over the lens, rays of one point on the film meet where the plane in focus is. The lens is around the
+ * camera, and around each point of an orthographic one's film. */
 static void lenses(void **state)
 {
     (void)state;
@@ -72,13 +73,14 @@ static void lenses(void **state)
         snprintf(text, sizeof text, "Camera \"%s\" \"float lensradius\" 0.5 \"float focaldistance\" 4", KINDS[k]);
         camera c = camera_of(text);
         float x = k == 0 ? 4.0f * 0.5f : 0.5f, y = k == 0 ? 4.0f * -1.0f : -1.0f;
+        float middle_x = k == 0 ? 0.0f : x, middle_y = k == 0 ? 0.0f : y;
         double spread = 0.0;
         for (int i = 0; i < 16; i++) {
             scene_ray ray = camera_generate_ray(
                 &c, 0.75f, 1.0f, 1.0f, (vec2){((float)(i % 4) + 0.5f) / 4.0f, ((float)(i / 4) + 0.5f) / 4.0f}, 0.0f);
             assert_near(ray.origin.z, 0, 1e-6);
-            double radius = sqrt((double)(ray.origin.x * ray.origin.x + ray.origin.y * ray.origin.y));
-            assert_true(radius <= 0.5);
+            double radius = hypot((double)(ray.origin.x - middle_x), (double)(ray.origin.y - middle_y));
+            assert_true(radius <= 0.5 + 1e-6);
             spread = fmax(spread, radius);
             vec3 met = vec3_add_scaled(ray.origin, ray.direction, 4.0f / ray.direction.z);
             assert_vec3(met, x, y, 4, 1e-5);

@@ -26,7 +26,7 @@ timeout 500 blender -b --factory-startup --python-exit-code 1 -P "$root/tests/fi
 }
 grep '^ok: \|^FAILED: \|^Warning: Afterglow\|^Error' blender.log || true
 grep -q '^END$' blender.log || fail "the tests did not come to their end"
-! grep -q '^FAILED: \|^Error: \|Traceback' blender.log || fail "see above"
+! grep -v 'on purpose' blender.log | grep -q '^FAILED: \|^Error: \|Traceback' || fail "see above"
 
 stats() { # FILE CHANNELS: their means
     oiiotool "$1" --ch "$2" --printstats | awk '/Stats Avg/ { $1 = $2 = ""; sub(/\(float\).*/, ""); print; exit }'

@@ -78,7 +78,7 @@ Shape "trianglemesh" "point3 P" [-1 -1 0  1 -1 0  1 1 0  -1 1 0] "integer indice
 END
 "$AFTERGLOW_PROGRAM" -q --size 40x30 --spp 4 --noise 0 --photons 2000 -o program.pfm scene.pbrt
 "$python" - <<'END'
-import os, signal
+import ctypes, os, signal
 import numpy, afterglow
 
 def refused(kind, text, function, *arguments, **named):
@@ -148,6 +148,31 @@ with afterglow.Context(threads=2, progress=lambda phase, fraction: phases.append
         for x in (-0.5, 0.5):
             scene.instance("ball", [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, -0.5], [0, 0, 0, 1]])
         assert not numpy.array_equal(scene.render(**picture), pixels)
+
+# What is closed is not handed to the library; arguments of another type do not keep it waiting.
+context = afterglow.Context()
+scene, other = context.load("scene.pbrt"), context.load("scene.pbrt")
+rendering, denoised = scene.rendering(**picture), other.rendering(**picture)
+refused(TypeError, "integer", rendering.advance, 4.0)
+refused(ctypes.ArgumentError, "", context._work, afterglow._library.ag_rendering_continue, None, 1.5)
+rendering.advance(numpy.int64(4))
+assert numpy.array_equal(rendering.pixels(), pixels)
+refused(afterglow.Error, "", denoised.denoise)  # its settings do not ask for it
+refused(afterglow.Error, "the rendering is closed", denoised.sample_counts)
+refused(afterglow.Error, "the rendering is closed", denoised.denoise)
+scene.close()
+for use in (rendering.pixels, rendering.channels, rendering.watch, rendering.sample_counts, rendering.denoise):
+    refused(afterglow.Error, "the rendering is closed", use)
+refused(afterglow.Error, "the rendering is closed", rendering.advance, 8)
+refused(afterglow.Error, "the scene is closed", scene.rendering)
+context.close()
+refused(afterglow.Error, "the scene is closed", other.light, "point")
+refused(afterglow.Error, "the context is closed", other.render)
+refused(afterglow.Error, "the rendering is closed", denoised.pixels)
+refused(afterglow.Error, "the context is closed", context.scene)
+refused(afterglow.Error, "the context is closed", context.cancel)
+for each in (rendering, denoised, scene, other, context):
+    each.close()
 
 class Enough(Exception):
     pass
