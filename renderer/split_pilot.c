@@ -55,7 +55,7 @@ static void count_camera_rays_apart(eye_worker *workers, unsigned count)
 ag_status split_pilot_run(ag_rendering *r)
 {
     ag_film *film = r->film;
-    if (!film->splits || film->first_splits || film_count_samples(film).most > 0)
+    if (!film->splits || r->settings.noise_level > 0.0f || film->first_splits || film_count_samples(film).most > 0)
         return AG_OK;
     float scale;
     ag_rendering pilot = {.context = r->context,

@@ -225,8 +225,6 @@ ag_status splitting_begin(struct ag_film *film, const struct ag_film *pilot, con
     const int right = all->x0 + all->width, bottom = all->y0 + all->height;
     choice c = make_choice(settings);
     c.least.lights = FIRST_LIGHTS_MIN;
-    if (c.least.rays < FIRST_RAYS_MIN)
-        c.least.rays = FIRST_RAYS_MIN < c.most.rays ? FIRST_RAYS_MIN : c.most.rays;
     if (!film->first_splits)
         film->first_splits = malloc((film_block_number(film, right - 1, bottom - 1) + 1) * sizeof *film->first_splits);
     if (!film->first_splits)

@@ -7,10 +7,10 @@
  * at n = sqrt(G / V * v / g), m = sqrt(L / V * v / l). Flow: film -> [here] -> the next pass. Threads: a pixel belongs
  * to one worker at a time; decided when no tile is rendered.
  *
- * It is decided for blocks, as in adaptive.h: for their first samples by a small picture of the whole frame, later, at
- * fixed numbers of samples, from the block's own; costs are numbers of rays and no times. How a sample is split depends
- * on samples before it alone, so its expectation does not, and all samples weigh alike: the picture's expectation
- * stays. */
+ * It is decided for blocks, as in adaptive.h: for the first samples of a fixed number by a small picture of the whole
+ * frame, later, when there are so many samples, from the block's own; costs are numbers of rays and no times. How a
+ * sample is split depends on samples before it alone, so its expectation does not, and all samples weigh alike: the
+ * picture's expectation stays. */
 #ifndef AFTERGLOW_SPLITTING_H
 #define AFTERGLOW_SPLITTING_H
 
