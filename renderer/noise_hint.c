@@ -16,7 +16,7 @@ static const double FEW_WINDOWS = 0.4;
 static bool has_open_sky(const scene *s)
 {
     for (uint32_t i = 0; i < s->infinite_light_count; i++)
-        if (!s->lights[s->infinite_lights[i]].portal)
+        if (!s->lights[s->infinite_lights[i]].as.infinite.portal)
             return true;
     return false;
 }

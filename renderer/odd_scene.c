@@ -117,7 +117,7 @@ static bool shines_away(const scene *s)
         rng random = rng_make(0, i, 0);
         if (!(rgb_max(l->power) > 0.0f))
             continue;
-        if (l->kind != LIGHT_AREA || l->two_sided)
+        if (l->kind != LIGHT_AREA || l->as.area.two_sided)
             return false;
         for (int k = 0; k < DIRECTIONS; k++) {
             light_emission start;

@@ -216,7 +216,10 @@ static ag_status take_struct(const making_call *c, const void *given, size_t siz
         return refuse(c, "there is no description");
     memcpy(&given_size, given, sizeof given_size);
     if (given_size != size)
-        return refuse(c, "struct_size is not one that this library knows: it is set by ag_default_...()");
+        return refuse(
+            c,
+            "struct_size is not that of this library: ag_default_...() sets it, and the program is to be compiled with "
+            "the headers of this release");
     memcpy(out, given, size);
     return AG_OK;
 }
@@ -267,8 +270,6 @@ static void describe(making_call *c, const char *directive, const char *type, co
              name ? name : "", name ? "\"" : "");
 }
 
-ag_shape ag_default_shape(void) { return (ag_shape){.struct_size = sizeof(ag_shape)}; }
-
 static ag_status add_shape(making_call *c, const ag_shape *given)
 {
     ag_shape s = ag_default_shape();
@@ -296,8 +297,6 @@ ag_status ag_scene_add_shape(ag_scene *made, const ag_shape *shape_to_add)
     return begin_call(made, CALL_SHAPE, &c) ? end_call(&c, add_shape(&c, shape_to_add)) : AG_ERROR_ARGUMENT;
 }
 
-ag_light ag_default_light(void) { return (ag_light){.struct_size = sizeof(ag_light)}; }
-
 static ag_status add_light(making_call *c, const ag_light *given)
 {
     ag_light l = ag_default_light();
@@ -317,8 +316,6 @@ ag_status ag_scene_add_light(ag_scene *made, const ag_light *light_to_add)
     making_call c;
     return begin_call(made, CALL_LIGHT, &c) ? end_call(&c, add_light(&c, light_to_add)) : AG_ERROR_ARGUMENT;
 }
-
-ag_instance ag_default_instance(void) { return (ag_instance){.struct_size = sizeof(ag_instance)}; }
 
 static ag_status add_instance(making_call *c, const ag_instance *given)
 {
@@ -340,8 +337,6 @@ ag_status ag_scene_add_instance(ag_scene *made, const ag_instance *instance)
     making_call c;
     return begin_call(made, CALL_INSTANCE, &c) ? end_call(&c, add_instance(&c, instance)) : AG_ERROR_ARGUMENT;
 }
-
-ag_image ag_default_image(void) { return (ag_image){.struct_size = sizeof(ag_image), .channel_count = 3}; }
 
 static ag_status add_image(making_call *c, const char *name, const ag_image *given)
 {
@@ -374,11 +369,6 @@ ag_status ag_scene_add_image(ag_scene *made, const char *name, const ag_image *p
     return begin_call(made, CALL_IMAGE, &c) ? end_call(&c, add_image(&c, name, picture)) : AG_ERROR_ARGUMENT;
 }
 
-ag_texture ag_default_texture(void)
-{
-    return (ag_texture){.struct_size = sizeof(ag_texture), .value = AG_TEXTURE_SPECTRUM};
-}
-
 static ag_status add_texture(making_call *c, const ag_texture *given)
 {
     ag_texture t = ag_default_texture();
@@ -398,8 +388,6 @@ ag_status ag_scene_add_texture(ag_scene *made, const ag_texture *texture_to_add)
     making_call c;
     return begin_call(made, CALL_TEXTURE, &c) ? end_call(&c, add_texture(&c, texture_to_add)) : AG_ERROR_ARGUMENT;
 }
-
-ag_camera ag_default_camera(void) { return (ag_camera){.struct_size = sizeof(ag_camera), .type = "perspective"}; }
 
 static ag_status set_camera(making_call *c, const ag_camera *given)
 {

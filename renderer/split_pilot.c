@@ -26,20 +26,15 @@ static ag_render_settings pilot_settings(const ag_render_settings *settings, flo
     return small;
 }
 
-/* Errors: AG_ERROR_MEMORY. */
-static ag_status create_film(const ag_rendering *r, const ag_render_settings *small, float scale, ag_film **out_film)
+/* Errors: those of rendering_create_film, with a film or without. */
+static ag_status create_film(ag_rendering *pilot, float scale)
 {
-    static const char *const no_groups[] = {"default"};
-    pixel_filter filter = r->film->filter;
-    aov_layout layout;
-    filter.radius[0] *= scale;
-    filter.radius[1] *= scale;
-    AG_TRY(aov_layout_create(0, (aov_needs){0}, false, no_groups, 1, &layout));
-    *out_film = film_create(small, &r->s->space, &filter, &layout);
-    if (!*out_film)
-        return AG_ERROR_MEMORY;
-    for (size_t i = 0; i < film_area_count(*out_film); i++)
-        (*out_film)->splits[i].counts = (split_counts){.rays = RAYS, .lights = LIGHTS};
+    AG_TRY(rendering_create_film(pilot));
+    ag_film *film = pilot->film;
+    film->filter.radius[0] *= scale;
+    film->filter.radius[1] *= scale;
+    for (size_t i = 0; i < film_area_count(film); i++)
+        film->splits[i].counts = (split_counts){.rays = RAYS, .lights = LIGHTS};
     return AG_OK;
 }
 
@@ -64,10 +59,13 @@ ag_status split_pilot_run(ag_rendering *r)
                           .t = r->t,
                           .workers = r->workers,
                           .aspect = r->aspect,
+                          .film = r->pilot,
                           .is_pilot = true};
-    if (!r->pilot)
-        AG_TRY(create_film(r, &pilot.settings, scale, &r->pilot));
-    pilot.film = r->pilot;
+    if (!r->pilot) {
+        ag_status made = create_film(&pilot, scale);
+        r->pilot = pilot.film; /* and is freed with the rendering */
+        AG_TRY(made);
+    }
     pilot.t.settings = &pilot.settings;
     pilot.t.layout = &pilot.film->layout;
     pilot.t.wants_layers = pilot.t.wants_groups = false;

@@ -192,17 +192,18 @@ static ag_status add_lamp(scene *s, const view *v, log_sink *log)
     const vec3 middle = vec3_add_scaled(v->eye, v->heading, 0.5f * v->distance);
     light lamp = light_make(LIGHT_POINT);
     uint32_t index;
-    if (!find_height(s, middle, LAMP_HEIGHT, &lamp.position) && !find_height(s, v->eye, LAMP_HEIGHT, &lamp.position))
-        lamp.position = middle;
-    const surroundings around = look_around(s, lamp.position);
-    lamp.intensity = rgb_gray(IRRADIANCE * around.distance_squared);
+    if (!find_height(s, middle, LAMP_HEIGHT, &lamp.as.point.position) &&
+        !find_height(s, v->eye, LAMP_HEIGHT, &lamp.as.point.position))
+        lamp.as.point.position = middle;
+    const surroundings around = look_around(s, lamp.as.point.position);
+    lamp.as.point.intensity = rgb_gray(IRRADIANCE * around.distance_squared);
     if (around.enclosed == 1.0f) {
         scene_drop_lights(s, LIGHT_INFINITE);
         scene_drop_lights(s, LIGHT_DISTANT);
     }
     log_message(log, AG_LOG_INFO, "a sun outside does not light a closed room: a lamp of %.3g W at (%g, %g, %g) does",
-                4.0 * 3.14159265358979323846 * (double)lamp.intensity.g, (double)lamp.position.x,
-                (double)lamp.position.y, (double)lamp.position.z);
+                4.0 * 3.14159265358979323846 * (double)lamp.as.point.intensity.g, (double)lamp.as.point.position.x,
+                (double)lamp.as.point.position.y, (double)lamp.as.point.position.z);
     return scene_add_light(s, &lamp, &index);
 }
 

@@ -303,7 +303,7 @@ ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index)
     }
     *out_index = s->light_count;
     if (item->kind == LIGHT_AREA)
-        s->shapes[item->shape_index].light_index = s->light_count;
+        s->shapes[item->as.area.shape_index].light_index = s->light_count;
     s->lights[s->light_count++] = *item;
     return AG_OK;
 }
@@ -316,7 +316,7 @@ static void drop_lights(scene *s, light_kind kind, bool is_any_kind)
         light *l = &s->lights[i];
         const bool is_kept = !is_any_kind && l->kind != kind;
         if (l->kind == LIGHT_AREA)
-            s->shapes[l->shape_index].light_index = is_kept ? kept : SHAPE_NO_LIGHT;
+            s->shapes[l->as.area.shape_index].light_index = is_kept ? kept : SHAPE_NO_LIGHT;
         if (is_kept)
             s->lights[kept++] = *l;
         else

@@ -2,9 +2,7 @@
  * scene_commit works out of the rest is left out. tests/scene/test_scene_hash.c finds the field that was forgotten. */
 #include "scene_hash.h"
 
-#include "light/environment.h"
-#include "light/portal.h"
-#include "light/projection.h"
+#include "light/light_type.h"
 #include "scene.h"
 
 #define ADD(value) HASH128_ADD(h, value)
@@ -88,22 +86,7 @@ static void add_material(hash128 *h, const material *m)
     ADD(m->base_through);
     ADD(m->is_textured);
     ADD(m->remaps_roughness);
-    ADD(m->reflectance_texture);
-    ADD(m->transmittance_texture);
-    ADD(m->alpha_u_texture);
-    ADD(m->alpha_v_texture);
-    ADD(m->mix_amount_texture);
-    ADD(m->eta_texture);
-    ADD(m->k_texture);
-    ADD(m->base_alpha_u_texture);
-    ADD(m->base_alpha_v_texture);
-    ADD(m->metallic_texture);
-    ADD(m->roughness_texture);
-    ADD(m->transmission_texture);
-    ADD(m->specular_texture);
-    ADD(m->specular_color_texture);
-    ADD(m->clearcoat_texture);
-    ADD(m->clearcoat_roughness_texture);
+    ADD(m->value_textures);
     ADD(m->displacement_texture);
     ADD(m->normal_map_texture);
     ADD(m->normal_scale);
@@ -175,45 +158,9 @@ static void add_instance(hash128 *h, const scene_instance *i)
 static void add_light(hash128 *h, const light *l)
 {
     ADD(l->kind);
-    ADD(l->position);
-    ADD(l->direction);
-    ADD(l->intensity);
-    ADD(l->radiance);
-    ADD(l->disc_one_minus_cos);
-    ADD(l->falloff_start);
-    ADD(l->falloff_end);
-    ADD(l->dims_by_cosine);
-    ADD(l->shape_index);
-    ADD(l->two_sided);
-    ADD(l->radiance_texture);
     ADD(l->photons);
     ADD(l->medium);
-    ADD(l->world_from_light);
-    uint32_t has = (uint32_t)(l->environment != NULL) | (uint32_t)(l->projection != NULL) << 1 |
-                   (uint32_t)(l->portal != NULL) << 2;
-    ADD(has);
-    if (l->environment) {
-        const environment *e = l->environment;
-        ADD(e->mapping);
-        ADD(e->width);
-        ADD(e->height);
-        add_array(h, e->pixels, (size_t)e->width * e->height, sizeof *e->pixels);
-    }
-    if (l->projection) {
-        const projection *p = l->projection;
-        ADD(p->width);
-        ADD(p->height);
-        ADD(p->reach_x);
-        ADD(p->reach_y);
-        add_array(h, p->pixels, (size_t)p->width * p->height, sizeof *p->pixels);
-    }
-    if (l->portal) {
-        const portal *p = l->portal;
-        ADD(p->corner);
-        ADD(p->axes);
-        ADD(p->width);
-        ADD(p->height);
-    }
+    light_type_of(l->kind)->add_hash(l, h);
 }
 
 hash128 scene_hash_of_light(const scene *s)

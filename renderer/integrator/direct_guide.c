@@ -8,7 +8,7 @@
 
 static const float BELOW_ONE = 0x1.fffffep-1f;
 
-static bool has_histogram(const light *l) { return l->kind == LIGHT_INFINITE && !l->portal; }
+static bool has_histogram(const light *l) { return l->kind == LIGHT_INFINITE && !l->as.infinite.portal; }
 
 bool direct_guide_serves(const scene *s)
 {
@@ -283,7 +283,7 @@ float direct_guide_density(const direct_guide *g, const scene *s, uint32_t cell,
 {
     const direct_histogram *h = histogram_of(g, s, cell, light_index);
     vec2 u;
-    if (!h || !environment_sample_whole_numbers(&s->lights[light_index], direction, &u))
+    if (!h || !environment_sample_whole_numbers(&s->lights[light_index].as.infinite.radiance, direction, &u))
         return 1.0f;
     uint32_t column = (uint32_t)(u.x * DIRECT_GUIDE_SIDE), row = (uint32_t)(u.y * DIRECT_GUIDE_SIDE);
     return density_of(h, row, column);

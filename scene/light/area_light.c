@@ -8,42 +8,54 @@
 #include "shape/alpha.h"
 #include "status.h"
 
+static void init(light *l) { l->as.area.radiance_texture = SCENE_NO_TEXTURE; }
+
+static void reset(light *l) { radiance_map_destroy(l->as.area.map); }
+
+static void add_hash(const light *l, hash128 *h)
+{
+    HASH128_ADD(h, l->as.area.shape_index);
+    HASH128_ADD(h, l->as.area.two_sided);
+    HASH128_ADD(h, l->as.area.radiance);
+    HASH128_ADD(h, l->as.area.radiance_texture);
+}
+
 static ag_status commit(const scene *s, light *l)
 {
-    return light_varies(s, l) && !l->radiance_map ? radiance_map_create(s, l, &l->radiance_map) : AG_OK;
+    return light_varies(s, l) && !l->as.area.map ? radiance_map_create(s, l, &l->as.area.map) : AG_OK;
 }
 
 static rgb power(const scene *s, const light *l)
 {
-    rgb mean = rgb_mul(l->radiance, l->radiance_map ? l->radiance_map->mean : light_sampled_value(s, l, NULL));
-    return rgb_scale(mean, AG_PI * s->shapes[l->shape_index].area * (l->two_sided ? 2.0f : 1.0f));
+    rgb mean = rgb_mul(l->as.area.radiance, l->as.area.map ? l->as.area.map->mean : light_sampled_value(s, l, NULL));
+    return rgb_scale(mean, AG_PI * s->shapes[l->as.area.shape_index].area * (l->as.area.two_sided ? 2.0f : 1.0f));
 }
 
 /* --- how bright --- */
 
 rgb light_texture_value(const scene *s, const light *l, const surface_hit *hit)
 {
-    if (l->radiance_texture == SCENE_NO_TEXTURE)
+    if (l->as.area.radiance_texture == SCENE_NO_TEXTURE)
         return rgb_gray(1.0f);
-    rgb c = texture_evaluate_rgb(s, l->radiance_texture, hit);
+    rgb c = texture_evaluate_rgb(s, l->as.area.radiance_texture, hit);
     return rgb_make(fmaxf(c.r, 0.0f), fmaxf(c.g, 0.0f), fmaxf(c.b, 0.0f));
 }
 
 bool light_varies(const scene *s, const light *l)
 {
-    const shape *lamp = &s->shapes[l->shape_index];
-    return l->radiance_texture != SCENE_NO_TEXTURE ||
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
+    return l->as.area.radiance_texture != SCENE_NO_TEXTURE ||
            (lamp->alpha_texture != SCENE_NO_TEXTURE && !shape_is_invisible(lamp));
 }
 
 rgb light_sampled_value(const scene *s, const light *l, const surface_sample *at)
 {
-    const shape *lamp = &s->shapes[l->shape_index];
-    if (l->radiance_texture == SCENE_NO_TEXTURE && shape_is_opaque(lamp))
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
+    if (l->as.area.radiance_texture == SCENE_NO_TEXTURE && shape_is_opaque(lamp))
         return rgb_gray(1.0f);
     surface_hit hit = {.distance = 0.0f};
     if (light_varies(s, l))
-        shape_sample_surface(lamp, l->shape_index, at, &hit);
+        shape_sample_surface(lamp, l->as.area.shape_index, at, &hit);
     rgb value = light_texture_value(s, l, &hit);
     if (shape_is_opaque(lamp) || shape_is_invisible(lamp))
         return value;
@@ -52,9 +64,11 @@ rgb light_sampled_value(const scene *s, const light *l, const surface_sample *at
 
 static rgb emitted_radiance(const scene *s, const light *l, const surface_hit *hit, vec3 direction)
 {
-    if (!l->two_sided && vec3_dot(hit->geometric_normal, direction) <= 0.0f)
+    if (!l->as.area.two_sided && vec3_dot(hit->geometric_normal, direction) <= 0.0f)
         return rgb_gray(0.0f);
-    return l->radiance_texture == SCENE_NO_TEXTURE ? l->radiance : rgb_mul(l->radiance, light_texture_value(s, l, hit));
+    return l->as.area.radiance_texture == SCENE_NO_TEXTURE
+               ? l->as.area.radiance
+               : rgb_mul(l->as.area.radiance, light_texture_value(s, l, hit));
 }
 
 /* --- towards a point --- */
@@ -86,15 +100,15 @@ static surface_sample sample_sphere_cone(const shape *lamp, vec3 point, vec2 u, 
 }
 
 /* Whether direct light is sampled by the lamp's radiance map too: where its density is known at a hit. */
-static bool is_sampled_by_map(const light *l, const shape *lamp) { return l->radiance_map && lamp->kind == SHAPE_MESH; }
+static bool is_sampled_by_map(const light *l, const shape *lamp) { return l->as.area.map && lamp->kind == SHAPE_MESH; }
 
 static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
 {
-    const shape *lamp = &s->shapes[l->shape_index];
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
     surface_sample at;
     float cone, density = 1.0f;
     bool is_cone = sphere_cone(lamp, point, &cone);
-    if (is_sampled_by_map(l, lamp) && !radiance_map_sample(l->radiance_map, u, &u, &density))
+    if (is_sampled_by_map(l, lamp) && !radiance_map_sample(l->as.area.map, u, &u, &density))
         return false;
     at = is_cone ? sample_sphere_cone(lamp, point, u, cone) : shape_sample_area(lamp, u);
     vec3 to_lamp = vec3_sub(at.position, point);
@@ -104,8 +118,8 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
     out->distance = sqrtf(distance_squared);
     out->direction = vec3_scale(to_lamp, 1.0f / out->distance);
     out->radiance = rgb_gray(0.0f);
-    if (l->two_sided || vec3_dot(at.geometric_normal, out->direction) < 0.0f)
-        out->radiance = rgb_mul(l->radiance, light_sampled_value(s, l, &at));
+    if (l->as.area.two_sided || vec3_dot(at.geometric_normal, out->direction) < 0.0f)
+        out->radiance = rgb_mul(l->as.area.radiance, light_sampled_value(s, l, &at));
     float cos_lamp = fabsf(vec3_dot(at.geometric_normal, out->direction));
     if (rgb_is_black(out->radiance) || cos_lamp <= 1e-6f)
         return false;
@@ -118,7 +132,7 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
 
 static float pdf_from_point(const scene *s, const light *l, vec3 point, const surface_hit *hit)
 {
-    const shape *lamp = &s->shapes[l->shape_index];
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
     float cone;
     vec2 u;
     if (sphere_cone(lamp, point, &cone))
@@ -127,7 +141,7 @@ static float pdf_from_point(const scene *s, const light *l, vec3 point, const su
     float distance_squared = vec3_length_squared(to_lamp);
     float cos_lamp = fabsf(vec3_dot(hit->geometric_normal, to_lamp)) / sqrtf(distance_squared);
     float density = is_sampled_by_map(l, lamp) && shape_sample_inverse(lamp, hit, &u)
-                        ? radiance_map_density(l->radiance_map, u)
+                        ? radiance_map_density(l->as.area.map, u)
                         : 1.0f;
     return cos_lamp > 0.0f ? shape_pdf_area(lamp, hit->geometric_normal) * density * distance_squared / cos_lamp : 0.0f;
 }
@@ -138,28 +152,28 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
                  struct rng *random, light_emission *out)
 {
     (void)random;
-    const shape *lamp = &s->shapes[l->shape_index];
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
     vec2 u = numbers->position;
     float density = 1.0f, pdf;
-    if (l->radiance_map && !radiance_map_sample(l->radiance_map, u, &u, &density))
+    if (l->as.area.map && !radiance_map_sample(l->as.area.map, u, &u, &density))
         return false;
     surface_sample at = shape_sample_area(lamp, u);
-    rgb radiance = rgb_mul(l->radiance, light_sampled_value(s, l, &at));
+    rgb radiance = rgb_mul(l->as.area.radiance, light_sampled_value(s, l, &at));
     vec3 n = at.geometric_normal;
     if (light_aim_at(target, at.position, 1.0f, numbers->direction, &out->direction, &pdf)) {
         float cosine = vec3_dot(n, out->direction);
-        if (l->two_sided && cosine < 0.0f) {
+        if (l->as.area.two_sided && cosine < 0.0f) {
             n = vec3_negate(n);
             cosine = -cosine;
         }
         out->flux = rgb_scale(radiance, fmaxf(cosine, 0.0f) / (at.pdf_area * density * pdf));
     } else {
-        if (l->two_sided && numbers->part < 0.5f)
+        if (l->as.area.two_sided && numbers->part < 0.5f)
             n = vec3_negate(n);
         frame f = frame_from_z(n);
         out->direction = frame_to_world(&f, sample_cosine_hemisphere(numbers->direction));
         /* L cos / (pdf_area cos/pi): the same for every photon but on ellipsoids, and nearly so by a radiance map */
-        out->flux = rgb_scale(radiance, AG_PI * (l->two_sided ? 2.0f : 1.0f) / (at.pdf_area * density));
+        out->flux = rgb_scale(radiance, AG_PI * (l->as.area.two_sided ? 2.0f : 1.0f) / (at.pdf_area * density));
     }
     out->origin = vec3_add_scaled(at.position, n, at.epsilon);
     out->medium = vec3_dot(n, at.geometric_normal) > 0.0f ? lamp->medium_outside : lamp->medium_inside;
@@ -225,15 +239,15 @@ static void find_mesh_normals(const shape *s, light_bounds *b)
 
 static void narrow_bounds(const scene *s, const light *l, light_bounds *b)
 {
-    const shape *lamp = &s->shapes[l->shape_index];
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
     vec3 low, high;
     shape_bounds(lamp, &low, &high);
     b->center = vec3_add_scaled(low, vec3_sub(high, low), 0.5f);
     b->radius = 0.5f * vec3_length(vec3_sub(high, low));
     b->cos_emission = 0.0f;
     b->least_cos = 0.0f;
-    b->two_sided = l->two_sided;
-    b->intensity = rgb_mean(l->power) * AG_INV_PI * (l->two_sided ? 0.5f : 1.0f);
+    b->two_sided = l->as.area.two_sided;
+    b->intensity = rgb_mean(l->power) * AG_INV_PI * (l->as.area.two_sided ? 0.5f : 1.0f);
     if (lamp->kind == SHAPE_DISK) {
         surface_sample at = shape_sample_area(lamp, (vec2){0.5f, 0.5f});
         b->axis = at.geometric_normal;
@@ -246,6 +260,9 @@ static void narrow_bounds(const scene *s, const light *l, light_bounds *b)
 }
 
 const light_type area_light = {.can_be_met = true,
+                               .init = init,
+                               .reset = reset,
+                               .add_hash = add_hash,
                                .commit = commit,
                                .power = power,
                                .sample_from_point = sample_from_point,

@@ -4,22 +4,34 @@
 #include "math/sampling.h"
 #include "scene.h"
 
+static void init(light *l) { l->as.distant.direction = (vec3){0.0f, 0.0f, 1.0f}; }
+
+static void add_hash(const light *l, hash128 *h)
+{
+    HASH128_ADD(h, l->as.distant.direction);
+    HASH128_ADD(h, l->as.distant.irradiance);
+    HASH128_ADD(h, l->as.distant.disc_one_minus_cos);
+}
+
 void light_set_disc(light *l, double angle)
 {
     const double quarter = sin(0.25 * angle);
-    l->disc_one_minus_cos = (float)(2.0 * quarter * quarter);
+    l->as.distant.disc_one_minus_cos = (float)(2.0 * quarter * quarter);
 }
 
 /* On a surface that faces a point of the disc; the mean cosine of the others there is 1 - disc_one_minus_cos / 2. */
-static rgb irradiance(const light *l) { return rgb_scale(l->radiance, 1.0f / (1.0f - 0.5f * l->disc_one_minus_cos)); }
+static rgb irradiance(const light *l)
+{
+    return rgb_scale(l->as.distant.irradiance, 1.0f / (1.0f - 0.5f * l->as.distant.disc_one_minus_cos));
+}
 
 /* The way of the light from a point of the disc. */
 static vec3 direction_from(const light *l, vec2 u)
 {
-    if (!(l->disc_one_minus_cos > 0.0f))
-        return l->direction;
-    const frame f = frame_from_z(l->direction);
-    return vec3_normalize(frame_to_world(&f, sample_uniform_cone(u, l->disc_one_minus_cos)));
+    if (!(l->as.distant.disc_one_minus_cos > 0.0f))
+        return l->as.distant.direction;
+    const frame f = frame_from_z(l->as.distant.direction);
+    return vec3_normalize(frame_to_world(&f, sample_uniform_cone(u, l->as.distant.disc_one_minus_cos)));
 }
 
 static rgb power(const scene *s, const light *l)
@@ -49,5 +61,18 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
            !rgb_is_black(out->flux);
 }
 
-const light_type distant_light = {
-    .is_everywhere = true, .power = power, .sample_from_point = sample_from_point, .emit = emit};
+static bool reaches(const light *l, vec3 point, vec3 normal)
+{
+    (void)point;
+    const float height = l->as.distant.disc_one_minus_cos,
+                sine = sqrtf(height * (2.0f - height)); /* of half its angle */
+    return vec3_is_zero(normal) || vec3_dot(normal, l->as.distant.direction) < LIGHT_REACH_SLACK + sine;
+}
+
+const light_type distant_light = {.is_everywhere = true,
+                                  .init = init,
+                                  .add_hash = add_hash,
+                                  .power = power,
+                                  .sample_from_point = sample_from_point,
+                                  .emit = emit,
+                                  .reaches = reaches};

@@ -173,47 +173,61 @@ void environment_destroy(environment *e)
 
 /* --- lights --- */
 
+light_directions light_directions_make(void) { return (light_directions){.world_from_light = frame_identity()}; }
+
+void light_directions_add_hash(const light_directions *d, hash128 *h)
+{
+    const environment *e = d->picture;
+    const bool has_picture = e != NULL;
+    HASH128_ADD(h, d->value);
+    HASH128_ADD(h, d->world_from_light);
+    HASH128_ADD(h, has_picture);
+    if (!e)
+        return;
+    HASH128_ADD(h, e->mapping);
+    HASH128_ADD(h, e->width);
+    HASH128_ADD(h, e->height);
+    hash128_add(h, e->pixels, (size_t)e->width * e->height * sizeof *e->pixels);
+}
+
 static float pixel_pdf(const environment *e, float probability, uint32_t y)
 {
     return (float)((double)probability / environment_pixel_solid_angle(e, y));
 }
 
-/* The factor that the picture is multiplied by. */
-static rgb factor_of(const light *l) { return l->kind == LIGHT_INFINITE ? l->radiance : l->intensity; }
-
-rgb environment_whole_radiance(const light *l, vec3 direction)
+rgb environment_whole_radiance(const light_directions *d, vec3 direction)
 {
-    const environment *e = l->environment;
+    const environment *e = d->picture;
     uint32_t x, y;
     if (!e)
-        return l->radiance;
-    environment_pixel_at(e, frame_to_local(&l->world_from_light, direction), &x, &y);
-    return rgb_mul(factor_of(l), e->pixels[(size_t)y * e->width + x]);
+        return d->value;
+    environment_pixel_at(e, frame_to_local(&d->world_from_light, direction), &x, &y);
+    return rgb_mul(d->value, e->pixels[(size_t)y * e->width + x]);
 }
 
-bool environment_sample_whole(const light *l, vec2 u, vec3 *out_direction, rgb *out_radiance,
+bool environment_sample_whole(const light_directions *d, vec2 u, vec3 *out_direction, rgb *out_radiance,
                               float *out_pdf_solid_angle)
 {
-    const environment *e = l->environment;
+    const environment *e = d->picture;
     if (!e) {
         *out_direction = sample_uniform_sphere(u);
-        *out_radiance = l->radiance;
+        *out_radiance = d->value;
         *out_pdf_solid_angle = 0.25f * AG_INV_PI;
-        return !rgb_is_black(l->radiance);
+        return !rgb_is_black(d->value);
     }
     distribution_2d_sample pick;
     if (!distribution_2d_pick(&e->picks, u, &pick))
         return false;
     vec3 direction = environment_direction(e, pick.x, pick.y, pick.within);
-    *out_direction = vec3_normalize(frame_to_world(&l->world_from_light, direction));
-    *out_radiance = rgb_mul(factor_of(l), e->pixels[(size_t)pick.y * e->width + pick.x]);
+    *out_direction = vec3_normalize(frame_to_world(&d->world_from_light, direction));
+    *out_radiance = rgb_mul(d->value, e->pixels[(size_t)pick.y * e->width + pick.x]);
     *out_pdf_solid_angle = pixel_pdf(e, pick.probability, pick.y);
     return true;
 }
 
-bool environment_sample_whole_numbers(const light *l, vec3 direction, vec2 *out_u)
+bool environment_sample_whole_numbers(const light_directions *d, vec3 direction, vec2 *out_u)
 {
-    const environment *e = l->environment;
+    const environment *e = d->picture;
     if (!e) {
         *out_u = (vec2){fminf(fmaxf(0.5f - 0.5f * direction.z, 0.0f), 0x1.fffffep-1f),
                         fminf((float)angle_turns(direction.y, direction.x), 0x1.fffffep-1f)};
@@ -221,42 +235,42 @@ bool environment_sample_whole_numbers(const light *l, vec3 direction, vec2 *out_
     }
     uint32_t x, y;
     vec2 within;
-    environment_uv_at(e, frame_to_local(&l->world_from_light, direction), &x, &y, &within);
+    environment_uv_at(e, frame_to_local(&d->world_from_light, direction), &x, &y, &within);
     *out_u = distribution_2d_numbers(&e->picks, x, y, within);
     return distribution_2d_probability(&e->picks, x, y) > 0.0f;
 }
 
-rgb environment_integral(const light *l)
+rgb environment_integral(const light_directions *d)
 {
-    return l->environment ? rgb_mul(factor_of(l), l->environment->integral) : rgb_scale(l->radiance, 4.0f * AG_PI);
+    return d->picture ? rgb_mul(d->value, d->picture->integral) : rgb_scale(d->value, 4.0f * AG_PI);
 }
 
 rgb environment_radiance(const light *l, vec3 point, vec3 direction)
 {
-    if (l->portal && !portal_is_crossed(l->portal, point, direction))
+    if (l->as.infinite.portal && !portal_is_crossed(l->as.infinite.portal, point, direction))
         return rgb_gray(0.0f);
-    return environment_whole_radiance(l, direction);
+    return environment_whole_radiance(&l->as.infinite.radiance, direction);
 }
 
 float environment_pdf(const light *l, vec3 point, vec3 direction)
 {
-    const environment *e = l->environment;
+    const environment *e = l->as.infinite.radiance.picture;
     uint32_t x, y;
-    if (l->portal)
-        return portal_pdf(l->portal, point, direction);
+    if (l->as.infinite.portal)
+        return portal_pdf(l->as.infinite.portal, point, direction);
     if (!e)
         return 0.25f * AG_INV_PI;
-    environment_pixel_at(e, frame_to_local(&l->world_from_light, direction), &x, &y);
+    environment_pixel_at(e, frame_to_local(&l->as.infinite.radiance.world_from_light, direction), &x, &y);
     return pixel_pdf(e, distribution_2d_probability(&e->picks, x, y), y);
 }
 
 bool environment_sample(const light *l, vec3 point, vec2 u, vec3 *out_direction, rgb *out_radiance,
                         float *out_pdf_solid_angle)
 {
-    if (!l->portal)
-        return environment_sample_whole(l, u, out_direction, out_radiance, out_pdf_solid_angle);
-    if (!portal_sample(l->portal, point, u, out_direction, out_pdf_solid_angle))
+    if (!l->as.infinite.portal)
+        return environment_sample_whole(&l->as.infinite.radiance, u, out_direction, out_radiance, out_pdf_solid_angle);
+    if (!portal_sample(l->as.infinite.portal, point, u, out_direction, out_pdf_solid_angle))
         return false;
-    *out_radiance = environment_whole_radiance(l, *out_direction);
+    *out_radiance = environment_whole_radiance(&l->as.infinite.radiance, *out_direction);
     return !rgb_is_black(*out_radiance);
 }

@@ -9,6 +9,7 @@
 
 #include "light/light.h"
 #include "math/distribution_2d.h"
+#include "math/hash128.h"
 
 /* How a picture covers the sphere; z is up in the light's own space. x of the picture goes right, y down.
  * Octahedral: +z in the middle, -z in the corners, +x towards the right edge, +y towards the bottom one.
@@ -30,6 +31,10 @@ enum { ENVIRONMENT_MAX_SIZE = 65535 }; /* pixels along a side */
 ag_status environment_create(environment_mapping mapping, uint32_t width, uint32_t height, rgb *pixels,
                              environment **out_environment);
 void environment_destroy(environment *e); /* NULL is fine */
+
+/* Light by direction, even and upright, and black yet. */
+light_directions light_directions_make(void);
+void light_directions_add_hash(const light_directions *d, hash128 *h);
 
 /* The direction of a point of [0,1]^2 on a picture that is octahedral. */
 vec3 environment_octahedral_direction(double x, double y);
@@ -54,13 +59,13 @@ bool environment_sample(const light *l, vec3 point, vec2 u, vec3 *out_direction,
 
 /* The functions below know of no portal. They serve LIGHT_GONIOMETRIC too: intensity, W/sr, by directions that leave
  * the light. */
-rgb environment_whole_radiance(const light *l, vec3 direction);
-bool environment_sample_whole(const light *l, vec2 u, vec3 *out_direction, rgb *out_radiance,
+rgb environment_whole_radiance(const light_directions *d, vec3 direction);
+bool environment_sample_whole(const light_directions *d, vec2 u, vec3 *out_direction, rgb *out_radiance,
                               float *out_pdf_solid_angle);
 /* The numbers for which environment_sample_whole picks the direction, up to rounding, in [0,1)^2. false where it never
  * does. */
-bool environment_sample_whole_numbers(const light *l, vec3 direction, vec2 *out_u);
+bool environment_sample_whole_numbers(const light_directions *d, vec3 direction, vec2 *out_u);
 /* Over the sphere of directions, W/m^2. */
-rgb environment_integral(const light *l);
+rgb environment_integral(const light_directions *d);
 
 #endif

@@ -4,13 +4,26 @@
 #include "light/light_type.h"
 #include "scene.h"
 
+static void init(light *l) { l->as.goniometric.intensity = light_directions_make(); }
+
+static void reset(light *l) { environment_destroy(l->as.goniometric.intensity.picture); }
+
+static void add_hash(const light *l, hash128 *h)
+{
+    HASH128_ADD(h, l->as.goniometric.position);
+    light_directions_add_hash(&l->as.goniometric.intensity, h);
+}
+
 static rgb power(const scene *s, const light *l)
 {
     (void)s;
-    return environment_integral(l);
+    return environment_integral(&l->as.goniometric.intensity);
 }
 
-static rgb intensity(const light *l, vec3 direction) { return environment_whole_radiance(l, direction); }
+static rgb intensity(const light *l, vec3 direction)
+{
+    return environment_whole_radiance(&l->as.goniometric.intensity, direction);
+}
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                  struct rng *random, light_emission *out)
@@ -19,11 +32,17 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     (void)s, (void)random;
     if (light_aim_point(l, target, 2.0f, numbers, out))
         return !rgb_is_black(out->flux);
-    if (!environment_sample_whole(l, numbers->direction, &out->direction, &out->flux, &pdf))
+    if (!environment_sample_whole(&l->as.goniometric.intensity, numbers->direction, &out->direction, &out->flux, &pdf))
         return false;
     out->flux = rgb_scale(out->flux, 1.0f / pdf);
     return true;
 }
 
-const light_type goniometric_light = {
-    .power = power, .intensity = intensity, .sample_from_point = light_sample_of_point, .emit = emit};
+const light_type goniometric_light = {.init = init,
+                                      .reset = reset,
+                                      .add_hash = add_hash,
+                                      .power = power,
+                                      .intensity = intensity,
+                                      .sample_from_point = light_sample_of_point,
+                                      .emit = emit,
+                                      .narrow_bounds = light_narrow_to_point};

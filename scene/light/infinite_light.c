@@ -7,11 +7,34 @@
 #include "rays/transmittance.h"
 #include "scene.h"
 
+static void init(light *l) { l->as.infinite.radiance = light_directions_make(); }
+
+static void reset(light *l)
+{
+    environment_destroy(l->as.infinite.radiance.picture);
+    portal_destroy(l->as.infinite.portal);
+}
+
+static void add_hash(const light *l, hash128 *h)
+{
+    const portal *p = l->as.infinite.portal;
+    const bool has_portal = p != NULL;
+    light_directions_add_hash(&l->as.infinite.radiance, h);
+    HASH128_ADD(h, has_portal);
+    if (!p)
+        return;
+    HASH128_ADD(h, p->corner);
+    HASH128_ADD(h, p->axes);
+    HASH128_ADD(h, p->width);
+    HASH128_ADD(h, p->height);
+}
+
 static rgb power(const scene *s, const light *l)
 {
     float disc = AG_PI * s->bounding_radius * s->bounding_radius;
-    return l->portal ? rgb_scale(l->portal->irradiance, l->portal->width * l->portal->height)
-                     : rgb_scale(environment_integral(l), disc);
+    return l->as.infinite.portal ? rgb_scale(l->as.infinite.portal->irradiance,
+                                             l->as.infinite.portal->width * l->as.infinite.portal->height)
+                                 : rgb_scale(environment_integral(&l->as.infinite.radiance), disc);
 }
 
 static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out)
@@ -30,9 +53,9 @@ static bool emit_through_portal(const scene *s, const light *l, const light_targ
 {
     vec3 to_light;
     float pdf;
-    if (!portal_sample_flux(l->portal, target, numbers, &out->origin, &to_light, &pdf))
+    if (!portal_sample_flux(l->as.infinite.portal, target, numbers, &out->origin, &to_light, &pdf))
         return false;
-    rgb radiance = environment_whole_radiance(l, to_light);
+    rgb radiance = environment_whole_radiance(&l->as.infinite.radiance, to_light);
     if (rgb_is_black(radiance))
         return false;
     scene_ray back = scene_ray_make(out->origin, to_light);
@@ -40,7 +63,7 @@ static bool emit_through_portal(const scene *s, const light *l, const light_targ
     uint64_t cut = 0;
     rgb transmittance = transmittance_through_panes(s, back, INFINITY, &cut);
     out->direction = vec3_negate(to_light);
-    out->flux = rgb_scale(rgb_mul(radiance, transmittance), vec3_dot(to_light, l->portal->axes.z) / pdf);
+    out->flux = rgb_scale(rgb_mul(radiance, transmittance), vec3_dot(to_light, l->as.infinite.portal->axes.z) / pdf);
     return !rgb_is_black(out->flux);
 }
 
@@ -51,11 +74,23 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     rgb radiance;
     float pdf;
     (void)random;
-    if (l->portal)
+    if (l->as.infinite.portal)
         return emit_through_portal(s, l, target, numbers, out);
-    return environment_sample_whole(l, numbers->direction, &to_light, &radiance, &pdf) &&
+    return environment_sample_whole(&l->as.infinite.radiance, numbers->direction, &to_light, &radiance, &pdf) &&
            light_emit_from_afar(s, l, target, numbers, vec3_negate(to_light), radiance, pdf, out);
 }
 
-const light_type infinite_light = {
-    .can_be_met = true, .is_everywhere = true, .power = power, .sample_from_point = sample_from_point, .emit = emit};
+static bool reaches(const light *l, vec3 point, vec3 normal)
+{
+    return !l->as.infinite.portal || portal_reaches(l->as.infinite.portal, point, normal);
+}
+
+const light_type infinite_light = {.can_be_met = true,
+                                   .is_everywhere = true,
+                                   .init = init,
+                                   .reset = reset,
+                                   .add_hash = add_hash,
+                                   .power = power,
+                                   .sample_from_point = sample_from_point,
+                                   .emit = emit,
+                                   .reaches = reaches};

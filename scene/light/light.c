@@ -1,29 +1,28 @@
 /* light.c: what all lights have, and which file knows the rest: see light_type.h. Threads: read-only. */
-#include "light/environment.h"
 #include "light/light_type.h"
-#include "light/portal.h"
-#include "light/projection.h"
-#include "light/radiance_map.h"
 #include "scene.h"
 #include "status.h"
 
+#include <string.h>
+
 light light_make(light_kind kind)
 {
-    frame axes = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
-    return (light){.kind = kind,
-                   .direction = axes.z,
-                   .radiance_texture = SCENE_NO_TEXTURE,
-                   .medium = SCENE_NO_MEDIUM,
-                   .photons = 1.0f,
-                   .world_from_light = axes};
+    const light_type *type = light_type_of(kind);
+    light l;
+    memset(&l, 0, sizeof l);
+    l.kind = kind;
+    l.medium = SCENE_NO_MEDIUM;
+    l.photons = 1.0f;
+    if (type->init)
+        type->init(&l);
+    return l;
 }
 
 void light_reset(light *l)
 {
-    environment_destroy(l->environment);
-    projection_destroy(l->projection);
-    portal_destroy(l->portal);
-    radiance_map_destroy(l->radiance_map);
+    const light_type *type = light_type_of(l->kind);
+    if (type->reset)
+        type->reset(l);
     *l = light_make(l->kind);
 }
 

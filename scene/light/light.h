@@ -30,29 +30,74 @@ typedef enum light_kind {
     LIGHT_INFINITE
 } light_kind;
 
+/* Light by direction: the same for all, or as a picture of the sphere of directions says. */
+typedef struct light_directions {
+    rgb value;                   /* for all directions, or what the picture is multiplied by */
+    frame world_from_light;      /* of the picture: a rotation or reflection */
+    struct environment *picture; /* owned, or NULL */
+} light_directions;
+
+/* --- the kinds, in world space; those that are points begin with their position --- */
+
+typedef struct point_source {
+    vec3 position;
+    rgb intensity; /* W/sr */
+} point_source;
+
+typedef struct spot_source {
+    vec3 position;
+    vec3 direction;                   /* of its axis, the way the light goes, unit */
+    rgb intensity;                    /* along the axis, W/sr */
+    float falloff_start, falloff_end; /* 1 - cos of the angles inside of which it is full and outside of which there is
+                                       * nothing; smoothstep in the cosine between */
+    bool dims_by_cosine;              /* its intensity is multiplied by the cosine to its axis, too */
+} spot_source;
+
+typedef struct goniometric_source {
+    vec3 position;
+    light_directions intensity; /* W/sr, by the directions that leave it */
+} goniometric_source;
+
+typedef struct projection_source {
+    vec3 position;
+    frame world_from_light;     /* a rotation or reflection; light goes along z */
+    rgb intensity;              /* what the picture is multiplied by, W/sr */
+    struct projection *picture; /* owned */
+} projection_source;
+
+typedef struct distant_source {
+    vec3 direction;           /* the way the light goes, unit */
+    rgb irradiance;           /* on a surface facing its middle, W/m^2 */
+    float disc_one_minus_cos; /* 1 - cos of half the angle under which it is seen; 0: it has no extent */
+} distant_source;
+
+typedef struct area_source {
+    uint32_t shape_index; /* of the shape that shines */
+    bool two_sided;
+    rgb radiance;              /* W/m^2/sr */
+    uint32_t radiance_texture; /* multiplies radiance over the surface; SCENE_NO_TEXTURE: nowhere */
+    struct radiance_map *map;  /* owned, or NULL; set by scene_commit where it varies */
+} area_source;
+
+typedef struct infinite_source {
+    light_directions radiance; /* W/m^2/sr, by the directions that it comes from */
+    struct portal *portal;     /* through which alone its light comes; owned, or NULL: from everywhere */
+} infinite_source;
+
 typedef struct light {
     light_kind kind;
-    vec3 position;  /* of all points: world space */
-    vec3 direction; /* spot, projection, distant: the way the light goes, unit */
-    rgb intensity;  /* point: W/sr; spot: along the axis; goniometric, projection: what the picture is multiplied by */
-    rgb radiance;   /* area: W/m^2/sr; distant: irradiance on a surface facing its middle, W/m^2; infinite: W/m^2/sr, or
-                     * what its   picture is multiplied by */
-    float disc_one_minus_cos; /* distant: 1 - cos of half the angle under which it is seen; 0: it has no extent */
-    float falloff_start, falloff_end; /* spot: 1 - cos of the angles inside of which it is full and outside of which
-                                       * there is nothing; smoothstep in the cosine between */
-    bool dims_by_cosine;              /* spot: its intensity is multiplied by the cosine to its axis, too */
-    uint32_t shape_index;             /* area: the shape that shines */
-    bool two_sided;                   /* area */
-    uint32_t radiance_texture;        /* area: multiplies radiance over the surface; SCENE_NO_TEXTURE: nowhere */
-    uint32_t group;                   /* of the scene's light groups; 0: the one of those that name none */
-    float photons;                    /* multiplies its share of the photons; 0: it sends none */
-    uint32_t medium;                  /* all but area lights: that their light starts in; SCENE_NO_MEDIUM: none */
-    frame world_from_light;           /* of those with a picture: a rotation or reflection */
-    /* The scene's, or NULL. */
-    struct environment *environment;   /* infinite: its picture, NULL: the same from everywhere; goniometric */
-    struct projection *projection;     /* projection */
-    struct portal *portal;             /* infinite: through which alone its light comes, NULL: from everywhere */
-    struct radiance_map *radiance_map; /* area, with a texture; set by scene_commit */
+    uint32_t group;  /* of the scene's light groups; 0: the one of those that name none */
+    float photons;   /* multiplies its share of the photons; 0: it sends none */
+    uint32_t medium; /* all but area lights: that their light starts in; SCENE_NO_MEDIUM: none */
+    union {
+        point_source point; /* its position is that of every kind that is a point */
+        spot_source spot;
+        goniometric_source goniometric;
+        projection_source projection;
+        distant_source distant;
+        area_source area;
+        infinite_source infinite;
+    } as;
     rgb power; /* W; set by scene_commit. Distant, infinite: through the disc of the scene's bounding sphere; through a
                 * portal: what enters there */
 } light;

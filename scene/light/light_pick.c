@@ -5,7 +5,7 @@
 #include "light/light_pick.h"
 
 #include "light/light_tree.h"
-#include "light/portal.h"
+#include "light/light_type.h"
 #include "status.h"
 
 #include <stdlib.h>
@@ -13,8 +13,6 @@
 /* Of the photons, so many are dealt out to all lights alike: a lamp in a room beside a sun that shines on all the land
  * would else send two or three, each as bright as the sun's. The sun's grow brighter by a third at most. */
 static const double EVEN_SHARE = 0.25;
-/* Slack for rounding: a light this little behind a surface still counts. */
-static const float SLACK = 1e-3f;
 
 /* The mean of the channels: luminance would all but leave out blue lamps. */
 static double mean_power(const light *l) { return ((double)l->power.r + l->power.g + l->power.b) / 3.0; }
@@ -99,27 +97,11 @@ void light_pick_reset(scene *s)
 
 /* --- for a point --- */
 
-static bool has_direction(vec3 v) { return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f; }
-
 /* Whether a light that is everywhere may bring light from the side of the normal. */
 static bool reaches(const light *l, vec3 point, vec3 normal)
 {
-    if (l->kind == LIGHT_DISTANT)
-        return !has_direction(normal) ||
-               vec3_dot(normal, l->direction) <
-                   SLACK + sqrtf(l->disc_one_minus_cos * (2.0f - l->disc_one_minus_cos)); /* sin of half its angle */
-    const portal *p = l->portal;
-    if (!p)
-        return true;
-    if (!portal_is_before(p, point))
-        return false;
-    bool is_in_front = !has_direction(normal);
-    for (int k = 0; k < 4 && !is_in_front; k++) {
-        vec3 corner = vec3_add_scaled(p->corner, p->axes.x, k & 1 ? p->width : 0.0f);
-        vec3 to_corner = vec3_sub(vec3_add_scaled(corner, p->axes.y, k & 2 ? p->height : 0.0f), point);
-        is_in_front = vec3_dot(to_corner, normal) > -SLACK * vec3_length(to_corner);
-    }
-    return is_in_front;
+    const light_type *type = light_type_of(l->kind);
+    return !type->reaches || type->reaches(l, point, normal);
 }
 
 /* How many of those there are, and whether there are lamps. */
@@ -166,13 +148,12 @@ float scene_light_probability(const scene *s, uint32_t light_index, vec3 point, 
         return 0.0f;
     if (s->lit_count == 1)
         return 1.0f;
-    bool is_everywhere = l->kind == LIGHT_DISTANT || l->kind == LIGHT_INFINITE;
     if (s->everywhere_count == 0)
         return light_tree_probability(s->light_tree, light_index, point, normal);
     bool has_lamps;
     uint32_t shares = count_shares(s, point, normal, &has_lamps);
     shares += has_lamps;
-    if (is_everywhere)
+    if (light_type_of(l->kind)->is_everywhere)
         return reaches(l, point, normal) ? 1.0f / (float)shares : 0.0f;
     return has_lamps ? light_tree_probability(s->light_tree, light_index, point, normal) / (float)shares : 0.0f;
 }

@@ -56,7 +56,7 @@ typedef struct query {
 
 static query make_query(const light_tree *t, vec3 point, vec3 normal)
 {
-    bool has_normal = normal.x != 0.0f || normal.y != 0.0f || normal.z != 0.0f;
+    bool has_normal = !vec3_is_zero(normal);
     return (query){vec3_scale(vec3_sub(point, t->center), t->inverse_radius), normal, has_normal ? -SLACK : -2.0f,
                    has_normal ? COSINE_LEAST : 1.0f};
 }

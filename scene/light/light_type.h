@@ -1,15 +1,26 @@
 /* light_type.h: what a kind of light is: one file and one row of light_type.c each.
- * Flow: light.c, light_emission.c and light_bounds.c ask the row of a light's kind. Threads: read-only tables. */
+ * Flow: light.c, light_emission.c, light_bounds.c, light_pick.c and scene_hash.c ask the row of a light's kind.
+ * Threads: read-only tables. */
 #ifndef AFTERGLOW_LIGHT_TYPE_H
 #define AFTERGLOW_LIGHT_TYPE_H
 
 #include "light/light.h"
 #include "light/light_tree.h"
+#include "math/hash128.h"
+
+/* Slack for rounding: a light this little behind a surface still counts. */
+#define LIGHT_REACH_SLACK 1e-3f
 
 /* Each function is there, but for those that may be NULL. */
 typedef struct light_type {
     bool can_be_met;    /* scattered rays find it: samples towards it are weighed against them */
     bool is_everywhere; /* infinitely far away: it has no bounds, and may shine at any point */
+    /* Sets the defaults of what the kind has; NULL: all are zero. */
+    void (*init)(light *l);
+    /* Frees what the kind owns; NULL: nothing. */
+    void (*reset)(light *l);
+    /* Adds what the kind has to a fingerprint, but for what commit sets (scene_hash.h). */
+    void (*add_hash)(const light *l, hash128 *h);
     /* Makes what needs the scene; NULL: nothing. Errors: AG_ERROR_MEMORY. */
     ag_status (*commit)(const scene *s, light *l);
     rgb (*power)(const scene *s, const light *l); /* W, as light.power has it */
@@ -24,8 +35,12 @@ typedef struct light_type {
     /* light_emit. *out_emission has the light's own medium. */
     bool (*emit)(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                  struct rng *random, light_emission *out_emission);
-    /* Narrows light_find_bounds of a point that shines into all directions; NULL: the light is one. */
+    /* Puts light_find_bounds of what shines into all directions around the light, and narrows them; NULL: it
+     * is_everywhere. */
     void (*narrow_bounds)(const scene *s, const light *l, light_bounds *in_out_bounds);
+    /* Whether one that is_everywhere may bring light to a point from the side of a normal, which may be 0 0 0 (all
+     * sides); NULL: always. */
+    bool (*reaches)(const light *l, vec3 point, vec3 normal);
 } light_type;
 
 extern const light_type point_light, spot_light, goniometric_light, projection_light, distant_light, area_light,
@@ -34,6 +49,9 @@ extern const light_type point_light, spot_light, goniometric_light, projection_l
 const light_type *light_type_of(light_kind kind);
 
 /* --- what several kinds share --- */
+
+/* A point that shines into all directions. */
+void light_narrow_to_point(const scene *s, const light *l, light_bounds *in_out_bounds);
 
 /* Towards a light that is a point, by its type's intensity. */
 bool light_sample_of_point(const scene *s, const light *l, vec3 point, vec2 u, light_sample *out_sample);

@@ -9,13 +9,13 @@ bool light_sample_of_point(const scene *s, const light *l, vec3 point, vec2 u, l
     (void)s, (void)u;
     out->is_delta = true;
     out->pdf_solid_angle = 1.0f;
-    vec3 to_light = vec3_sub(l->position, point);
+    vec3 to_light = vec3_sub(l->as.point.position, point);
     float distance_squared = vec3_length_squared(to_light);
     if (!(distance_squared > 0.0f))
         return false;
     out->distance = sqrtf(distance_squared);
     out->direction = vec3_scale(to_light, 1.0f / out->distance);
-    out->shadow_target = l->position;
+    out->shadow_target = l->as.point.position;
     out->radiance = rgb_scale(light_intensity(l, vec3_negate(out->direction)), 1.0f / distance_squared);
     return !rgb_is_black(out->radiance);
 }
@@ -24,23 +24,35 @@ bool light_aim_point(const light *l, const light_target *target, float own_cone,
                      light_emission *out)
 {
     float pdf;
-    out->origin = l->position;
-    if (!light_aim_at(target, l->position, own_cone, numbers->direction, &out->direction, &pdf))
+    out->origin = l->as.point.position;
+    if (!light_aim_at(target, l->as.point.position, own_cone, numbers->direction, &out->direction, &pdf))
         return false;
     out->flux = rgb_scale(light_intensity(l, out->direction), 1.0f / pdf);
     return true;
 }
 
+void light_narrow_to_point(const scene *s, const light *l, light_bounds *b)
+{
+    (void)s;
+    b->center = l->as.point.position;
+}
+
+static void add_hash(const light *l, hash128 *h)
+{
+    HASH128_ADD(h, l->as.point.position);
+    HASH128_ADD(h, l->as.point.intensity);
+}
+
 static rgb power(const scene *s, const light *l)
 {
     (void)s;
-    return rgb_scale(l->intensity, 4.0f * AG_PI);
+    return rgb_scale(l->as.point.intensity, 4.0f * AG_PI);
 }
 
 static rgb intensity(const light *l, vec3 direction)
 {
     (void)direction;
-    return l->intensity;
+    return l->as.point.intensity;
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
@@ -54,5 +66,9 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     return !rgb_is_black(out->flux);
 }
 
-const light_type point_light = {
-    .power = power, .intensity = intensity, .sample_from_point = light_sample_of_point, .emit = emit};
+const light_type point_light = {.add_hash = add_hash,
+                                .power = power,
+                                .intensity = intensity,
+                                .sample_from_point = light_sample_of_point,
+                                .emit = emit,
+                                .narrow_bounds = light_narrow_to_point};

@@ -2,6 +2,7 @@
 #include "light/portal.h"
 
 #include "light/environment.h"
+#include "light/light_type.h"
 #include "math/angle.h"
 #include "math/sampling.h"
 
@@ -141,14 +142,14 @@ bool portal_init(const vec3 corners[4], portal *out_portal)
 static double mean(rgb c) { return ((double)c.r + c.g + c.b) / 3.0; }
 
 /* Radiance at 2 x 2 points of each cell, by the mean of the channels, row by row; NULL when out of memory. */
-static float *look_around(const portal *p, const light *l)
+static float *look_around(const portal *p, const light_directions *sky)
 {
     uint32_t count = 2 * p->size;
     float *seen = malloc((size_t)count * count * sizeof *seen);
     for (uint32_t j = 0; seen && j < count; j++)
         for (uint32_t i = 0; i < count; i++) {
             vec3 w = direction_at((i + 0.5) / count, (j + 0.5) / count);
-            seen[(size_t)j * count + i] = (float)mean(environment_whole_radiance(l, frame_to_world(&p->axes, w)));
+            seen[(size_t)j * count + i] = (float)mean(environment_whole_radiance(sky, frame_to_world(&p->axes, w)));
         }
     return seen;
 }
@@ -192,11 +193,11 @@ static void add_up(portal *p, const float *seen)
 }
 
 /* The irradiance on the portal by the picture's own pixels, or by constant radiance pi L. */
-static rgb irradiance_on(const portal *p, const light *l)
+static rgb irradiance_on(const portal *p, const light_directions *sky)
 {
-    const environment *e = l->environment;
+    const environment *e = sky->picture;
     if (!e)
-        return rgb_scale(l->radiance, AG_PI);
+        return rgb_scale(sky->value, AG_PI);
     uint32_t parts = 256 / e->height + 1;
     double sum[3] = {0.0, 0.0, 0.0};
     for (uint32_t y = 0; y < e->height; y++)
@@ -204,29 +205,29 @@ static rgb irradiance_on(const portal *p, const light *l)
             double cosine = 0.0;
             for (uint32_t k = 0; k < parts * parts; k++) {
                 vec2 within = {((float)(k % parts) + 0.5f) / (float)parts, ((float)(k / parts) + 0.5f) / (float)parts};
-                vec3 w = frame_to_world(&l->world_from_light, environment_direction(e, x, y, within));
+                vec3 w = frame_to_world(&sky->world_from_light, environment_direction(e, x, y, within));
                 cosine += fmax(0.0, (double)vec3_dot(w, p->axes.z));
             }
             cosine *= environment_pixel_solid_angle(e, y) / ((double)parts * parts);
             rgb c = e->pixels[(size_t)y * e->width + x];
             sum[0] += cosine * (double)c.r, sum[1] += cosine * (double)c.g, sum[2] += cosine * (double)c.b;
         }
-    return rgb_mul(l->radiance, rgb_make((float)sum[0], (float)sum[1], (float)sum[2]));
+    return rgb_mul(sky->value, rgb_make((float)sum[0], (float)sum[1], (float)sum[2]));
 }
 
-ag_status portal_create(const portal *placed, const light *l, portal **out_portal)
+ag_status portal_create(const portal *placed, const light_directions *sky, portal **out_portal)
 {
     portal *p = malloc(sizeof *p);
     *out_portal = NULL;
     if (!p)
         return AG_ERROR_MEMORY;
     *p = *placed;
-    p->size = l->environment ? l->environment->height : MAP_SIZE_MIN;
+    p->size = sky->picture ? sky->picture->height : MAP_SIZE_MIN;
     p->size = p->size < MAP_SIZE_MIN ? MAP_SIZE_MIN : p->size > MAP_SIZE_MAX ? MAP_SIZE_MAX : p->size;
     size_t count = ((size_t)p->size + 1) * ((size_t)p->size + 1);
     p->light = calloc(count, sizeof *p->light);
     p->flux = calloc(count, sizeof *p->flux);
-    float *seen = look_around(p, l);
+    float *seen = look_around(p, sky);
     if (!p->light || !p->flux || !seen) {
         free(seen);
         portal_destroy(p);
@@ -234,7 +235,7 @@ ag_status portal_create(const portal *placed, const light *l, portal **out_porta
     }
     add_up(p, seen);
     free(seen);
-    p->irradiance = irradiance_on(p, l);
+    p->irradiance = irradiance_on(p, sky);
     *out_portal = p;
     return AG_OK;
 }
@@ -251,6 +252,19 @@ void portal_destroy(portal *p)
 /* --- asking --- */
 
 bool portal_is_before(const portal *p, vec3 point) { return vec3_dot(vec3_sub(p->corner, point), p->axes.z) > 0.0f; }
+
+bool portal_reaches(const portal *p, vec3 point, vec3 normal)
+{
+    if (!portal_is_before(p, point))
+        return false;
+    bool is_in_front = vec3_is_zero(normal);
+    for (int k = 0; k < 4 && !is_in_front; k++) {
+        vec3 corner = vec3_add_scaled(p->corner, p->axes.x, k & 1 ? p->width : 0.0f);
+        vec3 to_corner = vec3_sub(vec3_add_scaled(corner, p->axes.y, k & 2 ? p->height : 0.0f), point);
+        is_in_front = vec3_dot(to_corner, normal) > -LIGHT_REACH_SLACK * vec3_length(to_corner);
+    }
+    return is_in_front;
+}
 
 bool portal_is_crossed(const portal *p, vec3 point, vec3 direction)
 {

@@ -23,15 +23,16 @@ typedef struct portal {
  * rectangle. */
 bool portal_init(const vec3 corners[4], portal *out_portal);
 
-/* l: the infinite light that shines through it, complete but for the portal. placed: see portal_init.
- * Errors: AG_ERROR_MEMORY. */
-ag_status portal_create(const portal *placed, const light *l, portal **out_portal);
+/* sky: the radiance that shines through it. placed: see portal_init. Errors: AG_ERROR_MEMORY. */
+ag_status portal_create(const portal *placed, const light_directions *sky, portal **out_portal);
 void portal_destroy(portal *p); /* NULL is fine */
 
 /* Directions are in world space, unit, towards the light. */
 
 /* Whether the point is on the room's side. */
 bool portal_is_before(const portal *p, vec3 point);
+/* Whether light from it may come to the point from the side of a normal, which may be 0 0 0 (all sides). */
+bool portal_reaches(const portal *p, vec3 point, vec3 normal);
 /* Whether the ray leaves the room through it. */
 bool portal_is_crossed(const portal *p, vec3 point, vec3 direction);
 /* A direction out through it, nearly in proportion to radiance. false where there is none. u in [0,1)^2. */

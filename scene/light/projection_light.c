@@ -4,15 +4,35 @@
 #include "light/projection.h"
 #include "scene.h"
 
+static void init(light *l) { l->as.projection.world_from_light = frame_identity(); }
+
+static void reset(light *l) { projection_destroy(l->as.projection.picture); }
+
+static void add_hash(const light *l, hash128 *h)
+{
+    const projection_source *source = &l->as.projection;
+    const projection *p = source->picture;
+    HASH128_ADD(h, source->position);
+    HASH128_ADD(h, source->world_from_light);
+    HASH128_ADD(h, source->intensity);
+    HASH128_ADD(h, p->width);
+    HASH128_ADD(h, p->height);
+    HASH128_ADD(h, p->reach_x);
+    HASH128_ADD(h, p->reach_y);
+    hash128_add(h, p->pixels, (size_t)p->width * p->height * sizeof *p->pixels);
+}
+
 static rgb power(const scene *s, const light *l)
 {
     (void)s;
-    return rgb_mul(l->intensity, l->projection->integral);
+    return rgb_mul(l->as.projection.intensity, l->as.projection.picture->integral);
 }
 
 static rgb intensity(const light *l, vec3 direction)
 {
-    return rgb_mul(l->intensity, projection_value(l->projection, frame_to_local(&l->world_from_light, direction)));
+    return rgb_mul(
+        l->as.projection.intensity,
+        projection_value(l->as.projection.picture, frame_to_local(&l->as.projection.world_from_light, direction)));
 }
 
 static bool emit(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
@@ -21,25 +41,29 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     float pdf;
     vec3 local;
     (void)s, (void)random;
-    if (light_aim_point(l, target, 1.0f - projection_corner_cosine(l->projection), numbers, out))
+    if (light_aim_point(l, target, 1.0f - projection_corner_cosine(l->as.projection.picture), numbers, out))
         return !rgb_is_black(out->flux);
-    if (!projection_sample(l->projection, numbers->direction, &local, &out->flux, &pdf))
+    if (!projection_sample(l->as.projection.picture, numbers->direction, &local, &out->flux, &pdf))
         return false;
-    out->direction = vec3_normalize(frame_to_world(&l->world_from_light, local));
-    out->flux = rgb_scale(rgb_mul(l->intensity, out->flux), 1.0f / pdf);
+    out->direction = vec3_normalize(frame_to_world(&l->as.projection.world_from_light, local));
+    out->flux = rgb_scale(rgb_mul(l->as.projection.intensity, out->flux), 1.0f / pdf);
     return true;
 }
 
 static void narrow_bounds(const scene *s, const light *l, light_bounds *b)
 {
-    (void)s;
-    float corner = projection_corner_cosine(l->projection);
+    light_narrow_to_point(s, l, b);
+    float corner = projection_corner_cosine(l->as.projection.picture);
+    b->axis = l->as.projection.world_from_light.z;
     b->cos_normals = 1.0f;
     b->cos_emission = corner - LIGHT_BOUNDS_SLACK;
     b->intensity = rgb_mean(l->power) / (2.0f * AG_PI * fmaxf(1.0f - corner, 1e-6f));
 }
 
-const light_type projection_light = {.power = power,
+const light_type projection_light = {.init = init,
+                                     .reset = reset,
+                                     .add_hash = add_hash,
+                                     .power = power,
                                      .intensity = intensity,
                                      .sample_from_point = light_sample_of_point,
                                      .emit = emit,

@@ -15,7 +15,7 @@ static const double FLOOR = 0.1;
 static void look(const scene *s, const light *l, double out_sum[3], double out_cells[SIZE * SIZE],
                  uint32_t out_counts[SIZE * SIZE])
 {
-    const shape *lamp = &s->shapes[l->shape_index];
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
     for (uint32_t k = 0; k < LOOKS; k++) {
         double turn = k * 0.61803398874989485;
         vec2 u = {((float)k + 0.5f) / LOOKS, fminf((float)(turn - floor(turn)), 0x1.fffffep-1f)};

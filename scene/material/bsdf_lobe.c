@@ -20,6 +20,28 @@ bool bsdf_lobe_sample_facet(ggx facets, vec3 o, vec2 u, vec3 *out_upper, vec3 *o
     return true;
 }
 
+bool bsdf_lobe_reflection(ggx facets, vec3 o, vec3 i, float *out_cosine, float *out_value, float *out_pdf)
+{
+    if (!(o.z * i.z > 0.0f))
+        return false;
+    vec3 h = ggx_half_vector(o, i);
+    *out_cosine = fabsf(vec3_dot(o, h));
+    *out_value = ggx_reflection(facets, o, i, h);
+    *out_pdf = ggx_reflection_pdf(facets, o, h);
+    return true;
+}
+
+bool bsdf_lobe_sample_reflection(ggx facets, vec3 o, vec2 u, vec3 *out_local)
+{
+    vec3 upper, h;
+    float side;
+    if (!bsdf_lobe_sample_facet(facets, o, u, &upper, &h, &side))
+        return false;
+    vec3 i = reflect_about(upper, h);
+    *out_local = vec3_scale(i, side);
+    return i.z > 0.0f;
+}
+
 /* Walter 2007, eq. 20, 21; the density's factors follow Pharr et al., 9.7. */
 bool bsdf_lobe_refraction(ggx facets, float ior, bsdf_transport transport, vec3 o, vec3 i, float *out_cosine,
                           float *out_value, float *out_pdf)

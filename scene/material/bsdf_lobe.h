@@ -59,7 +59,7 @@ extern const bsdf_lobe_type *const bsdf_lobe_types[LOBE_KIND_COUNT];
 
 static inline const bsdf_lobe_type *bsdf_lobe_type_of(const bsdf_lobe *lobe) { return bsdf_lobe_types[lobe->kind]; }
 
-/* What of light at that cosine gets to a diffuse lobe of the type. */
+/* The share of light at that cosine that gets to a diffuse lobe of the type. */
 static inline float bsdf_lobe_transmittance(const bsdf_lobe_type *type, const material_point *m, float cosine)
 {
     return type->transmittance ? type->transmittance(m, cosine) : 1.0f;
@@ -88,6 +88,14 @@ vec3 bsdf_lobe_mirror(vec3 o, vec3 *out_normal);
 
 /* A facet that o sees; its side, +1 or -1, and o on the upper side. false: facets have no density there. */
 bool bsdf_lobe_sample_facet(ggx facets, vec3 o, vec2 u, vec3 *out_upper, vec3 *out_facet, float *out_side);
+
+/* Reflection by rough facets from o to i, on one side, Fresnel's term left out: its value (f |cos|), its density, and
+ * the cosine (>= 0) at which o meets the facet. false: they are not on one side. */
+bool bsdf_lobe_reflection(ggx facets, vec3 o, vec3 i, float *out_cosine, float *out_value, float *out_pdf);
+
+/* A direction of that density. false: there is none, or the facet sends it below the surface, where another facet would
+ * meet it. */
+bool bsdf_lobe_sample_reflection(ggx facets, vec3 o, vec2 u, vec3 *out_local);
 
 /* Refraction by rough facets from o to i, on different sides, Fresnel's term left out: its value (f |cos|), its
  * density, and the cosine (>= 0) at which o meets the facet. false: there is no such facet. */

@@ -14,7 +14,7 @@
 
 enum { HAIR_TILTED = 3, HAIR_LOBES = 4 }; /* R, TT, TRT, whose angles the scales shift, and all longer paths */
 
-/* What of a fibre is the same at all its points. */
+/* The numbers of a fibre that all its points share. */
 typedef struct hair_fibre {
     double ior;                                     /* of the fibre in air */
     double precision[HAIR_LOBES], norm[HAIR_LOBES]; /* 1 / variance of the inclination, and its density's factor */

@@ -4,17 +4,6 @@
 #include "material/bsdf_lobe.h"
 #include "material/fresnel.h"
 
-static bool sample_reflection(ggx facets, vec3 o, vec2 u, vec3 *out_local)
-{
-    vec3 upper, h;
-    float side;
-    if (!bsdf_lobe_sample_facet(facets, o, u, &upper, &h, &side))
-        return false;
-    vec3 i = reflect_about(upper, h);
-    *out_local = vec3_scale(i, side);
-    return i.z > 0.0f; /* else the facet sends it below the surface, where another facet would meet it */
-}
-
 /* --- a metal --- */
 
 static rgb metal_reflectance(const metal_point *m, float cosine) { return fresnel_conductor(cosine, m->eta, m->k); }
@@ -24,11 +13,9 @@ static void evaluate_conductor(const bsdf *b, bsdf_transport transport, vec3 dir
 {
     const metal_point *m = &b->material.metal;
     (void)transport, (void)direction;
-    if (o.z * i.z <= 0.0f)
-        return;
-    vec3 h = ggx_half_vector(o, i);
-    *out_value = rgb_scale(metal_reflectance(m, fabsf(vec3_dot(o, h))), ggx_reflection(m->facets, o, i, h));
-    *out_pdf = ggx_reflection_pdf(m->facets, o, h);
+    float cosine, value;
+    if (bsdf_lobe_reflection(m->facets, o, i, &cosine, &value, out_pdf))
+        *out_value = rgb_scale(metal_reflectance(m, cosine), value);
 }
 
 static bool mirror_conductor(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
@@ -44,7 +31,7 @@ static bool mirror_conductor(const bsdf *b, bsdf_transport transport, vec3 o, fl
 static bool sample_conductor(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
     (void)u_lobe;
-    return sample_reflection(b->material.metal.facets, o, u, out_local);
+    return bsdf_lobe_sample_reflection(b->material.metal.facets, o, u, out_local);
 }
 
 const bsdf_lobe_type bsdf_lobe_conductor = {
@@ -63,11 +50,9 @@ static void evaluate_coat(const bsdf *b, bsdf_transport transport, vec3 directio
 {
     const coat_point *m = &b->material.coat;
     (void)transport, (void)direction;
-    if (o.z * i.z <= 0.0f)
-        return;
-    vec3 h = ggx_half_vector(o, i);
-    *out_value = rgb_scale(coat_reflectance(m, fabsf(vec3_dot(o, h))), ggx_reflection(m->interface, o, i, h));
-    *out_pdf = ggx_reflection_pdf(m->interface, o, h);
+    float cosine, value;
+    if (bsdf_lobe_reflection(m->interface, o, i, &cosine, &value, out_pdf))
+        *out_value = rgb_scale(coat_reflectance(m, cosine), value);
 }
 
 static bool mirror_coat(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local, rgb *out_weight)
@@ -82,7 +67,7 @@ static bool mirror_coat(const bsdf *b, bsdf_transport transport, vec3 o, float u
 static bool sample_coat(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
     (void)u_lobe;
-    return sample_reflection(b->material.coat.interface, o, u, out_local);
+    return bsdf_lobe_sample_reflection(b->material.coat.interface, o, u, out_local);
 }
 
 const bsdf_lobe_type bsdf_lobe_coat = {

@@ -143,13 +143,9 @@ static void evaluate_clearcoat(const bsdf *b, bsdf_transport transport, vec3 dir
 {
     const principled_point *m = &b->material.principled;
     (void)transport, (void)direction;
-    if (!(o.z * i.z > 0.0f))
-        return;
-    ggx facets = coat_facets_of(m);
-    vec3 h = ggx_half_vector(o, i);
-    float reflected = principled_coat_reflectance(m, fabsf(vec3_dot(o, h)));
-    *out_value = rgb_gray(ggx_reflection(facets, o, i, h) * reflected);
-    *out_pdf = ggx_reflection_pdf(facets, o, h);
+    float cosine, value;
+    if (bsdf_lobe_reflection(coat_facets_of(m), o, i, &cosine, &value, out_pdf))
+        *out_value = rgb_gray(value * principled_coat_reflectance(m, cosine));
 }
 
 static bool mirror_clearcoat(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
@@ -165,8 +161,7 @@ static bool mirror_clearcoat(const bsdf *b, bsdf_transport transport, vec3 o, fl
 static bool sample_clearcoat(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
     (void)u_lobe;
-    *out_local = reflect_about(o, sample_facet_of(coat_facets_of(&b->material.principled), o, u));
-    return out_local->z * o.z > 0.0f; /* else another facet would meet it */
+    return bsdf_lobe_sample_reflection(coat_facets_of(&b->material.principled), o, u, out_local);
 }
 
 const bsdf_lobe_type bsdf_lobe_clearcoat = {

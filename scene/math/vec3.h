@@ -48,6 +48,7 @@ static inline vec3 vec3_normalize(vec3 a) { return vec3_scale(a, 1.0f / vec3_len
 static inline vec3 vec3_min(vec3 a, vec3 b) { return (vec3){fminf(a.x, b.x), fminf(a.y, b.y), fminf(a.z, b.z)}; }
 static inline vec3 vec3_max(vec3 a, vec3 b) { return (vec3){fmaxf(a.x, b.x), fmaxf(a.y, b.y), fmaxf(a.z, b.z)}; }
 static inline float vec3_max_abs(vec3 a) { return fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z))); }
+static inline bool vec3_is_zero(vec3 a) { return a.x == 0.0f && a.y == 0.0f && a.z == 0.0f; }
 static inline bool vec3_is_finite(vec3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
 /* n or -n, whichever lies on the side of v */
 static inline vec3 vec3_face_forward(vec3 n, vec3 v) { return vec3_dot(n, v) < 0.0f ? vec3_negate(n) : n; }
@@ -86,6 +87,7 @@ typedef struct frame {
     vec3 x, y, z;
 } frame;
 
+static inline frame frame_identity(void) { return (frame){{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}}; }
 /* Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017. */
 static inline frame frame_from_z(vec3 z)
 {

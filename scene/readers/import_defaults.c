@@ -120,9 +120,9 @@ ag_status import_add_default_light(scene *s, log_sink *log)
     if (scene_overrides_light(s))
         return AG_OK;
     s->world_from_upright = scene_overrides_upright(s);
-    sky.radiance = SKY_RADIANCE;
-    sun.radiance = SUN_IRRADIANCE;
-    sun.direction = sun_direction(s);
+    sky.as.infinite.radiance.value = SKY_RADIANCE;
+    sun.as.distant.irradiance = SUN_IRRADIANCE;
+    sun.as.distant.direction = sun_direction(s);
     AG_TRY(scene_add_light(s, &sky, &index));
     AG_TRY(scene_add_light(s, &sun, &index));
     s->is_light_made_up = true;

@@ -45,8 +45,6 @@ static ag_status check_named_camera(run_context *run, const char *path, bool is_
     return AG_ERROR_ARGUMENT;
 }
 
-static bool has_length(vec3 v) { return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f; }
-
 /* Whether x, y and z of the world, as the camera shows them, are as on the left hand. */
 static bool is_left_handed(const scene *s, bool is_pbrt)
 {
@@ -58,7 +56,7 @@ static ag_status set_camera(run_context *run, bool is_pbrt, vec3 axis, scene *s)
 {
     const scene_request *asked = s->request;
     const bool is_left = is_left_handed(s, is_pbrt);
-    const vec3 up = has_length(asked->camera_up) ? asked->camera_up : axis;
+    const vec3 up = !vec3_is_zero(asked->camera_up) ? asked->camera_up : axis;
     const vec3 from = asked->camera_from, way = vec3_sub(asked->camera_to, from);
     const vec3 across = is_left ? vec3_cross(up, way) : vec3_cross(way, up);
     const float distance = vec3_length(way), width = vec3_length(across);
@@ -179,8 +177,8 @@ static ag_status add_sun(run_context *run, const compass *c, scene *s)
     light sun = light_make(LIGHT_DISTANT);
     light_set_disc(&sun, (double)asked->sun_angle_degrees * DEGREE);
     uint32_t index;
-    sun.radiance = rgb_gray(asked->sun_irradiance);
-    sun.direction = vec3_negate(vec3_normalize(to_sun));
+    sun.as.distant.irradiance = rgb_gray(asked->sun_irradiance);
+    sun.as.distant.direction = vec3_negate(vec3_normalize(to_sun));
     log_message(run->log, AG_LOG_INFO, "the sun that is asked for stands towards (%.3g, %.3g, %.3g), with %g W/m^2",
                 (double)to_sun.x, (double)to_sun.y, (double)to_sun.z, (double)asked->sun_irradiance);
     return scene_add_light(s, &sun, &index);
@@ -196,22 +194,24 @@ static ag_status add_sky(run_context *run, const compass *c, scene *s)
     light_picture picture;
     uint32_t index;
     ag_status status = AG_OK;
-    sky.radiance = working_space_light(&s->space, asked->sky_radiance);
+    sky.as.infinite.radiance.value = working_space_light(&s->space, asked->sky_radiance);
     if (asked->sky_file) {
-        sky.world_from_light = (frame){.x = heading(c, 270.0 + (double)asked->sky_rotation_degrees),
-                                       .y = heading(c, (double)asked->sky_rotation_degrees),
-                                       .z = c->up};
+        sky.as.infinite.radiance.world_from_light =
+            (frame){.x = heading(c, 270.0 + (double)asked->sky_rotation_degrees),
+                    .y = heading(c, (double)asked->sky_rotation_degrees),
+                    .z = c->up};
         status = input_file_allow_named(run, asked->sky_file, message, sizeof message)
                      ? light_picture_read(s, asked->sky_file, asked->sky_file, false, &picture, message, sizeof message)
                      : AG_ERROR_INPUT;
         if (status == AG_OK)
-            status = light_picture_surround(&picture, asked->sky_file, &sky.environment, message, sizeof message);
+            status = light_picture_surround(&picture, asked->sky_file, &sky.as.infinite.radiance.picture, message,
+                                            sizeof message);
         if (status == AG_OK && picture.bad_count > 0)
             log_message(run->log, AG_LOG_WARNING,
                         "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0",
                         asked->sky_file, picture.bad_count);
     }
-    if (status == AG_OK && !rgb_is_finite(environment_integral(&sky))) {
+    if (status == AG_OK && !rgb_is_finite(environment_integral(&sky.as.infinite.radiance))) {
         snprintf(message, sizeof message, "the light is too bright for a float");
         status = AG_ERROR_ARGUMENT;
     }

@@ -60,7 +60,7 @@ static void check_indices(const scene *s)
             check_curves(&item->as.curves);
     }
     for (uint32_t i = 0; i < s->light_count; i++)
-        FUZZ_CHECK(s->lights[i].kind != LIGHT_AREA || s->lights[i].shape_index < s->shape_count);
+        FUZZ_CHECK(s->lights[i].kind != LIGHT_AREA || s->lights[i].as.area.shape_index < s->shape_count);
     for (uint32_t i = 0; i < s->texture_count; i++) {
         for (int k = 0; k < 4; k++) {
             uint32_t index = s->textures[i].inputs[k].texture_index;

@@ -28,14 +28,14 @@ typedef struct field_point {
 
 /* Points evenly spread over all surfaces: where straight lines, drawn evenly through the sphere, cross them. A line
  * crosses one side of a surface of area A with probability A / (4 pi reach^2), by Cauchy's formula. */
-typedef struct point_source {
+typedef struct point_series {
     const scene *s;
     const served_case *c;
     rng random;
     scene_ray line;
     bool is_under_way;
     uint64_t lines;
-} point_source;
+} point_series;
 
 static float largest_irradiance(const served_case *c)
 {
@@ -46,7 +46,7 @@ static float largest_irradiance(const served_case *c)
 }
 
 /* The next crossing of the current line; false where the line is at its end. */
-static bool cross(point_source *p, field_point *out_point)
+static bool cross(point_series *p, field_point *out_point)
 {
     surface_hit hit;
     while (scene_intersect(p->s, p->line, INFINITY, &hit)) {
@@ -63,7 +63,7 @@ static bool cross(point_source *p, field_point *out_point)
     return false;
 }
 
-static void draw_line(point_source *p)
+static void draw_line(point_series *p)
 {
     vec3 direction = random_direction(&p->random);
     frame f = frame_from_z(direction);
@@ -81,7 +81,7 @@ static photon_set draw_photons(const scene *s, const served_case *c, double phot
     float largest = largest_irradiance(c);
     uint64_t lines = (uint64_t)(photons_a_disc * sphere / disc), room = 1024;
     photon_set set = {.emitted_paths = lines};
-    point_source p = {.s = s, .c = c, .random = test_random(seed)};
+    point_series p = {.s = s, .c = c, .random = test_random(seed)};
     photon *photons = NULL;
     while (p.lines < lines) {
         field_point at;
@@ -220,7 +220,7 @@ static served_sums ask(test_run *r, const scene *s, const served_case *c, double
     assert_int_equal(photon_map_create(&r->run, &set, &settings, 0.0, 1.0, &map), AG_OK);
     irradiance_cache cache;
     assert_int_equal(irradiance_cache_create(&map, mode, 1, &cache), AG_OK);
-    point_source p = {.s = s, .c = c, .random = test_random(2 * seed + 1)};
+    point_series p = {.s = s, .c = c, .random = test_random(2 * seed + 1)};
     double received = 0.0, truth = 0.0, largest = 0.0;
     int points = 0, refused = 0;
     while (points < POINTS) {

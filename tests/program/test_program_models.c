@@ -49,8 +49,9 @@ static void the_light_that_is_made_is_as_bright_as_it_says(void **state)
     scene *s = scene_create();
     run_context_init(&run, NULL, NULL, NULL, NULL);
     assert_int_equal(scene_file_load(&run, path, s), AG_OK);
-    double expected = 0.5 * ((double)s->lights[0].radiance.g -
-                             (double)s->lights[1].radiance.g * (double)s->lights[1].direction.y / PI_D);
+    double expected =
+        0.5 * ((double)s->lights[0].as.infinite.radiance.value.g -
+               (double)s->lights[1].as.distant.irradiance.g * (double)s->lights[1].as.distant.direction.y / PI_D);
     run_context_reset(&run);
     scene_destroy(s);
     picture p = RENDER("floor.ply", "--integrator=path", "--spp=1024", "--size=32x18");

@@ -97,7 +97,7 @@ static void the_camera_stands_in_the_room(void **state)
         assert_near(m[1][1], 1.0, 1e-6); /* up is up */
         assert_int_equal(r.scene->light_count, 1);
         assert_int_equal(r.scene->lights[0].kind, LIGHT_POINT);
-        const vec3 lamp = r.scene->lights[0].position;
+        const vec3 lamp = r.scene->lights[0].as.point.position;
         assert_true(lamp.x > 0.0f && lamp.x < 6.0f && lamp.z > 0.0f && lamp.z < 4.0f && lamp.y > 2.0f && lamp.y < 3.0f);
         reading_destroy(&r);
     }

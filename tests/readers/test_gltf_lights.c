@@ -25,29 +25,29 @@ static void lamps(void **state)
     const light *l = &r.scene->lights[0];
     assert_int_equal(r.scene->light_count, 1);
     assert_int_equal(l->kind, LIGHT_POINT);
-    assert_rgb(l->intensity, 8, 4, 2, 0);
-    assert_vec3(l->position, 1, 2, 3, 0);
+    assert_rgb(l->as.point.intensity, 8, 4, 2, 0);
+    assert_vec3(l->as.point.position, 1, 2, 3, 0);
     reading_destroy(&r);
 
     r = gltf_of(
         lamp_text("", "{'type': 'directional', 'intensity': 3}", "'rotation': [0, 1, 0, 1], 'scale': [1, 1, 9],"));
     l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_DISTANT);
-    assert_rgb(l->radiance, 3, 3, 3, 0);
-    assert_vec3(l->direction, -1, 0, 0, 1e-6); /* -z turned by a quarter about y */
+    assert_rgb(l->as.distant.irradiance, 3, 3, 3, 0);
+    assert_vec3(l->as.distant.direction, -1, 0, 0, 1e-6); /* -z turned by a quarter about y */
     reading_destroy(&r);
 
     r = gltf_of(lamp_text("", "{'type': 'spot', 'spot': {'innerConeAngle': 0.5, 'outerConeAngle': 0.75}}", ""));
     l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_SPOT);
-    assert_rgb(l->intensity, 1, 1, 1, 0);
-    assert_vec3(l->direction, 0, 0, -1, 0);
-    assert_near(l->falloff_start, 1 - cos(0.5), 1e-7);
-    assert_near(l->falloff_end, 1 - cos(0.75), 1e-7);
+    assert_rgb(l->as.spot.intensity, 1, 1, 1, 0);
+    assert_vec3(l->as.spot.direction, 0, 0, -1, 0);
+    assert_near(l->as.spot.falloff_start, 1 - cos(0.5), 1e-7);
+    assert_near(l->as.spot.falloff_end, 1 - cos(0.75), 1e-7);
     reading_destroy(&r);
     r = gltf_of(lamp_text("", "{'type': 'spot'}", ""));
-    assert_near(r.scene->lights[0].falloff_start, 0, 0);
-    assert_near(r.scene->lights[0].falloff_end, 1 - sqrt(0.5), 1e-7);
+    assert_near(r.scene->lights[0].as.spot.falloff_start, 0, 0);
+    assert_near(r.scene->lights[0].as.spot.falloff_end, 1 - sqrt(0.5), 1e-7);
     reading_destroy(&r);
 
     r = gltf_of(lamp_text("", "{'type': 'point', 'intensity': 0}", "")); /* dark: as if there were none */
@@ -69,7 +69,7 @@ static void spots_of_old_blenders_dim(void **state)
                       {"Khronos glTF Blender I/O v4.0.1", false}};
     for (size_t k = 0; k < sizeof GENERATORS / sizeof *GENERATORS; k++) {
         reading r = gltf_of(lamp_text(GENERATORS[k].generator, "{'type': 'spot', 'spot': {}}", ""));
-        assert_int_equal(r.scene->lights[0].dims_by_cosine, GENERATORS[k].dims);
+        assert_int_equal(r.scene->lights[0].as.spot.dims_by_cosine, GENERATORS[k].dims);
         reading_destroy(&r);
     }
 }
@@ -94,10 +94,10 @@ static void units(void **state)
     };
     for (size_t i = 0; i < sizeof GENERATORS / sizeof *GENERATORS; i++) {
         reading r = gltf_of(lamp_text(GENERATORS[i].generator, "{'type': 'point', 'intensity': 683}", ""));
-        assert_near(r.scene->lights[0].intensity.r, GENERATORS[i].point, 1e-5 * GENERATORS[i].point);
+        assert_near(r.scene->lights[0].as.point.intensity.r, GENERATORS[i].point, 1e-5 * GENERATORS[i].point);
         reading_destroy(&r);
         r = gltf_of(lamp_text(GENERATORS[i].generator, "{'type': 'directional', 'intensity': 683}", ""));
-        assert_near(r.scene->lights[0].radiance.r, GENERATORS[i].sun, 1e-5 * GENERATORS[i].sun);
+        assert_near(r.scene->lights[0].as.distant.irradiance.r, GENERATORS[i].sun, 1e-5 * GENERATORS[i].sun);
         expect_said(&r, AG_LOG_INFO,
                     GENERATORS[i].sun == 1 ? "lamps are read as standard (cd and lx at 683 lm/W)"
                     : GENERATORS[i].point == 683

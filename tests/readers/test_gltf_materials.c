@@ -131,12 +131,12 @@ static void emission(void **state)
     assert_int_equal(r.scene->light_count, 1);
     const light *l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_AREA);
-    assert_rgb(l->radiance, 8, 4, 0, 0);
-    assert_true(l->two_sided);
+    assert_rgb(l->as.area.radiance, 8, 4, 0, 0);
+    assert_true(l->as.area.two_sided);
     assert_int_equal(r.scene->shapes[0].light_index, 0);
     reading_destroy(&r);
     r = gltf_of(material_text("{'emissiveFactor': [1, 1, 1]}", ""));
-    assert_false(r.scene->lights[0].two_sided);
+    assert_false(r.scene->lights[0].as.area.two_sided);
     reading_destroy(&r);
 
     gltf_expect_warning(material_text("{'extensions': {'KHR_materials_unlit': {}},"
@@ -146,8 +146,8 @@ static void emission(void **state)
     r = gltf_read(material_text("{'extensions': {'KHR_materials_unlit': {}},"
                                 "'pbrMetallicRoughness': {'baseColorFactor': [0.5, 0.25, 1, 1]}}",
                                 ""));
-    assert_rgb(r.scene->lights[0].radiance, 0.5, 0.25, 1, 0);
-    assert_true(r.scene->lights[0].two_sided);
+    assert_rgb(r.scene->lights[0].as.area.radiance, 0.5, 0.25, 1, 0);
+    assert_true(r.scene->lights[0].as.area.two_sided);
     assert_int_equal(only_material(&r)->kind, MATERIAL_DIFFUSE);
     assert_rgb(only_material(&r)->reflectance, 0, 0, 0, 0);
     reading_destroy(&r);

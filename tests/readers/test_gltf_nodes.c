@@ -119,8 +119,8 @@ static void instances(void **state)
         assert_int_equal(s->shapes[i].object_index, s->shapes[i].as.mesh.triangle_count > 1 ? 0 : SCENE_NO_OBJECT);
     affine last = instance_at(s, 2, 0.0f);
     assert_vec3(affine_point(&last, vec3_make(1, 0, 0)), 3, 0, 0, 0);
-    assert_vec3(s->shapes[s->lights[2].shape_index].as.mesh.positions[1], 3, 0, 0, 0);
-    assert_true(s->shapes[s->lights[2].shape_index].flip_normal);
+    assert_vec3(s->shapes[s->lights[2].as.area.shape_index].as.mesh.positions[1], 3, 0, 0, 0);
+    assert_true(s->shapes[s->lights[2].as.area.shape_index].flip_normal);
     reading_destroy(&r);
     static const char *const COPIED[] = {"", "'mesh': 0, 'weights': [1],"};
     for (int i = 0; i < 2; i++) {

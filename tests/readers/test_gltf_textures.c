@@ -67,7 +67,7 @@ static void material_textures(void **state)
     const double red = decoded(0.2), green = decoded(0.4), blue = decoded(0.6), close = 1e-6;
     assert_rgb(value_at(&r, m->reflectance_texture, u, v), red, green, blue, close);
     assert_rgb(value_at(&r, m->specular_color_texture, u, v), red, green, blue, close);
-    assert_rgb(value_at(&r, r.scene->lights[0].radiance_texture, u, v), red, green, blue, close);
+    assert_rgb(value_at(&r, r.scene->lights[0].as.area.radiance_texture, u, v), red, green, blue, close);
     assert_rgb(value_at(&r, m->normal_map_texture, u, v), 0.2, 0.4, 0.6, close);
     assert_near(m->normal_scale, 0.5, 0);
     assert_near(value_at(&r, m->metallic_texture, u, v).r, 0.6, close);

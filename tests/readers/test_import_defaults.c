@@ -121,12 +121,12 @@ static void light_comes_over_the_left_shoulder(void **state)
         const light *sky = &i.r.scene->lights[0], *sun = &i.r.scene->lights[1];
         assert_int_equal(sky->kind, LIGHT_INFINITE);
         assert_int_equal(sun->kind, LIGHT_DISTANT);
-        assert_near(vec3_length(sun->direction), 1.0, 1e-6);
+        assert_near(vec3_length(sun->as.distant.direction), 1.0, 1e-6);
         transform camera_from_world = transform_invert(&i.r.scene->camera.world_from_camera);
-        vec3 way = transform_vector(&camera_from_world, sun->direction);
+        vec3 way = transform_vector(&camera_from_world, sun->as.distant.direction);
         assert_true(way.x > 0.2f && way.y < -0.2f && way.z > 0.2f);
         /* a white surface that faces the sun stays below 1 */
-        assert_true(sky->radiance.r + sun->radiance.r * AG_INV_PI < 1.0f);
+        assert_true(sky->as.infinite.radiance.value.r + sun->as.distant.irradiance.r * AG_INV_PI < 1.0f);
         assert_non_null(strstr(i.r.said[AG_LOG_INFO], "the file has no light: an even sky and a sun light it"));
 
         log_sink *log = log_create(NULL, NULL);

@@ -163,8 +163,8 @@ static void lamps(void **state)
     reading r = quiet_material_of("Kd 0 0 0\nKe 3 2 1");
     assert_int_equal(r.scene->light_count, 1); /* and none by default */
     assert_int_equal(r.scene->lights[0].kind, LIGHT_AREA);
-    assert_true(r.scene->lights[0].two_sided);
-    assert_rgb(r.scene->lights[0].radiance, 3, 2, 1, 0);
+    assert_true(r.scene->lights[0].as.area.two_sided);
+    assert_rgb(r.scene->lights[0].as.area.radiance, 3, 2, 1, 0);
     assert_int_equal(r.scene->shapes[0].light_index, 0);
     reading_destroy(&r);
     r = quiet_material_of("Ke 0 0 0");
@@ -230,8 +230,8 @@ static void pictures(void **state)
     assert_near(texture_of(&r, m->displacement_texture)->scale, .005, 1e-8);
     reading_destroy(&r);
     r = quiet_material_of("map_Ke p.exr");
-    assert_rgb(r.scene->lights[0].radiance, 1, 1, 1, 0);
-    assert_true(texture_of(&r, r.scene->lights[0].radiance_texture)->is_spectrum);
+    assert_rgb(r.scene->lights[0].as.area.radiance, 1, 1, 1, 0);
+    assert_true(texture_of(&r, r.scene->lights[0].as.area.radiance_texture)->is_spectrum);
     reading_destroy(&r);
 }
 

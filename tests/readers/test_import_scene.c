@@ -114,9 +114,9 @@ static void records_become_a_scene(void **state)
     assert_int_equal(r.scene->light_count, 1);
     const light *l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_AREA);
-    assert_false(l->two_sided);
-    assert_near(l->radiance.r, 3.14159265, 1e-5);
-    const shape *s = &r.scene->shapes[l->shape_index];
+    assert_false(l->as.area.two_sided);
+    assert_near(l->as.area.radiance.r, 3.14159265, 1e-5);
+    const shape *s = &r.scene->shapes[l->as.area.shape_index];
     assert_near(shape_area(s), 1.0, 1e-6);
     const mesh *q = &s->as.mesh;
     vec3 u = vec3_sub(q->positions[1], q->positions[0]), v = vec3_sub(q->positions[2], q->positions[0]);

@@ -131,37 +131,37 @@ static void lights_are_as_bright_as_the_file_says(void **state)
     assert_int_equal(r.scene->light_count, 1);
     const light *l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_POINT);
-    assert_vec3(l->position, 1, 2, 3, 0);
-    assert_rgb(l->intensity, 4 * PI_D, 2 * PI_D, PI_D, 1e-5);
+    assert_vec3(l->as.point.position, 1, 2, 3, 0);
+    assert_rgb(l->as.point.intensity, 4 * PI_D, 2 * PI_D, PI_D, 1e-5);
     reading_destroy(&r);
 
     /* without falloff: as at the distance of the scene's centre, 4 */
     r = lit(LIGHT("point", "<constant_attenuation>1</constant_attenuation>"),
             COLLADA_FLOOR LAMP("<translate>0 4 0</translate>"));
-    assert_near(r.scene->lights[0].intensity.r, 16 * PI_D, 1e-4);
+    assert_near(r.scene->lights[0].as.point.intensity.r, 16 * PI_D, 1e-4);
     reading_destroy(&r);
 
     r = lit(LIGHT("directional", ""), COLLADA_FLOOR LAMP("<rotate>1 0 0 -90</rotate>"));
     l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_DISTANT);
-    assert_vec3(l->direction, 0, -1, 0, 1e-6);
-    assert_rgb(l->radiance, PI_D, PI_D / 2, PI_D / 4, 1e-5);
+    assert_vec3(l->as.distant.direction, 0, -1, 0, 1e-6);
+    assert_rgb(l->as.distant.irradiance, PI_D, PI_D / 2, PI_D / 4, 1e-5);
     reading_destroy(&r);
 
     r = lit(LIGHT("ambient", ""), COLLADA_FLOOR LAMP(""));
     l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_INFINITE);
-    assert_rgb(l->radiance, 1, .5, .25, 1e-6);
+    assert_rgb(l->as.infinite.radiance.value, 1, .5, .25, 1e-6);
     reading_destroy(&r);
 
     r = lit(LIGHT("spot", "<quadratic_attenuation>1</quadratic_attenuation><falloff_angle>60</falloff_angle>"),
             COLLADA_FLOOR LAMP("<translate>0 4 0</translate><rotate>1 0 0 -90</rotate>"));
     l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_SPOT);
-    assert_vec3(l->direction, 0, -1, 0, 1e-6);
-    assert_near(l->falloff_start, 1 - cos(30.0 * PI_D / 180.0), 1e-6);
-    assert_true(l->falloff_end >= l->falloff_start);
-    assert_near(l->intensity.r, PI_D, 1e-5);
+    assert_vec3(l->as.spot.direction, 0, -1, 0, 1e-6);
+    assert_near(l->as.spot.falloff_start, 1 - cos(30.0 * PI_D / 180.0), 1e-6);
+    assert_true(l->as.spot.falloff_end >= l->as.spot.falloff_start);
+    assert_near(l->as.spot.intensity.r, PI_D, 1e-5);
     reading_destroy(&r);
 }
 
@@ -186,11 +186,11 @@ static void lamps_of_blenders_are_in_watts(void **state)
     (void)state;
     reading r = blenders("point", "<quadratic_attenuation>0.0016</quadratic_attenuation>",
                          "<type sid=\"type\" type=\"int\">0</type>\n");
-    assert_rgb(r.scene->lights[0].intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
+    assert_rgb(r.scene->lights[0].as.point.intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
     reading_destroy(&r);
 
     r = blenders("directional", "", "<type sid=\"type\" type=\"int\">1</type>\n");
-    assert_rgb(r.scene->lights[0].radiance, 50, 25, 0, 1e-5);
+    assert_rgb(r.scene->lights[0].as.distant.irradiance, 50, 25, 0, 1e-5);
     reading_destroy(&r);
 
     r = blenders("spot", "<falloff_angle>90</falloff_angle><falloff_exponent>0.25</falloff_exponent>",
@@ -198,10 +198,10 @@ static void lamps_of_blenders_are_in_watts(void **state)
                  "</spotblend>\n");
     const light *l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_SPOT);
-    assert_rgb(l->intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
-    assert_near(l->falloff_end, 1 - sqrt(0.5), 1e-5);
-    assert_near(l->falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
-    assert_true(l->dims_by_cosine);
+    assert_rgb(l->as.spot.intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
+    assert_near(l->as.spot.falloff_end, 1 - sqrt(0.5), 1e-5);
+    assert_near(l->as.spot.falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
+    assert_true(l->as.spot.dims_by_cosine);
     reading_destroy(&r);
 
     /* 2 m by 0.5 m: a quarter of the W is what radiance times area is; it is not seen itself */
@@ -211,8 +211,8 @@ static void lamps_of_blenders_are_in_watts(void **state)
                  "<area_sizey sid=\"a\" type=\"float\">0.5</area_sizey>\n");
     l = &r.scene->lights[0];
     assert_int_equal(l->kind, LIGHT_AREA);
-    assert_rgb(l->radiance, 12.5, 6.25, 0, 1e-4);
-    const shape *s = &r.scene->shapes[l->shape_index];
+    assert_rgb(l->as.area.radiance, 12.5, 6.25, 0, 1e-4);
+    const shape *s = &r.scene->shapes[l->as.area.shape_index];
     assert_near(shape_area(s), 1.0, 1e-5);
     assert_near(s->alpha, 0, 0);
     reading_destroy(&r);
@@ -239,26 +239,26 @@ static void lamps_of_blenders_fbx_are_in_watts(void **state)
     (void)state;
     reading r = model_quietly("a.fbx", FBX_LAMP("1", "0", ""));
     assert_int_equal(r.status, AG_OK);
-    assert_rgb(r.scene->lights[0].intensity, 1e4 * 50 / (4 * PI_D), 1e4 * 25 / (4 * PI_D), 0, 0.1);
+    assert_rgb(r.scene->lights[0].as.point.intensity, 1e4 * 50 / (4 * PI_D), 1e4 * 25 / (4 * PI_D), 0, 0.1);
     reading_destroy(&r);
     r = model_quietly("a.fbx", FBX_LAMP("100", "0", ""));
-    assert_rgb(r.scene->lights[0].intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
+    assert_rgb(r.scene->lights[0].as.point.intensity, 50 / (4 * PI_D), 25 / (4 * PI_D), 0, 1e-5);
     reading_destroy(&r);
     r = model_quietly("a.fbx", FBX_LAMP("1", "1", ""));
-    assert_rgb(r.scene->lights[0].radiance, 50, 25, 0, 1e-4);
+    assert_rgb(r.scene->lights[0].as.distant.irradiance, 50, 25, 0, 1e-4);
     reading_destroy(&r);
     r = model_quietly("a.fbx", FBX_LAMP("1", "2",
                                         "P: \"OuterAngle\", \"double\", \"Number\", \"\",90\n"
                                         "P: \"InnerAngle\", \"double\", \"Number\", \"\",67.5\n"));
     assert_int_equal(r.scene->lights[0].kind, LIGHT_SPOT);
-    assert_near(r.scene->lights[0].falloff_end, 1 - sqrt(0.5), 1e-5);
-    assert_near(r.scene->lights[0].falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
-    assert_true(r.scene->lights[0].dims_by_cosine);
+    assert_near(r.scene->lights[0].as.spot.falloff_end, 1 - sqrt(0.5), 1e-5);
+    assert_near(r.scene->lights[0].as.spot.falloff_start, 0.75 * (1 - sqrt(0.5)), 1e-5);
+    assert_true(r.scene->lights[0].as.spot.dims_by_cosine);
     reading_destroy(&r);
     r = model_of("a.fbx", FBX_LAMP("1", "3", ""));
     assert_int_equal(r.status, AG_OK);
     assert_int_equal(r.scene->lights[0].kind, LIGHT_AREA);
-    assert_near(r.scene->lights[0].radiance.r, 50 / 4.0 / 0.01, 0.1);
+    assert_near(r.scene->lights[0].as.area.radiance.r, 50 / 4.0 / 0.01, 0.1);
     assert_non_null(strstr(r.said[AG_LOG_WARNING], "its size and shape do not stand in the file"));
     reading_destroy(&r);
 }

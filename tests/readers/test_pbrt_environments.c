@@ -25,16 +25,16 @@ static void constant(void **state)
 {
     (void)state;
     reading r = reading_of("WorldBegin LightSource \"infinite\"");
-    assert_rgb(only_light(&r)->radiance, 1, 1, 1, 0);
-    assert_null(only_light(&r)->environment);
+    assert_rgb(only_light(&r)->as.infinite.radiance.value, 1, 1, 1, 0);
+    assert_null(only_light(&r)->as.infinite.radiance.picture);
     reading_destroy(&r);
     r = reading_of("WorldBegin Rotate 20 0 0 1 LightSource \"infinite\" \"rgb L\" [ 1 2 3 ] \"float scale\" 2");
-    assert_rgb(only_light(&r)->radiance, 2, 4, 6, 0);
+    assert_rgb(only_light(&r)->as.infinite.radiance.value, 2, 4, 6, 0);
     reading_destroy(&r);
     /* on a surface that faces up: pi L */
     r = reading_of(
         "WorldBegin LightSource \"infinite\" \"rgb L\" [ 1 .5 2 ] \"float illuminance\" 10 \"float scale\" 3");
-    assert_rgb(only_light(&r)->radiance, 30 / PI, 15 / PI, 60 / PI, 1e-5);
+    assert_rgb(only_light(&r)->as.infinite.radiance.value, 30 / PI, 15 / PI, 60 / PI, 1e-5);
     reading_destroy(&r);
     r = reading_of("WorldBegin LightSource \"infinite\" \"rgb L\" [ 0 0 0 ]");
     assert_string_equal(r.said[AG_LOG_DEBUG], "t:1:12: debug: LightSource \"infinite\" has no power\n");
@@ -51,32 +51,38 @@ static void pictures(void **state)
     const char *square = write_environment("square.exr", SIZE, SIZE, IMAGE_FLOAT, pixels);
     reading r = reading_with("\"float scale\" 2", square);
     const light *l = only_light(&r);
-    const environment *e = l->environment;
+    const environment *e = l->as.infinite.radiance.picture;
     assert_non_null(e);
     assert_int_equal(e->mapping, ENVIRONMENT_OCTAHEDRAL);
     assert_true(e->width == SIZE && e->height == SIZE);
-    assert_rgb(l->radiance, 2, 2, 2, 0);
+    assert_rgb(l->as.infinite.radiance.value, 2, 2, 2, 0);
     for (int i = 0; i < SIZE * SIZE; i++)
         assert_rgb(e->pixels[i], 3 * i, 3 * i + 1, 3 * i + 2, 0);
     /* +x, -x, +y, -y, +z, -z of the light are the right, left, bottom, top edges', the middle's and the corner's */
-    assert_true(environment_whole_radiance(l, vec3_make(0.999f, 0.04f, 0.02f)).r == 2.0f * pixels[3 * (4 * SIZE + 7)]);
-    assert_true(environment_whole_radiance(l, vec3_make(-0.999f, 0.04f, 0.02f)).r == 2.0f * pixels[3 * (4 * SIZE + 0)]);
-    assert_true(environment_whole_radiance(l, vec3_make(0.04f, 0.999f, 0.02f)).r == 2.0f * pixels[3 * (7 * SIZE + 4)]);
-    assert_true(environment_whole_radiance(l, vec3_make(0.04f, -0.999f, 0.02f)).r == 2.0f * pixels[3 * (0 * SIZE + 4)]);
-    assert_true(environment_whole_radiance(l, vec3_make(0.01f, 0.01f, 1.0f)).r == 2.0f * pixels[3 * (4 * SIZE + 4)]);
-    assert_true(environment_whole_radiance(l, vec3_make(0.01f, 0.01f, -1.0f)).r == 2.0f * pixels[3 * (7 * SIZE + 7)]);
+    assert_true(environment_whole_radiance(&l->as.infinite.radiance, vec3_make(0.999f, 0.04f, 0.02f)).r ==
+                2.0f * pixels[3 * (4 * SIZE + 7)]);
+    assert_true(environment_whole_radiance(&l->as.infinite.radiance, vec3_make(-0.999f, 0.04f, 0.02f)).r ==
+                2.0f * pixels[3 * (4 * SIZE + 0)]);
+    assert_true(environment_whole_radiance(&l->as.infinite.radiance, vec3_make(0.04f, 0.999f, 0.02f)).r ==
+                2.0f * pixels[3 * (7 * SIZE + 4)]);
+    assert_true(environment_whole_radiance(&l->as.infinite.radiance, vec3_make(0.04f, -0.999f, 0.02f)).r ==
+                2.0f * pixels[3 * (0 * SIZE + 4)]);
+    assert_true(environment_whole_radiance(&l->as.infinite.radiance, vec3_make(0.01f, 0.01f, 1.0f)).r ==
+                2.0f * pixels[3 * (4 * SIZE + 4)]);
+    assert_true(environment_whole_radiance(&l->as.infinite.radiance, vec3_make(0.01f, 0.01f, -1.0f)).r ==
+                2.0f * pixels[3 * (7 * SIZE + 7)]);
     reading_destroy(&r);
 
     const char *wide = write_environment("wide.exr", 4, 2, IMAGE_HALF, pixels);
     r = reading_with("", wide);
-    assert_int_equal(only_light(&r)->environment->mapping, ENVIRONMENT_LATITUDE_LONGITUDE);
+    assert_int_equal(only_light(&r)->as.infinite.radiance.picture->mapping, ENVIRONMENT_LATITUDE_LONGITUDE);
     reading_destroy(&r);
 
     /* 8 bits: decoded from sRGB */
     float coded[3] = {0.5f, 0.03f, 1.0f};
     const char *small = write_environment("small.png", 1, 1, IMAGE_UINT8, coded);
     r = reading_with("", small);
-    assert_rgb(only_light(&r)->environment->pixels[0], 0.2140, 0.03 / 12.92, 1.0, 0.003);
+    assert_rgb(only_light(&r)->as.infinite.radiance.picture->pixels[0], 0.2140, 0.03 / 12.92, 1.0, 0.003);
     reading_destroy(&r);
 }
 
@@ -92,14 +98,14 @@ static void transforms(void **state)
         "WorldBegin Translate 1 2 3 Rotate -90 1 0 0 Scale 3 3 3 LightSource \"infinite\" \"string filename\" \"%s\"",
         path);
     reading r = reading_of(text);
-    frame f = only_light(&r)->world_from_light;
+    frame f = only_light(&r)->as.infinite.radiance.world_from_light;
     assert_vec3(f.x, 1, 0, 0, 1e-6);
     assert_vec3(f.y, 0, 0, -1, 1e-6);
     assert_vec3(f.z, 0, 1, 0, 1e-6);
     reading_destroy(&r);
     snprintf(text, sizeof text, "WorldBegin Scale -1 1 1 LightSource \"infinite\" \"string filename\" \"%s\"", path);
     r = reading_of(text);
-    f = only_light(&r)->world_from_light;
+    f = only_light(&r)->as.infinite.radiance.world_from_light;
     assert_vec3(f.x, -1, 0, 0, 1e-6);
     assert_vec3(f.y, 0, 1, 0, 1e-6);
     assert_vec3(f.z, 0, 0, 1, 1e-6);
@@ -108,7 +114,7 @@ static void transforms(void **state)
     r = reading_create(NULL, text, strlen(text));
     assert_int_equal(r.status, AG_OK);
     assert_non_null(strstr(r.said[AG_LOG_WARNING], "t:1:24: warning: LightSource \"infinite\": the transform is not"));
-    assert_vec3(only_light(&r)->world_from_light.z, 0, 0, 1, 1e-6);
+    assert_vec3(only_light(&r)->as.infinite.radiance.world_from_light.z, 0, 0, 1, 1e-6);
     reading_destroy(&r);
 }
 
@@ -124,11 +130,11 @@ static void illuminance(void **state)
     double luminance = 0.2126 + 2.0 * 0.7152 + 0.5 * 0.0722, expected = 3.0 * 100.0 / (luminance * PI / 2.0);
     const char *square = write_environment("square.exr", SIZE, SIZE, IMAGE_FLOAT, pixels);
     reading r = reading_with("\"float illuminance\" 100 \"float scale\" 3", square);
-    assert_near(only_light(&r)->radiance.g / expected, 1.0, 1e-3);
+    assert_near(only_light(&r)->as.infinite.radiance.value.g / expected, 1.0, 1e-3);
     reading_destroy(&r);
     const char *wide = write_environment("wide.exr", 2 * SIZE, SIZE, IMAGE_FLOAT, pixels);
     r = reading_with("\"float illuminance\" 100 \"float scale\" 3", wide);
-    assert_near(only_light(&r)->radiance.g / expected, 1.0, 1e-3);
+    assert_near(only_light(&r)->as.infinite.radiance.value.g / expected, 1.0, 1e-3);
     reading_destroy(&r);
 }
 
@@ -144,7 +150,7 @@ static void bad_pixels_count_as_black(void **state)
     snprintf(text, sizeof text,
              "t:1:35: warning: \"%s\": 3 pixels are negative, infinite or not a number; what is counts as 0\n", path);
     assert_string_equal(r.said[AG_LOG_WARNING], text);
-    const rgb *p = only_light(&r)->environment->pixels;
+    const rgb *p = only_light(&r)->as.infinite.radiance.picture->pixels;
     assert_rgb(p[0], 0, 2, 3, 0);
     assert_rgb(p[1], 0, 1, 1, 0);
     assert_rgb(p[2], 4, 0, 5, 0);

@@ -146,8 +146,8 @@ static void spectra_are_read_from_files(void **state)
     const scene *s = r.scene;
     assert_near(s->materials[s->shapes[0].material_index].ior, 1.5, 1e-6);
     assert_rgb(s->materials[s->shapes[1].material_index].reflectance, .3, .3, .3, 1e-6);
-    assert_near(rgb_luminance(s->lights[0].intensity), 3, 1e-3);
-    assert_rgb(s->lights[1].intensity, 1, 1, 1, 0);
+    assert_near(rgb_luminance(s->lights[0].as.point.intensity), 3, 1e-3);
+    assert_rgb(s->lights[1].as.point.intensity, 1, 1, 1, 0);
     reading_destroy(&r);
     write_file("parts/glass.spd", "400 1.5\n700 x");
     check_file_error("top.pbrt", AG_ERROR_SCENE,

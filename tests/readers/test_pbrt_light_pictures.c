@@ -45,22 +45,22 @@ static void goniometric(void **state)
                      "\"string filename\" \"%s\"",
                      path);
     const light *l = only_light(&r, LIGHT_GONIOMETRIC);
-    assert_vec3(l->position, 1, 2, 3, 0);
-    assert_rgb(l->intensity, 2, 4, 6, 0);
-    assert_rgb(l->environment->pixels[7], 2, 2, 2, 1e-6); /* the mean of the channels */
+    assert_vec3(l->as.point.position, 1, 2, 3, 0);
+    assert_rgb(l->as.goniometric.intensity.value, 2, 4, 6, 0);
+    assert_rgb(l->as.goniometric.intensity.picture->pixels[7], 2, 2, 2, 1e-6); /* the mean of the channels */
     assert_rgb(light_intensity(l, vec3_make(0.0f, 0.6f, 0.8f)), 4, 8, 12, 1e-5);
     /* the picture's z is up, along y */
-    assert_vec3(l->world_from_light.x, 1, 0, 0, 1e-6);
-    assert_vec3(l->world_from_light.y, 0, 0, 1, 1e-6);
-    assert_vec3(l->world_from_light.z, 0, 1, 0, 1e-6);
+    assert_vec3(l->as.goniometric.intensity.world_from_light.x, 1, 0, 0, 1e-6);
+    assert_vec3(l->as.goniometric.intensity.world_from_light.y, 0, 0, 1, 1e-6);
+    assert_vec3(l->as.goniometric.intensity.world_from_light.z, 0, 1, 0, 1e-6);
     reading_destroy(&r);
     /* power is that of I 1, times I and scale */
     r = reading_with("WorldBegin LightSource \"goniometric\" \"rgb I\" [ 1 .5 0 ] \"float scale\" 2 \"float power\" 10 "
                      "\"string filename\" \"%s\"",
                      path);
     l = only_light(&r, LIGHT_GONIOMETRIC);
-    assert_rgb(environment_integral(l), 20, 10, 0, 1e-4);
-    assert_rgb(l->intensity, 20 / (8 * PI), 10 / (8 * PI), 0, 1e-5);
+    assert_rgb(environment_integral(&l->as.goniometric.intensity), 20, 10, 0, 1e-4);
+    assert_rgb(l->as.goniometric.intensity.value, 20 / (8 * PI), 10 / (8 * PI), 0, 1e-5);
     reading_destroy(&r);
 }
 
@@ -96,10 +96,10 @@ static void projections(void **state)
                              "\"float fov\" 60 \"string filename\" \"%s\"",
                              path);
     const light *l = only_light(&r, LIGHT_PROJECTION);
-    assert_vec3(l->position, 1, 2, 3, 0);
-    assert_vec3(l->direction, 1, 0, 0, 1e-6);
-    assert_rgb(l->intensity, 2, 2, 2, 0);
-    assert_near(l->projection->reach_x, tan(PI / 6), 1e-6);
+    assert_vec3(l->as.point.position, 1, 2, 3, 0);
+    assert_vec3(l->as.projection.world_from_light.z, 1, 0, 0, 1e-6);
+    assert_rgb(l->as.projection.intensity, 2, 2, 2, 0);
+    assert_near(l->as.projection.picture->reach_x, tan(PI / 6), 1e-6);
     /* along x: the picture's right is -z, its top y */
     assert_near(light_intensity(l, vec3_normalize(vec3_make(1.0f, 0.3f, 0.3f))).g, 2, 0);
     assert_near(light_intensity(l, vec3_normalize(vec3_make(1.0f, 0.3f, -0.3f))).g, 4, 0);
@@ -111,9 +111,9 @@ static void projections(void **state)
                      "\"%s\"",
                      constant);
     l = only_light(&r, LIGHT_PROJECTION);
-    assert_near(l->projection->reach_x, 2, 1e-6);
-    assert_near(l->projection->reach_y, 1, 1e-6);
-    assert_near(rgb_luminance(rgb_mul(l->intensity, l->projection->integral)), 20, 1e-3);
+    assert_near(l->as.projection.picture->reach_x, 2, 1e-6);
+    assert_near(l->as.projection.picture->reach_y, 1, 1e-6);
+    assert_near(rgb_luminance(rgb_mul(l->as.projection.intensity, l->as.projection.picture->integral)), 20, 1e-3);
     reading_destroy(&r);
 }
 
@@ -128,8 +128,8 @@ static void area_lights(void **state)
     assert_int_equal(r.scene->light_count, 2);
     for (int i = 0; i < 2; i++) {
         const light *l = &r.scene->lights[i];
-        assert_int_equal(l->radiance_texture, 0);
-        assert_rgb(l->radiance, 2, 2, 2, 0);
+        assert_int_equal(l->as.area.radiance_texture, 0);
+        assert_rgb(l->as.area.radiance, 2, 2, 2, 0);
         /* v 1 is the top; edges go on */
         surface_hit hit = {.uv = {0.01f, 0.99f}, .geometric_normal = {0.0f, 0.0f, 1.0f}};
         assert_rgb(light_emitted_radiance(r.scene, l, &hit, vec3_make(0.0f, 0.0f, 1.0f)), 2, 2, 2, 1e-6);
@@ -144,7 +144,7 @@ static void area_lights(void **state)
         "WorldBegin AreaLightSource \"diffuse\" \"float power\" 30 \"string filename\" \"%s\" \"bool twosided\" "
         "true Shape \"disk\" \"float radius\" 2",
         path);
-    assert_near(only_light(&r, LIGHT_AREA)->radiance.g, 30 / (8 * PI * PI * 3), 1e-6);
+    assert_near(only_light(&r, LIGHT_AREA)->as.area.radiance.g, 30 / (8 * PI * PI * 3), 1e-6);
     reading_destroy(&r);
 }
 
@@ -157,27 +157,27 @@ static void portals(void **state)
     snprintf(text, sizeof text, "WorldBegin Translate 5 5 5 LightSource \"infinite\" \"rgb L\" [ 1 2 3 ] %s", CORNERS);
     reading r = reading_of(text);
     const light *l = only_light(&r, LIGHT_INFINITE);
-    assert_non_null(l->portal);
-    assert_vec3(l->portal->corner, 1, 0, 0, 0);
-    assert_vec3(l->portal->axes.x, 0, 1, 0, 0);
-    assert_vec3(l->portal->axes.y, 0, 0, 1, 0);
-    assert_vec3(l->portal->axes.z, 1, 0, 0, 0);
-    assert_near(l->portal->width, 2, 0);
-    assert_near(l->portal->height, 3, 0);
-    assert_rgb(l->portal->irradiance, PI, 2 * PI, 3 * PI, 1e-5);
+    assert_non_null(l->as.infinite.portal);
+    assert_vec3(l->as.infinite.portal->corner, 1, 0, 0, 0);
+    assert_vec3(l->as.infinite.portal->axes.x, 0, 1, 0, 0);
+    assert_vec3(l->as.infinite.portal->axes.y, 0, 0, 1, 0);
+    assert_vec3(l->as.infinite.portal->axes.z, 1, 0, 0, 0);
+    assert_near(l->as.infinite.portal->width, 2, 0);
+    assert_near(l->as.infinite.portal->height, 3, 0);
+    assert_rgb(l->as.infinite.portal->irradiance, PI, 2 * PI, 3 * PI, 1e-5);
     reading_destroy(&r);
     /* to pbrt a constant light with a portal is a picture of one pixel, which looks up */
     snprintf(text, sizeof text, "WorldBegin LightSource \"infinite\" \"rgb L\" [ 2 2 2 ] \"float illuminance\" 30 %s",
              CORNERS);
     r = reading_of(text);
-    assert_near(only_light(&r, LIGHT_INFINITE)->radiance.g, 30 / (2 * PI), 1e-5);
+    assert_near(only_light(&r, LIGHT_INFINITE)->as.infinite.radiance.value.g, 30 / (2 * PI), 1e-5);
     reading_destroy(&r);
     char format[512];
     snprintf(format, sizeof format, "WorldBegin LightSource \"infinite\" %s \"string filename\" \"%%s\"", CORNERS);
     r = reading_with(format, write_constant("a.exr", 16, 16, 1.0f, 2.0f, 4.0f));
     l = only_light(&r, LIGHT_INFINITE);
-    assert_non_null(l->environment);
-    assert_rgb(l->portal->irradiance, PI, 2 * PI, 4 * PI, 1e-3);
+    assert_non_null(l->as.infinite.radiance.picture);
+    assert_rgb(l->as.infinite.portal->irradiance, PI, 2 * PI, 4 * PI, 1e-3);
     reading_destroy(&r);
 }
 

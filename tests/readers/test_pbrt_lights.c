@@ -26,22 +26,22 @@ static void point_lights(void **state)
     reading r = reading_of("WorldBegin Translate 1 0 0 LightSource \"point\"");
     const light *l = only_light(&r);
     assert_int_equal(l->kind, LIGHT_POINT);
-    assert_rgb(l->intensity, 1, 1, 1, 0);
-    assert_vec3(l->position, 1, 0, 0, 0);
+    assert_rgb(l->as.point.intensity, 1, 1, 1, 0);
+    assert_vec3(l->as.point.position, 1, 0, 0, 0);
     reading_destroy(&r);
     r = reading_of(
         "WorldBegin Scale 2 2 2 LightSource \"point\" \"rgb I\" [ 1 2 3 ] \"float scale\" 2 \"point3 from\" [ 1 2 3 ]");
     l = only_light(&r);
-    assert_rgb(l->intensity, 2, 4, 6, 0);
-    assert_vec3(l->position, 2, 4, 6, 0);
+    assert_rgb(l->as.point.intensity, 2, 4, 6, 0);
+    assert_vec3(l->as.point.position, 2, 4, 6, 0);
     reading_destroy(&r);
     /* power replaces the magnitude that I of 1 would have, and is itself multiplied by I and scale */
     r = reading_of("WorldBegin LightSource \"point\" \"rgb I\" [ 1 .5 0 ] \"float power\" 100 \"float scale\" 2");
-    assert_rgb(only_light(&r)->intensity, 200 / (4 * PI), 100 / (4 * PI), 0, 1e-5);
+    assert_rgb(only_light(&r)->as.point.intensity, 200 / (4 * PI), 100 / (4 * PI), 0, 1e-5);
     reading_destroy(&r);
     r = reading_of("WorldBegin LightSource \"point\" \"rgb I\" [ 0 0 0 ]");
     assert_string_equal(r.said[AG_LOG_DEBUG], "t:1:12: debug: LightSource \"point\" has no power\n");
-    assert_rgb(only_light(&r)->intensity, 0, 0, 0, 0);
+    assert_rgb(only_light(&r)->as.point.intensity, 0, 0, 0, 0);
     reading_destroy(&r);
 }
 
@@ -51,27 +51,27 @@ static void spot_lights(void **state)
     reading r = reading_of("WorldBegin Rotate 90 0 1 0 LightSource \"spot\"");
     const light *l = only_light(&r);
     assert_int_equal(l->kind, LIGHT_SPOT);
-    assert_rgb(l->intensity, 1, 1, 1, 0);
-    assert_vec3(l->direction, 1, 0, 0, 1e-6);
-    assert_near(l->falloff_end, 1 - cos(30 * PI / 180), 1e-7);
-    assert_near(l->falloff_start, 1 - cos(25 * PI / 180), 1e-7);
+    assert_rgb(l->as.spot.intensity, 1, 1, 1, 0);
+    assert_vec3(l->as.spot.direction, 1, 0, 0, 1e-6);
+    assert_near(l->as.spot.falloff_end, 1 - cos(30 * PI / 180), 1e-7);
+    assert_near(l->as.spot.falloff_start, 1 - cos(25 * PI / 180), 1e-7);
     reading_destroy(&r);
     r = reading_of(
         "WorldBegin LightSource \"spot\" \"point3 from\" [ 1 1 1 ] \"point3 to\" [ 1 -4 1 ] \"float coneangle\" 60\n"
         "\"float conedeltaangle\" 20 \"float power\" 10");
     l = only_light(&r);
-    assert_vec3(l->position, 1, 1, 1, 0);
-    assert_vec3(l->direction, 0, -1, 0, 1e-6);
+    assert_vec3(l->as.point.position, 1, 1, 1, 0);
+    assert_vec3(l->as.spot.direction, 0, -1, 0, 1e-6);
     double start = cos(40 * PI / 180), end = cos(60 * PI / 180), measure = 2 * PI * ((1 - start) + (start - end) / 2);
-    assert_rgb(l->intensity, 10 / measure, 10 / measure, 10 / measure, 1e-5);
+    assert_rgb(l->as.spot.intensity, 10 / measure, 10 / measure, 10 / measure, 1e-5);
     reading_destroy(&r);
     /* a cone narrower than the default penumbra: pbrt counts on beyond the axis */
     r = reading_of("WorldBegin LightSource \"spot\" \"float coneangle\" 3");
-    assert_near(only_light(&r)->falloff_start, 1 - cos(2 * PI / 180), 1e-9);
-    assert_false(only_light(&r)->dims_by_cosine);
+    assert_near(only_light(&r)->as.spot.falloff_start, 1 - cos(2 * PI / 180), 1e-9);
+    assert_false(only_light(&r)->as.spot.dims_by_cosine);
     reading_destroy(&r);
     r = reading_of("WorldBegin LightSource \"spot\" \"bool cosine\" true");
-    assert_true(only_light(&r)->dims_by_cosine);
+    assert_true(only_light(&r)->as.spot.dims_by_cosine);
     reading_destroy(&r);
     assert_refused("WorldBegin LightSource \"spot\" \"bool cosine\" true \"float coneangle\" 91",
                    "t:1:31: error: a \"cosine\" goes with a \"coneangle\" of at most 90 degrees");
@@ -85,19 +85,19 @@ static void distant_lights(void **state)
     reading r = reading_of("WorldBegin LightSource \"distant\"");
     const light *l = only_light(&r);
     assert_int_equal(l->kind, LIGHT_DISTANT);
-    assert_rgb(l->radiance, 1, 1, 1, 0);
-    assert_vec3(l->direction, 0, 0, 1, 0);
+    assert_rgb(l->as.distant.irradiance, 1, 1, 1, 0);
+    assert_vec3(l->as.distant.direction, 0, 0, 1, 0);
     reading_destroy(&r);
     r = reading_of(
         "WorldBegin Translate 5 5 5 Scale 3 3 3 LightSource \"distant\" \"rgb L\" [ 1 2 3 ] \"float scale\" 2\n"
         "\"point3 from\" [ 0 10 0 ] \"point3 to\" [ 0 0 0 ] \"float illuminance\" 50");
     l = only_light(&r);
-    assert_rgb(l->radiance, 100, 200, 300, 0);
-    assert_vec3(l->direction, 0, -1, 0, 1e-6);
-    assert_near(l->disc_one_minus_cos, 0, 0);
+    assert_rgb(l->as.distant.irradiance, 100, 200, 300, 0);
+    assert_vec3(l->as.distant.direction, 0, -1, 0, 1e-6);
+    assert_near(l->as.distant.disc_one_minus_cos, 0, 0);
     reading_destroy(&r);
     r = reading_of("WorldBegin LightSource \"distant\" \"float angle\" 10");
-    assert_near(only_light(&r)->disc_one_minus_cos, 1 - cos(5 * PI / 180), 1e-9);
+    assert_near(only_light(&r)->as.distant.disc_one_minus_cos, 1 - cos(5 * PI / 180), 1e-9);
     reading_destroy(&r);
     assert_refused("WorldBegin LightSource \"distant\" \"float angle\" 181",
                    "\"angle\" should be from 0 to 180 degrees");
@@ -109,31 +109,31 @@ static void area_lights(void **state)
     reading r = reading_of("WorldBegin AreaLightSource \"diffuse\" Shape \"sphere\"");
     const light *l = only_light(&r);
     assert_int_equal(l->kind, LIGHT_AREA);
-    assert_rgb(l->radiance, 1, 1, 1, 0);
-    assert_false(l->two_sided);
-    assert_int_equal(l->shape_index, 0);
+    assert_rgb(l->as.area.radiance, 1, 1, 1, 0);
+    assert_false(l->as.area.two_sided);
+    assert_int_equal(l->as.area.shape_index, 0);
     assert_int_equal(r.scene->shapes[0].light_index, 0);
     reading_destroy(&r);
     r = reading_of("WorldBegin AreaLightSource \"diffuse\" \"rgb L\" [ 17 12 4 ] \"float scale\" .5 \"bool twosided\" "
                    "[ \"true\" ]\n"
                    "Shape \"disk\"");
     l = only_light(&r);
-    assert_rgb(l->radiance, 8.5, 6, 2, 0);
-    assert_true(l->two_sided);
+    assert_rgb(l->as.area.radiance, 8.5, 6, 2, 0);
+    assert_true(l->as.area.two_sided);
     reading_destroy(&r);
     /* a disk of radius 2 has 4 pi; two-sided lamps of radiance 1 have 2 pi times it */
     r = reading_of(
         "WorldBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 .5 0 ] \"float power\" 60 \"bool twosided\" true\n"
         "Shape \"disk\" \"float radius\" 2");
-    assert_rgb(only_light(&r)->radiance, 60 / (8 * PI * PI), 30 / (8 * PI * PI), 0, 1e-5);
+    assert_rgb(only_light(&r)->as.area.radiance, 60 / (8 * PI * PI), 30 / (8 * PI * PI), 0, 1e-5);
     reading_destroy(&r);
     r = reading_of("WorldBegin Scale 3 3 3 AreaLightSource \"diffuse\" \"float power\" 60 Shape \"sphere\"");
-    assert_rgb(only_light(&r)->radiance, 60 / (36 * PI * PI), 60 / (36 * PI * PI), 60 / (36 * PI * PI), 1e-5);
+    assert_rgb(only_light(&r)->as.area.radiance, 60 / (36 * PI * PI), 60 / (36 * PI * PI), 60 / (36 * PI * PI), 1e-5);
     reading_destroy(&r);
     /* a second AreaLightSource replaces the first */
     r = reading_of(
         "WorldBegin AreaLightSource \"diffuse\" AreaLightSource \"diffuse\" \"rgb L\" [ 2 2 2 ] Shape \"disk\"");
-    assert_rgb(only_light(&r)->radiance, 2, 2, 2, 0);
+    assert_rgb(only_light(&r)->as.area.radiance, 2, 2, 2, 0);
     reading_destroy(&r);
 }
 
@@ -141,7 +141,7 @@ static void black_bodies(void **state)
 {
     (void)state;
     reading r = reading_of("WorldBegin LightSource \"point\" \"blackbody I\" [ 4000 ] \"float scale\" 3");
-    rgb expected = spectra_blackbody(4000, NULL), value = only_light(&r)->intensity;
+    rgb expected = spectra_blackbody(4000, NULL), value = only_light(&r)->as.point.intensity;
     assert_rgb(value, 3 * expected.r, 3 * expected.g, 3 * expected.b, 1e-5);
     reading_destroy(&r);
 }

@@ -187,7 +187,7 @@ static void interfaces_do_not_shine(void **state)
         assert_int_equal(r.scene->shape_count, 1);
         assert_int_equal(r.scene->shapes[0].light_index, SHAPE_NO_LIGHT);
         for (uint32_t k = 0; k < r.scene->light_count; k++)
-            assert_true(rgb_is_black(r.scene->lights[k].radiance));
+            assert_true(rgb_is_black(r.scene->lights[k].as.area.radiance));
         reading_destroy(&r);
     }
 }

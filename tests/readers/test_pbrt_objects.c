@@ -152,10 +152,10 @@ static void lamps_within_objects_come_into_the_world(void **state)
                 shape *a = &r.scene->shapes[1 + i], *b = &by_hand.scene->shapes[i];
                 assert_int_equal(a->object_index, SCENE_NO_OBJECT);
                 assert_int_equal(a->light_index, i);
-                assert_int_equal(r.scene->lights[i].shape_index, 1 + i);
+                assert_int_equal(r.scene->lights[i].as.area.shape_index, 1 + i);
                 assert_int_equal(a->flip_normal, b->flip_normal);
-                rgb l = by_hand.scene->lights[i].radiance;
-                assert_rgb(r.scene->lights[i].radiance, l.r, l.g, l.b, 1e-4);
+                rgb l = by_hand.scene->lights[i].as.area.radiance;
+                assert_rgb(r.scene->lights[i].as.area.radiance, l.r, l.g, l.b, 1e-4);
                 assert_int_equal(shape_commit(a), AG_OK);
                 assert_int_equal(shape_commit(b), AG_OK);
                 for (int u = 0; u < 25; u++) {
@@ -330,7 +330,7 @@ static void lights_and_textures_stand_still(void **state)
             assert_vec3(transform_point(&r.scene->shapes[0].as.quadric.world_from_object, vec3_make(0, 0, 0)), 1, 0, 0,
                         0);
         if (i == 1)
-            assert_vec3(r.scene->lights[0].position, 1, 0, 0, 0);
+            assert_vec3(r.scene->lights[0].as.point.position, 1, 0, 0, 0);
         reading_destroy(&r);
     }
 }

@@ -55,7 +55,10 @@ static rgb light_of(const char *text, int warnings, const char *word)
     reading r = told(whole, warnings, (const char *const[]){word, NULL});
     assert_int_equal(r.scene->light_count, 1);
     const light *l = &r.scene->lights[0];
-    rgb color = l->kind == LIGHT_POINT ? l->intensity : l->radiance;
+    rgb color = l->kind == LIGHT_POINT     ? l->as.point.intensity
+                : l->kind == LIGHT_DISTANT ? l->as.distant.irradiance
+                : l->kind == LIGHT_AREA    ? l->as.area.radiance
+                                           : l->as.infinite.radiance.value;
     reading_destroy(&r);
     return color;
 }
@@ -147,7 +150,7 @@ static void the_last_of_two_counts(void **state)
         told("WorldBegin LightSource \"point\" \"float scale\" 2 \"rgb I\" [ 1 1 1 ] \"float scale\" 3", 1,
              (const char *const[]){
                  "t:1:66: warning: LightSource: \"scale\" is given twice, first at 1:32: the last counts", NULL});
-    assert_rgb(r.scene->lights[0].intensity, 3, 3, 3, 0);
+    assert_rgb(r.scene->lights[0].as.point.intensity, 3, 3, 3, 0);
     reading_destroy(&r);
     /* of another type too */
     r = told("WorldBegin Material \"dielectric\" \"float eta\" 2 \"spectrum eta\" \"glass-BK7\" Shape \"sphere\"", 1,

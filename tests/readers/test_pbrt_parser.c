@@ -174,7 +174,7 @@ static void attributes_are_brought_back(void **state)
     assert_true(s->shapes[0].flip_normal && s->shapes[1].flip_normal && !s->shapes[2].flip_normal);
     assert_int_equal(s->shapes[0].light_index, 0);
     assert_int_equal(s->shapes[1].light_index, 1);
-    assert_int_equal(s->lights[1].shape_index, 1);
+    assert_int_equal(s->lights[1].as.area.shape_index, 1);
     assert_int_equal(s->shapes[2].light_index, SHAPE_NO_LIGHT);
     reading_destroy(&r);
 }
@@ -200,7 +200,7 @@ static void attributes_speak_to_what_follows(void **state)
         assert_near(r.scene->shapes[i].as.quadric.radius, RADIUS[i], 0);
     assert_rgb(r.scene->materials[r.scene->shapes[3].material_index].reflectance, .5, .5, .5, 1e-6);
     assert_int_equal(r.scene->light_count, 1);
-    assert_rgb(r.scene->lights[0].radiance, 3, 6, 9, 1e-6);
+    assert_rgb(r.scene->lights[0].as.area.radiance, 3, 6, 9, 1e-6);
     assert_near(r.scene->textures[0].inputs[0].value.r, .25, 0);
     reading_destroy(&r);
 }
@@ -227,7 +227,7 @@ static void colour_spaces_are_part_of_the_state(void **state)
     reading_destroy(&pictured);
     rgb white;
     assert_true(spectra_find_named("illum-acesD60", NULL, &white));
-    assert_rgb(s->lights[0].intensity, white.r, white.g, white.b, 1e-6);
+    assert_rgb(s->lights[0].as.point.intensity, white.r, white.g, white.b, 1e-6);
     reading_destroy(&r);
 }
 

@@ -105,14 +105,14 @@ static void expect_density(scene *s, const direct_guide *g, const direct_bins *s
         float pdf, density = direct_guide_warp(g, s, 0, 1, &u);
         assert_true(u.x >= 0.0f && u.x < 1.0f && u.y >= 0.0f && u.y < 1.0f && density > 0.0f);
         counts[(int)(u.y * PARTS)][(int)(u.x * PARTS)] += 1.0;
-        if (!environment_sample_whole(sky, u, &direction, &radiance, &pdf))
+        if (!environment_sample_whole(&sky->as.infinite.radiance, u, &direction, &radiance, &pdf))
             continue;
         taken++;
         float again = direct_guide_density(g, s, 0, 1, direction);
         elsewhere += fabsf(again / density - 1.0f) > 1e-5f; /* rounded into the next bin */
 
         /* over even numbers the density's mean is 1 */
-        if (environment_sample_whole(sky, even, &direction, &radiance, &pdf)) {
+        if (environment_sample_whole(&sky->as.infinite.radiance, even, &direction, &radiance, &pdf)) {
             float there = direct_guide_density(g, s, 0, 1, direction);
             masses[(int)(even.y * PARTS)][(int)(even.x * PARTS)] += (double)there;
             whole += (double)there / SAMPLES;
@@ -162,12 +162,12 @@ static void sky_is_sampled_by_its_density(void **state)
         for (uint32_t i = 0; i < count; i++)
             pixels[i] = rgb_gray(0.1f + rng_float(&random));
         assert_int_equal(environment_create(PICTURES[k].mapping, PICTURES[k].width, PICTURES[k].height, pixels,
-                                            &s->lights[1].environment),
+                                            &s->lights[1].as.infinite.radiance.picture),
                          AG_OK);
-        s->lights[1].world_from_light = frame_from_z(vec3_normalize((vec3){1.0f, 2.0f, 3.0f}));
+        s->lights[1].as.infinite.radiance.world_from_light = frame_from_z(vec3_normalize((vec3){1.0f, 2.0f, 3.0f}));
         expect_density(s, &g, &seen);
-        environment_destroy(s->lights[1].environment);
-        s->lights[1].environment = NULL;
+        environment_destroy(s->lights[1].as.infinite.radiance.picture);
+        s->lights[1].as.infinite.radiance.picture = NULL;
     }
     direct_guide_reset(&g);
     scene_destroy(s);

@@ -220,10 +220,11 @@ static scene *lit_scene_create(test_run *r, environment *e, rgb radiance)
     assert_non_null(s);
     assert_int_equal(pbrt_parse_text(&r->run, "scene", TEXT, strlen(TEXT), s), AG_OK);
     light l = light_make(LIGHT_INFINITE);
-    l.radiance = radiance;
-    l.environment = e;
-    l.world_from_light = frame_from_z(vec3_normalize(vec3_make(1.0f, -2.0f, 0.5f)));
-    l.world_from_light.y = vec3_negate(l.world_from_light.y); /* a reflection too */
+    l.as.infinite.radiance.value = radiance;
+    l.as.infinite.radiance.picture = e;
+    l.as.infinite.radiance.world_from_light = frame_from_z(vec3_normalize(vec3_make(1.0f, -2.0f, 0.5f)));
+    l.as.infinite.radiance.world_from_light.y =
+        vec3_negate(l.as.infinite.radiance.world_from_light.y); /* a reflection too */
     uint32_t index;
     assert_int_equal(scene_add_light(s, &l, &index), AG_OK);
     assert_int_equal(scene_commit(s, &r->run, NULL), AG_OK);
@@ -278,7 +279,7 @@ static void directions_are_sampled_by_their_density(void **state)
         assert_close(whole, 1.0, 0.004);
         /* borders of pixels run through bins */
         assert_chi_square(counts, bins, SAMPLES, 0.03);
-        rgb expected = environment_integral(l);
+        rgb expected = environment_integral(&l->as.infinite.radiance);
         double tolerance = 5.0 * sqrt(fmax(0.0, square - integral[1] * integral[1]) / SAMPLES) + 1e-5 * expected.g;
         assert_close(integral[1], expected.g, tolerance);
         assert_relative(integral[0], expected.r, 0.02);
@@ -301,12 +302,12 @@ static void power_is_what_enters_the_bounding_sphere(void **state)
         enum { STEPS = 600 };
         for (int i = 0; i < STEPS * STEPS; i++)
             sum += (double)environment_whole_radiance(
-                       l, sample_uniform_sphere(
-                              (vec2){((float)(i / STEPS) + 0.5f) / STEPS, ((float)(i % STEPS) + 0.5f) / STEPS}))
+                       &l->as.infinite.radiance, sample_uniform_sphere((vec2){((float)(i / STEPS) + 0.5f) / STEPS,
+                                                                              ((float)(i % STEPS) + 0.5f) / STEPS}))
                        .r;
         double integral = sum * 4.0 * PI / (STEPS * STEPS), radius = s->bounding_radius;
         assert_relative(radius, 2.0 * sqrt(3.0), 1e-4);
-        assert_relative(environment_integral(l).r, integral, 0.01);
+        assert_relative(environment_integral(&l->as.infinite.radiance).r, integral, 0.01);
         assert_relative(l->power.r, PI * radius * radius * integral, 0.01);
         assert_relative(s->light_power.r, l->power.r, 1e-6);
         scene_destroy(s);
@@ -354,7 +355,8 @@ static void photons_fill_the_bounding_sphere_evenly(void **state)
         }
         assert_close(flux, l->power.g, 5.0 * sqrt(fmax(0.0, flux_square - flux * flux) / SAMPLES) + 1e-5 * l->power.g);
         for (int b = 0; b < BALLS; b++)
-            assert_close(sum[b], environment_integral(l).g, 5.0 * sqrt((square[b] - sum[b] * sum[b]) / SAMPLES));
+            assert_close(sum[b], environment_integral(&l->as.infinite.radiance).g,
+                         5.0 * sqrt((square[b] - sum[b] * sum[b]) / SAMPLES));
         integrate_bins(density_of_photons, (void *)l, 24, bins);
         assert_chi_square(counts, bins, SAMPLES, 0.03);
         scene_destroy(s);

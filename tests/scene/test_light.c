@@ -41,7 +41,7 @@ static void lamps_without_extent(void **state)
         if (is_lit)
             assert_close(at.radiance.g, 2.0 / 4.0 * x * x * (3.0 - 2.0 * x), 1e-4);
         light dimming = s->lights[0];
-        dimming.dims_by_cosine = true;
+        dimming.as.spot.dims_by_cosine = true;
         if (light_sample_from_point(s, &dimming, point, (vec2){0.5f, 0.5f}, &at))
             assert_close(at.radiance.g, 2.0 / 4.0 * c * x * x * (3.0 - 2.0 * x), 1e-4);
     }
@@ -67,7 +67,7 @@ static void narrow_spots_keep_their_power(void **state)
             const light *l = &s->lights[0];
             double sine = sin(ANGLES[k] * PI / 360.0), height = 2.0 * sine * sine;
             assert_relative(l->power.g, 7.0, 1e-5);
-            assert_relative(l->intensity.g, 7.0 / (2.0 * PI * height * (has_ramp ? 0.5 : 1.0)), 1e-5);
+            assert_relative(l->as.spot.intensity.g, 7.0 / (2.0 * PI * height * (has_ramp ? 0.5 : 1.0)), 1e-5);
             rng random = test_random(3);
             double mean_height = 0.0;
             for (int i = 0; i < SAMPLES; i++) {
@@ -88,7 +88,8 @@ static void narrow_spots_keep_their_power(void **state)
                 assert_int_equal(is_lit, WHERE[i] < 1.0);
                 if (is_lit)
                     assert_relative(at.radiance.g,
-                                    (double)l->intensity.g / 9.0 * (has_ramp ? x * x * (3.0 - 2.0 * x) : 1.0), 2e-2);
+                                    (double)l->as.spot.intensity.g / 9.0 * (has_ramp ? x * x * (3.0 - 2.0 * x) : 1.0),
+                                    2e-2);
             }
             scene_destroy(s);
         }
@@ -119,7 +120,7 @@ static void a_constant_goniometric_light_is_a_point(void **state)
     rng random = test_random(5);
     for (int i = 0; i < 1000; i++) {
         light_sample at;
-        vec3 point = vec3_add_scaled(l.position, random_direction(&random), 2.0f);
+        vec3 point = vec3_add_scaled(l.as.point.position, random_direction(&random), 2.0f);
         assert_true(light_sample_from_point(s, &s->lights[0], point, (vec2){0.5f, 0.5f}, &at));
         assert_relative(at.radiance.g, 2.0 / 4.0, 1e-5);
     }
@@ -135,14 +136,14 @@ static void a_constant_projection(void **state)
     test_run r;
     test_run_init(&r, 1);
     light l = projector(4, 2, constant_pixels(8), 90.0f);
-    l.world_from_light = (frame){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    l.as.projection.world_from_light = frame_identity();
     scene *s = scene_with_light(&r, "", &l);
     assert_int_equal(scene_commit(s, &r.run, NULL), AG_OK);
     double a = 2.0, b = 1.0;
     assert_relative(s->lights[0].power.r, 3.0 * 4.0 * asin(a * b / sqrt((1 + a * a) * (1 + b * b))), 1e-4);
     for (int i = 0; i < 200; i++) {
         double x = -3.0 + 0.03 * i, y = 0.7;
-        vec3 point = vec3_add(l.position, vec3_make((float)(2.0 * x), (float)(2.0 * y), 2.0f));
+        vec3 point = vec3_add(l.as.point.position, vec3_make((float)(2.0 * x), (float)(2.0 * y), 2.0f));
         light_sample at;
         bool is_lit = light_sample_from_point(s, &s->lights[0], point, (vec2){0.5f, 0.5f}, &at);
         if (fabs(fabs(x) - a) < 1e-3)

@@ -54,7 +54,7 @@ static void check_lamp(const char *world, vec3 point, double solid_angle)
         counts[direction_bin(at.direction)]++;
         assert_false(at.is_delta);
         assert_close(vec3_length(at.direction), 1.0, 1e-5);
-        assert_memory_equal(&at.radiance, &l->radiance, sizeof(rgb));
+        assert_memory_equal(&at.radiance, &l->as.area.radiance, sizeof(rgb));
         double inverse = 1.0 / (double)at.pdf_solid_angle;
         sum += inverse / SAMPLES, square += inverse * inverse / SAMPLES;
         assert_false(is_blocked_between(s, point, at.shadow_target));

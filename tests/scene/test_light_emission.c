@@ -152,7 +152,7 @@ static void distant_light_fills_the_disc_around_the_scene(void **state)
         light_emission e;
         surface_hit hit;
         assert_true(light_sample_emission(s, l, NULL, &random, &e));
-        assert_close(vec3_dot(e.direction, l->direction), 1.0, 1e-6);
+        assert_close(vec3_dot(e.direction, l->as.distant.direction), 1.0, 1e-6);
         vec3 off = vec3_sub(e.origin, s->bounding_center);
         double along = vec3_dot(off, e.direction), square = vec3_length_squared(off) - along * along;
         assert_true(along <= -radius && square <= radius * radius * 1.0001);
@@ -186,14 +186,14 @@ static void a_sun_of_an_extent_gives_as_much(void **state)
         light_emission e;
         light_sample at;
         assert_true(light_sample_emission(s, l, NULL, &random, &e));
-        const double cosine = vec3_dot(e.direction, l->direction);
+        const double cosine = vec3_dot(e.direction, l->as.distant.direction);
         assert_true(cosine >= 1.0 - height - 1e-5);
         facing += e.flux.r * cosine / SAMPLES;
         cosines += cosine / SAMPLES;
         squares += (1.0 - cosine) * (1.0 - cosine) / SAMPLES;
         const vec2 u = {rng_float(&random), rng_float(&random)};
         assert_true(light_sample_from_point(s, l, (vec3){1.0f, 2.0f, 3.0f}, u, &at));
-        sampled += at.radiance.r * -vec3_dot(at.direction, l->direction) / SAMPLES;
+        sampled += at.radiance.r * -vec3_dot(at.direction, l->as.distant.direction) / SAMPLES;
     }
     assert_relative(cosines, 1.0 - height / 2.0, 5.0 * 0.3 * height / sqrt(SAMPLES));
     assert_relative(squares, height * height / 3.0, 5.0 / sqrt(SAMPLES));

@@ -104,10 +104,11 @@ static light projection_number(int k)
 static light sky(void)
 {
     light l = light_make(LIGHT_INFINITE);
-    l.radiance = rgb_make(3.0f, 2.0f, 1.0f);
-    l.world_from_light = odd_frame();
-    assert_int_equal(environment_create(ENVIRONMENT_OCTAHEDRAL, 16, 16, noise_pixels(16, 16, 4), &l.environment),
-                     AG_OK);
+    l.as.infinite.radiance.value = rgb_make(3.0f, 2.0f, 1.0f);
+    l.as.infinite.radiance.world_from_light = odd_frame();
+    assert_int_equal(
+        environment_create(ENVIRONMENT_OCTAHEDRAL, 16, 16, noise_pixels(16, 16, 4), &l.as.infinite.radiance.picture),
+        AG_OK);
     return l;
 }
 
@@ -122,9 +123,10 @@ static scene *row_scene(test_run *r, const light_row *row)
     snprintf(world, sizeof world, "%s%s", row->texture ? row->texture : "", row->text);
     scene *s = scene_with_light(r, world, row->builder == FROM_TEXT || row->builder == DIMMING ? NULL : &l);
     assert_int_equal(s->light_count, 1);
-    s->lights[0].dims_by_cosine = row->builder == DIMMING;
+    if (row->builder == DIMMING)
+        s->lights[0].as.spot.dims_by_cosine = true;
     if (row->texture)
-        s->lights[0].radiance_texture = s->texture_count - 1;
+        s->lights[0].as.area.radiance_texture = s->texture_count - 1;
     assert_int_equal(scene_commit(s, &r->run, NULL), AG_OK);
     return s;
 }
@@ -134,9 +136,11 @@ static disc row_disc(const light_row *row, const light *l, int which)
 {
     disc d = {{0.1f, -0.2f, 0.0f}, {0.0f, 0.0f, 1.0f}, 0.8f};
     if (row->builder == GONIOMETRIC || row->builder == PROJECTION) {
-        vec3 z = l->world_from_light.z, x = l->world_from_light.x;
+        const frame *f = row->builder == GONIOMETRIC ? &l->as.goniometric.intensity.world_from_light
+                                                     : &l->as.projection.world_from_light;
+        vec3 z = f->z, x = f->x;
         vec3 away = which ? vec3_normalize(vec3_add_scaled(z, x, 0.4f)) : z;
-        d = (disc){vec3_add_scaled(l->position, away, 3.0f),
+        d = (disc){vec3_add_scaled(l->as.point.position, away, 3.0f),
                    vec3_normalize(vec3_make(-away.x, -away.y, -away.z + 0.3f)), 1.0f};
     } else if (row->builder == WINDOW && row->number < 4) {
         d = which ? (disc){{1.2f, 0.7f, 0.0f}, vec3_normalize(vec3_make(0.5f, -1.0f, 0.3f)), 0.4f}
@@ -159,9 +163,10 @@ static void every_kind_has_a_row(void **state)
         scene *s = row_scene(&r, &ROWS[k]);
         const light *l = &s->lights[0];
         is_there[l->kind] = true;
-        has_portal = has_portal || l->portal;
-        has_map = has_map || l->radiance_map;
-        has_picture = has_picture || (l->kind == LIGHT_INFINITE && l->environment && !l->portal);
+        has_portal = has_portal || (l->kind == LIGHT_INFINITE && l->as.infinite.portal);
+        has_map = has_map || (l->kind == LIGHT_AREA && l->as.area.map);
+        has_picture =
+            has_picture || (l->kind == LIGHT_INFINITE && l->as.infinite.radiance.picture && !l->as.infinite.portal);
         scene_destroy(s);
         test_run_reset(&r);
     }
@@ -210,7 +215,7 @@ static void check_towards(const light_row *row, const scene *s, vec3 point)
     static double bins[BIN_COUNT];
     static view v;
     const light *l = &s->lights[0];
-    bool is_unseen = l->kind == LIGHT_AREA && s->shapes[l->shape_index].alpha <= 0.0f;
+    bool is_unseen = l->kind == LIGHT_AREA && s->shapes[l->as.area.shape_index].alpha <= 0.0f;
     rng random = test_random(3);
     int seen = 0, strangers = 0;
     memset(counts, 0, sizeof counts);
@@ -229,7 +234,7 @@ static void check_towards(const light_row *row, const scene *s, vec3 point)
             assert_true(at.pdf_solid_angle == 1.0f);
             if (l->kind == LIGHT_DISTANT)
                 continue;
-            vec3 to = vec3_sub(l->position, point);
+            vec3 to = vec3_sub(l->as.point.position, point);
             double square = vec3_length_squared(to);
             assert_relative((double)vec3_dot(to, at.direction), sqrt(square), 1e-5);
             assert_relative((double)at.radiance.g, (double)light_intensity(l, vec3_negate(at.direction)).g / square,
@@ -253,13 +258,16 @@ static void check_towards(const light_row *row, const scene *s, vec3 point)
         return;
     double whole = integrate_bins(density, &v, FEWER > 1 ? 8 : 14, bins);
     /* a picture's black pixels have a little density too, and no light */
-    bool is_picture = l->kind == LIGHT_INFINITE && l->environment;
-    assert_close(whole, is_picture ? 1.0 : (double)seen / SAMPLES, (is_picture && l->portal ? 0.08 : 0.03) * WIDER);
-    bool is_round = l->kind == LIGHT_AREA && s->shapes[l->shape_index].kind == SHAPE_SPHERE;
+    bool is_picture = l->kind == LIGHT_INFINITE && l->as.infinite.radiance.picture;
+    assert_close(whole, is_picture ? 1.0 : (double)seen / SAMPLES,
+                 (is_picture && l->as.infinite.portal ? 0.08 : 0.03) * WIDER);
+    bool is_round = l->kind == LIGHT_AREA && s->shapes[l->as.area.shape_index].kind == SHAPE_SPHERE;
     for (int i = 0; i < BIN_COUNT; i++)
         if (is_round && v.sees_light[i] && v.sees_none[i]) /* along whose outline densities may be infinite */
             bins[i] = counts[i] = 0;
-    if (!l->radiance_map && !(l->kind == LIGHT_INFINITE && (l->environment || l->portal)) && !row->hides_itself)
+    if (!(l->kind == LIGHT_AREA && l->as.area.map) &&
+        !(l->kind == LIGHT_INFINITE && (l->as.infinite.radiance.picture || l->as.infinite.portal)) &&
+        !row->hides_itself)
         assert_chi_square(counts, bins, SAMPLES, 0.02 * WIDER);
 }
 
@@ -299,7 +307,7 @@ static void check_point(const light_row *row, const scene *s)
     for (int i = 0; i < SAMPLES; i++) {
         light_emission e;
         assert_true(light_sample_emission(s, l, NULL, &random, &e));
-        assert_memory_equal(&e.origin, &l->position, sizeof(vec3));
+        assert_memory_equal(&e.origin, &l->as.point.position, sizeof(vec3));
         counts[direction_bin(e.direction)]++;
     }
     double whole = integrate_bins(density_by_intensity, (void *)(uintptr_t)l, 24, bins);

@@ -102,7 +102,7 @@ static void directions_are_sampled_by_their_density(void **state)
                 assert_true(isinf(at.distance));
                 assert_close(vec3_length(at.direction), 1.0, 1e-6);
                 counts[direction_bin(at.direction)]++;
-                outside += !passes(l->portal, v.point, at.direction);
+                outside += !passes(l->as.infinite.portal, v.point, at.direction);
                 rgb seen = environment_radiance(l, v.point, at.direction);
                 float pdf = environment_pdf(l, v.point, at.direction);
                 strangers += fabsf(pdf / at.pdf_solid_angle - 1.0f) > 1e-4f || memcmp(&seen, &at.radiance, sizeof seen);
@@ -144,9 +144,10 @@ static void the_light_is_what_comes_through(void **state)
             }
             for (int i = 0; i < ALL; i++) {
                 vec3 d = random_direction(&random);
-                if (passes(l->portal, point, d))
-                    mean_add(&all, 4.0 * PI * (double)environment_whole_radiance(l, d).g, ALL);
-                assert_true(passes(l->portal, point, d) || i % 64 || rgb_is_black(environment_radiance(l, point, d)));
+                if (passes(l->as.infinite.portal, point, d))
+                    mean_add(&all, 4.0 * PI * (double)environment_whole_radiance(&l->as.infinite.radiance, d).g, ALL);
+                assert_true(passes(l->as.infinite.portal, point, d) || i % 64 ||
+                            rgb_is_black(environment_radiance(l, point, d)));
             }
             assert_close(through.value, all.value, 5.0 * hypot(mean_error(through, SAMPLES), mean_error(all, ALL)));
             /* nearly by radiance: little noise is left */
@@ -211,13 +212,15 @@ static void photons_enter_by_the_window(void **state)
         mean irradiance = {0.0, 0.0}, flux = {0.0, 0.0};
         for (int i = 0; i < SAMPLES; i++) {
             vec3 d = random_direction(&random);
-            double cosine = fmax(0.0, (double)vec3_dot(d, l->portal->axes.z));
-            mean_add(&irradiance, 4.0 * PI * cosine * (double)environment_whole_radiance(l, d).g, SAMPLES);
+            double cosine = fmax(0.0, (double)vec3_dot(d, l->as.infinite.portal->axes.z));
+            mean_add(&irradiance, 4.0 * PI * cosine * (double)environment_whole_radiance(&l->as.infinite.radiance, d).g,
+                     SAMPLES);
             light_emission e;
             if (!light_sample_emission(s, l, NULL, &random, &e))
                 continue;
             mean_add(&flux, e.flux.g, SAMPLES);
-            assert_true(passes(l->portal, vec3_add_scaled(e.origin, e.direction, 1.0f), vec3_negate(e.direction)));
+            assert_true(
+                passes(l->as.infinite.portal, vec3_add_scaled(e.origin, e.direction, 1.0f), vec3_negate(e.direction)));
         }
         assert_close(l->power.g, 3.0 * irradiance.value, 15.0 * mean_error(irradiance, SAMPLES));
         if (k == 0)

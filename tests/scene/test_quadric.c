@@ -359,8 +359,8 @@ static void lamps_shine_as_they_are_seen(void **state)
                 if (scene_intersect(s, scene_ray_make(point, direction), INFINITY, &hit))
                     seen += (double)light_emitted_radiance(s, lamp, &hit, vec3_negate(direction)).r * PI / count;
             }
-            double share = fmin(1.0, seen / PI / (double)lamp->radiance.r);
-            double seen_error = PI * (double)lamp->radiance.r * sqrt(share * (1.0 - share) / count);
+            double share = fmin(1.0, seen / PI / (double)lamp->as.area.radiance.r);
+            double seen_error = PI * (double)lamp->as.area.radiance.r * sqrt(share * (1.0 - share) / count);
             double error = sqrt((squares - sampled * sampled) / count) + seen_error;
             assert_close(sampled, seen, 5.0 * error + 1e-3);
             scene_destroy(s);

@@ -27,9 +27,9 @@ static scene *lamp_scene(test_run *r, const char *textures, const char *world)
     snprintf(all, sizeof all, "%s%s", textures, world);
     scene *s = scene_with_light(r, all, NULL);
     assert_int_equal(s->light_count, 1);
-    s->lights[0].radiance_texture = s->texture_count - 1;
+    s->lights[0].as.area.radiance_texture = s->texture_count - 1;
     assert_int_equal(scene_commit(s, &r->run, NULL), AG_OK);
-    assert_non_null(s->lights[0].radiance_map);
+    assert_non_null(s->lights[0].as.area.map);
     return s;
 }
 
@@ -65,7 +65,7 @@ static void power_is_that_of_the_mean(void **state)
                 mean_add(&value, (double)light_texture_value(s, l, &hit).g / (double)(at.pdf_area * lamp->area),
                          SAMPLES);
             }
-            double expected = 2.0 * value.value * PI * (double)lamp->area * (l->two_sided ? 2.0 : 1.0);
+            double expected = 2.0 * value.value * PI * (double)lamp->area * (l->as.area.two_sided ? 2.0 : 1.0);
             double error = 5.0 * mean_error(value, SAMPLES) / value.value + 0.002; /* its own grid's */
             assert_relative(l->power.g, expected, error);
             expect_power_of_photons(s, SAMPLES);

@@ -4,6 +4,7 @@
 #define AFTERGLOW_PUBLIC_CONTEXT_H
 
 #include "afterglow/base.h"
+#include "afterglow/structs.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -34,7 +35,7 @@ typedef struct ag_context_settings {
     void *user;               /* handed to both */
 } ag_context_settings;
 
-AG_API ag_context_settings ag_default_context_settings(void);
+AG_DEFAULT_STRUCT(context_settings, AG_STRUCT_CONTEXT_SETTINGS)
 /* Copies the settings; NULL for the defaults. Errors: AG_ERROR_ARGUMENT (isa is not known, or struct_size is not the
  * library's; the log may not be where it should then, and says nothing), AG_ERROR_MEMORY, AG_ERROR_SYSTEM. */
 AG_API ag_status ag_context_create(const ag_context_settings *settings, ag_context **out_context);

@@ -33,7 +33,7 @@ typedef struct ag_output_settings {
     float exposure_stops; /* light is multiplied by 2 to this before the view; default 0 */
 } ag_output_settings;
 
-AG_API ag_output_settings ag_default_output_settings(void);
+AG_DEFAULT_STRUCT(output_settings, AG_STRUCT_OUTPUT_SETTINGS)
 
 /* Whether a file of that name could be written with these settings: the extension is known, the folder there, the
  * colour config and what is asked of it usable. To be asked before a long render. Errors: AG_ERROR_ARGUMENT (extension

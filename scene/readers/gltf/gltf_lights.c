@@ -86,7 +86,7 @@ static ag_status read_spot(gltf_reader *r, const gltf_value *at, light *l)
         return gltf_error(r, &spot, "its angles are %g and %g, which should be 0 <= inner < outer <= pi / 2", inner,
                           outer);
     int version = exporter_version(r->generator);
-    l->dims_by_cosine = version > 0 && version < 3005;
+    l->as.spot.dims_by_cosine = version > 0 && version < 3005;
     if (r->is_blenders && outer > 0.0)
         inner = acos(fmin(cos(outer) + (1.0 - cos(outer)) * (1.0 - inner / outer), 1.0));
     light_set_cone(l, inner, outer);
@@ -126,16 +126,21 @@ ag_status gltf_add_lamp(gltf_reader *r, uint32_t index, const gltf_matrix *world
                        name);
     light l = light_make(is_sun ? LIGHT_DISTANT : is_spot ? LIGHT_SPOT : LIGHT_POINT);
     rgb strength = rgb_scale(color, (float)(intensity * (is_sun ? r->lamp_units.per_lux : r->lamp_units.per_candela)));
-    if (is_sun)
-        l.radiance = strength;
-    else
-        l.intensity = strength;
-    l.direction = vec3_make((float)-z[0], (float)-z[1], (float)-z[2]);
-    l.position =
+    const vec3 direction = vec3_make((float)-z[0], (float)-z[1], (float)-z[2]);
+    const vec3 position =
         vec3_make((float)world_from_node->m[0][3], (float)world_from_node->m[1][3], (float)world_from_node->m[2][3]);
-    if (is_spot)
+    if (is_sun) {
+        l.as.distant.direction = direction;
+        l.as.distant.irradiance = strength;
+    } else if (is_spot) {
+        l.as.spot.position = position;
+        l.as.spot.direction = direction;
+        l.as.spot.intensity = strength;
         AG_TRY(read_spot(r, &at, &l));
-    if (!((double)vec3_max_abs(l.position) <= GLTF_MAX_COORDINATE))
+    } else {
+        l.as.point = (point_source){position, strength};
+    }
+    if (!((double)vec3_max_abs(position) <= GLTF_MAX_COORDINATE))
         return gltf_error(r, &at, "it is beyond 1e18 units");
     return rgb_is_black(strength) ? AG_OK : scene_add_light(r->scene, &l, &light_index);
 }

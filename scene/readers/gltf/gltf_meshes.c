@@ -98,10 +98,10 @@ static ag_status add_shape(gltf_reader *r, const mesh *m, bool is_mirror, const 
     if (rgb_is_black(from->radiance))
         return AG_OK;
     light l = light_make(LIGHT_AREA);
-    l.shape_index = shape_index;
-    l.radiance = from->radiance;
-    l.radiance_texture = from->radiance_texture;
-    l.two_sided = from->is_two_sided;
+    l.as.area.shape_index = shape_index;
+    l.as.area.radiance = from->radiance;
+    l.as.area.radiance_texture = from->radiance_texture;
+    l.as.area.two_sided = from->is_two_sided;
     r->glow_count += from->only_glows;
     return scene_add_light(r->scene, &l, &light_index);
 }

@@ -183,8 +183,8 @@ static ag_status add_area_light(importer *i, const import_light *source, rgb int
     }
     if (source->measure == IMPORT_LIGHT_WATTS)
         s.alpha = 0.0f; /* Blender's lamps light, but are not seen */
-    AG_TRY(scene_add_shape(i->scene, &s, &l.shape_index));
-    l.radiance = scale_color(intensity, 1.0 / area);
+    AG_TRY(scene_add_shape(i->scene, &s, &l.as.area.shape_index));
+    l.as.area.radiance = scale_color(intensity, 1.0 / area);
     return scene_add_light(i->scene, &l, &index);
 }
 
@@ -199,7 +199,7 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
     AG_TRY(find_intensity_factor(i, &source, &factor));
     rgb intensity = scale_color(source.color, factor);
     vec3 position = {(float)source.position[0], (float)source.position[1], (float)source.position[2]};
-    light l = light_make(LIGHT_POINT);
+    light l;
     uint32_t index;
     bool is_aimed = source.kind != IMPORT_LIGHT_POINT && source.kind != IMPORT_LIGHT_AMBIENT;
     if (!is_sound(source.color) || !is_sound(intensity) || !vec3_is_finite(position) ||
@@ -208,29 +208,34 @@ ag_status importer_add_light(importer *i, const import_light *light_source)
                source.name);
         return AG_OK;
     }
-    l.position = position;
-    l.intensity = intensity;
-    if (is_aimed)
-        l.direction = vec3_make((float)source.direction[0], (float)source.direction[1], (float)source.direction[2]);
+    const vec3 direction = {(float)source.direction[0], (float)source.direction[1], (float)source.direction[2]};
     switch ((import_light_kind)source.kind) {
-    case IMPORT_LIGHT_POINT: break;
+    case IMPORT_LIGHT_POINT:
+        l = light_make(LIGHT_POINT);
+        l.as.point = (point_source){position, intensity};
+        break;
     case IMPORT_LIGHT_SPOT: {
         double outer = fmin(fmax(0.5 * (double)source.outer_cone, 1e-3), PI); /* NaN: the first */
         double inner = fmin(fmax(0.5 * (double)source.inner_cone, 0.0), outer);
-        l.kind = LIGHT_SPOT;
+        l = light_make(LIGHT_SPOT);
+        l.as.spot.position = position;
+        l.as.spot.direction = direction;
+        l.as.spot.intensity = intensity;
         light_set_cone(&l, inner, outer);
-        l.dims_by_cosine = source.dims_by_cosine == 1 && outer <= 0.5 * PI;
+        l.as.spot.dims_by_cosine = source.dims_by_cosine == 1 && outer <= 0.5 * PI;
         break;
     }
     case IMPORT_LIGHT_DIRECTIONAL:
-        l.kind = LIGHT_DISTANT;
-        l.radiance = scale_color(source.color, source.measure == IMPORT_LIGHT_WATTS ? 1.0 : PI);
+        l = light_make(LIGHT_DISTANT);
+        l.as.distant.direction = direction;
+        l.as.distant.irradiance = scale_color(source.color, source.measure == IMPORT_LIGHT_WATTS ? 1.0 : PI);
         break;
     case IMPORT_LIGHT_AMBIENT:
-        l.kind = LIGHT_INFINITE;
-        l.radiance = source.color;
+        l = light_make(LIGHT_INFINITE);
+        l.as.infinite.radiance.value = source.color;
         break;
-    case IMPORT_LIGHT_AREA: return add_area_light(i, &source, intensity);
+    case IMPORT_LIGHT_AREA:
+    default: return add_area_light(i, &source, intensity);
     }
     return scene_add_light(i->scene, &l, &index);
 }

@@ -124,10 +124,10 @@ static ag_status add_lamp(importer *i, const import_surface *surface, uint32_t s
         return AG_OK;
     light l = light_make(LIGHT_AREA);
     uint32_t index;
-    l.shape_index = shape_index;
-    l.radiance = surface->radiance;
-    l.radiance_texture = surface->radiance_texture;
-    l.two_sided = true; /* these formats know no side that is dark */
+    l.as.area.shape_index = shape_index;
+    l.as.area.radiance = surface->radiance;
+    l.as.area.radiance_texture = surface->radiance_texture;
+    l.as.area.two_sided = true; /* these formats know no side that is dark */
     return scene_add_light(i->scene, &l, &index);
 }
 

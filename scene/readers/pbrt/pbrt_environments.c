@@ -45,11 +45,11 @@ static ag_status read_portal(pbrt_parser *parser, parameter_list *list, bool *ou
 }
 
 /* The radiance that makes "illuminance" 1. With a portal a constant light is, to pbrt, a picture of one pixel. */
-static double find_measure(const working_space *space, const light *l, bool has_portal)
+static double find_measure(const working_space *space, const light_directions *sky, bool has_portal)
 {
-    if (l->environment)
-        return picture_illuminance(space, l->environment);
-    return has_portal ? 2.0 * PI * (double)working_space_luminance(space, l->radiance) : PI;
+    if (sky->picture)
+        return picture_illuminance(space, sky->picture);
+    return has_portal ? 2.0 * PI * (double)working_space_luminance(space, sky->value) : PI;
 }
 
 static ag_status read_infinite(pbrt_parser *parser, parameter_list *list, light *l)
@@ -59,12 +59,12 @@ static ag_status read_infinite(pbrt_parser *parser, parameter_list *list, light 
     float scale = 1.0f, illuminance = -1.0f;
     bool has_portal;
     portal placed;
-    l->kind = LIGHT_INFINITE;
-    l->radiance = rgb_gray(1.0f);
+    light_directions *sky = &l->as.infinite.radiance;
+    sky->value = rgb_gray(1.0f);
     AG_TRY(parameter_get_string(list, log, "filename", &name));
     if (name[0] && parameter_list_find(list, "L"))
         return pbrt_refuse(parser, list, "L", "an infinite light has \"L\" or \"filename\", not both");
-    AG_TRY(parameter_get_rgb(list, log, "L", &l->radiance));
+    AG_TRY(parameter_get_rgb(list, log, "L", &sky->value));
     AG_TRY(parameter_get_float(list, log, "scale", &scale));
     AG_TRY(parameter_get_float(list, log, "illuminance", &illuminance));
     AG_TRY(read_portal(parser, list, &has_portal, &placed));
@@ -73,20 +73,21 @@ static ag_status read_infinite(pbrt_parser *parser, parameter_list *list, light 
 
     double factor = scale;
     if (name[0]) {
-        AG_TRY(pbrt_set_light_frame(parser, list, false, l));
-        AG_TRY(pbrt_read_environment(parser, list, name, false, &l->environment));
+        AG_TRY(pbrt_set_light_frame(parser, list, false, &sky->world_from_light));
+        AG_TRY(pbrt_read_environment(parser, list, name, false, &sky->picture));
     }
     if (illuminance > 0.0f) {
-        double measure = find_measure(&parser->scene->space, l, has_portal);
+        double measure = find_measure(&parser->scene->space, sky, has_portal);
         if (!(measure > 0.0))
             return pbrt_refuse(parser, list, "illuminance", "no light comes from the upper half of the picture");
         factor *= illuminance / measure;
     }
-    rgb c = l->radiance;
-    l->radiance = rgb_make((float)(c.r * factor), (float)(c.g * factor), (float)(c.b * factor));
-    if (!rgb_is_finite(environment_integral(l)))
+    rgb c = sky->value;
+    sky->value = rgb_make((float)(c.r * factor), (float)(c.g * factor), (float)(c.b * factor));
+    pbrt_tell_dark_light(parser, list, sky->value);
+    if (!rgb_is_finite(environment_integral(sky)))
         return pbrt_refuse(parser, list, "scale", "the light is too bright for a float");
-    return has_portal ? portal_create(&placed, l, &l->portal) : AG_OK;
+    return has_portal ? portal_create(&placed, sky, &l->as.infinite.portal) : AG_OK;
 }
 
 ag_status pbrt_infinite_light(pbrt_parser *parser, parameter_list *list, light *out_light)

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, bool swaps_yz, light *l)
+ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, bool swaps_yz, frame *out_frame)
 {
     const transform *t = &parser->state.world_from_object;
     const int z_column = swaps_yz ? 1 : 2;
@@ -35,11 +35,11 @@ ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, 
         length += x[i] * x[i];
     }
     length = sqrt(length);
-    l->world_from_light.z = vec3_make((float)z[0], (float)z[1], (float)z[2]);
-    l->world_from_light.x = vec3_make((float)(x[0] / length), (float)(x[1] / length), (float)(x[2] / length));
-    vec3 y = vec3_cross(l->world_from_light.z, l->world_from_light.x);
-    l->world_from_light.y = transform_swaps_handedness(t) != swaps_yz ? vec3_negate(y) : y;
-    const frame *f = &l->world_from_light;
+    out_frame->z = vec3_make((float)z[0], (float)z[1], (float)z[2]);
+    out_frame->x = vec3_make((float)(x[0] / length), (float)(x[1] / length), (float)(x[2] / length));
+    vec3 y = vec3_cross(out_frame->z, out_frame->x);
+    out_frame->y = transform_swaps_handedness(t) != swaps_yz ? vec3_negate(y) : y;
+    const frame *f = out_frame;
     if (!vec3_is_finite(f->x) || !vec3_is_finite(f->y) || !vec3_is_finite(f->z))
         return pbrt_refuse(parser, list, "filename", "the transform leaves no direction");
     return AG_OK;
@@ -105,7 +105,7 @@ ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list,
 /* --- lights at a point --- */
 
 static ag_status read_common(pbrt_parser *parser, parameter_list *list, const char **out_name, double *out_scale,
-                             double *out_power, light *l)
+                             double *out_power, vec3 *out_position)
 {
     float scale = 1.0f, power = -1.0f;
     *out_name = "";
@@ -116,15 +116,15 @@ static ag_status read_common(pbrt_parser *parser, parameter_list *list, const ch
         return pbrt_refuse(parser, list, "scale", "\"scale\" should not be negative");
     if (!(*out_name)[0])
         return pbrt_refuse(parser, list, "filename", "a \"%s\" light needs a picture, \"string filename\"", list->name);
-    l->position = transform_point(&parser->state.world_from_object, vec3_make(0.0f, 0.0f, 0.0f));
+    *out_position = transform_point(&parser->state.world_from_object, vec3_make(0.0f, 0.0f, 0.0f));
     *out_scale = scale;
     *out_power = power;
-    return vec3_is_finite(l->position) ? AG_OK : pbrt_error(parser, list->where, 1, "the light is too far away");
+    return vec3_is_finite(*out_position) ? AG_OK : pbrt_error(parser, list->where, 1, "the light is too far away");
 }
 
 /* intensity times scale; where power is given, as much as makes a light of intensity 1 have it. */
 static ag_status set_intensity(pbrt_parser *parser, const parameter_list *list, rgb color, double scale, double power,
-                               double power_of_one, light *l)
+                               double power_of_one, rgb *out_intensity)
 {
     double factor = scale;
     if (power > 0.0) {
@@ -132,9 +132,10 @@ static ag_status set_intensity(pbrt_parser *parser, const parameter_list *list, 
             return pbrt_refuse(parser, list, "power", "the picture is black");
         factor *= power / power_of_one;
     }
-    l->intensity = rgb_make((float)(color.r * factor), (float)(color.g * factor), (float)(color.b * factor));
-    return rgb_is_finite(l->intensity) ? AG_OK
-                                       : pbrt_refuse(parser, list, "scale", "the light is too bright for a float");
+    *out_intensity = rgb_make((float)(color.r * factor), (float)(color.g * factor), (float)(color.b * factor));
+    pbrt_tell_dark_light(parser, list, *out_intensity);
+    return rgb_is_finite(*out_intensity) ? AG_OK
+                                         : pbrt_refuse(parser, list, "scale", "the light is too bright for a float");
 }
 
 static ag_status read_goniometric(pbrt_parser *parser, parameter_list *list, light *l)
@@ -142,13 +143,13 @@ static ag_status read_goniometric(pbrt_parser *parser, parameter_list *list, lig
     const char *name;
     double scale = 1.0, power = -1.0;
     rgb color = rgb_gray(1.0f);
-    l->kind = LIGHT_GONIOMETRIC;
-    AG_TRY(read_common(parser, list, &name, &scale, &power, l));
+    light_directions *intensity = &l->as.goniometric.intensity;
+    AG_TRY(read_common(parser, list, &name, &scale, &power, &l->as.goniometric.position));
     AG_TRY(parameter_get_rgb(list, parser->log, "I", &color));
-    AG_TRY(pbrt_set_light_frame(parser, list, true, l));
-    AG_TRY(pbrt_read_environment(parser, list, name, true, &l->environment));
-    AG_TRY(set_intensity(parser, list, color, scale, power, l->environment->integral.g, l));
-    return rgb_is_finite(environment_integral(l))
+    AG_TRY(pbrt_set_light_frame(parser, list, true, &intensity->world_from_light));
+    AG_TRY(pbrt_read_environment(parser, list, name, true, &intensity->picture));
+    AG_TRY(set_intensity(parser, list, color, scale, power, intensity->picture->integral.g, &intensity->value));
+    return rgb_is_finite(environment_integral(intensity))
                ? AG_OK
                : pbrt_refuse(parser, list, "scale", "the light is too bright for a float");
 }
@@ -159,18 +160,17 @@ static ag_status read_projection(pbrt_parser *parser, parameter_list *list, ligh
     double scale = 1.0, power = -1.0;
     float fov = 90.0f;
     light_picture picture;
-    l->kind = LIGHT_PROJECTION;
-    AG_TRY(read_common(parser, list, &name, &scale, &power, l));
+    projection_source *p = &l->as.projection;
+    AG_TRY(read_common(parser, list, &name, &scale, &power, &p->position));
     AG_TRY(parameter_get_float(list, parser->log, "fov", &fov));
     if (!(fov > 0.0f && fov < 180.0f))
         return pbrt_refuse(parser, list, "fov", "\"fov\" should be within (0, 180) degrees");
-    AG_TRY(pbrt_set_light_frame(parser, list, false, l));
-    l->direction = l->world_from_light.z;
+    AG_TRY(pbrt_set_light_frame(parser, list, false, &p->world_from_light));
     AG_TRY(read_pixels(parser, list, name, false, &picture));
-    AG_TRY(projection_create(picture.width, picture.height, picture.pixels, fov, &l->projection));
+    AG_TRY(projection_create(picture.width, picture.height, picture.pixels, fov, &p->picture));
     AG_TRY(set_intensity(parser, list, rgb_gray(1.0f), scale, power,
-                         working_space_luminance(&parser->scene->space, l->projection->integral), l));
-    return rgb_is_finite(rgb_mul(l->intensity, l->projection->integral))
+                         working_space_luminance(&parser->scene->space, p->picture->integral), &p->intensity));
+    return rgb_is_finite(rgb_mul(p->intensity, p->picture->integral))
                ? AG_OK
                : pbrt_refuse(parser, list, "scale", "the light is too bright for a float");
 }

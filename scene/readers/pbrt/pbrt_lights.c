@@ -35,6 +35,11 @@ static void tell_dark(pbrt_parser *parser, file_location where, const char *dire
         log_at(parser->log, AG_LOG_DEBUG, where, "%s \"%s\" has no power", directive, name);
 }
 
+void pbrt_tell_dark_light(pbrt_parser *parser, const parameter_list *list, rgb emitted)
+{
+    tell_dark(parser, list->where, "LightSource", list->name, emitted);
+}
+
 /* factor is a quotient of powers: it may overflow where the scene makes no sense. */
 static ag_status scale_color(pbrt_parser *parser, const parameter_list *list, rgb color, double factor, rgb *out_color)
 {
@@ -61,62 +66,68 @@ static ag_status read_direction(pbrt_parser *parser, parameter_list *list, light
     return AG_OK;
 }
 
-static ag_status set_position(pbrt_parser *parser, const parameter_list *list, vec3 from, light *l)
+static ag_status set_position(pbrt_parser *parser, const parameter_list *list, vec3 from, vec3 *out_position)
 {
-    l->position = transform_point(&parser->state.world_from_object, from);
-    return vec3_is_finite(l->position) ? AG_OK : pbrt_refuse(parser, list, "from", "the light is too far away");
+    *out_position = transform_point(&parser->state.world_from_object, from);
+    return vec3_is_finite(*out_position) ? AG_OK : pbrt_refuse(parser, list, "from", "the light is too far away");
+}
+
+/* scale_color of a LightSource, told where it is black. */
+static ag_status set_color(pbrt_parser *parser, const parameter_list *list, rgb color, double factor, rgb *out_color)
+{
+    AG_TRY(scale_color(parser, list, color, factor, out_color));
+    pbrt_tell_dark_light(parser, list, *out_color);
+    return AG_OK;
 }
 
 static ag_status read_point(pbrt_parser *parser, parameter_list *list, light *l)
 {
     light_common c;
-    l->kind = LIGHT_POINT;
     AG_TRY(read_common(parser, list, "I", "power", &c));
     AG_TRY(parameter_get_vec3(list, parser->log, "from", PARAMETER_POINT3, &c.from));
-    AG_TRY(set_position(parser, list, c.from, l));
+    AG_TRY(set_position(parser, list, c.from, &l->as.point.position));
     double factor = c.power > 0.0f ? c.scale * (c.power / (4.0 * PI)) : c.scale;
-    return scale_color(parser, list, c.color, factor, &l->intensity);
+    return set_color(parser, list, c.color, factor, &l->as.point.intensity);
 }
 
 static ag_status read_spot(pbrt_parser *parser, parameter_list *list, light *l)
 {
     light_common c;
+    spot_source *spot = &l->as.spot;
     float cone = 30.0f, delta = 5.0f;
-    l->kind = LIGHT_SPOT;
     AG_TRY(read_common(parser, list, "I", "power", &c));
-    AG_TRY(read_direction(parser, list, &c, &l->direction));
-    AG_TRY(set_position(parser, list, c.from, l));
+    AG_TRY(read_direction(parser, list, &c, &spot->direction));
+    AG_TRY(set_position(parser, list, c.from, &spot->position));
     AG_TRY(parameter_get_float(list, parser->log, "coneangle", &cone));
     AG_TRY(parameter_get_float(list, parser->log, "conedeltaangle", &delta));
-    AG_TRY(parameter_get_bool(list, parser->log, "cosine", &l->dims_by_cosine)); /* which pbrt does not have */
+    AG_TRY(parameter_get_bool(list, parser->log, "cosine", &spot->dims_by_cosine)); /* which pbrt does not have */
     if (!(cone > 0.0f && cone <= 180.0f))
         return pbrt_refuse(parser, list, "coneangle", "\"coneangle\" should be within (0, 180] degrees");
     if (!(delta >= 0.0f && delta <= 2.0f * cone)) /* beyond the axis pbrt counts on at the other side */
         return pbrt_refuse(parser, list, "conedeltaangle",
                            "\"conedeltaangle\" should be from 0 to twice \"coneangle\"");
-    if (l->dims_by_cosine && (cone > 90.0f || c.power > 0.0f))
+    if (spot->dims_by_cosine && (cone > 90.0f || c.power > 0.0f))
         return pbrt_refuse(parser, list, "cosine",
                            "a \"cosine\" goes with a \"coneangle\" of at most 90 degrees, and not with \"power\"");
     light_set_cone(l, ((double)cone - delta) * (PI / 180.0), cone * (PI / 180.0));
     double cone_measure =
-        PI * ((double)l->falloff_start + l->falloff_end); /* the ramp is half of its height, on average */
+        PI * ((double)spot->falloff_start + spot->falloff_end); /* the ramp is half of its height, on average */
     double factor = c.power > 0.0f ? c.scale * (c.power / cone_measure) : c.scale;
-    return scale_color(parser, list, c.color, factor, &l->intensity);
+    return set_color(parser, list, c.color, factor, &spot->intensity);
 }
 
 static ag_status read_distant(pbrt_parser *parser, parameter_list *list, light *l)
 {
     light_common c;
     float angle = 0.0f; /* which pbrt does not have: degrees across the disc that shines */
-    l->kind = LIGHT_DISTANT;
     AG_TRY(read_common(parser, list, "L", "illuminance", &c));
-    AG_TRY(read_direction(parser, list, &c, &l->direction));
+    AG_TRY(read_direction(parser, list, &c, &l->as.distant.direction));
     AG_TRY(parameter_get_float(list, parser->log, "angle", &angle));
     if (!(angle >= 0.0f && angle <= 180.0f))
         return pbrt_refuse(parser, list, "angle", "\"angle\" should be from 0 to 180 degrees");
     light_set_disc(l, (double)angle * (PI / 180.0));
     double factor = c.power > 0.0f ? (double)c.scale * c.power : c.scale;
-    return scale_color(parser, list, c.color, factor, &l->radiance);
+    return set_color(parser, list, c.color, factor, &l->as.distant.irradiance);
 }
 
 /* "photons", which pbrt does not have: multiplies the light's share of them. */
@@ -154,30 +165,31 @@ static ag_status read_light(pbrt_parser *parser, parameter_list *list, light *l)
     typedef ag_status reader(pbrt_parser *, parameter_list *, light *);
     static const struct {
         const char *name;
+        light_kind kind;
         reader *read;
-    } READERS[] = {{"point", read_point},
-                   {"spot", read_spot},
-                   {"distant", read_distant},
-                   {"infinite", pbrt_infinite_light},
-                   {"goniometric", pbrt_goniometric_light},
-                   {"projection", pbrt_projection_light}};
-    AG_TRY(read_photons(parser, list, &l->photons));
-    AG_TRY(read_group(parser, list, &l->group));
+    } READERS[] = {{"point", LIGHT_POINT, read_point},
+                   {"spot", LIGHT_SPOT, read_spot},
+                   {"distant", LIGHT_DISTANT, read_distant},
+                   {"infinite", LIGHT_INFINITE, pbrt_infinite_light},
+                   {"goniometric", LIGHT_GONIOMETRIC, pbrt_goniometric_light},
+                   {"projection", LIGHT_PROJECTION, pbrt_projection_light}};
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
-        if (strcmp(list->name, READERS[i].name) == 0)
+        if (strcmp(list->name, READERS[i].name) == 0) {
+            *l = light_make(READERS[i].kind);
+            AG_TRY(read_photons(parser, list, &l->photons));
+            AG_TRY(read_group(parser, list, &l->group));
             return READERS[i].read(parser, list, l);
+        }
     return pbrt_error(parser, list->where, strlen("LightSource"), "unknown light \"%s\"", list->name);
 }
 
 static ag_status add_light(pbrt_parser *parser, parameter_list *list)
 {
     uint32_t index;
-    light l = light_make(LIGHT_POINT);
+    light l;
     AG_TRY(read_light(parser, list, &l));
     parameter_list_warn_unused(list, parser->log);
     l.medium = pbrt_use_medium(parser, parser->state.medium_outside);
-    bool has_radiance = l.kind == LIGHT_DISTANT || l.kind == LIGHT_INFINITE;
-    tell_dark(parser, list->where, "LightSource", list->name, has_radiance ? l.radiance : l.intensity);
     return scene_add_light(parser->scene, &l, &index);
 }
 
@@ -266,25 +278,25 @@ ag_status pbrt_add_area_light(pbrt_parser *parser, const pbrt_area_light *source
         return AG_OK;
     }
     light l = light_make(LIGHT_AREA);
-    l.shape_index = shape_index;
-    l.two_sided = source->two_sided;
-    l.radiance = source->radiance;
-    l.radiance_texture = source->radiance_texture;
+    l.as.area.shape_index = shape_index;
+    l.as.area.two_sided = source->two_sided;
+    l.as.area.radiance = source->radiance;
+    l.as.area.radiance_texture = source->radiance_texture;
     l.photons = source->photons;
     l.group = source->group;
     if (source->power > 0.0f) {
         /* of a lamp with radiance 1 */
         double power = PI * (double)area * (source->two_sided ? 2.0 : 1.0) * source->mean_luminance;
         double factor = source->power / power;
-        l.radiance =
-            rgb_make((float)(l.radiance.r * factor), (float)(l.radiance.g * factor), (float)(l.radiance.b * factor));
-        if (!rgb_is_finite(l.radiance)) {
+        l.as.area.radiance = rgb_make((float)(l.as.area.radiance.r * factor), (float)(l.as.area.radiance.g * factor),
+                                      (float)(l.as.area.radiance.b * factor));
+        if (!rgb_is_finite(l.as.area.radiance)) {
             log_at(parser->log, AG_LOG_ERROR, where,
                    "AreaLightSource \"diffuse\": the light is too bright for a float");
             return AG_ERROR_SCENE;
         }
     }
-    tell_dark(parser, where, "AreaLightSource", "diffuse", l.radiance);
+    tell_dark(parser, where, "AreaLightSource", "diffuse", l.as.area.radiance);
     uint32_t index;
     return scene_add_light(parser->scene, &l, &index);
 }

@@ -223,7 +223,7 @@ static void put_out_interfaces(pbrt_parser *parser)
         shape *lamp = &s->shapes[i];
         if (lamp->light_index == SHAPE_NO_LIGHT || s->materials[lamp->material_index].kind != MATERIAL_INTERFACE)
             continue;
-        s->lights[lamp->light_index].radiance = rgb_gray(0.0f);
+        s->lights[lamp->light_index].as.area.radiance = rgb_gray(0.0f);
         lamp->light_index = SHAPE_NO_LIGHT;
         log_once(parser->log, AG_LOG_WARNING, "interface made late",
                  "%s: warning: shapes with the material \"interface\" cannot shine: their area lights are left out",

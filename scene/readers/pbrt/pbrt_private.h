@@ -415,7 +415,9 @@ ag_status pbrt_goniometric_light(pbrt_parser *parser, parameter_list *list, ligh
 ag_status pbrt_projection_light(pbrt_parser *parser, parameter_list *list, light *out_light);
 /* world_from_light: the axes of the current transform, or with swaps_yz the light's y and z along its z and y. What is
  * no rotation, reflection or scaling keeps the light's z axis, and x as far as it can. */
-ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, bool swaps_yz, light *l);
+ag_status pbrt_set_light_frame(pbrt_parser *parser, const parameter_list *list, bool swaps_yz, frame *out_frame);
+/* Says so where what a LightSource sends is black. */
+void pbrt_tell_dark_light(pbrt_parser *parser, const parameter_list *list, rgb emitted);
 /* The picture called name, "filename" of the list; its colours averaged where is_gray. */
 ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list, const char *name, bool is_gray,
                                 struct environment **out_environment);
