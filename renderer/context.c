@@ -13,18 +13,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-ag_context_settings ag_default_context_settings(void)
-{
-    return (ag_context_settings){.struct_size = sizeof(ag_context_settings)};
-}
-
 ag_status context_check_struct(ag_context *context, const char *type, size_t size, size_t known_size)
 {
     if (size == known_size)
         return AG_OK;
     log_message(context->log, AG_LOG_ERROR,
-                "%s: struct_size is %zu, and of this library's %zu: it is set by ag_default_...()", type, size,
-                known_size);
+                "%s: struct_size is %zu, and of this library's %zu: ag_default_...() sets it, and the program is to be "
+                "compiled with the headers of this release",
+                type, size, known_size);
     return AG_ERROR_ARGUMENT;
 }
 
@@ -99,6 +95,7 @@ void ag_context_destroy(ag_context *context)
     free(context->working_space_name);
     free_confinement(context);
     free(context->color_summary);
+    free(context->color_views);
     free(context);
 }
 

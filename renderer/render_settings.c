@@ -2,6 +2,7 @@
  * picture instead of some.
  * Flow: scene -> [here] -> render. Threads: as in afterglow.h. */
 #include "context.h"
+#include "public_structs.h"
 #include "settings_table.h"
 #include "status.h"
 
@@ -31,13 +32,13 @@ bool ag_scene_has_own_samples(const ag_scene *loaded)
     return loaded && loaded->s && loaded->s->hints.has_sampler && loaded->s->hints.is_for_photon_map;
 }
 
-ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loaded, ag_render_settings *out_settings)
+ag_status ag_render_settings_fill(ag_context *context, const ag_scene *loaded, void *out_settings, size_t struct_size)
 {
     if (!context || !loaded || !out_settings)
         return AG_ERROR_ARGUMENT;
     AG_TRY(scene_check_complete(context, loaded));
     const scene_hints *hints = &loaded->s->hints;
-    ag_render_settings settings = ag_default_render_settings();
+    ag_render_settings settings = settings_table_defaults();
     take_int(hints->width, &settings.width);
     take_int(hints->height, &settings.height);
     if (hints->has_crop_window)
@@ -60,7 +61,7 @@ ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loa
     take_float(hints->radius, &settings.radius);
     take_int(hints->gather_samples, &settings.gather_samples);
     take_int(hints->max_depth, &settings.max_depth);
-    *out_settings = settings;
+    public_struct_write(&settings, sizeof settings, out_settings, struct_size);
     return AG_OK;
 }
 

@@ -33,16 +33,6 @@ static ag_status copy_definitions(ag_context *context, const ag_definition *give
     return out_definitions->items ? AG_OK : AG_ERROR_MEMORY;
 }
 
-ag_scene_settings ag_default_scene_settings(void)
-{
-    return (ag_scene_settings){.struct_size = sizeof(ag_scene_settings),
-                               .texture_memory_bytes = AG_DEFAULT_TEXTURE_MEMORY_BYTES,
-                               .camera_fov_degrees = 45.0f,
-                               .sun_elevation_degrees = 45.0f,
-                               .sun_irradiance = 3.0f,
-                               .sky_radiance = {1.0f, 1.0f, 1.0f}};
-}
-
 static vec3 vec3_of(const float v[3]) { return vec3_make(v[0], v[1], v[2]); }
 
 static bool is_in(float value, float least, float most) { return value >= least && value <= most; } /* no NaN is */

@@ -55,7 +55,7 @@ static void set_number(const setting_row *row, double number, ag_render_settings
     }
 }
 
-ag_render_settings ag_default_render_settings(void)
+ag_render_settings settings_table_defaults(void)
 {
     ag_render_settings settings;
     memset(&settings, 0, sizeof settings);

@@ -44,6 +44,8 @@ typedef struct setting_row {
 
 /* NULL: there are no more. */
 const setting_row *setting_at(size_t index);
+/* All settings at their defaults. */
+ag_render_settings settings_table_defaults(void);
 
 /* Whether the setting has a value in its range; where not, out says what it must be. */
 bool setting_check(const setting_row *row, const ag_render_settings *settings, char *out, size_t size);

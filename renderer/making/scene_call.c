@@ -74,7 +74,9 @@ static ag_status take_struct(log_sink *log, const scene_call *c, const void *giv
         return refuse(log, c, "there is no description");
     memcpy(&given_size, given, sizeof given_size);
     if (given_size != size)
-        return refuse(log, c, "struct_size is not one that this library knows: it is set by ag_default_...()");
+        return refuse(log, c,
+                      "struct_size is not that of this library: ag_default_...() sets it, and the program is to be "
+                      "compiled with the headers of this release");
     memcpy(out, given, size);
     return AG_OK;
 }

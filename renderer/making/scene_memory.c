@@ -353,37 +353,24 @@ static ag_status add(ag_scene *made, const call_given *given, ag_handle *out_han
     return call_work_end(&work, status);
 }
 
-ag_shape ag_default_shape(void) { return (ag_shape){.struct_size = sizeof(ag_shape)}; }
-
 ag_status ag_scene_add_shape(ag_scene *made, const ag_shape *shape_to_add, ag_handle *out_handle)
 {
     return add(made, &(call_given){.kind = CALL_SHAPE, .description = shape_to_add}, out_handle);
 }
-
-ag_light ag_default_light(void) { return (ag_light){.struct_size = sizeof(ag_light)}; }
 
 ag_status ag_scene_add_light(ag_scene *made, const ag_light *light_to_add, ag_handle *out_handle)
 {
     return add(made, &(call_given){.kind = CALL_LIGHT, .description = light_to_add}, out_handle);
 }
 
-ag_instance ag_default_instance(void) { return (ag_instance){.struct_size = sizeof(ag_instance)}; }
-
 ag_status ag_scene_add_instance(ag_scene *made, const ag_instance *instance, ag_handle *out_handle)
 {
     return add(made, &(call_given){.kind = CALL_INSTANCE, .description = instance}, out_handle);
 }
 
-ag_image ag_default_image(void) { return (ag_image){.struct_size = sizeof(ag_image), .channel_count = 3}; }
-
 ag_status ag_scene_add_image(ag_scene *made, const char *name, const ag_image *picture)
 {
     return add(made, &(call_given){.kind = CALL_IMAGE, .description = picture, .name = name}, NULL);
-}
-
-ag_texture ag_default_texture(void)
-{
-    return (ag_texture){.struct_size = sizeof(ag_texture), .value = AG_TEXTURE_SPECTRUM};
 }
 
 ag_status ag_scene_add_texture(ag_scene *made, const ag_texture *texture_to_add)
@@ -416,8 +403,6 @@ ag_status ag_scene_set_hint(ag_scene *made, ag_scene_hint hint, const char *type
 }
 
 /* --- camera --- */
-
-ag_camera ag_default_camera(void) { return (ag_camera){.struct_size = sizeof(ag_camera), .type = "perspective"}; }
 
 static ag_status refuse(log_sink *log, const scene_call *c, const char *what)
 {

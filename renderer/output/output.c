@@ -14,11 +14,6 @@
 
 enum { MESSAGE_SIZE = 1024 };
 
-ag_output_settings ag_default_output_settings(void)
-{
-    return (ag_output_settings){.struct_size = sizeof(ag_output_settings)};
-}
-
 static image_sample_type stored_type(const image_format *format, ag_sample_type wanted)
 {
     switch (wanted) {

@@ -45,7 +45,7 @@ _CANCELLED = 9  # AG_CANCELLED
 _PARAMETER_TYPES = ["float", "integer", "string", "bool", "point2", "vector2", "point3", "vector3", "normal", "rgb",
                     "spectrum", "blackbody", "texture"]
 _HINTS = {"film": 0, "sampler": 1, "integrator": 2, "pixelfilter": 3}
-_SETTINGS_ROOM = 4096  # bytes for an ag_render_settings, which is only handed on
+_RENDER_SETTINGS = 2  # AG_STRUCT_RENDER_SETTINGS, which are only handed on
 
 _LOG = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p)
 _PROGRESS = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_double)
@@ -135,7 +135,8 @@ def _load_library():
         "ag_scene_add_material": (c_int, [c_void_p, c_char_p, c_char_p] + parameters),
         "ag_scene_add_medium": (c_int, [c_void_p, c_char_p, c_char_p] + parameters),
         "ag_scene_set_hint": (c_int, [c_void_p, c_int, c_char_p] + parameters),
-        "ag_render_settings_from_scene": (c_int, [c_void_p, c_void_p, c_void_p]),
+        "ag_render_settings_fill": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t]),
+        "ag_struct_size": (c_size_t, [c_int]),
         "ag_render_settings_set": (c_int, [c_void_p, c_char_p, c_char_p]),
         "ag_render": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(c_void_p)]),
         "ag_rendering_create": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(c_void_p)]),
@@ -452,8 +453,9 @@ class Scene:
 
     def _settings(self, values):
         """An ag_render_settings, and what it borrows."""
-        room = ctypes.create_string_buffer(_SETTINGS_ROOM)
-        self._context._check(_library.ag_render_settings_from_scene(self._context._pointer, self._pointer, room))
+        size = _library.ag_struct_size(_RENDER_SETTINGS)
+        room = ctypes.create_string_buffer(size)
+        self._context._check(_library.ag_render_settings_fill(self._context._pointer, self._pointer, room, size))
         kept = [room]
         for name, value in values.items():
             kept.append(None if value is True else _text(str(value)))

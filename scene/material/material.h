@@ -69,11 +69,16 @@ typedef struct material {
      * by. Each is SCENE_NO_TEXTURE where there is none; read only where is_textured. */
     bool is_textured;      /* set by scene_add_material */
     bool remaps_roughness; /* alpha is the square root of the texture's value */
-    uint32_t reflectance_texture, transmittance_texture, alpha_u_texture, alpha_v_texture, mix_amount_texture;
-    uint32_t eta_texture, k_texture; /* conductor, from air */
-    uint32_t base_alpha_u_texture, base_alpha_v_texture;
-    uint32_t metallic_texture, roughness_texture, transmission_texture, specular_texture, specular_color_texture,
-        clearcoat_texture, clearcoat_roughness_texture; /* principled */
+    union {
+        struct {
+            uint32_t reflectance_texture, transmittance_texture, alpha_u_texture, alpha_v_texture, mix_amount_texture;
+            uint32_t eta_texture, k_texture; /* conductor, from air */
+            uint32_t base_alpha_u_texture, base_alpha_v_texture;
+            uint32_t metallic_texture, roughness_texture, transmission_texture, specular_texture,
+                specular_color_texture, clearcoat_texture, clearcoat_roughness_texture; /* principled */
+        };
+        uint32_t value_textures[16]; /* all of these */
+    };
 
     /* The textures that tilt the shading normal, SCENE_NO_TEXTURE: none; of a mix those of the one picked
      * (shading_frame.h). */

@@ -1,42 +1,13 @@
 /* material_mips.c: see material_mips.h. */
 #include "material/material_mips.h"
 
+#include "material/material_type.h"
 #include "texture/texture_udim.h"
-
-/* A factor that varies goes along with the colour or against it: the mean of the product is another than the product of
- * the means. Roughness has hardly a part in how much is reflected. */
-static bool has_varying_factors(const material *m)
-{
-    return (m->metallic != 0.0f && m->metallic_texture != SCENE_NO_TEXTURE) ||
-           (m->transmission != 0.0f && m->transmission_texture != SCENE_NO_TEXTURE) ||
-           (m->specular != 0.0f && m->specular_texture != SCENE_NO_TEXTURE) ||
-           m->specular_color_texture != SCENE_NO_TEXTURE ||
-           (m->clearcoat != 0.0f && m->clearcoat_texture != SCENE_NO_TEXTURE);
-}
-
-static float bound_of_color(const scene *s, rgb color, uint32_t texture_index)
-{
-    return texture_index == SCENE_NO_TEXTURE ? rgb_max(color) : s->textures[texture_index].most;
-}
-
-/* Where reflectance and transmittance together are above 1 they are scaled down: the mean of that is not that of
- * means. */
-static bool is_cut_by_its_sum(const scene *s, const material *m)
-{
-    return m->kind == MATERIAL_DIFFUSE_TRANSMISSION &&
-           !(bound_of_color(s, m->reflectance, m->reflectance_texture) +
-                 bound_of_color(s, m->transmittance, m->transmittance_texture) <=
-             1.0f);
-}
 
 bool material_is_filtered(const scene *s, const material *m)
 {
-    switch (m->kind) {
-    case MATERIAL_DIFFUSE: return true;
-    case MATERIAL_DIFFUSE_TRANSMISSION: return !is_cut_by_its_sum(s, m);
-    case MATERIAL_PRINCIPLED: return !has_varying_factors(m);
-    default: return false;
-    }
+    const material_type *type = material_type_of(m->kind);
+    return type->is_filtered && type->is_filtered(s, m);
 }
 
 static ag_status make_of_picture(scene *s, run_context *run, texture_image *i)

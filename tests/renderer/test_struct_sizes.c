@@ -230,10 +230,66 @@ static void descriptions_are_needed(void **state)
     end(&d);
 }
 
+/* A program's struct of any size: what lies behind it stays as it was, and the library's size alone is filled. */
+static void no_more_is_written_than_the_program_has(void **state)
+{
+    (void)state;
+    enum { ROOM = 4096 };
+    for (int which = AG_STRUCT_CONTEXT_SETTINGS; which <= AG_STRUCT_CAMERA; which++) {
+        const size_t known = ag_struct_size((ag_struct)which);
+        assert_in_range(known, sizeof(size_t), ROOM / 2);
+        for (size_t size = sizeof(size_t); size <= known + 64; size += 8) {
+            union {
+                size_t struct_size;
+                unsigned char bytes[ROOM];
+            } given;
+            memset(&given, 0xa5, sizeof given);
+            ag_struct_fill((ag_struct)which, &given, size);
+            assert_int_equal(given.struct_size, size);
+            for (size_t k = sizeof(size_t); k < ROOM; k++) {
+                if (k >= size)
+                    assert_int_equal(given.bytes[k], 0xa5);
+                else if (size != known)
+                    assert_int_equal(given.bytes[k], 0);
+            }
+        }
+    }
+    assert_int_equal(ag_struct_size((ag_struct)(AG_STRUCT_CAMERA + 1)), 0);
+    const ag_camera camera = ag_default_camera();
+    assert_int_equal(camera.struct_size, ag_struct_size(AG_STRUCT_CAMERA));
+    assert_string_equal(camera.type, "perspective");
+}
+
+/* An older and a newer program's settings, which the library fills within their size and then refuses. */
+static void settings_of_another_release_are_refused(void **state)
+{
+    (void)state;
+    bench b;
+    begin_bench(&b);
+    const size_t sizes[] = {sizeof(ag_render_settings) - 8, sizeof(ag_render_settings) + 8};
+    for (int i = 0; i < 2; i++) {
+        union {
+            ag_render_settings settings;
+            unsigned char bytes[sizeof(ag_render_settings) + 64];
+        } given;
+        memset(&given, 0xa5, sizeof given);
+        assert_int_equal(ag_render_settings_fill(b.d.context, b.complete, &given, sizes[i]), AG_OK);
+        for (size_t k = sizes[i]; k < sizeof given; k++)
+            assert_int_equal(given.bytes[k], 0xa5);
+        b.d.said[0] = '\0';
+        ag_film *film = NULL;
+        assert_int_equal(ag_render(b.d.context, b.complete, &given.settings, &film), AG_ERROR_ARGUMENT);
+        assert_null(film);
+        assert_non_null(strstr(b.d.said, "compiled with the headers of this release"));
+    }
+    end_bench(&b);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {TEST_IN_FOLDER(other_sizes_are_refused),
-                                       cmocka_unit_test(other_sizes_are_refused_in_silence),
-                                       cmocka_unit_test(descriptions_are_needed)};
+    const struct CMUnitTest tests[] = {
+        TEST_IN_FOLDER(other_sizes_are_refused), cmocka_unit_test(other_sizes_are_refused_in_silence),
+        cmocka_unit_test(descriptions_are_needed), cmocka_unit_test(no_more_is_written_than_the_program_has),
+        TEST_IN_FOLDER(settings_of_another_release_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,7 +26,7 @@ for i, name in enumerate(afterglow._PARAMETER_TYPES):
 for name, i in afterglow._HINTS.items():
     print(f'_Static_assert(AG_HINT_{name.upper().replace("PIXELF", "PIXEL_F")} == {i}, "{name}");')
 print(f'_Static_assert(AG_CANCELLED == {afterglow._CANCELLED}, "AG_CANCELLED");')
-print(f'_Static_assert(sizeof(ag_render_settings) <= {afterglow._SETTINGS_ROOM}, "room for settings");')
+print(f'_Static_assert(AG_STRUCT_RENDER_SETTINGS == {afterglow._RENDER_SETTINGS}, "AG_STRUCT_RENDER_SETTINGS");')
 END
 "$CC" -std=c17 -I "$root/renderer/include" -I "$root/threads/include" -fsyntax-only layout.c ||
     fail "the module's structs are not the header's"

@@ -5,14 +5,17 @@
  *
  * Threads: a context and what was made with it belong to one thread at a time, but for ag_context_cancel and
  * ag_context_pause, which any thread and any signal handler may call, and for ag_film_read_tile,
- * ag_film_read_picture and ag_view_apply, which any thread may. Several contexts may work side by side.
+ * ag_film_read_picture and ag_view_apply, which any thread may; once one view has been made with a context, other
+ * threads may make more of them with ag_view_create. Several contexts may work side by side.
  * Errors: what can fail returns ag_status and writes its out-parameters on AG_OK alone; the text goes to the log.
  * Settings, and the structs that describe parts of a scene, are plain structs that ag_default_...() fills: a program
  * changes the members that it cares for, and later releases add some. The first member, struct_size, is the struct's
- * size as the library knows it. A call that gets another does nothing, and gives AG_ERROR_ARGUMENT, with a message
- * where a context is among its arguments: the struct was not filled. A program that was compiled with the headers of
- * another release is not found by it, since ag_default_...() writes whole structs: the SONAME keeps the two apart,
- * which changes whenever a public struct or enum does. Parts: each of the headers below may be included alone. */
+ * size as the program was compiled with it, and no more than that is written. A call that gets a size which is not the
+ * library's does nothing, and gives AG_ERROR_ARGUMENT, with a message where a context is among its arguments: the
+ * struct was not filled, or the program was compiled with the headers of another release. The SONAME, which
+ * changes whenever a public struct or enum does, keeps releases apart too, and alone where the library writes other
+ * structs (ag_statistics, ag_prediction, ...). Parts: each of the headers below may be included alone.
+ */
 #ifndef AFTERGLOW_AFTERGLOW_H
 #define AFTERGLOW_AFTERGLOW_H
 
@@ -28,5 +31,6 @@
 #include "afterglow/scene_editing.h"
 #include "afterglow/scene_making.h"
 #include "afterglow/statistics.h"
+#include "afterglow/structs.h"
 
 #endif

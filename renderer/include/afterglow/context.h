@@ -4,6 +4,7 @@
 #define AFTERGLOW_PUBLIC_CONTEXT_H
 
 #include "afterglow/base.h"
+#include "afterglow/structs.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -34,7 +35,7 @@ typedef struct ag_context_settings {
     void *user;               /* handed to both */
 } ag_context_settings;
 
-AG_API ag_context_settings ag_default_context_settings(void);
+AG_DEFAULT_STRUCT(context_settings, AG_STRUCT_CONTEXT_SETTINGS)
 /* Copies the settings; NULL for the defaults. Errors: AG_ERROR_ARGUMENT (isa is not known, or struct_size is not the
  * library's; the log may not be where it should then, and says nothing), AG_ERROR_MEMORY, AG_ERROR_SYSTEM. */
 AG_API ag_status ag_context_create(const ag_context_settings *settings, ag_context **out_context);
@@ -53,6 +54,11 @@ AG_API void ag_context_pause(ag_context *context);
 /* Lists what the colour config has, as lines of text: displays and their views, looks, colour spaces, roles. The
  * context's. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 AG_API ag_status ag_color_summary(ag_context *context, const char **out_text);
+
+/* A display of the colour config and one of its views, by number: number 0 is what ag_output_settings takes where they
+ * name none, the others follow as the config has them. The strings are the context's. Errors: AG_ERROR_ARGUMENT (there
+ * are no more), AG_ERROR_COLOR, AG_ERROR_MEMORY. */
+AG_API ag_status ag_color_view_at(ag_context *context, size_t index, const char **out_display, const char **out_view);
 
 #ifdef __cplusplus
 }

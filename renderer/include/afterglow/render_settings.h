@@ -116,13 +116,18 @@ typedef struct ag_render_settings {
     bool photon_map_refresh; /* one that would be refused is traced anew, and replaced */
 } ag_render_settings;
 
-/* The scene's own settings, and our defaults for what it leaves open. Loading the scene has checked what its file says.
- * Errors: AG_ERROR_ARGUMENT. */
-AG_API ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *scene,
-                                               ag_render_settings *out_settings);
+/* ag_struct_fill (structs.h) with the scene's own settings, and our defaults for what it leaves open. Loading the scene
+ * has checked what its file says. Errors: AG_ERROR_ARGUMENT, where nothing is written. */
+AG_API ag_status ag_render_settings_fill(ag_context *context, const ag_scene *scene, void *out_settings,
+                                         size_t struct_size);
+static inline ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loaded,
+                                                      ag_render_settings *out_settings)
+{
+    return ag_render_settings_fill(context, loaded, out_settings, sizeof *out_settings);
+}
 
 /* Our defaults alone. */
-AG_API ag_render_settings ag_default_render_settings(void);
+AG_DEFAULT_STRUCT(render_settings, AG_STRUCT_RENDER_SETTINGS)
 
 /* A setting that has a name, for command lines, dialogs and their help. The strings are the library's. */
 typedef struct ag_setting {

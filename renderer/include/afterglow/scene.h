@@ -104,7 +104,7 @@ typedef struct ag_scene_settings {
                                    false: what was said is forgotten with the commit */
 } ag_scene_settings;
 
-AG_API ag_scene_settings ag_default_scene_settings(void);
+AG_DEFAULT_STRUCT(scene_settings, AG_STRUCT_SCENE_SETTINGS)
 
 /* ag_scene_load with settings; NULL: the default ones. They are needed for the time of the call alone. Errors also:
  * AG_ERROR_ARGUMENT (a setting is out of its range; the log says which). */

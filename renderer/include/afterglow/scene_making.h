@@ -96,7 +96,7 @@ typedef struct ag_image {
     const unsigned char *bytes; /* as the values of a file of 8 bits: sRGB where no "encoding" says otherwise; or */
     const float *floats;        /* as those of an EXR file, linear */
 } ag_image;
-AG_API ag_image ag_default_image(void);
+AG_DEFAULT_STRUCT(image, AG_STRUCT_IMAGE)
 AG_API ag_status ag_scene_add_image(ag_scene *scene, const char *name, const ag_image *image);
 
 typedef enum ag_texture_value { AG_TEXTURE_FLOAT, AG_TEXTURE_SPECTRUM } ag_texture_value;
@@ -109,7 +109,7 @@ typedef struct ag_texture {
     size_t parameter_count;
     const double *world_from_texture; /* of textures in space; NULL, the default: as it is */
 } ag_texture;
-AG_API ag_texture ag_default_texture(void);
+AG_DEFAULT_STRUCT(texture, AG_STRUCT_TEXTURE)
 AG_API ag_status ag_scene_add_texture(ag_scene *scene, const ag_texture *texture);
 
 /* A shape, a light or an instance of a scene, for the functions that change it. No two of them are the same in the life
@@ -132,7 +132,7 @@ typedef struct ag_shape {
     size_t light_parameter_count;
     const char *medium_inside, *medium_outside; /* NULL, the default: none */
 } ag_shape;
-AG_API ag_shape ag_default_shape(void);
+AG_DEFAULT_STRUCT(shape, AG_STRUCT_SHAPE)
 AG_API ag_status ag_scene_add_shape(ag_scene *scene, const ag_shape *shape, ag_handle *out_handle);
 
 /* An object has at least one shape when its first instance is made, and is complete with that: nothing can be added to
@@ -143,7 +143,7 @@ typedef struct ag_instance {
     const double *world_from_object;     /* NULL, the default: as it is */
     const double *world_from_object_end; /* NULL, the default: it does not move */
 } ag_instance;
-AG_API ag_instance ag_default_instance(void);
+AG_DEFAULT_STRUCT(instance, AG_STRUCT_INSTANCE)
 AG_API ag_status ag_scene_add_instance(ag_scene *scene, const ag_instance *instance, ag_handle *out_handle);
 
 typedef struct ag_light {
@@ -154,7 +154,7 @@ typedef struct ag_light {
     const double *world_from_light; /* NULL, the default: as it is */
     const char *medium_outside;     /* NULL, the default: none */
 } ag_light;
-AG_API ag_light ag_default_light(void);
+AG_DEFAULT_STRUCT(light, AG_STRUCT_LIGHT)
 AG_API ag_status ag_scene_add_light(ag_scene *scene, const ag_light *light, ag_handle *out_handle);
 
 /* The last one counts, but for has_camera (see ag_scene_create); it comes before all that moves. Of a scene that is
@@ -171,7 +171,7 @@ typedef struct ag_camera {
     const double *world_from_camera_end; /* NULL, the default: it does not move */
     const char *medium;                  /* that it is in; NULL, the default: none */
 } ag_camera;
-AG_API ag_camera ag_default_camera(void);
+AG_DEFAULT_STRUCT(camera, AG_STRUCT_CAMERA)
 AG_API ag_status ag_scene_set_camera(ag_scene *scene, const ag_camera *camera);
 
 #ifdef __cplusplus

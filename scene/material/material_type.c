@@ -1,0 +1,76 @@
+/* material_type.c: the table of the kinds, and what several of them share: see material_type.h. */
+#include "material/material_type.h"
+
+#include "material/surface_footprint.h"
+
+/* The least index of refraction: a texture of it may be black. */
+static const float ETA_MIN = 1e-3f;
+
+/* Rays do not stop at an interface; of a mix one of two others has been picked before. */
+static const material_type no_material = {.base = LOBE_DIFFUSE};
+
+const material_type *const material_types[MATERIAL_KIND_COUNT] = {
+    [MATERIAL_DIFFUSE] = &diffuse_material,
+    [MATERIAL_DIFFUSE_TRANSMISSION] = &diffuse_transmission_material,
+    [MATERIAL_CONDUCTOR] = &conductor_material,
+    [MATERIAL_DIELECTRIC] = &dielectric_material,
+    [MATERIAL_THIN_DIELECTRIC] = &thin_dielectric_material,
+    [MATERIAL_INTERFACE] = &no_material,
+    [MATERIAL_COATED_DIFFUSE] = &coated_diffuse_material,
+    [MATERIAL_COATED_CONDUCTOR] = &coated_conductor_material,
+    [MATERIAL_HAIR] = &hair_material,
+    [MATERIAL_PRINCIPLED] = &principled_material,
+    [MATERIAL_MIX] = &no_material,
+};
+
+bool material_always(const scene *s, const material *m)
+{
+    (void)s, (void)m;
+    return true;
+}
+
+static rgb clamp_to_unit(rgb v)
+{
+    return (rgb){fminf(fmaxf(v.r, 0.0f), 1.0f), fminf(fmaxf(v.g, 0.0f), 1.0f), fminf(fmaxf(v.b, 0.0f), 1.0f)};
+}
+
+void material_look_up_color(const material_lookup *at, uint32_t texture_index, rgb *in_out_color)
+{
+    if (texture_index != SCENE_NO_TEXTURE)
+        *in_out_color = clamp_to_unit(texture_filtered_rgb(at->s, texture_index, at->hit, at->footprint));
+}
+
+void material_look_up_facets(const material_lookup *at, const material *m, uint32_t texture_u, uint32_t texture_v,
+                             ggx *facets)
+{
+    const uint32_t textures[] = {texture_u, texture_v};
+    float *const alphas[] = {&facets->alpha_u, &facets->alpha_v};
+    for (int i = 0; i < 2; i++)
+        if (textures[i] != SCENE_NO_TEXTURE) {
+            float value = fmaxf(0.0f, texture_evaluate_float(at->s, textures[i], at->hit));
+            *alphas[i] = m->remaps_roughness ? sqrtf(value) : value;
+        }
+    material_make_rough_on_both_axes(&facets->alpha_u, &facets->alpha_v);
+}
+
+void material_look_up_metal(const material_lookup *at, const material *m, float from_air, rgb *in_out_eta,
+                            rgb *in_out_k)
+{
+    if (m->reflectance_texture != SCENE_NO_TEXTURE) {
+        rgb r = rgb_gray(0.0f);
+        material_look_up_color(at, m->reflectance_texture, &r);
+        *in_out_eta = rgb_gray(from_air);
+        *in_out_k = rgb_scale(
+            (rgb){material_k_from_reflectance(r.r), material_k_from_reflectance(r.g), material_k_from_reflectance(r.b)},
+            from_air);
+    }
+    if (m->eta_texture != SCENE_NO_TEXTURE) {
+        rgb eta = texture_evaluate_rgb(at->s, m->eta_texture, at->hit);
+        *in_out_eta =
+            rgb_scale(rgb_make(fmaxf(eta.r, ETA_MIN), fmaxf(eta.g, ETA_MIN), fmaxf(eta.b, ETA_MIN)), from_air);
+    }
+    if (m->k_texture != SCENE_NO_TEXTURE) {
+        rgb k = texture_evaluate_rgb(at->s, m->k_texture, at->hit);
+        *in_out_k = rgb_scale(rgb_make(fmaxf(k.r, 0.0f), fmaxf(k.g, 0.0f), fmaxf(k.b, 0.0f)), from_air);
+    }
+}

@@ -1,0 +1,99 @@
+/* material_type.h: what a kind of material is: one row of material_type.c each, in the file of its family.
+ * Flow: material.c, material_point.c, material_mips.c, pane.c, slab.c and bsdf_init.c ask the row of a material's kind.
+ * Threads: read-only tables of pure functions. */
+#ifndef AFTERGLOW_MATERIAL_TYPE_H
+#define AFTERGLOW_MATERIAL_TYPE_H
+
+#include "material/bsdf.h"
+
+/* Where textures are looked up. footprint: NULL where they are not filtered. */
+typedef struct material_lookup {
+    const scene *s;
+    const surface_hit *hit;
+    const struct surface_footprint *footprint;
+} material_lookup;
+
+/* What is asked of a material that is no mix. */
+typedef bool material_predicate(const scene *s, const material *m);
+
+/* Both faces of a plate: what each reflects and lets through of light that meets it from outside (outer, in) and from
+ * within (inner, out). */
+typedef struct material_faces {
+    rgb outer, in, inner, out;
+} material_faces;
+
+/* A function may be NULL where its comment says what that means. */
+typedef struct material_type {
+    /* --- by what the file says --- */
+
+    /* Sets defaults that differ from those of material_make; NULL: none does. */
+    void (*init)(material *m);
+    /* Works out what can be beforehand; NULL: nothing. */
+    void (*prepare)(material *m);
+    /* Each of these is NULL where it is never so. material_is_traced: */
+    material_predicate *is_traced;
+    /* material_is_clear_glass: */
+    material_predicate *is_clear_glass;
+    /* It has a diffuse base anywhere: */
+    material_predicate *has_base;
+    /* pane_may_be_of: */
+    material_predicate *may_be_pane;
+    /* slab_may_be_of, of a smooth one without textures whose ior is not 1: */
+    material_predicate *may_be_slab;
+    /* material_is_filtered: */
+    material_predicate *is_filtered;
+
+    /* --- at a point --- */
+
+    /* Sets the values that hold where there is no texture; NULL: it has none. */
+    void (*say)(const material *m, material_point *p);
+    /* Puts those of textures in their place; NULL: it has none. */
+    void (*look_up)(const material_lookup *at, const material *m, material_point *p);
+    /* material_point_has_grain; NULL: never. */
+    bool (*has_grain)(const material_point *p);
+    /* pane_is_of; NULL: never. */
+    bool (*is_pane)(const material_point *p);
+    /* pane_transmittance; cosine of either sign. NULL: it is never a pane. */
+    rgb (*pane_transmittance)(const material_point *p, float cosine);
+    /* Of a material that may_be_slab: the index within, and what its faces do with light that meets them at those
+     * cosines (>= 0), outside and within. */
+    float (*index)(const material_point *p);
+    material_faces (*faces)(const material_point *p, float cosine, float cosine_within);
+    /* Adds its lobes, a diffuse one that reflects before all others; NULL: rays do not stop there. */
+    void (*add_lobes)(bsdf *b, const surface_hit *hit);
+    /* The kind of that diffuse lobe; LOBE_DIFFUSE also where there is none: nothing keeps light from it. */
+    bsdf_lobe_kind base;
+} material_type;
+
+/* diffuse_material.c, conductor_material.c, glass_material.c, coated_material.c, hair_material.c, principled_material.c
+ */
+extern const material_type diffuse_material, diffuse_transmission_material, conductor_material, dielectric_material,
+    thin_dielectric_material, coated_diffuse_material, coated_conductor_material, hair_material, principled_material;
+
+extern const material_type *const material_types[MATERIAL_KIND_COUNT];
+
+static inline const material_type *material_type_of(material_kind kind) { return material_types[kind]; }
+
+/* --- what several kinds share --- */
+
+/* A predicate that always holds. */
+bool material_always(const scene *s, const material *m);
+
+static inline bool facets_are_smooth(ggx facets) { return material_is_smooth(facets.alpha_u, facets.alpha_v); }
+static inline bool facets_have_grain(ggx facets) { return facets.alpha_u != facets.alpha_v; }
+
+/* Each leaves a value as it is where its texture is SCENE_NO_TEXTURE. Colours are clamped to [0, 1], and filtered. */
+void material_look_up_color(const material_lookup *at, uint32_t texture_index, rgb *in_out_color);
+void material_look_up_facets(const material_lookup *at, const material *m, uint32_t texture_u, uint32_t texture_v,
+                             ggx *in_out_facets);
+/* A metal's index; from_air: what the one from air is multiplied by. */
+void material_look_up_metal(const material_lookup *at, const material *m, float from_air, rgb *in_out_eta,
+                            rgb *in_out_k);
+
+/* Shares become probabilities once all lobes are there. */
+static inline void bsdf_add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_delta, float share)
+{
+    b->lobes[b->lobe_count++] = (bsdf_lobe){(uint8_t)kind, (uint8_t)group, is_delta, share};
+}
+
+#endif

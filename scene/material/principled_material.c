@@ -1,0 +1,136 @@
+/* principled_material.c: glTF's metallic-roughness as a kind of material (principled.h). Threads: pure functions. */
+#include "material/material_type.h"
+
+static void init(material *m) { m->reflectance = rgb_gray(1.0f); }
+
+/* --- by what the file says; textures are factors, and may take metal and roughness away --- */
+
+static bool is_traced(const scene *s, const material *m)
+{
+    principled_point p = principled_point_of(m);
+    (void)s;
+    return principled_has_interface(&p) || m->clearcoat > 0.0f;
+}
+
+static bool is_clear_glass(const scene *s, const material *m)
+{
+    principled_point p = principled_point_of(m);
+    (void)s;
+    return material_is_smooth(m->alpha_u, m->alpha_v) && principled_transmits(&p);
+}
+
+static bool has_base(const scene *s, const material *m)
+{
+    (void)s;
+    return !rgb_is_black(m->reflectance) && (m->metallic < 1.0f || m->metallic_texture != SCENE_NO_TEXTURE) &&
+           (m->transmission < 1.0f || m->transmission_texture != SCENE_NO_TEXTURE);
+}
+
+static bool is_straight(bool is_thin, float ior) { return is_thin || ior == 1.0f; }
+
+static bool may_be_pane(const scene *s, const material *m)
+{
+    (void)s;
+    return is_straight(m->is_thin, m->ior) && m->transmission > 0.0f &&
+           (m->roughness_texture != SCENE_NO_TEXTURE || material_is_smooth(m->alpha_u, m->alpha_v));
+}
+
+static bool may_be_slab(const scene *s, const material *m)
+{
+    (void)s;
+    return !m->is_thin && m->ior > 0.0f && m->transmission == 1.0f && m->metallic == 0.0f && m->clearcoat == 0.0f;
+}
+
+/* A factor that varies goes along with the colour or against it: the mean of the product is another than the product of
+ * the means. Roughness has hardly a part in how much is reflected. */
+static bool is_filtered(const scene *s, const material *m)
+{
+    (void)s;
+    const bool has_varying_factors = (m->metallic != 0.0f && m->metallic_texture != SCENE_NO_TEXTURE) ||
+                                     (m->transmission != 0.0f && m->transmission_texture != SCENE_NO_TEXTURE) ||
+                                     (m->specular != 0.0f && m->specular_texture != SCENE_NO_TEXTURE) ||
+                                     m->specular_color_texture != SCENE_NO_TEXTURE ||
+                                     (m->clearcoat != 0.0f && m->clearcoat_texture != SCENE_NO_TEXTURE);
+    return !has_varying_factors;
+}
+
+/* --- at a point --- */
+
+static void say(const material *m, material_point *p) { p->principled = principled_point_of(m); }
+
+static void look_up(const material_lookup *at, const material *m, material_point *out)
+{
+    principled_point *p = &out->principled;
+    rgb specular_color = m->specular_color;
+    float roughness = m->roughness;
+    if (m->reflectance_texture != SCENE_NO_TEXTURE)
+        p->reflectance =
+            rgb_mul(p->reflectance, texture_filtered_rgb(at->s, m->reflectance_texture, at->hit, at->footprint));
+    if (m->specular_color_texture != SCENE_NO_TEXTURE)
+        specular_color = rgb_mul(specular_color, texture_evaluate_rgb(at->s, m->specular_color_texture, at->hit));
+    const uint32_t textures[] = {m->metallic_texture, m->roughness_texture, m->transmission_texture,
+                                 m->specular_texture, m->clearcoat_texture, m->clearcoat_roughness_texture};
+    float *const factors[] = {&p->metallic, &roughness,    &p->transmission,
+                              &p->specular, &p->clearcoat, &p->clearcoat_roughness};
+    for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
+        if (textures[i] != SCENE_NO_TEXTURE && *factors[i] != 0.0f)
+            *factors[i] *= texture_evaluate_float(at->s, textures[i], at->hit);
+    principled_resolve(p, specular_color, roughness);
+}
+
+static bool is_pane(const material_point *m)
+{
+    const principled_point *p = &m->principled;
+    return is_straight(p->is_thin, p->ior) && principled_transmits(p) && material_is_smooth(p->alpha, p->alpha);
+}
+
+static rgb pane_transmittance(const material_point *m, float cosine)
+{
+    const principled_point *p = &m->principled;
+    rgb reflected, through;
+    principled_interface(p, fminf(fabsf(cosine), 1.0f), cosine < 0.0f && principled_is_solid(p), &reflected, &through);
+    return rgb_scale(through, principled_coat_factor(p, cosine, -cosine));
+}
+
+static float index_of(const material_point *m) { return m->principled.ior; }
+
+static material_faces faces(const material_point *m, float cosine, float cosine_within)
+{
+    material_faces f;
+    principled_interface(&m->principled, cosine, false, &f.outer, &f.in);
+    principled_interface(&m->principled, cosine_within, true, &f.inner, &f.out);
+    return f;
+}
+
+static void add_lobes(bsdf *b, const surface_hit *hit)
+{
+    const principled_point *m = &b->material.principled;
+    (void)hit;
+    float cosine = vec3_dot(b->out, b->shading.z);
+    principled_shares shares = principled_shares_at(m, fminf(fabsf(cosine), 1.0f));
+    bool has_interface = principled_has_interface(m);
+    if (!rgb_is_black(principled_base_albedo(m)) || !has_interface)
+        bsdf_add_lobe(b, LOBE_PRINCIPLED_BASE, BSDF_GATHERED, false, shares.base);
+    if (has_interface)
+        bsdf_add_lobe(b, LOBE_PRINCIPLED, BSDF_TRACED, material_is_smooth(m->alpha, m->alpha), shares.interface);
+    float coat_alpha = m->clearcoat_roughness * m->clearcoat_roughness;
+    if (m->clearcoat > 0.0f && !(cosine < 0.0f && principled_is_solid(m)))
+        bsdf_add_lobe(b, LOBE_CLEARCOAT, BSDF_TRACED, material_is_smooth(coat_alpha, coat_alpha), shares.coat);
+}
+
+const material_type principled_material = {.init = init,
+                                           .prepare = principled_prepare,
+                                           .is_traced = is_traced,
+                                           .is_clear_glass = is_clear_glass,
+                                           .has_base = has_base,
+                                           .may_be_pane = may_be_pane,
+                                           .may_be_slab = may_be_slab,
+                                           .is_filtered = is_filtered,
+                                           .say = say,
+                                           .look_up = look_up,
+                                           .is_pane = is_pane,
+                                           .pane_transmittance = pane_transmittance,
+                                           .index = index_of,
+                                           .faces = faces,
+                                           .add_lobes = add_lobes,
+                                           .base = LOBE_PRINCIPLED_BASE};
