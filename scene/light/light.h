@@ -27,7 +27,8 @@ typedef enum light_kind {
     LIGHT_PROJECTION,  /* a point that throws a picture */
     LIGHT_DISTANT,
     LIGHT_AREA,
-    LIGHT_INFINITE
+    LIGHT_INFINITE,
+    LIGHT_KIND_COUNT
 } light_kind;
 
 /* Light by direction: the same for all, or as a picture of the sphere of directions says. */

@@ -3,7 +3,7 @@
 
 const light_type *light_type_of(light_kind kind)
 {
-    static const light_type *const TYPES[] = {
+    static const light_type *const TYPES[LIGHT_KIND_COUNT] = {
         [LIGHT_POINT] = &point_light,
         [LIGHT_SPOT] = &spot_light,
         [LIGHT_GONIOMETRIC] = &goniometric_light,
