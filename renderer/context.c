@@ -95,6 +95,7 @@ void ag_context_destroy(ag_context *context)
     free(context->working_space_name);
     free_confinement(context);
     free(context->color_summary);
+    free(context->color_views);
     free(context);
 }
 

@@ -25,6 +25,7 @@ struct ag_context {
     char **confined_to; /* owned */
     size_t confined_count;
     char *color_summary; /* of ag_color_summary, or NULL */
+    char *color_views;   /* of ag_color_view_at, as color_config_list_views has them, or NULL */
 };
 
 struct ag_scene {

@@ -3,6 +3,7 @@
  * Threads: one phase after the other, each on all of the context's workers; what a phase made is const in the next. */
 #define _POSIX_C_SOURCE 200809L
 #include "film/adaptive.h"
+#include "film/film_copy.h"
 #include "floating_point.h"
 #include "integrator/debug_views.h"
 #include "integrator/direct_pilot.h"
@@ -191,44 +192,17 @@ ag_status rendering_create_film(ag_rendering *r)
 
 /* --- a photon map that others can reach --- */
 
-/* Notes the film, to go back to where the map's file turns out to have been changed. Errors: AG_ERROR_MEMORY. */
-static ag_status keep_film(ag_rendering *r)
-{
-    film_plane planes[FILM_PLANES_MAX];
-    int count = film_planes(r->film, planes);
-    size_t size = 0, at = 0;
-    for (int i = 0; i < count; i++)
-        size += planes[i].size;
-    if (!r->kept)
-        r->kept = malloc(size);
-    if (!r->kept)
-        return AG_ERROR_MEMORY;
-    for (int i = 0; i < count; i++, at += planes[i - 1].size)
-        memcpy(r->kept + at, planes[i].bytes, planes[i].size);
-    return AG_OK;
-}
-
-static void restore_film(ag_rendering *r)
-{
-    film_plane planes[FILM_PLANES_MAX];
-    int count = film_planes(r->film, planes);
-    size_t at = 0;
-    for (int i = 0; i < count; i++, at += planes[i - 1].size)
-        memcpy(planes[i].bytes, r->kept + at, planes[i].size);
-    film_resolve(r->film);
-}
-
 /* Between passes: what a pass has rendered counts when the map's file is still whole behind it. status: the pass's. */
 static ag_status check_map(ag_rendering *r, ag_status status)
 {
     if (!r->maps.file.is_shared || (status != AG_OK && status != AG_PAUSED && status != AG_CANCELLED))
         return status;
     if (photon_file_is_intact(&r->maps.file)) {
-        ag_status kept = keep_film(r);
+        ag_status kept = film_copy_take(r->film, &r->kept);
         return kept == AG_OK ? status : kept;
     }
     if (r->kept)
-        restore_film(r);
+        film_copy_restore(r->film, r->kept);
     log_message(
         r->context->log, AG_LOG_ERROR,
         "'%s': the photon map was cut short or overwritten while it was in use; what was rendered since the last "
@@ -344,6 +318,8 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     uint32_t wanted = (uint32_t)samples_per_pixel;
     phase_begin begin = context_begin_phase();
     ag_status status = check_map(r, render_pass(r, wanted));
+    if (status == AG_OK && r->keeps_passes)
+        status = film_copy_take(r->film, &r->whole);
     if (status == AG_OK)
         run_progress(&context->run, AG_PHASE_RENDER, (double)wanted / (double)r->settings.samples_per_pixel);
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
@@ -352,6 +328,22 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     collect_counts(r);
     floating_point_leave(callers_arithmetic);
     return status;
+}
+
+ag_status ag_rendering_keep_passes(ag_rendering *r)
+{
+    if (!r)
+        return AG_ERROR_ARGUMENT;
+    r->keeps_passes = true;
+    return AG_OK;
+}
+
+ag_status ag_rendering_go_back(ag_rendering *r)
+{
+    if (!r || !r->whole)
+        return AG_ERROR_ARGUMENT;
+    film_copy_restore(r->film, r->whole);
+    return AG_OK;
 }
 
 ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
@@ -404,6 +396,7 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
     direct_guide_reset(&r->direct_guide);
     free(r->map_name);
     free(r->kept);
+    free(r->whole);
     ag_scene *loaded = r->loaded;
     free(r);
     if (--loaded->rendering_count == 0 && loaded->is_dropped)

@@ -34,6 +34,8 @@ struct ag_rendering {
     double seconds;                        /* of all passes */
     char *map_name;                        /* of the photon map's file, owned, or NULL */
     unsigned char *kept;                   /* the film's planes as of the last pass that saw that file whole, or NULL */
+    unsigned char *whole;                  /* the film's planes as of the last pass that was completed, or NULL */
+    bool keeps_passes;                     /* that is wanted */
 };
 
 /* Fills in r->film of context, scene and settings. Errors: AG_ERROR_MEMORY, AG_ERROR_ARGUMENT (the crop holds no

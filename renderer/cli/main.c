@@ -6,6 +6,7 @@
 #include "large_stack.h"
 #include "memory_limit.h"
 #include "options.h"
+#include "page_server.h"
 #include "passes.h"
 #include "progress.h"
 #include "signals.h"
@@ -358,7 +359,12 @@ static int run_program(int argc, char **argv)
     if (o.display_server && !(o.display = display_server_start(o.display_server, progress_log, &told)))
         progress_log(&told, AG_LOG_WARNING,
                      "--display-server: no thread can be had for it: no viewer is shown the picture");
-    ag_status status = o.frames.count > 0 ? run_frames(&o, &told) : run_in_context(&o, -1, &told);
+    ag_status status = AG_OK;
+    if (o.serves)
+        status = page_server_start(o.serve_address ? o.serve_address : "127.0.0.1", o.serve_port, &told, &o.page);
+    if (status == AG_OK)
+        status = o.frames.count > 0 ? run_frames(&o, &told) : run_in_context(&o, -1, &told);
+    page_server_stop(o.page);
     display_server_stop(o.display);
     options_reset(&o);
     return exit_code(status);

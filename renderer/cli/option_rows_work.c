@@ -5,6 +5,8 @@
 #include "display_address.h"
 #include "option_values.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,6 +45,19 @@ static bool take_display_server(const char *value, options *o)
     display_address address;
     o->display_server = value;
     return display_address_parse(value, &address);
+}
+
+static bool take_serve(const char *value, options *o)
+{
+    o->serves = true;
+    return parse_int(value, 0, 65535, &o->serve_port);
+}
+
+static bool take_serve_address(const char *value, options *o)
+{
+    unsigned char address[sizeof(struct in6_addr)];
+    o->serve_address = value;
+    return inet_pton(AF_INET, value, address) == 1 || inet_pton(AF_INET6, value, address) == 1;
 }
 
 static bool take_progress(const char *value, options *o)
@@ -210,6 +225,35 @@ static const option_row ROWS[] = {
                   "allows; a signal ends the wait. An IPv6 address stands in brackets. The connection is not "
                   "encrypted."},
      .take = take_display_server},
+    {.text =
+         {.name = "serve",
+          .argument = "PORT",
+          .section = "Work",
+          .help = "show the picture in a browser while it is rendered: a page on that port of this machine, at the URL "
+                  "that is told; 0: a port that is free",
+          .manual =
+              "Show the picture in a browser while it is rendered, by a page on that port of this machine, or with 0 on "
+              "one that is free. Its URL, with a token that no one can guess, is told on standard error. The page "
+              "has the picture and every layer of *--aov*, through any display and view of the config and any exposure, "
+              "says how far the work is and what takes it, and has a button to stop and keep: the picture as of the "
+              "last pass over it that is complete is then written, counts as complete, and the exit status is 0; with "
+              "*--checkpoint* a checkpoint stays for *--resume*. The picture that is written has the same bits "
+              "as without the page. While the page is looked at, the program does not end when the files are "
+              "written, but for *--time-limit*, until *Stop* is pressed. Requests without the token are "
+              "refused, as are those under another machine's name or from another site's page; none names a file. The "
+              "film is in memory twice, which *--memory* does not predict."},
+     .take = take_serve},
+    {.text = {.name = "serve-address",
+              .argument = "ADDRESS",
+              .section = "Work",
+              .help = "listen at that address, a number, for --serve (default: 127.0.0.1, which this machine alone "
+                      "reaches)",
+              .manual =
+                  "Listen at that address for *--serve*: a number of IPv4 or IPv6; *0.0.0.0* and *::* are all of "
+                  "this machine's. The default, *127.0.0.1*, is reached from this machine alone. The connection "
+                  "is not encrypted: who can listen to it on its way learns the token, so that a tunnel (*ssh -L*) "
+                  "is the better way over a network that is not one's own."},
+     .take = take_serve_address},
     {.text =
          {.name = "progress",
           .argument = "STYLE",

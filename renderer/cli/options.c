@@ -83,6 +83,15 @@ static bool has_idle_scene_option(const options *o)
     return true;
 }
 
+/* An address is one to listen at. */
+static bool has_idle_address(const options *o)
+{
+    if (!o->serve_address || o->serves)
+        return false;
+    fprintf(stderr, "afterglow: --serve-address is for --serve, which is not given\n");
+    return true;
+}
+
 /* Settings that follow from several options together. */
 static void settle_scene_options(options *o)
 {
@@ -108,13 +117,13 @@ static bool has_idle_picture_option(const options *o)
                               : s->look                ? "look"
                               : s->exposure_stops != 0 ? "exposure"
                                                        : NULL;
-    const bool is_shown = o->progress == PROGRESS_PICTURE; /* by display and view as well */
+    const bool is_shown = o->progress == PROGRESS_PICTURE || o->serves; /* by display and view as well */
     if (of_displays && linear_count == o->outfile_count && !is_shown)
         fprintf(stderr, "afterglow: --%s is for pictures that are not .exr, .hdr or .pfm, and there is none\n",
                 of_displays);
     else if (s->color_space && linear_count == 0)
         fprintf(stderr, "afterglow: --output-space is for .exr, .hdr and .pfm files, and there is none\n");
-    else if (o->render.layers && exr_count == 0)
+    else if (o->render.layers && exr_count == 0 && !o->serves)
         fprintf(stderr, "afterglow: --aov is for .exr files, and there is none\n");
     else
         return false;
@@ -143,6 +152,7 @@ static bool has_picture_of_photons_only(const options *o)
                        : o->checkpoint_seconds > 0.0 ? "--checkpoint"
                        : o->no_clobber               ? "--no-clobber"
                        : o->render.denoise           ? "--denoise"
+                       : o->serves                   ? "--serve"
                                                      : NULL;
     if (idle)
         fprintf(stderr, "afterglow: --photons-only renders no picture: it does not go with %s\n", idle);
@@ -277,8 +287,9 @@ options_result options_parse(int argc, char **argv, options *out_options)
     }
     if (result == OPTIONS_RUN && o.frames.count > 1 && has_frames_in_one_file(&o))
         result = OPTIONS_EXIT_USAGE;
-    if (result == OPTIONS_RUN && (has_odd_seeds(&o) || has_half_a_camera(&o) || has_idle_scene_option(&o) ||
-                                  has_idle_picture_option(&o) || has_picture_of_photons_only(&o)))
+    if (result == OPTIONS_RUN &&
+        (has_odd_seeds(&o) || has_half_a_camera(&o) || has_idle_scene_option(&o) || has_idle_picture_option(&o) ||
+         has_picture_of_photons_only(&o) || has_idle_address(&o)))
         result = OPTIONS_EXIT_USAGE;
     if (result == OPTIONS_EXIT_USAGE)
         fprintf(stderr, "Try 'afterglow --help'.\n");

@@ -42,6 +42,9 @@ typedef struct options {
     bool resume, preview, no_clobber;
     bool dry_run;               /* predicts, renders nothing */
     const char *display_server; /* HOST:PORT of a viewer; NULL: none */
+    bool serves;                /* a page */
+    int serve_port;             /* 0: one that is free */
+    const char *serve_address;  /* a number; NULL: 127.0.0.1 */
     uint64_t memory_limit;      /* bytes of the process; 0: none */
     ag_definition *definitions; /* owned, as are its strings */
     size_t definition_count;
@@ -65,6 +68,7 @@ typedef struct options {
     int given_count;
     options_asked asked_text;
     struct display_server *display; /* main's, while it renders, or NULL */
+    struct page_server *page;       /* likewise */
     struct progress *told;          /* likewise */
 } options;
 

@@ -4,6 +4,7 @@
 
 #include "display_server.h"
 #include "memory_limit.h"
+#include "page_server.h"
 #include "progress.h"
 #include "signals.h"
 #include "status.h"
@@ -31,8 +32,9 @@ typedef struct passes {
     double next_checkpoint;     /* when, in seconds of now() */
     double mean_at_checkpoint;  /* samples per pixel there were at the last one */
     double deadline;            /* in seconds of now() */
+    double begun;               /* when rendering began, likewise */
     int final;                  /* samples per pixel in the end */
-    bool time_is_up;
+    ag_end cut;                 /* AG_END_TIME_LIMIT, AG_END_KEPT: it ends in order with fewer; else AG_END_NONE */
 } passes;
 
 static double now(void) { return passes_seconds(); }
@@ -205,21 +207,52 @@ static ag_status resume(passes *p)
 enum { PASS_GROWTH = 4, PREVIEW_GROWTH = 2 };
 /* A pass is planned to take so much of the time that is left: a machine is not always as fast as before. */
 static const double PLANNED_SHARE = 0.9;
+/* Between two looks at signals, where a browser's wishes are waited for. */
+static const double LOOK_SECONDS = 0.1;
+
+/* Who watches by a browser sees layers, counters and noise after each pass, and keeps what whole passes have brought:
+ * one takes no longer than this, or than this share of the time that all have taken. */
+static const double WATCHED_SECONDS = 1.0, WATCHED_SHARE = 0.1;
 
 /* The samples after which the next pass ends; 0: there is no time for one more. */
 static int next_pass(const passes *p, int samples, double seconds_per_sample)
 {
     int growth = p->o->preview ? PREVIEW_GROWTH : PASS_GROWTH;
     int next = samples <= p->final / growth ? samples * growth : p->final;
+    if (p->o->page && seconds_per_sample > 0.0) {
+        const double seconds = fmax(WATCHED_SECONDS, WATCHED_SHARE * (now() - p->begun));
+        next = (int)fmin(next, samples + fmax(1.0, seconds / seconds_per_sample));
+    }
     double affordable = PLANNED_SHARE * (p->deadline - now()) / fmax(seconds_per_sample, 1e-9);
     if (affordable >= next - samples)
         return next;
     return affordable >= 1.0 ? samples + (int)affordable : 0;
 }
 
-/* Writes what is due in a pause or after a pass: a snapshot or preview, and a checkpoint. */
+static page_notes make_notes(const passes *p)
+{
+    return (page_notes){.mode = PAGE_RENDERING,
+                        .samples = ag_rendering_sample_counts(p->rendering),
+                        .samples_most = p->final,
+                        .noise = ag_rendering_noise(p->rendering).level,
+                        .counts = ag_context_statistics(p->context)};
+}
+
+/* Whether who watches wants the end, and there is a picture of whole passes, which the film then is. */
+static bool take_kept(passes *p, ag_status status)
+{
+    if (!p->o->page || !page_wishes_has_end(page_server_wishes(p->o->page)))
+        return false;
+    return status == AG_OK || ag_rendering_go_back(p->rendering) == AG_OK;
+}
+
+/* Writes what is due in a pause or after a pass: a snapshot or preview, and a checkpoint; tells who watches. */
 static ag_status serve(passes *p, bool is_after_pass)
 {
+    if (p->o->page) {
+        const page_notes notes = make_notes(p);
+        page_server_note(p->o->page, &notes);
+    }
     if (signals_take_snapshot())
         AG_TRY(write_snapshot(p));
     else if (is_after_pass && p->o->preview)
@@ -244,6 +277,10 @@ static ag_status run_passes(passes *p)
             return AG_OK;
         if (signals_stop())
             return AG_PAUSED;
+        if (take_kept(p, status)) {
+            p->cut = AG_END_KEPT;
+            return AG_OK;
+        }
         AG_TRY(serve(p, status == AG_OK));
         if (status != AG_OK)
             continue;
@@ -255,7 +292,7 @@ static ag_status run_passes(passes *p)
         }
         samples = next_pass(p, samples, mean > before ? rendered / (mean - before) : 0.0);
         if (samples == 0) {
-            p->time_is_up = true;
+            p->cut = AG_END_TIME_LIMIT;
             return AG_OK;
         }
         rendered = 0.0;
@@ -275,8 +312,11 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
     if (!o->photons_only)
         AG_TRY(progress_prepare_film(o->told, p->context, &o->output));
     AG_TRY(ag_rendering_create(p->context, scene, settings, &p->rendering));
+    if (o->page)
+        AG_TRY(ag_rendering_keep_passes(p->rendering));
     if (o->resume)
         AG_TRY(resume(p));
+    p->begun = now();
     p->checkpoint_interval = o->checkpoint_seconds > 0.0 ? o->checkpoint_seconds : INFINITY;
     p->next_checkpoint = now() + p->checkpoint_interval;
     p->mean_at_checkpoint = ag_rendering_sample_counts(p->rendering).mean;
@@ -303,8 +343,8 @@ static ag_end find_end(const passes *p, const passes_result *result)
         return AG_END_SIGNAL;
     if (p->o->photons_only)
         return AG_END_PHOTONS;
-    if (p->time_is_up)
-        return AG_END_TIME_LIMIT;
+    if (p->cut != AG_END_NONE)
+        return p->cut;
     return result->samples.most < p->final ? AG_END_NOISE : AG_END_SAMPLES;
 }
 
@@ -320,7 +360,7 @@ static ag_status render(passes *p, passes_result *out_result, ag_noise *out_nois
         *out_failed = status; /* the photon map was lost: what the passes before have rendered is shown */
         status = AG_OK;
     }
-    if (status == AG_OK && p->checkpoint && (out_result->is_partial || p->time_is_up))
+    if (status == AG_OK && p->checkpoint && (out_result->is_partial || p->cut != AG_END_NONE))
         status = write_checkpoint(p);
     out_result->samples = ag_rendering_sample_counts(p->rendering);
     *out_noise = ag_rendering_noise(p->rendering);
@@ -347,18 +387,53 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
                 result->samples.mean, p->final);
         return failed;
     }
-    if (p->checkpoint && !result->is_partial && !p->time_is_up)
+    if (p->checkpoint && !result->is_partial && p->cut == AG_END_NONE)
         unlink(p->checkpoint); /* it has served */
-    if (p->time_is_up && o->verbosity >= 0)
-        fprintf(stderr, "afterglow: time limit: the picture has %.4g of %d samples per pixel\n", result->samples.mean,
-                p->final);
+    if (p->cut != AG_END_NONE && o->verbosity >= 0)
+        fprintf(stderr, "afterglow: %s: the picture has %.4g of %d samples per pixel\n",
+                p->cut == AG_END_KEPT ? "stopped by who watched it" : "time limit", result->samples.mean, p->final);
     if (has_picture && o->verbosity >= (settings->noise_level > 0.0f ? 0 : 1))
         tell_noise(noise, &result->samples, settings);
     return AG_OK;
 }
 
-/* The viewer is waited for within the time limit. */
-static void leave_viewer(const passes *p) { display_server_leave(p->o->display, fmax(p->deadline - now(), 0.0)); }
+/* Whoever looks at the finished picture in a browser is not interrupted, as long as he does; but the next picture does
+ * not wait, nor does the time limit. */
+static void await_page(const passes *p)
+{
+    const options *o = p->o;
+    const bool is_last = o->frames.count == 0 || o->frame == o->frames.numbers[o->frames.count - 1];
+    if (!o->page || !is_last)
+        return;
+    page_wishes *wishes = page_server_wishes(o->page);
+    while (page_wishes_is_watched(wishes, PAGE_PATIENCE_SECONDS) && !page_wishes_has_end(wishes) && !signals_stop() &&
+           now() < p->deadline) {
+        page_wishes_wait(wishes, LOOK_SECONDS);
+        if (page_wishes_take_layers(wishes))
+            page_server_copy_layers(o->page);
+    }
+}
+
+/* The film goes. The viewer is waited for within the time limit. */
+static void leave_watchers(const passes *p)
+{
+    page_server_leave(p->o->page, PAGE_FINISHED);
+    display_server_leave(p->o->display, fmax(p->deadline - now(), 0.0));
+}
+
+/* From now on the film is shown wherever it is wanted. */
+static ag_status show_to_watchers(const passes *p)
+{
+    const options *o = p->o;
+    const ag_film *film = ag_rendering_film(p->rendering);
+    AG_TRY(progress_show_film(o->told, film));
+    if (o->page) {
+        const page_notes notes = make_notes(p);
+        AG_TRY(page_server_show(o->page, p->context, film, &o->output, &notes));
+    }
+    display_server_show(o->display, film, o->outfiles[0]);
+    return AG_OK;
+}
 
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result)
@@ -372,10 +447,8 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     *out_result = (passes_result){0};
     ag_status status = begin(&p, scene, settings);
     if (status == AG_OK && !o->photons_only)
-        status = progress_show_film(o->told, ag_rendering_film(p.rendering));
+        status = show_to_watchers(&p);
     if (status == AG_OK) {
-        if (!o->photons_only)
-            display_server_show(o->display, ag_rendering_film(p.rendering), o->outfiles[0]);
         signals_begin_rendering(); /* until all is written: what has been rendered is not thrown away */
         status = render(&p, out_result, &noise, &failed);
     }
@@ -383,13 +456,17 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
     if (status != AG_OK) { /* the film goes */
         progress_leave_film(o->told, false);
-        leave_viewer(&p);
+        leave_watchers(&p);
     }
     ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
     if (status == AG_OK)
         status = show(&p, film, settings, out_result, &noise, failed);
     progress_leave_film(o->told, false);
-    leave_viewer(&p); /* when the files are written: they do not wait for a viewer */
+    if (status == AG_OK && !out_result->is_partial) {
+        page_server_set_mode(o->page, PAGE_FINISHED);
+        await_page(&p);
+    }
+    leave_watchers(&p); /* when the files are written: they do not wait for a viewer */
     signals_end_rendering();
     ag_film_destroy(film);
     free(p.checkpoint);

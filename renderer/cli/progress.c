@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "progress.h"
 
+#include "json_text.h"
 #include "passes.h"
 #include "signals.h"
 #include "status.h"
@@ -19,7 +20,11 @@ static pthread_mutex_t terminal = PTHREAD_MUTEX_INITIALIZER; /* one line at a ti
 
 void progress_init(progress *p, const options *o)
 {
-    *p = (progress){.style = o->progress, .verbosity = o->verbosity, .told_percent = -1, .phase = AG_PHASE_COUNT};
+    *p = (progress){.style = o->progress,
+                    .verbosity = o->verbosity,
+                    .told_percent = -1,
+                    .phase = AG_PHASE_COUNT,
+                    .seconds_left = -1.0};
     const char *obstacle = p->style == PROGRESS_PICTURE ? terminal_picture_obstacle(STDERR_FILENO) : NULL;
     if (obstacle) {
         if (o->verbosity >= 0)
@@ -204,6 +209,9 @@ void progress_tell(void *user, ag_phase phase, double fraction)
     enter_phase(p, phase, fraction, now);
     const double left = seconds_left(p, fraction, now);
     const int percent = overall_percent(p, fraction, left, now);
+    p->fraction = fraction;
+    p->seconds_left = left;
+    p->percent = percent;
     char left_for[48], frame[48] = "";
     const bool is_new = percent > p->told_percent, is_new_line = percent / LINE_STEP > p->told_percent / LINE_STEP;
     if (p->frame_count > 0)
@@ -241,6 +249,22 @@ void progress_tell(void *user, ag_phase phase, double fraction)
     pthread_mutex_unlock(&terminal);
 }
 
+progress_state progress_read(const progress *p)
+{
+    pthread_mutex_lock(&terminal);
+    const double now = passes_seconds();
+    const progress_state state = {.phase = p->phase,
+                                  .fraction = p->fraction,
+                                  .percent = p->percent,
+                                  .seconds = now - p->begun,
+                                  .seconds_left = p->seconds_left,
+                                  .frame = p->frame,
+                                  .frame_count = p->frame_count,
+                                  .frame_number = p->frame_number};
+    pthread_mutex_unlock(&terminal);
+    return state;
+}
+
 void progress_log(void *user, ag_log_level level, const char *message)
 {
     progress *p = user;
@@ -254,19 +278,6 @@ void progress_log(void *user, ag_log_level level, const char *message)
     clear_all(p);
     fprintf(stderr, "%s%s%s\n", has_location ? "" : "afterglow: ", has_location ? "" : prefixes[level], message);
     pthread_mutex_unlock(&terminal);
-}
-
-static void put_json_text(const char *text)
-{
-    fputc('"', stderr);
-    for (; *text; text++)
-        if (*text == '"' || *text == '\\')
-            fprintf(stderr, "\\%c", *text);
-        else if ((unsigned char)*text < ' ')
-            fprintf(stderr, "\\u%04x", (unsigned char)*text);
-        else
-            fputc(*text, stderr);
-    fputc('"', stderr);
 }
 
 void progress_tell_written(progress *p, const char *const *files, int file_count)
@@ -283,7 +294,7 @@ void progress_tell_written(progress *p, const char *const *files, int file_count
     for (int i = 0; i < file_count; i++) {
         fputs(i > 0 ? ", " : "", stderr);
         if (is_json)
-            put_json_text(files[i]);
+            json_text_put(stderr, files[i]);
         else
             fputs(files[i], stderr);
     }

@@ -25,7 +25,19 @@ typedef struct progress {
     double learned_seconds[AG_PHASE_COUNT]; /* of all pictures before, in sum */
     int learned_count;                      /* of those pictures */
     film_watch watch;                       /* of PROGRESS_PICTURE */
+    double fraction, seconds_left;          /* as told last */
+    int percent;
 } progress;
+
+/* How far the work is, as it was told last. */
+typedef struct progress_state {
+    ag_phase phase;                       /* AG_PHASE_COUNT: none has begun */
+    double fraction;                      /* of the phase */
+    int percent;                          /* of all */
+    double seconds;                       /* since the program began */
+    double seconds_left;                  /* below 0: not known yet */
+    int frame, frame_count, frame_number; /* as in progress */
+} progress_state;
 
 /* Settles AUTO: a bar on a terminal, whole lines elsewhere; nothing when quiet. So it does PICTURE, with a warning,
  * where none can be shown. */
@@ -39,6 +51,7 @@ void progress_tell_written(progress *p, const char *const *files, int file_count
 
 /* The progress callback of ag_context_settings, whose user is a progress. Messages go to standard error. */
 void progress_tell(void *user, ag_phase phase, double fraction);
+progress_state progress_read(const progress *p); /* any thread */
 void progress_log(void *user, ag_log_level level, const char *message);
 
 /* For PROGRESS_PICTURE, else they do nothing: makes the view, before there is a film; shows a film from now on; draws

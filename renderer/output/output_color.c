@@ -60,6 +60,32 @@ ag_status ag_color_summary(ag_context *context, const char **out_text)
     return AG_OK;
 }
 
+ag_status ag_color_view_at(ag_context *context, size_t index, const char **out_display, const char **out_view)
+{
+    char message[MESSAGE_SIZE];
+    const color_config *config;
+    if (!context || !out_display || !out_view)
+        return AG_ERROR_ARGUMENT;
+    AG_TRY(context_color_config(context, &config));
+    if (!context->color_views) {
+        const ag_status status = color_config_list_views(config, message, sizeof message, &context->color_views);
+        if (status != AG_OK) {
+            log_message(context->log, AG_LOG_ERROR, "%s", message);
+            return status;
+        }
+    }
+    const char *display = context->color_views;
+    for (; *display && index > 0; index--) {
+        display += strlen(display) + 1;
+        display += strlen(display) + 1;
+    }
+    if (!*display)
+        return AG_ERROR_ARGUMENT;
+    *out_display = display;
+    *out_view = display + strlen(display) + 1;
+    return AG_OK;
+}
+
 struct ag_view {
     color_processor *processor; /* owned */
 };

@@ -29,7 +29,7 @@ static json_t *end_to_json(const ag_statistics *s)
     static const char *const reasons[] = {
         [AG_END_NONE] = "",           [AG_END_SAMPLES] = "samples",       [AG_END_NOISE] = "noise",
         [AG_END_PHOTONS] = "photons", [AG_END_TIME_LIMIT] = "time-limit", [AG_END_SIGNAL] = "signal",
-        [AG_END_MEMORY] = "memory",   [AG_END_DRY_RUN] = "dry-run"};
+        [AG_END_MEMORY] = "memory",   [AG_END_DRY_RUN] = "dry-run",       [AG_END_KEPT] = "kept"};
     json_t *noise = s->noise >= 0.0 && isfinite(s->noise) ? json_real(s->noise) : json_null();
     return json_pack("{s:s, s:o, s:{s:i, s:i, s:f}}", "reason", reasons[s->end], "noise", noise, "samples", "least",
                      s->samples.least, "most", s->samples.most, "mean", s->samples.mean);

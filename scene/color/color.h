@@ -44,6 +44,10 @@ bool color_config_from_rec709(const color_config *config, double out_matrix[9]);
 /* Lists the config's displays with their views, looks, colour spaces and roles as lines of text, to be freed. */
 ag_status color_config_describe(const color_config *config, char *message, size_t message_size, char **out_text);
 
+/* Lists pairs of a display and a view, each a string with a zero behind it; an empty string ends the list: first the
+ * pair that is taken where none is asked for, then all others as the config has them. To be freed. */
+ag_status color_config_list_views(const color_config *config, char *message, size_t message_size, char **out_pairs);
+
 /* The colour space of that name, alias or role, as the config spells it; NULL where there is none. Owned by the config.
  * Where message is not NULL, what there is goes there. */
 const char *color_config_find_space(const color_config *config, const char *name, char *message, size_t message_size);

@@ -3,6 +3,7 @@
 #include "color/color_ocio_private.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <strings.h>
@@ -76,6 +77,21 @@ std::string described(const color_config *self)
     return text.str();
 }
 
+/* Pairs of a display and a view, a zero behind each name. */
+std::string listed_views(const color_config *self)
+{
+    const OCIO::ConstConfigRcPtr &config = self->config;
+    const std::string display_first = config->getDefaultDisplay();
+    const std::string view_first = config->getDefaultView(display_first.c_str(), self->working_space.c_str());
+    std::string first, others;
+    for (const std::string &display : all_displays(config))
+        for (const std::string &view : all_views(config, display.c_str())) {
+            const bool is_first = first.empty() && display == display_first && view == view_first;
+            (is_first ? first : others).append(display).append(1, '\0').append(view).append(1, '\0');
+        }
+    return first + others;
+}
+
 } // namespace
 
 std::string chosen(const char *what, const char *name, const std::vector<std::string> &names, const std::string &holder)
@@ -133,6 +149,19 @@ extern "C" ag_status color_config_describe(const color_config *config, char *mes
         *out_text = strdup(described(config).c_str());
         if (!*out_text)
             throw std::bad_alloc();
+    });
+}
+
+extern "C" ag_status color_config_list_views(const color_config *config, char *message, size_t message_size,
+                                             char **out_pairs)
+{
+    *out_pairs = nullptr;
+    return guarded(config->log, message, message_size, [config, out_pairs] {
+        const std::string pairs = listed_views(config);
+        *out_pairs = static_cast<char *>(calloc(pairs.size() + 1, 1));
+        if (!*out_pairs)
+            throw std::bad_alloc();
+        memcpy(*out_pairs, pairs.data(), pairs.size());
     });
 }
 

@@ -18,7 +18,7 @@ Shape "trianglemesh" "point3 P" [-9 -9 1  0 -9 1  0 9 1  -9 9 1] "integer indice
 AreaLightSource "diffuse" "rgb L" [0 1 0] "bool twosided" true
 Shape "trianglemesh" "point3 P" [0 -9 1  9 -9 1  9 9 1  0 9 1] "integer indices" [0 1 2 0 2 3]
 END
-python3 "$root/tests/fixtures/terminal_picture.py" "$AFTERGLOW_PROGRAM" || fail "the picture in the terminal is wrong"
+python3 -B "$root/tests/fixtures/terminal_picture.py" "$AFTERGLOW_PROGRAM" || fail "the picture in the terminal is wrong"
 
 picture=(--progress picture --integrator path --noise 0 -o a.exr halves.pbrt)
 "$AFTERGLOW_PROGRAM" --spp 1 "${picture[@]}" 2>said || fail "into a file: $(<said)"

@@ -5,7 +5,8 @@
  *
  * Threads: a context and what was made with it belong to one thread at a time, but for ag_context_cancel and
  * ag_context_pause, which any thread and any signal handler may call, and for ag_film_read_tile,
- * ag_film_read_picture and ag_view_apply, which any thread may. Several contexts may work side by side.
+ * ag_film_read_picture and ag_view_apply, which any thread may; once one view has been made with a context, other
+ * threads may make more of them with ag_view_create. Several contexts may work side by side.
  * Errors: what can fail returns ag_status and writes its out-parameters on AG_OK alone; the text goes to the log.
  * Settings, and the structs that describe parts of a scene, are plain structs that ag_default_...() fills: a program
  * changes the members that it cares for, and later releases add some. The first member, struct_size, is the struct's

@@ -55,6 +55,11 @@ AG_API void ag_context_pause(ag_context *context);
  * context's. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 AG_API ag_status ag_color_summary(ag_context *context, const char **out_text);
 
+/* A display of the colour config and one of its views, by number: number 0 is what ag_output_settings takes where they
+ * name none, the others follow as the config has them. The strings are the context's. Errors: AG_ERROR_ARGUMENT (there
+ * are no more), AG_ERROR_COLOR, AG_ERROR_MEMORY. */
+AG_API ag_status ag_color_view_at(ag_context *context, size_t index, const char **out_display, const char **out_view);
+
 #ifdef __cplusplus
 }
 #endif

@@ -49,7 +49,8 @@ AG_API ag_status ag_film_write(ag_context *context, const ag_film *film, const a
 /* The way from the working space to a display, as ag_film_write takes it for .png: for who shows pictures himself. */
 typedef struct ag_view ag_view;
 /* Of the settings display, view, look and exposure_stops are heeded; NULL: the defaults. The view is to be
- * destroyed before the context. Errors: AG_ERROR_ARGUMENT, AG_ERROR_COLOR, AG_ERROR_MEMORY; *out_view is NULL then. */
+ * destroyed before the context. Of a context that has made one before, any thread may make more at any time. Errors:
+ * AG_ERROR_ARGUMENT, AG_ERROR_COLOR, AG_ERROR_MEMORY; *out_view is NULL then. */
 AG_API ag_status ag_view_create(ag_context *context, const ag_output_settings *settings, ag_view **out_view);
 AG_API void ag_view_destroy(ag_view *view); /* NULL is fine */
 /* Converts count pixels of 3 floats in place; of the values, [0, 1] is what the display shows. Any thread may call it

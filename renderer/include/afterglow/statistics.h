@@ -52,7 +52,8 @@ typedef enum ag_end {
     AG_END_TIME_LIMIT, /* the time was up */
     AG_END_SIGNAL,     /* it was interrupted */
     AG_END_MEMORY,     /* it needs more memory than there is, or than it may have */
-    AG_END_DRY_RUN     /* it was only predicted */
+    AG_END_DRY_RUN,    /* it was only predicted */
+    AG_END_KEPT        /* who watched it stopped it, and kept what there was */
 } ag_end;
 
 typedef struct ag_statistics {

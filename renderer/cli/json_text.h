@@ -1,0 +1,10 @@
+/* json_text.h: a text as JSON has it, in quotes.
+ * Flow: progress, page_state -> [here]. Threads: any. */
+#ifndef AFTERGLOW_JSON_TEXT_H
+#define AFTERGLOW_JSON_TEXT_H
+
+#include <stdio.h>
+
+void json_text_put(FILE *file, const char *text);
+
+#endif

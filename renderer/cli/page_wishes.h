@@ -1,0 +1,55 @@
+/* page_wishes.h: what who watches the render by a browser asks for: to stop and keep, to see from elsewhere, to go back
+ * to the picture, to see a layer. The rendering under way is paused, so that main looks here.
+ * Flow: page_server (requests) -> [here] -> passes, walk. Threads: any; one lock, which is held for no work. */
+#ifndef AFTERGLOW_PAGE_WISHES_H
+#define AFTERGLOW_PAGE_WISHES_H
+
+#include "afterglow/afterglow.h"
+
+#include <pthread.h>
+#include <stdbool.h>
+
+/* From where, to where and which way up a camera looks, in world space. */
+typedef struct page_place {
+    float from[3], to[3], up[3];
+} page_place;
+
+typedef struct page_wishes {
+    pthread_mutex_t lock; /* of all that follows */
+    pthread_cond_t changed;
+    ag_context *context; /* borrowed; whose rendering is to pause; NULL: there is none */
+    bool wants_end;      /* to stop, and keep the picture */
+    bool wants_return;   /* from a walk to the picture */
+    bool wants_move;     /* to this place */
+    bool wants_layers;   /* that have not been copied from the film */
+    page_place place;
+    double heard_seconds; /* when there was a request last, as passes_seconds tells it; below 0: never */
+} page_wishes;
+
+/* False: the system gives no lock. */
+bool page_wishes_init(page_wishes *w);
+void page_wishes_reset(page_wishes *w);
+
+/* --- requests --- */
+void page_wishes_end(page_wishes *w);
+void page_wishes_return(page_wishes *w);
+void page_wishes_move(page_wishes *w, const page_place *place);
+void page_wishes_layers(page_wishes *w);
+void page_wishes_hear(page_wishes *w);
+
+/* --- main --- */
+/* Tells whose rendering pauses for a wish; NULL: nobody's, and what was wished for is forgotten. An end that is wished
+ * for before there is a film is one of the next. */
+void page_wishes_attend(page_wishes *w, ag_context *context);
+/* Whether it was wished for; a move, a return and layers are taken with that. */
+bool page_wishes_has_end(page_wishes *w);
+bool page_wishes_has_move(page_wishes *w);
+bool page_wishes_take_return(page_wishes *w);
+bool page_wishes_take_move(page_wishes *w, page_place *out_place);
+bool page_wishes_take_layers(page_wishes *w);
+/* Returns when there is a wish, or after so many seconds. */
+void page_wishes_wait(page_wishes *w, double seconds);
+/* Whether there has been a request within so many seconds: somebody watches. */
+bool page_wishes_is_watched(page_wishes *w, double seconds);
+
+#endif
