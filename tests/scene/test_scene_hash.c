@@ -200,8 +200,8 @@ static void test_lights(void **state)
     light *l = &s->lights[0], kept = *l;
     rgb pixel = {1.0f, 2.0f, 3.0f};
     projection slide = {.width = 1, .height = 1, .pixels = &pixel};
-    hash128 hashes_of[LIGHT_INFINITE + 1];
-    for (int kind = 0; kind <= LIGHT_INFINITE; kind++) {
+    hash128 hashes_of[LIGHT_KIND_COUNT];
+    for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
         *l = light_make((light_kind)kind);
         switch ((light_kind)kind) {
         case LIGHT_POINT: LIGHT_WORDS_COUNT(point_source, intensity); break;
@@ -214,6 +214,7 @@ static void test_lights(void **state)
         case LIGHT_DISTANT: LIGHT_WORDS_COUNT(distant_source, disc_one_minus_cos); break;
         case LIGHT_AREA: LIGHT_WORDS_COUNT(area_source, radiance_texture); break;
         case LIGHT_INFINITE: LIGHT_WORDS_COUNT(infinite_source, radiance.world_from_light); break;
+        case LIGHT_KIND_COUNT: break;
         }
         hashes_of[kind] = scene_hash_of_light(s);
         for (int other = 0; other < kind; other++)
