@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "math/motion.h"
 #include "pbrt/parameter_list.h"
+#include "pbrt/pbrt_builder.h"
 #include "pbrt/pbrt_lexer.h"
 #include "scene.h"
 #include "status.h"
@@ -188,9 +189,10 @@ typedef struct pbrt_parser {
     bool has_peeked;
     size_t told_bytes; /* of the first file, at the last progress */
 
-    pbrt_given *given; /* borrowed; NULL: tokens come from the files */
-    shape *made_mesh;  /* borrowed: of the shape that is read next, whose arrays are not among its parameters; without
-                          triangles: it was left out. NULL: all are */
+    pbrt_given *given;                    /* borrowed; NULL: tokens come from the files */
+    const struct pbrt_borrowed *borrowed; /* of the trianglemesh that is read next; NULL: nothing is */
+    shape *made_mesh; /* borrowed: of the shape that is read next, whose arrays are not among its parameters; without
+                         triangles: it was left out. NULL: all are */
     pbrt_picture *pictures;
     size_t picture_count;
     parameter_source source;    /* of the lists that are read */
