@@ -258,6 +258,7 @@ static void test_pixels(void **state)
     s->texture_image_count = 1;
     words_count(s, "bytes", bytes, 1, NULL, 0);
     WORDS_COUNT(texture_image, &picture, FIELD(texture_image, path), FIELD(texture_image, encoding),
+                FIELD(texture_image, version), FIELD(texture_image, share),
                 {offsetof(texture_image, channel_count), sizeof(uint32_t)}, /* odd: one more would be too many */
                 FIELD(texture_image, bytes), FIELD(texture_image, values), {offsetof(texture_image, bytes) - 4, 4},
                 FROM(texture_image, alpha_bytes));
