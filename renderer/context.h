@@ -29,16 +29,17 @@ struct ag_context {
 };
 
 struct ag_scene {
-    ag_context *context;         /* borrowed */
-    scene *s;                    /* NULL as long as it is made by calls */
-    input_files inputs;          /* what it was read from */
-    struct scene_making *making; /* then, see scene_memory.c; NULL: it is complete */
-    int camera_calls;            /* of ag_scene_set_camera, since it is complete */
-    unsigned rendering_count;    /* those that borrow it */
-    bool is_dropped;             /* it goes with the last of them */
+    ag_context *context; /* borrowed */
+    scene *s;            /* NULL until it is committed */
+    input_files inputs;  /* what it was read from */
+    struct scene_making
+        *making;              /* then, and where it can be changed: see making/scene_making.h; NULL: it is complete */
+    int camera_calls;         /* of ag_scene_set_camera, since it is complete */
+    unsigned rendering_count; /* those that borrow it */
+    bool is_dropped;          /* it goes with the last of them */
 };
 
-/* Whether a scene can be rendered; says in the log why not. Errors: AG_ERROR_ARGUMENT. (scene_memory.c) */
+/* Whether a scene can be rendered; says in the log why not. Errors: AG_ERROR_ARGUMENT. (making/scene_memory.c) */
 ag_status scene_check_complete(ag_context *context, const ag_scene *made);
 
 /* When a phase began. */

@@ -18,7 +18,7 @@ ag_status scene_prepare(ag_context *context, const char *name, const scene_reque
 /* When all is read: gives back what was borrowed, and builds what rays need. Errors: those of scene_commit. */
 ag_status scene_complete(ag_context *context, scene *s);
 
-/* A scene on its way, see scene_memory.c. NULL is fine. */
+/* A scene on its way, see making/scene_making.h. NULL is fine. */
 void scene_making_destroy(struct scene_making *making);
 
 #endif

@@ -133,7 +133,12 @@ static ag_status find_coat_table(scene *s, const material *m, const coat_table *
         }
     if (!grow((void **)&s->coat_tables, s->coat_table_count, sizeof *s->coat_tables))
         return AG_ERROR_MEMORY;
-    coat_table *table = coat_table_create(m);
+    coat_table *table = NULL;
+    for (uint32_t i = 0; s->before && i < s->before->coat_table_count && !table; i++)
+        if (coat_table_serves(s->before->coat_tables[i], m))
+            table = coat_table_hold(s->before->coat_tables[i]);
+    if (!table)
+        table = coat_table_create(m);
     if (!table)
         return AG_ERROR_MEMORY;
     s->coat_tables[s->coat_table_count++] = table;
@@ -382,9 +387,38 @@ void scene_set_camera(scene *s, const camera *c)
     s->camera.tan_half_fov = (float)tan((double)s->camera.fov_degrees * (3.14159265358979323846 / 360.0));
 }
 
+/* Surfaces that were made anew, and as they were before: the arrays are the ones there were, for they are in trees.
+ * Shapes keep their order, but for some that are gone, or new. */
+static ag_status share_surfaces(scene *s)
+{
+    const scene *before = s->before;
+    uint32_t at = 0;
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        const uint32_t places[2] = {at, i};
+        for (int k = 0; k < 2; k++) {
+            if (places[k] >= before->shape_count)
+                continue;
+            shape *was = &before->shapes[places[k]];
+            if (shape_equals(&s->shapes[i], was))
+                AG_TRY(shape_share_arrays(was, &s->shapes[i]));
+            if (shape_has_same_surface(&s->shapes[i], was)) {
+                at = places[k] + 1;
+                break;
+            }
+        }
+    }
+    return AG_OK;
+}
+
+void scene_restore_before(const scene *s)
+{
+    if (s && s->before)
+        bvh_point_at(s->before->bvh, s->before);
+}
+
 ag_status scene_commit(scene *s, run_context *run, const char *isa)
 {
-    ag_status status = AG_OK;
+    ag_status status = s->before ? share_surfaces(s) : AG_OK;
     for (uint32_t i = 0; i < s->shape_count && status == AG_OK; i++) {
         status = shape_commit(&s->shapes[i]);
         s->has_interfaces = s->has_interfaces || material_may_be_interface(s, s->shapes[i].material_index);
@@ -398,7 +432,7 @@ ag_status scene_commit(scene *s, run_context *run, const char *isa)
         status = find_bounds(s, run->log);
     if (status != AG_OK)
         return status;
-    status = bvh_create(s, run, isa, &s->bvh);
+    status = bvh_create(s, run, isa, &s->reuse, &s->bvh);
     if (status == AG_OK)
         status = closed_room_furnish(s, run->log);
     if (status != AG_OK)

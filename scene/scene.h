@@ -26,12 +26,22 @@ struct light_tree;
 
 enum { SCENE_LIGHT_GROUPS_MAX = 32 };
 
+/* What a commit has made anew, and what it has kept of the scene before. */
+typedef struct scene_reuse {
+    uint64_t trees_built, trees_kept; /* of the world and of objects */
+    uint64_t pictures_read, pictures_kept;
+} scene_reuse;
+
 typedef struct scene {
     working_space space;                     /* of all its colours; settled before anything is read */
     const struct color_config *color_config; /* that names it, and tells how pictures are encoded; borrowed for as long
                                                 as it is read; NULL: none */
     const definitions *definitions;          /* of names in its text; borrowed for as long; NULL: none */
     const scene_request *request;            /* likewise; NULL: nothing is asked for */
+    /* The scene that this one takes the place of, as edits have changed it: its pictures, tables and trees serve here
+     * too where they would be made the same. Borrowed until the commit is done; NULL: there is none. */
+    struct scene *before;
+    scene_reuse reuse;
     material *materials;
     uint32_t material_count;
     struct coat_table **coat_tables; /* of the materials that need one (material/coat.h) */
@@ -139,6 +149,8 @@ void scene_drop_all_lights(scene *s);
  * instruction set to use ("sse2", "sse4.2", "avx", "avx2", "avx512"), NULL for "avx2".
  * A scene without shapes is valid. Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING, AG_ERROR_SCENE, AG_CANCELLED. */
 ag_status scene_commit(scene *s, run_context *run, const char *isa);
+/* After a failure with s->before: gives back to that what scene_commit has changed in it. NULL is fine. */
+void scene_restore_before(const scene *s);
 
 /* Another camera for a committed scene, that nobody renders meanwhile; nothing else of the scene depends on it. */
 void scene_set_camera(scene *s, const camera *c);

@@ -67,7 +67,7 @@ static ag_status make_room(ag_scene *scene)
     walls.parameter_count = 2;
     walls.material = "plaster";
     if (status == AG_OK)
-        status = ag_scene_add_shape(scene, &walls);
+        status = ag_scene_add_shape(scene, &walls, NULL);
     lamp.type = "sphere";
     lamp.parameters = &radius;
     lamp.parameter_count = 1;
@@ -76,7 +76,7 @@ static ag_status make_room(ag_scene *scene)
     lamp.light_parameters = &radiance;
     lamp.light_parameter_count = 1;
     if (status == AG_OK)
-        status = ag_scene_add_shape(scene, &lamp);
+        status = ag_scene_add_shape(scene, &lamp, NULL);
     return status == AG_OK ? ag_scene_commit(scene) : status;
 }
 

@@ -126,9 +126,9 @@ def _load_library():
         "ag_scene_load_text": (c_int, [c_void_p, c_char_p, c_char_p, c_size_t, c_void_p, POINTER(c_void_p)]),
         "ag_scene_commit": (c_int, [c_void_p]),
         "ag_scene_destroy": (None, [c_void_p]),
-        "ag_scene_add_shape": (c_int, [c_void_p, POINTER(_Shape)]),
-        "ag_scene_add_instance": (c_int, [c_void_p, POINTER(_Instance)]),
-        "ag_scene_add_light": (c_int, [c_void_p, POINTER(_Light)]),
+        "ag_scene_add_shape": (c_int, [c_void_p, POINTER(_Shape), POINTER(c_uint64)]),
+        "ag_scene_add_instance": (c_int, [c_void_p, POINTER(_Instance), POINTER(c_uint64)]),
+        "ag_scene_add_light": (c_int, [c_void_p, POINTER(_Light), POINTER(c_uint64)]),
         "ag_scene_set_camera": (c_int, [c_void_p, POINTER(_Camera)]),
         "ag_scene_add_texture": (c_int, [c_void_p, POINTER(_Texture)]),
         "ag_scene_add_image": (c_int, [c_void_p, c_char_p, POINTER(_Image)]),
@@ -416,7 +416,7 @@ class Scene:
         self._call(_library.ag_scene_add_shape, byref(_Shape(
             ctypes.sizeof(_Shape), _text(type), items, count, _text(material), _text(object),
             _matrix(world_from_shape, kept), _matrix(world_from_shape_end, kept), reverse_orientation,
-            light is not None, light_items, light_count, _text(medium_inside), _text(medium_outside))))
+            light is not None, light_items, light_count, _text(medium_inside), _text(medium_outside))), None)
 
     def instance(self, object: str, world_from_object: Optional[ArrayLike] = None,
                  world_from_object_end: Optional[ArrayLike] = None) -> None:
@@ -424,7 +424,7 @@ class Scene:
         kept = []
         self._call(_library.ag_scene_add_instance, byref(_Instance(
             ctypes.sizeof(_Instance), _text(object), _matrix(world_from_object, kept),
-            _matrix(world_from_object_end, kept))))
+            _matrix(world_from_object_end, kept))), None)
 
     def light(self, type: str, parameters: _Parameters = None, *, world_from_light: Optional[ArrayLike] = None,
               medium_outside: Optional[str] = None) -> None:
@@ -433,7 +433,7 @@ class Scene:
         items, count = _parameters(parameters, kept)
         self._call(_library.ag_scene_add_light, byref(_Light(
             ctypes.sizeof(_Light), _text(type), items, count, _matrix(world_from_light, kept),
-            _text(medium_outside))))
+            _text(medium_outside))), None)
 
     def camera(self, type: str = "perspective", parameters: _Parameters = None, *,
                world_from_camera: Optional[ArrayLike] = None, world_from_camera_end: Optional[ArrayLike] = None,

@@ -135,7 +135,7 @@ ag_status environment_create(environment_mapping mapping, uint32_t width, uint32
     ag_status status = AG_ERROR_MEMORY;
     *out_environment = NULL;
     if (e && weights) {
-        *e = (environment){.mapping = mapping, .width = width, .height = height, .pixels = pixels};
+        *e = (environment){.holder_count = 1, .mapping = mapping, .width = width, .height = height, .pixels = pixels};
         double sum[3] = {0.0, 0.0, 0.0};
         for (uint32_t y = 0; y < height; y++) {
             double solid_angle = environment_pixel_solid_angle(e, y), row[3] = {0.0, 0.0, 0.0};
@@ -162,10 +162,17 @@ ag_status environment_create(environment_mapping mapping, uint32_t width, uint32
     return AG_OK;
 }
 
+environment *environment_hold(environment *e)
+{
+    e->holder_count++;
+    return e;
+}
+
 void environment_destroy(environment *e)
 {
-    if (!e)
+    if (!e || --e->holder_count > 0)
         return;
+    free(e->name);
     distribution_2d_reset(&e->picks);
     free(e->pixels);
     free(e);

@@ -23,6 +23,10 @@ typedef struct environment {
     rgb *pixels;           /* [height][width], top row first; owned */
     distribution_2d picks; /* pixels in proportion to the light they bring */
     rgb integral;          /* of radiance over the sphere, W/m^2 */
+    bool is_gray;          /* its colours were averaged */
+    char *name;            /* of the picture, owned; NULL: it is not found again by that */
+    uint64_t version;      /* of the picture of that name, see light_picture_note */
+    unsigned holder_count; /* of lights of scenes that follow one another */
 } environment;
 
 enum { ENVIRONMENT_MAX_SIZE = 65535 }; /* pixels along a side */
@@ -31,6 +35,8 @@ enum { ENVIRONMENT_MAX_SIZE = 65535 }; /* pixels along a side */
 ag_status environment_create(environment_mapping mapping, uint32_t width, uint32_t height, rgb *pixels,
                              environment **out_environment);
 void environment_destroy(environment *e); /* NULL is fine */
+/* Another light holds it too, and destroys it as well. */
+environment *environment_hold(environment *e);
 
 /* Light by direction, even and upright, and black yet. */
 light_directions light_directions_make(void);

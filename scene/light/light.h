@@ -20,14 +20,21 @@ struct projection;
 struct portal;
 struct radiance_map;
 
+/* Every kind, with the light_type that says what it is (light_type.h). */
+#define LIGHT_KIND_LIST(X)                                                                                             \
+    X(LIGHT_POINT, point_light)                                                                                        \
+    X(LIGHT_SPOT, spot_light)                                                                                          \
+    X(LIGHT_GONIOMETRIC, goniometric_light) /* a point whose intensity is a picture over all directions */             \
+    X(LIGHT_PROJECTION, projection_light)   /* a point that throws a picture */                                        \
+    X(LIGHT_DISTANT, distant_light)                                                                                    \
+    X(LIGHT_AREA, area_light)                                                                                          \
+    X(LIGHT_INFINITE, infinite_light)
+
 typedef enum light_kind {
-    LIGHT_POINT,
-    LIGHT_SPOT,
-    LIGHT_GONIOMETRIC, /* a point whose intensity is a picture over all directions */
-    LIGHT_PROJECTION,  /* a point that throws a picture */
-    LIGHT_DISTANT,
-    LIGHT_AREA,
-    LIGHT_INFINITE
+#define LIGHT_KIND_ENUM(kind, type) kind,
+    LIGHT_KIND_LIST(LIGHT_KIND_ENUM)
+#undef LIGHT_KIND_ENUM
+        LIGHT_KIND_COUNT
 } light_kind;
 
 /* Light by direction: the same for all, or as a picture of the sphere of directions says. */

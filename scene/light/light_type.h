@@ -1,4 +1,4 @@
-/* light_type.h: what a kind of light is: one file and one row of light_type.c each.
+/* light_type.h: what a kind of light is: one file and one row of LIGHT_KIND_LIST each.
  * Flow: light.c, light_emission.c, light_bounds.c, light_pick.c and scene_hash.c ask the row of a light's kind.
  * Threads: read-only tables. */
 #ifndef AFTERGLOW_LIGHT_TYPE_H
@@ -43,10 +43,14 @@ typedef struct light_type {
     bool (*reaches)(const light *l, vec3 point, vec3 normal);
 } light_type;
 
-extern const light_type point_light, spot_light, goniometric_light, projection_light, distant_light, area_light,
-    infinite_light;
+/* Each is in the file of its name. */
+#define LIGHT_TYPE_DECLARATION(kind, type) extern const light_type type;
+LIGHT_KIND_LIST(LIGHT_TYPE_DECLARATION)
+#undef LIGHT_TYPE_DECLARATION
 
-const light_type *light_type_of(light_kind kind);
+extern const light_type *const light_types[LIGHT_KIND_COUNT];
+
+static inline const light_type *light_type_of(light_kind kind) { return light_types[kind]; }
 
 /* --- what several kinds share --- */
 

@@ -14,6 +14,8 @@ typedef struct coat_table coat_table;
  * a metal is not smooth, more where textures say how rough. Freed by coat_table_destroy. */
 coat_table *coat_table_create(const material *m);
 void coat_table_destroy(coat_table *table);
+/* Another one holds it too, and destroys it as well. */
+coat_table *coat_table_hold(coat_table *table);
 
 /* Whether it is the one that coat_table_create would make of that material. */
 bool coat_table_serves(const coat_table *table, const material *m);

@@ -13,19 +13,25 @@
 /* Below this GGX alpha a surface is perfectly smooth (pbrt-v4 draws the same line). */
 #define MATERIAL_SMOOTH_ALPHA 1e-3f
 
+/* Every kind, with the material_type that says what it is (material_type.h). */
+#define MATERIAL_KIND_LIST(X)                                                                                          \
+    X(MATERIAL_DIFFUSE, diffuse_material)                                                                              \
+    X(MATERIAL_DIFFUSE_TRANSMISSION, diffuse_transmission_material)                                                    \
+    X(MATERIAL_CONDUCTOR, conductor_material)                                                                          \
+    X(MATERIAL_DIELECTRIC, dielectric_material)                                                                        \
+    X(MATERIAL_THIN_DIELECTRIC, thin_dielectric_material)                                                              \
+    X(MATERIAL_INTERFACE, no_material) /* no surface: light passes unbent (transmittance.h), perhaps into a medium */  \
+    X(MATERIAL_COATED_DIFFUSE, coated_diffuse_material)     /* a dielectric coat on a diffuse base */                  \
+    X(MATERIAL_COATED_CONDUCTOR, coated_conductor_material) /* a dielectric coat on a conductor */                     \
+    X(MATERIAL_HAIR, hair_material)                         /* a fibre, coloured within (hair.h); mostly on curves */  \
+    X(MATERIAL_PRINCIPLED, principled_material)             /* glTF 2.0's, with transmission, ior, specular, coat */   \
+    X(MATERIAL_MIX, no_material)                            /* one of two others, picked by position */
+
 typedef enum material_kind {
-    MATERIAL_DIFFUSE,
-    MATERIAL_DIFFUSE_TRANSMISSION,
-    MATERIAL_CONDUCTOR,
-    MATERIAL_DIELECTRIC,
-    MATERIAL_THIN_DIELECTRIC,
-    MATERIAL_INTERFACE,      /* no surface: light passes unbent (transmittance.h), perhaps from one medium to another */
-    MATERIAL_COATED_DIFFUSE, /* a dielectric coat on a diffuse base */
-    MATERIAL_COATED_CONDUCTOR, /* a dielectric coat on a conductor */
-    MATERIAL_HAIR,             /* a fibre, coloured within (hair.h); mostly on curves */
-    MATERIAL_PRINCIPLED,       /* glTF 2.0's metallic-roughness, with transmission, ior, specular and clearcoat */
-    MATERIAL_MIX,              /* one of two others, picked by position */
-    MATERIAL_KIND_COUNT
+#define MATERIAL_KIND_ENUM(kind, type) kind,
+    MATERIAL_KIND_LIST(MATERIAL_KIND_ENUM)
+#undef MATERIAL_KIND_ENUM
+        MATERIAL_KIND_COUNT
 } material_kind;
 
 struct coat_table;

@@ -23,8 +23,17 @@ static ag_status make_of_picture(scene *s, run_context *run, texture_image *i)
     }
     if (i->mips)
         return AG_OK;
-    const texture_level finest = texture_image_finest(i);
-    return texture_mips_create(run, &finest, &i->mips);
+    if (i->share && i->share->mips) {
+        i->mips = i->share->mips;
+        return AG_OK;
+    }
+    texture_level finest = texture_image_finest(i);
+    if (i->share && finest.table)
+        finest.table = i->share->table;
+    const ag_status status = texture_mips_create(run, &finest, &i->mips);
+    if (status == AG_OK && i->share)
+        i->share->mips = i->mips;
+    return status;
 }
 
 /* Makes the levels of the pictures in a texture that is filtered, or a part of one that is. */

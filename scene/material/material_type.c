@@ -6,21 +6,12 @@
 /* The least index of refraction: a texture of it may be black. */
 static const float ETA_MIN = 1e-3f;
 
-/* Rays do not stop at an interface; of a mix one of two others has been picked before. */
-static const material_type no_material = {.base = LOBE_DIFFUSE};
+const material_type no_material = {.base = LOBE_DIFFUSE};
 
 const material_type *const material_types[MATERIAL_KIND_COUNT] = {
-    [MATERIAL_DIFFUSE] = &diffuse_material,
-    [MATERIAL_DIFFUSE_TRANSMISSION] = &diffuse_transmission_material,
-    [MATERIAL_CONDUCTOR] = &conductor_material,
-    [MATERIAL_DIELECTRIC] = &dielectric_material,
-    [MATERIAL_THIN_DIELECTRIC] = &thin_dielectric_material,
-    [MATERIAL_INTERFACE] = &no_material,
-    [MATERIAL_COATED_DIFFUSE] = &coated_diffuse_material,
-    [MATERIAL_COATED_CONDUCTOR] = &coated_conductor_material,
-    [MATERIAL_HAIR] = &hair_material,
-    [MATERIAL_PRINCIPLED] = &principled_material,
-    [MATERIAL_MIX] = &no_material,
+#define MATERIAL_TYPE_ROW(kind, type) [kind] = &(type),
+    MATERIAL_KIND_LIST(MATERIAL_TYPE_ROW)
+#undef MATERIAL_TYPE_ROW
 };
 
 bool material_always(const scene *s, const material *m)

@@ -1,4 +1,4 @@
-/* material_type.h: what a kind of material is: one row of material_type.c each, in the file of its family.
+/* material_type.h: what a kind of material is: one row of MATERIAL_KIND_LIST each, in the file of its family.
  * Flow: material.c, material_point.c, material_mips.c, pane.c, slab.c and bsdf_init.c ask the row of a material's kind.
  * Threads: read-only tables of pure functions. */
 #ifndef AFTERGLOW_MATERIAL_TYPE_H
@@ -65,10 +65,11 @@ typedef struct material_type {
     bsdf_lobe_kind base;
 } material_type;
 
-/* diffuse_material.c, conductor_material.c, glass_material.c, coated_material.c, hair_material.c, principled_material.c
- */
-extern const material_type diffuse_material, diffuse_transmission_material, conductor_material, dielectric_material,
-    thin_dielectric_material, coated_diffuse_material, coated_conductor_material, hair_material, principled_material;
+/* Each is in the file of its family, but for no_material: rays do not stop at an interface, and of a mix one of two
+ * others has been picked before. */
+#define MATERIAL_TYPE_DECLARATION(kind, type) extern const material_type type;
+MATERIAL_KIND_LIST(MATERIAL_TYPE_DECLARATION)
+#undef MATERIAL_TYPE_DECLARATION
 
 extern const material_type *const material_types[MATERIAL_KIND_COUNT];
 

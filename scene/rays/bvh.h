@@ -8,11 +8,14 @@
 typedef struct bvh bvh;
 
 /* See scene_commit for isa and errors. The scene's shapes must stay where they are while the bvh lives: meshes are
- * shared with Embree, not copied. */
-ag_status bvh_create(const scene *s, run_context *run, const char *isa, bvh **out_bvh);
+ * shared with Embree, not copied. Trees of s->before whose surfaces are the same are held by both; they ask s from now
+ * on, also after a failure. Adds to *reuse. */
+ag_status bvh_create(const scene *s, run_context *run, const char *isa, scene_reuse *reuse, bvh **out_bvh);
+/* Makes the trees ask a scene again whose they are. NULL is fine. */
+void bvh_point_at(const bvh *b, const scene *s);
 void bvh_destroy(bvh *b); /* NULL is fine */
 
-/* Bytes that Embree holds for it, buffers of ours that it shares not counted. */
+/* Bytes that Embree holds for it, and for others that share trees with it; buffers of ours not counted. */
 uint64_t bvh_memory_bytes(const bvh *b);
 
 /* "avx2", ...: what the kernels were limited to. */

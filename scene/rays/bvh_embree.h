@@ -6,16 +6,15 @@
 #include "rays/bvh.h"
 #include "rays/embree_api.h"
 
-struct attached;
+struct bvh_tree;
+struct bvh_device;
 
 struct bvh {
-    struct attached *attached; /* [shape_count]: what Embree gives back to the build's functions */
-    RTCDevice device;
-    RTCScene scene;
-    RTCScene *objects; /* [object_count], NULL where none is to be seen */
+    RTCScene scene; /* the world's */
+    struct bvh_tree *world;
+    struct bvh_tree **objects; /* [object_count], NULL where none is to be seen */
     uint32_t object_count;
-    char isa[16];
-    _Atomic int64_t memory_bytes; /* moved by Embree's memory monitor, from several threads; a plain count */
+    struct bvh_device *device;
 };
 
 #endif

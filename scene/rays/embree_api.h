@@ -1,4 +1,4 @@
-/* embree_api.h: what differs between Embree 3 and 4, for bvh_embree.c and rays_embree.c alone.
+/* embree_api.h: what differs between Embree 3 and 4, for the files *_embree.c alone.
  * Rests on Embree's CHANGELOG and api.md. Threads: none of its own. */
 #ifndef AFTERGLOW_EMBREE_API_H
 #define AFTERGLOW_EMBREE_API_H

@@ -1,6 +1,6 @@
-/* rays_embree.c: rays cast at the scene's shapes, one by one and as fans, and what they hit. With bvh_embree.c the only
- * file that knows Embree. Rests on: Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing", 2014.
- * Flow: bvh_embree -> [here] -> transmittance. Threads: rays may be cast from any. */
+/* rays_embree.c: rays cast at the scene's shapes, one by one and as fans, and what they hit. With bvh_embree.c and
+ * geometry_embree.c the only file that knows Embree. Rests on: Wald et al., "Embree: A Kernel Framework for Efficient
+ * CPU Ray Tracing", 2014. Flow: bvh_embree -> [here] -> transmittance. Threads: rays may be cast from any. */
 #include "rays/bvh_embree.h"
 #include "rays/rays.h"
 

@@ -1,4 +1,5 @@
 /* light_picture.c: see light_picture.h. Threads: one per scene. */
+#define _POSIX_C_SOURCE 200809L
 #include "light_picture.h"
 
 #include "image/image_encoding.h"
@@ -8,6 +9,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* RGB of what was read; NULL when out of memory. */
 static rgb *rgb_pixels(const image *picture)
@@ -127,4 +129,27 @@ ag_status light_picture_surround(light_picture *picture, const char *name, envir
     }
     return environment_create(width == height ? ENVIRONMENT_OCTAHEDRAL : ENVIRONMENT_LATITUDE_LONGITUDE, width, height,
                               pixels, out_environment);
+}
+
+environment *light_picture_find_kept(scene *s, const char *name, uint64_t version, bool is_gray)
+{
+    for (uint32_t i = 0; s->before && version != 0 && i < s->before->light_count; i++) {
+        const light *l = &s->before->lights[i];
+        environment *e = l->kind == LIGHT_INFINITE      ? l->as.infinite.radiance.picture
+                         : l->kind == LIGHT_GONIOMETRIC ? l->as.goniometric.intensity.picture
+                                                        : NULL;
+        if (e && e->name && e->version == version && e->is_gray == is_gray && strcmp(e->name, name) == 0) {
+            s->reuse.pictures_kept++;
+            return environment_hold(e);
+        }
+    }
+    return NULL;
+}
+
+void light_picture_note(scene *s, const char *name, uint64_t version, bool is_gray, environment *e)
+{
+    s->reuse.pictures_read++;
+    e->name = strdup(name); /* without memory it is read anew */
+    e->version = version;
+    e->is_gray = is_gray;
 }

@@ -170,6 +170,26 @@ static ag_status add_sun(run_context *run, const compass *c, scene *s)
     return scene_add_light(s, &sun, &index);
 }
 
+static ag_status read_sky(run_context *run, scene *s, environment **out_picture, char *message, size_t message_size)
+{
+    const char *path = s->request->sky_file;
+    light_picture picture;
+    if (!input_file_allow_named(run, path, message, message_size))
+        return AG_ERROR_INPUT;
+    const uint64_t version = input_file_version(path);
+    *out_picture = light_picture_find_kept(s, path, version, false);
+    if (*out_picture)
+        return AG_OK;
+    AG_TRY(light_picture_read(s, path, path, false, &picture, message, message_size));
+    AG_TRY(light_picture_surround(&picture, path, out_picture, message, message_size));
+    light_picture_note(s, path, version, false, *out_picture);
+    if (picture.bad_count > 0)
+        log_message(run->log, AG_LOG_WARNING,
+                    "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0", path,
+                    picture.bad_count);
+    return AG_OK;
+}
+
 /* A picture is latitude-longitude with its middle in the east, and north to the left of it: as in Blender, whose x is
  * in the middle. */
 static ag_status add_sky(run_context *run, const compass *c, scene *s)
@@ -177,7 +197,6 @@ static ag_status add_sky(run_context *run, const compass *c, scene *s)
     const scene_request *asked = s->request;
     char message[768] = "";
     light sky = light_make(LIGHT_INFINITE);
-    light_picture picture;
     uint32_t index;
     ag_status status = AG_OK;
     sky.as.infinite.radiance.value = working_space_light(&s->space, asked->sky_radiance);
@@ -186,16 +205,7 @@ static ag_status add_sky(run_context *run, const compass *c, scene *s)
             (frame){.x = heading(c, 270.0 + (double)asked->sky_rotation_degrees),
                     .y = heading(c, (double)asked->sky_rotation_degrees),
                     .z = c->up};
-        status = input_file_allow_named(run, asked->sky_file, message, sizeof message)
-                     ? light_picture_read(s, asked->sky_file, asked->sky_file, false, &picture, message, sizeof message)
-                     : AG_ERROR_INPUT;
-        if (status == AG_OK)
-            status = light_picture_surround(&picture, asked->sky_file, &sky.as.infinite.radiance.picture, message,
-                                            sizeof message);
-        if (status == AG_OK && picture.bad_count > 0)
-            log_message(run->log, AG_LOG_WARNING,
-                        "\"%s\": %zu pixels are negative, infinite or not a number; what is counts as 0",
-                        asked->sky_file, picture.bad_count);
+        status = read_sky(run, s, &sky.as.infinite.radiance.picture, message, sizeof message);
     }
     if (status == AG_OK && !rgb_is_finite(environment_integral(&sky.as.infinite.radiance))) {
         snprintf(message, sizeof message, "the light is too bright for a float");

@@ -53,21 +53,25 @@ ag_status curves_reserve(curves *c, uint32_t segment_count)
 
 void curves_reset(curves *c)
 {
-    free(c->points);
-    free(c->spans);
-    free(c->first_points);
-    free(c->normals);
+    if (!c->holder_count || --*c->holder_count == 0) {
+        free(c->points);
+        free(c->spans);
+        free(c->first_points);
+        free(c->normals);
+        free(c->holder_count);
+    }
     *c = (curves){0};
 }
 
 bool curves_can_be_joined(const shape *s, const shape *with)
 {
     return s->kind == SHAPE_CURVES && with->kind == SHAPE_CURVES && s->as.curves.type == with->as.curves.type &&
-           s->flip_normal == with->flip_normal && s->medium_inside == with->medium_inside &&
-           s->medium_outside == with->medium_outside && s->material_index == with->material_index &&
-           s->alpha == with->alpha && s->alpha_texture == with->alpha_texture &&
-           s->alpha_cutoff == with->alpha_cutoff && s->light_index == SHAPE_NO_LIGHT &&
-           with->light_index == SHAPE_NO_LIGHT && s->object_index == with->object_index &&
+           !s->as.curves.holder_count && s->flip_normal == with->flip_normal &&
+           s->medium_inside == with->medium_inside && s->medium_outside == with->medium_outside &&
+           s->material_index == with->material_index && s->alpha == with->alpha &&
+           s->alpha_texture == with->alpha_texture && s->alpha_cutoff == with->alpha_cutoff &&
+           s->light_index == SHAPE_NO_LIGHT && with->light_index == SHAPE_NO_LIGHT &&
+           s->object_index == with->object_index &&
            s->as.curves.segment_count + with->as.curves.segment_count <= SEGMENTS_MAX;
 }
 

@@ -22,20 +22,26 @@ shape shape_make(shape_kind kind)
     return s;
 }
 
+void mesh_reset(mesh *m)
+{
+    free(m->area_cdf);
+    if (!m->holder_count || --*m->holder_count == 0) {
+        free(m->borrowed & MESH_BORROWS_POSITIONS ? NULL : m->positions);
+        free(m->borrowed & MESH_BORROWS_UVS ? NULL : m->uvs);
+        free(m->borrowed & MESH_BORROWS_INDICES ? NULL : m->indices);
+        free(m->normals);
+        free(m->tangents);
+        free(m->holder_count);
+    }
+    *m = (mesh){0};
+}
+
 void shape_reset(shape *s)
 {
     if (s->kind == SHAPE_CURVES)
         curves_reset(&s->as.curves);
-    if (s->kind != SHAPE_MESH)
-        return;
-    mesh *m = &s->as.mesh;
-    free(m->positions);
-    free(m->normals);
-    free(m->uvs);
-    free(m->tangents);
-    free(m->indices);
-    free(m->area_cdf);
-    *m = (mesh){0};
+    if (s->kind == SHAPE_MESH)
+        mesh_reset(&s->as.mesh);
 }
 
 /* A copy of count items and room for spare more, zeroed; NULL stays NULL. */
@@ -63,6 +69,7 @@ ag_status shape_copy(const shape *s, const transform *map, shape *out_copy)
     const mesh *from = &s->as.mesh;
     mesh *m = &copy.as.mesh;
     m->positions = NULL, m->normals = NULL, m->uvs = NULL, m->tangents = NULL, m->indices = NULL, m->area_cdf = NULL;
+    m->holder_count = NULL, m->borrowed = 0;
     if (!copy_array(from->positions, from->vertex_count, 1, sizeof *m->positions, &m->positions) ||
         !copy_array(from->normals, from->vertex_count, 0, sizeof *m->normals, &m->normals) ||
         !copy_array(from->uvs, from->vertex_count, 0, sizeof *m->uvs, &m->uvs) ||

@@ -21,16 +21,22 @@
 
 typedef enum shape_kind { SHAPE_MESH, SHAPE_SPHERE, SHAPE_CYLINDER, SHAPE_DISK, SHAPE_CURVES } shape_kind;
 
-/* World space. Arrays are owned by the shape, which is owned by the scene. Positions have room for one more vertex, so
- * that Embree may read 16 bytes at the last one. */
+/* Arrays that belong to whoever asked for the scene. */
+enum { MESH_BORROWS_POSITIONS = 1, MESH_BORROWS_UVS = 2, MESH_BORROWS_INDICES = 4 };
+
+/* World space. Arrays are owned by the shape, which is owned by the scene, unless they are borrowed or shared; nobody
+ * writes to them once they are in a scene. Behind positions 4 more bytes can be read, so that Embree may read 16 at the
+ * last one. */
 typedef struct mesh {
     uint32_t vertex_count, triangle_count;
     vec3 *positions;
-    vec3 *normals;     /* unit shading normals, or NULL */
-    vec2 *uvs;         /* or NULL */
-    vec3 *tangents;    /* of any length, for the shading frame alone, or NULL: then uvs say which way they go */
-    uint32_t *indices; /* 3 per triangle, each < vertex_count */
-    float *area_cdf;   /* of emissive meshes, else NULL: [triangle_count], running sum of areas over the total */
+    vec3 *normals;          /* unit shading normals, or NULL */
+    vec2 *uvs;              /* or NULL */
+    vec3 *tangents;         /* of any length, for the shading frame alone, or NULL: then uvs say which way they go */
+    uint32_t *indices;      /* 3 per triangle, each < vertex_count */
+    float *area_cdf;        /* of emissive meshes, else NULL: [triangle_count], running sum of areas over the total */
+    uint32_t *holder_count; /* of shapes that share all arrays but area_cdf; NULL: they are this one's alone */
+    unsigned borrowed;      /* of MESH_BORROWS_... */
 } mesh;
 
 /* Sphere and cylinder around the z axis, of which z_min to z_max is there; disk: z = height, inner to outer radius. All
@@ -72,6 +78,7 @@ typedef struct curves {
     vec3 *normals;          /* of ribbons, else NULL: 4 per segment, control points too; of any length */
     vec2 *spans;            /* per segment: the uv.x of its ends, for a curve may have been cut */
     uint32_t *first_points; /* per segment: 4 times its number, for Embree */
+    uint32_t *holder_count; /* as a mesh's; no more segments can then be added */
 } curves;
 
 typedef struct shape {
@@ -98,6 +105,15 @@ typedef struct shape {
 shape shape_make(shape_kind kind);
 /* Frees what it owns. */
 void shape_reset(shape *s);
+void mesh_reset(mesh *m);
+/* A shape that shares the other's arrays, both uncommitted or not: each is reset by itself. Errors: AG_ERROR_MEMORY. */
+ag_status shape_share(shape *s, shape *out_other);
+/* Whether rays would meet the same: surfaces that share their arrays, or are equal by their few numbers. */
+bool shape_has_same_surface(const shape *a, const shape *b);
+/* Whether meshes or curves hold equal arrays; the arrays of another that are equal then take the place of a shape's
+ * own. Errors: AG_ERROR_MEMORY. */
+bool shape_equals(const shape *s, const shape *other);
+ag_status shape_share_arrays(shape *from, shape *in_out_shape);
 /* Copies a shape that is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
  * AG_ERROR_MEMORY. */
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);

@@ -4,6 +4,7 @@
 #include "text/input_file.h"
 
 #include "descriptor.h"
+#include "math/hash128.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -110,8 +111,7 @@ static bool is_opened_allowed(const input_files *files, const char *path, int de
 static bool note(input_files *files, const struct stat *status)
 {
     struct input_file_number number = {(uint64_t)status->st_dev, (uint64_t)status->st_ino};
-    if (!files || (files->count > 0 && files->read[files->count - 1].inode == number.inode &&
-                   files->read[files->count - 1].device == number.device))
+    if (!files || input_files_has(files, number.device, number.inode))
         return true;
     if (files->count == files->capacity) {
         size_t capacity = files->capacity > 0 ? 2 * files->capacity : 16;
@@ -144,6 +144,18 @@ static bool is_fit(const run_context *run, int descriptor, char *error, size_t e
 }
 
 static const char OUTSIDE[] = "a confined scene may not read it: it lies outside of the scene's folder";
+
+uint64_t input_file_version(const char *path)
+{
+    struct stat status;
+    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode))
+        return 0;
+    const uint64_t parts[] = {(uint64_t)status.st_dev, (uint64_t)status.st_ino, (uint64_t)status.st_size,
+                              (uint64_t)status.st_mtim.tv_sec, (uint64_t)status.st_mtim.tv_nsec};
+    hash128 hash = hash128_begin();
+    hash128_add(&hash, parts, sizeof parts);
+    return hash.bits[0] | 1; /* pictures in memory have even ones */
+}
 
 bool input_file_may_ask(const run_context *run, const char *path, char *error, size_t error_size)
 {

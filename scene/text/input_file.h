@@ -13,7 +13,7 @@
 typedef struct input_files {
     struct input_file_number {
         uint64_t device, inode;
-    } * read; /* owned; a file may be there more than once */
+    } * read; /* owned */
     size_t count, capacity;
     /* Of a scene that is not trusted: */
     bool is_confined;
@@ -35,6 +35,9 @@ bool input_files_has(const input_files *files, uint64_t device, uint64_t inode);
  * or lies where a confined scene may not read, whether there is such a file or not, -1 is returned and error, of
  * error_size bytes, says why, without the path. */
 int input_file_open(const run_context *run, const char *path, char *error, size_t error_size);
+
+/* A number that differs where a file may have changed; 0 where that cannot be told. */
+uint64_t input_file_version(const char *path);
 
 /* Whether the scene may know if there is a file of that name; else error says why not. Asked before a folder is
  * searched, or a name tried: what it answers does not depend on whether there is such a file. */

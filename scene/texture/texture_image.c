@@ -1,4 +1,5 @@
 /* texture_image.c: see texture_image.h. Threads: one takes; then any number look up. */
+#define _POSIX_C_SOURCE 200809L
 #include "texture/texture_image.h"
 
 #include "image/image.h"
@@ -140,16 +141,53 @@ ag_status texture_image_take(const scene *s, texture_image *i, image *picture, c
     return status;
 }
 
+/* From now on its pixels may be held by several. */
+static bool begin_share(texture_image *i)
+{
+    if (i->share)
+        return true;
+    i->share = calloc(1, sizeof *i->share);
+    if (!i->share)
+        return false;
+    i->share->holder_count = 1;
+    i->share->mips = i->mips;
+    memcpy(i->share->table, i->table, sizeof i->table);
+    if (i->mips && i->mips->levels[0].table)
+        i->mips->levels[0].table = i->share->table;
+    return true;
+}
+
+texture_image *texture_image_hold(texture_image *i)
+{
+    texture_image *other = malloc(sizeof *other);
+    char *path = strdup(i->path);
+    if (!other || !path || !begin_share(i)) {
+        free(other);
+        free(path);
+        return NULL;
+    }
+    i->share->holder_count++;
+    *other = *i;
+    other->path = path;
+    other->mips = NULL;
+    return other;
+}
+
 void texture_image_destroy(texture_image *i)
 {
     if (!i)
         return;
     free(i->path);
+    if (i->share && --i->share->holder_count > 0) {
+        free(i);
+        return;
+    }
     free(i->bytes);
     free(i->values);
     free(i->alpha_bytes);
     free(i->alpha_values);
-    texture_mips_destroy(i->mips);
+    texture_mips_destroy(i->share ? i->share->mips : i->mips);
+    free(i->share);
     texture_tiles_destroy(i->stored_alpha.tiles);
     texture_file_levels_destroy(i->file);
     texture_udim_destroy(i->udim);

@@ -26,8 +26,17 @@ typedef enum texture_channel {
     TEXTURE_CHANNEL_A /* never encoded */
 } texture_channel;
 
+/* Pixels that pictures of scenes that follow one another hold together. */
+typedef struct texture_image_share {
+    unsigned holder_count;
+    texture_mips *mips; /* once one of them has wanted any */
+    float table[256];   /* of all of them, for the mips */
+} texture_image_share;
+
 typedef struct texture_image {
     char *path;
+    uint64_t version;           /* of what the path names: another one is another picture */
+    texture_image_share *share; /* NULL: its pixels are its alone */
     image_encoding encoding;
     uint32_t width, height;
     uint32_t channel_count;     /* 1 or 3 */
@@ -55,6 +64,8 @@ typedef struct texture_image {
 ag_status texture_image_take(const struct scene *s, texture_image *i, struct image *picture, char *message,
                              size_t message_size);
 void texture_image_destroy(texture_image *i); /* NULL is fine */
+/* Another picture with the same pixels, as it was read; for pictures that are held whole. NULL when out of memory. */
+texture_image *texture_image_hold(texture_image *i);
 
 /* The picture itself as a level, whose memory stays the picture's. Not of one that is stored. */
 static inline texture_level texture_image_finest(const texture_image *i)

@@ -21,6 +21,7 @@ typedef struct source {
     const unsigned char *bytes; /* the file's; NULL: it is on disk */
     size_t size;
     const image *pixels; /* NULL: as above */
+    uint64_t version;    /* of those, or of the file */
     image_encoding encoding;
 } source;
 
@@ -184,28 +185,62 @@ bool texture_image_is_there(const run_context *run, const char *path)
 
 /* --- each once --- */
 
-static ag_status load(scene *s, const source *from, uint32_t *out_index, char *message, size_t message_size)
+/* The same picture in the scene before, where it can be held by two; NULL: it is to be read. */
+static texture_image *find_kept(const scene *s, const source *from)
 {
+    for (uint32_t k = 0; s->before && k < s->before->texture_image_count; k++) {
+        texture_image *i = s->before->texture_images[k];
+        if (i->version != 0 && i->version == from->version && !i->is_stored && !i->file && !i->udim &&
+            image_encoding_equal(i->encoding, from->encoding) && strcmp(i->path, from->path) == 0)
+            return i;
+    }
+    return NULL;
+}
+
+static ag_status keep(scene *s, texture_image *kept, uint32_t *out_index)
+{
+    AG_TRY(make_store(s));
+    if (s->texture_store)
+        (void)texture_store_keeps(s->texture_store, whole_bytes(kept)); /* it counts, whatever the limit says */
+    texture_image *i = texture_image_hold(kept);
+    if (!i)
+        return AG_ERROR_MEMORY;
+    s->reuse.pictures_kept++;
+    return scene_add_texture_image(s, i, out_index);
+}
+
+static ag_status load(scene *s, const source *given, uint32_t *out_index, char *message, size_t message_size)
+{
+    source with_version = *given;
+    const source *from = &with_version;
     for (uint32_t k = 0; k < s->texture_image_count; k++)
         if (image_encoding_equal(s->texture_images[k]->encoding, from->encoding) &&
             strcmp(s->texture_images[k]->path, from->path) == 0) {
             *out_index = k;
             return AG_OK;
         }
+    const bool is_on_disk = !from->bytes && !from->pixels, is_tiled = is_on_disk && texture_udim_is_pattern(from->path);
+    if (!is_tiled)
+        AG_TRY(allow(from, message, message_size));
+    if (is_on_disk && !is_tiled)
+        with_version.version = input_file_version(from->path);
+    texture_image *kept = find_kept(s, from);
+    if (kept)
+        return keep(s, kept, out_index);
     texture_image *i = calloc(1, sizeof *i);
     if (!i)
         return AG_ERROR_MEMORY;
+    s->reuse.pictures_read++;
+    i->version = from->version;
     i->encoding = from->encoding;
     i->path = strdup(from->path);
     ag_status status = i->path ? AG_OK : AG_ERROR_MEMORY;
-    if (status == AG_OK && !from->bytes && !from->pixels && texture_udim_is_pattern(from->path)) {
+    if (status == AG_OK && is_tiled) {
         status = read_tiles(s, i, from, message, message_size);
     } else if (status == AG_OK) {
         bool is_read = false;
-        status = allow(from, message, message_size);
-        if (status == AG_OK)
-            status = make_store(s);
-        if (status == AG_OK && !from->bytes && !from->pixels)
+        status = make_store(s);
+        if (status == AG_OK && is_on_disk)
             status = texture_file_levels_read(from->run, s, i, &is_read, message, message_size);
         if (status == AG_OK && !is_read)
             status = read_image(s, i, from, message, message_size);
@@ -232,8 +267,9 @@ ag_status texture_image_load_memory(run_context *run, struct scene *s, const cha
 }
 
 ag_status texture_image_load_pixels(run_context *run, struct scene *s, const char *name, const image *pixels,
-                                    image_encoding encoding, uint32_t *out_index, char *message, size_t message_size)
+                                    uint64_t version, image_encoding encoding, uint32_t *out_index, char *message,
+                                    size_t message_size)
 {
-    const source from = {.run = run, .path = name, .pixels = pixels, .encoding = encoding};
+    const source from = {.run = run, .path = name, .pixels = pixels, .version = version, .encoding = encoding};
     return load(s, &from, out_index, message, message_size);
 }

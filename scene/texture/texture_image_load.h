@@ -19,8 +19,10 @@ bool texture_image_is_there(const run_context *run, const char *path);
 ag_status texture_image_load_memory(run_context *run, struct scene *s, const char *name, const unsigned char *bytes,
                                     size_t size, image_encoding encoding, uint32_t *out_index, char *message,
                                     size_t message_size);
-/* From pixels, which are copied, once for each name, which is to differ from all paths, and encoding. */
+/* From pixels, which are copied, once for each name, which is to differ from all paths, and encoding. version: of the
+ * pixels of that name, which are kept from scene to scene as long as it is the same; 0: they are not. */
 ag_status texture_image_load_pixels(run_context *run, struct scene *s, const char *name, const struct image *pixels,
-                                    image_encoding encoding, uint32_t *out_index, char *message, size_t message_size);
+                                    uint64_t version, image_encoding encoding, uint32_t *out_index, char *message,
+                                    size_t message_size);
 
 #endif

@@ -100,9 +100,9 @@ static void edits_and_renders_leave_no_memory_behind(void **state)
         assert_int_equal(ag_scene_create(d.context, NULL, &d.made), AG_OK);
         light_and_look(&d);
         make_square(&s);
-        assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_OK);
+        assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_OK);
         s.shape.type = "cube";
-        assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_SCENE);
+        assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_SCENE);
         assert_int_equal(ag_scene_commit(d.made), AG_OK);
         assert_int_equal(ag_render_settings_from_scene(d.context, d.made, &settings), AG_OK);
         photon_settings(&settings, NULL);
@@ -138,7 +138,7 @@ static void a_camera_cannot_change_under_a_rendering(void **state)
     light_and_look(&d);
     make_square(&s);
     s.shape.world_from_shape_end = ASIDE;
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_OK);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_OK);
     assert_int_equal(ag_scene_commit(d.made), AG_OK);
     assert_int_equal(ag_render_settings_from_scene(d.context, d.made, &settings), AG_OK);
     photon_settings(&settings, NULL);
@@ -182,7 +182,7 @@ static void settings_are_heeded(void **state)
     asked.has_sky = true;
     assert_int_equal(ag_scene_create(d.context, &asked, &scene), AG_OK);
     make_square(&s);
-    assert_int_equal(ag_scene_add_shape(scene, &s.shape), AG_OK);
+    assert_int_equal(ag_scene_add_shape(scene, &s.shape, NULL), AG_OK);
     assert_int_equal(ag_scene_commit(scene), AG_OK);
     render(d.context, scene, pixels);
     const float *middle = &pixels[3 * (SIZE / 2 * SIZE + SIZE / 2)];
@@ -210,7 +210,7 @@ static void render_ball(desk *d, const ag_scene_settings *asked, bool is_before,
     assert_int_equal(ag_scene_create(d->context, asked, &scene), AG_OK);
     if (is_before)
         assert_int_equal(ag_scene_set_camera(scene, &eye), AG_OK);
-    assert_int_equal(ag_scene_add_shape(scene, &ball), AG_OK);
+    assert_int_equal(ag_scene_add_shape(scene, &ball, NULL), AG_OK);
     assert_int_equal(ag_scene_commit(scene), AG_OK);
     if (is_after)
         assert_int_equal(ag_scene_set_camera(scene, &eye), AG_OK);

@@ -29,7 +29,7 @@ static void add_square(desk *d)
 {
     square s;
     make_square(&s);
-    assert_int_equal(ag_scene_add_shape(d->made, &s.shape), AG_OK);
+    assert_int_equal(ag_scene_add_shape(d->made, &s.shape, NULL), AG_OK);
 }
 
 /* Commits both, of which the second saw no call that failed. */
@@ -71,14 +71,14 @@ static void a_medium_that_failed_can_be_made_again(void **state)
         ball.material = "clear";
         ball.medium_inside = "ink";
         assert_int_equal(ag_scene_add_material(both[i]->made, "clear", "interface", NULL, 0), AG_OK);
-        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball), AG_OK);
+        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball, NULL), AG_OK);
     }
     expect_same_picture(&d, &sound);
     begin(&d);
     assert_int_equal(ag_scene_add_medium(d.made, "ink", "homogeneous", &wrong, 1), AG_ERROR_SCENE);
     ag_shape ball = make_ball(NULL);
     ball.medium_inside = "ink";
-    assert_int_equal(ag_scene_add_shape(d.made, &ball), AG_OK);
+    assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_OK);
     assert_int_equal(ag_scene_commit(d.made), AG_ERROR_SCENE);
     expect_said(&d, "no medium is named \"ink\"");
     end(&d);
@@ -100,15 +100,15 @@ static void shapes_and_instances_that_failed_leave_no_trace(void **state)
     ag_shape ball = make_ball(NULL);
     ball.type = "cube";
     ball.world_from_shape_end = ASIDE;
-    assert_int_equal(ag_scene_add_shape(d.made, &ball), AG_ERROR_SCENE);
+    assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_SCENE);
     ball.object = instance.object = "ball";
-    assert_int_equal(ag_scene_add_shape(d.made, &ball), AG_ERROR_SCENE);
+    assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_SCENE);
     instance.world_from_object_end = ASIDE;
-    assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_ERROR_SCENE); /* the object has nothing yet */
+    assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_ERROR_SCENE); /* the object has nothing yet */
     expect_said(&d, "no object is named \"ball\"");
     instance.world_from_object = BEYOND_FLOATS;
     instance.object = "nothing";
-    assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_ERROR_SCENE);
+    assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_ERROR_SCENE);
     ball = make_ball(NULL);
     const ag_parameter radius = {.name = "radius", .type = AG_PARAMETER_FLOAT, .count = 1, .floats = tiny};
     const ag_parameter power = {.name = "power", .type = AG_PARAMETER_FLOAT, .count = 1, .floats = great};
@@ -117,7 +117,7 @@ static void shapes_and_instances_that_failed_leave_no_trace(void **state)
     ball.light_parameters = &power;
     ball.light_parameter_count = 1;
     ball.medium_outside = "fog";
-    assert_int_equal(ag_scene_add_shape(d.made, &ball), AG_ERROR_SCENE);
+    assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_SCENE);
     expect_said(&d, "the light is too bright for a float");
 
     /* neither is the camera locked, nor the object */
@@ -127,19 +127,19 @@ static void shapes_and_instances_that_failed_leave_no_trace(void **state)
     instance.object = "ball";
     for (int i = 0; i < 2; i++) {
         ball = make_ball("ball");
-        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball), AG_OK);
+        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball, NULL), AG_OK);
         ball.is_light = true;
-        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball), AG_OK);
+        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball, NULL), AG_OK);
         if (i == 0) { /* its lamp would stay without the body */
             instance.world_from_object = BEYOND_FLOATS;
             instance.world_from_object_end = NULL;
-            assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_ERROR_SCENE);
+            assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_ERROR_SCENE);
         }
         ball.is_light = false;
         ball.world_from_shape = ASIDE;
-        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball), AG_OK);
+        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball, NULL), AG_OK);
         instance.world_from_object = NULL;
-        assert_int_equal(ag_scene_add_instance(both[i]->made, &instance), AG_OK);
+        assert_int_equal(ag_scene_add_instance(both[i]->made, &instance, NULL), AG_OK);
     }
     expect_same_picture(&d, &sound);
 }
@@ -159,18 +159,18 @@ static void an_instance_has_its_body_and_its_lamps_or_neither(void **state)
         light_and_look(both[i]);
         add_square(both[i]);
         ag_shape ball = make_ball("lamp");
-        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball), AG_OK);
+        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball, NULL), AG_OK);
         ball.is_light = true;
-        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball), AG_OK);
+        assert_int_equal(ag_scene_add_shape(both[i]->made, &ball, NULL), AG_OK);
         if (i == 1)
             continue;
         static const double far[16] = {1, 0, 0, 1e19, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
         instance.world_from_object = far;
-        assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_ERROR_SCENE);
+        assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_ERROR_SCENE);
         expect_said(&d, "a lamp of object \"lamp\" reaches beyond 1e18 units");
         instance.world_from_object = NULL;
         instance.world_from_object_end = inside_out;
-        assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_ERROR_SCENE);
+        assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_ERROR_SCENE);
         expect_said(&d, "turns inside out on its way");
     }
     expect_same_picture(&d, &sound);
@@ -220,7 +220,7 @@ static void transposed_matrices_are_refused(void **state)
         assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_ERROR_ARGUMENT);
         expect_said(&d, "the translation is in the last column");
         ball.world_from_shape_end = wrong[i];
-        assert_int_equal(ag_scene_add_shape(d.made, &ball), AG_ERROR_ARGUMENT);
+        assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_ARGUMENT);
         expect_said(&d, "the translation is in the last column");
     }
     eye.world_from_camera = rounded;
@@ -292,7 +292,7 @@ static void misuse_is_named(void **state)
     ball.parameters = &many;
     for (int i = 0; i < 2; i++) {
         many.count = SIZE_MAX / (i == 0 ? 8 : 9);
-        assert_int_equal(ag_scene_add_shape(d.made, &ball), AG_ERROR_ARGUMENT);
+        assert_int_equal(ag_scene_add_shape(d.made, &ball, NULL), AG_ERROR_ARGUMENT);
         expect_said(&d, "\"float radius\": it has more than 2^33 values");
     }
     end(&d);

@@ -16,35 +16,35 @@ static void mistakes_are_named_by_call_and_parameter(void **state)
     make_square(&s);
     s.parameters[1] = (ag_parameter){"indices", AG_PARAMETER_INTEGER, 3, .integers = out_of_range};
     s.shape.material = "red";
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_SCENE);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_SCENE);
     expect_said(&d, "ag_scene_add_shape:1:2: error: index 9 (value 3 of \"indices\") is out of range, there are 4 "
                     "vertices\n    Shape \"trianglemesh\" of material \"red\"");
     s.shape.material = NULL;
     s.parameters[1] = (ag_parameter){"N", AG_PARAMETER_NORMAL, 3, .floats = not_finite};
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, "ag_scene_add_shape:2:2: error: \"normal N\": value 3 is not finite");
     make_square(&s);
     s.parameters[0].count = 11;
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, "ag_scene_add_shape:3:1: error: \"point3 P\" has 11 numbers, which is no multiple of 3");
     s.parameters[0] = (ag_parameter){"P", AG_PARAMETER_POINT3, 12, .integers = TRIANGLES};
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, ":4:1: error: \"point3 P\": its values should be floats or doubles");
     s.parameters[0] = (ag_parameter){.name = "P", .type = AG_PARAMETER_POINT3, .count = 12};
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, ":5:1: error: \"point3 P\": one of its arrays should be there, and no other");
     s.parameters[0] = (ag_parameter){"P", (ag_parameter_type)99, 12, .floats = CORNERS};
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, ":6:1: error: a parameter has no type that there is");
     s.parameters[0] = (ag_parameter){NULL, AG_PARAMETER_POINT3, 12, .floats = CORNERS};
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, ":7:1: error: a parameter has no name");
     make_square(&s);
     s.shape.type = "cube";
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_SCENE);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_SCENE);
     expect_said(&d, "ag_scene_add_shape:8:0: error: unknown shape \"cube\"");
     s.shape.type = NULL;
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, ":9:0: error: the shape has no type");
     const char *const no_strings[] = {NULL};
     const ag_parameter file = {"filename", AG_PARAMETER_STRING, 1, .strings = no_strings};
@@ -63,7 +63,7 @@ static void mistakes_are_named_by_call_and_parameter(void **state)
     assert_int_equal(ag_scene_add_material(d.made, "m", "diffuse", NULL, 0), AG_ERROR_SCENE);
     expect_said(&d, "is made twice, first at ag_scene_add_material:5:0");
     s.shape.material = "m";
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_OK);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_OK);
     assert_string_equal(d.said, "");
     assert_int_equal(ag_scene_commit(d.made), AG_OK);
     end(&d);
@@ -82,33 +82,33 @@ static void matrices_and_order_are_checked(void **state)
     light_and_look(&d);
     make_square(&s);
     s.shape.world_from_shape = flat;
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, "its matrix cannot be undone");
     s.shape.world_from_shape = endless;
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, "a number of its matrix is not finite");
-    assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, "ag_scene_add_instance:1:0: error: the instance names no object");
     s.shape.world_from_shape = NULL;
     s.shape.object = instance.object = "thing";
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_OK);
-    assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_OK);
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_SCENE);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_OK);
+    assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_OK);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_SCENE);
     expect_said(&d, "object \"thing\" has an instance already");
     instance.world_from_object_end = ASIDE;
-    assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_OK);
+    assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_OK);
     assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_ERROR_ARGUMENT);
     expect_said(&d, "the camera comes before what moves");
     instance.object = "nothing";
     instance.world_from_object_end = NULL;
-    assert_int_equal(ag_scene_add_instance(d.made, &instance), AG_ERROR_SCENE);
+    assert_int_equal(ag_scene_add_instance(d.made, &instance, NULL), AG_ERROR_SCENE);
     expect_said(&d, "ag_scene_add_instance:4:0: error: no object is named \"nothing\"");
     s.shape.object = NULL;
     s.shape.material = "nothing";
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_OK); /* it may still come */
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_OK); /* it may still come */
     assert_int_equal(ag_scene_commit(d.made), AG_ERROR_SCENE);
     expect_said(&d, "no material is named \"nothing\"");
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT); /* no more */
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT); /* no more */
     assert_int_equal(ag_scene_commit(d.made), AG_ERROR_ARGUMENT);
     end(&d);
 }
@@ -136,9 +136,9 @@ static void calls_in_a_wrong_order_are_errors(void **state)
     assert_int_equal(ag_scene_commit(d.made), AG_OK);
     assert_int_equal(ag_scene_commit(d.made), AG_ERROR_ARGUMENT);
     expect_said(&d, "ag_scene_commit: the scene is complete already");
-    assert_int_equal(ag_scene_add_shape(d.made, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, "ag_scene_add_shape: the scene is complete already");
-    assert_int_equal(ag_scene_add_shape(NULL, &s.shape), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(NULL, &s.shape, NULL), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_scene_set_hint(d.made, (ag_scene_hint)7, "rgb", NULL, 0), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_scene_create(NULL, NULL, &scene), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_scene_create(d.context, NULL, NULL), AG_ERROR_ARGUMENT);
@@ -149,7 +149,7 @@ static void calls_in_a_wrong_order_are_errors(void **state)
     assert_int_equal(ag_scene_create(d.context, &asked, &scene), AG_ERROR_ARGUMENT);
     assert_null(scene);
     assert_int_equal(ag_scene_create(d.context, NULL, &scene), AG_OK); /* dropped half made */
-    assert_int_equal(ag_scene_add_shape(scene, &s.shape), AG_OK);
+    assert_int_equal(ag_scene_add_shape(scene, &s.shape, NULL), AG_OK);
     ag_scene_destroy(scene);
     end(&d);
 }

@@ -22,7 +22,7 @@ static void begin_bench(bench *b)
     b->d.made = b->complete;
     make_square(&s);
     light_and_look(&b->d);
-    assert_int_equal(ag_scene_add_shape(b->complete, &s.shape), AG_OK);
+    assert_int_equal(ag_scene_add_shape(b->complete, &s.shape, NULL), AG_OK);
     assert_int_equal(ag_scene_commit(b->complete), AG_OK);
     b->d.made = open;
     assert_int_equal(ag_render_settings_from_scene(b->d.context, b->complete, &settings), AG_OK);
@@ -124,19 +124,19 @@ static ag_status add_shape(bench *b, size_t size)
     square made;
     make_square(&made);
     SIZED(ag_shape, s, made.shape);
-    return ag_scene_add_shape(b->d.made, &s);
+    return ag_scene_add_shape(b->d.made, &s, NULL);
 }
 
 static ag_status add_light(bench *b, size_t size)
 {
     SIZED(ag_light, s, ag_default_light());
-    return ag_scene_add_light(b->d.made, &s);
+    return ag_scene_add_light(b->d.made, &s, NULL);
 }
 
 static ag_status add_instance(bench *b, size_t size)
 {
     SIZED(ag_instance, s, ag_default_instance());
-    return ag_scene_add_instance(b->d.made, &s);
+    return ag_scene_add_instance(b->d.made, &s, NULL);
 }
 
 static ag_status add_image(bench *b, size_t size)
@@ -225,7 +225,7 @@ static void descriptions_are_needed(void **state)
     (void)state;
     desk d;
     begin(&d);
-    assert_int_equal(ag_scene_add_shape(d.made, NULL), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_shape(d.made, NULL, NULL), AG_ERROR_ARGUMENT);
     expect_said(&d, "there is no description");
     end(&d);
 }

@@ -156,7 +156,7 @@ static disc row_disc(const light_row *row, const light *l, int which)
 static void every_kind_has_a_row(void **state)
 {
     (void)state;
-    bool is_there[LIGHT_INFINITE + 1] = {false}, has_portal = false, has_map = false, has_picture = false;
+    bool is_there[LIGHT_KIND_COUNT] = {false}, has_portal = false, has_map = false, has_picture = false;
     for (int k = 0; k < ROW_COUNT; k++) {
         test_run r;
         test_run_init(&r, 1);
@@ -170,7 +170,7 @@ static void every_kind_has_a_row(void **state)
         scene_destroy(s);
         test_run_reset(&r);
     }
-    for (int kind = 0; kind <= LIGHT_INFINITE; kind++)
+    for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++)
         assert_true(is_there[kind]);
     assert_true(has_portal && has_map && has_picture);
 }

@@ -200,8 +200,8 @@ static void test_lights(void **state)
     light *l = &s->lights[0], kept = *l;
     rgb pixel = {1.0f, 2.0f, 3.0f};
     projection slide = {.width = 1, .height = 1, .pixels = &pixel};
-    hash128 hashes_of[LIGHT_INFINITE + 1];
-    for (int kind = 0; kind <= LIGHT_INFINITE; kind++) {
+    hash128 hashes_of[LIGHT_KIND_COUNT];
+    for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
         *l = light_make((light_kind)kind);
         switch ((light_kind)kind) {
         case LIGHT_POINT: LIGHT_WORDS_COUNT(point_source, intensity); break;
@@ -214,6 +214,7 @@ static void test_lights(void **state)
         case LIGHT_DISTANT: LIGHT_WORDS_COUNT(distant_source, disc_one_minus_cos); break;
         case LIGHT_AREA: LIGHT_WORDS_COUNT(area_source, radiance_texture); break;
         case LIGHT_INFINITE: LIGHT_WORDS_COUNT(infinite_source, radiance.world_from_light); break;
+        case LIGHT_KIND_COUNT: break;
         }
         hashes_of[kind] = scene_hash_of_light(s);
         for (int other = 0; other < kind; other++)
@@ -257,6 +258,7 @@ static void test_pixels(void **state)
     s->texture_image_count = 1;
     words_count(s, "bytes", bytes, 1, NULL, 0);
     WORDS_COUNT(texture_image, &picture, FIELD(texture_image, path), FIELD(texture_image, encoding),
+                FIELD(texture_image, version), FIELD(texture_image, share),
                 {offsetof(texture_image, channel_count), sizeof(uint32_t)}, /* odd: one more would be too many */
                 FIELD(texture_image, bytes), FIELD(texture_image, values), {offsetof(texture_image, bytes) - 4, 4},
                 FROM(texture_image, alpha_bytes));

@@ -28,6 +28,7 @@
 #include "afterglow/render_settings.h"
 #include "afterglow/rendering.h"
 #include "afterglow/scene.h"
+#include "afterglow/scene_editing.h"
 #include "afterglow/scene_making.h"
 #include "afterglow/statistics.h"
 #include "afterglow/structs.h"

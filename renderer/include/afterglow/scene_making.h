@@ -65,8 +65,9 @@ typedef struct ag_parameter {
  * its place. A camera that is set after the commit counts instead of either, and moves neither sun nor sky. So a host
  * that asks for them sets a camera of its convention before the commit too. */
 AG_API ag_status ag_scene_create(ag_context *context, const ag_scene_settings *settings, ag_scene **out_scene);
-/* Completes the scene and builds what rays need; it is then as one from a file, of which the camera alone can change.
- * After an error it can only be destroyed. Errors also: AG_ERROR_RAY_TRACING. */
+/* Completes the scene and builds what rays need; it is then as one from a file, of which the camera alone can change,
+ * but where is_editable of the settings says more (scene_editing.h). After an error it can only be destroyed. Errors
+ * also: AG_ERROR_RAY_TRACING. */
 AG_API ag_status ag_scene_commit(ag_scene *scene);
 
 /* Each name of a material, a medium and a kind of texture is made once. Materials and media may be used before they are
@@ -111,6 +112,10 @@ typedef struct ag_texture {
 AG_DEFAULT_STRUCT(texture, AG_STRUCT_TEXTURE)
 AG_API ag_status ag_scene_add_texture(ag_scene *scene, const ag_texture *texture);
 
+/* A shape, a light or an instance of a scene, for the functions that change it. No two of them are the same in the life
+ * of a process, nor is one used again; 0 is none. Calls that make one write it where out_handle is not NULL. */
+typedef uint64_t ag_handle;
+
 typedef struct ag_shape {
     size_t struct_size;
     const char *type; /* "trianglemesh", "sphere", "curve", ... */
@@ -128,7 +133,7 @@ typedef struct ag_shape {
     const char *medium_inside, *medium_outside; /* NULL, the default: none */
 } ag_shape;
 AG_DEFAULT_STRUCT(shape, AG_STRUCT_SHAPE)
-AG_API ag_status ag_scene_add_shape(ag_scene *scene, const ag_shape *shape);
+AG_API ag_status ag_scene_add_shape(ag_scene *scene, const ag_shape *shape, ag_handle *out_handle);
 
 /* An object has at least one shape when its first instance is made, and is complete with that: nothing can be added to
  * it afterwards. */
@@ -139,7 +144,7 @@ typedef struct ag_instance {
     const double *world_from_object_end; /* NULL, the default: it does not move */
 } ag_instance;
 AG_DEFAULT_STRUCT(instance, AG_STRUCT_INSTANCE)
-AG_API ag_status ag_scene_add_instance(ag_scene *scene, const ag_instance *instance);
+AG_API ag_status ag_scene_add_instance(ag_scene *scene, const ag_instance *instance, ag_handle *out_handle);
 
 typedef struct ag_light {
     size_t struct_size;
@@ -150,7 +155,7 @@ typedef struct ag_light {
     const char *medium_outside;     /* NULL, the default: none */
 } ag_light;
 AG_DEFAULT_STRUCT(light, AG_STRUCT_LIGHT)
-AG_API ag_status ag_scene_add_light(ag_scene *scene, const ag_light *light);
+AG_API ag_status ag_scene_add_light(ag_scene *scene, const ag_light *light, ag_handle *out_handle);
 
 /* The last one counts, but for has_camera (see ag_scene_create); it comes before all that moves. Of a scene that is
  * complete, from a file too, it may be changed as long as no rendering borrows the scene: nothing is rebuilt, and a

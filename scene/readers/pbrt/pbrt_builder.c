@@ -2,7 +2,6 @@
 #define _POSIX_C_SOURCE 200809L
 #include "pbrt/pbrt_builder.h"
 
-#include "image/image_reader.h"
 #include "pbrt/pbrt_private.h"
 
 #include <stdlib.h>
@@ -124,12 +123,46 @@ ag_status pbrt_builder_shape(pbrt_builder *b, const pbrt_call *call, const pbrt_
     if (at->object)
         status = pbrt_enter_object(parser, at->object, call->where);
     parser->given = NULL;
+    parser->made_mesh = at->made_mesh;
     if (status == AG_OK)
         status = direct_at(parser, call, at, pbrt_shape, &type, 1, items, emission);
+    parser->made_mesh = NULL;
     if (status == AG_OK && at->object)
         parser->open_object->is_defined = true;
     pbrt_leave_object(parser);
     end_call(status, emission ? *emission : NOTHING);
+    return end_call(status, items);
+}
+
+bool pbrt_builder_makes_mesh(const char *type)
+{
+    static const char *const TYPES[] = {"trianglemesh", "bilinearmesh", "loopsubdiv", "plymesh"};
+    for (size_t i = 0; i < sizeof TYPES / sizeof *TYPES; i++)
+        if (strcmp(type, TYPES[i]) == 0)
+            return true;
+    return false;
+}
+
+ag_status pbrt_builder_mesh(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
+                            pbrt_items items, bool shines, shape *out_mesh)
+{
+    static const pbrt_area_light LAMP = {.is_set = true, .radiance_texture = SCENE_NO_TEXTURE, .mean_luminance = 1.0};
+    const pbrt_placement alone = {.start = at->start, .end = at->end, .reverse_orientation = at->reverse_orientation};
+    pbrt_parser *parser = b->parser;
+    scene *s = parser->scene;
+    const pbrt_mark empty = pbrt_set_mark(parser);
+    if (shines)
+        parser->state.area_light = LAMP;
+    const ag_status status = direct_at(parser, call, &alone, pbrt_shape, &type, 1, items, NULL);
+    parser->state.area_light = (pbrt_area_light){0};
+    *out_mesh = shape_make(SHAPE_MESH);
+    if (status == AG_OK && s->shape_count > 0) {
+        *out_mesh = s->shapes[--s->shape_count];
+        out_mesh->light_index = SHAPE_NO_LIGHT;
+        out_mesh->object_index = SCENE_NO_OBJECT;
+    }
+    pbrt_go_back(parser, &empty);
+    s->object_count = 0;
     return end_call(status, items);
 }
 
@@ -196,27 +229,26 @@ ag_status pbrt_builder_state(pbrt_builder *b, const pbrt_call *call, pbrt_statem
                     items);
 }
 
-ag_status pbrt_builder_picture(pbrt_builder *b, const pbrt_call *call, const char *name, image *picture)
+ag_status pbrt_builder_picture(pbrt_builder *b, const pbrt_call *call, const char *name, const image *picture,
+                               uint64_t version)
 {
     pbrt_parser *parser = b->parser;
-    pbrt_picture added = {strdup(name), *picture};
-    pbrt_picture *larger = realloc(parser->pictures, (parser->picture_count + 1) * sizeof *larger);
-    ag_status status = AG_ERROR_MEMORY;
-    *picture = (image){0};
-    if (larger)
-        parser->pictures = larger;
-    if (larger && added.name && !pbrt_find_picture(parser, name)) {
-        parser->pictures[parser->picture_count++] = added;
-        return AG_OK;
-    }
-    if (larger && added.name) {
+    if (pbrt_find_picture(parser, name)) {
         log_at(parser->log, AG_LOG_ERROR, call->where, "there is a picture \"%s\" already", name);
-        status = AG_ERROR_SCENE;
+        return AG_ERROR_SCENE;
     }
-    free(added.name);
-    image_reset(&added.pixels);
-    return status;
+    pbrt_picture *larger = realloc(parser->pictures, (parser->picture_count + 1) * sizeof *larger);
+    if (!larger)
+        return AG_ERROR_MEMORY;
+    parser->pictures = larger;
+    larger[parser->picture_count] = (pbrt_picture){strdup(name), picture, version};
+    if (!larger[parser->picture_count].name)
+        return AG_ERROR_MEMORY;
+    parser->picture_count++;
+    return AG_OK;
 }
+
+void pbrt_builder_set_quiet(pbrt_builder *b, bool is_quiet) { b->parser->log = is_quiet ? NULL : b->parser->run->log; }
 
 ag_status pbrt_builder_finish(pbrt_builder *b)
 {

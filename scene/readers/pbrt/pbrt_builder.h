@@ -11,6 +11,7 @@
 
 typedef struct pbrt_builder pbrt_builder;
 struct image;
+struct shape;
 
 /* Begins an empty, uncommitted scene; run and scene are borrowed until pbrt_builder_destroy. NULL when out of
  * memory. */
@@ -36,6 +37,7 @@ typedef struct pbrt_placement {
     const char *material;                       /* may be made later; NULL: diffuse grey */
     const char *object;                         /* that it is part of; NULL: of the world */
     const char *medium_inside, *medium_outside; /* may be made later; NULL: none */
+    struct shape *made_mesh; /* of pbrt_builder_mesh, shared: instead of the shape's arrays; NULL: they are read */
 } pbrt_placement;
 
 /* All give errors as a file's directives do, told to the run's log; what was made before stays, and the call itself has
@@ -44,6 +46,12 @@ typedef struct pbrt_placement {
 /* emission: of AreaLightSource; NULL: it does not shine. */
 ag_status pbrt_builder_shape(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
                              pbrt_items items, pbrt_items *emission);
+/* Whether shapes of that type are meshes, whose arrays can be read once and serve in several scenes. */
+bool pbrt_builder_makes_mesh(const char *type);
+/* The mesh that the parameters make where `at` puts it, alone, in a builder that is used for nothing else; without
+ * triangles where it would be left out. shines: as a shape that does stands still. The caller's, by shape_reset. */
+ag_status pbrt_builder_mesh(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
+                            pbrt_items items, bool shines, struct shape *out_mesh);
 ag_status pbrt_builder_light(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
                              pbrt_items items);
 ag_status pbrt_builder_camera(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
@@ -68,8 +76,13 @@ typedef enum pbrt_statement {
 ag_status pbrt_builder_state(pbrt_builder *b, const pbrt_call *call, pbrt_statement statement,
                              const char *const *strings, pbrt_items items);
 
-/* A picture that stands in for the file of that name; taken, on failure too. */
-ag_status pbrt_builder_picture(pbrt_builder *b, const pbrt_call *call, const char *name, struct image *picture);
+/* A picture that stands in for the file of that name; borrowed for as long as the builder lives. version: even, another
+ * one for other pixels of that name. */
+ag_status pbrt_builder_picture(pbrt_builder *b, const pbrt_call *call, const char *name, const struct image *picture,
+                               uint64_t version);
+
+/* Whether warnings are kept to itself; errors are too. */
+void pbrt_builder_set_quiet(pbrt_builder *b, bool is_quiet);
 
 /* Settles what only the end can tell. To be called once; nothing more can be added. */
 ag_status pbrt_builder_finish(pbrt_builder *b);

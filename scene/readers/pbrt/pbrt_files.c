@@ -107,12 +107,25 @@ char *pbrt_find_file(const pbrt_parser *parser, const char *name)
     return path;
 }
 
-const image *pbrt_find_picture(const pbrt_parser *parser, const char *name)
+const pbrt_picture *pbrt_find_picture(const pbrt_parser *parser, const char *name)
 {
     for (size_t i = 0; i < parser->picture_count; i++)
         if (strcmp(parser->pictures[i].name, name) == 0)
-            return &parser->pictures[i].pixels;
+            return &parser->pictures[i];
     return NULL;
+}
+
+ag_status pbrt_picture_version(const pbrt_parser *parser, const char *name, uint64_t *out_version)
+{
+    const pbrt_picture *in_memory = pbrt_find_picture(parser, name);
+    char reason[128], *path = in_memory ? NULL : pbrt_find_file(parser, name);
+    *out_version = in_memory ? in_memory->version : 0;
+    if (!in_memory && !path)
+        return AG_ERROR_MEMORY;
+    if (path && input_file_allow(parser->run, path, reason, sizeof reason)) /* else who reads it says why */
+        *out_version = input_file_version(path);
+    free(path);
+    return AG_OK;
 }
 
 ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size)

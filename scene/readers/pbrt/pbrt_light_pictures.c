@@ -74,10 +74,10 @@ static ag_status read_pixels(pbrt_parser *parser, const parameter_list *list, co
                              light_picture *out_picture)
 {
     char message[768] = "";
-    const image *in_memory = pbrt_find_picture(parser, name);
+    const pbrt_picture *in_memory = pbrt_find_picture(parser, name);
     ag_status status = AG_ERROR_MEMORY;
     image copy;
-    if (in_memory && image_copy(in_memory, true, &copy))
+    if (in_memory && image_copy(in_memory->pixels, true, &copy))
         status = light_picture_take(parser->scene, name, &copy, is_gray, out_picture, message, sizeof message);
     else if (!in_memory)
         status = read_file(parser, name, is_gray, out_picture, message, sizeof message);
@@ -95,11 +95,19 @@ ag_status pbrt_read_environment(pbrt_parser *parser, const parameter_list *list,
 {
     char message[768] = "";
     light_picture picture;
+    uint64_t version;
+    AG_TRY(pbrt_picture_version(parser, name, &version));
+    *out_environment = light_picture_find_kept(parser->scene, name, version, is_gray);
+    if (*out_environment)
+        return AG_OK;
     AG_TRY(read_pixels(parser, list, name, is_gray, &picture));
     for (size_t i = 0; is_gray && i < (size_t)picture.width * picture.height; i++)
         picture.pixels[i] = rgb_gray((picture.pixels[i].r + picture.pixels[i].g + picture.pixels[i].b) / 3.0f);
     ag_status status = light_picture_surround(&picture, name, out_environment, message, sizeof message);
-    return status == AG_OK ? AG_OK : refuse_picture(parser, list, status, message);
+    if (status != AG_OK)
+        return refuse_picture(parser, list, status, message);
+    light_picture_note(parser->scene, name, version, is_gray, *out_environment);
+    return AG_OK;
 }
 
 /* --- lights at a point --- */

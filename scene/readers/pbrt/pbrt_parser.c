@@ -169,10 +169,8 @@ void pbrt_parser_destroy(pbrt_parser *parser)
         free(parser->named_materials[i].name);
     for (size_t i = 0; i < parser->named_medium_count; i++)
         free(parser->named_media[i].name);
-    for (size_t i = 0; i < parser->picture_count; i++) {
+    for (size_t i = 0; i < parser->picture_count; i++)
         free(parser->pictures[i].name);
-        image_reset(&parser->pictures[i].pixels);
-    }
     free(parser->pictures);
     pbrt_reset_objects(parser);
     name_table_reset(&parser->material_names);

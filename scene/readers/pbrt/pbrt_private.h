@@ -14,6 +14,7 @@
 #include "pbrt/pbrt_lexer.h"
 #include "scene.h"
 #include "status.h"
+#include "text/input_file.h"
 #include "text/name_table.h"
 #include "text/text_file.h"
 
@@ -158,8 +159,9 @@ typedef struct pbrt_early_instance {
 
 /* A picture in memory, which stands in for the file of that name. */
 typedef struct pbrt_picture {
-    char *name;   /* owned */
-    image pixels; /* owned */
+    char *name;          /* owned */
+    const image *pixels; /* borrowed */
+    uint64_t version;    /* even; another one for other pixels */
 } pbrt_picture;
 
 /* The content of a call, which stands instead of text: the quoted strings behind the directive's name, and its
@@ -187,6 +189,8 @@ typedef struct pbrt_parser {
     size_t told_bytes; /* of the first file, at the last progress */
 
     pbrt_given *given; /* borrowed; NULL: tokens come from the files */
+    shape *made_mesh;  /* borrowed: of the shape that is read next, whose arrays are not among its parameters; without
+                          triangles: it was left out. NULL: all are */
     pbrt_picture *pictures;
     size_t picture_count;
     parameter_source source;    /* of the lists that are read */
@@ -247,7 +251,10 @@ char *pbrt_find_file(const pbrt_parser *parser, const char *name);
 /* Whether a picture may be read (input_file.h); where not, message says why, with the path. Errors: AG_ERROR_INPUT. */
 ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size);
 /* The picture in memory of that name; NULL: there is none. */
-const image *pbrt_find_picture(const pbrt_parser *parser, const char *name);
+const pbrt_picture *pbrt_find_picture(const pbrt_parser *parser, const char *name);
+/* Of the pixels that a name stands for, in memory or in a file that may be read; 0: it cannot be told. Errors:
+ * AG_ERROR_MEMORY. */
+ag_status pbrt_picture_version(const pbrt_parser *parser, const char *name, uint64_t *out_version);
 /* The next token; where an included file ends, the one that included it goes on. The end of an imported file is told,
  * as often as is asked, until it is popped. */
 ag_status pbrt_next(pbrt_parser *parser, pbrt_token *out_token);

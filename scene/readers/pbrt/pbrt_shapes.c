@@ -149,6 +149,21 @@ static ag_status read_alpha(pbrt_parser *parser, parameter_list *list)
     return AG_OK;
 }
 
+/* Shares what was made of its arrays before, in the space that is the current one. */
+static ag_status add_made_mesh(pbrt_parser *parser, parameter_list *list)
+{
+    const parameter *file = parameter_list_find(list, "filename");
+    const uint32_t index = parser->scene->shape_count;
+    shape s;
+    if (parser->made_mesh->as.mesh.triangle_count == 0)
+        return AG_OK;
+    AG_TRY(shape_share(parser->made_mesh, &s));
+    AG_TRY(pbrt_add_shape(parser, list, &s));
+    return file && file->strings && parser->scene->shape_count > index
+               ? scene_set_name(parser->scene, NAMED_SHAPE, index, file->strings[0])
+               : AG_OK;
+}
+
 static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
 {
     static const char *const OLD[] = {"cone", "paraboloid", "hyperboloid", "heightfield", "heightfield2", "nurbs"};
@@ -165,6 +180,8 @@ static ag_status read_shape(pbrt_parser *parser, parameter_list *list)
                    {"bilinearmesh", pbrt_bilinear_mesh},
                    {"curve", pbrt_curve}};
     AG_TRY(read_alpha(parser, list));
+    if (parser->made_mesh)
+        return is_nothing(parser) ? AG_OK : add_made_mesh(parser, list);
     for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++)
         if (strcmp(list->name, READERS[i].name) == 0) {
             if (is_nothing(parser))

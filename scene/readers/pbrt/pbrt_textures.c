@@ -291,14 +291,14 @@ ag_status pbrt_load_image(pbrt_parser *parser, const parameter_list *list, const
     char message[1024] = "";
     scene *s = parser->scene;
     uint32_t known_count = s->texture_image_count;
-    const image *picture = pbrt_find_picture(parser, file_name);
+    const pbrt_picture *picture = pbrt_find_picture(parser, file_name);
     char *path = picture ? name_picture(file_name) : pbrt_find_file(parser, file_name);
     if (path && t->is_spectrum && !t->is_data && encoding.curve == IMAGE_CURVE_DEFAULT)
         encoding = image_colors_rule(s, path);
     ag_status status = AG_ERROR_MEMORY;
     if (path && picture)
-        status = texture_image_load_pixels(parser->run, s, path, picture, encoding, &t->image_index, message,
-                                           sizeof message);
+        status = texture_image_load_pixels(parser->run, s, path, picture->pixels, picture->version, encoding,
+                                           &t->image_index, message, sizeof message);
     else if (path)
         status = texture_image_load(parser->run, s, path, encoding, &t->image_index, message, sizeof message);
     free(path);
