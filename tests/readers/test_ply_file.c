@@ -3,18 +3,11 @@
  * Threads: one. */
 #define _POSIX_C_SOURCE 200809L
 #include "fixtures/ply_fixture.h"
+#include "fixtures/sanitizer.h"
 #include "model/ply_file.h"
 
 #include <fcntl.h>
 
-#if defined(__has_feature)
-#if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
-#define UNDER_SANITIZER 1
-#endif
-#endif
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-#define UNDER_SANITIZER 1
-#endif
 
 /* Seven vertices with normals, uvs and what is passed over; a triangle, a quadrilateral, a pentagon, and an edge. */
 static text small_file(format f, const char *index_type, const char *count_type)

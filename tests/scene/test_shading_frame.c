@@ -3,26 +3,10 @@
  * workers build, one asks. */
 #include "material/shading_frame.h"
 
-#include "fixtures/test_scene.h"
+#include "fixtures/shared_run.h"
 #include "material/bsdf.h"
 
 enum { POINTS = 300 / FEWER };
-
-static test_run run;
-
-static int set_up(void **state)
-{
-    (void)state;
-    test_run_init(&run, 2);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    test_run_reset(&run);
-    return 0;
-}
 
 #define RAMP                                                                                                           \
     "Texture \"ramp\" \"float\" \"bilerp\" \"float v00\" 0.1 \"float v10\" 0.4 \"float v01\" 0.3 \"float v11\" 0.6\n"
