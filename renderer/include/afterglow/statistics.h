@@ -89,6 +89,9 @@ typedef struct ag_statistics {
 } ag_statistics;
 
 AG_API ag_statistics ag_context_statistics(const ag_context *context);
+/* ag_context_statistics, with the irradiances that a rendering under way has asked for so far, which count there only
+ * when it is finished; without irradiance_distinct. */
+AG_API ag_statistics ag_rendering_statistics(const ag_rendering *rendering);
 /* To be called when a rendering is finished, by who ended it; for the statistics. */
 AG_API void ag_context_note_end(ag_context *context, ag_end end);
 
