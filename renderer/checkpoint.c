@@ -35,7 +35,7 @@ static hash128 hash_filter(const pixel_filter *filter)
 static uint64_t words_of(const struct ag_rendering *r)
 {
     return integrator_of(r->settings.integrator)->has_photon_map && r->settings.cache == AG_CACHE_ON_DEMAND
-               ? r->maps.global.irradiance_photons.count
+               ? r->maps->global.irradiance_photons.count
                : 0;
 }
 
@@ -98,7 +98,7 @@ ag_status ag_rendering_write_checkpoint(const ag_rendering *r, const char *path)
         words = malloc((size_t)header.photon_count * sizeof *words);
         if (!words)
             return AG_ERROR_MEMORY;
-        irradiance_cache_save(&r->maps.cache, words);
+        irradiance_cache_save(&r->maps->cache, words);
     }
     int plane_count = film_planes(r->film, planes), count = 0;
     pieces[count++] = (atomic_file_piece){&header, sizeof header};
@@ -159,7 +159,7 @@ static bool read_contents(ag_rendering *r, FILE *file, const checkpoint_header *
     uint32_t *words = malloc(words_count * sizeof *words);
     bool is_read = words && fread(words, sizeof *words, words_count, file) == words_count;
     if (is_read)
-        irradiance_cache_restore(&r->maps.cache, words);
+        irradiance_cache_restore(&r->maps->cache, words);
     free(words);
     return is_read;
 }

@@ -156,7 +156,7 @@ static double predict_samples(const ag_rendering *r, const ag_render_settings *s
     const double computed = trials[0].computed + trials[1].computed, made = (double)c.computed + (double)c.uncached;
     const double timed_s = made > 0.0 ? irradiance_counters_estimate_seconds(&c) / made : 0.0;
     const double each_s = seconds_of_estimate(&trials[0], &trials[1], timed_s);
-    const double count = (double)r->maps.global.irradiance_photons.count,
+    const double count = (double)r->maps->global.irradiance_photons.count,
                  rest_s =
                      fmax(pilot->cpu_s - each_s * pilot->computed, 0.0) + fmax(cpu_s - each_s * computed, 0.0) * grown;
     if (settings->cache == AG_CACHE_PRECOMPUTE) {

@@ -10,9 +10,9 @@
 #include "integrator/integrator.h"
 #include "odd_scene.h"
 #include "output/photon_dump.h"
-#include "rays/transmittance.h"
 #include "render_maps.h"
 #include "render_tiles.h"
+#include "rendering_counts.h"
 #include "split_pilot.h"
 #include "status.h"
 
@@ -49,28 +49,6 @@ static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
     return status;
 }
 
-/* Adds the workers' counts since the last call to the statistics. */
-static void collect_counts(ag_rendering *r)
-{
-    ag_statistics *statistics = &r->context->statistics;
-    uint64_t cut = 0;
-    for (unsigned i = 0; i < statistics->threads; i++) {
-        eye_worker *w = &r->workers[i];
-        statistics->rays_camera += w->rays_camera;
-        statistics->rays_shadow += w->rays_shadow;
-        statistics->rays_gather += w->rays_gather;
-        statistics->rays_path += w->rays_path;
-        statistics->rays_estimate += w->rays_estimate;
-        r->camera_rays += w->rays_camera;
-        r->camera_rays_met += w->camera_rays_met;
-        statistics->samples_not_finite += w->samples_not_finite;
-        cut += w->rays_cut;
-        w->rays_camera = w->rays_shadow = w->rays_gather = w->rays_path = w->rays_estimate = 0;
-        w->camera_rays_met = w->samples_not_finite = w->rays_cut = 0;
-    }
-    transmittance_warn_of_cut(r->context->log, cut);
-}
-
 /* Of a pixel, the width that one of its samples stands for: they share the pixel and, by its filter, some of those
  * around it. No less than a quarter: where samples are adaptive, their number is but a bound. */
 static float pixel_share(const scene *s, const ag_render_settings *settings)
@@ -98,23 +76,6 @@ static transport make_transport(const ag_context *context, const scene *s, const
     for (uint32_t i = 0; i < s->light_count; i++)
         t.can_meet_lights = t.can_meet_lights || light_can_be_met(&s->lights[i]);
     return t;
-}
-
-static void count_irradiance(ag_statistics *statistics, const irradiance_cache *cache)
-{
-    irradiance_counters c = irradiance_cache_counters(cache);
-    statistics->irradiance_requests += c.requests;
-    statistics->irradiance_computed += c.computed;
-    statistics->irradiance_distinct += irradiance_cache_distinct(cache);
-    statistics->irradiance_deferred += c.deferred;
-    statistics->irradiance_waited += c.waited;
-    statistics->irradiance_duplicated += c.duplicated;
-    statistics->irradiance_reclaimed += c.reclaimed;
-    statistics->irradiance_uncached += c.uncached;
-    statistics->irradiance_refused += c.refused;
-    statistics->rays_estimate += c.rays;
-    statistics->irradiance_estimate_s += irradiance_counters_estimate_seconds(&c);
-    statistics->irradiance_wait_s += c.waited_seconds;
 }
 
 ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_settings *wanted,
@@ -195,9 +156,9 @@ ag_status rendering_create_film(ag_rendering *r)
 /* Between passes: what a pass has rendered counts when the map's file is still whole behind it. status: the pass's. */
 static ag_status check_map(ag_rendering *r, ag_status status)
 {
-    if (!r->maps.file.is_shared || (status != AG_OK && status != AG_PAUSED && status != AG_CANCELLED))
+    if (!r->maps || !r->maps->file.is_shared || (status != AG_OK && status != AG_PAUSED && status != AG_CANCELLED))
         return status;
-    if (photon_file_is_intact(&r->maps.file)) {
+    if (photon_file_is_intact(&r->maps->file)) {
         ag_status kept = film_copy_take(r->film, &r->kept);
         return kept == AG_OK ? status : kept;
     }
@@ -228,7 +189,18 @@ static ag_status guide_direct_light(ag_rendering *r)
     return AG_OK;
 }
 
-static ag_status prepare(ag_rendering *r)
+/* Takes over the maps of another rendering, and whatever depends on them alone. */
+static void share_maps(ag_rendering *r, const ag_rendering *with)
+{
+    r->maps = with->maps ? maps_hold(with->maps) : NULL;
+    r->t.caustic = with->t.caustic;
+    r->t.cache = with->t.cache;
+    r->t.incident = with->t.incident;
+    r->t.gather_min_distance = with->t.gather_min_distance;
+}
+
+/* with: of whose maps it is; NULL: of its own. */
+static ag_status prepare(ag_rendering *r, const ag_rendering *with)
 {
     ag_context *context = r->context;
     phase_begin begin = context_begin_phase();
@@ -237,9 +209,10 @@ static ag_status prepare(ag_rendering *r)
     AG_TRY(status);
     const integrator *kind = integrator_of(r->settings.integrator);
     r->t = make_transport(context, r->s, &r->settings, &r->film->layout);
-    if (kind->prepare) {
+    if (with)
+        share_maps(r, with);
+    else if (kind->prepare)
         AG_TRY(kind->prepare(r));
-    }
     AG_TRY(guide_direct_light(r));
     begin = context_begin_phase();
     r->workers = eye_workers_create(&r->t, context->statistics.threads);
@@ -254,10 +227,19 @@ static ag_status begin_rendering(ag_rendering *r, const ag_render_settings *sett
     r->context->rendered = r->settings;
     r->context->rendered.photon_map_file = NULL; /* the caller's */
     r->aspect = (float)r->settings.width / (float)r->settings.height;
-    AG_TRY(prepare(r));
+    AG_TRY(prepare(r, NULL));
     if (r->settings.photon_map_file)
         r->map_name = strdup(r->settings.photon_map_file);
     return check_map(r, AG_OK); /* caches and guides have been made of it */
+}
+
+static void borrow(ag_rendering *r, ag_context *context, ag_scene *loaded)
+{
+    r->context = context;
+    r->loaded = loaded;
+    r->loaded->rendering_count++;
+    r->s = loaded->s;
+    r->not_finite_before = context->statistics.samples_not_finite;
 }
 
 /* light's side: lamps -> photons -> maps -> cache */
@@ -271,13 +253,61 @@ ag_status ag_rendering_create(ag_context *context, const ag_scene *loaded, const
     if (!r)
         return AG_ERROR_MEMORY;
     unsigned callers_arithmetic = floating_point_enter();
-    r->context = context;
-    r->loaded = (ag_scene *)(uintptr_t)loaded; /* for the count alone */
-    r->loaded->rendering_count++;
-    r->s = loaded->s;
-    r->not_finite_before = context->statistics.samples_not_finite;
+    borrow(r, context, (ag_scene *)(uintptr_t)loaded); /* for the count alone */
     ag_status status = begin_rendering(r, settings);
     r->settings.photon_map_file = NULL; /* the caller's, and done with */
+    floating_point_leave(callers_arithmetic);
+    if (status == AG_OK)
+        *out_rendering = r;
+    else
+        ag_rendering_finish(r, NULL);
+    return status;
+}
+
+/* The scene as another camera sees it: all else is borrowed from it. Errors: AG_ERROR_ARGUMENT, AG_ERROR_MEMORY. */
+static ag_status look_from(ag_rendering *r, const float from[3], const float to[3], const float up[3])
+{
+    const camera *before = &r->s->camera;
+    camera moved = *before;
+    const transform stood = before->is_moving ? camera_transform_at(before, 0.0f) : before->world_from_camera;
+    moved.is_moving = false;
+    if (!camera_look(vec3_make(from[0], from[1], from[2]), vec3_make(to[0], to[1], to[2]),
+                     vec3_make(up[0], up[1], up[2]), !transform_swaps_handedness(&stood), &moved.world_from_camera)) {
+        log_message(
+            r->context->log, AG_LOG_ERROR,
+            "a view makes no sense: from and to should differ, and up should not be along the way between them");
+        return AG_ERROR_ARGUMENT;
+    }
+    r->seen = malloc(sizeof *r->seen);
+    if (!r->seen)
+        return AG_ERROR_MEMORY;
+    *r->seen = *r->s;
+    scene_set_camera(r->seen, &moved);
+    r->s = r->seen;
+    return AG_OK;
+}
+
+ag_status ag_rendering_create_view(ag_rendering *beside, const float from[3], const float to[3], const float up[3],
+                                   ag_rendering **out_rendering)
+{
+    if (!beside || !from || !to || !up || !out_rendering)
+        return AG_ERROR_ARGUMENT;
+    ag_rendering *r = calloc(1, sizeof *r);
+    if (!r)
+        return AG_ERROR_MEMORY;
+    unsigned callers_arithmetic = floating_point_enter();
+    borrow(r, beside->context, beside->loaded);
+    ag_progress_fn *told = run_silence(&r->context->run);
+    r->is_view = true;
+    r->settings = beside->settings;
+    r->aspect = beside->aspect;
+    r->map_name = beside->map_name ? strdup(beside->map_name) : NULL;
+    ag_status status = look_from(r, from, to, up);
+    if (status == AG_OK)
+        status = prepare(r, beside);
+    if (status == AG_OK)
+        status = check_map(r, AG_OK);
+    run_speak(&r->context->run, told);
     floating_point_leave(callers_arithmetic);
     if (status == AG_OK)
         *out_rendering = r;
@@ -317,6 +347,7 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     ag_context *context = r->context;
     uint32_t wanted = (uint32_t)samples_per_pixel;
     phase_begin begin = context_begin_phase();
+    ag_progress_fn *told = r->is_view ? run_silence(&context->run) : NULL;
     ag_status status = check_map(r, render_pass(r, wanted));
     if (status == AG_OK && r->keeps_passes)
         status = film_copy_take(r->film, &r->whole);
@@ -325,7 +356,9 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);
     if (status == AG_OK && samples_per_pixel == r->settings.samples_per_pixel)
         log_message(context->log, AG_LOG_INFO, "%-10s %9.3f s", ag_phase_name(AG_PHASE_RENDER), r->seconds);
-    collect_counts(r);
+    if (r->is_view)
+        run_speak(&context->run, told);
+    rendering_count_rays(r);
     floating_point_leave(callers_arithmetic);
     return status;
 }
@@ -350,7 +383,7 @@ ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
 {
     if (!r || !path || !integrator_of(r->settings.integrator)->has_photon_map)
         return AG_ERROR_ARGUMENT;
-    if (!photon_file_is_intact(&r->maps.file)) {
+    if (!photon_file_is_intact(&r->maps->file)) {
         log_message(r->context->log, AG_LOG_ERROR,
                     "'%s': the photon map was cut short or overwritten: no photons of it "
                     "are written",
@@ -359,7 +392,7 @@ ag_status ag_rendering_write_photons(const ag_rendering *r, const char *path)
     }
     char message[1024] = "";
     phase_begin begin = context_begin_phase();
-    ag_status status = photon_dump_write(&r->maps.global, &r->maps.caustic, path, message, sizeof message);
+    ag_status status = photon_dump_write(&r->maps->global, &r->maps->caustic, path, message, sizeof message);
     context_add_to_phase(r->context, AG_PHASE_WRITE, begin);
     if (message[0])
         log_message(r->context->log, AG_LOG_ERROR, "%s", message);
@@ -378,8 +411,8 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
         context->statistics.noise = ag_rendering_noise(r).level;
     }
     phase_begin begin = context_begin_phase();
-    if (r->t.cache)
-        count_irradiance(&r->context->statistics, r->t.cache);
+    if (r->maps && r->t.cache)
+        rendering_count_irradiance(&context->statistics, r->maps, true);
     uint64_t not_finite = r->context->statistics.samples_not_finite - r->not_finite_before;
     if (not_finite > 0)
         log_message(r->context->log, AG_LOG_WARNING, "%llu camera samples were not finite and count as black",
@@ -392,7 +425,8 @@ void ag_rendering_finish(ag_rendering *r, ag_film **out_film)
         ag_film_destroy(r->film);
     ag_film_destroy(r->pilot);
     eye_workers_destroy(r->workers, r->context->statistics.threads);
-    maps_reset(&r->maps);
+    maps_release(r->maps);
+    free(r->seen);
     direct_guide_reset(&r->direct_guide);
     free(r->map_name);
     free(r->kept);

@@ -8,13 +8,24 @@
 #include "rays/transmittance.h"
 #include "status.h"
 
-void maps_reset(maps *m)
+#include <stdlib.h>
+
+maps *maps_hold(maps *m)
 {
+    m->holders++;
+    return m;
+}
+
+void maps_release(maps *m)
+{
+    if (!m || --m->holders > 0)
+        return;
     irradiance_cache_reset(&m->cache);
     incident_light_reset(&m->incident);
     photon_map_reset(&m->global);
     photon_map_reset(&m->caustic);
     photon_file_close(&m->file);
+    free(m);
 }
 
 /* A caustic needs something to be focused by. */
@@ -31,12 +42,12 @@ bool maps_have_caustics(const scene *s, const ag_render_settings *settings)
     return settings->caustic_photon_count > 0 && settings->max_depth >= 2 && has_traced_lobes(s);
 }
 
-/* Traces one map's photons, after trials that tell which of them are of use. */
+/* Traces one map's photons, after trials that tell which of them are of use; starts: see photon_aim.h. */
 static ag_status trace_aimed(ag_context *context, const scene *s, float share, photon_tracing_settings tracing,
-                             photon_set *out_set)
+                             const emission_starts *starts, photon_set *out_set)
 {
     photon_aim aim;
-    ag_status status = photon_aim_learn(s, &context->run, &tracing, share, &aim);
+    ag_status status = photon_aim_learn(s, &context->run, &tracing, starts, share, &aim);
     const emission_guide *guide = &aim.guide;
     context->statistics.rays_photon += aim.tried.rays;
     if (guide->nodes)
@@ -73,20 +84,22 @@ static ag_status trace_after(ag_context *context, const scene *s, const ag_rende
                                        .seed = settings->photon_seed,
                                        .asked = &pilot->gathered,
                                        .onward = &pilot->onward,
+                                       .ways = &pilot->ways,
                                        .progress_begin = 0.0,
                                        .progress_end = wants_caustics ? 0.7 : 1.0};
     if (settings->max_depth >= 2) {
-        AG_TRY(trace_aimed(context, s, share, tracing, out_global));
+        AG_TRY(trace_aimed(context, s, share, tracing, &pilot->starts, out_global));
     }
     if (wants_caustics) {
         tracing.kind = PHOTON_CAUSTIC;
         tracing.asked = &pilot->seen;
         tracing.onward = NULL;
+        tracing.ways = NULL;
         tracing.wanted = (uint32_t)settings->caustic_photon_count;
         tracing.max_scatterings = settings->max_depth - 1;
         tracing.progress_begin = 0.7;
         tracing.progress_end = 1.0;
-        AG_TRY(trace_aimed(context, s, share, tracing, out_caustic));
+        AG_TRY(trace_aimed(context, s, share, tracing, &(emission_starts){0}, out_caustic));
     }
     return AG_OK;
 }
@@ -154,36 +167,39 @@ static ag_status trace_maps(ag_context *context, const scene *s, const ag_render
     return AG_OK;
 }
 
-ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps *out_maps)
+ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps **out_maps)
 {
+    maps *m = *out_maps = calloc(1, sizeof *m);
+    if (!m)
+        return AG_ERROR_MEMORY;
+    m->holders = 1;
     ag_statistics *statistics = &context->statistics;
     ag_status status;
     if (settings->photon_map_file)
-        status =
-            map_file_obtain(context, s, settings, trace_maps, &out_maps->file, &out_maps->global, &out_maps->caustic);
+        status = map_file_obtain(context, s, settings, trace_maps, &m->file, &m->global, &m->caustic);
     else
-        status = trace_maps(context, s, settings, &out_maps->global, &out_maps->caustic);
+        status = trace_maps(context, s, settings, &m->global, &m->caustic);
     AG_TRY(status);
     phase_begin guiding = context_begin_phase();
-    AG_TRY(incident_light_create(&context->run, &out_maps->global, settings->gather_guiding, &out_maps->incident));
+    AG_TRY(incident_light_create(&context->run, &m->global.tree, settings->gather_guiding, &m->incident));
     context_add_to_phase(context, AG_PHASE_MAP, guiding);
-    statistics->photon_bytes += photon_map_bytes(&out_maps->global) + photon_map_bytes(&out_maps->caustic) +
-                                incident_light_bytes(&out_maps->incident);
+    statistics->photon_bytes +=
+        photon_map_bytes(&m->global) + photon_map_bytes(&m->caustic) + incident_light_bytes(&m->incident);
     log_message(context->log, AG_LOG_INFO, "estimates: %u nearest, %.4g at most, %.4g where light is spread evenly",
-                out_maps->global.nearest, (double)out_maps->global.max_radius, (double)out_maps->global.mean_radius);
+                m->global.nearest, (double)m->global.max_radius, (double)m->global.mean_radius);
 
     static const irradiance_cache_mode modes[] = {[AG_CACHE_ON_DEMAND] = IRRADIANCE_ON_DEMAND,
                                                   [AG_CACHE_PRECOMPUTE] = IRRADIANCE_PRECOMPUTE,
                                                   [AG_CACHE_OFF] = IRRADIANCE_UNCACHED};
     phase_begin caching = context_begin_phase();
-    status = irradiance_cache_create(&out_maps->global, modes[settings->cache], statistics->threads, &out_maps->cache);
-    if (status == AG_OK && out_maps->file.is_shared)
-        irradiance_cache_share(&out_maps->cache, &out_maps->file.owners);
-    statistics->irradiance_ready += out_maps->cache.ready_before;
+    status = irradiance_cache_create(&m->global, modes[settings->cache], statistics->threads, &m->cache);
+    if (status == AG_OK && m->file.is_shared)
+        irradiance_cache_share(&m->cache, &m->file.owners);
+    statistics->irradiance_ready += m->cache.ready_before;
     context_add_to_phase(context, AG_PHASE_MAP, caching);
     if (status == AG_OK && settings->cache == AG_CACHE_PRECOMPUTE) {
         phase_begin begin = context_begin_phase();
-        status = irradiance_cache_precompute(&out_maps->cache, &context->run);
+        status = irradiance_cache_precompute(&m->cache, &context->run);
         context_end_phase(context, AG_PHASE_PRECOMPUTE, begin);
     }
     return status;

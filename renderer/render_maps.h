@@ -6,10 +6,12 @@
 
 #include "rendering.h"
 
-/* Counts what it did, phase by phase, in the context's statistics; precomputes where the settings say so. To be reset,
- * on failure too. Borrows scene and context. Errors: AG_ERROR_MEMORY, AG_CANCELLED, those of map_file_obtain. */
-ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps *out_maps);
-void maps_reset(maps *m);
+/* Counts what it did, phase by phase, in the context's statistics; precomputes where the settings say so. One holder;
+ * to be released, on failure too. Borrows scene and context. Errors: AG_ERROR_MEMORY, AG_CANCELLED, those of
+ * map_file_obtain. */
+ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps **out_maps);
+maps *maps_hold(maps *m);
+void maps_release(maps *m); /* NULL is fine */
 
 /* Whether photons are traced into the caustic map: there is something that focuses light, and they are wanted. */
 bool maps_have_caustics(const scene *s, const ag_render_settings *settings);

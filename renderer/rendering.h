@@ -12,22 +12,27 @@
 typedef struct maps {
     photon_map global, caustic;
     irradiance_cache cache;
-    incident_light incident; /* over the global map */
-    photon_file file;        /* that the maps are in, where they last */
+    incident_light incident;     /* over the global map */
+    photon_file file;            /* that the maps are in, where they last */
+    unsigned holders;            /* renderings: the maps go with the last of them */
+    irradiance_counters counted; /* what the statistics have of the cache already */
+    uint64_t counted_distinct;
 } maps;
 
 struct ag_rendering {
     ag_context *context; /* borrowed */
     ag_scene *loaded;    /* borrowed; knows of it */
     const scene *s;      /* its scene */
+    scene *seen;         /* owned: that scene with a camera of our own, which s then is; NULL: it is the scene's */
     ag_render_settings settings;
-    maps maps;
+    maps *maps; /* owned, with others that see the scene from elsewhere; NULL: there are none */
     direct_guide direct_guide;
     transport t;
     eye_worker *workers;
     ag_film *film;
     ag_film *pilot; /* see split_pilot.h; NULL before and behind it */
     bool is_pilot;  /* this is not the picture itself, whose progress stays at 0 */
+    bool is_view;   /* this is a picture beside another, whose progress is told */
     float aspect;   /* of the frame: width over height */
     uint64_t not_finite_before;
     uint64_t camera_rays, camera_rays_met; /* of all passes; the latter met a surface */

@@ -54,6 +54,25 @@ bool camera_film_from_camera(const camera *c, float aspect, double near, double 
     return true;
 }
 
+bool camera_look(vec3 from, vec3 to, vec3 up, bool is_left, transform *out_world_from_camera)
+{
+    const vec3 way = vec3_sub(to, from), across = is_left ? vec3_cross(up, way) : vec3_cross(way, up);
+    const float distance = vec3_length(way), width = vec3_length(across);
+    if (!(distance > 0.0f && width > 0.0f && isfinite(distance) && isfinite(width) && vec3_is_finite(from)))
+        return false;
+    const vec3 z = vec3_scale(way, 1.0f / distance), x = vec3_scale(across, 1.0f / width);
+    const vec3 y = is_left ? vec3_cross(z, x) : vec3_cross(x, z);
+    const vec3 columns[4] = {x, y, z, from};
+    double matrix[4][4] = {{0.0}};
+    for (int k = 0; k < 4; k++) {
+        matrix[0][k] = (double)columns[k].x;
+        matrix[1][k] = (double)columns[k].y;
+        matrix[2][k] = (double)columns[k].z;
+    }
+    matrix[3][3] = 1.0;
+    return transform_from_matrix((const double(*)[4])matrix, out_world_from_camera);
+}
+
 /* Makes the ray in camera space; its direction need not be unit. */
 static void projective_ray(const camera *c, vec2 screen, vec2 lens_u, vec3 *out_origin, vec3 *out_direction)
 {

@@ -43,6 +43,10 @@ scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float
 ray_cone camera_ray_cone(const camera *c, const scene_ray *ray, float film_x, float film_y, float step_x, float step_y,
                          float aspect, vec2 lens_u);
 
+/* world_from_camera of a camera that stands at a point and looks at another; is_left: the world is seen as pbrt's, with
+ * x, y and z as on the left hand. False: the points are the same, or up is along the way between them. */
+bool camera_look(vec3 from, vec3 to, vec3 up, bool is_left, transform *out_world_from_camera);
+
 /* world_from_camera at a time of the shutter. */
 transform camera_transform_at(const camera *c, float time);
 

@@ -54,6 +54,16 @@ static inline bool run_is_cancelled(const run_context *run)
     return (now & ~(uint32_t)RUN_PAUSE_ALLOWED) != 0 && now != RUN_PAUSE_WANTED;
 }
 
+/* From now on no progress is told; gives what it was told to, for run_speak. Neither may be called while a phase
+ * works. */
+static inline ag_progress_fn *run_silence(run_context *run)
+{
+    ag_progress_fn *told = run->progress;
+    run->progress = NULL;
+    return told;
+}
+static inline void run_speak(run_context *run, ag_progress_fn *progress) { run->progress = progress; }
+
 /* Tells the callback at most some 20 times a second, and always at the beginning (0) and the end (1) of a phase.
  * Cheap when there is nothing to tell. */
 void run_progress(run_context *run, ag_phase phase, double fraction);

@@ -239,7 +239,7 @@ static ag_status render_frame(bench_stage *stage, ag_context *context, bench_out
     end_work(out);
     if (status == AG_OK) {
         add_film(out, ag_rendering_film(rendering));
-        add_slots(stage, &rendering->maps.cache, out);
+        add_slots(stage, &rendering->maps->cache, out);
     }
     ag_rendering_finish(rendering, NULL);
     out->amount = 1;

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE
 #include "file_conflicts.h"
 
-#include "passes.h"
+#include "picture_mark.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -76,11 +76,11 @@ static bool output_list_create(const options *o, output_list *out)
     bool is_whole = out->paths && out->made;
     for (int i = 0; is_whole && i < o->outfile_count; i++) {
         out->paths[out->count++] = o->outfiles[i];
-        char *mark = out->made[out->made_count++] = passes_mark_name(o->outfiles[i]);
+        char *mark = out->made[out->made_count++] = picture_mark_name(o->outfiles[i]);
         out->paths[out->count++] = mark;
         is_whole = mark != NULL;
         if (is_whole && i == 0 && (o->checkpoint_seconds > 0.0 || o->resume)) {
-            char *checkpoint = out->made[out->made_count++] = passes_checkpoint_name(o->outfiles[i]);
+            char *checkpoint = out->made[out->made_count++] = picture_mark_checkpoint(o->outfiles[i]);
             out->paths[out->count++] = checkpoint;
             is_whole = checkpoint != NULL;
         }

@@ -8,6 +8,7 @@
 #include "options.h"
 #include "page_server.h"
 #include "passes.h"
+#include "picture_mark.h"
 #include "progress.h"
 #include "signals.h"
 #include "standard_files.h"
@@ -77,7 +78,7 @@ static ag_status list_displays(ag_context *context)
 static bool is_there(const options *o)
 {
     for (int i = 0; i < o->outfile_count; i++)
-        if (!passes_is_complete(o->outfiles[i]))
+        if (!picture_mark_is_complete(o->outfiles[i]))
             return false;
     if (o->outfile_count > 0 && o->verbosity >= 0)
         fprintf(stderr, "afterglow: skipped: '%s' is there\n", o->outfiles[0]);

@@ -6,6 +6,7 @@
 #include "option_values.h"
 #include "page_html.h"
 #include "page_picture.h"
+#include "page_pixel.h"
 #include "status.h"
 
 #include <math.h>
@@ -67,10 +68,44 @@ static http_answer answer_picture(page_server *s, const http_request *request)
     return answer;
 }
 
+static http_answer answer_pixel(page_server *s, const http_request *request)
+{
+    bool is_lacking;
+    const http_answer answer = page_pixel_answer(&s->film, request, &is_lacking);
+    if (is_lacking)
+        page_wishes_layers(&s->wishes);
+    return answer;
+}
+
 static http_answer answer_stop(page_server *s, const http_request *request)
 {
     (void)request;
     page_wishes_end(&s->wishes);
+    return say(NO_CONTENT, "");
+}
+
+/* The place is nine numbers with commas between: from, to and up. */
+static http_answer answer_camera(page_server *s, const http_request *request)
+{
+    enum { NUMBERS = 9 };
+    float numbers[NUMBERS];
+    page_place place;
+    int count = 0;
+    if (!parse_floats(request->body, NUMBERS, numbers, &count) || count != NUMBERS)
+        return say(BAD_REQUEST, "A camera is nine numbers: from, to and up.\n");
+    if (!page_state_has_place(&s->state))
+        return say(UNAVAILABLE, "There is no picture yet that could be seen from elsewhere.\n");
+    memcpy(place.from, numbers, sizeof place.from);
+    memcpy(place.to, numbers + 3, sizeof place.to);
+    memcpy(place.up, numbers + 6, sizeof place.up);
+    page_wishes_move(&s->wishes, &place);
+    return say(NO_CONTENT, "");
+}
+
+static http_answer answer_return(page_server *s, const http_request *request)
+{
+    (void)request;
+    page_wishes_return(&s->wishes);
     return say(NO_CONTENT, "");
 }
 
@@ -80,8 +115,9 @@ static const struct {
     bool is_post;
     http_answer (*answer)(page_server *s, const http_request *request);
 } ROUTES[] = {
-    {"/", false, answer_page},           {"/state", false, answer_state}, {"/choices", false, answer_choices},
-    {"/picture", false, answer_picture}, {"/stop", true, answer_stop},
+    {"/", false, answer_page},           {"/state", false, answer_state},  {"/choices", false, answer_choices},
+    {"/picture", false, answer_picture}, {"/pixel", false, answer_pixel},  {"/stop", true, answer_stop},
+    {"/camera", true, answer_camera},    {"/return", true, answer_return},
 };
 
 static http_answer answer(void *user, const http_request *request)
@@ -175,6 +211,8 @@ void page_server_set_mode(page_server *server, page_mode mode)
     if (server)
         page_state_set_mode(&server->state, mode);
 }
+
+void page_server_leave_film(page_server *server) { page_film_leave(&server->film); }
 
 void page_server_leave(page_server *server, page_mode mode)
 {

@@ -29,6 +29,8 @@ void page_server_note(page_server *server, const page_notes *notes);
 /* Copies layers alone, when no rendering is under way. */
 void page_server_copy_layers(page_server *server);
 void page_server_set_mode(page_server *server, page_mode mode);
+/* Lets go of the film alone: another one is shown at once. */
+void page_server_leave_film(page_server *server);
 /* Lets go of the film and the context; mode: what the page says meanwhile. */
 void page_server_leave(page_server *server, page_mode mode);
 

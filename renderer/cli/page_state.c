@@ -25,6 +25,14 @@ void page_state_note(page_state *s, const page_notes *notes)
     pthread_mutex_unlock(&s->lock);
 }
 
+bool page_state_has_place(page_state *s)
+{
+    pthread_mutex_lock(&s->lock);
+    const bool has_place = s->notes.has_place;
+    pthread_mutex_unlock(&s->lock);
+    return has_place;
+}
+
 void page_state_set_mode(page_state *s, page_mode mode)
 {
     pthread_mutex_lock(&s->lock);
@@ -62,6 +70,8 @@ static void write_camera(FILE *out, const page_notes *n)
     write_triple(out, "to", n->place.to);
     fputs(", ", out);
     write_triple(out, "up", n->place.up);
+    fputs(", ", out);
+    write_triple(out, "right", n->right);
     fprintf(out, ", \"fov\": %.9g}", (double)n->fov_degrees);
 }
 

@@ -23,6 +23,7 @@ typedef struct page_notes {
     double noise;             /* below 0: not known */
     bool has_place;
     page_place place;  /* of its camera */
+    float right[3];    /* to the right in the picture */
     float fov_degrees; /* 0: it is not one that the command line could ask for */
     ag_statistics counts;
 } page_notes;
@@ -37,6 +38,7 @@ typedef struct page_state {
 bool page_state_init(page_state *s, const progress *told);
 void page_state_reset(page_state *s);
 void page_state_note(page_state *s, const page_notes *notes);
+bool page_state_has_place(page_state *s);
 void page_state_set_mode(page_state *s, page_mode mode);
 
 /* The JSON, to be freed; NULL: no memory. film: of which the version is told. */

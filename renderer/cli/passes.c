@@ -4,10 +4,11 @@
 
 #include "display_server.h"
 #include "memory_limit.h"
-#include "page_server.h"
+#include "picture_mark.h"
 #include "progress.h"
 #include "signals.h"
 #include "status.h"
+#include "walk.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -21,12 +22,11 @@
 #include <time.h>
 #include <unistd.h>
 
-static const char UNFINISHED[] = ".afterglow-unfinished", CHECKPOINT[] = ".afterglow-checkpoint";
-
 typedef struct passes {
     ag_context *context;
     const options *o;
     ag_rendering *rendering;
+    ag_rendering *kept;         /* the view from elsewhere that is written instead; NULL: none */
     char *checkpoint;           /* its file; NULL: none is asked for */
     double checkpoint_interval; /* seconds; INFINITY: at signals alone */
     double next_checkpoint;     /* when, in seconds of now() */
@@ -46,34 +46,7 @@ double passes_seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* --- names and marks beside a picture --- */
-
-/* The picture's name with the suffix. Where that is longer than a file's name may be, the end of the picture's name is
- * replaced by a number made of all of it (FNV-1a). */
-static char *beside(const char *outfile, const char *suffix)
-{
-    enum { HASH_LENGTH = 17 }; /* a hyphen and 16 digits */
-    const char *slash = strrchr(outfile, '/'), *base = slash ? slash + 1 : outfile;
-    size_t folder = (size_t)(base - outfile), length = strlen(base), suffix_length = strlen(suffix);
-    size_t kept = length;
-    char hash[HASH_LENGTH + 1] = "";
-    if (length + suffix_length > NAME_MAX) {
-        uint64_t number = 0xcbf29ce484222325u;
-        for (size_t i = 0; i < length; i++)
-            number = (number ^ (unsigned char)base[i]) * 0x100000001b3u;
-        snprintf(hash, sizeof hash, "-%016llx", (unsigned long long)number);
-        kept = NAME_MAX - suffix_length - HASH_LENGTH;
-    }
-    size_t size = folder + kept + sizeof hash + suffix_length;
-    char *name = malloc(size);
-    if (name)
-        snprintf(name, size, "%.*s%s%s", (int)(folder + kept), outfile, hash, suffix);
-    return name;
-}
-
-char *passes_checkpoint_name(const char *outfile) { return beside(outfile, CHECKPOINT); }
-
-char *passes_mark_name(const char *outfile) { return beside(outfile, UNFINISHED); }
+/* --- pictures --- */
 
 /* A pipe or device takes one picture, the last one. */
 static bool is_stream(const char *outfile)
@@ -88,61 +61,6 @@ static bool is_pipe(const char *outfile)
     return stat(outfile, &info) == 0 && S_ISFIFO(info.st_mode);
 }
 
-/* The mark itself; 0 or -1 with errno. */
-static int write_mark(const char *name)
-{
-    static const char TEXT[] = "The picture beside this file is what there was before its render was complete.\n";
-    int file = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666);
-    if (file < 0)
-        return -1;
-    bool is_written = write(file, TEXT, sizeof TEXT - 1) == (ssize_t)sizeof TEXT - 1 && fsync(file) == 0;
-    int error = errno;
-    if (close(file) == 0 && is_written)
-        return 0;
-    errno = is_written ? errno : error;
-    return -1;
-}
-
-/* Before the first picture that is not the last one, so that whoever looks knows, whatever happens then. Without the
- * mark the picture would be taken for a finished one: it is not written. Errors: AG_ERROR_OUTPUT, AG_ERROR_MEMORY. */
-static ag_status mark_unfinished(const char *outfile)
-{
-    char *name = passes_mark_name(outfile);
-    if (!name)
-        return AG_ERROR_MEMORY;
-    ag_status status = AG_OK;
-    if (write_mark(name) != 0) {
-        fprintf(
-            stderr,
-            "afterglow: error: cannot write '%s': %s; without this mark '%s' would be taken for a finished picture, "
-            "so the unfinished one is not written\n",
-            name, strerror(errno), outfile);
-        status = AG_ERROR_OUTPUT;
-    }
-    free(name);
-    return status;
-}
-
-static void mark_finished(const char *outfile)
-{
-    char *name = passes_mark_name(outfile);
-    if (name && unlink(name) != 0 && errno != ENOENT)
-        fprintf(stderr, "afterglow: warning: '%s' is complete, but its mark cannot be removed: '%s': %s\n", outfile,
-                name, strerror(errno));
-    free(name);
-}
-
-bool passes_is_complete(const char *outfile)
-{
-    struct stat info;
-    char *mark = passes_mark_name(outfile);
-    bool is_marked = !mark || access(mark, F_OK) == 0;
-    free(mark);
-    return !is_marked && stat(outfile, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0;
-}
-
-/* --- pictures --- */
-
 static ag_status write_pictures(passes *p, const ag_film *film, bool is_last)
 {
     for (int i = 0; i < p->o->outfile_count; i++) {
@@ -150,13 +68,13 @@ static ag_status write_pictures(passes *p, const ag_film *film, bool is_last)
         if (!is_last && is_stream(outfile))
             continue;
         if (!is_last)
-            AG_TRY(mark_unfinished(outfile));
+            AG_TRY(picture_mark_unfinished(outfile));
         if (is_pipe(outfile) && p->o->verbosity >= 0)
             fprintf(stderr, "afterglow: '%s' is a pipe: it is written when somebody reads it\n", outfile);
         const ag_output_settings output = options_output(p->o, i);
         AG_TRY(ag_film_write(p->context, film, &output, outfile));
         if (is_last)
-            mark_finished(outfile);
+            picture_mark_finished(outfile);
     }
     return AG_OK;
 }
@@ -229,28 +147,40 @@ static int next_pass(const passes *p, int samples, double seconds_per_sample)
     return affordable >= 1.0 ? samples + (int)affordable : 0;
 }
 
-static page_notes make_notes(const passes *p)
+/* Shows the picture itself in a browser, from now on. */
+static ag_status show_page(const passes *p, page_mode mode)
 {
-    return (page_notes){.mode = PAGE_RENDERING,
-                        .samples = ag_rendering_sample_counts(p->rendering),
-                        .samples_most = p->final,
-                        .noise = ag_rendering_noise(p->rendering).level,
-                        .counts = ag_context_statistics(p->context)};
+    const options *o = p->o;
+    if (!o->page)
+        return AG_OK;
+    const page_notes notes = walk_notes(p->rendering, mode, p->final);
+    return page_server_show(o->page, p->context, ag_rendering_film(p->rendering), &o->output, &notes);
 }
 
-/* Whether who watches wants the end, and there is a picture of whole passes, which the film then is. */
-static bool take_kept(passes *p, ag_status status)
+/* Goes for a walk where that is wished for; back from it the picture is shown again, or p->kept is there. */
+static ag_status walk_about(passes *p, page_mode mode)
+{
+    const walk w = {p->context, p->o, p->rendering, p->final, p->deadline};
+    if (!p->o->page || !page_wishes_has_move(page_server_wishes(p->o->page)))
+        return AG_OK;
+    AG_TRY(walk_run(&w, &p->kept));
+    return p->kept ? AG_OK : show_page(p, mode);
+}
+
+/* Whether who watches wants the end, and there is something to keep: a view from elsewhere, or a picture of whole
+ * passes, which the film then is. */
+static bool is_kept(const passes *p, ag_status status)
 {
     if (!p->o->page || !page_wishes_has_end(page_server_wishes(p->o->page)))
         return false;
-    return status == AG_OK || ag_rendering_go_back(p->rendering) == AG_OK;
+    return p->kept || status == AG_OK || ag_rendering_go_back(p->rendering) == AG_OK;
 }
 
 /* Writes what is due in a pause or after a pass: a snapshot or preview, and a checkpoint; tells who watches. */
 static ag_status serve(passes *p, bool is_after_pass)
 {
     if (p->o->page) {
-        const page_notes notes = make_notes(p);
+        const page_notes notes = walk_notes(p->rendering, PAGE_RENDERING, p->final);
         page_server_note(p->o->page, &notes);
     }
     if (signals_take_snapshot())
@@ -275,9 +205,10 @@ static ag_status run_passes(passes *p)
             return status;
         if (status == AG_OK && samples == p->final)
             return AG_OK;
+        AG_TRY(walk_about(p, PAGE_RENDERING));
         if (signals_stop())
             return AG_PAUSED;
-        if (take_kept(p, status)) {
+        if (is_kept(p, status)) {
             p->cut = AG_END_KEPT;
             return AG_OK;
         }
@@ -304,7 +235,7 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
 {
     const options *o = p->o;
     if (o->checkpoint_seconds > 0.0 || o->resume) {
-        p->checkpoint = passes_checkpoint_name(o->outfiles[0]);
+        p->checkpoint = picture_mark_checkpoint(o->outfiles[0]);
         if (!p->checkpoint)
             return AG_ERROR_MEMORY;
         AG_TRY(ag_statistics_check(p->context, p->checkpoint)); /* as for any file */
@@ -397,21 +328,30 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
     return AG_OK;
 }
 
-/* Whoever looks at the finished picture in a browser is not interrupted, as long as he does; but the next picture does
- * not wait, nor does the time limit. */
-static void await_page(const passes *p)
+/* Whether somebody looks at the finished picture in a browser: he is not interrupted, as long as he does; but the next
+ * picture does not wait, nor does the time limit. */
+static bool is_looked_at(const passes *p)
 {
     const options *o = p->o;
     const bool is_last = o->frames.count == 0 || o->frame == o->frames.numbers[o->frames.count - 1];
-    if (!o->page || !is_last)
-        return;
+    if (!o->page || !is_last || p->kept || signals_stop() || now() >= p->deadline)
+        return false;
     page_wishes *wishes = page_server_wishes(o->page);
-    while (page_wishes_is_watched(wishes, PAGE_PATIENCE_SECONDS) && !page_wishes_has_end(wishes) && !signals_stop() &&
-           now() < p->deadline) {
+    return page_wishes_is_watched(wishes, PAGE_PATIENCE_SECONDS) && !page_wishes_has_end(wishes);
+}
+
+static ag_status await_page(passes *p)
+{
+    page_server_set_mode(p->o->page, PAGE_FINISHED);
+    while (is_looked_at(p)) {
+        page_wishes *wishes = page_server_wishes(p->o->page);
         page_wishes_wait(wishes, LOOK_SECONDS);
-        if (page_wishes_take_layers(wishes))
-            page_server_copy_layers(o->page);
+        AG_TRY(walk_about(p, PAGE_FINISHED));
+        (void)page_wishes_take_return(wishes);
+        if (!p->kept && page_wishes_take_layers(wishes))
+            page_server_copy_layers(p->o->page);
     }
+    return AG_OK;
 }
 
 /* The film goes. The viewer is waited for within the time limit. */
@@ -424,15 +364,45 @@ static void leave_watchers(const passes *p)
 /* From now on the film is shown wherever it is wanted. */
 static ag_status show_to_watchers(const passes *p)
 {
-    const options *o = p->o;
     const ag_film *film = ag_rendering_film(p->rendering);
-    AG_TRY(progress_show_film(o->told, film));
-    if (o->page) {
-        const page_notes notes = make_notes(p);
-        AG_TRY(page_server_show(o->page, p->context, film, &o->output, &notes));
-    }
-    display_server_show(o->display, film, o->outfiles[0]);
+    AG_TRY(progress_show_film(p->o->told, film));
+    AG_TRY(show_page(p, PAGE_RENDERING));
+    display_server_show(p->o->display, film, p->o->outfiles[0]);
     return AG_OK;
+}
+
+/* Writes the picture, and if it is wished for the view that somebody has walked to. Its rendering ends before the files
+ * are written, which takes memory, unless somebody looks on. *out_films: to be destroyed when nobody watches. */
+static ag_status write_and_wait(passes *p, const ag_render_settings *settings, passes_result *result, ag_noise *noise,
+                                ag_status failed, ag_film *out_films[2])
+{
+    const bool stays = is_looked_at(p) && !p->o->photons_only && !result->is_partial && failed == AG_OK;
+    ag_status status = AG_OK;
+    if (!stays) {
+        ag_rendering_finish(p->rendering, &out_films[0]);
+        p->rendering = NULL;
+    }
+    /* the film of a rendering that has ended, or that is continued no more */
+    ag_film *film = stays ? (ag_film *)(uintptr_t)ag_rendering_film(p->rendering) : out_films[0];
+    if (!p->kept) {
+        status = show(p, film, settings, result, noise, failed);
+        progress_leave_film(p->o->told, false);
+    }
+    if (status == AG_OK && stays)
+        status = await_page(p);
+    if (stays) {
+        ag_rendering_finish(p->rendering, &out_films[0]);
+        p->rendering = NULL;
+    }
+    if (status != AG_OK || !p->kept)
+        return status;
+    p->cut = AG_END_KEPT;
+    result->samples = ag_rendering_sample_counts(p->kept);
+    *noise = ag_rendering_noise(p->kept);
+    ag_context_note_end(p->context, AG_END_KEPT);
+    ag_rendering_finish(p->kept, &out_films[1]);
+    p->kept = NULL;
+    return show(p, out_films[1], settings, result, noise, failed);
 }
 
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
@@ -441,7 +411,7 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     passes p = {.context = context, .o = o, .final = settings->samples_per_pixel, .deadline = INFINITY};
     if (o->time_limit > 0.0)
         p.deadline = o->begun + o->time_limit;
-    ag_film *film = NULL;
+    ag_film *films[2] = {NULL, NULL};
     ag_noise noise = {.level = -1.0};
     ag_status failed = AG_OK;
     *out_result = (passes_result){0};
@@ -454,21 +424,15 @@ ag_status passes_render(ag_context *context, const options *o, const ag_scene *s
     }
     if (status == AG_OK && o->photons_file && !out_result->is_partial && failed == AG_OK)
         status = ag_rendering_write_photons(p.rendering, o->photons_file);
-    if (status != AG_OK) { /* the film goes */
-        progress_leave_film(o->told, false);
-        leave_watchers(&p);
-    }
-    ag_rendering_finish(p.rendering, status == AG_OK ? &film : NULL);
     if (status == AG_OK)
-        status = show(&p, film, settings, out_result, &noise, failed);
+        status = write_and_wait(&p, settings, out_result, &noise, failed, films);
     progress_leave_film(o->told, false);
-    if (status == AG_OK && !out_result->is_partial) {
-        page_server_set_mode(o->page, PAGE_FINISHED);
-        await_page(&p);
-    }
     leave_watchers(&p); /* when the files are written: they do not wait for a viewer */
+    ag_rendering_finish(p.rendering, NULL);
+    ag_rendering_finish(p.kept, NULL);
     signals_end_rendering();
-    ag_film_destroy(film);
+    ag_film_destroy(films[0]);
+    ag_film_destroy(films[1]);
     free(p.checkpoint);
     return status == AG_OK && out_result->is_partial ? AG_CANCELLED : status;
 }

@@ -21,12 +21,4 @@ double passes_seconds(void);
 ag_status passes_render(ag_context *context, const options *o, const ag_scene *scene,
                         const ag_render_settings *settings, passes_result *out_result);
 
-/* Whether a picture is there, and complete: what was written on the way has a file beside it that says so. */
-bool passes_is_complete(const char *outfile);
-
-/* The names of the files beside an outfile: the checkpoint, beside the first one, and the mark of a picture that is not
- * complete. To be freed, NULL when out of memory. */
-char *passes_checkpoint_name(const char *outfile);
-char *passes_mark_name(const char *outfile);
-
 #endif

@@ -106,6 +106,24 @@ void cryptomatte_reset(cryptomatte *matte)
     *matte = (cryptomatte){0};
 }
 
+bool cryptomatte_name(const cryptomatte *matte, float id, char *out_name, size_t size)
+{
+    uint32_t hash;
+    char digits[16];
+    const char *name;
+    json_t *value, *names = matte->manifest ? json_loads(matte->manifest, 0, NULL) : NULL;
+    bool is_found = false;
+    memcpy(&hash, &id, sizeof hash);
+    snprintf(digits, sizeof digits, "%08x", hash);
+    json_object_foreach(names, name, value) if (!is_found && strcmp(json_string_value(value), digits) == 0)
+    {
+        snprintf(out_name, size, "%s", name);
+        is_found = true;
+    }
+    json_decref(names);
+    return is_found;
+}
+
 /* --- coverage --- */
 
 void cryptomatte_add(const cryptomatte *matte, uint32_t id, int sign, cryptomatte_slot *slots)

@@ -33,6 +33,10 @@ typedef struct cryptomatte_slot {
 ag_status cryptomatte_create(const scene *s, cryptomatte_kind kind, cryptomatte *out_matte);
 void cryptomatte_reset(cryptomatte *matte);
 
+/* The name of the thing with that id, which is its hash's bits, cut where it is longer than size - 1 bytes. False:
+ * there is none. */
+bool cryptomatte_name(const cryptomatte *matte, float id, char *out_name, size_t size);
+
 /* A sample of the thing of that number, from 1 on. slots: the pixel's [CRYPTOMATTE_SLOTS]. */
 void cryptomatte_add(const cryptomatte *matte, uint32_t id, int sign, cryptomatte_slot *slots);
 

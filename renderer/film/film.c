@@ -468,6 +468,14 @@ const char *ag_film_channel_name(const ag_film *film, int channel)
     return channel >= 0 && channel < film->layout.channel_count ? film->layout.channels[channel].name : NULL;
 }
 
+bool ag_film_matte_name(const ag_film *film, ag_layer layer, float id, char *out_name, size_t size)
+{
+    const cryptomatte_kind kind = layer == AG_LAYER_CRYPTO_MATERIAL ? CRYPTOMATTE_MATERIAL : CRYPTOMATTE_OBJECT;
+    if (!film || !out_name || size == 0 || (layer != AG_LAYER_CRYPTO_OBJECT && layer != AG_LAYER_CRYPTO_MATERIAL))
+        return false;
+    return cryptomatte_name(&film->mattes[kind], id, out_name, size);
+}
+
 ag_status ag_film_read_channel(const ag_film *film, int channel, float *out_values)
 {
     if (!film || !out_values || channel < 0 || channel >= film->layout.channel_count)

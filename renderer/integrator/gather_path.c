@@ -34,20 +34,6 @@ static void end_at(const transport *t, const vertex *v, int scatterings_left, rg
     *out_weight = rgb_scale(rgb_mul(throughput, factor), AG_INV_PI);
 }
 
-/* Most rays end at once at a Lambertian surface far enough away: without any of what makes up a bsdf. What that saves
- * is in material/README.md. */
-static bool ends_plainly(const transport *t, const vertex *v, int scatterings_left, rgb throughput, gather_end *out_end,
-                         rgb *out_weight)
-{
-    const rgb *albedo = material_plain_albedo(&t->s->materials[t->s->shapes[v->hit.shape_index].material_index]);
-    if (!albedo || v->hit.is_strand)
-        return false;
-    map_point at = transport_map_point(t, v);
-    *out_end = (gather_end){{at.position, at.facing_normal, v->hit.epsilon}, v->arrived.medium, scatterings_left};
-    *out_weight = rgb_scale(rgb_mul(throughput, *albedo), AG_INV_PI);
-    return true;
-}
-
 bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng random, int scatterings_left, rgb first,
                         float share_seen, rgb *in_out_known, gather_end *out_end, rgb *out_weight)
 {
@@ -58,9 +44,6 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         throughput = rgb_mul(throughput, v->transmittance);
         travelled += v->hit.distance;
         bool is_far = travelled >= t->gather_min_distance || short_bounces == SHORT_BOUNCES_MAX;
-        int left = scatterings_left - depth;
-        if (is_far && ends_plainly(t, v, left, rgb_mul(first, throughput), out_end, out_weight))
-            return true;
         transport_complete(t, v);
         float u_lobe = rng_float(&random), u_group = rng_float(&random);
         vec2 u = rng_vec2(&random);
@@ -71,7 +54,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         throughput = rgb_scale(throughput, 1.0f / (lobes == BSDF_GATHERED ? gathered_share : 1.0f - gathered_share));
         if (lobes == BSDF_GATHERED) {
             if (is_far) {
-                end_at(t, v, left, rgb_mul(first, throughput), u_lobe, out_end, out_weight);
+                end_at(t, v, scatterings_left - depth, rgb_mul(first, throughput), u_lobe, out_end, out_weight);
                 return true;
             }
             /* too near for an estimate that is blurred over about that distance */

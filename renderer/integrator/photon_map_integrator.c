@@ -14,8 +14,8 @@ static const float GATHER_MIN_DISTANCE_RADII = 1.0f;
 
 static ag_status prepare(struct ag_rendering *r)
 {
-    maps *m = &r->maps;
-    AG_TRY(maps_create(r->context, r->s, &r->settings, m));
+    AG_TRY(maps_create(r->context, r->s, &r->settings, &r->maps));
+    maps *m = r->maps;
     r->t.caustic = &m->caustic;
     r->t.cache = &m->cache;
     r->t.incident = m->incident.cells ? &m->incident : NULL;

@@ -57,26 +57,12 @@ static ag_status set_camera(run_context *run, bool is_pbrt, vec3 axis, scene *s)
     const scene_request *asked = s->request;
     const bool is_left = is_left_handed(s, is_pbrt);
     const vec3 up = !vec3_is_zero(asked->camera_up) ? asked->camera_up : axis;
-    const vec3 from = asked->camera_from, way = vec3_sub(asked->camera_to, from);
-    const vec3 across = is_left ? vec3_cross(up, way) : vec3_cross(way, up);
-    const float distance = vec3_length(way), width = vec3_length(across);
+    const vec3 from = asked->camera_from, to = asked->camera_to;
     camera c = {.shutter_close = 1.0f};
     if (s->has_camera)
         c = s->camera;
-    double matrix[4][4] = {{0.0}};
-    if (distance > 0.0f && width > 0.0f && isfinite(distance) && isfinite(width) && vec3_is_finite(from)) {
-        const vec3 z = vec3_scale(way, 1.0f / distance), x = vec3_scale(across, 1.0f / width);
-        const vec3 y = is_left ? vec3_cross(z, x) : vec3_cross(x, z);
-        const vec3 columns[4] = {x, y, z, from};
-        for (int k = 0; k < 4; k++) {
-            matrix[0][k] = (double)columns[k].x;
-            matrix[1][k] = (double)columns[k].y;
-            matrix[2][k] = (double)columns[k].z;
-        }
-        matrix[3][3] = 1.0;
-    }
     if (!(asked->fov_degrees > 0.0f && asked->fov_degrees < 180.0f) ||
-        !transform_from_matrix((const double(*)[4])matrix, &c.world_from_camera)) {
+        !camera_look(from, to, up, is_left, &c.world_from_camera)) {
         log_message(run->log, AG_LOG_ERROR,
                     "the camera asked for makes no sense: from and to should differ, up should not be along the way "
                     "between them, and the field of view should be within 0 and 180 degrees");
@@ -84,7 +70,7 @@ static ag_status set_camera(run_context *run, bool is_pbrt, vec3 axis, scene *s)
     }
     c.kind = CAMERA_PERSPECTIVE;
     c.fov_degrees = asked->fov_degrees;
-    c.focal_distance = distance;
+    c.focal_distance = vec3_length(vec3_sub(to, from));
     c.lens_radius = 0.0f;
     c.is_moving = c.has_screen_window = false;
     c.screen_shift[0] = c.screen_shift[1] = 0.0f;

@@ -7,15 +7,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz_enter_folder_with_files();
     fuzz_write("t.gltf", data, size);
-    fuzz_run run;
-    fuzz_run_init(&run);
-    scene *s = scene_create();
-    FUZZ_CHECK(s);
-    ag_status status = gltf_load_file(&run.context, "t.gltf", s);
-    fuzz_check_said(&run, status);
-    if (status == AG_OK)
-        fuzz_look_at_scene(s, &run);
-    scene_destroy(s);
-    fuzz_run_reset(&run);
+    fuzz_read_scene(gltf_load_file, "t.gltf");
     return 0;
 }

@@ -14,15 +14,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     size_t obj_size = mark ? (size_t)(mark - data) : size;
     fuzz_write("t.obj", data, obj_size);
     fuzz_write("t.mtl", data + obj_size, size - obj_size);
-    fuzz_run run;
-    fuzz_run_init(&run);
-    scene *s = scene_create();
-    FUZZ_CHECK(s);
-    ag_status status = obj_load_file(&run.context, "t.obj", s);
-    fuzz_check_said(&run, status);
-    if (status == AG_OK)
-        fuzz_look_at_scene(s, &run);
-    scene_destroy(s);
-    fuzz_run_reset(&run);
+    fuzz_read_scene(obj_load_file, "t.obj");
     return 0;
 }

@@ -111,3 +111,17 @@ void fuzz_look_at_scene(scene *s, fuzz_run *run)
     FUZZ_CHECK(isfinite(s->surface_area) && isfinite(s->bounding_radius));
     cast_rays(s);
 }
+
+void fuzz_read_scene(fuzz_reader *read, const char *path)
+{
+    fuzz_run run;
+    fuzz_run_init(&run);
+    scene *s = scene_create();
+    FUZZ_CHECK(s);
+    ag_status status = read(&run.context, path, s);
+    fuzz_check_said(&run, status);
+    if (status == AG_OK)
+        fuzz_look_at_scene(s, &run);
+    scene_destroy(s);
+    fuzz_run_reset(&run);
+}

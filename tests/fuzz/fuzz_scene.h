@@ -12,4 +12,8 @@ void fuzz_enter_folder_with_files(void);
 /* Checks indices and values, commits, and casts some rays. run has no threads but gets one. */
 void fuzz_look_at_scene(scene *s, fuzz_run *run);
 
+/* Reads a file into an empty scene by a format's reader, and looks at what that accepts. */
+typedef ag_status fuzz_reader(run_context *run, const char *path, scene *s);
+void fuzz_read_scene(fuzz_reader *read, const char *path);
+
 #endif

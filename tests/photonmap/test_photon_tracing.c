@@ -2,8 +2,6 @@
  * threads. Threads: those of the tracing. */
 #include "photon_tracing.h"
 
-#include "clock.h"
-
 #include "fixtures/test_scene.h"
 
 /* The unit sphere around a lamp; the whole of its light stays within. */
@@ -426,82 +424,6 @@ static void a_black_room_is_met_once_a_path(void **state)
     test_run_reset(&r);
 }
 
-static void cancelling_ends_it(void **state)
-{
-    (void)state;
-    test_run r;
-    test_run_init(&r, 2);
-    scene *s = sphere_scene(&r, 0.5, 0.5, 0.5);
-    run_cancel(&r.run);
-    photon_tracing_settings settings = {.kind = PHOTON_GLOBAL, .wanted = 100000, .max_scatterings = 100};
-    photon_set set;
-    assert_int_equal(photon_tracing_run(s, &r.run, &settings, &set), AG_CANCELLED);
-    assert_null(set.photons);
-    scene_destroy(s);
-    test_run_reset(&r);
-}
-
-typedef struct canceller {
-    run_context *run;
-    atomic_u32 has_begun;
-    double seconds; /* to wait then */
-} canceller;
-
-static void *cancel_later(void *user)
-{
-    canceller *c = user;
-    while (!load_relaxed_u32(&c->has_begun))
-        continue;
-    for (double end = clock_seconds() + c->seconds; clock_seconds() < end;)
-        continue;
-    run_cancel(c->run);
-    return NULL;
-}
-
-/* Cancelled at any moment, most often while the last of the blocks are traced: either there is nothing, or all of
- * it. */
-static void cancelling_leaves_all_or_nothing(void **state)
-{
-    (void)state;
-    enum { TRIES = 100, WORKERS = 16 }; /* a round is a block for each worker, and yields more than is wanted */
-    test_run r;
-    test_run_init(&r, WORKERS);
-    scene *s = sphere_scene(&r, 0.9, 0.9, 0.9);
-    photon_tracing_settings settings = {.kind = PHOTON_GLOBAL, .wanted = 15000, .max_scatterings = 100};
-    photon_set whole, set;
-    assert_int_equal(photon_tracing_run(s, &r.run, &settings, &whole), AG_OK);
-    photon_set_reset(&whole);
-    double begin = clock_seconds();
-    assert_int_equal(photon_tracing_run(s, &r.run, &settings, &whole), AG_OK);
-    double whole_seconds = clock_seconds() - begin; /* only so that the moments are worth while */
-    rng random = test_random(31);
-    int cancelled = 0;
-    for (int k = 0; k < TRIES; k++) {
-        canceller c = {.run = &r.run, .seconds = whole_seconds * (double)rng_float(&random)};
-        pthread_t thread;
-        assert_int_equal(pthread_create(&thread, NULL, cancel_later, &c), 0);
-        store_relaxed_u32(&c.has_begun, 1);
-        ag_status status = photon_tracing_run(s, &r.run, &settings, &set);
-        pthread_join(thread, NULL);
-        store_relaxed_u32(&r.run.stop, 0);
-        if (status != AG_OK) {
-            assert_int_equal(status, AG_CANCELLED);
-            assert_null(set.photons);
-            cancelled++;
-            continue;
-        }
-        assert_int_equal(set.count, whole.count);
-        assert_int_equal(set.emitted_paths, whole.emitted_paths);
-        assert_int_equal(set.rays, whole.rays);
-        assert_memory_equal(set.photons, whole.photons, whole.count * sizeof *whole.photons);
-        photon_set_reset(&set);
-    }
-    assert_true(cancelled > 0);
-    photon_set_reset(&whole);
-    scene_destroy(s);
-    test_run_reset(&r);
-}
-
 /* --- closed rooms do not leak --- */
 
 static void expect_tight(const char *world, uint32_t wanted)
@@ -558,8 +480,6 @@ int main(void)
         cmocka_unit_test(without_traced_lobes_there_are_no_caustics),
         cmocka_unit_test(a_scene_without_light_has_no_photons),
         cmocka_unit_test(a_black_room_is_met_once_a_path),
-        cmocka_unit_test(cancelling_ends_it),
-        cmocka_unit_test(cancelling_leaves_all_or_nothing),
         cmocka_unit_test(closed_rooms_do_not_leak),
         cmocka_unit_test(a_furnished_room_does_not_leak),
     };

@@ -4,7 +4,7 @@
  * Flow: tests of the whole program. Threads: the program's. */
 /* ctest: sanitize */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_agreement.h"
 
 #define AIMED    "--photon-aim=0.8"
 #define BY_POWER "--photon-aim=0"
@@ -110,21 +110,13 @@ static void test_light_is_the_same_and_more_photons_are_of_use(void **state)
     (void)state;
     char scene[160];
     snprintf(scene, sizeof scene, "%s", room());
-    picture path = RENDER(scene, "--integrator=path", "--spp=2048");
-    picture aimed = RENDER(scene, AIMED, "--photons=4e5", "--spp=64", "--gather-samples=4");
-    picture power = RENDER(scene, BY_POWER, "--photons=4e5", "--spp=64", "--gather-samples=4");
-    for (int c = 0; c < 3; c++) {
-        print_message("mean %.5f aimed, %.5f by power, %.5f path traced\n", picture_mean(&aimed, c),
-                      picture_mean(&power, c), picture_mean(&path, c));
-        expect_near("aimed", picture_mean(&aimed, c), picture_mean(&path, c), 0.01);
-    }
+    const agreement_means path = agreement_render(scene, ARGUMENTS("--integrator=path", "--spp=256"));
+    const agreement_means aimed = agreement_render(scene, ARGUMENTS(AGREEMENT_MAP, "--spp=16", AIMED));
+    expect_agreement("aimed", &aimed, &path, (agreement_bounds){AGREEMENT_BLUR, 0.005, 0.03});
     double share = share_asked_for(scene, AIMED), share_by_power = share_asked_for(scene, BY_POWER);
     print_message("asked for: %.4f of the photons aimed, %.4f by power\n", share, share_by_power);
     assert_true(share > 0.3);
     assert_true(share > 5.0 * share_by_power);
-    picture_reset(&path);
-    picture_reset(&aimed);
-    picture_reset(&power);
 }
 
 /* A camera that sees the sky alone, and one in the dark. */

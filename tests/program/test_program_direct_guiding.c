@@ -3,7 +3,7 @@
  * Flow: tests of the whole program. Threads: the program's. */
 /* ctest: sanitize */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_agreement.h"
 
 #define GUIDED   "--direct-guiding=0.8"
 #define UNGUIDED "--direct-guiding=0"
@@ -127,18 +127,11 @@ static void test_agreement(void **state)
     (void)state;
     char scene[160];
     snprintf(scene, sizeof scene, "%s", room());
-    picture path = RENDER(scene, "--integrator=path", "--spp=2048", UNGUIDED);
-    picture guided_path = RENDER(scene, "--integrator=path", "--spp=2048", GUIDED);
-    picture map = RENDER(scene, GUIDED, "--photons=4e5", "--spp=64", "--gather-samples=4");
-    for (int c = 0; c < 3; c++) {
-        print_message("mean %.5f by photons, %.5f by guided paths, %.5f by plain ones\n", picture_mean(&map, c),
-                      picture_mean(&guided_path, c), picture_mean(&path, c));
-        expect_near("photons", picture_mean(&map, c), picture_mean(&path, c), 0.01);
-        expect_near("guided paths", picture_mean(&guided_path, c), picture_mean(&path, c), 0.006);
-    }
-    picture_reset(&path);
-    picture_reset(&guided_path);
-    picture_reset(&map);
+    const agreement_means path = agreement_render(scene, ARGUMENTS("--integrator=path", "--spp=256", UNGUIDED));
+    const agreement_means guided = agreement_render(scene, ARGUMENTS("--integrator=path", "--spp=256", GUIDED));
+    const agreement_means map = agreement_render(scene, ARGUMENTS(AGREEMENT_MAP, "--spp=16", GUIDED));
+    expect_agreement("guided paths", &guided, &path, (agreement_bounds){0.0, 0.005, 0.03});
+    expect_agreement("photons", &map, &path, (agreement_bounds){AGREEMENT_BLUR, 0.005, 0.03});
 }
 
 int main(void)

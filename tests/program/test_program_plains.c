@@ -2,7 +2,7 @@
  * Most photons would lie far away, and discs be as large as houses; the photon map must be as right as the path tracer
  * all the same. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_agreement.h"
 
 #define GRAY          "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n"
 #define QUAD(corners) "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [" corners "]\n"
@@ -14,18 +14,11 @@
             QUAD("0 0 5 4 0 5 4 3 5 0 3 5") QUAD("0 0 0 0 0 5 0 .8 5 0 .8 0") QUAD("0 2.2 0 0 2.2 5 0 3 5 0 3 0")      \
                 QUAD("0 .8 0 0 .8 1 0 2.2 1 0 2.2 0") QUAD("0 .8 3.5 0 .8 5 0 2.2 5 0 2.2 3.5")
 
-/* Holds both integrators' means of green against each other, over the picture and over its quarters. */
-static void expect_both_alike(const char *name, const char *text, double of_mean, double of_part)
+static void expect_both_alike(const char *what, const char *text, const char *const *path_arguments,
+                              agreement_bounds bounds)
 {
-    const char *scene = write_text("scene.pbrt", text);
-    picture map = RENDER(scene, "--size=32x32", "--spp=64", "--photons=100000", "--caustic-photons=30000"),
-            truth = RENDER(scene, "--size=32x32", "--spp=512", "--integrator=path");
-    for (int i = 0; i < 4; i++)
-        expect_near(name, picture_block(&map, i % 2 * 16, i / 2 * 16, 16, 1),
-                    picture_block(&truth, i % 2 * 16, i / 2 * 16, 16, 1), of_part);
-    expect_near(name, picture_mean(&map, 1), picture_mean(&truth, 1), of_mean);
-    picture_reset(&map);
-    picture_reset(&truth);
+    compare_integrators_by(what, write_text("scene.pbrt", text), ARGUMENTS(AGREEMENT_MAP, "--spp=12"), path_arguments,
+                           bounds);
 }
 
 /* The smaller ground was three times too bright before discs kept to the floor they lie on. */
@@ -42,7 +35,8 @@ static void test_a_house_with_a_window(void **state)
                  "AttributeEnd\n" HOUSE GRAY QUAD("1.2 1 .8 2 1 .8 2 1 1.6 1.2 1 1.6"),
                  SIZES[i]);
         snprintf(name, sizeof name, "a ground of %s", SIZES[i]);
-        expect_both_alike(name, text, 0.03, 0.05);
+        expect_both_alike(name, text, ARGUMENTS("--integrator=path", "--spp=128"),
+                          (agreement_bounds){2.0 * AGREEMENT_BLUR, 0.004, 0.03}); /* few photons are in the house */
     }
 }
 
@@ -55,7 +49,7 @@ static void test_a_glass_ball(void **state)
                       "LightSource \"infinite\" \"rgb L\" [.6 .8 1]\n" GRAY
                       "AttributeBegin Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 10000 AttributeEnd\n"
                       "Material \"dielectric\" Translate 0 1.01 0 Shape \"sphere\"\n",
-                      0.005, 0.01);
+                      ARGUMENTS("--integrator=path", "--spp=64"), (agreement_bounds){AGREEMENT_BLUR, 0.004, 0.03});
 }
 
 int main(void)

@@ -1,5 +1,6 @@
 /* test_import_process.c: the process's answer comes back whole; however it ends, that is an error and no more. */
 #define _GNU_SOURCE
+#include "fixtures/sanitizer.h"
 #include "model/import_process.h"
 #include "model/import_worker.h"
 
@@ -10,15 +11,6 @@
 #include <pthread.h>
 #include <signal.h>
 #include <sys/wait.h>
-
-#if defined(__has_feature)
-#if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
-#define UNDER_SANITIZER 1
-#endif
-#endif
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-#define UNDER_SANITIZER 1
-#endif
 
 enum { ANSWER_BYTES = 5000000, MEMORY_BYTES = 100000000 };
 

@@ -5,25 +5,9 @@
 #include "rays/transmittance.h"
 #include "shape/alpha.h"
 
-#include "fixtures/test_scene.h"
+#include "fixtures/shared_run.h"
 
 enum { RAYS = 40000 / FEWER };
-
-static test_run run;
-
-static int set_up(void **state)
-{
-    (void)state;
-    test_run_init(&run, 2);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    test_run_reset(&run);
-    return 0;
-}
 
 #define SQUARE                                                                                                         \
     "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 1 1 0 -1 1 0 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n"
@@ -177,7 +161,7 @@ static void holes_are_where_the_texture_has_them(void **state)
     }
 }
 
-/* alpha along u from 0 to 1, times a factor, and cut. */
+/* Alpha rises from 0 to 1 along u, is multiplied by a factor, and cut off. */
 static void cutoffs_make_masks(void **state)
 {
     (void)state;

@@ -3,26 +3,10 @@
  * workers build, one asks. */
 #include "material/shading_frame.h"
 
-#include "fixtures/test_scene.h"
+#include "fixtures/shared_run.h"
 #include "material/bsdf.h"
 
 enum { POINTS = 300 / FEWER };
-
-static test_run run;
-
-static int set_up(void **state)
-{
-    (void)state;
-    test_run_init(&run, 2);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    test_run_reset(&run);
-    return 0;
-}
 
 #define RAMP                                                                                                           \
     "Texture \"ramp\" \"float\" \"bilerp\" \"float v00\" 0.1 \"float v10\" 0.4 \"float v01\" 0.3 \"float v11\" 0.6\n"
@@ -63,7 +47,7 @@ static void a_ramp_on_a_plane(void **state)
     surface_hit hit = hit_from_above(s, 0.3f, 0.7f);
     assert_direction(normal_at(s, &hit), -RISE_U / 2.0, -RISE_V / 4.0, 1.0, 1e-4);
     scene_destroy(s);
-    /* the same upside down: raised towards the new outside */
+    /* turned over, it is raised towards the new outside */
     s = test_scene_create(&run, RAMP RAISED "ReverseOrientation " PLANE);
     hit = hit_from_above(s, 0.3f, 0.7f);
     assert_direction(normal_at(s, &hit), -RISE_U / 2.0, -RISE_V / 4.0, -1.0, 1e-4);

@@ -2,25 +2,9 @@
  * much as they say, on all shapes, under any map, with uvs and without. Threads: the run's workers build, one asks. */
 #include "shape/tangents.h"
 
-#include "fixtures/test_scene.h"
+#include "fixtures/shared_run.h"
 
 enum { POINTS = 400 / FEWER };
-
-static test_run run;
-
-static int set_up(void **state)
-{
-    (void)state;
-    test_run_init(&run, 2);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    test_run_reset(&run);
-    return 0;
-}
 
 /* A point of the only shape that a ray from afar meets. */
 static bool random_hit(const scene *s, rng *random, surface_hit *out_hit)

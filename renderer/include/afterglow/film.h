@@ -4,6 +4,7 @@
 #define AFTERGLOW_PUBLIC_FILM_H
 
 #include "afterglow/context.h"
+#include "afterglow/layers.h"
 
 #include <stdint.h>
 
@@ -25,6 +26,11 @@ AG_API int ag_film_channel_count(const ag_film *film);
 AG_API const char *ag_film_channel_name(const ag_film *film, int channel); /* the film's; NULL: there is none */
 /* Width * height values, top row first. Errors: AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_film_read_channel(const ag_film *film, int channel, float *out_values);
+
+/* The name of the object or material whose id a channel of AG_LAYER_CRYPTO_OBJECT or AG_LAYER_CRYPTO_MATERIAL holds;
+ * longer ones are cut at size - 1 bytes. False: there is none of that id, or the film has no such layer. Any thread may
+ * ask. */
+AG_API bool ag_film_matte_name(const ag_film *film, ag_layer layer, float id, char *out_name, size_t size);
 
 /* A picture can be watched while it is rendered: from ag_rendering_film on, and for as long as the film is there, any
  * thread may call the three functions below at any time, callbacks too. They copy the developed picture, R, G and B as

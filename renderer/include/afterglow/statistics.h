@@ -85,10 +85,13 @@ typedef struct ag_statistics {
     ag_end end;               /* of the last picture, as noted by ag_context_note_end */
     ag_sample_counts samples; /* of the pixels of the last picture */
     double noise;             /* of the last picture, as in ag_noise; below 0: not known */
-    ag_prediction prediction; /* the last one; memory_peak_bytes is 0 where none was made */
+    ag_prediction prediction; /* the last that was made; memory_peak_bytes is 0 where there is none */
 } ag_statistics;
 
 AG_API ag_statistics ag_context_statistics(const ag_context *context);
+/* ag_context_statistics, with the irradiances that a rendering under way has asked for so far, which count there only
+ * when it is finished; without irradiance_distinct. */
+AG_API ag_statistics ag_rendering_statistics(const ag_rendering *rendering);
 /* To be called when a rendering is finished, by who ended it; for the statistics. */
 AG_API void ag_context_note_end(ag_context *context, ag_end end);
 

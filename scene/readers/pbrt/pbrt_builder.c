@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What messages call it that are of no call. */
+/* The scene's name in messages that no call has caused. */
 static const char NAME[] = "scene from memory";
 
 struct pbrt_builder {

@@ -1,0 +1,126 @@
+/* walk.c: see walk.h. */
+#include "walk.h"
+
+#include "passes.h"
+#include "signals.h"
+#include "status.h"
+
+#include <math.h>
+
+static const double LOOK_SECONDS = 0.1;
+/* A pass takes about so long, so that layers and counters follow. */
+static const double PASS_SECONDS = 1.0;
+
+page_notes walk_notes(ag_rendering *rendering, page_mode mode, int samples_most)
+{
+    page_notes n = {.mode = mode,
+                    .samples = ag_rendering_sample_counts(rendering),
+                    .samples_most = samples_most,
+                    .noise = ag_rendering_noise(rendering).level,
+                    .has_place = true,
+                    .counts = ag_rendering_statistics(rendering)};
+    ag_rendering_find_place(rendering, n.place.from, n.place.to, n.place.up, n.right, &n.fov_degrees);
+    return n;
+}
+
+/* Where it is now. */
+typedef struct walk_state {
+    ag_rendering *view; /* NULL: nowhere yet */
+    page_place place;
+    int samples; /* that the next pass brings pixels to */
+    bool is_done;
+} walk_state;
+
+/* The place is as it was asked for, rather than as it is worked out again of the camera. */
+static page_notes notes_of(const walk *w, const walk_state *s)
+{
+    page_notes n = walk_notes(s->view, PAGE_WALKING, w->samples_most);
+    n.place = s->place;
+    return n;
+}
+
+/* Goes to a place. One that makes no sense is told of in the log, and is stayed away from. */
+static ag_status go(const walk *w, const page_place *place, walk_state *s)
+{
+    ag_rendering *next = NULL;
+    ag_status status = ag_rendering_create_view(w->beside, place->from, place->to, place->up, &next);
+    if (status == AG_ERROR_ARGUMENT)
+        return AG_OK;
+    AG_TRY(status);
+    ag_rendering *before = s->view;
+    *s = (walk_state){.view = next, .place = *place, .samples = 1};
+    const page_notes notes = notes_of(w, s);
+    status = ag_rendering_keep_passes(next);
+    if (status == AG_OK)
+        status = page_server_show(w->o->page, w->context, ag_rendering_film(next), &w->o->output, &notes);
+    if (status != AG_OK)
+        page_server_leave_film(w->o->page);
+    ag_rendering_finish(before, NULL);
+    return status;
+}
+
+/* Renders a pass, or as much of it as there is before a wish. */
+static ag_status refine(const walk *w, walk_state *s)
+{
+    const double begun = passes_seconds(), before = ag_rendering_sample_counts(s->view).mean;
+    const ag_status status = ag_rendering_continue(s->view, s->samples);
+    const ag_sample_counts counts = ag_rendering_sample_counts(s->view);
+    if (status != AG_OK)
+        return status == AG_PAUSED ? AG_OK : status;
+    const page_notes notes = notes_of(w, s);
+    page_server_note(w->o->page, &notes);
+    s->is_done = s->samples == w->samples_most;
+    const double each = (passes_seconds() - begun) / fmax(counts.mean - before, 1e-9);
+    const double more = fmin(fmax(1.0, PASS_SECONDS / fmax(each, 1e-9)), s->samples);
+    const bool is_last = counts.most < s->samples || s->samples + more > w->samples_most;
+    s->samples = is_last ? w->samples_most : s->samples + (int)more;
+    return AG_OK;
+}
+
+/* Whether a walk is over without anything to keep. */
+static bool is_over(const walk *w, page_wishes *wishes)
+{
+    return signals_stop() || page_wishes_take_return(wishes) || passes_seconds() >= w->deadline ||
+           !page_wishes_is_watched(wishes, PAGE_PATIENCE_SECONDS);
+}
+
+/* Whether to stop, with samples that can be kept. */
+static bool is_kept(page_wishes *wishes, walk_state *s)
+{
+    return s->view && page_wishes_has_end(wishes) && ag_rendering_go_back(s->view) == AG_OK;
+}
+
+static ag_status step(const walk *w, page_wishes *wishes, walk_state *s)
+{
+    page_place place;
+    if (page_wishes_take_move(wishes, &place))
+        AG_TRY(go(w, &place, s));
+    if (s->view && !s->is_done)
+        AG_TRY(refine(w, s));
+    else if (s->view)
+        page_wishes_wait(wishes, LOOK_SECONDS);
+    if (page_wishes_take_layers(wishes))
+        page_server_copy_layers(w->o->page);
+    return AG_OK;
+}
+
+ag_status walk_run(const walk *w, ag_rendering **out_kept)
+{
+    page_wishes *wishes = page_server_wishes(w->o->page);
+    walk_state s = {0};
+    ag_status status = AG_OK;
+    bool keeps = false;
+    *out_kept = NULL;
+    signals_set_timer(INFINITY); /* checkpoints are the picture's */
+    do {
+        status = step(w, wishes, &s);
+        keeps = status == AG_OK && is_kept(wishes, &s);
+    } while (status == AG_OK && !keeps && s.view && !is_over(w, wishes));
+    if (keeps) {
+        *out_kept = s.view;
+        return AG_OK;
+    }
+    page_server_leave_film(w->o->page);
+    ag_rendering_finish(s.view, NULL);
+    return status;
+}

@@ -1,0 +1,26 @@
+/* walk.h: the scene seen from elsewhere, from place to place as who watches it in a browser goes, on the photon map of
+ * the picture, which waits meanwhile.
+ * Flow: passes -> [here] -> ag_rendering_create_view. Threads: main's. */
+#ifndef AFTERGLOW_WALK_H
+#define AFTERGLOW_WALK_H
+
+#include "options.h"
+#include "page_server.h"
+
+typedef struct walk {
+    ag_context *context;
+    const options *o;     /* with a page */
+    ag_rendering *beside; /* the picture */
+    int samples_most;     /* of a pixel */
+    double deadline;      /* as passes_seconds tells it */
+} walk;
+
+/* Notes what there is of a rendering, for the page. */
+page_notes walk_notes(ag_rendering *rendering, page_mode mode, int samples_most);
+
+/* Goes wherever it is wished, until it is wished to return, nobody watches any more, a signal wants the end, or the
+ * time is up: *out_kept is NULL then, and no film is shown. Or until it is wished to stop: then it is the view, for the
+ * caller to finish, with the samples of its last complete pass. Errors: those of the renderings. */
+ag_status walk_run(const walk *w, ag_rendering **out_kept);
+
+#endif
