@@ -242,7 +242,7 @@ static void other_scenes_do_not_change(void **state)
     }
     assert_int_equal(ag_scene_commit_counts(d.made).commits, 0);
     assert_int_equal(ag_scene_commit_counts(NULL).commits, 0);
-    ag_scene_destroy(d.made);
+    end(&d);
     begin_editable(&d);
     assert_int_equal(ag_scene_add_light(d.made, &l, &lamp), AG_OK);
     assert_int_equal(ag_scene_remove(d.made, lamp), AG_ERROR_ARGUMENT);
