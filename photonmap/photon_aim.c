@@ -27,6 +27,7 @@ typedef struct learner {
     const scene *s;
     run_context *run;
     photon_tracing_settings settings;
+    const struct incident_light *ways; /* of the settings; by power alone paths are not led */
     float share;
     emission_trial *trials;
     uint32_t count, round_trials, round_count;
@@ -72,6 +73,7 @@ static ag_status trace_round(learner *l, uint32_t count)
     emission_trial *trials = l->trials + l->count;
     l->settings.guide = &l->guides[l->round_count];
     l->settings.split_above = l->round_count > 0 ? l->split_above : 0.0f;
+    l->settings.ways = l->round_count > 0 ? l->ways : NULL;
     l->settings.caustic_root = caustic_root(l);
     ag_status status = photon_tracing_try(l->s, l->run, &l->settings, l->count, count, trials, &l->counts);
     l->count += count;
@@ -79,6 +81,8 @@ static ag_status trace_round(learner *l, uint32_t count)
         status = set_split(l, trials, count, l->counts.parts - parts);
     return status;
 }
+
+static uint32_t least_of(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 static uint32_t count_useful(const learner *l)
 {
@@ -115,7 +119,7 @@ static ag_status learn(learner *l, const emission_starts *starts, photon_aim *ou
     uint32_t counts[ROUNDS_MAX + 1] = {0};
     ag_status status = trace_round(l, l->round_trials / 2);
     while (status == AG_OK && count_useful(l) < USEFUL_LEAST && l->count < BLIND_ROUNDS_MAX * l->round_trials)
-        status = trace_round(l, l->count);
+        status = trace_round(l, least_of(l->count, BLIND_ROUNDS_MAX * l->round_trials - l->count));
     counts[0] = l->count;
     l->blind = l->counts;
     double asked = (double)l->counts.asked;
@@ -160,7 +164,7 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     *out_aim = (photon_aim){.wanted = settings->wanted};
     if (!(share > 0.0f) || !settings->asked || !settings->asked->nodes)
         return AG_OK;
-    learner l = {.s = s, .run = run, .settings = *settings, .share = share};
+    learner l = {.s = s, .run = run, .settings = *settings, .ways = settings->ways, .share = share};
     l.round_trials = settings->wanted / PHOTONS_PER_TRIAL;
     if (l.round_trials < ROUND_TRIALS_MIN)
         l.round_trials = ROUND_TRIALS_MIN;

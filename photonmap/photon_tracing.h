@@ -34,7 +34,7 @@ typedef enum photon_kind { PHOTON_GLOBAL, PHOTON_CAUSTIC } photon_kind;
  * truncated; arrived = stored + cut + thinned. With a guide each of them is right on average. */
 typedef struct energy_balance {
     double emitted[3];   /* at the lamps */
-    double gained[3];    /* by the survivors of roulette */
+    double gained[3];    /* by the survivors of roulette, and what paths that are led weigh more, or less, for it */
     double absorbed[3];  /* by surfaces and media */
     double escaped[3];   /* out of the scene */
     double lost[3];      /* by the victims of roulette; and paths that a caustic map has no use for */

@@ -56,6 +56,7 @@ static ag_status trace_aimed(ag_context *context, const scene *s, float share, p
                     (guide->node_count + 1) / 2, (double)guide->gain, (unsigned long long)aim.tried.paths);
     tracing.guide = guide->nodes ? guide : NULL;
     tracing.asked = guide->nodes ? tracing.asked : NULL;
+    tracing.ways = guide->nodes ? tracing.ways : NULL;
     tracing.wanted = aim.wanted;
     tracing.split_above = aim.split_above;
     tracing.caustic_root = aim.caustic_root;

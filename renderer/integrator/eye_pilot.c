@@ -309,7 +309,11 @@ static ag_status merge_ways(const pilot_job *job, run_context *run, eye_pilot *o
     if (!importons)
         return AG_ERROR_MEMORY;
     copy_items(job, WAYS, importons);
-    AG_TRY(photon_tree_build(run, importons, count, 0.0, 0.0, &out_pilot->importons));
+    ag_status status = photon_tree_build(run, importons, count, 0.0, 0.0, &out_pilot->importons);
+    if (status != AG_OK) {
+        free(importons);
+        return status;
+    }
     return incident_light_create(run, &out_pilot->importons, WAYS_SHARE, &out_pilot->ways);
 }
 

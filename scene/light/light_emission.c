@@ -97,7 +97,7 @@ void light_numbers_from_afar(const scene *s, vec3 point, vec3 direction, emissio
     const float inverse = 1.0f / ball.radius;
     in_out_numbers->position = sample_disk_concentric_inverse((vec2){local.x * inverse, local.y * inverse});
     if (count > 1)
-        in_out_numbers->part = ((float)i + in_out_numbers->part) / (float)count;
+        in_out_numbers->part = fminf(((float)i + in_out_numbers->part) / (float)count, 0x1.fffffep-1f);
 }
 
 /* Light from infinitely far has lost in a medium that absorbs whatever that takes. The first interface that it meets
