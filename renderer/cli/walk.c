@@ -52,7 +52,7 @@ static ag_status go(const walk *w, const page_place *place, walk_state *s)
     const page_notes notes = notes_of(w, s);
     status = ag_rendering_keep_passes(next);
     if (status == AG_OK)
-        status = page_server_show(w->o->page, w->context, ag_rendering_film(next), &w->o->output, &notes);
+        status = page_server_show(w->o->page, w->context, next, &w->o->output, &notes);
     if (status != AG_OK)
         page_server_leave_film(w->o->page);
     ag_rendering_finish(before, NULL);

@@ -12,7 +12,6 @@
 #include <signal.h>
 #include <sys/wait.h>
 
-
 enum { ANSWER_BYTES = 5000000, MEMORY_BYTES = 100000000 };
 
 /* The work of the process, by its name: this test's program, started anew. */

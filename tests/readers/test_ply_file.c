@@ -8,7 +8,6 @@
 
 #include <fcntl.h>
 
-
 /* Seven vertices with normals, uvs and what is passed over; a triangle, a quadrilateral, a pentagon, and an edge. */
 static text small_file(format f, const char *index_type, const char *count_type)
 {
