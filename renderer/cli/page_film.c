@@ -58,6 +58,16 @@ static void take_lock(page_film *f)
     atomic_store(&f->is_wanted_by_main, false);
 }
 
+/* By the nearest pixels: until there are new ones. */
+static void copy_resized(const float *from, int from_width, int from_height, float *to, int width, int height)
+{
+    for (int y = 0; y < height; y++) {
+        const float *row = from + 3 * (size_t)((long)y * from_height / height) * (size_t)from_width;
+        for (int x = 0; x < width; x++, to += 3)
+            memcpy(to, row + 3 * ((long)x * from_width / width), 3 * sizeof *to);
+    }
+}
+
 static ag_status take_film(page_film *f, ag_context *context, const ag_rendering *rendering,
                            const ag_output_settings *output)
 {
@@ -68,8 +78,11 @@ static ag_status take_film(page_film *f, ag_context *context, const ag_rendering
     forget_film(f);
     ag_film_pixels(film, &width, &height);
     if (width != f->width || height != f->height || !f->pixels) {
-        free(f->pixels);
+        float *before = f->pixels;
         f->pixels = calloc(3 * (size_t)width * (size_t)height, sizeof *f->pixels);
+        if (before && f->pixels)
+            copy_resized(before, f->width, f->height, f->pixels, width, height);
+        free(before);
     }
     f->width = width;
     f->height = height;

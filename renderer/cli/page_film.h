@@ -51,8 +51,8 @@ void page_film_reset(page_film *f);
 
 /* --- main --- */
 
-/* From now on this rendering's film is shown, until page_film_leave. Where one of the same size was shown before, its
- * picture stays until there are new tiles over it. Errors: AG_ERROR_MEMORY, those of ag_view_create. */
+/* From now on this rendering's film is shown, until page_film_leave. What was shown before stays, in the new size,
+ * until there are new tiles over it. Errors: AG_ERROR_MEMORY, those of ag_view_create. */
 ag_status page_film_show(page_film *f, ag_context *context, const ag_rendering *rendering,
                          const ag_output_settings *output);
 /* The rendering is about to end; its film stays. */
