@@ -174,7 +174,8 @@ static const emission_guide_node *find_leaf(const emission_guide *guide, const e
     return node;
 }
 
-ag_status emission_guide_create(emission_trial *trials, uint32_t count, float share, emission_guide *out_guide)
+ag_status emission_guide_create(emission_trial *trials, uint32_t count, float share, const emission_guide *other,
+                                emission_guide *out_guide)
 {
     *out_guide = (emission_guide){.share = 0.0f, .gain = 1.0f};
     double squares = 0.0;
@@ -188,7 +189,7 @@ ag_status emission_guide_create(emission_trial *trials, uint32_t count, float sh
         free(b.nodes);
         return AG_ERROR_MEMORY;
     }
-    emission_guide made = {.nodes = b.nodes, .node_count = b.count, .share = share};
+    emission_guide made = {.nodes = b.nodes, .node_count = b.count, .share = share, .other = other};
     double mass = b.nodes[0].mass, guided = 0.0;
     for (uint32_t i = 0; i < b.count; i++)
         b.nodes[i].density = b.nodes[i].axis == EMISSION_DIMENSIONS ? (float)(b.nodes[i].density / mass) : 0.0f;
@@ -205,14 +206,14 @@ void emission_guide_reset(emission_guide *guide)
     *guide = (emission_guide){0};
 }
 
-static float both_densities(const emission_guide *guide, const emission_guide_node *leaf)
-{
-    return 1.0f - guide->share + guide->share * leaf->density;
-}
-
 float emission_guide_density(const emission_guide *guide, const emission_start *start)
 {
-    return guide->nodes ? both_densities(guide, find_leaf(guide, start)) : 1.0f;
+    if (!guide->nodes)
+        return 1.0f;
+    float by_trees = find_leaf(guide, start)->density;
+    if (guide->other)
+        by_trees = 0.5f * (by_trees + find_leaf(guide->other, start)->density);
+    return 1.0f - guide->share + guide->share * by_trees;
 }
 
 emission_start emission_start_draw(rng *random)
@@ -229,7 +230,7 @@ emission_start emission_start_draw(rng *random)
 }
 
 /* A leaf picked by its mass: the number is stretched anew at each node. */
-static const emission_guide_node *pick_leaf(const emission_guide *guide, double u, box *out_where)
+static void pick_leaf(const emission_guide *guide, double u, box *out_where)
 {
     const emission_guide_node *node = guide->nodes;
     *out_where = whole_cube();
@@ -240,7 +241,6 @@ static const emission_guide_node *pick_leaf(const emission_guide *guide, double 
         halve(out_where, node->axis, is_high);
         node = &guide->nodes[node->low + is_high];
     }
-    return node;
 }
 
 emission_start emission_guide_sample(const emission_guide *guide, rng *random, float *out_density)
@@ -249,24 +249,29 @@ emission_start emission_guide_sample(const emission_guide *guide, rng *random, f
         *out_density = 1.0f;
         return emission_start_draw(random);
     }
-    bool is_guided = rng_float(random) < guide->share;
+    float u_guided = rng_float(random);
     double u = (double)(rng_next(random) >> 11) * 0x1p-53;
     emission_start start = emission_start_draw(random);
-    if (!is_guided) {
-        *out_density = emission_guide_density(guide, &start);
-        return start;
+    if (u_guided < guide->share) {
+        box where;
+        bool is_other = guide->other && u_guided < 0.5f * guide->share;
+        pick_leaf(is_other ? guide->other : guide, u, &where);
+        for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
+            float end = where.low[a] + where.extent[a];
+            start.u[a] = fminf(where.low[a] + where.extent[a] * start.u[a], end * (1.0f - 0x1p-24f));
+        }
     }
-    box where;
-    const emission_guide_node *leaf = pick_leaf(guide, u, &where);
-    for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
-        float end = where.low[a] + where.extent[a];
-        start.u[a] = fminf(where.low[a] + where.extent[a] * start.u[a], end * (1.0f - 0x1p-24f));
-    }
-    *out_density = both_densities(guide, leaf);
+    *out_density = emission_guide_density(guide, &start);
     return start;
 }
 
 emission_numbers emission_start_numbers(const emission_start *start)
 {
     return (emission_numbers){{start->u[1], start->u[2]}, {start->u[3], start->u[4]}, start->u[5]};
+}
+
+emission_start emission_start_of(float u_light, const emission_numbers *numbers)
+{
+    const emission_numbers *n = numbers;
+    return (emission_start){{u_light, n->direction.x, n->direction.y, n->position.x, n->position.y, n->part}};
 }

@@ -33,12 +33,15 @@ typedef struct emission_guide_node emission_guide_node;
 typedef struct emission_guide {
     emission_guide_node *nodes; /* owned, the root first; NULL: all starts are alike */
     uint32_t node_count;
-    float share; /* of the paths, that follow the tree: [0, 1) */
+    float share; /* of the paths, that follow the tree, or it and the other one: [0, 1) */
     float gain;  /* variance by power alone over variance by the guide, as the trials let expect; >= 0 */
+    const struct emission_guide *other; /* whose tree half of the guided paths follow; the caller's, or NULL */
 } emission_guide;
 
-/* Reorders the trials. Where none has brought anything, all starts are alike. Errors: AG_ERROR_MEMORY. */
-ag_status emission_guide_create(emission_trial *trials, uint32_t count, float share, emission_guide *out_guide);
+/* Reorders the trials. Where none has brought anything, all starts are alike. other: as above; it has a tree, and none
+ * beside it. Errors: AG_ERROR_MEMORY. */
+ag_status emission_guide_create(emission_trial *trials, uint32_t count, float share, const emission_guide *other,
+                                emission_guide *out_guide);
 void emission_guide_reset(emission_guide *guide);
 
 /* A start, and its density, which is at least 1 - share. */
@@ -48,5 +51,7 @@ float emission_guide_density(const emission_guide *guide, const emission_start *
 /* The numbers as drawn without a guide, and what light_emit wants of them. */
 emission_start emission_start_draw(rng *random);
 emission_numbers emission_start_numbers(const emission_start *start);
+/* The start of those numbers, from the lamp that u_light picks. */
+emission_start emission_start_of(float u_light, const emission_numbers *numbers);
 
 #endif

@@ -75,7 +75,6 @@ static uint32_t bin_at(float u)
 }
 
 typedef struct job {
-    const photon_map *map;
     incident_light *light;
     float share;
 } job;
@@ -94,7 +93,7 @@ static range cell_photons(const job *j, uint64_t cell)
 
 static uint16_t arrival_of(const job *j, uint32_t i)
 {
-    return j->map->blocks[i / PHOTON_BLOCK_LANES].direction[i % PHOTON_BLOCK_LANES];
+    return j->light->tree.blocks[i / PHOTON_BLOCK_LANES].direction[i % PHOTON_BLOCK_LANES];
 }
 
 static void find_ways(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
@@ -107,7 +106,7 @@ static void find_ways(void *user, uint64_t begin, uint64_t end, uint64_t block, 
         uint32_t counts[WAYS] = {0}, mask = 0;
         for (uint32_t i = r.begin; i < r.end; i++)
             if (arrival_is_diffuse(arrival_of(j, i))) {
-                face(&f, photon_block_normal(j->map->blocks, i));
+                face(&f, photon_block_normal(j->light->tree.blocks, i));
                 counts[f.way]++;
             }
         for (int w = 0; w < WAYS; w++)
@@ -147,7 +146,7 @@ static void finish(const float flux[INCIDENT_BINS], float share, incident_histog
 static void count_in(const job *j, uint32_t photon_index, facing *f, float flux[WAYS][INCIDENT_BINS],
                      uint32_t counts[WAYS])
 {
-    const photon_block *blocks = j->map->blocks;
+    const photon_block *blocks = j->light->tree.blocks;
     uint16_t code = arrival_of(j, photon_index);
     if (!arrival_is_diffuse(code))
         return;
@@ -178,18 +177,18 @@ static void fill(void *user, uint64_t begin, uint64_t end, uint64_t block, unsig
     }
 }
 
-ag_status incident_light_create(run_context *run, const photon_map *map, float share, incident_light *out_light)
+ag_status incident_light_create(run_context *run, const photon_tree *tree, float share, incident_light *out_light)
 {
     *out_light = (incident_light){0};
-    if (!(share > 0.0f) || map->tree.count == 0)
+    if (!(share > 0.0f) || tree->count == 0)
         return AG_OK;
-    incident_light made = {.tree = map->tree};
+    incident_light made = {.tree = *tree};
     made.cell_depth = made.tree.depth > BLOCKS_LOG2 ? made.tree.depth - BLOCKS_LOG2 : 0;
     uint32_t cell_count = 1u << made.cell_depth;
     made.cells = malloc(cell_count * sizeof *made.cells);
     if (!made.cells)
         return AG_ERROR_MEMORY;
-    job j = {map, &made, share};
+    job j = {&made, share};
     ag_status status = parallel_for(run, cell_count, CELLS_AT_ONCE, find_ways, &j, AG_PHASE_MAP, 0.0, 0.0);
     for (uint32_t i = 0; i < cell_count && status == AG_OK; i++) {
         uint32_t ways = made.cells[i];

@@ -13,7 +13,7 @@
 #ifndef AFTERGLOW_INCIDENT_LIGHT_H
 #define AFTERGLOW_INCIDENT_LIGHT_H
 
-#include "photon_map.h"
+#include "photon_tree.h"
 
 enum { INCIDENT_SIDE = 8, INCIDENT_BINS = INCIDENT_SIDE * INCIDENT_SIDE, INCIDENT_ONE = 1 << 16 };
 
@@ -24,16 +24,16 @@ typedef struct incident_histogram {
 } incident_histogram;
 
 typedef struct incident_light {
-    photon_tree tree;               /* the map's, borrowed; empty: no point is guided */
+    photon_tree tree;               /* borrowed; empty: no point is guided */
     uint32_t cell_depth;            /* cells are the nodes so deep in it */
     uint32_t *cells;                /* owned: of each the first histogram << 6, and as bits which ways there are */
     incident_histogram *histograms; /* owned */
     uint32_t histogram_count;
 } incident_light;
 
-/* Makes the guides of a map's photons, which must not move before it is reset. share, [0, 1]: how much photons decide
+/* Makes the guides of a tree's photons, which must not move before it is reset. share, [0, 1]: how much photons decide
  * where they are many; 0 makes none. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
-ag_status incident_light_create(run_context *run, const photon_map *map, float share, incident_light *out_light);
+ag_status incident_light_create(run_context *run, const photon_tree *tree, float share, incident_light *out_light);
 void incident_light_reset(incident_light *l);
 uint64_t incident_light_bytes(const incident_light *l);
 

@@ -2,12 +2,15 @@
 #include "photon_aim.h"
 
 #include "math/compare_floats.h"
+#include "status.h"
 
 #include <stdlib.h>
 
 /* Paths of a round, as a share of the photons wanted and within bounds; the first round, by power alone, has half of
  * that, and more while hardly any path arrives; each further one follows what the rounds before have learned. */
 enum { PHOTONS_PER_TRIAL = 8, ROUND_TRIALS_MIN = 1 << 12, ROUND_TRIALS_MAX = 1 << 16, ROUNDS = 4 };
+/* Before those further ones a round follows the starts found from where light is asked for, if so many are. */
+enum { ROUNDS_MAX = ROUNDS + 1, STARTS_LEAST = 64 };
 enum { BLIND_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
 /* A guide that lowers the variance by less than this is not worth its weights. Nor is one where by power alone so many
  * of the photons are of use, and a path leaves so many of those. */
@@ -27,10 +30,13 @@ typedef struct learner {
     float share;
     emission_trial *trials;
     uint32_t count, round_trials, round_count;
-    float split_above;                 /* of the next round, if it has a guide */
-    emission_guide guides[ROUNDS + 1]; /* by which the rounds were traced; then the last one */
-    trial_counts counts, blind;        /* of all trials; of those by power alone */
+    float split_above;                     /* of the next round, if it has a guide */
+    emission_guide guides[ROUNDS_MAX + 1]; /* by which the rounds were traced; then the last one */
+    const emission_guide *found;           /* the one of them that goes by starts; NULL: none does */
+    trial_counts counts, blind;            /* of all trials; of those by power alone */
 } learner;
+
+static uint32_t last_round(const learner *l) { return l->found ? ROUNDS_MAX : ROUNDS; }
 
 /* Sets what the next round splits by a round's trials, as bright as its guide made them, and by its number of parts. */
 static ag_status set_split(learner *l, const emission_trial *trials, uint32_t count, uint64_t parts)
@@ -48,7 +54,7 @@ static ag_status set_split(learner *l, const emission_trial *trials, uint32_t co
     } else if (useful > 0) {
         float by_worth = SPLIT_RATIO * worths[(uint32_t)(LOW_PERCENTILE * (float)useful)];
         float by_parts = l->split_above * (float)parts / (PARTS_PER_PATH * (float)count);
-        float least = l->round_count == ROUNDS - 1 ? l->split_above : l->split_above * SPLIT_STEP;
+        float least = l->round_count == last_round(l) - 1 ? l->split_above : l->split_above * SPLIT_STEP;
         l->split_above = fmaxf(fmaxf(by_worth, by_parts), least);
     }
     free(worths);
@@ -93,9 +99,20 @@ static void weigh_trials(learner *l, const uint32_t counts[], uint32_t rounds)
     }
 }
 
-static ag_status learn(learner *l, emission_guide *out_guide)
+/* The guide of a further round, by the starts or by the trials before. */
+static ag_status make_guide(learner *l, uint32_t round, const emission_starts *starts)
 {
-    uint32_t counts[ROUNDS + 1] = {0};
+    emission_guide *next = &l->guides[round];
+    if (round > 1 || starts->count < STARTS_LEAST)
+        return emission_guide_create(l->trials, l->count, l->share, l->found, next);
+    AG_TRY(emission_guide_create(starts->trials, starts->count, l->share, NULL, next));
+    l->found = next;
+    return AG_OK;
+}
+
+static ag_status learn(learner *l, const emission_starts *starts, photon_aim *out_aim)
+{
+    uint32_t counts[ROUNDS_MAX + 1] = {0};
     ag_status status = trace_round(l, l->round_trials / 2);
     while (status == AG_OK && count_useful(l) < USEFUL_LEAST && l->count < BLIND_ROUNDS_MAX * l->round_trials)
         status = trace_round(l, l->count);
@@ -106,14 +123,17 @@ static ag_status learn(learner *l, emission_guide *out_guide)
         return status;
     for (uint32_t round = 1; status == AG_OK; round++) {
         emission_guide *next = &l->guides[round];
-        status = emission_guide_create(l->trials, l->count, l->share, next);
-        if (status != AG_OK)
-            return status;
-        if (!next->nodes || next->gain < LEAST_GAIN)
+        AG_TRY(make_guide(l, round, starts));
+        if (!next->nodes || (next != l->found && next->gain < LEAST_GAIN))
             return AG_OK;
-        if (round == ROUNDS) {
-            *out_guide = *next;
+        if (round == last_round(l)) {
+            out_aim->guide = *next;
             *next = (emission_guide){0};
+            if (l->found) {
+                out_aim->found = l->guides[1];
+                out_aim->guide.other = &out_aim->found;
+                l->guides[1] = (emission_guide){0};
+            }
             return AG_OK;
         }
         l->round_count = round;
@@ -134,8 +154,8 @@ static uint32_t fewer_by_power(const trial_counts *blind, uint32_t wanted)
     return most < (double)wanted ? (uint32_t)most : wanted;
 }
 
-ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings, float share,
-                           photon_aim *out_aim)
+ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings,
+                           const emission_starts *starts, float share, photon_aim *out_aim)
 {
     *out_aim = (photon_aim){.wanted = settings->wanted};
     if (!(share > 0.0f) || !settings->asked || !settings->asked->nodes)
@@ -146,15 +166,15 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
         l.round_trials = ROUND_TRIALS_MIN;
     if (l.round_trials > ROUND_TRIALS_MAX)
         l.round_trials = ROUND_TRIALS_MAX;
-    l.trials = malloc((size_t)(BLIND_ROUNDS_MAX + ROUNDS) * l.round_trials * sizeof *l.trials);
-    ag_status status = l.trials ? learn(&l, &out_aim->guide) : AG_ERROR_MEMORY;
+    l.trials = malloc((size_t)(BLIND_ROUNDS_MAX + ROUNDS_MAX) * l.round_trials * sizeof *l.trials);
+    ag_status status = l.trials ? learn(&l, starts, out_aim) : AG_ERROR_MEMORY;
     out_aim->tried = l.counts;
     if (out_aim->guide.nodes) {
         out_aim->wanted = fewer_by_power(&l.blind, settings->wanted);
         out_aim->split_above = l.split_above;
         out_aim->caustic_root = l.settings.caustic_root; /* by which the last round has set what is split */
     }
-    for (int i = 0; i <= ROUNDS; i++)
+    for (int i = 0; i <= ROUNDS_MAX; i++)
         emission_guide_reset(&l.guides[i]);
     free(l.trials);
     return status;
@@ -163,5 +183,6 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
 void photon_aim_reset(photon_aim *aim)
 {
     emission_guide_reset(&aim->guide);
+    emission_guide_reset(&aim->found);
     *aim = (photon_aim){0};
 }

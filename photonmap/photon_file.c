@@ -22,7 +22,7 @@
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a lock inside the process would not hold between processes");
 
 /* Raise this whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
-enum { LAYOUT_VERSION = 17 };
+enum { LAYOUT_VERSION = 18 };
 enum { GLOBAL, CAUSTIC, MAP_COUNT, IRRADIANCE_PHOTONS = MAP_COUNT, TREE_COUNT };
 enum { PAGE = 4096, CHUNK_BYTES = 1 << 22 };
 static const uint32_t BYTE_ORDER_MARK = 0x01020304;

@@ -1,6 +1,7 @@
 /* photon_path.c: see photon_path.h. */
 #include "photon_path.h"
 
+#include "incident_light.h"
 #include "material/lambert.h"
 #include "rays/transmittance.h"
 #include "scene_extent.h"
@@ -224,6 +225,21 @@ static bool arrival_surface_sample(const arrival_surface *m, const surface_hit *
     return true;
 }
 
+/* Leads the way on from a Lambertian surface to where light is asked for, and returns what the path then weighs: 1
+ * where nothing is known of such ways. */
+static float lead_on(const photon_tracer *t, const photon_path *path, const surface_hit *hit, vec2 u,
+                     vec3 *in_out_direction)
+{
+    incident_guide guide;
+    vec3 normal = vec3_face_forward(hit->geometric_normal, vec3_negate(path->ray.direction));
+    if (!t->settings->ways ||
+        !incident_light_find(t->settings->ways, rest_of_arrival(t->s, path, hit).position, normal, &guide))
+        return 1.0f;
+    float weight = incident_guide_warp_one(&guide, &u);
+    *in_out_direction = vec3_normalize(frame_to_world(&guide.around, sample_cosine_hemisphere(u)));
+    return weight;
+}
+
 /* Sends the path on from where its ray has arrived. false: it ends there. */
 static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit, const arrival_surface *m)
 {
@@ -266,7 +282,9 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
         count_flux(balance->lost, scattered);
         return false;
     }
-    path->flux = rgb_scale(scattered, 1.0f / survival);
+    float led = m->albedo ? lead_on(t, path, hit, u, &next.direction) : 1.0f;
+    path->weight *= led;
+    path->flux = rgb_scale(scattered, led / survival);
     count_flux(balance->gained, rgb_sub(path->flux, scattered));
     path->ray = goes_straight ? scene_ray_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
     if (next.group == BSDF_GATHERED && settings->filters_textures)

@@ -14,7 +14,8 @@
 /* Directions all around the eye in which the scene is probed. */
 enum { DIRECTIONS = 256 };
 static const float RIGHT_IN_FRONT = 1e-3f; /* of the scene's radius */
-/* So few of the picture's pixels may be lit, or be brighter or darker than the others, and count for nothing. */
+/* A share of the picture's pixels that counts for nothing, whether lit, or brighter or darker than the others; and half
+ * of them. */
 static const double FEW = 0.002, HALF = 0.5;
 /* A picture with nothing above the first is all but black, one with next to nothing below the second all but white,
  * where white is 1. Eight bits of sRGB show 3 and 255. */

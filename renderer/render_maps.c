@@ -42,12 +42,12 @@ bool maps_have_caustics(const scene *s, const ag_render_settings *settings)
     return settings->caustic_photon_count > 0 && settings->max_depth >= 2 && has_traced_lobes(s);
 }
 
-/* Traces one map's photons, after trials that tell which of them are of use. */
+/* Traces one map's photons, after trials that tell which of them are of use; starts: see photon_aim.h. */
 static ag_status trace_aimed(ag_context *context, const scene *s, float share, photon_tracing_settings tracing,
-                             photon_set *out_set)
+                             const emission_starts *starts, photon_set *out_set)
 {
     photon_aim aim;
-    ag_status status = photon_aim_learn(s, &context->run, &tracing, share, &aim);
+    ag_status status = photon_aim_learn(s, &context->run, &tracing, starts, share, &aim);
     const emission_guide *guide = &aim.guide;
     context->statistics.rays_photon += aim.tried.rays;
     if (guide->nodes)
@@ -84,20 +84,22 @@ static ag_status trace_after(ag_context *context, const scene *s, const ag_rende
                                        .seed = settings->photon_seed,
                                        .asked = &pilot->gathered,
                                        .onward = &pilot->onward,
+                                       .ways = &pilot->ways,
                                        .progress_begin = 0.0,
                                        .progress_end = wants_caustics ? 0.7 : 1.0};
     if (settings->max_depth >= 2) {
-        AG_TRY(trace_aimed(context, s, share, tracing, out_global));
+        AG_TRY(trace_aimed(context, s, share, tracing, &pilot->starts, out_global));
     }
     if (wants_caustics) {
         tracing.kind = PHOTON_CAUSTIC;
         tracing.asked = &pilot->seen;
         tracing.onward = NULL;
+        tracing.ways = NULL;
         tracing.wanted = (uint32_t)settings->caustic_photon_count;
         tracing.max_scatterings = settings->max_depth - 1;
         tracing.progress_begin = 0.7;
         tracing.progress_end = 1.0;
-        AG_TRY(trace_aimed(context, s, share, tracing, out_caustic));
+        AG_TRY(trace_aimed(context, s, share, tracing, &(emission_starts){0}, out_caustic));
     }
     return AG_OK;
 }
@@ -179,7 +181,7 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
         status = trace_maps(context, s, settings, &m->global, &m->caustic);
     AG_TRY(status);
     phase_begin guiding = context_begin_phase();
-    AG_TRY(incident_light_create(&context->run, &m->global, settings->gather_guiding, &m->incident));
+    AG_TRY(incident_light_create(&context->run, &m->global.tree, settings->gather_guiding, &m->incident));
     context_add_to_phase(context, AG_PHASE_MAP, guiding);
     statistics->photon_bytes +=
         photon_map_bytes(&m->global) + photon_map_bytes(&m->caustic) + incident_light_bytes(&m->incident);

@@ -8,20 +8,21 @@
 enum { GRID = 12, HEIGHTS = 3, DIRECTIONS = 64, HEADINGS = 32, OPEN_HEADINGS_MAX = 4, PANES_MAX = 16 };
 static const float HEIGHT_SHARES[HEIGHTS] = {0.45f, 0.25f, 0.7f};
 
-static const float ENCLOSED = 0.85f; /* of the directions, so many end at a surface in a room */
-static const float FACING = 0.7f;    /* of those, so many meet the front of walls that are modelled with two sides */
-static const float ON_BOUNDS = 0.5f; /* or so many end on the bounds, */
-static const float CONTENT = 0.01f;  /* and so many at the front of what stands inside */
+static const float ENCLOSED = 0.85f; /* in a room, the least share of directions that end at a surface */
+static const float FACING =
+    0.7f; /* the share of these that meets the front of walls which are modelled with two sides, */
+static const float ON_BOUNDS = 0.5f;        /* or the share that ends on the bounds, */
+static const float CONTENT = 0.01f;         /* and the share that ends at the front of what stands inside */
 static const float ON_BOUNDS_REACH = 0.01f; /* of the bounds' width */
 static const float ELBOW_ROOM = 0.02f;      /* nothing is nearer to the eye than this share of the diagonal */
 static const float EYE_HEIGHT = 0.5f;       /* between floor and ceiling */
-static const float LAMP_HEIGHT = 0.85f;     /* likewise */
+static const float LAMP_HEIGHT = 0.85f;     /* between floor and ceiling */
 static const float FOV_DEGREES = 60.0f;
 static const float IRRADIANCE = 2.0f; /* W/m^2, of the lamp on walls as far away as they are on average */
 
 typedef struct surroundings {
     float enclosed;          /* share of the directions that end at a surface */
-    float facing, on_bounds; /* of these, at its front, or on the bounds */
+    float facing, on_bounds; /* shares of these directions that end at its front, and on the bounds */
     float nearest;           /* scene units */
     float distance_squared;  /* mean */
 } surroundings;

@@ -402,6 +402,7 @@ static ag_status share_surfaces(scene *s)
             if (shape_equals(&s->shapes[i], was))
                 AG_TRY(shape_share_arrays(was, &s->shapes[i]));
             if (shape_has_same_surface(&s->shapes[i], was)) {
+                s->shapes[i].area = was->area; /* of large meshes worth not to be worked out again */
                 at = places[k] + 1;
                 break;
             }

@@ -32,7 +32,7 @@ typedef struct surface_hit {
     bool is_mirrored;      /* of an instance that mirrors: v grows to the other side of the first tangent */
     bool is_flat;          /* part of a mesh, whose corners a start must stay out of: see surface_ray */
     bool has_medium_interface;              /* the shape's, for surface_ray */
-    uint32_t medium_inside, medium_outside; /* likewise */
+    uint32_t medium_inside, medium_outside; /* the shape's, for surface_ray */
     uint32_t shape_index;
     uint32_t primitive_index; /* triangle of a mesh, segment of curves */
     uint32_t instance_index;  /* SCENE_NO_INSTANCE where the shape stands in the world itself */

@@ -14,11 +14,11 @@
 
 enum { BENCH_LOAD_REASONS_MAX = 4, BENCH_LOAD_REASON_SIZE = 160 };
 
-/* Counted from the machine's or the process's beginning. */
+/* Sums since the machine or the process was started. */
 typedef struct bench_load_reading {
     double at_s;          /* clock_seconds */
     double busy_s;        /* of the machine's processors, our own share too, and all that was stolen */
-    double stolen_s;      /* of these, by the hypervisor */
+    double stolen_s;      /* processor time that the hypervisor gave to others */
     double own_s;         /* CPU time of this process */
     uint64_t involuntary; /* switches of this process */
     bool is_known;        /* whether the system tells busy_s and stolen_s */

@@ -14,9 +14,9 @@ typedef struct bench_stage {
     ag_render_settings frame, shading;
     photon_set photons; /* of the global map, as traced */
     photon_map_settings map_settings;
-    photon_map map;            /* of these; its irradiances are all ready but while phase "estimates" is at work */
+    photon_map map;            /* of the photons; all irradiances are ready, but while phase "estimates" is at work */
     scene_ray *rays;           /* [work->rays], by the cosine from photons' positions */
-    uint32_t met_count;        /* of these, that meet a surface */
+    uint32_t met_count;        /* rays that meet a surface */
     float *distances;          /* [work->rays]: how far they go */
     irradiance_query *queries; /* [query_count]: where they end near a photon */
     uint32_t query_count;

@@ -233,7 +233,7 @@ static ag_status make_cache(bench *b, run_context *run)
         status = irradiance_cache_precompute(&b->cache, run);
     b->settings.gather_samples = GATHER_RAYS;
     if (status == AG_OK)
-        status = incident_light_create(run, &b->map, AG_DEFAULT_GATHER_GUIDING, &b->incident);
+        status = incident_light_create(run, &b->map.tree, AG_DEFAULT_GATHER_GUIDING, &b->incident);
     b->t = (transport){.s = b->s,
                        .run = run,
                        .caustic = &b->no_caustics,

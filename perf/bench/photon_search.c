@@ -89,7 +89,7 @@ static uint32_t nearest_sorted(bench *b)
     uint32_t end;
     uint64_t rays = 0;
     for (uint32_t begin = 0; begin < b->hit_count; begin = end) {
-        /* those of one tile are in order */
+        /* rays of one tile are in order */
         photon_lookup lookups[PHOTON_LOOKUPS_MAX];
         uint32_t photons[PHOTON_LOOKUPS_MAX], count = 0;
         uint64_t tile = b->sorted_hits[begin].order >> 32;

@@ -50,7 +50,7 @@ static void check_run(run_group *group, const result_row *row)
     }
 }
 
-/* Takes the picture, or frees it. */
+/* Holds the picture against the first of its family, which it becomes where there is none yet. Takes it over. */
 static void check_picture(run_group *group, const result_row *row, renderer_picture *picture)
 {
     const int family = family_of(row->mode);

@@ -363,7 +363,7 @@ bool options_override(const options *o, const ag_scene *scene, ag_render_setting
     if (has_own_seed && settings->photon_map_file && settings->photon_seed == AG_PHOTON_SEED_AUTOMATIC)
         settings->photon_seed = settings->seed; /* one map for all frames */
     if (o->seed_pattern)
-        (void)ag_render_settings_set(settings, "seed", o->seed_pattern); /* likewise */
+        (void)ag_render_settings_set(settings, "seed", o->seed_pattern); /* options_parse has tried it */
     if (o->seed_per_frame)
         settings->seed += (uint64_t)o->frame;
     bool has_spp = has_setting(o, "spp");

@@ -68,8 +68,8 @@ typedef struct options {
     int given_count;
     options_asked asked_text;
     struct display_server *display; /* main's, while it renders, or NULL */
-    struct page_server *page;       /* likewise */
-    struct progress *told;          /* likewise */
+    struct page_server *page;       /* main's, while it renders, or NULL */
+    struct progress *told;          /* main's, while it renders, or NULL */
 } options;
 
 typedef enum options_result { OPTIONS_RUN, OPTIONS_EXIT_OK, OPTIONS_EXIT_USAGE } options_result;

@@ -103,7 +103,7 @@ void signals_catch(ag_context *context)
     /* a limit on file size is an error of the write, not the end */
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
-    if (is_released) /* after another context: what came meanwhile comes now */
+    if (is_released) /* signals that came since the last context are delivered now */
         block(SIG_UNBLOCK);
     is_released = false;
 }

@@ -24,7 +24,7 @@ static void on_log(void *user, ag_log_level level, const char *message)
 {
     (void)user;
     const char *kind = level == AG_LOG_ERROR ? "error: " : "warning: ";
-    if (level <= AG_LOG_WARNING) /* those about a location in a file say themselves what they are */
+    if (level <= AG_LOG_WARNING) /* messages about a location in a file have it already */
         fprintf(stderr, "\r%s%s\n", strstr(message, kind) ? "" : kind, message);
 }
 

@@ -18,13 +18,13 @@ typedef enum film_sum {
     SUM_NORMAL,   /* 3, the shading normal */
     SUM_GEOMETRIC_NORMAL,
     SUM_POSITION,
-    SUM_UV,         /* 2 */
-    SUM_SLOPE,      /* 2: |dz/dx|, |dz/dy| after the mean */
-    SUM_IRRADIANCE, /* 3 */
-    SUM_SQUARES,    /* 3: of the sample as the film develops it, and that itself */
-    SUM_DEVELOPED,
-    SUM_HIT_SQUARES, /* the same of samples that met something: pbrt's Variance */
-    SUM_HIT_DEVELOPED
+    SUM_UV,           /* 2 */
+    SUM_SLOPE,        /* 2: |dz/dx|, |dz/dy| after the mean */
+    SUM_IRRADIANCE,   /* 3 */
+    SUM_SQUARES,      /* 3: squares of samples as the film develops them */
+    SUM_DEVELOPED,    /* 3: these samples themselves */
+    SUM_HIT_SQUARES,  /* 3: squares of samples that met something: pbrt's Variance */
+    SUM_HIT_DEVELOPED /* 3: these samples themselves */
 } film_sum;
 enum { FILM_SUM_COUNT = SUM_HIT_DEVELOPED + 1 };
 

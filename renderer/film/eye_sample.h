@@ -53,7 +53,7 @@ typedef struct eye_sample {
     float most_direct, most_indirect; /* of a component of one contribution, INFINITY: unbounded */
     int sign;                         /* of the pixel filter there */
     float gather_variance;            /* of the mean of the three colours, by the choice of gather rays: an estimate */
-    float light_variance;             /* likewise, of light samples where the ray met a surface first */
+    float light_variance; /* of that mean by the choice of light samples, where the ray met a surface first */
     uint32_t gather_cost, light_cost, rest_cost; /* of those, and of all else: see eye_worker_cost */
     sample_layers *layers;                       /* NULL: radiance alone is asked for */
 } eye_sample;
@@ -85,7 +85,7 @@ typedef struct light_group_sums {
     rgb of_group[LIGHT_GROUPS_MAX + 1];
 } light_group_sums;
 
-/* Emptied; NULL where no groups are asked for, and then nothing is touched. */
+/* Sets the sums to 0; NULL where no groups are asked for, and then nothing is touched. */
 static inline rgb *light_group_sums_begin(light_group_sums *sums, bool is_wanted)
 {
     if (!is_wanted)

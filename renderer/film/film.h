@@ -53,13 +53,13 @@ struct ag_film {
     aov_layout layout;
     film_origin origin;
 
-    /* These are of each pixel of the area, top row first; all owned. */
+    /* Arrays of the pixels of the area, top row first; all owned. */
     double *sums;                  /* [layout.sum_count], of filters with negative lobes twice: by the samples' sign */
     uint32_t *counts;              /* samples so far */
     uint32_t *wanted;              /* samples that it is to have, see adaptive.h; NULL: as many as all */
     split_trial *splits;           /* see splitting.h; NULL: all samples are split alike */
     split_counts *first_splits;    /* of the first samples, by film_block_number; NULL: splitting_first */
-    uint32_t *negatives;           /* those with sign -1; NULL where the filter has no signs */
+    uint32_t *negatives;           /* samples with sign -1; NULL where the filter has no signs */
     float *views[FILM_VIEW_COUNT]; /* a plane each; NULL where not asked for */
     cryptomatte mattes[CRYPTOMATTE_KIND_COUNT];
     cryptomatte_slot *slots[CRYPTOMATTE_KIND_COUNT]; /* [CRYPTOMATTE_SLOTS]; NULL where not asked for */

@@ -26,7 +26,7 @@ typedef struct layer_row {
     const layer_channels *channels; /* ended by one without a name; of LAYER_AS_IT_STANDS */
     layer_expansion expansion;
     cryptomatte_kind matte; /* of LAYER_BY_RANK */
-    const char *matte_name; /* likewise: its channels are called NAME00.R and so on */
+    const char *matte_name; /* of LAYER_BY_RANK: its channels are called NAME00.R and so on */
     bool is_of_photon_map;  /* path tracing leaves it out */
 } layer_row;
 

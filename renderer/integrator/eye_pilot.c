@@ -18,87 +18,119 @@ enum { PHOTONS_PER_PATH = 100, EYE_PATHS_MIN = 1024, EYE_PATHS_MAX = 9216, GATHE
 enum { POINTS_PER_IMPORTON = 2, IMPORTON_SCATTERINGS_MAX = 8 };
 /* Eye paths that look for points that are lit. */
 enum { LIT_PATHS = 12288 };
+/* The stream of the lamps that importons look for. */
+enum { STREAM_LAMPS = 1 };
+/* How much importons decide by which way photons go on, where they are many. */
+static const float WAYS_SHARE = 0.5f;
 /* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
-typedef struct point_list {
-    query_point *points; /* owned */
+/* What is found, in lists: the points of eye_pilot's maps in the order of its members, importons, starts of photon
+ * paths, and points of direct light. */
+enum { GATHERED, ONWARD, SEEN, WAYS, STARTS, LIT, LIST_COUNT };
+static const size_t ITEM_BYTES[LIST_COUNT] = {
+    [GATHERED] = sizeof(query_point), [ONWARD] = sizeof(query_point),    [SEEN] = sizeof(query_point),
+    [WAYS] = sizeof(photon),          [STARTS] = sizeof(emission_trial), [LIT] = sizeof(lit_point)};
+
+typedef struct item_list {
+    char *items; /* owned */
     uint32_t count, capacity;
     bool out_of_memory;
-} point_list;
+} item_list;
 
-static void add_point(point_list *list, vec3 position, vec3 normal)
+typedef struct row_items {
+    item_list lists[LIST_COUNT];
+    uint32_t importons;
+} row_items;
+
+static void add_item(row_items *row, int which, const void *item)
 {
-    if (list->count == list->capacity) {
-        uint32_t capacity = list->capacity ? 2 * list->capacity : 1024;
-        query_point *larger = realloc(list->points, capacity * sizeof *larger);
-        if (!larger) {
-            list->out_of_memory = true;
-            return;
-        }
-        list->points = larger;
-        list->capacity = capacity;
-    }
-    list->points[list->count++] = (query_point){position, normal};
-}
-
-typedef struct lit_list {
-    lit_point *points; /* owned */
-    uint32_t count, capacity;
-    bool out_of_memory;
-} lit_list;
-
-static void add_lit(lit_list *list, const vertex *v, bsdf_lobes lobes)
-{
+    item_list *list = &row->lists[which];
+    const size_t bytes = ITEM_BYTES[which];
     if (list->count == list->capacity) {
         uint32_t capacity = list->capacity ? 2 * list->capacity : 256;
-        lit_point *larger = realloc(list->points, capacity * sizeof *larger);
+        char *larger = realloc(list->items, capacity * bytes);
         if (!larger) {
             list->out_of_memory = true;
             return;
         }
-        list->points = larger;
+        list->items = larger;
         list->capacity = capacity;
     }
-    list->points[list->count++] = (lit_point){v->hit, v->arrived, direct_light_normal(v, lobes)};
+    memcpy(list->items + list->count++ * bytes, item, bytes);
 }
 
-/* The lists of points, in the order of eye_pilot's members. */
-enum { GATHERED, ONWARD, SEEN, LIST_COUNT };
+static void add_point(row_items *row, int which, vec3 position, vec3 normal)
+{
+    add_item(row, which, &(query_point){position, normal});
+}
 
-typedef struct row_points {
-    point_list lists[LIST_COUNT];
-    uint32_t importons;
-    lit_list lit;
-} row_points;
+/* Importance that arrives along a direction, as a photon. */
+static void add_importon(row_items *row, vec3 position, vec3 normal, vec3 direction)
+{
+    photon p = {.position = {position.x, position.y, position.z},
+                .flux = flux_encode(rgb_gray(1.0f), 0),
+                .direction = arrival_encode(direction, true),
+                .normal = direction_encode(normal)};
+    add_item(row, WAYS, &p);
+}
 
 typedef struct pilot_job {
     transport t;
     int width, height; /* of the grid */
     float aspect;
-    bool finds_lit;   /* points of direct light, and nothing else */
-    row_points *rows; /* [height] */
+    bool finds_lit;  /* points of direct light, and nothing else */
+    row_items *rows; /* [height] */
 } pilot_job;
 
 /* On each side that the point's diffuse lobes take light from. */
-static void add_sides(const transport *t, const vertex *v, point_list *list)
+static void add_sides(const transport *t, const vertex *v, row_items *out, int which)
 {
     map_point at = transport_map_point(t, v);
     if (!rgb_is_black(bsdf_gathered_reflection(&v->scattering)))
-        add_point(list, at.position, at.facing_normal);
+        add_point(out, which, at.position, at.facing_normal);
     if (!rgb_is_black(bsdf_gathered_transmission(&v->scattering)))
-        add_point(list, at.position, vec3_negate(at.facing_normal));
+        add_point(out, which, at.position, vec3_negate(at.facing_normal));
+}
+
+/* Looks for a lamp that is picked by its power, as photons' are, from a white vertex, and notes how a photon begins
+ * that comes straight from there. throughput: of the light that the vertex sends back. */
+static void look_for_lamp(const transport *t, eye_worker *worker, const vertex *v, rgb throughput, rng random,
+                          row_items *out)
+{
+    const scene *s = t->s;
+    emission_trial found = {.density = 1.0f};
+    found.start = emission_start_draw(&random);
+    vec2 u = rng_vec2(&random);
+    float probability;
+    if (s->light_count == 0)
+        return;
+    const light *lamp = &s->lights[scene_pick_light_by_power(s, found.start.u[0], &probability)];
+    light_sample towards;
+    if (!(probability > 0.0f) || !light_sample_from_point(s, lamp, v->hit.position, u, &towards))
+        return;
+    emission_numbers numbers = emission_start_numbers(&found.start);
+    rgb reflected = bsdf_evaluate(&v->scattering, BSDF_ALL, BSDF_RADIANCE, towards.direction);
+    rgb brought = rgb_mul(rgb_mul(throughput, reflected), towards.radiance);
+    if (rgb_is_black(brought) || !light_emission_numbers(s, lamp, v->hit.position, u, &towards, &numbers))
+        return;
+    brought = rgb_mul(brought, direct_light_transmittance(t, worker, &v->hit, v->arrived, &towards));
+    found.value = sqrtf(rgb_mean(brought) / (towards.pdf_solid_angle * probability));
+    found.start = emission_start_of(found.start.u[0], &numbers);
+    if (found.value > 0.0f)
+        add_item(out, STARTS, &found);
 }
 
 /* Importance goes back along the light's ways from where it is asked for: where it is scattered by diffuse lobes, light
  * that arrives on that side will arrive there in part. */
-static void trace_importon(const transport *t, eye_worker *worker, const gather_end *end, rng random, point_list *list)
+static void trace_importon(const transport *t, eye_worker *worker, const gather_end *end, rng random, row_items *out)
 {
     vertex v;
     rgb throughput = rgb_gray(1.0f);
     int left = end->scatterings_left < IMPORTON_SCATTERINGS_MAX ? end->scatterings_left : IMPORTON_SCATTERINGS_MAX;
     gather_end_make_white(end, &v);
     for (int scatterings = 0;;) {
+        look_for_lamp(t, worker, &v, throughput, rng_make(random.state, STREAM_LAMPS, 0), out);
         bsdf_sample next;
         float u_lobe = rng_float(&random);
         vec2 u = rng_vec2(&random);
@@ -110,7 +142,9 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
         if (scatterings > 0 && next.group == BSDF_GATHERED) {
             map_point at = transport_map_point(t, &v);
             bool is_through = vec3_dot(transport_facing_normal(&v), next.direction) < 0.0f;
-            add_point(list, at.position, is_through ? vec3_negate(at.facing_normal) : at.facing_normal);
+            add_point(out, ONWARD, at.position, is_through ? vec3_negate(at.facing_normal) : at.facing_normal);
+            if (!is_through)
+                add_importon(out, at.position, at.facing_normal, v.arrived.direction);
         }
         bool goes_straight = transport_is_open_pane(t, &v) && next.is_straight;
         scatterings += !goes_straight;
@@ -126,7 +160,7 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
 }
 
 static void gather_points(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
-                          int path_vertex, int scatterings_left, row_points *out)
+                          int path_vertex, int scatterings_left, row_items *out)
 {
     for (uint32_t i = 0; scatterings_left >= 1 && i < GATHER_RAYS; i++) {
         rng random = rng_make(where->key, (uint64_t)path_vertex, i);
@@ -141,17 +175,17 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
         ray.skips_uv = true;
         if (transport_meet(t, worker, ray, &met) &&
             gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight)) {
-            add_point(&out->lists[GATHERED], end.point.position, end.point.normal);
+            add_point(out, GATHERED, end.point.position, end.point.normal);
             if (i % POINTS_PER_IMPORTON == 0) {
                 out->importons++;
-                trace_importon(t, worker, &end, rng_make(random.state, (uint64_t)path_vertex, i), &out->lists[ONWARD]);
+                trace_importon(t, worker, &end, rng_make(random.state, (uint64_t)path_vertex, i), out);
             }
         }
     }
 }
 
 /* Follows an eye path as shading.c does, but looks for no light. */
-static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_points *out)
+static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_items *out)
 {
     const transport *t = &job->t;
     const scene *s = t->s;
@@ -169,12 +203,13 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_poi
             return;
         bool is_last = eye_path_is_last(t, &path);
         if (job->finds_lit && !is_last && bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL)) {
-            add_lit(&out->lit, &v, bsdf_has(&v.scattering, BSDF_GATHERED) ? BSDF_GATHERED : BSDF_TRACED);
+            bsdf_lobes lobes = bsdf_has(&v.scattering, BSDF_GATHERED) ? BSDF_GATHERED : BSDF_TRACED;
+            add_item(out, LIT, &(lit_point){v.hit, v.arrived, direct_light_normal(&v, lobes)});
         } else if (!job->finds_lit && !is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
             if (path.vertex > 0 && rgb_max(path.throughput) < SHADING_LOW_CONTRIBUTION) {
-                add_sides(t, &v, &out->lists[GATHERED]);
+                add_sides(t, &v, out, GATHERED);
             } else {
-                add_sides(t, &v, &out->lists[SEEN]);
+                add_sides(t, &v, out, SEEN);
                 gather_points(t, worker, &v, &where, path.vertex, t->settings->max_depth - path.scatterings - 1, out);
             }
         }
@@ -202,33 +237,46 @@ static void divide_frame(int paths, float aspect, int *out_width, int *out_heigh
     *out_height = height < 1 ? 1 : height > GRID_MAX ? GRID_MAX : height;
 }
 
-/* One list of all rows. out_points: to be freed by the caller, on success. */
-static ag_status merge(const pilot_job *job, int which, query_point **out_points, uint32_t *out_count)
+/* Errors: AG_ERROR_MEMORY, where a list did not find room. */
+static ag_status count_items(const pilot_job *job, int which, uint32_t *out_count)
 {
-    uint32_t count = 0, at = 0;
+    *out_count = 0;
     for (int i = 0; i < job->height; i++) {
-        const point_list *list = &job->rows[i].lists[which];
+        const item_list *list = &job->rows[i].lists[which];
         if (list->out_of_memory)
             return AG_ERROR_MEMORY;
-        count += list->count;
+        *out_count += list->count;
     }
-    query_point *all = malloc((count + 1) * sizeof *all);
-    if (!all)
-        return AG_ERROR_MEMORY;
+    return AG_OK;
+}
+
+static void copy_items(const pilot_job *job, int which, void *out_items)
+{
+    char *at = out_items;
     for (int i = 0; i < job->height; i++) {
-        const point_list *list = &job->rows[i].lists[which];
-        if (list->count > 0)
-            memcpy(all + at, list->points, list->count * sizeof *all);
-        at += list->count;
+        const item_list *list = &job->rows[i].lists[which];
+        const size_t bytes = list->count * ITEM_BYTES[which];
+        if (bytes > 0)
+            memcpy(at, list->items, bytes);
+        at += bytes;
     }
-    *out_points = all;
-    *out_count = count;
+}
+
+/* One list of all rows. *out_items: to be freed by the caller, NULL on failure. */
+static ag_status merge(const pilot_job *job, int which, void **out_items, uint32_t *out_count)
+{
+    *out_items = NULL;
+    AG_TRY(count_items(job, which, out_count));
+    *out_items = malloc((*out_count + 1) * ITEM_BYTES[which]);
+    if (!*out_items)
+        return AG_ERROR_MEMORY;
+    copy_items(job, which, *out_items);
     return AG_OK;
 }
 
 static ag_status merge_asked(const pilot_job *job, int which, importance_map *out_importance)
 {
-    query_point *points;
+    void *points;
     uint32_t count;
     AG_TRY(merge(job, which, &points, &count));
     ag_status status = importance_map_create(points, count, out_importance);
@@ -239,7 +287,7 @@ static ag_status merge_asked(const pilot_job *job, int which, importance_map *ou
 static ag_status merge_onward(const pilot_job *job, importance_map *out_importance)
 {
     const scene *s = job->t.s;
-    query_point *points;
+    void *points;
     uint32_t count, importons = 0;
     for (int i = 0; i < job->height; i++)
         importons += job->rows[i].importons;
@@ -249,6 +297,28 @@ static ag_status merge_onward(const pilot_job *job, importance_map *out_importan
                                                     vec3_add(s->bounding_center, radius), out_importance);
     free(points);
     return status;
+}
+
+static ag_status merge_ways(const pilot_job *job, run_context *run, eye_pilot *out_pilot)
+{
+    uint32_t count;
+    AG_TRY(count_items(job, WAYS, &count));
+    if (count == 0)
+        return AG_OK;
+    photon *importons = photon_records_create(count);
+    if (!importons)
+        return AG_ERROR_MEMORY;
+    copy_items(job, WAYS, importons);
+    AG_TRY(photon_tree_build(run, importons, count, 0.0, 0.0, &out_pilot->importons));
+    return incident_light_create(run, &out_pilot->importons, WAYS_SHARE, &out_pilot->ways);
+}
+
+static ag_status merge_starts(const pilot_job *job, emission_starts *out_starts)
+{
+    void *trials;
+    AG_TRY(merge(job, STARTS, &trials, &out_starts->count));
+    out_starts->trials = trials;
+    return AG_OK;
 }
 
 /* The rows are to be freed by free_rows, on failure too. */
@@ -266,18 +336,18 @@ static ag_status look_over_frame(pilot_job *job, run_context *run, int paths, co
 
 static void free_rows(pilot_job *job)
 {
-    for (int i = 0; job->rows && i < job->height; i++) {
+    for (int i = 0; job->rows && i < job->height; i++)
         for (int k = 0; k < LIST_COUNT; k++)
-            free(job->rows[i].lists[k].points);
-        free(job->rows[i].lit.points);
-    }
+            free(job->rows[i].lists[k].items);
     free(job->rows);
 }
 
-static ag_status merge_lists(const pilot_job *job, eye_pilot *out_pilot)
+static ag_status merge_lists(const pilot_job *job, run_context *run, eye_pilot *out_pilot)
 {
     AG_TRY(merge_asked(job, GATHERED, &out_pilot->gathered));
     AG_TRY(merge_onward(job, &out_pilot->onward));
+    AG_TRY(merge_ways(job, run, out_pilot));
+    AG_TRY(merge_starts(job, &out_pilot->starts));
     return merge_asked(job, SEEN, &out_pilot->seen);
 }
 
@@ -290,7 +360,7 @@ ag_status eye_pilot_look(const scene *s, run_context *run, const ag_render_setti
     eye_pilot made = {0};
     ag_status status = look_over_frame(&job, run, paths, settings);
     if (status == AG_OK)
-        status = merge_lists(&job, &made);
+        status = merge_lists(&job, run, &made);
     free_rows(&job);
     if (status == AG_OK)
         *out_pilot = made;
@@ -304,29 +374,23 @@ void eye_pilot_reset(eye_pilot *pilot)
     importance_map_reset(&pilot->gathered);
     importance_map_reset(&pilot->onward);
     importance_map_reset(&pilot->seen);
+    incident_light_reset(&pilot->ways);
+    free(pilot->importons.blocks);
+    photon_tree_reset(&pilot->importons);
+    pilot->importons = (photon_tree){0};
+    free(pilot->starts.trials);
+    pilot->starts = (emission_starts){0};
 }
 
 ag_status eye_pilot_find_lit(const scene *s, run_context *run, const ag_render_settings *settings,
                              lit_point **out_points, uint32_t *out_count)
 {
     pilot_job job = {.t = {.s = s, .run = run}, .finds_lit = true};
-    lit_point *all = NULL;
-    uint32_t count = 0;
+    void *points = NULL;
     ag_status status = look_over_frame(&job, run, LIT_PATHS, settings);
-    for (int i = 0; status == AG_OK && i < job.height; i++) {
-        count += job.rows[i].lit.count;
-        status = job.rows[i].lit.out_of_memory ? AG_ERROR_MEMORY : AG_OK;
-    }
-    if (status == AG_OK && !(all = malloc((count + 1) * sizeof *all)))
-        status = AG_ERROR_MEMORY;
-    *out_points = all;
-    *out_count = 0;
-    for (int i = 0; status == AG_OK && i < job.height; i++) {
-        const lit_list *list = &job.rows[i].lit;
-        if (list->count > 0)
-            memcpy(all + *out_count, list->points, list->count * sizeof *all);
-        *out_count += list->count;
-    }
+    if (status == AG_OK)
+        status = merge(&job, LIT, &points, out_count);
     free_rows(&job);
+    *out_points = points;
     return status;
 }

@@ -148,6 +148,79 @@ ag_status scene_call_name(scene_call *c, const char *name, bool is_float)
     return take_text(is_float ? "float" : "spectrum", &c->texts[1]);
 }
 
+/* Whether a parameter is one of those that are borrowed; what is wrong with it goes to *out_wrong, else it is NULL. */
+static bool is_borrowed(const ag_parameter *p, pbrt_borrowed *out, const char **out_wrong)
+{
+    const bool is_floats = p->floats && !p->doubles && !p->integers && !p->strings && !p->bools;
+    *out_wrong = NULL;
+    if (!p->name)
+        return false;
+    if (strcmp(p->name, "P") == 0 && p->type == AG_PARAMETER_POINT3) {
+        out->positions = p->floats;
+        out->vertex_count = p->count / 3;
+        *out_wrong = !is_floats          ? "what is borrowed of it should be floats"
+                     : p->count % 3 != 0 ? "its count is no multiple of 3"
+                                         : NULL;
+    } else if (strcmp(p->name, "uv") == 0 && p->type == AG_PARAMETER_POINT2) {
+        out->uvs = p->floats;
+        *out_wrong = is_floats ? NULL : "what is borrowed of it should be floats";
+    } else if (strcmp(p->name, "indices") == 0 && p->type == AG_PARAMETER_INTEGER) {
+        out->indices = p->integers;
+        out->index_count = p->count;
+        if (!p->integers || p->floats || p->doubles || p->strings || p->bools)
+            *out_wrong = "what is borrowed of it should be integers";
+    } else {
+        return false;
+    }
+    for (size_t k = 0; !*out_wrong && p->floats && k < p->count; k++)
+        if (!isfinite(p->floats[k]))
+            *out_wrong = "a value is not finite";
+    return true;
+}
+
+/* Notes the arrays that are borrowed, and leaves them out of the parameters, whose numbers stay. */
+static ag_status borrow_arrays(log_sink *log, scene_call *c, size_t count, ag_parameter *in_out_parameters)
+{
+    size_t uv_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        ag_parameter *p = &in_out_parameters[i];
+        file_location where = c->where;
+        const char *wrong;
+        if (!is_borrowed(p, &c->borrowed, &wrong))
+            continue;
+        if (wrong) {
+            where.column = (int)i + 1;
+            log_at(log, AG_LOG_ERROR, where, "\"%s\": %s", p->name, wrong);
+            return AG_ERROR_ARGUMENT;
+        }
+        if (p->type == AG_PARAMETER_POINT2)
+            uv_count = p->count;
+        *p = (ag_parameter){.name = p->name, .type = p->type};
+    }
+    if (!c->borrowed.positions || !c->borrowed.indices)
+        return refuse(log, c, "to be borrowed there should be \"point3 P\" and \"integer indices\"");
+    if (c->borrowed.uvs && uv_count != 2 * c->borrowed.vertex_count)
+        return refuse(log, c, "\"uv\" should have two numbers for each vertex");
+    return AG_OK;
+}
+
+static ag_status take_borrowing_shape(log_sink *log, scene_call *c, const ag_shape *s)
+{
+    if (strcmp(s->type, "trianglemesh") != 0)
+        return refuse(log, c, "of a \"trianglemesh\" alone arrays can be borrowed");
+    if (s->parameter_count > SCENE_PARAMETERS_MAX || !s->parameters)
+        return take_parameters(log, c, NULL, s->parameter_count > 0 ? s->parameter_count : 1); /* says what is wrong */
+    ag_parameter *rest = malloc((s->parameter_count + 1) * sizeof *rest);
+    if (!rest)
+        return AG_ERROR_MEMORY;
+    memcpy(rest, s->parameters, s->parameter_count * sizeof *rest);
+    ag_status status = borrow_arrays(log, c, s->parameter_count, rest);
+    if (status == AG_OK)
+        status = take_parameters(log, c, rest, s->parameter_count);
+    free(rest);
+    return status;
+}
+
 static ag_status take_shape(log_sink *log, const void *given, scene_call *c)
 {
     ag_shape s = ag_default_shape();
@@ -162,7 +235,8 @@ static ag_status take_shape(log_sink *log, const void *given, scene_call *c)
     AG_TRY(take_text(s.medium_inside, &c->medium_inside));
     AG_TRY(take_text(s.medium_outside, &c->medium_outside));
     AG_TRY(take_matrices(log, c, s.world_from_shape, s.world_from_shape_end));
-    AG_TRY(take_parameters(log, c, s.parameters, s.parameter_count));
+    AG_TRY(s.borrows_arrays ? take_borrowing_shape(log, c, &s)
+                            : take_parameters(log, c, s.parameters, s.parameter_count));
     return scene_parameters_copy(log, c->where, s.light_parameters, s.light_parameter_count, &c->light_items);
 }
 
@@ -403,7 +477,8 @@ ag_status scene_call_make_mesh(scene_call *c, pbrt_builder *builder)
     if (c->mesh)
         *c->mesh = shape_make(SHAPE_MESH);
     if (status == AG_OK)
-        status = pbrt_builder_mesh(builder, &call, &at, c->texts[0], arrays, c->is_light, c->mesh);
+        status = pbrt_builder_mesh(builder, &call, &at, c->texts[0], arrays, c->is_light,
+                                   c->borrowed.positions ? &c->borrowed : NULL, c->mesh);
     scene_parameters_free(&arrays);
     scene_parameters_free(&c->items);
     c->items = rest;

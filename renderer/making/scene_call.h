@@ -45,9 +45,10 @@ typedef struct scene_call {
     double *start, *end;                                      /* [16], or NULL */
     bool reverse_orientation, is_light;
     pbrt_items items, light_items;
-    shape *mesh;      /* owned: what the arrays of a shape have made, or NULL: they are among the items */
-    image *picture;   /* owned, of CALL_IMAGE */
-    uint64_t version; /* of that */
+    pbrt_borrowed borrowed; /* of shapes, until the mesh is made; positions NULL: nothing is */
+    shape *mesh;            /* owned: what the arrays of a shape have made, or NULL: they are among the items */
+    image *picture;         /* owned, of CALL_IMAGE */
+    uint64_t version;       /* of that */
 } scene_call;
 
 /* One that holds nothing yet, held once; NULL when out of memory. */

@@ -336,7 +336,7 @@ static ag_status take_call(const call_work *work, const call_given *given)
     scene_making *making = work->making;
     AG_TRY(scene_call_take(making->context->log, given, work->call));
     AG_TRY(scene_making_number(making, work->call));
-    if (making->is_editable)
+    if (making->is_editable || work->call->borrowed.positions)
         AG_TRY(scene_making_mesh(making, work->call));
     return making->builder ? read_call(making, work->call) : edit_in_call(making, work->call);
 }

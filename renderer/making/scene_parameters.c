@@ -128,12 +128,12 @@ static ag_status copy_parameter(log_sink *log, const ag_parameter *from, paramet
 ag_status scene_parameters_copy(log_sink *log, file_location where, const ag_parameter *given, size_t count,
                                 pbrt_items *out_items)
 {
-    enum { PARAMETERS_MAX = 1000 };
     *out_items = (pbrt_items){0};
-    if (count > PARAMETERS_MAX || (count > 0 && !given)) {
+    if (count > SCENE_PARAMETERS_MAX || (count > 0 && !given)) {
         log_at(log, AG_LOG_ERROR, where,
-               count > PARAMETERS_MAX ? "there are more than %d parameters" : "of %d parameters there is no array",
-               count > PARAMETERS_MAX ? PARAMETERS_MAX : (int)count);
+               count > SCENE_PARAMETERS_MAX ? "there are more than %d parameters"
+                                            : "of %d parameters there is no array",
+               count > SCENE_PARAMETERS_MAX ? SCENE_PARAMETERS_MAX : (int)count);
         return AG_ERROR_ARGUMENT;
     }
     out_items->items = calloc(count + 1, sizeof *out_items->items);

@@ -8,6 +8,8 @@
 
 struct pbrt_items;
 
+enum { SCENE_PARAMETERS_MAX = 1000 }; /* of one call */
+
 /* Copies them; *out_items is to be freed, and what its items hold is for whoever takes them. where: of the call. What
  * is wrong is said in the log, at the number of the parameter. Errors: AG_ERROR_ARGUMENT, AG_ERROR_MEMORY. */
 ag_status scene_parameters_copy(log_sink *log, file_location where, const ag_parameter *given, size_t count,

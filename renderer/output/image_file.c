@@ -75,7 +75,7 @@ static ag_status unknown_extension(const char *path, char *message, size_t messa
     return AG_ERROR_OUTPUT;
 }
 
-/* What a caller of ours must not get wrong, and what a user can ask for in vain. */
+/* Refuses a description that is not valid, which is the caller's error, and what the format cannot hold. */
 static ag_status check_description(const char *path, const image_format *format, const image_description *description,
                                    char *message, size_t message_size)
 {

@@ -35,7 +35,7 @@ from ctypes import (POINTER, byref, c_bool, c_char_p, c_double, c_float, c_int, 
 import numpy
 from numpy.typing import ArrayLike
 
-__all__ = ["Context", "Scene", "Rendering", "Error", "Cancelled", "version"]
+__all__ = ["Context", "Scene", "Rendering", "Error", "Cancelled", "version", "vertices"]
 
 _Path = Union[str, bytes, os.PathLike]
 _Parameters = Optional[Mapping[str, Any]]  # {"rgb reflectance": (1, 0, 0)}
@@ -45,6 +45,8 @@ _CANCELLED = 9  # AG_CANCELLED
 _PARAMETER_TYPES = ["float", "integer", "string", "bool", "point2", "vector2", "point3", "vector3", "normal", "rgb",
                     "spectrum", "blackbody", "texture"]
 _HINTS = {"film": 0, "sampler": 1, "integrator": 2, "pixelfilter": 3}
+_NAMED = ["material", "medium", "float texture", "spectrum texture", "image"]  # as in ag_named
+_SCENE_SETTINGS = 1  # AG_STRUCT_SCENE_SETTINGS
 _RENDER_SETTINGS = 2  # AG_STRUCT_RENDER_SETTINGS, which are only handed on
 
 _LOG = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p)
@@ -75,7 +77,23 @@ class _Shape(ctypes.Structure):
                 ("parameter_count", c_size_t), ("material", c_char_p), ("object", c_char_p),
                 ("world_from_shape", c_void_p), ("world_from_shape_end", c_void_p), ("reverse_orientation", c_bool),
                 ("is_light", c_bool), ("light_parameters", POINTER(_Parameter)), ("light_parameter_count", c_size_t),
-                ("medium_inside", c_char_p), ("medium_outside", c_char_p)]
+                ("medium_inside", c_char_p), ("medium_outside", c_char_p), ("borrows_arrays", c_bool)]
+
+
+class _SceneSettings(ctypes.Structure):
+    _fields_ = [("struct_size", c_size_t), ("definitions", c_void_p), ("definition_count", c_size_t),
+                ("gltf_light_units", c_int), ("has_camera", c_bool), ("camera_from", c_float * 3),
+                ("camera_to", c_float * 3), ("camera_up", c_float * 3), ("camera_fov_degrees", c_float),
+                ("camera_name", c_char_p), ("texture_memory_bytes", c_uint64), ("drops_lights", c_bool), ("up", c_int),
+                ("has_sun", c_bool), ("sun_azimuth_degrees", c_float), ("sun_elevation_degrees", c_float),
+                ("sun_irradiance", c_float), ("sun_angle_degrees", c_float), ("has_sky", c_bool),
+                ("sky_radiance", c_float * 3), ("sky_file", c_char_p), ("sky_rotation_degrees", c_float),
+                ("find_file", c_void_p), ("find_file_user", c_void_p), ("is_editable", c_bool)]
+
+
+class _CommitCounts(ctypes.Structure):
+    _fields_ = [(name, c_uint64) for name in ("commits", "meshes_made", "trees_built", "trees_kept", "pictures_read",
+                                              "pictures_kept")]
 
 
 class _Instance(ctypes.Structure):
@@ -137,6 +155,19 @@ def _load_library():
         "ag_scene_set_hint": (c_int, [c_void_p, c_int, c_char_p] + parameters),
         "ag_render_settings_fill": (c_int, [c_void_p, c_void_p, c_void_p, c_size_t]),
         "ag_struct_size": (c_size_t, [c_int]),
+        "ag_struct_fill": (None, [c_int, c_void_p, c_size_t]),
+        "ag_scene_change_shape": (c_int, [c_void_p, c_uint64, POINTER(_Shape)]),
+        "ag_scene_change_instance": (c_int, [c_void_p, c_uint64, POINTER(_Instance)]),
+        "ag_scene_change_light": (c_int, [c_void_p, c_uint64, POINTER(_Light)]),
+        "ag_scene_change_texture": (c_int, [c_void_p, POINTER(_Texture)]),
+        "ag_scene_change_image": (c_int, [c_void_p, c_char_p, POINTER(_Image)]),
+        "ag_scene_change_material": (c_int, [c_void_p, c_char_p, c_char_p] + parameters),
+        "ag_scene_change_medium": (c_int, [c_void_p, c_char_p, c_char_p] + parameters),
+        "ag_scene_move": (c_int, [c_void_p, c_uint64, c_void_p, c_void_p]),
+        "ag_scene_assign_material": (c_int, [c_void_p, c_uint64, c_char_p]),
+        "ag_scene_remove": (c_int, [c_void_p, c_uint64]),
+        "ag_scene_remove_named": (c_int, [c_void_p, c_int, c_char_p]),
+        "ag_scene_commit_counts": (_CommitCounts, [c_void_p]),
         "ag_render_settings_set": (c_int, [c_void_p, c_char_p, c_char_p]),
         "ag_render": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(c_void_p)]),
         "ag_rendering_create": (c_int, [c_void_p, c_void_p, c_void_p, POINTER(c_void_p)]),
@@ -232,6 +263,30 @@ def _parameters(values, kept):
     return array, len(items)
 
 
+def vertices(count: int) -> numpy.ndarray:
+    """An array of zeros, (count, 3) of 32-bit floats, with the room behind it that a borrowed P needs."""
+    return numpy.zeros(3 * count + 1, numpy.float32)[:-1].reshape(count, 3)
+
+
+def _has_room(array):
+    """Whether 4 bytes behind an array belong to the array that it is a view of."""
+    whole = array
+    while isinstance(whole.base, numpy.ndarray):
+        whole = whole.base
+    return array.ctypes.data + array.nbytes + 4 <= whole.ctypes.data + whole.nbytes
+
+
+def _check_borrowed(parameters):
+    for declaration, dtype in (("point3 P", "float32"), ("point2 uv", "float32"), ("integer indices", "int32")):
+        array = parameters.get(declaration)
+        if array is None:
+            continue
+        if not isinstance(array, numpy.ndarray) or array.dtype != dtype or not array.flags.c_contiguous:
+            raise ValueError(f'"{declaration}": a borrowed array is of numpy, contiguous and of {dtype}')
+        if declaration == "point3 P" and not _has_room(array):
+            raise ValueError('"point3 P": a borrowed array has room behind it, as those of vertices() have')
+
+
 class Context:
     """Threads, log and progress. `threads`: 0 for as many as there are; `progress`: called with the number of a phase
     (AG_PHASE_..., from 0 on) and how far it is, in [0, 1], on the library's threads; an exception there calls the work
@@ -316,9 +371,12 @@ class Context:
         """Calls the work under way off, within 50 ms; from any thread."""
         _library.ag_context_cancel(self._pointer)
 
-    def scene(self) -> Scene:
-        """An empty scene."""
-        return Scene(self, _library.ag_scene_create, None)
+    def scene(self, editable: bool = False) -> Scene:
+        """An empty scene. editable: it can be changed once it is complete."""
+        settings = _SceneSettings()
+        _library.ag_struct_fill(_SCENE_SETTINGS, byref(settings), ctypes.sizeof(settings))
+        settings.is_editable = editable
+        return Scene(self, _library.ag_scene_create, byref(settings))
 
     def load(self, path: _Path) -> Scene:
         """The scene of a file: pbrt-v4's text, glTF, OBJ and what else the program reads."""
@@ -345,14 +403,19 @@ class Context:
 
 
 class Scene:
-    """Made by Context.scene, load or load_text. Of one that is complete, by rendering it, the camera alone can change.
-    Matrices are 4 x 4, row by row, of column vectors."""
+    """Made by Context.scene, load or load_text. Of one that is complete, by rendering it, the camera alone can change; of
+    one that was made with Context.scene(editable=True) all can, by instead, instead_of, move, assign, remove and further
+    calls, as long as no rendering of it is open. Such changes take effect with the next complete, or picture; where that
+    fails they are dropped. What did not change is kept, and the picture is, to the last bit, that of a scene made
+    afresh. Matrices are 4 x 4, row by row, of column vectors."""
 
     def __init__(self, context, function, *arguments, is_complete=False):
         self._context = context
         self._held = c_void_p()
         self._renderings = []  # that are not closed
-        self._is_complete = is_complete
+        self._is_complete = self._was_complete = is_complete
+        self._lent = []  # handles, and the arrays that the library borrows for them, as they were said
+        self._lent_count = 0  # as of the last commit
         context._scenes.append(self)
         try:
             context._work(function, context._pointer, *arguments, byref(self._held))
@@ -366,6 +429,7 @@ class Scene:
 
     def _call(self, function, *arguments):
         self._context._check(function(self._pointer, *arguments))
+        self._is_complete = False
 
     def _named(self, function, name, kind, parameters):
         kept = []
@@ -375,26 +439,29 @@ class Scene:
         """What the scene wishes of the picture; directive: "Film", "Sampler", "Integrator" or "PixelFilter"."""
         self._named(_library.ag_scene_set_hint, _HINTS[directive.lower()], type, parameters)
 
-    def material(self, name: str, type: str, parameters: _Parameters = None) -> None:
-        """A material for shapes to name."""
-        self._named(_library.ag_scene_add_material, _text(name), type, parameters)
+    def material(self, name: str, type: str, parameters: _Parameters = None, *, instead: bool = False) -> None:
+        """A material for shapes to name. instead: of the one of that name, in a scene that can be changed."""
+        function = _library.ag_scene_change_material if instead else _library.ag_scene_add_material
+        self._named(function, _text(name), type, parameters)
 
-    def medium(self, name: str, type: str, parameters: _Parameters = None) -> None:
-        """A medium for shapes, lights and the camera to name."""
-        self._named(_library.ag_scene_add_medium, _text(name), type, parameters)
+    def medium(self, name: str, type: str, parameters: _Parameters = None, *, instead: bool = False) -> None:
+        """A medium for shapes, lights and the camera to name. instead: as of material."""
+        function = _library.ag_scene_change_medium if instead else _library.ag_scene_add_medium
+        self._named(function, _text(name), type, parameters)
 
     def texture(self, name: str, value: str, type: str, parameters: _Parameters = None,
-                world_from_texture: Optional[ArrayLike] = None) -> None:
-        """A texture for parameters of type "texture" to name; value: "float" or "spectrum"."""
+                world_from_texture: Optional[ArrayLike] = None, *, instead: bool = False) -> None:
+        """A texture for parameters of type "texture" to name; value: "float" or "spectrum". instead: as of material."""
         kept = []
         items, count = _parameters(parameters, kept)
-        self._call(_library.ag_scene_add_texture, byref(_Texture(
+        function = _library.ag_scene_change_texture if instead else _library.ag_scene_add_texture
+        self._call(function, byref(_Texture(
             ctypes.sizeof(_Texture), _text(name), ("float", "spectrum").index(value), _text(type), items, count,
             _matrix(world_from_texture, kept))))
 
-    def image(self, name: str, pixels: ArrayLike) -> None:
+    def image(self, name: str, pixels: ArrayLike, *, instead: bool = False) -> None:
         """Pixels that stand in for the file of that name: (height, width) or (height, width, channels), bytes as an
-        8-bit file has them, all else as linear floats."""
+        8-bit file has them, all else as linear floats. instead: as of material."""
         array = numpy.asarray(pixels)
         if array.ndim not in (2, 3):
             raise ValueError("a picture has two or three dimensions")
@@ -402,38 +469,83 @@ class Scene:
         array = numpy.ascontiguousarray(array if is_bytes else array.astype(numpy.float32, copy=False))
         made = _Image(ctypes.sizeof(_Image), array.shape[1], array.shape[0], array.shape[2] if array.ndim == 3 else 1)
         setattr(made, "bytes" if is_bytes else "floats", array.ctypes.data)
-        self._call(_library.ag_scene_add_image, _text(name), byref(made))
+        function = _library.ag_scene_change_image if instead else _library.ag_scene_add_image
+        self._call(function, _text(name), byref(made))
 
     def shape(self, type: str, parameters: _Parameters = None, *, material: Optional[str] = None,
               light: _Parameters = None, object: Optional[str] = None, world_from_shape: Optional[ArrayLike] = None,
               world_from_shape_end: Optional[ArrayLike] = None, reverse_orientation: bool = False,
-              medium_inside: Optional[str] = None, medium_outside: Optional[str] = None) -> None:
-        """A shape. object: the name of what it is a part of, which instances show; None: it stands where it is. light:
-        the parameters of an AreaLightSource, {} for its defaults; None: it does not shine."""
+              medium_inside: Optional[str] = None, medium_outside: Optional[str] = None, borrow: bool = False,
+              instead_of: Optional[int] = None) -> int:
+        """A shape; gives its handle. object: the name of what it is a part of, which instances show; None: it stands where
+        it is. light: the parameters of an AreaLightSource, {} for its defaults; None: it does not shine.
+
+        borrow: the arrays of a "trianglemesh", P from vertices() and uv of 32-bit floats, indices of 32-bit integers, are
+        used where they are, without a copy, and kept alive; who writes to them says so by instead_of. instead_of: the
+        handle of the shape whose place it takes, in a scene that can be changed."""
         kept = []
+        if borrow:
+            _check_borrowed(parameters or {})
         items, count = _parameters(parameters, kept)
         light_items, light_count = _parameters(light, kept)
-        self._call(_library.ag_scene_add_shape, byref(_Shape(
-            ctypes.sizeof(_Shape), _text(type), items, count, _text(material), _text(object),
-            _matrix(world_from_shape, kept), _matrix(world_from_shape_end, kept), reverse_orientation,
-            light is not None, light_items, light_count, _text(medium_inside), _text(medium_outside))), None)
+        shape = _Shape(ctypes.sizeof(_Shape), _text(type), items, count, _text(material), _text(object),
+                       _matrix(world_from_shape, kept), _matrix(world_from_shape_end, kept), reverse_orientation,
+                       light is not None, light_items, light_count, _text(medium_inside), _text(medium_outside), borrow)
+        handle = self._place("shape", shape, instead_of)
+        if borrow or instead_of is not None:
+            self._lent.append((handle, kept if borrow else None))
+        return handle
 
     def instance(self, object: str, world_from_object: Optional[ArrayLike] = None,
-                 world_from_object_end: Optional[ArrayLike] = None) -> None:
-        """Shows the shapes that were made with that object's name."""
+                 world_from_object_end: Optional[ArrayLike] = None, *, instead_of: Optional[int] = None) -> int:
+        """Shows the shapes that were made with that object's name; gives its handle. instead_of: as of shape."""
         kept = []
-        self._call(_library.ag_scene_add_instance, byref(_Instance(
-            ctypes.sizeof(_Instance), _text(object), _matrix(world_from_object, kept),
-            _matrix(world_from_object_end, kept))), None)
+        return self._place("instance", _Instance(ctypes.sizeof(_Instance), _text(object),
+                                                 _matrix(world_from_object, kept),
+                                                 _matrix(world_from_object_end, kept)), instead_of)
 
     def light(self, type: str, parameters: _Parameters = None, *, world_from_light: Optional[ArrayLike] = None,
-              medium_outside: Optional[str] = None) -> None:
-        """A light that is no shape: "point", "spot", "distant", "infinite" and so on."""
+              medium_outside: Optional[str] = None, instead_of: Optional[int] = None) -> int:
+        """A light that is no shape, "point", "spot", "distant", "infinite" and so on; gives its handle. instead_of: as of
+        shape."""
         kept = []
         items, count = _parameters(parameters, kept)
-        self._call(_library.ag_scene_add_light, byref(_Light(
-            ctypes.sizeof(_Light), _text(type), items, count, _matrix(world_from_light, kept),
-            _text(medium_outside))), None)
+        return self._place("light", _Light(ctypes.sizeof(_Light), _text(type), items, count,
+                                           _matrix(world_from_light, kept), _text(medium_outside)), instead_of)
+
+    def _place(self, kind, description, instead_of):
+        """Adds what has a handle, or lets it take the place of another."""
+        if instead_of is not None:
+            self._call(getattr(_library, f"ag_scene_change_{kind}"), instead_of, byref(description))
+            return instead_of
+        handle = c_uint64()
+        self._call(getattr(_library, f"ag_scene_add_{kind}"), byref(description), byref(handle))
+        return handle.value
+
+    def move(self, handle: int, world_from_own: Optional[ArrayLike] = None,
+             world_from_own_end: Optional[ArrayLike] = None) -> None:
+        """Places a light, an instance or a shape that is no mesh by another matrix."""
+        kept = []
+        self._call(_library.ag_scene_move, handle, _matrix(world_from_own, kept), _matrix(world_from_own_end, kept))
+
+    def assign(self, shape: int, material: Optional[str]) -> None:
+        """Gives a shape another material; nothing of it is read anew."""
+        self._call(_library.ag_scene_assign_material, shape, _text(material))
+
+    def remove(self, handle: int) -> None:
+        """Removes a shape, a light or an instance."""
+        self._call(_library.ag_scene_remove, handle)
+        self._lent.append((handle, None))
+
+    def remove_named(self, kind: str, name: str) -> None:
+        """Removes what has a name; kind: "material", "medium", "float texture", "spectrum texture" or "image"."""
+        self._call(_library.ag_scene_remove_named, _NAMED.index(kind), _text(name))
+
+    def commit_counts(self) -> dict[str, int]:
+        """What the commits of a scene that can be changed have made in all: "commits", "meshes_made", "trees_built",
+        "trees_kept", "pictures_read", "pictures_kept"."""
+        counts = _library.ag_scene_commit_counts(self._pointer)
+        return {name: getattr(counts, name) for name, _ in counts._fields_}
 
     def camera(self, type: str = "perspective", parameters: _Parameters = None, *,
                world_from_camera: Optional[ArrayLike] = None, world_from_camera_end: Optional[ArrayLike] = None,
@@ -441,15 +553,24 @@ class Scene:
         """The camera, instead of the one before. It looks along +z; x is to the right and y up."""
         kept = []
         items, count = _parameters(parameters, kept)
-        self._call(_library.ag_scene_set_camera, byref(_Camera(
-            ctypes.sizeof(_Camera), _text(type), items, count, _matrix(world_from_camera, kept),
-            _matrix(world_from_camera_end, kept), _text(medium))))
+        made = _Camera(ctypes.sizeof(_Camera), _text(type), items, count, _matrix(world_from_camera, kept),
+                       _matrix(world_from_camera_end, kept), _text(medium))
+        self._context._check(_library.ag_scene_set_camera(self._pointer, byref(made)))
 
     def complete(self, poll: _Poll = None) -> None:
         """Builds what rays need; rendering does so where it is not done yet. poll: as for Rendering.advance."""
-        if not self._is_complete:
+        if self._is_complete:
+            return
+        try:
             self._context._work(_library.ag_scene_commit, self._pointer, poll=poll)
-            self._is_complete = True
+        except Error:
+            if self._was_complete:  # the changes are dropped
+                self._is_complete = True
+                self._lent = self._lent[:self._lent_count]
+            raise
+        self._is_complete = self._was_complete = True
+        self._lent = list(dict(self._lent).items())  # the last of each
+        self._lent_count = len(self._lent)
 
     def _settings(self, values):
         """An ag_render_settings, and what it borrows."""

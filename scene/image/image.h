@@ -32,7 +32,7 @@ typedef struct image {
 typedef enum image_wish {
     IMAGE_ALL_CHANNELS,  /* from the colours on, as floats */
     IMAGE_COLORS,        /* as floats */
-    IMAGE_COMPACT_COLORS /* those of 8 bits as bytes */
+    IMAGE_COMPACT_COLORS /* as bytes where the file has 8 bits, else as floats */
 } image_wish;
 
 /* A file that holds tiles, and coarser levels as the one before halved. */

@@ -25,7 +25,7 @@ typedef struct image_encoding {
     image_curve curve;
     float gamma;       /* linear = encoded ^ gamma; > 0; of IMAGE_CURVE_GAMMA, else 0 */
     const char *space; /* of IMAGE_CURVE_SPACE: the colour config's own string; else NULL */
-    bool is_rule;      /* likewise: the config's file rules say so, not the scene */
+    bool is_rule;      /* of IMAGE_CURVE_SPACE: the config's file rules say so, not the scene */
 } image_encoding;
 
 /* "sRGB", "linear" or "gamma NUMBER"; false where the text is none of these. */

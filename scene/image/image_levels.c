@@ -104,7 +104,7 @@ static bool is_same_header(const image_levels_header *a, const image_levels_head
     return is_same;
 }
 
-/* For one part. *out_open NULL where it fails. Errors: as image_levels_read. */
+/* Opens the picture for the reading of one part; *out_open is NULL where that fails. Errors: as image_levels_read. */
 static ag_status open_again(const image_levels *l, void **out_open)
 {
     char message[1024];

@@ -180,6 +180,28 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     return !rgb_is_black(out->flux);
 }
 
+static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                                emission_numbers *in_out)
+{
+    const shape *lamp = &s->shapes[l->as.area.shape_index];
+    float density, cone;
+    if (sphere_cone(lamp, point, &cone) || (l->as.area.map && !is_sampled_by_map(l, lamp)))
+        return false; /* not by the numbers of the position */
+    in_out->position = u;
+    if (l->as.area.map && !radiance_map_sample(l->as.area.map, u, &u, &density))
+        return false;
+    vec3 n = shape_sample_area(lamp, u).geometric_normal, direction = vec3_negate(towards->direction);
+    if (l->as.area.two_sided) {
+        bool is_behind = vec3_dot(n, direction) < 0.0f;
+        in_out->part = 0.5f * in_out->part + (is_behind ? 0.0f : 0.5f);
+        n = is_behind ? vec3_negate(n) : n;
+    }
+    frame f = frame_from_z(n);
+    vec3 local = frame_to_local(&f, direction);
+    in_out->direction = sample_disk_concentric_inverse((vec2){local.x, local.y});
+    return local.z > 0.0f;
+}
+
 /* --- bounds --- */
 
 /* The triangle's normals: as surface_hit has it, vertex normals say which way is outside, and may disagree. */
@@ -269,4 +291,5 @@ const light_type area_light = {.can_be_met = true,
                                .pdf_from_point = pdf_from_point,
                                .emitted_radiance = emitted_radiance,
                                .emit = emit,
+                               .emission_numbers_of = emission_numbers_of,
                                .narrow_bounds = narrow_bounds};

@@ -236,8 +236,7 @@ bool environment_sample_whole_numbers(const light_directions *d, vec3 direction,
 {
     const environment *e = d->picture;
     if (!e) {
-        *out_u = (vec2){fminf(fmaxf(0.5f - 0.5f * direction.z, 0.0f), 0x1.fffffep-1f),
-                        fminf((float)angle_turns(direction.y, direction.x), 0x1.fffffep-1f)};
+        *out_u = sample_uniform_sphere_inverse(direction);
         return true;
     }
     uint32_t x, y;

@@ -38,6 +38,14 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     return true;
 }
 
+static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                                emission_numbers *in_out)
+{
+    (void)s, (void)point, (void)u;
+    return environment_sample_whole_numbers(&l->as.goniometric.intensity, vec3_negate(towards->direction),
+                                            &in_out->direction);
+}
+
 const light_type goniometric_light = {.init = init,
                                       .reset = reset,
                                       .add_hash = add_hash,
@@ -45,4 +53,5 @@ const light_type goniometric_light = {.init = init,
                                       .intensity = intensity,
                                       .sample_from_point = light_sample_of_point,
                                       .emit = emit,
+                                      .emission_numbers_of = emission_numbers_of,
                                       .narrow_bounds = light_narrow_to_point};

@@ -80,6 +80,15 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
            light_emit_from_afar(s, l, target, numbers, vec3_negate(to_light), radiance, pdf, out);
 }
 
+/* Light by a portal is aimed as it is. */
+static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                                emission_numbers *in_out)
+{
+    in_out->direction = u;
+    light_numbers_from_afar(s, point, vec3_negate(towards->direction), in_out);
+    return !l->as.infinite.portal;
+}
+
 static bool reaches(const light *l, vec3 point, vec3 normal)
 {
     return !l->as.infinite.portal || portal_reaches(l->as.infinite.portal, point, normal);
@@ -93,4 +102,5 @@ const light_type infinite_light = {.can_be_met = true,
                                    .power = power,
                                    .sample_from_point = sample_from_point,
                                    .emit = emit,
+                                   .emission_numbers_of = emission_numbers_of,
                                    .reaches = reaches};

@@ -190,6 +190,12 @@ typedef struct emission_numbers {
 bool light_emit(const struct scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                 struct rng *random, light_emission *out_emission);
 
+/* The numbers, up to rounding, by which light_emit without a target sends a photon along the way that
+ * light_sample_from_point has found from the point with u. in_out_numbers->part comes in as any number in [0, 1), for
+ * what the way leaves open. false: they are not known. */
+bool light_emission_numbers(const struct scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                            emission_numbers *in_out_numbers);
+
 /* light_emit by numbers that are drawn from the stream. */
 bool light_sample_emission(const struct scene *s, const light *l, const light_target *target, struct rng *random,
                            light_emission *out_emission);

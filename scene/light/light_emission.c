@@ -83,6 +83,23 @@ static bool start_from_afar(const scene *s, const light_target *whole, vec3 dire
     return true;
 }
 
+void light_numbers_from_afar(const scene *s, vec3 point, vec3 direction, emission_numbers *in_out_numbers)
+{
+    light_target whole = {s->bounding_center, s->bounding_radius}, ball;
+    const frame f = frame_from_z(direction);
+    const int count = nested_ball_count(s, &whole);
+    vec3 local;
+    int i = -1;
+    do { /* of the balls that it passes, the smallest sends most */
+        ball = nested_ball(s, &whole, ++i, count);
+        local = frame_to_local(&f, vec3_sub(point, ball.center));
+    } while (i < count - 1 && local.x * local.x + local.y * local.y > ball.radius * ball.radius);
+    const float inverse = 1.0f / ball.radius;
+    in_out_numbers->position = sample_disk_concentric_inverse((vec2){local.x * inverse, local.y * inverse});
+    if (count > 1)
+        in_out_numbers->part = ((float)i + in_out_numbers->part) / (float)count;
+}
+
 /* Light from infinitely far has lost in a medium that absorbs whatever that takes. The first interface that it meets
  * says what lies before it, as for shadow rays that go the other way; where there is none, the light's own medium
  * counts. */
@@ -116,6 +133,13 @@ bool light_emit(const scene *s, const light *l, const light_target *target, cons
 {
     out_emission->medium = l->medium; /* of area lights: by the side */
     return light_type_of(l->kind)->emit(s, l, target, numbers, random, out_emission);
+}
+
+bool light_emission_numbers(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                            emission_numbers *in_out_numbers)
+{
+    const light_type *type = light_type_of(l->kind);
+    return type->emission_numbers_of && type->emission_numbers_of(s, l, point, u, towards, in_out_numbers);
 }
 
 emission_numbers emission_numbers_draw(rng *random)

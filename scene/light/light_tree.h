@@ -21,7 +21,7 @@ typedef struct light_bounds {
     float cos_normals;  /* -1: all directions */
     float cos_emission; /* of the angle from a normal beyond which nothing goes */
     float least_cos;    /* brightness goes with the cosine to the normal where it is 0, is even where it is 1 */
-    bool two_sided;     /* the same along -axis */
+    bool two_sided;     /* it shines along -axis as well */
     float intensity;    /* towards where it is brightest, W/sr by the mean of the channels */
 } light_bounds;
 

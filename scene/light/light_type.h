@@ -35,6 +35,9 @@ typedef struct light_type {
     /* light_emit. *out_emission has the light's own medium. */
     bool (*emit)(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                  struct rng *random, light_emission *out_emission);
+    /* light_emission_numbers; NULL: they are not known. */
+    bool (*emission_numbers_of)(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                                emission_numbers *in_out_numbers);
     /* Puts light_find_bounds of what shines into all directions around the light, and narrows them; NULL: it
      * is_everywhere. */
     void (*narrow_bounds)(const scene *s, const light *l, light_bounds *in_out_bounds);
@@ -72,5 +75,8 @@ bool light_aim_point(const light *l, const light_target *target, float own_cone,
  * outside all there is, with what media take from it. target as light_emit has it. */
 bool light_emit_from_afar(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                           vec3 direction, rgb radiance, float pdf, light_emission *out_emission);
+
+/* Position and part by which light_emit_from_afar sends light in that direction through the point. */
+void light_numbers_from_afar(const scene *s, vec3 point, vec3 direction, emission_numbers *in_out_numbers);
 
 #endif

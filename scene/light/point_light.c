@@ -66,9 +66,18 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
     return !rgb_is_black(out->flux);
 }
 
+static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                                emission_numbers *in_out)
+{
+    (void)s, (void)l, (void)point, (void)u;
+    in_out->direction = sample_uniform_sphere_inverse(vec3_negate(towards->direction));
+    return true;
+}
+
 const light_type point_light = {.add_hash = add_hash,
                                 .power = power,
                                 .intensity = intensity,
                                 .sample_from_point = light_sample_of_point,
                                 .emit = emit,
+                                .emission_numbers_of = emission_numbers_of,
                                 .narrow_bounds = light_narrow_to_point};

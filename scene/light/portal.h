@@ -15,7 +15,7 @@ typedef struct portal {
     float width, height; /* along x and y */
     uint32_t size;       /* cells of the tables along a side */
     double *light;  /* [size + 1][size + 1], sums over the cells above and left: radiance times solid angle; owned */
-    double *flux;   /* the same times the cosine to z */
+    double *flux;   /* such sums of radiance times solid angle times the cosine to z */
     rgb irradiance; /* on its plane from outside, W/m^2 */
 } portal;
 

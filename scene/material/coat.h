@@ -22,8 +22,8 @@ typedef struct coat_point {
     rgb eta, k;                     /* of a metal, from the coat */
     rgb reflectance;                /* of a diffuse base */
     int bounces;
-    bool has_metal; /* for its base */
-    bool scatters;  /* what is between coat and base does */
+    bool has_metal; /* the base is a metal */
+    bool scatters;  /* the gap between coat and base scatters light */
 } coat_point;
 
 /* Of a material without textures, or before they are looked up. */

@@ -69,7 +69,8 @@ static bool transmit_at(const coat_layers *c, vec3 v, vec3 h, float *weight, vec
     return true;
 }
 
-/* The optical depth that a share u of light does not reach, by halving: in plain steps, as libm's logarithm is not. */
+/* The optical depth that a share u of light does not reach. It is found by halving an interval, in plain IEEE steps:
+ * the logarithm differs from one libm to the next. */
 static float free_path(float u)
 {
     float low = 0.0f, high = 100.0f;

@@ -62,12 +62,12 @@ typedef struct material {
     float roughness;           /* as it is perceived, [0, 1]; alpha_u and alpha_v are set to its square */
     float transmission;        /* share of what enters a dielectric that goes through, [0, 1] */
     float specular;            /* of the dielectric's reflection, [0, 1] */
-    rgb specular_color;        /* of the same at normal incidence, >= 0 */
+    rgb specular_color;        /* colour of the dielectric's reflection at normal incidence, >= 0 */
     float clearcoat;           /* [0, 1] */
     float clearcoat_roughness; /* as it is perceived, [0, 1] */
     bool is_thin; /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
 
-    /* of the same, set by scene_add_material */
+    /* principled, set by scene_add_material */
     rgb dielectric_f0;  /* of facets at normal incidence; at grazing they reflect `specular` */
     float base_through; /* of diffuse light from outside, what gets to the diffuse base */
 

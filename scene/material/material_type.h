@@ -13,7 +13,7 @@ typedef struct material_lookup {
     const struct surface_footprint *footprint;
 } material_lookup;
 
-/* What is asked of a material that is no mix. */
+/* A question about a material that is no mix. */
 typedef bool material_predicate(const scene *s, const material *m);
 
 /* Both faces of a plate: what each reflects and lets through of light that meets it from outside (outer, in) and from
@@ -30,18 +30,13 @@ typedef struct material_type {
     void (*init)(material *m);
     /* Works out what can be beforehand; NULL: nothing. */
     void (*prepare)(material *m);
-    /* Each of these is NULL where it is never so. material_is_traced: */
-    material_predicate *is_traced;
-    /* material_is_clear_glass: */
-    material_predicate *is_clear_glass;
-    /* It has a diffuse base anywhere: */
-    material_predicate *has_base;
-    /* pane_may_be_of: */
-    material_predicate *may_be_pane;
-    /* slab_may_be_of, of a smooth one without textures whose ior is not 1: */
-    material_predicate *may_be_slab;
-    /* material_is_filtered: */
-    material_predicate *is_filtered;
+    /* Predicates; each is NULL where it never holds. */
+    material_predicate *is_traced;      /* material_is_traced */
+    material_predicate *is_clear_glass; /* material_is_clear_glass */
+    material_predicate *has_base;       /* it has a diffuse base anywhere */
+    material_predicate *may_be_pane;    /* pane_may_be_of */
+    material_predicate *may_be_slab;    /* slab_may_be_of, of a smooth one without textures whose ior is not 1 */
+    material_predicate *is_filtered;    /* material_is_filtered */
 
     /* --- at a point --- */
 

@@ -124,7 +124,7 @@ bool motion_make(const transform *start, const transform *end, double at_opening
     return true;
 }
 
-/* So far along the great circle from a to b. */
+/* The point at a share t of the great circle from a to b. */
 static void slerp(const double a[4], const double b[4], double t, double q[4])
 {
     double cosine = 0.0, sine = 0.0, across[4], length = 0.0;

@@ -6,6 +6,7 @@
 #ifndef AFTERGLOW_SAMPLING_H
 #define AFTERGLOW_SAMPLING_H
 
+#include "math/angle.h"
 #include "math/vec3.h"
 
 /* Sine and cosine of 2 pi u, u in [-1, 1]; right to float precision. Taylor series about the nearest quarter turn. */
@@ -38,6 +39,18 @@ static inline vec2 sample_disk_concentric(vec2 u)
     return (vec2){r * float_select(is_wide, c, s), r * float_select(is_wide, s, c)};
 }
 
+/* Back from a point of the unit disk to what sample_disk_concentric was given, within the unit square. */
+static inline vec2 sample_disk_concentric_inverse(vec2 d)
+{
+    bool is_wide = fabsf(d.x) > fabsf(d.y);
+    float along = float_select(is_wide, d.x, d.y), across = float_select(is_wide, d.y, d.x);
+    float r = copysignf(sqrtf(d.x * d.x + d.y * d.y), along);
+    float other = 8.0f * copysignf(r, across) * (float)angle_turns(fabs((double)across), fabs((double)along));
+    vec2 u = is_wide ? (vec2){r, other} : (vec2){other, r};
+    const float below_one = 0x1.fffffep-1f;
+    return (vec2){fminf(fmaxf(0.5f + 0.5f * u.x, 0.0f), below_one), fminf(fmaxf(0.5f + 0.5f * u.y, 0.0f), below_one)};
+}
+
 /* Cosine-distributed around +z; density cos / pi per solid angle. */
 static inline vec3 sample_cosine_hemisphere(vec2 u)
 {
@@ -52,6 +65,14 @@ static inline vec3 sample_uniform_sphere(vec2 u)
     float z = 1.0f - 2.0f * u.x, r = sqrtf(fmaxf(0.0f, 1.0f - z * z)), s, c;
     sincos_turns(u.y, &s, &c);
     return (vec3){r * c, r * s, z};
+}
+
+/* Back from a unit vector to what sample_uniform_sphere was given. */
+static inline vec2 sample_uniform_sphere_inverse(vec3 d)
+{
+    const float below_one = 0x1.fffffep-1f;
+    return (vec2){fminf(fmaxf(0.5f - 0.5f * d.z, 0.0f), below_one),
+                  fminf((float)angle_turns((double)d.y, (double)d.x), below_one)};
 }
 
 /* Uniform in the cone around +z with 1 - cos_max = one_minus_cos_max; density 1 / (2 pi one_minus_cos_max). */

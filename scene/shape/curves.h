@@ -17,7 +17,7 @@ bool curves_can_be_joined(const shape *s, const shape *with);
 /* Adds the segments of `from`. Errors: AG_ERROR_MEMORY. */
 ag_status curves_join(curves *c, const curves *from);
 
-float curves_area(const shape *s); /* of the side that is seen of flat ones; needs no commit */
+float curves_area(const shape *s); /* of flat curves, of the one side that is seen; needs no commit */
 void curves_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
 
 /* Does for curves what shape_surface_at does for shapes. u: Embree's. direction: in which the ray goes, for a flat one

@@ -155,7 +155,8 @@ float shape_area(const shape *s)
 
 ag_status shape_commit(shape *s)
 {
-    s->area = shape_area(s);
+    if (s->area == 0.0f)
+        s->area = shape_area(s);
     if (s->kind == SHAPE_CURVES)
         return AG_OK;
     if (s->kind != SHAPE_MESH) {

@@ -98,7 +98,7 @@ typedef struct shape {
         quadric quadric;
         curves curves;
     } as;
-    float area; /* m^2, world; set by scene_commit */
+    float area; /* m^2, world; set by scene_commit, unless it is known, above 0 */
 } shape;
 
 /* A shape with nothing in it yet: opaque, dark, of the scene's first material, in no medium. */

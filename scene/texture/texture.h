@@ -50,23 +50,23 @@ typedef struct texture {
     texture_channel channel; /* image, float textures: which of the picture's */
     texture_wraps wraps;
     texture_filter filter;
-    bool is_data;                             /* image: three numbers, not a colour */
-    bool invert;                              /* image: 1 - value, after scale */
-    float scale;                              /* image: of values; marble: of the point */
-    int octaves;                              /* fbm, wrinkled, marble; [0, TEXTURE_MAX_OCTAVES] */
-    float roughness;                          /* the same: of an octave over the one before */
-    float variation;                          /* marble */
-    uint32_t cost;                            /* set by scene_add_texture */
-    float step;                               /* likewise: of u and v, over which its slope is to be taken */
-    bool has_pictures, is_linear_in_pictures; /* likewise: the mean of its values is the value of its pictures' means */
-    float most;                               /* likewise: no value is larger; infinite where that is not known, or some
-                                                 may be below 0, where values are cut */
+    bool is_data;    /* image: three numbers, not a colour */
+    bool invert;     /* image: 1 - value, after scale */
+    float scale;     /* image: of values; marble: of the point */
+    int octaves;     /* fbm, wrinkled, marble; [0, TEXTURE_MAX_OCTAVES] */
+    float roughness; /* fbm, wrinkled, marble: of an octave over the one before */
+    float variation; /* marble */
+    uint32_t cost;   /* set by scene_add_texture */
+    float step;      /* of u and v, over which its slope is to be taken; set by scene_add_texture, as all below */
+    bool has_pictures, is_linear_in_pictures; /* linear: the mean of its values is the value of its pictures' means */
+    float most;                               /* no value is larger; infinite where that is not known, or some may be
+                                                 below 0, where values are cut */
 } texture;
 
 /* The footprint of a ray's cone on a surface, see material/surface_footprint.h. */
 typedef struct surface_footprint {
     vec3 axes[2];    /* diameters of an ellipse, world space */
-    vec2 uv_axes[2]; /* the same in the surface's u and v */
+    vec2 uv_axes[2]; /* these diameters in the surface's u and v */
     bool is_coarse;
 } surface_footprint;
 

@@ -44,7 +44,7 @@ typedef struct texture_image {
     float *values;              /* linear */
     float table[256];           /* linear values of the bytes */
     unsigned char *alpha_bytes; /* with bytes, or NULL: 1 everywhere */
-    float *alpha_values;        /* the same with values */
+    float *alpha_values;        /* with values, or NULL: 1 everywhere */
     image_colors colors;        /* from linear values to the working space's, of those that are colours */
     texture_mips *mips;         /* coarser levels, for filtering; NULL: none are wanted */
     bool is_stored;             /* all pixels lie in the scene's texture_store: those above are NULL, mips are there */

@@ -41,7 +41,7 @@ static void light_up(lit *l, photon_set *set, float share, unsigned threads)
     test_run_init(&l->r, threads);
     photon_map_settings settings = {.nearest = 50, .max_radius = 0.5f, .surface_area = 1.0f};
     assert_int_equal(photon_map_create(&l->r.run, set, &settings, 0.0, 1.0, &l->map), AG_OK);
-    assert_int_equal(incident_light_create(&l->r.run, &l->map, share, &l->light), AG_OK);
+    assert_int_equal(incident_light_create(&l->r.run, &l->map.tree, share, &l->light), AG_OK);
 }
 
 static void put_out(lit *l)

@@ -125,7 +125,7 @@ static photon_set trace(test_run *r, const scene *s, photon_order order, uint64_
     if (order.asked) {
         settings.asked = order.asked;
         settings.onward = order.onward;
-        assert_int_equal(photon_aim_learn(s, &r->run, &settings, 0.8f, &aim), AG_OK);
+        assert_int_equal(photon_aim_learn(s, &r->run, &settings, &(emission_starts){0}, 0.8f, &aim), AG_OK);
         assert_true(FEWER > 1 || aim.guide.nodes); /* fewer trials may not find a window */
         assert_true(aim.tried.paths > 0 && aim.tried.rays >= aim.tried.paths / 2 &&
                     aim.tried.photons >= aim.tried.asked && aim.tried.asked > 0);
@@ -311,7 +311,7 @@ static void expect_no_guide(const scene *s, test_run *r, photon_kind kind, const
 {
     photon_tracing_settings settings = {.kind = kind, .wanted = 1000, .max_scatterings = 100, .asked = asked};
     photon_aim aim;
-    assert_int_equal(photon_aim_learn(s, &r->run, &settings, 0.8f, &aim), AG_OK);
+    assert_int_equal(photon_aim_learn(s, &r->run, &settings, &(emission_starts){0}, 0.8f, &aim), AG_OK);
     assert_null(aim.guide.nodes);
 }
 

@@ -236,7 +236,7 @@ static void any_number_of_threads_builds_the_same_tree(void **state)
             photon_tree_reset(&tree);
             free(p);
         }
-        /* the same photons as were given, in another order: their flux is their number */
+        /* no photon is lost or doubled by the reordering: their flux is their number */
         uint64_t sum = 0;
         for (uint32_t i = 0; i < COUNT; i++) {
             uint32_t number = photon_block_flux(first_tree.blocks, i);

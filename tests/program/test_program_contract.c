@@ -252,7 +252,7 @@ static void test_scene_without_light(void **state)
     expect_listing("a.exr a.json scene.pbrt");
 }
 
-/* Nothing at all to see: still a picture. */
+/* A scene with nothing to see still gives a picture. */
 static void test_empty_scene(void **state)
 {
     (void)state;
@@ -351,7 +351,7 @@ static void test_unknown_display_and_view(void **state)
     program_run run = RUN("-q", QUICK, "--display=none", "-o", "a.png", SPHERE);
     expect_exit(&run, 1);
     expect_said(&run, "'none'");
-    expect_said(&run, "sRGB"); /* those that there are */
+    expect_said(&run, "sRGB"); /* the spaces that there are */
     program_run_reset(&run);
     run = RUN("-q", QUICK, "--view=none", "-o", "a.png", SPHERE);
     expect_exit(&run, 1);

@@ -14,7 +14,7 @@ static const double PI = 3.14159265358979323846;
 static const char *const INTEGRATORS[] = {"--integrator=photonmap", "--integrator=path"};
 enum { INTEGRATOR_COUNT = 2 };
 
-/* The last message that is louder than news. */
+/* The warnings and errors. */
 typedef struct hearing {
     char said[4096];
     size_t length;

@@ -101,7 +101,7 @@ static void test_inside_solid(void **state)
     expect_warning("LookAt 0 0 0.2  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" SKY PLAIN
                    "ReverseOrientation\n" BALL,
                    NULL, "the picture is black");
-    /* the same solid with a lamp in it is a room */
+    /* that solid with a lamp in it is a room */
     expect_warning("LookAt 0 0 0.2  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n"
                    "LightSource \"point\" \"rgb I\" [1 1 1]\n" PLAIN BALL,
                    NULL, NULL);

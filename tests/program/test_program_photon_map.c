@@ -59,7 +59,7 @@ static void test_camera_move(void **state)
     json_decref(second);
     json_decref(fresh);
 
-    /* the same again computes nothing; other samples, another size and precomputing may use it too */
+    /* once more it computes nothing; other samples, another size and precomputing may use it too */
     expect_end(RUN(QUICK, MAP, "--stats=3.json", "-o", "kept3.exr", moved), 0, NULL);
     expect_same_files("kept2.exr", "kept3.exr");
     json_t *third = stats_read(in_folder("3.json"));

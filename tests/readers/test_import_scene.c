@@ -362,7 +362,7 @@ static void cameras_and_lights_that_make_no_sense_are_left_out(void **state)
         assert_non_null(strstr(r.said[AG_LOG_WARNING],
                                k < 4 ? "file: warning: camera \"c\" makes no sense and is left out\n"
                                      : "file: warning: light \"l\" is dark or makes no sense, and is left out\n"));
-        assert_int_equal(r.scene->light_count, 2); /* those by default */
+        assert_int_equal(r.scene->light_count, 2); /* the two that are made up */
         reading_destroy(&r);
     }
 }

@@ -37,7 +37,7 @@ static void errors_say_what_is_wrong(void **state)
         "WorldBegin ObjectBegin \"a\" ObjectEnd ConcatTransform [1 0 0 .1 0 1 0 0 0 0 1 0 0 0 0 1]\nObjectInstance "
         "\"a\"",
         "t:2:1: error: ObjectInstance: the transform cannot be undone: it is not affine",
-        /* the same, early */
+        /* that mistake where the object comes after its instance */
         "WorldBegin Scale 1e-30 1e-30 1e-30\nObjectInstance \"a\" ObjectBegin \"a\" Shape \"disk\" ObjectEnd",
         "t:2:1: error: ObjectInstance: the transform cannot be undone",
         "WorldBegin ObjectBegin \"a\" ObjectEnd ActiveTransform EndTime Scale -1 1 1\nObjectInstance \"a\"",

@@ -291,7 +291,7 @@ static void test_light_groups(void **state)
     all->settings.samples_per_pixel = 4;
     together = studio_render(all);
     sum = film_mean(together, "light_photons.G");
-    /* also what is seen in the coat */
+    /* more than that, for the coat reflects light of photons too */
     assert_true(sum > film_mean(together, "indirect.G") + film_mean(together, "caustic.G"));
     for (int i = 0; i < 3; i++)
         sum += film_mean(together, names[i]);

@@ -4,85 +4,6 @@
 #define _GNU_SOURCE
 #include "fixtures/changing_scene.h"
 
-typedef struct chance {
-    uint64_t state;
-} chance;
-
-static int pick(chance *c, int count)
-{
-    c->state = c->state * 6364136223846793005u + 1442695040888963407u;
-    return (int)((c->state >> 33) % (uint64_t)count);
-}
-
-static void begin_editable(desk *d)
-{
-    begin(d);
-    ag_scene_destroy(d->made);
-    ag_scene_settings settings = ag_default_scene_settings();
-    settings.is_editable = true;
-    assert_int_equal(ag_scene_create(d->context, &settings, &d->made), AG_OK);
-}
-
-static void begin_saying(saying *all)
-{
-    *all = (saying){.count = 0};
-    for (int i = 0; i < THINGS; i++)
-        all->thing[i] = -1;
-    static const int FIRST[] = {0, 3, 5, 8, 10, 12, 13, 15, 16, 19};
-    for (size_t i = 0; i < sizeof FIRST / sizeof *FIRST; i++) {
-        all->thing[FIRST[i]] = 0;
-        all->order[all->count++] = FIRST[i];
-    }
-}
-
-/* One change of what has a handle, where it makes sense. */
-static void change_thing(desk *d, changing *c, chance *random)
-{
-    saying *all = &c->now;
-    const int i = pick(random, THINGS), deed = pick(random, 10);
-    const char *object = OBJECT_OF[i];
-    const bool is_there = all->thing[i] >= 0;
-    if (!is_there && KINDS[i] == COPY && count_things(all, false, object) == 0)
-        return;
-    if (!is_there) {
-        all->thing[i] = pick(random, VARIANTS);
-        all->assigned[i] = pick(random, MATERIALS);
-        all->order[all->count++] = i;
-        assert_int_equal(say_thing(d->made, all, i, 0, &c->handles[i]), AG_OK);
-    } else if (deed < 3) {
-        if (is_of_object(i) && count_things(all, true, object) > 0 && count_things(all, false, object) < 2)
-            return;
-        assert_int_equal(ag_scene_remove(d->made, c->handles[i]), AG_OK);
-        assert_int_equal(ag_scene_remove(d->made, c->handles[i]), AG_ERROR_ARGUMENT);
-        expect_said(d, "nothing has this handle any more");
-        forget_thing(all, i);
-    } else if (deed < 5 && KINDS[i] <= OBJECT_LAMP) {
-        all->assigned[i] = pick(random, MATERIALS);
-        assert_int_equal(ag_scene_assign_material(d->made, c->handles[i], MATERIAL_NAMES[all->assigned[i]]), AG_OK);
-    } else {
-        all->thing[i] = pick(random, VARIANTS);
-        assert_int_equal(say_thing(d->made, all, i, c->handles[i], NULL), AG_OK);
-    }
-}
-
-static void change_anything(desk *d, changing *c, chance *random)
-{
-    const int what = pick(random, 10), variant = pick(random, VARIANTS);
-    if (what == 0) {
-        const int i = pick(random, MATERIALS);
-        assert_int_equal(say_material(d->made, i, c->now.material[i] = variant, true), AG_OK);
-    } else if (what == 1) {
-        const int i = pick(random, TEXTURES);
-        assert_int_equal(say_texture(d->made, i, c->now.texture[i] = variant, true), AG_OK);
-    } else if (what == 2) {
-        assert_int_equal(say_picture(d->made, c->now.picture = variant, true), AG_OK);
-    } else if (what == 3) {
-        assert_int_equal(say_exposure(d->made, c->now.exposure = variant), AG_OK);
-    } else {
-        change_thing(d, c, random);
-    }
-}
-
 static void expect_as_afresh(desk *d, const saying *all, bool is_by_paths)
 {
     enum { COUNT = 3 * SIZE * SIZE };
@@ -146,16 +67,6 @@ static void a_changed_scene_is_as_one_made_afresh(void **state)
         }
         end(&d);
     }
-}
-
-/* A scene of one of each. */
-static void begin_changing(desk *d, changing *c)
-{
-    *c = (changing){.now = {.count = 0}};
-    begin_editable(d);
-    begin_saying(&c->now);
-    say_all(d->made, &c->now, c->handles);
-    assert_int_equal(ag_scene_commit(d->made), AG_OK);
 }
 
 /* What has been made since it was asked last, and for a commit now. */
@@ -331,7 +242,7 @@ static void other_scenes_do_not_change(void **state)
     }
     assert_int_equal(ag_scene_commit_counts(d.made).commits, 0);
     assert_int_equal(ag_scene_commit_counts(NULL).commits, 0);
-    ag_scene_destroy(d.made);
+    end(&d);
     begin_editable(&d);
     assert_int_equal(ag_scene_add_light(d.made, &l, &lamp), AG_OK);
     assert_int_equal(ag_scene_remove(d.made, lamp), AG_ERROR_ARGUMENT);

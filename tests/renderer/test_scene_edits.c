@@ -49,7 +49,7 @@ static void a_moved_camera_is_as_one_from_the_beginning(void **state)
     }
     assert_memory_not_equal(first, second, sizeof first);
 
-    /* the same camera in a scene that is read anew, and a map of its own */
+    /* that camera in a scene which is read anew, and a map of its own */
     ag_scene *fresh;
     char text_path[256];
     snprintf(text_path, sizeof text_path, "%s", in_folder("fresh.pbrt"));

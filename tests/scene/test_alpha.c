@@ -161,7 +161,7 @@ static void holes_are_where_the_texture_has_them(void **state)
     }
 }
 
-/* alpha along u from 0 to 1, times a factor, and cut. */
+/* Alpha rises from 0 to 1 along u, is multiplied by a factor, and cut off. */
 static void cutoffs_make_masks(void **state)
 {
     (void)state;

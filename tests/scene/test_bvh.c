@@ -256,7 +256,7 @@ static bool meets_the_same(const scene *s, const ray_fan *f, uint32_t i)
     vec3 off = vec3_sub(hit.position, alone.position);
     surface_point at_hit;
     const rgb *albedo = ray_fan_plain_point(s, f, i, &at_hit);
-    if (albedo) { /* the same, and on the ray's side */
+    if (albedo) { /* it is the point of the hit, with its normal on the ray's side */
         assert_ptr_equal(albedo, &s->materials[s->shapes[hit.shape_index].material_index].reflectance);
         assert_memory_equal(&at_hit.position, &hit.position, sizeof at_hit.position);
         vec3 facing = vec3_face_forward(hit.geometric_normal, vec3_negate(ray_fan_direction(f, i)));

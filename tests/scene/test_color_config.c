@@ -145,7 +145,7 @@ static void working_space_by_name(void **state)
     assert_true(color_config_from_rec709(config, m));
     assert_near(m[0], 0.613097, 2e-6);
     assert_near(m[1], 0.339523, 2e-6);
-    /* the same light looks the same from both spaces */
+    /* light looks alike from both spaces */
     color_config *rec709 = open_config(NULL);
     float a[3] = {0.8f, 0.1f, 0.3f}, b[3];
     for (int i = 0; i < 3; i++)

@@ -246,7 +246,7 @@ static void moving_shapes_are_met_where_they_are(void **state)
             bool is_closed = kind == CLOSED_KINDS_A || kind == CLOSED_KINDS_B || kind == CLOSED_KINDS_C;
             uint32_t met = 0, different = 0;
             for (int t = 0; t <= 10; t++) {
-                /* the same at rest */
+                /* a scene at rest, as it is at that time */
                 scene *still = scene_create();
                 affine now = instance_at(s, 0, (float)t / 10.0f);
                 uint32_t index;

@@ -343,6 +343,74 @@ static void a_room_has_no_giants(void **state)
     test_run_reset(&r);
 }
 
+/* A photon that begins by the numbers of a way from a point to a lamp passes that point along it. Where numbers end in
+ * floats, the point is missed by some millionths of the scene. */
+static void expect_numbers_of_ways(const char *world, bool are_known)
+{
+    test_run r;
+    test_run_init(&r, 1);
+    scene *s = test_scene_create(&r, world);
+    const light *l = &s->lights[0];
+    rng random = test_random(5);
+    uint32_t tried = 0;
+    for (int i = 0; i < SAMPLES / 10; i++) {
+        vec3 point = {2.0f * rng_float(&random) - 1.0f, 2.0f * rng_float(&random) - 1.0f, rng_float(&random) + 1.5f};
+        vec2 u = rng_vec2(&random);
+        emission_numbers numbers = emission_numbers_draw(&random);
+        light_sample towards;
+        light_emission e;
+        if (!light_sample_from_point(s, l, point, u, &towards))
+            continue;
+        assert_int_equal(light_emission_numbers(s, l, point, u, &towards, &numbers), are_known);
+        if (!are_known)
+            break;
+        assert_true(numbers.direction.x >= 0.0f && numbers.direction.x < 1.0f && numbers.direction.y >= 0.0f &&
+                    numbers.direction.y < 1.0f && numbers.position.x >= 0.0f && numbers.position.x < 1.0f &&
+                    numbers.position.y >= 0.0f && numbers.position.y < 1.0f && numbers.part >= 0.0f &&
+                    numbers.part < 1.0f);
+        assert_true(light_emit(s, l, NULL, &numbers, &random, &e));
+        vec3 off = vec3_sub(point, e.origin);
+        off = vec3_add_scaled(off, e.direction, -vec3_dot(off, e.direction));
+        assert_true(vec3_length(off) < 2e-3f + 1e-5f * s->bounding_radius);
+        assert_true(vec3_dot(e.direction, towards.direction) < -0.99999f);
+        tried++;
+    }
+    assert_true(!are_known || tried > SAMPLES / 100);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+static void ways_to_lamps_tell_where_photons_begin(void **state)
+{
+    (void)state;
+    static const char FLOOR[] = "Translate 0 0 -3 Shape \"disk\" \"float radius\" [5]";
+    static const char GROUND[] = "Shape \"disk\" \"float radius\" [5000] Shape \"sphere\" \"float radius\" [0.5]";
+    static const struct {
+        const char *lamp, *world;
+        bool are_known;
+    } cases[] = {
+        {"LightSource \"infinite\"", FLOOR, true},
+        {"LightSource \"infinite\"", GROUND, true},
+        {"LightSource \"distant\" \"point3 from\" [1 2 9]", FLOOR, true},
+        {"LightSource \"distant\" \"point3 from\" [1 2 9]", GROUND, true},
+        {"AttributeBegin AreaLightSource \"diffuse\" Shape \"disk\" AttributeEnd", FLOOR, true},
+        {"AttributeBegin AreaLightSource \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0] "
+         "AttributeEnd",
+         FLOOR, true},
+        {"AttributeBegin Rotate 180 1 0 0 AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"disk\" "
+         "AttributeEnd",
+         FLOOR, true},
+        {"AttributeBegin AreaLightSource \"diffuse\" Shape \"sphere\" AttributeEnd", FLOOR, false},
+        {"LightSource \"point\"", FLOOR, true},
+        {"LightSource \"spot\"", FLOOR, false},
+    };
+    char text[512];
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        snprintf(text, sizeof text, "%s %s", cases[i].lamp, cases[i].world);
+        expect_numbers_of_ways(text, cases[i].are_known);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -354,6 +422,7 @@ int main(void)
         cmocka_unit_test(light_from_afar_finds_what_is_small),
         cmocka_unit_test(what_is_small_is_found_in_instances),
         cmocka_unit_test(a_room_has_no_giants),
+        cmocka_unit_test(ways_to_lamps_tell_where_photons_begin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -288,7 +288,7 @@ static void odd_points(void **state)
     test_run_reset(&r);
 }
 
-/* A million units off, and a scene of a billionth's size. */
+/* Lamps are picked alike in a scene a million units off, and in one of a billionth of the size. */
 static void scales_do_not_matter(void **state)
 {
     (void)state;

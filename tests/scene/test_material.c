@@ -35,7 +35,7 @@ static void mix_shares(const scene *s, uint32_t shape_index, bool in_a_row, doub
         material_kind kind = b.material.kind;
         assert_true(kind == MATERIAL_DIFFUSE || kind == MATERIAL_DIELECTRIC || kind == MATERIAL_CONDUCTOR);
         counts[kind == MATERIAL_DIFFUSE ? 0 : kind == MATERIAL_DIELECTRIC ? 1 : 2]++;
-        /* the same point is the same for all that meet it */
+        /* a point has one material for all rays that meet it */
         bsdf again;
         bsdf_init(s, &hit, direction_at(i % 180, 10.0 * i), &again);
         assert_int_equal(again.material.kind, kind);

@@ -195,7 +195,7 @@ static void rays_meet_every_point_with_its_uv(void **state)
                 assert_true(vec3_dot(hit.shading_normal, n) > 0.9999f);
                 assert_close(hit.uv.x, u, 2e-4);
                 assert_close(hit.uv.y, v, 2e-4);
-                /* the same from behind; the normal stays */
+                /* from behind the ray meets that point too, and the normal stays */
                 from = vec3_add_scaled(p, n, -0.05f);
                 assert_true(scene_intersect(s, scene_ray_make(from, n), 0.1f, &hit));
                 assert_true(vec3_dot(hit.geometric_normal, n) > 0.9999f);

@@ -47,7 +47,7 @@ static void a_ramp_on_a_plane(void **state)
     surface_hit hit = hit_from_above(s, 0.3f, 0.7f);
     assert_direction(normal_at(s, &hit), -RISE_U / 2.0, -RISE_V / 4.0, 1.0, 1e-4);
     scene_destroy(s);
-    /* the same upside down: raised towards the new outside */
+    /* turned over, it is raised towards the new outside */
     s = test_scene_create(&run, RAMP RAISED "ReverseOrientation " PLANE);
     hit = hit_from_above(s, 0.3f, 0.7f);
     assert_direction(normal_at(s, &hit), -RISE_U / 2.0, -RISE_V / 4.0, -1.0, 1e-4);

@@ -14,9 +14,9 @@ cd "$folder"
 "$python" - >layout.c <<'END'
 import ctypes, afterglow
 print('#include "afterglow/afterglow.h"')
-for name in ["ContextSettings", "Parameter", "Shape", "Instance", "Light", "Camera", "Texture", "Image"]:
+for name in ["ContextSettings", "Parameter", "Shape", "Instance", "Light", "Camera", "Texture", "Image", "SceneSettings", "CommitCounts"]:
     struct = getattr(afterglow, "_" + name)
-    public = "ag_context_settings" if name == "ContextSettings" else "ag_" + name.lower()
+    public = "ag_" + "".join("_" + c.lower() if c.isupper() else c for c in name)[1:]
     print(f'_Static_assert(sizeof({public}) == {ctypes.sizeof(struct)}, "size of {public}");')
     for field, *_ in struct._fields_:
         offset = getattr(struct, field).offset
@@ -25,6 +25,9 @@ for i, name in enumerate(afterglow._PARAMETER_TYPES):
     print(f'_Static_assert(AG_PARAMETER_{name.upper()} == {i}, "{name}");')
 for name, i in afterglow._HINTS.items():
     print(f'_Static_assert(AG_HINT_{name.upper().replace("PIXELF", "PIXEL_F")} == {i}, "{name}");')
+for i, name in enumerate(afterglow._NAMED):
+    print(f'_Static_assert(AG_NAMED_{name.upper().replace(" ", "_")} == {i}, "{name}");')
+print(f'_Static_assert(AG_STRUCT_SCENE_SETTINGS == {afterglow._SCENE_SETTINGS}, "AG_STRUCT_SCENE_SETTINGS");')
 print(f'_Static_assert(AG_CANCELLED == {afterglow._CANCELLED}, "AG_CANCELLED");')
 print(f'_Static_assert(AG_STRUCT_RENDER_SETTINGS == {afterglow._RENDER_SETTINGS}, "AG_STRUCT_RENDER_SETTINGS");')
 END
@@ -130,6 +133,43 @@ with afterglow.Context(threads=2, progress=lambda phase, fraction: phases.append
             assert abs(channels["Z"][15, 20] - 3) < 0.01
     with context.load("scene.pbrt") as scene:
         assert numpy.array_equal(scene.render(**picture), pixels)
+    # changes, in the end back to the picture above; arrays that are borrowed, and written to
+    mesh = afterglow.vertices(4)
+    mesh[:] = corners + 0.25
+    with context.scene(editable=True) as scene:
+        scene.camera("perspective", {"float fov": 60}, world_from_camera=away)
+        lamp = scene.light("point", {"rgb I": (1, 2, 3), "point3 from": (1, 1, -2)})
+        scene.material("clay", "diffuse", {"rgb reflectance": (0.1, 0.1, 0.1)})
+        arrays = {"point3 P": mesh, "integer indices": triangles}
+        wall = scene.shape("trianglemesh", arrays, material="clay", borrow=True)
+        ball = scene.shape("sphere", {"float radius": 0.1})
+        assert lamp and wall and len({lamp, wall, ball}) == 3
+        assert not numpy.array_equal(scene.render(**picture), pixels)
+        assert scene.commit_counts() == dict(commits=1, meshes_made=1, trees_built=1, trees_kept=0, pictures_read=0,
+                                             pictures_kept=0)
+        scene.light("point", {"rgb I": (9, 9, 9), "point3 from": (1, 1, -2)}, instead_of=lamp)
+        scene.material("clay", "diffuse", {"rgb reflectance": (0.7, 0.4, 0.3)}, instead=True)
+        scene.material("spare", "diffuse")
+        scene.assign(wall, "spare")
+        scene.complete()
+        assert scene.commit_counts()["trees_kept"] == 1 and scene.commit_counts()["meshes_made"] == 1
+        scene.move(ball, [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+        scene.remove(ball)
+        scene.assign(wall, "clay")
+        scene.remove_named("material", "spare")
+        mesh[:] = corners
+        scene.shape("trianglemesh", arrays, material="clay", borrow=True, instead_of=wall)
+        assert numpy.array_equal(scene.render(**picture), pixels), "another picture than that of a scene made afresh"
+        refused(afterglow.Error, "nothing has this handle any more", scene.remove, ball)
+        refused(afterglow.Error, "there is no material \"spare\"", scene.material, "spare", "diffuse", instead=True)
+        scene.assign(wall, "nothing")
+        refused(afterglow.Error, "no material is named \"nothing\"", scene.complete)
+        assert numpy.array_equal(scene.render(**picture), pixels), "what failed is not dropped"
+        for wrong in (corners, mesh.astype(float), mesh[:, ::-1], mesh.tolist()):
+            refused(ValueError, "a borrowed array", scene.shape, "trianglemesh",
+                    {"point3 P": wrong, "integer indices": triangles}, borrow=True)
+        with scene.rendering(**picture):
+            refused(afterglow.Error, "a rendering of it is not finished yet", scene.remove, wall)
     with context.load_text(open("scene.pbrt").read()) as scene:
         assert numpy.array_equal(scene.render(**picture), pixels)
     refused(afterglow.Error, "missing.pbrt: error: cannot read the file", context.load, "missing.pbrt")

@@ -28,7 +28,7 @@ static void test_aligned_and_apart(void **state)
         for (size_t j = 0; j < i * 7; j++)
             assert_int_equal(parts[i][j], (unsigned char)i);
         for (size_t j = 0; j < i; j++)
-            assert_ptr_not_equal(parts[i], parts[j]); /* those of no bytes too */
+            assert_ptr_not_equal(parts[i], parts[j]); /* parts of no bytes are apart as well */
     }
     arena_destroy(a);
 }
@@ -42,7 +42,7 @@ static void test_restore_gives_back_and_uses_again(void **state)
     *kept = 42;
     arena_mark mark = arena_save(a);
     void *first = arena_alloc(a, 100), *second = arena_alloc(a, 100000), *third = arena_alloc(a, 100);
-    for (int i = 0; i < 10; i++) { /* the same requests find the same memory */
+    for (int i = 0; i < 10; i++) { /* equal requests find equal memory again */
         arena_restore(a, mark);
         assert_ptr_equal(arena_alloc(a, 100), first);
         assert_ptr_equal(arena_alloc(a, 100000), second);

@@ -19,12 +19,12 @@ AG_API ag_status ag_photon_map_check(ag_context *context, const char *path);
 typedef struct ag_photon_map_info {
     char program[56], machine[56]; /* that have made it; those of others refuse it */
     char scene[33];                /* fingerprint of what its photons depend on in the scene, 32 hexadecimals */
-    char view[33];                 /* the same of the view that they are aimed at; "": at none */
+    char view[33];                 /* fingerprint of the view that they are aimed at, 32 hexadecimals; "": at none */
     char settings[1024];           /* that they depend on, lines "NOUN: VALUE" */
     uint64_t file_bytes, paths_emitted, photons_global, photons_caustic;
     uint64_t irradiance_photons; /* photons of the global map that irradiance is kept at */
-    uint64_t ready;              /* of these, where it has been computed */
-    uint64_t damaged;            /* where it had been and is damaged: it will be computed again */
+    uint64_t ready;              /* irradiance photons whose irradiance has been computed */
+    uint64_t damaged;            /* irradiance photons whose irradiance is damaged, and will be computed again */
 } ag_photon_map_info;
 
 /* Errors: AG_ERROR_INPUT (it cannot be read, is damaged, or is no photon map; the log says why), AG_ERROR_MEMORY,

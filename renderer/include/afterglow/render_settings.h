@@ -92,7 +92,7 @@ typedef struct ag_render_settings {
     bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */
     float clamp_direct; /* no component of what a sample gets from a lamp by way of at most one surface is above it; 0:
                            unbounded, the default */
-    float clamp_indirect; /* the same of all other contributions */
+    float clamp_indirect; /* as clamp_direct, for all other contributions */
     float noise_level;    /* adaptive sampling: a block of 8 by 8 pixels gets no more samples when the standard error of
                              what is shown of it (its square root, where white is 1; what is brighter, by its share), root
                              mean square over the block, is below this; samples_per_pixel is the most then; 0: all pixels
@@ -135,7 +135,7 @@ typedef struct ag_setting {
     const char *argument;  /* what stands for its value in help, "F"; NULL: it takes none, and is switched on */
     const char *section;   /* "Output", "Picture" or "Light" */
     const char *help;      /* what it does, its range and default, in a sentence without an end */
-    const char *manual;    /* the same at length, with *bold* and _italic_ words; NULL: help says it all */
+    const char *manual;    /* help at length, with *bold* and _italic_ words; NULL: help says it all */
     bool is_of_photon_map; /* a kept photon map was made with one value of it, and is refused for another */
 } ag_setting;
 

@@ -15,7 +15,7 @@ extern "C" {
  *
  * Each call is a directive of pbrt-v4's text (pbrt.org/fileformat-v4), whose types, parameters, units, defaults and
  * limits it has, and goes the way of a file's directive: the picture has the bits of a file that says the same in the
- * same order. What is handed over is copied before the call returns.
+ * same order. What is handed over is copied before the call returns, but for borrowed arrays (ag_shape).
  * Threads: the scene is its context's. Errors of all of them: AG_ERROR_ARGUMENT (what must be there is NULL, a number
  * is not finite, an array is not of the parameter's type, a struct's size is not known, the scene is committed),
  * AG_ERROR_SCENE (as in a file), AG_ERROR_INPUT (a file that a parameter names), AG_ERROR_COLOR, AG_ERROR_MEMORY,
@@ -131,6 +131,13 @@ typedef struct ag_shape {
     const ag_parameter *light_parameters;
     size_t light_parameter_count;
     const char *medium_inside, *medium_outside; /* NULL, the default: none */
+    /* Of a "trianglemesh" the arrays of "P" and "uv", which are then floats, and "indices" are used where they are, and
+     * written by nobody, until the scene is destroyed, or committed without this shape as it was said here; of a scene
+     * that renderings keep, until they are finished. Behind P 4 more bytes must be readable. What changes in them must
+     * be said by ag_scene_change_shape. As far as they cannot be used so they are copied: P where the shape has a
+     * matrix and stands still, or a coordinate is -0; indices where a triangle has no area. Default false: all is
+     * copied. */
+    bool borrows_arrays;
 } ag_shape;
 AG_DEFAULT_STRUCT(shape, AG_STRUCT_SHAPE)
 AG_API ag_status ag_scene_add_shape(ag_scene *scene, const ag_shape *shape, ag_handle *out_handle);

@@ -85,7 +85,7 @@ typedef struct ag_statistics {
     ag_end end;               /* of the last picture, as noted by ag_context_note_end */
     ag_sample_counts samples; /* of the pixels of the last picture */
     double noise;             /* of the last picture, as in ag_noise; below 0: not known */
-    ag_prediction prediction; /* the last one; memory_peak_bytes is 0 where none was made */
+    ag_prediction prediction; /* the last that was made; memory_peak_bytes is 0 where there is none */
 } ag_statistics;
 
 AG_API ag_statistics ag_context_statistics(const ag_context *context);

@@ -12,8 +12,8 @@ static const gltf_texture_use NORMAL = {.is_color = true, .scale = 1.0f};
 static const gltf_texture_use METALLIC = {.channel = TEXTURE_CHANNEL_B, .scale = 1.0f};
 static const gltf_texture_use ROUGHNESS = {.channel = TEXTURE_CHANNEL_G, .scale = 1.0f};
 
-/* What shares of a surface are there: of what gives the base colour, the alpha. base: of pbrMetallicRoughness, or of
- * the extension that replaces it. */
+/* Reads how much of a surface is there: the alpha of its base colour, by alphaMode. base: pbrMetallicRoughness, or the
+ * extension that replaces it. */
 ag_status gltf_read_alpha(gltf_reader *r, const gltf_value *at, const gltf_value *base, const char *texture_key,
                           float factor, gltf_material *out)
 {

@@ -108,7 +108,7 @@ typedef struct gltf_reader {
     bool is_blenders; /* by the exporter of Blender */
 
     gltf_file *buffers;            /* [list_counts[GLTF_BUFFERS]] */
-    gltf_file *images;             /* those of data URIs; [list_counts[GLTF_IMAGES]] */
+    gltf_file *images;             /* [list_counts[GLTF_IMAGES]], of which data URIs alone are filled */
     gltf_material *materials;      /* [list_counts[GLTF_MATERIALS] + 1], the last the default one */
     gltf_mesh_use *mesh_uses;      /* [list_counts[GLTF_MESHES]] */
     gltf_matrix *world_from_nodes; /* [list_counts[GLTF_NODES]] */
@@ -271,7 +271,7 @@ ag_status gltf_add_node_mesh(gltf_reader *r, const gltf_value *node, uint32_t me
 typedef struct gltf_triangles {
     uint32_t *indices; /* 3 per triangle, below the count of vertices; owned */
     uint32_t count;
-    bool is_strip; /* those without area are meant to be there */
+    bool is_strip; /* triangles without area are meant to be there */
 } gltf_triangles;
 
 /* *out_triangles is to be freed; its count is 0 for points and lines, which a warning names. */

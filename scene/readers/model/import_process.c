@@ -119,7 +119,7 @@ static ag_status run_process(const run_context *run, const char *program, const 
     return status != AG_OK ? status : take_answer(answer, out_answer, message, message_size);
 }
 
-/* The same open file by a number that the new process has no other use for. -1 stays -1. */
+/* Another number for an open file, which the new process has no other use for. -1 stays -1. */
 static int beyond_the_workers(int descriptor)
 {
     if (descriptor < 0 || descriptor >= IMPORT_DESCRIPTORS_END)

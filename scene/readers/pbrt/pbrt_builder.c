@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What messages call it that are of no call. */
+/* The scene's name in messages that no call has caused. */
 static const char NAME[] = "scene from memory";
 
 struct pbrt_builder {
@@ -144,7 +144,7 @@ bool pbrt_builder_makes_mesh(const char *type)
 }
 
 ag_status pbrt_builder_mesh(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
-                            pbrt_items items, bool shines, shape *out_mesh)
+                            pbrt_items items, bool shines, const pbrt_borrowed *borrowed, shape *out_mesh)
 {
     static const pbrt_area_light LAMP = {.is_set = true, .radiance_texture = SCENE_NO_TEXTURE, .mean_luminance = 1.0};
     const pbrt_placement alone = {.start = at->start, .end = at->end, .reverse_orientation = at->reverse_orientation};
@@ -153,7 +153,9 @@ ag_status pbrt_builder_mesh(pbrt_builder *b, const pbrt_call *call, const pbrt_p
     const pbrt_mark empty = pbrt_set_mark(parser);
     if (shines)
         parser->state.area_light = LAMP;
+    parser->borrowed = borrowed;
     const ag_status status = direct_at(parser, call, &alone, pbrt_shape, &type, 1, items, NULL);
+    parser->borrowed = NULL;
     parser->state.area_light = (pbrt_area_light){0};
     *out_mesh = shape_make(SHAPE_MESH);
     if (status == AG_OK && s->shape_count > 0) {

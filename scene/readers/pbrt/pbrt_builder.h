@@ -46,12 +46,23 @@ typedef struct pbrt_placement {
 /* emission: of AreaLightSource; NULL: it does not shine. */
 ag_status pbrt_builder_shape(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
                              pbrt_items items, pbrt_items *emission);
+/* Arrays of a trianglemesh that stay the caller's, and where they are for as long as the mesh lives: of numbers that
+ * are finite. Behind positions 4 more bytes can be read. Normals and tangents are parameters. */
+typedef struct pbrt_borrowed {
+    const float *positions; /* [3 * vertex_count] */
+    const float *uvs;       /* [2 * vertex_count], or NULL */
+    const int32_t *indices; /* [index_count] */
+    size_t vertex_count, index_count;
+} pbrt_borrowed;
+
 /* Whether shapes of that type are meshes, whose arrays can be read once and serve in several scenes. */
 bool pbrt_builder_makes_mesh(const char *type);
 /* The mesh that the parameters make where `at` puts it, alone, in a builder that is used for nothing else; without
- * triangles where it would be left out. shines: as a shape that does stands still. The caller's, by shape_reset. */
+ * triangles where it would be left out. shines: as a shape that does stands still. borrowed: instead of P, uv and
+ * indices of a trianglemesh, copied as far as they cannot be used as they are; NULL: nothing is. The caller's, by
+ * shape_reset. */
 ag_status pbrt_builder_mesh(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
-                            pbrt_items items, bool shines, struct shape *out_mesh);
+                            pbrt_items items, bool shines, const pbrt_borrowed *borrowed, struct shape *out_mesh);
 ag_status pbrt_builder_light(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,
                              pbrt_items items);
 ag_status pbrt_builder_camera(pbrt_builder *b, const pbrt_call *call, const pbrt_placement *at, const char *type,

@@ -75,7 +75,7 @@ static ag_status read_metal(pbrt_parser *parser, parameter_list *list, const cha
         AG_TRY(pbrt_get_rgb_texture(parser, list, k, &m->k, &m->k_texture));
         if (!(m->eta.r > 0.0f && m->eta.g > 0.0f && m->eta.b > 0.0f))
             return pbrt_refuse(parser, list, eta, "\"%s\" should be above 0", eta);
-        if (!is_texture(list, eta) && !is_texture(list, k)) /* those are colours to their readers */
+        if (!is_texture(list, eta) && !is_texture(list, k)) /* textures are read as colours, which converts them */
             working_space_metal(&parser->scene->space, &m->eta, &m->k);
         return AG_OK;
     }

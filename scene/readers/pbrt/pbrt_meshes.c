@@ -54,15 +54,6 @@ static bool allocate_arrays(const pbrt_mesh *source, mesh *m)
            (!source->tangents || m->tangents);
 }
 
-static void free_arrays(mesh *m)
-{
-    free(m->positions);
-    free(m->normals);
-    free(m->uvs);
-    free(m->tangents);
-    free(m->indices);
-}
-
 static void copy_vertices(const pbrt_mesh *source, mesh *m)
 {
     for (size_t i = 0; i < source->vertex_count; i++) {
@@ -88,7 +79,8 @@ static bool transform_vertices(const pbrt_state *state, mesh *m)
         vec3 world = transform_point(t, m->positions[i]);
         if (!(vec3_max_abs(world) <= PBRT_MAX_COORDINATE) || !vec3_is_finite(world))
             return false;
-        m->positions[i] = world;
+        if (!(m->borrowed & MESH_BORROWS_POSITIONS)) /* they stay as they are */
+            m->positions[i] = world;
     }
     if (m->normals)
         for (uint32_t i = 0; i < m->vertex_count; i++)
@@ -107,7 +99,8 @@ static size_t drop_degenerate(const vec3 *positions, uint32_t *indices, size_t t
     size_t kept = 0;
     for (size_t i = 0; i < triangle_count; i++)
         if (has_area(positions, indices + 3 * i)) {
-            memmove(indices + 3 * kept, indices + 3 * i, 3 * sizeof *indices);
+            if (kept < i) /* borrowed indices are not written to */
+                memmove(indices + 3 * kept, indices + 3 * i, 3 * sizeof *indices);
             kept++;
         }
     return kept;
@@ -122,7 +115,7 @@ ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, 
     s.as.mesh = *object_mesh;
     mesh *m = &s.as.mesh;
     if (!transform_vertices(state, m)) {
-        free_arrays(m);
+        mesh_reset(m);
         return pbrt_refuse(parser, list, "P", "a vertex lies beyond 1e18 units in world space");
     }
     size_t count = m->triangle_count + dropped, kept = drop_degenerate(m->positions, m->indices, m->triangle_count);
@@ -136,7 +129,7 @@ ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, 
     if (kept == 0) {
         log_at(parser->log, AG_LOG_WARNING, list->where, "Shape \"%s\" is empty and is left out%s", list->name,
                state->area_light.is_set ? ", and its area light with it" : "");
-        free_arrays(m);
+        mesh_reset(m);
         return AG_OK;
     }
     m->triangle_count = (uint32_t)kept;
@@ -147,11 +140,11 @@ ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const p
 {
     mesh m = {.indices = source->indices};
     if (source->vertex_count >= UINT32_MAX / 4 || source->triangle_count >= UINT32_MAX / 4) {
-        free_arrays(&m);
+        mesh_reset(&m);
         return pbrt_refuse(parser, list, "P", "the mesh is too large");
     }
     if (!allocate_arrays(source, &m)) {
-        free_arrays(&m);
+        mesh_reset(&m);
         return AG_ERROR_MEMORY;
     }
     m.vertex_count = (uint32_t)source->vertex_count;
@@ -232,8 +225,115 @@ ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_
     return status;
 }
 
+/* --- borrowed arrays --- */
+
+/* Whether the transform leaves every bit as it is: it turns -0 into 0. */
+static bool stays_as_it_is(const transform *t, const float *numbers, size_t count)
+{
+    const transform identity = transform_identity();
+    if (memcmp(t->m, identity.m, sizeof t->m) != 0)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        if (numbers[i] == 0.0f && signbit(numbers[i]))
+            return false;
+    return true;
+}
+
+static ag_status borrow_positions(const pbrt_parser *parser, const pbrt_borrowed *from, mesh *m)
+{
+    if (stays_as_it_is(&parser->state.world_from_object, from->positions, 3 * from->vertex_count)) {
+        m->positions = (vec3 *)(uintptr_t)from->positions; /* nobody writes there */
+        m->borrowed |= MESH_BORROWS_POSITIONS;
+        return AG_OK;
+    }
+    m->positions = calloc(from->vertex_count + 1, sizeof *m->positions);
+    if (!m->positions)
+        return AG_ERROR_MEMORY;
+    memcpy(m->positions, from->positions, from->vertex_count * sizeof *m->positions);
+    return AG_OK;
+}
+
+/* Once positions are there: they tell whether triangles are to be left out. */
+static ag_status borrow_indices(pbrt_parser *parser, const parameter_list *list, const pbrt_borrowed *from, mesh *m)
+{
+    bool all_have_area = true;
+    for (size_t i = 0; i < from->index_count; i++)
+        if (from->indices[i] < 0 || (size_t)from->indices[i] >= from->vertex_count)
+            return pbrt_refuse(parser, list, "indices",
+                               "index %d (value %zu of \"indices\") is out of range, there are %zu vertices",
+                               (int)from->indices[i], i + 1, from->vertex_count);
+    m->indices = (uint32_t *)(uintptr_t)from->indices; /* likewise */
+    m->borrowed |= MESH_BORROWS_INDICES;
+    for (size_t i = 0; i < m->triangle_count && all_have_area; i++) {
+        vec3 corners[3];
+        static const uint32_t OWN[3] = {0, 1, 2};
+        for (int k = 0; k < 3; k++)
+            corners[k] = transform_point(&parser->state.world_from_object, m->positions[m->indices[3 * i + (size_t)k]]);
+        all_have_area = has_area(corners, OWN);
+    }
+    if (all_have_area)
+        return AG_OK;
+    m->borrowed &= ~(unsigned)MESH_BORROWS_INDICES;
+    m->indices = malloc(from->index_count * sizeof *m->indices);
+    if (!m->indices)
+        return AG_ERROR_MEMORY;
+    memcpy(m->indices, from->indices, from->index_count * sizeof *m->indices);
+    return AG_OK;
+}
+
+/* Directions are made unit, and so copied. */
+static ag_status copy_directions(const double *numbers, size_t vertex_count, vec3 **out)
+{
+    if (!numbers)
+        return AG_OK;
+    *out = malloc(vertex_count * sizeof **out);
+    for (size_t i = 0; *out && i < vertex_count; i++)
+        (*out)[i] = float_direction(numbers + 3 * i);
+    return *out ? AG_OK : AG_ERROR_MEMORY;
+}
+
+static ag_status read_borrowed(pbrt_parser *parser, parameter_list *list, const pbrt_borrowed *from, mesh *m)
+{
+    static const char *const NAMES[] = {"P", "uv", "indices", "faceIndices"};
+    static const parameter_type TYPES[] = {PARAMETER_POINT3, PARAMETER_POINT2, PARAMETER_INTEGER, PARAMETER_INTEGER};
+    const double *normals, *tangents, *unused;
+    size_t unused_count;
+    for (int i = 0; i < 4; i++) /* marks them as known */
+        AG_TRY(parameter_get_numbers(list, parser->log, NAMES[i], TYPES[i], &unused, &unused_count));
+    AG_TRY(read_vertex_data(parser, list, "N", PARAMETER_NORMAL, 3 * from->vertex_count, &normals));
+    AG_TRY(read_vertex_data(parser, list, "S", PARAMETER_VECTOR3, 3 * from->vertex_count, &tangents));
+    parameter_list_warn_unused(list, parser->log);
+    if (from->vertex_count >= UINT32_MAX / 4 || from->index_count / 3 >= UINT32_MAX / 4)
+        return pbrt_refuse(parser, list, "P", "the mesh is too large");
+    if (from->index_count % 3 != 0)
+        return pbrt_refuse(parser, list, "indices", "\"indices\" has %zu values, which is no multiple of 3",
+                           from->index_count);
+    m->vertex_count = (uint32_t)from->vertex_count;
+    m->triangle_count = (uint32_t)(from->index_count / 3);
+    if (from->uvs) {
+        m->uvs = (vec2 *)(uintptr_t)from->uvs;
+        m->borrowed |= MESH_BORROWS_UVS;
+    }
+    AG_TRY(copy_directions(normals, from->vertex_count, &m->normals));
+    AG_TRY(copy_directions(tangents, from->vertex_count, &m->tangents));
+    AG_TRY(borrow_positions(parser, from, m));
+    return borrow_indices(parser, list, from, m);
+}
+
+static ag_status add_borrowed_mesh(pbrt_parser *parser, parameter_list *list)
+{
+    mesh m = {0};
+    const ag_status status = read_borrowed(parser, list, parser->borrowed, &m);
+    if (status == AG_OK)
+        return pbrt_add_object_mesh(parser, list, &m, 0, false);
+    mesh_reset(&m);
+    return status;
+}
+
 ag_status pbrt_triangle_mesh(pbrt_parser *parser, parameter_list *list)
 {
+    if (parser->borrowed)
+        return add_borrowed_mesh(parser, list);
     pbrt_mesh source;
     size_t index_count;
     AG_TRY(pbrt_read_mesh_arrays(parser, list, 3, &source, &index_count));

@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "math/motion.h"
 #include "pbrt/parameter_list.h"
+#include "pbrt/pbrt_builder.h"
 #include "pbrt/pbrt_lexer.h"
 #include "scene.h"
 #include "status.h"
@@ -67,7 +68,7 @@ typedef enum pbrt_target {
 /* One parameter of an Attribute. The parser owns all; the graphics state says which are in force. */
 typedef struct pbrt_attribute {
     parameter item;
-    struct pbrt_attribute *older;        /* of the same target, in force with it */
+    struct pbrt_attribute *older;        /* another of its target, in force with it */
     struct pbrt_attribute *older_of_all; /* for the owner */
     bool is_used;                        /* by any directive that followed */
     const char *target;                  /* "shape", ... */
@@ -188,9 +189,10 @@ typedef struct pbrt_parser {
     bool has_peeked;
     size_t told_bytes; /* of the first file, at the last progress */
 
-    pbrt_given *given; /* borrowed; NULL: tokens come from the files */
-    shape *made_mesh;  /* borrowed: of the shape that is read next, whose arrays are not among its parameters; without
-                          triangles: it was left out. NULL: all are */
+    pbrt_given *given;                    /* borrowed; NULL: tokens come from the files */
+    const struct pbrt_borrowed *borrowed; /* of the trianglemesh that is read next; NULL: nothing is */
+    shape *made_mesh; /* borrowed: of the shape that is read next, whose arrays are not among its parameters; without
+                         triangles: it was left out. NULL: all are */
     pbrt_picture *pictures;
     size_t picture_count;
     parameter_source source;    /* of the lists that are read */
@@ -228,7 +230,7 @@ typedef struct pbrt_parser {
     size_t lamp_copy_count, lamp_copy_vertex_count;         /* that instances have made */
     name_table float_texture_names, spectrum_texture_names; /* to indices of the scene's */
     float alpha;                                            /* of the shape being read */
-    uint32_t alpha_texture;                                 /* likewise */
+    uint32_t alpha_texture;                                 /* of the shape being read */
 } pbrt_parser;
 
 /* Every handler of a directive: where is the directive's location; its name has been read, nothing behind it. */

@@ -1,0 +1,264 @@
+/* test_scene_borrowing.c: meshes whose arrays stay the host's: the bits of copied ones, no copy where none is needed,
+ * no write, and what is changed in them is seen when it is said. Threads: one. */
+#define _GNU_SOURCE
+#include "fixtures/scene_desk.h"
+
+#include <malloc.h>
+#include <sys/mman.h>
+
+enum { SIDE = 200, VERTICES = SIDE * SIDE, TRIANGLES_OF_GRID = 2 * (SIDE - 1) * (SIDE - 1), COUNT = 3 * SIZE * SIZE };
+
+/* A wavy sheet, in memory that can be locked against writing; behind P there is room. */
+typedef struct sheet {
+    float *p, *uv, *n;
+    int32_t *indices;
+    size_t bytes;
+} sheet;
+
+static void *map(size_t bytes)
+{
+    void *at = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_true(at != MAP_FAILED);
+    return at;
+}
+
+static void make_heights(sheet *s, float phase)
+{
+    for (int i = 0; i < VERTICES; i++) {
+        const float x = (float)(i % SIDE) / (SIDE - 1), y = (float)(i / SIDE) / (SIDE - 1);
+        s->p[3 * i] = 2.0f * x - 1.0f;
+        s->p[3 * i + 1] = 2.0f * y - 1.0f;
+        s->p[3 * i + 2] = 0.3f + 0.2f * sinf(9.0f * x + phase) * cosf(7.0f * y);
+        s->uv[2 * i] = x;
+        s->uv[2 * i + 1] = y;
+        s->n[3 * i] = 0.3f * x;
+        s->n[3 * i + 1] = 0.1f;
+        s->n[3 * i + 2] = -2.0f;
+    }
+}
+
+static void make_sheet(sheet *s)
+{
+    s->bytes = VERTICES * 8 * sizeof(float);
+    s->p = map(s->bytes);
+    s->uv = map(s->bytes);
+    s->n = map(s->bytes);
+    s->indices = map(TRIANGLES_OF_GRID * 3 * sizeof *s->indices);
+    make_heights(s, 0.0f);
+    int32_t *to = s->indices;
+    for (int y = 0; y + 1 < SIDE; y++)
+        for (int x = 0; x + 1 < SIDE; x++) {
+            const int32_t at = y * SIDE + x, cell[6] = {at, at + 1, at + SIDE, at + 1, at + SIDE + 1, at + SIDE};
+            memcpy(to, cell, sizeof cell);
+            to += 6;
+        }
+}
+
+static void lock_sheet(sheet *s, int protection)
+{
+    assert_int_equal(mprotect(s->p, s->bytes, protection), 0);
+    assert_int_equal(mprotect(s->uv, s->bytes, protection), 0);
+    assert_int_equal(mprotect(s->n, s->bytes, protection), 0);
+    assert_int_equal(mprotect(s->indices, TRIANGLES_OF_GRID * 3 * sizeof *s->indices, protection), 0);
+}
+
+static void drop_sheet(sheet *s)
+{
+    munmap(s->p, s->bytes);
+    munmap(s->uv, s->bytes);
+    munmap(s->n, s->bytes);
+    munmap(s->indices, TRIANGLES_OF_GRID * 3 * sizeof *s->indices);
+}
+
+typedef struct words {
+    ag_parameter parameters[4];
+    ag_shape shape;
+} words;
+
+static void describe(const sheet *s, bool is_borrowed, bool has_normals, words *w)
+{
+    w->parameters[0] = (ag_parameter){"P", AG_PARAMETER_POINT3, 3 * VERTICES, .floats = s->p};
+    w->parameters[1] = (ag_parameter){"uv", AG_PARAMETER_POINT2, 2 * VERTICES, .floats = s->uv};
+    w->parameters[2] = (ag_parameter){"indices", AG_PARAMETER_INTEGER, 3 * TRIANGLES_OF_GRID, .integers = s->indices};
+    w->parameters[3] = (ag_parameter){"N", AG_PARAMETER_NORMAL, 3 * VERTICES, .floats = s->n};
+    w->shape = ag_default_shape();
+    w->shape.type = "trianglemesh";
+    w->shape.parameters = w->parameters;
+    w->shape.parameter_count = has_normals ? 4 : 3;
+    w->shape.borrows_arrays = is_borrowed;
+}
+
+static void begin_editable(desk *d)
+{
+    begin(d);
+    ag_scene_destroy(d->made);
+    ag_scene_settings settings = ag_default_scene_settings();
+    settings.is_editable = true;
+    assert_int_equal(ag_scene_create(d->context, &settings, &d->made), AG_OK);
+}
+
+static void render_sheet(const sheet *s, bool is_borrowed, int variant, float *out_pixels)
+{
+    desk d;
+    words w;
+    ag_instance shown = ag_default_instance();
+    begin(&d);
+    light_and_look(&d);
+    describe(s, is_borrowed, variant == 1, &w);
+    w.shape.world_from_shape = variant == 2 ? ASIDE : NULL;
+    w.shape.world_from_shape_end = variant == 3 ? ASIDE : NULL;
+    w.shape.is_light = variant == 4;
+    w.shape.object = shown.object = variant == 5 ? "o" : NULL;
+    assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
+    if (variant == 5)
+        assert_int_equal(ag_scene_add_instance(d.made, &shown, NULL), AG_OK);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    render(d.context, d.made, out_pixels);
+    end(&d);
+}
+
+/* Also of read-only memory, which nobody writes to. */
+static void borrowed_arrays_have_the_bits_of_copied_ones(void **state)
+{
+    (void)state;
+    sheet s;
+    float copied[COUNT], borrowed[COUNT];
+    make_sheet(&s);
+    for (int variant = 0; variant < 8; variant++) {
+        if (variant == 6)
+            s.p[100] = -0.0f; /* which the identity makes 0 */
+        if (variant == 7)
+            s.indices[31] = s.indices[30]; /* a triangle without area */
+        lock_sheet(&s, PROT_READ);
+        render_sheet(&s, false, variant, copied);
+        render_sheet(&s, true, variant, borrowed);
+        lock_sheet(&s, PROT_READ | PROT_WRITE);
+        assert_memory_equal(copied, borrowed, sizeof copied);
+    }
+    drop_sheet(&s);
+}
+
+static size_t used_bytes(void)
+{
+    const struct mallinfo2 heap = mallinfo2();
+    return heap.uordblks + heap.hblkhd;
+}
+
+/* The heap, once the call is over: a copy is all arrays, what is borrowed hardly anything. */
+static void borrowed_arrays_take_no_memory(void **state)
+{
+    (void)state;
+    const size_t arrays = VERTICES * 5 * sizeof(float) + TRIANGLES_OF_GRID * 3 * sizeof(int32_t);
+    sheet s;
+    size_t grown[2];
+    make_sheet(&s);
+    for (int is_borrowed = 0; is_borrowed < 2; is_borrowed++) {
+        desk d;
+        words w;
+        begin_editable(&d);
+        light_and_look(&d);
+        describe(&s, is_borrowed, false, &w);
+        const size_t before = used_bytes();
+        assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
+        grown[is_borrowed] = used_bytes() - before;
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        end(&d);
+    }
+    drop_sheet(&s);
+    if (used_bytes() == 0)
+        skip(); /* a sanitizer's heap, which does not tell */
+    assert_true(grown[0] >= arrays);
+    if (grown[1] >= arrays / 100)
+        fail_msg("%zu bytes were taken for arrays of %zu that are borrowed", grown[1], arrays);
+}
+
+/* What the host writes there counts when it says so. */
+static void changed_arrays_are_seen(void **state)
+{
+    (void)state;
+    sheet s;
+    desk d;
+    words w;
+    ag_handle handle;
+    float first[COUNT], changed[COUNT], afresh[COUNT];
+    make_sheet(&s);
+    begin_editable(&d);
+    light_and_look(&d);
+    describe(&s, true, true, &w);
+    assert_int_equal(ag_scene_add_shape(d.made, &w.shape, &handle), AG_OK);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    render(d.context, d.made, first);
+    make_heights(&s, 2.0f);
+    assert_int_equal(ag_scene_change_shape(d.made, handle, &w.shape), AG_OK);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    assert_int_equal(ag_scene_commit_counts(d.made).trees_built, 2);
+    render(d.context, d.made, changed);
+    render_sheet(&s, false, 1, afresh);
+    assert_memory_not_equal(first, changed, sizeof first);
+    assert_memory_equal(changed, afresh, sizeof changed);
+    /* removed, it is no longer needed */
+    assert_int_equal(ag_scene_remove(d.made, handle), AG_OK);
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    drop_sheet(&s);
+    render(d.context, d.made, changed);
+    end(&d);
+}
+
+static void refused(desk *d, const words *w, const char *what)
+{
+    assert_int_equal(ag_scene_add_shape(d->made, &w->shape, NULL), AG_ERROR_ARGUMENT);
+    expect_said(d, what);
+}
+
+static void what_cannot_be_borrowed_is_told(void **state)
+{
+    (void)state;
+    static const double doubles[9] = {0.0};
+    static const float odd[9] = {0.0f, NAN};
+    static const int32_t far[3] = {0, 1, 3};
+    sheet s;
+    desk d;
+    words w;
+    make_sheet(&s);
+    begin_editable(&d);
+    light_and_look(&d);
+    describe(&s, true, false, &w);
+    w.shape.type = "sphere";
+    refused(&d, &w, "of a \"trianglemesh\" alone arrays can be borrowed");
+    describe(&s, true, false, &w);
+    w.parameters[0] = (ag_parameter){"P", AG_PARAMETER_POINT3, 9, .doubles = doubles};
+    refused(&d, &w, "ag_scene_add_shape:2:1: error: \"P\": what is borrowed of it should be floats");
+    w.parameters[0] = (ag_parameter){"P", AG_PARAMETER_POINT3, 8, .floats = odd};
+    refused(&d, &w, "its count is no multiple of 3");
+    w.parameters[0] = (ag_parameter){"P", AG_PARAMETER_POINT3, 9, .floats = odd};
+    refused(&d, &w, "a value is not finite");
+    describe(&s, true, false, &w);
+    w.parameters[1].count = 8;
+    refused(&d, &w, "\"uv\" should have two numbers for each vertex");
+    w.shape.parameter_count = 2;
+    describe(&s, true, false, &w);
+    w.shape.parameter_count = 2;
+    refused(&d, &w, "there should be \"point3 P\" and \"integer indices\"");
+    w.shape.parameters = NULL;
+    refused(&d, &w, "of 2 parameters there is no array");
+    describe(&s, true, false, &w);
+    w.parameters[0].count = 9;
+    w.parameters[1].count = 6;
+    w.parameters[2] = (ag_parameter){"indices", AG_PARAMETER_INTEGER, 3, .integers = far};
+    assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_ERROR_SCENE);
+    expect_said(&d, "index 3 (value 3 of \"indices\") is out of range, there are 3 vertices");
+    assert_int_equal(ag_scene_commit(d.made), AG_OK);
+    drop_sheet(&s);
+    end(&d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(borrowed_arrays_have_the_bits_of_copied_ones, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(borrowed_arrays_take_no_memory, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(changed_arrays_are_seen, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(what_cannot_be_borrowed_is_told, make_folder, remove_folder),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
