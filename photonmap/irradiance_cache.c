@@ -35,10 +35,13 @@ ag_status irradiance_cache_create(photon_map *map, irradiance_cache_mode mode, u
 {
     irradiance_cache c = {.map = map, .mode = mode, .worker_count = worker_count};
     c.counters = aligned_alloc(_Alignof(irradiance_counters), worker_count * sizeof *c.counters);
+    c.shown = aligned_alloc(_Alignof(irradiance_shown), worker_count * sizeof *c.shown);
     c.scratch = calloc(worker_count, sizeof *c.scratch);
-    bool is_complete = c.counters && c.scratch;
+    bool is_complete = c.counters && c.shown && c.scratch;
     for (unsigned i = 0; is_complete && i < worker_count; i++) {
         c.counters[i] = (irradiance_counters){0};
+        store_relaxed_u64(&c.shown[i].requests, 0);
+        store_relaxed_u64(&c.shown[i].computed, 0);
         is_complete = scratch_create(&c.scratch[i], map);
     }
     if (!is_complete) {
@@ -58,6 +61,7 @@ void irradiance_cache_reset(irradiance_cache *cache)
         scratch_reset(&cache->scratch[i]);
     free(cache->scratch);
     free(cache->counters);
+    free(cache->shown);
     *cache = (irradiance_cache){0};
 }
 
@@ -116,6 +120,7 @@ static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claime
                                photon_map_encode_irradiance(cache->map, irradiance, index));
     if (publish(cache->map, index, claimer, word)) {
         cache->counters[worker_index].computed++;
+        store_relaxed_u64(&cache->shown[worker_index].computed, cache->counters[worker_index].computed);
     } else {
         cache->counters[worker_index].duplicated++;
         claim_owners_renew(cache->owners, claimer); /* only in a shared map can a claim be lost */
@@ -320,6 +325,7 @@ void irradiance_cache_get_many(irradiance_cache *cache, const run_context *run, 
     uint64_t *order = put_in_order(map, &cache->scratch[worker_index], queries, count);
     bool is_cached = cache->mode != IRRADIANCE_UNCACHED && map->irradiance_photons.count > 0;
     counters->requests += count;
+    store_relaxed_u64(&cache->shown[worker_index].requests, counters->requests);
     if (is_cached)
         find_irradiance_photons(map, queries, order, count, &counters->rays);
     for (uint32_t k = 0; k < count; k++) {
@@ -379,6 +385,15 @@ rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 norma
     rgb irradiance;
     estimate_at_point(cache, position, normal, worker_index, &irradiance);
     return irradiance;
+}
+
+void irradiance_cache_look(const irradiance_cache *cache, uint64_t *out_requests, uint64_t *out_computed)
+{
+    *out_requests = *out_computed = 0;
+    for (unsigned i = 0; i < cache->worker_count; i++) {
+        *out_requests += load_relaxed_u64(&cache->shown[i].requests);
+        *out_computed += load_relaxed_u64(&cache->shown[i].computed);
+    }
 }
 
 irradiance_counters irradiance_cache_counters(const irradiance_cache *cache)

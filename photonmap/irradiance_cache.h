@@ -44,11 +44,18 @@ typedef struct irradiance_scratch {
     uint64_t *order[2]; /* the same, from one to the other while it is sorted */
 } irradiance_scratch;
 
+/* Of one worker's counters those that anybody may read while it works; relaxed, since they order nothing else. */
+typedef struct irradiance_shown {
+    _Alignas(64) atomic_u64 requests; /* as of the last batch */
+    atomic_u64 computed;
+} irradiance_shown;
+
 typedef struct irradiance_cache {
     photon_map *map; /* borrowed; only its slots change */
     irradiance_cache_mode mode;
     unsigned worker_count;
     irradiance_counters *counters; /* [worker_count] */
+    irradiance_shown *shown;       /* [worker_count] */
     irradiance_scratch *scratch;   /* [worker_count] */
     claim_owners *owners;          /* borrowed; of a map that other processes fill too, else NULL */
     uint64_t ready_before;         /* photons that were ready when the cache was created */
@@ -107,6 +114,10 @@ rgb irradiance_cache_estimate(irradiance_cache *cache, vec3 position, vec3 norma
 
 /* The counters of all workers. */
 irradiance_counters irradiance_cache_counters(const irradiance_cache *cache);
+
+/* How many irradiances have been asked for, in whole batches, and computed at photons, so far: any thread may ask at
+ * any time. */
+void irradiance_cache_look(const irradiance_cache *cache, uint64_t *out_requests, uint64_t *out_computed);
 
 /* CPU seconds spent in all estimates, from those whose time was taken. */
 double irradiance_counters_estimate_seconds(const irradiance_counters *counters);

@@ -288,9 +288,9 @@ static ag_status look_from(ag_rendering *r, const float from[3], const float to[
 }
 
 ag_status ag_rendering_create_view(ag_rendering *beside, const float from[3], const float to[3], const float up[3],
-                                   ag_rendering **out_rendering)
+                                   int reduction, ag_rendering **out_rendering)
 {
-    if (!beside || !from || !to || !up || !out_rendering)
+    if (!beside || !from || !to || !up || reduction < 1 || !out_rendering)
         return AG_ERROR_ARGUMENT;
     ag_rendering *r = calloc(1, sizeof *r);
     if (!r)
@@ -300,6 +300,8 @@ ag_status ag_rendering_create_view(ag_rendering *beside, const float from[3], co
     ag_progress_fn *told = run_silence(&r->context->run);
     r->is_view = true;
     r->settings = beside->settings;
+    r->settings.width = (r->settings.width + reduction - 1) / reduction;
+    r->settings.height = (r->settings.height + reduction - 1) / reduction;
     r->aspect = beside->aspect;
     r->map_name = beside->map_name ? strdup(beside->map_name) : NULL;
     ag_status status = look_from(r, from, to, up);

@@ -54,3 +54,14 @@ ag_statistics ag_rendering_statistics(const ag_rendering *r)
         rendering_count_irradiance(&statistics, r->maps, false);
     return statistics;
 }
+
+void ag_rendering_look(const ag_rendering *r, ag_growth *out)
+{
+    *out = (ag_growth){0};
+    if (!r->maps || !r->t.cache)
+        return;
+    const photon_map *map = &r->maps->global;
+    irradiance_cache_look(&r->maps->cache, &out->irradiance_requests, &out->irradiance_computed);
+    out->irradiance_photons = map->irradiance_photons.count;
+    out->photon_density = r->s->surface_area > 0.0f ? (double)map->tree.count / (double)r->s->surface_area : 0.0;
+}

@@ -2,8 +2,9 @@
 """first_view.py: how long who walks through a scene by --serve waits for the first picture after a move.
 
 Use: perf/scripts/first_view.py PROGRAM SCENE.pbrt [WIDTHxHEIGHT [STEPS [program's options ...]]]
-Prints lines of CSV: scene, state, steps, seconds to the first tiles, seconds to a first full picture (one sample of each
-pixel), CPU seconds of all workers until then; medians of the steps. The camera goes to the side by a fiftieth of the distance to what it looks at, as many steps
+Prints lines of CSV: scene, state, steps; seconds to the first tiles, to a coarse picture of the whole view (a quarter of
+the width and height), to a full one (one sample of each pixel); CPU seconds of all workers to the coarse one and to the
+full one; medians of the steps. The camera goes to the side by a fiftieth of the distance to what it looks at, as many steps
 as are asked for (8), each once the picture before is full. cold: one step from the map as it was traced, no irradiance
 computed yet; warm: after the picture itself has had 4 samples a pixel; again: the same steps once more, backwards.
 """
@@ -22,27 +23,29 @@ def cpu_seconds(state):
 
 
 def step(run, stood, number):
-    """Goes there; seconds to the first tiles, and to a full picture; CPU seconds to that."""
+    """Goes there; seconds to the first tiles, to a coarse picture and to a full one; CPU seconds to those two."""
     asked = run.state()
-    before, worked = asked["turn"], cpu_seconds(asked)
+    before, before_cpu = asked["turn"], cpu_seconds(asked)
     reach = SHARE * number * sum((a - b) ** 2 for a, b in zip(stood["from"], stood["to"])) ** 0.5
     shifted = [x + reach * r for point in ("from", "to") for x, r in zip(stood[point], stood["right"])]
     begun = time.monotonic()
     run.post("/camera", ",".join(repr(x) for x in shifted + stood["up"]).encode())
-    first = None
+    first = coarse = None
     while True:
         state = run.state()
-        now = time.monotonic() - begun
+        now, worked = time.monotonic() - begun, cpu_seconds(state) - before_cpu
         if state["turn"] > before and state["version"] > 0 and first is None:
             first = now
-        if state["turn"] > before and state["samples"]["least"] >= 1:
-            return first, now, cpu_seconds(state) - worked
+        if state["turn"] > before + 1 and coarse is None:
+            coarse = now, worked
+        if state["turn"] > before + 1 and state["samples"]["least"] >= 1:
+            return first, coarse[0], now, coarse[1], worked
         time.sleep(0.01)
 
 
 def tell(name, state, steps):
-    tiles, full, cpu = (statistics.median(values) for values in zip(*steps))
-    print(f"{name},{state},{len(steps)},{tiles:.2f},{full:.2f},{cpu:.2f}", flush=True)
+    medians = ",".join(f"{statistics.median(values):.2f}" for values in zip(*steps))
+    print(f"{name},{state},{len(steps)},{medians}", flush=True)
 
 
 def main(program, scene, size="640x360", steps="8", *options):

@@ -8,6 +8,7 @@
 #include <netinet/in.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,6 +24,7 @@ enum {
     IDLE_SECONDS = 10,           /* of a connection on which nothing moves */
     ANSWER_SECONDS = 30,         /* for an answer to be taken */
     PIECE_BYTES = 8 << 10,
+    LAST_PAUSES = 100,    /* of 5 ms, at most, for answers at the end */
     STACK_BYTES = 8 << 20 /* views of OpenColorIO are made on it */
 };
 
@@ -31,6 +33,7 @@ struct http_server {
     http_guard guard;
     http_answer_fn *answer;
     void *user;
+    atomic_int underway; /* requests that have been let in and not been answered to the end */
 };
 
 /* A request under way: its body as it comes. */
@@ -195,7 +198,7 @@ static http_answer check_request(const http_server *s, struct MHD_Connection *co
 static enum MHD_Result on_request(void *user, struct MHD_Connection *connection, const char *path, const char *method,
                                   const char *version, const char *upload, size_t *upload_size, void **request)
 {
-    const http_server *s = user;
+    http_server *s = user;
     underway *u = *request;
     (void)version;
     if (!u) { /* the headers are there, the body is not */
@@ -203,7 +206,10 @@ static enum MHD_Result on_request(void *user, struct MHD_Connection *connection,
         if (refused.status != 0)
             return send_answer(connection, &refused, true);
         *request = calloc(1, sizeof *u);
-        return *request ? MHD_YES : MHD_NO;
+        if (!*request)
+            return MHD_NO;
+        atomic_fetch_add(&s->underway, 1);
+        return MHD_YES;
     }
     if (*upload_size > 0) {
         if (*upload_size > HTTP_BODY_MOST - u->size)
@@ -222,7 +228,10 @@ static enum MHD_Result on_request(void *user, struct MHD_Connection *connection,
 static void on_end(void *user, struct MHD_Connection *connection, void **request,
                    enum MHD_RequestTerminationCode ending)
 {
-    (void)user, (void)connection, (void)ending;
+    http_server *s = user;
+    (void)connection, (void)ending;
+    if (*request)
+        atomic_fetch_sub(&s->underway, 1);
     free(*request);
     *request = NULL;
 }
@@ -287,12 +296,11 @@ static struct MHD_Daemon *start_daemon(http_server *s, int listener)
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    struct MHD_Daemon *daemon =
-        MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD, 0, NULL, NULL, on_request, s, MHD_OPTION_LISTEN_SOCKET, listener,
-                         MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS_MOST, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-                         (size_t)CONNECTION_BYTES, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_SECONDS,
-                         MHD_OPTION_THREAD_STACK_SIZE, (size_t)STACK_BYTES, MHD_OPTION_STRICT_FOR_CLIENT, 1,
-                         MHD_OPTION_NOTIFY_COMPLETED, on_end, NULL, MHD_OPTION_END);
+    struct MHD_Daemon *daemon = MHD_start_daemon(
+        MHD_USE_AUTO_INTERNAL_THREAD, 0, NULL, NULL, on_request, s, MHD_OPTION_LISTEN_SOCKET, listener,
+        MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS_MOST, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+        (size_t)CONNECTION_BYTES, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_SECONDS, MHD_OPTION_THREAD_STACK_SIZE,
+        (size_t)STACK_BYTES, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_NOTIFY_COMPLETED, on_end, s, MHD_OPTION_END);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return daemon;
 }
@@ -340,8 +348,14 @@ http_server *http_server_start(const char *address, int port, http_answer_fn *an
 
 void http_server_stop(http_server *server)
 {
+    const struct timespec pause = {.tv_nsec = 5000000};
     if (!server)
         return;
+    const int listener = MHD_quiesce_daemon(server->daemon);
+    for (int i = 0; i < LAST_PAUSES && atomic_load(&server->underway) > 0; i++)
+        nanosleep(&pause, NULL); /* who has asked for the end is answered */
     MHD_stop_daemon(server->daemon);
+    if (listener >= 0)
+        close(listener);
     free(server);
 }

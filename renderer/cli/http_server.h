@@ -38,7 +38,7 @@ typedef struct http_server http_server;
  * with the token. NULL: it cannot, and out_why, of why_size bytes, says why. */
 http_server *http_server_start(const char *address, int port, http_answer_fn *answer, void *user, char *out_url,
                                size_t url_size, char *out_why, size_t why_size);
-/* Ends all connections. NULL is fine. */
+/* Ends all connections, in half a second at the most; what is answered within that is. NULL is fine. */
 void http_server_stop(http_server *server);
 
 #endif

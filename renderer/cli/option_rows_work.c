@@ -238,10 +238,9 @@ static const option_row ROWS[] = {
               "says how far the work is and what takes it, and has a button to stop and keep: the picture as of the "
               "last pass over it that is complete is then written, counts as complete, and the exit status is 0; with "
               "*--checkpoint* a checkpoint stays for *--resume*. Keys and mouse move the camera, where *Walk* is chosen "
-              "on the page: the scene is then rendered from elsewhere, on the same photon map, while the picture waits "
-              "for *Back to the picture*, or for nobody to look any more; *Stop and keep* writes what is seen from there. "
-              "The picture that is written otherwise has the same bits "
-              "as without the page. While the page is looked at, the program does not end when the files are "
+              "on the page: the scene is then rendered from elsewhere, on the same photon map, coarsely first, while the "
+              "picture waits for *Back to the picture*, or for nobody to look any more; *Stop and keep* writes what is "
+              "seen from there. The picture that is written otherwise has the same bits as without the page. While the page is looked at, the program does not end when the files are "
               "written, but for *--time-limit*, until *Stop* is pressed. Requests without the token are "
               "refused, as are those under another machine's name or from another site's page; none names a file. The "
               "film is in memory twice, which *--memory* does not predict."},

@@ -39,6 +39,7 @@ static void forget_film(page_film *f)
     f->layer_count = 0;
     f->film = NULL;
     f->context = NULL;
+    f->rendering = NULL;
 }
 
 void page_film_reset(page_film *f)
@@ -57,15 +58,31 @@ static void take_lock(page_film *f)
     atomic_store(&f->is_wanted_by_main, false);
 }
 
-static ag_status take_film(page_film *f, ag_context *context, const ag_film *film, const ag_output_settings *output)
+/* By the nearest pixels: until there are new ones. */
+static void copy_resized(const float *from, int from_width, int from_height, float *to, int width, int height)
 {
+    for (int y = 0; y < height; y++) {
+        const float *row = from + 3 * (size_t)((long)y * from_height / height) * (size_t)from_width;
+        for (int x = 0; x < width; x++, to += 3)
+            memcpy(to, row + 3 * ((long)x * from_width / width), 3 * sizeof *to);
+    }
+}
+
+static ag_status take_film(page_film *f, ag_context *context, const ag_rendering *rendering,
+                           const ag_output_settings *output)
+{
+    const ag_film *film = ag_rendering_film(rendering);
+    const char *display, *view;
     int width, height;
     const ag_view *first;
     forget_film(f);
     ag_film_pixels(film, &width, &height);
     if (width != f->width || height != f->height || !f->pixels) {
-        free(f->pixels);
+        float *before = f->pixels;
         f->pixels = calloc(3 * (size_t)width * (size_t)height, sizeof *f->pixels);
+        if (before && f->pixels)
+            copy_resized(before, f->width, f->height, f->pixels, width, height);
+        free(before);
     }
     f->width = width;
     f->height = height;
@@ -78,13 +95,16 @@ static ag_status take_film(page_film *f, ag_context *context, const ag_film *fil
         return AG_ERROR_MEMORY;
     f->film = film;
     f->context = context;
+    f->rendering = rendering;
+    AG_TRY(ag_color_view_at(context, 0, &display, &view));            /* from here on any thread may ask */
     return page_film_view(f, "", "", output->exposure_stops, &first); /* what is wrong with it shows at once */
 }
 
-ag_status page_film_show(page_film *f, ag_context *context, const ag_film *film, const ag_output_settings *output)
+ag_status page_film_show(page_film *f, ag_context *context, const ag_rendering *rendering,
+                         const ag_output_settings *output)
 {
     take_lock(f);
-    const ag_status status = take_film(f, context, film, output);
+    const ag_status status = take_film(f, context, rendering, output);
     if (status != AG_OK)
         forget_film(f);
     pthread_mutex_unlock(&f->lock);
@@ -115,6 +135,13 @@ void page_film_copy_layers(page_film *f)
             planes->values = NULL;
         }
     }
+    pthread_mutex_unlock(&f->lock);
+}
+
+void page_film_end_rendering(page_film *f)
+{
+    take_lock(f);
+    f->rendering = NULL;
     pthread_mutex_unlock(&f->lock);
 }
 

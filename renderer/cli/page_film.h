@@ -31,10 +31,11 @@ typedef struct page_planes {
 typedef struct page_film {
     pthread_mutex_t lock; /* of all but the next */
     atomic_bool is_wanted_by_main;
-    const ag_film *film;       /* borrowed; NULL: there is none */
-    ag_context *context;       /* borrowed, likewise */
-    ag_output_settings output; /* the command line's: display, view, look, exposure */
-    uint64_t turn;             /* which of the films it is, from 1 on */
+    const ag_film *film;           /* borrowed; NULL: there is none */
+    ag_context *context;           /* borrowed, likewise */
+    const ag_rendering *rendering; /* borrowed: that the film is of; NULL: it has ended */
+    ag_output_settings output;     /* the command line's: display, view, look, exposure */
+    uint64_t turn;                 /* which of the films it is, from 1 on */
     int width, height;
     float *pixels;    /* owned: the picture as it was read last */
     uint64_t version; /* of those */
@@ -50,9 +51,12 @@ void page_film_reset(page_film *f);
 
 /* --- main --- */
 
-/* From now on this film is shown, until page_film_leave. Where one of the same size was shown before, its picture stays
+/* From now on this rendering's film is shown, until page_film_leave. What was shown before stays, in the new size,
  * until there are new tiles over it. Errors: AG_ERROR_MEMORY, those of ag_view_create. */
-ag_status page_film_show(page_film *f, ag_context *context, const ag_film *film, const ag_output_settings *output);
+ag_status page_film_show(page_film *f, ag_context *context, const ag_rendering *rendering,
+                         const ag_output_settings *output);
+/* The rendering is about to end; its film stays. */
+void page_film_end_rendering(page_film *f);
 /* Copies the layers that were asked for in the last half minute; not while the film is being rendered. Without memory
  * there are none. */
 void page_film_copy_layers(page_film *f);

@@ -185,13 +185,13 @@ void page_server_stop(page_server *server)
     free(server);
 }
 
-ag_status page_server_show(page_server *server, ag_context *context, const ag_film *film,
+ag_status page_server_show(page_server *server, ag_context *context, const ag_rendering *rendering,
                            const ag_output_settings *output, const page_notes *notes)
 {
     if (!server)
         return AG_OK;
     page_state_note(&server->state, notes);
-    AG_TRY(page_film_show(&server->film, context, film, output));
+    AG_TRY(page_film_show(&server->film, context, rendering, output));
     page_wishes_attend(&server->wishes, context);
     return AG_OK;
 }
@@ -210,6 +210,12 @@ void page_server_set_mode(page_server *server, page_mode mode)
 {
     if (server)
         page_state_set_mode(&server->state, mode);
+}
+
+void page_server_end_rendering(page_server *server)
+{
+    if (server)
+        page_film_end_rendering(&server->film);
 }
 
 void page_server_leave_film(page_server *server) { page_film_leave(&server->film); }

@@ -20,10 +20,12 @@ ag_status page_server_start(const char *address, int port, const progress *told,
 /* Ends all connections. server NULL is fine, here and below. */
 void page_server_stop(page_server *server);
 
-/* Shows a film of the context, and pauses its renderings for wishes; borrowed until page_server_leave. Errors: those of
+/* Shows a rendering of the context, and pauses it for wishes; borrowed until page_server_leave. Errors: those of
  * page_film_show. */
-ag_status page_server_show(page_server *server, ag_context *context, const ag_film *film,
+ag_status page_server_show(page_server *server, ag_context *context, const ag_rendering *rendering,
                            const ag_output_settings *output, const page_notes *notes);
+/* The rendering is about to end; its film is still shown. */
+void page_server_end_rendering(page_server *server);
 /* Tells what there is after a pass or in a pause, when no rendering is under way, and copies layers. */
 void page_server_note(page_server *server, const page_notes *notes);
 /* Copies layers alone, when no rendering is under way. */

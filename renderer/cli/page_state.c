@@ -75,7 +75,8 @@ static void write_camera(FILE *out, const page_notes *n)
     fprintf(out, ", \"fov\": %.9g}", (double)n->fov_degrees);
 }
 
-static void write_counts(FILE *out, const ag_statistics *c)
+/* growth: what there is by now, where that can be asked. */
+static void write_counts(FILE *out, const ag_statistics *c, const ag_growth *growth)
 {
     const struct {
         const char *name;
@@ -84,8 +85,8 @@ static void write_counts(FILE *out, const ag_statistics *c)
         {"photons in the map", c->photons_stored_global},
         {"caustic photons", c->photons_stored_caustic},
         {"bytes of photons", c->photon_bytes},
-        {"irradiance asked for", c->irradiance_requests},
-        {"irradiance computed", c->irradiance_computed},
+        {"irradiance asked for", growth ? growth->irradiance_requests : c->irradiance_requests},
+        {"irradiance computed", growth ? growth->irradiance_computed : c->irradiance_computed},
         {"ready before", c->irradiance_ready},
         {"deferred", c->irradiance_deferred},
         {"waited", c->irradiance_waited},
@@ -101,6 +102,9 @@ static void write_counts(FILE *out, const ag_statistics *c)
     fputs(", \"counts\": {", out);
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         fprintf(out, "%s\"%s\": %" PRIu64, i > 0 ? ", " : "", counts[i].name, counts[i].value);
+    if (growth)
+        fprintf(out, ", \"of so many photons\": %" PRIu64 ", \"photons per area\": %.6g", growth->irradiance_photons,
+                growth->photon_density);
     fputs("}", out);
 }
 
@@ -128,6 +132,8 @@ char *page_state_write(page_state *s, page_film *film, size_t *out_size)
     char *text = NULL;
     uint64_t turn = 0, version = 0;
     int width = 0, height = 0;
+    ag_growth growth;
+    bool has_growth = false;
     FILE *out = open_memstream(&text, out_size);
     if (!out)
         return NULL;
@@ -140,6 +146,9 @@ char *page_state_write(page_state *s, page_film *film, size_t *out_size)
         turn = film->turn;
         width = film->width;
         height = film->height;
+        has_growth = film->rendering != NULL;
+        if (has_growth)
+            ag_rendering_look(film->rendering, &growth);
         page_film_end(film);
     }
     fprintf(out, "{\"mode\": \"%s\", \"turn\": %" PRIu64 ", \"version\": %" PRIu64 ", \"width\": %d, \"height\": %d",
@@ -150,7 +159,7 @@ char *page_state_write(page_state *s, page_film *film, size_t *out_size)
     if (n.noise >= 0.0)
         fprintf(out, ", \"noise\": %.3g", n.noise);
     write_camera(out, &n);
-    write_counts(out, &n.counts);
+    write_counts(out, &n.counts, has_growth ? &growth : NULL);
     write_threads(out, s->main_thread);
     fputs("}\n", out);
     return finish(out, &text, ferror(out) == 0);

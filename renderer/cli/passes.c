@@ -154,7 +154,7 @@ static ag_status show_page(const passes *p, page_mode mode)
     if (!o->page)
         return AG_OK;
     const page_notes notes = walk_notes(p->rendering, mode, p->final);
-    return page_server_show(o->page, p->context, ag_rendering_film(p->rendering), &o->output, &notes);
+    return page_server_show(o->page, p->context, p->rendering, &o->output, &notes);
 }
 
 /* Goes for a walk where that is wished for; back from it the picture is shown again, or p->kept is there. */
@@ -379,6 +379,7 @@ static ag_status write_and_wait(passes *p, const ag_render_settings *settings, p
     const bool stays = is_looked_at(p) && !p->o->photons_only && !result->is_partial && failed == AG_OK;
     ag_status status = AG_OK;
     if (!stays) {
+        page_server_end_rendering(p->o->page);
         ag_rendering_finish(p->rendering, &out_films[0]);
         p->rendering = NULL;
     }
@@ -391,6 +392,7 @@ static ag_status write_and_wait(passes *p, const ag_render_settings *settings, p
     if (status == AG_OK && stays)
         status = await_page(p);
     if (stays) {
+        page_server_end_rendering(p->o->page);
         ag_rendering_finish(p->rendering, &out_films[0]);
         p->rendering = NULL;
     }

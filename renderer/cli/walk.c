@@ -8,6 +8,9 @@
 #include <math.h>
 
 static const double LOOK_SECONDS = 0.1;
+/* After a move a coarse picture comes first, of so many times fewer pixels in width and height, where that is worth it:
+ * whoever walks sees where he is. */
+enum { REDUCTION = 4, WORTHWHILE_PIXELS = 1 << 15 };
 /* A pass takes about so long, so that layers and counters follow. */
 static const double PASS_SECONDS = 1.0;
 
@@ -27,6 +30,7 @@ page_notes walk_notes(ag_rendering *rendering, page_mode mode, int samples_most)
 typedef struct walk_state {
     ag_rendering *view; /* NULL: nowhere yet */
     page_place place;
+    bool is_coarse;
     int samples; /* that the next pass brings pixels to */
     bool is_done;
 } walk_state;
@@ -40,23 +44,31 @@ static page_notes notes_of(const walk *w, const walk_state *s)
 }
 
 /* Goes to a place. One that makes no sense is told of in the log, and is stayed away from. */
-static ag_status go(const walk *w, const page_place *place, walk_state *s)
+static ag_status go(const walk *w, const page_place *place, bool is_coarse, walk_state *s)
 {
     ag_rendering *next = NULL;
-    ag_status status = ag_rendering_create_view(w->beside, place->from, place->to, place->up, &next);
+    ag_status status =
+        ag_rendering_create_view(w->beside, place->from, place->to, place->up, is_coarse ? REDUCTION : 1, &next);
     if (status == AG_ERROR_ARGUMENT)
         return AG_OK;
     AG_TRY(status);
     ag_rendering *before = s->view;
-    *s = (walk_state){.view = next, .place = *place, .samples = 1};
+    *s = (walk_state){.view = next, .place = *place, .is_coarse = is_coarse, .samples = 1};
     const page_notes notes = notes_of(w, s);
     status = ag_rendering_keep_passes(next);
     if (status == AG_OK)
-        status = page_server_show(w->o->page, w->context, ag_rendering_film(next), &w->o->output, &notes);
+        status = page_server_show(w->o->page, w->context, next, &w->o->output, &notes);
     if (status != AG_OK)
         page_server_leave_film(w->o->page);
     ag_rendering_finish(before, NULL);
     return status;
+}
+
+/* The coarse picture is there: the whole one is begun. */
+static ag_status go_on(const walk *w, walk_state *s)
+{
+    const page_place place = s->place;
+    return go(w, &place, false, s);
 }
 
 /* Renders a pass, or as much of it as there is before a wish. */
@@ -69,6 +81,8 @@ static ag_status refine(const walk *w, walk_state *s)
         return status == AG_PAUSED ? AG_OK : status;
     const page_notes notes = notes_of(w, s);
     page_server_note(w->o->page, &notes);
+    if (s->is_coarse)
+        return page_wishes_has_move(page_server_wishes(w->o->page)) ? AG_OK : go_on(w, s);
     s->is_done = s->samples == w->samples_most;
     const double each = (passes_seconds() - begun) / fmax(counts.mean - before, 1e-9);
     const double more = fmin(fmax(1.0, PASS_SECONDS / fmax(each, 1e-9)), s->samples);
@@ -87,14 +101,21 @@ static bool is_over(const walk *w, page_wishes *wishes)
 /* Whether to stop, with samples that can be kept. */
 static bool is_kept(page_wishes *wishes, walk_state *s)
 {
-    return s->view && page_wishes_has_end(wishes) && ag_rendering_go_back(s->view) == AG_OK;
+    return s->view && !s->is_coarse && page_wishes_has_end(wishes) && ag_rendering_go_back(s->view) == AG_OK;
+}
+
+static bool is_large(const ag_rendering *rendering)
+{
+    int width, height;
+    ag_film_pixels(ag_rendering_film(rendering), &width, &height);
+    return (size_t)width * (size_t)height >= WORTHWHILE_PIXELS;
 }
 
 static ag_status step(const walk *w, page_wishes *wishes, walk_state *s)
 {
     page_place place;
     if (page_wishes_take_move(wishes, &place))
-        AG_TRY(go(w, &place, s));
+        AG_TRY(go(w, &place, is_large(w->beside), s));
     if (s->view && !s->is_done)
         AG_TRY(refine(w, s));
     else if (s->view)

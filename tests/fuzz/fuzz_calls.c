@@ -184,6 +184,23 @@ static const double *matrix(host *h, int set)
     return h->matrices[set];
 }
 
+/* Arrays that stay as they are, as the interface asks for; now and then none that can be borrowed. */
+static void borrow(host *h, ag_shape *s)
+{
+    static const float POINTS[13] = {-1, -1, 2, 1, -1, 2, 1, 1, 2, -1, 1, 2, 0}, UVS[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+    static const int32_t INDICES[] = {0, 1, 2, 0, 2, 3, 1, 1, 2, 0, 4, -1};
+    s->borrows_arrays = true;
+    if (seldom(h))
+        return;
+    const ag_parameter all[] = {
+        {"P", AG_PARAMETER_POINT3, 12 - choose(h, 2) * choose(h, 3), POINTS, NULL, NULL, NULL, NULL},
+        {"indices", AG_PARAMETER_INTEGER, 6 + (size_t)choose(h, 2) * choose(h, 7), NULL, NULL, INDICES, NULL, NULL},
+        {"uv", AG_PARAMETER_POINT2, 8, UVS, NULL, NULL, NULL, NULL}};
+    memcpy(h->parameters[0], all, sizeof all);
+    s->parameters = h->parameters[0];
+    s->parameter_count = 2 + choose(h, 2);
+}
+
 static ag_shape describe_shape(host *h)
 {
     ag_shape s = ag_default_shape();
@@ -198,6 +215,8 @@ static ag_shape describe_shape(host *h)
     s.light_parameter_count = s.is_light ? parameters(h, 1, &s.light_parameters) : 0;
     s.medium_inside = choose(h, 4) ? NULL : name(h);
     s.reverse_orientation = choose(h, 2) != 0;
+    if (choose(h, 4) == 0)
+        borrow(h, &s);
     return s;
 }
 

@@ -81,7 +81,7 @@ static void a_view_has_the_bits_of_a_fresh_rendering(void **state)
     ag_rendering_find_place(b.first, from, to, up, right, &fov);
     assert_true(fov > 0.0f);
     assert_int_equal(ag_rendering_continue(b.first, 1), AG_OK);
-    assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, UP, &view), AG_OK);
+    assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, UP, 1, &view), AG_OK);
     assert_int_equal(ag_rendering_continue(view, 1), AG_OK); /* in turns */
     assert_int_equal(ag_rendering_continue(b.first, 2), AG_OK);
     assert_int_equal(ag_rendering_continue(view, SAMPLES), AG_OK);
@@ -114,16 +114,21 @@ static void either_may_end_first(void **state)
     ag_rendering *view, *other;
     float seen[2][VALUES];
     open_bench(&b, NULL);
-    assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, UP, &view), AG_OK);
+    assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, UP, 1, &view), AG_OK);
     assert_int_equal(ag_rendering_continue(b.first, 1), AG_OK);
     const uint64_t asked = ag_rendering_statistics(b.first).irradiance_requests;
     assert_true(asked > 0);
+    ag_growth growth;
+    ag_rendering_look(view, &growth); /* of the map, whoever asks */
+    assert_int_equal(growth.irradiance_requests, asked);
+    assert_true(growth.irradiance_computed > 0 && growth.irradiance_computed <= growth.irradiance_photons);
+    assert_true(growth.photon_density > 0.0);
     assert_int_equal(ag_context_statistics(b.d.context).irradiance_requests, 0);
     ag_rendering_finish(b.first, NULL);
     b.first = NULL;
     assert_int_equal(ag_context_statistics(b.d.context).irradiance_requests, asked);
     assert_int_equal(ag_rendering_continue(view, SAMPLES), AG_OK);
-    assert_int_equal(ag_rendering_create_view(view, FROM, TO, UP, &other), AG_OK);
+    assert_int_equal(ag_rendering_create_view(view, FROM, TO, UP, 1, &other), AG_OK);
     assert_int_equal(ag_rendering_continue(other, SAMPLES), AG_OK);
     copy_pixels(view, seen[0]);
     copy_pixels(other, seen[1]);
@@ -144,7 +149,7 @@ static void a_place_can_be_found_and_gone_to(void **state)
     float from[3], to[3], up[3], right[3], fov;
     static const float nan3[3] = {NAN, 0, 0};
     open_bench(&b, NULL);
-    assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, UP, &view), AG_OK);
+    assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, UP, 1, &view), AG_OK);
     ag_rendering_find_place(view, from, to, up, right, &fov);
     float along = 0.0f, length = 0.0f;
     for (int i = 0; i < 3; i++) {
@@ -154,11 +159,34 @@ static void a_place_can_be_found_and_gone_to(void **state)
     }
     assert_true(along > 0.0f && right[0] < -0.9f && up[1] > 0.9f && length > 0.0f);
     ag_rendering_finish(view, NULL);
-    assert_int_equal(ag_rendering_create_view(b.first, FROM, FROM, UP, &none), AG_ERROR_ARGUMENT);
-    assert_int_equal(ag_rendering_create_view(b.first, nan3, TO, UP, &none), AG_ERROR_ARGUMENT);
-    assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, (const float[3]){0}, &none), AG_ERROR_ARGUMENT);
-    assert_int_equal(ag_rendering_create_view(NULL, FROM, TO, UP, &none), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_rendering_create_view(b.first, FROM, FROM, UP, 1, &none), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_rendering_create_view(b.first, nan3, TO, UP, 1, &none), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, (const float[3]){0}, 1, &none), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, UP, 0, &none), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_rendering_create_view(NULL, FROM, TO, UP, 1, &none), AG_ERROR_ARGUMENT);
     assert_null(none);
+    close_bench(&b);
+}
+
+static void a_coarse_view_shows_the_same(void **state)
+{
+    (void)state;
+    bench b;
+    ag_rendering *view[2];
+    double mean[2] = {0.0, 0.0};
+    open_bench(&b, NULL);
+    for (int i = 0; i < 2; i++) {
+        int width, height;
+        assert_int_equal(ag_rendering_create_view(b.first, FROM, TO, UP, i == 0 ? 1 : 4, &view[i]), AG_OK);
+        assert_int_equal(ag_rendering_continue(view[i], SAMPLES), AG_OK);
+        const float *pixels = ag_film_pixels(ag_rendering_film(view[i]), &width, &height);
+        assert_int_equal(width, i == 0 ? SIZE : SIZE / 4);
+        assert_int_equal(height, i == 0 ? SIZE : SIZE / 4);
+        for (int k = 0; k < 3 * width * height; k++)
+            mean[i] += (double)fminf(pixels[k], 1.0f) / (3.0 * width * height);
+        ag_rendering_finish(view[i], NULL);
+    }
+    assert_true(fabs(mean[1] - mean[0]) < 0.15 * mean[0]);
     close_bench(&b);
 }
 
@@ -197,6 +225,7 @@ int main(void)
         TEST_IN_FOLDER(a_view_has_the_bits_of_a_fresh_rendering),
         TEST_IN_FOLDER(either_may_end_first),
         TEST_IN_FOLDER(a_place_can_be_found_and_gone_to),
+        TEST_IN_FOLDER(a_coarse_view_shows_the_same),
         TEST_IN_FOLDER(whole_passes_are_gone_back_to),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -27,10 +27,11 @@ AG_API ag_status ag_rendering_create(ag_context *context, const ag_scene *scene,
  * another, in world space, with a direction that is up. It shares that one's photon map and irradiances, to which it
  * adds; either may be finished first, and they take turns in ag_rendering_continue. The other's bits stay; its own
  * are those of a rendering of that camera on that map. The camera is the scene's but for its place: projection, lens
- * and exposure stay, and it stands still. No progress is told of it. Errors: AG_ERROR_ARGUMENT (up is along the way, or
+ * and exposure stay, and it stands still. reduction: 1, or more for a coarse picture first, of so many times fewer
+ * pixels in width and in height. No progress is told of it. Errors: AG_ERROR_ARGUMENT (up is along the way, or
  * there is none), AG_ERROR_SYSTEM (the photon map's file was changed meanwhile), AG_ERROR_MEMORY, AG_CANCELLED. */
 AG_API ag_status ag_rendering_create_view(ag_rendering *beside, const float from[3], const float to[3],
-                                          const float up[3], ag_rendering **out_rendering);
+                                          const float up[3], int reduction, ag_rendering **out_rendering);
 /* Tells where a rendering's camera is when the shutter opens, as ag_rendering_create_view takes it: out_to is what the
  * middle of the picture shows, or far away where that is nothing; out_right: to the right in the picture.
  * out_fov_degrees: of a pinhole, across the shorter image axis, as camera_fov_degrees of ag_scene_settings; 0: the

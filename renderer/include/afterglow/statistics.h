@@ -92,6 +92,15 @@ AG_API ag_statistics ag_context_statistics(const ag_context *context);
 /* ag_context_statistics, with the irradiances that a rendering under way has asked for so far, which count there only
  * when it is finished; without irradiance_distinct. */
 AG_API ag_statistics ag_rendering_statistics(const ag_rendering *rendering);
+/* How a rendering's photon map is and grows, for who watches: any thread may ask, from ag_rendering_create on until the
+ * rendering is finished. All 0 where it has no map. */
+typedef struct ag_growth {
+    uint64_t irradiance_requests; /* asked for so far, by all renderings that share the map */
+    uint64_t irradiance_computed; /* at photons, likewise */
+    uint64_t irradiance_photons;  /* that irradiance can be kept at */
+    double photon_density;        /* photons of the global map per area of all surfaces, 1/m^2 */
+} ag_growth;
+AG_API void ag_rendering_look(const ag_rendering *rendering, ag_growth *out_growth);
 /* To be called when a rendering is finished, by who ended it; for the statistics. */
 AG_API void ag_context_note_end(ag_context *context, ag_end end);
 
