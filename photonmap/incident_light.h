@@ -2,7 +2,8 @@
  * Rests on: Jensen, "Importance Driven Path Tracing using the Photon Map", 1995 (directions from a histogram of photons
  * over the square that the cosine's distribution is warped from); Guo et al., "Primary Sample Space Path Sampling",
  * 2018 (that square as the domain of guiding); Veach, Guibas, "Optimally Combining Sampling Techniques", 1995.
- * Flow: photon_map -> [here] -> final_gather. Threads: built by one caller on the run's workers; then read-only.
+ * Flow: photon_map -> [here] -> final_gather; importons -> [here] -> photon_path. Threads: built by one caller on the
+ * run's workers; then read-only.
  *
  * A cell is a run of neighbours in the map's order: all of a subtree. In each, photons are parted by the axis that
  * their normal is nearest to, six ways; whatever else mixes there only costs some of the gain. Each part is a histogram

@@ -93,7 +93,7 @@ static void add_sides(const transport *t, const vertex *v, row_items *out, int w
         add_point(out, which, at.position, vec3_negate(at.facing_normal));
 }
 
-/* Looks for a lamp that is picked by its power, as photons' are, from a white vertex, and notes how a photon begins
+/* Looks for a lamp that is picked by its power, as photons' are, from a vertex, and notes how a photon begins
  * that comes straight from there. throughput: of the light that the vertex sends back. */
 static void look_for_lamp(const transport *t, eye_worker *worker, const vertex *v, rgb throughput, rng random,
                           row_items *out)
