@@ -351,8 +351,10 @@ ag_status ag_rendering_continue(ag_rendering *r, int samples_per_pixel)
     phase_begin begin = context_begin_phase();
     ag_progress_fn *told = r->is_view ? run_silence(&context->run) : NULL;
     ag_status status = check_map(r, render_pass(r, wanted));
-    if (status == AG_OK && r->keeps_passes)
-        status = film_copy_take(r->film, &r->whole);
+    if (status == AG_OK && r->keeps_passes && film_copy_take(r->film, &r->whole) != AG_OK) {
+        r->keeps_passes = false;
+        log_message(context->log, AG_LOG_WARNING, "there is no memory to put the picture of a pass aside");
+    }
     if (status == AG_OK)
         run_progress(&context->run, AG_PHASE_RENDER, (double)wanted / (double)r->settings.samples_per_pixel);
     r->seconds += context_add_to_phase(context, AG_PHASE_RENDER, begin);

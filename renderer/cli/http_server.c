@@ -19,7 +19,8 @@
 #include <unistd.h>
 
 enum {
-    CONNECTIONS_MOST = 48,
+    CONNECTIONS_MOST = 48,       /* with more, the one that has been without a whole request for longest is closed */
+    CONNECTIONS_OVER = 16,       /* that may be there until that has happened */
     CONNECTION_BYTES = 16 << 10, /* of headers and what is sent at once */
     IDLE_SECONDS = 10,           /* of a connection on which nothing moves */
     ANSWER_SECONDS = 30,         /* for an answer to be taken */
@@ -33,6 +34,12 @@ struct http_server {
     http_guard guard;
     http_answer_fn *answer;
     void *user;
+    struct visitor {
+        bool is_there, is_asking; /* asking: its request has been let in, and not been answered to the end */
+        int socket;
+        uint64_t since; /* a number that grows with each connection and each request that has ended */
+    } visitors[CONNECTIONS_MOST + CONNECTIONS_OVER]; /* the server's thread's */
+    uint64_t turn;
     atomic_int underway; /* requests that have been let in and not been answered to the end */
 };
 
@@ -195,6 +202,56 @@ static http_answer check_request(const http_server *s, struct MHD_Connection *co
     return (http_answer){0};
 }
 
+/* --- who is there --- */
+
+/* Closes the connection that has waited for longest without a whole request, where there are too many: slow ones do not
+ * keep others out. */
+static void make_room(http_server *s)
+{
+    struct visitor *oldest = NULL;
+    int count = 0;
+    for (size_t i = 0; i < sizeof s->visitors / sizeof *s->visitors; i++) {
+        struct visitor *v = &s->visitors[i];
+        count += v->is_there;
+        if (v->is_there && !v->is_asking && (!oldest || v->since < oldest->since))
+            oldest = v;
+    }
+    if (count <= CONNECTIONS_MOST || !oldest)
+        return;
+    shutdown(oldest->socket, SHUT_RDWR); /* libmicrohttpd sees its end, and closes it */
+    oldest->since = ++s->turn;
+}
+
+static void on_visit(void *user, struct MHD_Connection *connection, void **visitor,
+                     enum MHD_ConnectionNotificationCode what)
+{
+    http_server *s = user;
+    if (what == MHD_CONNECTION_NOTIFY_CLOSED) {
+        if (*visitor)
+            *(struct visitor *)*visitor = (struct visitor){0};
+        *visitor = NULL;
+        return;
+    }
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    for (size_t i = 0; info && i < sizeof s->visitors / sizeof *s->visitors; i++)
+        if (!s->visitors[i].is_there) {
+            s->visitors[i] = (struct visitor){.is_there = true, .socket = info->connect_fd, .since = ++s->turn};
+            *visitor = &s->visitors[i];
+            break;
+        }
+    make_room(s);
+}
+
+static void set_asking(http_server *s, struct MHD_Connection *connection, bool is_asking)
+{
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    struct visitor *v = info ? info->socket_context : NULL;
+    if (!v)
+        return;
+    v->is_asking = is_asking;
+    v->since = ++s->turn;
+}
+
 static enum MHD_Result on_request(void *user, struct MHD_Connection *connection, const char *path, const char *method,
                                   const char *version, const char *upload, size_t *upload_size, void **request)
 {
@@ -209,6 +266,7 @@ static enum MHD_Result on_request(void *user, struct MHD_Connection *connection,
         if (!*request)
             return MHD_NO;
         atomic_fetch_add(&s->underway, 1);
+        set_asking(s, connection, true);
         return MHD_YES;
     }
     if (*upload_size > 0) {
@@ -229,9 +287,11 @@ static void on_end(void *user, struct MHD_Connection *connection, void **request
                    enum MHD_RequestTerminationCode ending)
 {
     http_server *s = user;
-    (void)connection, (void)ending;
-    if (*request)
+    (void)ending;
+    if (*request) {
         atomic_fetch_sub(&s->underway, 1);
+        set_asking(s, connection, false);
+    }
     free(*request);
     *request = NULL;
 }
@@ -298,9 +358,10 @@ static struct MHD_Daemon *start_daemon(http_server *s, int listener)
     pthread_sigmask(SIG_SETMASK, &all, &before);
     struct MHD_Daemon *daemon = MHD_start_daemon(
         MHD_USE_AUTO_INTERNAL_THREAD, 0, NULL, NULL, on_request, s, MHD_OPTION_LISTEN_SOCKET, listener,
-        MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS_MOST, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-        (size_t)CONNECTION_BYTES, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_SECONDS, MHD_OPTION_THREAD_STACK_SIZE,
-        (size_t)STACK_BYTES, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_NOTIFY_COMPLETED, on_end, s, MHD_OPTION_END);
+        MHD_OPTION_CONNECTION_LIMIT, (unsigned)(CONNECTIONS_MOST + CONNECTIONS_OVER),
+        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)CONNECTION_BYTES, MHD_OPTION_CONNECTION_TIMEOUT,
+        (unsigned)IDLE_SECONDS, MHD_OPTION_THREAD_STACK_SIZE, (size_t)STACK_BYTES, MHD_OPTION_STRICT_FOR_CLIENT, 1,
+        MHD_OPTION_NOTIFY_COMPLETED, on_end, s, MHD_OPTION_NOTIFY_CONNECTION, on_visit, s, MHD_OPTION_END);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return daemon;
 }

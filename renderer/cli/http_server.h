@@ -1,8 +1,9 @@
 /* http_server.h: answers requests over HTTP: the one file that knows libmicrohttpd. Every request is checked before
  * anybody else sees it: method, Host, Origin, token, length of its body. A thread of its own does all the work, one
  * request after the other, and waits for no reader: readers who are slow take their answers piece by piece, for half a
- * minute at the most. There are at most some tens of connections at once, each of a bounded size.
- * Flow: page_server -> [here]. Threads: main starts and stops; requests are answered on the server's thread. */
+ * minute at the most. There are at most some tens of connections at once, each of a bounded size; of too many, the one
+ * that has been without a whole request for longest is closed. Flow: page_server -> [here]. Threads: main starts and
+ * stops; requests are answered on the server's thread. */
 #ifndef AFTERGLOW_HTTP_SERVER_H
 #define AFTERGLOW_HTTP_SERVER_H
 

@@ -331,13 +331,18 @@ static ag_status run_frame(options *o, int index, progress *told)
     return status;
 }
 
-/* Renders one frame after the other; the first that fails ends the run. */
+/* Renders one frame after the other; the first that fails, or that who watches stops, ends the run. */
 static ag_status run_frames(options *o, progress *told)
 {
     for (int i = 0; i < o->frames.count; i++) {
         AG_TRY(run_frame(o, i, told));
         if (signals_stop() && i + 1 < o->frames.count)
             return AG_CANCELLED; /* the signal came when this frame was complete */
+        if (o->page && page_wishes_has_ended(page_server_wishes(o->page)) && i + 1 < o->frames.count) {
+            if (o->verbosity >= 0)
+                fprintf(stderr, "afterglow: stopped by who watched it: %d of %d frames\n", i + 1, o->frames.count);
+            return AG_OK;
+        }
     }
     return AG_OK;
 }

@@ -43,6 +43,7 @@ static void wish(page_wishes *w, bool *which)
 void page_wishes_end(page_wishes *w)
 {
     pthread_mutex_lock(&w->lock);
+    w->has_ended = true;
     wish(w, &w->wants_end);
     pthread_mutex_unlock(&w->lock);
 }
@@ -101,6 +102,8 @@ static bool look(page_wishes *w, bool *which, bool is_taken)
 }
 
 bool page_wishes_has_end(page_wishes *w) { return look(w, &w->wants_end, false); }
+
+bool page_wishes_has_ended(page_wishes *w) { return look(w, &w->has_ended, false); }
 
 bool page_wishes_has_move(page_wishes *w) { return look(w, &w->wants_move, false); }
 

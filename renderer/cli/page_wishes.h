@@ -19,6 +19,7 @@ typedef struct page_wishes {
     pthread_cond_t changed;
     ag_context *context; /* borrowed; whose rendering is to pause; NULL: there is none */
     bool wants_end;      /* to stop, and keep the picture */
+    bool has_ended;      /* it was wished to stop at some time */
     bool wants_return;   /* from a walk to the picture */
     bool wants_move;     /* to this place */
     bool wants_layers;   /* that have not been copied from the film */
@@ -43,6 +44,8 @@ void page_wishes_hear(page_wishes *w);
 void page_wishes_attend(page_wishes *w, ag_context *context);
 /* Whether it was wished for; a move, a return and layers are taken with that. */
 bool page_wishes_has_end(page_wishes *w);
+/* Whether it has ever been wished to stop, also for a picture before this one. */
+bool page_wishes_has_ended(page_wishes *w);
 bool page_wishes_has_move(page_wishes *w);
 bool page_wishes_take_return(page_wishes *w);
 bool page_wishes_take_move(page_wishes *w, page_place *out_place);

@@ -34,6 +34,7 @@ typedef struct passes {
     double deadline;            /* in seconds of now() */
     double begun;               /* when rendering began, likewise */
     int final;                  /* samples per pixel in the end */
+    bool is_written;            /* the picture is; what is written after it is another view */
     ag_end cut;                 /* AG_END_TIME_LIMIT, AG_END_KEPT: it ends in order with fewer; else AG_END_NONE */
 } passes;
 
@@ -65,8 +66,11 @@ static ag_status write_pictures(passes *p, const ag_film *film, bool is_last)
 {
     for (int i = 0; i < p->o->outfile_count; i++) {
         const char *outfile = p->o->outfiles[i];
-        if (!is_last && is_stream(outfile))
+        if ((!is_last || p->is_written) && is_stream(outfile)) {
+            if (is_last && p->o->verbosity >= 0)
+                fprintf(stderr, "afterglow: '%s' is no regular file: it has the picture, and not the view\n", outfile);
             continue;
+        }
         if (!is_last)
             AG_TRY(picture_mark_unfinished(outfile));
         if (is_pipe(outfile) && p->o->verbosity >= 0)
@@ -147,14 +151,19 @@ static int next_pass(const passes *p, int samples, double seconds_per_sample)
     return affordable >= 1.0 ? samples + (int)affordable : 0;
 }
 
-/* Shows the picture itself in a browser, from now on. */
+/* Shows the picture itself in a browser, from now on. Without memory for that it is rendered all the same. */
 static ag_status show_page(const passes *p, page_mode mode)
 {
     const options *o = p->o;
     if (!o->page)
         return AG_OK;
     const page_notes notes = walk_notes(p->rendering, mode, p->final);
-    return page_server_show(o->page, p->context, p->rendering, &o->output, &notes);
+    const ag_status status = page_server_show(o->page, p->context, p->rendering, &o->output, &notes);
+    if (status != AG_ERROR_MEMORY)
+        return status;
+    progress_log(o->told, AG_LOG_WARNING, "--serve: there is no memory to show the picture");
+    page_wishes_attend(page_server_wishes(o->page), p->context);
+    return AG_OK;
 }
 
 /* Goes for a walk where that is wished for; back from it the picture is shown again, or p->kept is there. */
@@ -164,7 +173,9 @@ static ag_status walk_about(passes *p, page_mode mode)
     if (!p->o->page || !page_wishes_has_move(page_server_wishes(p->o->page)))
         return AG_OK;
     AG_TRY(walk_run(&w, &p->kept));
-    return p->kept ? AG_OK : show_page(p, mode);
+    if (!p->kept && show_page(p, mode) != AG_OK)
+        progress_log(p->o->told, AG_LOG_WARNING, "--serve: the picture is rendered, and can be shown no more");
+    return AG_OK;
 }
 
 /* Whether who watches wants the end, and there is something to keep: a view from elsewhere, or a picture of whole
@@ -176,13 +187,19 @@ static bool is_kept(const passes *p, ag_status status)
     return p->kept || status == AG_OK || ag_rendering_go_back(p->rendering) == AG_OK;
 }
 
+/* Tells who watches what there is of the picture. */
+static void note_page(const passes *p)
+{
+    if (!p->o->page || p->kept)
+        return;
+    const page_notes notes = walk_notes(p->rendering, PAGE_RENDERING, p->final);
+    page_server_note(p->o->page, &notes);
+}
+
 /* Writes what is due in a pause or after a pass: a snapshot or preview, and a checkpoint; tells who watches. */
 static ag_status serve(passes *p, bool is_after_pass)
 {
-    if (p->o->page) {
-        const page_notes notes = walk_notes(p->rendering, PAGE_RENDERING, p->final);
-        page_server_note(p->o->page, &notes);
-    }
+    note_page(p);
     if (signals_take_snapshot())
         AG_TRY(write_snapshot(p));
     else if (is_after_pass && p->o->preview)
@@ -296,6 +313,7 @@ static ag_status render(passes *p, passes_result *out_result, ag_noise *out_nois
     out_result->samples = ag_rendering_sample_counts(p->rendering);
     *out_noise = ag_rendering_noise(p->rendering);
     ag_context_note_end(p->context, find_end(p, out_result));
+    note_page(p);
     return status;
 }
 
@@ -328,13 +346,17 @@ static ag_status show(passes *p, ag_film *film, const ag_render_settings *settin
     return AG_OK;
 }
 
+static bool is_last_frame(const options *o)
+{
+    return o->frames.count == 0 || o->frame == o->frames.numbers[o->frames.count - 1];
+}
+
 /* Whether somebody looks at the finished picture in a browser: he is not interrupted, as long as he does; but the next
  * picture does not wait, nor does the time limit. */
 static bool is_looked_at(const passes *p)
 {
     const options *o = p->o;
-    const bool is_last = o->frames.count == 0 || o->frame == o->frames.numbers[o->frames.count - 1];
-    if (!o->page || !is_last || p->kept || signals_stop() || now() >= p->deadline)
+    if (!o->page || !is_last_frame(o) || p->kept || signals_stop() || now() >= p->deadline)
         return false;
     page_wishes *wishes = page_server_wishes(o->page);
     return page_wishes_is_watched(wishes, PAGE_PATIENCE_SECONDS) && !page_wishes_has_end(wishes);
@@ -357,7 +379,7 @@ static ag_status await_page(passes *p)
 /* The film goes. The viewer is waited for within the time limit. */
 static void leave_watchers(const passes *p)
 {
-    page_server_leave(p->o->page, PAGE_FINISHED);
+    page_server_leave(p->o->page, is_last_frame(p->o) ? PAGE_FINISHED : PAGE_WAITING);
     display_server_leave(p->o->display, fmax(p->deadline - now(), 0.0));
 }
 
@@ -371,31 +393,49 @@ static ag_status show_to_watchers(const passes *p)
     return AG_OK;
 }
 
+static void end_rendering(passes *p, ag_film **out_film)
+{
+    page_server_end_rendering(p->o->page);
+    ag_rendering_finish(p->rendering, out_film);
+    p->rendering = NULL;
+}
+
+/* Writes the picture once more, with the memory that was kept for who watches. */
+static ag_status write_unwatched(passes *p, const ag_render_settings *settings, const passes_result *result,
+                                 const ag_noise *noise, ag_film *out_films[2])
+{
+    progress_log(p->o->told, AG_LOG_WARNING,
+                 "--serve: there is no memory to write the picture while it is watched: it is shown no more");
+    page_server_leave_film(p->o->page);
+    end_rendering(p, &out_films[0]);
+    return show(p, out_films[0], settings, result, noise, AG_OK);
+}
+
 /* Writes the picture, and if it is wished for the view that somebody has walked to. Its rendering ends before the files
- * are written, which takes memory, unless somebody looks on. *out_films: to be destroyed when nobody watches. */
+ * are written, which takes memory, unless somebody looks on and there is memory enough. *out_films: to be destroyed
+ * when nobody watches. */
 static ag_status write_and_wait(passes *p, const ag_render_settings *settings, passes_result *result, ag_noise *noise,
                                 ag_status failed, ag_film *out_films[2])
 {
-    const bool stays = is_looked_at(p) && !p->o->photons_only && !result->is_partial && failed == AG_OK;
+    bool stays = is_looked_at(p) && !p->o->photons_only && !result->is_partial && failed == AG_OK;
     ag_status status = AG_OK;
-    if (!stays) {
-        page_server_end_rendering(p->o->page);
-        ag_rendering_finish(p->rendering, &out_films[0]);
-        p->rendering = NULL;
-    }
+    if (!stays)
+        end_rendering(p, &out_films[0]);
     /* the film of a rendering that has ended, or that is continued no more */
     ag_film *film = stays ? (ag_film *)(uintptr_t)ag_rendering_film(p->rendering) : out_films[0];
     if (!p->kept) {
         status = show(p, film, settings, result, noise, failed);
+        if (status == AG_ERROR_MEMORY && stays) {
+            stays = false;
+            status = write_unwatched(p, settings, result, noise, out_films);
+        }
         progress_leave_film(p->o->told, false);
+        p->is_written = status == AG_OK;
     }
     if (status == AG_OK && stays)
         status = await_page(p);
-    if (stays) {
-        page_server_end_rendering(p->o->page);
-        ag_rendering_finish(p->rendering, &out_films[0]);
-        p->rendering = NULL;
-    }
+    if (stays)
+        end_rendering(p, &out_films[0]);
     if (status != AG_OK || !p->kept)
         return status;
     p->cut = AG_END_KEPT;

@@ -2,10 +2,12 @@
 #include "walk.h"
 
 #include "passes.h"
+#include "progress.h"
 #include "signals.h"
 #include "status.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const double LOOK_SECONDS = 0.1;
 /* After a move a coarse picture comes first, of so many times fewer pixels in width and height, where that is worth it:
@@ -31,7 +33,8 @@ typedef struct walk_state {
     ag_rendering *view; /* NULL: nowhere yet */
     page_place place;
     bool is_coarse;
-    int samples; /* that the next pass brings pixels to */
+    bool is_whole; /* no pass is under way */
+    int samples;   /* that the next pass brings pixels to */
     bool is_done;
 } walk_state;
 
@@ -77,6 +80,7 @@ static ag_status refine(const walk *w, walk_state *s)
     const double begun = passes_seconds(), before = ag_rendering_sample_counts(s->view).mean;
     const ag_status status = ag_rendering_continue(s->view, s->samples);
     const ag_sample_counts counts = ag_rendering_sample_counts(s->view);
+    s->is_whole = status == AG_OK;
     if (status != AG_OK)
         return status == AG_PAUSED ? AG_OK : status;
     const page_notes notes = notes_of(w, s);
@@ -101,7 +105,8 @@ static bool is_over(const walk *w, page_wishes *wishes)
 /* Whether to stop, with samples that can be kept. */
 static bool is_kept(page_wishes *wishes, walk_state *s)
 {
-    return s->view && !s->is_coarse && page_wishes_has_end(wishes) && ag_rendering_go_back(s->view) == AG_OK;
+    return s->view && !s->is_coarse && page_wishes_has_end(wishes) &&
+           (ag_rendering_go_back(s->view) == AG_OK || s->is_whole);
 }
 
 static bool is_large(const ag_rendering *rendering)
@@ -143,5 +148,10 @@ ag_status walk_run(const walk *w, ag_rendering **out_kept)
     }
     page_server_leave_film(w->o->page);
     ag_rendering_finish(s.view, NULL);
-    return status;
+    if (status == AG_OK || status == AG_CANCELLED)
+        return status;
+    char text[256];
+    snprintf(text, sizeof text, "--serve: the view from elsewhere is left: %s", ag_status_text(status));
+    progress_log(w->o->told, AG_LOG_WARNING, text);
+    return AG_OK;
 }

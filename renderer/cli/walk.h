@@ -20,7 +20,8 @@ page_notes walk_notes(ag_rendering *rendering, page_mode mode, int samples_most)
 
 /* Goes wherever it is wished, until it is wished to return, nobody watches any more, a signal wants the end, or the
  * time is up: *out_kept is NULL then, and no film is shown. Or until it is wished to stop: then it is the view, for the
- * caller to finish, with the samples of its last complete pass. Errors: those of the renderings. */
+ * caller to finish, with the samples of its last complete pass. A view that fails, for want of memory say, is told of
+ * as a warning, and is returned from. Errors: AG_CANCELLED. */
 ag_status walk_run(const walk *w, ag_rendering **out_kept);
 
 #endif

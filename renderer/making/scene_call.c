@@ -163,6 +163,7 @@ static bool is_borrowed(const ag_parameter *p, pbrt_borrowed *out, const char **
                                          : NULL;
     } else if (strcmp(p->name, "uv") == 0 && p->type == AG_PARAMETER_POINT2) {
         out->uvs = p->floats;
+        out->uv_count = p->count;
         *out_wrong = is_floats ? NULL : "what is borrowed of it should be floats";
     } else if (strcmp(p->name, "indices") == 0 && p->type == AG_PARAMETER_INTEGER) {
         out->indices = p->integers;
@@ -172,6 +173,9 @@ static bool is_borrowed(const ag_parameter *p, pbrt_borrowed *out, const char **
     } else {
         return false;
     }
+    const uintptr_t address = p->floats ? (uintptr_t)p->floats : (uintptr_t)p->integers;
+    if (!*out_wrong && address % sizeof(float) != 0)
+        *out_wrong = "to be borrowed it should begin at an address that is a multiple of 4";
     for (size_t k = 0; !*out_wrong && p->floats && k < p->count; k++)
         if (!isfinite(p->floats[k]))
             *out_wrong = "a value is not finite";
@@ -181,7 +185,6 @@ static bool is_borrowed(const ag_parameter *p, pbrt_borrowed *out, const char **
 /* Notes the arrays that are borrowed, and leaves them out of the parameters, whose numbers stay. */
 static ag_status borrow_arrays(log_sink *log, scene_call *c, size_t count, ag_parameter *in_out_parameters)
 {
-    size_t uv_count = 0;
     for (size_t i = 0; i < count; i++) {
         ag_parameter *p = &in_out_parameters[i];
         file_location where = c->where;
@@ -193,14 +196,10 @@ static ag_status borrow_arrays(log_sink *log, scene_call *c, size_t count, ag_pa
             log_at(log, AG_LOG_ERROR, where, "\"%s\": %s", p->name, wrong);
             return AG_ERROR_ARGUMENT;
         }
-        if (p->type == AG_PARAMETER_POINT2)
-            uv_count = p->count;
         *p = (ag_parameter){.name = p->name, .type = p->type};
     }
     if (!c->borrowed.positions || !c->borrowed.indices)
         return refuse(log, c, "to be borrowed there should be \"point3 P\" and \"integer indices\"");
-    if (c->borrowed.uvs && uv_count != 2 * c->borrowed.vertex_count)
-        return refuse(log, c, "\"uv\" should have two numbers for each vertex");
     return AG_OK;
 }
 

@@ -8,6 +8,12 @@
 /* What is done with the things that calls speak of. */
 typedef enum call_deed { DEED_MAKE, DEED_CHANGE, DEED_MOVE, DEED_ASSIGN, DEED_REMOVE, DEED_COUNT } call_deed;
 
+/* The camera of a scene that is committed, and what scene_making has of it. */
+typedef struct camera_state {
+    camera seen, later;
+    bool has_camera, is_made_up, has_later;
+} camera_state;
+
 typedef struct scene_making {
     ag_context *context;   /* the scene's */
     scene *s;              /* as far as the calls have come; NULL once it is committed */
@@ -23,9 +29,11 @@ typedef struct scene_making {
     bool has_moving; /* shapes or instances, whose motion was made for the camera's shutter */
     scene_plan plan; /* all calls, where it can be changed; else the pictures alone, which s borrows */
     scene_plan committed;
-    bool is_edited;      /* plan says something else than committed, which is empty until then */
-    bool has_camera;     /* one was set after a commit, which counts instead of the plan's */
-    camera later_camera; /* that one */
+    bool is_edited;                /* plan says something else than committed, which is empty until then */
+    bool has_camera;               /* one was set after a commit, which counts instead of the plan's */
+    camera later_camera;           /* that one */
+    bool is_camera_edited;         /* one was set after an edit, and goes with it where the commit fails: */
+    camera_state committed_camera; /* to this one */
     ag_commit_counts counts;
 } scene_making;
 

@@ -174,6 +174,31 @@ static ag_status run_plan(scene_making *making, scene *before, scene **out_scene
     return status;
 }
 
+/* Before a camera is set among edits: what it was. */
+static void keep_camera(ag_scene *made)
+{
+    scene_making *making = made->making;
+    if (!making->is_edited || making->is_camera_edited)
+        return;
+    making->is_camera_edited = true;
+    making->committed_camera = (camera_state){made->s->camera, making->later_camera, made->s->has_camera,
+                                              made->s->is_camera_made_up, making->has_camera};
+}
+
+static void restore_camera(ag_scene *made)
+{
+    scene_making *making = made->making;
+    const camera_state *was = &making->committed_camera;
+    if (!making->is_camera_edited)
+        return;
+    scene_set_camera(made->s, &was->seen);
+    made->s->has_camera = was->has_camera;
+    made->s->is_camera_made_up = was->is_made_up;
+    making->later_camera = was->later;
+    making->has_camera = was->has_later;
+    making->is_camera_edited = false;
+}
+
 static void count_commit(scene_making *making, const scene *s)
 {
     making->counts.commits++;
@@ -197,6 +222,7 @@ static ag_status commit_plan(ag_scene *made)
             making->plan = making->committed;
             making->committed = (scene_plan){0};
             making->is_edited = false;
+            restore_camera(made);
             log_message(making->context->log, AG_LOG_ERROR, "the edits since the last commit are dropped");
         }
         return status;
@@ -206,7 +232,7 @@ static ag_status commit_plan(ag_scene *made)
     made->s = s;
     making->s = NULL;
     scene_plan_reset(&making->committed);
-    making->is_edited = false;
+    making->is_edited = making->is_camera_edited = false;
     count_commit(making, s);
     return AG_OK;
 }
@@ -447,6 +473,8 @@ static ag_status change_camera(ag_scene *made, const ag_camera *given)
     scene_call *c = scene_call_create(CALL_CAMERA, where);
     camera seen;
     const ag_status status = c ? read_camera(context, made, given, c, &seen) : AG_ERROR_MEMORY;
+    if (status == AG_OK && made->making)
+        keep_camera(made);
     if (status == AG_OK) {
         scene_set_camera(made->s, &seen);
         made->s->has_camera = true;

@@ -213,7 +213,7 @@ def _matrix(value, kept):
     """The address of 16 numbers, row by row, which `kept` keeps; None: no matrix."""
     if value is None:
         return None
-    rows = numpy.ascontiguousarray(value, dtype=numpy.float64)
+    rows = numpy.require(value, numpy.float64, "CA")
     if rows.size != 16:
         raise ValueError("a matrix has 4 x 4 numbers")
     kept.append(rows)
@@ -249,7 +249,7 @@ def _parameter(declaration, value, kept):
         field = "floats"
     else:
         array, field = array.astype(numpy.float64, copy=False), "doubles"
-    array = numpy.ascontiguousarray(array)
+    array = numpy.require(array, requirements="CA")
     kept.append(array)
     made.count = array.size
     setattr(made, field, array.ctypes.data)
@@ -281,8 +281,9 @@ def _check_borrowed(parameters):
         array = parameters.get(declaration)
         if array is None:
             continue
-        if not isinstance(array, numpy.ndarray) or array.dtype != dtype or not array.flags.c_contiguous:
-            raise ValueError(f'"{declaration}": a borrowed array is of numpy, contiguous and of {dtype}')
+        if (not isinstance(array, numpy.ndarray) or array.dtype != dtype or not array.flags.c_contiguous
+                or not array.flags.aligned):
+            raise ValueError(f'"{declaration}": a borrowed array is of numpy, contiguous, aligned and of {dtype}')
         if declaration == "point3 P" and not _has_room(array):
             raise ValueError('"point3 P": a borrowed array has room behind it, as those of vertices() have')
 
@@ -359,7 +360,11 @@ class Context:
                     poll()
         except BaseException:
             self.cancel()
-            is_done.wait()
+            while not is_done.is_set():  # what the library works on is still its own, however often Ctrl-C is pressed
+                try:
+                    is_done.wait()
+                except KeyboardInterrupt:
+                    pass
             _library.ag_context_clear_cancel(self._pointer)
             self._said = []
             raise
@@ -414,8 +419,8 @@ class Scene:
         self._held = c_void_p()
         self._renderings = []  # that are not closed
         self._is_complete = self._was_complete = is_complete
-        self._lent = []  # handles, and the arrays that the library borrows for them, as they were said
-        self._lent_count = 0  # as of the last commit
+        self._lent = {}  # by handle: the arrays that the library borrows, as of the last commit
+        self._lent_since = []  # handles, and their arrays or None, as they were said since
         context._scenes.append(self)
         try:
             context._work(function, context._pointer, *arguments, byref(self._held))
@@ -427,9 +432,14 @@ class Scene:
     def _pointer(self):
         return _opened(self._held, "scene")
 
-    def _call(self, function, *arguments):
-        self._context._check(function(self._pointer, *arguments))
-        self._is_complete = False
+    def _call(self, function, *arguments, handle=None, lent=None):
+        """handle: a c_uint64 with the handle of what borrows the arrays `lent` from now on, or with None none any more."""
+        status = function(self._pointer, *arguments)
+        if status == 0:  # before anything is raised: what was done is done, whoever takes offence at a warning
+            self._is_complete = False
+            if handle is not None:
+                self._lent_since.append((handle.value, lent))
+        self._context._check(status)
 
     def _named(self, function, name, kind, parameters):
         kept = []
@@ -466,7 +476,7 @@ class Scene:
         if array.ndim not in (2, 3):
             raise ValueError("a picture has two or three dimensions")
         is_bytes = array.dtype == numpy.uint8
-        array = numpy.ascontiguousarray(array if is_bytes else array.astype(numpy.float32, copy=False))
+        array = numpy.require(array, numpy.uint8 if is_bytes else numpy.float32, "CA")
         made = _Image(ctypes.sizeof(_Image), array.shape[1], array.shape[0], array.shape[2] if array.ndim == 3 else 1)
         setattr(made, "bytes" if is_bytes else "floats", array.ctypes.data)
         function = _library.ag_scene_change_image if instead else _library.ag_scene_add_image
@@ -491,10 +501,7 @@ class Scene:
         shape = _Shape(ctypes.sizeof(_Shape), _text(type), items, count, _text(material), _text(object),
                        _matrix(world_from_shape, kept), _matrix(world_from_shape_end, kept), reverse_orientation,
                        light is not None, light_items, light_count, _text(medium_inside), _text(medium_outside), borrow)
-        handle = self._place("shape", shape, instead_of)
-        if borrow or instead_of is not None:
-            self._lent.append((handle, kept if borrow else None))
-        return handle
+        return self._place("shape", shape, instead_of, kept if borrow else None)
 
     def instance(self, object: str, world_from_object: Optional[ArrayLike] = None,
                  world_from_object_end: Optional[ArrayLike] = None, *, instead_of: Optional[int] = None) -> int:
@@ -513,13 +520,15 @@ class Scene:
         return self._place("light", _Light(ctypes.sizeof(_Light), _text(type), items, count,
                                            _matrix(world_from_light, kept), _text(medium_outside)), instead_of)
 
-    def _place(self, kind, description, instead_of):
-        """Adds what has a handle, or lets it take the place of another."""
+    def _place(self, kind, description, instead_of, lent=None):
+        """Adds what has a handle, or lets it take the place of another; lent: the arrays that are borrowed for it."""
         if instead_of is not None:
-            self._call(getattr(_library, f"ag_scene_change_{kind}"), instead_of, byref(description))
+            self._call(getattr(_library, f"ag_scene_change_{kind}"), instead_of, byref(description),
+                       handle=c_uint64(instead_of), lent=lent)
             return instead_of
         handle = c_uint64()
-        self._call(getattr(_library, f"ag_scene_add_{kind}"), byref(description), byref(handle))
+        self._call(getattr(_library, f"ag_scene_add_{kind}"), byref(description), byref(handle),
+                   handle=handle if lent else None, lent=lent)
         return handle.value
 
     def move(self, handle: int, world_from_own: Optional[ArrayLike] = None,
@@ -534,8 +543,7 @@ class Scene:
 
     def remove(self, handle: int) -> None:
         """Removes a shape, a light or an instance."""
-        self._call(_library.ag_scene_remove, handle)
-        self._lent.append((handle, None))
+        self._call(_library.ag_scene_remove, handle, handle=c_uint64(handle))
 
     def remove_named(self, kind: str, name: str) -> None:
         """Removes what has a name; kind: "material", "medium", "float texture", "spectrum texture" or "image"."""
@@ -561,16 +569,28 @@ class Scene:
         """Builds what rays need; rendering does so where it is not done yet. poll: as for Rendering.advance."""
         if self._is_complete:
             return
+        statuses = []
+
+        def commit(pointer):
+            statuses.append(_library.ag_scene_commit(pointer))
+            return statuses[0]
+
         try:
-            self._context._work(_library.ag_scene_commit, self._pointer, poll=poll)
-        except Error:
-            if self._was_complete:  # the changes are dropped
-                self._is_complete = True
-                self._lent = self._lent[:self._lent_count]
-            raise
-        self._is_complete = self._was_complete = True
-        self._lent = list(dict(self._lent).items())  # the last of each
-        self._lent_count = len(self._lent)
+            self._context._work(commit, self._pointer, poll=poll)
+        finally:  # the library has done it, or has not, whatever was raised beside it
+            if statuses:
+                self._note_commit(statuses[0] == 0)
+
+    def _note_commit(self, is_done):
+        """Which arrays are lent from now on: where it failed after one that did not, the changes since are dropped."""
+        if is_done:
+            for handle, lent in self._lent_since:
+                self._lent.pop(handle, None)
+                if lent:
+                    self._lent[handle] = lent
+        if is_done or self._was_complete:
+            self._lent_since = []
+            self._is_complete = self._was_complete = True
 
     def _settings(self, values):
         """An ag_render_settings, and what it borrows."""

@@ -224,6 +224,62 @@ static void mistakes_leave_the_scene_as_it_was(void **state)
     end(&d);
 }
 
+/* A camera that was set after an edit goes with it; one that was set before stays. Another shutter tells as well. */
+static void a_camera_is_dropped_with_the_edits(void **state)
+{
+    (void)state;
+    enum { COUNT = 3 * SIZE * SIZE };
+    static const char *const GONE[] = {"gone"};
+    const float open = 0.5f, wide = 70.0f;
+    const ag_parameter missing = {"reflectance", AG_PARAMETER_TEXTURE, 1, .strings = GONE},
+                       other[] = {{"shutteropen", AG_PARAMETER_FLOAT, 1, .floats = &open},
+                                  {"fov", AG_PARAMETER_FLOAT, 1, .floats = &wide}};
+    float before[COUNT], after[COUNT];
+    ag_instance moving = ag_default_instance();
+    square item;
+    for (int is_set_before = 0; is_set_before < 2; is_set_before++) {
+        desk d;
+        ag_camera eye = ag_default_camera();
+        begin_editable(&d);
+        light_and_look(&d);
+        make_square(&item);
+        item.shape.object = moving.object = "o";
+        assert_int_equal(ag_scene_add_shape(d.made, &item.shape, NULL), AG_OK);
+        assert_int_equal(ag_scene_add_instance(d.made, &moving, NULL), AG_OK);
+        assert_int_equal(ag_scene_add_material(d.made, "m", "diffuse", NULL, 0), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        eye.world_from_camera = ASIDE;
+        if (is_set_before)
+            assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_OK);
+        render(d.context, d.made, before);
+        assert_int_equal(ag_scene_change_material(d.made, "m", "diffuse", &missing, 1), AG_OK);
+        eye.world_from_camera = AWAY;
+        eye.parameters = other;
+        for (int i = 1; i <= 2; i++) {
+            eye.parameter_count = (size_t)i;
+            assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_OK);
+        }
+        assert_int_equal(ag_scene_commit(d.made), AG_ERROR_SCENE);
+        expect_said(&d, "the edits since the last commit are dropped");
+        render(d.context, d.made, after);
+        assert_memory_equal(before, after, sizeof before);
+        /* what moves is made for the shutter that is left */
+        moving.world_from_object_end = ASIDE;
+        assert_int_equal(ag_scene_add_instance(d.made, &moving, NULL), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        moving.world_from_object_end = NULL;
+        render(d.context, d.made, before);
+        assert_int_equal(ag_scene_change_material(d.made, "m", "diffuse", NULL, 0), AG_OK);
+        eye.parameters = &other[1];
+        eye.parameter_count = 1;
+        assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        render(d.context, d.made, after);
+        assert_memory_not_equal(before, after, sizeof before);
+        end(&d);
+    }
+}
+
 /* Scenes that were not made for it, and those that are not committed. */
 static void other_scenes_do_not_change(void **state)
 {
@@ -257,6 +313,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_changed_scene_is_as_one_made_afresh, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(what_did_not_change_is_kept, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(mistakes_leave_the_scene_as_it_was, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(a_camera_is_dropped_with_the_edits, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(other_scenes_do_not_change, make_folder, remove_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

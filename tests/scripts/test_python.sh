@@ -81,7 +81,7 @@ Shape "trianglemesh" "point3 P" [-1 -1 0  1 -1 0  1 1 0  -1 1 0] "integer indice
 END
 "$AFTERGLOW_PROGRAM" -q --size 40x30 --spp 4 --noise 0 --photons 2000 -o program.pfm scene.pbrt
 "$python" - <<'END'
-import ctypes, os, signal
+import ctypes, gc, os, signal, weakref
 import numpy, afterglow
 
 def refused(kind, text, function, *arguments, **named):
@@ -168,8 +168,20 @@ with afterglow.Context(threads=2, progress=lambda phase, fraction: phases.append
         for wrong in (corners, mesh.astype(float), mesh[:, ::-1], mesh.tolist()):
             refused(ValueError, "a borrowed array", scene.shape, "trianglemesh",
                     {"point3 P": wrong, "integer indices": triangles}, borrow=True)
+        room = numpy.zeros(64, numpy.uint8)
+        skewed = room[1:49].view(numpy.float32).reshape(4, 3)
+        skewed[:] = corners
+        refused(ValueError, "aligned", scene.shape, "trianglemesh",
+                {"point3 P": skewed, "integer indices": triangles}, borrow=True)
+        copied = scene.shape("trianglemesh", {"point3 P": skewed, "integer indices": triangles}, material="clay",
+                             instead_of=wall)
+        assert copied == wall and numpy.array_equal(scene.render(**picture), pixels)
         with scene.rendering(**picture):
             refused(afterglow.Error, "a rendering of it is not finished yet", scene.remove, wall)
+        for _ in range(50):
+            scene.remove(scene.shape("trianglemesh", arrays, borrow=True))
+        scene.complete()
+        assert not scene._lent and not scene._lent_since, "arrays are kept that nobody borrows"
     with context.load_text(open("scene.pbrt").read()) as scene:
         assert numpy.array_equal(scene.render(**picture), pixels)
     refused(afterglow.Error, "missing.pbrt: error: cannot read the file", context.load, "missing.pbrt")
@@ -188,6 +200,54 @@ with afterglow.Context(threads=2, progress=lambda phase, fraction: phases.append
         for x in (-0.5, 0.5):
             scene.instance("ball", [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, -0.5], [0, 0, 0, 1]])
         assert not numpy.array_equal(scene.render(**picture), pixels)
+
+# Borrowed arrays live as long as the library reads them, whatever is raised meanwhile.
+raises = []
+
+def raise_one(*_):
+    if raises:
+        raise raises.pop()
+
+def lend(scene, **named):
+    mesh = afterglow.vertices(4)
+    mesh[:] = corners + 0.125 * len(named)
+    handle = scene.shape("trianglemesh", {"point3 P": mesh, "integer indices": triangles}, borrow=True, **named)
+    return handle, weakref.ref(mesh)
+
+with afterglow.Context(threads=2, progress=raise_one) as context, context.scene(editable=True) as scene:
+    scene.camera("perspective", {"float fov": 60}, world_from_camera=away)
+    scene.light("point", {"rgb I": (9, 9, 9), "point3 from": (1, 1, -2)})
+    handle, mesh = lend(scene)
+    before = scene.render(**picture)
+    for _ in range(3):
+        _, other = lend(scene, instead_of=handle)
+        raises.append(KeyError("own"))
+        refused(KeyError, "own", scene.complete)
+        scene.complete()
+        gc.collect()
+        assert mesh() is not None and other() is None, "not the arrays that the library borrows are kept"
+        assert numpy.array_equal(scene.render(**picture), before)
+    _, other = lend(scene, instead_of=handle)
+    scene.complete()
+    gc.collect()
+    assert mesh() is None and other() is not None
+
+def offend(message):
+    raise UserWarning(message)
+
+with afterglow.Context(threads=2, warn=offend) as context, context.scene(editable=True) as scene:
+    scene.camera("perspective", {"float fov": 60}, world_from_camera=away)
+    scene.complete()
+    mesh = afterglow.vertices(4)
+    mesh[:] = corners
+    seen = weakref.ref(mesh)
+    refused(UserWarning, "nonsense", scene.shape, "trianglemesh",
+            {"point3 P": mesh, "integer indices": triangles, "float nonsense": 1.0}, borrow=True)
+    del mesh
+    gc.collect()
+    assert seen() is not None, "the library borrows what is gone"
+    scene.light("point", {"rgb I": (9, 9, 9), "point3 from": (1, 1, -2)})
+    assert scene.render(**picture).max() > 0
 
 # What is closed is not handed to the library; arguments of another type do not keep it waiting.
 context = afterglow.Context()

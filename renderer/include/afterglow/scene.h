@@ -99,9 +99,10 @@ typedef struct ag_scene_settings {
     float sky_rotation_degrees; /* turns the picture from north over east; default 0 */
     ag_find_file_fn *find_file; /* of pbrt's text; what it names is read where the context's is_confined allows it.
                                    Default NULL */
-    void *find_file_user;       /* handed to it */
-    bool is_editable;           /* of ag_scene_create: what calls have made can be changed (scene_editing.h). Default
-                                   false: what was said is forgotten with the commit */
+    void *find_file_user; /* handed to it; valid until a scene of ag_scene_create is destroyed, which may call it with
+                             any commit, and until ag_scene_load or ag_scene_load_text returns */
+    bool is_editable;     /* of ag_scene_create: what calls have made can be changed (scene_editing.h). Default
+                             false: what was said is forgotten with the commit */
 } ag_scene_settings;
 
 AG_DEFAULT_STRUCT(scene_settings, AG_STRUCT_SCENE_SETTINGS)

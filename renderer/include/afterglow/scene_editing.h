@@ -22,17 +22,23 @@ extern "C" {
  *
  * Where a call fails it has no effect. What can be told of a call alone is told at once, whether the names in it are
  * there by the commit, with the number of the call. Where a commit fails, all calls since the last one that did not are
- * dropped, and the scene is as it left it.
+ * dropped, and the scene is as it left it: so is the camera, where it was set after another of these calls. The scene
+ * then reads the borrowed arrays of the shapes as they were before: whoever changes such a shape hands over other
+ * arrays, and leaves the former ones as they are until the commit has succeeded. Numbers that were written in place
+ * stay where the commit fails, and its trees do not fit them: such a shape has to be changed once more, or removed,
+ * and committed before anything is rendered.
  *
  * What is kept: camera and settings of a rendering change nothing in the scene. Lights, materials, textures and hints
  * keep meshes and trees of rays; pictures of textures and skies, read and filtered, are kept as long as they are named
  * and neither their pixels nor their encoding change (those of files as long as the file's size and time stay; those
  * that are not held in memory, see texture_memory_bytes, are read anew). Each object has a tree of its own, which is
  * kept until one of its shapes changes; instances are in the tree of the world. That is made anew where an instance
- * moves, or any shape changes that is part of no object: hosts put what changes often into objects. A map of photons,
- * in photon_map_file or in memory, is traced anew where anything but the camera has changed. The library remembers what
- * the calls said, without the arrays of meshes (some 500 bytes for each call), and pixels of pictures in memory once
- * more. */
+ * moves, or any shape changes that is part of no object: hosts put what changes often into objects. A map of photons in
+ * memory is traced anew where anything but the camera has changed; one in photon_map_file is then of another scene, and
+ * the picture is refused unless photon_map_refresh is set (render_settings.h). The files of meshes (plymesh) are read
+ * when the shape is added or changed, and not looked at again by a commit. The library remembers what the calls said,
+ * without the arrays of meshes (some 500 bytes for each call), and pixels of pictures in memory once more. find_file of
+ * the scene's settings may be called by every commit: find_file_user stays valid until the scene is destroyed. */
 
 /* Whatever was said of it is replaced. */
 AG_API ag_status ag_scene_change_shape(ag_scene *scene, ag_handle handle, const ag_shape *shape);
@@ -46,9 +52,9 @@ AG_API ag_status ag_scene_change_medium(ag_scene *scene, const char *name, const
 AG_API ag_status ag_scene_change_texture(ag_scene *scene, const ag_texture *texture);
 AG_API ag_status ag_scene_change_image(ag_scene *scene, const char *name, const ag_image *image);
 
-/* Places a light, an instance or a shape by other matrices, as in ag_light, ag_instance and ag_shape; NULL: as it is.
- * Not a mesh, whose arrays are not kept: those of objects are moved by their instances, all are by
- * ag_scene_change_shape. */
+/* Places a light, an instance or a shape by other matrices, as in ag_light, ag_instance and ag_shape; world_from_own
+ * NULL: the identity, not the matrix that it had; world_from_own_end NULL: it does not move. Not a mesh, whose arrays
+ * are not kept: those of objects are moved by their instances, all are by ag_scene_change_shape. */
 AG_API ag_status ag_scene_move(ag_scene *scene, ag_handle handle, const double *world_from_own,
                                const double *world_from_own_end);
 /* Another material for a shape, of which nothing is read anew; NULL: diffuse, grey. */

@@ -133,8 +133,9 @@ typedef struct ag_shape {
     const char *medium_inside, *medium_outside; /* NULL, the default: none */
     /* Of a "trianglemesh" the arrays of "P" and "uv", which are then floats, and "indices" are used where they are, and
      * written by nobody, until the scene is destroyed, or committed without this shape as it was said here; of a scene
-     * that renderings keep, until they are finished. Behind P 4 more bytes must be readable. What changes in them must
-     * be said by ag_scene_change_shape. As far as they cannot be used so they are copied: P where the shape has a
+     * that renderings keep, until they are finished. They begin at multiples of 4 bytes, and behind P 4 more bytes must
+     * be readable. What changes in them must be said by ag_scene_change_shape, best with other arrays: see
+     * scene_editing.h of commits that fail. As far as they cannot be used so they are copied: P where the shape has a
      * matrix and stands still, or a coordinate is -0; indices where a triangle has no area. Default false: all is
      * copied. */
     bool borrows_arrays;

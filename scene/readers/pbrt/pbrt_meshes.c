@@ -153,18 +153,25 @@ ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const p
     return pbrt_add_object_mesh(parser, list, &m, 0, source->expects_degenerate);
 }
 
-/* Vertex data other than the positions: there is as much of it as there are positions, or it is dropped as in pbrt. */
+/* Whether there is as much of vertex data as there are positions: else it is dropped as in pbrt. */
+static bool has_count(const pbrt_parser *parser, const parameter_list *list, const char *name, size_t count,
+                      size_t expected)
+{
+    if (count != expected)
+        log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, name)->where,
+               "Shape \"%s\": \"%s\" should have %zu numbers as \"P\" goes, but has %zu, and is ignored", list->name,
+               name, expected, count);
+    return count == expected;
+}
+
+/* Vertex data other than the positions. */
 static ag_status read_vertex_data(pbrt_parser *parser, parameter_list *list, const char *name, parameter_type type,
                                   size_t expected, const double **out_values)
 {
     size_t count;
     AG_TRY(parameter_get_numbers(list, parser->log, name, type, out_values, &count));
-    if (*out_values && count != expected) {
-        log_at(parser->log, AG_LOG_WARNING, parameter_list_find(list, name)->where,
-               "Shape \"%s\": \"%s\" should have %zu numbers as \"P\" goes, but has %zu, and is ignored", list->name,
-               name, expected, count);
+    if (*out_values && !has_count(parser, list, name, count, expected))
         *out_values = NULL;
-    }
     if (count == 0)
         *out_values = NULL;
     return AG_OK;
@@ -310,7 +317,7 @@ static ag_status read_borrowed(pbrt_parser *parser, parameter_list *list, const 
                            from->index_count);
     m->vertex_count = (uint32_t)from->vertex_count;
     m->triangle_count = (uint32_t)(from->index_count / 3);
-    if (from->uvs) {
+    if (from->uvs && has_count(parser, list, "uv", from->uv_count, 2 * from->vertex_count)) {
         m->uvs = (vec2 *)(uintptr_t)from->uvs;
         m->borrowed |= MESH_BORROWS_UVS;
     }
