@@ -13,7 +13,7 @@
 
 enum { ROUNDS = 5, SMALL_SIDE = 50 };
 
-/* What is changed; of FRESH all is made. */
+/* A change of the scene, each kind measured apart; FRESH makes the whole scene anew. */
 typedef enum change { FRESH, CAMERA, LIGHT, MATERIAL, INSTANCE, SMALL_MESH, LARGE_MESH, CHANGES } change;
 
 typedef struct sheet {

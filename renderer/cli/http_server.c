@@ -179,7 +179,7 @@ static bool body_length(struct MHD_Connection *connection, size_t *out_length)
     return *length.value != '\0';
 }
 
-/* What is wrong with a request as its headers say it; status 0: nothing. */
+/* The refusal of a request whose method, headers or length are not as they should be; status 0: it is not refused. */
 static http_answer check_request(const http_server *s, struct MHD_Connection *connection, const char *method)
 {
     size_t length;

@@ -21,7 +21,7 @@ void page_pictures_reset(page_pictures *p)
         shared_bytes_drop(p->kept[i].png);
 }
 
-/* What a request asks to see. */
+/* The picture that a request asks for. */
 typedef struct asked_picture {
     const page_layer *layer;
     const char *display, *view;

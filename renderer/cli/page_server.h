@@ -11,6 +11,8 @@
 
 /* Seconds without a request after which nobody watches any more: a page that is seen asks twice a second. */
 #define PAGE_PATIENCE_SECONDS 15.0
+/* Between two looks at signals, where wishes are waited for. */
+#define PAGE_LOOK_SECONDS 0.1
 
 typedef struct page_server page_server;
 

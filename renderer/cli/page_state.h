@@ -15,7 +15,7 @@ typedef enum page_mode {
     PAGE_FINISHED   /* the picture is written */
 } page_mode;
 
-/* What main tells between two passes. */
+/* The state of the rendering, which the main thread notes between two passes. */
 typedef struct page_notes {
     page_mode mode;
     ag_sample_counts samples; /* of the film that is shown */

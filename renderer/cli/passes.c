@@ -29,16 +29,14 @@ typedef struct passes {
     ag_rendering *kept;         /* the view from elsewhere that is written instead; NULL: none */
     char *checkpoint;           /* its file; NULL: none is asked for */
     double checkpoint_interval; /* seconds; INFINITY: at signals alone */
-    double next_checkpoint;     /* when, in seconds of now() */
+    double next_checkpoint;     /* when, in seconds of passes_seconds() */
     double mean_at_checkpoint;  /* samples per pixel there were at the last one */
-    double deadline;            /* in seconds of now() */
+    double deadline;            /* in seconds of passes_seconds() */
     double begun;               /* when rendering began, likewise */
     int final;                  /* samples per pixel in the end */
     bool is_written;            /* the picture is; what is written after it is another view */
     ag_end cut;                 /* AG_END_TIME_LIMIT, AG_END_KEPT: it ends in order with fewer; else AG_END_NONE */
 } passes;
-
-static double now(void) { return passes_seconds(); }
 
 double passes_seconds(void)
 {
@@ -104,7 +102,7 @@ static ag_status write_checkpoint(passes *p)
         p->checkpoint_interval *= 2.0;
     p->mean_at_checkpoint = mean;
     ag_status status = ag_rendering_write_checkpoint(p->rendering, p->checkpoint);
-    p->next_checkpoint = now() + p->checkpoint_interval;
+    p->next_checkpoint = passes_seconds() + p->checkpoint_interval;
     return status;
 }
 
@@ -129,8 +127,6 @@ static ag_status resume(passes *p)
 enum { PASS_GROWTH = 4, PREVIEW_GROWTH = 2 };
 /* A pass is planned to take so much of the time that is left: a machine is not always as fast as before. */
 static const double PLANNED_SHARE = 0.9;
-/* Between two looks at signals, where a browser's wishes are waited for. */
-static const double LOOK_SECONDS = 0.1;
 
 /* Who watches by a browser sees layers, counters and noise after each pass, and keeps what whole passes have brought:
  * one takes no longer than this, or than this share of the time that all have taken. */
@@ -142,10 +138,10 @@ static int next_pass(const passes *p, int samples, double seconds_per_sample)
     int growth = p->o->preview ? PREVIEW_GROWTH : PASS_GROWTH;
     int next = samples <= p->final / growth ? samples * growth : p->final;
     if (p->o->page && seconds_per_sample > 0.0) {
-        const double seconds = fmax(WATCHED_SECONDS, WATCHED_SHARE * (now() - p->begun));
+        const double seconds = fmax(WATCHED_SECONDS, WATCHED_SHARE * (passes_seconds() - p->begun));
         next = (int)fmin(next, samples + fmax(1.0, seconds / seconds_per_sample));
     }
-    double affordable = PLANNED_SHARE * (p->deadline - now()) / fmax(seconds_per_sample, 1e-9);
+    double affordable = PLANNED_SHARE * (p->deadline - passes_seconds()) / fmax(seconds_per_sample, 1e-9);
     if (affordable >= next - samples)
         return next;
     return affordable >= 1.0 ? samples + (int)affordable : 0;
@@ -204,7 +200,7 @@ static ag_status serve(passes *p, bool is_after_pass)
         AG_TRY(write_snapshot(p));
     else if (is_after_pass && p->o->preview)
         AG_TRY(write_pictures(p, ag_rendering_film(p->rendering), false));
-    return now() >= p->next_checkpoint ? write_checkpoint(p) : AG_OK;
+    return passes_seconds() >= p->next_checkpoint ? write_checkpoint(p) : AG_OK;
 }
 
 /* AG_PAUSED: a signal wants the end. */
@@ -214,10 +210,10 @@ static ag_status run_passes(passes *p)
     double rendered = 0.0; /* seconds of this pass, and samples per pixel that they brought */
     double before = ag_rendering_sample_counts(p->rendering).mean;
     for (;;) {
-        double begun = now();
+        double begun = passes_seconds();
         signals_set_timer(p->next_checkpoint - begun);
         ag_status status = ag_rendering_continue(p->rendering, samples);
-        rendered += now() - begun;
+        rendered += passes_seconds() - begun;
         if (status != AG_OK && status != AG_PAUSED)
             return status;
         if (status == AG_OK && samples == p->final)
@@ -264,9 +260,9 @@ static ag_status begin(passes *p, const ag_scene *scene, const ag_render_setting
         AG_TRY(ag_rendering_keep_passes(p->rendering));
     if (o->resume)
         AG_TRY(resume(p));
-    p->begun = now();
+    p->begun = passes_seconds();
     p->checkpoint_interval = o->checkpoint_seconds > 0.0 ? o->checkpoint_seconds : INFINITY;
-    p->next_checkpoint = now() + p->checkpoint_interval;
+    p->next_checkpoint = passes_seconds() + p->checkpoint_interval;
     p->mean_at_checkpoint = ag_rendering_sample_counts(p->rendering).mean;
     return AG_OK;
 }
@@ -356,7 +352,7 @@ static bool is_last_frame(const options *o)
 static bool is_looked_at(const passes *p)
 {
     const options *o = p->o;
-    if (!o->page || !is_last_frame(o) || p->kept || signals_stop() || now() >= p->deadline)
+    if (!o->page || !is_last_frame(o) || p->kept || signals_stop() || passes_seconds() >= p->deadline)
         return false;
     page_wishes *wishes = page_server_wishes(o->page);
     return page_wishes_is_watched(wishes, PAGE_PATIENCE_SECONDS) && !page_wishes_has_end(wishes);
@@ -367,7 +363,7 @@ static ag_status await_page(passes *p)
     page_server_set_mode(p->o->page, PAGE_FINISHED);
     while (is_looked_at(p)) {
         page_wishes *wishes = page_server_wishes(p->o->page);
-        page_wishes_wait(wishes, LOOK_SECONDS);
+        page_wishes_wait(wishes, PAGE_LOOK_SECONDS);
         AG_TRY(walk_about(p, PAGE_FINISHED));
         (void)page_wishes_take_return(wishes);
         if (!p->kept && page_wishes_take_layers(wishes))
@@ -380,7 +376,7 @@ static ag_status await_page(passes *p)
 static void leave_watchers(const passes *p)
 {
     page_server_leave(p->o->page, is_last_frame(p->o) ? PAGE_FINISHED : PAGE_WAITING);
-    display_server_leave(p->o->display, fmax(p->deadline - now(), 0.0));
+    display_server_leave(p->o->display, fmax(p->deadline - passes_seconds(), 0.0));
 }
 
 /* From now on the film is shown wherever it is wanted. */

@@ -9,7 +9,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double LOOK_SECONDS = 0.1;
 /* After a move a coarse picture comes first, of so many times fewer pixels in width and height, where that is worth it:
  * whoever walks sees where he is. */
 enum { REDUCTION = 4, WORTHWHILE_PIXELS = 1 << 15 };
@@ -124,7 +123,7 @@ static ag_status step(const walk *w, page_wishes *wishes, walk_state *s)
     if (s->view && !s->is_done)
         AG_TRY(refine(w, s));
     else if (s->view)
-        page_wishes_wait(wishes, LOOK_SECONDS);
+        page_wishes_wait(wishes, PAGE_LOOK_SECONDS);
     if (page_wishes_take_layers(wishes))
         page_server_copy_layers(w->o->page);
     return AG_OK;

@@ -61,8 +61,7 @@ static const lit_point *point_of(const cell_view *c, uint32_t i) { return &c->l-
 static vec2 within(cell_view *c, uint32_t x, uint32_t y, uint32_t side)
 {
     vec2 u = rng_vec2(&c->random);
-    return (vec2){fminf(((float)x + u.x) / (float)side, 0x1.fffffep-1f),
-                  fminf(((float)y + u.y) / (float)side, 0x1.fffffep-1f)};
+    return (vec2){float_below_one(((float)x + u.x) / (float)side), float_below_one(((float)y + u.y) / (float)side)};
 }
 
 /* Root mean square over bins and their neighbours, for they are seen by one ray each, from one of many points. */

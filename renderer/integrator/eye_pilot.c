@@ -99,12 +99,11 @@ static void look_for_lamp(const transport *t, eye_worker *worker, const vertex *
                           row_items *out)
 {
     const scene *s = t->s;
-    emission_trial found = {.density = 1.0f};
-    found.start = emission_start_draw(&random);
-    vec2 u = rng_vec2(&random);
     float probability;
     if (s->light_count == 0)
         return;
+    emission_trial found = {.start = emission_start_draw(&random), .density = 1.0f};
+    vec2 u = rng_vec2(&random);
     const light *lamp = &s->lights[scene_pick_light_by_power(s, found.start.u[0], &probability)];
     light_sample towards;
     if (!(probability > 0.0f) || !light_sample_from_point(s, lamp, v->hit.position, u, &towards))

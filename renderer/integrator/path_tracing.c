@@ -13,7 +13,7 @@ static bsdf_lobes pick_group(const vertex *v, float *in_out_u, rgb *in_out_throu
     float share = bsdf_probability(&v->scattering, BSDF_GATHERED);
     bool is_gathered = *in_out_u < share;
     float before = is_gathered ? 0.0f : share, picked = is_gathered ? share : 1.0f - share;
-    *in_out_u = fminf((*in_out_u - before) / picked, 0x1.fffffep-1f);
+    *in_out_u = float_below_one((*in_out_u - before) / picked);
     *in_out_throughput = rgb_scale(*in_out_throughput, 1.0f / picked);
     return is_gathered ? BSDF_GATHERED : BSDF_TRACED;
 }

@@ -193,7 +193,7 @@ static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2
     vec3 n = shape_sample_area(lamp, u).geometric_normal, direction = vec3_negate(towards->direction);
     if (l->as.area.two_sided) {
         bool is_behind = vec3_dot(n, direction) < 0.0f;
-        in_out->part = fminf(0.5f * in_out->part + (is_behind ? 0.0f : 0.5f), 0x1.fffffep-1f);
+        in_out->part = float_below_one(0.5f * in_out->part + (is_behind ? 0.0f : 0.5f));
         n = is_behind ? vec3_negate(n) : n;
     }
     frame f = frame_from_z(n);

@@ -61,15 +61,6 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
            !rgb_is_black(out->flux);
 }
 
-static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
-                                emission_numbers *in_out)
-{
-    (void)l;
-    in_out->direction = u;
-    light_numbers_from_afar(s, point, vec3_negate(towards->direction), in_out);
-    return true;
-}
-
 static bool reaches(const light *l, vec3 point, vec3 normal)
 {
     (void)point;
@@ -84,5 +75,5 @@ const light_type distant_light = {.is_everywhere = true,
                                   .power = power,
                                   .sample_from_point = sample_from_point,
                                   .emit = emit,
-                                  .emission_numbers_of = emission_numbers_of,
+                                  .emission_numbers_of = light_numbers_from_afar,
                                   .reaches = reaches};

@@ -116,8 +116,7 @@ void environment_uv_at(const environment *e, vec3 direction, uint32_t *out_x, ui
         down = is_low ? 1.0 - down : down;
     }
     double right = x * e->width - *out_x;
-    *out_within =
-        (vec2){fminf(fmaxf((float)right, 0.0f), 0x1.fffffep-1f), fminf(fmaxf((float)down, 0.0f), 0x1.fffffep-1f)};
+    *out_within = (vec2){float_below_one(fmaxf((float)right, 0.0f)), float_below_one(fmaxf((float)down, 0.0f))};
 }
 
 vec3 environment_direction(const environment *e, uint32_t x, uint32_t y, vec2 within)

@@ -84,9 +84,7 @@ static bool emit(const scene *s, const light *l, const light_target *target, con
 static bool emission_numbers_of(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
                                 emission_numbers *in_out)
 {
-    in_out->direction = u;
-    light_numbers_from_afar(s, point, vec3_negate(towards->direction), in_out);
-    return !l->as.infinite.portal;
+    return !l->as.infinite.portal && light_numbers_from_afar(s, l, point, u, towards, in_out);
 }
 
 static bool reaches(const light *l, vec3 point, vec3 normal)

@@ -83,10 +83,12 @@ static bool start_from_afar(const scene *s, const light_target *whole, vec3 dire
     return true;
 }
 
-void light_numbers_from_afar(const scene *s, vec3 point, vec3 direction, emission_numbers *in_out_numbers)
+bool light_numbers_from_afar(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                             emission_numbers *in_out_numbers)
 {
+    (void)l;
     light_target whole = {s->bounding_center, s->bounding_radius}, ball;
-    const frame f = frame_from_z(direction);
+    const frame f = frame_from_z(vec3_negate(towards->direction));
     const int count = nested_ball_count(s, &whole);
     vec3 local;
     int i = -1;
@@ -95,9 +97,11 @@ void light_numbers_from_afar(const scene *s, vec3 point, vec3 direction, emissio
         local = frame_to_local(&f, vec3_sub(point, ball.center));
     } while (i < count - 1 && local.x * local.x + local.y * local.y > ball.radius * ball.radius);
     const float inverse = 1.0f / ball.radius;
+    in_out_numbers->direction = u;
     in_out_numbers->position = sample_disk_concentric_inverse((vec2){local.x * inverse, local.y * inverse});
     if (count > 1)
-        in_out_numbers->part = fminf(((float)i + in_out_numbers->part) / (float)count, 0x1.fffffep-1f);
+        in_out_numbers->part = float_below_one(((float)i + in_out_numbers->part) / (float)count);
+    return true;
 }
 
 /* Light from infinitely far has lost in a medium that absorbs whatever that takes. The first interface that it meets

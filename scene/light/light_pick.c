@@ -129,7 +129,7 @@ uint32_t scene_pick_light(const scene *s, vec3 point, vec3 normal, float u, floa
     float scaled = u * (float)shares;
     uint32_t wanted = (uint32_t)scaled < shares ? (uint32_t)scaled : shares - 1;
     if (wanted == count) {
-        u = fminf(scaled - (float)wanted, 0x1.fffffep-1f);
+        u = float_below_one(scaled - (float)wanted);
         uint32_t lamp = light_tree_pick(s->light_tree, point, normal, u, out_probability);
         *out_probability /= (float)shares;
         return lamp;

@@ -148,7 +148,7 @@ uint32_t light_tree_pick(const light_tree *t, vec3 point, vec3 normal, float u, 
                 break;
             before += weights[k];
         }
-        u = fminf(fmaxf((wanted - before) / weights[picked], 0.0f), 0x1.fffffep-1f);
+        u = float_below_one(fmaxf((wanted - before) / weights[picked], 0.0f));
         probability *= weights[picked] / sum;
         at = n->child[picked];
         if (n->is_lamp[picked]) {

@@ -76,7 +76,9 @@ bool light_aim_point(const light *l, const light_target *target, float own_cone,
 bool light_emit_from_afar(const scene *s, const light *l, const light_target *target, const emission_numbers *numbers,
                           vec3 direction, rgb radiance, float pdf, light_emission *out_emission);
 
-/* Position and part by which light_emit_from_afar sends light in that direction through the point. */
-void light_numbers_from_afar(const scene *s, vec3 point, vec3 direction, emission_numbers *in_out_numbers);
+/* emission_numbers_of a kind whose light_sample_from_point and light_emit pick a direction by the numbers alike, and
+ * whose light comes by light_emit_from_afar. */
+bool light_numbers_from_afar(const scene *s, const light *l, vec3 point, vec2 u, const light_sample *towards,
+                             emission_numbers *in_out_numbers);
 
 #endif

@@ -18,7 +18,7 @@ static void look(const scene *s, const light *l, double out_sum[3], double out_c
     const shape *lamp = &s->shapes[l->as.area.shape_index];
     for (uint32_t k = 0; k < LOOKS; k++) {
         double turn = k * 0.61803398874989485;
-        vec2 u = {((float)k + 0.5f) / LOOKS, fminf((float)(turn - floor(turn)), 0x1.fffffep-1f)};
+        vec2 u = {((float)k + 0.5f) / LOOKS, float_below_one((float)(turn - floor(turn)))};
         surface_sample at = shape_sample_area(lamp, u);
         rgb c = light_sampled_value(s, l, &at);
         /* ellipsoids are not sampled evenly: the weight undoes that */
@@ -69,8 +69,8 @@ bool radiance_map_sample(const radiance_map *m, vec2 u, vec2 *out_u, float *out_
     distribution_2d_sample pick;
     if (!distribution_2d_pick(&m->picks, u, &pick))
         return false;
-    *out_u = (vec2){fminf(((float)pick.x + pick.within.x) / SIZE, 0x1.fffffep-1f),
-                    fminf(((float)pick.y + pick.within.y) / SIZE, 0x1.fffffep-1f)};
+    *out_u = (vec2){float_below_one(((float)pick.x + pick.within.x) / SIZE),
+                    float_below_one(((float)pick.y + pick.within.y) / SIZE)};
     *out_density = pick.probability * (SIZE * SIZE);
     return true;
 }

@@ -206,7 +206,7 @@ static const bsdf_lobe *pick_lobe(const bsdf *b, bsdf_lobes lobes, float *in_out
         last = &b->lobes[k];
         *out_probability = p;
         if (*in_out_u < before + p) {
-            *in_out_u = fminf((*in_out_u - before) / p, 0x1.fffffep-1f);
+            *in_out_u = float_below_one((*in_out_u - before) / p);
             return last;
         }
         before += p;

@@ -11,7 +11,7 @@ coat_numbers coat_numbers_make(uint64_t key, uint64_t stream, uint32_t k)
     for (int j = 0; j < COAT_POINTS; j++) {
         power *= SPREAD;
         double x = 0.5 + ((double)k + 1.0) * power;
-        n.points[j] = fminf((float)(x - floor(x)), 0x1.fffffep-1f);
+        n.points[j] = float_below_one((float)(x - floor(x)));
     }
     n.taken = 0;
     n.random = rng_make(key, stream, k);

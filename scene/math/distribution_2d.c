@@ -61,7 +61,7 @@ static uint32_t find(const float *cdf, uint32_t count, float u, float *out_withi
         else
             low = middle + 1;
     }
-    *out_within = fminf((u - cdf[low]) / (cdf[low + 1] - cdf[low]), 0x1.fffffep-1f);
+    *out_within = float_below_one((u - cdf[low]) / (cdf[low + 1] - cdf[low]));
     return low;
 }
 

@@ -43,8 +43,8 @@ static inline float distribution_2d_probability(const distribution_2d *d, uint32
 static inline vec2 distribution_2d_numbers(const distribution_2d *d, uint32_t x, uint32_t y, vec2 within)
 {
     const float *rows = d->row_cdf + y, *cells = d->cell_cdf + (size_t)y * (d->width + 1) + x;
-    return (vec2){fminf(cells[0] + within.x * (cells[1] - cells[0]), 0x1.fffffep-1f),
-                  fminf(rows[0] + within.y * (rows[1] - rows[0]), 0x1.fffffep-1f)};
+    return (vec2){float_below_one(cells[0] + within.x * (cells[1] - cells[0])),
+                  float_below_one(rows[0] + within.y * (rows[1] - rows[0]))};
 }
 
 #endif

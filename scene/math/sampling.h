@@ -47,8 +47,7 @@ static inline vec2 sample_disk_concentric_inverse(vec2 d)
     float r = copysignf(sqrtf(d.x * d.x + d.y * d.y), along);
     float other = 8.0f * copysignf(r, across) * (float)angle_turns(fabs((double)across), fabs((double)along));
     vec2 u = is_wide ? (vec2){r, other} : (vec2){other, r};
-    const float below_one = 0x1.fffffep-1f;
-    return (vec2){fminf(fmaxf(0.5f + 0.5f * u.x, 0.0f), below_one), fminf(fmaxf(0.5f + 0.5f * u.y, 0.0f), below_one)};
+    return (vec2){float_below_one(fmaxf(0.5f + 0.5f * u.x, 0.0f)), float_below_one(fmaxf(0.5f + 0.5f * u.y, 0.0f))};
 }
 
 /* Cosine-distributed around +z; density cos / pi per solid angle. */
@@ -70,9 +69,8 @@ static inline vec3 sample_uniform_sphere(vec2 u)
 /* Back from a unit vector to what sample_uniform_sphere was given. */
 static inline vec2 sample_uniform_sphere_inverse(vec3 d)
 {
-    const float below_one = 0x1.fffffep-1f;
-    return (vec2){fminf(fmaxf(0.5f - 0.5f * d.z, 0.0f), below_one),
-                  fminf((float)angle_turns((double)d.y, (double)d.x), below_one)};
+    return (vec2){float_below_one(fmaxf(0.5f - 0.5f * d.z, 0.0f)),
+                  float_below_one((float)angle_turns((double)d.y, (double)d.x))};
 }
 
 /* Uniform in the cone around +z with 1 - cos_max = one_minus_cos_max; density 1 / (2 pi one_minus_cos_max). */

@@ -53,6 +53,9 @@ static inline bool vec3_is_finite(vec3 a) { return isfinite(a.x) && isfinite(a.y
 /* n or -n, whichever lies on the side of v */
 static inline vec3 vec3_face_forward(vec3 n, vec3 v) { return vec3_dot(n, v) < 0.0f ? vec3_negate(n) : n; }
 
+/* At most the largest float below 1: for random numbers of [0, 1), which rounding may bring to 1. */
+static inline float float_below_one(float x) { return fminf(x, 0x1.fffffep-1f); }
+
 static inline rgb rgb_make(float r, float g, float b) { return (rgb){r, g, b}; }
 static inline rgb rgb_gray(float v) { return (rgb){v, v, v}; }
 static inline rgb rgb_add(rgb a, rgb b) { return (rgb){a.r + b.r, a.g + b.g, a.b + b.b}; }

@@ -195,7 +195,7 @@ static surface_sample mesh_sample_area(const shape *s, vec2 u)
     }
     float before = low > 0 ? m->area_cdf[low - 1] : 0.0f, share = m->area_cdf[low] - before;
     if (share > 0.0f)
-        u.x = fminf(fmaxf((u.x - before) / share, 0.0f), 0x1.fffffep-1f);
+        u.x = float_below_one(fmaxf((u.x - before) / share, 0.0f));
     vec2 b = sample_triangle(u);
     surface_hit hit;
     shape_surface_at(s, low, b.x, b.y, NOWHERE, NOWHERE, &hit);

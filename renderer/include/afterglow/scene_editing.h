@@ -14,7 +14,7 @@ extern "C" {
  *
  *     ag_scene_commit -> ag_render -> ag_scene_change_..., ag_scene_add_..., ag_scene_remove -> ag_scene_commit -> ...
  *
- * What the functions below and those of scene_making.h say takes effect with the next ag_scene_commit, all at once;
+ * All calls of the functions below and of those of scene_making.h take effect with the next ag_scene_commit at once;
  * until then nothing can be rendered. The scene is then, to the last bit of its pictures, one that was made afresh by
  * the calls that now hold: each thing in the place of its first call, pictures and whatever has a name first, then the
  * shapes of objects, then the rest. So materials may name textures that were made after them, and shapes can be added
