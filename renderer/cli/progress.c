@@ -57,6 +57,7 @@ static void usual_shares(const progress *p, double out_shares[AG_PHASE_COUNT])
 
 void progress_begin_frame(progress *p, int frame, int frame_count, int frame_number)
 {
+    pthread_mutex_lock(&terminal); /* progress_read may be asked from elsewhere */
     if (frame > p->frame && p->phase != AG_PHASE_COUNT) { /* one is over, which was not skipped */
         for (int i = 0; i < AG_PHASE_COUNT; i++)
             p->learned_seconds[i] += p->phase_seconds[i];
@@ -69,6 +70,7 @@ void progress_begin_frame(progress *p, int frame, int frame_count, int frame_num
     p->frame_number = frame_number;
     p->frame_begun = passes_seconds();
     p->phase = AG_PHASE_COUNT;
+    pthread_mutex_unlock(&terminal);
 }
 
 static void enter_phase(progress *p, ag_phase phase, double fraction, double now)
