@@ -57,7 +57,7 @@ static void usual_shares(const progress *p, double out_shares[AG_PHASE_COUNT])
 
 void progress_begin_frame(progress *p, int frame, int frame_count, int frame_number)
 {
-    pthread_mutex_lock(&terminal); /* progress_read may be asked from elsewhere */
+    pthread_mutex_lock(&terminal);                        /* progress_read may be asked from elsewhere */
     if (frame > p->frame && p->phase != AG_PHASE_COUNT) { /* one is over, which was not skipped */
         for (int i = 0; i < AG_PHASE_COUNT; i++)
             p->learned_seconds[i] += p->phase_seconds[i];
