@@ -21,9 +21,9 @@ typedef struct scene_making {
     pbrt_builder *meshes;  /* makes meshes, in a scene of its own; NULL where nothing can be changed */
     scene *mesh_scene;
     scene_request request;
-    char *sky_file, *camera_name; /* of the request */
-    uint32_t serial;              /* of the scene, in its handles */
-    uint32_t thing_count;         /* that have had a number */
+    char *texts[3];       /* of the request: copies, in any order */
+    uint32_t serial;      /* of the scene, in its handles */
+    uint32_t thing_count; /* that have had a number */
     int call_counts[DEED_COUNT][CALL_KIND_COUNT];
     bool is_editable;
     bool has_moving; /* shapes or instances, whose motion was made for the camera's shutter */

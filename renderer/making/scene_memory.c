@@ -40,8 +40,8 @@ void scene_making_destroy(scene_making *making)
     scene_destroy(making->mesh_scene);
     scene_plan_reset(&making->plan);
     scene_plan_reset(&making->committed);
-    free(making->sky_file);
-    free(making->camera_name);
+    for (int k = 0; k < 3; k++)
+        free(making->texts[k]);
     free(making);
 }
 
@@ -62,13 +62,12 @@ static ag_status copy_request(const ag_scene_settings *settings, scene_making *m
     AG_TRY(scene_request_make(making->context, settings, &making->request));
     if (settings->definition_count > 0)
         return scene_settings_refuse(making->context, "a scene from memory has no text for definitions");
-    making->sky_file = settings->sky_file ? strdup(settings->sky_file) : NULL;
-    making->camera_name = settings->camera_name ? strdup(settings->camera_name) : NULL;
-    making->request.sky_file = making->sky_file;
-    making->request.camera_name = making->camera_name;
-    return (making->sky_file || !settings->sky_file) && (making->camera_name || !settings->camera_name)
-               ? AG_OK
-               : AG_ERROR_MEMORY;
+    scene_request *asked = &making->request;
+    const char **const texts[3] = {&asked->sky_file, &asked->camera_name, &asked->texture_cache};
+    for (int k = 0; k < 3; k++)
+        if (*texts[k] && !(*texts[k] = making->texts[k] = strdup(*texts[k])))
+            return AG_ERROR_MEMORY;
+    return AG_OK;
 }
 
 /* What makes meshes of their arrays: a scene for that alone. */
