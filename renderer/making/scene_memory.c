@@ -292,7 +292,7 @@ ag_status ag_scene_commit(ag_scene *made)
 ag_status call_work_begin(ag_scene *made, call_deed deed, call_kind kind, call_work *out_work)
 {
     scene_making *making = made->making;
-    const file_location where = {FUNCTIONS[deed][kind], ++making->call_counts[deed][kind], 0};
+    const file_location where = call_place(FUNCTIONS[deed][kind], &making->call_counts[deed][kind]);
     scene_call *call = scene_call_create(kind, where);
     if (!call)
         return AG_ERROR_MEMORY;
@@ -468,7 +468,7 @@ static ag_status change_camera(ag_scene *made, const ag_camera *given)
     ag_context *context = made->context;
     const unsigned callers_arithmetic = floating_point_enter();
     const phase_begin begin = context_begin_phase();
-    const file_location where = {FUNCTIONS[DEED_MAKE][CALL_CAMERA], ++made->camera_calls, 0};
+    const file_location where = call_place(FUNCTIONS[DEED_MAKE][CALL_CAMERA], &made->camera_calls);
     scene_call *c = scene_call_create(CALL_CAMERA, where);
     camera seen;
     const ag_status status = c ? read_camera(context, made, given, c, &seen) : AG_ERROR_MEMORY;
