@@ -44,10 +44,8 @@ typedef struct scene {
     scene_reuse reuse;
     material *materials;
     uint32_t material_count;
-    struct coat_table **coat_tables; /* of the materials that need one (material/coat.h) */
-    uint32_t coat_table_count;
-    struct hair_fibre **hair_fibres; /* of the materials that are hair */
-    uint32_t hair_fibre_count;
+    struct material_table **material_tables; /* that materials keep beside their values (material/material_table.h) */
+    uint32_t material_table_count;
     texture *textures;
     uint32_t texture_count;
     texture_image **texture_images; /* those that textures refer to, each file and encoding once */
