@@ -105,7 +105,7 @@ static ag_status predict(ag_context *context, const options *o, const ag_scene *
     if (!o->dry_run)
         return AG_OK;
     AG_TRY(ag_predict(context, scene, settings, &prediction));
-    summary_print_prediction(stdout, &prediction);
+    summary_print_prediction(stdout, &prediction, ag_context_statistics(context).texture_file_bytes);
     ag_context_note_end(context, AG_END_DRY_RUN);
     return fflush(stdout) == 0 ? AG_OK : AG_ERROR_OUTPUT;
 }

@@ -5,6 +5,8 @@
 
 #include "scene_plan.h"
 
+#include <limits.h>
+
 /* What a call does with a thing. */
 typedef enum call_deed { DEED_MAKE, DEED_CHANGE, DEED_MOVE, DEED_ASSIGN, DEED_REMOVE, DEED_COUNT } call_deed;
 
@@ -21,10 +23,10 @@ typedef struct scene_making {
     pbrt_builder *meshes;  /* makes meshes, in a scene of its own; NULL where nothing can be changed */
     scene *mesh_scene;
     scene_request request;
-    char *sky_file, *camera_name; /* of the request */
-    uint32_t serial;              /* of the scene, in its handles */
-    uint32_t thing_count;         /* things that were given a number so far */
-    int call_counts[DEED_COUNT][CALL_KIND_COUNT];
+    char *texts[3];       /* of the request: copies, in any order */
+    uint32_t serial;      /* of the scene, in its handles */
+    uint32_t thing_count; /* things that were given a number so far */
+    uint64_t call_counts[DEED_COUNT][CALL_KIND_COUNT];
     bool is_editable;
     bool has_moving; /* some shapes or instances move, and their motion was made for the camera's shutter */
     scene_plan plan; /* all calls, where it can be changed; else the pictures alone, which s borrows */
@@ -36,6 +38,14 @@ typedef struct scene_making {
     camera_state committed_camera; /* the camera that counts again then */
     ag_commit_counts counts;
 } scene_making;
+
+/* Where the next call of a function stands in messages, which count no further than an int does. A scene whose parts
+ * move 60 times a second has had more calls than that after hours. */
+static inline file_location call_place(const char *function, uint64_t *in_out_count)
+{
+    ++*in_out_count;
+    return (file_location){function, *in_out_count < INT_MAX ? (int)*in_out_count : INT_MAX, 0};
+}
 
 /* A call of the public interface while it is carried out. */
 typedef struct call_work {

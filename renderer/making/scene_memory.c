@@ -40,8 +40,8 @@ void scene_making_destroy(scene_making *making)
     scene_destroy(making->mesh_scene);
     scene_plan_reset(&making->plan);
     scene_plan_reset(&making->committed);
-    free(making->sky_file);
-    free(making->camera_name);
+    for (int k = 0; k < 3; k++)
+        free(making->texts[k]);
     free(making);
 }
 
@@ -62,13 +62,12 @@ static ag_status copy_request(const ag_scene_settings *settings, scene_making *m
     AG_TRY(scene_request_make(making->context, settings, &making->request));
     if (settings->definition_count > 0)
         return scene_settings_refuse(making->context, "a scene from memory has no text for definitions");
-    making->sky_file = settings->sky_file ? strdup(settings->sky_file) : NULL;
-    making->camera_name = settings->camera_name ? strdup(settings->camera_name) : NULL;
-    making->request.sky_file = making->sky_file;
-    making->request.camera_name = making->camera_name;
-    return (making->sky_file || !settings->sky_file) && (making->camera_name || !settings->camera_name)
-               ? AG_OK
-               : AG_ERROR_MEMORY;
+    scene_request *asked = &making->request;
+    const char **const texts[3] = {&asked->sky_file, &asked->camera_name, &asked->texture_cache};
+    for (int k = 0; k < 3; k++)
+        if (*texts[k] && !(*texts[k] = making->texts[k] = strdup(*texts[k])))
+            return AG_ERROR_MEMORY;
+    return AG_OK;
 }
 
 /* Meshes are made of their arrays by a builder with a scene of its own. */
@@ -293,7 +292,7 @@ ag_status ag_scene_commit(ag_scene *made)
 ag_status call_work_begin(ag_scene *made, call_deed deed, call_kind kind, call_work *out_work)
 {
     scene_making *making = made->making;
-    const file_location where = {FUNCTIONS[deed][kind], ++making->call_counts[deed][kind], 0};
+    const file_location where = call_place(FUNCTIONS[deed][kind], &making->call_counts[deed][kind]);
     scene_call *call = scene_call_create(kind, where);
     if (!call)
         return AG_ERROR_MEMORY;
@@ -469,7 +468,7 @@ static ag_status change_camera(ag_scene *made, const ag_camera *given)
     ag_context *context = made->context;
     const unsigned callers_arithmetic = floating_point_enter();
     const phase_begin begin = context_begin_phase();
-    const file_location where = {FUNCTIONS[DEED_MAKE][CALL_CAMERA], ++made->camera_calls, 0};
+    const file_location where = call_place(FUNCTIONS[DEED_MAKE][CALL_CAMERA], &made->camera_calls);
     scene_call *c = scene_call_create(CALL_CAMERA, where);
     camera seen;
     const ag_status status = c ? read_camera(context, made, given, c, &seen) : AG_ERROR_MEMORY;

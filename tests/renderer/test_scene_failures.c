@@ -247,6 +247,9 @@ static void settings_out_of_range_are_named(void **state)
     asked.texture_memory_bytes = 5;
     expect_settings_refused(&d, &asked, "the settings of the scene: texture_memory_bytes should be");
     asked = sound;
+    asked.texture_cache = "";
+    expect_settings_refused(&d, &asked, "texture_cache should be a folder");
+    asked = sound;
     asked.has_sun = true;
     asked.sun_irradiance = NAN;
     expect_settings_refused(&d, &asked, "sun_irradiance should be finite");
