@@ -17,6 +17,7 @@ struct ag_context {
     char isa[16];
     double created_at; /* clock_seconds */
     ag_statistics statistics;
+    ag_prediction prediction;                     /* the last that was made */
     ag_render_settings rendered;                  /* of the last ag_render, nothing left open */
     char *color_config_path, *working_space_name; /* as in ag_context_settings */
     color_config *color_config;                   /* NULL until it is asked for */
@@ -34,7 +35,7 @@ struct ag_scene {
     input_files inputs;  /* what it was read from */
     struct scene_making
         *making;              /* then, and where it can be changed: see making/scene_making.h; NULL: it is complete */
-    int camera_calls;         /* of ag_scene_set_camera, since it is complete */
+    uint64_t camera_calls;    /* of ag_scene_set_camera, since it is complete */
     unsigned rendering_count; /* those that borrow it */
     bool is_dropped;          /* it goes with the last of them */
 };

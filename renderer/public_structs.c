@@ -12,6 +12,7 @@ static const ag_context_settings CONTEXT_SETTINGS = {.struct_size = sizeof(ag_co
 static const ag_output_settings OUTPUT_SETTINGS = {.struct_size = sizeof(ag_output_settings)};
 static const ag_scene_settings SCENE_SETTINGS = {.struct_size = sizeof(ag_scene_settings),
                                                  .texture_memory_bytes = AG_DEFAULT_TEXTURE_MEMORY_BYTES,
+                                                 .texture_cache_bytes = AG_DEFAULT_TEXTURE_CACHE_BYTES,
                                                  .camera_fov_degrees = 45.0f,
                                                  .sun_elevation_degrees = 45.0f,
                                                  .sun_irradiance = 3.0f,
@@ -54,6 +55,15 @@ void public_struct_write(const void *filled, size_t filled_size, void *out_struc
     memset(out_struct, 0, struct_size);
     if (struct_size >= sizeof struct_size)
         memcpy(out_struct, &struct_size, sizeof struct_size);
+}
+
+void public_struct_write_part(const void *made, size_t made_size, void *out_struct, size_t struct_size)
+{
+    memset(out_struct, 0, struct_size);
+    if (struct_size < sizeof struct_size)
+        return;
+    memcpy(out_struct, made, made_size < struct_size ? made_size : struct_size);
+    memcpy(out_struct, &struct_size, sizeof struct_size);
 }
 
 size_t ag_struct_size(ag_struct which) { return known_of(which).size; }

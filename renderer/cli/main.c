@@ -105,7 +105,7 @@ static ag_status predict(ag_context *context, const options *o, const ag_scene *
     if (!o->dry_run)
         return AG_OK;
     AG_TRY(ag_predict(context, scene, settings, &prediction));
-    summary_print_prediction(stdout, &prediction);
+    summary_print_prediction(stdout, &prediction, ag_context_statistics(context).texture_file_bytes);
     ag_context_note_end(context, AG_END_DRY_RUN);
     return fflush(stdout) == 0 ? AG_OK : AG_ERROR_OUTPUT;
 }
@@ -125,7 +125,7 @@ static ag_status check_options(ag_context *context, const options *o)
         AG_TRY(ag_statistics_check(context, o->photons_file)); /* as for any file */
     if (o->render.photon_map_file)
         AG_TRY(ag_photon_map_check(context, o->render.photon_map_file));
-    if ((o->photons_file || o->render.photon_map_file) && o->render.integrator == AG_INTEGRATOR_PATH) {
+    if ((o->photons_file || o->render.photon_map_file) && !ag_integrator_has_photons(o->render.integrator)) {
         fprintf(stderr, "afterglow: --%s: path tracing has no photons\n",
                 o->photons_file ? "dump-photons" : "photon-map");
         return AG_ERROR_ARGUMENT;

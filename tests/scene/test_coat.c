@@ -20,7 +20,7 @@ static material coat_on_diffuse(double roughness, double reflectance)
     return m;
 }
 
-/* On a metal that reflects 0.8 at normal incidence in air. */
+/* A coat on a metal that reflects 0.8 at normal incidence in air. */
 static material coat_on_metal(double roughness, double base_roughness)
 {
     material m = as_pbrt(coated_conductor((float)roughness, (float)base_roughness, (float)base_roughness));
@@ -207,8 +207,8 @@ static void coats_have_the_albedo_of_walks(void **state)
     }
 }
 
-/* Into cones of 15 degrees about where a mirror sends light, beside it, and elsewhere. Diffuse bases are right within
- * the noise; of metals the lobe's shape stands in for another (coat.h). */
+/* The light that coats send into cones of 15 degrees about a mirror's direction, beside it and elsewhere is that of
+ * walks: over diffuse bases within the noise; of metals the lobe's shape stands in for another (coat.h). */
 static void coats_send_light_where_walks_go(void **state)
 {
     (void)state;
@@ -283,11 +283,11 @@ static void materials_of_one_coat_share_a_table(void **state)
                                 "Material \"coatedconductor\" \"float interface.roughness\" .2 Shape \"sphere\" "
                                 "Material \"coatedconductor\" \"float interface.roughness\" 0 \"float "
                                 "conductor.roughness\" 0 Shape \"sphere\"");
-    assert_int_equal(s->coat_table_count, 2);
+    assert_int_equal(s->material_table_count, 2);
     const material *first = &s->materials[s->shapes[0].material_index];
-    assert_ptr_equal(first->coat, s->materials[s->shapes[1].material_index].coat);
-    assert_ptr_not_equal(first->coat, s->materials[s->shapes[2].material_index].coat);
-    assert_null(s->materials[s->shapes[3].material_index].coat);
+    assert_ptr_equal(first->table, s->materials[s->shapes[1].material_index].table);
+    assert_ptr_not_equal(first->table, s->materials[s->shapes[2].material_index].table);
+    assert_null(s->materials[s->shapes[3].material_index].table);
     scene_destroy(s);
     test_run_reset(&run);
 }
