@@ -135,7 +135,7 @@ static ag_status check_options(ag_context *context, const options *o)
 
 enum { NAME_SIZE = 4096 };
 
-/* One picture on its way. */
+/* The state of a picture that is rendered. */
 typedef struct picture_run {
     ag_context *context;
     options *o;
@@ -200,7 +200,7 @@ static ag_status tell_statistics(picture_run *r, ag_status status, const passes_
     return status == AG_OK ? written : status;
 }
 
-/* One picture; frame: -1 where there is none. */
+/* Renders a picture; frame: -1 where there are no frames. */
 static ag_status run(ag_context *context, options *o, int frame, progress *told, passes_result *out_result)
 {
     o->begun = passes_seconds();
