@@ -157,6 +157,17 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
     }
 }
 
+/* Where light may come to what is seen from a traced lobe that is rough. met: of a ray from there, not complete yet. */
+static void note_caustic_way(const transport *t, const vertex *met, row_items *out)
+{
+    vertex v = *met;
+    transport_complete(t, &v);
+    if (!bsdf_has(&v.scattering, BSDF_TRACED) || !bsdf_is_sampled_from_light(&v.scattering, BSDF_TRACED))
+        return;
+    map_point at = transport_map_point(t, &v);
+    add_importon(out, SEEN_WAYS, at.position, at.facing_normal, v.arrived.direction);
+}
+
 static void gather_points(const transport *t, eye_worker *worker, const vertex *v, const sampler *where,
                           int path_vertex, int scatterings_left, row_items *out)
 {
@@ -173,10 +184,7 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
         ray.skips_uv = true;
         if (!transport_meet(t, worker, ray, &met))
             continue;
-        if (bsdf_has(&met.scattering, BSDF_TRACED) && bsdf_is_sampled_from_light(&met.scattering, BSDF_TRACED)) {
-            map_point at = transport_map_point(t, &met);
-            add_importon(out, SEEN_WAYS, at.position, at.facing_normal, met.arrived.direction);
-        }
+        note_caustic_way(t, &met, out);
         if (gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight)) {
             add_point(out, GATHERED, end.point.position, end.point.normal);
             if (i % POINTS_PER_IMPORTON == 0) {
