@@ -6,6 +6,7 @@
 #include "clock.h"
 #include "film/film_tiles.h"
 #include "output/denoise.h"
+#include "public_structs.h"
 #include "texture/texture_file_levels.h"
 #include "texture/texture_udim.h"
 
@@ -166,13 +167,18 @@ void ag_film_chromaticities(const ag_film *film, float out_chromaticities[8])
 
 void ag_context_note_end(ag_context *context, ag_end end) { context->statistics.end = end; }
 
-ag_statistics ag_context_statistics(const ag_context *context)
+void ag_context_statistics_fill(const ag_context *context, void *out_statistics, size_t struct_size)
 {
     ag_statistics s = context->statistics;
     s.time_total_s = clock_seconds() - context->created_at;
     s.cpu_s = clock_process_cpu_seconds();
     s.memory_peak_bytes = peak_memory_bytes();
-    return s;
+    public_struct_write_part(&s, sizeof s, out_statistics, struct_size);
+}
+
+void ag_context_prediction_fill(const ag_context *context, void *out_prediction, size_t struct_size)
+{
+    public_struct_write_part(&context->prediction, sizeof context->prediction, out_prediction, struct_size);
 }
 
 void context_count_textures(ag_context *context, const scene *s)

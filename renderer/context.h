@@ -17,6 +17,7 @@ struct ag_context {
     char isa[16];
     double created_at; /* clock_seconds */
     ag_statistics statistics;
+    ag_prediction prediction;                     /* the last that was made */
     ag_render_settings rendered;                  /* of the last ag_render, nothing left open */
     char *color_config_path, *working_space_name; /* as in ag_context_settings */
     color_config *color_config;                   /* NULL until it is asked for */

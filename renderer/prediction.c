@@ -7,6 +7,7 @@
 #include "integrator/gather_batch.h"
 #include "integrator/integrator.h"
 #include "integrator/sample_queue.h"
+#include "public_structs.h"
 #include "render_maps.h"
 #include "split_pilot.h"
 #include "status.h"
@@ -277,7 +278,7 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
 }
 
 static ag_status predict(ag_context *context, const ag_scene *loaded, const ag_render_settings *wanted, bool with_time,
-                         ag_prediction *out_prediction)
+                         void *out_prediction, size_t struct_size)
 {
     if (!context || !loaded || !wanted || !out_prediction)
         return AG_ERROR_ARGUMENT;
@@ -298,19 +299,19 @@ static ag_status predict(ag_context *context, const ag_scene *loaded, const ag_r
         return status;
     context->rendered = settings;
     context->rendered.photon_map_file = NULL; /* the caller's */
-    context->statistics.prediction = made;
-    *out_prediction = made;
+    context->prediction = made;
+    public_struct_write_part(&made, sizeof made, out_prediction, struct_size);
     return AG_OK;
 }
 
-ag_status ag_predict_memory(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
-                            ag_prediction *out_prediction)
+ag_status ag_predict_memory_fill(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
+                                 void *out_prediction, size_t struct_size)
 {
-    return predict(context, loaded, settings, false, out_prediction);
+    return predict(context, loaded, settings, false, out_prediction, struct_size);
 }
 
-ag_status ag_predict(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
-                     ag_prediction *out_prediction)
+ag_status ag_predict_fill(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
+                          void *out_prediction, size_t struct_size)
 {
-    return predict(context, loaded, settings, true, out_prediction);
+    return predict(context, loaded, settings, true, out_prediction, struct_size);
 }

@@ -56,6 +56,15 @@ void public_struct_write(const void *filled, size_t filled_size, void *out_struc
         memcpy(out_struct, &struct_size, sizeof struct_size);
 }
 
+void public_struct_write_part(const void *made, size_t made_size, void *out_struct, size_t struct_size)
+{
+    memset(out_struct, 0, struct_size);
+    if (struct_size < sizeof struct_size)
+        return;
+    memcpy(out_struct, made, made_size < struct_size ? made_size : struct_size);
+    memcpy(out_struct, &struct_size, sizeof struct_size);
+}
+
 size_t ag_struct_size(ag_struct which) { return known_of(which).size; }
 
 void ag_struct_fill(ag_struct which, void *out_struct, size_t struct_size)

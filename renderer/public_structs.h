@@ -8,4 +8,8 @@
 /* Writes struct_size bytes: a filled struct where that is its size, else zeros after the size. */
 void public_struct_write(const void *filled, size_t filled_size, void *out_struct, size_t struct_size);
 
+/* Writes struct_size bytes of a struct that the library makes: the size itself, the members that both sides know, and
+ * zeros beyond those of the library. */
+void public_struct_write_part(const void *made, size_t made_size, void *out_struct, size_t struct_size);
+
 #endif

@@ -54,7 +54,7 @@ static ag_status render_adaptively(ag_rendering *r, uint32_t wanted)
 static float pixel_share(const scene *s, const ag_render_settings *settings)
 {
     static const float FILTER_WIDTH = 1.5f, SHARE_MIN = 0.25f;
-    if (settings->texture_filter != AG_TEXTURE_FILTER_ON || !s->has_mips)
+    if (settings->texture_filter != AG_TEXTURE_FILTER_ON || !s->filters_textures)
         return 0.0f;
     return fminf(fmaxf(FILTER_WIDTH / sqrtf((float)settings->samples_per_pixel), SHARE_MIN), 1.0f);
 }

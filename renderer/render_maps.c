@@ -81,7 +81,7 @@ static ag_status trace_after(ag_context *context, const scene *s, const ag_rende
                                        .max_scatterings = settings->max_depth - 2,
                                        .panes_are_direct = settings->pane_light == AG_PANE_LIGHT_DIRECT,
                                        .filters_textures =
-                                           settings->texture_filter == AG_TEXTURE_FILTER_ON && s->has_mips,
+                                           settings->texture_filter == AG_TEXTURE_FILTER_ON && s->filters_textures,
                                        .seed = settings->photon_seed,
                                        .asked = &pilot->gathered,
                                        .onward = &pilot->onward,

@@ -1,6 +1,7 @@
 /* rendering_counts.c: see rendering_counts.h. */
 #include "rendering_counts.h"
 
+#include "public_structs.h"
 #include "rays/transmittance.h"
 
 void rendering_count_rays(ag_rendering *r)
@@ -47,12 +48,12 @@ void rendering_count_irradiance(ag_statistics *statistics, maps *m, bool finds_d
     m->counted = c;
 }
 
-ag_statistics ag_rendering_statistics(const ag_rendering *r)
+void ag_rendering_statistics_fill(const ag_rendering *r, void *out_statistics, size_t struct_size)
 {
     ag_statistics statistics = ag_context_statistics(r->context);
     if (r->maps)
         rendering_count_irradiance(&statistics, r->maps, false);
-    return statistics;
+    public_struct_write_part(&statistics, sizeof statistics, out_statistics, struct_size);
 }
 
 void ag_rendering_look(const ag_rendering *r, ag_growth *out)

@@ -1,6 +1,7 @@
 /* settings_rows.c: the rows of settings_table.h, in the order of the fields of ag_render_settings.
  * Text: help is for --help; manual is for the man page, *bold* and _italic_, where it says more than help. %LAYERS% and
  * %PHOTON_MAP_SETTINGS% are replaced by lists, see cli/option_help.c. */
+#include "integrator/integrator.h"
 #include "settings_table.h"
 
 #include <float.h>
@@ -13,6 +14,12 @@
 _Static_assert(offsetof(ag_render_settings, height) == offsetof(ag_render_settings, width) + sizeof(int),
                "width and height are one setting");
 
+static const char *const INTEGRATOR_WORDS[] = {
+#define INTEGRATOR_WORD(kind, word, integrator_of_kind) [kind] = (word),
+    INTEGRATOR_LIST(INTEGRATOR_WORD)
+#undef INTEGRATOR_WORD
+        NULL};
+
 static const setting_row ROWS[] = {
     {.text = {.name = "integrator",
               .argument = "NAME",
@@ -21,7 +28,7 @@ static const setting_row ROWS[] = {
               .manual = "*photonmap* (default) or *path*, a plain path tracer over the same scene."},
      FIELD(integrator),
      .kind = SETTING_WORD,
-     .words = WORDS("photonmap", "path"),
+     .words = INTEGRATOR_WORDS,
      .noun = "integrator",
      .json = "integrator",
      .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER},

@@ -6,10 +6,8 @@
 #include "closed_room.h"
 #include "light/light_pick.h"
 #include "material/bsdf.h"
-#include "material/coat.h"
-#include "material/coat_table.h"
-#include "material/hair.h"
 #include "material/material_mips.h"
+#include "material/material_table.h"
 #include "material/pane.h"
 #include "rays/bvh.h"
 #include "rays/slab_faces.h"
@@ -62,12 +60,9 @@ void scene_destroy(scene *s)
     free(s->instance_steps);
     free(s->object_shapes);
     free(s->materials);
-    for (uint32_t i = 0; i < s->coat_table_count; i++)
-        coat_table_destroy(s->coat_tables[i]);
-    free(s->coat_tables);
-    for (uint32_t i = 0; i < s->hair_fibre_count; i++)
-        free(s->hair_fibres[i]);
-    free(s->hair_fibres);
+    for (uint32_t i = 0; i < s->material_table_count; i++)
+        material_table_release(s->material_tables[i]);
+    free(s->material_tables);
     free(s->media);
     free(s->textures);
     free(s->texture_images);
@@ -123,39 +118,24 @@ const char *scene_intern_file_name(scene *s, const char *name)
     return s->file_names[s->file_name_count++] = copy;
 }
 
-/* Materials of one coat share a table. */
-static ag_status find_coat_table(scene *s, const material *m, const coat_table **out_table)
+/* Finds or makes the table that the material's kind keeps of it, if any. */
+static ag_status give_table(scene *s, material *m)
 {
-    for (uint32_t i = 0; i < s->coat_table_count; i++)
-        if (coat_table_serves(s->coat_tables[i], m)) {
-            *out_table = s->coat_tables[i];
-            return AG_OK;
-        }
-    if (!grow((void **)&s->coat_tables, s->coat_table_count, sizeof *s->coat_tables))
-        return AG_ERROR_MEMORY;
-    coat_table *table = NULL;
-    for (uint32_t i = 0; s->before && i < s->before->coat_table_count && !table; i++)
-        if (coat_table_serves(s->before->coat_tables[i], m))
-            table = coat_table_hold(s->before->coat_tables[i]);
-    if (!table)
-        table = coat_table_create(m);
-    if (!table)
-        return AG_ERROR_MEMORY;
-    s->coat_tables[s->coat_table_count++] = table;
-    *out_table = table;
-    return AG_OK;
-}
-
-static ag_status make_fibre(scene *s, material *m)
-{
-    if (!grow((void **)&s->hair_fibres, s->hair_fibre_count, sizeof *s->hair_fibres))
-        return AG_ERROR_MEMORY;
-    hair_fibre *fibre = malloc(sizeof *fibre);
-    if (!fibre)
-        return AG_ERROR_MEMORY;
-    *fibre = hair_fibre_make(m->ior, m->hair_beta_m, m->hair_beta_n, m->hair_tilt_degrees);
-    s->hair_fibres[s->hair_fibre_count++] = fibre;
-    m->fibre = fibre;
+    m->table = NULL;
+    if (!material_table_needed(m))
+        return AG_OK;
+    material_table *table = material_table_find(s->material_tables, s->material_table_count, m);
+    if (!table) {
+        if (!grow((void **)&s->material_tables, s->material_table_count, sizeof *s->material_tables))
+            return AG_ERROR_MEMORY;
+        material_table *before =
+            s->before ? material_table_find(s->before->material_tables, s->before->material_table_count, m) : NULL;
+        table = before ? material_table_hold(before) : material_table_create(m);
+        if (!table)
+            return AG_ERROR_MEMORY;
+        s->material_tables[s->material_table_count++] = table;
+    }
+    m->table = table->content;
     return AG_OK;
 }
 
@@ -166,14 +146,7 @@ ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index
     material *m = &s->materials[s->material_count];
     *m = *item;
     material_prepare(m);
-    m->coat = NULL;
-    if (coat_needs_table(m)) {
-        AG_TRY(find_coat_table(s, m, &m->coat));
-    }
-    m->fibre = NULL;
-    if (m->kind == MATERIAL_HAIR) {
-        AG_TRY(make_fibre(s, m));
-    }
+    AG_TRY(give_table(s, m));
     *out_index = s->material_count++;
     return AG_OK;
 }

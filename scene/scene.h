@@ -44,10 +44,8 @@ typedef struct scene {
     scene_reuse reuse;
     material *materials;
     uint32_t material_count;
-    struct coat_table **coat_tables; /* of the materials that need one (material/coat.h) */
-    uint32_t coat_table_count;
-    struct hair_fibre **hair_fibres; /* of the materials that are hair */
-    uint32_t hair_fibre_count;
+    struct material_table **material_tables; /* that materials keep beside their values (material/material_table.h) */
+    uint32_t material_table_count;
     texture *textures;
     uint32_t texture_count;
     texture_image **texture_images; /* those that textures refer to, each file and encoding once */
@@ -93,9 +91,9 @@ typedef struct scene {
     rgb light_power;     /* W, of all lights */
     uint32_t *infinite_lights; /* [infinite_light_count], indices of those of kind LIGHT_INFINITE */
     uint32_t infinite_light_count;
-    bool has_mips;       /* any picture that is filtered: see material_mips.h */
-    bool has_interfaces; /* any shape that rays may pass unbent: see transmittance.h */
-    bool has_panes;      /* any shape that lets light straight through: see pane.h, slab_faces.h */
+    bool filters_textures; /* any of them: see material_mips.h */
+    bool has_interfaces;   /* any shape that rays may pass unbent: see transmittance.h */
+    bool has_panes;        /* any shape that lets light straight through: see pane.h, slab_faces.h */
     /* How lights are picked, see light_pick.c */
     uint32_t lit_count;          /* lights with power */
     uint32_t only_light;         /* where there is but one of them, that one */

@@ -139,7 +139,7 @@ static ag_status check_options(ag_context *context, const options *o)
         AG_TRY(ag_statistics_check(context, o->photons_file)); /* as for any file */
     if (o->render.photon_map_file)
         AG_TRY(ag_photon_map_check(context, o->render.photon_map_file));
-    if ((o->photons_file || o->render.photon_map_file) && o->render.integrator == AG_INTEGRATOR_PATH) {
+    if ((o->photons_file || o->render.photon_map_file) && !ag_integrator_has_photons(o->render.integrator)) {
         fprintf(stderr, "afterglow: --%s: path tracing has no photons\n",
                 o->photons_file ? "dump-photons" : "photon-map");
         return AG_ERROR_ARGUMENT;

@@ -36,7 +36,7 @@ void progress_init(progress *p, const options *o)
     if (p->style == PROGRESS_AUTO)
         p->style = o->verbosity < 0 ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_PLAIN;
     p->has_precompute = o->render.cache == AG_CACHE_PRECOMPUTE;
-    p->is_path = o->render.integrator == AG_INTEGRATOR_PATH;
+    p->has_photons = ag_integrator_has_photons(o->render.integrator);
     p->begun = p->frame_begun = passes_seconds();
 }
 
@@ -47,7 +47,7 @@ static void usual_shares(const progress *p, double out_shares[AG_PHASE_COUNT])
         out_shares[i] = 0.0;
     out_shares[AG_PHASE_LOAD] = out_shares[AG_PHASE_BVH] = out_shares[AG_PHASE_WRITE] = 2.0;
     out_shares[AG_PHASE_RENDER] = 94.0;
-    if (!p->is_path) {
+    if (p->has_photons) {
         out_shares[AG_PHASE_PHOTONS] = 10.0;
         out_shares[AG_PHASE_MAP] = 3.0;
         out_shares[AG_PHASE_PRECOMPUTE] = p->has_precompute ? 25.0 : 0.0;
@@ -57,7 +57,7 @@ static void usual_shares(const progress *p, double out_shares[AG_PHASE_COUNT])
 
 void progress_begin_frame(progress *p, int frame, int frame_count, int frame_number)
 {
-    pthread_mutex_lock(&terminal); /* progress_read may be asked from elsewhere */
+    pthread_mutex_lock(&terminal);                        /* progress_read may be asked from elsewhere */
     if (frame > p->frame && p->phase != AG_PHASE_COUNT) { /* one is over, which was not skipped */
         for (int i = 0; i < AG_PHASE_COUNT; i++)
             p->learned_seconds[i] += p->phase_seconds[i];

@@ -14,7 +14,7 @@ typedef struct progress {
     bool bar_is_shown;
     int told_percent;    /* the last one told, -1 before the first */
     bool has_precompute; /* its share of the work */
-    bool is_path;
+    bool has_photons;
     int frame, frame_count; /* which of the pictures, from 0 on */
     int frame_number;       /* its own */
     ag_phase phase;         /* the one told last */

@@ -170,15 +170,18 @@ static uint32_t note_needs(const film_channel *channel, aov_layout *layout)
     return 0;
 }
 
+static const struct {
+    int width;
+    bool needs_first_hit;
+} SUMS[FILM_SUM_COUNT] = {
+#define SUM_ROW(sum, width, needs_first_hit) [sum] = {width, needs_first_hit},
+    FILM_SUM_LIST(SUM_ROW)
+#undef SUM_ROW
+};
+
 static int sum_width(const aov_layout *layout, int sum)
 {
-    static const int widths[FILM_SUM_COUNT] = {
-        [SUM_RADIANCE] = 3,    [SUM_ALPHA] = 1,        [SUM_PARTS] = 3 * LIGHT_PART_COUNT,
-        [SUM_ALBEDO] = 3,      [SUM_NORMAL] = 3,       [SUM_GEOMETRIC_NORMAL] = 3,
-        [SUM_POSITION] = 3,    [SUM_UV] = 2,           [SUM_SLOPE] = 2,
-        [SUM_IRRADIANCE] = 3,  [SUM_SQUARES] = 3,      [SUM_DEVELOPED] = 3,
-        [SUM_HIT_SQUARES] = 3, [SUM_HIT_DEVELOPED] = 3};
-    return sum == SUM_GROUPS ? 3 * (layout->group_count + 1) : widths[sum];
+    return sum == SUM_GROUPS ? 3 * (layout->group_count + 1) : SUMS[sum].width;
 }
 
 static void lay_out_sums(aov_layout *layout, aov_needs also)
@@ -196,10 +199,10 @@ static void lay_out_sums(aov_layout *layout, aov_needs also)
     }
     for (int i = 0; i < layout->channel_count; i++)
         layout->channels[i].offset += layout->offset[layout->channels[i].sum];
-    layout->needs_first_hit = layout->needs_nearest || layout->has_matte[CRYPTOMATTE_OBJECT] ||
-                              layout->has_matte[CRYPTOMATTE_MATERIAL] || aov_has(layout, SUM_ALPHA) ||
-                              aov_has(layout, SUM_ALBEDO) || aov_has(layout, SUM_NORMAL) ||
-                              aov_has(layout, SUM_IRRADIANCE);
+    layout->needs_first_hit =
+        layout->needs_nearest || layout->has_matte[CRYPTOMATTE_OBJECT] || layout->has_matte[CRYPTOMATTE_MATERIAL];
+    for (int i = 0; i < FILM_SUM_COUNT; i++)
+        layout->needs_first_hit = layout->needs_first_hit || (aov_has(layout, i) && SUMS[i].needs_first_hit);
     int of_radiance = sum_width(layout, SUM_RADIANCE);
     if (aov_has(layout, SUM_SQUARES))
         of_radiance += sum_width(layout, SUM_SQUARES) + sum_width(layout, SUM_DEVELOPED);

@@ -8,25 +8,32 @@
 #include "film/cryptomatte.h"
 #include "film/eye_sample.h"
 
-/* The values that are summed over a pixel's samples, each in so many channels. */
+/* The values that are summed over a pixel's samples: each with its number of channels, and whether the sum alone needs
+ * what the camera ray meets first. SUM_RADIANCE is always there, and at 0; of SUM_GROUPS there are 3 channels for each
+ * light group, and 3 for what came through the photon map. */
+#define FILM_SUM_LIST(X)                                                                                               \
+    X(SUM_RADIANCE, 3, false)                                                                                          \
+    X(SUM_ALPHA, 1, true) /* the ray met something */                                                                  \
+    X(SUM_PARTS, 3 * LIGHT_PART_COUNT, false)                                                                          \
+    X(SUM_GROUPS, 0, false)                                                                                            \
+    X(SUM_ALBEDO, 3, true)                                                                                             \
+    X(SUM_NORMAL, 3, true) /* the shading normal */                                                                    \
+    X(SUM_GEOMETRIC_NORMAL, 3, false)                                                                                  \
+    X(SUM_POSITION, 3, false)                                                                                          \
+    X(SUM_UV, 2, false)                                                                                                \
+    X(SUM_SLOPE, 2, false) /* |dz/dx|, |dz/dy| after the mean */                                                       \
+    X(SUM_IRRADIANCE, 3, true)                                                                                         \
+    X(SUM_SQUARES, 3, false)       /* squares of samples as the film develops them */                                  \
+    X(SUM_DEVELOPED, 3, false)     /* these samples themselves */                                                      \
+    X(SUM_HIT_SQUARES, 3, false)   /* squares of samples that met something: pbrt's Variance */                        \
+    X(SUM_HIT_DEVELOPED, 3, false) /* these samples themselves */
+
 typedef enum film_sum {
-    SUM_RADIANCE, /* 3, always, and at 0 */
-    SUM_ALPHA,    /* 1: the ray met something */
-    SUM_PARTS,    /* 3 each */
-    SUM_GROUPS,   /* 3 each, and 3 for what came through the photon map */
-    SUM_ALBEDO,   /* 3 */
-    SUM_NORMAL,   /* 3, the shading normal */
-    SUM_GEOMETRIC_NORMAL,
-    SUM_POSITION,
-    SUM_UV,           /* 2 */
-    SUM_SLOPE,        /* 2: |dz/dx|, |dz/dy| after the mean */
-    SUM_IRRADIANCE,   /* 3 */
-    SUM_SQUARES,      /* 3: squares of samples as the film develops them */
-    SUM_DEVELOPED,    /* 3: these samples themselves */
-    SUM_HIT_SQUARES,  /* 3: squares of samples that met something: pbrt's Variance */
-    SUM_HIT_DEVELOPED /* 3: these samples themselves */
+#define FILM_SUM_ENUM(sum, width, needs_first_hit) sum,
+    FILM_SUM_LIST(FILM_SUM_ENUM)
+#undef FILM_SUM_ENUM
+        FILM_SUM_COUNT
 } film_sum;
-enum { FILM_SUM_COUNT = SUM_HIT_DEVELOPED + 1 };
 
 /* The value that a channel of a file is made of. */
 typedef enum channel_source {

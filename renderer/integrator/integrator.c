@@ -4,8 +4,15 @@
 const integrator *integrator_of(ag_integrator kind)
 {
     static const integrator *const INTEGRATORS[] = {
-        [AG_INTEGRATOR_PHOTONMAP] = &photon_map_integrator,
-        [AG_INTEGRATOR_PATH] = &path_integrator,
+#define INTEGRATOR_ROW(kind, word, integrator_of_kind) [kind] = &(integrator_of_kind),
+        INTEGRATOR_LIST(INTEGRATOR_ROW)
+#undef INTEGRATOR_ROW
     };
     return (unsigned)kind < sizeof INTEGRATORS / sizeof *INTEGRATORS ? INTEGRATORS[kind] : NULL;
+}
+
+bool ag_integrator_has_photons(ag_integrator kind)
+{
+    const integrator *known = integrator_of(kind);
+    return known && known->has_photon_map;
 }

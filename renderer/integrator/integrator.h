@@ -1,5 +1,5 @@
 /* integrator.h: what an integrator is: how radiance along camera rays is found, and what has to be made for it first.
- * One file and one row of integrator.c each. Flow: render, render_tiles -> [here] -> shading or path_tracing.
+ * One file and one row of INTEGRATOR_LIST each. Flow: render, render_tiles -> [here] -> shading or path_tracing.
  * Threads: sample and complete run on all workers at once; the others on the thread that renders. */
 #ifndef AFTERGLOW_INTEGRATOR_H
 #define AFTERGLOW_INTEGRATOR_H
@@ -34,7 +34,15 @@ typedef struct integrator {
     void (*complete)(const transport *t, eye_worker *worker);
 } integrator;
 
-extern const integrator photon_map_integrator, path_integrator;
+/* Every kind, with its word as a setting and its integrator, which is in a file of its own; in the order of the kinds.
+ */
+#define INTEGRATOR_LIST(X)                                                                                             \
+    X(AG_INTEGRATOR_PHOTONMAP, "photonmap", photon_map_integrator)                                                     \
+    X(AG_INTEGRATOR_PATH, "path", path_integrator)
+
+#define INTEGRATOR_DECLARATION(kind, word, integrator_of_kind) extern const integrator integrator_of_kind;
+INTEGRATOR_LIST(INTEGRATOR_DECLARATION)
+#undef INTEGRATOR_DECLARATION
 
 /* The integrator of that kind; NULL for a number that is no integrator's, which render_settings_check refuses. */
 const integrator *integrator_of(ag_integrator kind);

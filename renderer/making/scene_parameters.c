@@ -156,3 +156,16 @@ void scene_parameters_free(pbrt_items *items)
     free(items->items);
     *items = (pbrt_items){0};
 }
+
+ag_status scene_parameters_duplicate(const pbrt_items *from, pbrt_items *out)
+{
+    *out = (pbrt_items){calloc(from->count + 1, sizeof *out->items), 0};
+    if (!out->items)
+        return AG_ERROR_MEMORY;
+    for (; out->count < from->count; out->count++)
+        if (!parameter_copy(&from->items[out->count], &out->items[out->count])) {
+            scene_parameters_free(out);
+            return AG_ERROR_MEMORY;
+        }
+    return AG_OK;
+}

@@ -14,6 +14,8 @@ enum { SCENE_PARAMETERS_MAX = 1000 }; /* of one call */
  * is wrong is said in the log, at the number of the parameter. Errors: AG_ERROR_ARGUMENT, AG_ERROR_MEMORY. */
 ag_status scene_parameters_copy(log_sink *log, file_location where, const ag_parameter *given, size_t count,
                                 struct pbrt_items *out_items);
+/* Copies items that were taken already, with all that they hold. Errors: AG_ERROR_MEMORY. */
+ag_status scene_parameters_duplicate(const struct pbrt_items *from, struct pbrt_items *out);
 /* Frees them with all that they still hold. */
 void scene_parameters_free(struct pbrt_items *items);
 

@@ -118,7 +118,8 @@ static void add_settings(json_t *root, const ag_render_settings *settings)
 /* --- counts and times --- */
 
 /* Takes every value over; NULL when out of memory. */
-static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settings *settings, const char *isa)
+static json_t *statistics_to_json(const ag_statistics *s, const ag_prediction *prediction,
+                                  const ag_render_settings *settings, const char *isa)
 {
     json_t *times = json_object(), *cpu_times = json_object(), *root = json_object();
     for (int i = 0; i < AG_PHASE_COUNT; i++) {
@@ -150,8 +151,8 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_render_settin
         "file_bytes", count(s->texture_file_bytes), "tiles_read", count(s->texture_tiles_read), /**/
         "end", end_to_json(s));
     bool is_whole = counts && json_object_update(root, counts) == 0;
-    if (s->prediction.memory_peak_bytes > 0)
-        is_whole = json_object_set_new(root, "prediction", prediction_to_json(&s->prediction)) == 0 && is_whole;
+    if (prediction->memory_peak_bytes > 0)
+        is_whole = json_object_set_new(root, "prediction", prediction_to_json(prediction)) == 0 && is_whole;
     json_decref(counts);
     if (is_whole)
         return root;
@@ -166,7 +167,7 @@ ag_status ag_statistics_write(ag_context *context, const char *path)
     if (run_is_cancelled(&context->run))
         return AG_CANCELLED;
     ag_statistics statistics = ag_context_statistics(context);
-    json_t *json = statistics_to_json(&statistics, &context->rendered, context->isa);
+    json_t *json = statistics_to_json(&statistics, &context->prediction, &context->rendered, context->isa);
     char *text = json ? json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(json);
     if (!text)

@@ -86,9 +86,11 @@ rgb bsdf_gathered_reflection(const bsdf *b)
 
 rgb bsdf_gathered_transmission(const bsdf *b)
 {
-    for (int k = 0; k < b->lobe_count; k++)
-        if (b->lobes[k].kind == LOBE_DIFFUSE_THROUGH)
-            return bsdf_lobe_type_of(&b->lobes[k])->albedo(&b->material);
+    for (int k = 0; k < b->lobe_count; k++) {
+        const bsdf_lobe_type *type = bsdf_lobe_type_of(&b->lobes[k]);
+        if (type->albedo && type->side == LOBE_TRANSMITS)
+            return type->albedo(&b->material);
+    }
     return rgb_gray(0.0f);
 }
 

@@ -31,22 +31,28 @@ typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsd
  * flux is not. */
 typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
 
+/* Every kind of lobe, with the bsdf_lobe_type that says what it is (bsdf_lobe.h). */
+#define BSDF_LOBE_LIST(X)                                                                                              \
+    X(LOBE_DIFFUSE, bsdf_lobe_diffuse)                 /* to the side it came from */                                  \
+    X(LOBE_DIFFUSE_THROUGH, bsdf_lobe_diffuse_through) /* to the other side */                                         \
+    X(LOBE_COATED_BASE, bsdf_lobe_coated_base)         /* diffuse, under a coat */                                     \
+    X(LOBE_PRINCIPLED_BASE, bsdf_lobe_principled_base) /* diffuse, under the interface of the principled one */        \
+    X(LOBE_CONDUCTOR, bsdf_lobe_conductor)                                                                             \
+    X(LOBE_DIELECTRIC, bsdf_lobe_dielectric)           /* reflection and refraction */                                 \
+    X(LOBE_THIN_DIELECTRIC, bsdf_lobe_thin_dielectric) /* a pane: reflection, and straight through */                  \
+    X(LOBE_SLAB, bsdf_lobe_slab) /* a slab passed straight: reflection by both faces, and straight through */          \
+    X(LOBE_COAT, bsdf_lobe_coat) /* reflection by a dielectric coat */                                                 \
+    X(LOBE_CONDUCTOR_UNDER_COAT, bsdf_lobe_conductor_under_coat) /* refracted in, reflected, refracted out */          \
+    X(LOBE_COAT_SCATTERED, bsdf_lobe_coat_scattered)             /* what leaves a coat at any angle (coat.h) */        \
+    X(LOBE_HAIR, bsdf_lobe_hair)                                 /* all ways by a fibre (hair.h) */                    \
+    X(LOBE_PRINCIPLED, bsdf_lobe_principled) /* of metal and dielectric: reflection, and straight or refracted */      \
+    X(LOBE_CLEARCOAT, bsdf_lobe_clearcoat)   /* reflection by the coat of the principled one */
+
 typedef enum bsdf_lobe_kind {
-    LOBE_DIFFUSE,         /* to the side it came from */
-    LOBE_DIFFUSE_THROUGH, /* to the other side */
-    LOBE_COATED_BASE,     /* diffuse, under a coat */
-    LOBE_PRINCIPLED_BASE, /* diffuse, under the interface of the principled one */
-    LOBE_CONDUCTOR,
-    LOBE_DIELECTRIC,           /* reflection and refraction */
-    LOBE_THIN_DIELECTRIC,      /* a pane: reflection, and straight through */
-    LOBE_SLAB,                 /* a slab that is passed straight: reflection by both faces, and straight through */
-    LOBE_COAT,                 /* reflection by a dielectric coat */
-    LOBE_CONDUCTOR_UNDER_COAT, /* refracted in, reflected by the conductor, refracted out */
-    LOBE_COAT_SCATTERED,       /* what leaves a coat at any angle (coat.h) */
-    LOBE_HAIR,                 /* all ways by a fibre (hair.h) */
-    LOBE_PRINCIPLED,           /* metal's and dielectric's reflection, and transmission, straight or refracted */
-    LOBE_CLEARCOAT,            /* reflection by the coat of the principled one */
-    LOBE_KIND_COUNT
+#define BSDF_LOBE_ENUM(kind, type) kind,
+    BSDF_LOBE_LIST(BSDF_LOBE_ENUM)
+#undef BSDF_LOBE_ENUM
+        LOBE_KIND_COUNT
 } bsdf_lobe_kind;
 
 typedef struct bsdf_lobe {

@@ -67,51 +67,10 @@ bool bsdf_lobe_refraction(ggx facets, float ior, bsdf_transport transport, vec3 
     return true;
 }
 
-/* --- a fibre --- */
-
-static void evaluate_hair(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
-                          float *out_pdf)
-{
-    (void)direction, (void)o;
-    hair_evaluate(&b->material.hair, transport == BSDF_FLUX, i, out_value, out_pdf);
-}
-
-static bool sample_hair(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
-{
-    (void)o;
-    *out_local = hair_sample(&b->material.hair, u_lobe, u);
-    return true;
-}
-
-static bool hair_passes(const material_point *m)
-{
-    (void)m;
-    return true;
-}
-
-static const bsdf_lobe_type HAIR = {
-    .side = LOBE_BY_FIBRE,
-    .evaluate = evaluate_hair,
-    .sample_rough = sample_hair,
-    .passes = hair_passes,
-};
-
 /* --- all kinds --- */
 
-const bsdf_lobe_type *const bsdf_lobe_types[] = {
-    [LOBE_DIFFUSE] = &bsdf_lobe_diffuse,
-    [LOBE_DIFFUSE_THROUGH] = &bsdf_lobe_diffuse_through,
-    [LOBE_COATED_BASE] = &bsdf_lobe_coated_base,
-    [LOBE_PRINCIPLED_BASE] = &bsdf_lobe_principled_base,
-    [LOBE_CONDUCTOR] = &bsdf_lobe_conductor,
-    [LOBE_DIELECTRIC] = &bsdf_lobe_dielectric,
-    [LOBE_THIN_DIELECTRIC] = &bsdf_lobe_thin_dielectric,
-    [LOBE_SLAB] = &bsdf_lobe_slab,
-    [LOBE_COAT] = &bsdf_lobe_coat,
-    [LOBE_CONDUCTOR_UNDER_COAT] = &bsdf_lobe_conductor_under_coat,
-    [LOBE_COAT_SCATTERED] = &bsdf_lobe_coat_scattered,
-    [LOBE_HAIR] = &HAIR,
-    [LOBE_PRINCIPLED] = &bsdf_lobe_principled,
-    [LOBE_CLEARCOAT] = &bsdf_lobe_clearcoat,
+const bsdf_lobe_type *const bsdf_lobe_types[LOBE_KIND_COUNT] = {
+#define BSDF_LOBE_ROW(kind, type) [kind] = &(type),
+    BSDF_LOBE_LIST(BSDF_LOBE_ROW)
+#undef BSDF_LOBE_ROW
 };
-_Static_assert(sizeof bsdf_lobe_types / sizeof *bsdf_lobe_types == LOBE_KIND_COUNT, "a row for each lobe");

@@ -45,15 +45,10 @@ typedef struct bsdf_lobe_type {
     float (*index)(const material_point *m);
 } bsdf_lobe_type;
 
-/* lobes_diffuse.c */
-extern const bsdf_lobe_type bsdf_lobe_diffuse, bsdf_lobe_diffuse_through, bsdf_lobe_coated_base,
-    bsdf_lobe_principled_base, bsdf_lobe_coat_scattered;
-/* lobes_metal.c */
-extern const bsdf_lobe_type bsdf_lobe_conductor, bsdf_lobe_coat, bsdf_lobe_conductor_under_coat;
-/* lobes_glass.c */
-extern const bsdf_lobe_type bsdf_lobe_dielectric, bsdf_lobe_thin_dielectric, bsdf_lobe_slab;
-/* lobes_principled.c */
-extern const bsdf_lobe_type bsdf_lobe_principled, bsdf_lobe_clearcoat;
+/* Each is in one of the files lobes_*.c. */
+#define BSDF_LOBE_DECLARATION(kind, type) extern const bsdf_lobe_type type;
+BSDF_LOBE_LIST(BSDF_LOBE_DECLARATION)
+#undef BSDF_LOBE_DECLARATION
 
 extern const bsdf_lobe_type *const bsdf_lobe_types[LOBE_KIND_COUNT];
 

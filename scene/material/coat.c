@@ -15,7 +15,7 @@ coat_point coat_point_of(const material *m)
                         .base = {m->base_alpha_u, m->base_alpha_v},
                         .ior = m->ior,
                         .thickness = m->coat_thickness,
-                        .table = m->coat,
+                        .table = m->table,
                         .eta = m->eta,
                         .k = m->k,
                         .reflectance = m->reflectance,

@@ -29,7 +29,7 @@ typedef struct coat_point {
 /* Of a material without textures, or before they are looked up. */
 coat_point coat_point_of(const material *m);
 
-/* Whether the material's values are those of a coat_table, which its `coat` must be then. */
+/* Whether the material's values are those of a coat_table, which its `table` must be then. */
 bool coat_needs_table(const material *m);
 
 /* Whether the interface does not scatter: smooth, or of an index of 1. */

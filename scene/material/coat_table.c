@@ -25,7 +25,6 @@ typedef struct coat_key {
 
 struct coat_table {
     coat_key key;
-    unsigned holder_count;
     int count, base_count; /* cells along the axes */
     bool has_smooth;       /* before them, cells of a perfectly smooth interface */
     coat_cell cells[];
@@ -58,17 +57,7 @@ bool coat_table_serves(const coat_table *table, const material *m)
     return memcmp(&key, &table->key, sizeof key) == 0;
 }
 
-coat_table *coat_table_hold(coat_table *table)
-{
-    table->holder_count++;
-    return table;
-}
-
-void coat_table_destroy(coat_table *table)
-{
-    if (table && --table->holder_count == 0)
-        free(table);
-}
+void coat_table_destroy(coat_table *table) { free(table); }
 
 /* --- cells --- */
 
@@ -87,7 +76,6 @@ coat_table *coat_table_create(const material *m)
     if (!table)
         return NULL;
     table->key = key;
-    table->holder_count = 1;
     table->count = count;
     table->base_count = base_count;
     table->has_smooth = smooth != 0;

@@ -13,9 +13,7 @@ typedef struct coat_table coat_table;
 /* Walks as the material says it; NULL: no memory. kind: one of the two coated ones. About a tenth of a second where
  * a metal is not smooth, more where textures say how rough. Freed by coat_table_destroy. */
 coat_table *coat_table_create(const material *m);
-void coat_table_destroy(coat_table *table);
-/* Another one holds it too, and destroys it as well. */
-coat_table *coat_table_hold(coat_table *table);
+void coat_table_destroy(coat_table *table); /* NULL is fine */
 
 /* Whether it is the one that coat_table_create would make of that material. */
 bool coat_table_serves(const coat_table *table, const material *m);

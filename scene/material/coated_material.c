@@ -1,7 +1,16 @@
 /* coated_material.c: a dielectric coat over a diffuse base or over a metal, as kinds of material (coat.h).
  * Threads: pure functions. */
+#include "material/coat_table.h"
 #include "material/fresnel.h"
 #include "material/material_type.h"
+
+static void *create_table(const material *m) { return coat_table_create(m); }
+
+static bool table_serves(const void *content, const material *m) { return coat_table_serves(content, m); }
+
+static void destroy_table(void *content) { coat_table_destroy(content); }
+
+static const material_table_type TABLE = {coat_needs_table, create_table, table_serves, destroy_table};
 
 static void say(const material *m, material_point *p) { p->coat = coat_point_of(m); }
 
@@ -55,7 +64,8 @@ static void add_diffuse_lobes(bsdf *b, const surface_hit *hit)
     add_coat(b, reflected, cosine);
 }
 
-const material_type coated_diffuse_material = {.is_traced = diffuse_is_traced,
+const material_type coated_diffuse_material = {.table = &TABLE,
+                                               .is_traced = diffuse_is_traced,
                                                .has_base = has_base,
                                                .say = say,
                                                .look_up = look_up,
@@ -75,7 +85,8 @@ static void add_conductor_lobes(bsdf *b, const surface_hit *hit)
     add_coat(b, fresnel_dielectric(fabsf(cosine), m->ior), cosine);
 }
 
-const material_type coated_conductor_material = {.is_traced = material_always,
+const material_type coated_conductor_material = {.table = &TABLE,
+                                                 .is_traced = material_always,
                                                  .say = say,
                                                  .look_up = look_up,
                                                  .has_grain = has_grain,

@@ -34,10 +34,8 @@ typedef enum material_kind {
         MATERIAL_KIND_COUNT
 } material_kind;
 
-struct coat_table;
-struct hair_fibre;
-
 typedef struct material {
+    const void *table; /* what its kind keeps of it, NULL: nothing (material_table.h); set by scene_add_material */
     material_kind kind;
     rgb reflectance;        /* of the diffuse base, [0, 1] */
     rgb transmittance;      /* diffuse transmission: to the other side, [0, 1] */
@@ -49,9 +47,7 @@ typedef struct material {
     rgb coat_albedo;                  /* of that stuff, [0, 1]; black: it does not scatter */
     float coat_g;                     /* mean cosine of its scattering, in (-1, 1) */
     int coat_bounces; /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
-    const struct coat_table *coat;  /* where coat_needs_table; set by scene_add_material, and the scene's own */
-    const struct hair_fibre *fibre; /* of hair; set by scene_add_material, and the scene's own */
-    rgb hair_sigma_a;               /* per radius of the way within a fibre, >= 0; ior is the fibre's */
+    rgb hair_sigma_a; /* per radius of the way within a fibre, >= 0; ior is the fibre's */
     float hair_beta_m, hair_beta_n; /* roughness along the fibre and about it, [0, 1] */
     float hair_tilt_degrees;        /* of its scales */
     uint32_t mixed[2];              /* mix: indices of materials made before */

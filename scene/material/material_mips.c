@@ -12,7 +12,7 @@ bool material_is_filtered(const scene *s, const material *m)
 
 static ag_status make_of_picture(scene *s, run_context *run, texture_image *i)
 {
-    s->has_mips = true;
+    s->filters_textures = true;
     if (i->udim) {
         i->udim->has_mips = true;
         ag_status status = AG_OK;
@@ -40,6 +40,10 @@ static ag_status make_of_picture(scene *s, run_context *run, texture_image *i)
 static ag_status make_of_texture(scene *s, run_context *run, uint32_t index)
 {
     const texture *t = &s->textures[index];
+    if (t->kind == TEXTURE_CHECKERBOARD) {
+        s->filters_textures = true;
+        return AG_OK;
+    }
     if (!t->has_pictures || !t->is_spectrum)
         return AG_OK;
     if (t->kind == TEXTURE_IMAGE)

@@ -12,7 +12,7 @@
 /* Whether reflectance_texture and transmittance_texture are filtered. */
 bool material_is_filtered(const scene *s, const material *m);
 
-/* Makes the coarser levels of all pictures that may be filtered, and sets has_mips. Errors: AG_ERROR_MEMORY,
+/* Makes the coarser levels of all pictures that may be filtered, and sets filters_textures. Errors: AG_ERROR_MEMORY,
  * AG_CANCELLED. */
 ag_status material_mips_make(scene *s, run_context *run);
 

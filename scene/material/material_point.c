@@ -23,8 +23,8 @@ static void evaluate_at(const scene *s, const material *m, const surface_hit *hi
     if (!m->is_textured || !type->look_up)
         return;
     surface_footprint footprint;
-    const bool filters = hit->footprint.width > 0.0f && s->has_mips && !is_picked && material_is_filtered(s, m) &&
-                         surface_footprint_at(s, hit, &footprint);
+    const bool filters = hit->footprint.width > 0.0f && s->filters_textures && !is_picked &&
+                         material_is_filtered(s, m) && surface_footprint_at(s, hit, &footprint);
     const material_lookup at = {s, hit, filters ? &footprint : NULL};
     type->look_up(&at, m, out_point);
 }

@@ -5,6 +5,7 @@
 #define AFTERGLOW_MATERIAL_TYPE_H
 
 #include "material/bsdf.h"
+#include "material/material_table.h"
 
 /* Where textures are looked up. footprint: NULL where they are not filtered. */
 typedef struct material_lookup {
@@ -30,6 +31,8 @@ typedef struct material_type {
     void (*init)(material *m);
     /* Works out what can be beforehand; NULL: nothing. */
     void (*prepare)(material *m);
+    /* What is kept beside the values once they are prepared, at material.table; NULL: nothing. */
+    const material_table_type *table;
     /* Predicates; each is NULL where it never holds. */
     material_predicate *is_traced;      /* material_is_traced */
     material_predicate *is_clear_glass; /* material_is_clear_glass */

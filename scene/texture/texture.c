@@ -4,6 +4,7 @@
 
 #include "math/sampling.h"
 #include "scene.h"
+#include "texture/texture_checkerboard.h"
 #include "texture/texture_filter.h"
 #include "texture/texture_noise.h"
 #include "texture/texture_udim.h"
@@ -48,25 +49,30 @@ static rgb mix_inputs(const scene *s, const texture *t, float amount, const look
     return rgb_add(rgb_scale(first, 1.0f - amount), rgb_scale(second, amount));
 }
 
-/* Whether x lies in an odd cell. No conversion to an integer, which large numbers would overflow. */
-static bool is_odd(float x)
-{
-    float half = 0.5f * x;
-    return half - floorf(half) >= 0.5f;
-}
-
 static rgb checkerboard(const scene *s, const texture *t, const lookup *at)
 {
     const surface_hit *hit = at->hit;
-    bool odd;
-    if (t->mapping.kind == TEXTURE_MAPPING_SOLID) {
-        vec3 p = texture_mapping_point(&t->mapping, hit->position);
-        odd = is_odd(p.x) != (is_odd(p.y) != is_odd(p.z));
+    const texture_mapping *m = &t->mapping;
+    const bool is_solid = m->kind == TEXTURE_MAPPING_SOLID;
+    vec3 p, axes[2];
+    if (is_solid) {
+        p = texture_mapping_point(m, hit->position);
     } else {
-        vec2 st = texture_mapping_st(&t->mapping, hit->uv, hit->position);
-        odd = is_odd(st.x) != is_odd(st.y);
+        const vec2 st = texture_mapping_st(m, hit->uv, hit->position);
+        p = vec3_make(st.x, st.y, 0.5f);
     }
-    return input_at(s, t, odd ? 1 : 0, at);
+    if (!at->footprint)
+        return input_at(s, t, checkerboard_is_odd(p) ? 1 : 0, at);
+    for (int k = 0; k < 2; k++) {
+        if (is_solid) {
+            axes[k] = texture_mapping_point_step(m, at->footprint->axes[k]);
+            continue;
+        }
+        const vec2 step =
+            texture_mapping_step(m, hit->uv, hit->position, at->footprint->uv_axes[k], at->footprint->axes[k]);
+        axes[k] = vec3_make(step.x, step.y, 0.0f);
+    }
+    return mix_inputs(s, t, checkerboard_odd_share(p, axes, is_solid), at);
 }
 
 /* The second: over the footprint. */
@@ -238,7 +244,7 @@ static bool is_product(const struct scene *s, const texture *t)
     case TEXTURE_SCALE: return (has_pictures(s, t, 0) && varies(s, t, 1)) || (has_pictures(s, t, 1) && varies(s, t, 0));
     case TEXTURE_MIX:
         return (any && varies(s, t, 2)) || (has_pictures(s, t, 2) && (varies(s, t, 0) || varies(s, t, 1)));
-    case TEXTURE_CHECKERBOARD:
+    case TEXTURE_CHECKERBOARD: return varies(s, t, 0) || varies(s, t, 1);
     case TEXTURE_DOTS:
     case TEXTURE_DIRECTION_MIX: return any; /* one of the two is picked */
     default: return false;
@@ -299,13 +305,14 @@ static float bound_of(const struct scene *s, const texture *t)
         if (!(bound_of_input(s, t, 2) <= 1.0f))
             return INFINITY;
         return fmaxf(bound_of_input(s, t, 0), bound_of_input(s, t, 1));
+    case TEXTURE_CHECKERBOARD: return fmaxf(bound_of_input(s, t, 0), bound_of_input(s, t, 1));
     default: return INFINITY; /* these are never filtered */
     }
 }
 
 void texture_find_pictures(const struct scene *s, texture *t)
 {
-    t->has_pictures = t->kind == TEXTURE_IMAGE;
+    t->has_pictures = t->kind == TEXTURE_IMAGE || t->kind == TEXTURE_CHECKERBOARD;
     t->is_linear_in_pictures = !is_product(s, t);
     for (int i = 0; i < (int)(sizeof t->inputs / sizeof *t->inputs); i++) {
         const texture *input = input_texture(s, t, i);

@@ -1,6 +1,6 @@
 /* texture.h: values that vary over a surface, as nodes of a graph: a texture refers only to earlier ones.
  * The kinds, their parameters and defaults are pbrt-v4's (pbrt.org/fileformat-v4, "Textures"); Pharr, Jakob, Humphreys,
- * "Physically Based Rendering", 4th ed., 2023, ch. 10. Pictures of colours are
+ * "Physically Based Rendering", 4th ed., 2023, ch. 10. Pictures of colours and checkerboards of two colours are
  * filtered over the footprints of rays that have one; of all else many samples a pixel take the mean.
  * Flow: the scene file makes textures; materials, lights and shapes look them up at a hit.
  * Threads: read-only once the scene is committed; looking up is pure. */
@@ -58,7 +58,8 @@ typedef struct texture {
     float variation; /* marble */
     uint32_t cost;   /* set by scene_add_texture */
     float step;      /* of u and v, over which its slope is to be taken; set by scene_add_texture, as all below */
-    bool has_pictures, is_linear_in_pictures; /* linear: the mean of its values is the value of its pictures' means */
+    bool has_pictures, is_linear_in_pictures; /* linear: the mean of its values is the value of its pictures' means;
+                                                 a checkerboard counts as a picture, linear if of constant values */
     float most;                               /* no value is larger; infinite where that is not known, or some may be
                                                  below 0, where values are cut */
 } texture;

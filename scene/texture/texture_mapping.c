@@ -20,6 +20,12 @@ vec3 texture_mapping_point(const texture_mapping *m, vec3 p)
     return vec3_make(out[0], out[1], out[2]);
 }
 
+vec3 texture_mapping_point_step(const texture_mapping *m, vec3 position_step)
+{
+    const vec3 from = texture_mapping_point(m, vec3_make(0.0f, 0.0f, 0.0f));
+    return vec3_sub(texture_mapping_point(m, position_step), from);
+}
+
 vec2 texture_mapping_st(const texture_mapping *m, vec2 uv, vec3 position)
 {
     if (m->kind == TEXTURE_MAPPING_UV)
@@ -47,8 +53,7 @@ vec2 texture_mapping_step(const texture_mapping *m, vec2 uv, vec3 position, vec2
         return (vec2){m->axes[0].x * uv_step.x + m->axes[0].y * uv_step.y,
                       m->axes[1].x * uv_step.x + m->axes[1].y * uv_step.y};
     if (m->kind == TEXTURE_MAPPING_PLANAR) {
-        vec3 from = texture_mapping_point(m, vec3_make(0.0f, 0.0f, 0.0f));
-        vec3 step = vec3_sub(texture_mapping_point(m, position_step), from);
+        vec3 step = texture_mapping_point_step(m, position_step);
         return (vec2){vec3_dot(step, m->axes[0]), vec3_dot(step, m->axes[1])};
     }
     vec2 here = texture_mapping_st(m, uv, position),

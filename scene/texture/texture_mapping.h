@@ -33,5 +33,7 @@ vec2 texture_mapping_st(const texture_mapping *m, vec2 uv, vec3 position);
 vec2 texture_mapping_step(const texture_mapping *m, vec2 uv, vec3 position, vec2 uv_step, vec3 position_step);
 /* The point in texture space. Not for uv. */
 vec3 texture_mapping_point(const texture_mapping *m, vec3 position);
+/* The step of that point where position goes on by so little. */
+vec3 texture_mapping_point_step(const texture_mapping *m, vec3 position_step);
 
 #endif

@@ -1,7 +1,7 @@
 /* test_program_texture_filter.c: textures filtered over ray cones: a plane to the horizon has less error at 4 samples
  * than unfiltered at 16, and the same mean; so have a room with pictures on its walls, by photon map and path tracing,
  * and the plane in a mirror; whatever the number of threads and the memory for textures, in parts and as a whole the
- * bits are the same.
+ * bits are the same; checkerboards are filtered, too.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
 #include "fixtures/program_textures.h"
@@ -24,19 +24,26 @@ static void write_noise(const char *name, int side)
     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"noise.png\" \"float uscale\" %d \"float vscale\" %d " \
     "Material \"diffuse\" \"texture reflectance\" \"t\" "
 
-/* The plane fills the picture; nothing else is noisy. */
-static const char *horizon(void)
+/* A plane of that material fills the picture; nothing else is noisy. */
+static const char *plane_of(const char *material)
 {
     char text[2048];
-    write_noise("noise.png", 128);
     snprintf(text, sizeof text,
              "LookAt 0 0.5 0  0 0 2  0 1 0 Camera \"perspective\" \"float fov\" 26 "
              "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 64 WorldBegin "
-             "LightSource \"distant\" \"point3 from\" [0 10 0] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3] " PICTURE
+             "LightSource \"distant\" \"point3 from\" [0 10 0] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3] %s "
              "Shape \"trianglemesh\" \"point3 P\" [-99 0 -99  99 0 -99  99 0 99 -99 0 99] \"point2 uv\" "
              "[0 0 1 0 1 1 0 1] \"integer indices\" [0 1 2 0 2 3]",
-             1000, 1000);
+             material);
     return write_scene(text);
+}
+
+static const char *horizon(void)
+{
+    char material[512];
+    write_noise("noise.png", 128);
+    snprintf(material, sizeof material, PICTURE, 1000, 1000);
+    return plane_of(material);
 }
 
 /* Relative mean squared error, where dark pixels count less. */
@@ -72,6 +79,40 @@ static void test_horizon(void **state)
     picture_reset(&now);
 }
 
+/* Cells from many pixels to far less than one, on the plane and in space, along the axes and askew: at most half of the
+ * error at 4 samples, and the mean of unfiltered ones. */
+static void test_checkerboards(void **state)
+{
+    (void)state;
+    static const char *const MAPPINGS[] = {
+        "\"float uscale\" 3000 \"float vscale\" 3000", "\"float uscale\" 400 \"float vscale\" 400",
+        "\"string mapping\" \"planar\" \"vector3 v1\" [4 0 4] \"vector3 v2\" [-4 0 4]", "\"integer dimension\" 3"};
+    for (size_t k = 0; k < sizeof MAPPINGS / sizeof *MAPPINGS; k++) {
+        char material[512];
+        snprintf(material, sizeof material,
+                 "AttributeBegin Rotate 45 1 0 0 Scale 0.2 0.2 0.2 Texture \"t\" \"spectrum\" \"checkerboard\" %s "
+                 "\"rgb tex1\" [0.9 0.8 0.7] \"rgb tex2\" [0.05 0.1 0.2] AttributeEnd "
+                 "Material \"diffuse\" \"texture reflectance\" \"t\"",
+                 MAPPINGS[k]);
+        const char *scene = plane_of(material);
+        picture reference = render_path(scene, "--texture-filter=off", "--spp=1024"),
+                before = render_path(scene, "--texture-filter=off", "--spp=4"),
+                now = render_path(scene, "--texture-filter=on", "--spp=4"),
+                many = render_path(scene, "--texture-filter=on", "--spp=1024");
+        const double error_before = error_of(&before, &reference), error_now = error_of(&now, &reference),
+                     error_many = error_of(&many, &reference);
+        print_message("error %.5f unfiltered, %.5f filtered, %.6f of many\n", error_before, error_now, error_many);
+        assert_true(error_now < 0.5 * error_before);
+        assert_true(error_many < 5e-4);
+        for (int c = 0; c < 3; c++)
+            expect_near("the cells", picture_mean(&many, c), picture_mean(&reference, c), 0.001);
+        picture_reset(&reference);
+        picture_reset(&before);
+        picture_reset(&now);
+        picture_reset(&many);
+    }
+}
+
 /* A picture far away, as one of these materials: whether it is filtered at all. */
 static bool is_filtered(const char *material)
 {
@@ -86,6 +127,11 @@ static bool is_filtered(const char *material)
              "Texture \"c\" \"float\" \"checkerboard\" \"float uscale\" 64 \"float vscale\" 64 "
              "Texture \"cells\" \"spectrum\" \"scale\" \"texture tex\" \"t\" \"texture scale\" \"c\" "
              "Texture \"picked\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"t\" \"texture tex2\" \"half\" "
+             "Texture \"plain\" \"spectrum\" \"checkerboard\" \"float uscale\" 64 \"float vscale\" 64 "
+             "\"rgb tex1\" [0.5 0.5 0.5] "
+             "Texture \"mixed\" \"spectrum\" \"mix\" \"texture amount\" \"c\" \"rgb tex1\" [0.1 0.1 0.1] "
+             "Texture \"twice\" \"spectrum\" \"scale\" \"texture tex\" \"plain\" \"texture scale\" \"c\" "
+             "Texture \"bright\" \"spectrum\" \"scale\" \"texture tex\" \"plain\" \"float scale\" 3 "
              "Material %s "
              "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0  1 -1 0  1 1 0 -1 1 0] \"point2 uv\" "
              "[0 0 1 0 1 1 0 1] \"integer indices\" [0 1 2 0 2 3]",
@@ -111,6 +157,10 @@ static void test_not_linear(void **state)
     assert_true(is_filtered("\"diffuse\" \"texture reflectance\" \"half\""));
     assert_true(
         is_filtered("\"diffusetransmission\" \"texture reflectance\" \"half\" \"texture transmittance\" \"half\""));
+    assert_true(is_filtered("\"diffuse\" \"texture reflectance\" \"plain\""));
+    assert_true(is_filtered("\"diffuse\" \"texture reflectance\" \"mixed\""));
+    assert_false(is_filtered("\"diffuse\" \"texture reflectance\" \"twice\""));
+    assert_false(is_filtered("\"diffuse\" \"texture reflectance\" \"bright\""));
     assert_false(is_filtered("\"diffuse\" \"texture reflectance\" \"t2\""));
     assert_false(is_filtered("\"diffuse\" \"texture reflectance\" \"cells\""));
     assert_false(is_filtered("\"diffuse\" \"texture reflectance\" \"picked\""));
@@ -264,9 +314,9 @@ static void test_memory_errors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(test_horizon),       TEST_IN_FOLDER(test_not_linear),      TEST_IN_FOLDER(test_room),
-        TEST_IN_FOLDER(test_same_bits),     TEST_IN_FOLDER(test_photon_map_file), TEST_IN_FOLDER(test_memory),
-        TEST_IN_FOLDER(test_memory_errors),
+        TEST_IN_FOLDER(test_horizon), TEST_IN_FOLDER(test_checkerboards), TEST_IN_FOLDER(test_not_linear),
+        TEST_IN_FOLDER(test_room),    TEST_IN_FOLDER(test_same_bits),     TEST_IN_FOLDER(test_photon_map_file),
+        TEST_IN_FOLDER(test_memory),  TEST_IN_FOLDER(test_memory_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

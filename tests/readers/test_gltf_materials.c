@@ -265,6 +265,29 @@ static void thin_glass_is_told(void **state)
     reading_destroy(&r);
 }
 
+/* A black specular colour leaves what facets reflect at grazing angles, but in Blender's files, where surfaces of that
+ * kind are matte; its glass is not. */
+static void black_specular_color(void **state)
+{
+    (void)state;
+    write_triangle();
+    static const char MATTE[] = "{'extensions': {'KHR_materials_specular': {'specularColorFactor': [0, 0, 0]}}}",
+                      GLASS[] = "{'extensions': {'KHR_materials_specular': {'specularColorFactor': [0, 0, 0]}, "
+                                "'KHR_materials_transmission': {'transmissionFactor': 1}}}";
+    static const struct {
+        const char *json;
+        bool is_by_blender;
+        double specular;
+    } CASES[] = {{MATTE, false, 1}, {MATTE, true, 0}, {GLASS, true, 1}};
+    for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
+        const char *text = material_text(CASES[k].json, "");
+        reading r = gltf_read(CASES[k].is_by_blender ? by_blender(text) : text);
+        assert_int_equal(r.status, AG_OK);
+        assert_near(only_material(&r)->specular, CASES[k].specular, 0);
+        reading_destroy(&r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -275,6 +298,7 @@ int main(void)
         TEST_IN_FOLDER(specular_glossiness),
         TEST_IN_FOLDER(warnings),
         TEST_IN_FOLDER(thin_glass_is_told),
+        TEST_IN_FOLDER(black_specular_color),
         TEST_IN_FOLDER(material_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

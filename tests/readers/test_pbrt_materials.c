@@ -45,7 +45,7 @@ static void coated_diffuse_materials(void **state)
     assert_roughness(m.alpha_u, m.alpha_v, 0, 0);
     assert_near(m.coat_thickness, .01, 1e-9);
     assert_int_equal(m.coat_bounces, 5);
-    assert_true(m.coat != NULL && m.coat_g == 0.0f && rgb_is_black(m.coat_albedo));
+    assert_true(m.table != NULL && m.coat_g == 0.0f && rgb_is_black(m.coat_albedo));
     m = only_material("\"coateddiffuse\" \"rgb reflectance\" [ .1 .2 1 ] \"float eta\" 1.33 \"float roughness\" .04");
     assert_rgb(m.reflectance, .1, .2, 1, 1e-7);
     assert_near(m.ior, 1.33, 1e-6);

@@ -285,11 +285,97 @@ static void settings_of_another_release_are_refused(void **state)
     end_bench(&b);
 }
 
+/* The library's statistics and predictions in a struct of any size: an older program's, which lacks the last members,
+ * gets those that it has; a newer one's gets zeros in those that the library does not have; nothing is written behind.
+ */
+typedef void fill_call(const bench *b, void *out, size_t size);
+
+static void fill_statistics(const bench *b, void *out, size_t size)
+{
+    ag_context_statistics_fill(b->d.context, out, size);
+}
+
+static void fill_prediction(const bench *b, void *out, size_t size)
+{
+    ag_context_prediction_fill(b->d.context, out, size);
+}
+
+static void predict_into(const bench *b, void *out, size_t size)
+{
+    const ag_render_settings s = ag_default_render_settings();
+    assert_int_equal(ag_predict_memory_fill(b->d.context, b->complete, &s, out, size), AG_OK);
+}
+
+static void what_is_given_back_fits_any_release(void **state)
+{
+    (void)state;
+    enum { ROOM = 4096 };
+    static const struct {
+        fill_call *fill;
+        size_t size, constant; /* so many of its first bytes, after the size, are the same in each call */
+    } STRUCTS[] = {{fill_statistics, sizeof(ag_statistics), offsetof(ag_statistics, time_total_s)},
+                   {fill_prediction, sizeof(ag_prediction), sizeof(ag_prediction)},
+                   {predict_into, sizeof(ag_prediction), sizeof(size_t)}};
+    bench b;
+    begin_bench(&b);
+    predict_into(&b, &(ag_prediction){0}, sizeof(ag_prediction));
+    const ag_statistics statistics = ag_context_statistics(b.d.context);
+    const ag_prediction prediction = ag_context_prediction(b.d.context);
+    assert_true(statistics.rays_camera > 0 && prediction.memory_peak_bytes > 0);
+    for (size_t i = 0; i < sizeof STRUCTS / sizeof *STRUCTS; i++) {
+        const unsigned char *whole = i == 0 ? (const unsigned char *)&statistics : (const unsigned char *)&prediction;
+        for (size_t size = sizeof(size_t); size <= STRUCTS[i].size + 64; size += 8) {
+            union {
+                size_t struct_size;
+                unsigned char bytes[ROOM];
+            } given;
+            memset(&given, 0xa5, sizeof given);
+            STRUCTS[i].fill(&b, &given, size);
+            assert_int_equal(given.struct_size, size);
+            for (size_t k = sizeof(size_t); k < ROOM; k++) {
+                if (k >= size)
+                    assert_int_equal(given.bytes[k], 0xa5);
+                else if (k >= STRUCTS[i].size)
+                    assert_int_equal(given.bytes[k], 0);
+                else if (k < STRUCTS[i].constant)
+                    assert_int_equal(given.bytes[k], whole[k]);
+            }
+        }
+    }
+    end_bench(&b);
+}
+
+/* What a program was compiled with before ag_prediction had its times: the members that it knows are right. */
+static void an_older_prediction_is_filled(void **state)
+{
+    (void)state;
+    struct {
+        size_t struct_size;
+        uint64_t memory_peak_bytes, memory_needed_bytes, memory_scene_bytes;
+        uint64_t behind;
+    } older = {.behind = 77};
+    const size_t size = offsetof(ag_prediction, memory_photon_bytes);
+    bench b;
+    begin_bench(&b);
+    const ag_render_settings s = ag_default_render_settings();
+    assert_int_equal(ag_predict_memory_fill(b.d.context, b.complete, &s, &older, size), AG_OK);
+    const ag_prediction now = ag_context_prediction(b.d.context);
+    assert_int_equal(older.struct_size, size);
+    assert_int_equal(older.memory_peak_bytes, now.memory_peak_bytes);
+    assert_int_equal(older.memory_needed_bytes, now.memory_needed_bytes);
+    assert_int_equal(older.memory_scene_bytes, now.memory_scene_bytes);
+    assert_int_equal(older.behind, 77);
+    end_bench(&b);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        TEST_IN_FOLDER(other_sizes_are_refused), cmocka_unit_test(other_sizes_are_refused_in_silence),
-        cmocka_unit_test(descriptions_are_needed), cmocka_unit_test(no_more_is_written_than_the_program_has),
-        TEST_IN_FOLDER(settings_of_another_release_are_refused)};
+    const struct CMUnitTest tests[] = {TEST_IN_FOLDER(other_sizes_are_refused),
+                                       cmocka_unit_test(other_sizes_are_refused_in_silence),
+                                       cmocka_unit_test(descriptions_are_needed),
+                                       cmocka_unit_test(no_more_is_written_than_the_program_has),
+                                       TEST_IN_FOLDER(settings_of_another_release_are_refused),
+                                       TEST_IN_FOLDER(what_is_given_back_fits_any_release),
+                                       TEST_IN_FOLDER(an_older_prediction_is_filled)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

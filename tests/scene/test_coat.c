@@ -283,11 +283,11 @@ static void materials_of_one_coat_share_a_table(void **state)
                                 "Material \"coatedconductor\" \"float interface.roughness\" .2 Shape \"sphere\" "
                                 "Material \"coatedconductor\" \"float interface.roughness\" 0 \"float "
                                 "conductor.roughness\" 0 Shape \"sphere\"");
-    assert_int_equal(s->coat_table_count, 2);
+    assert_int_equal(s->material_table_count, 2);
     const material *first = &s->materials[s->shapes[0].material_index];
-    assert_ptr_equal(first->coat, s->materials[s->shapes[1].material_index].coat);
-    assert_ptr_not_equal(first->coat, s->materials[s->shapes[2].material_index].coat);
-    assert_null(s->materials[s->shapes[3].material_index].coat);
+    assert_ptr_equal(first->table, s->materials[s->shapes[1].material_index].table);
+    assert_ptr_not_equal(first->table, s->materials[s->shapes[2].material_index].table);
+    assert_null(s->materials[s->shapes[3].material_index].table);
     scene_destroy(s);
     test_run_reset(&run);
 }

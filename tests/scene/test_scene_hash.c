@@ -158,7 +158,7 @@ static void test_no_word_is_forgotten(void **state)
     scene *s = create(&r, WORLD, CAMERA);
     const size_t as = offsetof(shape, as);
 
-    WORDS_COUNT(material, &s->materials[s->material_count - 1], FIELD(material, coat), FIELD(material, fibre));
+    WORDS_COUNT(material, &s->materials[s->material_count - 1], FIELD(material, table));
     WORDS_COUNT(texture, &s->textures[0], {0, 0});
     WORDS_COUNT(medium, &s->media[0], {0, 0});
     WORDS_COUNT(scene_instance, &s->instances[0], {0, 0});

@@ -12,6 +12,10 @@ extern "C" {
 
 typedef enum ag_integrator { AG_INTEGRATOR_PHOTONMAP, AG_INTEGRATOR_PATH } ag_integrator;
 
+/* Whether it traces photons, so that their settings, layers and statistics mean something; false for a number that is
+ * no integrator's. */
+AG_API bool ag_integrator_has_photons(ag_integrator integrator);
+
 typedef enum ag_cache_mode {
     AG_CACHE_ON_DEMAND,  /* irradiance at a photon is computed when it is first asked for */
     AG_CACHE_PRECOMPUTE, /* at every photon, before rendering; the picture is the same, bit for bit */

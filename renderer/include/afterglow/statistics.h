@@ -4,13 +4,20 @@
 #define AFTERGLOW_PUBLIC_STATISTICS_H
 
 #include "afterglow/rendering.h"
+#include "afterglow/structs.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+/* Structs that the library writes begin with struct_size too, and the functions that write them get it from the
+ * program, by the inline functions beside them: a program that was compiled with the headers of an older release gets
+ * the members that it knows, and one with those of a newer release zeros in the members that the library does not know.
+ * Later releases add members at the end. */
+
 /* The memory and time that a picture is expected to take. */
 typedef struct ag_prediction {
+    size_t struct_size;
     /* of memory, bytes; without what --denoise takes */
     uint64_t memory_peak_bytes;   /* of the whole process, resident; no less than it has had already */
     uint64_t memory_needed_bytes; /* the most that is there at once of what follows */
@@ -30,14 +37,35 @@ typedef struct ag_prediction {
 /* Tells how many bytes the host itself will hold beside a rendering of this context, to show it say, and does not hold
  * yet; 0 at first. Predictions then count them. */
 AG_API void ag_context_expect_host_memory(ag_context *context, uint64_t bytes);
-/* The memory alone, without any work. To be asked before ag_render. Errors: as ag_render. */
-AG_API ag_status ag_predict_memory(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
-                                   ag_prediction *out_prediction);
+/* The memory alone, without any work. To be asked before ag_render. struct_size: of the program's ag_prediction.
+ * Errors: as ag_render. */
+AG_API ag_status ag_predict_memory_fill(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
+                                        void *out_prediction, size_t struct_size);
+static inline ag_status ag_predict_memory(ag_context *context, const ag_scene *loaded,
+                                          const ag_render_settings *settings, ag_prediction *out_prediction)
+{
+    return ag_predict_memory_fill(context, loaded, settings, out_prediction, sizeof *out_prediction);
+}
+
 /* Time and memory; for the time photons are traced, a million into each map at most, and a part of the picture's blocks
  * of 8 x 8 pixels is rendered: a half of small pictures, some hundred blocks of large ones. A photon map's file is left
- * alone. Errors: as ag_render. */
-AG_API ag_status ag_predict(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
-                            ag_prediction *out_prediction);
+ * alone. struct_size: of the program's ag_prediction. Errors: as ag_render. */
+AG_API ag_status ag_predict_fill(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,
+                                 void *out_prediction, size_t struct_size);
+static inline ag_status ag_predict(ag_context *context, const ag_scene *loaded, const ag_render_settings *settings,
+                                   ag_prediction *out_prediction)
+{
+    return ag_predict_fill(context, loaded, settings, out_prediction, sizeof *out_prediction);
+}
+
+/* The last prediction that was made, of struct_size bytes; memory_peak_bytes is 0 where there is none. */
+AG_API void ag_context_prediction_fill(const ag_context *context, void *out_prediction, size_t struct_size);
+static inline ag_prediction ag_context_prediction(const ag_context *context)
+{
+    ag_prediction filled;
+    ag_context_prediction_fill(context, &filled, sizeof filled);
+    return filled;
+}
 
 /* Where a picture's photon map came from. */
 typedef enum ag_map_file {
@@ -61,6 +89,7 @@ typedef enum ag_end {
 } ag_end;
 
 typedef struct ag_statistics {
+    size_t struct_size;
     unsigned threads;
     uint64_t photons_emitted, photons_stored_global, photons_stored_caustic, photon_bytes;
     ag_map_file map_file; /* of the last picture */
@@ -89,13 +118,27 @@ typedef struct ag_statistics {
     ag_end end;               /* of the last picture, as noted by ag_context_note_end */
     ag_sample_counts samples; /* of the pixels of the last picture */
     double noise;             /* of the last picture, as in ag_noise; below 0: not known */
-    ag_prediction prediction; /* the last that was made; memory_peak_bytes is 0 where there is none */
 } ag_statistics;
 
-AG_API ag_statistics ag_context_statistics(const ag_context *context);
+/* What was done so far. struct_size: of the program's ag_statistics. */
+AG_API void ag_context_statistics_fill(const ag_context *context, void *out_statistics, size_t struct_size);
+static inline ag_statistics ag_context_statistics(const ag_context *context)
+{
+    ag_statistics filled;
+    ag_context_statistics_fill(context, &filled, sizeof filled);
+    return filled;
+}
+
 /* ag_context_statistics, with the irradiances that a rendering under way has asked for so far, which count there only
  * when it is finished; without irradiance_distinct. */
-AG_API ag_statistics ag_rendering_statistics(const ag_rendering *rendering);
+AG_API void ag_rendering_statistics_fill(const ag_rendering *rendering, void *out_statistics, size_t struct_size);
+static inline ag_statistics ag_rendering_statistics(const ag_rendering *rendering)
+{
+    ag_statistics filled;
+    ag_rendering_statistics_fill(rendering, &filled, sizeof filled);
+    return filled;
+}
+
 /* How a rendering's photon map is and grows, for who watches: any thread may ask, from ag_rendering_create on until the
  * rendering is finished. All 0 where it has no map. */
 typedef struct ag_growth {

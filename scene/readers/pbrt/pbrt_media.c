@@ -196,7 +196,7 @@ static ag_status find_or_reserve(pbrt_parser *parser, const char *name, file_loc
         parser->named_media = larger;
     }
     pbrt_named_medium added = {.where = where};
-    const medium nothing = {{0.0f, 0.0f, 0.0f}};
+    const medium nothing = {.sigma_a = {0.0f, 0.0f, 0.0f}};
     AG_TRY(scene_add_medium(parser->scene, &nothing, &added.index));
     added.name = strdup(name);
     if (!added.name || name_table_set(&parser->medium_names, name, (uint32_t)count)) {
@@ -218,7 +218,7 @@ static ag_status make_named(pbrt_parser *parser, parameter_list *list)
         return pbrt_error(parser, list->where, strlen("MakeNamedMedium"),
                           "medium \"%s\" is made twice, first at %s:%d:%d", list->name, named->where.file,
                           named->where.line, named->where.column);
-    medium made = {{0.0f, 0.0f, 0.0f}};
+    medium made = {.sigma_a = {0.0f, 0.0f, 0.0f}};
     AG_TRY(read_medium(parser, list, &made));
     parser->scene->media[named->index] = made;
     named->is_defined = true;

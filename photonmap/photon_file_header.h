@@ -1,0 +1,67 @@
+/* photon_file_header.h: how a map file begins, and where its parts lie.
+ * Flow: photon_file, photon_file_write -> [here]. Threads: any. */
+#ifndef AFTERGLOW_PHOTON_FILE_HEADER_H
+#define AFTERGLOW_PHOTON_FILE_HEADER_H
+
+#include "photon_file.h"
+
+/* Raise this whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
+enum { PHOTON_FILE_LAYOUT = 18 };
+enum {
+    PHOTON_FILE_PAGE = 4096,
+    PHOTON_FILE_OWNERS_AT = PHOTON_FILE_PAGE, /* the header has the first page */
+    PHOTON_FILE_CHUNK = 1 << 22               /* what is read, written or hashed between two looks at the cancel flag */
+};
+
+/* The maps of a file, and its trees: those of the maps, and one of the global map's irradiance photons. */
+enum { PHOTON_FILE_GLOBAL, PHOTON_FILE_CAUSTIC, PHOTON_FILE_MAP_COUNT };
+enum { PHOTON_FILE_IRRADIANCE = PHOTON_FILE_MAP_COUNT, PHOTON_FILE_TREE_COUNT };
+
+typedef struct photon_file_tree {
+    uint64_t blocks_at, nodes_at; /* bytes from the file's beginning */
+    uint32_t count, depth;
+} photon_file_tree;
+
+typedef struct photon_file_map {
+    uint64_t emitted_paths, rays, rays_cut;
+    energy_balance balance;
+    uint32_t nearest;
+    float max_radius, min_radius_squared, mean_radius;
+    int32_t flux_exponent_max, irradiance_bias;
+} photon_file_map;
+
+typedef struct photon_file_header {
+    char magic[16];
+    uint32_t byte_order, layout;
+    uint32_t header_bytes, block_bytes, node_bytes, reserved;
+    uint64_t file_bytes;
+    uint64_t nonce; /* at random: no two files have the same */
+    photon_file_key key;
+    photon_file_tree trees[PHOTON_FILE_TREE_COUNT]; /* the third is empty where all are irradiance photons */
+    uint64_t checks_at; /* of the irradiance photons' check bytes, from the file's beginning */
+    photon_file_map maps[PHOTON_FILE_MAP_COUNT];
+    hash128 content; /* of the photons and the nodes */
+    hash128 self;    /* of all above */
+} photon_file_header;
+
+/* Zeros, but for the magic and what tells this machine's layout. */
+void photon_file_header_init(photon_file_header *out_header);
+/* Whether these first bytes are those of a map file, whatever follows; size: those there are, of a header at most. */
+bool photon_file_header_is_ours(const photon_file_header *h, size_t size);
+/* Whether the file is whole by its length and its header, and fits the key (NULL: any); where not, the message says
+ * why. got_bytes: of the header. */
+bool photon_file_header_is_valid(const photon_file_header *h, uint64_t got_bytes, uint64_t file_bytes,
+                                 const photon_file_key *key, char *message, size_t message_size);
+hash128 photon_file_header_hash(const photon_file_header *h); /* what `self` should be */
+
+/* Sets where the trees lie, from their counts and depths, and the check bytes. Returns the file's size. */
+uint64_t photon_file_lay_out(photon_file_tree trees[PHOTON_FILE_TREE_COUNT], uint64_t *out_checks_at);
+uint64_t photon_file_to_page(uint64_t bytes); /* rounded up to whole pages */
+uint64_t photon_file_blocks_bytes(const photon_file_tree *t);
+uint64_t photon_file_nodes_bytes(const photon_file_tree *t);
+
+/* Hashes the photons and the nodes, which never change. False when cancelled. */
+bool photon_file_hash_content(const run_context *run, const photon_tree trees[PHOTON_FILE_TREE_COUNT],
+                              hash128 *out_hash);
+
+#endif
