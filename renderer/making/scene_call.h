@@ -46,6 +46,8 @@ typedef struct scene_call {
     bool reverse_orientation, is_light;
     pbrt_items items, light_items;
     pbrt_borrowed borrowed; /* of shapes, until the mesh is made; positions NULL: nothing is */
+    uint64_t arrays_hash;   /* of what the mesh borrows, as it was read */
+    bool is_stale;          /* that has been written to, and the edit which said so was dropped */
     shape *mesh;            /* owned: what the arrays of a shape have made, or NULL: they are among the items */
     image *picture;         /* owned, of CALL_IMAGE */
     uint64_t version;       /* of that */

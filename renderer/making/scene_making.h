@@ -30,6 +30,7 @@ typedef struct scene_making {
     scene_plan plan; /* all calls, where it can be changed; else the pictures alone, which s borrows */
     scene_plan committed;
     bool is_edited;                /* plan says something else than committed, which is empty until then */
+    bool has_stale;                /* shapes among those of the last commit: nothing can be rendered */
     bool has_camera;               /* one was set after a commit, which counts instead of the plan's */
     camera later_camera;           /* that one */
     bool is_camera_edited;         /* one was set after an edit, and goes with it where the commit fails: */
@@ -59,6 +60,8 @@ ag_status scene_making_mesh(scene_making *making, scene_call *c);
 
 /* Gives a new call its number, and pictures their version. Errors: AG_ERROR_MEMORY (there were 2^32 of them). */
 ag_status scene_making_number(scene_making *making, scene_call *c);
+/* Whether the trees fit what the shapes of the plan borrow; says in the log of which not. (scene_editing.c) */
+ag_status scene_making_check_arrays(const scene_making *making);
 /* The handle of what a placed call makes. */
 ag_handle scene_making_handle(const scene_making *making, const scene_call *c);
 /* Puts a call at a place of the plan of a scene that is committed, or with NULL for it removes the one that is there,
