@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The bits of a cell's word that tell which ways there are; the blocks of a cell; and the cells of a worker's turn. */
-enum { WAYS = 6, BLOCKS_LOG2 = 5, CELLS_AT_ONCE = 16 };
+/* The bits of a cell's word that tell which ways there are; and the cells of a worker's turn. */
+enum { WAYS = 6, CELLS_AT_ONCE = 16 };
 /* A histogram takes so many photons; one of `FEW` decides half as much as one of very many would. */
 enum { LEAST = 8 };
 static const float FEW = 64.0f;
@@ -79,21 +79,27 @@ typedef struct job {
     float share;
 } job;
 
+typedef struct visit_job {
+    const incident_light *light;
+    incident_photons_fn *fn;
+    void *user;
+} visit_job;
+
 typedef struct range {
     uint32_t begin, end;
 } range;
 
-static range cell_photons(const job *j, uint64_t cell)
+static range cell_photons(const incident_light *l, uint64_t cell)
 {
-    uint32_t shift = j->light->tree.depth - j->light->cell_depth;
+    uint32_t shift = l->tree.depth - l->cell_depth;
     uint64_t first = (cell << shift) * PHOTON_BLOCK_LANES, end = ((cell + 1) << shift) * PHOTON_BLOCK_LANES;
-    uint64_t count = j->light->tree.count;
+    uint64_t count = l->tree.count;
     return (range){(uint32_t)(first < count ? first : count), (uint32_t)(end < count ? end : count)};
 }
 
-static uint16_t arrival_of(const job *j, uint32_t i)
+static uint16_t arrival_of(const incident_light *l, uint32_t i)
 {
-    return j->light->tree.blocks[i / PHOTON_BLOCK_LANES].direction[i % PHOTON_BLOCK_LANES];
+    return l->tree.blocks[i / PHOTON_BLOCK_LANES].direction[i % PHOTON_BLOCK_LANES];
 }
 
 static void find_ways(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
@@ -102,10 +108,10 @@ static void find_ways(void *user, uint64_t begin, uint64_t end, uint64_t block, 
     const job *j = user;
     facing f = {.code = FACING_NONE};
     for (uint64_t cell = begin; cell < end; cell++) {
-        range r = cell_photons(j, cell);
+        range r = cell_photons(j->light, cell);
         uint32_t counts[WAYS] = {0}, mask = 0;
         for (uint32_t i = r.begin; i < r.end; i++)
-            if (arrival_is_diffuse(arrival_of(j, i))) {
+            if (arrival_is_diffuse(arrival_of(j->light, i))) {
                 face(&f, photon_block_normal(j->light->tree.blocks, i));
                 counts[f.way]++;
             }
@@ -147,7 +153,7 @@ static void count_in(const job *j, uint32_t photon_index, facing *f, float flux[
                      uint32_t counts[WAYS])
 {
     const photon_block *blocks = j->light->tree.blocks;
-    uint16_t code = arrival_of(j, photon_index);
+    uint16_t code = arrival_of(j->light, photon_index);
     if (!arrival_is_diffuse(code))
         return;
     face(f, photon_block_normal(blocks, photon_index));
@@ -164,7 +170,7 @@ static void fill(void *user, uint64_t begin, uint64_t end, uint64_t block, unsig
     const job *j = user;
     facing f = {.code = FACING_NONE};
     for (uint64_t cell = begin; cell < end; cell++) {
-        range r = cell_photons(j, cell);
+        range r = cell_photons(j->light, cell);
         uint32_t counts[WAYS] = {0}, entry = j->light->cells[cell];
         float flux[WAYS][INCIDENT_BINS];
         memset(flux, 0, sizeof flux);
@@ -183,7 +189,7 @@ ag_status incident_light_create(run_context *run, const photon_tree *tree, float
     if (!(share > 0.0f) || tree->count == 0)
         return AG_OK;
     incident_light made = {.tree = *tree};
-    made.cell_depth = made.tree.depth > BLOCKS_LOG2 ? made.tree.depth - BLOCKS_LOG2 : 0;
+    made.cell_depth = made.tree.depth > INCIDENT_CELL_BLOCKS_LOG2 ? made.tree.depth - INCIDENT_CELL_BLOCKS_LOG2 : 0;
     uint32_t cell_count = 1u << made.cell_depth;
     made.cells = malloc(cell_count * sizeof *made.cells);
     if (!made.cells)
@@ -204,6 +210,33 @@ ag_status incident_light_create(run_context *run, const photon_tree *tree, float
         incident_light_reset(&made);
     *out_light = made;
     return status;
+}
+
+static void visit_cells(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
+{
+    (void)block, (void)worker;
+    const visit_job *j = user;
+    uint32_t photons[WAYS][INCIDENT_CELL_MAX];
+    facing f = {.code = FACING_NONE};
+    for (uint64_t cell = begin; cell < end; cell++) {
+        range r = cell_photons(j->light, cell);
+        uint32_t counts[WAYS] = {0}, entry = j->light->cells[cell], histogram = entry >> WAYS;
+        for (uint32_t i = r.begin; i < r.end; i++)
+            if (arrival_is_diffuse(arrival_of(j->light, i))) {
+                face(&f, photon_block_normal(j->light->tree.blocks, i));
+                photons[f.way][counts[f.way]++] = i;
+            }
+        for (int way = 0; way < WAYS; way++)
+            if (entry >> way & 1)
+                j->fn(j->user, histogram++, photons[way], counts[way]);
+    }
+}
+
+ag_status incident_light_visit(run_context *run, const incident_light *l, incident_photons_fn *fn, void *user)
+{
+    visit_job j = {l, fn, user};
+    uint32_t cells = l->cells ? 1u << l->cell_depth : 0;
+    return parallel_for(run, cells, CELLS_AT_ONCE, visit_cells, &j, AG_PHASE_MAP, 0.0, 0.0);
 }
 
 void incident_light_reset(incident_light *l)
@@ -270,6 +303,19 @@ float incident_guide_warp_one(const incident_guide *guide, vec2 *in_out_u)
     in_out_u->x = fminf(((float)row.number + (x - row.low) / (row.high - row.low)) * BIN_WIDTH, BELOW_ONE);
     in_out_u->y = fminf(((float)bin.number + (y - bin.low) / (bin.high - bin.low)) * BIN_WIDTH, BELOW_ONE);
     return (float)(INCIDENT_ONE / INCIDENT_BINS) / (bin.high - bin.low);
+}
+
+float incident_guide_density(const incident_guide *guide, vec3 direction)
+{
+    const uint16_t(*begins)[INCIDENT_SIDE] = guide->histogram->begins;
+    float cosine = vec3_dot(direction, guide->around.z);
+    if (!(cosine > 0.0f))
+        return 0.0f;
+    vec2 u = sample_disk_concentric_inverse(
+        (vec2){vec3_dot(direction, guide->around.x), vec3_dot(direction, guide->around.y)});
+    uint32_t row = bin_at(u.x), column = bin_at(u.y), next = row * INCIDENT_SIDE + column + 1;
+    uint32_t end = next < INCIDENT_BINS ? begins[next % INCIDENT_SIDE][next / INCIDENT_SIDE] : INCIDENT_ONE;
+    return (float)(end - begins[column][row]) * (INCIDENT_BINS / (float)INCIDENT_ONE) * cosine * AG_INV_PI;
 }
 
 static void warp_plain(const incident_guide *guide, uint32_t count, float u[2][INCIDENT_WARPS_MAX],

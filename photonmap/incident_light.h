@@ -18,6 +18,9 @@
 
 enum { INCIDENT_SIDE = 8, INCIDENT_BINS = INCIDENT_SIDE * INCIDENT_SIDE, INCIDENT_ONE = 1 << 16 };
 
+/* A cell has so many blocks of photons, and so many photons at most. */
+enum { INCIDENT_CELL_BLOCKS_LOG2 = 5, INCIDENT_CELL_MAX = PHOTON_BLOCK_LANES << INCIDENT_CELL_BLOCKS_LOG2 };
+
 /* The beginnings of the bins in [0, INCIDENT_ONE), strictly ascending from 0, row by row. They are stored by column and
  * row, so that a column is what a vector holds. */
 typedef struct incident_histogram {
@@ -38,6 +41,11 @@ ag_status incident_light_create(run_context *run, const photon_tree *tree, float
 void incident_light_reset(incident_light *l);
 uint64_t incident_light_bytes(const incident_light *l);
 
+/* Tells of each histogram which photons it is of, by their indices in the tree: the histogram's own index is that of
+ * what a caller may keep beside it. fn: called by the run's workers, of each histogram once. Errors: AG_CANCELLED. */
+typedef void incident_photons_fn(void *user, uint32_t histogram, const uint32_t *photons, uint32_t count);
+ag_status incident_light_visit(run_context *run, const incident_light *l, incident_photons_fn *fn, void *user);
+
 /* The histogram that guides rays from a point, and its frame. */
 typedef struct incident_guide {
     frame around; /* z: the normal */
@@ -57,5 +65,9 @@ void incident_guide_warp(const incident_guide *guide, uint32_t count, float in_o
 
 /* incident_guide_warp of a single pair of numbers, in plain C, with the same bits. */
 float incident_guide_warp_one(const incident_guide *guide, vec2 *in_out_u);
+
+/* The density, per solid angle, of directions that are warped so, and on by sample_cosine_hemisphere; 0 below the
+ * surface. direction: unit. */
+float incident_guide_density(const incident_guide *guide, vec3 direction);
 
 #endif

@@ -27,7 +27,7 @@ typedef struct learner {
     const scene *s;
     run_context *run;
     photon_tracing_settings settings;
-    const struct incident_light *ways; /* of the settings; by power alone paths are not led */
+    const struct onward_ways *ways; /* of the settings; by power alone paths are not led */
     float share;
     emission_trial *trials;
     uint32_t count, round_trials, round_count;

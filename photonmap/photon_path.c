@@ -1,8 +1,8 @@
 /* photon_path.c: see photon_path.h. */
 #include "photon_path.h"
 
-#include "incident_light.h"
 #include "material/lambert.h"
+#include "onward_ways.h"
 #include "rays/transmittance.h"
 #include "scene_extent.h"
 #include "shape/alpha.h"
@@ -16,6 +16,8 @@ enum { SCATTERING_CAP = 100 };
 enum { SPLIT_MOST = 4096 };
 /* The room that a block's first photon makes. */
 enum { PHOTONS_FIRST = 1024 };
+/* How many of the ways on by a surface's gathered lobes are led by importons, where there are any. */
+static const float LED_SHARE = 0.5f;
 /* Random streams, apart from those of the eye. */
 enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2, STREAM_TRIALS = 2 /* added to those */ };
 
@@ -180,15 +182,39 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
 
 /* The surface that a path has arrived at. */
 typedef struct arrival_surface {
+    float led_share;   /* of the ways on, that follow: */
+    onward_lead lead;  /* what importons tell, where led_share > 0 */
     const rgb *albedo; /* of a Lambertian surface; else NULL, and: */
     bsdf scattering;
 } arrival_surface;
 
-static void arrival_surface_find(const scene *s, const surface_hit *hit, vec3 arrived, arrival_surface *out_surface)
+/* Of the ways on that a map's paths may go: those by diffuse lobes, or of a caustic map all, where any of its lobes is
+ * rough. */
+static float share_that_may_be_led(const arrival_surface *m, photon_kind kind)
 {
-    out_surface->albedo = lambert_albedo(s, hit);
+    if (m->albedo)
+        return kind == PHOTON_GLOBAL ? 1.0f : 0.0f;
+    if (kind == PHOTON_GLOBAL)
+        return bsdf_probability(&m->scattering, BSDF_GATHERED);
+    return bsdf_is_sampled_from_light(&m->scattering, BSDF_TRACED) ? 1.0f : 0.0f;
+}
+
+static void arrival_surface_find(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
+                                 arrival_surface *out_surface)
+{
+    const photon_tracing_settings *settings = t->settings;
+    vec3 back = vec3_negate(path->ray.direction);
+    out_surface->led_share = 0.0f;
+    out_surface->albedo = lambert_albedo(t->s, hit);
     if (!out_surface->albedo)
-        bsdf_init(s, hit, vec3_negate(arrived), &out_surface->scattering);
+        bsdf_init(t->s, hit, back, &out_surface->scattering);
+    float share = settings->ways ? LED_SHARE * share_that_may_be_led(out_surface, settings->kind) : 0.0f;
+    if (!(share > 0.0f) || !onward_ways_find(settings->ways, rest_of_arrival(t->s, path, hit).position,
+                                             vec3_face_forward(hit->geometric_normal, back), &out_surface->lead))
+        return;
+    /* histograms are too coarse for what rough metal or a coat reflects */
+    if (settings->kind == PHOTON_GLOBAL || out_surface->lead.cone_count > 0)
+        out_surface->led_share = share;
 }
 
 static bool arrival_surface_has(const arrival_surface *m, bsdf_lobes lobes)
@@ -210,7 +236,7 @@ static bool arrival_surface_stores(const scene *s, const surface_hit *hit, vec3 
     return true;
 }
 
-/* Direction, weight, group and is_straight are set. */
+/* Sets all of the sample. false: absorbed. */
 static bool arrival_surface_sample(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
                                    float u_lobe, vec2 u, bsdf_sample *out_next)
 {
@@ -220,24 +246,52 @@ static bool arrival_surface_sample(const arrival_surface *m, const surface_hit *
     if (!lambert_sample_flux(hit, arrived, u, &out_next->direction, &correction))
         return false;
     out_next->weight = rgb_scale(*m->albedo, correction);
+    out_next->pdf_solid_angle = fabsf(vec3_dot(out_next->direction, hit->geometric_normal)) * AG_INV_PI;
     out_next->group = BSDF_GATHERED;
-    out_next->is_straight = false;
+    out_next->is_delta = out_next->is_straight = false;
     return true;
 }
 
-/* Leads the way on from a Lambertian surface to where light is asked for, and returns what the path then weighs: 1
- * where nothing is known of such ways. */
-static float lead_on(const photon_tracer *t, const photon_path *path, const surface_hit *hit, vec2 u,
-                     vec3 *in_out_direction)
+/* The surface's own density and weight of a direction that it was not asked for. */
+static void arrival_surface_evaluate(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
+                                     vec3 direction, bsdf_sample *out_next)
 {
-    incident_guide guide;
-    vec3 normal = vec3_face_forward(hit->geometric_normal, vec3_negate(path->ray.direction));
-    if (!t->settings->ways ||
-        !incident_light_find(t->settings->ways, rest_of_arrival(t->s, path, hit).position, normal, &guide))
-        return 1.0f;
-    float weight = incident_guide_warp_one(&guide, &u);
-    *in_out_direction = vec3_normalize(frame_to_world(&guide.around, sample_cosine_hemisphere(u)));
-    return weight;
+    *out_next = (bsdf_sample){.direction = direction, .group = lobes == BSDF_TRACED ? BSDF_TRACED : BSDF_GATHERED};
+    if (m->albedo) {
+        vec3 normal = vec3_face_forward(hit->geometric_normal, vec3_negate(arrived));
+        out_next->weight = rgb_scale(*m->albedo, lambert_arrival_factor(hit, arrived));
+        out_next->pdf_solid_angle = fmaxf(vec3_dot(direction, normal), 0.0f) * AG_INV_PI;
+        return;
+    }
+    float pdf = bsdf_pdf(&m->scattering, lobes, BSDF_FLUX, direction);
+    rgb value = bsdf_evaluate(&m->scattering, lobes, BSDF_FLUX, direction);
+    out_next->pdf_solid_angle = pdf;
+    out_next->weight = rgb_scale(value, 1.0f / pdf);
+    if (!(pdf > 0.0f) || !rgb_is_finite(out_next->weight))
+        out_next->weight = rgb_gray(0.0f), out_next->pdf_solid_angle = 0.0f;
+}
+
+/* Samples the way on from where flux has arrived: by the surface, or by what importons there tell. The weight is what
+ * it would be by the surface alone, and *out_led how much less dense the mixture is than that: below 1 / (1 -
+ * LED_SHARE); 0: the way on brings nothing. false: absorbed. */
+static bool sample_way_on(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
+                          float u_lobe, vec2 u, bsdf_sample *out_next, float *out_led)
+{
+    float share = m->led_share;
+    *out_led = 1.0f;
+    if (!(share > 0.0f))
+        return arrival_surface_sample(m, hit, arrived, lobes, u_lobe, u, out_next);
+    if (u_lobe < share) {
+        arrival_surface_evaluate(m, hit, arrived, lobes, onward_lead_sample(&m->lead, u), out_next);
+    } else {
+        u_lobe = float_below_one((u_lobe - share) / (1.0f - share));
+        if (!arrival_surface_sample(m, hit, arrived, lobes, u_lobe, u, out_next))
+            return false;
+    }
+    float by_lead = out_next->is_delta ? 0.0f : onward_lead_density(&m->lead, out_next->direction);
+    float by_surface = out_next->is_delta ? 1.0f : out_next->pdf_solid_angle;
+    *out_led = by_surface > 0.0f ? by_surface / ((1.0f - share) * by_surface + share * by_lead) : 0.0f;
+    return true;
 }
 
 /* Sends the path on from where its ray has arrived. false: it ends there. */
@@ -245,7 +299,6 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
 {
     const photon_tracing_settings *settings = t->settings;
     energy_balance *balance = &t->out->balance;
-    vec3 arrived = path->ray.direction;
     rgb flux = path->flux;
     bool may_go_straight = settings->panes_are_direct && !m->albedo && m->scattering.is_pane;
     bool is_last = path->scatterings >= settings->max_scatterings;
@@ -263,7 +316,8 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
     float u_lobe = rng_float(&path->random), u_roulette = rng_float(&path->random);
     vec2 u = rng_vec2(&path->random);
     bsdf_sample next;
-    if (!arrival_surface_sample(m, hit, arrived, lobes, u_lobe, u, &next)) {
+    float led;
+    if (!sample_way_on(m, hit, path->ray.direction, lobes, u_lobe, u, &next, &led)) {
         count_flux(balance->absorbed, flux);
         return false;
     }
@@ -282,10 +336,11 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
         count_flux(balance->lost, scattered);
         return false;
     }
-    float led = m->albedo ? lead_on(t, path, hit, u, &next.direction) : 1.0f;
     path->weight *= led;
     path->flux = rgb_scale(scattered, led / survival);
     count_flux(balance->gained, rgb_sub(path->flux, scattered));
+    if (!(led > 0.0f))
+        return false;
     path->ray = goes_straight ? scene_ray_continue(hit, &path->ray) : surface_ray(hit, path->ray, next.direction);
     if (next.group == BSDF_GATHERED && settings->filters_textures)
         path->ray.cone.spread = RAY_CONE_DIFFUSE_SPREAD;
@@ -295,8 +350,9 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
     return true;
 }
 
-/* The root of the share of a path's flux that arrives where light is asked for, by the lobes that may split it; 0: it
- * is not split. Mirrors would send all parts the same way. */
+/* The root of the mean square of what a path's flux brings where light is asked for, by the lobes that may split it; 0:
+ * it is not split. Mirrors would send all parts the same way. Of few that arrive it is the root of their share; where
+ * paths are led, more of them arrive, with less. */
 static float root_of_onward_importance(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
                                        const arrival_surface *m)
 {
@@ -306,7 +362,10 @@ static float root_of_onward_importance(const photon_tracer *t, const photon_path
     if (!arrival_surface_has(m, BSDF_GATHERED))
         return 0.0f;
     surface_rest at = rest_of_arrival(t->s, path, hit);
-    return sqrtf(importance_map_at(settings->onward, at.position, at.geometric_normal));
+    float importance = importance_map_at(settings->onward, at.position, at.geometric_normal);
+    if (m->led_share > 0.0f)
+        importance /= fmaxf(m->led_share * onward_lead_gain(&m->lead), 1.0f);
+    return sqrtf(importance);
 }
 
 /* Into how many parts a path is split before it is scattered. In proportion to its flux and to the root of the share of
@@ -348,7 +407,7 @@ static bool arrive(photon_tracer *t, photon_path *path, const surface_hit *hit)
     vec3 arrived = path->ray.direction;
     arrival_surface m;
     float factor;
-    arrival_surface_find(t->s, hit, arrived, &m);
+    arrival_surface_find(t, path, hit, &m);
     if ((t->settings->kind == PHOTON_GLOBAL || path->scatterings > 0) &&
         arrival_surface_stores(t->s, hit, arrived, &m, &factor))
         store(t, path, hit, factor);

@@ -66,7 +66,7 @@ typedef struct photon_tracing_settings {
     const emission_guide *guide;       /* where paths begin */
     const importance_map *asked;       /* elsewhere photons are stored no denser than power alone would have them */
     const importance_map *onward;      /* diffuse surfaces whose light arrives where it is asked for */
-    const struct incident_light *ways; /* by which plain diffuse surfaces send it there */
+    const struct onward_ways *ways;    /* by which surfaces send it there */
     float split_above;  /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
                            importance, over this parts; 0: paths are not split */
     float caustic_root; /* the root of importance of a caustic map, whose paths are split at rough traced lobes: the

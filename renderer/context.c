@@ -7,6 +7,7 @@
 #include "film/film_tiles.h"
 #include "output/denoise.h"
 #include "public_structs.h"
+#include "texture/texture_cache.h"
 #include "texture/texture_file_levels.h"
 #include "texture/texture_udim.h"
 
@@ -203,6 +204,15 @@ ag_status context_check_textures(ag_context *context, const scene *s)
         if (problem) {
             log_message(context->log, AG_LOG_ERROR, "'%s' %s", picture->path, problem);
             return AG_ERROR_INPUT;
+        }
+    }
+    for (uint32_t i = 0; i < s->texture_image_count; i++) {
+        const texture_image *picture = s->texture_images[i];
+        if (picture->kept && texture_kept_is_damaged(picture->kept)) {
+            log_message(context->log, AG_LOG_ERROR,
+                        "'%s': its tiles in the folder of --texture-cache are damaged, and are removed: start again",
+                        picture->path);
+            return AG_ERROR_INPUT; /* no picture is made of them */
         }
     }
     const ag_status status = texture_store_state(s->texture_store);

@@ -36,7 +36,7 @@ struct ag_scene {
     input_files inputs;  /* what it was read from */
     struct scene_making
         *making;              /* then, and where it can be changed: see making/scene_making.h; NULL: it is complete */
-    int camera_calls;         /* of ag_scene_set_camera, since it is complete */
+    uint64_t camera_calls;    /* of ag_scene_set_camera, since it is complete */
     unsigned rendering_count; /* those that borrow it */
     bool is_dropped;          /* it goes with the last of them */
 };

@@ -8,9 +8,9 @@
 
 /* A part of light that brings this share of the noise is what is to be helped first. */
 static const double MOST = 0.5;
-/* Less noise than this is not worth a word: half a step of eight bits. */
+/* Noise below this is half a step of eight bits, and is not told. */
 static const double NEGLIGIBLE = 0.002;
-/* Where the sky lights fewer of the samples than this, it comes in by windows. */
+/* A sky that lights a smaller share of the samples than this comes in by windows. */
 static const double FEW_WINDOWS = 0.4;
 
 static bool has_open_sky(const scene *s)
@@ -21,7 +21,7 @@ static bool has_open_sky(const scene *s)
     return false;
 }
 
-/* Where the noise is, and what helps. */
+/* The words for where the noise is and what helps. */
 typedef struct advice {
     const char *where, *help;
 } advice;

@@ -12,6 +12,7 @@ static const ag_context_settings CONTEXT_SETTINGS = {.struct_size = sizeof(ag_co
 static const ag_output_settings OUTPUT_SETTINGS = {.struct_size = sizeof(ag_output_settings)};
 static const ag_scene_settings SCENE_SETTINGS = {.struct_size = sizeof(ag_scene_settings),
                                                  .texture_memory_bytes = AG_DEFAULT_TEXTURE_MEMORY_BYTES,
+                                                 .texture_cache_bytes = AG_DEFAULT_TEXTURE_CACHE_BYTES,
                                                  .camera_fov_degrees = 45.0f,
                                                  .sun_elevation_degrees = 45.0f,
                                                  .sun_irradiance = 3.0f,

@@ -95,7 +95,7 @@ static ag_status trace_after(ag_context *context, const scene *s, const ag_rende
         tracing.kind = PHOTON_CAUSTIC;
         tracing.asked = &pilot->seen;
         tracing.onward = NULL;
-        tracing.ways = NULL;
+        tracing.ways = &pilot->seen_ways;
         tracing.wanted = (uint32_t)settings->caustic_photon_count;
         tracing.max_scatterings = settings->max_depth - 1;
         tracing.progress_begin = 0.7;

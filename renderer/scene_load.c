@@ -65,6 +65,8 @@ static const char *find_wrong_setting(const ag_scene_settings *s)
         return "up is no axis that there is";
     if (s->texture_memory_bytes > 0 && s->texture_memory_bytes < AG_TEXTURE_MEMORY_LEAST_BYTES)
         return "texture_memory_bytes should be 0, or at least AG_TEXTURE_MEMORY_LEAST_BYTES";
+    if (s->texture_cache && s->texture_cache[0] == '\0')
+        return "texture_cache should be a folder, or NULL";
     if (s->has_camera && s->camera_name)
         return "has_camera and camera_name exclude each other";
     const char *wrong = s->has_sun ? find_wrong_sun(s) : NULL;
@@ -93,6 +95,8 @@ ag_status scene_request_make(ag_context *context, const ag_scene_settings *setti
                                    .camera_name = settings->camera_name,
                                    .drops_lights = settings->drops_lights,
                                    .texture_memory_bytes = settings->texture_memory_bytes,
+                                   .texture_cache = settings->texture_cache,
+                                   .texture_cache_bytes = settings->texture_cache_bytes,
                                    .up = (scene_up)settings->up,
                                    .has_sun = settings->has_sun,
                                    .sun_azimuth_degrees = settings->sun_azimuth_degrees,

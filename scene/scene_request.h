@@ -41,6 +41,8 @@ typedef struct scene_request {
     const char *camera_name;       /* of the file's cameras this one; borrowed; NULL: the first */
     bool drops_lights;             /* all of the file's */
     uint64_t texture_memory_bytes; /* of pictures; 0: no limit */
+    const char *texture_cache;     /* a folder that keeps those beyond it; borrowed; NULL: none */
+    uint64_t texture_cache_bytes;  /* of all in that folder */
     scene_up up;
     bool has_sun; /* beside the file's lights */
     float sun_azimuth_degrees, sun_elevation_degrees;

@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum { ALL_IS_WELL = 0, WRONG_WORK = 1, WRONG_USE = 2, SYSTEM_FAILED = 3, MACHINE_BUSY = 4 };
-/* From so many cores on a unit of the small size is too short for all of them. */
+/* With this many cores or more a unit of the small size is too short to keep them busy. */
 enum { LARGE_FROM_CORES = 16 };
 
 static void say(void *user, ag_log_level level, const char *text)

@@ -16,7 +16,7 @@ void bench_certify(const bench_run *run, const bench_build *build, certificate *
  * the size is quick, or the machine was busy. */
 json_t *bench_json(const bench_run *run, const bench_build *build, const certificate *c);
 
-/* One line of a table: processor, threads, size, scores of one thread and of the best number, certificate. */
+/* Writes one line of a table: processor, threads, size, scores of one thread and of the best number, certificate. */
 void bench_line(const json_t *result, char *out_line, size_t size);
 
 #endif

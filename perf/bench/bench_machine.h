@@ -33,7 +33,8 @@ typedef struct bench_machine {
     uint64_t memory_bytes; /* of the machine; 0: not told */
 } bench_machine;
 
-/* To be reset, on failure too. Errors: AG_ERROR_MEMORY, AG_ERROR_SYSTEM (hwloc finds no processor). */
+/* Describes this machine; the caller resets it, on failure too. Errors: AG_ERROR_MEMORY, AG_ERROR_SYSTEM (hwloc finds
+ * no processor). */
 ag_status bench_machine_create(bench_machine *out_machine);
 void bench_machine_reset(bench_machine *machine);
 

@@ -144,7 +144,7 @@ static ag_status apply(bench *b, change what)
     }
 }
 
-/* One sample a pixel, and the photons for it. */
+/* Renders one sample a pixel, with the photons that it needs. */
 static ag_status look(bench *b)
 {
     ag_render_settings settings;

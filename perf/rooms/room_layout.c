@@ -38,7 +38,7 @@ static double sphere_to_sphere(const room_sphere *a, const room_sphere *b)
     return sqrt(dx * dx + dy * dy + dz * dz) - a->radius - b->radius;
 }
 
-/* To the nearest of the six sides, from within. */
+/* The distance from a sphere within the room to the nearest of the room's six sides. */
 static double sphere_to_wall(const room_sphere *sphere)
 {
     double nearest = HUGE_VAL;
@@ -55,7 +55,8 @@ static double sphere_to_eye(const room_sphere *sphere)
     return sphere_to_sphere(sphere, &eye);
 }
 
-/* To the light's square, or to the box that it sweeps downwards to height bottom. */
+/* The distance from a sphere to the box under the light's square, down to height bottom; to the square itself where
+ * that is its own height. */
 static double sphere_to_light_column(const room_sphere *sphere, double bottom, double top)
 {
     const double low[3] = {0.5 * (ROOM_SIZE - ROOM_LIGHT_SIZE), bottom, 0.5 * (ROOM_SIZE - ROOM_LIGHT_SIZE)};

@@ -325,7 +325,7 @@ static bool is_loopback(const socket_address *at)
                                         : IN6_IS_ADDR_LOOPBACK(&at->six.sin6_addr);
 }
 
-/* By hand, since libmicrohttpd does not say why it cannot. -1, with errno. */
+/* Opens the listening socket here, since libmicrohttpd does not say why it fails. Returns -1, with errno. */
 static int listen_at(const socket_address *at)
 {
     const int on = 1, listener = socket(at->any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);

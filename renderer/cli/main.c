@@ -119,7 +119,7 @@ static ag_status predict(ag_context *context, const options *o, const ag_scene *
     if (!o->dry_run)
         return AG_OK;
     AG_TRY(ag_predict(context, scene, settings, &prediction));
-    summary_print_prediction(stdout, &prediction);
+    summary_print_prediction(stdout, &prediction, ag_context_statistics(context).texture_file_bytes);
     ag_context_note_end(context, AG_END_DRY_RUN);
     return fflush(stdout) == 0 ? AG_OK : AG_ERROR_OUTPUT;
 }
@@ -149,7 +149,7 @@ static ag_status check_options(ag_context *context, const options *o)
 
 enum { NAME_SIZE = 4096 };
 
-/* One picture on its way. */
+/* The state of a picture that is rendered. */
 typedef struct picture_run {
     ag_context *context;
     options *o;
@@ -214,7 +214,7 @@ static ag_status tell_statistics(picture_run *r, ag_status status, const passes_
     return status == AG_OK ? written : status;
 }
 
-/* One picture; frame: -1 where there is none. */
+/* Renders a picture; frame: -1 where there are no frames. */
 static ag_status run(ag_context *context, options *o, int frame, progress *told, passes_result *out_result)
 {
     o->begun = passes_seconds();

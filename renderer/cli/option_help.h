@@ -9,7 +9,7 @@
 
 void option_help_print(FILE *out);
 
-/* One option as a line of --help. */
+/* Prints an option as a line of --help. */
 void option_help_print_line(FILE *out, const ag_setting *option);
 
 /* The part OPTIONS of the man page, as roff. */

@@ -48,6 +48,11 @@ static bool take_texture_memory(const char *value, options *o)
     return strcmp(value, "0") == 0 || (parse_bytes(value, bytes) && *bytes >= AG_TEXTURE_MEMORY_LEAST_BYTES);
 }
 
+static bool take_texture_cache_size(const char *value, options *o)
+{
+    return parse_bytes(value, &o->asked.texture_cache_bytes);
+}
+
 static bool take_vector(const char *value, float out_vector[3])
 {
     int count;
@@ -276,6 +281,30 @@ static const option_row ROWS[] = {
               "them while the picture is rendered, and they are not to be changed meanwhile. Pictures are decoded one "
               "at a time. The picture that is rendered is the same."},
      .take = take_texture_memory},
+    {.text = {.name = "texture-cache",
+              .argument = "FOLDER",
+              .section = "Scene",
+              .help = "keep what lies beyond --texture-memory in this folder between runs, instead of in a temporary "
+                      "file: the next run decodes none of these pictures",
+              .manual = "A folder for the pictures of textures beyond *--texture-memory*, made where it is missing: "
+                        "instead of in a temporary file their tiles and coarser levels lie there, and the next run "
+                        "decodes none of these pictures. Files are named by the bytes of the pictures, of a scene or "
+                        "of many, so that changed ones are decoded anew; any number of runs may use the folder at "
+                        "once, and one that is killed leaves nothing unfinished there. The file system must be able to "
+                        "hold files without names (O_TMPFILE, which network file systems lack); where it cannot, that "
+                        "is told, and the temporary file serves. What a picture will take is told with *-v*. Where the "
+                        "libraries that decode pictures are replaced, the folder is to be emptied. The picture that is "
+                        "rendered is the same."},
+     TEXT(asked.texture_cache)},
+    {.text = {.name = "texture-cache-size",
+              .argument = "SIZE",
+              .section = "Scene",
+              .help = "how much --texture-cache may keep (default 32G): what was not used for the longest time is "
+                      "removed",
+              .manual =
+                  "How much *--texture-cache* may keep, as *--texture-memory* (default 32G). Beyond that the files "
+                  "that were not used for the longest time are removed; who still reads them is not disturbed."},
+     .take = take_texture_cache_size},
     {.text = {.name = "confine",
               .section = "Scene",
               .help = "for scenes of strangers: read files below the scene's folder alone, and write only what the "

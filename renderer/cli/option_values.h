@@ -19,7 +19,7 @@ bool parse_time(const char *text, double *out_seconds);
 bool parse_bytes(const char *text, uint64_t *out_bytes);
 /* I/N, 1 <= I <= N. */
 bool parse_tile(const char *text, int *out_index, int *out_count);
-/* One of a list of words: its index there. */
+/* Reads a word of a list, and gives its index there. */
 bool parse_word(const char *text, const char *const *words, int count, int *out_index);
 
 #endif

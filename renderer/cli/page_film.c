@@ -58,7 +58,7 @@ static void take_lock(page_film *f)
     atomic_store(&f->is_wanted_by_main, false);
 }
 
-/* By the nearest pixels: until there are new ones. */
+/* Resizes a picture by its nearest pixels, to be shown until new ones come. */
 static void copy_resized(const float *from, int from_width, int from_height, float *to, int width, int height)
 {
     for (int y = 0; y < height; y++) {

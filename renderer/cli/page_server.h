@@ -45,7 +45,7 @@ void page_server_empty_film(page_server *server);
 /* Lets go of the film and the context; mode: what the page says meanwhile. */
 void page_server_leave(page_server *server, page_mode mode);
 
-/* Not of NULL. */
+/* server: not NULL. */
 page_wishes *page_server_wishes(page_server *server);
 
 #endif

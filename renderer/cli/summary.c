@@ -64,7 +64,7 @@ void summary_print(FILE *file, const ag_statistics *s)
     }
 }
 
-void summary_print_prediction(FILE *file, const ag_prediction *p)
+void summary_print_prediction(FILE *file, const ag_prediction *p, uint64_t texture_file_bytes)
 {
     fprintf(file, "time, on this machine idle\n");
     for (int i = 0; i < AG_PHASE_COUNT; i++)
@@ -84,4 +84,6 @@ void summary_print_prediction(FILE *file, const ag_prediction *p)
                  {"a file on its way", p->memory_file_bytes}};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         fprintf(file, "  %-24s %10.1f MB\n", parts[i].name, (double)parts[i].bytes / 1e6);
+    if (texture_file_bytes > 0)
+        fprintf(file, "disk\n  %-24s %10.1f MB\n", "textures, in $TMPDIR", (double)texture_file_bytes / 1e6);
 }

@@ -9,7 +9,8 @@
 
 void summary_print(FILE *file, const ag_statistics *statistics);
 
-/* Prints the predicted time and memory of a picture as a table. */
-void summary_print_prediction(FILE *file, const ag_prediction *prediction);
+/* Prints the predicted time and memory of a picture as a table. texture_file_bytes: of the temporary file that textures
+ * lie in. */
+void summary_print_prediction(FILE *file, const ag_prediction *prediction, uint64_t texture_file_bytes);
 
 #endif

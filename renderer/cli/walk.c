@@ -27,7 +27,7 @@ page_notes walk_notes(ag_rendering *rendering, page_mode mode, int samples_most)
     return n;
 }
 
-/* Where it is now. */
+/* Where a walk is, and how far the picture there has come. */
 typedef struct walk_state {
     ag_rendering *view; /* NULL: nowhere yet */
     page_place place;

@@ -76,7 +76,7 @@ typedef struct channel_list {
 static void add_channel(channel_list *list, const film_channel *style, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* One more, unless there is one of that name. */
+/* Adds a channel, unless there is one of that name. */
 static void add_channel(channel_list *list, const film_channel *style, const char *format, ...)
 {
     if (!list->channels) {

@@ -11,7 +11,7 @@ static const float DEPTH_OF_NOTHING = 1e10f;
 
 static size_t pixel_count(const ag_film *film) { return (size_t)film->width * (size_t)film->height; }
 
-/* From the crop to the area, by numbers. */
+/* The index within the film's area of a pixel of the crop. */
 static size_t area_pixel(const ag_film *film, size_t pixel)
 {
     size_t width = (size_t)film->width;
@@ -376,8 +376,8 @@ static void read_color(const ag_film *film, size_t pixel, int offset, double out
         film_response_develop(&film->response, out);
 }
 
-/* Where the parts of light are there, the picture is their sum in floats, in their order: so it is for whoever adds up
- * a file's layers. */
+/* Where the film has the parts of light, the picture is their sum in floats, in their order, so that the layers of a
+ * file add up to it. */
 void film_develop(const ag_film *film, size_t pixel, float out[3])
 {
     double color[3];

@@ -99,8 +99,8 @@ void film_resolve(struct ag_film *film);
 /* Gives one pixel of the area as the picture shows it. */
 void film_develop(const struct ag_film *film, size_t pixel, float out[3]);
 
-/* One of the arrays that samples have filled, for writing them down and reading them back. film_planes gives them
- * all, and returns how many there are. */
+/* An array that samples have filled, for checkpoints to write and read. film_planes gives all of them, and returns how
+ * many there are. */
 typedef struct film_plane {
     void *bytes; /* the film's */
     size_t size;
@@ -145,7 +145,7 @@ typedef struct film_count {
 } film_count;
 film_count film_count_samples(const struct ag_film *film);
 
-/* One channel of the layout, of a resolved film: width * height floats, stride apart. */
+/* Reads a channel of the layout from a resolved film: width * height floats, stride apart. */
 void film_read_channel(const struct ag_film *film, int channel, float *out, size_t stride);
 
 /* The means of a sum of 3 that the layout has, packed: 3 floats a pixel. */

@@ -2,7 +2,7 @@
 #include "film/layer_table.h"
 
 #define CHANNELS(...) ((const layer_channels[]){__VA_ARGS__, {0}})
-/* One part of light. */
+/* The channels of a part of light. */
 #define PART(word, part)                                                                                               \
     .info.group = "light", .channels = CHANNELS({word, "RGB", CHANNEL_COLOR, .sum = SUM_PARTS, .skipped = 3 * (part)})
 /* Values of a pixel as a whole. */

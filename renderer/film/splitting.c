@@ -8,7 +8,7 @@
 /* The split is decided at FIRST_BARRIER samples, and each time that there are BARRIER_STEP times as many. */
 enum { FIRST_BARRIER = 4, BARRIER_STEP = 4 };
 
-/* Where pixels may get more samples, so many share AG_DEFAULT_GATHER_RAYS_PER_PIXEL. */
+/* With a level of noise AG_DEFAULT_GATHER_RAYS_PER_PIXEL is shared out among this many samples. */
 enum { ADAPTIVE_SAMPLES = 64 };
 
 /* Without a choice there is a light sample for so many gather rays. With it there are many at first: blocks where few
@@ -23,18 +23,18 @@ enum { FIRST_RAYS_MIN = 4, FIRST_LIGHTS_MIN = 4 };
 /* With a fixed number of camera samples noisy blocks cannot have more of these, and are better helped by inner ones
  * than the cost of their own noise says: by this factor, as measured in five rooms. */
 static const double FIXED_FACTOR = 2.0;
-/* Then the first rays bound the time, and nowhere are there fewer than this part of them: along edges samples vary
- * much, but they are spread so well that little of it is left in the mean. */
+/* With a fixed number of camera samples the first rays bound the time, and each block has at least one in so many of
+ * them: samples along edges vary much, but are spread so well that little of that is left in the mean. */
 enum { FIXED_SHARE = 2 };
-/* Then a block needs no less noise than this, a standard error as in noise.h: nobody sees it. */
+/* With a fixed number of camera samples no block needs a standard error (noise.h) below this, which nobody sees. */
 static const double FIXED_CLEAN = 0.003;
 
 /* A block is told of by so many of the pilot's pixels on each side of its middle, at least: four samples of one alone
  * do not tell a variance. */
 static const double PILOT_HALF_WINDOW = 2.0;
 
-/* Of the variance between samples, at least this part is taken for the camera samples' own: what is left when the
- * others are taken off is not well known. */
+/* The least share of the variance between samples that counts as the camera samples' own: the rest that remains after
+ * subtracting the others is not well known. */
 static const double LEAST_REST = 1.0 / 64.0;
 
 bool splitting_is_open(const ag_render_settings *settings)

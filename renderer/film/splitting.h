@@ -38,7 +38,7 @@ bool splitting_goes_on(const ag_render_settings *settings);
 /* The counts of every sample where blocks do not choose, and of the first samples where they do. */
 split_counts splitting_first(const ag_render_settings *settings);
 
-/* No sample has more. */
+/* The most rays of either kind that a sample may have. */
 split_counts splitting_most(const ag_render_settings *settings);
 
 void split_trial_add(split_trial *trial, const eye_sample *sample);

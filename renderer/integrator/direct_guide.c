@@ -135,7 +135,7 @@ void direct_guide_reset(direct_guide *g)
 
 /* --- what was seen --- */
 
-/* Where each of the bins begins, by weights that are so even that none is lost in rounding. */
+/* Finds where each bin begins. The weights are even enough that rounding loses no bin. */
 static void find_begins(const double *weights, double whole, uint16_t *out_begins)
 {
     double sum = 0.0;
@@ -145,7 +145,7 @@ static void find_begins(const double *weights, double whole, uint16_t *out_begin
     }
 }
 
-/* even: of each bin's density, whatever was seen. */
+/* even: the share of each bin's density that does not depend on what was seen. */
 static void fill_histogram(direct_histogram *h, const direct_bins *seen, double even)
 {
     double total = 0.0, rows[DIRECT_GUIDE_SIDE], all = 0.0;
@@ -201,7 +201,7 @@ uint32_t direct_guide_find(const direct_guide *g, vec3 point, vec3 normal)
                                                                                            : DIRECT_GUIDE_NO_CELL;
 }
 
-/* The index of a light's share in a cell; lamps have the last share together. */
+/* The index of a light's share in a cell; all lamps share the last one. */
 static uint32_t share_of(const scene *s, uint32_t light_index)
 {
     uint32_t i = 0;

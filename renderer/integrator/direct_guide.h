@@ -36,7 +36,7 @@ typedef struct direct_guide_node {
     uint32_t other; /* of a leaf: its cell, or DIRECT_GUIDE_NO_CELL */
 } direct_guide_node;
 
-/* Points of the list that a cell was made for. */
+/* The points of the list that a cell was made for. */
 typedef struct direct_guide_cell {
     uint32_t begin, count;
 } direct_guide_cell;
@@ -45,7 +45,7 @@ enum { DIRECT_GUIDE_WAYS = 7 };
 
 typedef struct direct_guide {
     uint32_t roots[DIRECT_GUIDE_WAYS]; /* nodes, DIRECT_GUIDE_NO_CELL: no such point */
-    direct_guide_node *nodes;          /* owned, as all that follows */
+    direct_guide_node *nodes;          /* owned, as are all arrays that follow */
     uint32_t node_count;
     direct_guide_cell *cells;
     uint32_t cell_count;

@@ -79,7 +79,7 @@ rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex 
     return direct_light_sample_lamp(t, worker, v, lobes, u_pick, u, lamp_count, scatter_count).radiance;
 }
 
-/* by_group may be NULL. */
+/* by_group: light by groups of lamps, to be added to; or NULL. */
 static void add_to_group(rgb *by_group, const light *lamp, rgb light_brought)
 {
     if (by_group)
@@ -148,7 +148,7 @@ direct_light direct_light_gathered(const transport *t, eye_worker *worker, const
     }
     for (int i = 0; i < scatter_count; i++) {
         float u_lobe = sampler_2d_of(where, SAMPLE_LOBE, path_vertex, (uint32_t)scatter_count, (uint32_t)i)
-                           .y; /* x is for the way on */
+                           .y; /* x decides the way on at the vertex */
         vec2 u = sampler_2d_of(where, SAMPLE_SCATTER_TO_LIGHT, path_vertex, (uint32_t)scatter_count, (uint32_t)i);
         bsdf_sample scattered;
         if (!bsdf_sample_direction(&v->scattering, BSDF_GATHERED, BSDF_RADIANCE, u_lobe, u, &scattered))

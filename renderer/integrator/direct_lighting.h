@@ -20,10 +20,10 @@ rgb direct_light_transmittance(const transport *t, eye_worker *worker, const sur
 rgb direct_light_from_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes, float u_pick,
                            vec2 u, int lamp_count, int scatter_count);
 
-/* One sample towards a lamp as direct_light_from_lamp takes it, with the lamp and the direction. */
+/* The result of direct_light_from_lamp with the lamp and the direction that were sampled. */
 typedef struct lamp_light {
     rgb radiance;
-    uint32_t lamp;  /* valid, like the next, where radiance is not black */
+    uint32_t lamp;  /* lamp and direction are valid where radiance is not black */
     vec3 direction; /* towards it, unit */
 } lamp_light;
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
@@ -34,13 +34,14 @@ lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, cons
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
                                   float pdf_solid_angle, int lamp_count, int scatter_count);
 
-/* Radiance of the infinite lights that a ray from there brings which meets nothing, weighted like that.
- * pdf_solid_angle: with which it was scattered, or 0 where no sample towards a lamp could stand for it (the eye, smooth
- * lobes): weight 1. Here and below, by_group: also added to what each group of lamps gives; or NULL. */
+/* The radiance of infinite lights along a ray that meets nothing, weighted as by direct_light_scatter_weight.
+ * pdf_solid_angle: the density by which the ray was scattered, or 0 where no sample towards a lamp could stand for it
+ * (the eye, smooth lobes), which makes the weight 1. by_group, here and below: the light is added there too, by groups
+ * of lamps; or NULL. */
 rgb direct_light_escaped(const transport *t, vec3 from, vec3 normal, vec3 direction, float pdf_solid_angle,
                          int lamp_count, int scatter_count, rgb *by_group);
 
-/* The direct light at a diffuse vertex, estimated by so many samples towards lamps and by scattering. */
+/* The direct light at a diffuse vertex, estimated by samples towards lamps and by scattering. */
 typedef struct direct_light {
     rgb radiance;
     rgb from_sky;   /* the part of it that comes from infinite lights */

@@ -10,8 +10,8 @@
 
 #include <stdlib.h>
 
-/* First so many rays for each of 8 by 8 parts of the square: where most of those above the horizon see the sky, there
- * is nothing else to be found. Then one for each bin. Lamps: rays for each point. */
+/* The pilot first casts a few rays for each of 8 by 8 parts of the square: where most of those above the horizon see
+ * the sky, no more are needed. Elsewhere it casts one for each bin. For lamps it casts some from each point. */
 enum { COARSE_SIDE = 8, COARSE_RAYS = 2, FINE = DIRECT_GUIDE_SIDE / COARSE_SIDE, LAMP_RAYS = 2 };
 static const float OPEN_SKY = 0.6f;
 static const uint64_t PILOT_SEED = 0x646972656374u;
@@ -64,7 +64,8 @@ static vec2 within(cell_view *c, uint32_t x, uint32_t y, uint32_t side)
     return (vec2){float_below_one(((float)x + u.x) / (float)side), float_below_one(((float)y + u.y) / (float)side)};
 }
 
-/* Root mean square over bins and their neighbours, for they are seen by one ray each, from one of many points. */
+/* Takes the root mean square over each bin and its neighbours, since each bin is seen by one ray, from one of many
+ * points. */
 static void blur(const float squares[DIRECT_GUIDE_SIDE][DIRECT_GUIDE_SIDE], direct_bins *out)
 {
     for (int y = 0; y < DIRECT_GUIDE_SIDE; y++)
@@ -83,7 +84,7 @@ static void blur(const float squares[DIRECT_GUIDE_SIDE][DIRECT_GUIDE_SIDE], dire
         }
 }
 
-/* An infinite light, bin by bin; gives what it brings with samples that go by the bins. */
+/* Looks at an infinite light bin by bin, and returns the light that it brings by samples that go by the bins. */
 static float look_at_sky(cell_view *c, uint32_t light_index, direct_bins *out)
 {
     float squares[DIRECT_GUIDE_SIDE][DIRECT_GUIDE_SIDE];
@@ -118,7 +119,7 @@ static float look_at_sky(cell_view *c, uint32_t light_index, direct_bins *out)
     return (float)(sum / (DIRECT_GUIDE_SIDE * DIRECT_GUIDE_SIDE));
 }
 
-/* Another light that is everywhere, from each point. */
+/* Looks from each point at a light that is everywhere and has no bins. */
 static float look_at_light(cell_view *c, uint32_t light_index)
 {
     float square = 0.0f;
@@ -182,7 +183,7 @@ static void learn_cells(void *user, uint64_t begin, uint64_t end, uint64_t block
     free(bins);
 }
 
-/* Cells for the points, and what is seen from them. */
+/* Makes cells for the points, and looks from them. */
 static ag_status learn(learning *l, run_context *run, uint32_t count, uint64_t *out_rays)
 {
     vec3 *positions = malloc(((size_t)count + 1) * sizeof *positions),

@@ -20,17 +20,16 @@ enum { POINTS_PER_IMPORTON = 2, IMPORTON_SCATTERINGS_MAX = 8 };
 enum { LIT_PATHS = 12288 };
 /* The stream of the lamps that importons look for. */
 enum { STREAM_LAMPS = 1 };
-/* How much importons decide by which way photons go on, where they are many. */
-static const float WAYS_SHARE = 0.5f;
 /* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
 /* What is found, in lists: the points of eye_pilot's maps in the order of its members, importons, starts of photon
  * paths, and points of direct light. */
-enum { GATHERED, ONWARD, SEEN, WAYS, STARTS, LIT, LIST_COUNT };
+enum { GATHERED, ONWARD, SEEN, WAYS, SEEN_WAYS, STARTS, LIT, LIST_COUNT };
 static const size_t ITEM_BYTES[LIST_COUNT] = {
-    [GATHERED] = sizeof(query_point), [ONWARD] = sizeof(query_point),    [SEEN] = sizeof(query_point),
-    [WAYS] = sizeof(photon),          [STARTS] = sizeof(emission_trial), [LIT] = sizeof(lit_point)};
+    [GATHERED] = sizeof(query_point), [ONWARD] = sizeof(query_point), [SEEN] = sizeof(query_point),
+    [WAYS] = sizeof(photon),          [SEEN_WAYS] = sizeof(photon),   [STARTS] = sizeof(emission_trial),
+    [LIT] = sizeof(lit_point)};
 
 typedef struct item_list {
     char *items; /* owned */
@@ -66,13 +65,13 @@ static void add_point(row_items *row, int which, vec3 position, vec3 normal)
 }
 
 /* Importance that arrives along a direction, as a photon. */
-static void add_importon(row_items *row, vec3 position, vec3 normal, vec3 direction)
+static void add_importon(row_items *row, int which, vec3 position, vec3 normal, vec3 direction)
 {
     photon p = {.position = {position.x, position.y, position.z},
                 .flux = flux_encode(rgb_gray(1.0f), 0),
                 .direction = arrival_encode(direction, true),
                 .normal = direction_encode(normal)};
-    add_item(row, WAYS, &p);
+    add_item(row, which, &p);
 }
 
 typedef struct pilot_job {
@@ -143,7 +142,7 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
             bool is_through = vec3_dot(transport_facing_normal(&v), next.direction) < 0.0f;
             add_point(out, ONWARD, at.position, is_through ? vec3_negate(at.facing_normal) : at.facing_normal);
             if (!is_through)
-                add_importon(out, at.position, at.facing_normal, v.arrived.direction);
+                add_importon(out, WAYS, at.position, at.facing_normal, v.arrived.direction);
         }
         bool goes_straight = transport_is_open_pane(t, &v) && next.is_straight;
         scatterings += !goes_straight;
@@ -172,8 +171,13 @@ static void gather_points(const transport *t, eye_worker *worker, const vertex *
             continue;
         scene_ray ray = transport_scattered_ray(t, v, first.direction, false);
         ray.skips_uv = true;
-        if (transport_meet(t, worker, ray, &met) &&
-            gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight)) {
+        if (!transport_meet(t, worker, ray, &met))
+            continue;
+        if (bsdf_has(&met.scattering, BSDF_TRACED) && bsdf_is_sampled_from_light(&met.scattering, BSDF_TRACED)) {
+            map_point at = transport_map_point(t, &met);
+            add_importon(out, SEEN_WAYS, at.position, at.facing_normal, met.arrived.direction);
+        }
+        if (gather_path_follow(t, worker, &met, random, scatterings_left, first.weight, 1.0f, &known, &end, &weight)) {
             add_point(out, GATHERED, end.point.position, end.point.normal);
             if (i % POINTS_PER_IMPORTON == 0) {
                 out->importons++;
@@ -298,22 +302,17 @@ static ag_status merge_onward(const pilot_job *job, importance_map *out_importan
     return status;
 }
 
-static ag_status merge_ways(const pilot_job *job, run_context *run, eye_pilot *out_pilot)
+static ag_status merge_ways(const pilot_job *job, run_context *run, int which, onward_ways *out_ways)
 {
     uint32_t count;
-    AG_TRY(count_items(job, WAYS, &count));
+    AG_TRY(count_items(job, which, &count));
     if (count == 0)
         return AG_OK;
     photon *importons = photon_records_create(count);
     if (!importons)
         return AG_ERROR_MEMORY;
-    copy_items(job, WAYS, importons);
-    ag_status status = photon_tree_build(run, importons, count, 0.0, 0.0, &out_pilot->importons);
-    if (status != AG_OK) {
-        free(importons);
-        return status;
-    }
-    return incident_light_create(run, &out_pilot->importons, WAYS_SHARE, &out_pilot->ways);
+    copy_items(job, which, importons);
+    return onward_ways_create(run, importons, count, out_ways);
 }
 
 static ag_status merge_starts(const pilot_job *job, emission_starts *out_starts)
@@ -349,7 +348,8 @@ static ag_status merge_lists(const pilot_job *job, run_context *run, eye_pilot *
 {
     AG_TRY(merge_asked(job, GATHERED, &out_pilot->gathered));
     AG_TRY(merge_onward(job, &out_pilot->onward));
-    AG_TRY(merge_ways(job, run, out_pilot));
+    AG_TRY(merge_ways(job, run, WAYS, &out_pilot->ways));
+    AG_TRY(merge_ways(job, run, SEEN_WAYS, &out_pilot->seen_ways));
     AG_TRY(merge_starts(job, &out_pilot->starts));
     return merge_asked(job, SEEN, &out_pilot->seen);
 }
@@ -377,10 +377,8 @@ void eye_pilot_reset(eye_pilot *pilot)
     importance_map_reset(&pilot->gathered);
     importance_map_reset(&pilot->onward);
     importance_map_reset(&pilot->seen);
-    incident_light_reset(&pilot->ways);
-    free(pilot->importons.blocks);
-    photon_tree_reset(&pilot->importons);
-    pilot->importons = (photon_tree){0};
+    onward_ways_reset(&pilot->ways);
+    onward_ways_reset(&pilot->seen_ways);
     free(pilot->starts.trials);
     pilot->starts = (emission_starts){0};
 }

@@ -8,7 +8,7 @@
 #define AFTERGLOW_EYE_PILOT_H
 
 #include "afterglow/afterglow.h"
-#include "incident_light.h"
+#include "onward_ways.h"
 #include "photon_aim.h"
 #include "rays/rays.h"
 #include "scene.h"
@@ -17,8 +17,8 @@ typedef struct eye_pilot {
     importance_map gathered; /* points where the global map will be asked */
     importance_map onward;   /* diffuse surfaces whose light arrives at those */
     importance_map seen;     /* points where the caustic map will be asked */
-    photon_tree importons;   /* on those surfaces, with the ways that they came by */
-    incident_light ways;     /* by which light goes from there to where it is asked for; borrows the importons */
+    onward_ways ways;        /* by which light goes from there to where it is asked for */
+    onward_ways seen_ways;   /* by which caustics come from rough traced lobes to where they are seen */
     emission_starts starts;  /* of the global map's photons: from lamps, straight to those surfaces */
 } eye_pilot;
 

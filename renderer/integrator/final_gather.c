@@ -7,14 +7,14 @@
 #include "rays/slab_faces.h"
 #include "rays/transmittance.h"
 
-/* One gather under way. */
+/* A gather while its rays are sent. */
 typedef struct gathering {
     const transport *t;
     eye_worker *worker;
     const gather_request *request;
-    float share_seen; /* of what a ray brings, by the eye */
-    rgb known;        /* what its rays brought themselves */
-    uint64_t cost;    /* of its rays, as eye_worker_cost has it */
+    float share_seen; /* the share of a ray's light that reaches the eye */
+    rgb known;        /* light that its rays brought without asking for irradiance */
+    uint64_t cost;    /* the cost of its rays, as eye_worker_cost has it */
 } gathering;
 
 static rng ray_random(const gathering *g, uint32_t number)
@@ -23,7 +23,7 @@ static rng ray_random(const gathering *g, uint32_t number)
     return rng_make(r->where->key, (uint64_t)r->path_vertex, (uint64_t)r->where->sample * r->count + number);
 }
 
-/* Between a ray's end and the lamp. */
+/* The scatterings that are left between a ray's end and the lamp. */
 static int scatterings_left(const gathering *g) { return g->request->scatterings_left - 1; }
 
 /* Finds the light behind a gather ray of that number, which has met *v, and weighs `first` at its start: asks for
@@ -33,7 +33,7 @@ static void follow(gathering *g, uint32_t number, rgb first, vertex *v)
     gather_end end;
     rgb weight, known = rgb_gray(0.0f);
     rng random = ray_random(g, number);
-    rng_next(&random); /* of the lobe that the ray left by */
+    rng_next(&random); /* the number that picked the lobe by which the ray left */
     uint64_t before = eye_worker_cost(g->worker);
     bool asks = gather_path_follow(g->t, g->worker, v, random, scatterings_left(g), first, g->share_seen, &known, &end,
                                    &weight);
@@ -57,8 +57,8 @@ static void follow_alone(gathering *g, uint32_t number, vec3 direction, rgb weig
         follow(g, number, weight, &v);
 }
 
-/* Some of a gather's rays, to the side that the path came from: with what weighs what is behind each, and its
- * number. */
+/* Some of a gather's rays, towards the side that the path came from: each with its number, and the weight of the light
+ * behind it. */
 typedef struct gather_rays {
     ray_fan fan;
     rgb weight[RAY_FAN_MAX];
@@ -96,8 +96,8 @@ static void follow_together(gathering *g, gather_rays *r)
     }
 }
 
-/* The rays `begin` to `end` of a Lambertian vertex: by the cosine, so that each weighs the albedo; where there is a
- * guide, by both. */
+/* Makes the rays `begin` to `end` of a Lambertian vertex. Their directions go by the cosine, so that each ray weighs
+ * the albedo, or by the cosine and a guide. */
 static void sample_plain(const gathering *g, const incident_guide *guide, sampler_sequence *numbers, uint32_t begin,
                          uint32_t end, gather_rays *r)
 {
@@ -116,8 +116,8 @@ static void sample_plain(const gathering *g, const incident_guide *guide, sample
             fan->direction[a][k] = fan->direction[a][i];
         r->number[k] = begin + i;
         r->weight[k] = guide ? rgb_scale(b->material.diffuse.reflectance, weights[i]) : b->material.diffuse.reflectance;
-        fan->count +=
-            vec3_dot(direction, n) > 0.0f; /* a shading normal sends some through the surface: they are lost */
+        fan->count += vec3_dot(direction, n) >
+                      0.0f; /* a shading normal sends some rays through the surface, which bring nothing */
     }
 }
 
@@ -145,7 +145,7 @@ static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin
     }
 }
 
-/* The vertex is plain; the light is looked up for the side that it is seen from. */
+/* Gathers at a plain vertex, for the side that it is seen from. */
 static bool find_guide(const transport *t, const vertex *v, incident_guide *out_guide)
 {
     const bsdf *b = &v->scattering;
@@ -164,7 +164,7 @@ uint32_t final_gather(const transport *t, eye_worker *worker, const gather_reque
     gather_batch *batch = worker->batch;
     if (!gather_batch_has_room(batch, RAY_FAN_MAX))
         final_gather_resolve(t, worker);
-    if (run_is_cancelled(t->run)) /* the batch is full still, and the sample thrown away */
+    if (run_is_cancelled(t->run)) /* the batch stays full, and the sample is thrown away */
         return 0;
     gather_batch_begin(batch, request->sample, request->is_first, one_ray, request->share, count,
                        hash_combine(hash_combine(request->where->key, (uint64_t)request->path_vertex),
@@ -199,8 +199,8 @@ uint32_t final_gather(const transport *t, eye_worker *worker, const gather_reque
     return (uint32_t)g.cost;
 }
 
-/* Bounces the detours under way until each has been answered, or ends. They ask together, so that this too is in the
- * map's order. */
+/* Bounces the detours under way until each has been answered or ends. They ask for irradiance together, so that it is
+ * looked up in the map's order. */
 static void follow_detours(const transport *t, eye_worker *worker, uint32_t count)
 {
     gather_batch *b = worker->batch;

@@ -7,7 +7,7 @@
 
 #include "integrator/transport.h"
 
-/* One gather. */
+/* A hit that gathers, and how. */
 typedef struct gather_request {
     const vertex *from;   /* the diffuse hit that gathers */
     const sampler *where; /* keys the random numbers, with */

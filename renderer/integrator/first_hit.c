@@ -1,11 +1,11 @@
 /* first_hit.c: see first_hit.h. */
 #include "integrator/first_hit.h"
 
-/* Random numbers of a vertex that no path has. */
+/* The index of a vertex that no path reaches: its random numbers are used for nothing else. */
 enum { ALBEDO_VERTEX = 1 << 20 };
 
-/* What reaches the gathered lobes and leaves again, and of the others one sample, whose mean is what they reflect and
- * let through: 1 for glass, the metal's colour for metal. */
+/* The albedo of a vertex: of gathered lobes in closed form, of all others by one sample, whose mean is the share of
+ * light that they reflect and let through (1 for glass, the metal's colour for metal). */
 static rgb albedo_at(const vertex *v, const sampler *where)
 {
     rgb sum = rgb_add(bsdf_gathered_reflection(&v->scattering), bsdf_gathered_transmission(&v->scattering));

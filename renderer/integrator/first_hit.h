@@ -13,10 +13,11 @@ typedef struct film_point {
     float time;
 } film_point;
 
-/* Fills in everything but the slopes. */
+/* Fills in all members but the slopes. */
 void first_hit_fill(const transport *t, eye_worker *worker, const vertex *v, const sampler *where, first_hit *out);
 
-/* Adds the slopes, for a film of that size in pixels, and takes to the camera's space what is to be in it. */
+/* Adds the slopes, for a film of that size in pixels, and transforms to camera space the members that are wanted there.
+ */
 void first_hit_project(const transport *t, const film_point *from, first_hit *in_out);
 
 #endif

@@ -16,7 +16,7 @@ static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, 
     return rgb_add(direct, transport_some_caustics(t, worker, v, share_seen, u_caustic));
 }
 
-/* The ray ends at a diffuse vertex: irradiance on one side of it, picked by the lobes' shares. */
+/* Ends the ray at a diffuse vertex with the irradiance on one side of it, which is picked by the lobes' shares. */
 static void end_at(const transport *t, const vertex *v, int scatterings_left, rgb throughput, float u_side,
                    gather_end *out_end, rgb *out_weight)
 {
@@ -57,7 +57,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
                 end_at(t, v, scatterings_left - depth, rgb_mul(first, throughput), u_lobe, out_end, out_weight);
                 return true;
             }
-            /* too near for an estimate that is blurred over about that distance */
+            /* an estimate is blurred over about that distance, which is too coarse so near */
             rgb weight = rgb_mul(first, throughput);
             rgb local = local_light(t, worker, v, share_seen * rgb_max(weight), &random);
             *in_out_known = rgb_add(*in_out_known, rgb_mul(weight, local));

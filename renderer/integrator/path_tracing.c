@@ -6,8 +6,8 @@
 
 enum { ROULETTE_AFTER = 3 };
 
-/* One group of lobes, picked by its share, where it matters which of them scattered: rough lobes of both may send light
- * the same way. Makes the random number fresh again. */
+/* Picks one group of lobes by its share, where it matters which group scattered: rough lobes of both groups may send
+ * light the same way. The random number is evenly distributed again afterwards. */
 static bsdf_lobes pick_group(const vertex *v, float *in_out_u, rgb *in_out_throughput)
 {
     float share = bsdf_probability(&v->scattering, BSDF_GATHERED);
@@ -24,7 +24,7 @@ void path_tracing_radiance(const transport *t, eye_worker *worker, const camera_
     eye_path path = eye_path_begin(from, ROULETTE_AFTER, in_out->layers != NULL);
     for (;;) {
         vertex v;
-        /* indirect light alone leaves out what is seen, and what falls straight on the first diffuse surface */
+        /* indirect light leaves out lamps that are seen, and light that falls straight on the first diffuse surface */
         bool has_met_diffuse = path.first_gathered > 0;
         bool counts_emission = is_whole || (has_met_diffuse && path.first_gathered < path.scatterings);
         if (!eye_path_trace(t, worker, &path, in_out, &v)) {

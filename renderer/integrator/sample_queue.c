@@ -36,7 +36,7 @@ eye_sample *sample_queue_begin(sample_queue *q, size_t pixel, bool with_layers)
     return &s->sample;
 }
 
-/* Its bounds have been kept to already. */
+/* Gathered light was bounded when it was found. */
 static void add_gathered(eye_sample *s, const gathered_light *gathered, uint32_t group)
 {
     s->radiance = rgb_add(s->radiance, rgb_add(gathered->first, gathered->behind));

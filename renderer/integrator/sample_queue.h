@@ -20,7 +20,7 @@ typedef struct sample_queue {
     queued_sample samples[GATHER_BATCH_SAMPLES];
 } sample_queue;
 
-/* Empty; NULL when out of memory. */
+/* Makes an empty queue; NULL when out of memory. */
 sample_queue *sample_queue_create(void);
 void sample_queue_destroy(sample_queue *q); /* NULL is fine */
 
@@ -29,8 +29,8 @@ static inline bool sample_queue_is_full(const sample_queue *q)
     return q->count == GATHER_BATCH_SAMPLES || q->layers_count == SAMPLE_QUEUE_LAYERS;
 }
 
-/* The next sample, emptied, of a queue that is not full; q->count was its number. Those of a pixel are begun in their
- * order. */
+/* Begins the next sample of a queue that is not full, without anything in it; its number is what q->count was. The
+ * samples of a pixel are begun in their order. */
 eye_sample *sample_queue_begin(sample_queue *q, size_t pixel, bool with_layers);
 
 /* Adds all samples to their pixels, in their order; the queue is empty then. gathered: [count], what is still to be

@@ -15,13 +15,13 @@ static const float SQRT_2 = 1.41421356f;
  * are of other sequences, and so are those that decide whether there is a gather ray. */
 enum { KEY_OF_BRANCHES = 1 << 16, KEY_OF_RAYS = 1 << 24, KEY_OF_CHANCE = 1 << 30 };
 
-/* The light that a diffuse vertex sends on, in its parts; gathered light comes to the sample later. */
+/* The parts of the light that a diffuse vertex sends on, but for gathered light, which the sample gets later. */
 typedef struct diffuse_light {
     rgb direct, caustic, indirect;
-    rgb sky; /* of the direct light, from infinite lights */
+    rgb sky; /* the part of the direct light that comes from infinite lights */
 } diffuse_light;
 
-/* The power of two nearest by ratio, at least 1, as bits. */
+/* The exponent of the power of two that is nearest by ratio, at least 0. */
 static uint32_t nearest_bits(float wanted)
 {
     uint32_t bits = 0;
@@ -48,7 +48,7 @@ static gather_share share_of_gather(const transport *t, uint32_t most, const eye
     return (gather_share){1u << bits < most ? 1u << bits : most, 1.0f};
 }
 
-/* The light from other surfaces by way of those. */
+/* Finds the light that other surfaces send by way of these lobes. */
 static void gather_light(const transport *t, eye_worker *worker, const vertex *v, const camera_sample *from,
                          const eye_path *path, eye_sample *sample)
 {
@@ -58,7 +58,7 @@ static void gather_light(const transport *t, eye_worker *worker, const vertex *v
                        ? sampler_2d(&path->where, SAMPLE_ROULETTE, eye_path_key(path) + KEY_OF_CHANCE).x
                        : 0.0f;
     sampler where = path->where;
-    if (path->scatterings == 0) { /* all of a pixel's rays are one sequence, however many a sample has */
+    if (path->scatterings == 0) { /* the gather rays of all samples of a pixel form one sequence */
         where = sampler_shifted(&where, from->split.ray_shift, where.sample_bits + t->ray_bits, rays.count);
         key = eye_path_key(path);
     }
@@ -135,7 +135,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
     return sum;
 }
 
-/* by_group: the direct light's; the rest came through the photon map. */
+/* by_group: of the direct light; all other light came through the photon map. */
 static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_light *diffuse, const eye_path *path,
                         const rgb *by_group)
 {
@@ -166,7 +166,8 @@ static void add_diffuse(const transport *t, eye_sample *sample, const diffuse_li
     }
 }
 
-/* Into how many branches, a power of two as bits, the path is split at the first vertex that it is traced on from. */
+/* The number of branches, as the exponent of a power of two, that the path is split into at the first vertex where it
+ * is traced on. */
 static uint32_t branch_bits(const transport *t, const eye_path *path, const vertex *v)
 {
     if (path->scatterings > 0 || transport_is_open_pane(t, v) || !bsdf_has_many_ways(&v->scattering, BSDF_TRACED))

@@ -84,7 +84,7 @@ static void describe(const scene_call *c, char *label, size_t size)
              name ? name : "", name ? "\"" : "");
 }
 
-/* The matrices were checked when they were taken. */
+/* Making a transform cannot fail here: call_matrix_copy has checked the matrices. */
 static pbrt_placement placement_of(const scene_call *c)
 {
     pbrt_placement at = {.reverse_orientation = c->reverse_orientation,
@@ -104,7 +104,7 @@ static pbrt_placement placement_of(const scene_call *c)
     return at;
 }
 
-/* Parameters that say more of a mesh than its arrays do. */
+/* Whether a parameter stays with the call once the mesh is made of the others. */
 static bool is_of_shape(const parameter *p)
 {
     return strcmp(p->name, "alpha") == 0 || strcmp(p->name, "shadowalpha") == 0 || strcmp(p->name, "filename") == 0;

@@ -34,7 +34,7 @@ static ag_status take_struct(log_sink *log, const scene_call *c, const void *giv
     return AG_OK;
 }
 
-/* NULL stays NULL. */
+/* A text that is NULL stays NULL. */
 static ag_status take_text(const char *given, char **out)
 {
     *out = given ? strdup(given) : NULL;
@@ -46,7 +46,7 @@ static ag_status take_parameters(log_sink *log, scene_call *c, const ag_paramete
     return scene_parameters_copy(log, c->where, given, count, &c->items);
 }
 
-/* end NULL: it does not move. */
+/* end: NULL where it does not move. */
 static ag_status take_matrices(log_sink *log, scene_call *c, const double *start, const double *end)
 {
     AG_TRY(call_matrix_copy(log, c->where, start, &c->start));
@@ -119,7 +119,8 @@ static ag_status take_borrowing_shape(log_sink *log, scene_call *c, const ag_sha
     if (strcmp(s->type, "trianglemesh") != 0)
         return refuse(log, c, "of a \"trianglemesh\" alone arrays can be borrowed");
     if (s->parameter_count > SCENE_PARAMETERS_MAX || !s->parameters)
-        return take_parameters(log, c, NULL, s->parameter_count > 0 ? s->parameter_count : 1); /* says what is wrong */
+        return take_parameters(log, c, NULL,
+                               s->parameter_count > 0 ? s->parameter_count : 1); /* which says what is wrong */
     ag_parameter *rest = malloc((s->parameter_count + 1) * sizeof *rest);
     if (!rest)
         return AG_ERROR_MEMORY;
@@ -215,7 +216,7 @@ static ag_status take_image(log_sink *log, const call_given *given, scene_call *
                             .full_height = i.height,
                             .channel_count = i.channel_count,
                             .type = i.bytes ? IMAGE_UINT8 : IMAGE_FLOAT,
-                            .pixels = (float *)(uintptr_t)i.floats, /* to be copied */
+                            .pixels = (float *)(uintptr_t)i.floats, /* image_copy reads them only */
                             .bytes = (unsigned char *)(uintptr_t)i.bytes};
     c->picture = calloc(1, sizeof *c->picture);
     if (!c->picture || !image_copy(&borrowed, false, c->picture))
@@ -223,7 +224,7 @@ static ag_status take_image(log_sink *log, const call_given *given, scene_call *
     return take_text(given->name, &c->texts[0]);
 }
 
-/* Those that are nowhere in particular. */
+/* Takes the name, type and parameters of a call that has no place in the scene. */
 static ag_status take_statement(log_sink *log, const call_given *given, scene_call *c)
 {
     const bool is_hint = c->kind == CALL_HINT;
@@ -252,7 +253,7 @@ ag_status scene_call_take(log_sink *log, const call_given *given, scene_call *c)
 
 /* --- copying --- */
 
-/* All but matrices and material. */
+/* Copies everything but the matrices and the material. */
 static ag_status copy_rest(const scene_call *from, scene_call *c)
 {
     c->number = from->number;

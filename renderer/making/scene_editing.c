@@ -11,7 +11,7 @@ ag_status scene_making_number(scene_making *making, scene_call *c)
         return AG_ERROR_MEMORY;
     c->number = ++making->thing_count;
     if (c->kind == CALL_IMAGE)
-        c->version = 2 * (uint64_t)c->number; /* even, as those of files are not */
+        c->version = 2 * (uint64_t)c->number; /* even, so that it differs from the versions of files, which are odd */
     return AG_OK;
 }
 
@@ -76,7 +76,7 @@ static ag_status find_placed(const call_work *work, ag_handle handle, size_t *ou
     return *out_place < plan->placed.count ? AG_OK : refuse(work, "nothing has this handle any more");
 }
 
-/* One that is to be changed by a description of its kind. */
+/* Replaces the thing of a handle by one of another description of its kind. */
 static ag_status change_placed(const call_work *work, ag_handle handle, const call_given *given)
 {
     size_t place;
@@ -120,7 +120,7 @@ ag_status ag_scene_change_instance(ag_scene *made, ag_handle handle, const ag_in
                   &(call_given){.kind = CALL_INSTANCE, .description = instance});
 }
 
-/* Of the kind that the handle is of, as far as that is known. */
+/* The kind of thing that the handle is of; CALL_SHAPE where that is not known. */
 static call_kind kind_of(const ag_scene *made, ag_handle handle)
 {
     const scene_plan *plan = &made->making->plan;

@@ -14,7 +14,7 @@
 
 static const char NAME[] = "scene from memory";
 
-/* The functions, for messages; each counts its calls. */
+/* The names of the public functions, for messages; each function counts its calls. */
 static const char *const FUNCTIONS[DEED_COUNT][CALL_KIND_COUNT] = {
     [DEED_MAKE] = {"ag_scene_add_shape", "ag_scene_add_light", "ag_scene_add_instance", "ag_scene_set_camera",
                    "ag_scene_add_material", "ag_scene_add_medium", "ag_scene_add_texture", "ag_scene_set_hint",
@@ -27,7 +27,7 @@ static const char *const FUNCTIONS[DEED_COUNT][CALL_KIND_COUNT] = {
     [DEED_REMOVE] = {"ag_scene_remove", "ag_scene_remove", "ag_scene_remove", "", "ag_scene_remove_named",
                      "ag_scene_remove_named", "ag_scene_remove_named", "", "ag_scene_remove_named"}};
 
-/* Of scenes that can be changed, in all contexts. */
+/* Counts the scenes that can be changed, over all contexts; part of their handles. */
 static atomic_u64 scene_serials;
 
 void scene_making_destroy(scene_making *making)
@@ -40,8 +40,8 @@ void scene_making_destroy(scene_making *making)
     scene_destroy(making->mesh_scene);
     scene_plan_reset(&making->plan);
     scene_plan_reset(&making->committed);
-    free(making->sky_file);
-    free(making->camera_name);
+    for (int k = 0; k < 3; k++)
+        free(making->texts[k]);
     free(making);
 }
 
@@ -62,16 +62,15 @@ static ag_status copy_request(const ag_scene_settings *settings, scene_making *m
     AG_TRY(scene_request_make(making->context, settings, &making->request));
     if (settings->definition_count > 0)
         return scene_settings_refuse(making->context, "a scene from memory has no text for definitions");
-    making->sky_file = settings->sky_file ? strdup(settings->sky_file) : NULL;
-    making->camera_name = settings->camera_name ? strdup(settings->camera_name) : NULL;
-    making->request.sky_file = making->sky_file;
-    making->request.camera_name = making->camera_name;
-    return (making->sky_file || !settings->sky_file) && (making->camera_name || !settings->camera_name)
-               ? AG_OK
-               : AG_ERROR_MEMORY;
+    scene_request *asked = &making->request;
+    const char **const texts[3] = {&asked->sky_file, &asked->camera_name, &asked->texture_cache};
+    for (int k = 0; k < 3; k++)
+        if (*texts[k] && !(*texts[k] = making->texts[k] = strdup(*texts[k])))
+            return AG_ERROR_MEMORY;
+    return AG_OK;
 }
 
-/* What makes meshes of their arrays: a scene for that alone. */
+/* Meshes are made of their arrays by a builder with a scene of its own. */
 static ag_status begin_meshes(scene_making *making)
 {
     making->mesh_scene = scene_create();
@@ -124,7 +123,7 @@ ag_status ag_scene_create(ag_context *context, const ag_scene_settings *settings
 
 /* --- commit --- */
 
-/* What a camera may not change where things move; NULL: nothing is wrong. */
+/* Says why the camera cannot take the place of the scene's; NULL where it can. */
 static const char *find_conflict(const scene *s, const camera *c)
 {
     const bool has_shutter = c->shutter_open == s->camera.shutter_open && c->shutter_close == s->camera.shutter_close;
@@ -133,7 +132,7 @@ static const char *find_conflict(const scene *s, const camera *c)
                : NULL;
 }
 
-/* All that the calls have read becomes a scene. */
+/* Ends the building of a scene, and commits it. */
 static ag_status complete(scene_making *making, pbrt_builder *builder, scene *s)
 {
     ag_context *context = making->context;
@@ -155,7 +154,7 @@ static ag_status complete(scene_making *making, pbrt_builder *builder, scene *s)
     return AG_OK;
 }
 
-/* Makes the scene anew of the plan, with what the scene before has. */
+/* Makes the scene anew of the plan; what has not changed is taken from the scene before. */
 static ag_status run_plan(scene_making *making, scene *before, scene **out_scene)
 {
     const color_config *colors;
@@ -175,7 +174,7 @@ static ag_status run_plan(scene_making *making, scene *before, scene **out_scene
     return status;
 }
 
-/* Before a camera is set among edits: what it was. */
+/* Notes the camera before the first one that is set among edits. */
 static void keep_camera(ag_scene *made)
 {
     scene_making *making = made->making;
@@ -209,7 +208,7 @@ static void count_commit(scene_making *making, const scene *s)
     making->counts.pictures_kept += s->reuse.pictures_kept;
 }
 
-/* Of a scene that can be changed. On failure it stays as its last commit left it, without the edits since. */
+/* Commits a scene that can be changed. On failure the scene is what its last commit made, without the edits since. */
 static ag_status commit_plan(ag_scene *made)
 {
     scene_making *making = made->making;
@@ -239,7 +238,7 @@ static ag_status commit_plan(ag_scene *made)
     return AG_OK;
 }
 
-/* Of any other: what the calls have made is all. */
+/* Commits a scene that cannot be changed. */
 static ag_status commit_once(ag_scene *made)
 {
     scene_making *making = made->making;
@@ -294,7 +293,7 @@ ag_status ag_scene_commit(ag_scene *made)
 ag_status call_work_begin(ag_scene *made, call_deed deed, call_kind kind, call_work *out_work)
 {
     scene_making *making = made->making;
-    const file_location where = {FUNCTIONS[deed][kind], ++making->call_counts[deed][kind], 0};
+    const file_location where = call_place(FUNCTIONS[deed][kind], &making->call_counts[deed][kind]);
     scene_call *call = scene_call_create(kind, where);
     if (!call)
         return AG_ERROR_MEMORY;
@@ -316,7 +315,7 @@ ag_status call_work_end(call_work *work, ag_status status)
     return status;
 }
 
-/* Into a scene that is open: read at once, so that what is wrong is said now. */
+/* Runs a call into an open scene at once, so that the caller hears now what is wrong with it. */
 static ag_status read_call(scene_making *making, scene_call *c)
 {
     if (c->kind == CALL_CAMERA && making->has_moving) {
@@ -339,7 +338,7 @@ static ag_status read_call(scene_making *making, scene_call *c)
     return making->is_editable && c->kind != CALL_IMAGE ? scene_plan_put(plan, place, c) : AG_OK;
 }
 
-/* To a scene that is committed and can be changed: read with the next commit, but for the arrays of meshes. */
+/* Adds a call to the plan of a committed scene. The next commit runs it; arrays of meshes are read now. */
 static ag_status edit_in_call(scene_making *making, scene_call *c)
 {
     const size_t place = c->kind <= CALL_INSTANCE ? making->plan.placed.count : scene_plan_find_named(&making->plan, c);
@@ -464,13 +463,13 @@ static ag_status read_camera(ag_context *context, const ag_scene *made, const ag
     return conflict ? refuse(context->log, c, conflict) : status;
 }
 
-/* Of a scene that is complete, from a file or not. */
+/* Sets the camera of a committed scene, which may come from a file. */
 static ag_status change_camera(ag_scene *made, const ag_camera *given)
 {
     ag_context *context = made->context;
     const unsigned callers_arithmetic = floating_point_enter();
     const phase_begin begin = context_begin_phase();
-    const file_location where = {FUNCTIONS[DEED_MAKE][CALL_CAMERA], ++made->camera_calls, 0};
+    const file_location where = call_place(FUNCTIONS[DEED_MAKE][CALL_CAMERA], &made->camera_calls);
     scene_call *c = scene_call_create(CALL_CAMERA, where);
     camera seen;
     const ag_status status = c ? read_camera(context, made, given, c, &seen) : AG_ERROR_MEMORY;

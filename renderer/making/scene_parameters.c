@@ -13,10 +13,10 @@ _Static_assert((int)AG_PARAMETER_FLOAT == (int)PARAMETER_FLOAT && (int)AG_PARAME
                    (int)AG_PARAMETER_RGB == (int)PARAMETER_RGB && (int)AG_PARAMETER_TEXTURE == (int)PARAMETER_TEXTURE,
                "the public types are the readers'");
 
-/* By type: numbers of one value; 0: none. */
+/* How many numbers one value of each type has; 0: the type is not of numbers. */
 static const unsigned char COMPONENTS[] = {1, 1, 0, 0, 2, 2, 3, 3, 3, 3, 2, 1, 0};
 
-/* More than the points of the largest mesh, of 2^31 vertices, have. */
+/* The points of the largest mesh, of 2^31 vertices, have fewer numbers. */
 static const uint64_t VALUES_MAX = (uint64_t)1 << 33;
 
 static bool takes_strings(ag_parameter_type type)
@@ -24,7 +24,7 @@ static bool takes_strings(ag_parameter_type type)
     return type == AG_PARAMETER_STRING || type == AG_PARAMETER_TEXTURE || type == AG_PARAMETER_SPECTRUM;
 }
 
-/* What is wrong with its arrays; NULL: nothing. */
+/* Says why its arrays cannot be taken; NULL where they can. */
 static const char *find_wrong_array(const ag_parameter *p)
 {
     const int arrays =

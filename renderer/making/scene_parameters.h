@@ -8,15 +8,15 @@
 
 struct pbrt_items;
 
-enum { SCENE_PARAMETERS_MAX = 1000 }; /* of one call */
+enum { SCENE_PARAMETERS_MAX = 1000 }; /* that one call may have */
 
-/* Copies them; *out_items is to be freed, and what its items hold is for whoever takes them. where: of the call. What
- * is wrong is said in the log, at the number of the parameter. Errors: AG_ERROR_ARGUMENT, AG_ERROR_MEMORY. */
+/* Copies parameters into *out_items, which scene_parameters_free frees with what its items still hold. where: of the
+ * call; the log names the number of a parameter that is wrong. Errors: AG_ERROR_ARGUMENT, AG_ERROR_MEMORY. */
 ag_status scene_parameters_copy(log_sink *log, file_location where, const ag_parameter *given, size_t count,
                                 struct pbrt_items *out_items);
 /* Copies items that were taken already, with all that they hold. Errors: AG_ERROR_MEMORY. */
 ag_status scene_parameters_duplicate(const struct pbrt_items *from, struct pbrt_items *out);
-/* Frees them with all that they still hold. */
+/* Frees the items with all that they still hold. */
 void scene_parameters_free(struct pbrt_items *items);
 
 #endif

@@ -125,12 +125,12 @@ const scene_call *scene_plan_find_stale(const scene_plan *plan)
 
 /* --- running --- */
 
-/* A run of a plan. */
+/* The state while a plan is run. */
 typedef struct plan_run {
     const scene_plan *plan;
     run_context *run;
     pbrt_builder *builder;
-    bool *has_begun; /* of the named ones: textures */
+    bool *has_begun; /* for each named call: whether the run of that texture has begun */
 } plan_run;
 
 static ag_status run_call(const plan_run *r, scene_call *c)
@@ -141,7 +141,8 @@ static ag_status run_call(const plan_run *r, scene_call *c)
     pbrt_builder_set_quiet(r->builder, is_quiet);
     ag_status status = scene_call_run(c, r->builder, true);
     pbrt_builder_set_quiet(r->builder, false);
-    if (status != AG_OK && is_quiet) /* it has become wrong by what others say now: again, aloud */
+    if (status != AG_OK &&
+        is_quiet) /* other calls have made it wrong since: it is run again, so that messages are told */
         status = scene_call_run(c, r->builder, true);
     c->has_told = c->has_told || status == AG_OK;
     return status;
@@ -149,7 +150,7 @@ static ag_status run_call(const plan_run *r, scene_call *c)
 
 static ag_status run_texture(const plan_run *r, size_t place, int depth);
 
-/* The textures that it names, as far as there are such; others it is told of. */
+/* Runs the textures that a texture names. The builder tells of those that do not exist. */
 static ag_status run_inputs(const plan_run *r, const scene_call *c, int depth)
 {
     const call_list *named = &r->plan->named;
@@ -162,8 +163,8 @@ static ag_status run_inputs(const plan_run *r, const scene_call *c, int depth)
     return AG_OK;
 }
 
-/* A circle is broken where it closes, and a chain where it is longer than textures may be: who names the texture is
- * then told that there is none. */
+/* Textures that name each other in a circle, or in a chain longer than textures may be, end here: the builder then
+ * tells the one that names this texture that there is none. */
 static ag_status run_texture(const plan_run *r, size_t place, int depth)
 {
     scene_call *c = r->plan->named.calls[place];

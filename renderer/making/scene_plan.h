@@ -1,6 +1,6 @@
-/* scene_plan.h: all calls that a scene is made of, to be changed and run again. What they make depends on the plan
- * alone: two plans that say the same make the same scene, whatever was done to get there.
- * Flow: scene_memory, scene_editing -> [here] -> scene_call. Threads: as in afterglow.h. */
+/* scene_plan.h: all calls that a scene is made of, to be changed and run again. The scene depends on the plan alone:
+ * two plans with equal calls make equal scenes, whatever changes led to them. Flow: scene_memory, scene_editing ->
+ * [here] -> scene_call. Threads: as in afterglow.h. */
 #ifndef AFTERGLOW_SCENE_PLAN_H
 #define AFTERGLOW_SCENE_PLAN_H
 
@@ -11,17 +11,18 @@ typedef struct call_list {
     size_t count, capacity;
 } call_list;
 
-/* Zeroed, it is empty. */
+/* A plan of zeros is empty. */
 typedef struct scene_plan {
-    call_list named;  /* camera, hints, and what has a name */
-    call_list placed; /* shapes, lights and instances; their numbers ascend */
+    call_list named;  /* the camera, hints, and things that have a name */
+    call_list placed; /* shapes, lights and instances, in ascending order of their numbers */
 } scene_plan;
 
 void scene_plan_reset(scene_plan *plan);
-/* Shares the calls. Errors: AG_ERROR_MEMORY, and *out_copy is empty. */
+/* Makes a plan that shares the calls of another. Errors: AG_ERROR_MEMORY, and *out_copy is empty. */
 ag_status scene_plan_copy(const scene_plan *plan, scene_plan *out_copy);
 
-/* Where a call is in its list; its count where there is none. Textures of the two kinds of value are two. */
+/* The index of a call in its list; the list's count where it is not there. A float and a spectrum texture of one name
+ * are two. */
 size_t scene_plan_find_named(const scene_plan *plan, const scene_call *like);
 size_t scene_plan_find_placed(const scene_plan *plan, uint32_t number);
 /* The list that calls of a kind are in. */

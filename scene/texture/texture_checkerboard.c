@@ -5,7 +5,7 @@ enum { PROBES_IN_PLANE = 16, PROBES_IN_SPACE = 4 }; /* the latter along each axi
 
 /* Boxes along cells stand for parts that lie askew to them as long as those are no larger, in cells. Others would take
  * cells that go along with one another for independent ones: on a plane x = y all are even, in a box half of them. */
-static const float ASKEW_MOST = 0.1f;
+static const float ASKEW_MOST = 0.001f;
 
 /* No conversion to an integer, which large numbers would overflow. */
 static bool is_odd(float x)

@@ -4,6 +4,7 @@
 
 #include "image/image.h"
 #include "scene.h"
+#include "texture/texture_cache.h"
 #include "texture/texture_file_levels.h"
 #include "texture/texture_udim.h"
 
@@ -190,6 +191,7 @@ void texture_image_destroy(texture_image *i)
     free(i->share);
     texture_tiles_destroy(i->stored_alpha.tiles);
     texture_file_levels_destroy(i->file);
+    texture_kept_destroy(i->kept);
     texture_udim_destroy(i->udim);
     free(i);
 }

@@ -52,6 +52,7 @@ typedef struct texture_image {
     hash128 stored_content;     /* then, what texture_image_content was */
     bool is_by_file;            /* its levels are those of its file, whose bytes are its fingerprint */
     struct texture_file_levels *file; /* from which tiles are read, or NULL */
+    struct texture_kept *kept;        /* the file of a cache folder that its tiles lie in, or NULL */
     uint64_t bad_count;               /* values that were not finite, and are 0 now */
     float least, most;                /* of the linear values, before `colors` */
     struct texture_udim *udim; /* many pictures side by side, see texture_udim.h, or NULL. Then the sizes above are the

@@ -6,6 +6,7 @@
 #include "scene.h"
 #include "status.h"
 #include "text/input_file.h"
+#include "texture/texture_cache.h"
 #include "texture/texture_file_levels.h"
 #include "texture/texture_udim.h"
 
@@ -34,7 +35,9 @@ static ag_status allow(const source *from, char *message, size_t message_size)
     return AG_ERROR_INPUT;
 }
 
-static ag_status read_image(const scene *s, texture_image *i, const source *from, char *message, size_t message_size)
+/* *out_description: the picture without its pixels. */
+static ag_status read_image(const scene *s, texture_image *i, const source *from, image *out_description, char *message,
+                            size_t message_size)
 {
     image picture = {0};
     ag_status status = AG_OK;
@@ -46,6 +49,9 @@ static ag_status read_image(const scene *s, texture_image *i, const source *from
         status = image_read_compact(from->path, &picture, message, message_size);
     if (status == AG_OK)
         status = image_fill_window(&picture, from->path, message, message_size);
+    *out_description = picture;
+    out_description->pixels = NULL;
+    out_description->bytes = NULL;
     if (status == AG_OK)
         status = texture_image_take(s, i, &picture, message, message_size);
     image_reset(&picture);
@@ -63,17 +69,55 @@ static uint64_t whole_bytes(const texture_image *i)
     return finest + coarser + (i->alpha_bytes ? pixels : 0) + (i->alpha_values ? pixels * sizeof *i->alpha_values : 0);
 }
 
-/* Moves what does not fit into the scene's store, pixels, coarser levels and alpha. */
-static ag_status put_into_store(run_context *run, scene *s, texture_image *i, char *message, size_t message_size)
+/* Pixels, coarser levels and alpha, into a file, as of texture_store_put. */
+static ag_status put_levels(run_context *run, scene *s, texture_image *i, tile_file *into, char *message,
+                            size_t message_size)
 {
     const texture_level finest = texture_image_finest(i);
-    i->stored_content = texture_image_content(i);
     AG_TRY(texture_mips_create(run, &finest, &i->mips));
-    AG_TRY(texture_mips_put(run, i->mips, s->texture_store, message, message_size));
-    if (texture_image_has_alpha(i)) {
-        i->stored_alpha = texture_image_alpha(i, false);
-        AG_TRY(texture_level_put(run, &i->stored_alpha, s->texture_store, message, message_size));
+    AG_TRY(texture_mips_put(run, i->mips, s->texture_store, into, message, message_size));
+    if (!i->alpha_bytes && !i->alpha_values)
+        return AG_OK;
+    i->stored_alpha = texture_image_alpha(i, false);
+    return texture_level_put(run, &i->stored_alpha, s->texture_store, into, message, message_size);
+}
+
+/* put_levels into the folder where pictures are kept. A folder that is full, or cannot be written, is told; *out_is_put
+ * is false, and nothing has happened to *i. */
+static ag_status put_to_keep(run_context *run, scene *s, texture_image *i, const hash128 *key, const image *description,
+                             bool *out_is_put, char *message, size_t message_size)
+{
+    *out_is_put = false;
+    i->kept = texture_cache_begin(run, s);
+    if (!i->kept)
+        return AG_OK;
+    const ag_status status = put_levels(run, s, i, texture_kept_file(i->kept), message, message_size);
+    if (status != AG_ERROR_SYSTEM) {
+        *out_is_put = status == AG_OK;
+        if (status == AG_OK)
+            texture_cache_finish(run, s, i->kept, *key, i, description, whole_bytes(i));
+        return status;
     }
+    log_once(run ? run->log : NULL, AG_LOG_WARNING, "texture cache", "%s", message);
+    texture_mips_destroy(i->mips);
+    texture_tiles_destroy(i->stored_alpha.tiles);
+    texture_kept_destroy(i->kept);
+    i->mips = NULL;
+    i->kept = NULL;
+    memset(&i->stored_alpha, 0, sizeof i->stored_alpha);
+    return AG_OK;
+}
+
+/* Moves what does not fit into the scene's store. key: to keep it by; NULL: it is not to be kept. */
+static ag_status put_into_store(run_context *run, scene *s, texture_image *i, const hash128 *key,
+                                const image *description, char *message, size_t message_size)
+{
+    bool is_put = false;
+    i->stored_content = texture_image_content(i);
+    if (key && !i->colors.space)
+        AG_TRY(put_to_keep(run, s, i, key, description, &is_put, message, message_size));
+    if (!is_put)
+        AG_TRY(put_levels(run, s, i, NULL, message, message_size));
     free(i->bytes);
     free(i->values);
     free(i->alpha_bytes);
@@ -96,12 +140,23 @@ static ag_status make_store(scene *s)
     return AG_OK;
 }
 
-static ag_status hold_within_limit(run_context *run, scene *s, texture_image *i, char *message, size_t message_size)
+/* A picture that is read whole; kept ones are not read, where they do not fit into memory. */
+static ag_status read_and_hold(scene *s, texture_image *i, const source *from, char *message, size_t message_size)
 {
-    if (!s->texture_store)
+    image description;
+    hash128 key;
+    const bool is_to_keep = s->texture_store && s->request->texture_cache && !from->pixels;
+    if (is_to_keep) {
+        bool is_found;
+        key = texture_cache_key(from->path, from->bytes, from->size, i->encoding);
+        AG_TRY(texture_cache_find(from->run, s, key, i, &is_found, message, message_size));
+        if (is_found)
+            return AG_OK;
+    }
+    AG_TRY(read_image(s, i, from, &description, message, message_size));
+    if (!s->texture_store || texture_store_keeps(s->texture_store, whole_bytes(i)))
         return AG_OK;
-    return texture_store_keeps(s->texture_store, whole_bytes(i)) ? AG_OK
-                                                                 : put_into_store(run, s, i, message, message_size);
+    return put_into_store(from->run, s, i, is_to_keep ? &key : NULL, &description, message, message_size);
 }
 
 /* --- tiles --- */
@@ -243,9 +298,7 @@ static ag_status load(scene *s, const source *given, uint32_t *out_index, char *
         if (status == AG_OK && is_on_disk)
             status = texture_file_levels_read(from->run, s, i, &is_read, message, message_size);
         if (status == AG_OK && !is_read)
-            status = read_image(s, i, from, message, message_size);
-        if (status == AG_OK && !is_read)
-            status = hold_within_limit(from->run, s, i, message, message_size);
+            status = read_and_hold(s, i, from, message, message_size);
     }
     if (status != AG_OK)
         texture_image_destroy(i);

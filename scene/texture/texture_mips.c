@@ -180,7 +180,7 @@ ag_status texture_mips_create(run_context *run, const texture_level *finest, tex
     return status;
 }
 
-static texture_layout layout_of(const texture_level *l)
+texture_layout texture_level_layout(const texture_level *l)
 {
     return (texture_layout){.width = l->width,
                             .height = l->height,
@@ -190,13 +190,13 @@ static texture_layout layout_of(const texture_level *l)
                                                                          : 4};
 }
 
-ag_status texture_level_put(run_context *run, texture_level *l, texture_store *store, char *message,
+ag_status texture_level_put(run_context *run, texture_level *l, texture_store *store, tile_file *into, char *message,
                             size_t message_size)
 {
     const void *pixels = l->sample == TEXTURE_BYTES    ? (const void *)l->bytes
                          : l->sample == TEXTURE_PACKED ? (const void *)l->packed
                                                        : l->values;
-    return texture_store_put(store, run, pixels, layout_of(l), &l->tiles, message, message_size);
+    return texture_store_put(store, run, pixels, texture_level_layout(l), into, &l->tiles, message, message_size);
 }
 
 static void free_level(texture_level *l)
@@ -209,10 +209,11 @@ static void free_level(texture_level *l)
     l->values = NULL;
 }
 
-ag_status texture_mips_put(run_context *run, texture_mips *m, texture_store *store, char *message, size_t message_size)
+ag_status texture_mips_put(run_context *run, texture_mips *m, texture_store *store, tile_file *into, char *message,
+                           size_t message_size)
 {
     for (uint32_t k = 0; k < m->level_count; k++) {
-        AG_TRY(texture_level_put(run, &m->levels[k], store, message, message_size));
+        AG_TRY(texture_level_put(run, &m->levels[k], store, into, message, message_size));
         if (k > 0)
             free_level(&m->levels[k]);
     }

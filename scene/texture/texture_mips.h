@@ -39,12 +39,15 @@ typedef struct texture_mips {
 ag_status texture_mips_create(run_context *run, const texture_level *finest, texture_mips **out_mips);
 void texture_mips_destroy(texture_mips *m); /* NULL is fine */
 
-/* Moves all levels into the store, the finest, of which the memory stays the caller's, too. Errors: as of
+/* Moves all levels into the store, the finest, of which the memory stays the caller's, too. into, errors: as of
  * texture_store_put. */
-ag_status texture_mips_put(run_context *run, texture_mips *m, texture_store *store, char *message, size_t message_size);
+ag_status texture_mips_put(run_context *run, texture_mips *m, texture_store *store, tile_file *into, char *message,
+                           size_t message_size);
 /* Moves a single level into the store, as texture_mips_put does. */
-ag_status texture_level_put(run_context *run, texture_level *in_out, texture_store *store, char *message,
-                            size_t message_size);
+ag_status texture_level_put(run_context *run, texture_level *in_out, texture_store *store, tile_file *into,
+                            char *message, size_t message_size);
+/* The sizes of its pixels as they are put. */
+texture_layout texture_level_layout(const texture_level *l);
 
 /* Linear values between the middles of a level's pixels; of a grey picture all three are the same. */
 rgb texture_level_rgb(const texture_level *l, texture_wraps wraps, texture_filter filter, float s, float t);

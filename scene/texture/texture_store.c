@@ -2,6 +2,7 @@
 #include "texture/texture_store_private.h"
 
 #include "parallel_for.h"
+#include "status.h"
 #include "texture/texture_tile_file.h"
 
 #include <errno.h>
@@ -17,7 +18,7 @@ texture_store *texture_store_create(uint64_t limit_bytes)
         return NULL;
     memset(s, 0, sizeof *s);
     s->limit_bytes = limit_bytes;
-    s->file = -1;
+    s->temporary.descriptor = -1;
     for (int i = 0; i < SHARDS; i++)
         pthread_mutex_init(&s->shards[i].lock, NULL);
     return s;
@@ -31,14 +32,19 @@ void texture_store_destroy(texture_store *s)
         free(s->shards[i].held);
         pthread_mutex_destroy(&s->shards[i].lock);
     }
-    if (s->file >= 0)
-        close(s->file);
+    if (s->temporary.descriptor >= 0)
+        close(s->temporary.descriptor);
     free(s);
+}
+
+bool texture_store_has_room(const texture_store *s, uint64_t picture_bytes)
+{
+    return s->whole_bytes + picture_bytes <= s->limit_bytes / 2;
 }
 
 bool texture_store_keeps(texture_store *s, uint64_t picture_bytes)
 {
-    if (s->whole_bytes + picture_bytes > s->limit_bytes / 2)
+    if (!texture_store_has_room(s, picture_bytes))
         return false;
     s->whole_bytes += picture_bytes;
     return true;
@@ -114,8 +120,10 @@ static int put_tile(const put_job *job, size_t number, unsigned char *buffers, i
     if (packed_bytes == 0)
         return ENOMEM;
     tile->file_bytes = (uint32_t)packed_bytes;
-    tile->file_offset = fetch_add_relaxed_u64(&t->store->file_bytes, packed_bytes);
-    return tile_file_write(t->store->file, packed, packed_bytes, tile->file_offset) ? 0 : errno;
+    tile->file_offset = fetch_add_relaxed_u64(&t->file->size_bytes, packed_bytes);
+    if (t->file->is_checked)
+        tile->check = tile_check(packed, packed_bytes);
+    return tile_file_write(t->file->descriptor, packed, packed_bytes, tile->file_offset) ? 0 : errno;
 }
 
 static void put_tiles(void *user, uint64_t begin, uint64_t end, uint64_t block, unsigned worker)
@@ -131,30 +139,32 @@ static void put_tiles(void *user, uint64_t begin, uint64_t end, uint64_t block, 
         store_relaxed_u32(&job->failure, (uint32_t)failure);
 }
 
+static const texture_tile_source OWN = {.tile_width_bits = TEXTURE_TILE_BITS, .tile_height_bits = TEXTURE_TILE_BITS};
+
 ag_status texture_store_put(texture_store *s, run_context *run, const void *pixels, texture_layout layout,
-                            texture_tiles **out_tiles, char *message, size_t message_size)
+                            tile_file *into, texture_tiles **out_tiles, char *message, size_t message_size)
 {
     enum { TILES_AT_ONCE = 32 };
     texture_tiles *t;
-    const texture_tile_source own = {.tile_width_bits = TEXTURE_TILE_BITS, .tile_height_bits = TEXTURE_TILE_BITS};
-    ag_status status = texture_store_lend(s, own, layout, &t);
+    ag_status status = texture_store_lend(s, OWN, layout, &t);
     if (status != AG_OK)
         return status;
     put_job job = {.tiles = t, .pixels = pixels, .height = layout.height};
-    if (s->file < 0) {
-        s->file = tile_file_open();
-        store_relaxed_u32(&job.failure, s->file < 0 ? (uint32_t)errno : 0);
+    t->file = into ? into : &s->temporary;
+    if (t->file->descriptor < 0) {
+        t->file->descriptor = tile_file_open();
+        store_relaxed_u32(&job.failure, t->file->descriptor < 0 ? (uint32_t)errno : 0);
     }
-    if (s->file >= 0 && run && run->pool)
+    if (t->file->descriptor >= 0 && run && run->pool)
         status = parallel_for(run, t->entry_count, TILES_AT_ONCE, put_tiles, &job, AG_PHASE_LOAD, 0.0, 0.0);
-    else if (s->file >= 0)
+    else if (t->file->descriptor >= 0)
         put_tiles(&job, 0, t->entry_count, 0, 0);
     const int failure = (int)load_relaxed_u32(&job.failure);
     if (status == AG_OK && failure == ENOMEM)
         status = AG_ERROR_MEMORY;
     if (status == AG_OK && failure) {
-        snprintf(message, message_size,
-                 "no room for textures beyond --texture-memory in a temporary file ($TMPDIR): %s", strerror(failure));
+        snprintf(message, message_size, "no room for textures beyond --texture-memory in %s: %s",
+                 into ? "the folder of --texture-cache" : "a temporary file ($TMPDIR)", strerror(failure));
         status = AG_ERROR_SYSTEM;
     }
     if (status != AG_OK)
@@ -162,6 +172,38 @@ ag_status texture_store_put(texture_store *s, run_context *run, const void *pixe
     else
         *out_tiles = t;
     return status;
+}
+
+/* --- what lies in a file already --- */
+
+size_t texture_layout_tile_count(texture_layout layout)
+{
+    return (size_t)(((layout.width - 1) >> TEXTURE_TILE_BITS) + 1) * (((layout.height - 1) >> TEXTURE_TILE_BITS) + 1);
+}
+
+size_t texture_layout_tile_bytes(texture_layout layout)
+{
+    return ((size_t)layout.channel_count * layout.value_bytes) << (2 * TEXTURE_TILE_BITS);
+}
+
+ag_status texture_store_take(texture_store *s, tile_file *from, texture_layout layout, const texture_tile_part *parts,
+                             texture_tiles **out_tiles)
+{
+    AG_TRY(texture_store_lend(s, OWN, layout, out_tiles));
+    texture_tiles *t = *out_tiles;
+    t->file = from;
+    for (size_t k = 0; k < t->entry_count; k++) {
+        t->entries[k].file_offset = parts[k].offset;
+        t->entries[k].file_bytes = parts[k].size_bytes;
+        t->entries[k].check = parts[k].check;
+    }
+    return AG_OK;
+}
+
+void texture_tiles_parts(const texture_tiles *t, texture_tile_part *out_parts)
+{
+    for (size_t k = 0; k < t->entry_count; k++)
+        out_parts[k] = (texture_tile_part){t->entries[k].file_offset, t->entries[k].file_bytes, t->entries[k].check};
 }
 
 void texture_tiles_destroy(texture_tiles *t)
@@ -192,7 +234,7 @@ texture_store_counts texture_store_count(const texture_store *s)
     if (!s)
         return c;
     c.whole_bytes = s->whole_bytes;
-    c.file_bytes = load_relaxed_u64(&s->file_bytes);
+    c.file_bytes = load_relaxed_u64(&s->temporary.size_bytes);
     for (int i = 0; i < SHARDS; i++) {
         c.tile_bytes_most += s->shards[i].bytes_most;
         c.tiles_read += s->shards[i].read_count;

@@ -9,6 +9,7 @@
 #include "afterglow/base.h"
 #include "run_context.h"
 #include "texture/texture_pixels.h"
+#include "texture/texture_tile_file.h"
 
 #include <stdbool.h>
 
@@ -32,7 +33,8 @@ typedef struct texture_tiles {
     uint32_t width, tiles_across;
     uint32_t tile_width_bits, tile_height_bits;
     uint32_t channel_count, value_bytes;
-    texture_tile_source source;   /* fetch NULL: the temporary file */
+    texture_tile_source source;   /* fetch NULL: the file */
+    tile_file *file;              /* borrowed */
     uint64_t first_number;        /* of its first tile among all tiles */
     struct texture_tile *entries; /* of each tile; owned */
     size_t entry_count;
@@ -44,6 +46,8 @@ enum { TEXTURE_PIXEL_BYTES_MAX = 12, TEXTURE_TILE_BITS = 6, TEXTURE_TILE_BITS_MA
 texture_store *texture_store_create(uint64_t limit_bytes);
 void texture_store_destroy(texture_store *s); /* NULL is fine; after its tiles */
 
+/* Whether texture_store_keeps would say so. */
+bool texture_store_has_room(const texture_store *s, uint64_t picture_bytes);
 /* Whether a picture of that size may stay in memory whole: as long as they take half of the limit. If so, it counts. */
 bool texture_store_keeps(texture_store *s, uint64_t picture_bytes);
 
@@ -52,10 +56,21 @@ typedef struct texture_layout {
     uint32_t width, height, channel_count, value_bytes;
 } texture_layout;
 
-/* Writes pixels, packed row by row, as tiles. Errors: AG_ERROR_MEMORY, AG_CANCELLED, AG_ERROR_SYSTEM (no temporary
- * file, or no room in it); text in message. */
+/* Writes pixels, packed row by row, as tiles, to a file that outlives them; into NULL: the store's temporary file.
+ * Errors: AG_ERROR_MEMORY, AG_CANCELLED, AG_ERROR_SYSTEM (no temporary file, or no room); text in message. */
 ag_status texture_store_put(texture_store *s, run_context *run, const void *pixels, texture_layout layout,
-                            texture_tiles **out_tiles, char *message, size_t message_size);
+                            tile_file *into, texture_tiles **out_tiles, char *message, size_t message_size);
+/* Tiles that such a file holds already, packed one by one as the parts say; there are as many parts as tiles.
+ * Errors: AG_ERROR_MEMORY. */
+typedef struct texture_tile_part {
+    uint64_t offset;
+    uint32_t size_bytes, check;
+} texture_tile_part;
+ag_status texture_store_take(texture_store *s, tile_file *from, texture_layout layout, const texture_tile_part *parts,
+                             texture_tiles **out_tiles);
+size_t texture_layout_tile_count(texture_layout layout); /* of what is put and taken */
+size_t texture_layout_tile_bytes(texture_layout layout); /* of each, unpacked */
+void texture_tiles_parts(const texture_tiles *t, texture_tile_part *out_parts);
 /* Tiles that are read from a source, which outlives them. Errors: AG_ERROR_MEMORY. */
 ag_status texture_store_lend(texture_store *s, texture_tile_source source, texture_layout layout,
                              texture_tiles **out_tiles);
@@ -75,7 +90,7 @@ typedef struct texture_store_counts {
 /* NULL: all zero. */
 texture_store_counts texture_store_count(const texture_store *s);
 
-/* Whether there was memory for all tiles since the store was made, and those of the temporary file could be read. NULL
+/* Whether there was memory for all tiles since the store was made, and those of files could be read. NULL
  * is fine. Errors: AG_ERROR_MEMORY, AG_ERROR_SYSTEM. */
 ag_status texture_store_state(const texture_store *s);
 

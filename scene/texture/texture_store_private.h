@@ -18,6 +18,7 @@ typedef struct texture_tile {
     uint64_t file_offset;
     uint32_t file_bytes; /* packed */
     uint32_t size_bytes; /* of pixels; 0 where they are NULL */
+    uint32_t check;      /* of what lies in a file that is_checked */
     bool was_asked;
 } texture_tile;
 
@@ -31,9 +32,8 @@ typedef struct shard {
 struct texture_store {
     shard shards[SHARDS];
     uint64_t limit_bytes, whole_bytes, tile_count;
-    atomic_u64 file_bytes; /* relaxed: each addition claims a part of the file */
-    int file;              /* -1: not made yet */
-    atomic_u32 failures;   /* relaxed: read behind a barrier of the pass */
+    tile_file temporary;
+    atomic_u32 failures; /* relaxed: read behind a barrier of the pass */
 };
 
 static inline size_t pixel_bytes_of(const texture_tiles *t) { return (size_t)t->channel_count * t->value_bytes; }

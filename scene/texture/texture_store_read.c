@@ -33,9 +33,12 @@ static ag_status read_packed(const texture_tiles *t, const texture_tile *tile, u
     unsigned char *packed = malloc(2 * size);
     if (!packed)
         return AG_ERROR_MEMORY;
-    const ag_status status = tile_file_read(t->store->file, packed, tile->file_bytes, tile->file_offset)
-                                 ? tile_unpack(format_of(t), packed, tile->file_bytes, packed + size, out_pixels)
-                                 : AG_ERROR_SYSTEM;
+    ag_status status = AG_ERROR_SYSTEM;
+    if (tile_file_read(t->file->descriptor, packed, tile->file_bytes, tile->file_offset) &&
+        (!t->file->is_checked || tile_check(packed, tile->file_bytes) == tile->check))
+        status = tile_unpack(format_of(t), packed, tile->file_bytes, packed + size, out_pixels);
+    if (status == AG_ERROR_SYSTEM)
+        store_relaxed_u32(&t->file->is_damaged, 1);
     free(packed);
     return status;
 }

@@ -94,3 +94,8 @@ ag_status tile_unpack(tile_format f, const unsigned char *packed, size_t packed_
     unfilter(f, scratch, out_pixels);
     return AG_OK;
 }
+
+uint32_t tile_check(const unsigned char *packed, size_t packed_bytes)
+{
+    return (uint32_t)crc32(0, packed, (uInt)packed_bytes);
+}

@@ -9,6 +9,7 @@
 #include "afterglow/base.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 typedef struct tile_format {
     size_t row_values; /* of a row, all channels: pixels times channels */
@@ -25,5 +26,8 @@ size_t tile_pack(tile_format f, const unsigned char *pixels, unsigned char *scra
 /* Errors: AG_ERROR_SYSTEM (these bytes are no packed tile), AG_ERROR_MEMORY. */
 ag_status tile_unpack(tile_format f, const unsigned char *packed, size_t packed_bytes, unsigned char *scratch,
                       unsigned char *out_pixels);
+
+/* A checksum of packed bytes. */
+uint32_t tile_check(const unsigned char *packed, size_t packed_bytes);
 
 #endif

@@ -12,7 +12,7 @@
 
 enum { SCENES = 2, HANDLES = 16, PARAMETERS = 5, VALUES = 24 };
 
-/* What the bytes have chosen so far. Behind their end all choices are 0. */
+/* The state of a host program whose choices the fuzzer's bytes make. Behind the last byte all choices are 0. */
 typedef struct host {
     const uint8_t *bytes;
     size_t left;

@@ -119,7 +119,7 @@ static void test_known_build(void **state)
     assert_int_equal(strlen(build.sources), 32);
 }
 
-/* More faults than can be kept: the first ones are. */
+/* Of more faults than there is room for the first ones are kept. */
 static void test_many_faults(void **state)
 {
     (void)state;

@@ -67,7 +67,7 @@ static void test_many_workers(void **state)
     assert_true(one.seconds / eight.seconds > 6.0);
 }
 
-/* One photon for all: one computes, whoever asks meanwhile waits for that one estimate. */
+/* All threads ask for one photon: one computes its estimate, and the others wait for it. */
 static void test_one_slot(void **state)
 {
     (void)state;

@@ -28,7 +28,7 @@ static void same_for_threads_and_isas(void **state)
 /* Counts calls of without_surfaces, and those that give another value. */
 static int calls, at_rims;
 
-/* One unit in the last place more. */
+/* The estimate of irradiance, brighter by one unit in the last place. */
 static irradiance_extent brighter(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                   uint64_t *in_out_rays, rgb *out)
 {

@@ -108,7 +108,7 @@ static void the_density_integrates_to_one(void **state)
     }
 }
 
-/* To the bit, with any instructions, and for any number of points. */
+/* Warping many points at once gives the bits of warping each alone, with any instructions. */
 static void many_are_warped_as_each_alone(void **state)
 {
     (void)state;

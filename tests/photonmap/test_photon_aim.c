@@ -47,7 +47,7 @@ static scene *scene_of(test_run *r, const char *shapes, const char *lights)
 
 static scene *room_scene(test_run *r, const char *lights) { return scene_of(r, ROOM, lights); }
 
-/* On the floor and the walls, from inside. */
+/* Adds points on the floor and the walls of the room, on their inner sides. */
 static void add_inside(query_point points[POINTS])
 {
     rng random = test_random(6);

@@ -78,7 +78,8 @@ static void a_dead_process_leaves_no_claim(void **state)
     test_run_reset(&r);
 }
 
-/* One that stands still is waited for some seconds, then not any more; what it says afterwards is too late. */
+/* A process that is stopped while it holds a claim is waited for some seconds, and then no more: its value comes too
+ * late. */
 static void a_stopped_process_is_not_waited_for(void **state)
 {
     (void)state;

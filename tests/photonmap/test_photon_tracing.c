@@ -199,7 +199,7 @@ static void media_take_their_share(void **state)
     }
 }
 
-/* Of light from infinitely far nothing comes through a medium without bound; where the first interface that it meets
+/* Light from infinitely far does not come through a medium without bound; where the first interface that it meets
  * says that there is none outside, all of it comes, whatever medium the light was declared in. */
 static void light_from_afar_comes_through_what_is_outside(void **state)
 {

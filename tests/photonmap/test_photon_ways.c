@@ -1,22 +1,24 @@
 /* test_photon_ways.c: paths that importons lead carry the flux of those that go by the cosine. Threads: those of the
  * tracing. */
-#include "incident_light.h"
+#include "onward_ways.h"
 #include "photon_tracing.h"
 
 #include "fixtures/test_scene.h"
 
 /* The unit sphere around a lamp; the whole of its light stays within. */
-static const char SPHERE[] = "LightSource \"point\" \"rgb I\" [3 2 1] \"point3 from\" [0.3 -0.2 0.4]\n"
-                             "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
-                             "Shape \"sphere\" \"float radius\" [1]\n";
+#define SPHERE_OF(material)                                                                                            \
+    "LightSource \"point\" \"rgb I\" [3 2 1] \"point3 from\" [0.3 -0.2 0.4]\n" material                                \
+    "Shape \"sphere\" \"float radius\" [1]\n"
+static const char SPHERE[] = SPHERE_OF("Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n");
+static const char COATED[] =
+    SPHERE_OF("Material \"coateddiffuse\" \"rgb reflectance\" [0.5 0.5 0.5] \"float roughness\" [0.2]\n");
 
 enum { IMPORTONS = 4000, LED_SEEDS = 20, LED_PHOTONS = 20000 };
 
 /* Importons on the unit sphere that come from one side of it. */
-static photon_tree importons_from_one_side(test_run *r)
+static void importons_from_one_side(test_run *r, onward_ways *out_ways)
 {
     photon *importons = photon_records_create(IMPORTONS);
-    photon_tree tree;
     rng random = test_random(11);
     assert_non_null(importons);
     for (int i = 0; i < IMPORTONS; i++) {
@@ -26,8 +28,7 @@ static photon_tree importons_from_one_side(test_run *r)
                                 .direction = arrival_encode(vec3_normalize(vec3_sub(at, from)), true),
                                 .normal = direction_encode(vec3_negate(at))};
     }
-    assert_int_equal(photon_tree_build(&r->run, importons, IMPORTONS, 0.0, 0.0, &tree), AG_OK);
-    return tree;
+    assert_int_equal(onward_ways_create(&r->run, importons, IMPORTONS, out_ways), AG_OK);
 }
 
 /* Means over seeds, and their variances. */
@@ -35,15 +36,12 @@ typedef struct led_flux {
     double all, all_variance, aside, aside_variance; /* aside: on the half of the sphere that importons come from */
 } led_flux;
 
-static led_flux trace_led(test_run *r, const scene *s, const incident_light *ways)
+static led_flux trace_led(test_run *r, const scene *s, photon_kind kind, const onward_ways *ways)
 {
     led_flux sum = {0.0, 0.0, 0.0, 0.0};
     for (int seed = 0; seed < LED_SEEDS; seed++) {
-        photon_tracing_settings settings = {.kind = PHOTON_GLOBAL,
-                                            .wanted = LED_PHOTONS / FEWER,
-                                            .max_scatterings = 100,
-                                            .seed = (uint64_t)seed,
-                                            .ways = ways};
+        photon_tracing_settings settings = {
+            .kind = kind, .wanted = LED_PHOTONS / FEWER, .max_scatterings = 100, .seed = (uint64_t)seed, .ways = ways};
         photon_set set;
         double all = 0.0, aside = 0.0;
         assert_int_equal(photon_tracing_run(s, &r->run, &settings, &set), AG_OK);
@@ -68,24 +66,48 @@ static void led_paths_carry_the_same_flux(void **state)
     test_run r;
     test_run_init(&r, 2);
     scene *s = test_scene_create(&r, SPHERE);
-    photon_tree importons = importons_from_one_side(&r);
-    incident_light ways;
-    assert_int_equal(incident_light_create(&r.run, &importons, 0.8f, &ways), AG_OK);
-    led_flux led = trace_led(&r, s, &ways), plain = trace_led(&r, s, NULL);
+    onward_ways ways;
+    importons_from_one_side(&r, &ways);
+    led_flux led = trace_led(&r, s, PHOTON_GLOBAL, &ways), plain = trace_led(&r, s, PHOTON_GLOBAL, NULL);
     double expected = 2.0 * 4.0 * PI * 2.0;
     print_message("flux, led %.4f +- %.4f, not %.4f, expected %.4f; aside %.4f +- %.4f, %.4f\n", led.all,
                   sqrt(led.all_variance), plain.all, expected, led.aside, sqrt(led.aside_variance), plain.aside);
     assert_close(led.all, expected, 4.0 * sqrt(led.all_variance) + 1e-4 * expected);
     assert_close(led.aside, plain.aside, 4.0 * sqrt(led.aside_variance + plain.aside_variance));
-    incident_light_reset(&ways);
-    free(importons.blocks);
-    photon_tree_reset(&importons);
+    onward_ways_reset(&ways);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+/* A coat reflects besides; led or not, as much arrives, in the map of all paths and in that of caustics. */
+static void led_paths_of_coats_carry_the_same_flux(void **state)
+{
+    (void)state;
+    static const photon_kind KINDS[] = {PHOTON_GLOBAL, PHOTON_CAUSTIC};
+    test_run r;
+    test_run_init(&r, 2);
+    scene *s = test_scene_create(&r, COATED);
+    onward_ways ways;
+    importons_from_one_side(&r, &ways);
+    for (int i = 0; i < 2; i++) {
+        led_flux led = trace_led(&r, s, KINDS[i], &ways), plain = trace_led(&r, s, KINDS[i], NULL);
+        double all_variance = led.all_variance + plain.all_variance;
+        double aside_variance = led.aside_variance + plain.aside_variance;
+        print_message("flux, led %.4f, not %.4f +- %.4f; aside %.4f, %.4f +- %.4f\n", led.all, plain.all,
+                      sqrt(all_variance), led.aside, plain.aside, sqrt(aside_variance));
+        assert_true(led.all_variance > 0.0 && led.all != plain.all);
+        assert_true(sqrt(all_variance) < 0.02 * plain.all);
+        assert_close(led.all, plain.all, 4.0 * sqrt(all_variance));
+        assert_close(led.aside, plain.aside, 4.0 * sqrt(aside_variance));
+    }
+    onward_ways_reset(&ways);
     scene_destroy(s);
     test_run_reset(&r);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(led_paths_carry_the_same_flux)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(led_paths_carry_the_same_flux),
+                                       cmocka_unit_test(led_paths_of_coats_carry_the_same_flux)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,8 +15,7 @@ static void test_box_with_blocks(void **state)
     compare_integrators("box_with_blocks", "--spp=64", "--only=indirect", BOUNDS);
 }
 
-/* One scattering: photons have no part in it, and what both sample at lamps is unbiased, so there is no blur to
- * allow. */
+/* With one scattering no photons take part, and both integrators sample lamps without bias, so no blur is allowed. */
 static void test_direct_light(void **state)
 {
     (void)state;

@@ -25,7 +25,7 @@ static const char *scene_of(const char *world)
 
 #define DIRECT "--integrator=path", "--spp=1", "--max-depth=1", "--ocio", ACES
 
-/* From Rec. 709 to ACEScg. */
+/* The matrix from Rec. 709 to ACEScg. */
 static void acescg_matrix(double m[9])
 {
     color_config *config;

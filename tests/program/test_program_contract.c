@@ -230,7 +230,7 @@ static void test_scene_without_camera(void **state)
     expect_listing("scene.pbrt");
 }
 
-/* No light is no error: the picture is black, and a warning says why. */
+/* A scene without light is no error: the picture is black, and a warning says why. */
 static void test_scene_without_light(void **state)
 {
     (void)state;
@@ -266,7 +266,8 @@ static void test_empty_scene(void **state)
     expect_listing("a.exr scene.pbrt");
 }
 
-/* One line of warning, where the scene names an integrator that is not ours; its depth is ignored by both of ours. */
+/* A scene that names another renderer's integrator gets one line of warning; neither of our integrators heeds its
+ * depth. */
 static void test_other_integrators(void **state)
 {
     (void)state;

@@ -47,7 +47,7 @@ static void expect_form_factor(const char *what, mean_and_error m)
     assert_true(fabs(m.mean - expected) < 3.0 * m.error + 1e-3 * expected);
 }
 
-/* One shadow ray and one scattered ray a sample in all three. */
+/* All three ways have one shadow ray and one scattered ray a sample. */
 static void test_form_factor_and_noise(void **state)
 {
     (void)state;

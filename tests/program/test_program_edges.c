@@ -2,34 +2,26 @@
  * a wall without thickness between a lit room and a dark one, a step of 1 mm. Estimates there must neither lose light
  * past the edge nor find the next room's. Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
-#include "fixtures/program_picture.h"
+#include "fixtures/program_agreement.h"
 
-enum { BLOCK = 8 };
-
-/* The photon map with its defaults against the path tracer: the mean, and each block. */
-static void compare(const char *name, double of_mean, double of_block)
+/* The photon map with its defaults against the path tracer. */
+static void compare(const char *name, agreement_bounds bounds)
 {
     char scene[512];
     snprintf(scene, sizeof scene, PROGRAM_SCENES "%s.pbrt", name);
-    picture map = RENDER(scene, "--seed=1"), path = RENDER(scene, "--integrator=path", "--spp=512");
-    expect_near(name, picture_mean(&map, 1), picture_mean(&path, 1), of_mean);
-    for (int y = 0; y + BLOCK <= path.height; y += BLOCK)
-        for (int x = 0; x + BLOCK <= path.width; x += BLOCK)
-            expect_near(name, picture_block(&map, x, y, BLOCK, 1), picture_block(&path, x, y, BLOCK, 1), of_block);
-    picture_reset(&map);
-    picture_reset(&path);
+    compare_integrators_by(name, scene, ARGUMENTS("--noise=0"), ARGUMENTS("--integrator=path", "--spp=128"), bounds);
 }
 
 static void test_table_leg(void **state)
 {
     (void)state;
-    compare("table", 0.005, 0.04);
+    compare("table", (agreement_bounds){AGREEMENT_BLUR, 0.003, 0.02});
 }
 
 static void test_narrow_corner(void **state)
 {
     (void)state;
-    compare("narrow_corner", 0.005, 0.06);
+    compare("narrow_corner", (agreement_bounds){AGREEMENT_BLUR, 0.003, 0.02});
 }
 
 static void test_thin_wall(void **state)
@@ -51,7 +43,9 @@ static void test_step(void **state)
     (void)state;
     picture map = RENDER(PROGRAM_SCENES "step.pbrt", "--only=indirect", "--spp=8");
     picture path = RENDER(PROGRAM_SCENES "step.pbrt", "--only=indirect", "--integrator=path", "--spp=512");
-    expect_near("a step of 1 mm", picture_mean(&map, 1), picture_mean(&path, 1), 0.01);
+    compare_integrators_by("a step of 1 mm", PROGRAM_SCENES "step.pbrt", ARGUMENTS("--only=indirect", "--spp=8"),
+                           ARGUMENTS("--only=indirect", "--integrator=path", "--spp=256"),
+                           (agreement_bounds){AGREEMENT_BLUR, 0.005, 0.03});
     float of_map = 0.0f, of_path = 0.0f;
     for (int i = 0; i < map.width * map.height; i++) {
         of_map = fmaxf(of_map, map.pixels[3 * i + 1]);

@@ -213,7 +213,7 @@ static void test_folder_that_is_closed(void **state)
     expect_listing("closed");
 }
 
-/* One of several that fails: 3, and the others are whole or not there. */
+/* Where one of several files fails the exit code is 3, and each other file is whole or absent. */
 static void test_one_of_several_fails(void **state)
 {
     (void)state;

@@ -33,7 +33,7 @@ static void test_even_light_through_all(void **state)
     check_even(FILM("") "Camera \"perspective\" \"float lensradius\" 1 Option \"disablepixeljitter\" true", SKY, 1.5);
 }
 
-/* From the middle of a white ball that shines: the same on all sides, in both integrators' direct light. */
+/* Seen from the middle of a white ball that shines, direct light is the same on all sides, by both integrators. */
 static void test_inside_a_lamp(void **state)
 {
     (void)state;

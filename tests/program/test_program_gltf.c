@@ -240,7 +240,7 @@ static void room_by_both_integrators(void **state)
     picture_reset(&path);
 }
 
-/* Without a size in the arguments it comes from the camera's proportions. */
+/* Where the arguments give no size, the picture's follows from the camera's proportions. */
 static void picture_size(void **state)
 {
     (void)state;

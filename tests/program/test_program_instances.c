@@ -69,8 +69,8 @@ static void test_path_tracer(void **state)
     expect_agreement("paths in instances", &instances, &hand, UNBIASED);
 }
 
-/* As many photons are stored: caustics are aimed at glass and metal that only instances show. The light is that of
- * paths in the room put there by hand. */
+/* As many photons are stored as in the room that is put together by hand, since caustics are aimed at the glass and
+ * metal of instances too, and its light is that of paths. */
 static void test_photon_map(void **state)
 {
     (void)state;

@@ -61,7 +61,8 @@ static void test_sliding_band(void **state)
         uncovered_by_band);
 }
 
-/* That motion as the middle third of a longer way, and with a shutter that is open before and after it. */
+/* The share of the time that a point is uncovered where the motion takes half of the time that the shutter is open, and
+ * the plate waits as long before it as after it. */
 static double uncovered_with_waits(double x, double y)
 {
     double waits = (x > -1.0 && x < -0.2 ? 0.25 : 0.0) + (x > 0.2 && x < 1.0 ? 0.25 : 0.0);

@@ -68,7 +68,7 @@ static void test_samples(void **state)
     json_decref(stats);
 }
 
-/* Within a fifth of the peak that the kernel tells of the picture's own run. */
+/* Fails unless the prediction is within a fifth of the peak memory that the kernel tells of the real run. */
 static void expect_peak(const char *const *dry, const char *const *real)
 {
     program_run run = program_execute(NULL, dry);

@@ -101,7 +101,8 @@ static estimate over_seeds(const char *scene, const char *const *arguments)
     return (estimate){mean, sqrt((squares / SEEDS - mean * mean) / (SEEDS - 1))};
 }
 
-/* Within 1 %, and three standard deviations of what was measured. sigma_most: of that, relative. */
+/* Fails unless both integrators agree within 1 % and three standard deviations. sigma_most: bound of the relative
+ * standard deviation. */
 static void expect_agreement(const char *what, double sigma_most)
 {
     char scene[256];

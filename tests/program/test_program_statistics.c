@@ -170,7 +170,8 @@ static void test_times(void **state)
     json_decref(stats);
 }
 
-/* More photons than light can bring: said, and counted as they are. */
+/* Where more photons are asked for than light can bring, a message says so, and the statistics count those there are.
+ */
 static void test_photons_that_cannot_be_had(void **state)
 {
     (void)state;

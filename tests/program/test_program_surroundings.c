@@ -133,7 +133,8 @@ static void expect_refused(const char *const *arguments, const char *said)
     expect_end(program_execute(NULL, arguments), 2, said);
 }
 
-/* One file for two things is found by name, by device and inode, and by links, before anything is rendered or written.
+/* A file that is named for two purposes is found by name, by device and inode, and by links, before anything is
+ * rendered.
  */
 static void test_one_file_twice(void **state)
 {

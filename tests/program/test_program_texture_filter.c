@@ -4,6 +4,7 @@
  * bits are the same; checkerboards are filtered, too.
  * Flow: tests of the whole program. Threads: the program's. */
 #define _GNU_SOURCE
+#include "fixtures/program_agreement.h"
 #include "fixtures/program_textures.h"
 #include "math/rng.h"
 
@@ -57,9 +58,11 @@ static double error_of(const picture *p, const picture *reference)
     return sum / (3 * p->width * p->height);
 }
 
+#define PLANE "--integrator=path", "--max-depth=1", "--noise=0"
+
 static picture render_path(const char *scene, const char *filter, const char *samples)
 {
-    return RENDER(scene, "--integrator=path", "--max-depth=1", "--noise=0", filter, samples);
+    return RENDER(scene, PLANE, filter, samples);
 }
 
 static void test_horizon(void **state)
@@ -72,8 +75,9 @@ static void test_horizon(void **state)
     double error_before = error_of(&before, &reference), error_now = error_of(&now, &reference);
     print_message("error %.5f at 16 samples unfiltered, %.5f at 4 filtered\n", error_before, error_now);
     assert_true(error_now < error_before);
-    for (int c = 0; c < 3; c++)
-        expect_near("the plane", picture_mean(&now, c), picture_mean(&reference, c), 0.005);
+    const agreement_means filtered = agreement_render(scene, ARGUMENTS(PLANE, "--texture-filter=on", "--spp=4")),
+                          unfiltered = agreement_render(scene, ARGUMENTS(PLANE, "--texture-filter=off", "--spp=256"));
+    expect_agreement("the plane", &filtered, &unfiltered, (agreement_bounds){AGREEMENT_BLUR, 0.002, 0.02});
     picture_reset(&reference);
     picture_reset(&before);
     picture_reset(&now);
@@ -190,17 +194,14 @@ static void test_room(void **state)
 {
     (void)state;
     const char *scene = room();
-    picture reference = RENDER(scene, "--integrator=path", "--noise=0", "--spp=256", "--texture-filter=off"),
-            path = RENDER(scene, "--integrator=path", "--noise=0", "--spp=256", "--texture-filter=on", "--seed=1"),
-            map = RENDER(scene, "--noise=0", "--spp=16", "--photons=2e5", "--nearest=16", "--texture-filter=on");
-    for (int c = 0; c < 3;
-         c++) { /* of path tracing the standard error is 0.15 % (20 seeds), of the map's light 0.5 % */
-        expect_near("paths", picture_mean(&path, c), picture_mean(&reference, c), 0.008);
-        expect_near("photon map", picture_mean(&map, c), picture_mean(&reference, c), 0.02);
-    }
-    picture_reset(&reference);
-    picture_reset(&path);
-    picture_reset(&map);
+    const agreement_means reference = agreement_render(
+                              scene, ARGUMENTS("--integrator=path", "--noise=0", "--spp=64", "--texture-filter=off")),
+                          path = agreement_render(
+                              scene, ARGUMENTS("--integrator=path", "--noise=0", "--spp=64", "--texture-filter=on")),
+                          map = agreement_render(
+                              scene, ARGUMENTS(AGREEMENT_MAP, "--noise=0", "--spp=8", "--texture-filter=on"));
+    expect_agreement("paths", &path, &reference, (agreement_bounds){AGREEMENT_BLUR, 0.003, 0.02});
+    expect_agreement("photon map", &map, &reference, (agreement_bounds){AGREEMENT_BLUR, 0.006, 0.02});
 }
 
 static void test_same_bits(void **state)

@@ -266,7 +266,7 @@ static void node_errors(void **state)
     }
 }
 
-/* No recursion, nor time beyond the tree's size. */
+/* A deep tree of nodes is read without recursion, in time proportional to its size. */
 static void deep_tree(void **state)
 {
     (void)state;

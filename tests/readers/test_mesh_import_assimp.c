@@ -51,7 +51,7 @@ static void stl_in_both_forms(void **state)
     reading_destroy(&r);
 }
 
-/* One mesh at two nodes, of which one is mirrored; a quad becomes two triangles. */
+/* A mesh at two nodes, one of them mirrored, is placed twice; its quad becomes two triangles. */
 static void nodes_place_meshes(void **state)
 {
     (void)state;
@@ -92,7 +92,8 @@ static void the_up_axis_is_turned(void **state)
 
 #define CAMERA(transform) "<node id=\"camn\" name=\"camn\">" transform "<instance_camera url=\"#cam\"/></node>"
 
-/* It looks along its node's -z; 40 degrees across, 2:1, so this is its height: */
+/* The camera looks along its node's -z. Its field of view is 40 degrees across at 2:1; the test expects that of its
+ * height. */
 static void cameras_look_where_the_file_says(void **state)
 {
     (void)state;

@@ -211,7 +211,7 @@ static void packed_files_and_standard_input_are_read(void **state)
     reading_destroy(&r);
 }
 
-/* One folder for all: what a test leaves there does not matter to the next. */
+/* All tests share a folder; files that one leaves there do not matter to the next. */
 static int make_folders(void **state)
 {
     return make_folder(state) == 0 && mkdir(in_folder("parts"), 0700) == 0 ? 0 : -1;

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* One homogeneous medium "m" with these parameters; warnings: how many there should be. */
+/* The absorption of a homogeneous medium with these parameters; warnings: how many are expected. */
 static rgb absorption_of(const char *parameters, int warnings)
 {
     char text[512];

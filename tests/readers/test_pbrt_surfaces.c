@@ -233,7 +233,7 @@ static void metals_from_textures(void **state)
     reading_destroy(&r);
 }
 
-/* One texture for both axes, and one for one of them. */
+/* Roughness may have a texture for both axes, and one for a single axis. */
 static void roughness_from_textures(void **state)
 {
     (void)state;
@@ -384,7 +384,7 @@ static void hair_is_colored_by_one_of_its_words(void **state)
     assert_rgb(m.hair_sigma_a, 1.3 * .419, 1.3 * .697, 1.3 * 1.37, 1e-5);
 }
 
-/* Whose scattering is that of a whole fibre. */
+/* Curves of the type "cylinder" with hair are flat to rays, since hair scatters as a whole fibre. */
 static void curves_of_hair_are_flat_to_rays(void **state)
 {
     (void)state;

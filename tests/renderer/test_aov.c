@@ -83,8 +83,8 @@ static void expect_layout(uint32_t layers, aov_needs also, bool is_path, int gro
     aov_layout_reset(&layout);
 }
 
-/* One layer alone, each two together, all: there is room for every channel, and what it is read from is summed. ASan
- * would see a channel too many. */
+/* For each layer alone, each pair and all of them, every channel has room, and the sum that it is read from is there.
+ * ASan would find a channel too many. */
 static void test_layouts(void **state)
 {
     (void)state;

@@ -188,7 +188,7 @@ static void test_damage(void **state)
     studio_close(s);
 }
 
-/* No setting is forgotten: each word makes a difference, but the struct's size and how files are stored. */
+/* Each word of the settings makes a difference, but for the struct's size and the way files are stored. */
 static void test_every_setting_counts(void **state)
 {
     (void)state;

@@ -7,7 +7,7 @@
 
 enum { POINTS = 4000, PHOTONS = 200000 / FEWER, SEEDS = 16 };
 
-/* From the origin along z. */
+/* A scene of this world, seen from the origin along z. */
 static scene *scene_of(test_run *r, const char *world)
 {
     char text[4096];
@@ -162,7 +162,7 @@ typedef struct spread {
     double brightest;       /* photon of those that have been scattered, on average over the seeds */
 } spread;
 
-/* What a pilot does for photons, besides the guide that trials teach. */
+/* How a pilot helps photons beside the guide that trials teach. */
 typedef enum pilot_help { HELP_NONE, HELP_SPLIT, HELP_SPLIT_AND_LEAD } pilot_help;
 
 /* How the flux of a map's photons inside of ROOM is spread. */

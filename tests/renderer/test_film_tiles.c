@@ -151,7 +151,7 @@ static void versions_tell_what_has_changed(void **state)
     end(&w);
 }
 
-/* No asserts in threads. */
+/* This runs in a thread, where nothing may be asserted. */
 static void *read_all_along(void *user)
 {
     watched *w = user;

@@ -66,8 +66,8 @@ static void mean_over_a_hemisphere(void **state)
     gather_batch_destroy(NULL);
 }
 
-/* One gather in whole, between others, and the batch resolved after so many of its rays. Every eighth ray brings what
- * it brought itself alone. */
+/* The light of one gather among others, where the batch is resolved after this many of its rays. Every eighth ray
+ * brings light of its own alone. */
 static gathered_light resolved_after(uint32_t rays)
 {
     gather_batch *b = batch_create(INFINITY);

@@ -4,7 +4,7 @@
 
 #include "fixtures/test_scene.h"
 
-/* One by one, as bsdf_sample_direction makes them. */
+/* One direction, as bsdf_sample_direction makes it. */
 static vec3 direction_alone(sampler_sequence *sequence, uint32_t i, const frame *around, bool is_below)
 {
     vec3 local = sample_cosine_hemisphere(sampler_sequence_at(sequence, i));

@@ -106,7 +106,7 @@ static void a_view_has_the_bits_of_a_fresh_rendering(void **state)
     assert_memory_equal(picture, expected, sizeof picture);
 }
 
-/* Of a map in memory alone; the counters are each rendering's once. */
+/* Two renderings share a map in memory, and either may end first; what each asked for is counted once. */
 static void either_may_end_first(void **state)
 {
     (void)state;

@@ -88,22 +88,12 @@ static void describe(const sheet *s, bool is_borrowed, bool has_normals, words *
     w->shape.borrows_arrays = is_borrowed;
 }
 
-static void begin_editable(desk *d)
-{
-    begin(d);
-    ag_scene_destroy(d->made);
-    ag_scene_settings settings = ag_default_scene_settings();
-    settings.is_editable = true;
-    assert_int_equal(ag_scene_create(d->context, &settings, &d->made), AG_OK);
-}
-
 static void render_sheet(const sheet *s, bool is_borrowed, int variant, float *out_pixels)
 {
     desk d;
     words w;
     ag_instance shown = ag_default_instance();
-    begin(&d);
-    light_and_look(&d);
+    begin_lit(&d);
     describe(s, is_borrowed, variant == 1, &w);
     w.shape.world_from_shape = variant == 2 ? ASIDE : NULL;
     w.shape.world_from_shape_end = variant == 3 ? ASIDE : NULL;
@@ -117,7 +107,7 @@ static void render_sheet(const sheet *s, bool is_borrowed, int variant, float *o
     end(&d);
 }
 
-/* Also of read-only memory, which nobody writes to. */
+/* Borrowed arrays may lie in read-only memory: nobody writes to them. */
 static void borrowed_arrays_have_the_bits_of_copied_ones(void **state)
 {
     (void)state;
@@ -155,8 +145,7 @@ static void borrowed_arrays_take_no_memory(void **state)
     for (int is_borrowed = 0; is_borrowed < 2; is_borrowed++) {
         desk d;
         words w;
-        begin_editable(&d);
-        light_and_look(&d);
+        begin_lit_editable(&d);
         describe(&s, is_borrowed, false, &w);
         const size_t before = used_bytes();
         assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
@@ -173,7 +162,7 @@ static void borrowed_arrays_take_no_memory(void **state)
         fail_msg("%zu bytes were taken for arrays of %zu that are borrowed", grown[1], arrays);
 }
 
-/* What the host writes there counts when it says so. */
+/* Changes that the host makes in borrowed arrays count once it has told of them. */
 static void changed_arrays_are_seen(void **state)
 {
     (void)state;
@@ -183,8 +172,7 @@ static void changed_arrays_are_seen(void **state)
     ag_handle handle;
     float first[COUNT], changed[COUNT], afresh[COUNT];
     make_sheet(&s);
-    begin_editable(&d);
-    light_and_look(&d);
+    begin_lit_editable(&d);
     describe(&s, true, true, &w);
     assert_int_equal(ag_scene_add_shape(d.made, &w.shape, &handle), AG_OK);
     assert_int_equal(ag_scene_commit(d.made), AG_OK);
@@ -219,8 +207,7 @@ static void arrays_written_before_a_commit_that_fails(void **state)
         desk d;
         words w;
         ag_handle handle;
-        begin_editable(&d);
-        light_and_look(&d);
+        begin_lit_editable(&d);
         make_heights(&s, 0.0f);
         describe(&s, true, true, &w);
         assert_int_equal(ag_scene_add_shape(d.made, &w.shape, &handle), AG_OK);
@@ -275,8 +262,7 @@ static void uv_of_another_count_is_told(void **state)
     for (int is_borrowed = 0; is_borrowed < 2; is_borrowed++) {
         desk d;
         words w;
-        begin_editable(&d);
-        light_and_look(&d);
+        begin_lit_editable(&d);
         describe(&s, is_borrowed, false, &w);
         w.parameters[1].count = 8;
         assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
@@ -298,8 +284,7 @@ static void what_cannot_be_borrowed_is_told(void **state)
     desk d;
     words w;
     make_sheet(&s);
-    begin_editable(&d);
-    light_and_look(&d);
+    begin_lit_editable(&d);
     describe(&s, true, false, &w);
     w.shape.type = "sphere";
     refused(&d, &w, "of a \"trianglemesh\" alone arrays can be borrowed");

@@ -35,7 +35,8 @@ static void expect_as_afresh(desk *d, const saying *all, bool is_by_paths)
     assert_memory_equal(changed, afresh, sizeof changed);
 }
 
-/* Whatever was changed, in whatever order, also by commits that fail. */
+/* A changed scene has the picture of one made afresh, whatever was changed in whatever order, and whatever commits
+ * failed. */
 static void a_changed_scene_is_as_one_made_afresh(void **state)
 {
     (void)state;
@@ -69,7 +70,7 @@ static void a_changed_scene_is_as_one_made_afresh(void **state)
     }
 }
 
-/* What has been made since it was asked last, and for a commit now. */
+/* Commits the scene, and returns what was built since the last call. */
 static ag_commit_counts commit_counted(desk *d, ag_commit_counts *in_out_before)
 {
     assert_int_equal(ag_scene_commit(d->made), AG_OK);
@@ -138,7 +139,7 @@ static void what_did_not_change_is_kept(void **state)
     end(&d);
 }
 
-/* Of a change that is refused nothing is left, and the picture is the one before. */
+/* A change that is refused leaves no trace: the picture is the one before. */
 static void mistakes_leave_the_scene_as_it_was(void **state)
 {
     (void)state;
@@ -240,8 +241,7 @@ static void a_camera_is_dropped_with_the_edits(void **state)
     for (int is_set_before = 0; is_set_before < 2; is_set_before++) {
         desk d;
         ag_camera eye = ag_default_camera();
-        begin_editable(&d);
-        light_and_look(&d);
+        begin_lit_editable(&d);
         make_square(&item);
         item.shape.object = moving.object = "o";
         assert_int_equal(ag_scene_add_shape(d.made, &item.shape, NULL), AG_OK);

@@ -134,8 +134,7 @@ static void a_camera_cannot_change_under_a_rendering(void **state)
     ag_rendering *rendering;
     ag_camera eye = ag_default_camera();
     ag_render_settings settings;
-    begin(&d);
-    light_and_look(&d);
+    begin_lit(&d);
     make_square(&s);
     s.shape.world_from_shape_end = ASIDE;
     assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_OK);

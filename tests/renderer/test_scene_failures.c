@@ -176,7 +176,7 @@ static void an_instance_has_its_body_and_its_lamps_or_neither(void **state)
     expect_same_picture(&d, &sound);
 }
 
-/* Of cameras the last one that was made counts, and no other. */
+/* The last camera that was made counts, and no other. */
 static void cameras_that_failed_or_were_replaced_leave_no_trace(void **state)
 {
     (void)state;
@@ -195,8 +195,7 @@ static void cameras_that_failed_or_were_replaced_leave_no_trace(void **state)
     add_square(&d);
     add_square(&sound);
     expect_same_picture(&d, &sound);
-    begin(&d);
-    light_and_look(&d);
+    begin_lit(&d);
     eye.world_from_camera_end = NULL;
     assert_int_equal(ag_scene_set_camera(d.made, &eye), AG_OK);
     assert_int_equal(ag_scene_commit(d.made), AG_ERROR_SCENE);
@@ -248,6 +247,9 @@ static void settings_out_of_range_are_named(void **state)
     asked.texture_memory_bytes = 5;
     expect_settings_refused(&d, &asked, "the settings of the scene: texture_memory_bytes should be");
     asked = sound;
+    asked.texture_cache = "";
+    expect_settings_refused(&d, &asked, "texture_cache should be a folder");
+    asked = sound;
     asked.has_sun = true;
     asked.sun_irradiance = NAN;
     expect_settings_refused(&d, &asked, "sun_irradiance should be finite");
@@ -270,7 +272,7 @@ static void settings_out_of_range_are_named(void **state)
     end(&d);
 }
 
-/* No error is without a word. */
+/* Every misuse is named in a message. */
 static void misuse_is_named(void **state)
 {
     (void)state;

@@ -106,8 +106,7 @@ static void motion_and_instances_have_the_bits_of_text(void **state)
     const ag_parameter radius = {"radius", AG_PARAMETER_FLOAT, 1, .floats = (const float[]){0.25f}};
     ag_shape ball = ag_default_shape();
     ag_instance instance = ag_default_instance();
-    begin(&d);
-    light_and_look(&d);
+    begin_lit(&d);
     make_square(&s);
     s.shape.world_from_shape_end = ASIDE;
     assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_OK);

@@ -11,8 +11,7 @@ static void mistakes_are_named_by_call_and_parameter(void **state)
     square s;
     const int32_t out_of_range[] = {0, 1, 9};
     const float not_finite[] = {0, 1, NAN};
-    begin(&d);
-    light_and_look(&d);
+    begin_lit(&d);
     make_square(&s);
     s.parameters[1] = (ag_parameter){"indices", AG_PARAMETER_INTEGER, 3, .integers = out_of_range};
     s.shape.material = "red";
@@ -78,8 +77,7 @@ static void matrices_and_order_are_checked(void **state)
     square s;
     ag_instance instance = ag_default_instance();
     ag_camera eye = ag_default_camera();
-    begin(&d);
-    light_and_look(&d);
+    begin_lit(&d);
     make_square(&s);
     s.shape.world_from_shape = flat;
     assert_int_equal(ag_scene_add_shape(d.made, &s.shape, NULL), AG_ERROR_ARGUMENT);

@@ -11,7 +11,7 @@ enum { SAMPLES = 20000 / FEWER, PHOTONS = 200000 / FEWER, NEAREST = 50, LOOKED_U
 #define FLOOR               "Material \"diffuse\" \"rgb reflectance\" [0.4 0.4 0.4] Shape \"disk\" \"float radius\" 100 "
 #define MIRROR(reflectance) "Material \"conductor\" \"float roughness\" 0 \"rgb reflectance\" [" reflectance "] "
 
-/* One sample along a ray; nothing of it may wait for the batch. */
+/* The radiance along a ray by one sample, no part of which may wait for the batch. */
 static float radiance_along(eye *e, uint32_t i, vec3 from, vec3 direction, float most_direct)
 {
     eye_sample s = {.most_direct = most_direct, .most_indirect = INFINITY};
@@ -49,7 +49,7 @@ static void lamp_in_a_mirror(void **state)
     eye_reset(&e);
 }
 
-/* One scattering on a floor under a ball of radius r whose middle is h above: E = pi L (r / h)^2. */
+/* Direct light on a floor under a ball of radius r whose middle is h above: E = pi L (r / h)^2. */
 static void floor_under_a_ball(void **state)
 {
     (void)state;

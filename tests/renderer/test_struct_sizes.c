@@ -39,7 +39,7 @@ static void end_bench(bench *b)
     end(&b->d);
 }
 
-/* One call with a struct that is filled, but for its size; size 0: all of it is zeros. */
+/* A public call with a struct that is filled but for its size; size 0: with one of zeros. */
 typedef ag_status sized_call(bench *b, size_t size);
 
 #define SIZED(type, name, filled)                                                                                      \
@@ -203,7 +203,8 @@ static void other_sizes_are_refused(void **state)
     end_bench(&b);
 }
 
-/* Of these no message can come: a context's log is a member of the struct itself, and settings by name have none. */
+/* These calls cannot log a message: a context's log is a member of the struct itself, and settings by name have no
+ * context. */
 static void other_sizes_are_refused_in_silence(void **state)
 {
     (void)state;
@@ -345,7 +346,7 @@ static void what_is_given_back_fits_any_release(void **state)
     end_bench(&b);
 }
 
-/* What a program was compiled with before ag_prediction had its times: the members that it knows are right. */
+/* A program that was compiled before ag_prediction had its times gets the members that it knows. */
 static void an_older_prediction_is_filled(void **state)
 {
     (void)state;

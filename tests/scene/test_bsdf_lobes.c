@@ -300,7 +300,7 @@ static rgb walk_between(const material *m, vec3 out, int walks)
     return (rgb){(float)(sum[0] / walks), (float)(sum[1] / walks), (float)(sum[2] / walks)};
 }
 
-/* All that leaves, by samples. */
+/* The albedo of a bsdf, estimated by samples. */
 static rgb sampled_albedo(const bsdf *b, int samples)
 {
     rng random = test_random(32);

@@ -313,7 +313,7 @@ static void gathered_lobes_are_products(void **state)
     assert_true(rows >= 8);
 }
 
-/* On a curve all is traced; elsewhere what is diffuse is gathered. */
+/* Every lobe on a curve is traced; elsewhere diffuse lobes are gathered. */
 static void curves_gather_nothing(void **state)
 {
     const table *t = *state;

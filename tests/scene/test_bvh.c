@@ -266,7 +266,8 @@ static bool meets_the_same(const scene *s, const ray_fan *f, uint32_t i)
            vec3_dot(hit.geometric_normal, alone.geometric_normal) > 0.999f;
 }
 
-/* All that there is: meshes with and without holes, both kinds of round shapes, curves, instances, in a box. */
+/* A world with every kind of shape: meshes with and without holes, both kinds of round shapes, curves and instances, in
+ * a box. */
 static char *fan_world(void)
 {
     static const char *const REST =

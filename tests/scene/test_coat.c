@@ -20,7 +20,7 @@ static material coat_on_diffuse(double roughness, double reflectance)
     return m;
 }
 
-/* On a metal that reflects 0.8 at normal incidence in air. */
+/* A coat on a metal that reflects 0.8 at normal incidence in air. */
 static material coat_on_metal(double roughness, double base_roughness)
 {
     material m = as_pbrt(coated_conductor((float)roughness, (float)base_roughness, (float)base_roughness));
@@ -207,8 +207,8 @@ static void coats_have_the_albedo_of_walks(void **state)
     }
 }
 
-/* Into cones of 15 degrees about where a mirror sends light, beside it, and elsewhere. Diffuse bases are right within
- * the noise; of metals the lobe's shape stands in for another (coat.h). */
+/* The light that coats send into cones of 15 degrees about a mirror's direction, beside it and elsewhere is that of
+ * walks: over diffuse bases within the noise; of metals the lobe's shape stands in for another (coat.h). */
 static void coats_send_light_where_walks_go(void **state)
 {
     (void)state;

@@ -63,7 +63,7 @@ static image read_picture(const char *name)
     return read;
 }
 
-/* From deep shadow, and below, to far above white, and beyond Rec. 709's gamut. */
+/* A picture with values from below black to far above white, and beyond Rec. 709's gamut. */
 static void make_input(const char *config_path)
 {
     char command[1024];

@@ -59,7 +59,7 @@ typedef struct comparison {
     int rays, met, differ; /* one was met, the other not */
 } comparison;
 
-/* Both scenes have the same point where a ray meets them, normal (either way, for what has two sides) and v. */
+/* Compares where a ray meets both scenes: the point, the normal (of two-sided surfaces either way) and v. */
 static comparison compare(const scene *a, const scene *b, bool is_two_sided, double tolerance)
 {
     comparison c = {.rays = 4000 / FEWER};

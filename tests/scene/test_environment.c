@@ -136,7 +136,7 @@ static const struct {
              {ENVIRONMENT_LATITUDE_LONGITUDE, 6, 3}, {ENVIRONMENT_LATITUDE_LONGITUDE, 64, 32}};
 enum { SIZE_COUNT = sizeof SIZES / sizeof *SIZES };
 
-/* From a point on the picture to a direction and back is the same pixel, and a unit direction. */
+/* A point of the picture becomes a unit direction, which leads back to the same pixel. */
 static void points_and_directions_round_trip(void **state)
 {
     (void)state;

@@ -115,7 +115,7 @@ static void instances_are_their_shapes_moved(void **state)
     test_run_reset(&r);
 }
 
-/* Both scenes show the fibre at one point, and the offset across it on the same side. */
+/* Fails unless both scenes show the fibre at one point, with the offset across it on the same side. */
 static void expect_same_hair(const scene *a, const scene *b, const scene_ray *ray, rng *random, uint32_t *met)
 {
     surface_hit of_a, of_b;

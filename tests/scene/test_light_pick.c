@@ -237,7 +237,7 @@ static void the_near_lamp_and_the_sun(void **state)
     test_run_reset(&r);
 }
 
-/* One light alone is always picked, wherever it shines. */
+/* A light that is alone is always picked, wherever it shines. */
 static void one_light_is_certain(void **state)
 {
     (void)state;

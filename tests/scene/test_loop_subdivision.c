@@ -210,7 +210,7 @@ static void limit_points_are_as_the_masks_have_them(void **state)
     loop_mesh_reset(&fine);
 }
 
-/* Normals against the triangles around: at a fine level the two are nearly the same. */
+/* At a fine level the normals are nearly those of the triangles around. */
 static void normals_are_those_of_the_surface(void **state)
 {
     (void)state;

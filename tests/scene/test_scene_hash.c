@@ -7,7 +7,8 @@
 #include "light/projection.h"
 #include "scene_hash.h"
 
-/* One of each: a mesh of one triangle with all it may have, a disk, curves, an instance that moves, a picture. */
+/* A world with one of each kind: a mesh of one triangle with all it may have, a disk, curves, an instance that moves, a
+ * picture. */
 static const char WORLD[] =
     "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.1 .2 .3] \"rgb sigma_s\" [0 0 0]\n"
     "Texture \"cells\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.1 .2 .3] \"rgb tex2\" [.4 .5 .6]\n"
@@ -184,8 +185,8 @@ static void test_no_word_is_forgotten(void **state)
     test_run_reset(&r);
 }
 
-/* What a kind of light has, up to its last number; pictures and tables follow. Of a goniometric light a gap of 4 bytes
- * lies behind the position. */
+/* Tests the numbers of a kind of light, up to its last one; pictures and tables follow. Of a goniometric light a gap of
+ * 4 bytes lies behind the position. */
 #define LIGHT_WORDS_COUNT(source, last)                                                                                \
     WORDS_COUNT(light, l, FIELD(light, kind), FROM(light, power),                                                      \
                 {offsetof(light, as) + offsetof(source, last) + sizeof(((source *)0)->last), sizeof(light)},           \

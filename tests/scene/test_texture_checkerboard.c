@@ -97,8 +97,10 @@ static void means_of_surfaces(void **state)
 {
     (void)state;
     const float h = 0.70710678f;
-    static const float SIZES[] = {0.02f, 0.3f, 2.0f, 30.0f};
-    for (int k = 0; k < 4; k++) {
+    static const float SIZES[] = {0.02f, 0.1f, 0.3f, 2.0f, 30.0f};
+    for (int k = 0; k < 5; k++) {
+        expect_mean(vec3_make(0.25f, -0.25f, 0.5f), vec3_make(h, -h, 0), vec3_make(0, 0, 1), SIZES[k],
+                    true); /* corners */
         expect_mean(vec3_make(0.3f, 0.2f, 0.5f), vec3_make(1, 0, 0), vec3_make(0, 1, 0), SIZES[k], false);
         expect_mean(vec3_make(0.3f, 0.2f, 0.5f), vec3_make(h, h, 0), vec3_make(-h, h, 0), SIZES[k], false);
         expect_mean(vec3_make(0.3f, 0.2f, 0.5f), vec3_make(h, -h, 0), vec3_make(0, 0, 1), SIZES[k], true);

@@ -60,7 +60,7 @@ static float checker(uint32_t x, uint32_t y, uint32_t channel)
     return (x + y) % 2 ? 1.0f : 0.0f;
 }
 
-/* One pixel wide, along x. */
+/* Stripes along x, each one pixel wide. */
 static float stripes(uint32_t x, uint32_t y, uint32_t channel)
 {
     (void)x, (void)channel;

@@ -31,7 +31,7 @@ static const texture_image *whole_of(const reading *r)
     return r->scene->texture_images[r->scene->textures[r->scene->texture_count - 1].image_index];
 }
 
-/* Where one tile has alpha, numbers are alpha on all of them: 1 where a tile has none. */
+/* Where any tile has alpha, numbers are read from alpha on all tiles; a tile without it counts as 1. */
 static void alpha_of_one_tile_is_that_of_all(void **state)
 {
     (void)state;

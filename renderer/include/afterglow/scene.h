@@ -56,6 +56,7 @@ typedef enum ag_up_axis {
 
 #define AG_DEFAULT_TEXTURE_MEMORY_BYTES ((uint64_t)4 << 30)
 #define AG_TEXTURE_MEMORY_LEAST_BYTES   ((uint64_t)16 << 20)
+#define AG_DEFAULT_TEXTURE_CACHE_BYTES  ((uint64_t)32 << 30)
 
 /* Finds a file that a scene names: a picture, an included text, a mesh, a spectrum. Writes its path to out_path, of
  * path_size bytes, with a NUL at its end (an empty one is an error); false leaves it to the library, which looks in the
@@ -82,6 +83,12 @@ typedef struct ag_scene_settings {
                                       that holds tiles and coarser levels; some tiles are held. The picture is the
                                       same. 0: unbounded, else [AG_TEXTURE_MEMORY_LEAST_BYTES, ...];
                                       default AG_DEFAULT_TEXTURE_MEMORY_BYTES */
+    /* A folder that keeps what would lie in the temporary file between runs, made where it is missing; files are named
+     * by the bytes of the pictures, and any number of processes may use it. It is left alone where texture_memory_bytes
+     * is 0. NULL, the default: none. Needed as long as find_file_user. */
+    const char *texture_cache;
+    uint64_t texture_cache_bytes; /* of all its files: those that were not used for the longest time are removed;
+                                     default AG_DEFAULT_TEXTURE_CACHE_BYTES */
     bool drops_lights; /* no light of the file's shines, nor any surface; nor is light made up. Default false */
     ag_up_axis up;     /* default AG_UP_AUTO */
     /* A sun beside the file's lights, infinitely far. Where there is one, or a sky of the following, no light is made
