@@ -63,10 +63,10 @@ typedef struct photon_tracing_settings {
     bool filters_textures; /* over about the area that a photon stands for, and more behind diffuse vertices */
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
-    const emission_guide *guide;       /* where paths begin */
-    const importance_map *asked;       /* elsewhere photons are stored no denser than power alone would have them */
-    const importance_map *onward;      /* diffuse surfaces whose light arrives where it is asked for */
-    const struct onward_ways *ways;    /* by which surfaces send it there */
+    const emission_guide *guide;    /* where paths begin */
+    const importance_map *asked;    /* elsewhere photons are stored no denser than power alone would have them */
+    const importance_map *onward;   /* diffuse surfaces whose light arrives where it is asked for */
+    const struct onward_ways *ways; /* by which surfaces send it there */
     float split_above;  /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
                            importance, over this parts; 0: paths are not split */
     float caustic_root; /* the root of importance of a caustic map, whose paths are split at rough traced lobes: the

@@ -30,7 +30,7 @@ static const char *room(uint64_t seed)
     return write_room_of("bytes.png", "floats.exr");
 }
 
-#define SETTINGS "--integrator=path", "--max-depth=2", "--noise=0", "--spp=1", "--texture-memory=20M"
+#define SETTINGS "--integrator=path", "--max-depth=2", "--noise=0", "--spp=1", "--texture-memory=18M"
 #define KEPT     SETTINGS, "--texture-cache=kept"
 
 static void expect_same(const picture *a, const picture *b)
