@@ -22,6 +22,7 @@ struct ag_context {
     char *color_config_path, *working_space_name; /* as in ag_context_settings */
     color_config *color_config;                   /* NULL until it is asked for */
     working_space working_space;                  /* of that */
+    uint64_t host_bytes;                          /* of ag_context_expect_host_memory */
     bool is_confined;
     char **confined_to; /* owned */
     size_t confined_count;

@@ -79,6 +79,8 @@ static ag_status measure_pixel(ag_context *context, const scene *s, const ag_ren
     return status;
 }
 
+void ag_context_expect_host_memory(ag_context *context, uint64_t bytes) { context->host_bytes = bytes; }
+
 static ag_status predict_memory(ag_context *context, const scene *s, const ag_render_settings *settings,
                                 ag_prediction *out, int *out_channel_count)
 {
@@ -99,9 +101,10 @@ static ag_status predict_memory(ag_context *context, const scene *s, const ag_re
     out->memory_photon_bytes = (uint64_t)(BYTES_PER_PHOTON * photons);
     out->memory_thread_bytes = (uint64_t)(thread * threads);
     out->memory_film_bytes = (uint64_t)(film * pixels * (settings->photon_map_file ? 2.0 : 1.0)); /* and its copy */
+    out->memory_host_bytes = context->host_bytes;
     out->memory_file_bytes = (uint64_t)(file * pixels);
     const uint64_t rendering = out->memory_photon_bytes + out->memory_thread_bytes;
-    out->memory_needed_bytes = out->memory_scene_bytes + out->memory_film_bytes +
+    out->memory_needed_bytes = out->memory_scene_bytes + out->memory_film_bytes + out->memory_host_bytes +
                                (rendering > out->memory_file_bytes ? rendering : out->memory_file_bytes);
     const uint64_t before = peak_memory_bytes();
     out->memory_peak_bytes = out->memory_needed_bytes > before ? out->memory_needed_bytes : before;

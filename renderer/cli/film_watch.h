@@ -9,6 +9,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+enum { FILM_WATCH_BYTES_PER_PIXEL = 6 * sizeof(float) }; /* of the two pictures below */
+
 typedef struct film_watch {
     ag_view *view;       /* owned; NULL: nothing is watched */
     const ag_film *film; /* borrowed; NULL: there is none to be shown */

@@ -85,6 +85,18 @@ static bool is_there(const options *o)
     return o->outfile_count > 0;
 }
 
+/* The bytes that it takes to show the picture to who watches in a browser, for whom the film is there once more, or in
+ * the terminal. p: the prediction without them. */
+static uint64_t shown_bytes(const options *o, const ag_render_settings *settings, const ag_prediction *p)
+{
+    const double *crop = settings->crop_window;
+    const double pixels = (crop[1] - crop[0]) * settings->width * (crop[3] - crop[2]) * settings->height;
+    const int each =
+        (o->page ? PAGE_BYTES_PER_PIXEL : 0) + (o->progress == PROGRESS_PICTURE ? FILM_WATCH_BYTES_PER_PIXEL : 0);
+    const uint64_t film_bytes = p->memory_film_bytes / (settings->photon_map_file ? 2 : 1); /* which has a copy then */
+    return (uint64_t)(each * pixels) + (o->page ? film_bytes : 0);
+}
+
 /* Predicts the picture's memory before it is begun, and refuses it where --memory does not allow so much; prints the
  * whole prediction for --dry-run. Errors: AG_ERROR_SYSTEM (more memory than allowed, which sets *out_lacks_memory and
  * has been logged), those of the prediction. */
@@ -94,6 +106,8 @@ static ag_status predict(ag_context *context, const options *o, const ag_scene *
     ag_prediction prediction;
     if (o->memory_limit == 0 && !o->dry_run)
         return AG_OK;
+    AG_TRY(ag_predict_memory(context, scene, settings, &prediction));
+    ag_context_expect_host_memory(context, shown_bytes(o, settings, &prediction));
     AG_TRY(ag_predict_memory(context, scene, settings, &prediction));
     if (o->memory_limit > 0 && !memory_limit_holds(o->memory_limit, &prediction)) {
         ag_context_note_end(context, AG_END_MEMORY);

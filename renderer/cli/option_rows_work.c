@@ -243,7 +243,8 @@ static const option_row ROWS[] = {
               "seen from there. The picture that is written otherwise has the same bits as without the page. While the page is looked at, the program does not end when the files are "
               "written, but for *--time-limit*, until *Stop* is pressed. Requests without the token are "
               "refused, as are those under another machine's name or from another site's page; none names a file. The "
-              "film is in memory twice, which *--memory* does not predict."},
+              "film is in memory twice; *--memory* and *--dry-run* count that and the page's own pictures, but not layers "
+              "that are looked at, nor a walk: both are left where there is no memory for them."},
      .take = take_serve},
     {.text = {.name = "serve-address",
               .argument = "ADDRESS",

@@ -152,6 +152,15 @@ void page_film_leave(page_film *f)
     pthread_mutex_unlock(&f->lock);
 }
 
+void page_film_empty(page_film *f)
+{
+    take_lock(f);
+    forget_film(f);
+    free(f->pixels);
+    f->pixels = NULL;
+    pthread_mutex_unlock(&f->lock);
+}
+
 /* --- requests --- */
 
 bool page_film_begin(page_film *f)

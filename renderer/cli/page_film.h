@@ -61,6 +61,8 @@ void page_film_end_rendering(page_film *f);
  * there are none. */
 void page_film_copy_layers(page_film *f);
 void page_film_leave(page_film *f);
+/* page_film_leave, and no memory is held any more. */
+void page_film_empty(page_film *f);
 
 /* --- requests: between the two calls of each; begin is false where there is no film, or main waits --- */
 bool page_film_begin(page_film *f);

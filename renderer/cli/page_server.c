@@ -220,6 +220,8 @@ void page_server_end_rendering(page_server *server)
 
 void page_server_leave_film(page_server *server) { page_film_leave(&server->film); }
 
+void page_server_empty_film(page_server *server) { page_film_empty(&server->film); }
+
 void page_server_leave(page_server *server, page_mode mode)
 {
     if (!server)

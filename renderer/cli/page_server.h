@@ -6,6 +6,7 @@
 #ifndef AFTERGLOW_PAGE_SERVER_H
 #define AFTERGLOW_PAGE_SERVER_H
 
+#include "page_picture.h"
 #include "page_state.h"
 #include "page_wishes.h"
 
@@ -13,6 +14,10 @@
 #define PAGE_PATIENCE_SECONDS 15.0
 /* Between two looks at signals, where wishes are waited for. */
 #define PAGE_LOOK_SECONDS 0.1
+
+/* That a picture which is looked at takes: itself, what a view makes of it, a PNG on its way, and those that are kept.
+ * Another layer that is looked at takes 4 for each of its channels, and none where that memory is not there. */
+enum { PAGE_BYTES_PER_PIXEL = 12 + 12 + 2 * 3 + 3 * PAGE_PICTURES_KEPT };
 
 typedef struct page_server page_server;
 
@@ -35,6 +40,8 @@ void page_server_copy_layers(page_server *server);
 void page_server_set_mode(page_server *server, page_mode mode);
 /* Lets go of the film alone: another one is shown at once. */
 void page_server_leave_film(page_server *server);
+/* Lets go of the film, and of the memory that showing it takes. */
+void page_server_empty_film(page_server *server);
 /* Lets go of the film and the context; mode: what the page says meanwhile. */
 void page_server_leave(page_server *server, page_mode mode);
 

@@ -402,8 +402,9 @@ static ag_status write_unwatched(passes *p, const ag_render_settings *settings, 
 {
     progress_log(p->o->told, AG_LOG_WARNING,
                  "--serve: there is no memory to write the picture while it is watched: it is shown no more");
-    page_server_leave_film(p->o->page);
-    end_rendering(p, &out_films[0]);
+    page_server_empty_film(p->o->page);
+    if (p->rendering)
+        end_rendering(p, &out_films[0]);
     return show(p, out_films[0], settings, result, noise, AG_OK);
 }
 
@@ -421,7 +422,7 @@ static ag_status write_and_wait(passes *p, const ag_render_settings *settings, p
     ag_film *film = stays ? (ag_film *)(uintptr_t)ag_rendering_film(p->rendering) : out_films[0];
     if (!p->kept) {
         status = show(p, film, settings, result, noise, failed);
-        if (status == AG_ERROR_MEMORY && stays) {
+        if (status == AG_ERROR_MEMORY && p->o->page && !p->o->photons_only && failed == AG_OK) {
             stays = false;
             status = write_unwatched(p, settings, result, noise, out_films);
         }

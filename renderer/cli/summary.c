@@ -80,6 +80,7 @@ void summary_print_prediction(FILE *file, const ag_prediction *p, uint64_t textu
                  {"photon maps", p->memory_photon_bytes},
                  {"threads", p->memory_thread_bytes},
                  {"film", p->memory_film_bytes},
+                 {"showing it meanwhile", p->memory_host_bytes},
                  {"a file on its way", p->memory_file_bytes}};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         fprintf(file, "  %-24s %10.1f MB\n", parts[i].name, (double)parts[i].bytes / 1e6);

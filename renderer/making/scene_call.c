@@ -137,6 +137,8 @@ ag_status scene_call_make_mesh(scene_call *c, pbrt_builder *builder)
     if (status == AG_OK)
         status = pbrt_builder_mesh(builder, &call, &at, c->texts[0], arrays, c->is_light,
                                    c->borrowed.positions ? &c->borrowed : NULL, c->mesh);
+    if (status == AG_OK)
+        c->arrays_hash = shape_hash_borrowed(c->mesh);
     scene_parameters_free(&arrays);
     scene_parameters_free(&c->items);
     c->items = rest;

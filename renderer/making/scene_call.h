@@ -46,6 +46,8 @@ typedef struct scene_call {
     bool reverse_orientation, is_light;
     pbrt_items items, light_items;
     pbrt_borrowed borrowed; /* arrays of a shape, until its mesh is made; positions NULL: none */
+    uint64_t arrays_hash;   /* of the arrays that the mesh borrows, as they were read */
+    bool is_stale;          /* these were written to, and the edit that said so was dropped */
     shape *mesh;            /* owned: made of the arrays of a shape; NULL: the arrays are still among the items */
     image *picture;         /* owned; NULL but for CALL_IMAGE */
     uint64_t version;       /* of the picture */

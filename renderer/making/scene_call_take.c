@@ -259,6 +259,8 @@ static ag_status copy_rest(const scene_call *from, scene_call *c)
     c->number = from->number;
     c->reverse_orientation = from->reverse_orientation;
     c->is_light = from->is_light;
+    c->arrays_hash = from->arrays_hash;
+    c->is_stale = from->is_stale;
     for (int i = 0; i < 3; i++)
         AG_TRY(take_text(from->texts[i], &c->texts[i]));
     AG_TRY(take_text(from->object, &c->object));

@@ -34,6 +34,16 @@ ag_status scene_making_edit(scene_making *making, call_kind kind, size_t place, 
     return status;
 }
 
+ag_status scene_making_check_arrays(const scene_making *making)
+{
+    const scene_call *stale = making->has_stale ? scene_plan_find_stale(&making->plan) : NULL;
+    if (stale)
+        log_at(making->context->log, AG_LOG_ERROR, stale->where,
+               "its borrowed arrays were written to before a commit that failed: the shape has to be changed or "
+               "removed, and committed");
+    return stale ? AG_ERROR_ARGUMENT : AG_OK;
+}
+
 /* Whether the scene can be changed, and is committed; says in the log why not. */
 static bool can_be_edited(const ag_scene *made, const char *function)
 {

@@ -32,6 +32,7 @@ typedef struct scene_making {
     scene_plan plan; /* all calls, where it can be changed; else the pictures alone, which s borrows */
     scene_plan committed;
     bool is_edited;        /* the plan differs from `committed`, which is empty while this is false */
+    bool has_stale;        /* shapes are among those of the last commit, and nothing can be rendered */
     bool has_camera;       /* a camera was set after a commit, and counts instead of the plan's */
     camera later_camera;   /* the camera that was set so */
     bool is_camera_edited; /* a camera was set after an edit, and is dropped with the edits where the commit fails */
@@ -69,6 +70,9 @@ ag_status scene_making_mesh(scene_making *making, scene_call *c);
 
 /* Gives a new call its number, and pictures their version. Errors: AG_ERROR_MEMORY (there were 2^32 of them). */
 ag_status scene_making_number(scene_making *making, scene_call *c);
+/* Whether the trees fit the arrays that the shapes of the plan borrow; says in the log of which not.
+ * (scene_editing.c) */
+ag_status scene_making_check_arrays(const scene_making *making);
 /* The handle of the shape, light or instance that a call makes. */
 ag_handle scene_making_handle(const scene_making *making, const scene_call *c);
 /* Puts a call at a place of the plan of a scene that is committed, or with NULL for it removes the one that is there,

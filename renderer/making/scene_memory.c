@@ -52,7 +52,7 @@ ag_status scene_check_complete(ag_context *context, const ag_scene *made)
                                                                   : NULL;
     if (wrong)
         log_message(context->log, AG_LOG_ERROR, "the scene %s", wrong);
-    return wrong ? AG_ERROR_ARGUMENT : AG_OK;
+    return wrong ? AG_ERROR_ARGUMENT : made->making ? scene_making_check_arrays(made->making) : AG_OK;
 }
 
 /* --- beginning --- */
@@ -157,8 +157,9 @@ static ag_status complete(scene_making *making, pbrt_builder *builder, scene *s)
 /* Makes the scene anew of the plan; what has not changed is taken from the scene before. */
 static ag_status run_plan(scene_making *making, scene *before, scene **out_scene)
 {
-    ag_context *context = making->context;
     const color_config *colors;
+    ag_context *context = making->context;
+    AG_TRY(scene_making_check_arrays(making));
     scene *s = *out_scene = scene_create();
     AG_TRY(s ? context_color_config(context, &colors) : AG_ERROR_MEMORY);
     s->space = context->working_space;
@@ -211,7 +212,7 @@ static void count_commit(scene_making *making, const scene *s)
 static ag_status commit_plan(ag_scene *made)
 {
     scene_making *making = made->making;
-    scene *before = made->s ? made->s : making->s, *s;
+    scene *before = made->s ? made->s : making->s, *s = NULL;
     ag_status status = run_plan(making, before, &s);
     if (status != AG_OK) {
         scene_restore_before(s);
@@ -221,6 +222,7 @@ static ag_status commit_plan(ag_scene *made)
             making->plan = making->committed;
             making->committed = (scene_plan){0};
             making->is_edited = false;
+            making->has_stale = scene_plan_mark_stale(&making->plan);
             restore_camera(made);
             log_message(making->context->log, AG_LOG_ERROR, "the edits since the last commit are dropped");
         }
@@ -231,7 +233,7 @@ static ag_status commit_plan(ag_scene *made)
     made->s = s;
     making->s = NULL;
     scene_plan_reset(&making->committed);
-    making->is_edited = making->is_camera_edited = false;
+    making->is_edited = making->is_camera_edited = making->has_stale = false;
     count_commit(making, s);
     return AG_OK;
 }
@@ -268,14 +270,13 @@ ag_status ag_scene_commit(ag_scene *made)
         return AG_ERROR_ARGUMENT;
     scene_making *making = made->making;
     if (made->s && !making->is_edited)
-        return AG_OK;
+        return scene_making_check_arrays(making);
     const unsigned callers_arithmetic = floating_point_enter();
-    run_context *run = &making->context->run;
     made->inputs.scene = "";
-    run->inputs = &made->inputs;
-    run_progress(run, AG_PHASE_LOAD, 0.0);
+    making->context->run.inputs = &made->inputs;
+    run_progress(&making->context->run, AG_PHASE_LOAD, 0.0);
     const ag_status status = making->is_editable ? commit_plan(made) : commit_once(made);
-    run->inputs = NULL;
+    making->context->run.inputs = NULL;
     made->inputs.scene = NULL;
     pbrt_builder_destroy(making->builder);
     making->builder = NULL;
@@ -472,16 +473,15 @@ static ag_status change_camera(ag_scene *made, const ag_camera *given)
     scene_call *c = scene_call_create(CALL_CAMERA, where);
     camera seen;
     const ag_status status = c ? read_camera(context, made, given, c, &seen) : AG_ERROR_MEMORY;
-    if (status == AG_OK && made->making)
+    if (status == AG_OK && made->making) {
         keep_camera(made);
+        made->making->later_camera = seen;
+        made->making->has_camera = true;
+    }
     if (status == AG_OK) {
         scene_set_camera(made->s, &seen);
         made->s->has_camera = true;
         made->s->is_camera_made_up = false;
-    }
-    if (status == AG_OK && made->making) {
-        made->making->later_camera = seen;
-        made->making->has_camera = true;
     }
     if (status == AG_ERROR_MEMORY)
         log_at(context->log, AG_LOG_ERROR, where, "out of memory");

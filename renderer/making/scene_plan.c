@@ -106,6 +106,23 @@ void scene_plan_remove(call_list *list, size_t place)
     memmove(list->calls + place, list->calls + place + 1, (list->count - place) * sizeof *list->calls);
 }
 
+bool scene_plan_mark_stale(const scene_plan *plan)
+{
+    for (size_t i = 0; i < plan->placed.count; i++) {
+        scene_call *c = plan->placed.calls[i];
+        c->is_stale = c->is_stale || (c->mesh && shape_hash_borrowed(c->mesh) != c->arrays_hash);
+    }
+    return scene_plan_find_stale(plan) != NULL;
+}
+
+const scene_call *scene_plan_find_stale(const scene_plan *plan)
+{
+    for (size_t i = 0; i < plan->placed.count; i++)
+        if (plan->placed.calls[i]->is_stale)
+            return plan->placed.calls[i];
+    return NULL;
+}
+
 /* --- running --- */
 
 /* The state while a plan is run. */

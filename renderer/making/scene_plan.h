@@ -33,6 +33,11 @@ call_list *scene_plan_list(scene_plan *plan, call_kind kind);
 ag_status scene_plan_put(scene_plan *plan, size_t place, scene_call *c);
 void scene_plan_remove(call_list *list, size_t place);
 
+/* Marks the shapes whose borrowed arrays hold other numbers than were read from them; whether there is any. */
+bool scene_plan_mark_stale(const scene_plan *plan);
+/* The first that is marked so; NULL: there is none. */
+const scene_call *scene_plan_find_stale(const scene_plan *plan);
+
 /* Runs them all: pictures, media, textures (each behind those that it names), materials, hints and camera, then the
  * shapes of objects, then all else, in the order of their first calls. Each tells its warnings once. Errors: those of
  * the calls, AG_CANCELLED. */

@@ -114,6 +114,9 @@ bool shape_has_same_surface(const shape *a, const shape *b);
  * own. Errors: AG_ERROR_MEMORY. */
 bool shape_equals(const shape *s, const shape *other);
 ag_status shape_share_arrays(shape *from, shape *in_out_shape);
+/* A hash of the numbers in the arrays that a mesh borrows, to tell whether somebody has written there; 0: there are
+ * none. */
+uint64_t shape_hash_borrowed(const shape *s);
 /* Copies a shape that is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
  * AG_ERROR_MEMORY. */
 ag_status shape_copy(const shape *s, const transform *map, shape *out_copy);

@@ -2,6 +2,8 @@
  * Threads: one at a time. */
 #include "shape/shape.h"
 
+#include "math/rng.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -94,4 +96,31 @@ ag_status shape_share_arrays(shape *from, shape *in_out_shape)
     else
         in_out_shape->as.curves = other.as.curves;
     return AG_OK;
+}
+
+/* Of words of 4 bytes. */
+static uint64_t hash_words(uint64_t hash, const void *array, size_t count)
+{
+    const unsigned char *bytes = array;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t word;
+        memcpy(&word, bytes + i * sizeof word, sizeof word);
+        hash = hash_combine(hash, word);
+    }
+    return hash;
+}
+
+uint64_t shape_hash_borrowed(const shape *s)
+{
+    const mesh *m = &s->as.mesh;
+    uint64_t hash = 0;
+    if (s->kind != SHAPE_MESH || m->borrowed == 0)
+        return 0;
+    if (m->borrowed & MESH_BORROWS_POSITIONS)
+        hash = hash_words(hash, m->positions, 3 * (size_t)m->vertex_count);
+    if (m->borrowed & MESH_BORROWS_UVS)
+        hash = hash_words(hash, m->uvs, 2 * (size_t)m->vertex_count);
+    if (m->borrowed & MESH_BORROWS_INDICES)
+        hash = hash_words(hash, m->indices, 3 * (size_t)m->triangle_count);
+    return hash;
 }

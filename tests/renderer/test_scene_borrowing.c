@@ -193,6 +193,57 @@ static void changed_arrays_are_seen(void **state)
     end(&d);
 }
 
+/* Numbers written in place, and a commit that fails: nothing is rendered by trees that do not fit them, and what comes
+ * right afterwards is the scene made afresh. Numbers that are as they were do no harm. */
+static void arrays_written_before_a_commit_that_fails(void **state)
+{
+    (void)state;
+    sheet s;
+    float first[COUNT], after[COUNT], afresh[COUNT];
+    ag_film *film = NULL;
+    const ag_render_settings settings = ag_default_render_settings();
+    make_sheet(&s);
+    for (int is_removed = 0; is_removed < 2; is_removed++) {
+        desk d;
+        words w;
+        ag_handle handle;
+        begin_lit_editable(&d);
+        make_heights(&s, 0.0f);
+        describe(&s, true, true, &w);
+        assert_int_equal(ag_scene_add_shape(d.made, &w.shape, &handle), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        render(d.context, d.made, first);
+        assert_int_equal(ag_scene_change_shape(d.made, handle, &w.shape), AG_OK);
+        assert_int_equal(ag_scene_assign_material(d.made, handle, "nothing"), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_ERROR_SCENE);
+        render(d.context, d.made, after); /* nobody has written there */
+        assert_memory_equal(first, after, sizeof first);
+        make_heights(&s, 2.0f);
+        assert_int_equal(ag_scene_change_shape(d.made, handle, &w.shape), AG_OK);
+        assert_int_equal(ag_scene_assign_material(d.made, handle, "nothing"), AG_OK);
+        assert_int_equal(ag_scene_commit(d.made), AG_ERROR_SCENE);
+        assert_int_equal(ag_render(d.context, d.made, &settings, &film), AG_ERROR_ARGUMENT);
+        expect_said(&d, "ag_scene_add_shape:1:0: error: its borrowed arrays were written to");
+        assert_int_equal(ag_scene_commit(d.made), AG_ERROR_ARGUMENT);
+        assert_int_equal(ag_scene_assign_material(d.made, handle, NULL), AG_OK); /* which reads nothing anew */
+        assert_int_equal(ag_scene_commit(d.made), AG_ERROR_ARGUMENT);
+        assert_int_equal(ag_render(d.context, d.made, &settings, &film), AG_ERROR_ARGUMENT);
+        if (is_removed) {
+            assert_int_equal(ag_scene_remove(d.made, handle), AG_OK);
+            assert_int_equal(ag_scene_add_shape(d.made, &w.shape, NULL), AG_OK);
+        } else {
+            assert_int_equal(ag_scene_change_shape(d.made, handle, &w.shape), AG_OK);
+        }
+        assert_int_equal(ag_scene_commit(d.made), AG_OK);
+        render(d.context, d.made, after);
+        render_sheet(&s, false, 1, afresh);
+        assert_memory_not_equal(first, after, sizeof first);
+        assert_memory_equal(after, afresh, sizeof after);
+        end(&d);
+    }
+    drop_sheet(&s);
+}
+
 static void refused(desk *d, const words *w, const char *what)
 {
     assert_int_equal(ag_scene_add_shape(d->made, &w->shape, NULL), AG_ERROR_ARGUMENT);
@@ -275,6 +326,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(borrowed_arrays_have_the_bits_of_copied_ones, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(borrowed_arrays_take_no_memory, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(changed_arrays_are_seen, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(arrays_written_before_a_commit_that_fails, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(uv_of_another_count_is_told, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(what_cannot_be_borrowed_is_told, make_folder, remove_folder),
     };

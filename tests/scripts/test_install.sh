@@ -75,8 +75,8 @@ done
 cmp use_c.png use_cpp.png || fail "C and C++ give other pictures"
 
 # The Python module, beside the library that was installed.
-module=$(find "$prefix" -path '*/lib/python3/dist-packages/afterglow.py')
-[[ -s $module ]] || fail "no Python module"
+module=$(find "$prefix" -path '*/lib/python3/dist-packages/afterglow')
+[[ -s $module/__init__.py && -e $module/py.typed ]] || fail "no Python module, or it does not say that it has types"
 if find_python_with_numpy; then
     said=$(AFTERGLOW_LIBRARY=$library PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${module%/*} "$python" -c 'import afterglow; print(afterglow.version())')
     [[ "afterglow $said" == "$(<version)" ]] || fail "the Python module knows another version: $said"

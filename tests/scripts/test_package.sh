@@ -75,7 +75,8 @@ for each in afterglow python3-afterglow; do
     [[ $changelog == *" -- Ann Packager <ann@example.org>  Tue, 14 Nov 2023 22:13:20 +0000" ]] || fail "who and when: $changelog"
 done
 python_files=$(dpkg-deb -c "$python_package" | awk '$1 !~ /^d/ && $6 !~ /share\/doc/ { print $6 }')
-[[ $python_files == ./usr/lib/python3/dist-packages/afterglow.py ]] || fail "the Python package holds $python_files"
+module=./usr/lib/python3/dist-packages/afterglow
+[[ $python_files == $module/__init__.py$'\n'$module/py.typed ]] || fail "the Python package holds $python_files"
 for script in postinst prerm; do
     dpkg-deb --ctrl-tarfile "$python_package" | tar -x --to-stdout "./$script" >"$script"
     sh -n "$script" || fail "$script is no shell script"
@@ -102,7 +103,7 @@ if find_python_with_numpy; then
         export PYTHONDONTWRITEBYTECODE=1
         unset AFTERGLOW_LIBRARY
         loaded=$("$python" -c 'import afterglow; print(afterglow.version(), afterglow.__file__, open("/proc/self/maps").read())')
-        [[ $loaded == "$version $PYTHONPATH/afterglow.py "*"$LD_LIBRARY_PATH/libafterglow.so"* ]] ||
+        [[ $loaded == "$version $PYTHONPATH/afterglow/__init__.py "*"$LD_LIBRARY_PATH/libafterglow.so"* ]] ||
             fail "not what was unpacked: $loaded"
         check_readme_python
     )

@@ -9,8 +9,10 @@ need python3
 unset OCIO
 export SCENE=$root/tests/scenes/box_with_blocks.pbrt
 
-for check in $(sed -n 's/^def \(\w*\)(program):$/\1/p' "$root/tests/fixtures/page_checks.py"); do
-    mkdir "$folder/$check"
-    cd "$folder/$check"
-    python3 -B "$root/tests/fixtures/page_checks.py" "$AFTERGLOW_PROGRAM" "$check" || fail "$check"
+for checks in page_checks.py page_run_checks.py; do
+    for check in $(sed -n 's/^def \(\w*\)(program):$/\1/p' "$root/tests/fixtures/$checks"); do
+        mkdir "$folder/$check"
+        cd "$folder/$check"
+        python3 -B "$root/tests/fixtures/$checks" "$AFTERGLOW_PROGRAM" "$check" || fail "$check"
+    done
 done

@@ -68,6 +68,40 @@ sys.exit(1 if found else 0)
 END
 echo "ok: docstrings and type hints"
 
+# A checker of types reads the hints of the module as it is installed, and finds what is wrong.
+if command -v mypy >/dev/null; then
+    mkdir -p typed/afterglow
+    cp "$root"/renderer/python/afterglow/{__init__.py,py.typed} typed/afterglow
+    cat >right.py <<'END'
+import afterglow, numpy
+from numpy.typing import NDArray
+
+with afterglow.Context(threads=1, warn=print) as context, context.scene(editable=True) as scene:
+    lamp: int = scene.light("point", {"rgb I": (1, 2, 3)})
+    scene.move(lamp, numpy.eye(4))
+    pixels: NDArray[numpy.float32] = scene.render(size="4x4", spp=1)
+    with scene.rendering(spp=4) as rendering:
+        rendering.advance(1)
+        depth: dict[str, NDArray[numpy.float32]] = rendering.channels()
+END
+    cat >wrong.py <<'END'
+import afterglow
+
+context = afterglow.Context(threads="four")
+scene = context.scene()
+scene.light(1)
+name: str = scene.shape("sphere")
+scene.nothing()
+END
+    types=(mypy --strict --follow-imports silent --cache-dir "$folder/mypy" --no-error-summary)
+    MYPYPATH=typed "${types[@]}" right.py || fail "right calls are wrong by their types"
+    ! MYPYPATH=typed "${types[@]}" wrong.py >said || fail "wrong calls are right by their types"
+    [[ $(grep -c '^wrong.py:.*: error: ' said) == 4 ]] || fail "not four errors: $(<said)"
+    echo "ok: types, by mypy"
+else
+    echo "SKIPPED: mypy is not installed"
+fi
+
 check_readme_python
 echo "ok: README"
 

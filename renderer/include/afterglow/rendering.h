@@ -43,8 +43,9 @@ AG_API void ag_rendering_find_place(const ag_rendering *rendering, float out_fro
  * AG_PAUSED: the film is then as good as it is, each pixel with the samples that it has had; AG_ERROR_SYSTEM: the
  * photon map's file was cut short or overwritten meanwhile, and the film is that of the call before. */
 AG_API ag_status ag_rendering_continue(ag_rendering *rendering, int samples_per_pixel);
-/* From now on the film is put aside whenever ag_rendering_continue gives AG_OK, which takes as much memory as it does;
- * without that memory it is not, and the log has a warning. Errors: AG_ERROR_ARGUMENT. */
+/* From now on the film is put aside whenever ag_rendering_continue gives AG_OK, which takes as much memory as it does,
+ * that predictions know by ag_context_expect_host_memory alone; without that memory it is not, and the log has a
+ * warning. Errors: AG_ERROR_ARGUMENT. */
 AG_API ag_status ag_rendering_keep_passes(ag_rendering *rendering);
 /* The film is as it was when ag_rendering_continue gave AG_OK last; what was rendered since is dropped. Rendering may
  * go on from there, to the same bits. Errors: AG_ERROR_ARGUMENT (there has been no such pass since it was asked for).

@@ -24,9 +24,9 @@ extern "C" {
  * there by the commit, with the number of the call. Where a commit fails, all calls since the last one that did not are
  * dropped, and the scene is as it left it: so is the camera, where it was set after another of these calls. The scene
  * then reads the borrowed arrays of the shapes as they were before: whoever changes such a shape hands over other
- * arrays, and leaves the former ones as they are until the commit has succeeded. Numbers that were written in place
- * stay where the commit fails, and its trees do not fit them: such a shape has to be changed once more, or removed,
- * and committed before anything is rendered.
+ * arrays, and leaves the former ones as they are until the commit has succeeded. Where numbers were written in place
+ * all the same, that is noticed: until such a shape has been changed once more, or removed, and a commit has succeeded,
+ * rendering and commits give AG_ERROR_ARGUMENT, and a message tells which shape it is.
  *
  * What is kept: camera and settings of a rendering change nothing in the scene. Lights, materials, textures and hints
  * keep meshes and trees of rays; pictures of textures and skies, read and filtered, are kept as long as they are named
@@ -53,8 +53,9 @@ AG_API ag_status ag_scene_change_texture(ag_scene *scene, const ag_texture *text
 AG_API ag_status ag_scene_change_image(ag_scene *scene, const char *name, const ag_image *image);
 
 /* Places a light, an instance or a shape by other matrices, as in ag_light, ag_instance and ag_shape; world_from_own
- * NULL: the identity, not the matrix that it had; world_from_own_end NULL: it does not move. Not a mesh, whose arrays
- * are not kept: those of objects are moved by their instances, all are by ag_scene_change_shape. */
+ * NULL: the identity, not the matrix that it had; world_from_own_end NULL: it does not move. Not a mesh, copied or
+ * borrowed, of which the library keeps no arrays in its own space: meshes of objects are moved by their instances, all
+ * are by ag_scene_change_shape. Errors also: AG_ERROR_ARGUMENT (a mesh; an end for a light). */
 AG_API ag_status ag_scene_move(ag_scene *scene, ag_handle handle, const double *world_from_own,
                                const double *world_from_own_end);
 /* Another material for a shape, of which nothing is read anew; NULL: diffuse, grey. */

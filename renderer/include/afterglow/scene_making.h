@@ -85,7 +85,9 @@ AG_API ag_status ag_scene_set_hint(ag_scene *scene, ag_scene_hint hint, const ch
 
 /* The structs that follow are filled by ag_default_...() as settings are. Matrices have 16 numbers, row by row, of
  * column vectors: the last column is where the origin goes, the last row is 0 0 0 1. Each is given when the shutter
- * opens (pbrt's time 0), and where something moves when it closes (time 1). */
+ * opens (pbrt's time 0), and where something moves when it closes (time 1): two times and no more, as in pbrt's format,
+ * between which it goes straight and turns evenly. A shape keeps its form meanwhile: arrays at several times, of a mesh
+ * that bends, are not supported, and a way with more corners is a mean of pictures with shutters of their own. */
 
 /* A picture in memory, which stands in for the file of that name in every "string filename" of textures and lights from
  * then on: packed, top row first; grey, grey and alpha, RGB, or RGB and alpha. */

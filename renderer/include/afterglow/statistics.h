@@ -25,6 +25,7 @@ typedef struct ag_prediction {
     uint64_t memory_photon_bytes; /* photon maps */
     uint64_t memory_thread_bytes; /* of all threads */
     uint64_t memory_film_bytes;
+    uint64_t memory_host_bytes; /* what the host holds itself, as it has told by ag_context_expect_host_memory */
     uint64_t memory_file_bytes; /* a picture on its way to a file; maps and threads' memory are given back before */
     /* of time: on this machine, were it idle; 0: not predicted */
     double time_s[AG_PHASE_COUNT];
@@ -33,6 +34,9 @@ typedef struct ag_prediction {
     double samples_per_pixel; /* that it takes on average */
 } ag_prediction;
 
+/* Tells how many bytes the host itself will hold beside a rendering of this context, to show it say, and does not hold
+ * yet; 0 at first. Predictions then count them. */
+AG_API void ag_context_expect_host_memory(ag_context *context, uint64_t bytes);
 /* The memory alone, without any work. To be asked before ag_render. struct_size: of the program's ag_prediction.
  * Errors: as ag_render. */
 AG_API ag_status ag_predict_memory_fill(ag_context *context, const ag_scene *scene, const ag_render_settings *settings,

@@ -33,7 +33,7 @@ from typing import Any, Optional, Union
 from ctypes import (POINTER, byref, c_bool, c_char_p, c_double, c_float, c_int, c_size_t, c_uint, c_uint64, c_void_p)
 
 import numpy
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Context", "Scene", "Rendering", "Error", "Cancelled", "version", "vertices"]
 
@@ -264,7 +264,7 @@ def _parameters(values, kept):
     return array, len(items)
 
 
-def vertices(count: int) -> numpy.ndarray:
+def vertices(count: int) -> NDArray[numpy.float32]:
     """An array of zeros, (count, 3) of 32-bit floats, with the room behind it that a borrowed P needs."""
     return numpy.zeros(3 * count + 1, numpy.float32)[:-1].reshape(count, 3)
 
@@ -606,7 +606,7 @@ class Scene:
                 raise ValueError(f"{name}: there is no such setting, or {value!r} is no value of it")
         return room, kept
 
-    def render(self, write_to: Optional[_Path] = None, **settings: Any) -> numpy.ndarray:
+    def render(self, write_to: Optional[_Path] = None, **settings: Any) -> NDArray[numpy.float32]:
         """Completes the scene, renders it, and gives its pixels. settings: options of the program by name, with _ for
         -: size="320x180", spp=16, noise=0.02, integrator="path", photon_map="room.map"; True for those without a
         value. write_to: a file that the picture is written to as well."""
@@ -686,7 +686,7 @@ class Rendering:
         called about every 0.1 s meanwhile, on the calling thread; an exception there calls the work off."""
         self._context._work(_library.ag_rendering_continue, self._pointer, operator.index(samples), poll=poll)
 
-    def watch(self) -> Optional[numpy.ndarray]:
+    def watch(self) -> Optional[NDArray[numpy.float32]]:
         """The picture as far as it is shown by now, whole tiles, from any thread and while it is at work; None where
         nothing is new. The array is the same in each call."""
         version = _library.ag_film_read_picture(self._shown(), self._version, _floats(self._watched))
@@ -698,11 +698,11 @@ class Rendering:
         counts = _library.ag_rendering_sample_counts(self._pointer)
         return counts.least, counts.most, counts.mean
 
-    def pixels(self) -> numpy.ndarray:
+    def pixels(self) -> NDArray[numpy.float32]:
         """A copy of the picture."""
         return _pixels(self._shown())
 
-    def channels(self) -> dict[str, numpy.ndarray]:
+    def channels(self) -> dict[str, NDArray[numpy.float32]]:
         """Copies of picture and layers, (height, width) each, by the names that they have in a file: "R", "Z", "N.X"."""
         film, found = self._shown(), {}
         for number in range(_library.ag_film_channel_count(film)):
