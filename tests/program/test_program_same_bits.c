@@ -29,6 +29,7 @@ static const long long PHOTON_COUNT = IS_SANITIZED ? 5000 : 20000;
 #define BOX          PROGRAM_SCENES "box_with_blocks.pbrt"
 #define MOTION       PROGRAM_SCENES "moving_blocks.pbrt"
 #define COINCIDENCES PROGRAM_SCENES "coincidences.pbrt"
+#define PRINCIPLED   PROGRAM_SCENES "principled.pbrt" /* coats and rough metal */
 
 static void expect_same(const char *what, const picture *p, const picture *reference)
 {
@@ -115,6 +116,13 @@ static void test_motion(void **state)
 {
     (void)state;
     expect_same_for_all_threads(MOTION, NULL);
+}
+
+/* Both maps are aimed there. */
+static void test_coats_and_metal(void **state)
+{
+    (void)state;
+    expect_same_for_all_threads(PRINCIPLED, NULL);
 }
 
 static void test_unguided(void **state)
@@ -231,6 +239,7 @@ int main(void)
         TEST_IN_FOLDER(test_plain_room),
         TEST_IN_FOLDER(test_coincidences),
         TEST_IN_FOLDER(test_motion),
+        TEST_IN_FOLDER(test_coats_and_metal),
         TEST_IN_FOLDER(test_few_photons_for_many_threads),
         TEST_IN_FOLDER(test_path_tracer),
         TEST_IN_FOLDER(test_crop),
