@@ -16,8 +16,7 @@
     QUAD("0 0 0 0 3 0 4 3 0 4 0 0")                                                                                    \
     QUAD("0 0 5 4 0 5 4 3 5 0 3 5")                                                                                    \
     QUAD("0 0 0 0 0 5 0 .8 5 0 .8 0")                                                                                  \
-    QUAD("0 2.2 0 0 2.2 5 0 3 5 0 3 0") QUAD("0 .8 0 0 .8 1 0 2.2 1 0 2.2 0")                                          \
-        QUAD("0 .8 3.5 0 .8 5 0 2.2 5 0 2.2 3.5")
+    QUAD("0 2.2 0 0 2.2 5 0 3 5 0 3 0") QUAD("0 .8 0 0 .8 1 0 2.2 1 0 2.2 0") QUAD("0 .8 3.5 0 .8 5 0 2.2 5 0 2.2 3.5")
 
 /* The house on a ground, which is of the first material, its walls of the second. */
 static void expect_house_alike(const char *what, const char *size, const char *ground, const char *walls)
