@@ -10,8 +10,8 @@
 
 /* How much importons decide by a histogram where they are many. */
 static const float HISTOGRAM_SHARE = 1.0f;
-/* The widest cone's angle is 30 degrees. */
-static const float CONE_SINE_MAX = 0.5f;
+/* The widest cone's angle is 30 degrees; thinner ones than the least are not precise in floats. */
+static const float CONE_SINE_MAX = 0.5f, CONE_SINE_MIN = 1e-3f;
 /* Where lines meet is guessed from so many pairs of them, of which the best is made better in so many rounds. The lines
  * that pass it at more than so many times the median angle are left out then, and of the ball. */
 enum { PAIRS = 32, ROUNDS = 3 };
@@ -202,7 +202,8 @@ static void set_cones(vec3 to, float distance, float radius, onward_lead *out)
 {
     float share = 1.0f, sum = 0.0f;
     out->towards = frame_from_z(vec3_scale(to, 1.0f / distance));
-    for (float sine = radius / distance; out->cone_count < ONWARD_CONES_MAX && sine <= CONE_SINE_MAX; sine *= 2.0f) {
+    float sine = fmaxf(radius / distance, CONE_SINE_MIN);
+    for (; out->cone_count < ONWARD_CONES_MAX && sine <= CONE_SINE_MAX; sine *= 2.0f) {
         uint32_t i = out->cone_count++;
         out->sine_squared[i] = sine * sine;
         out->one_minus_cos[i] = sine * sine / (1.0f + sqrtf(1.0f - sine * sine));

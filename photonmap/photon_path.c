@@ -18,6 +18,8 @@ enum { SPLIT_MOST = 4096 };
 enum { PHOTONS_FIRST = 1024 };
 /* How many of the ways on by a surface's gathered lobes are led by importons, where there are any. */
 static const float LED_SHARE = 0.5f;
+/* Of a caustic map's, which come by other ways as well that no importon tells of. */
+static const float CAUSTIC_LED_SHARE = 0.2f;
 /* Random streams, apart from those of the eye. */
 enum { STREAM_GLOBAL = 1, STREAM_CAUSTIC = 2, STREAM_TRIALS = 2 /* added to those */ };
 
@@ -188,15 +190,15 @@ typedef struct arrival_surface {
     bsdf scattering;
 } arrival_surface;
 
-/* Of the ways on that a map's paths may go: those by diffuse lobes, or of a caustic map all, where any of its lobes is
- * rough. */
-static float share_that_may_be_led(const arrival_surface *m, photon_kind kind)
+/* Of the ways on that a map's paths go: of those by diffuse lobes, or of a caustic map of all, where any of its lobes
+ * is rough. */
+static float led_share(const arrival_surface *m, photon_kind kind)
 {
     if (m->albedo)
-        return kind == PHOTON_GLOBAL ? 1.0f : 0.0f;
+        return kind == PHOTON_GLOBAL ? LED_SHARE : 0.0f;
     if (kind == PHOTON_GLOBAL)
-        return bsdf_probability(&m->scattering, BSDF_GATHERED);
-    return bsdf_is_sampled_from_light(&m->scattering, BSDF_TRACED) ? 1.0f : 0.0f;
+        return LED_SHARE * bsdf_probability(&m->scattering, BSDF_GATHERED);
+    return bsdf_is_sampled_from_light(&m->scattering, BSDF_TRACED) ? CAUSTIC_LED_SHARE : 0.0f;
 }
 
 static void arrival_surface_find(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
@@ -208,7 +210,7 @@ static void arrival_surface_find(const photon_tracer *t, const photon_path *path
     out_surface->albedo = lambert_albedo(t->s, hit);
     if (!out_surface->albedo)
         bsdf_init(t->s, hit, back, &out_surface->scattering);
-    float share = settings->ways ? LED_SHARE * share_that_may_be_led(out_surface, settings->kind) : 0.0f;
+    float share = settings->ways ? led_share(out_surface, settings->kind) : 0.0f;
     if (!(share > 0.0f) || !onward_ways_find(settings->ways, rest_of_arrival(t->s, path, hit).position,
                                              vec3_face_forward(hit->geometric_normal, back), &out_surface->lead))
         return;
