@@ -88,10 +88,10 @@ static const char *write_tuft(const char *const materials[3])
 /* Hair sends the light of lamps on to the floor and other hair: with fewer caustic photons the noise is theirs. */
 static void compare(const char *what, const char *scene, const char *only, agreement_bounds bounds)
 {
-    compare_integrators_by(
-        what, scene,
-        ARGUMENTS("--photons=2e5", "--caustic-photons=2e5", "--nearest=16", "--gather-samples=4", "--spp=10", only),
-        ARGUMENTS("--integrator=path", only ? "--spp=128" : "--spp=64", only), bounds);
+    compare_integrators_by(what, scene,
+                           ARGUMENTS("--photons=2e5", "--caustic-photons=2e5", "--nearest=16", "--gather-samples=4",
+                                     only ? "--spp=24" : "--spp=10", only),
+                           ARGUMENTS("--integrator=path", only ? "--spp=128" : "--spp=64", only), bounds);
 }
 
 static void test_a_tuft_of_hair(void **state)

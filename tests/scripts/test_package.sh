@@ -64,7 +64,7 @@ for file in "${headers[@]}" bin/afterglow bin/afterglow-map share/man/man1/after
     [[ -s tree/usr/$file ]] || fail "no $file"
 done
 [[ -n $(find tree/usr -name afterglow.pc) ]] || fail "no pkg-config file"
-zcat tree/usr/share/man/man1/afterglow.1.gz | grep -q '^\.TH AFTERGLOW' || fail "the man page is none"
+zcat tree/usr/share/man/man1/afterglow.1.gz | grep '^\.TH AFTERGLOW' >/dev/null || fail "the man page is none"
 [[ ! -e tree/usr/lib/python3 ]] || fail "the Python module is in both packages"
 dpkg-deb -x "$python_package" tree # beside the other, as an installation has them
 for each in afterglow python3-afterglow; do
@@ -88,11 +88,11 @@ if find tree -perm /022 ! -type l | grep .; then
     fail "these may be written by others"
 fi
 for binary in bin/afterglow lib/libafterglow.so.*.*; do
-    ! readelf -S "tree/usr/"$binary | grep -q '\.symtab' || fail "$binary is not stripped"
+    ! readelf -S "tree/usr/"$binary | grep '\.symtab' >/dev/null || fail "$binary is not stripped"
 done
-dpkg-deb --ctrl-tarfile "$package" | tar -x --to-stdout ./shlibs | grep -q '^libafterglow 0.1 afterglow' ||
+dpkg-deb --ctrl-tarfile "$package" | tar -x --to-stdout ./shlibs | grep '^libafterglow 0.1 afterglow' >/dev/null ||
     fail "no shlibs for libafterglow"
-dpkg-deb --ctrl-tarfile "$package" | tar -x --to-stdout ./triggers | grep -qx 'activate-noawait ldconfig' ||
+dpkg-deb --ctrl-tarfile "$package" | tar -x --to-stdout ./triggers | grep -x 'activate-noawait ldconfig' >/dev/null ||
     fail "the linker's cache is not renewed"
 echo "ok: files"
 
