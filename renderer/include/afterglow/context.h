@@ -51,6 +51,14 @@ AG_API void ag_context_clear_cancel(ag_context *context);
  * called again. No other work is touched. Safe in a signal handler. */
 AG_API void ag_context_pause(ag_context *context);
 
+/* What is kept of the last picture's photons, where settings say photon_paths, goes from one context to another, in
+ * place of what that has: for programs that give each frame of an animation a context of its own. A context keeps it
+ * from one picture to the next by itself, also where the scene is another: irradiance is then not computed anew where
+ * neither photons nor surfaces have changed, and the picture has the bits of one that is rendered alone. It takes 28
+ * bytes a photon until the next picture's photons are traced, or the context is destroyed. Nothing is kept of a
+ * photon_map_file. NULL is fine; contexts of other instruction sets take nothing. */
+AG_API void ag_context_take_frame(ag_context *context, ag_context *from);
+
 /* Lists what the colour config has, as lines of text: displays and their views, looks, colour spaces, roles. The
  * context's. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 AG_API ag_status ag_color_summary(ag_context *context, const char **out_text);

@@ -63,7 +63,12 @@ typedef struct ag_render_settings {
                               gather ray ends, max_depth - 1 before a caustic) and the eye's part apart: behind
                               mirrors and glass there may be some more. */
 
-    uint64_t photon_count;         /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t photon_paths; /* paths of light that the global map's photons come from, [0, 10^15]. 0, the default: as
+                              many as fill the map. A fixed number is for the frames of an animation: what moves then
+                              changes the photons of the paths that meet it and no others, and what all irradiances
+                              depend on is rounded so that it stays the same. photon_count is then the most that are
+                              stored; where the map is full before, a warning says so. See ag_context_take_frame */
     uint64_t caustic_photon_count; /* photons to store in the caustic map; only where anything is specular; [0, …] */
     int nearest;                   /* photons of an estimate, [1, 65536] */
     float radius;                  /* largest radius of an estimate, scene units; 0: from the photons' density */
@@ -83,7 +88,8 @@ typedef struct ag_render_settings {
                              than five times as bright as without. The same light, with less noise in this picture and more
                              in others; the pilot depends on the whole frame's view and shape, and on nothing else of the
                              picture. Default AG_PHOTON_AIM_AUTOMATIC: AG_DEFAULT_PHOTON_AIM, but 0 for a photon_map_file,
-                             which serves all views alike; one that is aimed is refused for another view */
+                             which serves all views alike, and with photon_paths; one that is aimed is refused for another
+                             view */
     float direct_guiding; /* share of the samples of direct light that go to the lights, and the parts of the sky, that
                              a pilot has seen from about there, [0, 0.8]: the others go to all alike, so that none
                              counts more than five times as much as if all did. The same light, with less noise where it

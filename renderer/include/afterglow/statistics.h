@@ -97,8 +97,9 @@ typedef struct ag_statistics {
      * not before, counted by looking; deferred: set aside because another thread was computing; waited: had to wait in
      * the end; duplicated: computed twice, 0; uncached: estimates at hits themselves; refused:
      * requests for points where no estimate holds, whose light was followed by further bounces instead; ready: photons
-     * of a map from a file that were ready when it was opened; reclaimed: claims taken over from other processes that
-     * had died. Where other processes fill the map too, distinct counts what they computed as well. */
+     * of a map from a file that were ready when it was opened, or that were kept from the frame before; reclaimed:
+     * claims taken over from other processes that had died. Where other processes fill the map too, distinct counts
+     * what they computed as well. */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
         irradiance_duplicated, irradiance_uncached, irradiance_refused, irradiance_ready, irradiance_reclaimed;
     double irradiance_estimate_s; /* CPU seconds spent in estimates, all threads; from a sixteenth of them */
@@ -118,6 +119,9 @@ typedef struct ag_statistics {
     ag_end end;               /* of the last picture, as noted by ag_context_note_end */
     ag_sample_counts samples; /* of the pixels of the last picture */
     double noise;             /* of the last picture, as in ag_noise; below 0: not known */
+    /* With fixed photon_paths, of each picture against the one before it: photons of the global map that are in it
+     * alone, and in the one before alone; photons whose irradiance was kept from that one. */
+    uint64_t photons_came, photons_went, irradiance_kept;
 } ag_statistics;
 
 /* What was done so far. struct_size: of the program's ag_statistics. */
