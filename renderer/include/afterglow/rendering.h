@@ -51,7 +51,7 @@ AG_API ag_status ag_rendering_keep_passes(ag_rendering *rendering);
  * go on from there, to the same bits. Errors: AG_ERROR_ARGUMENT (there has been no such pass since it was asked for).
  */
 AG_API ag_status ag_rendering_go_back(ag_rendering *rendering);
-/* How many samples pixels have had so far. */
+/* The numbers of samples that pixels have had so far. This struct will not change. */
 typedef struct ag_sample_counts {
     int least, most;
     double mean;
@@ -68,15 +68,24 @@ typedef enum ag_noise_source {
 } ag_noise_source;
 #define AG_NOISE_SOURCE_COUNT 6
 
+/* The noise of a picture so far. */
 typedef struct ag_noise {
+    size_t struct_size;
     double level; /* the standard error of what is shown (see noise_level), root mean square over the picture; below 0:
-                     not known, as pixels have had fewer than two samples */
-    double share[AG_NOISE_SOURCE_COUNT]; /* of the variance; they sum to 1, or are all 0 where there is no noise */
-    char hint[256];                      /* what makes most of it, and what would help most, a line; may be empty */
+                     not known, since pixels have had fewer than two samples */
+    double share[AG_NOISE_SOURCE_COUNT]; /* of the variance, by ag_noise_source; the sum is 1, or 0 without noise */
+    char hint[256];                      /* one line: the largest source, and what lessens it most; may be empty */
 } ag_noise;
-/* How noisy the picture is by now; from up to 16,384 of its pixels, spread evenly. The caustics' share counts the grain
- * of their photons too, which more samples do not lessen. */
-AG_API ag_noise ag_rendering_noise(const ag_rendering *rendering);
+/* Measures the noise at up to 16,384 of the picture's pixels, spread evenly. The caustics' share includes the grain of
+ * their photons, which more samples do not lessen. struct_size: of the program's ag_noise. */
+AG_API void ag_rendering_noise_fill(const ag_rendering *rendering, void *out_noise, size_t struct_size);
+static inline ag_noise ag_rendering_noise(const ag_rendering *rendering)
+{
+    ag_noise filled;
+    ag_rendering_noise_fill(rendering, &filled, sizeof filled);
+    return filled;
+}
+
 /* All that samples have brought so far, as a file; written atomically. Another process that makes the same rendering
  * reads it, and goes on to the same bits. Errors: AG_ERROR_MEMORY, AG_ERROR_OUTPUT. */
 AG_API ag_status ag_rendering_write_checkpoint(const ag_rendering *rendering, const char *path);

@@ -139,15 +139,25 @@ static inline ag_statistics ag_rendering_statistics(const ag_rendering *renderin
     return filled;
 }
 
-/* How a rendering's photon map is and grows, for who watches: any thread may ask, from ag_rendering_create on until the
- * rendering is finished. All 0 where it has no map. */
+/* The state of a rendering's photon map while it is filled. All members but the size are 0 where it has no map. */
 typedef struct ag_growth {
-    uint64_t irradiance_requests; /* asked for so far, by all renderings that share the map */
-    uint64_t irradiance_computed; /* at photons, likewise */
-    uint64_t irradiance_photons;  /* that irradiance can be kept at */
+    size_t struct_size;
+    uint64_t irradiance_requests; /* points that irradiance was asked for at, by all renderings that share the map */
+    uint64_t irradiance_computed; /* photons whose irradiance these renderings have computed */
+    uint64_t irradiance_photons;  /* photons of the global map that irradiance can be kept at */
     double photon_density;        /* photons of the global map per area of all surfaces, 1/m^2 */
 } ag_growth;
-AG_API void ag_rendering_look(const ag_rendering *rendering, ag_growth *out_growth);
+
+/* Any thread may call this, from ag_rendering_create on until the rendering is finished. struct_size: of the program's
+ * ag_growth. */
+AG_API void ag_rendering_growth_fill(const ag_rendering *rendering, void *out_growth, size_t struct_size);
+static inline ag_growth ag_rendering_growth(const ag_rendering *rendering)
+{
+    ag_growth filled;
+    ag_rendering_growth_fill(rendering, &filled, sizeof filled);
+    return filled;
+}
+
 /* To be called when a rendering is finished, by who ended it; for the statistics. */
 AG_API void ag_context_note_end(ag_context *context, ag_end end);
 
