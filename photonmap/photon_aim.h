@@ -1,6 +1,7 @@
-/* photon_aim.h: learns by trial paths which photons arrive where light is requested. Rests on: Hachisuka, Jensen 2011;
- * Suykens, Willems 2000 (see emission_guide.h). Flow: importance_map -> [here] -> emission_guide -> photon_tracing.
- * Threads: trials are traced by the run's workers; what is learned is the same for any number of them. */
+/* photon_aim.h: learns by trial paths which photons arrive where light is requested.
+ * Rests on: Hachisuka, Jensen 2011; Suykens, Willems 2000 (see emission_guide.h).
+ * Flow: importance_map -> [here] -> emission_guide -> photon_tracing. Threads: trials are traced by the run's
+ * workers; what is learned is the same for any number of them. */
 #ifndef AFTERGLOW_PHOTON_AIM_H
 #define AFTERGLOW_PHOTON_AIM_H
 

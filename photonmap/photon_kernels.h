@@ -1,7 +1,7 @@
-/* photon_kernels.h: the inner loops of searches for many points at once, in plain C and for AVX2. Both versions do the
- * same operations on the same numbers, so that their results have the same bits. Rests on: Intel, "64 and IA-32
- * Architectures Optimization Reference Manual", ch. on AVX2 (gathers, compaction by permutation). Flow:
- * photon_nearest_many, irradiance_cache -> [here]. Threads: pure but for what the caller owns. */
+/* photon_kernels.h: the inner loops of searches for many points at once, in plain C and for AVX2. Both versions do
+ * the same operations on the same numbers, so that their results have the same bits.
+ * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2 (gathers, compaction by
+ * permutation). Flow: photon_nearest_many, irradiance_cache -> [here]. Threads: pure but for what the caller owns. */
 #ifndef AFTERGLOW_PHOTON_KERNELS_H
 #define AFTERGLOW_PHOTON_KERNELS_H
 

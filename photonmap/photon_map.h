@@ -1,7 +1,7 @@
-/* photon_map.h: photons, their tree, and the photon whose irradiance represents a point. Rests on: Neilson, Yang, TR
- * 04-21, 2004; Christensen, "Faster Photon Map Global Illumination", 1999 (irradiance at the photons). Flow:
- * photon_tracing, photon_tree -> [here] -> irradiance_estimate, irradiance_cache. Threads: built by one caller on the
- * run's workers; then read-only, but for the slots. */
+/* photon_map.h: photons, their tree, and the photon whose irradiance represents a point.
+ * Rests on: Neilson, Yang, TR 04-21, 2004; Christensen, "Faster Photon Map Global Illumination", 1999 (irradiance at
+ * the photons). Flow: photon_tracing, photon_tree -> [here] -> irradiance_estimate, irradiance_cache. Threads: built
+ * by one caller on the run's workers; then read-only, but for the slots. */
 #ifndef AFTERGLOW_PHOTON_MAP_H
 #define AFTERGLOW_PHOTON_MAP_H
 

@@ -1,6 +1,6 @@
 /* photon_survey.h: measures a quantity at a sample of a map's photons, evenly spaced in its order, and sorts the
- * values: medians and other quantiles over the whole scene at little cost. Flow: photon_tree -> [here] -> photon_map,
- * caustic_radius: bounds of the estimates' radii. Threads: one. */
+ * values: medians and other quantiles over the whole scene at little cost.
+ * Flow: photon_tree -> [here] -> photon_map, caustic_radius: bounds of the estimates' radii. Threads: one. */
 #ifndef AFTERGLOW_PHOTON_SURVEY_H
 #define AFTERGLOW_PHOTON_SURVEY_H
 
