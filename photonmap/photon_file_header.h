@@ -6,7 +6,7 @@
 #include "photon_file.h"
 
 /* Raise this whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
-enum { PHOTON_FILE_LAYOUT = 19 };
+enum { PHOTON_FILE_LAYOUT = 20 };
 enum {
     PHOTON_FILE_PAGE = 4096,
     PHOTON_FILE_OWNERS_AT = PHOTON_FILE_PAGE, /* the header has the first page */
@@ -28,6 +28,7 @@ typedef struct photon_file_map {
     uint32_t nearest;
     float max_radius, min_radius_squared, mean_radius;
     int32_t flux_exponent_max, irradiance_bias;
+    uint32_t is_steady, reserved;
 } photon_file_map;
 
 typedef struct photon_file_header {

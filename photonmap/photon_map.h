@@ -12,10 +12,11 @@
 typedef struct photon_map_settings {
     uint32_t nearest;          /* photons of an estimate, >= 1; the paper: 300 */
     float max_radius;          /* of an estimate, scene units; the paper: 3.0; 0: from the density of the map */
-    float surface_area;        /* of the scene, m^2, for the automatic radius */
-    float radius_bound;        /* bound of the automatic radius; 0: none */
-    float irradiance_fraction; /* share of the photons that become irradiance photons, (0, 1]; 0: all */
-    const scene *surfaces;     /* borrowed: surfaces that bound discs; NULL: discs are not bounded */
+    float surface_area;        /* of the scene, m^2: for the automatic radius */
+    float radius_bound;        /* the automatic radius is no larger; 0: no bound */
+    float irradiance_fraction; /* of the photons that become irradiance photons, (0, 1]; 0: all */
+    bool is_steady;            /* see photon_map; the set's paths are fixed (photon_tracing_settings.paths) */
+    const scene *surfaces;     /* borrowed: where discs end; NULL: nowhere */
 } photon_map_settings;
 
 typedef struct photon_map {
@@ -34,7 +35,12 @@ typedef struct photon_map {
     const scene *surfaces;     /* borrowed, or NULL */
     bool is_borrowed;          /* blocks and nodes are a photon_file's */
     atomic_u8 *checks; /* of a map from a file: irradiance_word_check of each irradiance photon, borrowed; else NULL */
-    bool has_been_cached; /* a cache was created over it, so that some slots may be ready */
+    bool has_been_cached; /* a cache has been made over it: some slots may be ready */
+    /* What all estimates depend on (radii, exponents) is rounded, and an irradiance by its photon's position, so that
+     * it stays the same where a few photons come and go. */
+    bool is_steady;
+    float *reaches; /* owned, of a steady map: for each irradiance photon whose slot is ready irradiance_reach; 0: not
+                       known */
 } photon_map;
 
 /* Builds a map from the set's photons, which it takes over, and frees on failure. A map without photons is valid: its
@@ -109,8 +115,8 @@ void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const pho
 /* The 30 bits of a slot whose photon represents no point, since no estimate holds there. Final, like a value. */
 #define PHOTON_NO_IRRADIANCE IRRADIANCE_VALUE_MASK
 
-/* Encodes irradiance as a slot's 30 bits, never PHOTON_NO_IRRADIANCE. key, an irradiance photon's index, decides the
- * rounding. */
+/* Irradiance as a slot's 30 bits, never PHOTON_NO_IRRADIANCE. The key decides the rounding: an irradiance photon's
+ * index, or in a steady map its photon_block_position_key. */
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);
 rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value);
 

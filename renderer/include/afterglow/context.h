@@ -51,6 +51,14 @@ AG_API void ag_context_clear_cancel(ag_context *context);
  * may then be called again. No other work is affected. Safe in a signal handler. */
 AG_API void ag_context_pause(ag_context *context);
 
+/* Moves what `from` keeps of its last picture's photons to `context`, whose own is dropped; for programs that create a
+ * context for each frame of an animation. A context keeps it from one picture to the next where photon_paths is set
+ * (render_settings.h) and photon_map_file is not: irradiance is then recomputed only where photons or surfaces have
+ * changed, and each picture has the bits of one that is rendered alone, even if the scene is another. It takes 28 bytes
+ * per photon, until the photons of the next picture have been traced or the context is destroyed. NULL is fine. Does
+ * nothing where the two contexts use different instruction sets. */
+AG_API void ag_context_take_frame(ag_context *context, ag_context *from);
+
 /* Lists the displays, views, looks, colour spaces and roles of the colour config as lines of text, which the context
  * owns. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 AG_API ag_status ag_color_summary(ag_context *context, const char **out_text);

@@ -63,7 +63,13 @@ typedef struct ag_render_settings {
                               path (to max_depth - 2 before a gather ray, max_depth - 1 before a caustic) and the
                               eye's part separately, so that there may be a few more behind mirrors and glass. */
 
-    uint64_t photon_count;         /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t photon_paths; /* light paths that the photons of the global map come from, [0, 10^15]; 0, the default: as
+                              many as it takes to store photon_count photons. A fixed number is for the frames of an
+                              animation: a path that meets nothing new then has the same photons in each frame, and
+                              its irradiances can be kept (ag_context_take_frame). At most photon_count photons are
+                              stored; a warning tells where that ends the tracing early. photon_aim is then 0 unless
+                              set */
     uint64_t caustic_photon_count; /* photons to store in the caustic map, [0, 2^32 - 2] */
     int nearest;                   /* photons of an estimate, [1, 65536] */
     float radius;              /* largest radius of an estimate, scene units; 0: derived from the photons' density */

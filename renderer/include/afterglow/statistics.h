@@ -99,8 +99,8 @@ typedef struct ag_statistics {
      * the map included; deferred: requests set aside because another thread was computing; waited: those of them that
      * had to wait in the end; duplicated: estimates computed twice, 0; uncached: estimates at gather hits themselves;
      * refused: requests at points where no estimate holds, whose light was followed by further bounces instead; ready:
-     * photons of a file's map that were ready when it was opened; reclaimed: claims taken over from processes that had
-     * died. */
+     * photons that were ready before, in a file's map or from the frame before; reclaimed: claims taken over from
+     * processes that had died. */
     uint64_t irradiance_requests, irradiance_computed, irradiance_distinct, irradiance_deferred, irradiance_waited,
         irradiance_duplicated, irradiance_uncached, irradiance_refused, irradiance_ready, irradiance_reclaimed;
     double irradiance_estimate_s; /* CPU seconds of estimates, all threads; extrapolated from every sixteenth */
@@ -120,6 +120,9 @@ typedef struct ag_statistics {
     ag_end end;               /* of the last picture, as noted by ag_context_note_end */
     ag_sample_counts samples; /* of the pixels of the last picture */
     double noise;             /* of the last picture, as in ag_noise; below 0: not known */
+    /* With photon_paths, each picture against the one before it. came: photons of the global map that only the later
+     * picture has; went: those that only the earlier one has; kept: photons whose irradiance was taken over. */
+    uint64_t photons_came, photons_went, irradiance_kept;
 } ag_statistics;
 
 /* Writes the statistics of the context so far. struct_size: of the program's ag_statistics. */
