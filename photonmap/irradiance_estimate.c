@@ -140,8 +140,28 @@ static bool region_holds(const photon_map *map, double area, float radius)
 /* Of the photons found, so large a share must lie on the point's own level: the others have set the radius. */
 static const float LEVEL_SHARE_MIN = 0.5f;
 
+/* The reach of an estimate that found so many, of which the farthest is the last where that is one more than it is to
+ * sum. Of equally far ones the photons' order decides which of them count. */
+static float reach_of(const photon_map *map, const photon_neighbor *n, uint32_t found)
+{
+    if (found <= map->nearest)
+        return map->max_radius * map->max_radius;
+    float farthest = photon_neighbor_distance_squared(n[map->nearest]);
+    bool is_clear = farthest > map->min_radius_squared;
+    for (uint32_t i = 0; i < map->nearest; i++)
+        is_clear = is_clear && photon_neighbor_distance_squared(n[i]) < farthest;
+    return is_clear ? farthest : 0.0f;
+}
+
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                            uint64_t *in_out_rays, rgb *out_irradiance)
+{
+    return irradiance_estimate_find_reach(map, position, normal, scratch, in_out_rays, out_irradiance, NULL);
+}
+
+irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 position, vec3 normal,
+                                                 photon_neighbor *scratch, uint64_t *in_out_rays, rgb *out_irradiance,
+                                                 float *out_reach_squared)
 {
     *out_irradiance = rgb_gray(0.0f);
     if (map->set.count == 0)
@@ -149,6 +169,8 @@ irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position,
     float other_squared;
     uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
                                            map->nearest + 1, scratch, &other_squared);
+    if (out_reach_squared)
+        *out_reach_squared = reach_of(map, scratch, found);
     float radius_squared = map->max_radius * map->max_radius;
     uint32_t count = found;
     if (found == map->nearest + 1) {

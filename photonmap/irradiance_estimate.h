@@ -29,6 +29,18 @@ typedef enum irradiance_extent {
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                            uint64_t *in_out_rays, rgb *out_irradiance);
 
+/* irradiance_estimate_find, and how far it reaches: *out_reach_squared is the squared radius out to the (k+1)-th
+ * photon, or of the largest disc; where that is NULL, nothing is told. Photons that lie farther away make no difference
+ * to the bits of extent and irradiance, nor do those that face the other way (photon_changes.h), nor does geometry
+ * beyond IRRADIANCE_REACH_OF_RAYS times that radius. 0: that is not so, for the k-th and the next one are equally far,
+ * or the disc was as small as can be. */
+irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 position, vec3 normal,
+                                                 photon_neighbor *scratch, uint64_t *in_out_rays, rgb *out_irradiance,
+                                                 float *out_reach_squared);
+
+/* All rays of an estimate end within 1.2 times its radius; the rest is for rounding. */
+#define IRRADIANCE_REACH_OF_RAYS 1.5f
+
 /* The value alone, for which no rays are counted. */
 static inline rgb irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)
 {

@@ -60,6 +60,15 @@ static inline uint32_t photon_block_flux(const photon_block *blocks, uint32_t in
     return blocks[index / PHOTON_BLOCK_LANES].flux[index % PHOTON_BLOCK_LANES];
 }
 
+/* A number at random that goes with the photon's position, wherever the photon stands in the map. */
+static inline uint64_t photon_block_position_key(const photon_block *blocks, uint32_t index)
+{
+    vec3 at = photon_block_position(blocks, index);
+    uint32_t bits[3];
+    memcpy(bits, &at, sizeof bits);
+    return hash_combine(hash_combine(bits[0], bits[1]), bits[2]);
+}
+
 /* Squared distances of all lanes, and as bits which of them are no farther than the limit. */
 static inline uint32_t photon_block_within(const photon_block *b, const float position[3], float limit,
                                            float out_distance_squared[PHOTON_BLOCK_LANES])

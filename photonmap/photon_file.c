@@ -43,6 +43,7 @@ static photon_map map_of(const photon_file_map *m, photon_tree tree, photon_tree
                       .min_radius_squared = m->min_radius_squared,
                       .mean_radius = m->mean_radius,
                       .flux_exponent_max = m->flux_exponent_max,
+                      .is_steady = m->is_steady != 0,
                       .is_borrowed = true,
                       .has_been_cached = true};
     photon_map_set_bias(&map, m->irradiance_bias);

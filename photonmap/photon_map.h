@@ -15,6 +15,7 @@ typedef struct photon_map_settings {
     float surface_area;        /* of the scene, m^2: for the automatic radius */
     float radius_bound;        /* the automatic radius is no larger; 0: no bound */
     float irradiance_fraction; /* of the photons that become irradiance photons, (0, 1]; 0: all */
+    bool is_steady;            /* see photon_map; the set's paths are fixed (photon_tracing_settings.paths) */
     const scene *surfaces;     /* borrowed: where discs end; NULL: nowhere */
 } photon_map_settings;
 
@@ -35,6 +36,11 @@ typedef struct photon_map {
     bool is_borrowed;          /* blocks and nodes are a photon_file's */
     atomic_u8 *checks; /* of a map from a file: irradiance_word_check of each irradiance photon, borrowed; else NULL */
     bool has_been_cached; /* a cache has been made over it: some slots may be ready */
+    /* What all estimates depend on (radii, exponents) is rounded, and an irradiance by its photon's position, so that
+     * it stays the same where a few photons come and go. */
+    bool is_steady;
+    float *reaches; /* owned, of a steady map: for each irradiance photon whose slot is ready irradiance_reach; 0: not
+                       known */
 } photon_map;
 
 /* Takes the set's photons over (and frees them on failure). A map without photons is valid: it says 0 everywhere.
@@ -110,8 +116,8 @@ void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const pho
  * a value. */
 #define PHOTON_NO_IRRADIANCE IRRADIANCE_VALUE_MASK
 
-/* Irradiance as a slot's 30 bits, never PHOTON_NO_IRRADIANCE. The key, an irradiance photon's index, decides the
- * rounding. */
+/* Irradiance as a slot's 30 bits, never PHOTON_NO_IRRADIANCE. The key decides the rounding: an irradiance photon's
+ * index, or in a steady map its photon_block_position_key. */
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);
 rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value);
 

@@ -3,6 +3,7 @@
 
 #include "material/lambert.h"
 #include "onward_ways.h"
+#include "quarter_octave.h"
 #include "rays/transmittance.h"
 #include "scene_extent.h"
 #include "shape/alpha.h"
@@ -142,12 +143,14 @@ static bool pass_media(energy_balance *balance, rgb transmittance, rng *random, 
     return true;
 }
 
-/* The width of the area that a photon stands for where they lie evenly, in scene units; giants are not counted. */
-static float photon_width(const scene *s, uint32_t photon_count)
+/* The width of the area that a photon stands for where they lie evenly, in scene units; giants are not counted. Where
+ * the paths are fixed it is rounded, so that what moves changes no other photon. */
+static float photon_width(const scene *s, const photon_tracing_settings *settings)
 {
     static const float RADIUS_SHARE_MAX = 1.0f / 64.0f;
     float radius = s->detail_radius > 0.0f ? s->detail_radius : s->bounding_radius;
-    return fminf(sqrtf(s->surface_area / (float)photon_count), RADIUS_SHARE_MAX * radius);
+    float width = fminf(sqrtf(s->surface_area / (float)settings->wanted), RADIUS_SHARE_MAX * radius);
+    return settings->paths > 0 ? quarter_octave_nearest(width) : width;
 }
 
 /* Leaves a lamp, picked by its power or by the guide, at a time of the path's own where that matters. false: nothing
@@ -176,7 +179,7 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
     ray.medium = start.medium;
     ray.time = time;
     if (settings->filters_textures)
-        ray.cone = (ray_cone){photon_width(s, settings->wanted), 0.0f, true};
+        ray.cone = (ray_cone){photon_width(s, settings), 0.0f, true};
     rgb flux = rgb_scale(start.flux, (t->trial ? 1.0f : weight) / probability);
     *out_path = (photon_path){ray, flux, random, key, weight, 1.0f, 0, 0, false};
     count_flux(t->out->balance.emitted, out_path->flux);

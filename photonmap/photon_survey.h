@@ -12,7 +12,8 @@ enum { PHOTON_SURVEY_MAX = 255 };
  * the map. */
 typedef float photon_survey_measure(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch);
 
-/* Measures at PHOTON_SURVEY_MAX photons, or at all where there are fewer. out_sorted: from the least to the largest.
+/* Measures at PHOTON_SURVEY_MAX photons, or at all where there are fewer; of a steady map at about 192 that are chosen
+ * by their positions. out_sorted: from the least to the largest.
  * Errors: AG_ERROR_MEMORY. */
 ag_status photon_survey(const photon_map *map, photon_survey_measure *measure, float out_sorted[PHOTON_SURVEY_MAX],
                         uint32_t *out_count);

@@ -10,6 +10,11 @@
 ag_status scene_find_bounds(const scene *s, bool (*is_wanted)(const scene *s, const shape *item), vec3 *out_min,
                             vec3 *out_max);
 
+/* A box around an object in its own space, min > max where it has no shapes; needs object_shapes. And one around such a
+ * box where an instance puts it, for as long as the shutter is open. */
+void scene_find_object_bounds(const scene *s, uint32_t object_index, vec3 *out_min, vec3 *out_max);
+void scene_place_bounds(const scene *s, uint32_t instance_index, vec3 *in_out_min, vec3 *in_out_max);
+
 /* A ball around what is small beside a few giants (a ground of kilometres, a dome), where there is such: nothing is of
  * a size between. Radius 0 where there is not. Needs bounds_min and bounds_max. Errors: AG_ERROR_MEMORY. */
 ag_status scene_find_detail(const scene *s, vec3 *out_center, float *out_radius);
