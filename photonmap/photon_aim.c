@@ -12,10 +12,10 @@ enum { PHOTONS_PER_TRIAL = 8, ROUND_TRIALS_MIN = 1 << 12, ROUND_TRIALS_MAX = 1 <
 /* Before those further ones a round follows the starts found from where light is asked for, if so many are. */
 enum { ROUNDS_MAX = ROUNDS + 1, STARTS_LEAST = 64 };
 enum { BLIND_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
-/* A guide that lowers the variance by less than this is not worth its weights. Nor is one where by power alone so many
- * of the photons are of use, and a path leaves so many of those. */
+/* A guide that lowers the variance by less than this is not worth its weights. Nor is one where by power alone so large
+ * a share of the photons is of use, and a path leaves so many of those. */
 static const float LEAST_GAIN = 1.5f;
-static const double ENOUGH_ASKED = 0.5, ENOUGH_PER_PATH = 0.25;
+static const double ENOUGH_USEFUL = 0.5, ENOUGH_PER_PATH = 0.25;
 /* Paths are split that are worth more than SPLIT_RATIO times the tenth percentile of the useful paths' worths, and so
  * much more that no more than about PARTS_PER_PATH come to one path. The first round with a guide splits above a high
  * percentile by power alone, and each further one above no less than a SPLIT_STEP of that, so that no round takes
@@ -114,6 +114,13 @@ static ag_status make_guide(learner *l, uint32_t round, const emission_starts *s
     return AG_OK;
 }
 
+/* The share of the photons that is of use, each by the root of its importance: all, where light is asked for evenly. */
+static double useful_share(const trial_counts *counts)
+{
+    double of_even = (double)counts->photons * counts->importance;
+    return of_even > 0.0 ? counts->roots * counts->roots / of_even : 0.0;
+}
+
 static ag_status learn(learner *l, const emission_starts *starts, photon_aim *out_aim)
 {
     uint32_t counts[ROUNDS_MAX + 1] = {0};
@@ -122,8 +129,7 @@ static ag_status learn(learner *l, const emission_starts *starts, photon_aim *ou
         status = trace_round(l, least_of(l->count, BLIND_ROUNDS_MAX * l->round_trials - l->count));
     counts[0] = l->count;
     l->blind = l->counts;
-    double asked = (double)l->counts.asked;
-    if (asked >= ENOUGH_ASKED * (double)l->counts.photons && asked >= ENOUGH_PER_PATH * (double)l->counts.paths)
+    if (useful_share(&l->blind) >= ENOUGH_USEFUL && (double)l->blind.asked >= ENOUGH_PER_PATH * (double)l->blind.paths)
         return status;
     for (uint32_t round = 1; status == AG_OK; round++) {
         emission_guide *next = &l->guides[round];

@@ -99,6 +99,7 @@ static void store(photon_tracer *t, const photon_path *path, const surface_hit *
         t->counts->photons++;
         t->counts->asked += importance > 0.0f;
         t->counts->roots += (double)sqrtf(importance);
+        t->counts->importance += (double)importance;
         t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
         return;
     }
