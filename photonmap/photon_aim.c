@@ -9,11 +9,12 @@
 /* Paths of a round, as a share of the photons wanted and within bounds; the first round, by power alone, has half of
  * that, and more while hardly any path arrives; each further one follows what the rounds before have learned. */
 enum { PHOTONS_PER_TRIAL = 8, ROUND_TRIALS_MIN = 1 << 12, ROUND_TRIALS_MAX = 1 << 16, ROUNDS = 4 };
-/* Before those further ones a round follows the starts found from where light is asked for, if so many are. */
+/* Before these rounds another one follows the starts that were found from where light is requested, if there are at
+ * least STARTS_LEAST. */
 enum { ROUNDS_MAX = ROUNDS + 1, STARTS_LEAST = 64 };
 enum { BLIND_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
-/* A guide that lowers the variance by less than this is not worth its weights. Nor is one where by power alone so large
- * a share of the photons is of use, and a path leaves so many of those. */
+/* A guide that lowers the variance by less than this is not worth its weights. Nor is one where, by power alone, this
+ * share of the photons is useful, and a path leaves this many useful ones. */
 static const float LEAST_GAIN = 1.5f;
 static const double ENOUGH_USEFUL = 0.5, ENOUGH_PER_PATH = 0.25;
 /* Paths are split that are worth more than SPLIT_RATIO times the tenth percentile of the useful paths' worths, and so
@@ -33,7 +34,7 @@ typedef struct learner {
     uint32_t count, round_trials, round_count;
     float split_above;                     /* of the next round, if it has a guide */
     emission_guide guides[ROUNDS_MAX + 1]; /* by which the rounds were traced; then the last one */
-    const emission_guide *found;           /* the one of them that goes by starts; NULL: none does */
+    const emission_guide *found;           /* the guide among them that was built from starts; NULL: none */
     trial_counts counts, blind;            /* of all trials; of those by power alone */
 } learner;
 
@@ -114,7 +115,8 @@ static ag_status make_guide(learner *l, uint32_t round, const emission_starts *s
     return AG_OK;
 }
 
-/* The share of the photons that is of use, each by the root of its importance: all, where light is asked for evenly. */
+/* Returns the share of useful photons, each weighted by the root of its importance; 1 where light is requested
+ * evenly. */
 static double useful_share(const trial_counts *counts)
 {
     double of_even = (double)counts->photons * counts->importance;
@@ -182,7 +184,7 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     if (out_aim->guide.nodes) {
         out_aim->wanted = fewer_by_power(&l.blind, settings->wanted);
         out_aim->split_above = l.split_above;
-        out_aim->caustic_root = l.settings.caustic_root; /* by which the last round has set what is split */
+        out_aim->caustic_root = l.settings.caustic_root; /* from the last round, which has set what is split */
     }
     for (int i = 0; i <= ROUNDS_MAX; i++)
         emission_guide_reset(&l.guides[i]);

@@ -36,8 +36,8 @@ typedef struct photon_map {
     bool is_borrowed;          /* blocks and nodes are a photon_file's */
     atomic_u8 *checks; /* of a map from a file: irradiance_word_check of each irradiance photon, borrowed; else NULL */
     bool has_been_cached; /* a cache has been made over it: some slots may be ready */
-    /* What all estimates depend on (radii, exponents) is rounded, and an irradiance by its photon's position, so that
-     * it stays the same where a few photons come and go. */
+    /* Radii and exponents, on which all estimates depend, are rounded, and an irradiance is rounded by its photon's
+     * position, so that both stay the same where a few photons come and go. */
     bool is_steady;
     float *reaches; /* owned, of a steady map: for each irradiance photon whose slot is ready irradiance_reach; 0: not
                        known */
