@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 enum { PRECOMPUTE_BLOCK = 512 };
-/* Asking for a thread's CPU time is a system call: of every so many estimates, one is timed. */
+/* Reading a thread's CPU time is a system call, so that one of this many estimates is timed. */
 enum { TIMED_EVERY = 16 };
 
 static bool scratch_create(irradiance_scratch *s, const photon_map *map)
@@ -107,7 +107,7 @@ static bool publish(const photon_map *map, uint32_t index, uint32_t claimer, uin
     return irradiance_slot_publish(photon_map_slot(map, index), claimer, word);
 }
 
-/* What decides how an irradiance photon's value is rounded. */
+/* Returns the key that decides how an irradiance photon's value is rounded. */
 static uint64_t rounding_key(const photon_map *map, uint32_t index)
 {
     return map->is_steady ? photon_block_position_key(map->irradiance_photons.blocks, index) : index;
@@ -147,8 +147,8 @@ static uint32_t demand(irradiance_cache *cache, uint32_t irradiance_photon, unsi
     return word;
 }
 
-/* The word of a photon that somebody is computing, once it is ready; any word where the run is cancelled meanwhile.
- * Holds no claim meanwhile, but those that it takes over. */
+/* Waits for the word of a photon that another thread is computing; returns any word where the run is cancelled
+ * meanwhile. It holds no claim meanwhile, except those that it takes over. */
 static uint32_t await(irradiance_cache *cache, const run_context *run, uint32_t index, unsigned worker_index)
 {
     irradiance_slot *slot = photon_map_slot(cache->map, index);

@@ -15,7 +15,7 @@ enum { PHOTONS_AT_ONCE = 4096, BITS = 32 };
 /* No photon is looked for in more leaves: where very many lie at one point, some that are there count as changed, which
  * costs their irradiances and no more. */
 enum { LEAVES_MOST = 32 };
-/* Of discs that meet so many changed photons on average, one in three thousand meets none. */
+/* Of discs that contain this many changed photons on average, one in three thousand contains none. */
 static const double CHANGES_MOST = 8.0;
 
 /* --- which photons are in both maps --- */

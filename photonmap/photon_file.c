@@ -247,7 +247,7 @@ photon_file_result photon_file_read(const run_context *run, const char *path, ph
     if (result != PHOTON_FILE_OPEN)
         return result;
     *out_key = h.key;
-    h.nonce = 0; /* all else is the same whoever traced it */
+    h.nonce = 0; /* the rest is the same for any process that traced it */
     *out_fixed = photon_file_header_hash(&h);
     return PHOTON_FILE_OPEN;
 }

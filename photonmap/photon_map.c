@@ -232,7 +232,7 @@ void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const pho
                      photon_neighbor_distance_squared(nearest[i]), in_out_rays);
 }
 
-/* An irradiance is doubted where so many photons, on average, would lie nearer to the point than its own. */
+/* An irradiance is rejected where this many photons, on average, would lie nearer to the point than its own. */
 static const float EMPTY_DISC_PHOTONS = 8.0f;
 
 bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, vec3 position, rgb irradiance)

@@ -6,8 +6,8 @@
 
 #include <stdlib.h>
 
-/* Of a steady map about so many photons are asked, chosen by their positions: the same ones where others come and go.
- */
+/* A steady map is measured at about this many photons, chosen by their positions: the same ones where others come and
+ * go. */
 static const float STEADY_ASKED = 192.0f;
 
 /* The next photon to ask, from `index` on; count: there is none. */

@@ -12,13 +12,13 @@
 #include <string.h>
 
 enum { PATHS_PER_BLOCK = 256, BLOCKS_PER_FIRST_ROUND = 32, BLOCKS_PER_ROUND_MAX = 1024 };
-/* The first round takes it that each path leaves so many photons; most leave fewer. After one that leaves none at all
- * comes one so many times as large. */
+/* The first round assumes that each path leaves FIRST_YIELD photons; most leave fewer. A round that leaves none at all
+ * is followed by one NO_YIELD_GROWTH times as large. */
 enum { FIRST_YIELD = 4, NO_YIELD_GROWTH = 8 };
-/* While more blocks than this are wanted, a round does half of them: what it found lies beside the photons until it is
- * merged, and is to be small against them. */
+/* While more blocks than this are needed, a round does half of them: its photons are held beside the others until they
+ * are merged, and should be few against them. */
 enum { BLOCKS_WHOLE_ROUND = 512 };
-/* Tracing gives up when so many paths have stored no photon at all. */
+/* Tracing gives up when this many paths have stored no photon at all. */
 static const uint64_t PATHS_WITHOUT_PHOTON_MAX = 1u << 20;
 
 typedef struct round_job {
@@ -148,7 +148,7 @@ static ag_status find_target(const scene *s, photon_kind kind, light_target *out
     return status;
 }
 
-/* The map was full before all paths that were asked for had been emitted. */
+/* Warns that the map was full before all requested paths had been emitted. */
 static void tell_of_full_map(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
 {
     log_message(run->log, AG_LOG_WARNING,
@@ -168,7 +168,7 @@ static uint64_t next_block_count(const photon_set *set, uint32_t wanted, uint64_
     return blocks < BLOCKS_PER_ROUND_MAX ? (uint64_t)blocks : BLOCKS_PER_ROUND_MAX;
 }
 
-/* Of so many blocks' paths those that are still to be emitted. */
+/* Returns the number of paths that remain to be emitted in the blocks of a round. */
 static uint64_t paths_of_round(const photon_tracing_settings *settings, uint64_t next_path, uint64_t block_count)
 {
     uint64_t paths = block_count * PATHS_PER_BLOCK, left = settings->paths > 0 ? settings->paths - next_path : paths;
@@ -304,6 +304,7 @@ ag_status photon_tracing_try(const scene *s, run_context *run, const photon_trac
         in_out_counts->photons += counts[i].photons;
         in_out_counts->asked += counts[i].asked;
         in_out_counts->roots += counts[i].roots;
+        in_out_counts->importance += counts[i].importance;
     }
     free(counts);
     return status;

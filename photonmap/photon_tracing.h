@@ -90,6 +90,7 @@ typedef struct trial_counts {
     uint64_t parts;          /* that splitting has added to the paths */
     uint64_t photons, asked; /* that would be stored; and of those, where light is asked for */
     double roots;            /* of importance at the latter, their sum */
+    double importance;       /* there, its sum [1/m^2] */
 } trial_counts;
 
 /* Tries so many paths, from that number on, which store nothing: a trial's value is the sum over the photons that it

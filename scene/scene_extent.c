@@ -160,7 +160,7 @@ static box triangle_box(const mesh *m, uint32_t triangle)
     return (box){vec3_min(p, vec3_min(q, r)), vec3_max(p, vec3_max(q, r))};
 }
 
-/* The shape; where it is a mesh that is not small itself, its triangles one by one. */
+/* Adds a shape; of a mesh that is not small itself, its triangles one by one. */
 static void take_in_shape(size_census *c, const shape *item, float small)
 {
     box b;
@@ -276,7 +276,7 @@ enum { SQUARES = 4, DIRECTIONS = 3 * SQUARES * SQUARES, SAMPLES_ACROSS_QUADRIC =
 typedef struct area_vectors {
     double sums[DIRECTIONS][3];
     double area;      /* of the object */
-    double area_seen; /* the lengths of the sums: what is round has lost some hundredths */
+    double area_seen; /* the lengths of the sums: curved surfaces lose a few hundredths */
 } area_vectors;
 
 static void add_area(area_vectors *v, const double a[3])

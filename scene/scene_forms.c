@@ -31,7 +31,7 @@ static hash128 hash_object(const scene *s, const scene_object *object, const has
     return begun;
 }
 
-/* Appends the shapes of the world, and tells of all shapes what they are. */
+/* Appends the shapes of the world, and writes the fingerprints of all shapes. */
 static void add_shapes(const scene *s, scene_forms *f, hash128 *out_of_shapes)
 {
     for (uint32_t i = 0; i < s->shape_count; i++) {

@@ -59,11 +59,11 @@ AG_API void ag_context_pause(ag_context *context);
  * nothing where the two contexts use different instruction sets. */
 AG_API void ag_context_take_frame(ag_context *context, ag_context *from);
 
-/* Lists the displays, views, looks, colour spaces and roles of the colour config as lines of text, which the context
+/* Writes the displays, views, looks, colour spaces and roles of the colour config as lines of text, which the context
  * owns. Errors: AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 AG_API ag_status ag_color_summary(ag_context *context, const char **out_text);
 
-/* Returns a display of the colour config and one of its views, by number: 0 is the default of ag_output_settings, the
+/* Writes a display of the colour config and one of its views, by number: 0 is the default of ag_output_settings, the
  * others follow in the config's order. The context owns the strings. Errors: AG_ERROR_ARGUMENT (index is past the
  * last), AG_ERROR_COLOR, AG_ERROR_MEMORY. */
 AG_API ag_status ag_color_view_at(ag_context *context, size_t index, const char **out_display, const char **out_view);
