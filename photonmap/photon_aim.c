@@ -33,6 +33,7 @@ typedef struct learner {
     emission_trial *trials;
     uint32_t count, round_trials, round_count;
     float split_above;                     /* of the next round, if it has a guide */
+    float stored_share;                    /* of the last one */
     emission_guide guides[ROUNDS_MAX + 1]; /* by which the rounds were traced; then the last one */
     const emission_guide *found;           /* the guide among them that was built from starts; NULL: none */
     trial_counts counts, blind;            /* of all trials; of those by power alone */
@@ -63,6 +64,16 @@ static ag_status set_split(learner *l, const emission_trial *trials, uint32_t co
     return AG_OK;
 }
 
+/* Photons of one path tell the same of how much light arrives. So up to so many paths are emitted for each photon that
+ * is stored, and so large a share of them is stored at least. */
+static const double PATHS_PER_PHOTON = 4.0, STORED_SHARE_LEAST = 0.25;
+
+static float stored_share(uint64_t paths, double stored)
+{
+    double share = stored > 0.0 ? (double)paths / (PATHS_PER_PHOTON * stored) : 1.0;
+    return (float)fmin(fmax(share, STORED_SHARE_LEAST), 1.0);
+}
+
 static float caustic_root(const learner *l)
 {
     return l->counts.asked > 0 ? (float)(l->counts.roots / (double)l->counts.asked) : 0.0f;
@@ -70,7 +81,7 @@ static float caustic_root(const learner *l)
 
 static ag_status trace_round(learner *l, uint32_t count)
 {
-    uint64_t parts = l->counts.parts;
+    trial_counts before = l->counts;
     emission_trial *trials = l->trials + l->count;
     l->settings.guide = &l->guides[l->round_count];
     l->settings.split_above = l->round_count > 0 ? l->split_above : 0.0f;
@@ -79,7 +90,8 @@ static ag_status trace_round(learner *l, uint32_t count)
     ag_status status = photon_tracing_try(l->s, l->run, &l->settings, l->count, count, trials, &l->counts);
     l->count += count;
     if (status == AG_OK && (l->settings.onward || l->settings.kind == PHOTON_CAUSTIC))
-        status = set_split(l, trials, count, l->counts.parts - parts);
+        status = set_split(l, trials, count, l->counts.parts - before.parts);
+    l->stored_share = stored_share(l->counts.paths - before.paths, l->counts.stored - before.stored);
     return status;
 }
 
@@ -169,7 +181,7 @@ static uint32_t fewer_by_power(const trial_counts *blind, uint32_t wanted)
 ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings,
                            const emission_starts *starts, float share, photon_aim *out_aim)
 {
-    *out_aim = (photon_aim){.wanted = settings->wanted};
+    *out_aim = (photon_aim){.wanted = settings->wanted, .stored_share = 1.0f};
     if (!(share > 0.0f) || !settings->asked || !settings->asked->nodes)
         return AG_OK;
     learner l = {.s = s, .run = run, .settings = *settings, .ways = settings->ways, .share = share};
@@ -183,6 +195,7 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     out_aim->tried = l.counts;
     if (out_aim->guide.nodes) {
         out_aim->wanted = fewer_by_power(&l.blind, settings->wanted);
+        out_aim->stored_share = settings->paths == 0 ? l.stored_share : 1.0f;
         out_aim->split_above = l.split_above;
         out_aim->caustic_root = l.settings.caustic_root; /* from the last round, which has set what is split */
     }
@@ -190,6 +203,18 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
         emission_guide_reset(&l.guides[i]);
     free(l.trials);
     return status;
+}
+
+void photon_aim_apply(const photon_aim *aim, photon_tracing_settings *in_out_settings)
+{
+    bool is_aimed = aim->guide.nodes;
+    in_out_settings->guide = is_aimed ? &aim->guide : NULL;
+    in_out_settings->asked = is_aimed ? in_out_settings->asked : NULL;
+    in_out_settings->ways = is_aimed ? in_out_settings->ways : NULL;
+    in_out_settings->wanted = aim->wanted;
+    in_out_settings->stored_share = aim->stored_share;
+    in_out_settings->split_above = aim->split_above;
+    in_out_settings->caustic_root = aim->caustic_root;
 }
 
 void photon_aim_reset(photon_aim *aim)

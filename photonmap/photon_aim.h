@@ -18,18 +18,24 @@ typedef struct photon_aim {
     emission_guide guide; /* owned; empty: photons are emitted by power alone */
     emission_guide found; /* owned: the guide that was built from the starts; `other` of guide */
     uint32_t wanted;      /* photons to store, > 0 */
-    float split_above;    /* as in photon_tracing_settings, like caustic_root; 0 without a guide */
-    float caustic_root;
+    /* As in photon_tracing_settings; without a guide 1, 0 and 0. */
+    float stored_share, split_above, caustic_root;
     trial_counts tried; /* sums over all trials */
 } photon_aim;
 
-/* Learns a guide for photon tracing with these settings, whose guide and split_above are not read. starts: reordered;
+/* Learns a guide for photon tracing with these settings, of which nothing is read that photon_aim_apply sets but
+ * asked, ways and wanted. starts: reordered;
  * may be empty. share: of the paths, that follow the guide, [0, 1). *out_aim must not be moved. The guide is empty
  * where no trial arrives where light is requested, or where enough paths do without one. wanted is the settings', or,
  * with a guide, at most the number that power alone would have stored before it gave up, since estimates take longer
- * the more photons they find. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+ * the more photons they find. Of fewer photons than arrive by many paths each tells more of the light than of many by
+ * few paths: so only a share is stored. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracing_settings *settings,
                            const emission_starts *starts, float share, photon_aim *out_aim);
 void photon_aim_reset(photon_aim *aim);
+
+/* Sets what was learned in the settings that it was learned for; they borrow the guide. Without one photons are emitted
+ * and scattered by power alone, and all of them are stored. */
+void photon_aim_apply(const photon_aim *aim, photon_tracing_settings *in_out_settings);
 
 #endif

@@ -58,16 +58,26 @@ static photon *append_photon(path_block *out)
     return &out->photons[out->count++];
 }
 
-/* Thins photons where no light is requested: those whose paths were picked more often than by power are stored as
- * rarely as by power. Returns false where the photon is left out. */
+/* How probable it is that a photon is stored. Where no light is asked for, those whose paths were picked more often
+ * than by power are stored as rarely as if they had not been. */
+static float keep_probability(const photon_path *path, float importance)
+{
+    return importance > 0.0f || !(path->weight < 1.0f) ? 1.0f : path->weight;
+}
+
+/* Picks the photons that are stored. false: this one is left out. */
 static bool keep(photon_tracer *t, const photon_path *path, vec3 position, vec3 normal, uint64_t key, rgb *in_out_flux)
 {
-    const importance_map *asked = t->settings->asked;
-    if (!asked || !(path->weight < 1.0f) || importance_map_at(asked, position, normal) > 0.0f)
+    const photon_tracing_settings *settings = t->settings;
+    if (!settings->guide)
+        return true;
+    float importance = importance_map_at(settings->asked, position, normal);
+    float probability = settings->stored_share * keep_probability(path, importance);
+    if (!(probability < 1.0f))
         return true;
     rgb flux = *in_out_flux;
-    bool is_kept = (float)(hash_combine(key, 0x6b656570u) >> 40) * 0x1p-24f < path->weight;
-    *in_out_flux = is_kept ? rgb_scale(flux, 1.0f / path->weight) : rgb_gray(0.0f);
+    bool is_kept = (float)(hash_combine(key, 0x6b656570u) >> 40) * 0x1p-24f < probability;
+    *in_out_flux = is_kept ? rgb_scale(flux, 1.0f / probability) : rgb_gray(0.0f);
     count_flux(t->out->balance.thinned, rgb_sub(flux, *in_out_flux));
     return is_kept;
 }
@@ -98,6 +108,7 @@ static void store(photon_tracer *t, const photon_path *path, const surface_hit *
         float importance = importance_map_at(t->settings->asked, at.position, normal);
         t->counts->photons++;
         t->counts->asked += importance > 0.0f;
+        t->counts->stored += (double)keep_probability(path, importance);
         t->counts->roots += (double)sqrtf(importance);
         t->counts->importance += (double)importance;
         t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);

@@ -303,6 +303,7 @@ ag_status photon_tracing_try(const scene *s, run_context *run, const photon_trac
         in_out_counts->rays += counts[i].rays;
         in_out_counts->photons += counts[i].photons;
         in_out_counts->asked += counts[i].asked;
+        in_out_counts->stored += counts[i].stored;
         in_out_counts->roots += counts[i].roots;
         in_out_counts->importance += counts[i].importance;
     }

@@ -68,6 +68,8 @@ typedef struct photon_tracing_settings {
     const importance_map *asked;    /* elsewhere photons are stored no denser than power alone would have them */
     const importance_map *onward;   /* diffuse surfaces whose light arrives where it is asked for */
     const struct onward_ways *ways; /* by which surfaces send it there */
+    float stored_share; /* with a guide: the share of the photons that are stored, picked at random and as much
+                           brighter; (0, 1] */
     float split_above;  /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
                            importance, over this parts; 0: paths are not split */
     float caustic_root; /* the root of importance of a caustic map, whose paths are split at rough traced lobes: the
@@ -88,7 +90,8 @@ void photon_set_reset(photon_set *set);
 typedef struct trial_counts {
     uint64_t paths, rays;
     uint64_t parts;          /* that splitting has added to the paths */
-    uint64_t photons, asked; /* that would be stored; and of those, where light is asked for */
+    uint64_t photons, asked; /* that arrive; and of those, where light is asked for */
+    double stored;           /* that would be stored in the mean, by stored_share 1 */
     double roots;            /* of importance at the latter, their sum */
     double importance;       /* there, its sum [1/m^2] */
 } trial_counts;

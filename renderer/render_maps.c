@@ -57,12 +57,7 @@ static ag_status trace_aimed(ag_context *context, const scene *s, float share, p
         log_message(context->log, AG_LOG_INFO,
                     "photons are aimed: %u cells, %.3g times less variance expected, after %llu trials",
                     (guide->node_count + 1) / 2, (double)guide->gain, (unsigned long long)aim.tried.paths);
-    tracing.guide = guide->nodes ? guide : NULL;
-    tracing.asked = guide->nodes ? tracing.asked : NULL;
-    tracing.ways = guide->nodes ? tracing.ways : NULL;
-    tracing.wanted = aim.wanted;
-    tracing.split_above = aim.split_above;
-    tracing.caustic_root = aim.caustic_root;
+    photon_aim_apply(&aim, &tracing);
     if (status == AG_OK)
         status = photon_tracing_run(s, &context->run, &tracing, out_set);
     if (status == AG_OK && out_set->parts > 0)

@@ -113,7 +113,8 @@ static bool is_inside(const photon *p)
 typedef struct photon_order {
     photon_kind kind;
     const importance_map *asked, *onward;
-    bool stay_whole; /* paths are not split */
+    bool stay_whole;     /* paths are not split */
+    bool all_are_stored; /* not a share of the photons */
 } photon_order;
 
 static photon_set trace(test_run *r, const scene *s, photon_order order, uint64_t seed)
@@ -129,11 +130,14 @@ static photon_set trace(test_run *r, const scene *s, photon_order order, uint64_
         assert_true(FEWER > 1 || aim.guide.nodes); /* fewer trials may not find a window */
         assert_true(aim.tried.paths > 0 && aim.tried.rays >= aim.tried.paths / 2 &&
                     aim.tried.photons >= aim.tried.asked && aim.tried.asked > 0);
+        assert_true(aim.stored_share >= 0.25f && aim.stored_share <= 1.0f);
         bool may_split = order.onward || order.kind == PHOTON_CAUSTIC;
         assert_true(may_split && aim.guide.nodes ? aim.split_above > 0.0f : aim.split_above == 0.0f);
-        settings.guide = aim.guide.nodes ? &aim.guide : NULL;
-        settings.split_above = order.stay_whole ? 0.0f : aim.split_above;
-        settings.caustic_root = aim.caustic_root;
+        photon_aim_apply(&aim, &settings);
+        if (order.stay_whole)
+            settings.split_above = 0.0f;
+        if (order.all_are_stored)
+            settings.stored_share = 1.0f;
     }
     assert_int_equal(photon_tracing_run(s, &r->run, &settings, &set), AG_OK);
     photon_aim_reset(&aim);
@@ -209,7 +213,7 @@ static void no_photon_is_more_than_five_times_as_bright(void **state)
     test_run_init(&r, 2);
     scene *s = room_scene(&r, SKY);
     importance_map asked = ask_inside();
-    photon_order by_power = {0}, by_aim = {.asked = &asked};
+    photon_order by_power = {0}, by_aim = {.asked = &asked, .all_are_stored = true};
     photon_set plain = trace(&r, s, by_power, 1), aimed = trace(&r, s, by_aim, 1);
     float most_plain = 0.0f, most_aimed = 0.0f;
     for (uint32_t i = 0; i < plain.count; i++)
@@ -402,6 +406,29 @@ static void photons_of_little_use_are_aimed(void **state)
     test_run_reset(&r);
 }
 
+/* As many photons are stored where a share of them is, by as many more paths. */
+static void a_share_of_the_photons_is_of_more_paths(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    scene *s = lit_sphere(&r);
+    importance_map asked = ask_in_sphere(0.95f);
+    photon_order order = {.asked = &asked};
+    photon_set share = trace(&r, s, order, 1);
+    order.all_are_stored = true;
+    photon_set all = trace(&r, s, order, 1);
+    double more = (double)share.emitted_paths / (double)all.emitted_paths;
+    print_message("%.2f times the paths\n", more);
+    assert_int_equal(share.count, all.count);
+    assert_true(more > 3.8 && more < 4.2);
+    photon_set_reset(&share);
+    photon_set_reset(&all);
+    importance_map_reset(&asked);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -413,6 +440,7 @@ int main(void)
         cmocka_unit_test(where_there_is_nothing_to_aim_at_power_decides),
         cmocka_unit_test(a_room_that_is_lit_from_within_needs_no_aim),
         cmocka_unit_test(photons_of_little_use_are_aimed),
+        cmocka_unit_test(a_share_of_the_photons_is_of_more_paths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

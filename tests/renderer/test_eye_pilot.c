@@ -182,8 +182,7 @@ static spread spread_inside(test_run *r, const scene *s, eye_pilot *pilot, pilot
         double inside = 0.0, most = 0.0;
         const emission_starts none = {0}, *starts = help == HELP_SPLIT_AND_LEAD ? &pilot->starts : &none;
         assert_int_equal(photon_aim_learn(s, &r->run, &settings, starts, 0.8f, &aim), AG_OK);
-        settings.guide = &aim.guide;
-        settings.split_above = aim.split_above;
+        photon_aim_apply(&aim, &settings);
         assert_int_equal(photon_tracing_run(s, &r->run, &settings, &set), AG_OK);
         for (uint32_t i = 0; i < set.count; i++) {
             const photon *p = &set.photons[i];
