@@ -20,6 +20,11 @@ ag_status curves_join(curves *c, const curves *from);
 float curves_area(const shape *s); /* of flat curves, of the one side that is seen; needs no commit */
 void curves_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
 
+/* Changes a ribbon's segment, whose normals may be of any length and lean, so that Embree turns it as they say: it
+ * knows of their ends alone, and not that the curve turns too. Returns how far its edges still are from where the
+ * normals put them, as a share of half the width: such a segment is to be cut. */
+double curves_fit_ribbon(curves *c, uint32_t segment);
+
 /* Does for curves what shape_surface_at does for shapes. u: Embree's. direction: in which the ray goes, for a flat one
  * turns to meet it. */
 void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 position, vec3 direction,
