@@ -30,6 +30,14 @@ typedef struct hair_passage {
     double gamma, gamma_inside; /* angles of the ray to the normal, outside and within, across the fibre */
 } hair_passage;
 
+/* What a fibre is the material of: how its offset across, as it is seen from one direction, is seen from another. */
+typedef enum hair_surface {
+    HAIR_FACES_RAYS, /* a curve that turns to each ray, so that directions share no point of it: all offsets are as
+                      * likely from each, and one stands for the others */
+    HAIR_RIBBON,     /* a point stays where it is; from behind, the ribbon's left is its right */
+    HAIR_OTHER       /* the offset is that of a mesh's own parameter from either side, as in pbrt */
+} hair_surface;
+
 /* A point of a fibre, and the direction that light is scattered from or to. */
 typedef struct hair_point {
     const hair_fibre *fibre;
@@ -38,7 +46,7 @@ typedef struct hair_point {
     rgb sigma_a;          /* absorbed per radius of the path within */
     float offset;         /* across the fibre, from 0 to 1 */
     float sine;           /* of the direction's inclination */
-    bool faces_rays;      /* its surface's normal is that of each ray: see hair_evaluate */
+    hair_surface surface;
 } hair_point;
 
 /* The colour within hair that scatters much light back in this colour, each channel in [0, 1] (Chiang 2016, eq. 9). */
@@ -46,15 +54,17 @@ rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n);
 
 hair_fibre hair_fibre_make(float ior, float beta_m, float beta_n, float tilt_degrees);
 
-/* v: the second surface parameter of the point. out: in the shading frame, unit. The point keeps the fibre's address
- * and faces rays. */
+/* v: the second surface parameter of the point. out: in the shading frame, unit. The point keeps the fibre's
+ * address; its surface faces rays. */
 hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out);
 
 /* f |cos|, and the density per solid angle with which hair_sample takes the direction: of radiance that comes from
  * `direction` and leaves to `out`; or of flux that comes from `out` and leaves to `direction`, per flux that meets the
  * fibre. One that faces rays seems the narrower the more it points to the light; of others the caller knows the normal,
- * and multiplies by the ratio of its cosines. */
-void hair_evaluate(const hair_point *p, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf);
+ * and multiplies by the ratio of its cosines. is_same_side: whether the direction sees the side that `out` sees, of a
+ * surface that has two. */
+void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 direction, rgb *out_value,
+                   float *out_pdf);
 
 vec3 hair_sample(const hair_point *point, float u_lobe, vec2 u);
 

@@ -436,6 +436,7 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
     h->is_flat = false;
     h->is_strand = true;
     h->faces_rays = c->type == CURVES_FLAT;
+    h->is_mirrored = c->type == CURVES_RIBBON && dot(way, normal) < 0.0;
 }
 
 surface_differentials curves_differentials(const shape *s, const surface_hit *hit)

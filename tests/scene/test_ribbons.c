@@ -1,6 +1,7 @@
 /* test_ribbons.c: ribbons that twist, lean and bend: where they are, by their definition; and that hair and cloth on
  * them send as much light from a lamp to the eye as from the eye to the lamp. Threads: one. */
 #include "fixtures/test_scene.h"
+#include "material/bsdf.h"
 
 /* Ribbons by their definition: the middle line p, the normals' even turn from n[0] to n[1], and half the width. */
 typedef struct ribbon {
@@ -104,10 +105,84 @@ static void a_ribbon_turns_as_its_normals_do(void **state)
     test_run_reset(&run);
 }
 
+/* --- light, both ways --- */
+
+/* Where the ray meets the ribbon within a tolerance of a point, and how it scatters there. */
+static bool scatters_at(const scene *s, vec3 point, vec3 toward, surface_hit *out_hit, bsdf *out_bsdf)
+{
+    scene_ray ray = scene_ray_make(vec3_add_scaled(point, toward, 0.1f), vec3_negate(toward));
+    if (!scene_intersect(s, ray, 0.2f, out_hit) || fabsf(out_hit->distance - 0.1f) > 1e-4f)
+        return false;
+    bsdf_init(s, out_hit, toward, out_bsdf);
+    return true;
+}
+
+static const char *const PLACEMENTS[] = {"", "ReverseOrientation ", "Scale 1 1 -1 ", "ObjectBegin \"o\" ",
+                                         "ReverseOrientation ObjectBegin \"o\" "};
+static const char *const AFTER[] = {"", "", "", " ObjectEnd Scale 1 -1 1 ObjectInstance \"o\"",
+                                    " ObjectEnd Scale 1 1 1.5 ObjectInstance \"o\""};
+enum { PLACEMENT_COUNT = sizeof PLACEMENTS / sizeof *PLACEMENTS };
+
+/* Flux that meets a point from b and goes on to a, over its cosine, is the radiance that comes from b and leaves to a,
+ * over that one's: on either side and through, whichever side is the outside (Veach 1997, 5.3). */
+static void expect_same_both_ways(const char *of)
+{
+    test_run run;
+    test_run_init(&run, 1);
+    for (int k = 0; k < PLACEMENT_COUNT; k++) {
+        int compared = 0, across = 0;
+        char before[512], text[2048];
+        snprintf(before, sizeof before, "%s %s", of, PLACEMENTS[k]);
+        ribbon_text(&RIBBONS[3], before, AFTER[k], text, sizeof text);
+        scene *s = test_scene_create(&run, text);
+        for (int i = 0; i < 4000 / FEWER; i++) {
+            rng random = test_random((uint64_t)i);
+            vec3 a = random_direction(&random), b = random_direction(&random);
+            vec3 to = random_in_box(&random, s->bounds_min, s->bounds_max);
+            surface_hit of_photon, of_eye;
+            bsdf photon, eye;
+            scene_ray ray = scene_ray_make(vec3_add_scaled(to, b, 5.0f), vec3_negate(b));
+            if (!scene_intersect(s, ray, INFINITY, &of_photon) ||
+                !scatters_at(s, of_photon.position, b, &of_photon, &photon) ||
+                !scatters_at(s, of_photon.position, a, &of_eye, &eye))
+                continue;
+            float met = fabsf(vec3_dot(b, of_photon.geometric_normal)),
+                  left = fabsf(vec3_dot(a, of_eye.geometric_normal));
+            if (met < 0.1f || left < 0.1f)
+                continue;
+            rgb flux = bsdf_evaluate(&photon, BSDF_ALL, BSDF_FLUX, a),
+                radiance = bsdf_evaluate(&eye, BSDF_ALL, BSDF_RADIANCE, b);
+            double expected = (double)radiance.g * (double)left;
+            assert_close((double)flux.g * (double)met, expected, 2e-3 * expected + 1e-5);
+            compared++;
+            across += vec3_dot(a, of_eye.geometric_normal) * vec3_dot(b, of_photon.geometric_normal) < 0.0f;
+        }
+        if (compared < 200 / FEWER || across < 50 / FEWER || across > compared - 50 / FEWER)
+            fail_msg("placement %d: %d compared, %d of them through the ribbon", k, compared, across);
+        scene_destroy(s);
+    }
+    test_run_reset(&run);
+}
+
+static void hair_sends_as_much_both_ways(void **state)
+{
+    (void)state;
+    expect_same_both_ways("Material \"hair\" \"rgb sigma_a\" [.1 .2 .4] \"float beta_m\" .5 \"float beta_n\" .4");
+}
+
+static void cloth_sends_as_much_both_ways(void **state)
+{
+    (void)state;
+    expect_same_both_ways(
+        "Material \"diffusetransmission\" \"rgb reflectance\" [.3 .5 .2] \"rgb transmittance\" [.2 .4 .1]");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ribbon_turns_as_its_normals_do),
+        cmocka_unit_test(hair_sends_as_much_both_ways),
+        cmocka_unit_test(cloth_sends_as_much_both_ways),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
