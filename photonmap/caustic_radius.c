@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* One photon of the global map in so many is darker than the dim irradiance. */
+/* One of this many photons of the global map is darker than the dim irradiance. */
 enum { DIM_ONE_IN = 20 };
 
 /* [W/m^2] of the channel that is largest. */

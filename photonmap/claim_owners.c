@@ -40,7 +40,7 @@ bool claim_owners_join(int file, claim_owner *table, claim_owners *out_owners)
         struct flock lock = lock_of(index);
         if (fcntl(file, F_OFD_SETLK, &lock) != 0) {
             if (errno == EAGAIN || errno == EACCES)
-                continue; /* somebody lives there */
+                continue; /* another living process has it */
             return false;
         }
         atomic_u32 *stalled = calloc(CLAIM_OWNERS_MAX, sizeof *stalled);
@@ -66,7 +66,7 @@ void claim_owners_reset(claim_owners *owners)
 void claim_owners_renew(claim_owners *owners, uint32_t claimer)
 {
     uint32_t index = claimer & (CLAIM_OWNERS_MAX - 1), before = claimer >> INDEX_BITS, next = next_generation(before);
-    /* The table first: whoever reads a claim of the new number finds it there, for our claims release. */
+    /* The table is written first: a reader of a claim with the new number finds it there, since claims release. */
     if (cas_acquire_release_u32(&owners->table[index].generation, &before, next))
         store_relaxed_u32(&owners->claimer, next << INDEX_BITS | index);
 }

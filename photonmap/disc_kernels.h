@@ -1,8 +1,8 @@
-/* disc_kernels.h: the inner loops of an estimate, once for any processor and once for AVX2: which photons of a leaf
- * count, the nearest of many, and what the photons of a disc add up to. Both do the same operations on the same
- * numbers, so what they give is the same, to the bit: tests/photonmap holds one against the other. The plain ones
- * stand for processors without AVX2; the others stay because without them a frame of the Cornell box takes 9 % more CPU
- * time (cornell-box -t 1 --noise 0 --size 160x90 --spp 4 --photons 300000; median of pairs by farm-bench, AMD EPYC).
+/* disc_kernels.h: the inner loops of an estimate, in plain C and for AVX2: finding a leaf's photons, selecting the
+ * nearest, and summing the photons of a disc. Both versions do the same operations on the same numbers, so that
+ * their results have the same bits, which tests/photonmap checks. The plain ones stand for processors without AVX2;
+ * the others stay because without them a frame of the Cornell box takes 9 % more CPU time (cornell-box -t 1 --noise
+ * 0 --size 160x90 --spp 4 --photons 300000; median of pairs of runs, AMD EPYC).
  * Rests on: Intel, "64 and IA-32 Architectures Optimization Reference Manual", ch. on AVX2 (gathers, compaction by
  * permutation). Flow: photon_k_nearest, irradiance_estimate -> [here]. Threads: pure but for what the caller owns. */
 #ifndef AFTERGLOW_DISC_KERNELS_H
@@ -12,18 +12,18 @@
 
 #include <string.h>
 
-/* Photons found so far. */
+/* The photons found so far. */
 typedef struct photon_collection {
     photon_neighbor *neighbors;
-    uint32_t count, capacity; /* at least PHOTON_BLOCK_LANES are left to the capacity */
+    uint32_t count, capacity; /* capacity - count >= PHOTON_BLOCK_LANES */
     float limit;              /* squared distance */
-    float other; /* squared distance of the nearest photon with another normal, but none about the opposite */
+    float other; /* squared distance of the nearest photon whose normal differs but is not about opposite */
 } photon_collection;
 
-/* The sums over a disc's photons, in whole numbers, so that their order does not matter. */
+/* The sums over a disc's photons, in integers, so that they do not depend on the order of the photons. */
 typedef struct photon_disc_sums {
     int64_t flux[3];   /* in units of 2^(flux_exponent_max - 32); red, green, blue */
-    int32_t offset[3]; /* from the point, in units of the radius over 2^12: 2^19 photons and no fewer fit */
+    int32_t offset[3]; /* from the point, in units of the radius / 2^12; does not overflow for up to 2^19 photons */
 } photon_disc_sums;
 
 #define PHOTON_DISC_OFFSET_UNIT 0x1p12f
@@ -32,32 +32,33 @@ typedef struct photon_disc {
     const photon_block *blocks;
     vec3 position, normal;
     float radius;          /* > 0 */
-    float level;           /* photons no higher and no lower than this over the point's plane lie on its surface */
+    float level;           /* photons within this height of the point's plane lie on its surface */
     int flux_exponent_max; /* of any photon of the map */
 } photon_disc;
 
 typedef struct disc_kernels {
-    /* The leaves below a node that stands PHOTON_SUBTREE_LEVELS above them whose boxes are no farther than `most`, a
-     * squared distance; out_leaves has room for all of them. Returns how many. */
+    /* Finds the leaves, PHOTON_SUBTREE_LEVELS below a node, whose boxes are within `most`, a squared distance.
+     * out_leaves: room for all of them. Returns their number. */
     uint32_t (*find_leaves)(const photon_query *query, photon_subtree subtree, float most, uint32_t *out_leaves);
 
-    /* Appends the photons of leaves that lie within the limit and whose normals are similar. Returns how many leaves it
-     * looked into: not all where there was no room for another one. */
+    /* Appends the photons of leaves that lie within the limit and have similar normals. Returns the number of leaves
+     * read, which is less than leaf_count where the collection is full. */
     uint32_t (*collect)(photon_query *query, const uint32_t *leaves, uint32_t leaf_count,
                         photon_collection *collection);
 
-    /* Puts the `wanted` nearest of `count` neighbours in front, the farthest of them last, and wants 1 <= wanted <=
-     * count; all within the limit, a squared distance. */
+    /* Partitions `count` neighbours so that the `wanted` nearest come first, the farthest of these last; 1 <= wanted <=
+     * count. All lie within the limit, a squared distance. */
     void (*select)(photon_neighbor *neighbors, uint32_t count, uint32_t wanted, float limit);
 
-    /* Sums those that lie on the point's surface, as far as heights and normals tell, and keeps them in front, in their
-     * order; the others go to out_doubtful, in theirs, which has room for count + 4. Returns how many were kept. */
+    /* Sums the neighbours that lie on the point's surface, as heights and normals tell, and keeps them in front in
+     * their order; the others go to out_doubtful in their order, which has room for count + 4. Returns the number
+     * kept. */
     uint32_t (*sum_on_level)(const photon_disc *disc, photon_neighbor *neighbors, uint32_t count,
                              photon_disc_sums *out_sums, photon_neighbor *out_doubtful);
 } disc_kernels;
 
-/* Whether a photon lies on the surface of the point, as far as heights and normals tell: no lower than a convex surface
- * goes that has the two normals, and no higher than the level. */
+/* Returns whether a photon lies on the surface of the point, as heights and normals tell: no lower than on a convex
+ * surface with the two normals, and no higher than the level. */
 static inline bool photon_disc_is_on_level(const photon_disc *disc, vec3 offset, uint16_t normal_code)
 {
     float height = vec3_dot(offset, disc->normal), below = -height - disc->level;
@@ -70,12 +71,12 @@ static inline bool photon_disc_is_on_level(const photon_disc *disc, vec3 offset,
     return below > 0.0f && below * below * square <= lateral_squared * (vec3_dot(n, n) - square);
 }
 
-/* A photon's share of the sums. */
+/* Adds a photon to the sums. */
 static inline void photon_disc_add(const photon_disc *disc, photon_neighbor n, photon_disc_sums *sums)
 {
     uint32_t index = photon_neighbor_index(n), code = photon_block_flux(disc->blocks, index);
     uint32_t below = (uint32_t)(disc->flux_exponent_max - flux_exponent(code));
-    for (int c = 0; c < 3 && below < 64; c++) /* of weaker ones nothing is left */
+    for (int c = 0; c < 3 && below < 64; c++) /* fainter photons add 0 */
         sums->flux[c] += (int64_t)((uint64_t)(code >> (16 - 8 * c) & 255) << 32 >> below);
     vec3 offset = vec3_sub(photon_block_position(disc->blocks, index), disc->position);
     float scale = PHOTON_DISC_OFFSET_UNIT / disc->radius;
@@ -84,7 +85,7 @@ static inline void photon_disc_add(const photon_disc *disc, photon_neighbor n, p
     sums->offset[2] += (int32_t)(offset.z * scale);
 }
 
-/* Adds a photon to the sums if it lies on the point's level; false: it does not. */
+/* Adds a photon to the sums if it lies on the point's level; else returns false. */
 static inline bool photon_disc_keep(const photon_disc *disc, photon_neighbor n, photon_disc_sums *sums)
 {
     uint32_t index = photon_neighbor_index(n);
@@ -102,13 +103,13 @@ static inline void photon_disc_part(const photon_disc *disc, photon_neighbor *n,
     for (uint32_t i = begin; i < end; i++) {
         photon_neighbor x = n[i];
         bool keeps = photon_disc_keep(disc, x, sums);
-        doubtful[i - *in_out_kept] = x; /* all that was not kept is there */
+        doubtful[i - *in_out_kept] = x; /* the others */
         n[*in_out_kept] = x;
         *in_out_kept += keeps;
     }
 }
 
-/* The `wanted` nearest, as disc_kernels.select has them, by comparisons alone. */
+/* disc_kernels.select by comparisons alone. */
 void photon_neighbors_quickselect(photon_neighbor *neighbors, uint32_t count, uint32_t wanted);
 
 /* --- the steps of selecting the nearest, for the plain kernels and those of AVX2 --- */
@@ -143,7 +144,8 @@ static inline void photon_selection_count(photon_selection *s, const photon_neig
         s->histogram[photon_selection_bin(s, n[i])]++;
 }
 
-/* Once all are counted. false: too many share the bin, and all have been compared instead. */
+/* To be called when all are counted. Returns false where too many photons share the bin; all have been compared
+ * instead. */
 static inline bool photon_selection_find_bin(photon_selection *s, photon_neighbor *n, uint32_t count, uint32_t wanted)
 {
     uint32_t before = 0;
@@ -177,13 +179,13 @@ static inline void photon_selection_end(photon_selection *s, photon_neighbor *n,
 
 extern const disc_kernels disc_kernels_plain;
 
-/* NULL where the compiler or the processor does not know AVX2. */
+/* Returns NULL where the compiler or the processor does not support AVX2. */
 const disc_kernels *disc_kernels_avx2(void);
 
-/* The fastest that this processor has. */
+/* Returns the fastest kernels that this processor supports. */
 const disc_kernels *disc_kernels_best(void);
 
-/* photon_tree_k_nearest by these kernels. */
+/* photon_tree_k_nearest with given kernels. */
 uint32_t disc_kernels_k_nearest(const disc_kernels *kernels, const photon_tree *tree, vec3 position, vec3 normal,
                                 float min_cos, float radius, uint32_t wanted, photon_neighbor *neighbors,
                                 float *out_other_squared);

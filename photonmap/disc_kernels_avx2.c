@@ -48,8 +48,8 @@ AVX2 static inline vec3_8 decode(__m256i code)
     return (vec3_8){_mm256_sub_ps(x, with_sign_of(fold, x)), _mm256_sub_ps(y, with_sign_of(fold, y)), z};
 }
 
-/* One level of a subtree: the planes that its eight leaves, by their lanes, lie beside, and which of them on the right.
- * Where that is not the query's side, the leaf is as far off along the axis as the plane. */
+/* Goes down one level of a subtree: in each lane the plane beside one of its eight leaves, and whether that leaf is on
+ * its right. Where that is not the query's side, the leaf is at least as far along the axis as the plane. */
 AVX2 static inline void go_down(vec3_8 at, __m256 split, __m256i axis, __m256i is_right, vec3_8 *in_out_offset)
 {
     /* axes 1 and 2 by their bits, as the sign */
@@ -126,8 +126,8 @@ AVX2 static inline uint32_t store_some(photon_neighbor *out, __m256i four, uint3
     return (uint32_t)__builtin_popcount(bits);
 }
 
-/* photon_query_has_similar_normal of a block's photons, as bits; and of those of the others that are within the limit
- * but not behind, the least distance. */
+/* Returns, as bits, photon_query_has_similar_normal of a block's photons, and writes the least distance of the other
+ * photons that are within the limit and do not face away. */
 AVX2 static inline uint32_t find_similar(const photon_query *q, const photon_block *b, const __m256 d[2], __m256 limit,
                                          float *in_out_other)
 {
@@ -272,7 +272,7 @@ AVX2 static inline lanes_4 find_lanes(__m256i four)
                      _mm256_and_si256(index, _mm256_set1_epi64x(PHOTON_BLOCK_LANES - 1))};
 }
 
-/* The words of the first block's column that lie so many bytes farther on. */
+/* Gathers words of a column by offsets in bytes from the first block. */
 AVX2 static inline __m256i gather_words(const void *column, __m256i low, __m256i high)
 {
     return _mm256_set_m128i(_mm256_i64gather_epi32((const int *)column, high, 1),

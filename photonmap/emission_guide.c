@@ -4,12 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A node is divided while so many of its trials have brought something; each number is halved so often at most. */
+/* A node is divided while at least USEFUL_LEAST of its trials have contributed; each number is halved at most
+ * HALVINGS_MAX times. */
 enum { USEFUL_LEAST = 16, HALVINGS_MAX = 14, DEPTH_MAX = 56, QUARTERS = 4 };
 /* Sums of roots that differ by less, relatively, do not tell which axis is better. */
 static const double ALIKE = 0.03;
-/* The density of a leaf's parent counts as so many trials of the leaf: one where nothing came of a few trials is not
- * sure to be dark. */
+/* The density of a leaf's parent counts as this many trials of the leaf: a leaf in which a few trials contributed
+ * nothing need not be dark. */
 static const double PRIOR_TRIALS = 1.0;
 
 struct emission_guide_node {
@@ -50,7 +51,7 @@ typedef struct builder {
 /* A trial's part in the mean of the squares over all starts. */
 static double square_of(const emission_trial *t) { return (double)t->value * t->value / t->density; }
 
-/* Sums over the useful trials of a node, by quarters along each axis, and along each two of them together. */
+/* Sums over the useful trials of a node, by quarters along each axis, and by sixteenths along each pair of axes. */
 typedef struct quarters {
     double one[EMISSION_DIMENSIONS][QUARTERS];
     double two[EMISSION_DIMENSIONS][EMISSION_DIMENSIONS][QUARTERS * QUARTERS]; /* of axes a < b */
@@ -83,9 +84,9 @@ static double sum_of_roots(const double *values, int count)
     return sum;
 }
 
-/* The least sum of roots is the least variance, if each part had a density of its own. The pair of axes by whose
- * sixteenths that is gives the axis: what is useful may lie along a diagonal, which no axis alone tells. false: no axis
- * can be halved. */
+/* Picks the axis to halve. The least sum of roots is the least variance, if each part has a density of its own; it is
+ * looked for among the sixteenths of pairs of axes, since useful trials may lie along a diagonal, which no axis alone
+ * shows. Returns false where no axis can be halved. */
 static bool pick_axis(const builder *b, uint32_t begin, uint32_t end, const box *where, uint32_t *out_axis)
 {
     quarters q;

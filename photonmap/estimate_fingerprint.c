@@ -43,7 +43,7 @@ static ag_status make_scene(run_context *run, const char *isa, scene **out_scene
     return status;
 }
 
-/* Evenly over what is seen of the discs from above, each of another colour. */
+/* Distributes photons evenly over the parts of the discs that are visible from above, each of another colour. */
 static ag_status make_map(run_context *run, const scene *surfaces, photon_map *out_map)
 {
     photon_set set = {.photons = photon_records_create(PHOTONS), .emitted_paths = PHOTONS};
@@ -101,7 +101,7 @@ static ag_status find_fingerprint(run_context *run, const scene *surfaces, irrad
 
 ag_status estimate_fingerprint(const run_context *run, const char *isa, irradiance_estimate_fn *find, hash128 *out_hash)
 {
-    run_context quiet; /* the built-in scene is nothing that progress is told of */
+    run_context quiet; /* progress is not reported for the built-in scene */
     scene *surfaces;
     run_context_init(&quiet, run->pool, run->log, NULL, NULL);
     ag_status status = make_scene(&quiet, isa, &surfaces);

@@ -1,10 +1,10 @@
-/* importance_map.h: where light is asked for: how many of a pilot's questions fell on a surface, per area.
+/* importance_map.h: the density of a pilot's light lookups on surfaces, per area.
  * Rests on: Peter, Pietrek, "Importance Driven Construction of Photon Maps", 1998 (importons); Suykens, Willems,
  * "Density Control for Photon Maps", 2000.
- * Flow: the eye's side asks at points -> [here] -> photon_tracing, emission_guide. Threads: one builds; then read-only.
+ * Flow: the pilot's lookups -> [here] -> photon_tracing, emission_guide. Threads: built by one thread; then read-only.
  *
- * The points lie in octrees, one for each of the six ways that a surface may face, so that what is asked for inside of
- * a wall says nothing of its outside. */
+ * The points lie in octrees, one for each of the six main directions of normals, so that lookups on the inside of a
+ * wall do not count for its outside. */
 #ifndef AFTERGLOW_IMPORTANCE_MAP_H
 #define AFTERGLOW_IMPORTANCE_MAP_H
 
@@ -13,7 +13,7 @@
 
 #include <stdint.h>
 
-/* A point where the eye's side would ask for light, and the side of a surface that it is asked for. */
+/* A point where the renderer would look up light, and the side of the surface. */
 typedef struct query_point {
     vec3 position, normal; /* normal: unit */
 } query_point;
@@ -21,23 +21,24 @@ typedef struct query_point {
 typedef struct importance_node importance_node;
 
 typedef struct importance_map {
-    importance_node *nodes; /* owned; the roots of the six trees first */
+    importance_node *nodes; /* owned; the six roots first */
     uint32_t node_count;
-    vec3 corner; /* of the cube that all trees divide */
-    float size;  /* of its edge */
+    vec3 corner; /* of the cube that the trees subdivide */
+    float size;  /* length of its edge, scene units */
 } importance_map;
 
-/* Reads the points. Without any, no point has importance. Errors: AG_ERROR_MEMORY. */
+/* Builds the map from points. Without points all importance is 0. Errors: AG_ERROR_MEMORY. */
 ag_status importance_map_create(const query_point *points, uint32_t count, importance_map *out_importance);
 
-/* Reads points that are few and lie there by chance, and that are shares of a whole of so many (>= 1). They all lie
- * between low and high. A part of a surface that has none counts as if it had up to one, by how many lie around it. */
+/* Builds the map from a sparse random sample: `count` of `whole` (>= 1) points, all between low and high. A part of a
+ * surface without points counts as up to one point, depending on the number of points around it. Errors:
+ * AG_ERROR_MEMORY. */
 ag_status importance_map_create_smooth(const query_point *points, uint32_t count, uint32_t whole, vec3 low, vec3 high,
                                        importance_map *out_importance);
 void importance_map_reset(importance_map *importance);
 
-/* Share of all the points, or of the whole, that lies around here on the side of the normal, per area [1/m^2]; 0 where
- * there is none. */
+/* Returns the share of the points (or of `whole`) per area, 1/m^2, around a position on the side of the unit normal; 0
+ * where there is none. */
 float importance_map_at(const importance_map *importance, vec3 position, vec3 normal);
 
 #endif

@@ -9,13 +9,13 @@
 
 /* The bits of a cell's word that tell which ways there are; and the cells of a worker's turn. */
 enum { WAYS = 6, CELLS_AT_ONCE = 16 };
-/* A histogram takes so many photons; one of `FEW` decides half as much as one of very many would. */
+/* The least number of photons of a histogram, and the number at which it has half of its largest weight. */
 enum { LEAST = 8 };
 static const float FEW = 64.0f;
 /* The share of a bin's photons that counts in each of its four neighbours: a histogram of some hundred photons is
  * noise, mostly. */
 static const float SPREAD = 0.5f;
-/* So that sums stay finite. */
+/* Bound of a photon's flux, which keeps sums finite. */
 static const float FLUX_MAX = 1e30f;
 
 /* The axis that a normal is nearest to, and on which side; the borders lie a little beside those of a cube, where
@@ -134,7 +134,7 @@ static void spread(const float flux[INCIDENT_BINS], float out_flux[INCIDENT_BINS
         }
 }
 
-/* share < 1: what is left makes every bin wider than a step of its beginning. */
+/* share < 1: the even remainder makes every bin wider than a step of its lower bound. */
 static void finish(const float flux[INCIDENT_BINS], float share, incident_histogram *out)
 {
     float smooth[INCIDENT_BINS];

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 enum { PRECOMPUTE_BLOCK = 512 };
-/* Asking for a thread's CPU time is a system call: of every so many estimates, one is timed. */
+/* Reading a thread's CPU time is a system call, so that one of this many estimates is timed. */
 enum { TIMED_EVERY = 16 };
 
 static bool scratch_create(irradiance_scratch *s, const photon_map *map)
@@ -65,15 +65,16 @@ void irradiance_cache_reset(irradiance_cache *cache)
     *cache = (irradiance_cache){0};
 }
 
+/* out_reach_squared may be NULL. */
 static irradiance_extent estimate(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
-                                  rgb *out_irradiance)
+                                  rgb *out_irradiance, float *out_reach_squared)
 {
     irradiance_counters *counters = &cache->counters[worker_index];
     photon_neighbor *scratch = cache->scratch[worker_index].neighbors;
     bool is_timed = (counters->computed + counters->uncached) % TIMED_EVERY == 0;
     double begin = is_timed ? clock_thread_cpu_seconds() : 0.0;
-    irradiance_extent extent =
-        irradiance_estimate_find(cache->map, position, normal, scratch, &counters->rays, out_irradiance);
+    irradiance_extent extent = irradiance_estimate_find_reach(cache->map, position, normal, scratch, &counters->rays,
+                                                              out_irradiance, out_reach_squared);
     if (is_timed) {
         counters->timed_seconds += clock_thread_cpu_seconds() - begin;
         counters->timed++;
@@ -85,7 +86,7 @@ static irradiance_extent estimate(irradiance_cache *cache, vec3 position, vec3 n
 static bool estimate_at_point(irradiance_cache *cache, vec3 position, vec3 normal, unsigned worker_index,
                               rgb *out_irradiance)
 {
-    bool holds = estimate(cache, position, normal, worker_index, out_irradiance) != IRRADIANCE_HOLDS_NOWHERE;
+    bool holds = estimate(cache, position, normal, worker_index, out_irradiance, NULL) != IRRADIANCE_HOLDS_NOWHERE;
     cache->counters[worker_index].uncached++;
     return holds;
 }
@@ -106,19 +107,26 @@ static bool publish(const photon_map *map, uint32_t index, uint32_t claimer, uin
     return irradiance_slot_publish(photon_map_slot(map, index), claimer, word);
 }
 
+/* Returns the key that decides how an irradiance photon's value is rounded. */
+static uint64_t rounding_key(const photon_map *map, uint32_t index)
+{
+    return map->is_steady ? photon_block_position_key(map->irradiance_photons.blocks, index) : index;
+}
+
 /* Computes and publishes what the worker has claimed under that number; gives the slot's word. */
 static uint32_t compute(irradiance_cache *cache, uint32_t index, uint32_t claimer, unsigned worker_index)
 {
-    photon_block *blocks = cache->map->irradiance_photons.blocks;
+    const photon_map *map = cache->map;
+    const photon_block *blocks = map->irradiance_photons.blocks;
     rgb irradiance;
     irradiance_extent extent =
         estimate(cache, photon_block_position(blocks, index), direction_decode(photon_block_normal(blocks, index)),
-                 worker_index, &irradiance);
+                 worker_index, &irradiance, map->reaches ? &map->reaches[index] : NULL);
     uint32_t word = irradiance_word(IRRADIANCE_READY, PHOTON_NO_IRRADIANCE);
     if (extent != IRRADIANCE_HOLDS_NOWHERE)
         word = irradiance_word(extent == IRRADIANCE_HOLDS_IN_SIGHT ? IRRADIANCE_READY_IN_SIGHT : IRRADIANCE_READY,
-                               photon_map_encode_irradiance(cache->map, irradiance, index));
-    if (publish(cache->map, index, claimer, word)) {
+                               photon_map_encode_irradiance(map, irradiance, rounding_key(map, index)));
+    if (publish(map, index, claimer, word)) {
         cache->counters[worker_index].computed++;
         store_relaxed_u64(&cache->shown[worker_index].computed, cache->counters[worker_index].computed);
     } else {
@@ -139,8 +147,8 @@ static uint32_t demand(irradiance_cache *cache, uint32_t irradiance_photon, unsi
     return word;
 }
 
-/* The word of a photon that somebody is computing, once it is ready; any word where the run is cancelled meanwhile.
- * Holds no claim meanwhile, but those that it takes over. */
+/* Waits for the word of a photon that another thread is computing; returns any word where the run is cancelled
+ * meanwhile. It holds no claim meanwhile, except those that it takes over. */
 static uint32_t await(irradiance_cache *cache, const run_context *run, uint32_t index, unsigned worker_index)
 {
     irradiance_slot *slot = photon_map_slot(cache->map, index);

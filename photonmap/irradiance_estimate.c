@@ -33,7 +33,7 @@ static bool is_of_this_level(const photon_map *map, const photon_disc *disc, uin
     float height = vec3_dot(vec3_sub(at, disc->position), disc->normal);
     if (height > 0.0f)
         return !photon_map_is_behind_wall(map, map->blocks, disc->position, disc->normal, index, in_out_rays);
-    /* what is straight above a low one must be open */
+    /* the space above a low photon must be empty */
     scene_ray up =
         scene_ray_make(vec3_add_scaled(at, disc->normal, 0.5f * disc->level), vec3_scale(disc->normal, -height));
     ++*in_out_rays;
@@ -54,14 +54,14 @@ static uint32_t sum_in_region(const photon_disc *disc, const surface_region *reg
     return inside;
 }
 
-/* Under one irradiance each ring of a quarter of the disc's area holds a quarter of the photons, and of their flux.
- * Where inner rings hold less of both than chance explains, by so many standard deviations, the disc has reached a
- * point that is brighter. */
+/* Under uniform irradiance each ring of a quarter of the disc's area holds a quarter of the photons and of their flux.
+ * Where inner rings hold less of both than chance explains, by this many standard deviations, the disc has reached a
+ * brighter region. */
 static const float RIM_SIGMAS = 3.25f;
 enum { RINGS = 4 };
 
-/* Whether so many rings, from the innermost, lack flux: photons may be fewer there because they were thinned, and each
- * is the brighter for it. Sums are of whole numbers, in any order. */
+/* Returns whether the innermost rings lack flux: there may be fewer photons because they were thinned, each being
+ * brighter for it. Sums are of integers, in any order. */
 static bool rings_lack_flux(const photon_map *map, const photon_neighbor *n, uint32_t count, float radius_squared,
                             uint32_t rings)
 {
@@ -125,9 +125,8 @@ static uint32_t leave_brighter_rim(const photon_map *map, photon_neighbor *n, ui
     return count;
 }
 
-/* A region holds an estimate when it is this share of the disc, and when photons as dense as they are in that disc,
- * or in the mean of the scene where they are denser there, would leave so many in it. Three walls meet in a quarter
- * disc. */
+/* A region holds an estimate if it is at least this share of the disc, and if photons of the disc's density, or of the
+ * scene's mean where that is greater, would leave at least this many in it. Three walls meet in a quarter disc. */
 static const float REGION_SHARE_MIN = 0.2f, REGION_PHOTONS_MIN = 10.0f;
 
 static bool region_holds(const photon_map *map, double area, float radius)
@@ -137,11 +136,31 @@ static bool region_holds(const photon_map *map, double area, float radius)
     return area >= (double)share_min * (double)AG_PI * (double)least_radius * (double)least_radius;
 }
 
-/* Of the photons found, so large a share must lie on the point's own level: the others have set the radius. */
+/* The share of the photons found that must lie on the point's own level, else other levels have set the radius. */
 static const float LEVEL_SHARE_MIN = 0.5f;
+
+/* Returns the reach of an estimate from the number of photons found, the last of which is the farthest if there is one
+ * more than it sums. Among equally far ones the photons' order decides which of them count. */
+static float reach_of(const photon_map *map, const photon_neighbor *n, uint32_t found)
+{
+    if (found <= map->nearest)
+        return map->max_radius * map->max_radius;
+    float farthest = photon_neighbor_distance_squared(n[map->nearest]);
+    bool is_clear = farthest > map->min_radius_squared;
+    for (uint32_t i = 0; i < map->nearest; i++)
+        is_clear = is_clear && photon_neighbor_distance_squared(n[i]) < farthest;
+    return is_clear ? farthest : 0.0f;
+}
 
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                            uint64_t *in_out_rays, rgb *out_irradiance)
+{
+    return irradiance_estimate_find_reach(map, position, normal, scratch, in_out_rays, out_irradiance, NULL);
+}
+
+irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 position, vec3 normal,
+                                                 photon_neighbor *scratch, uint64_t *in_out_rays, rgb *out_irradiance,
+                                                 float *out_reach_squared)
 {
     *out_irradiance = rgb_gray(0.0f);
     if (map->set.count == 0)
@@ -149,6 +168,8 @@ irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position,
     float other_squared;
     uint32_t found = photon_tree_k_nearest(&map->tree, position, normal, PHOTON_ESTIMATE_MIN_COS, map->max_radius,
                                            map->nearest + 1, scratch, &other_squared);
+    if (out_reach_squared)
+        *out_reach_squared = reach_of(map, scratch, found);
     float radius_squared = map->max_radius * map->max_radius;
     uint32_t count = found;
     if (found == map->nearest + 1) {

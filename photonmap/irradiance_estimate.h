@@ -7,27 +7,41 @@
 
 #include "photon_map.h"
 
-/* The points at which an estimate holds, of those that are nearest to its photon. */
+/* The points at which an estimate holds, among those whose nearest photon is the estimate's. */
 typedef enum irradiance_extent {
     IRRADIANCE_HOLDS_NOWHERE,
-    IRRADIANCE_HOLDS_IN_SIGHT,  /* where the point is seen from: a surface ends near by, or another level is there */
+    IRRADIANCE_HOLDS_IN_SIGHT,  /* only points that see the estimate's point: a surface ends nearby, or another level is
+                                   there */
     IRRADIANCE_HOLDS_EVERYWHERE /* no surface ends within photon_map_far */
 } irradiance_extent;
 
-/* Irradiance [W/m^2] on the side of `normal` (unit), from the k nearest photons: their flux over the area out to the
- * next one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Near an edge, of either as far
- * as there is surface; beside brighter light, of the disc that ends before it. scratch: photon_map_scratch_count(map)
- * of them. The rays that it casts to find out where surfaces end are added to *in_out_rays.
+/* Writes the irradiance, W/m^2, on the side of the unit normal, from the k nearest photons: their flux over the area
+ * out to the next one, the (k+1)-th; where fewer lie within max_radius, over the area of that disc. Near an edge both
+ * are restricted to the surface; beside brighter light, to the disc that ends before it. scratch:
+ * photon_map_scratch_count(map) neighbours. The rays that it casts to find where surfaces end are added to
+ * *in_out_rays. Does not fail, does not allocate.
  *
  * Returns where the estimate holds. It holds nowhere if the surface within the disc is too small for the photons that a
- * disc holds: on a strip, a moulding, a leaf. There photons per area is right in the mean only, by values that are
- * nearly always 0 and else a thousand times too large; *out_irradiance is then the whole disc's, which is not of this
- * surface alone but bounded. Nor does it hold if most of the photons found lie on other levels, whose density then has
- * set the radius. The answer rests on geometry, on how dense photons are in all of the scene and on those of other
- * surfaces, never on how many of this surface were found: to keep some draws of a count and not others would change
- * the mean. Does not fail, does not allocate. */
+ * disc holds, as on a strip, a moulding or a leaf: photons per area are right there only on average, by values that are
+ * nearly always 0 and otherwise a thousand times too large. *out_irradiance is then that of the whole disc, which
+ * includes other surfaces but is bounded. It holds nowhere either if most of the photons found lie on other levels,
+ * whose density has then set the radius. The decision depends on geometry, on the density of photons in the whole scene
+ * and on the photons of other surfaces, never on the number of photons found on this surface: to accept some outcomes
+ * of a random count and not others would bias the mean. */
 irradiance_extent irradiance_estimate_find(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch,
                                            uint64_t *in_out_rays, rgb *out_irradiance);
+
+/* irradiance_estimate_find, and how far it reaches: *out_reach_squared is the squared radius out to the (k+1)-th
+ * photon, or of the largest disc; where that is NULL, nothing is told. Photons that lie farther away make no difference
+ * to the bits of extent and irradiance, nor do those that face the other way (photon_changes.h), nor does geometry
+ * beyond IRRADIANCE_REACH_OF_RAYS times that radius. 0: that is not so, for the k-th and the next one are equally far,
+ * or the disc was as small as can be. */
+irradiance_extent irradiance_estimate_find_reach(const photon_map *map, vec3 position, vec3 normal,
+                                                 photon_neighbor *scratch, uint64_t *in_out_rays, rgb *out_irradiance,
+                                                 float *out_reach_squared);
+
+/* All rays of an estimate end within 1.2 times its radius; the rest is for rounding. */
+#define IRRADIANCE_REACH_OF_RAYS 1.5f
 
 /* The value alone, for which no rays are counted. */
 static inline rgb irradiance_estimate(const photon_map *map, vec3 position, vec3 normal, photon_neighbor *scratch)

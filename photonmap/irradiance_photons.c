@@ -58,7 +58,8 @@ static photon record_of(const photon_tree *photons, uint32_t index)
 /* A photon is compared with this many of its run's irradiance photons at most: the pick, and the last ones. */
 enum { ASKED = 8 };
 
-/* chosen: the pick first. The others have half the reach: they lie where a gather hit may be far from all photons. */
+/* Returns whether one of the chosen photons, of which the pick is the first, represents a photon. The others have half
+ * the reach: they lie where a gather hit may be far from all photons. */
 static bool is_stood_for(const choice *c, const spot *chosen, uint32_t count, const spot *photon_at)
 {
     if (is_near(c, &chosen[0], photon_at, c->reach_squared))
@@ -69,7 +70,7 @@ static bool is_stood_for(const choice *c, const spot *chosen, uint32_t count, co
     return false;
 }
 
-/* Chooses a run's irradiance photons: its pick, and the photons that none of those compared stands for. Writes them to
+/* Chooses a run's irradiance photons: its pick, and the photons that none of those compared represents. Writes them to
  * records, unless it is NULL, and returns their number, or when cancelled the number so far. */
 static uint32_t choose(const choice *c, uint32_t run, photon *records)
 {

@@ -1,31 +1,30 @@
-/* irradiance_photons.h: the irradiance photons of a map, which are the photons that irradiance is computed and kept at,
- * where those are not all: a tree of their own, so that the nearest one is looked for among few.
+/* irradiance_photons.h: the irradiance photons of a map: the fraction of its photons at which irradiance is computed
+ * and kept, in a tree of their own, so that the nearest one is looked up among few.
  * Rests on: Christensen, "Faster Photon Map Global Illumination", 1999 (irradiance at a fraction of the photons).
  * Flow: photon_tree -> [here] -> photon_map. Threads: picked, and their tree built, by the run's workers; then
- * read-only, but for the slots.
+ * read-only, except the slots.
  *
- * The photons are parted into runs that follow each other in the map's order, and so lie together. Of each run one
- * photon becomes an irradiance photon, picked by a hash: a lane of its own in each block would favour the planes that
- * blocks were parted by. So irradiance photons are as dense as light is, more evenly spread than photons picked one by
- * one, and depend on nothing but the map. Photons of the run that the picked one cannot stand for become irradiance
- * photons too, until one is near each photon: in the dark, where photons lie far apart, and where surfaces turn. */
+ * The photons are divided into runs of neighbours in the map's order, which lie near each other. One photon of each run
+ * becomes an irradiance photon, picked by a hash: a fixed lane of each block would favour the planes by which blocks
+ * were split. Irradiance photons are thus as dense as light, more evenly spread than photons that are picked
+ * independently, and depend on nothing but the map. Photons of the run that the picked one cannot represent become
+ * irradiance photons too, until each photon has one nearby: in the dark, where photons are sparse, and where surfaces
+ * curve. */
 #ifndef AFTERGLOW_IRRADIANCE_PHOTONS_H
 #define AFTERGLOW_IRRADIANCE_PHOTONS_H
 
 #include "photon_tree.h"
 
-/* The number of runs that the photons are parted into: the fraction (0, 1] of them, but one at least where there are
- * any. */
+/* Returns the number of runs: the fraction, (0, 1], of the photons, but at least one where there are any. */
 uint32_t irradiance_photons_runs(uint32_t photon_count, float fraction);
 
-/* Picks the irradiance photons of a tree of photons: copies, with empty slots, and the photon's index instead of
- * the flux. One stands for the photons that are no farther away than reach and have a normal whose cosine to its own is
- * above min_cos. Tree and blocks are the caller's: photon_tree_reset, and free of the blocks. Errors: AG_ERROR_MEMORY,
- * AG_CANCELLED. */
+/* Picks the irradiance photons of a tree. They are copies with empty slots, and with the photon's index in place of the
+ * flux. Each represents the photons within `reach` whose normals have a cosine above min_cos to its own. The caller
+ * owns tree and blocks: photon_tree_reset, and free for the blocks. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status irradiance_photons_create(run_context *run, const photon_tree *photons, float fraction, float reach,
                                     float min_cos, double progress, photon_tree *out_irradiance_photons);
 
-/* The photon that an irradiance photon was copied from. */
+/* Returns the photon of which an irradiance photon is a copy. */
 static inline uint32_t irradiance_photons_source(const photon_tree *tree, uint32_t irradiance_photon)
 {
     return photon_block_flux(tree->blocks, irradiance_photon);

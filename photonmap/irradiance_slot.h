@@ -41,7 +41,7 @@ static inline irradiance_state irradiance_word_state(uint32_t word)
     return (irradiance_state)(word >> IRRADIANCE_STATE_SHIFT);
 }
 
-/* Whether the word holds a final value, of either kind. */
+/* Returns whether the word holds a final value, of either kind. */
 static inline bool irradiance_word_is_ready(uint32_t word)
 {
     return word >> IRRADIANCE_STATE_SHIFT >= IRRADIANCE_READY;
@@ -52,13 +52,12 @@ static inline uint32_t irradiance_word(irradiance_state state, uint32_t value)
     return (uint32_t)state << IRRADIANCE_STATE_SHIFT | (value & IRRADIANCE_VALUE_MASK);
 }
 
-/* Acquire: pairs with publish. The word is all there is to see, but whoever reads READY may also rely on what the
- * claimer did before. */
+/* Reads the slot. Acquire, pairs with publish: a reader of READY also sees what the claimer wrote before. */
 static inline uint32_t irradiance_slot_read(const irradiance_slot *slot) { return load_acquire_u32(slot); }
 
-/* Takes an empty slot for the claimer (any number below 2^30). At most one caller ever gets true. Acquire: pairs with
- * publish when it loses and finds READY. Release: whoever reads the claim and asks after its claimer finds its entry in
- * the table of claim_owners.h. *out_word: what is there now. */
+/* Claims an empty slot for a claimer, a number below 2^30. At most one caller ever gets true. *out_word: the word in
+ * the slot now. Acquire: pairs with publish, where the caller loses and finds READY. Release: a reader of the claim
+ * finds its claimer's entry in the table of claim_owners.h. */
 static inline bool irradiance_slot_try_claim(irradiance_slot *slot, uint32_t claimer, uint32_t *out_word)
 {
     uint32_t found = 0, claimed = irradiance_word(IRRADIANCE_CLAIMED, claimer);
@@ -67,8 +66,8 @@ static inline bool irradiance_slot_try_claim(irradiance_slot *slot, uint32_t cla
     return won;
 }
 
-/* Takes over a claim that its claimer will not make ready: see claim_owners.h. *in_out_word: what was read there; what
- * is there now. False when it is not that word any more. Orders as try_claim. */
+/* Takes over a claim that its claimer will not make ready: see claim_owners.h. *in_out_word: the word read before;
+ * receives the word in the slot now. Returns false where the slot has changed since. Memory order as in try_claim. */
 static inline bool irradiance_slot_take_over(irradiance_slot *slot, uint32_t *in_out_word, uint32_t claimer)
 {
     uint32_t claimed = irradiance_word(IRRADIANCE_CLAIMED, claimer);
@@ -78,18 +77,19 @@ static inline bool irradiance_slot_take_over(irradiance_slot *slot, uint32_t *in
     return true;
 }
 
-/* Makes the claimer's word, which is a ready one, final. Release: pairs with read. False when the claim was not the
- * claimer's any more: somebody else computes it too, which happens where a process has stood still for so long that it
- * was thought dead, and to nobody else. Its claims carry another number from then on (claim_owners_renew). */
+/* Publishes the claimer's word, a ready one, which is then final. Release: pairs with read. Returns false where the
+ * claim has been taken over, so that another process computes the value too. That happens only to a process that had
+ * stalled for so long that it was considered dead; its claims carry another number from then on
+ * (claim_owners_renew). */
 static inline bool irradiance_slot_publish(irradiance_slot *slot, uint32_t claimer, uint32_t ready)
 {
     uint32_t expected = irradiance_word(IRRADIANCE_CLAIMED, claimer);
     return cas_release_u32(slot, &expected, ready);
 }
 
-/* The check byte that a map's file keeps beside a ready slot, to tell a word that has been damaged: never 0, and
- * another one where one or two bits of the word or of its index differ (CRC-7 of both, polynomial x^7 + x^3 + 1). It is
- * written before the word is published, and by several at once only where they write the same. */
+/* Returns the check byte that a map's file keeps beside a ready slot, to detect damaged words: never 0, and different
+ * where one or two bits of the word or of its index differ (CRC-7 of both, polynomial x^7 + x^3 + 1). It is written
+ * before the word is published; several threads may write it at once only with equal values. */
 static inline uint8_t irradiance_word_check(uint32_t index, uint32_t word)
 {
     static const uint8_t OF_NIBBLE[16] = {0x00, 0x12, 0x24, 0x36, 0x48, 0x5a, 0x6c, 0x7e,

@@ -1,5 +1,5 @@
-/* map_guard.c: see map_guard.h. In the handler the whole mapping is replaced by empty memory, so that the read that
- * failed can be made again, and those that follow do not fail one by one.
+/* map_guard.c: see map_guard.h. The handler replaces the whole mapping by empty memory, so that the read that failed
+ * succeeds when it is repeated, and later ones do not fail one by one.
  * Threads: any; the handler runs on the thread that touched the memory. */
 #define _GNU_SOURCE
 #include "map_guard.h"

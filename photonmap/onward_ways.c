@@ -12,14 +12,15 @@
 static const float HISTOGRAM_SHARE = 1.0f;
 /* The widest cone's angle is 30 degrees; thinner ones than the least are not precise in floats. */
 static const float CONE_SINE_MAX = 0.5f, CONE_SINE_MIN = 1e-3f;
-/* Where lines meet is guessed from so many pairs of them, of which the best is made better in so many rounds. The lines
- * that pass it at more than so many times the median angle are left out then, and of the ball. */
+/* The point where lines meet is estimated from PAIRS pairs of them; the best estimate is refined in ROUNDS rounds,
+ * without the lines that pass it at more than this many times the median angle, which are then left out of the ball
+ * too. */
 enum { PAIRS = 32, ROUNDS = 3 };
 static const float OUTLIER = 2.0f;
-/* A ball that fewer of the lines pass is no opening; nor is one that is not so many times farther off than wide, which
- * the histogram tells as well. */
+/* A ball that a smaller share of the lines pass is no opening; nor is one whose distance is less than this many times
+ * its width, since the histogram represents it as well. */
 static const float PASSING_LEAST = 0.6f, FAR = 3.0f;
-/* The ball is so much wider than the lines tell, which are few, and rounded to 0.7 degrees. */
+/* Factor of the radius that the lines give, since they are few, and rounded to 0.7 degrees. */
 static const float MARGIN = 1.25f;
 /* Lines that are parallel do not tell how far off they meet: each counts a little for its beginning. */
 static const double BEGINNING = 1e-6;
@@ -257,7 +258,7 @@ float onward_lead_gain(const onward_lead *lead)
 {
     if (lead->cone_count == 0)
         return 1.0f;
-    /* a cone may lie below the surface for the most part: what is above has about its own sine as cosine */
+    /* a cone may be mostly below the surface: the part above has about its own sine as cosine */
     float cosine = fmaxf(vec3_dot(lead->towards.z, lead->guide.around.z), 0.5f * sqrtf(lead->sine_squared[0]));
     return fmaxf(onward_lead_density(lead, lead->towards.z) * AG_PI / cosine, 1.0f);
 }

@@ -9,13 +9,14 @@
 /* Paths of a round, as a share of the photons wanted and within bounds; the first round, by power alone, has half of
  * that, and more while hardly any path arrives; each further one follows what the rounds before have learned. */
 enum { PHOTONS_PER_TRIAL = 8, ROUND_TRIALS_MIN = 1 << 12, ROUND_TRIALS_MAX = 1 << 16, ROUNDS = 4 };
-/* Before those further ones a round follows the starts found from where light is asked for, if so many are. */
+/* Before these rounds another one follows the starts that were found from where light is requested, if there are at
+ * least STARTS_LEAST. */
 enum { ROUNDS_MAX = ROUNDS + 1, STARTS_LEAST = 64 };
 enum { BLIND_ROUNDS_MAX = 8, USEFUL_LEAST = 32 };
-/* A guide that lowers the variance by less than this is not worth its weights. Nor is one where by power alone so many
- * of the photons are of use, and a path leaves so many of those. */
+/* A guide that lowers the variance by less than this is not worth its weights. Nor is one where, by power alone, this
+ * share of the photons is useful, and a path leaves this many useful ones. */
 static const float LEAST_GAIN = 1.5f;
-static const double ENOUGH_ASKED = 0.5, ENOUGH_PER_PATH = 0.25;
+static const double ENOUGH_USEFUL = 0.5, ENOUGH_PER_PATH = 0.25;
 /* Paths are split that are worth more than SPLIT_RATIO times the tenth percentile of the useful paths' worths, and so
  * much more that no more than about PARTS_PER_PATH come to one path. The first round with a guide splits above a high
  * percentile by power alone, and each further one above no less than a SPLIT_STEP of that, so that no round takes
@@ -33,7 +34,7 @@ typedef struct learner {
     uint32_t count, round_trials, round_count;
     float split_above;                     /* of the next round, if it has a guide */
     emission_guide guides[ROUNDS_MAX + 1]; /* by which the rounds were traced; then the last one */
-    const emission_guide *found;           /* the one of them that goes by starts; NULL: none does */
+    const emission_guide *found;           /* the guide among them that was built from starts; NULL: none */
     trial_counts counts, blind;            /* of all trials; of those by power alone */
 } learner;
 
@@ -114,6 +115,14 @@ static ag_status make_guide(learner *l, uint32_t round, const emission_starts *s
     return AG_OK;
 }
 
+/* Returns the share of useful photons, each weighted by the root of its importance; 1 where light is requested
+ * evenly. */
+static double useful_share(const trial_counts *counts)
+{
+    double of_even = (double)counts->photons * counts->importance;
+    return of_even > 0.0 ? counts->roots * counts->roots / of_even : 0.0;
+}
+
 static ag_status learn(learner *l, const emission_starts *starts, photon_aim *out_aim)
 {
     uint32_t counts[ROUNDS_MAX + 1] = {0};
@@ -122,8 +131,7 @@ static ag_status learn(learner *l, const emission_starts *starts, photon_aim *ou
         status = trace_round(l, least_of(l->count, BLIND_ROUNDS_MAX * l->round_trials - l->count));
     counts[0] = l->count;
     l->blind = l->counts;
-    double asked = (double)l->counts.asked;
-    if (asked >= ENOUGH_ASKED * (double)l->counts.photons && asked >= ENOUGH_PER_PATH * (double)l->counts.paths)
+    if (useful_share(&l->blind) >= ENOUGH_USEFUL && (double)l->blind.asked >= ENOUGH_PER_PATH * (double)l->blind.paths)
         return status;
     for (uint32_t round = 1; status == AG_OK; round++) {
         emission_guide *next = &l->guides[round];
@@ -176,7 +184,7 @@ ag_status photon_aim_learn(const scene *s, run_context *run, const photon_tracin
     if (out_aim->guide.nodes) {
         out_aim->wanted = fewer_by_power(&l.blind, settings->wanted);
         out_aim->split_above = l.split_above;
-        out_aim->caustic_root = l.settings.caustic_root; /* by which the last round has set what is split */
+        out_aim->caustic_root = l.settings.caustic_root; /* from the last round, which has set what is split */
     }
     for (int i = 0; i <= ROUNDS_MAX; i++)
         emission_guide_reset(&l.guides[i]);

@@ -31,7 +31,8 @@ static inline uint64_t photon_block_count(uint32_t photon_count)
     return ((uint64_t)photon_count + PHOTON_BLOCK_LANES - 1) / PHOTON_BLOCK_LANES;
 }
 
-/* Room for so many records, and for the blocks that they will be; for free(). NULL when out of memory. */
+/* Allocates room for photon_count records, and for the blocks that they become; to be freed by free(). NULL when out of
+ * memory. */
 static inline photon *photon_records_create(uint32_t photon_count)
 {
     uint64_t blocks = photon_block_count(photon_count);
@@ -58,6 +59,15 @@ static inline uint16_t photon_block_normal(const photon_block *blocks, uint32_t 
 static inline uint32_t photon_block_flux(const photon_block *blocks, uint32_t index)
 {
     return blocks[index / PHOTON_BLOCK_LANES].flux[index % PHOTON_BLOCK_LANES];
+}
+
+/* A number at random that goes with the photon's position, wherever the photon stands in the map. */
+static inline uint64_t photon_block_position_key(const photon_block *blocks, uint32_t index)
+{
+    vec3 at = photon_block_position(blocks, index);
+    uint32_t bits[3];
+    memcpy(bits, &at, sizeof bits);
+    return hash_combine(hash_combine(bits[0], bits[1]), bits[2]);
 }
 
 /* Squared distances of all lanes, and as bits which of them are no farther than the limit. */
@@ -87,7 +97,7 @@ static inline uint32_t photon_block_within(const photon_block *b, const float po
     return within;
 }
 
-/* The nearest of the lanes in the mask, which is not 0; of equally near ones the first. */
+/* Returns the nearest of the lanes in the mask, which is not 0; the first of equally near ones. */
 static inline uint32_t photon_block_nearest_lane(const float distance_squared[PHOTON_BLOCK_LANES], uint32_t mask)
 {
     uint32_t best = (uint32_t)__builtin_ctz(mask);
@@ -98,7 +108,7 @@ static inline uint32_t photon_block_nearest_lane(const float distance_squared[PH
     return best;
 }
 
-/* The squared distance of the nearest lane, and of equally near ones the first. */
+/* Returns the squared distance of the nearest lane; the first of equally near ones. */
 static inline float photon_block_nearest(const photon_block *b, const float position[3], uint32_t *out_lane)
 {
 #if defined(__SSE2__)
@@ -110,7 +120,7 @@ static inline float photon_block_nearest(const photon_block *b, const float posi
         __m128 y = _mm_sub_ps(_mm_load_ps(&b->position[1][4 * i]), py);
         __m128 z = _mm_sub_ps(_mm_load_ps(&b->position[2][4 * i]), pz);
         d[i] = _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, x), _mm_mul_ps(y, y)), _mm_mul_ps(z, z));
-        least = _mm_min_ps(d[i], least); /* of what is no number, the second */
+        least = _mm_min_ps(d[i], least); /* the second operand, where the first is NaN */
     }
     least = _mm_min_ps(least, _mm_shuffle_ps(least, least, _MM_SHUFFLE(1, 0, 3, 2)));
     least = _mm_min_ps(least, _mm_shuffle_ps(least, least, _MM_SHUFFLE(2, 3, 0, 1)));
@@ -132,7 +142,7 @@ static inline float photon_block_nearest(const photon_block *b, const float posi
 #endif
 }
 
-/* Asks for what a search of the block reads: positions and normals. */
+/* Prefetches the positions and normals of a block. */
 static inline void photon_block_prefetch(const photon_block *b)
 {
     for (int a = 0; a < 3; a++)
@@ -140,7 +150,7 @@ static inline void photon_block_prefetch(const photon_block *b)
     __builtin_prefetch(b->normal);
 }
 
-/* The lanes that have exactly that normal, as bits. */
+/* Returns, as bits, the lanes with exactly that normal. */
 static inline uint32_t photon_block_with_normal(const photon_block *b, uint16_t normal)
 {
 #if defined(__SSE2__)

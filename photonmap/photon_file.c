@@ -43,6 +43,7 @@ static photon_map map_of(const photon_file_map *m, photon_tree tree, photon_tree
                       .min_radius_squared = m->min_radius_squared,
                       .mean_radius = m->mean_radius,
                       .flux_exponent_max = m->flux_exponent_max,
+                      .is_steady = m->is_steady != 0,
                       .is_borrowed = true,
                       .has_been_cached = true};
     photon_map_set_bias(&map, m->irradiance_bias);
@@ -246,7 +247,7 @@ photon_file_result photon_file_read(const run_context *run, const char *path, ph
     if (result != PHOTON_FILE_OPEN)
         return result;
     *out_key = h.key;
-    h.nonce = 0; /* all else is the same whoever traced it */
+    h.nonce = 0; /* the rest is the same for any process that traced it */
     *out_fixed = photon_file_header_hash(&h);
     return PHOTON_FILE_OPEN;
 }

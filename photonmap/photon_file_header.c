@@ -8,7 +8,7 @@ static const uint32_t BYTE_ORDER_MARK = 0x01020304;
 static const char MAGIC[16] = "Afterglow map\r\n";
 
 _Static_assert(sizeof(photon_file_header) <= PHOTON_FILE_OWNERS_AT, "the header has a page of its own");
-_Static_assert(sizeof(photon_file_key) == 1184 && sizeof(photon_file_map) == 288 && sizeof(photon_file_tree) == 24,
+_Static_assert(sizeof(photon_file_key) == 1184 && sizeof(photon_file_map) == 296 && sizeof(photon_file_tree) == 24,
                "no gaps: they are compared and hashed");
 _Static_assert(offsetof(photon_block, slot) + PHOTON_BLOCK_LANES * sizeof(irradiance_slot) == sizeof(photon_block),
                "what never changes of a block is its first part");

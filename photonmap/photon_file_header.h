@@ -28,6 +28,7 @@ typedef struct photon_file_map {
     uint32_t nearest;
     float max_radius, min_radius_squared, mean_radius;
     int32_t flux_exponent_max, irradiance_bias;
+    uint32_t is_steady, reserved;
 } photon_file_map;
 
 typedef struct photon_file_header {

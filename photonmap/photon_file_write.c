@@ -23,7 +23,8 @@ static photon_file_map record_of(const photon_map *map)
                              .min_radius_squared = map->min_radius_squared,
                              .mean_radius = map->mean_radius,
                              .flux_exponent_max = map->flux_exponent_max,
-                             .irradiance_bias = map->irradiance_bias};
+                             .irradiance_bias = map->irradiance_bias,
+                             .is_steady = map->is_steady};
 }
 
 static int write_at(const run_context *run, int descriptor, const void *bytes, uint64_t size, uint64_t at)

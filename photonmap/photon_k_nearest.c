@@ -10,9 +10,9 @@ static uint32_t first_leaf(const photon_query *q)
     return photon_tree_leaf(q->tree, (vec3){q->position[0], q->position[1], q->position[2]});
 }
 
-/* Puts on the stack the sides that the way to a node so many levels above the leaves left aside, as far as they are
- * within the limit; the nearest to the node on top. By the offset from their plane alone, which may be too little, and
- * is never too much. */
+/* Pushes the sides that the path to a node above the leaves has left aside, as far as they are within the limit; the
+ * nearest to the node on top. Their distance is the offset from their plane alone, which may be too small, but never
+ * too large. */
 static void stack_other_sides(photon_query *q, uint32_t node, uint32_t height, float limit)
 {
     uint32_t way = node + 1; /* the heap's order: the ancestor `up` levels above is way >> up */
@@ -31,8 +31,8 @@ static void keep_nearest(const disc_kernels *kernels, uint32_t wanted, photon_co
     c->count = wanted;
 }
 
-/* Collects the photons within the limit; where there are too many, the nearest, and the limit shrinks. Leaves are
- * fetched from memory while more of them are found. */
+/* Collects the photons within the limit; where they are too many, keeps the nearest and shrinks the limit. Leaves are
+ * prefetched while others are searched. */
 static void collect(const disc_kernels *kernels, photon_query *q, uint32_t first_leaf, uint32_t wanted,
                     photon_collection *c)
 {

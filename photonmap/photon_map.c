@@ -5,6 +5,7 @@
 #include "parallel_for.h"
 #include "photon_kernels.h"
 #include "photon_survey.h"
+#include "quarter_octave.h"
 #include "rays/transmittance.h"
 #include "status.h"
 
@@ -18,6 +19,8 @@ static const float RADIUS_FACTOR = 4.0f;
  * expect. So the smallest disc, which is a safeguard against photons at one point, is as small as a slot allows:
  * between the estimate on it and a thousandth of a photon on the largest disc lie these octaves. */
 enum { IRRADIANCE_OCTAVES = 64, OCTAVES_OF_A_THOUSAND = 10 };
+/* A steady map's largest exponent of flux is a multiple of this: photons of another brightness seldom change it. */
+enum { STEADY_EXPONENTS = 4 };
 
 /* Where most of the scene is dark, its area does not tell how far apart the photons lie. Estimates need no more than
  * this many times the radius of the median photon's. */
@@ -40,6 +43,8 @@ static ag_status bound_radii(photon_map *map)
     uint32_t count;
     AG_TRY(photon_survey(map, radius_at, radius, &count));
     float median = fmaxf(radius[count / 2], LEAST_MEDIAN * map->max_radius);
+    if (map->is_steady)
+        median = quarter_octave_nearest(median);
     map->mean_radius = fminf(map->mean_radius, MEDIAN_FACTOR * median);
     map->max_radius = fminf(map->max_radius, RADIUS_FACTOR * map->mean_radius);
     return AG_OK;
@@ -48,8 +53,17 @@ static ag_status bound_radii(photon_map *map)
 /* Against photons that coincide, which have no area of their own. */
 static float smallest_radius(const photon_map *map)
 {
-    int octaves = (IRRADIANCE_OCTAVES - OCTAVES_OF_A_THOUSAND - 1 - ilogbf((float)map->nearest + 1.0f)) / 2;
-    return ldexpf(map->max_radius, -octaves);
+    int octaves = IRRADIANCE_OCTAVES - OCTAVES_OF_A_THOUSAND - 1 - ilogbf((float)map->nearest + 1.0f);
+    if (map->is_steady)
+        octaves -= STEADY_EXPONENTS - 1;
+    return ldexpf(map->max_radius, -(octaves / 2));
+}
+
+/* The least multiple of STEADY_EXPONENTS that is no smaller. */
+static int steady_exponent(int exponent)
+{
+    int below = exponent & (STEADY_EXPONENTS - 1);
+    return below > 0 ? exponent - below + STEADY_EXPONENTS : exponent;
 }
 
 /* An irradiance photon stands for points up to this share of the largest disc's radius away. The light through the
@@ -63,11 +77,14 @@ static float nearest_reach(const photon_map *map) { return NEAREST_SHARE * map->
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
                             double progress_begin, double progress_end, photon_map *out_map)
 {
-    photon_map map = {.set = *set, .nearest = settings->nearest, .surfaces = settings->surfaces};
+    photon_map map = {
+        .set = *set, .nearest = settings->nearest, .surfaces = settings->surfaces, .is_steady = settings->is_steady};
     *set = (photon_set){0};
     *out_map = (photon_map){0};
     float density = settings->surface_area > 0.0f ? (float)map.set.count / settings->surface_area : 0.0f;
     map.mean_radius = density > 0.0f ? sqrtf((float)map.nearest / (AG_PI * density)) : 0.0f;
+    if (map.is_steady)
+        map.mean_radius = quarter_octave_nearest(map.mean_radius);
     map.max_radius = settings->max_radius > 0.0f ? settings->max_radius : RADIUS_FACTOR * map.mean_radius;
     if (settings->max_radius == 0.0f && settings->radius_bound > 0.0f)
         map.max_radius = fminf(map.max_radius, settings->radius_bound);
@@ -87,6 +104,10 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
     if (status == AG_OK && settings->irradiance_fraction > 0.0f && settings->irradiance_fraction < 1.0f)
         status = irradiance_photons_create(run, &map.tree, settings->irradiance_fraction, nearest_reach(&map),
                                            PHOTON_NEAREST_MIN_COS, progress_end, &map.irradiance_photons);
+    if (status == AG_OK && map.is_steady) {
+        map.reaches = calloc(map.irradiance_photons.count, sizeof *map.reaches);
+        status = map.reaches ? AG_OK : AG_ERROR_MEMORY;
+    }
     if (status != AG_OK) {
         photon_map_reset(&map);
         return status;
@@ -104,6 +125,8 @@ ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_
         if (code != 0 && exponent > map.flux_exponent_max)
             map.flux_exponent_max = exponent;
     }
+    if (map.is_steady)
+        map.flux_exponent_max = steady_exponent(map.flux_exponent_max);
     /* The largest estimate: all k photons of the largest flux on the smallest disc; its mantissa's exponent is 63's. */
     double largest = 255.0 * ldexp(1.0, map.flux_exponent_max) * (map.nearest + 1.0) /
                      ((double)map.set.emitted_paths * (double)AG_PI * (double)map.min_radius_squared);
@@ -131,6 +154,8 @@ void photon_map_reset(photon_map *map)
     }
     map->tree = map->irradiance_photons = (photon_tree){0};
     map->blocks = NULL;
+    free(map->reaches);
+    map->reaches = NULL;
     photon_set_reset(&map->set);
 }
 
@@ -140,6 +165,8 @@ uint64_t photon_map_bytes(const photon_map *map)
     if (!photon_map_all_have_irradiance(map))
         bytes += photon_block_count(map->irradiance_photons.count) * sizeof(photon_block) +
                  photon_tree_bytes(&map->irradiance_photons);
+    if (map->reaches)
+        bytes += map->irradiance_photons.count * sizeof *map->reaches;
     return bytes;
 }
 
@@ -166,6 +193,8 @@ static const float FAR_SPACINGS = 1.4f;
 float photon_map_far(const photon_map *map)
 {
     float photons_each = (float)map->set.count / (float)map->irradiance_photons.count;
+    if (map->is_steady)
+        photons_each = quarter_octave_nearest(photons_each);
     return FAR_SPACINGS * map->mean_radius * sqrtf(photons_each / (float)map->nearest);
 }
 
@@ -203,7 +232,7 @@ void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const pho
                      photon_neighbor_distance_squared(nearest[i]), in_out_rays);
 }
 
-/* An irradiance is doubted where so many photons, on average, would lie nearer to the point than its own. */
+/* An irradiance is rejected where this many photons, on average, would lie nearer to the point than its own. */
 static const float EMPTY_DISC_PHOTONS = 8.0f;
 
 bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, vec3 position, rgb irradiance)

@@ -1,7 +1,7 @@
-/* photon_map.h: photons, their tree, and which of them stands for a point.
+/* photon_map.h: photons, their tree, and the photon whose irradiance represents a point.
  * Rests on: Neilson, Yang, TR 04-21, 2004; Christensen, "Faster Photon Map Global Illumination", 1999 (irradiance at
- * the photons). Flow: photon_tracing, photon_tree -> [here] -> irradiance_estimate, irradiance_cache. Threads: built by
- * one caller on the run's workers; then read-only, but for the slots. */
+ * the photons). Flow: photon_tracing, photon_tree -> [here] -> irradiance_estimate, irradiance_cache. Threads: built
+ * by one caller on the run's workers; then read-only, but for the slots. */
 #ifndef AFTERGLOW_PHOTON_MAP_H
 #define AFTERGLOW_PHOTON_MAP_H
 
@@ -15,38 +15,44 @@ typedef struct photon_map_settings {
     float surface_area;        /* of the scene, m^2: for the automatic radius */
     float radius_bound;        /* the automatic radius is no larger; 0: no bound */
     float irradiance_fraction; /* of the photons that become irradiance photons, (0, 1]; 0: all */
+    bool is_steady;            /* see photon_map; the set's paths are fixed (photon_tracing_settings.paths) */
     const scene *surfaces;     /* borrowed: where discs end; NULL: nowhere */
 } photon_map_settings;
 
 typedef struct photon_map {
-    photon_set set;                 /* without its records, which have become: */
-    photon_block *blocks;           /* owned, but of a map from a file; NULL where there is no photon */
-    photon_tree tree;               /* over the blocks */
-    photon_tree irradiance_photons; /* these photons alone, with their slots: `tree` itself where they are all */
+    photon_set set;       /* without its records, which are now the blocks: */
+    photon_block *blocks; /* owned, unless is_borrowed; NULL without photons */
+    photon_tree tree;     /* over the blocks */
+    photon_tree
+        irradiance_photons; /* a tree of these photons with their slots; `tree` itself where they are all photons */
     uint32_t nearest;
     float max_radius;
-    float min_radius_squared;  /* coincident photons have no area of their own: the estimate's area is at least this
-                                  disc's */
-    float mean_radius;         /* of an estimate, were the photons spread evenly */
-    int flux_exponent_max;     /* the largest of the photons' exponents: the sums' unit */
+    float min_radius_squared;  /* squared radius of the least area of an estimate, for coincident photons */
+    float mean_radius;         /* of an estimate, if the photons were spread evenly */
+    int flux_exponent_max;     /* largest exponent of the photons' fluxes: the unit of sums */
     int irradiance_bias;       /* added to a slot's 6-bit exponent */
     float irradiance_unit[64]; /* of a slot's mantissas, by its exponent */
     const scene *surfaces;     /* borrowed, or NULL */
     bool is_borrowed;          /* blocks and nodes are a photon_file's */
     atomic_u8 *checks; /* of a map from a file: irradiance_word_check of each irradiance photon, borrowed; else NULL */
     bool has_been_cached; /* a cache has been made over it: some slots may be ready */
+    /* Radii and exponents, on which all estimates depend, are rounded, and an irradiance is rounded by its photon's
+     * position, so that both stay the same where a few photons come and go. */
+    bool is_steady;
+    float *reaches; /* owned, of a steady map: for each irradiance photon whose slot is ready irradiance_reach; 0: not
+                       known */
 } photon_map;
 
-/* Takes the set's photons over (and frees them on failure). A map without photons is valid: it says 0 everywhere.
- * Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
+/* Builds a map from the set's photons, which it takes over, and frees on failure. A map without photons is valid: its
+ * irradiance is 0 everywhere. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_map_create(run_context *run, photon_set *set, const photon_map_settings *settings,
                             double progress_begin, double progress_end, photon_map *out_map);
 void photon_map_reset(photon_map *map);
 
-/* Sets the values that the codes of irradiances stand for, in a map that comes from a file. */
+/* Sets the values of irradiance codes, for a map from a file. */
 void photon_map_set_bias(photon_map *map, int irradiance_bias);
 
-/* Whether all photons are irradiance photons; otherwise these have blocks and indices of their own. */
+/* Returns whether all photons are irradiance photons; else these have blocks and indices of their own. */
 static inline bool photon_map_all_have_irradiance(const photon_map *map)
 {
     return map->irradiance_photons.blocks == map->blocks;
@@ -57,10 +63,10 @@ static inline irradiance_slot *photon_map_slot(const photon_map *map, uint32_t i
     return photon_block_slot(map->irradiance_photons.blocks, irradiance_photon);
 }
 
-/* Memory of the photons, the irradiance photons and the trees, bytes. */
+/* Returns the bytes of the photons, the irradiance photons and the trees. */
 uint64_t photon_map_bytes(const photon_map *map);
 
-/* Room for one worker's neighbours: photon_map_scratch_count(map) of them. */
+/* Returns the number of neighbours that a worker's scratch memory holds. */
 uint32_t photon_map_scratch_count(const photon_map *map);
 
 /* The cosine between two normals is at least this. Photons of an estimate lie within 60 degrees, so that on a convex
@@ -69,49 +75,48 @@ uint32_t photon_map_scratch_count(const photon_map *map);
 #define PHOTON_ESTIMATE_MIN_COS 0.5f
 #define PHOTON_NEAREST_MIN_COS  0.9f
 
-/* Whether something stands between a point of a surface, with its normal, and a photon of the blocks: by one ray, which
- * is added to *in_out_rays. */
+/* Returns whether a surface lies between a surface point, with its normal, and a photon of the blocks. It casts one
+ * ray, which is added to *in_out_rays. */
 bool photon_map_is_behind_wall(const photon_map *map, const photon_block *blocks, vec3 position, vec3 normal,
                                uint32_t index, uint64_t *in_out_rays);
 
-/* An irradiance photon farther than this from a point must be in sight to stand for it, scene units: in a dark room the
- * nearest irradiance photon is the bright next room's. Of evenly spread photons 1 in 7 is so far, and what still leaks
- * through a partition goes down with the square. */
+/* Returns the distance, scene units, beyond which an irradiance photon must be visible from a point to represent it: in
+ * a dark room the nearest irradiance photon may belong to a bright room next door. Of evenly spread photons 1 in 7 is
+ * that far; the light that still leaks through a partition decreases with the square of the distance. */
 float photon_map_far(const photon_map *map);
 
-/* The nearest irradiance photon is out of sight: an answer of photon_map_nearest. */
+/* A result of photon_map_nearest: the nearest irradiance photon is hidden. */
 #define PHOTON_HIDDEN (PHOTON_NONE - 1)
 
-/* The irradiance photon whose irradiance stands for the point. PHOTON_NONE: none with a like normal is within half the
- * largest radius. PHOTON_HIDDEN: the nearest one lies so far away, or so far off the point's tangent plane, that it
- * must be in sight, and it is not. The rays that find that out are added to *in_out_rays. */
+/* Returns the irradiance photon whose irradiance represents a point. PHOTON_NONE: none with a similar normal lies
+ * within half the largest radius. PHOTON_HIDDEN: the nearest one lies so far away, or so far off the point's tangent
+ * plane, that it must be visible, and it is not. The rays cast for that are added to *in_out_rays. */
 uint32_t photon_map_nearest(const photon_map *map, vec3 position, vec3 normal, uint64_t *in_out_rays);
 
-/* Whether the irradiance [W/m^2] of the photon nearest to a point may hold there. The disc around the point that ends
- * at the photon is empty; of photons with this one's flux, as dense as the irradiance says, chance would leave it so in
- * one case of three thousand. Where light ends at a shadow, the photons at its edge are the nearest to points far in
- * the dark, and all of these would be as bright as the edge. */
+/* Returns whether the irradiance, W/m^2, of the photon nearest to a point may hold there. The disc around the point out
+ * to that photon is empty; for photons with this one's flux, of the density that the irradiance implies, that has a
+ * probability of one in three thousand at the limit. At the edge of a shadow, the photons there are the nearest to
+ * points far in the dark, which would otherwise all be as bright as the edge. */
 bool photon_map_reaches(const photon_map *map, uint32_t irradiance_photon, vec3 position, rgb irradiance);
 
-/* The leaf of the irradiance photons' tree that a point lies in: lookups at points of like leaves touch the same
+/* Returns the leaf of the irradiance photons' tree that contains a point: lookups in nearby leaves touch the same
  * memory. */
 uint32_t photon_map_leaf(const photon_map *map, vec3 position);
 
-/* photon_map_leaf of many points; x, y, z of each stand side by side, and `stride` floats on those of the next one. */
+/* photon_map_leaf of many points; x, y, z are consecutive; `stride`: floats from one point to the next. */
 void photon_map_leaves(const photon_map *map, const float *positions, uint32_t stride, uint32_t count,
                        uint32_t *out_leaves);
 
-/* photon_map_nearest of many, as photon_walk_nearest_many has them, their leaves being photon_map_leaf's; walk is one
- * over map->irradiance_photons. */
+/* photon_map_nearest of many points, in the manner of photon_walk_nearest_many, with the leaves of photon_map_leaf.
+ * walk: one over map->irradiance_photons. */
 void photon_map_nearest_many(const photon_map *map, photon_walk *walk, const photon_lookup *lookups, uint32_t count,
                              uint64_t *in_out_rays, uint32_t *out_irradiance_photons);
 
-/* The 30 bits of a slot whose photon has been found to stand for no point, since no estimate holds there. Final, like
- * a value. */
+/* The 30 bits of a slot whose photon represents no point, since no estimate holds there. Final, like a value. */
 #define PHOTON_NO_IRRADIANCE IRRADIANCE_VALUE_MASK
 
-/* Irradiance as a slot's 30 bits, never PHOTON_NO_IRRADIANCE. The key, an irradiance photon's index, decides the
- * rounding. */
+/* Irradiance as a slot's 30 bits, never PHOTON_NO_IRRADIANCE. The key decides the rounding: an irradiance photon's
+ * index, or in a steady map its photon_block_position_key. */
 uint32_t photon_map_encode_irradiance(const photon_map *map, rgb irradiance, uint64_t key);
 rgb photon_map_decode_irradiance(const photon_map *map, uint32_t value);
 

@@ -1,6 +1,6 @@
-/* photon_merge.h: irradiances that were computed on different machines, put together in one map: an irradiance is a
- * pure function of the map and the photon, so it does not matter whose it is. Flow: photon_file (read) -> [here] ->
- * photon_file (write). Threads: one. */
+/* photon_merge.h: merges irradiances that were computed on different machines into one map. An irradiance is a pure
+ * function of the map and the photon, so it does not matter where it was computed.
+ * Flow: photon_file (read) -> [here] -> photon_file (write). Threads: one. */
 #ifndef AFTERGLOW_PHOTON_MERGE_H
 #define AFTERGLOW_PHOTON_MERGE_H
 
@@ -8,16 +8,16 @@
 
 typedef enum photon_merge_result {
     PHOTON_MERGE_DONE,
-    PHOTON_MERGE_DIFFERS /* both are ready and are not the same: *out_irradiance_photon is the first such one; into is
+    PHOTON_MERGE_DIFFERS /* both are ready and differ: *out_irradiance_photon is the first such photon; `into` is
                             unchanged */
 } photon_merge_result;
 
-/* Fills what is empty in `into` with what is ready in `from`, which is a map of the same photons in the same order.
- * *in_out_added: those are added. */
+/* Copies ready slots of `from` to empty ones of `into`, a map of the same photons in the same order. *in_out_added:
+ * their number is added. */
 photon_merge_result photon_merge(photon_map *into, const photon_map *from, uint64_t *in_out_added,
                                  uint32_t *out_irradiance_photon);
 
-/* The number of slots that are ready. */
+/* Returns the number of ready slots. */
 uint64_t photon_merge_count_ready(const photon_map *map);
 
 #endif

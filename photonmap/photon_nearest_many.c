@@ -99,7 +99,7 @@ void photon_walk_nearest_many(photon_walk *walk, const photon_lookup *lookups, u
     kernels->scan(tree->blocks, &reach, &leaves, &found, distances);
     take(&q, lookups, &found, distances, out_nearest);
 
-    /* whoever has not found anything at home knows nothing of how far to look, and goes alone */
+    /* lookups that found nothing in their own leaf have no radius, and search alone */
     uint32_t alone[PHOTON_LOOKUPS_MAX], alone_count = 0;
     for (uint32_t i = 0; i < count; i++) {
         bool has_none = photon_neighbor_index(out_nearest[i]) == PHOTON_NONE;

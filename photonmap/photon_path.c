@@ -3,6 +3,7 @@
 
 #include "material/lambert.h"
 #include "onward_ways.h"
+#include "quarter_octave.h"
 #include "rays/transmittance.h"
 #include "scene_extent.h"
 #include "shape/alpha.h"
@@ -10,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A path ends here at the latest; what it still carries is booked as truncated. */
+/* Most scatterings of a path; its remaining flux is counted as truncated. */
 enum { SCATTERING_CAP = 100 };
-/* A begun path is split into so many parts at most, all surfaces together. */
+/* Most parts of a path in all, by splitting at all its surfaces. */
 enum { SPLIT_MOST = 4096 };
 /* The room that a block's first photon makes. */
 enum { PHOTONS_FIRST = 1024 };
@@ -57,8 +58,8 @@ static photon *append_photon(path_block *out)
     return &out->photons[out->count++];
 }
 
-/* Where no light is asked for, photons whose paths were picked more often than by power are stored as rarely as if they
- * had not been. false: this one is left out. */
+/* Thins photons where no light is requested: those whose paths were picked more often than by power are stored as
+ * rarely as by power. Returns false where the photon is left out. */
 static bool keep(photon_tracer *t, const photon_path *path, vec3 position, vec3 normal, uint64_t key, rgb *in_out_flux)
 {
     const importance_map *asked = t->settings->asked;
@@ -98,6 +99,7 @@ static void store(photon_tracer *t, const photon_path *path, const surface_hit *
         t->counts->photons++;
         t->counts->asked += importance > 0.0f;
         t->counts->roots += (double)sqrtf(importance);
+        t->counts->importance += (double)importance;
         t->trial->value += (flux.r + flux.g + flux.b) * sqrtf(importance);
         return;
     }
@@ -121,8 +123,8 @@ static void store(photon_tracer *t, const photon_path *path, const surface_hit *
     count_flux(out->balance.stored, flux_decode(p->flux));
 }
 
-/* Media take their share of a path's flux; roulette then keeps what it carries about as it was, so that no photons are
- * spent on light that hardly matters. False: the path ends here. No random number is drawn where nothing is taken. */
+/* Media absorb their share of a path's flux; roulette then keeps its flux about constant, so that no photons are spent
+ * on faint light. Returns false where the path ends. No random number is drawn where nothing is absorbed. */
 static bool pass_media(energy_balance *balance, rgb transmittance, rng *random, rgb *in_out_flux)
 {
     if (transmittance.r == 1.0f && transmittance.g == 1.0f && transmittance.b == 1.0f)
@@ -141,12 +143,14 @@ static bool pass_media(energy_balance *balance, rgb transmittance, rng *random, 
     return true;
 }
 
-/* The width of the area that a photon stands for where they lie evenly, in scene units; giants are not counted. */
-static float photon_width(const scene *s, uint32_t photon_count)
+/* The width of the area that a photon stands for where they lie evenly, in scene units; giants are not counted. Where
+ * the paths are fixed it is rounded, so that what moves changes no other photon. */
+static float photon_width(const scene *s, const photon_tracing_settings *settings)
 {
     static const float RADIUS_SHARE_MAX = 1.0f / 64.0f;
     float radius = s->detail_radius > 0.0f ? s->detail_radius : s->bounding_radius;
-    return fminf(sqrtf(s->surface_area / (float)photon_count), RADIUS_SHARE_MAX * radius);
+    float width = fminf(sqrtf(s->surface_area / (float)settings->wanted), RADIUS_SHARE_MAX * radius);
+    return settings->paths > 0 ? quarter_octave_nearest(width) : width;
 }
 
 /* Leaves a lamp, picked by its power or by the guide, at a time of the path's own where that matters. false: nothing
@@ -175,7 +179,7 @@ static bool begin_path(photon_tracer *t, uint64_t number, photon_path *out_path)
     ray.medium = start.medium;
     ray.time = time;
     if (settings->filters_textures)
-        ray.cone = (ray_cone){photon_width(s, settings->wanted), 0.0f, true};
+        ray.cone = (ray_cone){photon_width(s, settings), 0.0f, true};
     rgb flux = rgb_scale(start.flux, (t->trial ? 1.0f : weight) / probability);
     *out_path = (photon_path){ray, flux, random, key, weight, 1.0f, 0, 0, false};
     count_flux(t->out->balance.emitted, out_path->flux);
@@ -224,7 +228,7 @@ static bool arrival_surface_has(const arrival_surface *m, bsdf_lobes lobes)
     return m->albedo ? (lobes & BSDF_GATHERED) != 0 : bsdf_has(&m->scattering, lobes);
 }
 
-/* Whether photons are stored there, as so much of what they carry: on surfaces that gather. */
+/* Returns whether photons are stored at a hit, on surfaces that gather, and writes the factor of their flux. */
 static bool arrival_surface_stores(const scene *s, const surface_hit *hit, vec3 arrived, const arrival_surface *m,
                                    float *out_factor)
 {
@@ -254,7 +258,7 @@ static bool arrival_surface_sample(const arrival_surface *m, const surface_hit *
     return true;
 }
 
-/* The surface's own density and weight of a direction that it was not asked for. */
+/* Evaluates the surface's own density and weight of a direction that was sampled otherwise. */
 static void arrival_surface_evaluate(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
                                      vec3 direction, bsdf_sample *out_next)
 {
@@ -273,9 +277,9 @@ static void arrival_surface_evaluate(const arrival_surface *m, const surface_hit
         out_next->weight = rgb_gray(0.0f), out_next->pdf_solid_angle = 0.0f;
 }
 
-/* Samples the way on from where flux has arrived: by the surface, or by what importons there tell. The weight is what
- * it would be by the surface alone, and *out_led how much less dense the mixture is than that: below 1 / (1 -
- * LED_SHARE); 0: the way on brings nothing. false: absorbed. */
+/* Samples the direction in which flux goes on: by the surface, or by the importons there. The weight is that of
+ * sampling by the surface alone; *out_led is the ratio of that density to the mixture's, below 1 / (1 - LED_SHARE); 0:
+ * the direction carries nothing. Returns false where the flux is absorbed. */
 static bool sample_way_on(const arrival_surface *m, const surface_hit *hit, vec3 arrived, bsdf_lobes lobes,
                           float u_lobe, vec2 u, bsdf_sample *out_next, float *out_led)
 {
@@ -331,7 +335,7 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
     rgb scattered = rgb_mul(flux, next.weight);
     count_flux(balance->absorbed, rgb_sub(flux, scattered));
 
-    /* roulette keeps the flux of the survivors about what it was */
+    /* roulette keeps the survivors' flux about constant */
     float largest = rgb_max(scattered), survival = largest > 0.0f ? largest / rgb_max(flux) : 0.0f;
     survival = survival < 1.0f ? survival : 1.0f;
     if (u_roulette >= survival) {
@@ -352,9 +356,9 @@ static bool scatter(photon_tracer *t, photon_path *path, const surface_hit *hit,
     return true;
 }
 
-/* The root of the mean square of what a path's flux brings where light is asked for, by the lobes that may split it; 0:
- * it is not split. Mirrors would send all parts the same way. Of few that arrive it is the root of their share; where
- * paths are led, more of them arrive, with less. */
+/* Returns the root of the mean square of the importance that a path's flux has, by the lobes that may split it; 0: it
+ * is not split. Mirrors would send all parts in one direction. Where few paths arrive it is the root of their share;
+ * where paths are guided, more arrive, with less flux each. */
 static float root_of_onward_importance(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
                                        const arrival_surface *m)
 {
@@ -370,8 +374,9 @@ static float root_of_onward_importance(const photon_tracer *t, const photon_path
     return sqrtf(importance);
 }
 
-/* Into how many parts a path is split before it is scattered. In proportion to its flux and to the root of the share of
- * it that arrives where light is asked for, their variance is least for the number of all parts. */
+/* Returns the number of parts into which a path is split before it is scattered. In proportion to its flux and to the
+ * root of the share of it that arrives where light is requested, the variance is least for the total number of
+ * parts. */
 static uint32_t count_parts(const photon_tracer *t, const photon_path *path, const surface_hit *hit,
                             const arrival_surface *m)
 {
@@ -387,7 +392,7 @@ static uint32_t count_parts(const photon_tracer *t, const photon_path *path, con
     return !(parts > 1.0f) ? 1 : (uint32_t)fmaxf(fminf(parts + 0.5f, most), 1.0f);
 }
 
-/* One of the parts, equally bright, each with random numbers of its own. */
+/* Returns one of the parts, which are equally bright, with random numbers of its own. */
 static photon_path part_of_path(const photon_path *path, uint32_t part, uint32_t parts)
 {
     photon_path out = *path;

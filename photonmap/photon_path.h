@@ -1,11 +1,11 @@
-/* photon_path.h: one photon path: it leaves a lamp, is scattered, split, and leaves photons where it arrives.
+/* photon_path.h: traces one photon path: emission, scattering, splitting, and storing photons at arrivals.
  * Flow: photon_tracing -> [here] -> transmittance, bsdf. Threads: one for each block. */
 #ifndef AFTERGLOW_PHOTON_PATH_H
 #define AFTERGLOW_PHOTON_PATH_H
 
 #include "photon_tracing.h"
 
-/* Paths in a row, and what comes of them; begin with all zero. */
+/* A block of consecutive paths and their results; initialise with zeros. */
 typedef struct path_block {
     photon *photons;
     uint32_t count, capacity;
@@ -16,19 +16,19 @@ typedef struct path_block {
     bool is_cut; /* cancelled before all of its paths were traced */
 } path_block;
 
-/* Everything that tracing a path reads and writes. */
+/* The state that tracing a path reads and writes. */
 typedef struct photon_tracer {
     const scene *s;
     const light_target *target; /* of a caustic map: what its paths must meet first; else NULL */
     const photon_tracing_settings *settings;
     path_block *out;
-    uint32_t limit;        /* photons to store at most; paths begun are finished for the balance */
-    emission_trial *trial; /* NULL, or nothing is stored, and this is valued */
-    trial_counts *counts;  /* with it */
+    uint32_t limit;        /* most photons to store; paths that have begun are finished for the energy balance */
+    emission_trial *trial; /* NULL; else a trial, whose value is computed and which stores nothing */
+    trial_counts *counts;  /* counts of trials; with trial */
 } photon_tracer;
 
-/* Follows the path of that number to its end: photons, counts and balance go into t->out, and a trial's value into
- * t->trial. A block that runs out of memory says so. */
+/* Traces the path of a number to its end: photons, counts and balance go into t->out, a trial's value into t->trial.
+ * Where memory runs out, the block records it. */
 void photon_path_trace(photon_tracer *t, uint64_t number);
 
 #endif

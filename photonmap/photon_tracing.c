@@ -12,13 +12,13 @@
 #include <string.h>
 
 enum { PATHS_PER_BLOCK = 256, BLOCKS_PER_FIRST_ROUND = 32, BLOCKS_PER_ROUND_MAX = 1024 };
-/* The first round takes it that each path leaves so many photons; most leave fewer. After one that leaves none at all
- * comes one so many times as large. */
+/* The first round assumes that each path leaves FIRST_YIELD photons; most leave fewer. A round that leaves none at all
+ * is followed by one NO_YIELD_GROWTH times as large. */
 enum { FIRST_YIELD = 4, NO_YIELD_GROWTH = 8 };
-/* While more blocks than this are wanted, a round does half of them: what it found lies beside the photons until it is
- * merged, and is to be small against them. */
+/* While more blocks than this are needed, a round does half of them: its photons are held beside the others until they
+ * are merged, and should be few against them. */
 enum { BLOCKS_WHOLE_ROUND = 512 };
-/* Tracing gives up when so many paths have stored no photon at all. */
+/* Tracing gives up when this many paths have stored no photon at all. */
 static const uint64_t PATHS_WITHOUT_PHOTON_MAX = 1u << 20;
 
 typedef struct round_job {
@@ -148,6 +148,15 @@ static ag_status find_target(const scene *s, photon_kind kind, light_target *out
     return status;
 }
 
+/* Warns that the map was full before all requested paths had been emitted. */
+static void tell_of_full_map(run_context *run, const photon_tracing_settings *settings, const photon_set *set)
+{
+    log_message(run->log, AG_LOG_WARNING,
+                "the photon map was full after %llu of %llu paths: photons will change from frame to frame (more "
+                "--photons make room)",
+                (unsigned long long)set->emitted_paths, (unsigned long long)settings->paths);
+}
+
 /* The next round's blocks: as many as the yield so far lets expect are needed, and one to spare. */
 static uint64_t next_block_count(const photon_set *set, uint32_t wanted, uint64_t block_count)
 {
@@ -157,6 +166,20 @@ static uint64_t next_block_count(const photon_set *set, uint32_t wanted, uint64_
     if (blocks > BLOCKS_WHOLE_ROUND)
         blocks *= 0.5;
     return blocks < BLOCKS_PER_ROUND_MAX ? (uint64_t)blocks : BLOCKS_PER_ROUND_MAX;
+}
+
+/* Returns the number of paths that remain to be emitted in the blocks of a round. */
+static uint64_t paths_of_round(const photon_tracing_settings *settings, uint64_t next_path, uint64_t block_count)
+{
+    uint64_t paths = block_count * PATHS_PER_BLOCK, left = settings->paths > 0 ? settings->paths - next_path : paths;
+    return left < paths ? left : paths;
+}
+
+/* Whether paths have stored so few photons that there is no point in going on. */
+static bool is_hopeless(const photon_tracing_settings *settings, const photon_set *set)
+{
+    bool takes_too_many = settings->paths == 0 && set->emitted_paths / PHOTON_PATHS_MAX >= settings->wanted;
+    return set->emitted_paths >= PATHS_WITHOUT_PHOTON_MAX && (set->count == 0 || takes_too_many);
 }
 
 /* From sums over paths, each of which stands for all the light, to their mean. */
@@ -184,26 +207,27 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
     uint64_t next_path = 0, block_count = settings->wanted / (FIRST_YIELD * PATHS_PER_BLOCK) + 1;
     if (block_count > BLOCKS_PER_FIRST_ROUND)
         block_count = BLOCKS_PER_FIRST_ROUND;
-    while (status == AG_OK && set.count < settings->wanted) {
+    while (status == AG_OK && set.count < settings->wanted && (settings->paths == 0 || next_path < settings->paths)) {
+        uint64_t paths = paths_of_round(settings, next_path, block_count);
+        block_count = (paths + PATHS_PER_BLOCK - 1) / PATHS_PER_BLOCK;
         round_job job = {s, caustic_target, settings, blocks, next_path, run};
-        status = parallel_for(run, block_count * PATHS_PER_BLOCK, PATHS_PER_BLOCK, trace_block, &job, AG_PHASE_PHOTONS,
-                              0.0, 0.0);
+        status = parallel_for(run, paths, PATHS_PER_BLOCK, trace_block, &job, AG_PHASE_PHOTONS, 0.0, 0.0);
         if (status == AG_OK)
             status = merge_round(&job, &set, block_count);
         for (uint64_t i = 0; i < block_count; i++)
             blocks[i] = (path_block){.photons = blocks[i].photons, .capacity = blocks[i].capacity};
-        next_path += block_count * PATHS_PER_BLOCK;
+        next_path += paths;
 
-        bool is_hopeless = set.emitted_paths >= PATHS_WITHOUT_PHOTON_MAX &&
-                           (set.count == 0 || set.emitted_paths / PHOTON_PATHS_MAX >= settings->wanted);
-        if (set.count < settings->wanted && is_hopeless) {
+        if (status == AG_OK && set.count < settings->wanted && is_hopeless(settings, &set)) {
             explain_shortage(run, settings, &set);
             break;
         }
         block_count = next_block_count(&set, settings->wanted, block_count);
+        double done = (double)set.count / settings->wanted;
+        if (settings->paths > 0)
+            done = fmax(done, (double)next_path / (double)settings->paths);
         run_progress(run, AG_PHASE_PHOTONS,
-                     settings->progress_begin +
-                         (settings->progress_end - settings->progress_begin) * ((double)set.count / settings->wanted));
+                     settings->progress_begin + (settings->progress_end - settings->progress_begin) * done);
     }
     for (int i = 0; blocks && i < BLOCKS_PER_ROUND_MAX; i++)
         free(blocks[i].photons);
@@ -212,6 +236,8 @@ ag_status photon_tracing_run(const scene *s, run_context *run, const photon_trac
         photon_set_reset(&set);
         return status;
     }
+    if (set.count == settings->wanted && set.emitted_paths < settings->paths)
+        tell_of_full_map(run, settings, &set);
     divide_balance(&set.balance, set.emitted_paths);
     *out_set = set;
     return AG_OK;
@@ -278,6 +304,7 @@ ag_status photon_tracing_try(const scene *s, run_context *run, const photon_trac
         in_out_counts->photons += counts[i].photons;
         in_out_counts->asked += counts[i].asked;
         in_out_counts->roots += counts[i].roots;
+        in_out_counts->importance += counts[i].importance;
     }
     free(counts);
     return status;

@@ -58,6 +58,7 @@ typedef struct photon_set {
 typedef struct photon_tracing_settings {
     photon_kind kind;
     uint32_t wanted;       /* photons to store, > 0 */
+    uint64_t paths;        /* so many are emitted, unless `wanted` photons are stored before; 0: as many as it takes */
     int max_scatterings;   /* arrivals after more scatterings than this are not stored; >= 0 */
     bool panes_are_direct; /* light straight through panes (bsdf.h) counts as unscattered: no caustic */
     bool filters_textures; /* over about the area that a photon stands for, and more behind diffuse vertices */
@@ -74,7 +75,9 @@ typedef struct photon_tracing_settings {
     double progress_begin, progress_end; /* of AG_PHASE_PHOTONS */
 } photon_tracing_settings;
 
-/* Stores exactly `wanted` photons wherever light can reach that many; else fewer, and says why in a warning. A scene
+/* Stores exactly `wanted` photons wherever light can reach that many; else fewer, and says why in a warning. With a
+ * number of paths it stores what these bring, so that a photon does not change where other paths store more or fewer;
+ * where that would be more than `wanted`, a warning says that fewer paths were emitted. A scene
  * without light gives an empty set, as do caustics where nothing has traced lobes. Errors: AG_ERROR_MEMORY,
  * AG_CANCELLED. */
 ag_status photon_tracing_run(const scene *s, run_context *run, const photon_tracing_settings *settings,
@@ -87,6 +90,7 @@ typedef struct trial_counts {
     uint64_t parts;          /* that splitting has added to the paths */
     uint64_t photons, asked; /* that would be stored; and of those, where light is asked for */
     double roots;            /* of importance at the latter, their sum */
+    double importance;       /* there, its sum [1/m^2] */
 } trial_counts;
 
 /* Tries so many paths, from that number on, which store nothing: a trial's value is the sum over the photons that it

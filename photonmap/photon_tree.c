@@ -71,7 +71,7 @@ static void select_middle(const run_context *run, photon *p, int64_t low, int64_
             if ((i & CANCEL_MASK) == 0 && run_is_cancelled(run))
                 return;
         }
-        /* [low, j] <= pivot, [i, high] >= pivot, and what is between equals it */
+        /* [low, j] <= pivot, [i, high] >= pivot, and those between are equal to it */
         if (middle <= j)
             high = j;
         else if (middle >= i)
@@ -143,8 +143,8 @@ static void split_subtree(const run_context *run, photon_tree *tree, photon *p, 
 {
     range r = node_range(tree, level, number);
     bool is_empty = r.low == r.high;
-    /* searches look at the lowest levels as a whole: what is empty there is to lie beyond planes at infinity, all the
-     * way down */
+    /* searches treat the lowest levels as a whole, so that their empty parts must lie beyond planes at infinity on all
+     * levels */
     if (run_is_cancelled(run) || (is_empty && tree->depth - level >= PHOTON_SUBTREE_LEVELS))
         return;
     if (level == tree->depth) {

@@ -18,7 +18,7 @@ typedef struct photon_tree_node {
     uint32_t axis;
 } photon_tree_node;
 
-/* The number of the lowest levels that may be looked at as a whole; what is empty there lies beyond infinite planes. */
+/* The number of the lowest levels that searches may treat as a whole; their empty parts lie beyond infinite planes. */
 enum { PHOTON_SUBTREE_LEVELS = 3, PHOTON_SUBTREE_LEAVES = 1 << PHOTON_SUBTREE_LEVELS };
 
 typedef struct photon_tree {
@@ -28,15 +28,15 @@ typedef struct photon_tree {
     photon_tree_node *nodes; /* children of i at 2 i + 1 and 2 i + 2 */
 } photon_tree;
 
-/* Puts the records, from photon_records_create, in order, so their indices change, and turns them into the tree's
- * blocks where they lie; on failure they are lost. Deterministic: equal input gives equal order for any number of
- * threads. Errors: AG_ERROR_MEMORY, AG_CANCELLED. phase and progress as in parallel_for. */
+/* Builds a tree from records of photon_records_create. The records are reordered, so that their indices change, and
+ * become the tree's blocks in place; on failure they are lost. Deterministic: equal input gives equal order for any
+ * number of threads. phase and progress as in parallel_for. Errors: AG_ERROR_MEMORY, AG_CANCELLED. */
 ag_status photon_tree_build(run_context *run, photon *photons, uint32_t count, double progress_begin,
                             double progress_end, photon_tree *out_tree);
 void photon_tree_reset(photon_tree *tree);
-uint64_t photon_tree_bytes(const photon_tree *tree); /* of the nodes */
+uint64_t photon_tree_bytes(const photon_tree *tree); /* Returns the bytes of the nodes. */
 
-/* A photon found: its squared distance as the high half, its index as the low half. Distances are not negative, so
+/* A photon found: its squared distance as the high half, its index as the low half. Distances are not negative, so that
  * their bits order as integers do: comparing two neighbours compares (distance squared, index). */
 typedef uint64_t photon_neighbor;
 
@@ -55,18 +55,18 @@ static inline float photon_neighbor_distance_squared(photon_neighbor n)
     return distance_squared;
 }
 
-/* The nearest photon within radius (inclusive) whose normal has a dot product above min_cos (>= 0) with `normal`;
- * PHOTON_NONE where there is none. */
+/* Returns the nearest photon within radius (inclusive) whose normal has a dot product above min_cos (>= 0) with
+ * `normal`; PHOTON_NONE where there is none. */
 uint32_t photon_tree_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared);
 
-/* The block of the leaf that a point falls into; of a tree that is not empty. */
+/* Returns the leaf that contains a point, by the number of its block. The tree must not be empty. */
 uint32_t photon_tree_leaf(const photon_tree *tree, vec3 position);
 
 enum { PHOTON_TREE_DEPTH_MAX = 32, PHOTON_WALK_AXES = 4 };
 
-/* The way to a leaf, with the cells of the nodes along it: kept for the next lookup, which is cheap where its leaf is
- * not far. The fourth axis has no bounds. */
+/* The path to a leaf with the cells of its nodes, which is kept for the next lookup: that is cheap where its leaf is
+ * near. The fourth axis has no bounds. */
 typedef struct photon_walk {
     const photon_tree *tree;
     const struct photon_kernels *kernels; /* for many at once: photon_kernels.h; they make no difference but in time */
@@ -79,27 +79,26 @@ typedef struct photon_walk {
 
 void photon_walk_init(photon_walk *walk, const photon_tree *tree); /* borrows the tree */
 
-/* photon_tree_nearest at a point of the leaf that photon_tree_leaf tells: the same photon, whatever was looked up
- * before. */
+/* photon_tree_nearest at a point in the leaf of photon_tree_leaf; the result does not depend on earlier lookups. */
 uint32_t photon_walk_nearest(photon_walk *walk, uint32_t leaf, vec3 position, vec3 normal, float min_cos, float radius,
                              float *out_distance_squared);
 
-/* A point to find the nearest photon of: position, unit normal, and the leaf that photon_tree_leaf tells. */
+/* A point of a lookup: position, unit normal, and its photon_tree_leaf. */
 enum { PHOTON_LOOKUPS_MAX = 64 };
 typedef struct photon_lookup {
     vec3 position, normal;
     uint32_t leaf;
 } photon_lookup;
 
-/* Finds the nearest photons of `count` points, from 1 to PHOTON_LOOKUPS_MAX, in the order of their leaves: much
- * cheaper. Where there is none, the index is PHOTON_NONE. */
+/* Finds the nearest photons of `count` points, 1 to PHOTON_LOOKUPS_MAX, in the order of their leaves, which is much
+ * cheaper. The index is PHOTON_NONE where there is none. */
 void photon_walk_nearest_many(photon_walk *walk, const photon_lookup *lookups, uint32_t count, float min_cos,
                               float radius, photon_neighbor *out_nearest);
 
-/* The `wanted` nearest photons within radius, in no order, but with the farthest of them last when all were found.
- * neighbors: room for photon_neighbors_capacity(wanted). *out_other_squared: how far, squared, the nearest
- * photon is that has another normal, yet no opposite one (beyond 120 degrees), if that is no farther than the photons
- * found or the radius; else more than that. Returns how many were found. */
+/* Finds the `wanted` nearest photons within radius, unordered, except that the farthest of them is last when all were
+ * found. neighbors: room for photon_neighbors_capacity(wanted). *out_other_squared: squared distance of the nearest
+ * photon whose normal differs but is not opposite (beyond 120 degrees), if it is no farther than the photons found or
+ * the radius; else a greater number. Returns the number found. */
 uint32_t photon_tree_k_nearest(const photon_tree *tree, vec3 position, vec3 normal, float min_cos, float radius,
                                uint32_t wanted, photon_neighbor *neighbors, float *out_other_squared);
 

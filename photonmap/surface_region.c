@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-/* Rays along the surface run this far above it, as a share of the radius: a photon's normal is good to a degree, and
- * what is lower than that (a carpet, a skirting) is no wall. */
+/* Height of rays along the surface, as a share of the radius: a photon's normal is accurate to a degree, and anything
+ * lower (a carpet, a skirting) is no wall. */
 static const float LIFT = 1.0f / 32.0f;
 /* Where nothing stands in the way the surface is looked for this far out; beyond lie 2 % of the disc at most. */
 static const float PROBE_AT = 0.9f;

@@ -5,6 +5,7 @@
 
 #include "clock.h"
 #include "film/film_tiles.h"
+#include "last_frame.h"
 #include "output/denoise.h"
 #include "public_structs.h"
 #include "texture/texture_cache.h"
@@ -98,6 +99,7 @@ void ag_context_destroy(ag_context *context)
     free_confinement(context);
     free(context->color_summary);
     free(context->color_views);
+    last_frame_destroy(context->last_frame);
     free(context);
 }
 

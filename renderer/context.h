@@ -26,8 +26,9 @@ struct ag_context {
     bool is_confined;
     char **confined_to; /* owned */
     size_t confined_count;
-    char *color_summary; /* of ag_color_summary, or NULL */
-    char *color_views;   /* of ag_color_view_at, as color_config_list_views has them, or NULL */
+    char *color_summary;           /* of ag_color_summary, or NULL */
+    struct last_frame *last_frame; /* of fixed photon paths; NULL: there is none */
+    char *color_views;             /* of ag_color_view_at, as color_config_list_views has them, or NULL */
 };
 
 struct ag_scene {

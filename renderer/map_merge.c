@@ -5,6 +5,7 @@
 #include "output/atomic_file.h"
 #include "photon_file.h"
 #include "photon_merge.h"
+#include "public_structs.h"
 #include "status.h"
 
 #include <inttypes.h>
@@ -76,14 +77,16 @@ static ag_photon_map_info info_of(const read_map *m)
     return info;
 }
 
-ag_status ag_photon_map_read_info(ag_context *context, const char *path, ag_photon_map_info *out_info)
+ag_status ag_photon_map_read_info_fill(ag_context *context, const char *path, void *out_info, size_t struct_size)
 {
     if (!context || !path || !out_info)
         return AG_ERROR_ARGUMENT;
     read_map m;
     ag_status status = read_map_open(context, path, &m);
-    if (status == AG_OK)
-        *out_info = info_of(&m);
+    if (status == AG_OK) {
+        const ag_photon_map_info info = info_of(&m);
+        public_struct_write_part(&info, sizeof info, out_info, struct_size);
+    }
     read_map_reset(&m);
     return status;
 }
@@ -195,16 +198,17 @@ static ag_status merge_files(ag_context *context, const char *out_path, const ch
     return write_map(context, out_path, merged);
 }
 
-ag_status ag_photon_map_merge(ag_context *context, const char *out_path, const char *const *paths, size_t count,
-                              ag_photon_map_info *out_info)
+ag_status ag_photon_map_merge_fill(ag_context *context, const char *out_path, const char *const *paths, size_t count,
+                                   void *out_info, size_t struct_size)
 {
     if (!context || !out_path || !paths || count == 0)
         return AG_ERROR_ARGUMENT;
     read_map merged = {0};
     ag_status status = merge_files(context, out_path, paths, count, &merged);
     if (status == AG_OK && out_info) {
-        *out_info = info_of(&merged);
-        out_info->damaged = 0;
+        ag_photon_map_info info = info_of(&merged);
+        info.damaged = 0;
+        public_struct_write_part(&info, sizeof info, out_info, struct_size);
     }
     read_map_reset(&merged);
     return status;

@@ -2,6 +2,7 @@
  * Flow: film/noise.h -> [here] -> the program's last lines. Threads: as in afterglow.h. */
 #include "integrator/integrator.h"
 #include "light/light.h"
+#include "public_structs.h"
 #include "rendering.h"
 
 #include <stdio.h>
@@ -63,7 +64,7 @@ static advice advise(const struct ag_rendering *r, ag_noise_source source, const
     return (advice){0};
 }
 
-ag_noise ag_rendering_noise(const ag_rendering *r)
+static ag_noise noise_of(const ag_rendering *r)
 {
     phase_begin begin = context_begin_phase();
     int nearest = r->t.caustic && r->t.caustic->set.count > 0 ? r->settings.nearest : 0;
@@ -82,4 +83,10 @@ ag_noise ag_rendering_noise(const ag_rendering *r)
     snprintf(out.hint, sizeof out.hint, "%s of the noise (%.0f %%) is %s: %s",
              out.share[most] >= MOST ? "most" : "the largest part", 100.0 * out.share[most], a.where, a.help);
     return out;
+}
+
+void ag_rendering_noise_fill(const ag_rendering *r, void *out_noise, size_t struct_size)
+{
+    const ag_noise noise = noise_of(r);
+    public_struct_write_part(&noise, sizeof noise, out_noise, struct_size);
 }

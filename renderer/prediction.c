@@ -236,6 +236,7 @@ static ag_status predict_time(ag_context *context, const ag_scene *loaded, const
     tried.photon_count = (uint64_t)((double)settings->photon_count / global_grown);
     tried.caustic_photon_count = (uint64_t)((double)caustic_count / caustic_grown);
     tried.photon_map_file = NULL;
+    tried.photon_paths = 0; /* what the last frame left is for the picture itself */
     tried.cache = settings->cache == AG_CACHE_PRECOMPUTE ? AG_CACHE_ON_DEMAND : settings->cache;
     const ag_statistics before = context->statistics;
     ag_rendering *r;

@@ -3,6 +3,7 @@
 
 #include "caustic_radius.h"
 #include "integrator/eye_pilot.h"
+#include "last_frame.h"
 #include "map_file.h"
 #include "photon_aim.h"
 #include "rays/transmittance.h"
@@ -22,6 +23,8 @@ void maps_release(maps *m)
         return;
     irradiance_cache_reset(&m->cache);
     incident_light_reset(&m->incident);
+    last_frame_leave(m->context, &m->global, &m->forms);
+    scene_forms_reset(&m->forms);
     photon_map_reset(&m->global);
     photon_map_reset(&m->caustic);
     photon_file_close(&m->file);
@@ -78,6 +81,7 @@ static ag_status trace_after(ag_context *context, const scene *s, const ag_rende
     /* an arrival after n scatterings reaches the eye after n + 2 (gathered), or n + 1 (a caustic seen) */
     photon_tracing_settings tracing = {.kind = PHOTON_GLOBAL,
                                        .wanted = (uint32_t)settings->photon_count,
+                                       .paths = settings->photon_paths,
                                        .max_scatterings = settings->max_depth - 2,
                                        .panes_are_direct = settings->pane_light == AG_PANE_LIGHT_DIRECT,
                                        .filters_textures =
@@ -97,6 +101,7 @@ static ag_status trace_after(ag_context *context, const scene *s, const ag_rende
         tracing.onward = NULL;
         tracing.ways = &pilot->seen_ways;
         tracing.wanted = (uint32_t)settings->caustic_photon_count;
+        tracing.paths = 0;
         tracing.max_scatterings = settings->max_depth - 1;
         tracing.progress_begin = 0.7;
         tracing.progress_end = 1.0;
@@ -124,15 +129,18 @@ static ag_status trace_photons(ag_context *context, const scene *s, const ag_ren
 static ag_status build_maps(ag_context *context, const scene *s, const ag_render_settings *settings, photon_set *global,
                             photon_set *caustic, photon_map *out_global, photon_map *out_caustic)
 {
+    const bool is_steady = settings->photon_paths > 0 && global->emitted_paths == settings->photon_paths;
     photon_map_settings map_settings = {.nearest = (uint32_t)settings->nearest,
                                         .max_radius = settings->radius,
                                         .surface_area = s->surface_area,
                                         .irradiance_fraction = settings->irradiance_fraction,
+                                        .is_steady = is_steady,
                                         .surfaces = s};
     AG_TRY(photon_map_create(&context->run, global, &map_settings, 0.0, 0.7, out_global));
     /* caustics gather in spots: how many of their photons there are does not tell how far apart they lie */
     AG_TRY(caustic_radius_find(out_global, caustic, &map_settings.radius_bound));
     map_settings.irradiance_fraction = 1.0f;
+    map_settings.is_steady = false;
     return photon_map_create(&context->run, caustic, &map_settings, 0.7, 1.0, out_caustic);
 }
 
@@ -168,12 +176,26 @@ static ag_status trace_maps(ag_context *context, const scene *s, const ag_render
     return AG_OK;
 }
 
+/* Takes from the last frame what is the same in this one. */
+static ag_status follow_last_frame(maps *m, const scene *s)
+{
+    if (!m->global.reaches)
+        return AG_OK;
+    phase_begin begin = context_begin_phase();
+    ag_status status = scene_forms_create(s, &m->forms);
+    if (status == AG_OK)
+        status = last_frame_use(m->context, &m->forms, &m->global);
+    context_add_to_phase(m->context, AG_PHASE_MAP, begin);
+    return status;
+}
+
 ag_status maps_create(ag_context *context, const scene *s, const ag_render_settings *settings, maps **out_maps)
 {
     maps *m = *out_maps = calloc(1, sizeof *m);
     if (!m)
         return AG_ERROR_MEMORY;
     m->holders = 1;
+    m->context = context;
     ag_statistics *statistics = &context->statistics;
     ag_status status;
     if (settings->photon_map_file)
@@ -181,6 +203,7 @@ ag_status maps_create(ag_context *context, const scene *s, const ag_render_setti
     else
         status = trace_maps(context, s, settings, &m->global, &m->caustic);
     AG_TRY(status);
+    AG_TRY(follow_last_frame(m, s));
     phase_begin guiding = context_begin_phase();
     AG_TRY(incident_light_create(&context->run, &m->global.tree, settings->gather_guiding, &m->incident));
     context_add_to_phase(context, AG_PHASE_MAP, guiding);

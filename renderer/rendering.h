@@ -8,12 +8,15 @@
 #include "integrator/direct_guide.h"
 #include "integrator/transport.h"
 #include "photon_file.h"
+#include "scene_forms.h"
 
 typedef struct maps {
     photon_map global, caustic;
     irradiance_cache cache;
     incident_light incident;     /* over the global map */
     photon_file file;            /* that the maps are in, where they last */
+    ag_context *context;         /* borrowed: is left what a next frame can use */
+    scene_forms forms;           /* of the scene, where the map's paths are fixed */
     unsigned holders;            /* renderings: the maps go with the last of them */
     irradiance_counters counted; /* what the statistics have of the cache already */
     uint64_t counted_distinct;

@@ -56,13 +56,14 @@ void ag_rendering_statistics_fill(const ag_rendering *r, void *out_statistics, s
     public_struct_write_part(&statistics, sizeof statistics, out_statistics, struct_size);
 }
 
-void ag_rendering_look(const ag_rendering *r, ag_growth *out)
+void ag_rendering_growth_fill(const ag_rendering *r, void *out_growth, size_t struct_size)
 {
-    *out = (ag_growth){0};
-    if (!r->maps || !r->t.cache)
-        return;
-    const photon_map *map = &r->maps->global;
-    irradiance_cache_look(&r->maps->cache, &out->irradiance_requests, &out->irradiance_computed);
-    out->irradiance_photons = map->irradiance_photons.count;
-    out->photon_density = r->s->surface_area > 0.0f ? (double)map->tree.count / (double)r->s->surface_area : 0.0;
+    ag_growth growth = {0};
+    if (r->maps && r->t.cache) {
+        const photon_map *map = &r->maps->global;
+        irradiance_cache_look(&r->maps->cache, &growth.irradiance_requests, &growth.irradiance_computed);
+        growth.irradiance_photons = map->irradiance_photons.count;
+        growth.photon_density = r->s->surface_area > 0.0f ? (double)map->tree.count / (double)r->s->surface_area : 0.0;
+    }
+    public_struct_write_part(&growth, sizeof growth, out_growth, struct_size);
 }

@@ -180,6 +180,23 @@ static const setting_row ROWS[] = {
      .noun = "number of photons",
      .json = "settings.photon_count",
      .marks = SETTING_OF_PICTURE | SETTING_OF_PHOTONS},
+    {.text = {.name = "photon-paths",
+              .argument = "N",
+              .section = "Light",
+              .help = "paths of light that the global map's photons come from; 0 (default): as many as fill the map",
+              .manual = "How many paths of light the global map's photons come from; 0, the default: as many as fill "
+                        "the map. A fixed number is for *--frames* in which little moves: photons of paths that meet "
+                        "nothing new stay as they are, and from one frame to the next irradiance is kept where "
+                        "nothing has changed nearby. Each frame has the bits that it has when it is rendered alone. "
+                        "*--photons* is then the most that are stored, and *--photon-aim* and *--gather-guiding* "
+                        "are 0 unless they are given, since they change much where little does. May be written as 2e6.",
+              .is_of_photon_map = true},
+     FIELD(photon_paths),
+     .kind = SETTING_COUNT,
+     .most = 1e15,
+     .noun = "number of photon paths",
+     .json = "settings.photon_paths",
+     .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER | SETTING_OF_PHOTONS},
     {.text = {.name = "caustic-photons",
               .argument = "N",
               .section = "Light",
@@ -239,16 +256,19 @@ static const setting_row ROWS[] = {
     {.text = {.name = "gather-guiding",
               .argument = "F",
               .section = "Light",
-              .help = "how much photons decide where gather rays go, from 0 (not at all) to 1 (default 0.5); the "
-                      "rest is the cosine",
-              .manual = "How much photons decide where gather rays go, from 0 to 1; 0.5 is the default. Of a "
+              .help = "how much photons decide where gather rays go, from 0 (not at all) to 1 (default 0.5; with "
+                      "--photon-paths 0); the rest is the cosine",
+              .manual = "How much photons decide where gather rays go, from 0 to 1; 0.5 is the default, and 0 with "
+                        "*--photon-paths*, since each photon that comes or goes changes them. Of a "
                         "gather's rays this share goes where the photons around it came from, less where they are "
                         "few, and the rest by the cosine. 0 guides none. The light is the same; noise is less where "
                         "light comes from few directions."},
      FIELD(gather_guiding),
      .kind = SETTING_NUMBER,
-     .initial = AG_DEFAULT_GATHER_GUIDING,
+     .initial = AG_GATHER_GUIDING_AUTOMATIC,
      .most = 1,
+     .has_automatic = true,
+     .automatic = AG_GATHER_GUIDING_AUTOMATIC,
      .noun = "guiding of gather rays",
      .json = "settings.gather_guiding",
      .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER | SETTING_OF_PHOTONS},
@@ -266,18 +286,20 @@ static const setting_row ROWS[] = {
      .noun = "seed of photons",
      .json = "settings.photon_seed",
      .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER | SETTING_OF_PHOTONS},
-    {.text = {.name = "photon-aim",
-              .argument = "F",
-              .section = "Light",
-              .help = "share of the photon paths that begin where they bring light to where the picture asks for it, "
-                      "from 0 to 0.8 (default 0.8; of a map that is kept 0)",
-              .manual = "The share of the photon paths that begin where a pilot has found that they bring light to "
-                        "where the picture asks for it, from 0 to 0.8; 0.8 is the default, and 0 with "
-                        "*--photon-map*. The others begin by power alone: the light is the same, and no photon is "
-                        "more than five times as bright as without. The pilot looks at the whole frame, so that "
-                        "crops, tiles and other sizes of one shape have the same photons. A kept map that is aimed "
-                        "serves its own view alone.",
-              .is_of_photon_map = true},
+    {.text =
+         {.name = "photon-aim",
+          .argument = "F",
+          .section = "Light",
+          .help = "share of the photon paths that begin where they bring light to where the picture asks for it, "
+                  "from 0 to 0.8 (default 0.8; of a map that is kept 0)",
+          .manual =
+              "The share of the photon paths that begin where a pilot has found that they bring light to "
+              "where the picture asks for it, from 0 to 0.8; 0.8 is the default, and 0 with "
+              "*--photon-map* and with *--photon-paths*. The others begin by power alone: the light is the same, and no photon is "
+              "more than five times as bright as without. The pilot looks at the whole frame, so that "
+              "crops, tiles and other sizes of one shape have the same photons. A kept map that is aimed "
+              "serves its own view alone.",
+          .is_of_photon_map = true},
      FIELD(photon_aim),
      .kind = SETTING_NUMBER,
      .initial = AG_PHOTON_AIM_AUTOMATIC,

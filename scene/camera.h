@@ -34,24 +34,24 @@ typedef struct camera {
     uint32_t medium;       /* that the eye is in; set by scene_commit, from scene.camera_medium */
 } camera;
 
-/* film_x, film_y: in [0, 1] from the left and from the top of the full image, and a filter's radius beyond; aspect: its
- * width / height; lens_u in [0,1)^2 picks the point on the lens; time: of the shutter, see scene_ray. The direction is
- * unit. */
+/* Returns the ray through a point of the film. film_x, film_y: in [0, 1] from the left and from the top of the full
+ * image, and a filter's radius beyond; aspect: its width / height; lens_u in [0,1)^2 picks the point on the lens; time:
+ * of the shutter, see scene_ray. The direction is unit. */
 scene_ray camera_generate_ray(const camera *c, float film_x, float film_y, float aspect, vec2 lens_u, float time);
 
-/* The cone of such a ray, of which neighbours are steps of film_x and film_y away: as wide as those are apart. */
+/* Returns the cone of such a ray, as wide as neighbouring rays are apart, which are steps of film_x and film_y away. */
 ray_cone camera_ray_cone(const camera *c, const scene_ray *ray, float film_x, float film_y, float step_x, float step_y,
                          float aspect, vec2 lens_u);
 
-/* world_from_camera of a camera that stands at a point and looks at another; is_left: the world is seen as pbrt's, with
- * x, y and z as on the left hand. False: the points are the same, or up is along the way between them. */
+/* Writes world_from_camera of a camera at a point that looks at another one. is_left: the world is left-handed, as
+ * pbrt's. Returns false where the points are the same, or up is parallel to the view. */
 bool camera_look(vec3 from, vec3 to, vec3 up, bool is_left, transform *out_world_from_camera);
 
-/* world_from_camera at a time of the shutter. */
+/* Returns world_from_camera at a time of the shutter, [0, 1]. */
 transform camera_transform_at(const camera *c, float time);
 
-/* The way back, of cameras with a pinhole: row 0, 1 and 3 of a projective map, as transform.h's, from camera space to
- * film_x and film_y; row 2 maps the depths from near to far to [0, 1]. false for spherical cameras. */
+/* Writes the projection of cameras with a pinhole: rows 0, 1 and 3 of a projective map, as transform.h's, from camera
+ * space to film_x and film_y; row 2 maps depths from near to far to [0, 1]. Returns false for spherical cameras. */
 bool camera_film_from_camera(const camera *c, float aspect, double near, double far, double out[4][4]);
 
 #endif

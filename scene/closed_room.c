@@ -135,7 +135,7 @@ static void find_heading(const scene *s, vec3 eye, view *best)
     }
     if (open_count > OPEN_HEADINGS_MAX) /* a wall is missing, by which the model is looked into */
         return;
-    for (int i = 0; i < HEADINGS; i++) { /* what is free on both sides as well: 22 degrees */
+    for (int i = 0; i < HEADINGS; i++) { /* free on both sides as well: 22 degrees */
         float sum = 0.0f;
         for (int k = -2; k <= 2; k++)
             sum += fmaxf(distances[(i + k + HEADINGS) % HEADINGS], 0.0f);
@@ -187,7 +187,7 @@ static void set_camera(scene *s, const view *v, log_sink *log)
         (double)v->heading.z);
 }
 
-/* A point in the middle of what is seen. The sky and the sun that were made up stay where the room has openings. */
+/* Adds a lamp in the middle of the view. The sky and the sun that were added stay where the room has openings. */
 static ag_status add_lamp(scene *s, const view *v, log_sink *log)
 {
     const vec3 middle = vec3_add_scaled(v->eye, v->heading, 0.5f * v->distance);

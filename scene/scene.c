@@ -317,7 +317,7 @@ static ag_status find_bounds(scene *s, log_sink *log)
         s->bounding_radius = 1.0f;
         return AG_OK;
     }
-    /* instances: whoever made the shapes has looked at theirs */
+    /* instances: the reader has checked the shapes' own bounds */
     if (s->instance_count > 0 && !(fmaxf(vec3_max_abs(s->bounds_min), vec3_max_abs(s->bounds_max)) <= REACH_MAX)) {
         log_message(log, AG_LOG_ERROR, "an instance reaches beyond 1e18 units in world space");
         return AG_ERROR_SCENE;

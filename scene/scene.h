@@ -1,5 +1,5 @@
-/* scene.h: the owner of what there is: shapes, materials, lights, camera, and the words of the file that the renderer
- * reads. Built piece by piece (scene_add_…), then committed; read-only from then on.
+/* scene.h: the scene, which owns shapes, materials, lights, camera, and the file's hints for the renderer. Built
+ * piece by piece (scene_add_…), then committed; read-only from then on.
  * Flow: scene file -> [here] -> bvh_embree -> photon map, renderer.
  * Threads: one builds; any number read once committed. */
 #ifndef AFTERGLOW_SCENE_H
@@ -26,7 +26,7 @@ struct light_tree;
 
 enum { SCENE_LIGHT_GROUPS_MAX = 32 };
 
-/* What a commit has made anew, and what it has kept of the scene before. */
+/* Counts of what a commit has made, and what it has kept of the scene before. */
 typedef struct scene_reuse {
     uint64_t trees_built, trees_kept; /* of the world and of objects */
     uint64_t pictures_read, pictures_kept;
@@ -38,8 +38,8 @@ typedef struct scene {
                                                 as it is read; NULL: none */
     const definitions *definitions;          /* of names in its text; borrowed for as long; NULL: none */
     const scene_request *request;            /* likewise; NULL: nothing is asked for */
-    /* The scene that this one takes the place of, as edits have changed it: its pictures, tables and trees serve here
-     * too where they would be made the same. Borrowed until the commit is done; NULL: there is none. */
+    /* The scene that this one replaces after edits: its pictures, tables and trees are shared where they would be the
+     * same. Borrowed until the commit is done; or NULL. */
     struct scene *before;
     scene_reuse reuse;
     material *materials;
@@ -94,7 +94,7 @@ typedef struct scene {
     bool filters_textures; /* any of them: see material_mips.h */
     bool has_interfaces;   /* any shape that rays may pass unbent: see transmittance.h */
     bool has_panes;        /* any shape that lets light straight through: see pane.h, slab_faces.h */
-    /* How lights are picked, see light_pick.c */
+    /* Data for picking lights: see light_pick.c. */
     uint32_t lit_count;          /* lights with power */
     uint32_t only_light;         /* where there is but one of them, that one */
     uint32_t *everywhere_lights; /* [everywhere_count], indices of distant and infinite ones with power */
@@ -109,63 +109,65 @@ typedef struct scene {
 scene *scene_create(void);    /* NULL when out of memory */
 void scene_destroy(scene *s); /* NULL is fine */
 
-/* The interned copy of a file name; NULL when out of memory. */
+/* Returns the interned copy of a file name; NULL when out of memory. */
 const char *scene_intern_file_name(scene *s, const char *name);
 
-/* Each adds a copy of *item and gives its index. A mesh's arrays pass into the scene's ownership, on failure too
- * (they are then freed). Errors: AG_ERROR_MEMORY. */
+/* Each adds a copy of *item and writes its index. The scene takes over a mesh's arrays, on failure too, when they are
+ * freed. Errors: AG_ERROR_MEMORY. */
 ag_status scene_add_material(scene *s, const material *item, uint32_t *out_index);
-/* A texture's inputs must be there already. Errors also: AG_ERROR_SCENE (it costs more than TEXTURE_MAX_COST). */
+/* A texture's inputs must have been added before. Errors: AG_ERROR_MEMORY, AG_ERROR_SCENE (it costs more than
+ * TEXTURE_MAX_COST). */
 ag_status scene_add_texture(scene *s, const texture *item, uint32_t *out_index);
-/* For texture_image_load, which looks first whether it is there. The scene takes the picture, on failure too (it is
- * then destroyed). */
+/* For texture_image_load, which first looks for an equal picture. The scene takes the picture over, on failure too,
+ * when it is destroyed. */
 ag_status scene_add_texture_image(scene *s, texture_image *item, uint32_t *out_index);
-/* The group of that name, made where it is not there yet; "default" is to be asked for first. Errors: AG_ERROR_MEMORY,
- * AG_ERROR_SCENE (more than SCENE_LIGHT_GROUPS_MAX; nothing is said). */
+/* Finds the light group of a name, or adds it; "default" must be the first. Errors: AG_ERROR_MEMORY, AG_ERROR_SCENE
+ * (more than SCENE_LIGHT_GROUPS_MAX; nothing is logged). */
 ag_status scene_light_group(scene *s, const char *name, uint32_t *out_index);
 ag_status scene_add_medium(scene *s, const medium *item, uint32_t *out_index);
 ag_status scene_add_shape(scene *s, const shape *item, uint32_t *out_index);
-/* Adds curves, which join those of the shape before where they differ in nothing else: fur is many. */
+/* Adds curves; they are joined with the shape before where they differ in nothing but their segments, since fur has
+ * many. */
 ag_status scene_add_curves(scene *s, uint32_t object_index, const shape *item);
-/* An object, which is seen where instances put it. Its shapes do not shine. */
+/* Adds an object, which is visible by its instances. Its shapes emit no light. */
 ag_status scene_add_object(scene *s, uint32_t *out_index);
 ag_status scene_add_object_shape(scene *s, uint32_t object_index, const shape *item, uint32_t *out_index);
-/* An instance of an object that is there already (its shapes may come later); steps: see scene_instance, 1 of them
- * where it is at rest, MOTION_STEPS_MAX at most. Errors also: AG_ERROR_SCENE (one that cannot be undone; nothing is
- * said). */
+/* Adds an instance of an object added before, to which shapes may still be added; steps: see scene_instance, 1 at rest,
+ * at most MOTION_STEPS_MAX. Errors: AG_ERROR_MEMORY, AG_ERROR_SCENE (a matrix is singular; nothing is logged). */
 ag_status scene_add_instance(scene *s, uint32_t object_index, const affine *steps, uint32_t step_count,
                              uint32_t *out_index);
-/* An area light's shape must be there already, in the world itself; its light_index is set here. Pictures and tables of
- * a light pass into the scene's ownership, on failure too (they are then destroyed). */
+/* Adds a light. The shape of an area light must have been added before, outside of objects; its light_index is set
+ * here. The scene takes over a light's pictures and tables, on failure too, when they are destroyed. */
 ag_status scene_add_light(scene *s, const light *item, uint32_t *out_index);
 
-/* Drops the lights of one kind, or all of them; shapes that shone stay, dark. Before the commit. */
+/* Drop the lights of one kind, or all of them; their shapes stay, without emission. To be called before the commit. */
 void scene_drop_lights(scene *s, light_kind kind);
 void scene_drop_all_lights(scene *s);
 
-/* Areas, powers, bounds and the BVH (built by the run's threads and no others). isa: Embree's name of the widest
- * instruction set to use ("sse2", "sse4.2", "avx", "avx2", "avx512"), NULL for "avx2".
- * A scene without shapes is valid. Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING, AG_ERROR_SCENE, AG_CANCELLED. */
+/* Completes the scene: areas, powers, bounds and the BVH, on the run's threads alone. isa: Embree's name of the widest
+ * instruction set to use ("sse2", "sse4.2", "avx", "avx2", "avx512"), NULL for "avx2". A scene without shapes is valid.
+ * Errors: AG_ERROR_MEMORY, AG_ERROR_RAY_TRACING, AG_ERROR_SCENE, AG_CANCELLED. */
 ag_status scene_commit(scene *s, run_context *run, const char *isa);
-/* After a failure with s->before: gives back to that what scene_commit has changed in it. NULL is fine. */
+/* Undoes, after a failure with s->before, what scene_commit has changed in that scene. NULL is fine. */
 void scene_restore_before(const scene *s);
 
-/* Another camera for a committed scene, that nobody renders meanwhile; nothing else of the scene depends on it. */
+/* Replaces the camera of a committed scene, which must not be rendered meanwhile; nothing else depends on the
+ * camera. */
 void scene_set_camera(scene *s, const camera *c);
 
-/* Whether any light that meets it is traced on, rather than gathered: see bsdf.h. */
+/* Returns whether any light that meets the shape is traced on, rather than gathered: see bsdf.h. */
 bool scene_shape_is_traced(const scene *s, const shape *item);
 
-/* For shading: picks one of the lights that may shine at a point, about in proportion to what it may bring; u in [0,
- * 1). normal: unit, of a surface that scatters only what comes from the side it points to; zero: light from all sides
- * counts. Gives its index, and the probability with which this one is picked: 0 where no light reaches the point, and
- * the index is of no use. The scene has at least one light with power. */
+/* Picks, for shading, one of the lights that may light a point, about in proportion to its light there, by u in [0, 1).
+ * normal: unit, of a surface that scatters only light from its own side; zero: light from all sides. Returns the
+ * light's index and writes its probability; 0 where no light reaches the point, and the index is undefined. The scene
+ * must have a light with power. */
 uint32_t scene_pick_light(const scene *s, vec3 point, vec3 normal, float u, float *out_probability);
-/* The probability with which scene_pick_light picks that one there. */
+/* Returns the probability with which scene_pick_light picks a light there. */
 float scene_light_probability(const scene *s, uint32_t light_index, vec3 point, vec3 normal);
 
-/* For photons: picks a light by its power, but none so rarely that its light would be a few bright specks, and each as
- * often as its `photons` says. Probability 0: no light sends photons. */
+/* Picks, for photons, a light by its power, but none so rarely that its light would be a few bright specks; multiplied
+ * by its `photons`. Probability 0: no light emits photons. */
 uint32_t scene_pick_light_by_power(const scene *s, float u, float *out_probability);
 bool scene_sends_photons(const scene *s);
 

@@ -62,17 +62,40 @@ ag_status scene_find_bounds(const scene *s, bool (*is_wanted)(const scene *s, co
         include(item->object_index == SCENE_NO_OBJECT ? &all : &of_objects[item->object_index], &b);
     }
     for (uint32_t i = 0; i < s->instance_count; i++) {
-        const scene_instance *at = &s->instances[i];
-        const box *b = &of_objects[at->object_index];
-        for (uint32_t k = 0; b->low.x <= b->high.x && k < at->step_count; k++) {
-            box placed = transform_box(&s->instance_steps[at->first_step + k], b);
-            include(&all, &placed);
-        }
+        box placed = of_objects[s->instances[i].object_index];
+        scene_place_bounds(s, i, &placed.low, &placed.high);
+        include(&all, &placed);
     }
     free(of_objects);
     *out_min = all.low;
     *out_max = all.high;
     return AG_OK;
+}
+
+void scene_find_object_bounds(const scene *s, uint32_t object_index, vec3 *out_min, vec3 *out_max)
+{
+    const scene_object *object = &s->objects[object_index];
+    box all = NOTHING;
+    for (uint32_t i = 0; i < object->shape_count; i++) {
+        box b;
+        shape_bounds(&s->shapes[s->object_shapes[object->first_shape + i]], &b.low, &b.high);
+        include(&all, &b);
+    }
+    *out_min = all.low;
+    *out_max = all.high;
+}
+
+void scene_place_bounds(const scene *s, uint32_t instance_index, vec3 *in_out_min, vec3 *in_out_max)
+{
+    const scene_instance *at = &s->instances[instance_index];
+    const box own = {*in_out_min, *in_out_max};
+    box all = NOTHING;
+    for (uint32_t k = 0; own.low.x <= own.high.x && k < at->step_count; k++) {
+        box placed = transform_box(&s->instance_steps[at->first_step + k], &own);
+        include(&all, &placed);
+    }
+    *in_out_min = all.low;
+    *in_out_max = all.high;
 }
 
 /* The first instance of each object and the next one of each instance, SCENE_NO_INSTANCE at the end; to be freed. False
@@ -137,7 +160,7 @@ static box triangle_box(const mesh *m, uint32_t triangle)
     return (box){vec3_min(p, vec3_min(q, r)), vec3_max(p, vec3_max(q, r))};
 }
 
-/* The shape; where it is a mesh that is not small itself, its triangles one by one. */
+/* Adds a shape; of a mesh that is not small itself, its triangles one by one. */
 static void take_in_shape(size_census *c, const shape *item, float small)
 {
     box b;
@@ -253,7 +276,7 @@ enum { SQUARES = 4, DIRECTIONS = 3 * SQUARES * SQUARES, SAMPLES_ACROSS_QUADRIC =
 typedef struct area_vectors {
     double sums[DIRECTIONS][3];
     double area;      /* of the object */
-    double area_seen; /* the lengths of the sums: what is round has lost some hundredths */
+    double area_seen; /* the lengths of the sums: curved surfaces lose a few hundredths */
 } area_vectors;
 
 static void add_area(area_vectors *v, const double a[3])

@@ -195,6 +195,39 @@ hash128 scene_hash_of_light(const scene *s)
     return begun;
 }
 
+/* --- forms --- */
+
+hash128 scene_hash_of_form(const scene *s, uint32_t shape_index)
+{
+    hash128 begun = hash128_begin(), *h = &begun;
+    shape item = s->shapes[shape_index];
+    item.has_medium_interface = false;
+    item.medium_inside = item.medium_outside = SCENE_NO_MEDIUM;
+    item.light_index = item.light_index == SHAPE_NO_LIGHT ? SHAPE_NO_LIGHT : 0;
+    item.object_index = SCENE_NO_OBJECT;
+    if (!s->has_interfaces)
+        item.material_index = 0;
+    add_shape(h, &item);
+    return begun;
+}
+
+hash128 scene_hash_of_passage(const scene *s)
+{
+    hash128 begun = hash128_begin(), *h = &begun;
+    bool has_alpha = false;
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        has_alpha = has_alpha || s->shapes[i].alpha_texture != SCENE_NO_TEXTURE;
+    ADD(s->has_interfaces);
+    ADD(has_alpha);
+    for (uint32_t i = 0; (has_alpha || s->has_interfaces) && i < s->texture_image_count; i++)
+        add_image(h, s->texture_images[i]);
+    for (uint32_t i = 0; (has_alpha || s->has_interfaces) && i < s->texture_count; i++)
+        add_texture(h, &s->textures[i]);
+    for (uint32_t i = 0; s->has_interfaces && i < s->material_count; i++)
+        add_material(h, &s->materials[i]);
+    return begun;
+}
+
 /* --- the eye --- */
 
 static void add_camera(hash128 *h, const camera *c)

@@ -1,4 +1,4 @@
-/* scene_hints.h: what a scene file says of its picture: size, film, samples, filter, and how to render it. The scene
+/* scene_hints.h: hints of a scene file about its picture: size, film, samples, filter, and integrator. The scene
  * itself depends on none of it; the renderer's settings begin with what is given here.
  * Flow: readers, which have checked all ranges -> [here] -> render_settings, pixel_filter. Threads: as the scene. */
 #ifndef AFTERGLOW_SCENE_HINTS_H
@@ -63,7 +63,8 @@ typedef struct scene_hints {
     integer_hint max_depth;                          /* 0 to 100 */
 } scene_hints;
 
-/* Nothing is given; the filter is pbrt-v4's default, a Gaussian of radius 1.5 and sigma 0.5 pixels. */
+/* Returns hints without any value but the filter, which is pbrt-v4's default, a Gaussian of radius 1.5 and sigma 0.5
+ * pixels. */
 scene_hints scene_hints_default(void);
 void scene_hints_reset(scene_hints *hints); /* frees what it holds */
 

@@ -1,4 +1,4 @@
-/* scene_request.h: what whoever loads a scene asks of it beyond what its file says. Heeded while it is read.
+/* scene_request.h: settings of loading a scene beyond what its file says, used while it is read.
  * Flow: command line, public interface -> scene_load -> [here] -> readers. Threads: plain data. */
 #ifndef AFTERGLOW_SCENE_REQUEST_H
 #define AFTERGLOW_SCENE_REQUEST_H
@@ -28,10 +28,11 @@ typedef enum scene_up {
     UP_MINUS_Z
 } scene_up;
 
-/* Writes the path of a file that the scene names, with a NUL at its end; false: it is for the reader to find. */
+/* Writes the path of a file that the scene names, terminated by NUL, and returns true; or returns false, and the reader
+ * looks for it. */
 typedef bool scene_find_file(void *user, const char *name, char *out_path, size_t path_size);
 
-/* All zero: nothing is asked for. */
+/* All zero: the defaults. */
 typedef struct scene_request {
     gltf_light_units gltf_light_units;
     bool has_camera; /* instead of the file's */

@@ -98,8 +98,8 @@ static void make_fan(const bench *b, const bench_hit *p, ray_fan *out_fan)
     vec3 side = is_below ? vec3_negate(scattering->shading.z) : scattering->shading.z;
     sampler_sequence sequence = sampler_sequence_make(&p->where, SAMPLE_GATHER, 0, GATHER_RAYS);
     incident_guide guide;
-    bool is_guided = incident_light_find(&b->incident, transport_map_point(&b->t, &p->v).position, side, &guide);
-    out_fan->common = surface_ray(&p->v.hit, p->v.arrived, transport_facing_normal(&p->v));
+    bool is_guided = incident_light_find(&b->incident, vertex_map_point(b->t.s, &p->v).position, side, &guide);
+    out_fan->common = vertex_ray(&p->v, vertex_facing_normal(&p->v));
     out_fan->common.skips_uv = true;
     out_fan->count = GATHER_RAYS;
     float u[2][RAY_FAN_MAX], weights[RAY_FAN_MAX];
@@ -193,12 +193,12 @@ static void add_hit(bench *b, int x, int y)
     b->hit_count++;
     make_fan(b, p, &p->fan);
     for (uint32_t k = 0; k < GATHER_RAYS; k++) {
-        ray = surface_ray(&p->v.hit, p->v.arrived, ray_fan_direction(&p->fan, k));
+        ray = vertex_ray(&p->v, ray_fan_direction(&p->fan, k));
         ray.skips_uv = true;
         b->rays[b->ray_count++] = ray;
         vertex end;
         if (transport_trace(&b->t, &b->worker, ray, &end)) {
-            map_point at = transport_map_point(&b->t, &end);
+            map_point at = vertex_map_point(b->t.s, &end);
             b->queries[b->query_count++] = (irradiance_query){at.position, at.facing_normal};
         }
     }

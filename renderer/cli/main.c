@@ -252,14 +252,20 @@ static void tell_end(const options *o, ag_status status, const passes_result *re
                 o->memory_limit > 0 ? ": --memory allows no more" : "");
 }
 
-/* Each picture has a context of its own, so that statistics are its own. */
-static ag_status run_in_context(options *o, int frame, progress *told)
+/* Each picture has a context of its own, so that statistics are its own. in_out_last: NULL, or the context of the frame
+ * before, or NULL there; it becomes this one's, to be destroyed. */
+static ag_status run_in_context(options *o, int frame, progress *told, ag_context **in_out_last)
 {
     ag_context *context;
     ag_status status = ag_context_create(&o->context, &context);
     if (status != AG_OK) {
         fprintf(stderr, "afterglow: error: %s\n", ag_status_text(status));
         return status;
+    }
+    if (in_out_last) {
+        ag_context_take_frame(context, *in_out_last);
+        ag_context_destroy(*in_out_last);
+        *in_out_last = NULL;
     }
     signals_catch(context);
     if (o->memory_limit > 0)
@@ -269,7 +275,10 @@ static ag_status run_in_context(options *o, int frame, progress *told)
     progress_finish(told);
     tell_end(o, status, &result);
     signals_release();
-    ag_context_destroy(context);
+    if (in_out_last)
+        *in_out_last = context;
+    else
+        ag_context_destroy(context);
     memory_limit_lift();
     return status;
 }
@@ -329,7 +338,7 @@ static void free_frame(options *one, int outfile_count)
     free(one->definitions);
 }
 
-static ag_status run_frame(options *o, int index, progress *told)
+static ag_status run_frame(options *o, int index, progress *told, ag_context **in_out_last)
 {
     const int frame = o->frames.numbers[index];
     options one;
@@ -339,17 +348,17 @@ static ag_status run_frame(options *o, int index, progress *told)
     if (is_named) {
         if (o->verbosity >= 1)
             fprintf(stderr, "afterglow: frame %d: %s\n", frame, one.scene);
-        status = run_in_context(&one, frame, told);
+        status = run_in_context(&one, frame, told, in_out_last);
     }
     free_frame(&one, o->outfile_count);
     return status;
 }
 
 /* Renders one frame after the other; the first that fails, or that who watches stops, ends the run. */
-static ag_status run_frames(options *o, progress *told)
+static ag_status run_frames(options *o, progress *told, ag_context **in_out_last)
 {
     for (int i = 0; i < o->frames.count; i++) {
-        AG_TRY(run_frame(o, i, told));
+        AG_TRY(run_frame(o, i, told, in_out_last));
         if (signals_stop() && i + 1 < o->frames.count)
             return AG_CANCELLED; /* the signal came when this frame was complete */
         if (o->page && page_wishes_has_ended(page_server_wishes(o->page)) && i + 1 < o->frames.count) {
@@ -380,10 +389,12 @@ static int run_program(int argc, char **argv)
         progress_log(&told, AG_LOG_WARNING,
                      "--display-server: no thread can be had for it: no viewer is shown the picture");
     ag_status status = AG_OK;
+    ag_context *last = NULL;
     if (o.serves)
         status = page_server_start(o.serve_address ? o.serve_address : "127.0.0.1", o.serve_port, &told, &o.page);
     if (status == AG_OK)
-        status = o.frames.count > 0 ? run_frames(&o, &told) : run_in_context(&o, -1, &told);
+        status = o.frames.count > 0 ? run_frames(&o, &told, &last) : run_in_context(&o, -1, &told, NULL);
+    ag_context_destroy(last);
     page_server_stop(o.page);
     display_server_stop(o.display);
     options_reset(&o);

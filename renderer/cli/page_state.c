@@ -148,7 +148,7 @@ char *page_state_write(page_state *s, page_film *film, size_t *out_size)
         height = film->height;
         has_growth = film->rendering != NULL;
         if (has_growth)
-            ag_rendering_look(film->rendering, &growth);
+            growth = ag_rendering_growth(film->rendering);
         page_film_end(film);
     }
     fprintf(out, "{\"mode\": \"%s\", \"turn\": %" PRIu64 ", \"version\": %" PRIu64 ", \"width\": %d, \"height\": %d",

@@ -49,6 +49,8 @@ void summary_print(FILE *file, const ag_statistics *s)
         fprintf(file, "irradiance\n");
         print_count(file, "asked for", s->irradiance_requests);
         print_count(file, "computed at photons", s->irradiance_computed);
+        if (s->irradiance_kept > 0)
+            print_count(file, "kept from last frame", s->irradiance_kept);
         print_count(file, "computed elsewhere", s->irradiance_uncached);
         print_count(file, "deferred", s->irradiance_deferred);
         print_count(file, "waited for", s->irradiance_waited);

@@ -70,7 +70,7 @@ static void view_pixel(const views_job *job, eye_worker *worker, size_t pixel, i
     if (!t->cache)
         return;
     const photon_map *map = t->cache->map;
-    map_point at = transport_map_point(t, &v);
+    map_point at = vertex_map_point(t->s, &v);
     if (job->film->views[VIEW_PHOTON_DENSITY])
         put(job, VIEW_PHOTON_DENSITY, pixel, photon_density(map, worker, &at));
     uint32_t nearest = photon_map_nearest(map, at.position, at.facing_normal, &worker->rays_estimate);

@@ -5,15 +5,8 @@
 #include "math/sampling.h"
 #include "rays/transmittance.h"
 
-vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes)
+rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray shadow, const light_sample *sample)
 {
-    return bsdf_scatters_through(&v->scattering, lobes) ? vec3_make(0.0f, 0.0f, 0.0f) : transport_facing_normal(v);
-}
-
-rgb direct_light_transmittance(const transport *t, eye_worker *worker, const surface_hit *hit, scene_ray arrived,
-                               const light_sample *sample)
-{
-    scene_ray shadow = surface_ray(hit, arrived, sample->direction);
     float reach = INFINITY;
     if (!isinf(sample->distance)) {
         shadow.direction = vec3_sub(sample->shadow_target, shadow.origin);
@@ -56,14 +49,14 @@ lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, cons
         return none;
     float probability;
     light_sample sample;
-    uint32_t lamp = pick_lamp(t, v->hit.position, direct_light_normal(v, lobes), u_pick, &u, &probability);
-    if (!(probability > 0.0f) || !light_sample_from_point(t->s, &t->s->lights[lamp], v->hit.position, u, &sample))
+    uint32_t lamp = pick_lamp(t, vertex_position(v), vertex_light_normal(v, lobes), u_pick, &u, &probability);
+    if (!(probability > 0.0f) || !light_sample_from_point(t->s, &t->s->lights[lamp], vertex_position(v), u, &sample))
         return none;
     rgb reflected = rgb_mul(bsdf_evaluate(&v->scattering, lobes, BSDF_RADIANCE, sample.direction), sample.radiance);
     if (rgb_is_black(reflected))
         return none;
 
-    rgb transmittance = direct_light_transmittance(t, worker, &v->hit, v->arrived, &sample);
+    rgb transmittance = direct_light_transmittance(t, worker, vertex_ray(v, sample.direction), &sample);
     if (rgb_is_black(transmittance))
         return none;
     float pdf = sample.pdf_solid_angle * probability, weight = 1.0f;
@@ -134,7 +127,7 @@ direct_light direct_light_gathered(const transport *t, eye_worker *worker, const
         return (direct_light){from_lamps, sky, 0.0f};
     int lamp_count = counts.light, scatter_count = counts.scatter;
     float lamp_share = 1.0f / (float)lamp_count, scatter_share = scatter_count > 0 ? 1.0f / (float)scatter_count : 0.0f;
-    vec3 from = v->hit.position, normal = direct_light_normal(v, BSDF_GATHERED);
+    vec3 from = vertex_position(v), normal = vertex_light_normal(v, BSDF_GATHERED);
     for (int i = 0; i < lamp_count; i++) {
         float u_pick = sampler_2d_of(where, SAMPLE_LIGHT_PICK, path_vertex, (uint32_t)lamp_count, (uint32_t)i).x;
         vec2 u = sampler_2d_of(where, SAMPLE_LIGHT, path_vertex, (uint32_t)lamp_count, (uint32_t)i);
@@ -170,7 +163,7 @@ direct_light direct_light_gathered(const transport *t, eye_worker *worker, const
                 by_group[k] = rgb_add(by_group[k], rgb_mul(of_group[k], reflected));
             continue;
         }
-        rgb emitted = rgb_mul(transport_emission(t, &met), met.transmittance);
+        rgb emitted = rgb_mul(vertex_emission(t->s, &met), met.transmittance);
         if (rgb_is_black(emitted))
             continue;
         float weight =

@@ -7,13 +7,8 @@
 
 #include "integrator/transport.h"
 
-/* The normal by which a lamp is picked for these lobes; zero where they take light from all sides: see
- * scene_pick_light. */
-vec3 direct_light_normal(const vertex *v, bsdf_lobes lobes);
-
-/* The share of a sample's light that reaches the vertex that `arrived` has met. */
-rgb direct_light_transmittance(const transport *t, eye_worker *worker, const surface_hit *hit, scene_ray arrived,
-                               const light_sample *sample);
+/* The share of a sample's light, in [0, 1], that reaches the origin of `shadow`: a ray in the sample's direction. */
+rgb direct_light_transmittance(const transport *t, eye_worker *worker, scene_ray shadow, const light_sample *sample);
 
 /* One sample towards a lamp picked for the vertex: reflected radiance. lamp_count and scatter_count: how many samples
  * the caller takes of either technique; it divides by lamp_count itself. scatter_count 0: this technique alone. */
@@ -29,7 +24,7 @@ typedef struct lamp_light {
 lamp_light direct_light_sample_lamp(const transport *t, eye_worker *worker, const vertex *v, bsdf_lobes lobes,
                                     float u_pick, vec2 u, int lamp_count, int scatter_count);
 
-/* The weight of radiance met on a lamp by a ray scattered with the given density at `from`, of direct_light_normal
+/* The weight of radiance met on a lamp by a ray scattered with the given density at `from`, of vertex_light_normal
  * `normal` there. */
 float direct_light_scatter_weight(const transport *t, vec3 from, vec3 normal, const vertex *on_lamp,
                                   float pdf_solid_angle, int lamp_count, int scatter_count);

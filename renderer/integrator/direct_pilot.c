@@ -45,7 +45,8 @@ static float look_at(const transport *t, eye_worker *worker, const lit_point *po
     if (!(brought > 0.0f && isfinite(brought)))
         return 0.0f;
     *out_possible = true;
-    return brought * mean(direct_light_transmittance(t, worker, &point->hit, point->arrived, &sample));
+    const scene_ray shadow = surface_ray(&point->hit, point->arrived, sample.direction);
+    return brought * mean(direct_light_transmittance(t, worker, shadow, &sample));
 }
 
 typedef struct cell_view {

@@ -3,7 +3,6 @@
 
 #include "integrator/direct_lighting.h"
 #include "integrator/first_hit.h"
-#include "rays/transmittance.h"
 
 eye_path eye_path_begin(const camera_sample *from, int roulette_after, bool wants_parts)
 {
@@ -91,7 +90,7 @@ void eye_path_add_escaped(const transport *t, const eye_path *path, eye_sample *
 
 void eye_path_add_emitted(const transport *t, const eye_path *path, const vertex *v, eye_sample *sample)
 {
-    rgb emitted = transport_emission(t, v);
+    rgb emitted = vertex_emission(t->s, v);
     if (rgb_is_black(emitted))
         return;
     float weight = path->share;
@@ -143,7 +142,7 @@ bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float
         return false;
     path->vertex++;
     if (goes_straight) {
-        path->ray = scene_ray_continue(&v->hit, &v->arrived);
+        path->ray = vertex_ray_straight(v);
         return true;
     }
     path->scatterings++;
@@ -152,8 +151,8 @@ bool eye_path_go_on(const transport *t, const vertex *v, bsdf_lobes lobes, float
     if (path->wants_parts)
         path->parts = shares_behind(&path->parts,
                                     gathered_share(&v->scattering, next.is_delta ? next.group : lobes, next.direction));
-    path->scattered_from = v->hit.position;
-    path->scattered_normal = direct_light_normal(v, lobes);
+    path->scattered_from = vertex_position(v);
+    path->scattered_normal = vertex_light_normal(v, lobes);
     path->scattered_pdf = next.is_delta ? 0.0f : next.pdf_solid_angle;
     path->scatter_count = branch_count;
     path->ray = transport_scattered_ray(t, v, next.direction, next.is_delta);

@@ -26,7 +26,7 @@ typedef struct eye_path {
     int roulette_after; /* the vertex from which on roulette decides whether the path goes on */
     int scatterings;    /* so far; going straight through a pane may be none, and changes none of what follows */
     int first_gathered; /* which of them, counted from 1, was the first by a gathered lobe; 0: none */
-    vec3 scattered_from, scattered_normal; /* the last one's position, and direct_light_normal there */
+    vec3 scattered_from, scattered_normal; /* the last one's position, and vertex_light_normal there */
     float scattered_pdf; /* per solid angle; 0: the eye or a smooth lobe, which no shadow ray serves */
     int scatter_count;   /* how many branches left that position */
     bool wants_parts;

@@ -85,7 +85,7 @@ typedef struct pilot_job {
 /* On each side that the point's diffuse lobes take light from. */
 static void add_sides(const transport *t, const vertex *v, row_items *out, int which)
 {
-    map_point at = transport_map_point(t, v);
+    map_point at = vertex_map_point(t->s, v);
     if (!rgb_is_black(bsdf_gathered_reflection(&v->scattering)))
         add_point(out, which, at.position, at.facing_normal);
     if (!rgb_is_black(bsdf_gathered_transmission(&v->scattering)))
@@ -105,14 +105,14 @@ static void look_for_lamp(const transport *t, eye_worker *worker, const vertex *
     vec2 u = rng_vec2(&random);
     const light *lamp = &s->lights[scene_pick_light_by_power(s, found.start.u[0], &probability)];
     light_sample towards;
-    if (!(probability > 0.0f) || !light_sample_from_point(s, lamp, v->hit.position, u, &towards))
+    if (!(probability > 0.0f) || !light_sample_from_point(s, lamp, vertex_position(v), u, &towards))
         return;
     emission_numbers numbers = emission_start_numbers(&found.start);
     rgb reflected = bsdf_evaluate(&v->scattering, BSDF_ALL, BSDF_RADIANCE, towards.direction);
     rgb brought = rgb_mul(rgb_mul(throughput, reflected), towards.radiance);
-    if (rgb_is_black(brought) || !light_emission_numbers(s, lamp, v->hit.position, u, &towards, &numbers))
+    if (rgb_is_black(brought) || !light_emission_numbers(s, lamp, vertex_position(v), u, &towards, &numbers))
         return;
-    brought = rgb_mul(brought, direct_light_transmittance(t, worker, &v->hit, v->arrived, &towards));
+    brought = rgb_mul(brought, direct_light_transmittance(t, worker, vertex_ray(v, towards.direction), &towards));
     found.value = sqrtf(rgb_mean(brought) / (towards.pdf_solid_angle * probability));
     found.start = emission_start_of(found.start.u[0], &numbers);
     if (found.value > 0.0f)
@@ -138,8 +138,8 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
         if (!transport_survives(&throughput, rng_float(&random)))
             return;
         if (scatterings > 0 && next.group == BSDF_GATHERED) {
-            map_point at = transport_map_point(t, &v);
-            bool is_through = vec3_dot(transport_facing_normal(&v), next.direction) < 0.0f;
+            map_point at = vertex_map_point(t->s, &v);
+            bool is_through = vec3_dot(vertex_facing_normal(&v), next.direction) < 0.0f;
             add_point(out, ONWARD, at.position, is_through ? vec3_negate(at.facing_normal) : at.facing_normal);
             if (!is_through)
                 add_importon(out, WAYS, at.position, at.facing_normal, v.arrived.direction);
@@ -148,7 +148,7 @@ static void trace_importon(const transport *t, eye_worker *worker, const gather_
         scatterings += !goes_straight;
         if (scatterings == left)
             return;
-        scene_ray ray = goes_straight ? scene_ray_continue(&v.hit, &v.arrived)
+        scene_ray ray = goes_straight ? vertex_ray_straight(&v)
                                       : transport_scattered_ray(t, &v, next.direction, next.group == BSDF_TRACED);
         ray.skips_uv = true;
         if (!transport_trace(t, worker, ray, &v))
@@ -164,7 +164,7 @@ static void note_caustic_way(const transport *t, const vertex *met, row_items *o
     transport_complete(t, &v);
     if (!bsdf_has(&v.scattering, BSDF_TRACED) || !bsdf_is_sampled_from_light(&v.scattering, BSDF_TRACED))
         return;
-    map_point at = transport_map_point(t, &v);
+    map_point at = vertex_map_point(t->s, &v);
     add_importon(out, SEEN_WAYS, at.position, at.facing_normal, v.arrived.direction);
 }
 
@@ -215,7 +215,7 @@ static void look(const pilot_job *job, eye_worker *worker, int x, int y, row_ite
         bool is_last = eye_path_is_last(t, &path);
         if (job->finds_lit && !is_last && bsdf_is_sampled_from_light(&v.scattering, BSDF_ALL)) {
             bsdf_lobes lobes = bsdf_has(&v.scattering, BSDF_GATHERED) ? BSDF_GATHERED : BSDF_TRACED;
-            add_item(out, LIT, &(lit_point){v.hit, v.arrived, direct_light_normal(&v, lobes)});
+            add_item(out, LIT, &(lit_point){v.hit, v.arrived, vertex_light_normal(&v, lobes)});
         } else if (!job->finds_lit && !is_last && bsdf_has(&v.scattering, BSDF_GATHERED)) {
             if (path.vertex > 0 && rgb_max(path.throughput) < SHADING_LOW_CONTRIBUTION) {
                 add_sides(t, &v, out, GATHERED);

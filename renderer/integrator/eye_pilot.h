@@ -31,7 +31,7 @@ void eye_pilot_reset(eye_pilot *pilot);
 typedef struct lit_point {
     surface_hit hit;
     scene_ray arrived;
-    vec3 normal; /* direct_light_normal there */
+    vec3 normal; /* vertex_light_normal there */
 } lit_point;
 
 /* Reads of the settings: width over height, depth, light through panes, seed. Errors: AG_ERROR_MEMORY, AG_CANCELLED.

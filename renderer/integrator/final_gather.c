@@ -91,7 +91,7 @@ static void follow_together(gathering *g, gather_rays *r)
         v.transmittance = rgb_gray(1.0f);
         ray_fan_hit(t->s, fan, i, &v.hit);
         slab_meet(t->s, &v.arrived, &v.hit);
-        transport_note_footprint(&v);
+        vertex_note_footprint(&v);
         follow(g, r->number[i], r->weight[i], &v);
     }
 }
@@ -102,7 +102,7 @@ static void sample_plain(const gathering *g, const incident_guide *guide, sample
                          uint32_t end, gather_rays *r)
 {
     const bsdf *b = &g->request->from->scattering;
-    vec3 n = transport_facing_normal(g->request->from);
+    vec3 n = vertex_facing_normal(g->request->from);
     ray_fan *fan = &r->fan;
     float u[2][RAY_FAN_MAX], weights[RAY_FAN_MAX];
     gather_numbers(numbers, begin, end - begin, u);
@@ -125,7 +125,7 @@ static void sample_plain(const gathering *g, const incident_guide *guide, sample
 static void sample_lobes(gathering *g, sampler_sequence *numbers, uint32_t begin, uint32_t end, gather_rays *r)
 {
     const bsdf *b = &g->request->from->scattering;
-    vec3 n = transport_facing_normal(g->request->from);
+    vec3 n = vertex_facing_normal(g->request->from);
     for (uint32_t i = begin; i < end; i++) {
         bsdf_sample s;
         rng random = ray_random(g, i);
@@ -151,7 +151,7 @@ static bool find_guide(const transport *t, const vertex *v, incident_guide *out_
     const bsdf *b = &v->scattering;
     if (!t->incident)
         return false;
-    return incident_light_find(t->incident, transport_map_point(t, v).position,
+    return incident_light_find(t->incident, vertex_map_point(t->s, v).position,
                                bsdf_is_below(b) ? vec3_negate(b->shading.z) : b->shading.z, out_guide);
 }
 
@@ -174,7 +174,7 @@ uint32_t final_gather(const transport *t, eye_worker *worker, const gather_reque
     incident_guide guide;
     bool is_guided = is_plain && find_guide(t, v, &guide);
     gather_rays rays;
-    rays.fan.common = transport_scattered_ray(t, v, transport_facing_normal(v), false);
+    rays.fan.common = transport_scattered_ray(t, v, vertex_facing_normal(v), false);
     rays.fan.common.skips_uv = true;
     rays.fan.common.cone = transport_gather_cone(v);
     for (uint32_t begin = 0; begin < count && !run_is_cancelled(t->run); begin += RAY_FAN_MAX) {

@@ -20,7 +20,7 @@ static rgb albedo_at(const vertex *v, const sampler *where)
 static rgb irradiance_at(const transport *t, eye_worker *worker, const vertex *v)
 {
     const photon_map *map = t->cache->map;
-    map_point at = transport_map_point(t, v);
+    map_point at = vertex_map_point(t->s, v);
     arena_mark mark = arena_save(worker->scratch);
     photon_neighbor *neighbors = arena_alloc(worker->scratch, photon_map_scratch_count(map) * sizeof *neighbors);
     rgb irradiance;
@@ -37,7 +37,7 @@ void first_hit_fill(const transport *t, eye_worker *worker, const vertex *v, con
     const surface_hit *hit = &v->hit;
     out->is_hit = true;
     out->position = hit->position;
-    out->geometric_normal = transport_facing_normal(v);
+    out->geometric_normal = vertex_facing_normal(v);
     out->normal = vec3_face_forward(v->scattering.shading.z, v->scattering.out);
     out->uv = hit->uv;
     out->depth = hit->distance;

@@ -20,7 +20,7 @@ static rgb local_light(const transport *t, eye_worker *worker, const vertex *v, 
 static void end_at(const transport *t, const vertex *v, int scatterings_left, rgb throughput, float u_side,
                    gather_end *out_end, rgb *out_weight)
 {
-    map_point at = transport_map_point(t, v);
+    map_point at = vertex_map_point(t->s, v);
     rgb reflected = bsdf_gathered_reflection(&v->scattering), transmitted = bsdf_gathered_transmission(&v->scattering);
     rgb factor = reflected;
     if (!rgb_is_black(transmitted)) {
@@ -74,8 +74,7 @@ bool gather_path_follow(const transport *t, eye_worker *worker, vertex *v, rng r
         depth += !goes_straight;
         if (depth == scatterings_left)
             return false;
-        scene_ray ray = goes_straight ? scene_ray_continue(&v->hit, &v->arrived)
-                                      : transport_scattered_ray(t, v, next.direction, true);
+        scene_ray ray = goes_straight ? vertex_ray_straight(v) : transport_scattered_ray(t, v, next.direction, true);
         ray.skips_uv = true;
         worker->rays_gather++;
         if (!transport_meet(t, worker, ray, v))

@@ -109,7 +109,7 @@ static diffuse_light diffuse_radiance(const transport *t, eye_worker *worker, co
     if (scatterings_left < 1)
         return sum;
     if (is_whole && path->scatterings > 0 && rgb_max(throughput) < SHADING_LOW_CONTRIBUTION) {
-        map_point at = transport_map_point(t, v);
+        map_point at = vertex_map_point(t->s, v);
         rgb transmitted = bsdf_gathered_transmission(&v->scattering);
         rgb all = rgb_mul(bsdf_gathered_reflection(&v->scattering),
                           irradiance_cache_estimate(t->cache, at.position, at.facing_normal, worker->index));

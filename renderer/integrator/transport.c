@@ -18,7 +18,7 @@ bool transport_meet(const transport *t, eye_worker *worker, scene_ray ray, verte
     bool is_met = transmittance_intersect(t->s, &ray, &worker->rays_cut, &out_vertex->hit, &out_vertex->transmittance);
     out_vertex->arrived = ray;
     if (is_met)
-        transport_note_footprint(out_vertex);
+        vertex_note_footprint(out_vertex);
     return is_met;
 }
 
@@ -68,34 +68,18 @@ bool transport_trace_through_panes(const transport *t, eye_worker *worker, scene
             is_met = false;
             break;
         }
-        is_met = transport_trace(t, worker, scene_ray_continue(&out->hit, &out->arrived), out);
+        is_met = transport_trace(t, worker, vertex_ray_straight(out), out);
         left = rgb_mul(left, out->transmittance);
     }
     out->transmittance = left;
     return is_met;
 }
 
-rgb transport_emission(const transport *t, const vertex *v)
-{
-    if (!v->lamp)
-        return rgb_gray(0.0f);
-    return light_emitted_radiance(t->s, v->lamp, &v->hit, vec3_negate(v->arrived.direction));
-}
-
-vec3 transport_facing_normal(const vertex *v) { return vec3_face_forward(v->hit.geometric_normal, v->scattering.out); }
-
-map_point transport_map_point(const transport *t, const vertex *v)
-{
-    surface_rest rest = surface_at_opening(t->s, &v->hit);
-    bool is_behind = vec3_dot(v->hit.geometric_normal, v->arrived.direction) > 0.0f;
-    return (map_point){rest.position, is_behind ? vec3_negate(rest.geometric_normal) : rest.geometric_normal};
-}
-
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v)
 {
     if (!t->caustic || t->caustic->set.count == 0)
         return rgb_gray(0.0f);
-    map_point at = transport_map_point(t, v);
+    map_point at = vertex_map_point(t->s, v);
     arena_mark mark = arena_save(worker->scratch);
     photon_neighbor *neighbors =
         arena_alloc(worker->scratch, photon_map_scratch_count(t->caustic) * sizeof(photon_neighbor));

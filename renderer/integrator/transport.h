@@ -12,7 +12,7 @@
 #include "integrator/direct_guide.h"
 #include "integrator/gather_batch.h"
 #include "integrator/sampler.h"
-#include "material/bsdf.h"
+#include "integrator/vertex.h"
 
 typedef struct transport {
     const scene *s;
@@ -56,15 +56,6 @@ static inline uint64_t eye_worker_cost(const eye_worker *w)
            EYE_COST_OF_RAY * (w->rays_shadow + w->rays_gather) + w->rays_estimate - w->cost_apart;
 }
 
-/* A vertex of a camera path or gather ray: where it met a surface. */
-typedef struct vertex {
-    surface_hit hit;
-    bsdf scattering;
-    scene_ray arrived; /* of unit direction, in the medium of its last stretch */
-    rgb transmittance; /* of the way here: set also where the ray escapes, and then nothing else is */
-    const light *lamp; /* the area light that shines there, or NULL */
-} vertex;
-
 /* The numbers of samples that direct light takes at a diffuse vertex. */
 typedef struct sample_counts {
     int light;   /* towards lamps */
@@ -84,15 +75,6 @@ void transport_complete(const transport *t, vertex *in_out_vertex);
  * that of the panes with it; hit.distance that of its last stretch. false also where nothing is left of the light. */
 bool transport_trace_through_panes(const transport *t, eye_worker *worker, scene_ray ray, vertex *out_vertex);
 
-/* Carries the cone of the ray that has arrived to where it has met. */
-static inline void transport_note_footprint(vertex *v)
-{
-    if (!ray_cone_is_wide(&v->arrived.cone))
-        return;
-    v->arrived.cone = ray_cone_at(&v->arrived.cone, v->hit.distance);
-    v->hit.footprint = ray_cone_footprint(&v->arrived.cone, v->arrived.direction);
-}
-
 /* Whether a sample of the vertex that is_straight counts as no scattering. */
 static inline bool transport_is_open_pane(const transport *t, const vertex *v)
 {
@@ -103,7 +85,7 @@ static inline bool transport_is_open_pane(const transport *t, const vertex *v)
  * slabs straight (slab_faces.h), as shadow rays and photons do; what the eye sees directly, or in mirrors, is bent. */
 static inline scene_ray transport_scattered_ray(const transport *t, const vertex *v, vec3 direction, bool is_delta)
 {
-    scene_ray ray = surface_ray(&v->hit, v->arrived, direction);
+    scene_ray ray = vertex_ray(v, direction);
     ray.slabs_are_panes = ray.slabs_are_panes || (t->panes_are_direct && !is_delta);
     return ray;
 }
@@ -118,9 +100,6 @@ static inline ray_cone transport_gather_cone(const vertex *v)
     return ray_cone_is_wide(c) ? (ray_cone){fabsf(c->width), RAY_CONE_DIFFUSE_SPREAD, true} : *c;
 }
 
-/* Radiance that the vertex itself emits, back along the ray. */
-rgb transport_emission(const transport *t, const vertex *v);
-
 /* Roulette: whether a path that carries so much goes on, by a number in [0, 1); what survives carries the others'
  * share. */
 static inline bool transport_survives(rgb *in_out_throughput, float u)
@@ -131,16 +110,6 @@ static inline bool transport_survives(rgb *in_out_throughput, float u)
     *in_out_throughput = rgb_scale(*in_out_throughput, 1.0f / survival);
     return true;
 }
-
-/* The geometric normal on the side that the ray came from. */
-vec3 transport_facing_normal(const vertex *v);
-
-/* The place where the photons of a vertex lie, and its geometric normal there on the side that the ray came from; see
- * photon_tracing.h. */
-typedef struct map_point {
-    vec3 position, facing_normal;
-} map_point;
-map_point transport_map_point(const transport *t, const vertex *v);
 
 /* The caustic map's light at a diffuse vertex: reflected radiance. */
 rgb transport_caustics(const transport *t, eye_worker *worker, const vertex *v);

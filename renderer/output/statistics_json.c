@@ -132,17 +132,17 @@ static json_t *statistics_to_json(const ag_statistics *s, const ag_prediction *p
     json_object_set_new(root, "isa", json_string(isa));
     add_settings(root, settings);
     json_t *counts = json_pack(
-        "{s:{s:o, s:o, s:o, s:o, s:s},"
-        " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o, s:o},"
+        "{s:{s:o, s:o, s:o, s:o, s:s, s:o, s:o},"
+        " s:{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}, s:{s:o, s:o, s:o, s:o, s:o, s:o},"
         " s:o, s:o, s:f, s:o, s:{s:o}, s:{s:o, s:o, s:o, s:o}, s:o}",
         "photons", "emitted", count(s->photons_emitted), "stored_global", count(s->photons_stored_global),
         "stored_caustic", count(s->photons_stored_caustic), "bytes", count(s->photon_bytes), "map_file",
-        map_file_name(s->map_file), /**/
+        map_file_name(s->map_file), "came", count(s->photons_came), "went", count(s->photons_went), /**/
         "irradiance", "requests", count(s->irradiance_requests), "computed", count(s->irradiance_computed), "distinct",
         count(s->irradiance_distinct), "deferred", count(s->irradiance_deferred), "waited", count(s->irradiance_waited),
         "duplicated", count(s->irradiance_duplicated), "uncached", count(s->irradiance_uncached), "refused",
         count(s->irradiance_refused), "ready", count(s->irradiance_ready), "reclaimed", count(s->irradiance_reclaimed),
-        "estimate_s", s->irradiance_estimate_s, "wait_s", s->irradiance_wait_s, /**/
+        "kept", count(s->irradiance_kept), "estimate_s", s->irradiance_estimate_s, "wait_s", s->irradiance_wait_s, /**/
         "rays", "camera", count(s->rays_camera), "shadow", count(s->rays_shadow), "gather", count(s->rays_gather),
         "photon", count(s->rays_photon), "path", count(s->rays_path), "estimate", count(s->rays_estimate), /**/
         "samples_not_finite", count(s->samples_not_finite), "time_s", times, "cpu_s", s->cpu_s, "phase_cpu_s",

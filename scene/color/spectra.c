@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-/* XYZ of luminance 1 as linear RGB, what is outside the gamut as 0. */
+/* Converts XYZ of luminance 1 to linear RGB; components outside the gamut become 0. */
 static rgb rgb_of(const double xyz[3], const working_space *space)
 {
     color_matrix from_xyz = space ? space->from_xyz : color_rec709_from_xyz();
@@ -74,8 +74,8 @@ void spectra_blackbody_chromaticity(double kelvin, double out_xy[2])
     out_xy[1] = xyz[1] / (xyz[0] + xyz[1] + xyz[2]);
 }
 
-/* Of the pairs, at a wavelength; *in_out_next is the first pair beyond the last wavelength asked for, which was
- * below. */
+/* Returns the value of the pairs at a wavelength; *in_out_next is the first pair beyond the last wavelength of the
+ * calls before, which was lower. */
 static double value_at(const double *pairs, size_t count, double nm, bool goes_on, size_t *in_out_next)
 {
     while (*in_out_next < count && pairs[2 * *in_out_next] <= nm)

@@ -231,7 +231,7 @@ static vec3 triangle_normal(const shape *s, uint32_t triangle, float *out_area)
     return vec3_scale(n, (s->flip_normal ? -1.0f : 1.0f) / length);
 }
 
-/* The mean normal, and how far the others are off. */
+/* Finds the mean normal, and the greatest angle of the others to it. */
 static void find_mesh_normals(const shape *s, light_bounds *b)
 {
     const mesh *m = &s->as.mesh;

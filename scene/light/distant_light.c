@@ -19,7 +19,8 @@ void light_set_disc(light *l, double angle)
     l->as.distant.disc_one_minus_cos = (float)(2.0 * quarter * quarter);
 }
 
-/* On a surface that faces a point of the disc; the mean cosine of the others there is 1 - disc_one_minus_cos / 2. */
+/* Returns the irradiance on a surface that faces a point of the disc; the mean cosine of the others there is 1 -
+ * disc_one_minus_cos / 2. */
 static rgb irradiance(const light *l)
 {
     return rgb_scale(l->as.distant.irradiance, 1.0f / (1.0f - 0.5f * l->as.distant.disc_one_minus_cos));

@@ -1,5 +1,5 @@
-/* infinite_light.c: light from infinitely far away in all directions, from everywhere or through a portal; what it
- * looks like is told by environment.c.
+/* infinite_light.c: light from infinitely far away in all directions, from everywhere or through a portal;
+ * environment.c has its radiance.
  * Rests on: Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 2023, 12.5. Threads: read-only. */
 #include "light/environment.h"
 #include "light/light_type.h"
@@ -46,8 +46,8 @@ static bool sample_from_point(const scene *s, const light *l, vec3 point, vec2 u
     return environment_sample(l, point, u, &out->direction, &out->radiance, &out->pdf_solid_angle);
 }
 
-/* From a point in the portal, which is in the light's own medium, with what comes so far; window panes before it let
- * light through straight. */
+/* Emits from a point in the portal, which is in the light's own medium, with the light that arrives there; window panes
+ * outside of it transmit straight. */
 static bool emit_through_portal(const scene *s, const light *l, const light_target *target,
                                 const emission_numbers *numbers, light_emission *out)
 {

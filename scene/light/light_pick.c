@@ -10,8 +10,9 @@
 
 #include <stdlib.h>
 
-/* Of the photons, so many are dealt out to all lights alike: a lamp in a room beside a sun that shines on all the land
- * would else send two or three, each as bright as the sun's. The sun's grow brighter by a third at most. */
+/* The share of the photons that is divided evenly among all lights: a lamp in a room beside a sun that shines on all
+ * the land would otherwise emit two or three, each as bright as the sun's. The sun's become brighter by a third at
+ * most. */
 static const double EVEN_SHARE = 0.25;
 
 /* The mean of the channels: luminance would all but leave out blue lamps. */

@@ -11,8 +11,8 @@ static const float SLACK = 1e-3f;
 static const float COSINE_LEAST = 0.02f;
 /* Nearer than this to a lamp, in scene radii, all distances count alike. */
 static const float NEAREST = 1e-4f;
-/* Of a ball's squared radius: how near one comes to what is in it. A panel has half of that as its area over pi, which
- * is what its irradiance ends at; in a group some lamp may be nearer: measured, 0.1 to 0.2 leave the least noise. */
+/* Least squared distance to a ball's contents, as a share of its squared radius. A panel's area over pi is half of
+ * that, where its irradiance ends; in a group some lamp may be nearer: measured, 0.1 to 0.2 give the least noise. */
 static const float LAMP_NEAR = 0.64f, GROUP_NEAR = 0.15f;
 enum { BIN_COUNT = 16, ALL_AXES_MAX = 256 };
 
@@ -43,7 +43,7 @@ struct light_tree {
     float inverse_radius;
     node *nodes;
     uint32_t node_count;
-    parent_slot *parents; /* [light_count of the scene]; node LIGHT_TREE_NONE where it is not in the tree */
+    parent_slot *parents; /* [light_count of the scene]; LIGHT_TREE_NONE: the light is not in the tree */
 };
 
 /* --- weighing --- */
@@ -195,7 +195,7 @@ static float cos_of_sum(float cos_a, float cos_b)
     return fmaxf(cos_a * cos_b - sine_of(cos_a) * sine_of(cos_b), -1.0f);
 }
 
-/* The bounds of all of them together, and the box. */
+/* Returns the bounds of all lamps together, and writes their box. */
 static light_bounds bounds_of(const lamp *lamps, uint32_t begin, uint32_t end, vec3 *out_low, vec3 *out_high)
 {
     light_bounds all = lamps[begin].bounds;
@@ -207,7 +207,7 @@ static light_bounds bounds_of(const lamp *lamps, uint32_t begin, uint32_t end, v
             const light_bounds *b = &lamps[i].bounds;
             low = vec3_min(low, lamps[i].low);
             high = vec3_max(high, lamps[i].high);
-            /* two-sided ones all to one side, that they may cancel none of the others */
+            /* two-sided ones all to one side, so that they do not cancel */
             vec3 a = b->two_sided ? vec3_face_forward(b->axis, axis) : b->axis;
             axis = vec3_add_scaled(axis, a, b->intensity);
             all.intensity += b->intensity;

@@ -10,22 +10,22 @@
 typedef struct projection {
     uint32_t width, height;
     rgb *pixels;            /* [height][width], top row first; owned */
-    distribution_2d picks;  /* pixels in proportion to what they send */
+    distribution_2d picks;  /* picks pixels in proportion to their flux */
     float reach_x, reach_y; /* half the picture at z = 1 */
     rgb integral;           /* over the pyramid, sr times the pixels' unit */
 } projection;
 
-/* fov_degrees: of the shorter side, in (0, 180). pixels: finite and not negative, from malloc; taken over, on failure
- * too. Errors: AG_ERROR_MEMORY. */
+/* Creates a projection. fov_degrees: of the shorter side, in (0, 180). pixels: finite and not negative, from malloc;
+ * taken over, on failure too. Errors: AG_ERROR_MEMORY. */
 ag_status projection_create(uint32_t width, uint32_t height, rgb *pixels, float fov_degrees,
                             projection **out_projection);
 void projection_destroy(projection *p); /* NULL is fine */
 
-/* The pixel in that direction, black outside the pyramid. */
+/* Returns the pixel in a direction, black outside the pyramid. */
 rgb projection_value(const projection *p, vec3 direction);
-/* A direction nearly in proportion to the pixels. u in [0,1)^2. false where they are all black. */
+/* Samples a direction nearly in proportion to the pixels, by u in [0,1)^2. Returns false where they are all black. */
 bool projection_sample(const projection *p, vec2 u, vec3 *out_direction, rgb *out_value, float *out_pdf_solid_angle);
-/* The cosine to z of the corners. */
+/* Returns the cosine between z and the corners. */
 float projection_corner_cosine(const projection *p);
 
 #endif

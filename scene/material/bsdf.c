@@ -196,7 +196,7 @@ float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 d
     return pdf;
 }
 
-/* Picks among the lobes asked for, and makes the random number fresh again. */
+/* Picks one of the given lobes, and rescales the random number to be uniform again. */
 static const bsdf_lobe *pick_lobe(const bsdf *b, bsdf_lobes lobes, float *in_out_u, float *out_probability)
 {
     float total = bsdf_probability(b, lobes), before = 0.0f;

@@ -20,18 +20,18 @@
 #include "material/material_point.h"
 #include "scene.h"
 
-/* The largest factor that a shading normal may multiply a photon's flux by: where it arrives at a surface, and where a
- * lobe that is not diffuse sends it on. Light nearer to the surface than that is some thousandths where normals lean by
- * 45 degrees, and its part beyond the factor is lost. */
+/* The largest factor by which a shading normal may multiply a photon's flux: on arrival at a surface, and where a lobe
+ * that is not diffuse scatters it. With normals that lean by 45 degrees, a few thousandths of the light arrive at
+ * smaller angles to the surface, and their part beyond the factor is lost. */
 #define BSDF_SHADING_NORMAL_MAX 32.0f
 
 typedef enum bsdf_lobes { BSDF_GATHERED = 1, BSDF_TRACED = 2, BSDF_ALL = 3 } bsdf_lobes;
 
-/* The quantity that is carried: radiance is scaled by the square of the relative index when it enters another medium,
- * flux is not. */
+/* The quantity that is transported: radiance is scaled by the square of the relative index when it enters another
+ * medium, flux is not. */
 typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
 
-/* Every kind of lobe, with the bsdf_lobe_type that says what it is (bsdf_lobe.h). */
+/* All kinds of lobes, each with its bsdf_lobe_type (bsdf_lobe.h). */
 #define BSDF_LOBE_LIST(X)                                                                                              \
     X(LOBE_DIFFUSE, bsdf_lobe_diffuse)                 /* to the side it came from */                                  \
     X(LOBE_DIFFUSE_THROUGH, bsdf_lobe_diffuse_through) /* to the other side */                                         \
@@ -43,8 +43,8 @@ typedef enum bsdf_transport { BSDF_RADIANCE, BSDF_FLUX } bsdf_transport;
     X(LOBE_SLAB, bsdf_lobe_slab) /* a slab passed straight: reflection by both faces, and straight through */          \
     X(LOBE_COAT, bsdf_lobe_coat) /* reflection by a dielectric coat */                                                 \
     X(LOBE_CONDUCTOR_UNDER_COAT, bsdf_lobe_conductor_under_coat) /* refracted in, reflected, refracted out */          \
-    X(LOBE_COAT_SCATTERED, bsdf_lobe_coat_scattered)             /* what leaves a coat at any angle (coat.h) */        \
-    X(LOBE_HAIR, bsdf_lobe_hair)                                 /* all ways by a fibre (hair.h) */                    \
+    X(LOBE_COAT_SCATTERED, bsdf_lobe_coat_scattered)             /* light that leaves a coat at any angle (coat.h) */  \
+    X(LOBE_HAIR, bsdf_lobe_hair)                                 /* all light of a fibre (hair.h) */                   \
     X(LOBE_PRINCIPLED, bsdf_lobe_principled) /* of metal and dielectric: reflection, and straight or refracted */      \
     X(LOBE_CLEARCOAT, bsdf_lobe_clearcoat)   /* reflection by the coat of the principled one */
 
@@ -59,21 +59,21 @@ typedef struct bsdf_lobe {
     uint8_t kind;  /* bsdf_lobe_kind */
     uint8_t group; /* bsdf_lobes */
     bool is_delta;
-    float probability; /* of being picked among all lobes; they sum to 1 */
+    float probability; /* of being picked; those of all lobes sum to 1 */
 } bsdf_lobe;
 
 enum { BSDF_LOBES_MAX = 3 };
 
 typedef struct bsdf {
-    material_point material; /* what all lobes are evaluated from */
+    material_point material; /* the values that all lobes are evaluated from */
     frame shading;           /* z: shading normal, to the outside */
     vec3 geometric_normal;   /* to the outside */
     vec3 out;                /* back along the ray that arrived, unit */
-    bool is_tilted;          /* by a bump or normal map: facets send nothing through the surface, which a room of walls
-                                without thickness would see as light from outside */
-    bool is_pane;            /* lets light straight through (pane.h, slab.h), and does not shine itself */
+    bool is_tilted; /* tilted by a bump or normal map: facets then transmit nothing through the surface, which would
+                       look like light from outside in a room of walls without thickness */
+    bool is_pane;   /* transmits light straight (pane.h, slab.h), and is not emissive */
     uint8_t lobe_count;
-    bsdf_lobe lobes[BSDF_LOBES_MAX]; /* a diffuse one that reflects is the first */
+    bsdf_lobe lobes[BSDF_LOBES_MAX]; /* a diffuse one that reflects comes first */
 } bsdf;
 
 _Static_assert(sizeof(bsdf_lobe) == 8, "each bsdf has BSDF_LOBES_MAX of them");
@@ -82,71 +82,73 @@ _Static_assert(sizeof(bsdf) <= 192, "three lines of the cache: each hit that is 
 typedef struct bsdf_sample {
     vec3 direction;        /* unit, away from the surface */
     rgb weight;            /* f |cos| / pdf, shading-normal correction of flux included */
-    float pdf_solid_angle; /* of all lobes asked for together, as they sample it; meaningless where is_delta */
+    float pdf_solid_angle; /* of all lobes sampled together; undefined where is_delta */
     bool is_delta;
-    bool is_straight; /* goes on through a pane, unbent */
+    bool is_straight; /* passes a pane straight */
     bsdf_lobes group; /* of the lobe that was picked */
 } bsdf_sample;
 
-/* out: back along the ray that met the surface, unit. The bsdf is filled where it stands: a struct returned would be
- * copied, twice. */
+/* Initialises the bsdf of a hit in place, since a returned struct would be copied twice. out: back along the ray that
+ * met the surface, unit. */
 void bsdf_init(const scene *s, const surface_hit *hit, vec3 out, bsdf *out_bsdf);
-/* bsdf_init of a material's values, about the hit's own shading normal: no map tilts it, and no grain turns it. */
+/* bsdf_init from a material's values, about the hit's own shading normal, without a map that tilts it or a grain that
+ * turns it. */
 void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsdf *out_bsdf);
 
 bool bsdf_has(const bsdf *b, bsdf_lobes lobes);
 
-/* A Lambertian lobe and no other: sampling it needs no u_lobe, so that a gather draws its directions many at once, and
- * may draw them where a guide says that light is. */
+/* Returns whether the bsdf is one Lambertian lobe: sampling it needs no u_lobe, so that a gather samples its directions
+ * in batches, and may follow a guide. */
 static inline bool bsdf_is_plain(const bsdf *b)
 {
     return b->material.kind == MATERIAL_DIFFUSE && b->lobes[0].group == BSDF_GATHERED;
 }
 
-/* Whether `out` is on the inside, by the geometric normal: what does not go through stays there. */
+/* Returns whether `out` is on the inside, by the geometric normal; reflected light stays there. */
 static inline bool bsdf_is_below(const bsdf *b) { return vec3_dot(b->out, b->geometric_normal) < 0.0f; }
 
-/* The share of light that goes straight through the surface to `out`, in [0, 1]; black where there is no pane. */
+/* Returns the share of light that passes straight through the surface to `out`, [0, 1]; black where it is no pane. */
 rgb bsdf_straight_transmittance(const bsdf *b);
 
-/* Whether light can find these lobes by sampling a lamp: they are not all perfectly smooth. */
+/* Returns whether sampling a lamp can contribute to these lobes: they are not all perfectly smooth. */
 bool bsdf_is_sampled_from_light(const bsdf *b, bsdf_lobes lobes);
 
-/* Whether samples of these lobes may leave in different directions, and not all in that of one mirror. */
+/* Returns whether samples of these lobes may have different directions, unlike those of one mirror. */
 bool bsdf_has_many_ways(const bsdf *b, bsdf_lobes lobes);
 
-/* Whether any of these that a lamp can find scatter light that comes from behind the surface, as `out` sees it. */
+/* Returns whether any of these lobes that is not smooth scatters light from behind the surface, as seen from `out`. */
 bool bsdf_scatters_through(const bsdf *b, bsdf_lobes lobes);
 
-/* The probability with which bsdf_sample_direction, asked for all lobes, picks one of these. */
+/* Returns the probability that bsdf_sample_direction of all lobes picks one of these. */
 float bsdf_probability(const bsdf *b, bsdf_lobes lobes);
 
-/* The factor A t(out), of irradiance on out's side and on the other, each to be divided by pi: what leaves as
- * radiance. */
+/* Return the factor A t(out) of irradiance on out's side, and on the other side; divided by pi it gives the radiance
+ * that leaves. */
 rgb bsdf_gathered_reflection(const bsdf *b);
 rgb bsdf_gathered_transmission(const bsdf *b);
 
-/* The index inside over that outside by which light that goes through is refracted; 1: it goes straight. */
+/* Returns the refractive index inside over that outside for transmitted light; 1: it goes straight. */
 float bsdf_index(const bsdf *b);
 
-/* f |cos(direction, shading normal)| for light from `direction` (unit, away from the surface) leaving to out; smooth
- * lobes count as 0. */
+/* Returns f |cos(direction, shading normal)| for light from `direction` (unit, away from the surface) that leaves to
+ * out; smooth lobes count as 0. */
 rgb bsdf_evaluate(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction);
-/* Of sampling. Radiance is sampled about shading normals; flux leaves diffuse lobes by the cosine to the geometric
- * one. */
+/* Returns the density of bsdf_sample_direction, 1/sr. Radiance is sampled about shading normals; flux leaves diffuse
+ * lobes by the cosine to the geometric normal. */
 float bsdf_pdf(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, vec3 direction);
 
-/* Samples the way on. false: absorbed. */
+/* Samples a direction; returns false where the light is absorbed. */
 bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport transport, float u_lobe, vec2 u,
                            bsdf_sample *out_sample);
 
-/* The factor that arriving flux, from out, is multiplied by when it is stored: t(in), and |cos to shading normal| /
- * |cos to geometric normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
+/* Returns the factor of arriving flux, from out, when it is stored: t(in), and |cos to shading normal| / |cos to
+ * geometric normal|, so that irradiance is that of the shading surface (Veach 1997, 5.3). */
 float bsdf_arrival_factor(const bsdf *b);
 
-/* bsdf_arrival_factor at a point that gathers nothing itself, while others of its surface do: beside the metal grains
- * of a mix, or the black texels of a base. An estimate takes photons per area of all the surface, so photons are stored
- * on all of it, as those others would have them. false: no point of the surface gathers. */
+/* bsdf_arrival_factor at a point that gathers no light itself, while other points of its surface do, as between the
+ * metal grains of a mix or the black texels of a base. An estimate takes photons per area of the whole surface, so they
+ * are stored on all of it, with the factor of those other points. Returns false where no point of the surface
+ * gathers. */
 bool bsdf_arrival_factor_beside(const scene *s, const surface_hit *hit, const bsdf *b, float *out_factor);
 
 #endif

@@ -15,7 +15,7 @@ const bsdf_lobe_type *bsdf_base_of_kind(material_kind kind) { return bsdf_lobe_t
 
 /* --- probabilities --- */
 
-/* Gives each of three lobes that carries anything the least share, at the cost of the others. */
+/* Raises the probability of each lobe that carries anything to a least share, at the cost of the others. */
 static void normalize_many(bsdf *b)
 {
     float sum = 0.0f, free_sum = 0.0f, left = 1.0f;
@@ -80,7 +80,7 @@ void bsdf_init_of(const material_point *m, const surface_hit *hit, vec3 out, bsd
     set_up(out_bsdf, frame_from_z(hit->shading_normal), false, hit, out);
 }
 
-/* Makes one hit of both faces of a slab and what is between them. */
+/* Combines both faces of a slab and the medium between them into one hit. */
 static void make_slab(const scene *s, const surface_hit *hit, bsdf *b)
 {
     const medium *between = hit->slab.medium < s->medium_count ? &s->media[hit->slab.medium] : NULL;

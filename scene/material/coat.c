@@ -94,7 +94,7 @@ rgb coat_series(const coat_point *m, rgb metal, float cos_theta)
 {
     float crossing = coat_crossing(m, cos_theta), back = fresnel_dielectric(fabsf(cos_theta), m->ior);
     if (!(crossing > 0.0f))
-        return rgb_gray(0.0f); /* total reflection, by a coat of a lesser index than what is around */
+        return rgb_gray(0.0f); /* total reflection, by a coat of a lower index than the outside */
     if (m->thickness > 0.0f)
         back *= attenuation(2.0f * m->thickness / fabsf(coat_refract(m, (vec3){0.0f, 0.0f, cos_theta}).z));
     return sum_of_series(rgb_scale(metal, crossing * crossing), rgb_scale(metal, back));

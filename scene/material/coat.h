@@ -14,9 +14,9 @@
 #include "material/material.h"
 #include "material/microfacet.h"
 
-/* A coat and its base at a point, textures looked up. The values mean what those of `material` do. */
+/* A coat and its base at a point, textures evaluated. The members mean the same as those of `material`. */
 typedef struct coat_point {
-    ggx interface, base; /* facets; of the base where it is a metal */
+    ggx interface, base; /* facets; those of the base only where it is a metal */
     float ior, thickness;
     const struct coat_table *table; /* NULL: the material needs none */
     rgb eta, k;                     /* of a metal, from the coat */
@@ -26,40 +26,42 @@ typedef struct coat_point {
     bool scatters;  /* the gap between coat and base scatters light */
 } coat_point;
 
-/* Of a material without textures, or before they are looked up. */
+/* Returns the values of a material without textures, or before they are evaluated. */
 coat_point coat_point_of(const material *m);
 
-/* Whether the material's values are those of a coat_table, which its `table` must be then. */
+/* Returns whether the material needs a coat_table, which its `table` must then be. */
 bool coat_needs_table(const material *m);
 
-/* Whether the interface does not scatter: smooth, or of an index of 1. */
+/* Returns whether the interface does not scatter: it is smooth, or its index is 1. */
 bool coat_is_smooth(const coat_point *m);
 
-/* A direction refracted into the coat by a smooth interface, on the same side of the base as it was. */
+/* Returns a direction refracted into the coat by a smooth interface, on the same side of the base. */
 vec3 coat_refract(const coat_point *m, vec3 v);
 
-/* The share of light at that cosine outside that a smooth interface and one way through the gap leave. */
+/* Returns the transmittance of a smooth interface and one path through the gap, at a cosine outside. */
 float coat_crossing(const coat_point *m, float cos_theta);
 
-/* t: of light at that cosine outside, what gets to a diffuse base. */
+/* Returns t: the share of light at a cosine outside that reaches a diffuse base. */
 float coat_entry(const coat_point *m, float cos_theta);
 
-/* The albedo of a diffuse base under a coat: the share of light that got in which gets out again; f is this times t(o)
- * t(i) / pi. */
+/* Returns the albedo of a diffuse base under a coat: the share of the light that got in which gets out again. f is the
+ * albedo times t(o) t(i) / pi. */
 rgb coat_diffuse_albedo(const coat_point *m);
 
-/* Smooth on smooth: in through the coat, to and fro between metal and coat, and out again. metal: its reflectance. */
+/* Returns the reflectance of a smooth metal under a smooth coat, with all reflections between them. metal: its
+ * reflectance. */
 rgb coat_series(const coat_point *m, rgb metal, float cos_theta);
 
-/* The lobe of a metal that is not smooth on smooth: value (f |cos i|) and density of its sampling, 0 where o and i are
- * not on one side. o, i: in the shading frame. */
+/* Evaluates the lobe of a metal where metal or coat is rough: value (f |cos i|) and density of its sampling, 0 where o
+ * and i are not on one side. o, i: in the shading frame. */
 void coat_metal_lobe(const coat_point *m, vec3 o, vec3 i, rgb *out_value, float *out_pdf);
-/* A direction of it; o is above. false: kept in by the coat. */
+/* Samples that lobe; o is above. Returns false where the coat keeps the light in. */
 bool coat_sample_metal_lobe(const coat_point *m, vec3 o, vec2 u, vec3 *out_i);
-/* About its albedo. */
+/* Returns its approximate albedo. */
 rgb coat_metal_lobe_albedo(const coat_point *m, float cos_o);
 
-/* f of the scattered lobe, times pi, and what of light at a cosine leaves by it; black where there is none. */
+/* Return f of the scattered lobe, times pi; and the share of light at a cosine that leaves by it; black where there is
+ * none. */
 rgb coat_scattered(const coat_point *m, vec3 o, vec3 i);
 rgb coat_scattered_albedo(const coat_point *m, float cos_o);
 

@@ -152,7 +152,7 @@ static void fill_diffuse(coat_cell *cell, const material *m, uint64_t key)
 typedef struct metal_sums {
     float lobe[COAT_ORDERS];
     rgb scattered[COAT_ORDERS];
-    float forward; /* of what is scattered, times turn_of */
+    float forward; /* of the scattered light, times turn_of */
 } metal_sums;
 
 static metal_sums walk_to_metal(const material *m, const coat_layers *layers, float cosine, int walks, uint64_t key,

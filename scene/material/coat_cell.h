@@ -1,5 +1,6 @@
-/* coat_cell.h: what walks between coat and base come to in all, by the cosine outside, for one roughness of the
- * interface and one of the base. Flow: coat_walk -> [here] -> coat_table. Threads: made by one, read-only then. */
+/* coat_cell.h: totals of walks between coat and base, by the cosine outside, for one roughness of the interface and one
+ * of the base.
+ * Flow: coat_walk -> [here] -> coat_table. Threads: made by one, then read-only. */
 #ifndef AFTERGLOW_COAT_CELL_H
 #define AFTERGLOW_COAT_CELL_H
 
@@ -13,30 +14,31 @@ enum {
 
 /* The tables of one roughness of the interface and one of the metal. */
 typedef struct coat_cell {
-    /* A diffuse base. Of light from outside, what gets to it; of what leaves it upwards, what comes back. */
+    /* For a diffuse base: the share of light from outside that reaches it; and the share of light leaving it that
+     * returns. */
     float entry[COAT_COSINES];
-    rgb entry_tint; /* the square of what a gap that scatters in colours makes of `entry` */
+    rgb entry_tint; /* the square of the factor of `entry` by a gap with coloured scattering */
     rgb back;
 
-    /* A metal: the lobe of light that no facet reflected totally. */
+    /* For a metal: the lobe of light that no facet reflected totally. */
     float breadth;                 /* its roughness over what coat_lobe_facets computes */
-    float scale[COAT_COSINES];     /* what it is multiplied by, at either end */
-    float albedo[COAT_COSINES];    /* of a metal that reflects all */
+    float scale[COAT_COSINES];     /* its factor, at either end */
+    float albedo[COAT_COSINES];    /* for a metal of reflectance 1 */
     float lobe_share[COAT_ORDERS]; /* of its albedo, by the number of reflections */
 
-    /* Either: light that leaves at any angle, a product. On a metal, of what was reflected totally or scattered; on a
-     * diffuse base, of what the gap scatters back before it gets there. */
-    float scattered[COAT_COSINES]; /* its albedo, of a metal that reflects all, mean of the channels */
+    /* For both: light that leaves at any angle, a product. On a metal, light that was reflected totally or scattered;
+     * on a diffuse base, light that the gap scatters back before it arrives. */
+    float scattered[COAT_COSINES]; /* its albedo for a metal of reflectance 1, mean of the channels */
     float forward[COAT_COSINES];   /* of that light: how much it keeps of the way it went along the surface, [0, 1) */
     float scattered_mean;          /* over the hemisphere; 0: there is none */
     rgb scattered_share[COAT_ORDERS]; /* of its albedo, by the number of reflections, each channel */
 } coat_cell;
 
-/* Fills a cell of zeros by so many walks for each cosine, where the base is a metal; key: of their random numbers. The
- * material's roughnesses are those of the cell. false: no memory. */
+/* Fills a cell of zeros by walk_count walks for each cosine, where the base is a metal; key: of their random numbers.
+ * The material's roughnesses are those of the cell. Returns false when out of memory. */
 bool coat_cell_fill(coat_cell *out_cell, const material *m, int metal_walks, uint64_t key);
 
-/* The cosine of that number, above 0. */
+/* Returns the cosine of a number, > 0. */
 static inline float coat_cosine(int number)
 {
     float root = (float)number / (float)(COAT_COSINES - 1);

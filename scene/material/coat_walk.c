@@ -31,7 +31,7 @@ static vec2 next_pair(coat_numbers *numbers)
 
 static bool has_interface(const coat_layers *c) { return c->ior != 1.0f; }
 
-/* A facet of the interface that v sees, and what it reflects of v. */
+/* Samples a facet of the interface visible from v, and writes its reflectance. */
 static vec3 pick_facet(const coat_layers *c, vec3 v, vec2 u, float *out_reflected)
 {
     float side = v.z >= 0.0f ? 1.0f : -1.0f;

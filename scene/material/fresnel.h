@@ -1,4 +1,4 @@
-/* fresnel.h: how much light an interface reflects.
+/* fresnel.h: reflectance and refraction of interfaces.
  * Rests on: Fresnel's equations; Born, Wolf, "Principles of Optics", 14.2 (conductors).
  * Threads: pure functions. */
 #ifndef AFTERGLOW_FRESNEL_H
@@ -6,7 +6,7 @@
 
 #include "math/vec3.h"
 
-/* Unpolarised reflectance of a dielectric; cos_in >= 0; eta: index on the far side over the near one. */
+/* Returns the unpolarised reflectance of a dielectric; cos_in >= 0; eta: index on the far side over the near one. */
 static inline float fresnel_dielectric(float cos_in, float eta)
 {
     float sin2_through = (1.0f - cos_in * cos_in) / (eta * eta);
@@ -18,7 +18,7 @@ static inline float fresnel_dielectric(float cos_in, float eta)
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-/* The reflectance of a thin sheet: all reflections between its two faces together, a geometric series. */
+/* Returns the reflectance of a thin sheet with all reflections between its two faces, a geometric series. */
 static inline float fresnel_thin_dielectric(float cos_in, float eta)
 {
     float r = fresnel_dielectric(cos_in, eta);
@@ -27,7 +27,7 @@ static inline float fresnel_thin_dielectric(float cos_in, float eta)
     return r;
 }
 
-/* Unpolarised reflectance of a conductor, written without complex numbers. */
+/* Returns the unpolarised reflectance of a conductor, computed without complex numbers. */
 static inline float fresnel_conductor_channel(float cos_in, float eta, float k)
 {
     float c2 = cos_in * cos_in, s2 = 1.0f - c2;
@@ -67,8 +67,9 @@ static inline float attenuation(float x)
     return (float)e;
 }
 
-/* Of diffuse light that starts under an interface at optical depth `thickness`, the share that is reflected down again:
- * twice the integral of F e^(-2 thickness / cos) cos over the cosine. eta: far over near index, seen from inside. */
+/* Returns the share of diffuse light, starting under an interface at optical depth `thickness`, that is reflected down
+ * again: twice the integral of F e^(-2 thickness / cos) cos over the cosine. eta: far over near index, seen from
+ * inside. */
 static inline float fresnel_dielectric_diffuse(float eta, float thickness)
 {
     enum { STEPS = 512 };
@@ -80,7 +81,8 @@ static inline float fresnel_dielectric_diffuse(float eta, float thickness)
     return (float)(2.0 * sum / STEPS);
 }
 
-/* Through an interface with normal n on the side of v; eta: far over near index. false: total reflection. */
+/* Refracts v through an interface with normal n on the side of v; eta: far over near index. Returns false for total
+ * reflection. */
 static inline bool refract_through(vec3 v, vec3 n, float eta, vec3 *out_through)
 {
     float cos_in = vec3_dot(v, n);

@@ -14,7 +14,7 @@
 
 enum { HAIR_TILTED = 3, HAIR_LOBES = 4 }; /* R, TT, TRT, whose angles the scales shift, and all longer paths */
 
-/* The numbers of a fibre that all its points share. */
+/* The constants of a fibre, for all its points. */
 typedef struct hair_fibre {
     double ior;                                     /* of the fibre in air */
     double precision[HAIR_LOBES], norm[HAIR_LOBES]; /* 1 / variance of the inclination, and its density's factor */
@@ -22,15 +22,15 @@ typedef struct hair_fibre {
     double sin_tilt[HAIR_TILTED], cos_tilt[HAIR_TILTED]; /* of once, twice and four times the scales' angle */
 } hair_fibre;
 
-/* How light that comes along one direction enters the fibre and crosses it; the shares of the lobes and their middles
- * follow from it. */
+/* The passage of light along one direction into the fibre and across it, from which the lobes' shares and centres
+ * follow. */
 typedef struct hair_passage {
     double reflected;           /* by the surface */
-    double left[3];             /* of each channel, after one way across */
+    double left[3];             /* transmittance of each channel after one crossing */
     double gamma, gamma_inside; /* angles of the ray to the normal, outside and within, across the fibre */
 } hair_passage;
 
-/* What a fibre is the material of: how its offset across, as it is seen from one direction, is seen from another. */
+/* Which surface has the fibre as its material: this decides how an offset across it appears from another direction. */
 typedef enum hair_surface {
     HAIR_FACES_RAYS, /* a curve that turns to each ray, so that directions share no point of it: all offsets are as
                       * likely from each, and one stands for the others */
@@ -38,7 +38,7 @@ typedef enum hair_surface {
     HAIR_OTHER       /* the offset is that of a mesh's own parameter from either side, as in pbrt */
 } hair_surface;
 
-/* A point of a fibre, and the direction that light is scattered from or to. */
+/* A point of a fibre, and a direction of light scattered there. */
 typedef struct hair_point {
     const hair_fibre *fibre;
     double azimuth;       /* of the direction: its angle about the axis */
@@ -49,20 +49,20 @@ typedef struct hair_point {
     hair_surface surface;
 } hair_point;
 
-/* The colour within hair that scatters much light back in this colour, each channel in [0, 1] (Chiang 2016, eq. 9). */
+/* Returns the absorption of hair that scatters light in a given colour, each channel in [0, 1] (Chiang 2016, eq. 9). */
 rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n);
 
 hair_fibre hair_fibre_make(float ior, float beta_m, float beta_n, float tilt_degrees);
 
-/* v: the second surface parameter of the point. out: in the shading frame, unit. The point keeps the fibre's
- * address; its surface faces rays. */
+/* Initialises a point. v: its second surface parameter. out: in the shading frame, unit. It keeps the fibre's address,
+ * and its surface faces rays. */
 hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out);
 
-/* f |cos|, and the density per solid angle with which hair_sample takes the direction: of radiance that comes from
- * `direction` and leaves to `out`; or of flux that comes from `out` and leaves to `direction`, per flux that meets the
- * fibre. One that faces rays seems the narrower the more it points to the light; of others the caller knows the normal,
- * and multiplies by the ratio of its cosines. is_same_side: whether the direction sees the side that `out` sees, of a
- * surface that has two. */
+/* Computes f |cos|, and the density per solid angle with which hair_sample picks the direction: of radiance from
+ * `direction` that leaves to `out`; or of flux from `out` that leaves to `direction`, per flux that meets the fibre. A
+ * fibre that faces rays appears narrower the more it points to the light; for others the caller knows the normal, and
+ * multiplies by the ratio of its cosines. is_same_side: whether `direction` and `out` are on one side of the surface.
+ */
 void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 direction, rgb *out_value,
                    float *out_pdf);
 

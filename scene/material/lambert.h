@@ -1,5 +1,6 @@
-/* lambert.h: scattering at a plain Lambertian surface, which most of a scene is made of, without making a bsdf for it.
- * Rests on: Lambert; Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3 (shading normals).
+/* lambert.h: scattering at a plain Lambertian surface, the most common one, without a bsdf.
+ * Rests on: Lambert; Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.3 (shading
+ * normals).
  * Flow: bvh -> [here] -> photon tracing. It says what bsdf.c says: tests/scene/test_bsdf.c holds the two together.
  * Measured: with a bsdf instead, photons of the Cornell box take 5 % more CPU time, those of veach-ajar 2 %
  * (README.md). Threads: pure functions. */
@@ -9,7 +10,7 @@
 #include "material/bsdf.h"
 #include "math/sampling.h"
 
-/* The albedo where all there is is a Lambertian lobe about the hit's own shading normal; NULL elsewhere. */
+/* Returns the albedo where the only lobe is Lambertian, about the hit's own shading normal; else NULL. */
 static inline const rgb *lambert_albedo(const scene *s, const surface_hit *hit)
 {
     if (hit->is_strand)
@@ -23,7 +24,7 @@ static inline bool lambert_is_flat_shaded(const surface_hit *hit)
     return n.x == ns.x && n.y == ns.y && n.z == ns.z;
 }
 
-/* bsdf_arrival_factor. direction: of the flux, unit. */
+/* bsdf_arrival_factor of such a surface. direction: of the flux, unit. */
 static inline float lambert_arrival_factor(const surface_hit *hit, vec3 direction)
 {
     float geometric = vec3_dot(hit->geometric_normal, direction);
@@ -36,8 +37,8 @@ static inline float lambert_arrival_factor(const surface_hit *hit, vec3 directio
     return factor < BSDF_SHADING_NORMAL_MAX ? factor : BSDF_SHADING_NORMAL_MAX;
 }
 
-/* Samples the way on of flux that came along `arrived`, unit: bsdf_sample_direction. *out_correction: what its weight
- * is of the albedo. false: absorbed. */
+/* bsdf_sample_direction of flux that arrived along `arrived`, unit. *out_correction: its weight over the albedo.
+ * Returns false where it is absorbed. */
 static inline bool lambert_sample_flux(const surface_hit *hit, vec3 arrived, vec2 u, vec3 *out_direction,
                                        float *out_correction)
 {

@@ -1,4 +1,4 @@
-/* material.c: what of a material can be worked out beforehand, and what is known of it without a point.
+/* material.c: derived values of materials, and predicates that need no point of a surface.
  * Threads: material_prepare while the scene is built; the rest read only. */
 #include "material/material.h"
 

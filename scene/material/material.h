@@ -1,7 +1,7 @@
-/* material.h: what a surface is made of, as the scene file says it. material_point.h holds what of it is evaluated at a
- * hit, and bsdf.h makes scattering of that.
- * The parameters and their defaults are pbrt-v4's (pbrt.org/fileformat-v4, "Materials"), those of MATERIAL_PRINCIPLED
- * glTF's (Khronos, "glTF 2.0 Specification", appendix B; KHR_materials_transmission, _ior, _specular, _clearcoat).
+/* material.h: materials as scene files describe them. material_point.h holds a material's values at a hit, from
+ * which bsdf.h evaluates scattering. The parameters and their defaults are pbrt-v4's (pbrt.org/fileformat-v4,
+ * "Materials"), those of MATERIAL_PRINCIPLED glTF's (Khronos, "glTF 2.0 Specification", appendix B;
+ * KHR_materials_transmission, _ior, _specular, _clearcoat).
  * Threads: read-only once the scene is committed. */
 #ifndef AFTERGLOW_MATERIAL_H
 #define AFTERGLOW_MATERIAL_H
@@ -13,14 +13,15 @@
 /* Below this GGX alpha a surface is perfectly smooth (pbrt-v4 draws the same line). */
 #define MATERIAL_SMOOTH_ALPHA 1e-3f
 
-/* Every kind, with the material_type that says what it is (material_type.h). */
+/* All kinds, each with its material_type (material_type.h). */
 #define MATERIAL_KIND_LIST(X)                                                                                          \
     X(MATERIAL_DIFFUSE, diffuse_material)                                                                              \
     X(MATERIAL_DIFFUSE_TRANSMISSION, diffuse_transmission_material)                                                    \
     X(MATERIAL_CONDUCTOR, conductor_material)                                                                          \
     X(MATERIAL_DIELECTRIC, dielectric_material)                                                                        \
     X(MATERIAL_THIN_DIELECTRIC, thin_dielectric_material)                                                              \
-    X(MATERIAL_INTERFACE, no_material) /* no surface: light passes unbent (transmittance.h), perhaps into a medium */  \
+    X(MATERIAL_INTERFACE,                                                                                              \
+      no_material) /* no surface: light passes straight (transmittance.h), perhaps into a medium */                    \
     X(MATERIAL_COATED_DIFFUSE, coated_diffuse_material)     /* a dielectric coat on a diffuse base */                  \
     X(MATERIAL_COATED_CONDUCTOR, coated_conductor_material) /* a dielectric coat on a conductor */                     \
     X(MATERIAL_HAIR, hair_material)                         /* a fibre, coloured within (hair.h); mostly on curves */  \
@@ -35,7 +36,7 @@ typedef enum material_kind {
 } material_kind;
 
 typedef struct material {
-    const void *table; /* what its kind keeps of it, NULL: nothing (material_table.h); set by scene_add_material */
+    const void *table; /* precomputed table of its kind, NULL: none (material_table.h); set by scene_add_material */
     material_kind kind;
     rgb reflectance;        /* of the diffuse base, [0, 1] */
     rgb transmittance;      /* diffuse transmission: to the other side, [0, 1] */
@@ -43,17 +44,17 @@ typedef struct material {
     float ior;              /* dielectric or coat: inside over outside, > 0 */
     float alpha_u, alpha_v; /* GGX roughness after remapping, >= 0, of the outer interface */
     float base_alpha_u, base_alpha_v; /* of the conductor under a coat */
-    float coat_thickness;             /* in mean free paths of the coat's stuff, which absorbs; >= 0 */
-    rgb coat_albedo;                  /* of that stuff, [0, 1]; black: it does not scatter */
+    float coat_thickness;             /* in mean free paths of the coat's medium, which absorbs; >= 0 */
+    rgb coat_albedo;                  /* of that medium, [0, 1]; black: it does not scatter */
     float coat_g;                     /* mean cosine of its scattering, in (-1, 1) */
-    int coat_bounces; /* times that light meets the base under the coat at most, 0: unbounded; pbrt stops its walk */
-    rgb hair_sigma_a; /* per radius of the way within a fibre, >= 0; ior is the fibre's */
+    int coat_bounces; /* most reflections of light by the base under the coat, 0: unbounded; pbrt's maxdepth */
+    rgb hair_sigma_a; /* absorption per radius of the path within a fibre, >= 0; ior is the fibre's */
     float hair_beta_m, hair_beta_n; /* roughness along the fibre and about it, [0, 1] */
     float hair_tilt_degrees;        /* of its scales */
     uint32_t mixed[2];              /* mix: indices of materials made before */
     float mix_amount;               /* mix: the share of the second, [0, 1] */
 
-    /* principled; reflectance is the base colour, ior >= 1 or 0 (infinite) */
+    /* Principled materials, whose reflectance is the base colour, and ior >= 1 or 0 (infinite): */
     float metallic;            /* [0, 1] */
     float roughness;           /* as it is perceived, [0, 1]; alpha_u and alpha_v are set to its square */
     float transmission;        /* share of what enters a dielectric that goes through, [0, 1] */
@@ -63,12 +64,12 @@ typedef struct material {
     float clearcoat_roughness; /* as it is perceived, [0, 1] */
     bool is_thin; /* transmission is that of a thin wall: straight on; else it is the surface of a volume */
 
-    /* principled, set by scene_add_material */
+    /* Principled materials, set by scene_add_material: */
     rgb dielectric_f0;  /* of facets at normal incidence; at grazing they reflect `specular` */
-    float base_through; /* of diffuse light from outside, what gets to the diffuse base */
+    float base_through; /* share of diffuse light from outside that reaches the diffuse base */
 
-    /* Values that vary over the surface, instead of those above, or of MATERIAL_PRINCIPLED: which they are multiplied
-     * by. Each is SCENE_NO_TEXTURE where there is none; read only where is_textured. */
+    /* Textures, SCENE_NO_TEXTURE where there is none, and read only where is_textured. They replace the values above;
+     * for MATERIAL_PRINCIPLED they are multiplied with them. */
     bool is_textured;      /* set by scene_add_material */
     bool remaps_roughness; /* alpha is the square root of the texture's value */
     union {
@@ -82,21 +83,21 @@ typedef struct material {
         uint32_t value_textures[16]; /* all of these */
     };
 
-    /* The textures that tilt the shading normal, SCENE_NO_TEXTURE: none; of a mix those of the one picked
+    /* Textures that tilt the shading normal, SCENE_NO_TEXTURE: none; for a mix, those of the material that is picked
      * (shading_frame.h). */
-    uint32_t displacement_texture; /* a float: how far the surface seems raised, along its normal */
+    uint32_t displacement_texture; /* a float: apparent height of the surface along its normal, scene units */
     uint32_t normal_map_texture;   /* a colour: 2 c - 1 is the normal along dp/du, dp/dv and the shading normal */
-    float normal_scale;            /* what its first two components are multiplied by, mostly 1 */
+    float normal_scale;            /* factor of its first two components, usually 1 */
 
-    /* Lambertian and nothing else, the same all over, and nothing turns its shading normal. Set by scene_add_material.
-     * Some places do without a bsdf there (README.md). */
+    /* It is Lambertian and nothing else, uniform, and nothing tilts its shading normal. Set by scene_add_material. Some
+     * code needs no bsdf then (README.md). */
     bool is_lambertian;
 } material;
 
-/* The albedo of a material that is_lambertian; NULL of others. Not for curves, whose lobes are traced (bsdf.h). */
+/* Returns the albedo of a material that is_lambertian; else NULL. Not for curves, whose lobes are traced (bsdf.h). */
 static inline const rgb *material_plain_albedo(const material *m) { return m->is_lambertian ? &m->reflectance : NULL; }
 
-/* The k with which a conductor of index 1 reflects r at normal incidence, as pbrt-v4 has it. */
+/* Returns the k with which a conductor of index 1 reflects r at normal incidence, as in pbrt-v4. */
 static inline float material_k_from_reflectance(float r)
 {
     float clamped = fminf(fmaxf(r, 0.0f), 0.9999f);
@@ -111,32 +112,33 @@ static inline bool material_is_smooth(float alpha_u, float alpha_v)
 struct scene;
 struct surface_hit;
 
-/* A material without textures, all values as pbrt-v4, or of MATERIAL_PRINCIPLED glTF, has them by default: white,
- * metallic, rough, a thin wall. A conductor's eta and k are 0, and are to be set. */
+/* Returns a material without textures, with the defaults of pbrt-v4, or for MATERIAL_PRINCIPLED those of glTF: white,
+ * metallic, rough, a thin wall. eta and k of a conductor are 0, and must be set. */
 material material_make(material_kind kind);
 
-/* Works out what can be beforehand; scene_add_material calls it. */
+/* Computes derived values; called by scene_add_material. */
 void material_prepare(material *m);
 
-/* Whether the material has, or may pick, lobes that are traced (bsdf.h). */
+/* Returns whether the material, or one that it mixes, has lobes that are traced (bsdf.h). */
 bool material_is_traced(const struct scene *s, uint32_t material_index);
 
-/* Whether the material is, or may pick, smooth glass, thin or not: light goes through it on one way alone. */
+/* Returns whether the material, or one that it mixes, is smooth glass, thin or not, through which light passes on one
+ * path only. */
 bool material_is_clear_glass(const struct scene *s, uint32_t material_index);
 
-/* Whether rays pass the hit unbent. */
+/* Returns whether rays pass straight at a hit, as through an interface. */
 bool material_is_interface(const struct scene *s, const struct surface_hit *hit);
 
-/* Whether that is so anywhere on surfaces of the material. */
+/* Returns whether that is so anywhere on surfaces of the material. */
 bool material_may_be_interface(const struct scene *s, uint32_t material_index);
 
-/* Of a mix, the one of its materials that is picked at the hit. */
+/* Returns the material that a mix picks at a hit; a material that is no mix itself. */
 const material *material_resolve_mix(const struct scene *s, const material *m, const struct surface_hit *hit);
 
-/* The material, or the first of those mixed, that has a diffuse base anywhere; NULL: none has. */
+/* Returns the material, or the first of those mixed, that has a diffuse base anywhere; NULL: none. */
 const material *material_with_base(const struct scene *s, uint32_t material_index);
 
-/* Facets that are rough along one axis get a least roughness along the other, which must not divide by zero. */
+/* Raises the smaller of two roughnesses to a least value where only one of them is rough, to avoid division by zero. */
 void material_make_rough_on_both_axes(float *alpha_u, float *alpha_v);
 
 #endif

@@ -1,6 +1,6 @@
-/* material_mips.h: which textures of a material are filtered, and the coarser levels of their pictures.
- * Filtered are colours that light is linear in: the mean of the light is then the light of the mean colour. Roughness,
- * metals' indices, bases under coats, normals, heights, emission and cut-outs are not.
+/* material_mips.h: filtering of a material's textures, and the coarser levels of their pictures. Only colours in
+ * which light is linear are filtered: the mean of the light is then the light of the mean colour. Roughness, metals'
+ * indices, bases under coats, normals, heights, emission and cut-outs are not.
  * Flow: scene_commit -> [here] -> texture_mips; material asks. Threads: one commits; then pure. */
 #ifndef AFTERGLOW_MATERIAL_MIPS_H
 #define AFTERGLOW_MATERIAL_MIPS_H
@@ -9,10 +9,10 @@
 #include "run_context.h"
 #include "scene.h"
 
-/* Whether reflectance_texture and transmittance_texture are filtered. */
+/* Returns whether reflectance_texture and transmittance_texture are filtered. */
 bool material_is_filtered(const scene *s, const material *m);
 
-/* Makes the coarser levels of all pictures that may be filtered, and sets filters_textures. Errors: AG_ERROR_MEMORY,
+/* Builds the coarser levels of all pictures that may be filtered, and sets filters_textures. Errors: AG_ERROR_MEMORY,
  * AG_CANCELLED. */
 ag_status material_mips_make(scene *s, run_context *run);
 

@@ -1,5 +1,5 @@
-/* material_point.h: a material at one point of a surface: mixes picked, textures looked up. It holds the values that
- * lobes are evaluated from, and no more, since each bsdf has one of its own; what the scene file says is in material.h.
+/* material_point.h: a material at one point of a surface: mixes picked, textures looked up. It holds only the values
+ * from which lobes are evaluated, since each bsdf has one; the scene file's description is in material.h.
  * Flow: material + surface hit -> [here] -> bsdf, which makes lobes of it. Threads: pure functions. */
 #ifndef AFTERGLOW_MATERIAL_POINT_H
 #define AFTERGLOW_MATERIAL_POINT_H
@@ -21,11 +21,11 @@ typedef struct metal_point {
 } metal_point;
 
 typedef struct glass_point {
-    ggx facets; /* none where the glass is thin */
+    ggx facets; /* none for thin glass */
     float ior;
 } glass_point;
 
-/* Both faces of a plate and what is between them, met as one (slab.h). */
+/* Both faces of a plate and the medium between them, treated as one surface (slab.h). */
 typedef struct slab_point {
     rgb reflected, through;
 } slab_point;
@@ -39,23 +39,23 @@ typedef struct material_point {
         coat_point coat;             /* MATERIAL_COATED_DIFFUSE, MATERIAL_COATED_CONDUCTOR */
         principled_point principled; /* MATERIAL_PRINCIPLED */
         hair_point hair;             /* MATERIAL_HAIR; bsdf_init adds the direction to fibre and colour */
-        slab_point slab;             /* of a bsdf whose lobe is LOBE_SLAB, whatever the kind */
+        slab_point slab;             /* for a bsdf with LOBE_SLAB, whatever the kind */
     };
 } material_point;
 
 _Static_assert(sizeof(material_point) <= 96, "each hit on a surface makes a material_point");
 
-/* Of a prepared material without textures, or before they are looked up.. */
+/* Writes the point of a prepared material without textures, or before they are evaluated. */
 void material_point_of(const material *m, material_point *out_point);
 
-/* The material at a hit, which is no mix, and its values there. */
+/* Returns the material at a hit, with mixes picked, and its values there. */
 const material *material_at(const struct scene *s, const struct surface_hit *hit, material_point *out_point);
 
-/* Of a surface that gathers light anywhere (bsdf.h), the material by which it does, at a point where that one may not
- * have been picked or has a black texel. false: no point of the surface gathers. */
+/* Finds, for a surface that gathers light anywhere (bsdf.h), the material by which it does, at a point where another
+ * one may have been picked or the texture is black. Returns false where no point of the surface gathers. */
 bool material_gathering_at(const struct scene *s, const struct surface_hit *hit, material_point *out_point);
 
-/* Whether light is scattered otherwise along the surface's grain than across it, or by a fibre's axis. */
+/* Returns whether scattering depends on the surface's grain or on a fibre's axis. */
 bool material_point_has_grain(const material_point *p);
 
 #endif

@@ -1,4 +1,4 @@
-/* material_type.c: the table of the kinds, and what several of them share: see material_type.h. */
+/* material_type.c: the table of the kinds, and functions that several of them share: see material_type.h. */
 #include "material/material_type.h"
 
 #include "material/surface_footprint.h"

@@ -1,5 +1,7 @@
-/* material_type.h: what a kind of material is: one row of MATERIAL_KIND_LIST each, in the file of its family.
- * Flow: material.c, material_point.c, material_mips.c, pane.c, slab.c and bsdf_init.c ask the row of a material's kind.
+/* material_type.h: the functions of a kind of material, in one row of MATERIAL_KIND_LIST each, in the file of its
+ * family.
+ * Flow: material.c, material_point.c, material_mips.c, pane.c, slab.c and bsdf_init.c ask the row of a material's
+ * kind.
  * Threads: read-only tables of pure functions. */
 #ifndef AFTERGLOW_MATERIAL_TYPE_H
 #define AFTERGLOW_MATERIAL_TYPE_H
@@ -7,33 +9,32 @@
 #include "material/bsdf.h"
 #include "material/material_table.h"
 
-/* Where textures are looked up. footprint: NULL where they are not filtered. */
+/* The point at which textures are evaluated. footprint: NULL where they are not filtered. */
 typedef struct material_lookup {
     const scene *s;
     const surface_hit *hit;
     const struct surface_footprint *footprint;
 } material_lookup;
 
-/* A question about a material that is no mix. */
+/* A predicate of a material that is no mix. */
 typedef bool material_predicate(const scene *s, const material *m);
 
-/* Both faces of a plate: what each reflects and lets through of light that meets it from outside (outer, in) and from
- * within (inner, out). */
+/* Reflectance and transmittance of a plate's faces, for light from outside (outer, in) and from within (inner, out). */
 typedef struct material_faces {
     rgb outer, in, inner, out;
 } material_faces;
 
-/* A function may be NULL where its comment says what that means. */
+/* Functions may be NULL where their comments say what that means. */
 typedef struct material_type {
-    /* --- by what the file says --- */
+    /* --- of the file's description --- */
 
-    /* Sets defaults that differ from those of material_make; NULL: none does. */
+    /* Sets defaults that differ from those of material_make; NULL: none. */
     void (*init)(material *m);
-    /* Works out what can be beforehand; NULL: nothing. */
+    /* Computes derived values; NULL: none. */
     void (*prepare)(material *m);
-    /* What is kept beside the values once they are prepared, at material.table; NULL: nothing. */
+    /* The table that is kept at material.table once the values are prepared; NULL: none. */
     const material_table_type *table;
-    /* Predicates; each is NULL where it never holds. */
+    /* Predicates; NULL: never true. */
     material_predicate *is_traced;      /* material_is_traced */
     material_predicate *is_clear_glass; /* material_is_clear_glass */
     material_predicate *has_base;       /* it has a diffuse base anywhere */
@@ -43,9 +44,9 @@ typedef struct material_type {
 
     /* --- at a point --- */
 
-    /* Sets the values that hold where there is no texture; NULL: it has none. */
+    /* Sets the values without textures; NULL: there are none. */
     void (*say)(const material *m, material_point *p);
-    /* Puts those of textures in their place; NULL: it has none. */
+    /* Replaces them by textures' values; NULL: there are none. */
     void (*look_up)(const material_lookup *at, const material *m, material_point *p);
     /* material_point_has_grain; NULL: never. */
     bool (*has_grain)(const material_point *p);
@@ -53,18 +54,18 @@ typedef struct material_type {
     bool (*is_pane)(const material_point *p);
     /* pane_transmittance; cosine of either sign. NULL: it is never a pane. */
     rgb (*pane_transmittance)(const material_point *p, float cosine);
-    /* Of a material that may_be_slab: the index within, and what its faces do with light that meets them at those
-     * cosines (>= 0), outside and within. */
+    /* Returns the index of a material that may_be_slab, and writes what its faces do with light at cosines (>= 0)
+     * outside and within. */
     float (*index)(const material_point *p);
     material_faces (*faces)(const material_point *p, float cosine, float cosine_within);
-    /* Adds its lobes, a diffuse one that reflects before all others; NULL: rays do not stop there. */
+    /* Adds its lobes, a diffuse one that reflects before all others; NULL: rays pass. */
     void (*add_lobes)(bsdf *b, const surface_hit *hit);
-    /* The kind of that diffuse lobe; LOBE_DIFFUSE also where there is none: nothing keeps light from it. */
+    /* The kind of that diffuse lobe; LOBE_DIFFUSE also where there is none. */
     bsdf_lobe_kind base;
 } material_type;
 
-/* Each is in the file of its family, but for no_material: rays do not stop at an interface, and of a mix one of two
- * others has been picked before. */
+/* Each is defined in the file of its family, except no_material: rays pass an interface, and mixes are resolved
+ * before. */
 #define MATERIAL_TYPE_DECLARATION(kind, type) extern const material_type type;
 MATERIAL_KIND_LIST(MATERIAL_TYPE_DECLARATION)
 #undef MATERIAL_TYPE_DECLARATION
@@ -81,15 +82,15 @@ bool material_always(const scene *s, const material *m);
 static inline bool facets_are_smooth(ggx facets) { return material_is_smooth(facets.alpha_u, facets.alpha_v); }
 static inline bool facets_have_grain(ggx facets) { return facets.alpha_u != facets.alpha_v; }
 
-/* Each leaves a value as it is where its texture is SCENE_NO_TEXTURE. Colours are clamped to [0, 1], and filtered. */
+/* Each leaves a value unchanged where its texture is SCENE_NO_TEXTURE. Colours are clamped to [0, 1], and filtered. */
 void material_look_up_color(const material_lookup *at, uint32_t texture_index, rgb *in_out_color);
 void material_look_up_facets(const material_lookup *at, const material *m, uint32_t texture_u, uint32_t texture_v,
                              ggx *in_out_facets);
-/* A metal's index; from_air: what the one from air is multiplied by. */
+/* Evaluates a metal's index; from_air: factor of the index from air. */
 void material_look_up_metal(const material_lookup *at, const material *m, float from_air, rgb *in_out_eta,
                             rgb *in_out_k);
 
-/* Shares become probabilities once all lobes are there. */
+/* Normalises shares to probabilities once all lobes are added. */
 static inline void bsdf_add_lobe(bsdf *b, bsdf_lobe_kind kind, bsdf_lobes group, bool is_delta, float share)
 {
     b->lobes[b->lobe_count++] = (bsdf_lobe){(uint8_t)kind, (uint8_t)group, is_delta, share};

@@ -139,8 +139,7 @@ void principled_interface(const principled_point *m, float cosine, bool is_insid
     float weight = fresnel_schlick_weight(cosine), through = through_share(m);
     rgb dielectric = schlick(m->dielectric_f0, m->specular, weight), from_within = dielectric;
     if (is_inside) {
-        /* what is seen from outside at the refracted angle, so that both ways are the same; total reflection is
-         * total */
+        /* the value at the refracted angle outside, so that both directions are the same; total reflection is 1 */
         float sin2 = (1.0f - fminf(cosine * cosine, 1.0f)) * m->ior * m->ior;
         from_within = sin2 >= 1.0f ? rgb_gray(1.0f)
                                    : schlick(m->dielectric_f0, m->specular, fresnel_schlick_weight(sqrtf(1.0f - sin2)));

@@ -12,48 +12,48 @@
 
 #include "material/material.h"
 
-/* MATERIAL_PRINCIPLED at a point, textures looked up. The values mean what those of `material` do. */
+/* MATERIAL_PRINCIPLED at a point, textures evaluated. The members mean the same as those of `material`. */
 typedef struct principled_point {
     rgb reflectance;   /* the base colour */
     rgb dielectric_f0; /* of facets at normal incidence; at grazing they reflect `specular` */
     float ior;
-    float alpha; /* of the interface's facets, all round */
+    float alpha; /* of the interface's facets, isotropic */
     float metallic, transmission, specular, clearcoat, clearcoat_roughness;
-    float base_through; /* of diffuse light from outside, what gets to the diffuse base */
+    float base_through; /* share of diffuse light from outside that reaches the diffuse base */
     bool is_thin;
 } principled_point;
 
-/* Bounds the material's values, and sets those that follow from them. material_prepare calls it. */
+/* Clamps the material's values, and sets derived ones. material_prepare calls it. */
 void principled_prepare(material *m);
 
-/* Of a prepared material without textures, or before they are looked up. */
+/* Returns the point of a prepared material without textures, or before they are evaluated. */
 principled_point principled_point_of(const material *m);
 
-/* Bounds values that textures have changed, and sets those that follow: alpha, dielectric_f0 and base_through. */
+/* Clamps values that textures have changed, and sets derived ones: alpha, dielectric_f0 and base_through. */
 void principled_resolve(principled_point *p, rgb specular_color, float roughness);
 
 bool principled_transmits(const principled_point *m);
-/* Whether it does so into a volume, refracted; else both sides of the surface are the same. */
+/* Returns whether it transmits into a volume, by refraction; else both sides of the surface are the same. */
 bool principled_is_solid(const principled_point *m);
 bool principled_has_interface(const principled_point *m);
 
-/* Of light that meets a facet of the interface at a cosine (>= 0), what is reflected, and what goes through, tinted.
- * is_inside: within the volume of a solid. The two are at most 1 together. */
+/* Computes, for light that meets a facet of the interface at a cosine (>= 0), its reflectance and its tinted
+ * transmittance, together at most 1. is_inside: within the volume of a solid. */
 void principled_interface(const principled_point *m, float cosine, bool is_inside, rgb *out_reflected,
                           rgb *out_through);
 
-/* The share of light at a cosine that the coat's facets reflect. */
+/* Returns the reflectance of the coat's facets at a cosine. */
 float principled_coat_reflectance(const principled_point *m, float cosine);
 
-/* The factor of light that passes the coat to and from the interface, of light between cosines to the normal; signed,
- * negative: inside. */
+/* Returns the factor of light that passes the coat to and from the interface; cosines to the normal, negative:
+ * inside. */
 float principled_coat_factor(const principled_point *m, float cos_o, float cos_i);
 
-/* t and A of the diffuse base (bsdf.h); cosine: of either sign. */
+/* Return t and A of the diffuse base (bsdf.h); cosine: of either sign. */
 float principled_base_transmittance(const principled_point *m, float cosine);
 rgb principled_base_albedo(const principled_point *m);
 
-/* About what the layers reflect of light at that cosine (>= 0), to pick among them. */
+/* Returns the approximate reflectance of the layers at a cosine (>= 0), for picking among them. */
 typedef struct principled_shares {
     float coat, interface, base;
 } principled_shares;

@@ -34,7 +34,7 @@ slab_point slab_point_at(const material_point *face, float cosine, float thickne
     p.through.r = sum_series(f.in.r, f.inner.r, left.r, f.out.r);
     p.through.g = sum_series(f.in.g, f.inner.g, left.g, f.out.g);
     p.through.b = sum_series(f.in.b, f.inner.b, left.b, f.out.b);
-    /* what is reflected within once more, and leaves by the face that it came in by */
+    /* light that is reflected within once more, and leaves by the face that it entered by */
     p.reflected = rgb_add(f.outer, rgb_mul(p.through, rgb_mul(f.inner, left)));
     return p;
 }

@@ -2,7 +2,7 @@
  * Threads: pure functions. */
 #include "math/affine.h"
 
-/* Single precision loses what is beyond. */
+/* Range of determinants that single precision can invert. */
 static const double DETERMINANT_MIN = 1e-35, DETERMINANT_MAX = 1e35;
 
 double affine_determinant(const affine *a)

@@ -27,7 +27,7 @@ void hash128_add(hash128 *h, const void *bytes, size_t size)
         memcpy(last, next, left);
         add_block(h, last);
     }
-    /* what is short must reach all bits too */
+    /* short inputs must reach all bits too */
     h->bits[0] = hash_mix64(h->bits[0] + size);
     h->bits[1] = hash_mix64(h->bits[1] ^ h->bits[0]);
 }

@@ -7,18 +7,18 @@
 
 typedef struct bvh bvh;
 
-/* See scene_commit for isa and errors. The scene's shapes must stay where they are while the bvh lives: meshes are
- * shared with Embree, not copied. Trees of s->before whose surfaces are the same are held by both; they ask s from now
- * on, also after a failure. Adds to *reuse. */
+/* Builds the trees of a scene. isa and errors: see scene_commit. The scene's shapes must not move while the bvh lives:
+ * meshes are shared with Embree, not copied. Trees of s->before with the same surfaces are shared by both scenes, and
+ * refer to s from now on, also after a failure. Adds to *reuse. */
 ag_status bvh_create(const scene *s, run_context *run, const char *isa, scene_reuse *reuse, bvh **out_bvh);
-/* Makes the trees ask a scene again whose they are. NULL is fine. */
+/* Makes the trees refer to a scene again, which owns them. NULL is fine. */
 void bvh_point_at(const bvh *b, const scene *s);
 void bvh_destroy(bvh *b); /* NULL is fine */
 
-/* Bytes that Embree holds for it, and for others that share trees with it; buffers of ours not counted. */
+/* Returns the bytes that Embree holds for it, and for others that share its trees, without this library's buffers. */
 uint64_t bvh_memory_bytes(const bvh *b);
 
-/* "avx2", ...: what the kernels were limited to. */
+/* Returns the instruction set that the kernels were limited to: "avx2", ... */
 const char *bvh_isa(const bvh *b);
 
 #endif

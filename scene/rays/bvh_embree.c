@@ -190,7 +190,8 @@ static bvh_tree *find_kept_object(const scene *s, const scene_object *o, uint32_
     return NULL;
 }
 
-/* The objects that instances show, each a scene of its own, whose shapes are numbered as in its list. */
+/* Builds the objects that have instances, each as an Embree scene of its own, whose shapes are numbered as in its
+ * list. */
 static ag_status make_objects(bvh *b, const scene *s, run_context *run, unsigned joiners, scene_reuse *reuse)
 {
     uint32_t kept_at = 0;
@@ -302,13 +303,13 @@ static ag_status create_device(run_context *run, const char *isa, unsigned joine
     return AG_OK;
 }
 
-/* Objects, then the world, and what Embree says of them. */
+/* Builds objects, then the world, and returns Embree's error, if any. */
 static ag_status make_trees(bvh *b, const scene *s, run_context *run, unsigned joiners, scene_reuse *reuse)
 {
     ag_status status = make_objects(b, s, run, joiners, reuse);
     if (status == AG_OK)
         status = make_world(b, s, run, joiners, reuse);
-    const enum RTCError error = rtcGetDeviceError(b->device->embree); /* asked for always: it is kept until then */
+    const enum RTCError error = rtcGetDeviceError(b->device->embree); /* always read: it is kept until then */
     if (status == AG_OK && error != RTC_ERROR_NONE)
         status = error == RTC_ERROR_OUT_OF_MEMORY ? AG_ERROR_MEMORY : AG_ERROR_RAY_TRACING;
     return status;

@@ -25,7 +25,7 @@ enum { RAY_ORIGIN = 0, RAY_NEAR = 3, RAY_DIRECTION = 4, RAY_FAR = 8, RAY_ID = 10
 enum { HIT_NORMAL = 0, HIT_U = 3, HIT_V = 4, HIT_PRIMITIVE = 5, HIT_GEOMETRY = 6, HIT_INSTANCE = 7 };
 
 typedef struct lane {
-    unsigned stride, at; /* N, and which of them */
+    unsigned stride, at; /* N, and the index among them */
 } lane;
 
 static float *lane_float(void *first, lane l, unsigned number) { return (float *)first + number * l.stride + l.at; }

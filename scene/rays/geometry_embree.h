@@ -1,4 +1,4 @@
-/* geometry_embree.h: shapes as Embree's geometries: meshes, curves, whole spheres, and our own functions for the rest.
+/* geometry_embree.h: shapes as Embree's geometries: meshes, curves, whole spheres, and user geometries for all others.
  * Private to bvh_embree.c. Threads: one attaches; Embree's call the functions. */
 #ifndef AFTERGLOW_GEOMETRY_EMBREE_H
 #define AFTERGLOW_GEOMETRY_EMBREE_H
@@ -6,20 +6,21 @@
 #include "rays/embree_api.h"
 #include "scene.h"
 
-/* Our user data, which Embree gives back to our functions. */
+/* The user data of a geometry, which Embree passes to the callbacks. */
 typedef struct embree_user {
     const scene *s;
     const shape *shape;
 } embree_user;
 
-/* Calls to us from Embree's threads read what was written before the build, and what they write is read after it. */
+/* The address by which TSan is told that callbacks on Embree's threads run after what was written before the build, and
+ * before what is read after it. */
 extern char embree_threads;
 
-/* The user data's shape as a geometry of that number, unless no ray meets it. The user data stays where it is as long
- * as the geometry lives. False when out of memory. */
+/* Attaches the user data's shape as a geometry of that number, unless no ray can meet it. The user data must not move
+ * while the geometry lives. Returns false when out of memory. */
 bool embree_attach_shape(RTCDevice device, RTCScene into, embree_user *user, uint32_t index);
 
-/* How many primitives it brings. */
+/* Returns the shape's number of primitives. */
 uint64_t embree_item_count(const shape *s);
 
 #endif

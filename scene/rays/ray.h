@@ -10,14 +10,14 @@
 
 #define SCENE_NO_MEDIUM UINT32_MAX
 
-/* How a surface that is there in part (alpha.h) meets a ray. */
+/* How a surface with alpha (alpha.h) meets a ray. */
 typedef enum ray_alpha_rule {
     RAY_PASSES_ALPHA,     /* stops it by chance, as much as is there: light */
     RAY_MEETS_ALPHA,      /* stops it wherever anything is there: the ray looks for surfaces */
     RAY_MEETS_EMPTY_ALPHA /* stops it everywhere, where nothing is there too: for how far such a surface goes */
 } ray_alpha_rule;
 
-/* Named so, for a ray is what variables are called. */
+/* A ray; not named `ray`, which is a name of variables. */
 typedef struct scene_ray {
     vec3 origin, direction; /* world; whoever wants the direction unit says so */
     float time;             /* of the shutter, [0, 1] from its opening to its closing */
@@ -28,7 +28,7 @@ typedef struct scene_ray {
     ray_cone cone;        /* over which textures are filtered; all zero: none is */
 } scene_ray;
 
-/* When the shutter opens, in nothing. */
+/* Returns a ray at the opening of the shutter, in no medium. */
 static inline scene_ray scene_ray_make(vec3 origin, vec3 direction)
 {
     return (scene_ray){origin, direction, 0.0f, SCENE_NO_MEDIUM, RAY_PASSES_ALPHA, false, false, {0.0f, 0.0f, false}};

@@ -4,7 +4,7 @@
 #include "scene.h"
 #include "shape/tangents.h"
 
-/* So that a density of 1/pi gives the diffuse spread. */
+/* Factor by which a density of 1/pi gives the diffuse spread. */
 static const float SPREAD_OF_DENSITY = 0.0705f;
 static const float SPREAD_MAX = 2.0f;
 

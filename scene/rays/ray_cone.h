@@ -10,21 +10,21 @@
 
 #include <stdbool.h>
 
-/* All zero: a ray that stands for itself alone, which no texture is filtered for. */
+/* All zero: a ray without a cone, for which textures are not filtered. */
 typedef struct ray_cone {
     float width;    /* across the ray at its origin, scene units; below 0 behind a focus */
     float spread;   /* what width grows by along the ray, per length; below 0 towards a focus */
     bool is_coarse; /* of a gather ray or photon: detail in the cone is of no interest */
 } ray_cone;
 
-/* Where a cone has met a surface. */
+/* The ellipse in which a cone meets a surface. */
 typedef struct ray_footprint {
     float width; /* across the ray, scene units; 0: nothing is filtered */
     bool is_coarse;
     vec3 direction; /* the ray's, unit */
 } ray_footprint;
 
-/* The spread of rays that a diffuse surface scatters; about what a hundred of them share the hemisphere by. */
+/* The spread of rays that a diffuse surface scatters: about that of a hundred rays that share the hemisphere. */
 #define RAY_CONE_DIFFUSE_SPREAD 0.125f
 
 struct scene;
@@ -32,7 +32,7 @@ struct surface_hit;
 
 static inline bool ray_cone_is_wide(const ray_cone *c) { return c->width != 0.0f || c->spread != 0.0f; }
 
-/* The cone so far along the ray; its width there is its footprint's. */
+/* Returns the cone at a distance along the ray; its width there is its footprint's. */
 static inline ray_cone ray_cone_at(const ray_cone *c, float distance)
 {
     return (ray_cone){c->width + c->spread * distance, c->spread, c->is_coarse};
@@ -43,11 +43,12 @@ static inline ray_footprint ray_cone_footprint(const ray_cone *at_surface, vec3 
     return (ray_footprint){fabsf(at_surface->width), at_surface->is_coarse, direction};
 }
 
-/* Behind a surface that scatters: wider, the less probable the direction. pdf: 1/sr, of the direction, > 0. */
+/* Returns the cone behind a surface that scatters: the less probable the direction, the wider. pdf_solid_angle: of the
+ * direction, 1/sr, > 0. */
 ray_cone ray_cone_scattered(const ray_cone *at_surface, float pdf_solid_angle);
 
-/* Behind a smooth surface that reflects the ray into `direction`, or refracts it: a curved one spreads or focuses the
- * cone as a mirror or lens does near its axis. index: of the inside over the outside. */
+/* Returns the cone behind a smooth surface that reflects or refracts the ray into `direction`: a curved one spreads or
+ * focuses the cone as a mirror or lens does near its axis. index: inside over outside. */
 ray_cone ray_cone_bent(const struct scene *s, const ray_cone *at_surface, const struct surface_hit *hit, vec3 arrived,
                        vec3 direction, float index);
 

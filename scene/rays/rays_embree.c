@@ -1,4 +1,4 @@
-/* rays_embree.c: rays cast at the scene's shapes, one by one and as fans, and what they hit. With bvh_embree.c and
+/* rays_embree.c: casts rays at the scene's shapes, singly and as fans, and evaluates their hits. With bvh_embree.c and
  * geometry_embree.c the only file that knows Embree. Rests on: Wald et al., "Embree: A Kernel Framework for Efficient
  * CPU Ray Tracing", 2014. Flow: bvh_embree -> [here] -> transmittance. Threads: rays may be cast from any. */
 #include "rays/bvh_embree.h"
@@ -62,8 +62,8 @@ static void fill_hit(const scene *s, const scene_ray *ray, const ray_meeting *me
         shape_surface_at(at, met->primitive, met->u, met->v, position, ray->direction, out_hit);
 }
 
-/* Embree takes nothing beyond 1.8e18, and where it was built with its asserts, as Debian's is, ends the process.
- * Comparisons with what is not a number are false. */
+/* Embree accepts nothing beyond 1.8e18, and ends the process where it was built with asserts, as Debian's is.
+ * Comparisons with NaN are false. */
 static bool is_in_reach(vec3 v) { return fabsf(v.x) <= 1.8e18f && fabsf(v.y) <= 1.8e18f && fabsf(v.z) <= 1.8e18f; }
 
 static bool can_be_cast(const scene_ray *r, float max_distance)
@@ -97,8 +97,8 @@ bool scene_intersect(const scene *s, scene_ray ray, float max_distance, surface_
 
 /* --- fans --- */
 
-/* So few are cast one by one: a packet of rays that part soon takes longer than each alone (cornell-box, 8 rays a
- * gather: 1.15 times in all). */
+/* Up to SINGLES_MAX rays are cast singly: a packet whose rays soon diverge takes longer than its rays alone
+ * (cornell-box, 8 rays a gather: 1.15 times in all). */
 enum { PACKET = 8, SINGLES_MAX = 15 };
 
 /* Sorts rays by octant, and there by one coordinate, so that rays of about one direction are cast together. */

@@ -72,8 +72,8 @@ static bool is_counterpart(const scene *s, const surface_hit *in, const surface_
            FLAT_ANGLE_MAX * FLAT_ANGLE_MAX;
 }
 
-/* Follows a ray that has met a patch straight on into the glass. false: it does not leave by the patch's counterpart,
- * or what is between them is no slab. */
+/* Follows a ray that has met a patch straight into the glass. Returns false where it does not leave by the patch's
+ * counterpart, or where the part between them is no slab. */
 static bool find_exit(const scene *s, const slab_faces *f, const scene_ray *ray, const surface_hit *in,
                       const flat_patch *entered, slab_way *out_way, surface_hit *out_hit, uint32_t *out_patch)
 {

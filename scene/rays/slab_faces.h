@@ -11,24 +11,24 @@
 #include "rays/rays.h"
 #include "scene.h"
 
-/* A slab is at most the width of its faces over this thick; their width is their area over the diagonal of a box around
- * them (of a square, 0.7 of its side). */
+/* A slab's thickness is at most the width of its faces over this; the width is their area over the diagonal of a box
+ * around them (0.7 of a square's side). */
 #define SLAB_WIDTH_OVER_THICKNESS_MIN 16.0f
 
 typedef struct slab_faces slab_faces;
 
-/* Looks through a scene whose tree stands. *out_faces is NULL where it has no slabs. Errors: AG_ERROR_MEMORY,
+/* Finds the slabs of a scene whose tree is built. *out_faces is NULL where it has none. Errors: AG_ERROR_MEMORY,
  * AG_CANCELLED. */
 ag_status slab_faces_find(const scene *s, run_context *run, slab_faces **out_faces);
 void slab_faces_destroy(slab_faces *f); /* NULL is fine */
 
-/* The share of the area of all surfaces of a material that are faces of slabs, instances not counted. */
+/* Returns the share of a material's surface area that are faces of slabs, without instances. */
 double slab_faces_share(const scene *s, uint32_t material_index);
 
-/* Fills in the hit's slab where the ray, of unit direction, has met a slab that it passes straight. */
+/* Sets the hit's slab where the ray, of unit direction, has met a slab that it passes straight. */
 void slab_faces_meet(const scene *s, const scene_ray *ray, surface_hit *in_out_hit);
 
-/* slab_faces_meet for scenes that may have no slabs, and for rays that see slabs as the glass they are. */
+/* slab_faces_meet for scenes that may have no slabs, and for rays that treat slabs as solid glass. */
 static inline void slab_meet(const scene *s, const scene_ray *ray, surface_hit *in_out_hit)
 {
     if (s->slab_faces && ray->slabs_are_panes)

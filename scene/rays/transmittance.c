@@ -111,7 +111,7 @@ bool transmittance_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cu
     return is_hit && !rgb_is_black(*out_transmittance);
 }
 
-/* Makes the direction unit; gives what it was long. */
+/* Normalises the direction and returns its former length. */
 static float normalize_direction(scene_ray *ray)
 {
     float unit = vec3_length(ray->direction);

@@ -9,39 +9,39 @@
 #include "rays/rays.h"
 #include "scene.h"
 
-/* A ray ends, dark, at this many interfaces and panes, and is counted in *in_out_cut. */
+/* A ray ends without light at this many interfaces and panes, and is counted in *in_out_cut. */
 enum { TRANSMITTANCE_CROSSINGS_MAX = 256 };
 
-/* The nearest surface that scatters, along a ray of unit direction. ray->medium becomes that in which it arrives there.
- * *out_transmittance: the share of light that is left, on the way to the surface or, where there is none, to infinity.
- * out_hit->distance is the whole way's. False also where nothing is left of the light. */
+/* Finds the nearest surface that scatters, along a ray of unit direction. ray->medium becomes the medium in front of
+ * it. *out_transmittance: the transmittance up to the surface or, where there is none, to infinity. out_hit->distance:
+ * the whole distance. Returns false also where the transmittance is 0. */
 bool transmittance_intersect(const scene *s, scene_ray *ray, uint64_t *in_out_cut, surface_hit *out_hit,
                              rgb *out_transmittance);
 
-/* Whether transmittance_intersect of such a ray is scene_intersect, for nothing takes of its light on the way. */
+/* Returns whether transmittance_intersect of such a ray equals scene_intersect, since nothing on its way absorbs. */
 static inline bool transmittance_is_one(const scene *s, const scene_ray *ray)
 {
     return !s->has_interfaces && ray->medium == SCENE_NO_MEDIUM;
 }
 
-/* The share of light that is left on a ray's way up to reach (in lengths of its direction, INFINITY is fine); 0 where a
- * surface stands in it. */
+/* Returns the transmittance of a ray up to `reach` (in lengths of its direction, INFINITY is fine); 0 where a surface
+ * blocks it. */
 rgb transmittance_of_ray(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
 
-/* transmittance_of_ray of a ray that goes on across panes and slabs, whose transmittance (pane.h, slab.h) is
- * multiplied in: for light that is sampled at its lamp. Infinitely many reflections between the faces of one pane are
- * in it; those between two panes, which move light sideways, are not. */
+/* transmittance_of_ray of a ray that passes panes and slabs, multiplied by their transmittance (pane.h, slab.h): for
+ * light that is sampled at its lamp. It includes the reflections between the faces of one pane, but not those between
+ * two panes, which shift light sideways. */
 rgb transmittance_through_panes(const scene *s, scene_ray ray, float reach, uint64_t *in_out_cut);
 
-/* scene_find_surface finds the first surface that is no interface, and scene_is_blocked whether there is one up to
- * max_distance: for questions about surfaces, not light. Alpha surfaces stop all rays (RAY_MEETS_ALPHA), and the empty
- * parts too where ray.alpha_rule asks for them. */
+/* scene_find_surface finds the first surface that is no interface; scene_is_blocked returns whether there is one up to
+ * max_distance. They are for questions about surfaces, not light: alpha surfaces stop all rays (RAY_MEETS_ALPHA), their
+ * empty parts too where ray.alpha_rule says so. */
 bool scene_find_surface(const scene *s, scene_ray ray, float max_distance, surface_hit *out_hit);
 bool scene_is_blocked(const scene *s, scene_ray ray, float max_distance);
 
-/* The ray of unit direction that goes on unbent from the other side of the surface that it has hit; of a slab, from the
- * other side of both faces. It stays on its line, as far as the line leaves the surface soon, so that many such
- * crossings bend it no more than one. */
+/* Returns the ray that continues straight from the other side of the surface that it has hit; of a slab, from the other
+ * side of both faces. It stays on its line, so that many such crossings deviate no more than one, as long as the line
+ * leaves the surface soon. */
 scene_ray scene_ray_continue(const surface_hit *hit, const scene_ray *ray);
 
 /* Logs a warning that this many rays were cut, if any. */

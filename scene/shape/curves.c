@@ -362,7 +362,8 @@ static axis_point settle_on_ribbon(const curves *c, uint32_t segment, const doub
     return at;
 }
 
-/* The normal of a tube: what is around the bend is nearer together, and a taper looks up along the curve. */
+/* Finds the normal of a tube: rings are closer together on the inside of a bend, and a taper tilts the normal along the
+ * curve. */
 static void tube_normal(const axis_point *at, const double around[3], double out[3])
 {
     double stretch = at->speed > 0.0 ? at->speed - at->radius * dot(around, at->dd) / at->speed : 0.0;

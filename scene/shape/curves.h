@@ -9,10 +9,10 @@
 #include "shape/shape.h"
 #include "shape/tangents.h"
 
-/* Makes room for so many segments in all. Errors: AG_ERROR_MEMORY. */
+/* Reserves room for segment_count segments in all. Errors: AG_ERROR_MEMORY. */
 ag_status curves_reserve(curves *c, uint32_t segment_count);
 void curves_reset(curves *c);
-/* Whether two shapes of curves differ in nothing but their segments, and can be one. */
+/* Returns whether two shapes of curves differ in nothing but their segments, and can be joined. */
 bool curves_can_be_joined(const shape *s, const shape *with);
 /* Adds the segments of `from`. Errors: AG_ERROR_MEMORY. */
 ag_status curves_join(curves *c, const curves *from);
@@ -20,16 +20,15 @@ ag_status curves_join(curves *c, const curves *from);
 float curves_area(const shape *s); /* of flat curves, of the one side that is seen; needs no commit */
 void curves_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
 
-/* Changes a ribbon's segment, whose normals may be of any length and lean, so that Embree turns it as they say: it
- * knows of their ends alone, and not that the curve turns too. Returns how far its edges still are from where the
- * normals put them, as a share of half the width: such a segment is to be cut. */
+/* Fits a ribbon's segment, whose normals may lean and be of any length, to Embree, which evaluates them at its ends and
+ * leaves out the turning of the curve itself. Returns the largest distance of its edges from where the normals put
+ * them, as a share of half the width. */
 double curves_fit_ribbon(curves *c, uint32_t segment);
 
-/* Does for curves what shape_surface_at does for shapes. u: Embree's. direction: in which the ray goes, for a flat one
- * turns to meet it. */
+/* shape_surface_at for curves. u: Embree's. direction: of the ray, which flat curves turn to face. */
 void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 position, vec3 direction,
                        surface_hit *out_hit);
-/* The differentials in the shape's own space. */
+/* Returns the differentials in the shape's own space. */
 surface_differentials curves_differentials(const shape *s, const surface_hit *hit);
 
 #endif

@@ -17,9 +17,9 @@ typedef struct flat_patch {
     uint32_t largest_triangle; /* of its own */
 } flat_patch;
 
-/* Which patch each triangle of a mesh belongs to; FLAT_NO_PATCH where the mesh's own normals make a triangle look
- * round, where it has no area, and where the patch has less than so much of the mesh's area (share_min). Both arrays
- * are the caller's to free. Errors: AG_ERROR_MEMORY. */
+/* Finds the patch of each triangle of a mesh; FLAT_NO_PATCH where the mesh's own normals make a triangle look curved,
+ * where it has no area, and where the patch has less than share_min of the mesh's area. The caller frees both arrays.
+ * Errors: AG_ERROR_MEMORY. */
 ag_status flat_patches_find(const mesh *m, double share_min, uint32_t **out_patch_of_triangle, flat_patch **out_patches,
                             uint32_t *out_count);
 

@@ -16,7 +16,7 @@
 struct scene;
 struct surface_hit;
 
-/* Shapes whose object_index says so; "world space" of theirs is the object's. */
+/* An object: the shapes with its object_index. "World space" of these shapes is the object's space. */
 typedef struct scene_object {
     /* set by scene_commit */
     uint32_t first_shape, shape_count; /* the range of scene.object_shapes that tells which shapes */
@@ -28,24 +28,24 @@ typedef struct scene_instance {
                                       * the shutter's opening to its closing, straight in between; 1: at rest */
 } scene_instance;
 
-/* world_from_object at a time of the shutter, in [0, 1]. */
+/* Returns world_from_object at a time of the shutter, [0, 1]. */
 affine instance_at(const struct scene *s, uint32_t instance_index, float time);
 
-/* The world's point, in double precision, in the object's space. */
+/* Transforms a point of the world, in double precision, to the object's space. */
 vec3 instance_point_in_object(const affine *world_from_object, const double world[3]);
 
-/* The world's direction, of any length, in the object's space. */
+/* Transforms a direction of the world, of any length, to the object's space. */
 vec3 instance_direction_in_object(const affine *world_from_object, vec3 direction);
 
-/* Takes a hit from the object's space to the world's: position, normals, epsilon. */
+/* Transforms a hit from the object's space to the world's: position, normals, epsilon. */
 void instance_transform_hit(const affine *world_from_object, struct surface_hit *in_out_hit);
 
-/* The way back: the hit as its shape has it, but for epsilon; itself where the shape stands in the world. For the
- * functions that read shapes. */
+/* Returns a hit in its shape's space, except for epsilon: the hit itself where the shape is in the world. For functions
+ * that read shapes. */
 struct surface_hit instance_hit_in_object(const struct scene *s, const struct surface_hit *hit);
 
-/* A point of the surface as it stands when the shutter opens, and how its area there is to its area now (1 where
- * nothing is stretched). The hit's own position where nothing moves. */
+/* A point of the surface at the opening of the shutter, and the ratio of its area there to its area now (1 without
+ * scaling). The hit's own position where nothing moves. */
 typedef struct surface_rest {
     vec3 position;
     vec3 geometric_normal; /* unit, outside */

@@ -67,7 +67,7 @@ typedef struct curve_point {
     float radius; /* half the width */
 } curve_point;
 
-/* So many straight pieces does Embree make of a flat segment; the reader cuts those that need more. */
+/* The number of straight pieces that Embree makes of a flat segment; the reader divides those that need more. */
 enum { CURVES_FLAT_PIECES = 8 };
 
 /* Cubic Bezier segments, many curves in one shape. World space; arrays are owned as a mesh's. */

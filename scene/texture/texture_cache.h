@@ -11,8 +11,8 @@
 
 typedef struct texture_kept texture_kept; /* a picture's file there, open */
 
-/* What a picture's file is named by: the bytes of the file at path, or those in memory, where bytes is not NULL, and
- * how they are decoded. */
+/* Returns the key that names a picture's file: a hash of the bytes of the file at path, or of those in memory where
+ * bytes is not NULL, and of their encoding. */
 hash128 texture_cache_key(const char *path, const unsigned char *bytes, size_t size, image_encoding encoding);
 
 /* Fills *i, of which path and encoding are known, with what texture_cache_finish has written for such a key, and makes

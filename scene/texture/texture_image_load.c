@@ -240,7 +240,7 @@ bool texture_image_is_there(const run_context *run, const char *path)
 
 /* --- each once --- */
 
-/* The same picture in the scene before, where it can be held by two; NULL: it is to be read. */
+/* Returns the same picture in the scene before, where both can share it; NULL: it must be read. */
 static texture_image *find_kept(const scene *s, const source *from)
 {
     for (uint32_t k = 0; s->before && k < s->before->texture_image_count; k++) {

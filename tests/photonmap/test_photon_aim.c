@@ -343,26 +343,61 @@ static void where_there_is_nothing_to_aim_at_power_decides(void **state)
     test_run_reset(&r);
 }
 
-/* In a closed room with all of it asked for alike a guide would gain nothing: there is none. */
-static void a_room_that_is_lit_from_within_needs_no_aim(void **state)
+static scene *lit_sphere(test_run *r)
 {
-    (void)state;
-    test_run r;
-    test_run_init(&r, 2);
-    scene *s = test_scene_create(&r, "LightSource \"point\" \"rgb I\" [1 1 1]\nMaterial \"diffuse\"\n"
-                                     "Shape \"sphere\" \"float radius\" [1]");
+    return test_scene_create(r, "LightSource \"point\" \"rgb I\" [1 1 1]\nMaterial \"diffuse\"\n"
+                                "Shape \"sphere\" \"float radius\" [1]");
+}
+
+/* Light is asked for on the inside of a sphere of radius 1: this share of the points lies above z = 0.95, the others
+ * anywhere. */
+static importance_map ask_in_sphere(float share_above)
+{
     query_point *points = malloc(POINTS * sizeof *points);
     importance_map asked;
     assert_non_null(points);
     rng random = test_random(8);
     for (int i = 0; i < POINTS; i++) {
         vec3 d = random_direction(&random);
+        while ((float)i < share_above * (float)POINTS && d.z < 0.95f)
+            d = random_direction(&random);
         points[i] = (query_point){d, vec3_negate(d)};
     }
     assert_int_equal(importance_map_create(points, POINTS, &asked), AG_OK);
+    free(points);
+    return asked;
+}
+
+/* In a closed room with all of it asked for alike a guide would gain nothing: there is none. */
+static void a_room_that_is_lit_from_within_needs_no_aim(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    scene *s = lit_sphere(&r);
+    importance_map asked = ask_in_sphere(0.0f);
     expect_no_guide(s, &r, PHOTON_GLOBAL, &asked);
     importance_map_reset(&asked);
-    free(points);
+    scene_destroy(s);
+    test_run_reset(&r);
+}
+
+/* All photons land where somebody asks for light, most of them where hardly anybody does: they are aimed. */
+static void photons_of_little_use_are_aimed(void **state)
+{
+    (void)state;
+    test_run r;
+    test_run_init(&r, 2);
+    scene *s = lit_sphere(&r);
+    importance_map asked = ask_in_sphere(0.95f);
+    photon_tracing_settings settings = {
+        .kind = PHOTON_GLOBAL, .wanted = PHOTONS, .max_scatterings = 100, .asked = &asked};
+    photon_aim aim;
+    assert_int_equal(photon_aim_learn(s, &r.run, &settings, &(emission_starts){0}, 0.8f, &aim), AG_OK);
+    assert_non_null(aim.guide.nodes);
+    assert_true((double)aim.tried.asked > 0.9 * (double)aim.tried.photons);
+    photon_aim_reset(&aim);
+    importance_map_reset(&asked);
     scene_destroy(s);
     test_run_reset(&r);
 }
@@ -377,6 +412,7 @@ int main(void)
         cmocka_unit_test(any_number_of_threads_has_the_same_photons),
         cmocka_unit_test(where_there_is_nothing_to_aim_at_power_decides),
         cmocka_unit_test(a_room_that_is_lit_from_within_needs_no_aim),
+        cmocka_unit_test(photons_of_little_use_are_aimed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -199,8 +199,8 @@ static void test_lamp_seen(void **state)
                                                 "WorldBegin\n" LAMP("2", "2", "2") THIN SQUARE("3", "1"));
     double sigma = sqrt(0.077 * 0.923 / (64 * 512)), expected = 2.0 * thin_glass(1.0, 1.5);
     for (int i = 0; i < 2; i++) {
-        layers direct = LAYERS(scene, "--size=8x8", "--spp=512", INTEGRATORS[i], "--photons=1e4");
-        layers traced = LAYERS(scene, "--size=8x8", "--spp=512", INTEGRATORS[i], "--photons=1e4", TRACED);
+        layers direct = LAYERS(scene, "--size=8x8", "--spp=512", INTEGRATORS[i], FEW_PHOTONS);
+        layers traced = LAYERS(scene, "--size=8x8", "--spp=512", INTEGRATORS[i], FEW_PHOTONS, TRACED);
         expect_near("seen", direct.emission, expected, 4.0 * sigma / 0.923);
         expect_near("seen, traced", traced.specular, expected, 4.0 * sigma / 0.923);
         assert_true(direct.specular == 0.0 && traced.emission == 0.0);
@@ -238,9 +238,7 @@ static void test_warning(void **state)
 static void test_room(void **state)
 {
     (void)state;
-    agreement_means truth = OVER_SEEDS(ROOM, PATHS, TRACED);
-    expect_same_room("paths", OVER_SEEDS(ROOM, PATHS), truth);
-    expect_same_room("photon map", OVER_SEEDS(ROOM, PHOTONS), truth);
+    expect_same_room(ROOM);
 }
 
 /* The sun behind a pane, in a room without caustics, which paths cannot find. */
@@ -249,8 +247,8 @@ static void test_sunny_room(void **state)
     (void)state;
     const char *sunny = sunny_room(THIN "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" "
                                         "[-2.02 0.9 -1.1 -2.02 2.3 -1.1 -2.02 2.3 1.1 -2.02 0.9 1.1]");
-    expect_same_room("sun, indirect", OVER_SEEDS(sunny, PHOTONS, "--only=indirect"),
-                     OVER_SEEDS(sunny, PATHS, "--only=indirect"));
+    expect_same_light("sun, indirect", OVER_SEEDS(sunny, SUNNY_PHOTONS, "--only=indirect"),
+                      OVER_SEEDS(sunny, PATHS, "--only=indirect"));
     expect_same_direct_light(sunny);
 }
 
@@ -264,8 +262,8 @@ static void test_portal_behind_panes(void **state)
     snprintf(portal, sizeof portal, "%s",
              SCENE_WITH("panes.pbrt", "[1 1.2 1.5]",
                         "[1 1.2 1.5] \"point3 portal\" [-1.98 1 1 -1.98 1 -1 -1.98 2.2 -1 -1.98 2.2 1]"));
-    expect_same_room("photon map, a portal", OVER_SEEDS(portal, PHOTONS, "--only=indirect"),
-                     OVER_SEEDS(portal, PATHS, "--only=indirect"));
+    expect_same_light("photon map, a portal", OVER_SEEDS(portal, AGREEMENT_MAP, "--spp=12", "--only=indirect"),
+                      OVER_SEEDS(portal, PATHS, "--only=indirect"));
 }
 
 static void test_same_bits(void **state)

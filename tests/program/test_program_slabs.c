@@ -129,7 +129,8 @@ static void test_furnace(void **state)
     const agreement_means truth = agreement_uniform(1.0, 1.0, 1.0);
     for (int i = 0; i < 2; i++) {
         const agreement_means means =
-            OVER_SEEDS(scene, INTEGRATORS[i], "--spp=16", "--photons=2e5", "--caustic-photons=2e5", "--nearest=500");
+            i == 0 ? OVER_SEEDS(scene, PATH, "--spp=16")
+                   : OVER_SEEDS(scene, MAP, "--spp=4", "--photons=5e4", "--caustic-photons=1e5", "--nearest=500");
         expect_agreement(INTEGRATORS[i], &means, &truth,
                          (agreement_bounds){i == 0 ? 0.0 : AGREEMENT_BLUR, 0.005, 0.02});
     }
@@ -149,8 +150,8 @@ static void test_seen(void **state)
             slab_say(&text, "Camera \"perspective\" \"float fov\" 50\nWorldBegin\n" SKY LAMP("3", "1", "-1") GLASS);
             slab_box(&text, vec3_make(-1, 0, -1), vec3_make(1, 0.06f, 1));
             const char *scene = write_text("seen.pbrt", text.text);
-            picture direct = RENDER(scene, "--size=16x16", "--spp=4", INTEGRATORS[k], "--photons=100", DIRECT);
-            picture traced = RENDER(scene, "--size=16x16", "--spp=4", INTEGRATORS[k], "--photons=100", TRACED);
+            picture direct = RENDER(scene, "--size=16x16", "--spp=4", INTEGRATORS[k], FEW_PHOTONS, DIRECT);
+            picture traced = RENDER(scene, "--size=16x16", "--spp=4", INTEGRATORS[k], FEW_PHOTONS, TRACED);
             assert_memory_equal(direct.pixels, traced.pixels, 3 * 16 * 16 * sizeof *direct.pixels);
             assert_true(picture_mean(&direct, 1) > 0.1);
             picture_reset(&direct);
@@ -201,9 +202,7 @@ static void test_warning(void **state)
 static void test_room(void **state)
 {
     (void)state;
-    agreement_means truth = OVER_SEEDS(ROOM, PATHS, TRACED);
-    expect_same_room("paths", OVER_SEEDS(ROOM, PATHS), truth);
-    expect_same_room("photon map", OVER_SEEDS(ROOM, PHOTONS), truth);
+    expect_same_room(ROOM);
 }
 
 /* Paths that know slabs find the sun behind one, as the photon map does. */
@@ -214,8 +213,8 @@ static void test_sunny_room(void **state)
     slab_say(&text, GLASS);
     slab_box(&text, vec3_make(-2.03f, 0.9f, -1.1f), vec3_make(-2.02f, 2.3f, 1.1f));
     const char *scene = sunny_room(text.text);
-    expect_same_room("sun, indirect", OVER_SEEDS(scene, PHOTONS, "--only=indirect"),
-                     OVER_SEEDS(scene, PATHS, "--only=indirect"));
+    expect_same_light("sun, indirect", OVER_SEEDS(scene, SUNNY_PHOTONS, "--only=indirect"),
+                      OVER_SEEDS(scene, PATHS, "--only=indirect"));
     expect_same_direct_light(scene);
 }
 

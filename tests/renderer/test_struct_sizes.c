@@ -10,6 +10,7 @@ typedef struct bench {
     desk d;
     ag_scene *complete;
     ag_film *film;
+    ag_rendering *rendering; /* begin_rendering's */
 } bench;
 
 static void begin_bench(bench *b)
@@ -30,6 +31,19 @@ static void begin_bench(bench *b)
     settings.samples_per_pixel = 1;
     settings.photon_count = 100;
     assert_int_equal(ag_render(b->d.context, b->complete, &settings, &b->film), AG_OK);
+}
+
+/* Two samples of a rendering of the complete scene, whose photon map is kept as a.map. */
+static void begin_rendering(bench *b)
+{
+    ag_render_settings settings;
+    assert_int_equal(ag_render_settings_from_scene(b->d.context, b->complete, &settings), AG_OK);
+    settings.width = settings.height = 4;
+    settings.samples_per_pixel = 2;
+    settings.photon_count = 100;
+    settings.photon_map_file = in_folder("a.map");
+    assert_int_equal(ag_rendering_create(b->d.context, b->complete, &settings, &b->rendering), AG_OK);
+    assert_int_equal(ag_rendering_continue(b->rendering, 2), AG_OK);
 }
 
 static void end_bench(bench *b)
@@ -286,7 +300,7 @@ static void settings_of_another_release_are_refused(void **state)
     end_bench(&b);
 }
 
-/* The library's statistics and predictions in a struct of any size: an older program's, which lacks the last members,
+/* What the library tells in a struct of any size: an older program's, which lacks the last members,
  * gets those that it has; a newer one's gets zeros in those that the library does not have; nothing is written behind.
  */
 typedef void fill_call(const bench *b, void *out, size_t size);
@@ -307,6 +321,21 @@ static void predict_into(const bench *b, void *out, size_t size)
     assert_int_equal(ag_predict_memory_fill(b->d.context, b->complete, &s, out, size), AG_OK);
 }
 
+static void fill_growth(const bench *b, void *out, size_t size) { ag_rendering_growth_fill(b->rendering, out, size); }
+
+static void fill_noise(const bench *b, void *out, size_t size) { ag_rendering_noise_fill(b->rendering, out, size); }
+
+static void fill_map_info(const bench *b, void *out, size_t size)
+{
+    assert_int_equal(ag_photon_map_read_info_fill(b->d.context, in_folder("a.map"), out, size), AG_OK);
+}
+
+static void fill_merged_info(const bench *b, void *out, size_t size)
+{
+    const char *const maps[] = {in_folder("a.map")};
+    assert_int_equal(ag_photon_map_merge_fill(b->d.context, in_folder("merged.map"), maps, 1, out, size), AG_OK);
+}
+
 static void what_is_given_back_fits_any_release(void **state)
 {
     (void)state;
@@ -316,15 +345,25 @@ static void what_is_given_back_fits_any_release(void **state)
         size_t size, constant; /* so many of its first bytes, after the size, are the same in each call */
     } STRUCTS[] = {{fill_statistics, sizeof(ag_statistics), offsetof(ag_statistics, time_total_s)},
                    {fill_prediction, sizeof(ag_prediction), sizeof(ag_prediction)},
-                   {predict_into, sizeof(ag_prediction), sizeof(size_t)}};
+                   {predict_into, sizeof(ag_prediction), sizeof(size_t)},
+                   {fill_growth, sizeof(ag_growth), sizeof(ag_growth)},
+                   {fill_noise, sizeof(ag_noise), sizeof(ag_noise)},
+                   {fill_map_info, sizeof(ag_photon_map_info), sizeof(ag_photon_map_info)},
+                   {fill_merged_info, sizeof(ag_photon_map_info), sizeof(ag_photon_map_info)}};
     bench b;
     begin_bench(&b);
+    begin_rendering(&b);
     predict_into(&b, &(ag_prediction){0}, sizeof(ag_prediction));
-    const ag_statistics statistics = ag_context_statistics(b.d.context);
-    const ag_prediction prediction = ag_context_prediction(b.d.context);
-    assert_true(statistics.rays_camera > 0 && prediction.memory_peak_bytes > 0);
+    assert_true(ag_context_statistics(b.d.context).rays_camera > 0);
+    assert_true(ag_context_prediction(b.d.context).memory_peak_bytes > 0);
+    assert_true(ag_rendering_growth(b.rendering).irradiance_photons > 0);
+    assert_true(ag_rendering_noise(b.rendering).level > 0.0);
+    ag_photon_map_info info;
+    assert_int_equal(ag_photon_map_read_info(b.d.context, in_folder("a.map"), &info), AG_OK);
+    assert_true(info.photons_global > 0);
     for (size_t i = 0; i < sizeof STRUCTS / sizeof *STRUCTS; i++) {
-        const unsigned char *whole = i == 0 ? (const unsigned char *)&statistics : (const unsigned char *)&prediction;
+        unsigned char whole[ROOM];
+        STRUCTS[i].fill(&b, whole, STRUCTS[i].size);
         for (size_t size = sizeof(size_t); size <= STRUCTS[i].size + 64; size += 8) {
             union {
                 size_t struct_size;
@@ -343,6 +382,7 @@ static void what_is_given_back_fits_any_release(void **state)
             }
         }
     }
+    ag_rendering_finish(b.rendering, NULL);
     end_bench(&b);
 }
 

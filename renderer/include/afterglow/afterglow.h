@@ -12,11 +12,12 @@
  * changes the members that it cares for, and later releases add some. The first member, struct_size, is the struct's
  * size as the program was compiled with it, and no more than that is written. A call that gets a size which is not the
  * library's does nothing, and gives AG_ERROR_ARGUMENT, with a message where a context is among its arguments: the
- * struct was not filled, or the program was compiled with the headers of another release. ag_statistics and
- * ag_prediction, which the library writes, have their size as well, and are filled as far as both sides know them
- * (statistics.h). The SONAME, which changes whenever a public struct or enum does, keeps releases apart too, and alone
- * where the library writes small structs without a size (ag_growth, ag_noise, ...). Parts: each of the headers below
- * may be included alone.
+ * struct was not filled, or the program was compiled with the headers of another release. Structs
+ * that the library writes for the program (ag_statistics, ag_prediction, ag_growth, ag_noise, ag_photon_map_info) have
+ * their size as well, and are filled as far as both sides know them (statistics.h). Structs without a size do not
+ * change, but for ag_setting and ag_layer_info, which only the library makes, and to which later releases may add
+ * members at the end. The SONAME, which changes whenever a public struct or enum does, keeps releases apart too. Parts:
+ * each of the headers below may be included alone.
  */
 #ifndef AFTERGLOW_AFTERGLOW_H
 #define AFTERGLOW_AFTERGLOW_H

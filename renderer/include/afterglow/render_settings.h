@@ -12,28 +12,28 @@ extern "C" {
 
 typedef enum ag_integrator { AG_INTEGRATOR_PHOTONMAP, AG_INTEGRATOR_PATH } ag_integrator;
 
-/* Whether it traces photons, so that their settings, layers and statistics mean something; false for a number that is
- * no integrator's. */
+/* Returns whether an integrator traces photons, so that settings, layers and statistics of photons apply to it; false
+ * for a value that is no integrator. */
 AG_API bool ag_integrator_has_photons(ag_integrator integrator);
 
 typedef enum ag_cache_mode {
-    AG_CACHE_ON_DEMAND,  /* irradiance at a photon is computed when it is first asked for */
-    AG_CACHE_PRECOMPUTE, /* at every photon, before rendering; the picture is the same, bit for bit */
-    AG_CACHE_OFF         /* an estimate at every gather hit: another estimator */
+    AG_CACHE_ON_DEMAND,  /* irradiance at a photon is computed when it is first requested */
+    AG_CACHE_PRECOMPUTE, /* irradiance is computed at every photon before rendering; the picture has the same bits */
+    AG_CACHE_OFF         /* irradiance is estimated at every gather hit: another estimator, slower */
 } ag_cache_mode;
 
-/* Light that passes panes: thin glass and smooth interfaces of index 1, which do not bend it, and slabs of smooth solid
- * glass, whose parallel faces do no more than shift it by about a third of their thickness. A slab's faces are flat and
- * at least sixteen times as wide (area over diagonal) as it is thick. */
+/* How light that panes transmit is computed. Panes are thin glass and smooth interfaces of index 1, which do not
+ * refract, and slabs of smooth solid glass, whose parallel faces only shift light, by about a third of their thickness.
+ * A slab's faces are flat, and at least sixteen times as wide (area over diagonal) as the slab is thick. */
 typedef enum ag_pane_light {
-    AG_PANE_LIGHT_DIRECT, /* as if nothing were in its way: sampled at its lamp, by both integrators. Suns, points and
-                             spots shine through windows in the path tracer too; no caustic. What the eye sees through
-                             a slab, directly or in mirrors, is bent all the same */
-    AG_PANE_LIGHT_TRACED  /* like light by way of any other glass */
+    AG_PANE_LIGHT_DIRECT, /* as direct light: both integrators sample it at its lamp, so that suns, points and spots
+                             shine through windows in the path tracer too; it is no caustic. What the eye sees
+                             through a slab, directly or in mirrors, is refracted nevertheless */
+    AG_PANE_LIGHT_TRACED  /* as light through any other glass */
 } ag_pane_light;
 
-/* Pictures of colours are filtered over the footprints of rays: along the eye's over their share of a pixel, also by
- * way of mirrors and glass, along gather rays' and photons' more coarsely. */
+/* Whether image textures of colours are filtered over the footprints of rays: of camera rays over a sample's share of a
+ * pixel, also behind mirrors and glass, of gather rays and photons more coarsely. */
 typedef enum ag_texture_filter { AG_TEXTURE_FILTER_ON, AG_TEXTURE_FILTER_OFF } ag_texture_filter;
 
 typedef enum ag_only { AG_ONLY_ALL, AG_ONLY_INDIRECT } ag_only;
@@ -44,84 +44,95 @@ typedef struct ag_render_settings {
     ag_cache_mode cache;              /* default: on demand */
     ag_pane_light pane_light;         /* default: direct */
     ag_texture_filter texture_filter; /* default: on */
-    ag_only only;  /* AG_ONLY_INDIRECT: less emission and direct light at the first non-specular hit */
+    ag_only only;  /* AG_ONLY_INDIRECT: without emission, and without direct light at the first non-specular hit */
     uint64_t seed; /* default 0; statistics show it as a signed number */
 
     int width, height;     /* pixels of the full picture, [1, 65536] */
-    double crop_window[4]; /* x0, x1, y0, y1 in [0, 1]: the part to render, from the left and from the top, as
-                              pbrt's cropwindow: pixels from ceil(x0 width) up to ceil(x1 width) - 1; default 0 1 0 1 */
+    double crop_window[4]; /* x0, x1, y0, y1 in [0, 1], from the left and from the top: the part to render, as
+                              pbrt's cropwindow: pixels from ceil(x0 width) to ceil(x1 width) - 1; default 0 1 0 1 */
     int samples_per_pixel; /* [1, 2^20] */
     float exposure;        /* pixels are the radiance times this: pbrt's imaging ratio, the shutter's time * iso / 100;
                               > 0, default 1 */
-    float max_component;   /* no component of a sample in CIE XYZ, which is pbrt's sensor, is above it: brighter samples
-                              are scaled down; 0: unbounded, the default */
+    float max_component;   /* bound of a sample's components in CIE XYZ, which is pbrt's sensor: brighter samples are
+                              scaled down to it; 0: unbounded, the default */
     float white_balance;   /* K, [1000, 25000]: daylight of this temperature (below 4000: a black body) becomes white;
                               0: none, the default */
     bool float_samples;    /* EXR files of the film hold floats where ag_output_settings leaves it open; default half */
-    int max_depth;         /* scatterings between lamp and eye, [0, 100]; 100: roulette alone ends paths. Path tracing
-                              keeps it exactly. The photon map bounds light's part (to max_depth - 2 before a
-                              gather ray ends, max_depth - 1 before a caustic) and the eye's part apart: behind
-                              mirrors and glass there may be some more. */
+    int max_depth;         /* most scatterings between lamp and eye, [0, 100]; 100: roulette alone ends paths. Path
+                              tracing keeps the bound exactly. With the photon map it bounds the photon's part of a
+                              path (to max_depth - 2 before a gather ray, max_depth - 1 before a caustic) and the
+                              eye's part separately, so that there may be a few more behind mirrors and glass. */
 
-    uint64_t photon_count;         /* photons to store in the global map, [1, 2^32 - 2] */
-    uint64_t caustic_photon_count; /* photons to store in the caustic map; only where anything is specular; [0, …] */
+    uint64_t photon_count; /* photons to store in the global map, [1, 2^32 - 2] */
+    uint64_t photon_paths; /* light paths that the photons of the global map come from, [0, 10^15]; 0, the default: as
+                              many as it takes to store photon_count photons. A fixed number is for the frames of an
+                              animation: a path that meets nothing new then has the same photons in each frame, and
+                              its irradiances can be kept (ag_context_take_frame). At most photon_count photons are
+                              stored; a warning tells where that ends the tracing early. photon_aim and
+                              gather_guiding are then 0 unless set */
+    uint64_t caustic_photon_count; /* photons to store in the caustic map, [0, 2^32 - 2] */
     int nearest;                   /* photons of an estimate, [1, 65536] */
-    float radius;                  /* largest radius of an estimate, scene units; 0: from the photons' density */
-    float irradiance_fraction;     /* share of the photons that irradiance is kept at, (0, 1]: gather rays look for the
-                                      nearest of these irradiance photons, and each estimate is still of all photons.
-                                      Less is faster, and blurs by about their spacing. Where photons lie far apart,
-                                      and where surfaces turn, more photons are taken, so that each has an irradiance
-                                      photon nearby. Default 1 */
-    float gather_guiding; /* how much the photons' directions decide where gather rays go, [0, 1]: the share of the
-                             rays that goes where light comes from, where photons are many; the rest goes by the
-                             cosine. 0: all. Less noise or more, the same light. Default
-                             AG_DEFAULT_GATHER_GUIDING */
-    uint64_t photon_seed; /* of the photons, so that pictures of other seeds can share a kept photon map. Default
-                             AG_PHOTON_SEED_AUTOMATIC: seed */
-    float photon_aim;     /* share of the photon paths that begin where a pilot has found that they bring light to where
-                             this picture asks for it, [0, 0.8]: the others begin by power alone, so that no photon is more
-                             than five times as bright as without. The same light, with less noise in this picture and more
-                             in others; the pilot depends on the whole frame's view and shape, and on nothing else of the
-                             picture. Default AG_PHOTON_AIM_AUTOMATIC: AG_DEFAULT_PHOTON_AIM, but 0 for a photon_map_file,
-                             which serves all views alike; one that is aimed is refused for another view */
-    float direct_guiding; /* share of the samples of direct light that go to the lights, and the parts of the sky, that
-                             a pilot has seen from about there, [0, 0.8]: the others go to all alike, so that none
-                             counts more than five times as much as if all did. The same light, with less noise where it
-                             comes through windows; the pilot depends on the whole frame's view and shape, on depth,
-                             light through panes and seed, and on nothing else of the picture. Scenes without a distant
-                             or infinite light have none. Default AG_DIRECT_GUIDING_AUTOMATIC:
-                             AG_DEFAULT_DIRECT_GUIDING, but 0 for AG_INTEGRATOR_PATH, which others are held against */
+    float radius;              /* largest radius of an estimate, scene units; 0: derived from the photons' density */
+    float irradiance_fraction; /* share of the photons at which irradiance is kept, (0, 1]: gather rays look up the
+                                  nearest of these irradiance photons; each estimate still uses all photons. A
+                                  smaller share is faster and blurs by about the spacing of irradiance photons.
+                                  Where photons are sparse, and where surfaces curve, more are taken, so that each
+                                  photon has an irradiance photon nearby. Default 1 */
+    float gather_guiding; /* share of the gather rays, [0, 1], whose directions follow the incident directions of the
+                             photons nearby, where there are many; the others are sampled by the cosine. It changes
+                             the noise, not the light. Default
+                             AG_GATHER_GUIDING_AUTOMATIC: AG_DEFAULT_GATHER_GUIDING, but 0 with photon_paths, since
+                             each photon that comes or goes changes the directions around it */
+    uint64_t photon_seed; /* seed of the photons, so that pictures with different seeds can share a kept photon map.
+                             Default AG_PHOTON_SEED_AUTOMATIC: seed */
+    float photon_aim;     /* share of the photon paths, [0, 0.8], whose emission follows what a pilot pass has learned
+                             about which paths reach the points where this picture looks up light; the others are
+                             emitted by power alone, so that no photon is more than five times as bright as without
+                             aim. It lowers the noise of this picture and raises that of other views; the light is
+                             the same. The pilot depends on view and shape of the whole frame alone. Default
+                             AG_PHOTON_AIM_AUTOMATIC: AG_DEFAULT_PHOTON_AIM, but 0 with a photon_map_file, which
+                             serves all views alike; an aimed file is refused for another view */
+    float direct_guiding; /* share of the direct light samples, [0, 0.8], that go to those lights and parts of the sky
+                             which a pilot pass has found visible from nearby points; the others are distributed
+                             without it, so that no sample weighs more than five times as much as without guiding.
+                             It lowers noise where light comes through windows; the light is the same. The pilot
+                             depends on view and shape of the whole frame, max_depth, pane_light and seed. Scenes
+                             without a distant or infinite light are not guided. Default
+                             AG_DIRECT_GUIDING_AUTOMATIC: AG_DEFAULT_DIRECT_GUIDING, but 0 for AG_INTEGRATOR_PATH,
+                             the reference */
     uint32_t layers;      /* AG_LAYER_..., or-ed; default 0, of a scene with film "gbuffer" AG_LAYER_GBUFFER */
-    bool denoise;         /* ag_film_denoise will be asked for: the film keeps what it needs */
-    bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER: the camera's, else the world's */
-    float clamp_direct; /* no component of what a sample gets from a lamp by way of at most one surface is above it; 0:
-                           unbounded, the default */
-    float clamp_indirect; /* as clamp_direct, for all other contributions */
-    float noise_level;    /* adaptive sampling: a block of 8 by 8 pixels gets no more samples when the standard error of
-                             what is shown of it (its square root, where white is 1; what is brighter, by its share), root
-                             mean square over the block, is below this; samples_per_pixel is the most then; 0: all pixels
-                             get as many, the default. The program takes AG_DEFAULT_NOISE_LEVEL and
-                             AG_DEFAULT_SAMPLES_MOST where neither options nor ag_scene_has_own_samples say otherwise */
-    int noise_min_samples;      /* of each pixel then, [2, 2^20]; default 16 */
-    float shown_exposure_stops; /* by which the picture will be made brighter when it is shown, [-100, 100]: noise and
-                                   warnings are of what is shown; default 0 */
-    int gather_samples;         /* gather rays for each camera sample, [1, 65536], where it meets a diffuse surface
-                                   first; what is reflected shares about as many; 0, the default: each block of 8 by
-                                   8 pixels chooses by the noise of its samples, and so it does the light samples;
-                                   the first ones have so many that samples times gather rays are about
-                                   AG_DEFAULT_GATHER_RAYS_PER_PIXEL (with a noise level for 64 samples at most), at
-                                   least 4 */
-    /* A file that holds the photon map from one picture to the next, with the irradiances computed so far; NULL, the
-     * default: none. Traced where there is none yet; other processes on this machine that use it meanwhile fill it
-     * together with this one. The picture is the same. Borrowed until ag_rendering_create or ag_render returns. One
-     * that is damaged, or was made of another scene or with other settings than the photons depend on, is refused:
-     * camera, film, samples and gather rays may differ, but the view may not where the photons are aimed. */
+    bool denoise;         /* the film keeps the albedo and normals that ag_film_denoise uses; default false */
+    bool layers_in_camera_space; /* P and normals of AG_LAYER_GBUFFER are in camera space, else in world space */
+    float clamp_direct;    /* bound of each component of the light that a sample gets from a lamp by way of at most one
+                              surface; 0: unbounded, the default */
+    float clamp_indirect;  /* bound of all other contributions, likewise */
+    float noise_level;     /* adaptive sampling: a block of 8 by 8 pixels gets no more samples once its standard error,
+                              root mean square over the block, is below this level. The error is that of the square
+                              root of the value, where white is 1, and relative for brighter values.
+                              samples_per_pixel is then the maximum. 0, the default: all pixels get as many samples.
+                              The program uses AG_DEFAULT_NOISE_LEVEL and AG_DEFAULT_SAMPLES_MOST where neither
+                              options nor ag_scene_has_own_samples say otherwise */
+    int noise_min_samples; /* least samples of each pixel with a noise level, [2, 2^20]; default 16 */
+    float shown_exposure_stops; /* exposure that will be added when the picture is shown, [-100, 100], stops: noise and
+                                   warnings refer to the picture as shown; default 0 */
+    int gather_samples;         /* gather rays of each camera sample that meets a diffuse surface first, [1, 65536];
+                                   hits behind glossy surfaces share about as many. 0, the default: each block of 8
+                                   by 8 pixels chooses the numbers of gather rays and light samples by the noise of
+                                   its samples; the first samples have at least 4 gather rays, and so many that
+                                   samples times gather rays are about AG_DEFAULT_GATHER_RAYS_PER_PIXEL (with a
+                                   noise level: 64 samples at most) */
+    /* Path of a file that keeps the photon map from one picture to the next, with the irradiances computed so far;
+     * NULL, the default: none. Where the file is missing, photons are traced and it is written. Processes on one
+     * machine that use the file at the same time fill it together. The picture is the same with and without it. The
+     * path is borrowed until ag_rendering_create or ag_render returns. A file that is damaged, or was made for another
+     * scene or with other settings of photons, is refused: camera, film, samples and gather rays may differ, but the
+     * view may not where the photons are aimed. */
     const char *photon_map_file;
-    bool photon_map_refresh; /* one that would be refused is traced anew, and replaced */
+    bool photon_map_refresh; /* a file that would be refused is replaced by newly traced photons; default false */
 } ag_render_settings;
 
-/* ag_struct_fill (structs.h) with the scene's own settings, and our defaults for what it leaves open. Loading the scene
- * has checked what its file says. Errors: AG_ERROR_ARGUMENT, where nothing is written. */
+/* Fills settings with those that the scene's file gives, which loading has checked, and with the defaults for all
+ * others. struct_size: of the program's ag_render_settings. Errors: AG_ERROR_ARGUMENT, where nothing is written. */
 AG_API ag_status ag_render_settings_fill(ag_context *context, const ag_scene *scene, void *out_settings,
                                          size_t struct_size);
 static inline ag_status ag_render_settings_from_scene(ag_context *context, const ag_scene *loaded,
@@ -130,30 +141,31 @@ static inline ag_status ag_render_settings_from_scene(ag_context *context, const
     return ag_render_settings_fill(context, loaded, out_settings, sizeof *out_settings);
 }
 
-/* Our defaults alone. */
+/* The defaults, without a scene's own settings. */
 AG_DEFAULT_STRUCT(render_settings, AG_STRUCT_RENDER_SETTINGS)
 
 /* A setting that has a name, for command lines, dialogs and their help. The strings are the library's. */
 typedef struct ag_setting {
     const char *name;      /* "photon-aim" */
-    const char *argument;  /* what stands for its value in help, "F"; NULL: it takes none, and is switched on */
+    const char *argument;  /* placeholder of its value in help texts, "F"; NULL: a switch, without a value */
     const char *section;   /* "Output", "Picture" or "Light" */
-    const char *help;      /* what it does, its range and default, in a sentence without an end */
-    const char *manual;    /* help at length, with *bold* and _italic_ words; NULL: help says it all */
-    bool is_of_photon_map; /* a kept photon map was made with one value of it, and is refused for another */
+    const char *help;      /* its effect, range and default, without a final stop */
+    const char *manual;    /* a longer help text, with *bold* and _italic_ words; NULL: help is complete */
+    bool is_of_photon_map; /* a kept photon map is refused for another value of it */
 } ag_setting;
 
-/* All of them by number, from 0 on; NULL: there are no more. */
+/* Returns a setting by number, from 0 on; NULL past the last one. */
 AG_API const ag_setting *ag_setting_at(size_t index);
-/* Sets one by its name to what a text says; numbers have a point in every locale. "aov" adds to the layers that are
- * set. value: NULL where it takes none; "photon-map" borrows it. Errors: AG_ERROR_ARGUMENT (there is no such setting,
- * or the text is no value of it; settings are then as they were). */
+/* Sets the setting of that name from a text; numbers use a decimal point in every locale. "aov" adds to the layers that
+ * are set. value: NULL for a switch; "photon-map" borrows it. Errors: AG_ERROR_ARGUMENT (there is no such setting, or
+ * the text is not a valid value; settings are then unchanged). */
 AG_API ag_status ag_render_settings_set(ag_render_settings *settings, const char *name, const char *value);
 
 #define AG_DEFAULT_NOISE_LEVEL           0.02f
 #define AG_DEFAULT_SAMPLES_MOST          1024
 #define AG_DEFAULT_GATHER_RAYS_PER_PIXEL 256
 #define AG_DEFAULT_GATHER_GUIDING        0.5f
+#define AG_GATHER_GUIDING_AUTOMATIC      (-1.0f)
 #define AG_PHOTON_SEED_AUTOMATIC         0x8000000000000000u
 #define AG_DEFAULT_PHOTON_AIM            0.8f
 #define AG_PHOTON_AIM_AUTOMATIC          (-1.0f)

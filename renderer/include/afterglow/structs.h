@@ -1,6 +1,6 @@
-/* structs.h: defaults of the structs that a program fills, by the size that it was compiled with.
+/* structs.h: initialises the structs that a program fills, of the size that the program was compiled with.
  * Part of afterglow.h, which tells about threads and errors. Programs in C and C++ call the functions ag_default_...()
- * beside each struct, which are made of this; those in other languages call this. */
+ * beside each struct, which use ag_struct_fill; programs in other languages call it directly. */
 #ifndef AFTERGLOW_PUBLIC_STRUCTS_H
 #define AFTERGLOW_PUBLIC_STRUCTS_H
 
@@ -26,14 +26,14 @@ typedef enum ag_struct {
     AG_STRUCT_CAMERA
 } ag_struct;
 
-/* Bytes of the library's own struct; 0: it knows no such struct. */
+/* Returns the library's size of a struct, bytes; 0 for a value that is no struct's. */
 AG_API size_t ag_struct_size(ag_struct which);
 
-/* Writes struct_size bytes and no more: struct_size itself, and where it is the library's own size the defaults, else
- * zeros. Calls refuse a struct of another size than the library's. struct_size: at least that of a size_t. */
+/* Writes struct_size bytes: the member struct_size, and behind it the defaults where the size is the library's, else
+ * zeros. Calls refuse a struct of another size than the library's. struct_size: at least sizeof(size_t). */
 AG_API void ag_struct_fill(ag_struct which, void *out_struct, size_t struct_size);
 
-/* Defines the default of a struct, of the size that the program knows. */
+/* Defines ag_default_TYPE, which returns the struct's defaults with the size of the program's headers. */
 #define AG_DEFAULT_STRUCT(type, which)                                                                                 \
     static inline ag_##type ag_default_##type(void)                                                                    \
     {                                                                                                                  \

@@ -1,0 +1,56 @@
+/* vertex.h: a vertex of a camera path or gather ray, and all that follows from its lying on a surface: rays that leave
+ * it, its emission, where its photons lie. Integrators ask these functions and read its BSDF; of the hit itself they
+ * read no more than layers and fans of rays need. So a vertex in a medium has its place here.
+ * Flow: transport traces rays to vertices -> [here] -> integrators. Threads: pure functions. */
+#ifndef AFTERGLOW_VERTEX_H
+#define AFTERGLOW_VERTEX_H
+
+#include "material/bsdf.h"
+#include "rays/transmittance.h"
+
+typedef struct vertex {
+    surface_hit hit;
+    bsdf scattering;
+    scene_ray arrived; /* of unit direction, in the medium of its last stretch */
+    rgb transmittance; /* of the way here: set also where the ray escapes, and then nothing else is */
+    const light *lamp; /* the area light that shines there, or NULL */
+} vertex;
+
+static inline vec3 vertex_position(const vertex *v) { return v->hit.position; }
+
+/* The ray that leaves the vertex in a unit direction, in the medium of that side. */
+static inline scene_ray vertex_ray(const vertex *v, vec3 direction)
+{
+    return surface_ray(&v->hit, v->arrived, direction);
+}
+
+/* The ray that goes on straight, as if the surface were not there. */
+static inline scene_ray vertex_ray_straight(const vertex *v) { return scene_ray_continue(&v->hit, &v->arrived); }
+
+/* Carries the cone of the ray that has arrived to the vertex, and finds the footprint of textures there. */
+static inline void vertex_note_footprint(vertex *v)
+{
+    if (!ray_cone_is_wide(&v->arrived.cone))
+        return;
+    v->arrived.cone = ray_cone_at(&v->arrived.cone, v->hit.distance);
+    v->hit.footprint = ray_cone_footprint(&v->arrived.cone, v->arrived.direction);
+}
+
+/* The geometric normal on the side that the ray came from, unit. */
+vec3 vertex_facing_normal(const vertex *v);
+
+/* The normal by which a lamp is picked for these lobes; zero where they take light from all sides: see
+ * scene_pick_light. */
+vec3 vertex_light_normal(const vertex *v, bsdf_lobes lobes);
+
+/* The radiance that the vertex itself emits back along the ray that has arrived. */
+rgb vertex_emission(const scene *s, const vertex *v);
+
+/* A point where a vertex's photons lie, and its geometric normal on the side that the ray came from: see
+ * photon_tracing.h. */
+typedef struct map_point {
+    vec3 position, facing_normal;
+} map_point;
+map_point vertex_map_point(const scene *s, const vertex *v);
+
+#endif
