@@ -88,6 +88,8 @@ ag_status rendering_settle(ag_context *context, const scene *s, const ag_render_
     if (out_settings->photon_aim == AG_PHOTON_AIM_AUTOMATIC)
         out_settings->photon_aim =
             out_settings->photon_map_file || out_settings->photon_paths > 0 ? 0.0f : AG_DEFAULT_PHOTON_AIM;
+    if (out_settings->gather_guiding == AG_GATHER_GUIDING_AUTOMATIC)
+        out_settings->gather_guiding = out_settings->photon_paths > 0 ? 0.0f : AG_DEFAULT_GATHER_GUIDING;
     const integrator *kind = integrator_of(out_settings->integrator);
     if (kind && out_settings->direct_guiding == AG_DIRECT_GUIDING_AUTOMATIC)
         out_settings->direct_guiding = kind->direct_guiding;

@@ -188,8 +188,8 @@ static const setting_row ROWS[] = {
                         "the map. A fixed number is for *--frames* in which little moves: photons of paths that meet "
                         "nothing new stay as they are, and from one frame to the next irradiance is kept where "
                         "nothing has changed nearby. Each frame has the bits that it has when it is rendered alone. "
-                        "*--photons* is then the most that are stored, and *--photon-aim* is 0 unless it is given, "
-                        "since what is aimed changes with the view. May be written as 2e6.",
+                        "*--photons* is then the most that are stored, and *--photon-aim* and *--gather-guiding* "
+                        "are 0 unless they are given, since they change much where little does. May be written as 2e6.",
               .is_of_photon_map = true},
      FIELD(photon_paths),
      .kind = SETTING_COUNT,
@@ -256,16 +256,19 @@ static const setting_row ROWS[] = {
     {.text = {.name = "gather-guiding",
               .argument = "F",
               .section = "Light",
-              .help = "how much photons decide where gather rays go, from 0 (not at all) to 1 (default 0.5); the "
-                      "rest is the cosine",
-              .manual = "How much photons decide where gather rays go, from 0 to 1; 0.5 is the default. Of a "
+              .help = "how much photons decide where gather rays go, from 0 (not at all) to 1 (default 0.5; with "
+                      "--photon-paths 0); the rest is the cosine",
+              .manual = "How much photons decide where gather rays go, from 0 to 1; 0.5 is the default, and 0 with "
+                        "*--photon-paths*, since each photon that comes or goes changes them. Of a "
                         "gather's rays this share goes where the photons around it came from, less where they are "
                         "few, and the rest by the cosine. 0 guides none. The light is the same; noise is less where "
                         "light comes from few directions."},
      FIELD(gather_guiding),
      .kind = SETTING_NUMBER,
-     .initial = AG_DEFAULT_GATHER_GUIDING,
+     .initial = AG_GATHER_GUIDING_AUTOMATIC,
      .most = 1,
+     .has_automatic = true,
+     .automatic = AG_GATHER_GUIDING_AUTOMATIC,
      .noun = "guiding of gather rays",
      .json = "settings.gather_guiding",
      .marks = SETTING_OF_PICTURE | SETTING_IN_HEADER | SETTING_OF_PHOTONS},

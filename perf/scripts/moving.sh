@@ -54,7 +54,7 @@ change() {
 }
 
 echo "nearest,guiding,photons,c,anew,bound,anew_over_bound,change,change_stored,cpu_s,cpu_alone_s" >"$out/moving.csv"
-for variant in "50 0.5" "50 0" "100 0.5" "300 0.5"; do
+for variant in "50 0" "100 0" "300 0" "50 0.5"; do
     read -r nearest guiding <<<"$variant"
     arguments=("${common[@]}" --nearest "$nearest" --gather-guiding "$guiding")
     "$suite_program" "${arguments[@]}" --photon-paths "$paths" --frames "5-${last}x5" -o "$suite_work/follows.%d.exr" \

@@ -116,7 +116,7 @@ static float flux_correction(const bsdf *b, vec3 direction)
 static float rough_flux_factor(const bsdf *b, const bsdf_lobe_type *type, vec3 direction)
 {
     bool is_fibre = type->side == LOBE_BY_FIBRE;
-    if (type->albedo || (is_fibre && b->material.hair.faces_rays))
+    if (type->albedo || (is_fibre && b->material.hair.surface == HAIR_FACES_RAYS))
         return 1.0f;
     if (!is_fibre)
         return flux_correction(b, direction);

@@ -65,14 +65,13 @@ static double angle_of(double sine, double cosine)
     return TWO_PI * (turns > 0.5 ? turns - 1.0 : turns);
 }
 
-/* The offset across the fibre: sine of the normal's angle to the ray, [-1, 1]. v grows to the axis' left as the ray
- * comes, phi to its right. */
-static double offset_of(const hair_point *p) { return fmin(fmax(1.0 - 2.0 * (double)p->offset, -1.0), 1.0); }
+/* The sine of the normal's angle to the ray, [-1, 1]. v grows to the axis' left as the ray comes, phi to its right. */
+static double offset_of(float v) { return fmin(fmax(1.0 - 2.0 * (double)v, -1.0), 1.0); }
 
-static hair_passage passage_of(const hair_point *p, inclination o)
+static hair_passage passage_of(const hair_point *p, double offset, inclination o)
 {
     hair_passage w;
-    double ior = p->fibre->ior, offset = offset_of(p), cos_gamma = sine_to_cosine(offset);
+    double ior = p->fibre->ior, cos_gamma = sine_to_cosine(offset);
     double bent = sqrt(fmax(1e-12, ior * ior - o.sine * o.sine)) / fmax(o.cosine, 1e-6); /* Marschner's eta' */
     double sin_inside = fmin(fmax(offset / bent, -1.0), 1.0), cos_inside = sine_to_cosine(sin_inside);
     double within = 2.0 * cos_inside / fmax(sine_to_cosine(o.sine / ior), 1e-6);
@@ -187,9 +186,9 @@ hair_fibre hair_fibre_make(float ior, float beta_m, float beta_n, float tilt_deg
 
 hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out)
 {
-    hair_point p = {.fibre = fibre, .sigma_a = sigma_a, .offset = v, .sine = out.x, .faces_rays = true};
+    hair_point p = {.fibre = fibre, .sigma_a = sigma_a, .offset = v, .sine = out.x, .surface = HAIR_FACES_RAYS};
     p.azimuth = angle_of((double)out.z, (double)out.y);
-    p.passage = passage_of(&p, inclination_of(out.x));
+    p.passage = passage_of(&p, offset_of(v), inclination_of(out.x));
     return p;
 }
 
@@ -203,7 +202,19 @@ static void lobe_values(const hair_fibre *h, const hair_passage *of_o, inclinati
     }
 }
 
-void hair_evaluate(const hair_point *p, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf)
+/* The offset at which flux that came at the point's own leaves, as its direction sees it. */
+static double offset_left_at(const hair_point *p, bool is_same_side)
+{
+    double offset = offset_of(p->offset);
+    switch (p->surface) {
+    case HAIR_FACES_RAYS: return -offset; /* the one at which the way back is the way there */
+    case HAIR_RIBBON: return is_same_side ? offset : -offset;
+    case HAIR_OTHER: break;
+    }
+    return offset;
+}
+
+void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 direction, rgb *out_value, float *out_pdf)
 {
     inclination o = inclination_of(p->sine), i = inclination_of(direction.x);
     double turn = angle_of((double)direction.z, (double)direction.y) - p->azimuth, values[HAIR_LOBES];
@@ -214,11 +225,11 @@ void hair_evaluate(const hair_point *p, bool is_flux, vec3 direction, rgb *out_v
         density += values[k] * carried.mean[k];
         all += carried.mean[k];
     }
-    if (is_flux) { /* offsets across are all as likely: turning the same sense about the axis serves both ways */
-        const hair_passage of_eye = passage_of(p, i);
+    if (is_flux) {
+        const hair_passage of_eye = passage_of(p, offset_left_at(p, is_same_side), i);
         carried = shares_of(&of_eye);
-        lobe_values(p->fibre, &of_eye, i, o, turn, values);
-        narrower = p->faces_rays ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
+        lobe_values(p->fibre, &of_eye, i, o, -turn, values);
+        narrower = p->surface == HAIR_FACES_RAYS ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
     }
     for (int k = 0; k < HAIR_LOBES; k++)
         for (int c = 0; c < 3; c++)

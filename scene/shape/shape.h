@@ -75,7 +75,7 @@ typedef struct curves {
     curves_type type;
     uint32_t segment_count, capacity;
     curve_point *points;    /* 4 per segment */
-    vec3 *normals;          /* of ribbons, else NULL: 4 per segment, control points too; of any length */
+    vec3 *normals;          /* of ribbons, else NULL: 4 per segment, control points too (curves_fit_ribbon) */
     vec2 *spans;            /* per segment: the uv.x of its ends, for a curve may have been cut */
     uint32_t *first_points; /* per segment: 4 times its number, for Embree */
     uint32_t *holder_count; /* as a mesh's; no more segments can then be added */

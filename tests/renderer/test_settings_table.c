@@ -79,7 +79,7 @@ static void defaults_are_as_documented(void **state)
     assert_true(s.width == 1280 && s.height == 720 && s.crop_window[1] == 1.0 && s.crop_window[3] == 1.0);
     assert_true(s.samples_per_pixel == 16 && s.noise_min_samples == 16 && s.max_depth == 100 && s.nearest == 50);
     assert_true(s.photon_count == 1000000 && s.caustic_photon_count == 500000 && s.seed == 0);
-    assert_true(s.exposure == 1.0f && s.irradiance_fraction == 1.0f && s.gather_guiding == AG_DEFAULT_GATHER_GUIDING);
+    assert_true(s.exposure == 1.0f && s.irradiance_fraction == 1.0f && s.gather_guiding == AG_GATHER_GUIDING_AUTOMATIC);
     assert_true(s.photon_aim == AG_PHOTON_AIM_AUTOMATIC && s.gather_samples == 0 && s.noise_level == 0.0f);
     assert_true(s.layers == 0 && !s.denoise && s.photon_map_file == NULL);
 

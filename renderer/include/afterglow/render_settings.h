@@ -68,8 +68,8 @@ typedef struct ag_render_settings {
                               many as it takes to store photon_count photons. A fixed number is for the frames of an
                               animation: a path that meets nothing new then has the same photons in each frame, and
                               its irradiances can be kept (ag_context_take_frame). At most photon_count photons are
-                              stored; a warning tells where that ends the tracing early. photon_aim is then 0 unless
-                              set */
+                              stored; a warning tells where that ends the tracing early. photon_aim and
+                              gather_guiding are then 0 unless set */
     uint64_t caustic_photon_count; /* photons to store in the caustic map, [0, 2^32 - 2] */
     int nearest;                   /* photons of an estimate, [1, 65536] */
     float radius;              /* largest radius of an estimate, scene units; 0: derived from the photons' density */
@@ -80,7 +80,9 @@ typedef struct ag_render_settings {
                                   photon has an irradiance photon nearby. Default 1 */
     float gather_guiding; /* share of the gather rays, [0, 1], whose directions follow the incident directions of the
                              photons nearby, where there are many; the others are sampled by the cosine. It changes
-                             the noise, not the light. Default AG_DEFAULT_GATHER_GUIDING */
+                             the noise, not the light. Default
+                             AG_GATHER_GUIDING_AUTOMATIC: AG_DEFAULT_GATHER_GUIDING, but 0 with photon_paths, since
+                             each photon that comes or goes changes the directions around it */
     uint64_t photon_seed; /* seed of the photons, so that pictures with different seeds can share a kept photon map.
                              Default AG_PHOTON_SEED_AUTOMATIC: seed */
     float photon_aim;     /* share of the photon paths, [0, 0.8], whose emission follows what a pilot pass has learned
@@ -163,6 +165,7 @@ AG_API ag_status ag_render_settings_set(ag_render_settings *settings, const char
 #define AG_DEFAULT_SAMPLES_MOST          1024
 #define AG_DEFAULT_GATHER_RAYS_PER_PIXEL 256
 #define AG_DEFAULT_GATHER_GUIDING        0.5f
+#define AG_GATHER_GUIDING_AUTOMATIC      (-1.0f)
 #define AG_PHOTON_SEED_AUTOMATIC         0x8000000000000000u
 #define AG_DEFAULT_PHOTON_AIM            0.8f
 #define AG_PHOTON_AIM_AUTOMATIC          (-1.0f)
