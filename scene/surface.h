@@ -42,7 +42,7 @@ typedef struct surface_hit {
     ray_footprint footprint; /* of the ray, over which textures are filtered; set by whoever traces cones */
 } surface_hit;
 
-/* A point on a surface, and what it takes to leave it. */
+/* A point on a surface, with the data for rays that leave it. */
 typedef struct surface_point {
     vec3 position;
     vec3 normal;   /* geometric, unit */
