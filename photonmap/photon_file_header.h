@@ -5,9 +5,8 @@
 
 #include "photon_file.h"
 
-/* Raise this whenever the layout changes, or the photons that are traced; changed estimates have another
- * fingerprint. */
-enum { PHOTON_FILE_LAYOUT = 20 };
+/* Raise this whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
+enum { PHOTON_FILE_LAYOUT = 21 };
 enum {
     PHOTON_FILE_PAGE = 4096,
     PHOTON_FILE_OWNERS_AT = PHOTON_FILE_PAGE, /* the header has the first page */

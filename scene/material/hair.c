@@ -105,10 +105,10 @@ static hair_shares shares_of(const hair_passage *w)
     return shares;
 }
 
-/* How far from the direction's azimuth the lobe's middle is. */
-static double turn_of(const hair_passage *w, int lobe)
+/* How far from the direction's azimuth the lobe's middle is. sense: -1 for the opposite offset. */
+static double turn_of(const hair_passage *w, int lobe, double sense)
 {
-    return 2.0 * lobe * w->gamma_inside - 2.0 * w->gamma + lobe * HALF_TURN;
+    return sense * (2.0 * lobe * w->gamma_inside - 2.0 * w->gamma) + lobe * HALF_TURN;
 }
 
 /* --- longitudinal scattering: its integral over cos(theta) dtheta is 1 --- */
@@ -192,12 +192,12 @@ hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out
     return p;
 }
 
-/* From o, whose passage it is, to i, which lies so far about the axis from it. */
+/* From o, whose passage it is, to i, which lies so far about the axis from it. sense: as in turn_of. */
 static void lobe_values(const hair_fibre *h, const hair_passage *of_o, inclination o, inclination i, double turn,
-                        double out[HAIR_LOBES])
+                        double sense, double out[HAIR_LOBES])
 {
     for (int k = 0; k < HAIR_LOBES; k++) {
-        double around = k < HAIR_TILTED ? azimuthal(h, turn - turn_of(of_o, k)) : 1.0 / TWO_PI;
+        double around = k < HAIR_TILTED ? azimuthal(h, turn - turn_of(of_o, k, sense)) : 1.0 / TWO_PI;
         out[k] = around > 0.0 ? around * longitudinal(h, k, i, tilted(h, o, k)) : 0.0;
     }
 }
@@ -214,21 +214,33 @@ static double offset_left_at(const hair_point *p, bool is_same_side)
     return offset;
 }
 
+/* How often flux is sampled as if it left at the offset of its arrival, as the direction sees it, and not at the
+ * opposite one: either may be the one of a ribbon's point, by the side that the direction turns out to be on. */
+static double share_of_own_offset(const hair_point *p, bool is_flux)
+{
+    static const double SHARES[] = {[HAIR_FACES_RAYS] = 0.0, [HAIR_RIBBON] = 0.5, [HAIR_OTHER] = 1.0};
+    return is_flux ? SHARES[p->surface] : 0.0;
+}
+
 void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 direction, rgb *out_value, float *out_pdf)
 {
     inclination o = inclination_of(p->sine), i = inclination_of(direction.x);
     double turn = angle_of((double)direction.z, (double)direction.y) - p->azimuth, values[HAIR_LOBES];
     double sum[3] = {0.0, 0.0, 0.0}, density = 0.0, all = 0.0, narrower = 1.0;
     hair_shares carried = shares_of(&p->passage);
-    lobe_values(p->fibre, &p->passage, o, i, turn, values);
-    for (int k = 0; k < HAIR_LOBES; k++) {
-        density += values[k] * carried.mean[k];
+    for (int k = 0; k < HAIR_LOBES; k++)
         all += carried.mean[k];
+    for (int own = 0; own < 2; own++) {
+        double share = own ? share_of_own_offset(p, is_flux) : 1.0 - share_of_own_offset(p, is_flux);
+        if (share > 0.0)
+            lobe_values(p->fibre, &p->passage, o, i, turn, own ? -1.0 : 1.0, values);
+        for (int k = 0; share > 0.0 && k < HAIR_LOBES; k++)
+            density += share * values[k] * carried.mean[k];
     }
     if (is_flux) {
         const hair_passage of_eye = passage_of(p, offset_left_at(p, is_same_side), i);
         carried = shares_of(&of_eye);
-        lobe_values(p->fibre, &of_eye, i, o, -turn, values);
+        lobe_values(p->fibre, &of_eye, i, o, -turn, 1.0, values);
         narrower = p->surface == HAIR_FACES_RAYS ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
     }
     for (int k = 0; k < HAIR_LOBES; k++)
@@ -238,12 +250,14 @@ void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 di
     *out_pdf = (float)(density / all);
 }
 
-vec3 hair_sample(const hair_point *point, float u_lobe, vec2 u)
+vec3 hair_sample(const hair_point *point, bool is_flux, float u_lobe, vec2 u)
 {
     double all = 0.0, before = 0.0, p = 0.0, x = (double)u_lobe;
     int lobe = 0;
     const hair_fibre *h = point->fibre;
     const hair_shares shares = shares_of(&point->passage);
+    double own = share_of_own_offset(point, is_flux), sense = x < own ? -1.0 : 1.0;
+    x = x < own ? x / own : (x - own) / (1.0 - own);
     for (int k = 0; k < HAIR_LOBES; k++)
         all += shares.mean[k];
     for (lobe = 0; lobe < HAIR_LOBES; lobe++) {
@@ -255,7 +269,9 @@ vec3 hair_sample(const hair_point *point, float u_lobe, vec2 u)
     x = fmin(fmax((x - before) / fmax(p, 1e-12), 0.0), 0x1.fffffep-1);
     inclination o = inclination_of(point->sine);
     double sine = sample_longitudinal(tilted(h, o, lobe), h->precision[lobe], u), cosine = sine_to_cosine(sine);
-    double turn = lobe < HAIR_TILTED ? turn_of(&point->passage, lobe) + sample_azimuthal(x, h->width) : TWO_PI * x;
+    double turn = TWO_PI * x;
+    if (lobe < HAIR_TILTED)
+        turn = turn_of(&point->passage, lobe, sense) + sample_azimuthal(x, h->width);
     turn = (turn + point->azimuth) / TWO_PI;
     float sin_turn, cos_turn;
     sincos_turns((float)(turn - floor(turn)), &sin_turn, &cos_turn);

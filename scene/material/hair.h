@@ -66,6 +66,6 @@ hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out
 void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 direction, rgb *out_value,
                    float *out_pdf);
 
-vec3 hair_sample(const hair_point *point, float u_lobe, vec2 u);
+vec3 hair_sample(const hair_point *point, bool is_flux, float u_lobe, vec2 u);
 
 #endif

@@ -138,7 +138,7 @@ static void compare_ribbon(const char *what, const char *scene)
     compare_integrators_by(what, scene,
                            ARGUMENTS("--max-depth=2", "--only=indirect", "--photons=2e4", "--caustic-photons=4e5",
                                      "--nearest=32", "--spp=16"),
-                           ARGUMENTS("--max-depth=2", "--only=indirect", "--integrator=path", "--spp=320"), RIBBON);
+                           ARGUMENTS("--max-depth=2", "--only=indirect", "--integrator=path", "--spp=1024"), RIBBON);
 }
 
 /* A ribbon of hair that the lamp meets at a slant: as much flux goes on as its own normal lets arrive. */
