@@ -65,9 +65,8 @@ typedef struct photon_tracing_settings {
     bool filters_textures; /* over about the area that a photon stands for, and more behind diffuse vertices */
     uint64_t seed;
     /* Borrowed; NULL: paths begin by power alone, and every arrival is stored. */
-    const emission_guide *guide; /* where paths begin */
-    const importance_map
-        *asked; /* where light is requested; elsewhere photons are stored no denser than by power alone */
+    const emission_guide *guide;    /* where paths begin */
+    const importance_map *asked;    /* where light is requested; elsewhere no denser photons than by power alone */
     const importance_map *onward;   /* diffuse surfaces whose light arrives where it is requested */
     const struct onward_ways *ways; /* directions in which surfaces send it there */
     float split_above;  /* [W/m]: there a path is split into its flux, of all three colours, times the root of that
