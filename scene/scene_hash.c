@@ -203,8 +203,9 @@ hash128 scene_hash_of_form(const scene *s, uint32_t shape_index)
     shape item = s->shapes[shape_index];
     item.has_medium_interface = false;
     item.medium_inside = item.medium_outside = SCENE_NO_MEDIUM;
-    item.light_index = item.light_index == SHAPE_NO_LIGHT ? SHAPE_NO_LIGHT : 0;
     item.object_index = SCENE_NO_OBJECT;
+    /* rays pass interfaces, but no lamp */
+    item.light_index = s->has_interfaces && item.light_index != SHAPE_NO_LIGHT ? 0 : SHAPE_NO_LIGHT;
     if (!s->has_interfaces)
         item.material_index = 0;
     add_shape(h, &item);

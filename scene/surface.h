@@ -29,8 +29,9 @@ typedef struct surface_hit {
     float epsilon;         /* how far off the surface a new ray must start so as not to meet it again, scene units */
     bool is_strand;        /* part of a curve, too thin for the estimates of a photon map: see bsdf.h */
     bool faces_rays;       /* part of a curve that turns to whatever ray comes: its normal is that ray's */
-    bool is_mirrored;      /* of an instance that mirrors: v grows to the other side of the first tangent */
-    bool is_flat;          /* part of a mesh, whose corners a start must stay out of: see surface_ray */
+    bool is_mirrored; /* v grows to the other side of the first tangent than hair.h has it: of a ribbon that is seen
+                       * from its outside, and in an instance that mirrors; both undo each other */
+    bool is_flat;     /* part of a mesh, whose corners a start must stay out of: see surface_ray */
     bool has_medium_interface;              /* the shape's, for surface_ray */
     uint32_t medium_inside, medium_outside; /* the shape's, for surface_ray */
     uint32_t shape_index;
@@ -41,7 +42,7 @@ typedef struct surface_hit {
     ray_footprint footprint; /* of the ray, over which textures are filtered; set by whoever traces cones */
 } surface_hit;
 
-/* A point on a surface, and what it takes to leave it. */
+/* A point on a surface, with the data for rays that leave it. */
 typedef struct surface_point {
     vec3 position;
     vec3 normal;   /* geometric, unit */

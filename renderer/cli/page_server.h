@@ -15,8 +15,8 @@
 /* Between two looks at signals, where wishes are waited for. */
 #define PAGE_LOOK_SECONDS 0.1
 
-/* That a picture which is looked at takes: itself, what a view makes of it, a PNG on its way, and those that are kept.
- * Another layer that is looked at takes 4 for each of its channels, and none where that memory is not there. */
+/* Bytes per pixel of a picture that is viewed: the picture, its copy under a view, a PNG under way, and those that are
+ * kept. Another layer that is viewed takes 4 for each of its channels, and none where memory is short. */
 enum { PAGE_BYTES_PER_PIXEL = 12 + 12 + 2 * 3 + 3 * PAGE_PICTURES_KEPT };
 
 typedef struct page_server page_server;

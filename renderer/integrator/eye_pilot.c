@@ -23,8 +23,8 @@ enum { STREAM_LAMPS = 1 };
 /* Sampler keys apart from the picture's own. */
 static const uint64_t PILOT_SEED = 0x70696c6f74u;
 
-/* What is found, in lists: the points of eye_pilot's maps in the order of its members, importons, starts of photon
- * paths, and points of direct light. */
+/* The lists of the pilot's results: the points of eye_pilot's maps in the order of its members, importons, starts of
+ * photon paths, and points of direct light. */
 enum { GATHERED, ONWARD, SEEN, WAYS, SEEN_WAYS, STARTS, LIT, LIST_COUNT };
 static const size_t ITEM_BYTES[LIST_COUNT] = {
     [GATHERED] = sizeof(query_point), [ONWARD] = sizeof(query_point), [SEEN] = sizeof(query_point),

@@ -7,7 +7,7 @@
 
 #include <limits.h>
 
-/* What a call does with a thing. */
+/* The effect of a call on an object of the scene. */
 typedef enum call_deed { DEED_MAKE, DEED_CHANGE, DEED_MOVE, DEED_ASSIGN, DEED_REMOVE, DEED_COUNT } call_deed;
 
 /* The camera of a committed scene, with the members of scene_making that concern it. */

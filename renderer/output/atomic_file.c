@@ -211,8 +211,8 @@ static bool is_temporary_name(const char *of_name, const char *name)
            strspn(name + length, "abcdefghijklmnopqrstuvwxyz0123456789") == LETTERS;
 }
 
-/* Whoever writes a temporary file holds its lock, which the kernel drops when the process ends, however it ends: one
- * that can be locked here is nobody's any more. */
+/* Removes a temporary file that no process writes any more: its writer holds a lock, which the kernel releases when the
+ * process ends, however it ends, so that a file that can be locked here is an orphan. */
 static void remove_if_orphaned(int folder_fd, const char *name)
 {
     struct stat status;

@@ -116,7 +116,7 @@ static float flux_correction(const bsdf *b, vec3 direction)
 static float rough_flux_factor(const bsdf *b, const bsdf_lobe_type *type, vec3 direction)
 {
     bool is_fibre = type->side == LOBE_BY_FIBRE;
-    if (type->albedo || (is_fibre && b->material.hair.faces_rays))
+    if (type->albedo || (is_fibre && b->material.hair.surface == HAIR_FACES_RAYS))
         return 1.0f;
     if (!is_fibre)
         return flux_correction(b, direction);
@@ -267,7 +267,7 @@ bool bsdf_sample_direction(const bsdf *b, bsdf_lobes lobes, bsdf_transport trans
         return true;
     }
     bool is_by_geometry = transport == BSDF_FLUX && type->albedo;
-    if ((is_by_geometry && !(bsdf_arrival_factor(b) > 0.0f)) || !type->sample_rough(b, o, u_lobe, u, &i))
+    if ((is_by_geometry && !(bsdf_arrival_factor(b) > 0.0f)) || !type->sample_rough(b, transport, o, u_lobe, u, &i))
         return false;
     frame around = is_by_geometry ? frame_from_z(b->geometric_normal) : b->shading;
     out->direction = vec3_normalize(frame_to_world(&around, i));

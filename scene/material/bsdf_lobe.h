@@ -32,7 +32,7 @@ typedef struct bsdf_lobe_type {
     bool (*sample_smooth)(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec3 *out_local,
                           rgb *out_weight);
     /* Samples a lobe that is not smooth; for flux of a diffuse lobe, in the geometric frame. NULL: always smooth. */
-    bool (*sample_rough)(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local);
+    bool (*sample_rough)(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local);
     /* Returns whether it transmits light, with this material. NULL: never. */
     bool (*passes)(const material_point *m);
     /* Returns A of a diffuse lobe, whose radiance is the same in all directions, apart from t of a coat (bsdf.h). Flux

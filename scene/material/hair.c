@@ -65,14 +65,13 @@ static double angle_of(double sine, double cosine)
     return TWO_PI * (turns > 0.5 ? turns - 1.0 : turns);
 }
 
-/* The offset across the fibre: sine of the normal's angle to the ray, [-1, 1]. v grows to the axis' left as the ray
- * comes, phi to its right. */
-static double offset_of(const hair_point *p) { return fmin(fmax(1.0 - 2.0 * (double)p->offset, -1.0), 1.0); }
+/* The sine of the normal's angle to the ray, [-1, 1]. v grows to the axis' left as the ray comes, phi to its right. */
+static double offset_of(float v) { return fmin(fmax(1.0 - 2.0 * (double)v, -1.0), 1.0); }
 
-static hair_passage passage_of(const hair_point *p, inclination o)
+static hair_passage passage_of(const hair_point *p, double offset, inclination o)
 {
     hair_passage w;
-    double ior = p->fibre->ior, offset = offset_of(p), cos_gamma = sine_to_cosine(offset);
+    double ior = p->fibre->ior, cos_gamma = sine_to_cosine(offset);
     double bent = sqrt(fmax(1e-12, ior * ior - o.sine * o.sine)) / fmax(o.cosine, 1e-6); /* Marschner's eta' */
     double sin_inside = fmin(fmax(offset / bent, -1.0), 1.0), cos_inside = sine_to_cosine(sin_inside);
     double within = 2.0 * cos_inside / fmax(sine_to_cosine(o.sine / ior), 1e-6);
@@ -106,10 +105,10 @@ static hair_shares shares_of(const hair_passage *w)
     return shares;
 }
 
-/* How far from the direction's azimuth the lobe's middle is. */
-static double turn_of(const hair_passage *w, int lobe)
+/* How far from the direction's azimuth the lobe's middle is. sense: -1 for the opposite offset. */
+static double turn_of(const hair_passage *w, int lobe, double sense)
 {
-    return 2.0 * lobe * w->gamma_inside - 2.0 * w->gamma + lobe * HALF_TURN;
+    return sense * (2.0 * lobe * w->gamma_inside - 2.0 * w->gamma) + lobe * HALF_TURN;
 }
 
 /* --- longitudinal scattering: its integral over cos(theta) dtheta is 1 --- */
@@ -187,38 +186,62 @@ hair_fibre hair_fibre_make(float ior, float beta_m, float beta_n, float tilt_deg
 
 hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out)
 {
-    hair_point p = {.fibre = fibre, .sigma_a = sigma_a, .offset = v, .sine = out.x, .faces_rays = true};
+    hair_point p = {.fibre = fibre, .sigma_a = sigma_a, .offset = v, .sine = out.x, .surface = HAIR_FACES_RAYS};
     p.azimuth = angle_of((double)out.z, (double)out.y);
-    p.passage = passage_of(&p, inclination_of(out.x));
+    p.passage = passage_of(&p, offset_of(v), inclination_of(out.x));
     return p;
 }
 
-/* From o, whose passage it is, to i, which lies so far about the axis from it. */
+/* From o, whose passage it is, to i, which lies so far about the axis from it. sense: as in turn_of. */
 static void lobe_values(const hair_fibre *h, const hair_passage *of_o, inclination o, inclination i, double turn,
-                        double out[HAIR_LOBES])
+                        double sense, double out[HAIR_LOBES])
 {
     for (int k = 0; k < HAIR_LOBES; k++) {
-        double around = k < HAIR_TILTED ? azimuthal(h, turn - turn_of(of_o, k)) : 1.0 / TWO_PI;
+        double around = k < HAIR_TILTED ? azimuthal(h, turn - turn_of(of_o, k, sense)) : 1.0 / TWO_PI;
         out[k] = around > 0.0 ? around * longitudinal(h, k, i, tilted(h, o, k)) : 0.0;
     }
 }
 
-void hair_evaluate(const hair_point *p, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf)
+/* The offset at which flux that came at the point's own leaves, as its direction sees it. */
+static double offset_left_at(const hair_point *p, bool is_same_side)
+{
+    double offset = offset_of(p->offset);
+    switch (p->surface) {
+    case HAIR_FACES_RAYS: return -offset; /* the one at which the way back is the way there */
+    case HAIR_RIBBON: return is_same_side ? offset : -offset;
+    case HAIR_OTHER: break;
+    }
+    return offset;
+}
+
+/* How often flux is sampled as if it left at the offset of its arrival, as the direction sees it, and not at the
+ * opposite one: either may be the one of a ribbon's point, by the side that the direction turns out to be on. */
+static double share_of_own_offset(const hair_point *p, bool is_flux)
+{
+    static const double SHARES[] = {[HAIR_FACES_RAYS] = 0.0, [HAIR_RIBBON] = 0.5, [HAIR_OTHER] = 1.0};
+    return is_flux ? SHARES[p->surface] : 0.0;
+}
+
+void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 direction, rgb *out_value, float *out_pdf)
 {
     inclination o = inclination_of(p->sine), i = inclination_of(direction.x);
     double turn = angle_of((double)direction.z, (double)direction.y) - p->azimuth, values[HAIR_LOBES];
     double sum[3] = {0.0, 0.0, 0.0}, density = 0.0, all = 0.0, narrower = 1.0;
     hair_shares carried = shares_of(&p->passage);
-    lobe_values(p->fibre, &p->passage, o, i, turn, values);
-    for (int k = 0; k < HAIR_LOBES; k++) {
-        density += values[k] * carried.mean[k];
+    for (int k = 0; k < HAIR_LOBES; k++)
         all += carried.mean[k];
+    for (int own = 0; own < 2; own++) {
+        double share = own ? share_of_own_offset(p, is_flux) : 1.0 - share_of_own_offset(p, is_flux);
+        if (share > 0.0)
+            lobe_values(p->fibre, &p->passage, o, i, turn, own ? -1.0 : 1.0, values);
+        for (int k = 0; share > 0.0 && k < HAIR_LOBES; k++)
+            density += share * values[k] * carried.mean[k];
     }
-    if (is_flux) { /* offsets across are all as likely: turning the same sense about the axis serves both ways */
-        const hair_passage of_eye = passage_of(p, i);
+    if (is_flux) {
+        const hair_passage of_eye = passage_of(p, offset_left_at(p, is_same_side), i);
         carried = shares_of(&of_eye);
-        lobe_values(p->fibre, &of_eye, i, o, turn, values);
-        narrower = p->faces_rays ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
+        lobe_values(p->fibre, &of_eye, i, o, -turn, 1.0, values);
+        narrower = p->surface == HAIR_FACES_RAYS ? i.cosine / fmax(o.cosine, 1e-6) : 1.0;
     }
     for (int k = 0; k < HAIR_LOBES; k++)
         for (int c = 0; c < 3; c++)
@@ -227,12 +250,14 @@ void hair_evaluate(const hair_point *p, bool is_flux, vec3 direction, rgb *out_v
     *out_pdf = (float)(density / all);
 }
 
-vec3 hair_sample(const hair_point *point, float u_lobe, vec2 u)
+vec3 hair_sample(const hair_point *point, bool is_flux, float u_lobe, vec2 u)
 {
     double all = 0.0, before = 0.0, p = 0.0, x = (double)u_lobe;
     int lobe = 0;
     const hair_fibre *h = point->fibre;
     const hair_shares shares = shares_of(&point->passage);
+    double own = share_of_own_offset(point, is_flux), sense = x < own ? -1.0 : 1.0;
+    x = x < own ? x / own : (x - own) / (1.0 - own);
     for (int k = 0; k < HAIR_LOBES; k++)
         all += shares.mean[k];
     for (lobe = 0; lobe < HAIR_LOBES; lobe++) {
@@ -244,7 +269,9 @@ vec3 hair_sample(const hair_point *point, float u_lobe, vec2 u)
     x = fmin(fmax((x - before) / fmax(p, 1e-12), 0.0), 0x1.fffffep-1);
     inclination o = inclination_of(point->sine);
     double sine = sample_longitudinal(tilted(h, o, lobe), h->precision[lobe], u), cosine = sine_to_cosine(sine);
-    double turn = lobe < HAIR_TILTED ? turn_of(&point->passage, lobe) + sample_azimuthal(x, h->width) : TWO_PI * x;
+    double turn = TWO_PI * x;
+    if (lobe < HAIR_TILTED)
+        turn = turn_of(&point->passage, lobe, sense) + sample_azimuthal(x, h->width);
     turn = (turn + point->azimuth) / TWO_PI;
     float sin_turn, cos_turn;
     sincos_turns((float)(turn - floor(turn)), &sin_turn, &cos_turn);

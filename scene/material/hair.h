@@ -30,6 +30,14 @@ typedef struct hair_passage {
     double gamma, gamma_inside; /* angles of the ray to the normal, outside and within, across the fibre */
 } hair_passage;
 
+/* Which surface has the fibre as its material: this decides how an offset across it appears from another direction. */
+typedef enum hair_surface {
+    HAIR_FACES_RAYS, /* a curve that turns to each ray, so that directions share no point of it: all offsets are as
+                      * likely from each, and one stands for the others */
+    HAIR_RIBBON,     /* a point stays where it is; from behind, the ribbon's left is its right */
+    HAIR_OTHER       /* the offset is that of a mesh's own parameter from either side, as in pbrt */
+} hair_surface;
+
 /* A point of a fibre, and a direction of light scattered there. */
 typedef struct hair_point {
     const hair_fibre *fibre;
@@ -38,7 +46,7 @@ typedef struct hair_point {
     rgb sigma_a;          /* absorbed per radius of the path within */
     float offset;         /* across the fibre, from 0 to 1 */
     float sine;           /* of the direction's inclination */
-    bool faces_rays;      /* its normal faces each ray: see hair_evaluate */
+    hair_surface surface;
 } hair_point;
 
 /* Returns the absorption of hair that scatters light in a given colour, each channel in [0, 1] (Chiang 2016, eq. 9). */
@@ -47,15 +55,17 @@ rgb hair_absorption_from_reflectance(rgb reflectance, float beta_n);
 hair_fibre hair_fibre_make(float ior, float beta_m, float beta_n, float tilt_degrees);
 
 /* Initialises a point. v: its second surface parameter. out: in the shading frame, unit. It keeps the fibre's address,
- * and faces rays. */
+ * and its surface faces rays. */
 hair_point hair_point_at(const hair_fibre *fibre, rgb sigma_a, float v, vec3 out);
 
 /* Computes f |cos|, and the density per solid angle with which hair_sample picks the direction: of radiance from
  * `direction` that leaves to `out`; or of flux from `out` that leaves to `direction`, per flux that meets the fibre. A
  * fibre that faces rays appears narrower the more it points to the light; for others the caller knows the normal, and
- * multiplies by the ratio of its cosines. */
-void hair_evaluate(const hair_point *p, bool is_flux, vec3 direction, rgb *out_value, float *out_pdf);
+ * multiplies by the ratio of its cosines. is_same_side: whether `direction` and `out` are on one side of the surface.
+ */
+void hair_evaluate(const hair_point *p, bool is_flux, bool is_same_side, vec3 direction, rgb *out_value,
+                   float *out_pdf);
 
-vec3 hair_sample(const hair_point *point, float u_lobe, vec2 u);
+vec3 hair_sample(const hair_point *point, bool is_flux, float u_lobe, vec2 u);
 
 #endif

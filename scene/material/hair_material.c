@@ -57,7 +57,7 @@ static void add_lobes(bsdf *b, const surface_hit *hit)
     hair_point *h = &b->material.hair;
     float v = hit->is_mirrored ? 1.0f - hit->uv.y : hit->uv.y;
     *h = hair_point_at(h->fibre, h->sigma_a, v, frame_to_local(&b->shading, b->out));
-    h->faces_rays = hit->faces_rays;
+    h->surface = hit->faces_rays ? HAIR_FACES_RAYS : hit->is_strand ? HAIR_RIBBON : HAIR_OTHER;
     bsdf_add_lobe(b, LOBE_HAIR, BSDF_TRACED, false, 1.0f);
 }
 

@@ -48,9 +48,9 @@ static void evaluate_base(const bsdf *b, bsdf_transport transport, vec3 directio
     evaluate_type(b, bsdf_base_of(b), transport, direction, o, i, out_value, out_pdf);
 }
 
-static bool sample_reflected(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_reflected(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
-    (void)o, (void)u_lobe;
+    (void)transport, (void)o, (void)u_lobe;
     return sample_cosine(b, false, u, out_local);
 }
 
@@ -96,9 +96,9 @@ static void evaluate_through(const bsdf *b, bsdf_transport transport, vec3 direc
     evaluate_type(b, &bsdf_lobe_diffuse_through, transport, direction, o, i, out_value, out_pdf);
 }
 
-static bool sample_through(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_through(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
-    (void)o, (void)u_lobe;
+    (void)transport, (void)o, (void)u_lobe;
     return sample_cosine(b, true, u, out_local);
 }
 

@@ -47,8 +47,9 @@ static bool mirror_dielectric(const bsdf *b, bsdf_transport transport, vec3 o, f
     return true;
 }
 
-static bool sample_dielectric(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_dielectric(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
+    (void)transport;
     const glass_point *m = &b->material.glass;
     vec3 upper, h, i;
     float side;

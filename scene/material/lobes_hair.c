@@ -4,14 +4,14 @@
 static void evaluate_hair(const bsdf *b, bsdf_transport transport, vec3 direction, vec3 o, vec3 i, rgb *out_value,
                           float *out_pdf)
 {
-    (void)direction, (void)o;
-    hair_evaluate(&b->material.hair, transport == BSDF_FLUX, i, out_value, out_pdf);
+    (void)o;
+    hair_evaluate(&b->material.hair, transport == BSDF_FLUX, bsdf_is_same_side(b, direction), i, out_value, out_pdf);
 }
 
-static bool sample_hair(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_hair(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
     (void)o;
-    *out_local = hair_sample(&b->material.hair, u_lobe, u);
+    *out_local = hair_sample(&b->material.hair, transport == BSDF_FLUX, u_lobe, u);
     return true;
 }
 

@@ -28,9 +28,9 @@ static bool mirror_conductor(const bsdf *b, bsdf_transport transport, vec3 o, fl
     return true;
 }
 
-static bool sample_conductor(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_conductor(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
-    (void)u_lobe;
+    (void)transport, (void)u_lobe;
     return bsdf_lobe_sample_reflection(b->material.metal.facets, o, u, out_local);
 }
 
@@ -64,9 +64,9 @@ static bool mirror_coat(const bsdf *b, bsdf_transport transport, vec3 o, float u
     return true;
 }
 
-static bool sample_coat(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_coat(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
-    (void)u_lobe;
+    (void)transport, (void)u_lobe;
     return bsdf_lobe_sample_reflection(b->material.coat.interface, o, u, out_local);
 }
 
@@ -97,8 +97,10 @@ static bool mirror_coated_conductor(const bsdf *b, bsdf_transport transport, vec
     return true;
 }
 
-static bool sample_coated_conductor(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_coated_conductor(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u,
+                                    vec3 *out_local)
 {
+    (void)transport;
     float side = o.z >= 0.0f ? 1.0f : -1.0f;
     vec3 i;
     (void)u_lobe;

@@ -111,8 +111,9 @@ static vec3 sample_facet_of(ggx facets, vec3 o, vec2 u)
     return vec3_scale(ggx_sample_visible(facets, vec3_scale(o, side), u), side);
 }
 
-static bool sample_principled(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_principled(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
+    (void)transport;
     const principled_point *m = &b->material.principled;
     vec3 h = sample_facet_of(facets_of(m), o, u);
     bool is_reflection = u_lobe < facet_at(m, o, fabsf(vec3_dot(o, h))).reflection_probability;
@@ -158,9 +159,9 @@ static bool mirror_clearcoat(const bsdf *b, bsdf_transport transport, vec3 o, fl
     return true;
 }
 
-static bool sample_clearcoat(const bsdf *b, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
+static bool sample_clearcoat(const bsdf *b, bsdf_transport transport, vec3 o, float u_lobe, vec2 u, vec3 *out_local)
 {
-    (void)u_lobe;
+    (void)transport, (void)u_lobe;
     return bsdf_lobe_sample_reflection(coat_facets_of(&b->material.principled), o, u, out_local);
 }
 

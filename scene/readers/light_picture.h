@@ -31,8 +31,8 @@ ag_status light_picture_take(const scene *s, const char *name, struct image *pix
 ag_status light_picture_surround(light_picture *picture, const char *name, struct environment **out_environment,
                                  char *message, size_t message_size);
 
-/* The picture of the scene before, held, where name, version (of what the name stands for, 0: it cannot be told) and
- * is_gray are the same; NULL: it is to be read. */
+/* Returns the picture of the scene before, with a holder added, if name, version (of the file of that name, 0: unknown)
+ * and is_gray are the same; NULL: it must be read. */
 struct environment *light_picture_find_kept(scene *s, const char *name, uint64_t version, bool is_gray);
 /* Notes of one that was read what light_picture_find_kept asks for. */
 void light_picture_note(scene *s, const char *name, uint64_t version, bool is_gray, struct environment *e);

@@ -11,14 +11,14 @@
 
 #include "scene.h"
 
-/* For a reader that meets a camera: notes its names, the second NULL or "" where there is but one, and tells whether it
- * is the one to be used: the first, or the first of the name that is asked for. Errors: AG_ERROR_MEMORY. */
+/* To be called for each camera of a file: records its names, the second NULL or "" where there is but one, and returns
+ * whether it is the one to use: the first one, or the first of the requested name. Errors: AG_ERROR_MEMORY. */
 ag_status scene_overrides_meet_camera(scene *s, const char *name, const char *second_name, bool *out_is_wanted);
 
 /* World from one whose y is up, for what is made up: axes all, by what is asked for. */
 frame scene_overrides_upright(const scene *s);
 
-/* Whether light is asked for, or that there be none of the file's: then none is made up. */
+/* Returns whether the settings give light, or drop the file's lights: then none is added. */
 bool scene_overrides_light(const scene *s);
 
 /* When all is read. path: for messages. s->request is not NULL. Errors: AG_ERROR_ARGUMENT (there is no such camera, or

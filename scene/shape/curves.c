@@ -16,8 +16,9 @@ static const float TUBE_EPSILON_RELATIVE = 0x1p-9f;
 /* A ray that leaves a flat curve is met by the same curve as it turns to that ray: around its middle line, so half the
  * width off its surface it is clear in every direction, and a little more for the rounding. */
 static const float FLAT_EPSILON_RELATIVE = 1.02f;
-/* Embree's ribbons have edges that are cubic themselves, ours turn evenly. */
-static const float RIBBON_EPSILON_RELATIVE = 0x1p-6f;
+/* A ribbon's points are recomputed on the surface that Embree meets: there is little to be off by, and what photons
+ * start off by they land off by. */
+static const float RIBBON_EPSILON_RELATIVE = 0x1p-12f;
 
 /* --- memory --- */
 
@@ -209,19 +210,156 @@ static axis_point settle(const curves *c, uint32_t segment, const double point[3
     return at;
 }
 
-static void ribbon_normal(const curves *c, uint32_t segment, double u, const axis_point *at, double out[3])
+/* --- ribbons --- */
+
+/* From a ribbon's middle line to its edge on the side of normal x tangent, and its derivative by u. */
+typedef struct ribbon_side {
+    double d[3], slope[3];
+} ribbon_side;
+
+/* The side's control points, as of the curve's cubic. */
+typedef struct ribbon_edge {
+    double b[4][3];
+} ribbon_edge;
+
+/* Of the normals' cubic; n: not unit. */
+static void find_ribbon_normal(const curves *c, uint32_t segment, double u, double n[3], double dn[3])
 {
-    const vec3 *n = c->normals + 4 * (size_t)segment;
+    const vec3 *q = c->normals + 4 * (size_t)segment;
     const double w = 1.0 - u, b[4] = {w * w * w, 3.0 * u * w * w, 3.0 * u * u * w, u * u * u};
-    out[0] = out[1] = out[2] = 0.0;
+    const double db[4] = {-3.0 * w * w, 3.0 * w * (w - 2.0 * u), 3.0 * u * (2.0 * w - u), 3.0 * u * u};
+    for (int i = 0; i < 3; i++)
+        n[i] = dn[i] = 0.0;
     for (int k = 0; k < 4; k++) {
-        out[0] += b[k] * (double)n[k].x;
-        out[1] += b[k] * (double)n[k].y;
-        out[2] += b[k] * (double)n[k].z;
+        const double x[3] = {(double)q[k].x, (double)q[k].y, (double)q[k].z};
+        for (int i = 0; i < 3; i++)
+            n[i] += b[k] * x[i], dn[i] += db[k] * x[i];
     }
-    take_across(out, at->t);
-    if (!make_unit(out))
-        any_across(at->t, out);
+}
+
+/* The unit vector across the curve and its normal, and its derivative by u. follows_bend: with the part of it that is
+ * due to the curve's own turning, which Embree leaves out. */
+static ribbon_side ribbon_across(const curves *c, uint32_t segment, double u, const axis_point *at, bool follows_bend)
+{
+    double n[3], dn[3], turn[3], bend[3];
+    ribbon_side a;
+    find_ribbon_normal(c, segment, u, n, dn);
+    cross(n, at->d, a.d);
+    cross(dn, at->d, turn);
+    cross(n, at->dd, bend);
+    double length = sqrt(dot(a.d, a.d));
+    if (!make_unit(a.d)) { /* the normal lies along the curve, or the curve has no direction there */
+        any_across(at->t, a.d);
+        length = INFINITY;
+    }
+    for (int i = 0; i < 3; i++)
+        a.slope[i] = (turn[i] + (follows_bend ? bend[i] : 0.0)) / length;
+    take_across(a.slope, a.d);
+    return a;
+}
+
+/* Embree's ribbon is ruled between two cubics, which have the width and the turn of the normals at their ends. */
+static ribbon_edge find_ribbon_edge(const curves *c, uint32_t segment)
+{
+    ribbon_edge edge;
+    for (int end = 0; end < 2; end++) {
+        axis_point at = find_axis_point(c, segment, end);
+        ribbon_side a = ribbon_across(c, segment, end, &at, false);
+        for (int i = 0; i < 3; i++) {
+            double d = at.radius * a.d[i], slope = at.slope * a.d[i] + at.radius * a.slope[i];
+            edge.b[end ? 3 : 0][i] = d;
+            edge.b[end ? 2 : 1][i] = d + (end ? -slope : slope) / 3.0;
+        }
+    }
+    return edge;
+}
+
+static ribbon_side ribbon_side_at(const ribbon_edge *edge, double u)
+{
+    const double w = 1.0 - u, b[4] = {w * w * w, 3.0 * u * w * w, 3.0 * u * u * w, u * u * u};
+    const double d[3] = {3.0 * w * w, 6.0 * u * w, 3.0 * u * u};
+    ribbon_side side;
+    for (int i = 0; i < 3; i++) {
+        side.d[i] = b[0] * edge->b[0][i] + b[1] * edge->b[1][i] + b[2] * edge->b[2][i] + b[3] * edge->b[3][i];
+        side.slope[i] = d[0] * (edge->b[1][i] - edge->b[0][i]) + d[1] * (edge->b[2][i] - edge->b[1][i]) +
+                        d[2] * (edge->b[3][i] - edge->b[2][i]);
+    }
+    return side;
+}
+
+double curves_fit_ribbon(curves *c, uint32_t segment)
+{
+    enum { POINTS = 8 };
+    double even[POINTS + 1][3], largest = 0.0, widest = 0.0;
+    vec3 fit[4];
+    axis_point at;
+    for (int k = 0; k <= POINTS; k++) {
+        at = find_axis_point(c, segment, (double)k / POINTS);
+        ribbon_side a = ribbon_across(c, segment, (double)k / POINTS, &at, true);
+        for (int i = 0; i < 3; i++)
+            even[k][i] = at.radius * a.d[i];
+        widest = fmax(widest, at.radius);
+        if (k > 0 && k < POINTS)
+            continue;
+        double n[3], slope[3], turn;
+        cross(at.t, a.d, n);
+        turn = dot(a.slope, n); /* Embree takes the slope to be dn x d, and dn is along -a */
+        for (int i = 0; i < 3; i++)
+            slope[i] = n[i] + (k > 0 ? 1.0 : -1.0) * turn * a.d[i] / 3.0;
+        fit[k > 0 ? 3 : 0] = rounded(n);
+        fit[k > 0 ? 2 : 1] = rounded(slope);
+    }
+    memcpy(c->normals + 4 * (size_t)segment, fit, sizeof fit);
+    ribbon_edge edge = find_ribbon_edge(c, segment);
+    for (int k = 1; k < POINTS; k++) {
+        ribbon_side side = ribbon_side_at(&edge, (double)k / POINTS);
+        at = find_axis_point(c, segment, (double)k / POINTS);
+        for (int i = 0; i < 3; i++)
+            side.d[i] -= even[k][i];
+        take_across(side.d, at.t); /* an edge that slides along itself is where it was */
+        largest = fmax(largest, sqrt(dot(side.d, side.d)));
+    }
+    return widest > 0.0 ? largest / widest : 0.0;
+}
+
+/* The point of a ribbon nearest to one that is all but on it: along it by u, which comes in near it, and across by
+ * *out_v in [-1, 1]. Sets the derivatives by both, along and across. */
+static axis_point settle_on_ribbon(const curves *c, uint32_t segment, const double point[3], double *in_out_u,
+                                   double *out_v, double out_normal[3])
+{
+    const ribbon_edge edge = find_ribbon_edge(c, segment);
+    double u = fmin(fmax(*in_out_u, 0.0), 1.0), v = 0.0, along[3], across[3];
+    axis_point at = find_axis_point(c, segment, u);
+    for (int step = 0;; step++) {
+        ribbon_side side = ribbon_side_at(&edge, u);
+        double to[3], square = dot(side.d, side.d);
+        for (int i = 0; i < 3; i++)
+            to[i] = point[i] - at.p[i];
+        if (step == 0)
+            v = square > 0.0 ? dot(to, side.d) / square : 0.0;
+        v = fmin(fmax(v, -1.0), 1.0);
+        for (int i = 0; i < 3; i++) {
+            across[i] = side.d[i];
+            along[i] = at.d[i] + v * side.slope[i];
+            to[i] -= v * side.d[i];
+        }
+        double aa = dot(along, along), ab = dot(along, across), determinant = aa * square - ab * ab;
+        if (step == SETTLE_STEPS || !(determinant > 1e-6 * aa * square))
+            break;
+        double du = (dot(to, along) * square - dot(to, across) * ab) / determinant;
+        double moved = fmin(fmax(u + du, 0.0), 1.0);
+        if (!(fabs(moved - u) < 0.25)) /* further than Embree errs: another part of the same curve */
+            break;
+        v += (dot(to, across) * aa - dot(to, along) * ab) / determinant;
+        u = moved;
+        at = find_axis_point(c, segment, u);
+    }
+    cross(along, across, out_normal);
+    if (!make_unit(out_normal))
+        any_across(at.t, out_normal);
+    *in_out_u = u;
+    *out_v = v;
+    return at;
 }
 
 /* Finds the normal of a tube: rings are closer together on the inside of a bend, and a taper tilts the normal along the
@@ -241,11 +379,15 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
 {
     const curves *c = &s->as.curves;
     surface_hit *h = out_hit;
-    double x[3] = {(double)position.x, (double)position.y, (double)position.z}, off[3], normal[3], aside[3];
+    double x[3] = {(double)position.x, (double)position.y, (double)position.z}, off[3], normal[3] = {0}, aside[3];
     double way[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
-    double along = (double)u, v, epsilon = 0.0;
+    double along = (double)u, v = 0.0, epsilon = 0.0;
     bool is_seen = make_unit(way);
-    axis_point at = settle(c, primitive_index, x, c->type == CURVES_FLAT && is_seen ? way : NULL, &along);
+    axis_point at;
+    if (c->type == CURVES_RIBBON)
+        at = settle_on_ribbon(c, primitive_index, x, &along, &v, normal);
+    else
+        at = settle(c, primitive_index, x, c->type == CURVES_FLAT && is_seen ? way : NULL, &along);
     for (int i = 0; i < 3; i++)
         off[i] = x[i] - at.p[i];
 
@@ -275,9 +417,9 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
         tube_normal(&at, off, normal);
         epsilon = (double)TUBE_EPSILON_RELATIVE * at.radius;
     } else {
-        ribbon_normal(c, primitive_index, along, &at, normal);
-        cross(normal, at.t, aside);
-        v = at.radius > 0.0 ? dot(off, aside) / at.radius : 0.0;
+        double depth = dot(off, normal);
+        for (int i = 0; i < 3; i++)
+            x[i] -= depth * normal[i];
         epsilon = (double)RIBBON_EPSILON_RELATIVE * at.radius;
     }
     vec2 span = c->spans[primitive_index];
@@ -295,6 +437,7 @@ void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 p
     h->is_flat = false;
     h->is_strand = true;
     h->faces_rays = c->type == CURVES_FLAT;
+    h->is_mirrored = c->type == CURVES_RIBBON && dot(way, normal) < 0.0;
 }
 
 surface_differentials curves_differentials(const shape *s, const surface_hit *hit)
@@ -307,11 +450,17 @@ surface_differentials curves_differentials(const shape *s, const surface_hit *hi
     double sign = s->flip_normal ? -1.0 : 1.0, aside[3];
     double normal[3] = {sign * (double)hit->geometric_normal.x, sign * (double)hit->geometric_normal.y,
                         sign * (double)hit->geometric_normal.z};
-    if (c->type == CURVES_RIBBON)
-        cross(normal, at.t, aside);
-    else
-        cross(at.t, normal, aside);
     surface_differentials d = {0};
+    if (c->type == CURVES_RIBBON) {
+        ribbon_edge edge = find_ribbon_edge(c, hit->primitive_index);
+        ribbon_side side = ribbon_side_at(&edge, u);
+        for (int i = 0; i < 3; i++)
+            aside[i] = (at.d[i] + (2.0 * (double)hit->uv.y - 1.0) * side.slope[i]) / share;
+        d.dpdu = rounded(aside);
+        d.dpdv = vec3_scale(rounded(side.d), 2.0f);
+        return d;
+    }
+    cross(at.t, normal, aside);
     d.dpdu = vec3_scale(rounded(at.t), (float)(at.speed / share));
     d.dpdv = vec3_scale(rounded(aside), (float)(2.0 * at.radius));
     if (c->type == CURVES_CYLINDER)

@@ -20,6 +20,11 @@ ag_status curves_join(curves *c, const curves *from);
 float curves_area(const shape *s); /* of flat curves, of the one side that is seen; needs no commit */
 void curves_find_bounds(const shape *s, vec3 *out_min, vec3 *out_max);
 
+/* Fits a ribbon's segment, whose normals may lean and be of any length, to Embree, which evaluates them at its ends and
+ * leaves out the turning of the curve itself. Returns the largest distance of its edges from where the normals put
+ * them, as a share of half the width. */
+double curves_fit_ribbon(curves *c, uint32_t segment);
+
 /* shape_surface_at for curves. u: Embree's. direction: of the ray, which flat curves turn to face. */
 void curves_surface_at(const shape *s, uint32_t primitive_index, float u, vec3 position, vec3 direction,
                        surface_hit *out_hit);

@@ -79,7 +79,7 @@ void instance_transform_hit(const affine *world_from_object, surface_hit *in_out
     affine_cofactors(world_from_object, cofactors);
     const double(*c)[3] = (const double(*)[3])cofactors;
     double sign = determinant < 0.0 ? -1.0 : 1.0; /* the outside stays the outside in a mirror */
-    h->is_mirrored = determinant < 0.0;
+    h->is_mirrored = h->is_mirrored != (determinant < 0.0);
     h->position = affine_point(world_from_object, h->position);
     h->shading_normal = normal_to_world(c, sign, h->shading_normal);
     h->geometric_normal = vec3_face_forward(normal_to_world(c, sign, h->geometric_normal), h->shading_normal);
@@ -110,7 +110,7 @@ surface_hit instance_hit_in_object(const scene *s, const surface_hit *hit)
     h.geometric_normal = normal_in_object(&world_from_object, hit->geometric_normal);
     h.shading_normal = normal_in_object(&world_from_object, hit->shading_normal);
     h.instance_index = SCENE_NO_INSTANCE;
-    h.is_mirrored = false;
+    h.is_mirrored = hit->is_mirrored != (affine_determinant(&world_from_object) < 0.0);
     return h;
 }
 

@@ -75,7 +75,7 @@ typedef struct curves {
     curves_type type;
     uint32_t segment_count, capacity;
     curve_point *points;    /* 4 per segment */
-    vec3 *normals;          /* of ribbons, else NULL: 4 per segment, control points too; of any length */
+    vec3 *normals;          /* of ribbons, else NULL: 4 per segment, control points too (curves_fit_ribbon) */
     vec2 *spans;            /* per segment: the uv.x of its ends, for a curve may have been cut */
     uint32_t *first_points; /* per segment: 4 times its number, for Embree */
     uint32_t *holder_count; /* as a mesh's; no more segments can then be added */
@@ -89,7 +89,7 @@ typedef struct shape {
                                              * light that starts here */
     uint32_t material_index;
     uint32_t light_index;   /* SHAPE_NO_LIGHT where it does not shine */
-    float alpha;            /* the share of it that is there, [0, 1]: rays pass through the rest (alpha.h) */
+    float alpha;            /* its alpha, [0, 1]: the share of rays that it stops (alpha.h) */
     uint32_t alpha_texture; /* a float texture that multiplies it; SCENE_NO_TEXTURE: none */
     float alpha_cutoff;     /* above 0: the surface is there, wholly, where alpha is at least that */
     uint32_t object_index;  /* the scene's object that it belongs to; SCENE_NO_OBJECT: it stands in the world itself */
@@ -114,8 +114,7 @@ bool shape_has_same_surface(const shape *a, const shape *b);
  * own. Errors: AG_ERROR_MEMORY. */
 bool shape_equals(const shape *s, const shape *other);
 ag_status shape_share_arrays(shape *from, shape *in_out_shape);
-/* A hash of the numbers in the arrays that a mesh borrows, to tell whether somebody has written there; 0: there are
- * none. */
+/* Returns a hash of the arrays that a mesh borrows, to detect writes; 0: it borrows none. */
 uint64_t shape_hash_borrowed(const shape *s);
 /* Copies a shape that is no curves, before its commit, moved on by a map: its world space becomes another's. Errors:
  * AG_ERROR_MEMORY. */

@@ -19,11 +19,12 @@ typedef struct image_colors {
     float matrix[9]; /* of linear values, row by row */
 } image_colors;
 
-/* The encoding of a picture of colours of which the scene says nothing: as the file rules have it, else the default. */
+/* Returns the encoding of a picture of colours for which the scene gives none: by the config's file rules, else the
+ * default. */
 image_encoding image_colors_rule(const struct scene *s, const char *path);
 
-/* The encoding that a scene file names: as image_encoding_parse, or a colour space of the config. False where it is
- * neither; what there is goes to message. */
+/* Parses an encoding of a scene file: as image_encoding_parse, or a colour space of the config. Returns false where it
+ * is neither, and writes the known ones to message. */
 bool image_colors_parse(const struct scene *s, const char *text, image_encoding *out_encoding, char *message,
                         size_t message_size);
 

@@ -215,17 +215,6 @@ static ag_status take_levels(const scene *s, const texture_tile_part *parts, tex
     return status;
 }
 
-/* Forgets what was filled in; tiles that were taken first. */
-static void forget(texture_image *i)
-{
-    texture_mips_destroy(i->mips);
-    texture_tiles_destroy(i->stored_alpha.tiles);
-    texture_kept_destroy(i->kept);
-    i->mips = NULL;
-    i->kept = NULL;
-    memset(&i->stored_alpha, 0, sizeof i->stored_alpha);
-}
-
 /* The conversion that is left depends on the scene; so does the way in which values were made linear, in part. */
 static ag_status find_colors(const scene *s, const kept_header *h, texture_image *i, bool *out_is_same, char *message,
                              size_t message_size)
@@ -297,7 +286,7 @@ ag_status texture_cache_find(run_context *run, const struct scene *s, hash128 ke
                     (double)file.st_size / 1e6, path);
     } else {
         *out_is_found = false;
-        forget(i);
+        texture_image_drop_store(i);
     }
     return status;
 }

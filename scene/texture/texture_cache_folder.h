@@ -7,8 +7,8 @@
 
 #define TEXTURE_CACHE_ENDING ".afterglow-tiles" /* of the names of its files; others there are left alone */
 
-/* A descriptor of an empty file without a name in the folder, which is made where it is missing (but not what it lies
- * in); -1 with errno. It goes with the process, however that ends. */
+/* Opens an unnamed empty file in the folder, which is created where it is missing (its parent is not); returns -1 with
+ * errno. The file disappears with the process, however it ends. */
 int texture_cache_folder_open(const char *folder);
 
 /* Gives such a file a name in its folder; where there is one of that name already, as another process may just have

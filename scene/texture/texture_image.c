@@ -174,6 +174,16 @@ texture_image *texture_image_hold(texture_image *i)
     return other;
 }
 
+void texture_image_drop_store(texture_image *i)
+{
+    texture_mips_destroy(i->mips);
+    texture_tiles_destroy(i->stored_alpha.tiles);
+    texture_kept_destroy(i->kept);
+    i->mips = NULL;
+    i->kept = NULL;
+    memset(&i->stored_alpha, 0, sizeof i->stored_alpha);
+}
+
 void texture_image_destroy(texture_image *i)
 {
     if (!i)

@@ -65,6 +65,8 @@ typedef struct texture_image {
 ag_status texture_image_take(const struct scene *s, texture_image *i, struct image *picture, char *message,
                              size_t message_size);
 void texture_image_destroy(texture_image *i); /* NULL is fine */
+/* Frees a picture's coarser levels, its stored tiles and the cache's file, and leaves these members empty. */
+void texture_image_drop_store(texture_image *i);
 /* Another picture with the same pixels, as it was read; for pictures that are held whole. NULL when out of memory. */
 texture_image *texture_image_hold(texture_image *i);
 

@@ -99,12 +99,7 @@ static ag_status put_to_keep(run_context *run, scene *s, texture_image *i, const
         return status;
     }
     log_once(run ? run->log : NULL, AG_LOG_WARNING, "texture cache", "%s", message);
-    texture_mips_destroy(i->mips);
-    texture_tiles_destroy(i->stored_alpha.tiles);
-    texture_kept_destroy(i->kept);
-    i->mips = NULL;
-    i->kept = NULL;
-    memset(&i->stored_alpha, 0, sizeof i->stored_alpha);
+    texture_image_drop_store(i);
     return AG_OK;
 }
 

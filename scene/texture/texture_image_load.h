@@ -13,7 +13,7 @@
  * AG_ERROR_COLOR, AG_CANCELLED; text in message. */
 ag_status texture_image_load(run_context *run, struct scene *s, const char *path, image_encoding encoding,
                              uint32_t *out_index, char *message, size_t message_size);
-/* Whether there is a file of that name, or of any tile. False where the scene may not ask. */
+/* Returns whether a file of that name exists, or one of its tiles; false where the scene is not allowed to look. */
 bool texture_image_is_there(const run_context *run, const char *path);
 /* From a PNG or JPEG file in memory, once for each name, which is to differ from all paths, and encoding. */
 ag_status texture_image_load_memory(run_context *run, struct scene *s, const char *name, const unsigned char *bytes,

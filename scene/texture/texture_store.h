@@ -51,7 +51,7 @@ bool texture_store_has_room(const texture_store *s, uint64_t picture_bytes);
 /* Whether a picture of that size may stay in memory whole: as long as they take half of the limit. If so, it counts. */
 bool texture_store_keeps(texture_store *s, uint64_t picture_bytes);
 
-/* A level's size and what its values are: 1, 2 or 4 bytes of 1 or 3 channels. */
+/* A level's size, and the type of its values: 1, 2 or 4 bytes of 1 or 3 channels. */
 typedef struct texture_layout {
     uint32_t width, height, channel_count, value_bytes;
 } texture_layout;

@@ -22,18 +22,17 @@ typedef struct texture_udim {
     uint32_t slot_count;   /* at most TEXTURE_UDIM_SLOTS */
     texture_image **tiles; /* [slot_count], borrowed from the scene; slot u + 10 v; NULL: there is no such file */
     bool has_mips;         /* all of its tiles have coarser levels */
-    /* Which slots without a file were asked for, and whether a coordinate beyond all slots was. Relaxed: set by whoever
-     * looks up, read behind a barrier of the pass. */
+    /* The slots without a file that were looked up, and whether a coordinate outside of all slots was. Relaxed: set by
+     * lookups, read after the barrier of the pass. */
     atomic_u32 missed[TEXTURE_UDIM_WORDS], is_outside;
 } texture_udim;
 
-/* Whether a file name stands for tiles. */
+/* Returns whether a file name is a pattern of tiles. */
 bool texture_udim_is_pattern(const char *path);
 /* Whether more than one token stands in such a name: which tile a file is would be open. */
 bool texture_udim_is_ambiguous(const char *path);
 
-/* The slots of which there are files by that name, ascending; *out_slots is to be freed. None is no error.
- * Errors: AG_ERROR_MEMORY. */
+/* Finds the slots that have files, ascending; *out_slots is to be freed. None is no error. Errors: AG_ERROR_MEMORY. */
 ag_status texture_udim_find(const char *path, uint16_t **out_slots, uint32_t *out_count);
 /* The file of a slot; to be freed; NULL when out of memory. */
 char *texture_udim_file(const char *path, uint32_t slot);
@@ -46,7 +45,7 @@ void texture_udim_destroy(texture_udim *u); /* NULL is fine */
 bool texture_udim_enter(const texture_image **in_out_picture, texture_wraps *out_wraps, float *in_out_s,
                         float *in_out_t);
 
-/* Which tiles there are; their pixels are the tiles' own. */
+/* Hashes the set of tiles; their pixels are hashed as pictures of their own. */
 hash128 texture_udim_content(const texture_udim *u);
 
 /* Warns, once for each name in the life of the log, of tiles that were asked for and are not there. */

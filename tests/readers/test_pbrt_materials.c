@@ -17,13 +17,6 @@ static material only_material(const char *text)
     return m;
 }
 
-static rgb spectrum(const char *name)
-{
-    rgb value;
-    assert_true(spectra_find_named(name, NULL, &value));
-    return value;
-}
-
 static void assert_scaled(rgb value, rgb expected, double scale)
 {
     assert_rgb(value, (double)expected.r * scale, (double)expected.g * scale, (double)expected.b * scale, 1e-6);

@@ -55,13 +55,6 @@ static material warned_material(const char *text, const char *warnings)
     return m;
 }
 
-static rgb spectrum(const char *name)
-{
-    rgb value;
-    assert_true(spectra_find_named(name, NULL, &value));
-    return value;
-}
-
 static void assert_same_rgb(rgb a, rgb b) { assert_rgb(a, (double)b.r, (double)b.g, (double)b.b, 1e-6); }
 
 static void refuses(const char *text, const char *expected)

@@ -32,7 +32,7 @@ static rgb scattered(const hair_point *h, bool is_flux, vec3 direction)
 {
     rgb value;
     float pdf;
-    hair_evaluate(h, is_flux, direction, &value, &pdf);
+    hair_evaluate(h, is_flux, true, direction, &value, &pdf);
     return value;
 }
 
@@ -161,20 +161,24 @@ static void photons_and_eye_agree(void **state)
 
 /* --- where on a curve --- */
 
-/* Black hair, all but smooth, mirrors: about the normal of the tube that the flat curve stands for. */
+/* Black hair, all but smooth, mirrors: about the normal of the tube that a flat curve stands for, and a ribbon, from
+ * whichever side it is seen. */
 static void reflection_is_that_of_a_tube(void **state)
 {
     (void)state;
     test_run run;
     test_run_init(&run, 1);
-    static const char *const TYPES[] = {"flat", "cylinder"};
-    for (int k = 0; k < 4; k++) {
+    static const char *const TYPES[] = {"flat", "cylinder",
+                                        "ribbon\" \"normal N\" [0 0 1 0 0 1] \"string basis\" \"bezier",
+                                        "ribbon\" \"normal N\" [0 0 -1 0 0 -1] \"string basis\" \"bezier"};
+    enum { TYPE_COUNT = sizeof TYPES / sizeof *TYPES };
+    for (int k = 0; k < 2 * TYPE_COUNT; k++) {
         char text[512];
         snprintf(
             text, sizeof text,
             "Material \"hair\" \"rgb sigma_a\" [99 99 99] \"float beta_m\" .05 \"float beta_n\" .05 \"float alpha\" "
             "0 %s Shape \"curve\" \"string type\" \"%s\" \"float width\" 2 \"point3 P\" [0 -9 0 0 -3 0 0 3 0 0 9 0]",
-            k < 2 ? "" : "ReverseOrientation", TYPES[k % 2]);
+            k < TYPE_COUNT ? "" : "ReverseOrientation", TYPES[k % TYPE_COUNT]);
         scene *s = test_scene_create(&run, text);
         for (int i = 0; i < 7; i++) {
             float x = -0.75f + 0.25f * (float)i;

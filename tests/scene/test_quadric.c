@@ -74,26 +74,14 @@ static bool is_on_part(const shape *s, vec3 p, double slack)
 
 /* --- areas and bounds --- */
 
-static double area_of(const char *world)
-{
-    test_run r;
-    test_run_init(&r, 1);
-    scene *s = test_scene_create(&r, world);
-    double area = s->shapes[0].area;
-    assert_true(shape_area(&s->shapes[0]) == s->shapes[0].area);
-    scene_destroy(s);
-    test_run_reset(&r);
-    return area;
-}
-
 static void areas_have_their_closed_forms(void **state)
 {
     (void)state;
-    assert_relative(area_of("Shape \"cylinder\""), 4.0 * PI, 1e-6);
-    assert_relative(area_of(PLACED "Scale 3 -3 3 Shape \"cylinder\" \"float radius\" [2] \"float zmin\" [5] "
-                                   "\"float zmax\" [1] \"float phimax\" [90]"),
+    assert_relative(test_scene_area("Shape \"cylinder\""), 4.0 * PI, 1e-6);
+    assert_relative(test_scene_area(PLACED "Scale 3 -3 3 Shape \"cylinder\" \"float radius\" [2] \"float zmin\" [5] "
+                                           "\"float zmax\" [1] \"float phimax\" [90]"),
                     PI / 2 * 2 * 4 * 9, 1e-6);
-    assert_relative(area_of("Scale 3 3 5 Shape \"cylinder\""), 2.0 * PI * 3 * 10, 1e-6);
+    assert_relative(test_scene_area("Scale 3 3 5 Shape \"cylinder\""), 2.0 * PI * 3 * 10, 1e-6);
     /* an ellipse's circumference, by the arithmetic-geometric mean: here half axes 2 and 1 */
     double a = 2.0, b = 1.0, sum = 1.0 - 0.5 * 3.0 / 4.0, power = 0.5;
     for (int i = 0; i < 8; i++) {
@@ -103,19 +91,20 @@ static void areas_have_their_closed_forms(void **state)
         power *= 2.0;
         sum -= power / 2.0 * c * c * 2.0 / 4.0;
     }
-    assert_relative(area_of("Rotate 30 1 2 3 Scale 2 1 4 Shape \"cylinder\""), 2.0 * PI * 4.0 * sum / a * 8.0, 1e-5);
-    assert_relative(area_of("Shape \"sphere\" \"float zmin\" [0]"), 2.0 * PI, 1e-6);
+    assert_relative(test_scene_area("Rotate 30 1 2 3 Scale 2 1 4 Shape \"cylinder\""), 2.0 * PI * 4.0 * sum / a * 8.0,
+                    1e-5);
+    assert_relative(test_scene_area("Shape \"sphere\" \"float zmin\" [0]"), 2.0 * PI, 1e-6);
     assert_relative(
-        area_of("Shape \"sphere\" \"float radius\" [3] \"float zmin\" [1] \"float zmax\" [2] \"float phimax\" "
-                "[120]"),
+        test_scene_area("Shape \"sphere\" \"float radius\" [3] \"float zmin\" [1] \"float zmax\" [2] \"float phimax\" "
+                        "[120]"),
         2.0 * PI * 3.0 / 3.0, 1e-6);
-    assert_relative(area_of("Scale 1 2 3 Shape \"sphere\" \"float phimax\" [90]") * 4.0,
-                    area_of("Scale 1 2 3 Shape \"sphere\""), 1e-5);
+    assert_relative(test_scene_area("Scale 1 2 3 Shape \"sphere\" \"float phimax\" [90]") * 4.0,
+                    test_scene_area("Scale 1 2 3 Shape \"sphere\""), 1e-5);
     assert_relative(
-        area_of("Scale 2 3 5 Shape \"disk\" \"float radius\" [2] \"float innerradius\" [1] \"float phimax\" "
-                "[60]"),
+        test_scene_area("Scale 2 3 5 Shape \"disk\" \"float radius\" [2] \"float innerradius\" [1] \"float phimax\" "
+                        "[60]"),
         PI * 3.0 * 6.0 / 6.0, 1e-6);
-    assert_relative(area_of("Shape \"disk\" \"float phimax\" [720]"), PI, 1e-6);
+    assert_relative(test_scene_area("Shape \"disk\" \"float phimax\" [720]"), PI, 1e-6);
 }
 
 /* The box holds every point of the surface, and each of its sides is reached by one. */

@@ -36,18 +36,6 @@ static vec3 shape_middle(const shape *s)
 
 /* --- areas --- */
 
-static double area_of(const char *world)
-{
-    test_run r;
-    test_run_init(&r, 1);
-    scene *s = test_scene_create(&r, world);
-    double area = s->shapes[0].area;
-    assert_true(shape_area(&s->shapes[0]) == s->shapes[0].area);
-    scene_destroy(s);
-    test_run_reset(&r);
-    return area;
-}
-
 /* Knud Thomsen's formula for ellipsoids (2004), right within 1.061 %. */
 static double thomsen(double a, double b, double c)
 {
@@ -58,20 +46,20 @@ static double thomsen(double a, double b, double c)
 static void areas_have_their_closed_forms(void **state)
 {
     (void)state;
-    assert_relative(area_of("Shape \"sphere\" \"float radius\" [3]"), 4.0 * PI * 9.0, 1e-6);
-    assert_relative(area_of("Rotate 30 1 1 1 Scale 2 -2 2 Shape \"sphere\" \"float radius\" [3]"), 4.0 * PI * 36.0,
-                    1e-5);
+    assert_relative(test_scene_area("Shape \"sphere\" \"float radius\" [3]"), 4.0 * PI * 9.0, 1e-6);
+    assert_relative(test_scene_area("Rotate 30 1 1 1 Scale 2 -2 2 Shape \"sphere\" \"float radius\" [3]"),
+                    4.0 * PI * 36.0, 1e-5);
     assert_relative(
-        area_of("Rotate 20 1 0 2 Scale 2 3 5 Shape \"disk\" \"float radius\" [2] \"float innerradius\" [1]"),
+        test_scene_area("Rotate 20 1 0 2 Scale 2 3 5 Shape \"disk\" \"float radius\" [2] \"float innerradius\" [1]"),
         PI * 3.0 * 6.0, 1e-6);
-    assert_relative(area_of("Scale 1 2 3 " BOX), 2.0 * (2 * 4 + 4 * 6 + 2 * 6), 1e-6);
+    assert_relative(test_scene_area("Scale 1 2 3 " BOX), 2.0 * (2 * 4 + 4 * 6 + 2 * 6), 1e-6);
     /* spheroids: prolate (an egg) and oblate (a lentil) */
     double e = sqrt(1.0 - 1.0 / 9.0);
-    assert_relative(area_of("Rotate 20 1 0 2 Scale 1 1 3 Shape \"sphere\""), 2.0 * PI * (1.0 + 3.0 / e * asin(e)),
-                    1e-4);
-    assert_relative(area_of("Scale 3 1 3 Shape \"sphere\""), 2.0 * PI * (9.0 + atanh(e) / e), 1e-4);
-    assert_relative(area_of("Scale 1 2 3 Shape \"sphere\""), thomsen(1, 2, 3), 0.011);
-    assert_relative(area_of("Scale 5 0.5 2 Shape \"sphere\" \"float radius\" [2]"), thomsen(10, 1, 4), 0.011);
+    assert_relative(test_scene_area("Rotate 20 1 0 2 Scale 1 1 3 Shape \"sphere\""),
+                    2.0 * PI * (1.0 + 3.0 / e * asin(e)), 1e-4);
+    assert_relative(test_scene_area("Scale 3 1 3 Shape \"sphere\""), 2.0 * PI * (9.0 + atanh(e) / e), 1e-4);
+    assert_relative(test_scene_area("Scale 1 2 3 Shape \"sphere\""), thomsen(1, 2, 3), 0.011);
+    assert_relative(test_scene_area("Scale 5 0.5 2 Shape \"sphere\" \"float radius\" [2]"), thomsen(10, 1, 4), 0.011);
 }
 
 /* --- samples --- */

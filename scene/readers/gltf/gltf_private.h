@@ -17,8 +17,8 @@ enum { GLTF_MAX_FACTORS = 4 };
 /* Vertices lie within +-this, in world space, as those of other formats. */
 #define GLTF_MAX_COORDINATE 1e18
 
-/* A value of the document and where it is: a chain of keys and indices up to the document itself, which is all in the
- * callers' frames. json is NULL where there is none. */
+/* A value of the document and its path: a chain of keys and indices up to the document, in the callers' frames. json is
+ * NULL for a missing value. */
 typedef struct gltf_value {
     const json_t *json;
     const struct gltf_value *parent; /* NULL: this is the document */
@@ -75,7 +75,7 @@ typedef struct gltf_material {
 typedef struct gltf_mesh_use {
     uint32_t node_count;
     bool is_made;
-    uint32_t object_index; /* the scene's; SCENE_NO_OBJECT: there is nothing in it */
+    uint32_t object_index; /* index in the scene; SCENE_NO_OBJECT: it is empty */
 } gltf_mesh_use;
 
 /* A node's transform to world space: affine, of any rank. Row, column. */
@@ -83,7 +83,7 @@ typedef struct gltf_matrix {
     double m[3][4];
 } gltf_matrix;
 
-/* How what lamps are measured in becomes W/sr and W/m^2. */
+/* Factors from a file's units of lamps to W/sr and W/m^2. */
 typedef struct gltf_lamp_units {
     double per_candela, per_lux;
     gltf_light_units kind; /* none of GLTF_LIGHTS_BY_GENERATOR */
@@ -129,7 +129,7 @@ void gltf_warn_once(const gltf_reader *r, const gltf_value *at, const char *key,
 gltf_value gltf_member(const gltf_value *object, const char *key);
 gltf_value gltf_element(const gltf_value *array, size_t index);
 
-/* The member, which must be an object (array) where it is there. */
+/* Finds a member, which must be an object (array) if it is present. */
 ag_status gltf_get_object(const gltf_reader *r, const gltf_value *parent, const char *key, gltf_value *out_value);
 ag_status gltf_get_array(const gltf_reader *r, const gltf_value *parent, const char *key, gltf_value *out_value);
 /* extensions.NAME; extensions_frame takes the step between, and lives as long as the value. */
@@ -225,7 +225,7 @@ enum { GLTF_MAX_INFLUENCES = 4 }; /* sets of four joints */
 
 typedef struct gltf_morph {
     double weight;
-    gltf_accessor positions, normals; /* what is added */
+    gltf_accessor positions, normals; /* the accessors to add */
     bool has_positions, has_normals;
 } gltf_morph;
 

@@ -8,7 +8,7 @@
 
 typedef struct blender_shifts {
     float of_all[2]; /* right and up, as a share of the picture's longer side; 0 where the cameras differ */
-    bool differ;     /* which of them is whose the files do not tell us */
+    bool differ;     /* the files do not tell which shift belongs to which picture */
 } blender_shifts;
 
 /* path: of a binary FBX file, or of a Collada file. A file that cannot be read has no shifts. */

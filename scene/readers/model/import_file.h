@@ -5,7 +5,7 @@
 
 #include "scene.h"
 
-/* Whether the program is there; where it is not, it is told at that level where it was looked for. */
+/* Returns whether the import program is installed; where it is not, logs at a level the paths that were tried. */
 bool import_finds_program(const run_context *run, ag_log_level level);
 
 /* Whether assimp reads files whose names end so: extension with its dot, in any case. False where the program is not

@@ -7,8 +7,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* The descriptors that the program finds open, beside the standard three, which go nowhere: its answer, and a pipe that
- * nobody writes into, whose closing tells the caller that the process has ended. */
+/* The descriptors that the program inherits besides the standard three, which are /dev/null: its answer, and a pipe
+ * without data, whose closing tells the caller that the process has ended. */
 enum { IMPORT_ANSWER_DESCRIPTOR = 3, IMPORT_END_DESCRIPTOR = 4, IMPORT_DESCRIPTORS_END = 5 };
 
 /* Sees to it that the process dies with its caller, leaves no core, and takes memory_bytes at most on top of what it

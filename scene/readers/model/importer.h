@@ -23,16 +23,15 @@ typedef struct importer {
     file_location where;             /* the file; no line */
     const import_embedded *embedded; /* [embedded_count], borrowed */
     size_t embedded_count;
-    float bump_unit; /* the height, in scene units, that a bump map's white stands for */
-    /* what was left out, for importer_finish */
+    float bump_unit; /* height of a bump map's white, scene units */
+    /* counts of what was left out, for importer_finish */
     size_t triangle_count, degenerate_count, left_out_count, odd_vector_count;
 } importer;
 
 /* Errors: AG_ERROR_MEMORY. */
 ag_status importer_init(importer *i, run_context *run, const char *path, scene *out_scene);
 
-/* The value of bump_unit, from the bounds of all that is there. MTL gives no unit: white is 0.002 of the diagonal
- * high. */
+/* Returns bump_unit from the bounds of the whole model: MTL gives no unit, and white is 0.002 of the diagonal high. */
 float importer_bump_unit(vec3 bounds_min, vec3 bounds_max);
 
 /* A mesh's material and other properties of its surface. */
@@ -54,8 +53,8 @@ ag_status importer_add_material(importer *i, const import_material *m, import_su
 ag_status importer_add_mesh(importer *i, const char *name, mesh *m, const transform *world_from_mesh,
                             const import_surface *surface);
 
-/* The camera that is asked for by name counts, else the first; what makes no sense is left out with a warning. Lights:
- * shapes must be there already. Errors: AG_ERROR_MEMORY. */
+/* Adds a camera: the requested one by name counts, else the first. Values that are not valid are left out with a
+ * warning. Lights need shapes to be added before. Errors: AG_ERROR_MEMORY. */
 ag_status importer_add_camera(importer *i, const import_camera *source);
 ag_status importer_add_light(importer *i, const import_light *source);
 

@@ -20,7 +20,7 @@ typedef struct mtl_library {
 ag_status mtl_library_read(mtl_library *library, log_sink *log, const char *file, const char *text, size_t size);
 void mtl_library_reset(mtl_library *library);
 
-/* A material of that name without anything said of it. */
+/* Returns a material of a name with MTL's defaults. */
 import_material mtl_material_make(const char *name);
 
 #endif

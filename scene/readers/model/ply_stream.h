@@ -29,7 +29,7 @@ static inline size_t ply_type_bytes(ply_type type) { return (size_t)1 << (type <
 typedef struct ply_stream {
     gzFile file;
     const run_context *run; /* may be NULL */
-    unsigned char *bytes;   /* what is unpacked and not read yet lies at next to end; a NUL behind it */
+    unsigned char *bytes;   /* decompressed bytes; those not read yet are at next to end, followed by a NUL */
     size_t next, end;
     size_t mark;     /* of the value read last, for messages */
     uint64_t offset; /* of bytes[0] in the unpacked file */
@@ -57,7 +57,7 @@ ag_status ply_fail(ply_stream *s, const char *format, ...) AG_PRINTF(2, 3);
 
 /* Sees to it that `wanted` bytes (64 KiB at most) lie at next, or all that there are. */
 ag_status ply_fill(ply_stream *s, size_t wanted);
-/* The next line of the header without its end, cut to size - 1 characters. *out_is_end: there is none. */
+/* Reads the next line of the header without its end, cut to size - 1 characters. *out_is_end: the file has ended. */
 ag_status ply_read_line(ply_stream *s, char *line, size_t size, bool *out_is_end);
 /* A number of a binary file at the address where it lies. */
 double ply_decode(const unsigned char *bytes, ply_type type, ply_format format);

@@ -44,7 +44,7 @@ typedef struct parameter {
     bool *used;         /* set by parameter_list_warn_unused where it was looked up; borrowed; NULL: nobody asks */
 } parameter;
 
-/* Where parameters come from: their text, for messages that show it, and what their colours are to become. */
+/* The source of parameters: their text, for messages that quote it, and the space of their colours. */
 typedef struct parameter_source {
     /* Writes a line of text with a mark below it ("\n    line\n    ^~~"), or nothing where it is no longer there. */
     void (*excerpt)(const void *user, file_location where, size_t width, char *out_text, size_t size);
@@ -66,7 +66,7 @@ void parameter_list_reset(parameter_list *list); /* frees what it holds; leaves 
 bool parameter_copy(const parameter *p, parameter *out_copy);
 void parameter_reset(parameter *p); /* frees what it holds; leaves it zeroed */
 
-/* The parameter of that name, whatever its type, NULL where there is none. Does not mark it as looked up. */
+/* Returns the parameter of a name, whatever its type; NULL where there is none. It is not marked as used. */
 const parameter *parameter_list_find(const parameter_list *list, const char *name);
 
 /* Single values. Each returns AG_OK and writes the value where the parameter stands with a fitting type and count,

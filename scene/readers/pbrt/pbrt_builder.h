@@ -30,7 +30,7 @@ typedef struct pbrt_items {
     size_t count;
 } pbrt_items;
 
-/* Where something is, and what it is made of. */
+/* A placement: transform, material and media. */
 typedef struct pbrt_placement {
     transform start, end; /* world from its own space, while the shutter is open; of a camera: camera from world */
     bool reverse_orientation;

@@ -15,6 +15,10 @@
  * more than so many. */
 static const double DEVIATION = 0.05;
 enum { CUTS_MAX = 16 };
+/* A ribbon is cut until its edges keep within this share of half its width where its normals put them; but into no more
+ * than so many. */
+static const double RIBBON_DEVIATION = 0.005;
+enum { RIBBON_CUTS_MAX = 64 };
 /* Sines and cosines of normals that lie opposite each other know no way between. */
 static const double OPPOSITE = -0.9999;
 
@@ -113,31 +117,54 @@ static int count_cuts(const segment *s)
     return (int)fmin(fmax(ceil(pieces / CURVES_FLAT_PIECES), 1.0), CUTS_MAX);
 }
 
-/* Normals in between turn evenly; the control points here are of the cubic that agrees at thirds. */
-static void turn_normals(const double *n0, const double *n1, double out[4][3])
+/* The normals of a part of a segment whose own turn evenly from one to the other, as control points of the cubic that
+ * agrees with them at thirds. ends: of the segment, of any length. */
+static void turn_normals(const double *const ends[2], double from, double to, double out[4][3])
 {
-    double unit[2][3], length[2] = {0.0, 0.0}, cosine = 0.0, thirds[2][3];
+    double unit[2][3], length[2] = {0.0, 0.0}, cosine = 0.0, at[4][3];
     for (int i = 0; i < 3; i++) {
-        length[0] += n0[i] * n0[i];
-        length[1] += n1[i] * n1[i];
+        length[0] += ends[0][i] * ends[0][i];
+        length[1] += ends[1][i] * ends[1][i];
     }
     for (int i = 0; i < 3; i++) {
-        unit[0][i] = n0[i] / sqrt(length[0]);
-        unit[1][i] = n1[i] / sqrt(length[1]);
+        unit[0][i] = ends[0][i] / sqrt(length[0]);
+        unit[1][i] = ends[1][i] / sqrt(length[1]);
         cosine += unit[0][i] * unit[1][i];
     }
     double angle = acos(fmin(fmax(cosine, -1.0), 1.0)), sine = sin(angle);
-    for (int k = 0; k < 2; k++) {
-        double t = (k + 1) / 3.0;
+    for (int k = 0; k < 4; k++) {
+        double t = from + (to - from) * k / 3.0;
         double a = sine > 1e-6 ? sin((1.0 - t) * angle) / sine : 1.0 - t, b = sine > 1e-6 ? sin(t * angle) / sine : t;
         for (int i = 0; i < 3; i++)
-            thirds[k][i] = a * unit[0][i] + b * unit[1][i];
+            at[k][i] = a * unit[0][i] + b * unit[1][i];
     }
     for (int i = 0; i < 3; i++) {
-        out[0][i] = unit[0][i];
-        out[1][i] = (-5.0 * unit[0][i] + 18.0 * thirds[0][i] - 9.0 * thirds[1][i] + 2.0 * unit[1][i]) / 6.0;
-        out[2][i] = (2.0 * unit[0][i] - 9.0 * thirds[0][i] + 18.0 * thirds[1][i] - 5.0 * unit[1][i]) / 6.0;
-        out[3][i] = unit[1][i];
+        out[0][i] = at[0][i];
+        out[1][i] = (-5.0 * at[0][i] + 18.0 * at[1][i] - 9.0 * at[2][i] + 2.0 * at[3][i]) / 6.0;
+        out[2][i] = (2.0 * at[0][i] - 9.0 * at[1][i] + 18.0 * at[2][i] - 5.0 * at[3][i]) / 6.0;
+        out[3][i] = at[3][i];
+    }
+}
+
+/* A ribbon needs to know where its curve goes: where two control points at an end coincide, the inner one moves by
+ * 1/256 of the way to the next. */
+static void part_points(segment *s)
+{
+    static const double NEAR = 1.0 / 1024, APART = 1.0 / 256;
+    for (int end = 0; end < 2; end++) {
+        double *p = s->p[end ? 3 : 0], *inner = s->p[end ? 2 : 1], near = 0.0;
+        for (int i = 0; i < 3; i++)
+            near = fmax(near, fabs(inner[i] - p[i]));
+        for (int k = 2; k <= 3; k++) {
+            const double *next = s->p[end ? 3 - k : k];
+            double far = 0.0;
+            for (int i = 0; i < 3; i++)
+                far = fmax(far, fabs(next[i] - p[i]));
+            if (near < NEAR * far) {
+                mix(p, next, APART, inner);
+                break;
+            }
+        }
     }
 }
 
@@ -170,6 +197,40 @@ static outcome add_segment(curves *c, const transform *t, double scale, const se
     return ADDED;
 }
 
+/* Adds a segment as so many parts. normals: at the ends of a ribbon, else NULL. */
+static outcome add_parts(curves *c, const transform *t, double scale, const segment *whole,
+                         const double *const normals[2], int cuts)
+{
+    outcome all = ADDED;
+    for (int k = 0; k < cuts; k++) {
+        double from = (double)k / cuts, to = (double)(k + 1) / cuts, turned[4][3];
+        segment part = cuts > 1 ? cut(whole, from, to) : *whole;
+        if (normals)
+            turn_normals(normals, from, to, turned);
+        outcome one = add_segment(c, t, scale, &part, (vec2){(float)from, (float)to}, normals ? turned : NULL);
+        if (one == IS_OUT_OF_REACH || one == NO_MEMORY)
+            return one;
+        all = one == IS_NOTHING ? IS_NOTHING : all;
+    }
+    return all;
+}
+
+/* As few parts as keep a ribbon's shape. */
+static outcome add_ribbon(curves *c, const transform *t, double scale, segment *whole, const double *const normals[2])
+{
+    part_points(whole);
+    for (int cuts = 1;; cuts *= 2) {
+        uint32_t before = c->segment_count;
+        double deviation = 0.0;
+        outcome all = add_parts(c, t, scale, whole, normals, cuts);
+        for (uint32_t k = before; k < c->segment_count; k++)
+            deviation = fmax(deviation, curves_fit_ribbon(c, k));
+        if (all != ADDED || !(deviation > RIBBON_DEVIATION) || cuts == RIBBON_CUTS_MAX)
+            return all;
+        c->segment_count = before;
+    }
+}
+
 static ag_status add_segments(pbrt_parser *parser, const parameter_list *list, const curve_source *source, curves *c)
 {
     const transform *t = &parser->state.world_from_object;
@@ -177,23 +238,21 @@ static ag_status add_segments(pbrt_parser *parser, const parameter_list *list, c
     size_t nothing = 0;
     for (size_t i = 0; i < source->segment_count; i++) {
         segment whole = make_segment(source, i);
-        double normals[4][3];
-        if (source->normals)
-            turn_normals(source->normals + 3 * i, source->normals + 3 * (i + 1), normals);
-        int cuts = c->type == CURVES_FLAT ? count_cuts(&whole) : 1;
-        size_t lost = 0;
-        for (int k = 0; k < cuts; k++) {
-            vec2 span = {(float)k / (float)cuts, (float)(k + 1) / (float)cuts};
-            segment part = cuts > 1 ? cut(&whole, (double)k / cuts, (double)(k + 1) / cuts) : whole;
-            switch (add_segment(c, t, scale, &part, span, source->normals ? normals : NULL)) {
-            case ADDED: break;
-            case IS_NOTHING: lost = 1; break;
-            case IS_OUT_OF_REACH:
-                return pbrt_refuse(parser, list, "P", "the curve reaches beyond 1e18 units in world space");
-            case NO_MEMORY: return AG_ERROR_MEMORY;
-            }
+        const double *normals[2] = {source->normals, source->normals};
+        outcome all;
+        if (source->normals) {
+            normals[0] += 3 * i, normals[1] += 3 * (i + 1);
+            all = add_ribbon(c, t, scale, &whole, normals);
+        } else {
+            all = add_parts(c, t, scale, &whole, NULL, c->type == CURVES_FLAT ? count_cuts(&whole) : 1);
         }
-        nothing += lost;
+        switch (all) {
+        case ADDED: break;
+        case IS_NOTHING: nothing++; break;
+        case IS_OUT_OF_REACH:
+            return pbrt_refuse(parser, list, "P", "the curve reaches beyond 1e18 units in world space");
+        case NO_MEMORY: return AG_ERROR_MEMORY;
+        }
     }
     if (nothing > 0)
         log_at(parser->log, AG_LOG_WARNING, list->where,

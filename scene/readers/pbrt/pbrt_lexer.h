@@ -26,13 +26,13 @@ typedef struct pbrt_token {
 
 typedef struct pbrt_lexer {
     const char *text, *end; /* borrowed; *end is NUL */
-    const char *next;       /* what is read next */
+    const char *next;       /* the next character */
     const char *line_start; /* of the line that next is in */
     int line;
     const char *file; /* borrowed; goes into every location */
     char *unescaped;  /* owned; of the last string that had escapes */
     size_t unescaped_capacity;
-    char error[96]; /* what was wrong when pbrt_lexer_next failed */
+    char error[96]; /* message of the last failure of pbrt_lexer_next */
 } pbrt_lexer;
 
 /* Borrows text, which has a NUL at text[size], and file. */

@@ -188,12 +188,9 @@ void pbrt_parser_destroy(pbrt_parser *parser)
     free(parser);
 }
 
-ag_status pbrt_parse_file(run_context *run, const char *path, scene *out_scene)
+/* Parses what has been pushed, unless pushing it has failed, and destroys the parser. */
+static ag_status parse_pushed(pbrt_parser *parser, ag_status status)
 {
-    pbrt_parser *parser = pbrt_parser_create(run, out_scene);
-    if (!parser)
-        return AG_ERROR_MEMORY;
-    ag_status status = pbrt_push_file(parser, path, (file_location){NULL, 0, 0}, 0);
     if (status == AG_OK)
         status = parse(parser);
     if (status == AG_OK)
@@ -202,16 +199,18 @@ ag_status pbrt_parse_file(run_context *run, const char *path, scene *out_scene)
     return status;
 }
 
+ag_status pbrt_parse_file(run_context *run, const char *path, scene *out_scene)
+{
+    pbrt_parser *parser = pbrt_parser_create(run, out_scene);
+    if (!parser)
+        return AG_ERROR_MEMORY;
+    return parse_pushed(parser, pbrt_push_file(parser, path, (file_location){NULL, 0, 0}, 0));
+}
+
 ag_status pbrt_parse_text(run_context *run, const char *name, const char *text, size_t size, scene *out_scene)
 {
     pbrt_parser *parser = pbrt_parser_create(run, out_scene);
     if (!parser)
         return AG_ERROR_MEMORY;
-    ag_status status = pbrt_push_text(parser, name, text, size);
-    if (status == AG_OK)
-        status = parse(parser);
-    if (status == AG_OK)
-        pbrt_warn_unused_attributes(parser);
-    pbrt_parser_destroy(parser);
-    return status;
+    return parse_pushed(parser, pbrt_push_text(parser, name, text, size));
 }

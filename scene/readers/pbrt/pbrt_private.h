@@ -126,7 +126,7 @@ typedef struct pbrt_named_medium {
     file_location where; /* of its definition, or until then of the first MediumInterface that names it */
 } pbrt_named_medium;
 
-/* A shape that shines within an object, on its way into the world. */
+/* A shape that emits light within an object, to be added to the world. */
 typedef struct pbrt_object_lamp {
     shape shape; /* its arrays are owned */
     pbrt_area_light light;
@@ -198,7 +198,7 @@ typedef struct pbrt_parser {
     parameter_source source;    /* of the lists that are read */
     pbrt_attribute *attributes; /* all there have been, the newest first */
 
-    parameter_list integrator, sampler, film, pixel_filter; /* the last of each; .name is NULL where there is none */
+    parameter_list integrator, sampler, film, pixel_filter; /* the last of each; .name is NULL for none */
 
     double film_distance; /* m, from the lens of a realistic camera; 0: there is none */
 
@@ -247,12 +247,13 @@ void pbrt_excerpt(const void *parser, file_location where, size_t width, char *o
 ag_status pbrt_push_file(pbrt_parser *parser, const char *name, file_location where, size_t width);
 ag_status pbrt_push_text(pbrt_parser *parser, const char *name, const char *text, size_t size);
 void pbrt_pop_file(pbrt_parser *parser);
-/* Where a file that the scene names is: where whoever loads it says; else as pbrt has it, below the first file's
- * directory; where there is none, below that of the file that names it. To be freed; NULL when out of memory. */
+/* Returns the path of a file that the scene names: from the host's find_file; else, as in pbrt, below the first file's
+ * directory; where that does not exist, below that of the file that names it. To be freed; NULL when out of memory. */
 char *pbrt_find_file(const pbrt_parser *parser, const char *name);
-/* Whether a picture may be read (input_file.h); where not, message says why, with the path. Errors: AG_ERROR_INPUT. */
+/* Checks whether a picture may be read (input_file.h); where not, message has the reason and the path. Errors:
+ * AG_ERROR_INPUT. */
 ag_status pbrt_allow_picture(const pbrt_parser *parser, const char *path, char *message, size_t message_size);
-/* The picture in memory of that name; NULL: there is none. */
+/* Returns the picture in memory of a name; NULL: there is none. */
 const pbrt_picture *pbrt_find_picture(const pbrt_parser *parser, const char *name);
 /* Of the pixels that a name stands for, in memory or in a file that may be read; 0: it cannot be told. Errors:
  * AG_ERROR_MEMORY. */
@@ -325,8 +326,8 @@ ag_status pbrt_end_import(pbrt_parser *parser, file_location end);
 
 /* pbrt_objects.c: what is kept once, and where it is shown. */
 pbrt_handler pbrt_object_begin, pbrt_object_end, pbrt_object_instance;
-/* The object of that name is the open one until pbrt_leave_object, once more where it was before; that ends with its
- * first instance. It is defined when whoever adds to it says so. */
+/* Opens the object of a name until pbrt_leave_object, also again after it was left, unless it has an instance. It is
+ * defined when its caller says so. */
 ag_status pbrt_enter_object(pbrt_parser *parser, const char *name, file_location where);
 void pbrt_leave_object(pbrt_parser *parser);
 /* Keeps a shape that shines within the open object. Takes its arrays, also on failure. */
@@ -343,7 +344,7 @@ pbrt_handler pbrt_identity, pbrt_translate, pbrt_scale, pbrt_rotate, pbrt_look_a
     pbrt_transform_times;
 ag_status pbrt_name_coordinate_system(pbrt_parser *parser, const char *name, const transform *start,
                                       const transform *end);
-/* Whether the current transform moves while the shutter is open, as far as its two ends tell. */
+/* Returns whether the current transform moves during the shutter, by its two ends. */
 bool pbrt_is_moving(const pbrt_parser *parser);
 /* From one transform to another in TransformTimes, seen through the camera's shutter. Errors as motion_make's, at the
  * directive. */
@@ -484,8 +485,8 @@ ag_status pbrt_add_mesh(pbrt_parser *parser, const parameter_list *list, const p
  * and taken, also on failure. dropped: triangles that were left out before, for the warning. */
 ag_status pbrt_add_object_mesh(pbrt_parser *parser, const parameter_list *list, mesh *object_mesh, size_t dropped,
                                bool expects_degenerate);
-/* The arrays that meshes have in common, all but triangle_count. There are *out_index_count indices, a multiple of
- * corners, from malloc: those of the file, or 0, 1, 2, ... where it has none and the vertices are just one face. */
+/* Reads the arrays that meshes have in common, all but triangle_count. There are *out_index_count indices, a multiple
+ * of corners, from malloc: those of the file, or 0, 1, 2, ... where it has none and the vertices are a single face. */
 ag_status pbrt_read_mesh_arrays(pbrt_parser *parser, parameter_list *list, size_t corners, pbrt_mesh *out_mesh,
                                 size_t *out_index_count);
 
