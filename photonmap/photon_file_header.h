@@ -6,7 +6,7 @@
 #include "photon_file.h"
 
 /* Raise this whenever the layout changes, or which photons are traced: other estimates have another fingerprint. */
-enum { PHOTON_FILE_LAYOUT = 21 };
+enum { PHOTON_FILE_LAYOUT = 22 };
 enum {
     PHOTON_FILE_PAGE = 4096,
     PHOTON_FILE_OWNERS_AT = PHOTON_FILE_PAGE, /* the header has the first page */
